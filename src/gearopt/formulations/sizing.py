@@ -1,0 +1,89 @@
+"""Continuous sizing of a multi-stage drive: teeth and modules as real numbers.
+
+Minimise the drive's objective under K-factor and unit-load limits (Chong and Lee, eqs. 10-12) with
+ratios, modules, teeth and face widths free within their limits. Every row is a posynomial, so the
+log form is convex: Ipopt finds the global optimum and the dual bound proves it. With the total
+ratio free within its tolerance this is a relaxation of `teeth`, so its bound holds there too.
+"""
+
+import math
+from types import SimpleNamespace
+from typing import Any
+
+from gearopt.formulations.train import Train, each, terms
+from gearopt.optimise.problem import Param, Problem, Terms, Var
+from gearopt.physics.loads import k_factor
+
+# Far beyond any gear (a watch to a mill), so that they never bind; finite, for the dual bound.
+MODULE = (1e-4, 1e4)  # mm
+TEETH = (1.0, 1e6)
+RATIO = (1.0, 1e6)
+WIDTH = (1e-5, 1e6)  # mm
+
+_PARAMETER_UNITS = {"torque": "N mm", "k_factor": "MPa", "unit_load": "MPa", "wheel_diameter": "mm",
+                    "module_low": "mm", "module_high": "mm"}
+
+
+def problem(train: Train) -> Problem:
+    """The continuous problem of a drive: variables module [mm], pinion_teeth, ratio and, where it
+    is not tied to d1, face_width [mm], one component a stage.
+    """
+    count = len(train.stages)
+    numbers = train.numbers()
+    parameters = tuple(
+        Param(name, _PARAMETER_UNITS.get(name, ""), value, count if isinstance(value, tuple) else 1)
+        for name, value in numbers.items()
+    )
+    free = any(not s.face_width.tied for s in train.stages)
+
+    def evaluate(x: Any, p: Any) -> Terms:
+        module, teeth = each(x.module), each(x.pinion_teeth)
+        width = tuple(
+            each(p.width_high)[k] * module[k] * teeth[k] / math.cos(train.helix_angle)
+            if stage.face_width.tied
+            else each(x.face_width)[k]
+            for k, stage in enumerate(train.stages)
+        )
+        return terms(train, p, module, teeth, each(x.ratio), width)
+
+    return Problem("sizing", _variables(train, free), parameters, evaluate)
+
+
+def _variables(train: Train, free: bool) -> tuple[Var, ...]:
+    columns: dict[str, list[tuple[float, float, float]]] = {
+        "module": [], "pinion_teeth": [], "ratio": [], "face_width": []}
+    numbers = SimpleNamespace(**train.numbers())
+    torque = train.torque
+    for k, stage in enumerate(train.stages):
+        z_fixed = stage.pinion_teeth[0] == stage.pinion_teeth[1]
+        z2_fixed = stage.wheel_teeth[0] == stage.wheel_teeth[1]
+        z = max(1.0, numbers.pinion_low[k])
+        u = float(train.ratio) ** (1.0 / len(train.stages))
+        if z_fixed and z2_fixed:
+            u = numbers.wheel_low[k] / z
+        proportion = min(numbers.width_high[k], 1.0)
+        d = (k_factor(torque, 1.0, proportion, u) / stage.k_factor) ** (1.0 / 3.0)
+        m_fixed = len(stage.modules) == 1
+        m = numbers.module_low[k] if m_fixed else d * math.cos(train.helix_angle) / z
+        b_fixed = stage.face_width.fixed
+        columns["module"].append(_column(MODULE, m, m_fixed))
+        columns["pinion_teeth"].append(_column(TEETH, z, z_fixed))
+        columns["ratio"].append(_column(RATIO, u, z_fixed and z2_fixed))
+        width = proportion * d if b_fixed is None else float(b_fixed)
+        columns["face_width"].append(
+            _column(WIDTH, width, b_fixed is not None or stage.face_width.tied))
+        torque *= u
+    if not free:
+        del columns["face_width"]
+    count = len(train.stages)
+    return tuple(
+        Var(name, "mm" if name in ("module", "face_width") else "",
+            *(tuple(c) for c in zip(*column, strict=True)), size=count, log=True)  # type: ignore[arg-type]
+        for name, column in columns.items()
+    )
+
+
+def _column(bounds: tuple[float, float], guess: float, fixed: bool) -> tuple[float, float, float]:
+    if fixed:
+        return guess, guess, guess
+    return bounds[0], bounds[1], min(max(guess, bounds[0]), bounds[1])

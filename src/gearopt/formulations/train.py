@@ -1,0 +1,214 @@
+"""The input of `sizing` and `teeth`: a multi-stage drive with its duty and limits.
+
+Numbers at which a tie may occur (ratios, modules, face-width proportions, diameters) are exact
+fractions; the rest are floats in mm, N, rad, MPa.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from gearopt.optimise.problem import Terms
+from gearopt.physics.geometry import centre_distance, gear_volume, reference_diameter
+from gearopt.physics.loads import k_factor, unit_load
+
+OBJECTIVES = {  # name -> unit
+    "gear_volume": "mm3",
+    "mass": "kg",
+    "sum_of_centre_distances": "mm",
+    "total_length": "mm",
+}
+
+
+@dataclass(frozen=True)
+class FaceWidth:
+    """How the face width b of a stage is chosen, from the pinion reference diameter d1.
+
+    low, high: limits of b/d1 (high may be None with `fixed`); equal ones tie b to d1. step: b is a whole multiple of it [mm].
+    fixed: b itself is given [mm] (low and high still limit it).
+    """
+
+    low: Fraction
+    high: Fraction | None
+    step: Fraction | None = None
+    fixed: Fraction | None = None
+
+    @property
+    def tied(self) -> bool:
+        """Whether b = high d1."""
+        return self.low == self.high and self.step is None and self.fixed is None
+
+
+@dataclass(frozen=True)
+class Stage:
+    """One stage: its load limits and what it may choose.
+
+    k_factor, unit_load: limits [MPa]. modules: allowed normal modules [mm], increasing (for the
+    continuous form its first and last are limits; empty: any). pinion_teeth, wheel_teeth: least
+    and most, ratio: least and most of u = z2/z1 >= 1 (None: no limit). wheel_diameter: most [mm]
+    of the wheel's reference diameter.
+    """
+
+    k_factor: float
+    unit_load: float
+    face_width: FaceWidth
+    modules: tuple[Fraction, ...]
+    pinion_teeth: tuple[int, int | None]
+    wheel_teeth: tuple[int, int | None] = (1, None)
+    ratio: tuple[Fraction, Fraction | None] = (Fraction(1), None)
+    wheel_diameter: Fraction | None = None
+
+
+@dataclass(frozen=True)
+class Train:
+    """A drive: input torque [N mm], total ratio and its relative tolerance, and its stages.
+
+    helix_angle [rad] of every stage. coprime: z1 and z2 without common divisor (hunting teeth).
+    objective: a key of OBJECTIVES; mass needs density [t/mm3].
+    """
+
+    torque: float
+    ratio: Fraction
+    tolerance: Fraction
+    stages: tuple[Stage, ...]
+    helix_angle: float = 0.0
+    coprime: bool = False
+    objective: str = "gear_volume"
+    density: float | None = None
+
+    @property
+    def lowest_ratio(self) -> Fraction:
+        """Least total ratio allowed."""
+        return self.ratio * (1 - self.tolerance)
+
+    @property
+    def highest_ratio(self) -> Fraction:
+        """Largest total ratio allowed."""
+        return self.ratio * (1 + self.tolerance)
+
+
+    @property
+    def unit(self) -> str:
+        """Unit of the objective."""
+        return OBJECTIVES[self.objective]
+
+    def numbers(self) -> dict[str, float | tuple[float, ...]]:
+        """Every number of the drive as floats, by name; one a stage for the limits of a stage."""
+        stages = self.stages
+        return {
+            "torque": self.torque,
+            "lowest_ratio": float(self.lowest_ratio),
+            "highest_ratio": float(self.highest_ratio),
+            "k_factor": tuple(s.k_factor for s in stages),
+            "unit_load": tuple(s.unit_load for s in stages),
+            "width_low": tuple(float(s.face_width.low) for s in stages),
+            "width_high": tuple(_or_inf(s.face_width.high) for s in stages),
+            "module_low": tuple(float(min(s.modules, default=0)) for s in stages),
+            "module_high": tuple(_or_inf(max(s.modules, default=None)) for s in stages),
+            "pinion_low": tuple(float(s.pinion_teeth[0]) for s in stages),
+            "pinion_high": tuple(_or_inf(s.pinion_teeth[1]) for s in stages),
+            "wheel_low": tuple(float(s.wheel_teeth[0]) for s in stages),
+            "wheel_high": tuple(_or_inf(s.wheel_teeth[1]) for s in stages),
+            "ratio_low": tuple(float(s.ratio[0]) for s in stages),
+            "ratio_high": tuple(_or_inf(s.ratio[1]) for s in stages),
+            "wheel_diameter": tuple(_or_inf(s.wheel_diameter) for s in stages),
+        }
+
+
+def _or_inf(number: Fraction | int | None) -> float:
+    return math.inf if number is None else float(number)
+
+
+def share(train: Train, stage: int, pinion_diameter: Any, face_width: Any, ratio: Any) -> Any:
+    """What a stage (counted from 0) adds to the objective, in its unit (mm3, kg or mm).
+
+    pinion_diameter, face_width [mm] and ratio: floats, arrays or casadi scalars. total_length is
+    that of the shafts in one line, from the rim of the first pinion to that of the last wheel over
+    reference circles: d1/2 + sum of centre distances + d2/2.
+    """
+    if train.objective == "gear_volume":
+        return gear_volume(pinion_diameter, face_width, ratio)
+    if train.objective == "mass":
+        assert train.density is not None
+        return 1000.0 * train.density * gear_volume(pinion_diameter, face_width, ratio)
+    length = centre_distance(pinion_diameter, ratio)
+    if train.objective == "total_length" and stage == 0:
+        length = length + 0.5 * pinion_diameter
+    if train.objective == "total_length" and stage == len(train.stages) - 1:
+        length = length + 0.5 * pinion_diameter * ratio
+    return length
+
+
+def terms(
+    train: Train,
+    numbers: Any,
+    module: Sequence[Any],
+    pinion_teeth: Sequence[Any],
+    ratio: Sequence[Any],
+    face_width: Sequence[Any],
+) -> Terms:
+    """Objective and limits of a drive, one entry a stage, in geometric-programming text.
+
+    numbers: `train.numbers()` as attributes, floats or parameters. module, face_width [mm].
+    A limit is left out where the drive leaves it open or fixes the quantity.
+    """
+    total, product, torque = 0.0, 1.0, numbers.torque
+    limits: dict[str, Any] = {}
+    equal: dict[str, Any] = {}
+    for k, stage in enumerate(train.stages):
+
+        def add(name: str, value: Any, k: int = k) -> None:
+            limits[f"{name}[{k + 1}]"] = value
+
+        def of(name: str, k: int = k) -> Any:
+            value = getattr(numbers, name)
+            return value[k] if len(train.stages) > 1 else value
+
+        m, z, u, b = module[k], pinion_teeth[k], ratio[k], face_width[k]
+        d = reference_diameter(m, z, train.helix_angle)
+        total = total + share(train, k, d, b, u)
+        add("k_factor", k_factor(torque, d, b, u) / of("k_factor"))
+        add("unit_load", unit_load(torque, d, b, m) / of("unit_load"))
+        if not stage.face_width.tied:
+            if stage.face_width.high is not None:
+                add("face_width_high", b / (of("width_high") * d))
+            if stage.face_width.low > 0:
+                add("face_width_low", of("width_low") * d / b)
+        if len(stage.modules) > 1:
+            add("module_low", of("module_low") / m)
+            add("module_high", m / of("module_high"))
+        least, most = stage.pinion_teeth
+        if least != most:
+            add("pinion_teeth_low", of("pinion_low") / z)
+            if most is not None:
+                add("pinion_teeth_high", z / of("pinion_high"))
+        least, most = stage.wheel_teeth
+        if least == most:
+            if stage.pinion_teeth != (stage.pinion_teeth[0],) * 2:
+                equal[f"wheel_teeth[{k + 1}]"] = z * u / of("wheel_low")
+        else:
+            if least > 1:
+                add("wheel_teeth_low", of("wheel_low") / (z * u))
+            if most is not None:
+                add("wheel_teeth_high", z * u / of("wheel_high"))
+        if stage.ratio[0] > 1:
+            add("stage_ratio_low", of("ratio_low") / u)
+        if stage.ratio[1] is not None:
+            add("stage_ratio_high", u / of("ratio_high"))
+        if stage.wheel_diameter is not None:
+            add("wheel_diameter", u * d / of("wheel_diameter"))
+        torque = torque * u
+        product = product * u
+    if train.tolerance > 0:
+        limits["ratio_low"] = numbers.lowest_ratio / product
+        limits["ratio_high"] = product / numbers.highest_ratio
+    else:
+        equal["ratio"] = product / numbers.highest_ratio
+    return Terms({train.objective: total}, limits, equal=equal)
+
+
+def each(value: Any) -> tuple[Any, ...]:
+    """A block of scalars as a tuple, whatever its size."""
+    return value if isinstance(value, tuple) else (value,)

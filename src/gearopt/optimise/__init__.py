@@ -1,0 +1,1 @@
+"""Problems, methods and certificates; it knows no gears."""

@@ -1,0 +1,102 @@
+"""The space a gradient method works in: y = log x for log variables, logarithms of proven rows.
+
+    minimise F(y)  subject to  G(y) <= 0,  H(y) = 0,  lower <= y <= upper
+
+F = log f, G = log g and H = log h for every term that `tape` proves log-convex (H: monomial);
+f, g - 1 and h - 1 for the others. When all are proven and all variables are log, F and G are convex
+and H is affine: the dual bound of `certificate` then holds.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from gearopt.errors import SolveError
+from gearopt.optimise import tape
+from gearopt.optimise.problem import Array, Problem
+
+
+@dataclass(frozen=True)
+class Form:
+    """A problem in y; `expressions` are casadi (y, p, F, G, H), the rest numbers.
+
+    logarithmic: which variables are log (n,). log_objective: F is log f. convex: proven convex.
+    derivatives(y, p, lam_g, lam_h) -> F, G, H, grad F, grad L with L = F + lam_g.G + lam_h.H.
+    """
+
+    expressions: tuple[Any, Any, Any, Any, Any]
+    derivatives: Any
+    logarithmic: Any
+    log_objective: bool
+    convex: bool
+
+    def to_y(self, x: Array) -> Array:
+        """Natural point to y."""
+        with np.errstate(divide="ignore"):
+            return np.where(self.logarithmic, np.log(np.where(self.logarithmic, x, 1.0)), x)
+
+    def to_x(self, y: Array) -> Array:
+        """y to the natural point."""
+        return np.where(self.logarithmic, np.exp(np.where(self.logarithmic, y, 0.0)), y)
+
+    def objective(self, value: float) -> float:
+        """Value of F to the unit of the objective."""
+        return float(np.exp(value)) if self.log_objective else value
+
+
+def form(problem: Problem) -> Form:
+    """The form of a problem at its present parameters; built once a set of proven kinds.
+
+    SolveError where the problem has no single objective.
+    """
+    if len(problem.rows.objectives) != 1:
+        raise SolveError(f"{problem.name} has {len(problem.rows.objectives)} objectives, not one")
+    found = tape.kinds(problem)
+    key = ("form", found)
+    if key not in problem.memo:
+        problem.memo[key] = _build(problem, found)
+    result: Form = problem.memo[key]
+    return result
+
+
+def _build(problem: Problem, found: tape.Kinds) -> Form:
+    import casadi as ca
+
+    traced = problem.traced()
+    logarithmic = np.array([v.log for v, _ in problem.columns])
+    kind = ca.MX if problem.repeats else ca.SX
+    y = kind.sym("y", len(logarithmic))
+    p = kind.sym("p", len(problem.parameter_values()))
+    if logarithmic.all():
+        x = ca.exp(y)
+    else:
+        x = ca.vertcat(*[ca.exp(e) if log else e for e, log in
+                         zip(ca.vertsplit(y), logarithmic, strict=True)])
+    f, g, h = traced.terms(x, p)
+    log_objective = found.objective <= tape.POSYNOMIAL
+    objective = ca.log(f) if log_objective else f
+    inequalities = _rows(g, [k <= tape.POSYNOMIAL for k in found.inequalities])
+    equalities = _rows(h, [k <= tape.MONOMIAL for k in found.equalities])
+    lam_g, lam_h = kind.sym("lam_g", g.numel()), kind.sym("lam_h", h.numel())
+    lagrangian = objective + ca.dot(lam_g, inequalities) + ca.dot(lam_h, equalities)
+    gradients = [ca.gradient(objective, y), ca.gradient(lagrangian, y)]
+    outputs = [ca.densify(e) for e in (objective, inequalities, equalities, *gradients)]
+    return Form(
+        (y, p, objective, inequalities, equalities),
+        ca.Function("derivatives", [y, p, lam_g, lam_h], outputs),
+        logarithmic,
+        log_objective,
+        bool(found.log_convex and logarithmic.all()),
+    )
+
+
+def _rows(values: Any, logarithmic: list[bool]) -> Any:
+    import casadi as ca
+
+    if not logarithmic or all(logarithmic):
+        return ca.log(values)
+    if not any(logarithmic):
+        return values - 1
+    return ca.vertcat(*[ca.log(v) if log else v - 1 for v, log in
+                        zip(ca.vertsplit(values), logarithmic, strict=True)])

@@ -1,0 +1,142 @@
+"""What comes back: `Outcome` from a method (a claim), `Result` after certification (a fact)."""
+
+import json
+import math
+import platform
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass, field, fields
+from importlib.metadata import version
+from typing import Any
+
+import numpy as np
+
+from gearopt.optimise.problem import Array
+
+FORMAT = 1
+STATUSES = ("optimal", "stationary", "feasible", "infeasible", "limit", "failed")
+
+
+@dataclass(frozen=True)
+class Budget:
+    """What a method may spend: wall seconds and evaluations (None: no bound)."""
+
+    seconds: float | None = None
+    evaluations: int | None = None
+
+
+@dataclass(frozen=True)
+class Event:
+    """Progress of a running method, given to `watch(event)`; returning False stops the run."""
+
+    seconds: float
+    evaluations: int
+    best: float | None = None
+    bound: float | None = None
+
+
+Watch = Callable[[Event], bool]
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a method found and claims; `certify` judges it.
+
+    x: the best point (n,), or None. finished: it ran to its own end, not out of budget.
+    lam_g, lam_h: multipliers of the form's rows. infeasible: it claims there is no feasible point,
+    by lam_g, lam_h (a Farkas certificate) or by `proof`. bound and proof: of an exact algorithm.
+    others: further points in proven order. message: what it has to say.
+    """
+
+    x: Array | None
+    finished: bool = True
+    lam_g: Array | None = None
+    lam_h: Array | None = None
+    infeasible: bool = False
+    bound: float | None = None
+    proof: Mapping[str, Any] | None = None
+    others: tuple[Array, ...] = ()
+    evaluations: int = 0
+    message: str = ""
+
+
+@dataclass(frozen=True)
+class Result:
+    """The answer to a problem, as `--json` prints it.
+
+    status: optimal (our bound within the stated gap), stationary (KKT certified, no bound),
+    feasible, infeasible (proven), limit (stopped early), failed. objective: {name, value, unit}.
+    bound: nothing feasible is better; gap: (objective - bound)/|objective|. proof: {method, ...}.
+    certificate: {feasibility, stationarity, complementarity}. limits: utilisations by name.
+    """
+
+    name: str
+    status: str
+    method: str
+    objective: dict[str, Any]
+    bound: float | None = None
+    gap: float | None = None
+    proof: dict[str, Any] = field(default_factory=dict)
+    certificate: dict[str, float | None] = field(default_factory=dict)
+    design: dict[str, Any] = field(default_factory=dict)
+    limits: dict[str, float] = field(default_factory=dict)
+    report: dict[str, Any] = field(default_factory=dict)
+    parts: tuple["Result", ...] = ()
+    message: str = ""
+    evaluations: int = 0
+    seconds: float = 0.0
+    seed: int = 0
+    scene: str | None = None
+    file: str | None = None
+    file_sha256: str | None = None
+    versions: dict[str, str] = field(default_factory=dict)
+    result: int = FORMAT
+    gearopt: str = field(default_factory=lambda: version("gearopt"))
+
+    @property
+    def value(self) -> float | None:
+        """The objective's value, None without a feasible design."""
+        found = self.objective.get("value")
+        return None if found is None else float(found)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain dicts, lists and numbers; no NaN and no infinity (None instead)."""
+        found: dict[str, Any] = _plain(asdict(self))
+        return found
+
+    def to_json(self) -> str:
+        """One JSON object."""
+        return json.dumps(self.to_dict(), indent=2, allow_nan=False)
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any]) -> "Result":
+        """The inverse of `to_dict`; ValueError for another format version or unknown keys."""
+        if data.get("result") != FORMAT:
+            raise ValueError(f"result format {data.get('result')!r}: this gearopt reads {FORMAT}")
+        known = {f.name for f in fields(cls)}
+        if unknown := sorted(set(data) - known):
+            raise ValueError(f"unknown keys in a result: {', '.join(unknown)}")
+        return cls(**{**data, "parts": tuple(cls.from_dict(p) for p in data.get("parts", ()))})
+
+    @classmethod
+    def from_json(cls, text: str) -> "Result":
+        """The inverse of `to_json`."""
+        return cls.from_dict(json.loads(text))
+
+
+def versions(*packages: str) -> dict[str, str]:
+    """Versions of Python and of the packages a result rests on."""
+    return {"python": platform.python_version()} | {name: version(name) for name in packages}
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return {str(k): _plain(v) for k, v in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(v) for v in value]
+    if isinstance(value, np.ndarray):
+        return _plain(value.tolist())
+    if isinstance(value, np.generic):
+        return _plain(value.item())
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value

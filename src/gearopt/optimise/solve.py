@@ -1,0 +1,118 @@
+"""`solve`: run a method on a problem and certify what it returns."""
+
+import time
+from collections.abc import Callable
+from importlib import import_module
+from pkgutil import iter_modules
+from typing import Any
+
+import numpy as np
+
+from gearopt.errors import SolveError
+from gearopt.optimise import solvers
+from gearopt.optimise.certificate import Verdict, certify
+from gearopt.optimise.problem import Array, Problem
+from gearopt.optimise.result import Budget, Outcome, Result, Watch, versions
+
+GAP = 1e-6  # relative; what `optimal` means unless the caller says otherwise
+
+
+def solve(
+    problem: Problem,
+    method: str | None = None,
+    budget: Budget | None = None,
+    seed: int = 0,
+    watch: Watch | None = None,
+    gap: float = GAP,
+) -> Result:
+    """The certified answer of one method to one problem.
+
+    method: a name of `problem.methods` or of a back end in `optimise/solvers`; by default the
+    problem's own exact algorithm, else ipopt. gap: relative gap to our bound that is called
+    optimal. SolveError where the method does not fit the problem. Not thread-safe.
+    """
+    return run(problem, method, budget, seed, watch, gap)[0]
+
+
+def run(
+    problem: Problem,
+    method: str | None = None,
+    budget: Budget | None = None,
+    seed: int = 0,
+    watch: Watch | None = None,
+    gap: float = GAP,
+) -> tuple[Result, Outcome]:
+    """Like `solve`, with the method's raw outcome beside the result."""
+    name = method or next(iter(problem.methods), "ipopt")
+    start = time.perf_counter()
+    outcome = _method(problem, name)(problem, budget or Budget(), seed, watch)
+    verdict = certify(problem, outcome, gap)
+    return _result(problem, name, outcome, verdict, time.perf_counter() - start, seed), outcome
+
+
+def back_ends() -> tuple[str, ...]:
+    """Names of the back ends for any problem: the modules of `optimise/solvers`."""
+    return tuple(sorted(m.name for m in iter_modules(solvers.__path__)))
+
+
+def _method(problem: Problem, name: str) -> Callable[..., Outcome]:
+    if name in problem.methods:
+        return problem.methods[name]
+    if name in back_ends():
+        run: Callable[..., Outcome] = import_module(f"gearopt.optimise.solvers.{name}").run
+        return run
+    known = ", ".join([*problem.methods, *back_ends()])
+    raise SolveError(f"no method {name!r} for {problem.name}; methods: {known}")
+
+
+def _result(
+    problem: Problem, method: str, outcome: Outcome, verdict: Verdict, seconds: float, seed: int
+) -> Result:
+    solved = verdict.objective is not None and outcome.x is not None
+    point = outcome.x if solved else None
+    return Result(
+        name=problem.name,
+        status=verdict.status,
+        method=method,
+        objective={"name": problem.rows.objectives[0], "value": verdict.objective},
+        bound=verdict.bound,
+        gap=verdict.gap,
+        proof=dict(verdict.proof),
+        certificate=dict(verdict.certificate),
+        design={} if point is None else design(problem, point),
+        limits={} if point is None else limits(problem, point),
+        report={} if point is None else report(problem, point),
+        message=verdict.message,
+        evaluations=outcome.evaluations,
+        seconds=seconds,
+        seed=seed,
+        versions=versions("numpy", "casadi"),
+    )
+
+
+def design(problem: Problem, x: Array) -> dict[str, Any]:
+    """Every variable by name and unit (`face_width_mm`); lists for blocks."""
+    found: dict[str, Any] = {}
+    for (variable, name), value in zip(problem.columns, x, strict=True):
+        head = name.rsplit("[", 1)[0] if variable.size > 1 else name
+        key = f"{head}_{variable.unit}" if variable.unit else head
+        number: Any = round(float(value)) if variable.integer else float(value)
+        if variable.size > 1:
+            found.setdefault(key, []).append(number)
+        else:
+            found[key] = number
+    return found
+
+
+def limits(problem: Problem, x: Array) -> dict[str, float]:
+    """Utilisation of every user limit at a point."""
+    rows = problem.batch(x[None]).G[0] + 1.0
+    named = zip(problem.rows.inequalities, rows, strict=True)
+    return {row.name: float(v) for row, v in named if row.kind == "limits"}
+
+
+def report(problem: Problem, x: Array) -> dict[str, Any]:
+    """The problem's report terms at a point; lists for the rows of a repeat."""
+    values = problem.batch(x[None]).report
+    return {name: np.asarray(v).reshape(-1).tolist() if np.size(v) > 1 else float(np.ravel(v)[0])
+            for name, v in values.items()}

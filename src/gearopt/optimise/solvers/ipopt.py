@@ -1,0 +1,221 @@
+"""Ipopt through CasADi, on the form of a problem (logarithms of variables and proven rows).
+
+Claims infeasibility only with the multipliers of the least-violation problem, which `certify`
+turns into a proof where the form is convex.
+"""
+
+import time
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from gearopt.errors import SolveError
+from gearopt.optimise.form import Form, form
+from gearopt.optimise.problem import Array, Problem
+from gearopt.optimise.result import Budget, Event, Outcome, Watch
+
+ACCEPTED = 1e-9  # an iterate that violates no row by more is kept as the best so far
+STUCK = 1e-6  # violation at which Ipopt's end point counts as not solved
+
+OPTIONS = {
+    "print_level": 0,
+    "sb": "yes",
+    "tol": 1e-12,  # the dual bound is as tight as the multipliers
+    "constr_viol_tol": 1e-12,
+    "compl_inf_tol": 1e-12,
+    "dual_inf_tol": 1e-9,
+    "acceptable_tol": 1e-10,
+    "acceptable_iter": 8,
+    "bound_relax_factor": 0.0,  # the default buys 1e-8 of every bound
+    "max_iter": 3000,
+}
+
+
+@dataclass(frozen=True)
+class _Point:
+    """Where Ipopt stopped: y, row multipliers, and its word for why."""
+
+    y: Array
+    lam_g: Array
+    lam_h: Array
+    status: str
+
+
+def run(
+    problem: Problem,
+    budget: Budget,
+    seed: int,
+    watch: Watch | None,
+    start: Array | None = None,
+) -> Outcome:
+    """Solve a continuous problem from its guess (or from the natural point `start`).
+
+    SolveError for discrete variables. Ipopt is deterministic: the seed changes nothing.
+    """
+    for variable, name in problem.columns:
+        if variable.discrete:
+            raise SolveError(f"ipopt takes continuous variables only; {name} is discrete")
+    shape = form(problem)
+    lower, upper, guess = problem.bounds()
+    y0 = shape.to_y(np.clip(guess if start is None else start, lower, upper))
+    low, high = shape.to_y(lower), shape.to_y(upper)
+    solver, monitor = _built(problem, shape)
+    monitor.begin(budget, watch, shape.objective)
+    point = _ipopt(problem, solver, y0, low, high, monitor.rows)
+    if not monitor.stopped and _violation(problem, shape, point.y) > STUCK:
+        point, least = _least_violation(problem, shape, point, low, high)
+        if least > STUCK:
+            return Outcome(
+                shape.to_x(point.y),
+                lam_g=point.lam_g,
+                lam_h=point.lam_h,
+                infeasible=True,
+                evaluations=monitor.evaluations,
+                message=f"Ipopt: {point.status}; the least violation found is {least:.3g}",
+            )
+        point = _ipopt(problem, solver, point.y, low, high, monitor.rows)
+    best = monitor.best if monitor.stopped else point.y
+    return Outcome(
+        None if best is None else np.clip(shape.to_x(best), lower, upper),
+        finished=not monitor.stopped,
+        lam_g=point.lam_g,
+        lam_h=point.lam_h,
+        evaluations=monitor.evaluations,
+        message="" if point.status == "Solve_Succeeded" else f"Ipopt: {point.status}",
+    )
+
+
+def _built(problem: Problem, shape: Form) -> tuple[Any, Any]:
+    """The solver of a form and its monitor, built once."""
+    import casadi as ca
+
+    key = ("ipopt", id(shape))
+    if key not in problem.memo:
+        y, p, f, g, h = shape.expressions
+        monitor = _monitor_class()(y.numel(), g.numel(), h.numel())
+        options = {f"ipopt.{k}": v for k, v in OPTIONS.items()}
+        options |= {"print_time": False, "iteration_callback": monitor, "error_on_fail": False,
+                    "show_eval_warnings": False}
+        nlp = {"x": y, "p": p, "f": f, "g": ca.vertcat(g, h)}
+        problem.memo[key] = ca.nlpsol("ipopt", "ipopt", nlp, options), monitor
+    found: tuple[Any, Any] = problem.memo[key]
+    return found
+
+
+def _ipopt(
+    problem: Problem, solver: Any, y0: Array, low: Array, high: Array, rows: tuple[int, int]
+) -> _Point:
+    m_g, m_h = rows
+    zero = np.zeros(m_h)
+    found = solver(
+        x0=y0,
+        p=problem.parameter_values(),
+        lbx=low,
+        ubx=high,
+        lbg=np.concatenate([np.full(m_g, -np.inf), zero]),
+        ubg=np.zeros(m_g + m_h),
+    )
+    lam = np.array(found["lam_g"]).ravel()
+    status = str(solver.stats()["return_status"])
+    return _Point(np.array(found["x"]).ravel(), lam[:m_g], lam[m_g:], status)
+
+
+def _violation(problem: Problem, shape: Form, y: Array) -> float:
+    no_g, no_h = (np.zeros(shape.derivatives.numel_out(k)) for k in (1, 2))
+    parts = shape.derivatives(y, problem.parameter_values(), no_g, no_h)
+    _, g, h = (np.array(part).ravel() for part in parts[:3])
+    worst = np.concatenate([g, np.abs(h), [0.0]])
+    return float(np.inf if np.isnan(worst).any() else worst.max())
+
+
+def _least_violation(
+    problem: Problem, shape: Form, point: _Point, low: Array, high: Array
+) -> tuple[_Point, float]:
+    """Minimise the largest violation t of any row; its multipliers are the conflict."""
+    import casadi as ca
+
+    key = ("ipopt least violation", id(shape))
+    y, p, _, g, h = shape.expressions
+    m_g, m_h = g.numel(), h.numel()
+    if key not in problem.memo:
+        t = type(y).sym("t")
+        rows = ca.vertcat(g - t, h - t, -h - t)
+        options = {f"ipopt.{k}": v for k, v in OPTIONS.items()}
+        options |= {"print_time": False, "error_on_fail": False, "show_eval_warnings": False}
+        nlp = {"x": ca.vertcat(y, t), "p": p, "f": t, "g": rows}
+        problem.memo[key] = ca.nlpsol("least_violation", "ipopt", nlp, options)
+    solver = problem.memo[key]
+    start = np.where(np.isfinite(point.y), point.y, 0.0)
+    found = solver(
+        x0=np.append(start, 1.0),
+        p=problem.parameter_values(),
+        lbx=np.append(low, -1.0),
+        ubx=np.append(high, np.inf),
+        lbg=-np.inf,
+        ubg=0.0,
+    )
+    z = np.array(found["x"]).ravel()
+    lam = np.array(found["lam_g"]).ravel()
+    lam_h = lam[m_g : m_g + m_h] - lam[m_g + m_h :]
+    return _Point(z[:-1], lam[:m_g], lam_h, point.status), float(z[-1])
+
+
+@cache
+def _monitor_class() -> Any:
+    """The class of the iteration callback (casadi is imported late).
+
+    It has state because casadi calls it: the best feasible iterate, the budget and the watcher of
+    the present run.
+    """
+    import casadi as ca
+
+    class Monitor(ca.Callback):  # type: ignore[misc]
+        def __init__(self, n: int, m_g: int, m_h: int) -> None:
+            super().__init__()
+            self.rows = (m_g, m_h)
+            self.sizes = {"f": 1, "x": n, "lam_x": n, "g": m_g + m_h, "lam_g": m_g + m_h}
+            self.begin(Budget(), None, float)
+            self.construct("monitor", {})
+
+        def begin(self, budget: Budget, watch: Watch | None, objective: Any) -> None:
+            self.budget, self.watch, self.objective = budget, watch, objective
+            self.clock, self.evaluations, self.stopped = time.perf_counter(), 0, False
+            self.best: Array | None = None
+            self.least = np.inf
+
+        def get_n_in(self) -> int:
+            return int(ca.nlpsol_n_out())
+
+        def get_n_out(self) -> int:
+            return 1
+
+        def get_name_in(self, i: int) -> Any:
+            return ca.nlpsol_out(i)
+
+        def get_sparsity_in(self, i: int) -> Any:
+            return ca.Sparsity.dense(self.sizes.get(ca.nlpsol_out(i), 0), 1)
+
+        def eval(self, arguments: Any) -> list[int]:
+            named = {ca.nlpsol_out(i): value for i, value in enumerate(arguments)}
+            self.evaluations += 1
+            value, rows = float(named["f"]), np.array(named["g"]).ravel()
+            count = self.rows[0]
+            worst = max(rows[:count].max(initial=0), np.abs(rows[count:]).max(initial=0))
+            if worst <= ACCEPTED and value < self.least:
+                self.least, self.best = value, np.array(named["x"]).ravel()
+            self.stopped = not self._goes_on()
+            return [int(self.stopped)]
+
+        def _goes_on(self) -> bool:
+            seconds = time.perf_counter() - self.clock
+            most_s, most_n = self.budget.seconds, self.budget.evaluations
+            if most_s is not None and seconds > most_s:
+                return False
+            if most_n is not None and self.evaluations >= most_n:
+                return False
+            best = None if self.best is None else self.objective(self.least)
+            return self.watch is None or self.watch(Event(seconds, self.evaluations, best))
+
+    return Monitor

@@ -1,0 +1,34 @@
+"""Load indices of a gear pair: torque, K-factor and unit load (external cylindrical gears).
+
+Arguments are floats, arrays of one shape, or casadi scalars.
+"""
+
+from typing import Any
+
+
+def torque(power: Any, angular_speed: Any) -> Any:
+    """Torque T = P/omega [N mm] of a shaft that carries power [N mm/s] at angular_speed [rad/s].
+
+    angular_speed > 0. Equals 30e6 P/(pi n) for P in kW and n in rpm.
+    """
+    return power / angular_speed
+
+
+def k_factor(pinion_torque: Any, pinion_diameter: Any, face_width: Any, ratio: Any) -> Any:
+    """K-factor K = W_t/(d1 b) (u + 1)/u with W_t = 2 T1/d1 [MPa]: the index of contact stress.
+
+    pinion_torque T1 [N mm]; pinion_diameter d1, face_width b [mm] > 0; ratio u >= 1.
+    Source: Chong and Lee, eq. (10); sigma_H = Z_E-like constant times sqrt(K), their eq. (1).
+    """
+    return 2.0 * pinion_torque / (pinion_diameter**2 * face_width) * (1.0 + 1.0 / ratio)
+
+
+def unit_load(
+    pinion_torque: Any, pinion_diameter: Any, face_width: Any, normal_module: Any
+) -> Any:
+    """Unit load U = W_t/(b m_n) with W_t = 2 T1/d1 [MPa]: the index of tooth-root stress.
+
+    pinion_torque T1 [N mm]; pinion_diameter d1, face_width b, normal_module m_n [mm] > 0.
+    Source: Chong and Lee, eq. (11).
+    """
+    return 2.0 * pinion_torque / (pinion_diameter * face_width * normal_module)

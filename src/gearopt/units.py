@@ -1,0 +1,106 @@
+"""Units, converted once at the border: inside everything is mm, N, s, rad, MPa, t.
+
+A factor is exact: a rational number times a power of pi, so that the quotient of two speeds in
+rpm is a rational number and a ratio limit can be decided without rounding. Definitions: inch,
+pound, standard gravity, horsepower (550 ft lbf/s) and metric horsepower (75 kgf m/s) as fixed by
+international agreement (NIST SP 811, appendix B); checked against pint in the tests.
+"""
+
+import math
+import re
+from dataclasses import dataclass
+from fractions import Fraction
+
+_INCH = Fraction("25.4")  # mm
+_POUND = Fraction("0.45359237")  # kg
+_GRAVITY = Fraction("9.80665")  # m/s2
+_POUND_FORCE = _POUND * _GRAVITY  # N
+
+
+def _table(**units: Fraction | int) -> dict[str, tuple[Fraction, int]]:
+    return {name: (Fraction(factor), 0) for name, factor in units.items()}
+
+
+# dimension -> unit -> (rational factor, power of pi) to the inside unit
+UNITS: dict[str, dict[str, tuple[Fraction, int]]] = {
+    "power": {  # N mm/s
+        **_table(W=10**3, kW=10**6, MW=10**9),
+        **_table(hp=550 * 12 * _INCH * _POUND_FORCE, PS=75 * _GRAVITY * 10**3),
+    },
+    "speed": {  # rad/s
+        "rpm": (Fraction(1, 30), 1),
+        "1/min": (Fraction(1, 30), 1),
+        "1/s": (Fraction(2), 1),
+        "rad/s": (Fraction(1), 0),
+        "deg/s": (Fraction(1, 180), 1),
+    },
+    "length": {  # mm
+        **_table(mm=1, cm=10, m=1000, um=Fraction(1, 1000)),
+        "in": (_INCH, 0),
+    },
+    "stress": {  # MPa = N/mm2
+        **_table(MPa=1, Pa=Fraction(1, 10**6), kPa=Fraction(1, 1000), GPa=1000),
+        "N/mm^2": (Fraction(1), 0),
+        "psi": (_POUND_FORCE / _INCH**2, 0),
+        "ksi": (1000 * _POUND_FORCE / _INCH**2, 0),
+    },
+    "angle": {"deg": (Fraction(1, 180), 1), "rad": (Fraction(1), 0)},
+    "density": {  # t/mm3
+        "kg/m^3": (Fraction(1, 10**12), 0),
+        "kg/dm^3": (Fraction(1, 10**9), 0),
+        "g/cm^3": (Fraction(1, 10**9), 0),
+        "lb/in^3": (_POUND / 1000 / _INCH**3, 0),
+    },
+    "fraction": {"%": (Fraction(1, 100), 0)},
+}
+
+_PATTERN = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,4})?)\s*(\S.*?)?\s*")
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A number with a unit, as the user wrote it.
+
+    number: the number, exactly; unit: a name of `UNITS[dimension]`, or "" for a bare fraction.
+    """
+
+    number: Fraction
+    unit: str
+    dimension: str
+
+    @property
+    def exact(self) -> tuple[Fraction, int]:
+        """The value in the inside unit as (rational number, power of pi)."""
+        factor, power = UNITS[self.dimension][self.unit] if self.unit else (Fraction(1), 0)
+        return self.number * factor, power
+
+    @property
+    def value(self) -> float:
+        """The value in the inside unit."""
+        rational, power = self.exact
+        return float(rational) * math.pi**power
+
+    def __str__(self) -> str:
+        return f"{float(self.number):.12g} {self.unit}".rstrip()
+
+
+def quotient(above: Quantity, below: Quantity) -> Fraction:
+    """above/below of one dimension; exact unless one unit contains pi and the other does not."""
+    (a, power_a), (b, power_b) = above.exact, below.exact
+    if power_a == power_b:
+        return a / b
+    return Fraction(above.value / below.value)
+
+
+def parse(text: str, dimension: str) -> Quantity:
+    """Read "7.5 kW"; ValueError with a sentence naming the rule where it cannot be read."""
+    known = UNITS[dimension]
+    match = _PATTERN.fullmatch(text)
+    if match is None:
+        raise ValueError(f"is not a number with a unit of {dimension} ({', '.join(known)})")
+    number, unit = match.groups()
+    if unit is None and dimension != "fraction":
+        raise ValueError(f"has no unit; units of {dimension}: {', '.join(known)}")
+    if unit is not None and unit not in known:
+        raise ValueError(f"has the unknown unit {unit!r}; units of {dimension}: {', '.join(known)}")
+    return Quantity(Fraction(number), unit or "", dimension)
