@@ -6,7 +6,7 @@ fractions; the rest are floats in mm, N, rad, MPa.
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
@@ -88,6 +88,11 @@ class Train:
         """Largest total ratio allowed."""
         return self.ratio * (1 + self.tolerance)
 
+
+    def fixed_teeth(self, stage: int, pinion: int, wheel: int) -> "Train":
+        """The same drive with the teeth of one stage (counted from 0) given."""
+        one = replace(self.stages[stage], pinion_teeth=(pinion, pinion), wheel_teeth=(wheel, wheel))
+        return replace(self, stages=self.stages[:stage] + (one,) + self.stages[stage + 1 :])
 
     @property
     def unit(self) -> str:

@@ -1,0 +1,152 @@
+"""Exact sizing: whole tooth numbers and standard modules, by branch and bound.
+
+The same objective and limits as `sizing`, with z1, z2 whole, modules from a series and face widths
+tied, free or on a step. `exact` proves its answer by exhausting all other trains.
+"""
+
+import math
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+
+from gearopt.formulations.teeth.search import MARGIN, TIE, Progress, Teeth, search
+from gearopt.formulations.teeth.stage import table
+from gearopt.formulations.train import Train, each, terms
+from gearopt.optimise.problem import Array, Problem, Terms, Var
+from gearopt.optimise.result import Budget, Outcome, Watch
+from gearopt.physics.geometry import reference_diameter
+
+
+def problem(train: Train, count: int = 1) -> Problem:
+    """The discrete problem of a drive; `exact` finds its `count` best trains in proven order.
+
+    Trains are distinct when a tooth number differs; each has its best modules and face widths.
+    Variables, one component a stage: module [mm], pinion_teeth, wheel_teeth, and face_width [mm] or
+    width_steps where the width is not tied to d1.
+    """
+    numbers = SimpleNamespace(**_scalars(train))
+
+    def evaluate(x: Any, p: Any) -> Terms:
+        module, z1, z2 = each(x.module), each(x.pinion_teeth), each(x.wheel_teeth)
+        width = tuple(_width(train, k, x, module[k], z1[k]) for k in range(len(train.stages)))
+        ratio = [b / a for a, b in zip(z1, z2, strict=True)]
+        found = terms(train, numbers, module, z1, ratio, width)
+        if not train.coprime:
+            return found
+        divisors = {
+            f"common_divisor[{k + 1}]": np.gcd(np.rint(a).astype(int), np.rint(b).astype(int))
+            for k, (a, b) in enumerate(zip(z1, z2, strict=True))
+        }
+        return Terms(found.minimise, {**found.limits, **divisors}, equal=found.equal)
+
+    def exact(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
+        """Branch and bound over the teeth; the seed changes nothing."""
+        return _outcome(train, count, budget, watch)
+
+    return Problem("teeth", _variables(train), (), evaluate, methods={"exact": exact})
+
+
+def _scalars(train: Train) -> dict[str, Any]:
+    """`train.numbers()` as `terms` reads it: blocks of one are scalars."""
+    return {k: v[0] if isinstance(v, tuple) and len(v) == 1 else v
+            for k, v in train.numbers().items()}
+
+
+def _width(train: Train, k: int, x: Any, module: Any, z1: Any) -> Any:
+    face = train.stages[k].face_width
+    if face.step is not None:
+        return each(x.width_steps)[k] * float(face.step)
+    if face.tied:
+        return float(face.high or 0) * reference_diameter(module, z1, train.helix_angle)
+    return each(x.face_width)[k]
+
+
+def _variables(train: Train) -> tuple[Var, ...]:
+    stages, count = train.stages, len(train.stages)
+    series = tuple(sorted({float(m) for s in stages for m in s.modules}))
+    most = 10.0**9
+
+    def column(name: str, unit: str, low: list[float], high: list[float], **kind: Any) -> Var:
+        return Var(name, unit, tuple(low), tuple(high), tuple(low), size=count, **kind)
+
+    found = [
+        column("module", "mm", [float(s.modules[0]) for s in stages],
+               [float(s.modules[-1]) for s in stages], values=series),
+        column("pinion_teeth", "", [s.pinion_teeth[0] for s in stages],
+               [float(s.pinion_teeth[1] or most) for s in stages], integer=True),
+        column("wheel_teeth", "", [s.wheel_teeth[0] for s in stages],
+               [float(s.wheel_teeth[1] or most) for s in stages], integer=True),
+    ]
+    widths = [s.face_width for s in stages]
+    if any(not w.tied and w.step is None for w in widths):
+        free = [w.fixed is None and not w.tied and w.step is None for w in widths]
+        low = [1e-9 if f else float(w.fixed or 1) for f, w in zip(free, widths, strict=True)]
+        high = [1e9 if f else float(w.fixed or 1) for f, w in zip(free, widths, strict=True)]
+        found.append(column("face_width", "mm", low, high))
+    if any(w.step is not None for w in widths):
+        high = [1.0 if w.step is None else most for w in widths]
+        found.append(column("width_steps", "", [1.0] * count, high, integer=True))
+    return tuple(found)
+
+
+def _outcome(train: Train, count: int, budget: Budget, watch: Watch | None) -> Outcome:
+    progress = search(train, 1, budget, watch)
+    found = _in_order(progress)
+    if count > 1 and found and not progress.stopped:
+        more = search(train, count, budget, watch)
+        found = (found[:1] + [t for t in _in_order(more) if t != found[0]])[:count]
+        progress.compared += more.compared
+        progress.looked += more.looked
+        progress.nodes += more.nodes
+        if more.stopped:
+            found = found[:1]
+    points = [_point(train, teeth) for teeth in found]
+    proof = {
+        "method": "exhausted",
+        "arithmetic": "ratios, teeth, diameters and width steps rational; loads and volumes double",
+        "trains_compared": progress.compared,
+        "nodes": progress.nodes,
+        "pruning_margin": MARGIN,
+    }
+    if progress.stopped:
+        lower = progress.lower if math.isfinite(progress.lower) else None
+        partial = {**proof, "method": "branch and bound, stopped early"}
+        return Outcome(points[0] if points else None, False, bound=lower,
+                       proof=partial, evaluations=progress.looked,
+                       message="the search was stopped before it was exhausted")
+    if not points:
+        return Outcome(None, infeasible=True, proof=proof, evaluations=progress.looked,
+                       message="no choice of teeth and modules meets all limits")
+    return Outcome(points[0], bound=progress.found[0][0], proof=proof, others=tuple(points[1:]),
+                   evaluations=progress.looked)
+
+
+def _in_order(progress: Progress) -> list[Teeth]:
+    """Trains by objective; ties by fewest teeth, then by the teeth themselves."""
+    groups: list[tuple[float, list[Teeth]]] = []
+    for value, teeth in progress.found:
+        if groups and value <= groups[-1][0] * (1.0 + TIE):
+            groups[-1][1].append(teeth)
+        else:
+            groups.append((value, [teeth]))
+    return [t for _, ties in groups for t in sorted(ties, key=lambda t: (sum(map(sum, t)), t))]
+
+
+def _point(train: Train, teeth: Teeth) -> Array:
+    """The point of a train: best module and width of every stage for its teeth."""
+    modules, widths, steps = [], [], []
+    torque = train.torque
+    for k, (z1, z2) in enumerate(teeth):
+        only = table(train.fixed_teeth(k, z1, z2), k, train.highest_ratio)
+        module, width = only.choose(torque, 0)
+        face = train.stages[k].face_width
+        modules.append(module)
+        widths.append(float(face.fixed or 1) if face.tied or face.step else width)
+        steps.append(round(width / float(face.step)) if face.step else 1)
+        torque *= z2 / z1
+    columns = [modules, [z for z, _ in teeth], [z for _, z in teeth]]
+    names = [v.name for v in _variables(train)]
+    columns += [widths] if "face_width" in names else []
+    columns += [steps] if "width_steps" in names else []
+    return np.array([v for column in columns for v in column], float)

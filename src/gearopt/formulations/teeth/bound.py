@@ -1,0 +1,118 @@
+"""A lower bound on the stages still to come, as a function of the ratio reached so far.
+
+What stages k..N cost depends on the past only through the cumulative ratio p (it sets the torque)
+and on how much of the total ratio is left. On a grid of log p, cell [x, x + delta): torque is
+taken at the lower edge and the ratio still needed from the whole cell, so every value is a rigorous
+lower bound; the last stage moreover carries at least the torque that its own ratio leaves over.
+Backward recursion over the stages; the finer the grid, the closer the bound.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
+from numpy.typing import NDArray
+
+from gearopt.formulations.teeth.stage import Table
+from gearopt.formulations.train import Train
+from gearopt.optimise.problem import Array
+
+EDGE = 1e-9  # cells overlap by this much in log ratio, so that rounding never misses a neighbour
+
+
+@dataclass(frozen=True)
+class Bound:
+    """to_go[k] (cells,): least cost of stages k..N-1 from a cell of log cumulative ratio.
+
+    least[k] (cells, ratio cells): least cost of stage k alone. starts[k]: first pair of each ratio
+    cell, so that pairs of cell r are starts[k][r] : starts[k][r + 1].
+    """
+
+    delta: float
+    to_go: list[Array]
+    least: list[Array | None]
+    starts: list[NDArray[np.int64]]
+
+    def cell(self, log_ratio: Array) -> NDArray[np.int64]:
+        """Cell of a log ratio."""
+        return (log_ratio / self.delta).astype(np.int64)
+
+    def onward(self, stage: int, cell: NDArray[np.int64]) -> Array:
+        """Least cost of stages `stage`.. from each cell by each ratio cell of `stage`."""
+        least = self.least[stage]
+        assert least is not None
+        return np.asarray(least[cell] + _ahead(self.to_go[stage + 1], least.shape[1])[cell])
+
+
+def bound(train: Train, tables: list[Table], delta: float) -> Bound:
+    """The bound of all stages but the first, on cells of `delta` in log ratio."""
+    low, high = math.log(train.lowest_ratio), math.log(train.highest_ratio)
+    cells = int(high / delta) + 1
+    widest = max((float(t.log_ratio[-1]) for t in tables if len(t.log_ratio)), default=0.0)
+    ratio_cells = int(widest / delta) + 1
+    count = len(tables)
+    least: list[Array | None] = [None] * count
+    for k in range(1, count - 1):
+        alike = k > 1 and train.stages[k] == train.stages[k - 1]
+        least[k] = least[k - 1] if alike else _least(tables[k], cells, ratio_cells, delta)
+    to_go = [np.full(cells + ratio_cells + 2, np.inf) for _ in range(count)]
+    to_go[-1][:cells] = _last(train, tables[-1], cells, delta, low, high)
+    for k in range(count - 2, 0, -1):
+        ahead = _ahead(to_go[k + 1], ratio_cells)[:cells]
+        now = least[k]
+        assert now is not None
+        to_go[k][:cells] = (now + ahead).min(axis=1)
+    edges = np.arange(ratio_cells + 1) * delta
+    starts = [np.append(np.searchsorted(t.log_ratio, edges[:-1]), len(t.z1)) for t in tables]
+    return Bound(delta, to_go, least, starts)
+
+
+def _ahead(to_go: Array, ratio_cells: int) -> Array:
+    """to_go after a ratio cell r from a cell x: the sum lies in cell x + r or x + r + 1."""
+    return sliding_window_view(np.minimum(to_go[:-1], to_go[1:]), ratio_cells)
+
+
+def _least(table: Table, cells: int, ratio_cells: int, delta: float) -> Array:
+    """Least cost of one stage for every torque cell and ratio cell."""
+    column = np.minimum((table.log_ratio / delta).astype(np.int64), ratio_cells - 1)
+    found = np.full(cells * ratio_cells, np.inf)
+    for k in range(len(table.modules)):
+        with np.errstate(divide="ignore"):
+            reach = np.log(table.capacity(k) / table.train.torque) + EDGE
+        carries = reach >= 0.0
+        row = np.minimum(reach[carries] / delta, cells - 1).astype(np.int64)
+        np.minimum.at(found, row * ratio_cells + column[carries], table.floor(k)[carries])
+    grid = found.reshape(cells, ratio_cells)
+    grid = np.minimum.accumulate(grid[::-1], axis=0)[::-1]  # what carries more carries less
+    slope = np.full(ratio_cells, np.inf)
+    np.minimum.at(slope, column, table.slope)
+    torque = table.train.torque * np.exp(np.arange(cells) * delta - EDGE)
+    loaded = np.zeros_like(grid)
+    np.multiply(torque[:, None], slope, out=loaded, where=np.isfinite(slope))
+    return np.asarray(np.maximum(grid, loaded))
+
+
+def _last(
+    train: Train, table: Table, cells: int, delta: float, low: float, high: float
+) -> Array:
+    """Least cost of the last stage from every cell: exact pairs, least possible torque."""
+    edge = np.arange(cells) * delta
+    start = np.searchsorted(table.log_ratio, low - edge - delta - EDGE)
+    stop = np.searchsorted(table.log_ratio, high - edge + EDGE)
+    cell, pair = ragged(start, stop - start)
+    reached = np.maximum(edge[cell], low - table.log_ratio[pair])
+    cost = table.cost(train.torque * np.exp(reached - EDGE), pair)
+    found = np.full(cells, np.inf)
+    np.minimum.at(found, cell, cost)
+    return found
+
+
+def ragged(
+    start: NDArray[np.int64], count: NDArray[np.int64]
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Owner and index of all start[i] .. start[i] + count[i] - 1, one after the other."""
+    owner = np.repeat(np.arange(len(count)), count)
+    ends = np.cumsum(count)
+    total = int(ends[-1]) if len(ends) else 0
+    return owner, np.arange(total) - np.repeat(ends - count, count) + np.repeat(start, count)

@@ -1,0 +1,292 @@
+"""Best-first branch and bound over the tooth pairs of the stages, with dives.
+
+A node is a choice of the first k pairs; its bound is what they cost plus `bound` on the rest. Nodes
+wait in chunks sorted by bound; the chunk with the least bound is taken, its best nodes are followed
+down to complete trains at once. The search ends when no open bound is below the best train.
+"""
+
+import heapq
+import itertools
+import math
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from fractions import Fraction
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearopt.formulations.teeth.bound import EDGE, Bound, bound, ragged
+from gearopt.formulations.teeth.stage import Table, table
+from gearopt.formulations.train import Train, share
+from gearopt.optimise.problem import Array
+from gearopt.optimise.result import Budget, Event, Watch
+from gearopt.physics.loads import k_factor
+
+TIE = 1e-12  # trains whose objectives differ by less are ties: fewest teeth win
+MARGIN = 1e-11  # a node is dropped only when its bound exceeds the best by this, so ties survive
+BEAM = 4  # nodes followed down at once; measured best for two to four stages
+LEAVES = 256  # nodes completed at once
+FIRST_LOOK = 20_000  # pairs looked at for a first train
+PATIENCE = 2_000_000  # pairs looked at before a finer grid is worth its making
+CELLS = 30_000_000  # largest grid, 240 MB
+
+
+@dataclass(frozen=True)
+class Chunk:
+    """Nodes of one level, by bound: cost so far, log of the ratio so far, pairs chosen."""
+
+    level: int
+    bound: Array
+    cost: Array
+    log_ratio: Array
+    path: NDArray[np.int64]
+
+    def part(self, which: slice | NDArray[np.bool_]) -> "Chunk":
+        """Some of the nodes."""
+        return Chunk(self.level, self.bound[which], self.cost[which], self.log_ratio[which],
+                     self.path[which])
+
+
+Teeth = tuple[tuple[int, int], ...]
+
+
+@dataclass
+class Progress:
+    """What a search has found and spent; it has state because it is filled as the search goes.
+
+    found: (objective, teeth) of the best trains; wanted: how many of them.
+    """
+
+    wanted: int
+    budget: Budget
+    watch: Watch | None
+    clock: float = field(default_factory=time.perf_counter)
+    found: list[tuple[float, Teeth]] = field(default_factory=list)
+    lower: float = -math.inf
+    looked: int = 0
+    compared: int = 0
+    nodes: int = 0
+    stopped: bool = False
+
+    @property
+    def threshold(self) -> float:
+        """Nodes with a bound above it are of no use."""
+        if len(self.found) < self.wanted:
+            return math.inf
+        value = self.found[self.wanted - 1][0]
+        return value * (1.0 + MARGIN if self.wanted == 1 else 1.0 - TIE)
+
+    def add(self, totals: Array, trains: Iterator[Teeth]) -> None:
+        """Keep the wanted best (and, for a single one, its ties)."""
+        known = {teeth for _, teeth in self.found}
+        fresh = [(float(v), t) for v, t in zip(totals, trains, strict=True) if t not in known]
+        self.found = sorted(self.found + fresh)
+        if len(self.found) > self.wanted:
+            edge = self.found[self.wanted - 1][0] * (1.0 + TIE if self.wanted == 1 else 1.0)
+            extra = [f for f in self.found[self.wanted :] if f[0] <= edge and self.wanted == 1]
+            self.found = self.found[: self.wanted] + extra
+
+    def goes_on(self) -> bool:
+        """Whether budget and watcher let the search go on."""
+        seconds = time.perf_counter() - self.clock
+        most_s, most_n = self.budget.seconds, self.budget.evaluations
+        over = (most_s is not None and seconds > most_s) or (
+            most_n is not None and self.looked >= most_n
+        )
+        if not over and self.watch is not None:
+            best = self.found[0][0] if self.found else None
+            lower = self.lower if math.isfinite(self.lower) else None
+            over = not self.watch(Event(seconds, self.looked, best, lower))
+        self.stopped = self.stopped or over
+        return not self.stopped
+
+
+def search(train: Train, wanted: int, budget: Budget, watch: Watch | None) -> Progress:
+    """The `wanted` best trains; `stopped` tells an interrupted search from an exhausted one.
+
+    A first look at stage ratios near the even split gives a train; what it does not exclude by
+    the ratio of a single stage is then searched to the end.
+    """
+    progress = Progress(wanted, budget, watch)
+    most = train.highest_ratio
+    cut = min(most, Fraction(3.0 * float(train.ratio) ** (1.0 / len(train.stages))))
+    closed = _look(train, cut, progress, FIRST_LOOK)
+    reach = _reach(train, cut, most, progress.threshold)
+    if progress.stopped or (closed and reach <= cut):
+        progress.lower = progress.lower if reach <= cut else -math.inf
+        return progress
+    _look(train, max(cut, reach), progress, math.inf)
+    return progress
+
+
+def _look(train: Train, cut: Fraction, progress: Progress, patience: float) -> bool:
+    """Search all ratios up to a cut, on ever finer grids; False when patience ran out."""
+    tables = _tables(train, cut)
+    if any(len(t.z1) == 0 for t in tables):
+        return True
+    delta = 0.01 if len(tables) <= 3 else 0.005
+    while True:
+        finer = math.log(train.highest_ratio) * tables[-1].log_ratio[-1] / (delta / 2) ** 2
+        last = len(tables) <= 2 or finer > CELLS
+        enough = progress.looked + min(patience, math.inf if last else PATIENCE)
+        rest = bound(train, tables, delta)
+        if _closed(train, tables, rest, progress, enough):
+            return True
+        if patience <= PATIENCE:
+            return False
+        delta /= 2
+
+
+def _tables(train: Train, cut: Fraction) -> list[Table]:
+    """The tables of all stages; equal inner stages share one."""
+    tables: list[Table] = []
+    for k in range(len(train.stages)):
+        inner = 1 < k < len(train.stages) - 1
+        same = inner and train.stages[k] == train.stages[k - 1]
+        tables.append(tables[-1] if same else table(train, k, cut))
+    return tables
+
+
+def _closed(
+    train: Train, tables: list[Table], rest: Bound, progress: Progress, patience: float
+) -> bool:
+    """Run one search; False when it should go on with a finer grid."""
+    order = itertools.count()
+    heap: list[tuple[float, int, Chunk]] = []
+
+    def wait(chunk: Chunk) -> None:
+        if len(chunk.bound):
+            heapq.heappush(heap, (float(chunk.bound[0]), next(order), chunk))
+
+    zero = np.zeros(1)
+    wait(Chunk(0, zero, zero, zero, np.empty((1, 0), dtype=np.int64)))
+    while heap and heap[0][0] <= progress.threshold:
+        progress.lower = max(progress.lower, heap[0][0]) if heap[0][2].level else progress.lower
+        if not progress.goes_on():
+            return True
+        if progress.looked > patience:
+            return False
+        chunk: Chunk | None = heapq.heappop(heap)[2]
+        while chunk is not None:
+            progress.nodes += 1
+            width = LEAVES if chunk.level == len(tables) - 1 else BEAM
+            wait(chunk.part(slice(width, None)))
+            chunk = _expand(train, tables, rest, chunk.part(slice(0, width)), progress)
+    return True
+
+
+def _expand(
+    train: Train, tables: list[Table], rest: Bound, chunk: Chunk, progress: Progress
+) -> Chunk | None:
+    """The children of some nodes that may still be of use, or None (complete trains are kept)."""
+    chunk = chunk.part(chunk.bound <= progress.threshold)
+    level, stage = chunk.level, tables[chunk.level]
+    if level == len(tables) - 1:
+        _complete(train, tables, chunk, progress)
+        return None
+    if level == 0:
+        node, pair = np.zeros(len(stage.z1), dtype=np.int64), np.arange(len(stage.z1))
+    else:
+        onward = chunk.cost[:, None] + rest.onward(level, rest.cell(chunk.log_ratio))
+        owner, cell = np.nonzero(onward <= progress.threshold)
+        start = rest.starts[level][cell]
+        group, pair = ragged(start, rest.starts[level][cell + 1] - start)
+        node = owner[group]
+    progress.looked += len(pair)
+    own = stage.cost(train.torque * np.exp(chunk.log_ratio[node]), pair)
+    if progress.wanted == 1:
+        keep = _cheapest_of_ratio(node, stage.ratio[pair], own)
+        node, pair, own = node[keep], pair[keep], own[keep]
+    cost = chunk.cost[node] + own
+    log_ratio = chunk.log_ratio[node] + stage.log_ratio[pair]
+    below = log_ratio <= math.log(train.highest_ratio) + EDGE
+    lower = np.full(len(cost), np.inf)
+    lower[below] = cost[below] + rest.to_go[level + 1][rest.cell(log_ratio[below])]
+    use = np.nonzero(np.isfinite(lower) & (lower <= progress.threshold))[0]
+    use = use[np.argsort(lower[use], kind="stable")]
+    if not len(use):
+        return None
+    path = np.column_stack([chunk.path[node[use]], pair[use]])
+    return Chunk(level + 1, lower[use], cost[use], log_ratio[use], path)
+
+
+def _cheapest_of_ratio(node: NDArray[np.int64], ratio: Array, cost: Array) -> NDArray[np.bool_]:
+    """Of a node's pairs with equal ratio the cheapest, of equal ones that with fewest teeth.
+
+    What follows depends on the ratio alone. Pairs come by ratio, then by teeth.
+    """
+    if not len(node):
+        return np.empty(0, dtype=bool)
+    new = np.concatenate([[True], (np.diff(node) != 0) | (np.diff(ratio) != 0)])
+    group = np.cumsum(new) - 1
+    least = np.minimum.reduceat(cost, np.nonzero(new)[0])
+    good = np.nonzero(np.isfinite(cost) & (cost <= least[group] * (1.0 + TIE)))[0]
+    keep = np.zeros(len(node), dtype=bool)
+    keep[good[np.unique(group[good], return_index=True)[1]]] = True
+    return keep
+
+
+def _complete(train: Train, tables: list[Table], chunk: Chunk, progress: Progress) -> None:
+    """Add the last stage to nodes and keep the best trains that meet the ratio limits exactly."""
+    stage = tables[-1]
+    low, high = math.log(train.lowest_ratio), math.log(train.highest_ratio)
+    start = np.searchsorted(stage.log_ratio, low - chunk.log_ratio - EDGE)
+    stop = np.searchsorted(stage.log_ratio, high - chunk.log_ratio + EDGE)
+    node, pair = ragged(start, stop - start)
+    progress.looked += len(pair)
+    total = chunk.cost[node] + stage.cost(train.torque * np.exp(chunk.log_ratio[node]), pair)
+    progress.compared += int(np.isfinite(total).sum())
+    use = np.nonzero(np.isfinite(total) & (total <= progress.threshold))[0]
+    use = use[np.argsort(total[use], kind="stable")]
+    reached = chunk.log_ratio[node[use]] + stage.log_ratio[pair[use]]
+    near = np.minimum(np.abs(reached - low), np.abs(reached - high)) < 2 * EDGE
+
+    def teeth(k: int) -> Teeth:
+        path = [*chunk.path[node[k]], pair[k]]
+        return tuple((int(t.z1[j]), int(t.z2[j])) for t, j in zip(tables, path, strict=True))
+
+    kept: list[tuple[float, Teeth]] = []
+    for k, doubtful in zip(use, near, strict=True):
+        candidate = teeth(k)
+        if doubtful and not within(train, candidate):
+            continue
+        if not doubtful and not low < chunk.log_ratio[node[k]] + stage.log_ratio[pair[k]] < high:
+            continue
+        kept.append((float(total[k]), candidate))
+        if len(kept) >= progress.wanted and total[k] > kept[progress.wanted - 1][0] * (1 + TIE):
+            break
+    progress.add(np.array([v for v, _ in kept]), iter([t for _, t in kept]))
+
+
+def within(train: Train, teeth: Teeth) -> bool:
+    """Whether the total ratio lies within its limits, in integers."""
+    wheels, pinions = math.prod(z2 for _, z2 in teeth), math.prod(z1 for z1, _ in teeth)
+    low, high = train.lowest_ratio, train.highest_ratio
+    return (
+        low.numerator * pinions <= wheels * low.denominator
+        and wheels * high.denominator <= high.numerator * pinions
+    )
+
+
+def _reach(train: Train, cut: Fraction, most: Fraction, threshold: float) -> Fraction:
+    """Largest stage ratio that a train at least as good as `threshold` may have.
+
+    Any stage carries at least the input torque; its share alone then grows with its ratio.
+    """
+    if cut >= most or math.isinf(threshold):
+        return most
+    ratios = np.geomspace(float(cut), float(most), 2000)
+    useful = np.zeros(len(ratios), dtype=bool)
+    for k, stage in enumerate(train.stages):
+        load = k_factor(train.torque, 1.0, 1.0, ratios) / stage.k_factor
+        if train.objective in ("gear_volume", "mass"):
+            lower = share(train, k, 1.0, load, ratios)
+        else:
+            face = stage.face_width
+            d = (load / float(face.fixed)) ** 0.5 if face.fixed else (
+                load / float(face.high or 1)) ** (1.0 / 3.0)
+            lower = share(train, k, d, 1.0, ratios)
+        useful |= np.asarray(lower) <= threshold
+    last = int(np.nonzero(useful)[0].max(initial=-1))
+    return cut if last < 0 else min(most, Fraction(float(ratios[min(last + 1, len(ratios) - 1)])))

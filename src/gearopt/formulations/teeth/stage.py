@@ -1,0 +1,228 @@
+"""The choices of one stage: tooth pairs sorted by ratio, the module and width each one needs.
+
+Ties at whole numbers (ratio and diameter limits, widths on a step) are decided in rational
+arithmetic. With a helix angle the diameter contains cos(beta), which for angles in degrees is
+irrational except at 0, 60 and 90 (Niven's theorem), so no tie with a rational limit exists there.
+"""
+
+import math
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearopt.formulations.train import Stage, Train, share
+from gearopt.optimise.problem import Array
+from gearopt.physics.geometry import reference_diameter
+from gearopt.physics.loads import k_factor, unit_load
+
+Index = NDArray[np.int64]
+
+ALLOWANCE = 1e-12  # a stress utilisation this little above 1 is rounding, not a violation
+
+
+@dataclass(frozen=True)
+class Table:
+    """Tooth pairs (n,) of one stage with ratios up to a cut, increasing.
+
+    need, exponent: the least module for torque T is need * T**exponent. first, last: indices of
+    the modules that diameter and width limits allow. slope: least objective per torque, from the
+    load limits alone. steps: least and most number of width steps, (modules, n), or None.
+    """
+
+    train: Train
+    position: int
+    z1: Index
+    z2: Index
+    ratio: Array
+    log_ratio: Array
+    modules: Array
+    need: Array
+    exponent: float
+    first: Index
+    last: Index
+    slope: Array
+    steps: tuple[Array, Array] | None
+
+    @property
+    def stage(self) -> Stage:
+        """The stage's limits."""
+        return self.train.stages[self.position]
+
+    def diameter(self, module: Any, pair: Any) -> Any:
+        """Pinion reference diameter [mm] of pairs (indices) with modules [mm]."""
+        return reference_diameter(module, self.z1[pair], self.train.helix_angle)
+
+    def cost(self, torque: Array, pair: Index) -> Array:
+        """Least objective share of pairs at torques [N mm]; inf where nothing carries them."""
+        return self._best(torque, pair)[0]
+
+    def choose(self, torque: float, pair: int) -> tuple[float, float]:
+        """Module and face width [mm] behind `cost`."""
+        _, module, width = self._best(np.array([torque]), np.array([pair]))
+        return float(module[0]), float(width[0])
+
+    def capacity(self, module: int) -> Array:
+        """Largest torque [N mm] each pair carries with a module (index); 0 where not allowed."""
+        allowed = (self.first <= module) & (module <= self.last)
+        with np.errstate(divide="ignore"):
+            most = (self.modules[module] / self.need) ** (1.0 / self.exponent)
+        return np.where(allowed, most * (1.0 + 3.0 * ALLOWANCE), 0.0)
+
+    def floor(self, module: int) -> Array:
+        """Least objective share of each pair with a module (index), whatever the torque."""
+        pair = np.arange(len(self.z1))
+        d = self.diameter(self.modules[module], pair)
+        return np.asarray(share(self.train, self.position, d, self._least_width(module, pair, d),
+                                self.ratio))
+
+    def _best(self, torque: Array, pair: Index) -> tuple[Array, Array, Array]:
+        if self.steps is not None:
+            return self._best_on_steps(torque, pair)
+        # The smallest module that carries the torque is the best one: every objective grows
+        # with it, for a tied width, and for a free one once the width has its least value.
+        needed = self.need[pair] * torque**self.exponent * (1.0 - ALLOWANCE)
+        k = np.maximum(np.searchsorted(self.modules, needed), self.first[pair])
+        possible = k <= self.last[pair]
+        k = np.minimum(k, len(self.modules) - 1)
+        module = self.modules[k]
+        d = self.diameter(module, pair)
+        width = np.maximum(self._least_width(0, pair, d), self._loaded_width(torque, pair, d, module))
+        face = self.stage.face_width
+        if face.tied or face.fixed is not None:
+            width = self._least_width(0, pair, d)
+        elif face.high is not None:
+            width = np.minimum(width, float(face.high) * d)
+        value = share(self.train, self.position, d, width, self.ratio[pair])
+        return np.where(possible, value, np.inf), module, width
+
+    def _best_on_steps(self, torque: Array, pair: Index) -> tuple[Array, Array, Array]:
+        """Rounding a width up to the step can make a larger module the better one: try all."""
+        assert self.steps is not None and self.stage.face_width.step is not None
+        step = float(self.stage.face_width.step)
+        best = np.full(len(pair), np.inf)
+        best_module, best_width = np.zeros(len(pair)), np.zeros(len(pair))
+        for k, module in enumerate(self.modules):
+            d = self.diameter(module, pair)
+            needed = self._loaded_width(torque, pair, d, module) / step
+            count = np.maximum(np.ceil(needed * (1.0 - ALLOWANCE)), self.steps[0][k][pair])
+            possible = (self.first[pair] <= k) & (k <= self.last[pair])
+            possible &= count <= self.steps[1][k][pair]
+            value = np.where(
+                possible,
+                share(self.train, self.position, d, count * step, self.ratio[pair]), np.inf)
+            better = value < best * (1.0 - ALLOWANCE)
+            best = np.where(better, value, best)
+            best_module = np.where(better, module, best_module)
+            best_width = np.where(better, count * step, best_width)
+        return best, best_module, best_width
+
+    def _loaded_width(self, torque: Array, pair: Index, d: Array, module: Any) -> Array:
+        """Least face width [mm] for K-factor and unit load."""
+        by_contact = k_factor(torque, d, 1.0, self.ratio[pair]) / self.stage.k_factor
+        by_bending = unit_load(torque, d, 1.0, module) / self.stage.unit_load
+        return np.maximum(by_contact, by_bending)
+
+    def _least_width(self, module: int, pair: Index, d: Array) -> Array:
+        """Least face width [mm] the file allows for a pair."""
+        face = self.stage.face_width
+        if face.fixed is not None:
+            return np.full(len(d), float(face.fixed))
+        if self.steps is not None:
+            assert face.step is not None
+            return self.steps[0][module][pair] * float(face.step)
+        return float(face.low) * d
+
+
+def table(train: Train, position: int, cut: Fraction) -> Table:
+    """The table of a stage (counted from 0) for ratios up to `cut`."""
+    stage = train.stages[position]
+    cosine = math.cos(train.helix_angle)
+    z1, z2 = _pairs(stage, cut, train.coprime)
+    ratio = z2 / z1
+    face, modules = stage.face_width, stage.modules
+    widest = float(face.fixed) if face.fixed is not None else float(face.high or 0)
+    exponent = 0.5 if face.fixed is not None else 1.0 / 3.0
+    # With b = widest (fixed) or widest*d, at unit torque: K-factor and unit load against module.
+    contact = k_factor(1.0, 1.0, widest, ratio) / stage.k_factor
+    bending = unit_load(1.0, 1.0, widest, 1.0) / stage.unit_load
+    power = 1.0 if face.fixed is not None else 2.0
+    need = np.maximum(contact**exponent * cosine / z1, (bending * (cosine / z1) ** power) ** exponent)
+    load = np.maximum(
+        k_factor(1.0, 1.0, 1.0, ratio) / stage.k_factor,
+        unit_load(1.0, 1.0, 1.0, 1.0) / stage.unit_load * z1 / cosine,
+    )
+    volume = train.objective in ("gear_volume", "mass")
+    slope = np.asarray(share(train, position, 1.0, load, ratio)) if volume else np.zeros(len(z1))
+    first, last = _allowed(stage, z1, z2, cosine)
+    return Table(
+        train, position, z1, z2, ratio, np.log(ratio), np.array([float(m) for m in modules]),
+        need, exponent, first, last, slope, _steps(stage, z1, cosine),
+    )
+
+
+def _pairs(stage: Stage, cut: Fraction, coprime: bool) -> tuple[Index, Index]:
+    """All (z1, z2) of a stage, by ratio, then by teeth."""
+    low, most = stage.ratio
+    high = cut if most is None else min(cut, most)
+    pinions, wheels = [], []
+    least_z1, most_z1 = stage.pinion_teeth
+    assert most_z1 is not None
+    for z in range(least_z1, most_z1 + 1):
+        start = max(stage.wheel_teeth[0], math.ceil(low * z))
+        stop = math.floor(high * z)
+        if stage.wheel_teeth[1] is not None:
+            stop = min(stop, stage.wheel_teeth[1])
+        wheel = np.arange(start, stop + 1, dtype=np.int64)
+        pinions.append(np.full(len(wheel), z, dtype=np.int64))
+        wheels.append(wheel)
+    z1, z2 = np.concatenate(pinions), np.concatenate(wheels)
+    if coprime:
+        keep = np.gcd(z1, z2) == 1
+        z1, z2 = z1[keep], z2[keep]
+    order = np.argsort(z2 / z1, kind="stable")
+    return z1[order], z2[order]
+
+
+def _allowed(stage: Stage, z1: Index, z2: Index, cosine: float) -> tuple[Index, Index]:
+    """First and last module index that wheel diameter and fixed-width proportions allow."""
+    first = np.zeros(len(z1), dtype=np.int64)
+    last = np.full(len(z1), len(stage.modules) - 1, dtype=np.int64)
+    exact_cosine = Fraction(cosine)
+
+    def most_teeth(length: Fraction) -> Index:
+        """Most teeth of a wheel of that diameter, for every module (decreasing)."""
+        return np.array([math.floor(length * exact_cosine / m) for m in stage.modules])
+
+    if stage.wheel_diameter is not None:
+        most = most_teeth(stage.wheel_diameter)
+        last = np.minimum(last, (most[:, None] >= z2).sum(axis=0) - 1)
+    face = stage.face_width
+    if face.fixed is not None and face.low > 0:
+        last = np.minimum(last, (most_teeth(face.fixed / face.low)[:, None] >= z1).sum(axis=0) - 1)
+    if face.fixed is not None and face.high is not None:
+        length = face.fixed / face.high
+        least = np.array([math.ceil(length * exact_cosine / m) for m in stage.modules])
+        first = (least[:, None] > z1).sum(axis=0)
+    return first, last
+
+
+def _steps(stage: Stage, z1: Index, cosine: float) -> tuple[Array, Array] | None:
+    """Least and most number of width steps for every module and pair."""
+    face = stage.face_width
+    if face.step is None:
+        return None
+    assert face.high is not None
+    exact_cosine = Fraction(cosine)
+    teeth = np.unique(z1)
+    place = np.searchsorted(teeth, z1)
+    least = np.empty((len(stage.modules), len(teeth)))
+    most = np.empty_like(least)
+    for k, module in enumerate(stage.modules):
+        for i, z in enumerate(teeth):
+            diameter = module * int(z) / exact_cosine
+            least[k, i] = max(1, math.ceil(face.low * diameter / face.step))
+            most[k, i] = math.floor(face.high * diameter / face.step)
+    return least[:, place], most[:, place]
