@@ -54,7 +54,8 @@ UNITS: dict[str, dict[str, tuple[Fraction, int]]] = {
     "fraction": {"%": (Fraction(1, 100), 0)},
 }
 
-_PATTERN = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,4})?)\s*(\S.*?)?\s*")
+_PATTERN = re.compile(r"([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,4})?)\s*(\S+)?")
+_LONGEST = 80  # characters of a quantity
 
 
 @dataclass(frozen=True)
@@ -95,12 +96,12 @@ def quotient(above: Quantity, below: Quantity) -> Fraction:
 def parse(text: str, dimension: str) -> Quantity:
     """Read "7.5 kW"; ValueError with a sentence naming the rule where it cannot be read."""
     known = UNITS[dimension]
-    match = _PATTERN.fullmatch(text)
+    match = _PATTERN.fullmatch(text.strip()) if len(text) <= _LONGEST else None
     if match is None:
         raise ValueError(f"is not a number with a unit of {dimension} ({', '.join(known)})")
     number, unit = match.groups()
     if unit is None and dimension != "fraction":
         raise ValueError(f"has no unit; units of {dimension}: {', '.join(known)}")
     if unit is not None and unit not in known:
-        raise ValueError(f"has the unknown unit {unit!r}; units of {dimension}: {', '.join(known)}")
+        raise ValueError(f"has the unknown unit {unit}; units of {dimension}: {', '.join(known)}")
     return Quantity(Fraction(number), unit or "", dimension)

@@ -10,8 +10,9 @@ import math
 from types import SimpleNamespace
 from typing import Any
 
-from gearopt.formulations.train import Train, each, terms
-from gearopt.optimise.problem import Param, Problem, Terms, Var
+from gearopt.formulations.train import Sizes, Train, each, terms
+from gearopt.optimise.problem import Array, Param, Problem, Terms, Var, namespace
+from gearopt.physics.geometry import reference_diameter
 from gearopt.physics.loads import k_factor
 
 # Far beyond any gear (a watch to a mill), so that they never bind; finite, for the dual bound.
@@ -34,22 +35,31 @@ def problem(train: Train) -> Problem:
         Param(name, _PARAMETER_UNITS.get(name, ""), value, count if isinstance(value, tuple) else 1)
         for name, value in numbers.items()
     )
-    free = any(not s.face_width.tied for s in train.stages)
 
     def evaluate(x: Any, p: Any) -> Terms:
-        module, teeth = each(x.module), each(x.pinion_teeth)
-        width = tuple(
-            each(p.width_high)[k] * module[k] * teeth[k] / math.cos(train.helix_angle)
-            if stage.face_width.tied
-            else each(x.face_width)[k]
-            for k, stage in enumerate(train.stages)
-        )
-        return terms(train, p, module, teeth, each(x.ratio), width)
+        return terms(train, p, *_sizes(train, x, each(p.width_high)))
 
-    return Problem("sizing", _variables(train, free), parameters, evaluate)
+    return Problem("sizing", _variables(train), parameters, evaluate)
 
 
-def _variables(train: Train, free: bool) -> tuple[Var, ...]:
+def sizes(train: Train, point: Array) -> Sizes:
+    """Modules, pinion teeth, ratios and face widths, a tuple each, of a point of `problem`."""
+    x = namespace(_variables(train), [float(v) for v in point])
+    return _sizes(train, x, each(train.numbers()["width_high"]))
+
+
+def _sizes(train: Train, x: Any, proportion: Any) -> Sizes:
+    module, teeth = each(x.module), each(x.pinion_teeth)
+    width = tuple(
+        proportion[k] * reference_diameter(module[k], teeth[k], train.helix_angle)
+        if stage.face_width.tied
+        else each(x.face_width)[k]
+        for k, stage in enumerate(train.stages)
+    )
+    return module, teeth, each(x.ratio), width
+
+
+def _variables(train: Train) -> tuple[Var, ...]:
     columns: dict[str, list[tuple[float, float, float]]] = {
         "module": [], "pinion_teeth": [], "ratio": [], "face_width": []}
     numbers = SimpleNamespace(**train.numbers())
@@ -73,7 +83,7 @@ def _variables(train: Train, free: bool) -> tuple[Var, ...]:
         columns["face_width"].append(
             _column(WIDTH, width, b_fixed is not None or stage.face_width.tied))
         torque *= u
-    if not free:
+    if all(s.face_width.tied for s in train.stages):
         del columns["face_width"]
     count = len(train.stages)
     return tuple(

@@ -5,7 +5,6 @@ fractions; the rest are floats in mm, N, rad, MPa.
 """
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
@@ -13,6 +12,8 @@ from typing import Any
 from gearopt.optimise.problem import Terms
 from gearopt.physics.geometry import centre_distance, gear_volume, reference_diameter
 from gearopt.physics.loads import k_factor, unit_load
+
+Sizes = tuple[tuple[Any, ...], ...]  # modules, pinion teeth, ratios, face widths; one a stage each
 
 OBJECTIVES = {  # name -> unit
     "gear_volume": "mm3",
@@ -149,10 +150,10 @@ def share(train: Train, stage: int, pinion_diameter: Any, face_width: Any, ratio
 def terms(
     train: Train,
     numbers: Any,
-    module: Sequence[Any],
-    pinion_teeth: Sequence[Any],
-    ratio: Sequence[Any],
-    face_width: Sequence[Any],
+    module: tuple[Any, ...],
+    pinion_teeth: tuple[Any, ...],
+    ratio: tuple[Any, ...],
+    face_width: tuple[Any, ...],
 ) -> Terms:
     """Objective and limits of a drive, one entry a stage, in geometric-programming text.
 

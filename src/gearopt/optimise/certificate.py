@@ -6,7 +6,7 @@ stationarity and complementarity below STATIONARY; the bounds carry a rounding a
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -14,7 +14,7 @@ import numpy as np
 from gearopt.errors import CertificateError
 from gearopt.optimise.form import Form, form
 from gearopt.optimise.problem import Array, Batch, Problem
-from gearopt.optimise.result import Outcome
+from gearopt.optimise.result import Outcome, Result
 
 FEASIBLE = 1e-8  # rows are dimensionless; a stress 1e-8 over its limit is below any data error
 STATIONARY = 1e-6  # of the objective's logarithm (or its largest derivative) per unit step
@@ -181,8 +181,8 @@ def _violation(problem: Problem, x: Array, batch: Batch) -> tuple[float, str]:
     discrete = [_distance(v, value) for (v, _), value in zip(problem.columns, x, strict=True)]
     amounts = np.concatenate(
         [
-            batch.G[0],
-            np.abs(batch.H[0]),
+            batch.G[0] - 1.0,
+            np.abs(batch.H[0] - 1.0),
             np.maximum(lower - x, x - upper) / width,
             np.array(discrete),
         ]
@@ -208,3 +208,22 @@ def _runaway(problem: Problem, x: Array, lower: Array, upper: Array, guess: Arra
         return ""
     k = int(np.argmax(loose))
     return f"nothing holds {problem.columns[k][1]} ({x[k]:.3g}): give it a bound or a limit"
+
+
+def reconcile(result: Result, relaxation: Result, tolerance: float) -> Result:
+    """Hold a result against a relaxation of the same problem, solved independently.
+
+    The better bound is kept. CertificateError where the two contradict each other.
+    """
+    value, bound = result.value, relaxation.bound
+    if relaxation.status == "infeasible" and value is not None:
+        raise CertificateError("a design was found for what the relaxation proves impossible")
+    if value is None or bound is None:
+        return result
+    if value < bound * (1.0 - FEASIBLE) if bound > 0 else value < bound - FEASIBLE:
+        raise CertificateError(f"the value {value!r} lies below the relaxation's bound {bound!r}")
+    if result.bound is not None and bound <= result.bound:
+        return result
+    gap = max(0.0, (value - bound) / abs(value))
+    status = "optimal" if gap <= tolerance else result.status
+    return replace(result, bound=bound, gap=gap, status=status, proof=dict(relaxation.proof))

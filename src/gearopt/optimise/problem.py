@@ -126,8 +126,8 @@ class Rows(NamedTuple):
 
 
 class Batch(NamedTuple):
-    """Terms of N points: objectives F (N, nf), G = limits and defines - 1 (N, ng) <= 0, and
-    H = equal - 1 (N, nh); report {name: array (N,) or (N, rows)}.
+    """Terms of N points: objectives F (N, nf), limits and defines G (N, ng) <= 1, equal rows
+    H (N, nh) = 1; report {name: array (N,) or (N, rows)}.
     """
 
     F: Array
@@ -222,8 +222,8 @@ class Problem:
             start = stop
         return Batch(
             np.column_stack(list(objectives.values())),
-            np.concatenate([_matrix(b[0], n, m) for b, n, m in blocks], axis=1) - 1.0,
-            np.concatenate([_matrix(b[1], n, m) for b, n, m in blocks], axis=1) - 1.0,
+            np.concatenate([_matrix(b[0], n, m) for b, n, m in blocks], axis=1),
+            np.concatenate([_matrix(b[1], n, m) for b, n, m in blocks], axis=1),
             report,
         )
 

@@ -106,7 +106,7 @@ def design(problem: Problem, x: Array) -> dict[str, Any]:
 
 def limits(problem: Problem, x: Array) -> dict[str, float]:
     """Utilisation of every user limit at a point."""
-    rows = problem.batch(x[None]).G[0] + 1.0
+    rows = problem.batch(x[None]).G[0]
     named = zip(problem.rows.inequalities, rows, strict=True)
     return {row.name: float(v) for row, v in named if row.kind == "limits"}
 

@@ -12,8 +12,8 @@ import numpy as np
 
 from gearopt.formulations.teeth.search import MARGIN, TIE, Progress, Teeth, search
 from gearopt.formulations.teeth.stage import table
-from gearopt.formulations.train import Train, each, terms
-from gearopt.optimise.problem import Array, Problem, Terms, Var
+from gearopt.formulations.train import Sizes, Train, each, terms
+from gearopt.optimise.problem import Array, Problem, Terms, Var, namespace
 from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.physics.geometry import reference_diameter
 
@@ -28,15 +28,13 @@ def problem(train: Train, count: int = 1) -> Problem:
     numbers = SimpleNamespace(**_scalars(train))
 
     def evaluate(x: Any, p: Any) -> Terms:
-        module, z1, z2 = each(x.module), each(x.pinion_teeth), each(x.wheel_teeth)
-        width = tuple(_width(train, k, x, module[k], z1[k]) for k in range(len(train.stages)))
-        ratio = [b / a for a, b in zip(z1, z2, strict=True)]
-        found = terms(train, numbers, module, z1, ratio, width)
+        found = terms(train, numbers, *_sizes(train, x))
         if not train.coprime:
             return found
+        pairs = zip(each(x.pinion_teeth), each(x.wheel_teeth), strict=True)
         divisors = {
-            f"common_divisor[{k + 1}]": np.gcd(np.rint(a).astype(int), np.rint(b).astype(int))
-            for k, (a, b) in enumerate(zip(z1, z2, strict=True))
+            f"common_divisor[{k}]": np.gcd(np.rint(a).astype(int), np.rint(b).astype(int))
+            for k, (a, b) in enumerate(pairs, 1)
         }
         return Terms(found.minimise, {**found.limits, **divisors}, equal=found.equal)
 
@@ -51,6 +49,17 @@ def _scalars(train: Train) -> dict[str, Any]:
     """`train.numbers()` as `terms` reads it: blocks of one are scalars."""
     return {k: v[0] if isinstance(v, tuple) and len(v) == 1 else v
             for k, v in train.numbers().items()}
+
+
+def sizes(train: Train, point: Array) -> Sizes:
+    """Modules, pinion teeth, ratios and face widths, a tuple each, of a point of `problem`."""
+    return _sizes(train, namespace(_variables(train), [float(v) for v in point]))
+
+
+def _sizes(train: Train, x: Any) -> Sizes:
+    module, z1, z2 = each(x.module), each(x.pinion_teeth), each(x.wheel_teeth)
+    width = tuple(_width(train, k, x, module[k], z1[k]) for k in range(len(train.stages)))
+    return module, z1, tuple(b / a for a, b in zip(z1, z2, strict=True)), width
 
 
 def _width(train: Train, k: int, x: Any, module: Any, z1: Any) -> Any:

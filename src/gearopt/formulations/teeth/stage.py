@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from gearopt.errors import SolveError
 from gearopt.formulations.train import Stage, Train, share
 from gearopt.optimise.problem import Array
 from gearopt.physics.geometry import reference_diameter
@@ -20,6 +21,7 @@ from gearopt.physics.loads import k_factor, unit_load
 
 Index = NDArray[np.int64]
 
+PAIRS = 5_000_000  # tooth pairs of one stage: about 1 GB of tables
 ALLOWANCE = 1e-12  # a stress utilisation this little above 1 is rounding, not a violation
 
 
@@ -140,7 +142,8 @@ def table(train: Train, position: int, cut: Fraction) -> Table:
     """The table of a stage (counted from 0) for ratios up to `cut`."""
     stage = train.stages[position]
     cosine = math.cos(train.helix_angle)
-    z1, z2 = _pairs(stage, cut, train.coprime)
+    least = train.lowest_ratio if len(train.stages) == 1 else stage.ratio[0]
+    z1, z2 = _pairs(stage, max(stage.ratio[0], least), cut, train.coprime)
     ratio = z2 / z1
     face, modules = stage.face_width, stage.modules
     widest = float(face.fixed) if face.fixed is not None else float(face.high or 0)
@@ -163,18 +166,25 @@ def table(train: Train, position: int, cut: Fraction) -> Table:
     )
 
 
-def _pairs(stage: Stage, cut: Fraction, coprime: bool) -> tuple[Index, Index]:
-    """All (z1, z2) of a stage, by ratio, then by teeth."""
-    low, most = stage.ratio
-    high = cut if most is None else min(cut, most)
+def _pairs(stage: Stage, low: Fraction, cut: Fraction, coprime: bool) -> tuple[Index, Index]:
+    """All (z1, z2) of a stage with ratios from low to cut, by ratio, then by teeth.
+
+    SolveError where they are more than memory is worth.
+    """
+    high = cut if stage.ratio[1] is None else min(cut, stage.ratio[1])
+    most_wheel = stage.wheel_teeth[1]
     pinions, wheels = [], []
     least_z1, most_z1 = stage.pinion_teeth
     assert most_z1 is not None
+    expected = (high - low + 1) * most_z1 * (most_z1 - least_z1 + 1)
+    if min(expected, (most_wheel or expected) * (most_z1 - least_z1 + 1)) > PAIRS:
+        raise SolveError(
+            f"a stage has some {float(expected):.2g} tooth pairs to choose from: "
+            "limit its wheel teeth or its ratio")
     for z in range(least_z1, most_z1 + 1):
         start = max(stage.wheel_teeth[0], math.ceil(low * z))
         stop = math.floor(high * z)
-        if stage.wheel_teeth[1] is not None:
-            stop = min(stop, stage.wheel_teeth[1])
+        stop = stop if most_wheel is None else min(stop, most_wheel)
         wheel = np.arange(start, stop + 1, dtype=np.int64)
         pinions.append(np.full(len(wheel), z, dtype=np.int64))
         wheels.append(wheel)

@@ -1,0 +1,5 @@
+"""`python -m gearopt`."""
+
+from gearopt.cli import main
+
+main()

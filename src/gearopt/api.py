@@ -1,0 +1,53 @@
+"""The way in from Python: `load` a problem file, `solve` a file, a scene or a problem."""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from pydantic import BaseModel
+
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.result import Budget, Result, Watch
+from gearopt.optimise.solve import GAP
+from gearopt.optimise.solve import solve as solve_problem
+from gearopt.scenes.reading.ask import Ask
+from gearopt.scenes.reading.load import load as load_file
+from gearopt.scenes.reading.load import scene_module
+
+
+def load(path: str | Path) -> BaseModel:
+    """The scene of a problem file; SceneError says where it is wrong and what to write."""
+    return load_file(path).scene
+
+
+def solve(
+    what: str | Path | BaseModel | Problem,
+    method: str | None = None,
+    *,
+    budget: Budget | None = None,
+    seed: int = 0,
+    watch: Watch | None = None,
+    gap: float = GAP,
+    top: int = 1,
+) -> Result:
+    """The certified answer to a problem file, to a loaded scene, or to a problem of your own.
+
+    method: by default the scene's or problem's own. budget: seconds and evaluations. watch(event)
+    is told of progress; returning False stops the run. gap: largest relative gap to our bound that
+    is called optimal. top: so many next best answers too (scenes with an exact method).
+    SceneError for a wrong file, SolveError where the method does not fit. Not thread-safe.
+    """
+    budget = budget or Budget()
+    if isinstance(what, Problem):
+        return solve_problem(what, method, budget, seed, watch, gap)
+    ask = Ask(method, budget, seed, watch, gap, top)
+    if isinstance(what, BaseModel):
+        kind = type(what).__module__.rsplit(".", 1)[-1]
+        return _named(scene_module(kind).solve(what, ask), scene=kind)
+    loaded = load_file(what)
+    result = scene_module(loaded.kind).solve(loaded.scene, ask)
+    return _named(result, scene=loaded.kind, file=loaded.file, file_sha256=loaded.sha256)
+
+
+def _named(result: Result, **names: Any) -> Result:
+    return replace(result, **names)

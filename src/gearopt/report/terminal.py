@@ -1,0 +1,177 @@
+"""A result on the terminal: the design, its limits, and what is proven in words."""
+
+import re
+from collections.abc import Mapping
+from typing import Any
+
+from rich.console import Console, Group, RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from gearopt.optimise.result import Result
+
+UNITS = {"mm": "mm", "mm3": "mm³", "MPa": "MPa", "Nmm": "N mm", "kg": "kg", "percent": "%"}
+VERDICTS = {
+    "optimal": ("proven optimal", "green"),
+    "stationary": ("locally optimal (no bound)", "yellow"),
+    "feasible": ("feasible, not proven optimal", "yellow"),
+    "infeasible": ("impossible, proven", "red"),
+    "limit": ("stopped early", "yellow"),
+    "failed": ("failed", "red"),
+}
+SHORT = {  # headings of the stage table, in the field's own letters
+    "normal_module_mm": "m_n\nmm",
+    "pinion_teeth": "z1",
+    "wheel_teeth": "z2",
+    "ratio": "u",
+    "face_width_mm": "b\nmm",
+    "pinion_diameter_mm": "d1\nmm",
+    "wheel_diameter_mm": "d2\nmm",
+    "centre_distance_mm": "a\nmm",
+    "k_factor_MPa": "K\nMPa",
+    "unit_load_MPa": "U\nMPa",
+    "gear_volume_mm3": "V\nmm³",
+}
+
+
+def show(result: Result, title: str, console: Console) -> None:
+    """Print a result."""
+    words, colour = VERDICTS[result.status]
+    console.print(Text.assemble((title, "bold"), "  ", (words, f"bold {colour}")))
+    for block in _blocks(result):
+        console.print(block)
+
+
+def _blocks(result: Result) -> list[RenderableType]:
+    blocks: list[RenderableType] = []
+    if result.value is not None:
+        blocks.append(_design(result.design))
+        blocks.append(_limits(result.limits))
+        if trains := result.report.get("trains"):
+            blocks.append(_trains(trains, result.objective))
+    blocks.append(Text("\n".join(_proof(result))))
+    spent = f"{result.method}, {result.evaluations:,} evaluations, {result.seconds:.3g} s"
+    blocks.append(Text(spent, style="dim"))
+    return blocks
+
+
+def _design(design: Mapping[str, Any]) -> RenderableType:
+    """Stages as a table, the rest line by line."""
+    parts: list[RenderableType] = []
+    stages = design.get("stages", [])
+    if stages:
+        table = Table("stage", *[SHORT[k] for k in stages[0] if k in SHORT], box=None,
+                      header_style="bold", pad_edge=False)
+        for column in table.columns:
+            column.justify = "right"
+        for k, stage in enumerate(stages, 1):
+            table.add_row(str(k), *[number(v) for n, v in stage.items() if n in SHORT])
+        parts.append(table)
+    lines = [f"{heading(k)}  {number(v)}" for k, v in design.items() if k != "stages"]
+    parts.append(Text("\n".join(lines)))
+    return Group(*parts)
+
+
+def _limits(limits: Mapping[str, float]) -> RenderableType:
+    """Utilisation of every limit in percent, stages side by side."""
+    rows: dict[str, dict[int, float]] = {}
+    for name, value in limits.items():
+        match = re.fullmatch(r"(.*)\[(\d+)\]", name)
+        stem, index = (match[1], int(match[2])) if match else (name, 0)
+        rows.setdefault(stem, {})[index] = value
+    stages = range(1, max((i for r in rows.values() for i in r), default=0) + 1)
+    table = Table("limit used, %", *[f"stage {k}" for k in stages], "drive", box=None,
+                  header_style="bold", pad_edge=False)
+    for column in table.columns[1:]:
+        column.justify = "right"
+    for stem, values in rows.items():
+        cells = [_percent(values.get(k)) for k in (*stages, 0)]
+        table.add_row(stem.replace("_", " "), *cells)
+    return table
+
+
+def _percent(value: float | None) -> Text:
+    if value is None:
+        return Text("")
+    text = f"{100 * value:.1f}"
+    return Text(text, style="bold" if value > 0.9995 else "")
+
+
+def _trains(trains: list[Mapping[str, Any]], objective: Mapping[str, Any]) -> RenderableType:
+    unit = UNITS.get(objective.get("unit", ""), objective.get("unit", ""))
+    heads = ("", f"{objective['name'].replace('_', ' ')}\n{unit}", "ratio", "m_n, z1/z2",
+             "centre distances\nmm")
+    table = Table(*heads, box=None, header_style="bold", pad_edge=False)
+    for k, train in enumerate(trains, 1):
+        teeth = "  ".join(
+            f"{s['normal_module_mm']:g}, {s['pinion_teeth']}/{s['wheel_teeth']}"
+            for s in train["stages"])
+        distances = "  ".join(f"{s['centre_distance_mm']:.2f}" for s in train["stages"])
+        table.add_row(str(k), number(train["objective"]), f"{train['ratio']:.4f}", teeth, distances)
+    return table
+
+
+def _proof(result: Result) -> list[str]:
+    """What is certain, in sentences."""
+    lines = []
+    name = result.objective["name"].replace("_", " ")
+    unit = UNITS.get(result.objective.get("unit", ""), result.objective.get("unit", ""))
+    if result.bound is not None and result.gap is not None:
+        lines.append(
+            f"Bound: no {name} below {number(result.bound)} {unit} is possible; "
+            f"gap {100 * result.gap:.3g} %.")
+    proof = result.proof
+    if proof.get("method") == "exhausted" and result.status == "infeasible":
+        lines.append("Proof: every choice of teeth and modules was compared or excluded; none "
+                     "meets all limits.")
+    elif proof.get("method") == "exhausted":
+        lines.append(f"Proof: {proof['trains_compared']:,} trains compared, all others excluded by "
+                     f"a lower bound in {proof['nodes']:,} nodes.")
+    elif proof.get("method") == "dual" and result.bound is not None:
+        lines.append("Proof: the problem is convex in logarithms; the bound is a dual one, computed "
+                     "from our own derivatives.")
+    for part in result.parts:
+        if part.name == "sizing" and part.value and result.value:
+            lines.append(
+                f"With real-valued teeth and modules: {number(part.value)} {unit} "
+                f"(whole teeth and standard modules cost "
+                f"{100 * (result.value / part.value - 1):.2f} %).")
+    if "lifting_one_suffices" in proof:
+        names = [n.replace("_", " ") for n in proof["lifting_one_suffices"]]
+        lines.append("Lifting any one of these limits alone makes a design possible: "
+                     f"{', '.join(names)}." if names else
+                     "No single limit is the cause: at least two must change together.")
+    if assumed := result.report.get("assumed"):
+        lines.append(f"Assumed: {assumed}.")
+    if result.message:
+        lines.append(result.message[0].upper() + result.message[1:] + ".")
+    return lines
+
+
+def heading(key: str) -> str:
+    """`face_width_mm` as "face width [mm]"."""
+    stem, _, last = key.rpartition("_")
+    if last in UNITS and stem:
+        return f"{stem.replace('_', ' ')} [{UNITS[last]}]"
+    return key.replace("_", " ")
+
+
+def number(value: Any) -> str:
+    """A number for reading: thousands apart, six significant digits, tenths of large ones."""
+    if isinstance(value, list):
+        return "  ".join(number(v) for v in value)
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return str(value)
+    if isinstance(value, int):
+        return f"{value:,}"
+    if abs(value) >= 1e5:
+        return f"{value:,.1f}"
+    return f"{value:.6g}" if abs(value) >= 100 else f"{value:.5g}"
+
+
+def rows_table(rows: list[dict[str, Any]]) -> RenderableType:
+    """Rows of a bench as a table."""
+    table = Table(*[heading(k) for k in rows[0]], box=None, header_style="bold", pad_edge=False)
+    for row in rows:
+        table.add_row(*["" if v is None else number(v) for v in row.values()])
+    return table

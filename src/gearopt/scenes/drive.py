@@ -1,0 +1,398 @@
+"""kind = "drive": a multi-stage drive of cylindrical gears of least volume, mass or length.
+
+With a [teeth] table the answer has whole teeth and standard modules and is proven by exhaustion;
+without one, or by the method ipopt, sizes are continuous and proven by a dual bound.
+"""
+
+from dataclasses import replace
+from fractions import Fraction
+from typing import Annotated, Any
+
+from pydantic import Field, model_validator
+
+from gearopt import units
+from gearopt.errors import SolveError
+from gearopt.formulations import sizing, teeth
+from gearopt.formulations.design import describe
+from gearopt.formulations.teeth.conflict import lifting
+from gearopt.formulations.train import OBJECTIVES, FaceWidth, Stage, Train
+from gearopt.optimise.certificate import reconcile
+from gearopt.optimise.result import Result
+from gearopt.optimise.solve import run
+from gearopt.physics.loads import torque
+from gearopt.physics.modules import MODULES
+from gearopt.scenes.reading.ask import Ask
+from gearopt.scenes.reading.fields import (
+    Table,
+    choice,
+    either,
+    number,
+    quantity,
+    refuse,
+    span,
+    truth,
+    whole,
+    words,
+)
+from gearopt.units import Quantity
+
+# Load limits a source states for its own drive (Chong and Lee print 2.07 MPa and 48 MPa).
+PRESETS = {"chong-lee-elevator": {"k_factor": "300 psi", "unit_load": "7000 psi"}}
+
+LENGTH = quantity("length", "400 mm")
+STRESS = quantity("stress", "2.07 MPa")
+TOOTH_COUNT = whole(21, 5, 1000)
+WHEEL_TEETH = whole(100, 5, 100_000)
+MODULE = quantity("length", "2 mm")
+PROPORTION = span(number(0.6, 0, 10), 0.6, single=True)
+RATIO = number(20, 1, 10**6)
+RATIOS = span(number(5, 1, 10**6), [1, 10])
+
+Proportion = Annotated[tuple[Fraction, Fraction] | None, PROPORTION]
+Ratios = Annotated[tuple[Fraction, Fraction] | None, RATIOS]
+Length = Annotated[Quantity | None, LENGTH]
+Stress = Annotated[Quantity | None, STRESS]
+Lengths = tuple[Quantity, Quantity]
+
+PROPORTION_IS = (
+    "Face width over pinion diameter b/d1: a number ties b to d1, a range leaves it free within it"
+)
+STEP_IS = "Face widths are whole multiples of this"
+K_IS = "Largest K-factor W_t/(d1 b) (u + 1)/u, the index of contact stress"
+U_IS = "Largest unit load W_t/(b m_n), the index of tooth-root stress"
+WHEEL_IS = "Largest reference diameter of a wheel"
+
+
+class Duty(Table):
+    """What the drive must do."""
+
+    power: Annotated[Quantity, quantity("power", "7.5 kW")] = Field(
+        description="Power at the input shaft; gears are taken as loss-free"
+    )
+    input_speed: Annotated[Quantity, quantity("speed", "1450 rpm")] = Field(
+        description="Speed of the input shaft"
+    )
+    output_speed: Annotated[Quantity | None, quantity("speed", "66.5 rpm")] = Field(
+        None, description="Speed of the output shaft (or give ratio)"
+    )
+    ratio: Annotated[Fraction | None, RATIO] = Field(
+        None, description="Total ratio, input over output speed"
+    )
+    ratio_tolerance: Annotated[Fraction, number("1 %", 0, Fraction(1, 2), True, True)] = Field(
+        default_factory=lambda: Fraction(1, 100),
+        description="Allowed relative deviation of the total ratio",
+        json_schema_extra={"default": "1 %"},
+    )
+
+    @model_validator(mode="after")
+    def _one_ratio(self) -> "Duty":
+        if self.output_speed is not None and self.ratio is not None:
+            raise refuse("stands beside output_speed; one is enough", at=("ratio",), action="remove")
+        if self.output_speed is None and self.ratio is None:
+            raise refuse("is missing (or give ratio)", at=("output_speed",))
+        if self.total_ratio < 1:
+            raise refuse(
+                "is above the input speed; gearopt sizes reducers, and a loss-free speed increaser "
+                "has the same gears with input and output exchanged",
+                "input_speed", ("output_speed",), "swap")
+        if self.total_ratio > 10**6:
+            raise refuse("asks for a ratio beyond 1000000", at=("output_speed",))
+        return self
+
+    @property
+    def total_ratio(self) -> Fraction:
+        """Input over output speed, exactly."""
+        if self.ratio is not None:
+            return self.ratio
+        assert self.output_speed is not None
+        return units.quotient(self.input_speed, self.output_speed)
+
+
+class Gears(Table):
+    """What all stages share."""
+
+    helix_angle: Annotated[Quantity, quantity("angle", "25 deg", "45 deg", zero=True)] = Field(
+        default_factory=lambda: units.parse("0 deg", "angle"),
+        description="Helix angle at the reference cylinder",
+        json_schema_extra={"default": "0 deg"},
+    )
+    pressure_angle: Annotated[Quantity, quantity("angle", "20 deg", "45 deg")] = Field(
+        default_factory=lambda: units.parse("20 deg", "angle"),
+        description="Normal pressure angle; K-factor and unit load do not depend on it",
+        json_schema_extra={"default": "20 deg"},
+    )
+    face_width_over_diameter: Proportion = Field(None, description=PROPORTION_IS)
+    face_width_step: Length = Field(None, description=STEP_IS)
+
+
+class StageTable(Table):
+    """One stage: what differs from the other tables, and what is fixed."""
+
+    module: Annotated[Lengths | None, span(MODULE, "2 mm", single=True)] = Field(
+        None, description="Normal module: fixed, or a range"
+    )
+    pinion_teeth: Annotated[tuple[int, int] | None, span(TOOTH_COUNT, 21, single=True)] = Field(
+        None, description="Pinion teeth: fixed, or a range"
+    )
+    wheel_teeth: Annotated[tuple[int, int] | None, span(WHEEL_TEETH, 100, single=True)] = Field(
+        None, description="Wheel teeth: fixed, or a range"
+    )
+    face_width: Annotated[Quantity | None, quantity("length", "40 mm")] = Field(
+        None, description="Face width, fixed"
+    )
+    face_width_over_diameter: Proportion = Field(None, description=PROPORTION_IS)
+    face_width_step: Length = Field(None, description=STEP_IS)
+    ratio: Ratios = Field(None, description="Range of the stage ratio")
+    k_factor: Stress = Field(None, description=K_IS)
+    unit_load: Stress = Field(None, description=U_IS)
+    wheel_diameter: Length = Field(None, description=WHEEL_IS)
+
+
+class Limits(Table):
+    """Limits of every stage, unless its own table says otherwise."""
+
+    preset: Annotated[str | None, choice(*PRESETS)] = Field(
+        None,
+        description="K-factor and unit load that a source states: chong-lee-elevator is 300 psi "
+        "and 7000 psi",
+    )
+    k_factor: Stress = Field(None, description=K_IS)
+    unit_load: Annotated[Quantity | None, quantity("stress", "48 MPa")] = Field(
+        None, description=U_IS
+    )
+    pinion_teeth: Annotated[tuple[int, int], span(TOOTH_COUNT, [20, 40])] = Field(
+        description="Range of pinion teeth"
+    )
+    wheel_teeth: Annotated[tuple[int, int] | None, span(WHEEL_TEETH, [20, 400])] = Field(
+        None, description="Range of wheel teeth"
+    )
+    module: Annotated[Lengths | None, span(MODULE, ["1 mm", "10 mm"])] = Field(
+        None, description="Range of the normal module"
+    )
+    stage_ratio: Ratios = Field(
+        None, description="Range of every stage's ratio (without it: 1 and up)"
+    )
+    wheel_diameter: Length = Field(None, description=WHEEL_IS)
+
+    @model_validator(mode="after")
+    def _loads(self) -> "Limits":
+        for name in ("k_factor", "unit_load"):
+            given = getattr(self, name) is not None
+            if given and self.preset is not None:
+                raise refuse("stands beside preset, which sets it", at=(name,), action="remove")
+            if not given and self.preset is None:
+                raise refuse("is missing (or give preset)", at=(name,))
+        return self
+
+    def load(self, name: str) -> Quantity:
+        """K-factor or unit load, from the file or the preset."""
+        own: Quantity | None = getattr(self, name)
+        return own or units.parse(PRESETS[str(self.preset)][name], "stress")
+
+
+class Teeth(Table):
+    """Whole teeth and standard modules; without this table sizes are continuous."""
+
+    modules: Annotated[tuple[Fraction, ...], either(MODULES, MODULE)] = Field(
+        default_factory=lambda: MODULES["ISO 54 I"],
+        description='"ISO 54 I", "ISO 54 I+II", or a list of modules',
+        json_schema_extra={"default": "ISO 54 I"},
+    )
+    coprime: Annotated[bool, truth()] = Field(
+        False, description="Hunting teeth: z1 and z2 without a common divisor"
+    )
+
+
+class Objective(Table):
+    """What to minimise."""
+
+    minimise: Annotated[str, choice(*OBJECTIVES)] = Field(
+        "gear_volume",
+        description="gear_volume (solid reference cylinders), mass, sum_of_centre_distances, or "
+        "total_length (shafts in one line, over reference circles)",
+    )
+    density: Annotated[Quantity | None, quantity("density", "7.85 kg/dm^3")] = Field(
+        None, description="Density of the gears; mass needs it"
+    )
+
+    @model_validator(mode="after")
+    def _mass_needs_density(self) -> "Objective":
+        if self.minimise == "mass" and self.density is None:
+            raise refuse("is missing: mass needs it", at=("density",))
+        return self
+
+
+class Scene(Table):
+    """A drive."""
+
+    title: Annotated[str, words()] = Field("", description="A line for the report")
+    source: Annotated[str, words()] = Field(
+        "", description="Where the data and the expected value come from"
+    )
+    duty: Duty
+    stages: Annotated[int | None, whole(2, 1, 6)] = Field(
+        None, description="Number of stages (or write one [[stage]] table a stage)"
+    )
+    gears: Gears = Field(default_factory=Gears)
+    stage: tuple[StageTable, ...] = Field((), description="One table a stage, from the input on")
+    limits: Limits
+    teeth: Teeth | None = None
+    objective: Objective = Field(default_factory=Objective)
+
+    @model_validator(mode="after")
+    def _consistent(self) -> "Scene":
+        number = len(self.stage)
+        if self.stages is None and not self.stage:
+            raise refuse("is missing (or write one [[stage]] table a stage)", at=("stages",))
+        if number > 6:
+            raise refuse("has more than six tables", at=("stage", 6), action="remove")
+        if self.stages is not None and self.stage and self.stages != number:
+            raise refuse(f"differs from the {number} [[stage]] tables", number, ("stages",))
+        for k, own in enumerate(self.stage or (StageTable(),)):
+            self._check_width(own, ("stage", k) if self.stage else ("gears",))
+            if self.teeth is not None and not self._modules(own):
+                place = ("stage", k, "module") if own.module else ("limits", "module")
+                series = self.teeth.modules
+                whole_series = [f"{float(m):g} mm" for m in (series[0], series[-1])]
+                raise refuse("leaves no module of [teeth] modules", whole_series, place)
+        return self
+
+    def _check_width(self, own: StageTable, place: tuple[Any, ...]) -> None:
+        """One rule for the face width, and a range where a range is needed."""
+        key = (*place, "face_width_over_diameter")
+        if own.face_width is not None:
+            if own.face_width_step is not None:
+                raise refuse("stands beside face_width, which fixes the width",
+                             at=(*place, "face_width_step"), action="remove")
+            span = own.face_width_over_diameter
+            if span is not None and span[0] == span[1]:
+                raise refuse("stands beside face_width: only a range can limit a fixed width",
+                             [0.1, float(span[1])], key)
+            return
+        span = own.face_width_over_diameter or self.gears.face_width_over_diameter
+        if span is None:
+            raise refuse("is missing", at=key)
+        step = own.face_width_step or self.gears.face_width_step
+        if step is not None and span[0] == span[1]:
+            raise refuse("ties the width, so that it cannot keep to face_width_step: give a range",
+                         [float(span[0] / 2), float(span[1])], key)
+
+    def _modules(self, own: StageTable) -> tuple[Fraction, ...]:
+        span = own.module or self.limits.module
+        ends = () if span is None else tuple(end.exact[0] for end in span)
+        if self.teeth is None:
+            return tuple(sorted(set(ends)))
+        if own.module and ends[0] == ends[1]:
+            return ends[:1]
+        series = self.teeth.modules
+        return tuple(m for m in series if not ends or ends[0] <= m <= ends[1])
+
+    def train(self) -> Train:
+        """The drive as plain numbers."""
+        stages = self.stage or (StageTable(),) * int(self.stages or 0)
+        density = self.objective.density
+        return Train(
+            torque=torque(self.duty.power.value, self.duty.input_speed.value),
+            ratio=self.duty.total_ratio,
+            tolerance=self.duty.ratio_tolerance,
+            stages=tuple(self._stage(s) for s in stages),
+            helix_angle=self.gears.helix_angle.value,
+            coprime=bool(self.teeth and self.teeth.coprime),
+            objective=self.objective.minimise,
+            density=density.value if density else None,
+        )
+
+    def _stage(self, own: StageTable) -> Stage:
+        limits = self.limits
+        diameter = own.wheel_diameter or limits.wheel_diameter
+        return Stage(
+            k_factor=(own.k_factor or limits.load("k_factor")).value,
+            unit_load=(own.unit_load or limits.load("unit_load")).value,
+            face_width=self._face_width(own),
+            modules=self._modules(own),
+            pinion_teeth=own.pinion_teeth or limits.pinion_teeth,
+            wheel_teeth=own.wheel_teeth or limits.wheel_teeth or (1, None),
+            ratio=own.ratio or limits.stage_ratio or (Fraction(1), None),
+            wheel_diameter=diameter.exact[0] if diameter else None,
+        )
+
+    def _face_width(self, own: StageTable) -> FaceWidth:
+        proportion = own.face_width_over_diameter
+        if own.face_width is not None:
+            low, high = proportion or (Fraction(0), None)
+            return FaceWidth(low, high, fixed=own.face_width.exact[0])
+        span = proportion or self.gears.face_width_over_diameter
+        assert span is not None  # checked by _check_width
+        step = own.face_width_step or self.gears.face_width_step
+        return FaceWidth(span[0], span[1], step=step.exact[0] if step else None)
+
+
+EXAMPLE = '''\
+gearopt = 1
+kind = "drive"
+title = "A two-stage drive"
+
+[duty]
+power = "7.5 kW"
+input_speed = "1450 rpm"
+output_speed = "66.5 rpm"      # or: ratio = 21.8
+ratio_tolerance = "1 %"
+
+[gears]
+helix_angle = "25 deg"
+
+[[stage]]                      # from the input on; what is fixed or differs in this stage
+face_width_over_diameter = 0.6 # b/d1; a range [0.3, 0.6] leaves the width free
+
+[[stage]]
+face_width_over_diameter = 0.75
+
+[limits]
+k_factor = "2.07 MPa"          # contact; or: preset = "chong-lee-elevator"
+unit_load = "48 MPa"           # tooth root
+pinion_teeth = [20, 40]
+
+[teeth]                        # whole teeth, standard modules; without it sizes are continuous
+modules = "ISO 54 I"
+
+[objective]
+minimise = "gear_volume"       # or mass, sum_of_centre_distances, total_length
+'''
+
+
+def solve(scene: Scene, ask: Ask) -> Result:
+    """Size the drive: exactly where [teeth] is given, else continuously.
+
+    The exact answer carries the continuous one as a part: what whole teeth and standard modules
+    cost, and a second, independent bound.
+    """
+    train = scene.train()
+    if scene.teeth is None and ask.method == "exact":
+        raise SolveError("the method exact needs a [teeth] table in the file")
+    ideal = _sized(scene, train, replace(ask, method=None, watch=None), sizing)
+    if scene.teeth is None or ask.method == "ipopt":
+        return ideal
+    found = _sized(scene, train, ask, teeth)
+    return reconcile(replace(found, parts=(replace(ideal, name="sizing"),)), ideal, ask.gap)
+
+
+def _sized(scene: Scene, train: Train, ask: Ask, formulation: Any) -> Result:
+    """Solve one formulation of the drive and put its answer in a drawing's words."""
+    exact = formulation is teeth
+    problem = teeth.problem(train, ask.top) if exact else sizing.problem(train)
+    result, outcome = run(problem, ask.method, ask.budget, ask.seed, ask.watch, ask.gap)
+    result = replace(result, objective=result.objective | {"unit": train.unit})
+    if result.status == "infeasible" and exact:
+        result = replace(result, proof=result.proof | {"lifting_one_suffices": lifting(train)})
+    if result.value is None or outcome.x is None:
+        return result
+    designs = [describe(train, formulation.sizes(train, x)) for x in (outcome.x, *outcome.others)]
+    values = [float(problem.batch(x[None]).F[0, 0]) for x in (outcome.x, *outcome.others)]
+    trains = [
+        {"objective": value, "ratio": design["ratio"], "stages": design["stages"]}
+        for value, design in zip(values, designs, strict=True)
+    ]
+    report = {"trains": trains} if ask.top > 1 else {}
+    if scene.limits.preset is not None:
+        report["assumed"] = f"load limits of preset {scene.limits.preset}, not from a standard"
+    return replace(result, name="drive", design=designs[0], report=report)

@@ -1,0 +1,1 @@
+"""How problem files are read: field types, the loader and its messages."""

@@ -1,0 +1,18 @@
+"""What a caller asks of a scene beside the file: method, budget, how many answers."""
+
+from dataclasses import dataclass, field
+
+from gearopt.optimise.result import Budget, Watch
+from gearopt.optimise.solve import GAP
+
+
+@dataclass(frozen=True)
+class Ask:
+    """method: None for the scene's own choice. top: answers in proven order. gap: see `solve`."""
+
+    method: str | None = None
+    budget: Budget = field(default_factory=Budget)
+    seed: int = 0
+    watch: Watch | None = None
+    gap: float = GAP
+    top: int = 1
