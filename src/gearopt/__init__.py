@@ -2,8 +2,9 @@
 
 from gearopt.api import load, solve
 from gearopt.errors import CertificateError, GearoptError, SceneError, SolveError
-from gearopt.optimise.problem import Param, Problem, Repeat, Terms, Var
+from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Event, Result
+from gearopt.optimise.terms import Param, Repeat, Terms, Var
 
 __all__ = [
     "Budget",

@@ -45,13 +45,23 @@ def main() -> None:
 @app.command()
 def solve(
     file: File,
-    method: Annotated[str | None, typer.Option(
-        help="exact or ipopt; by default exact where the file has a [teeth] table.")] = None,
-    top: Annotated[int, typer.Option(
-        min=1, max=1000, help="Show so many of the best distinct trains, in proven order.")] = 1,
+    method: Annotated[
+        str | None,
+        typer.Option(help="exact or ipopt; by default exact where the file has a [teeth] table."),
+    ] = None,
+    top: Annotated[
+        int,
+        typer.Option(
+            min=1, max=1000, help="Show so many of the best distinct trains, in proven order."
+        ),
+    ] = 1,
     seconds: Annotated[float, typer.Option(min=0.0, help="Stop after this time.")] = 60.0,
-    gap: Annotated[float, typer.Option(
-        min=0.0, max=1.0, help="Largest relative gap to the bound that is called optimal.")] = 1e-6,
+    gap: Annotated[
+        float,
+        typer.Option(
+            min=0.0, max=1.0, help="Largest relative gap to the bound that is called optimal."
+        ),
+    ] = 1e-6,
     seed: Annotated[int, typer.Option(help="Seed of random methods.")] = 0,
     as_json: Json = False,
 ) -> None:
@@ -59,8 +69,9 @@ def solve(
     from gearopt.api import solve as solve_file
 
     with _watching(seconds, quiet=as_json) as watch:
-        result = solve_file(file, method, budget=Budget(seconds), seed=seed, watch=watch, gap=gap,
-                            top=top)
+        result = solve_file(
+            file, method, budget=Budget(seconds), seed=seed, watch=watch, gap=gap, top=top
+        )
     if as_json:
         print(result.to_json())
     else:
@@ -130,8 +141,10 @@ def _progress(event: Event, left: float) -> str:
 
 
 @app.command()
-def check(files: Annotated[list[Path], typer.Argument(
-        help="Problem files (TOML).", show_default=False)], as_json: Json = False) -> None:
+def check(
+    files: Annotated[list[Path], typer.Argument(help="Problem files (TOML).", show_default=False)],
+    as_json: Json = False,
+) -> None:
     """Read problem files and say what is wrong with them, without solving."""
     from gearopt.errors import SceneError
     from gearopt.scenes.reading.load import load
@@ -141,8 +154,16 @@ def check(files: Annotated[list[Path], typer.Argument(
         try:
             loaded = load(file)
         except SceneError as wrong:
-            found.append({"file": str(file), "valid": False, "key": wrong.key, "value": wrong.value,
-                          "rule": wrong.rule, "remedy": wrong.remedy})
+            found.append(
+                {
+                    "file": str(file),
+                    "valid": False,
+                    "key": wrong.key,
+                    "value": wrong.value,
+                    "rule": wrong.rule,
+                    "remedy": wrong.remedy,
+                }
+            )
             if not as_json:
                 print(f"gearopt: {wrong}", file=sys.stderr)
         else:
@@ -218,9 +239,11 @@ def _works(method: str) -> str:
 
 
 @app.command()
-def bench(name: Annotated[str, typer.Argument(help="A bench; drive is the first.")] = "drive",
-          repeat: Annotated[int, typer.Option(min=1, help="Runs to take the median of.")] = 7,
-          as_json: Json = False) -> None:
+def bench(
+    name: Annotated[str, typer.Argument(help="A bench; drive is the first.")] = "drive",
+    repeat: Annotated[int, typer.Option(min=1, help="Runs to take the median of.")] = 7,
+    as_json: Json = False,
+) -> None:
     """Measure speed beside error on cases with known optima."""
     from importlib import import_module
 

@@ -44,7 +44,8 @@ def describe(train: Train, sizes: Sizes) -> dict[str, Any]:
     }
     if train.density is not None:
         found["mass_kg"] = 1000.0 * train.density * volume
-    return _floats(found)
+    plain: dict[str, Any] = _floats(found)
+    return plain
 
 
 def _whole(teeth: float) -> float | int:

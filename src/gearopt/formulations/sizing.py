@@ -11,7 +11,8 @@ from types import SimpleNamespace
 from typing import Any
 
 from gearopt.formulations.train import Sizes, Train, each, terms
-from gearopt.optimise.problem import Array, Param, Problem, Terms, Var, namespace
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.terms import Array, Param, Terms, Var, namespace
 from gearopt.physics.geometry import reference_diameter
 from gearopt.physics.loads import k_factor
 
@@ -20,14 +21,23 @@ MODULE = (1e-4, 1e4)  # mm
 TEETH = (1.0, 1e6)
 RATIO = (1.0, 1e6)
 WIDTH = (1e-5, 1e6)  # mm
+VARIABLES = {"module": "mm", "pinion_teeth": "", "ratio": "", "face_width": "mm"}
 
-_PARAMETER_UNITS = {"torque": "N mm", "k_factor": "MPa", "unit_load": "MPa", "wheel_diameter": "mm",
-                    "module_low": "mm", "module_high": "mm"}
+_PARAMETER_UNITS = {
+    "torque": "N mm",
+    "k_factor": "MPa",
+    "unit_load": "MPa",
+    "wheel_diameter": "mm",
+    "module_low": "mm",
+    "module_high": "mm",
+}
 
 
 def problem(train: Train) -> Problem:
-    """The continuous problem of a drive: variables module [mm], pinion_teeth, ratio and, where it
-    is not tied to d1, face_width [mm], one component a stage.
+    """The continuous problem of a drive.
+
+    Variables, one component a stage: module [mm], pinion_teeth, ratio and, where it is not tied to
+    d1, face_width [mm].
     """
     count = len(train.stages)
     numbers = train.numbers()
@@ -60,8 +70,7 @@ def _sizes(train: Train, x: Any, proportion: Any) -> Sizes:
 
 
 def _variables(train: Train) -> tuple[Var, ...]:
-    columns: dict[str, list[tuple[float, float, float]]] = {
-        "module": [], "pinion_teeth": [], "ratio": [], "face_width": []}
+    columns: dict[str, list[tuple[float, float, float]]] = {name: [] for name in VARIABLES}
     numbers = SimpleNamespace(**train.numbers())
     torque = train.torque
     for k, stage in enumerate(train.stages):
@@ -81,15 +90,16 @@ def _variables(train: Train) -> tuple[Var, ...]:
         columns["ratio"].append(_column(RATIO, u, z_fixed and z2_fixed))
         width = proportion * d if b_fixed is None else float(b_fixed)
         columns["face_width"].append(
-            _column(WIDTH, width, b_fixed is not None or stage.face_width.tied))
+            _column(WIDTH, width, b_fixed is not None or stage.face_width.tied)
+        )
         torque *= u
     if all(s.face_width.tied for s in train.stages):
         del columns["face_width"]
     count = len(train.stages)
     return tuple(
-        Var(name, "mm" if name in ("module", "face_width") else "",
-            *(tuple(c) for c in zip(*column, strict=True)), size=count, log=True)  # type: ignore[arg-type]
-        for name, column in columns.items()
+        Var(name, unit, *_transposed(columns[name]), count, log=True)
+        for name, unit in VARIABLES.items()
+        if name in columns
     )
 
 
@@ -97,3 +107,10 @@ def _column(bounds: tuple[float, float], guess: float, fixed: bool) -> tuple[flo
     if fixed:
         return guess, guess, guess
     return bounds[0], bounds[1], min(max(guess, bounds[0]), bounds[1])
+
+
+def _transposed(
+    rows: list[tuple[float, float, float]],
+) -> tuple[tuple[float, ...], tuple[float, ...], tuple[float, ...]]:
+    """Lower bounds, upper bounds and guesses of a block."""
+    return tuple(r[0] for r in rows), tuple(r[1] for r in rows), tuple(r[2] for r in rows)

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
-from gearopt.optimise.problem import Terms
+from gearopt.optimise.terms import Terms
 from gearopt.physics.geometry import centre_distance, gear_volume, reference_diameter
 from gearopt.physics.loads import k_factor, unit_load
 
@@ -27,8 +27,8 @@ OBJECTIVES = {  # name -> unit
 class FaceWidth:
     """How the face width b of a stage is chosen, from the pinion reference diameter d1.
 
-    low, high: limits of b/d1 (high may be None with `fixed`); equal ones tie b to d1. step: b is a whole multiple of it [mm].
-    fixed: b itself is given [mm] (low and high still limit it).
+    low, high: limits of b/d1 (high may be None with `fixed`); equal ones tie b to d1. step: b is
+    a whole multiple of it [mm]. fixed: b itself is given [mm] (low and high still limit it).
     """
 
     low: Fraction
@@ -88,7 +88,6 @@ class Train:
     def highest_ratio(self) -> Fraction:
         """Largest total ratio allowed."""
         return self.ratio * (1 + self.tolerance)
-
 
     def fixed_teeth(self, stage: int, pinion: int, wheel: int) -> "Train":
         """The same drive with the teeth of one stage (counted from 0) given."""

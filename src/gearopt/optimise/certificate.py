@@ -13,8 +13,9 @@ import numpy as np
 
 from gearopt.errors import CertificateError
 from gearopt.optimise.form import Form, form
-from gearopt.optimise.problem import Array, Batch, Problem
+from gearopt.optimise.problem import Batch, Problem
 from gearopt.optimise.result import Outcome, Result
+from gearopt.optimise.terms import Array
 
 FEASIBLE = 1e-8  # rows are dimensionless; a stress 1e-8 over its limit is below any data error
 STATIONARY = 1e-6  # of the objective's logarithm (or its largest derivative) per unit step
@@ -174,7 +175,9 @@ def _allowance(*terms: Array) -> float:
 def _violation(problem: Problem, x: Array, batch: Batch) -> tuple[float, str]:
     """Largest violation of rows, bounds and discreteness, and the name of what has it."""
     lower, upper, _ = problem.bounds()
-    width = np.maximum(1.0, np.abs(x))
+    logarithmic = np.array([v.log for v, _ in problem.columns])
+    span = np.where(upper > lower, upper - lower, np.inf)
+    width = np.where(logarithmic, np.abs(x), np.minimum(span, np.maximum(1.0, np.abs(x))))
     names = [r.name for r in problem.rows.inequalities] + list(problem.rows.equalities)
     names += [f"bound of {name}" for _, name in problem.columns]
     names += [f"set of values of {name}" for _, name in problem.columns]
@@ -196,7 +199,7 @@ def _violation(problem: Problem, x: Array, batch: Batch) -> tuple[float, str]:
 def _distance(variable: Any, value: float) -> float:
     """Distance of a discrete variable from its nearest allowed value."""
     if variable.values is not None:
-        return min(abs(value - v) for v in variable.values)
+        return float(min(abs(value - v) for v in variable.values))
     return abs(value - round(value)) if variable.integer else 0.0
 
 

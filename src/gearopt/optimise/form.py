@@ -14,7 +14,8 @@ import numpy as np
 
 from gearopt.errors import SolveError
 from gearopt.optimise import tape
-from gearopt.optimise.problem import Array, Problem
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.terms import Array
 
 
 @dataclass(frozen=True)
@@ -32,12 +33,12 @@ class Form:
     convex: bool
 
     def to_y(self, x: Array) -> Array:
-        """Natural point to y."""
+        """The y of a natural point."""
         with np.errstate(divide="ignore"):
             return np.where(self.logarithmic, np.log(np.where(self.logarithmic, x, 1.0)), x)
 
     def to_x(self, y: Array) -> Array:
-        """y to the natural point."""
+        """Natural point of a y."""
         return np.where(self.logarithmic, np.exp(np.where(self.logarithmic, y, 0.0)), y)
 
     def objective(self, value: float) -> float:
@@ -71,8 +72,9 @@ def _build(problem: Problem, found: tape.Kinds) -> Form:
     if logarithmic.all():
         x = ca.exp(y)
     else:
-        x = ca.vertcat(*[ca.exp(e) if log else e for e, log in
-                         zip(ca.vertsplit(y), logarithmic, strict=True)])
+        x = ca.vertcat(
+            *[ca.exp(e) if log else e for e, log in zip(ca.vertsplit(y), logarithmic, strict=True)]
+        )
     f, g, h = traced.terms(x, p)
     log_objective = found.objective <= tape.POSYNOMIAL
     objective = ca.log(f) if log_objective else f
@@ -98,5 +100,9 @@ def _rows(values: Any, logarithmic: list[bool]) -> Any:
         return ca.log(values)
     if not any(logarithmic):
         return values - 1
-    return ca.vertcat(*[ca.log(v) if log else v - 1 for v, log in
-                        zip(ca.vertsplit(values), logarithmic, strict=True)])
+    return ca.vertcat(
+        *[
+            ca.log(v) if log else v - 1
+            for v, log in zip(ca.vertsplit(values), logarithmic, strict=True)
+        ]
+    )

@@ -11,103 +11,23 @@ from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+
+from gearopt.optimise.terms import (
+    Array,
+    Number,
+    Param,
+    Repeat,
+    Terms,
+    Var,
+    flat,
+    flatten,
+    inequalities,
+    namespace,
+    spread,
+)
 
 if TYPE_CHECKING:
     from gearopt.optimise.trace import Compiled, Traced
-
-Array = NDArray[np.float64]
-Number = float | tuple[float, ...]
-
-
-@dataclass(frozen=True)
-class Param:
-    """A number that a sweep, a homotopy, a sensitivity or a repair may change.
-
-    name: an identifier; unit: text for reports ("" for a pure number); value: a float, or `size`
-    floats; key: its place in the problem file, if it has one.
-    """
-
-    name: str
-    unit: str
-    value: Number
-    size: int = 1
-    key: str = ""
-
-
-@dataclass(frozen=True)
-class Var:
-    """A variable of `size` components; lower, upper and guess are one float or one a component.
-
-    log: positive and searched as its logarithm. integer: whole numbers only. values: the finite
-    set a component may take (module series, grades). Infinite bounds are allowed, but without
-    finite ones no dual bound can be computed.
-    """
-
-    name: str
-    unit: str
-    lower: Number
-    upper: Number
-    guess: Number
-    size: int = 1
-    integer: bool = False
-    log: bool = False
-    values: tuple[float, ...] | None = None
-
-    def __post_init__(self) -> None:
-        lower, upper, guess = (spread(v, self.size) for v in (self.lower, self.upper, self.guess))
-        if not self.name.isidentifier():
-            raise ValueError(f"variable name {self.name!r} is not an identifier")
-        if not np.all((lower <= guess) & (guess <= upper)):
-            raise ValueError(f"variable {self.name}: needs lower <= guess <= upper")
-        if self.log and not np.all(lower > 0):
-            raise ValueError(f"variable {self.name}: a log variable needs lower > 0")
-
-    @property
-    def discrete(self) -> bool:
-        """Whether only some values are allowed."""
-        return self.integer or self.values is not None
-
-
-@dataclass(frozen=True)
-class Terms:
-    """What an evaluation returns: {name: scalar, or a tuple = a block name[1], name[2], ...}.
-
-    minimise: objectives. limits: the user's utilisations, <= 1. defines: model rows <= 1
-    (epigraphs, couplings), never relaxed nor shown. equal: quotients that must be 1.
-    report: values to show, of no effect.
-    """
-
-    minimise: Mapping[str, Any]
-    limits: Mapping[str, Any] = field(default_factory=dict)
-    defines: Mapping[str, Any] = field(default_factory=dict)
-    equal: Mapping[str, Any] = field(default_factory=dict)
-    report: Mapping[str, Any] = field(default_factory=dict)
-
-
-@dataclass(frozen=True)
-class Repeat:
-    """One block of text for every row of data (a speed, a pose, a grid point).
-
-    variables: each row has its own copy. data: {name: array (rows,)}. evaluate(x, p, row) -> Terms
-    sees the shared and its own variables in x; its `minimise` terms are added, over the rows, to
-    the problem's terms of the same name; rows are named `repeat.limit[row]`.
-    """
-
-    name: str
-    variables: tuple[Var, ...]
-    data: Mapping[str, Array]
-    evaluate: Callable[[Any, Any, Any], Terms]
-
-    @property
-    def count(self) -> int:
-        """Number of rows."""
-        return len(next(iter(self.data.values())))
-
-    @property
-    def width(self) -> int:
-        """Number of scalar variables of one row."""
-        return sum(v.size for v in self.variables)
 
 
 class Row(NamedTuple):
@@ -126,8 +46,10 @@ class Rows(NamedTuple):
 
 
 class Batch(NamedTuple):
-    """Terms of N points: objectives F (N, nf), limits and defines G (N, ng) <= 1, equal rows
-    H (N, nh) = 1; report {name: array (N,) or (N, rows)}.
+    """Terms of N points.
+
+    F (N, nf): objectives. G (N, ng): limits and defines, <= 1. H (N, nh): equal rows, = 1.
+    report: {name: array (N,) or (N, rows)}.
     """
 
     F: Array
@@ -184,12 +106,15 @@ class Problem:
         return tuple(found)
 
     def bounds(self) -> tuple[Array, Array, Array]:
-        """Lower bounds, upper bounds and guess of a point, each (n,)."""
-        shared, own = _bounds(self.variables), [_bounds(r.variables) for r in self.repeats]
-        parts = [shared] + [tuple(np.tile(a, r.count) for a in b) for r, b in zip(
-            self.repeats, own, strict=True)]
-        lower, upper, guess = (np.concatenate(column) for column in zip(*parts, strict=True))
-        return lower, upper, guess
+        """Lower bounds, upper bounds and guess of a point, each (n,); not to be written to."""
+        if "bounds" not in self.memo:
+            parts = [_bounds(self.variables)]
+            for r in self.repeats:
+                lower, upper, guess = (np.tile(a, r.count) for a in _bounds(r.variables))
+                parts.append((lower, upper, guess))
+            self.memo["bounds"] = tuple(np.concatenate(c) for c in zip(*parts, strict=True))
+        found: tuple[Array, Array, Array] = self.memo["bounds"]
+        return found
 
     def parameter_values(self) -> Array:
         """All parameter values in order, (np,)."""
@@ -267,45 +192,6 @@ class Problem:
         from gearopt.optimise.trace import Compiled
 
         return Compiled(self)
-
-
-def spread(value: Number, size: int) -> Array:
-    """One float, or `size` floats, as an array (size,)."""
-    return np.broadcast_to(np.asarray(value, float), (size,)).copy()
-
-
-def namespace(declared: tuple[Any, ...], scalars: list[Any]) -> SimpleNamespace:
-    """Scalars by name: one for size 1, a tuple for more."""
-    found: dict[str, Any] = {}
-    start = 0
-    for item in declared:
-        part = tuple(scalars[start : start + item.size])
-        found[item.name] = part[0] if item.size == 1 else part
-        start += item.size
-    return SimpleNamespace(**found)
-
-
-def flat(block: Mapping[str, Any]) -> list[tuple[str, Any]]:
-    """[(name or name[k], scalar)] of a block of terms; k counts from 1, as stages do."""
-    found: list[tuple[str, Any]] = []
-    for name, value in block.items():
-        if isinstance(value, tuple | list):
-            found += [(f"{name}[{k}]", v) for k, v in enumerate(value, 1)]
-        else:
-            found.append((name, value))
-    return found
-
-
-def inequalities(terms: Terms) -> list[tuple[str, Any, str]]:
-    """Name, value and kind of every inequality: limits first, then defines."""
-    return [(n, v, "limits") for n, v in flat(terms.limits)] + [
-        (n, v, "defines") for n, v in flat(terms.defines)
-    ]
-
-
-def flatten(terms: Terms) -> tuple[list[Any], list[Any]]:
-    """Values of the inequalities and of the equalities, in order."""
-    return [v for _, v, _ in inequalities(terms)], [v for _, v in flat(terms.equal)]
 
 
 def _matrix(values: list[Any], count: int, rows: int) -> Array:

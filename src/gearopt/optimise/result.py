@@ -5,14 +5,16 @@ import math
 import platform
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field, fields
+from functools import cache
 from importlib.metadata import version
 from typing import Any
 
 import numpy as np
 
-from gearopt.optimise.problem import Array
+from gearopt.optimise.terms import Array
 
 FORMAT = 1
+_version = cache(version)  # reading package metadata takes a millisecond
 STATUSES = ("optimal", "stationary", "feasible", "infeasible", "limit", "failed")
 
 
@@ -90,7 +92,7 @@ class Result:
     file_sha256: str | None = None
     versions: dict[str, str] = field(default_factory=dict)
     result: int = FORMAT
-    gearopt: str = field(default_factory=lambda: version("gearopt"))
+    gearopt: str = field(default_factory=lambda: _version("gearopt"))
 
     @property
     def value(self) -> float | None:
@@ -125,7 +127,7 @@ class Result:
 
 def versions(*packages: str) -> dict[str, str]:
     """Versions of Python and of the packages a result rests on."""
-    return {"python": platform.python_version()} | {name: version(name) for name in packages}
+    return {"python": platform.python_version()} | {name: _version(name) for name in packages}
 
 
 def _plain(value: Any) -> Any:

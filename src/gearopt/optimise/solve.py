@@ -11,8 +11,9 @@ import numpy as np
 from gearopt.errors import SolveError
 from gearopt.optimise import solvers
 from gearopt.optimise.certificate import Verdict, certify
-from gearopt.optimise.problem import Array, Problem
+from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Result, Watch, versions
+from gearopt.optimise.terms import Array
 
 GAP = 1e-6  # relative; what `optimal` means unless the caller says otherwise
 
@@ -114,5 +115,7 @@ def limits(problem: Problem, x: Array) -> dict[str, float]:
 def report(problem: Problem, x: Array) -> dict[str, Any]:
     """The problem's report terms at a point; lists for the rows of a repeat."""
     values = problem.batch(x[None]).report
-    return {name: np.asarray(v).reshape(-1).tolist() if np.size(v) > 1 else float(np.ravel(v)[0])
-            for name, v in values.items()}
+    return {
+        name: np.asarray(v).reshape(-1).tolist() if np.size(v) > 1 else float(np.ravel(v)[0])
+        for name, v in values.items()
+    }

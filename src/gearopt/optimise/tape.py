@@ -12,7 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from gearopt.optimise.problem import Array, Problem
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.terms import Array
 from gearopt.optimise.trace import Block
 
 CONSTANT, MONOMIAL, POSYNOMIAL, OTHER = range(4)
@@ -53,7 +54,15 @@ _UNKNOWN = _Term(OTHER)
 
 
 def kinds(problem: Problem) -> Kinds:
-    """Read the tapes of a problem at its present parameter values."""
+    """Read the tapes of a problem at its present parameter values, once for each."""
+    key = ("kinds", problem.parameter_values().tobytes())
+    if key not in problem.memo:
+        problem.memo[key] = _kinds(problem)
+    found: Kinds = problem.memo[key]
+    return found
+
+
+def _kinds(problem: Problem) -> Kinds:
     objective: list[int] = []
     inequalities: list[int] = []
     equalities: list[int] = []
@@ -88,8 +97,10 @@ def _read(problem: Problem, block: Block) -> tuple[list[int], list[int], list[in
             else:
                 work[target[0]] = _apply(operation, [work[s] for s in source])
     return tuple(  # type: ignore[return-value]
-        [_as_row(results.get((out, row), _Term(CONSTANT, 0.0)))
-         for row in range(function.size1_out(out))]
+        [
+            _as_row(results.get((out, row), _Term(CONSTANT, 0.0)))
+            for row in range(function.size1_out(out))
+        ]
         for out in range(3)
     )
 

@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 
 from gearopt.errors import SolveError
-from gearopt.optimise.problem import Array, Problem, Repeat, Terms, flatten, namespace
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.terms import Array, Repeat, Terms, flatten, namespace
 
 _NUMPY_MODE = threading.Lock()
 
@@ -41,15 +42,12 @@ def legacy_numpy() -> Iterator[None]:
     import casadi as ca
 
     with _NUMPY_MODE:
-        has_mode = hasattr(ca.GlobalOptions, "setNumpyMode")  # casadi >= 3.8
-        before = ca.GlobalOptions.getNumpyMode() if has_mode else None
+        before = ca.GlobalOptions.getNumpyMode()
         try:
-            if has_mode:
-                ca.GlobalOptions.setNumpyMode(-1)
+            ca.GlobalOptions.setNumpyMode(-1)
             yield
         finally:
-            if has_mode:
-                ca.GlobalOptions.setNumpyMode(before)
+            ca.GlobalOptions.setNumpyMode(before)
 
 
 def trace(problem: Problem) -> Traced:
@@ -107,16 +105,17 @@ def _block(problem: Problem, repeat: Repeat | None) -> Block:
             f"the text of {where} cannot be traced: {broken}. Use scalars, operators and the numpy "
             "functions casadi knows; no `if` on a quantity"
         ) from broken
-    return Block(ca.Function("block", [shared, own, p, data], [f, g, h]),
-                 tuple(terms.minimise), repeat)
+    return Block(
+        ca.Function("block", [shared, own, p, data], [f, g, h]), tuple(terms.minimise), repeat
+    )
 
 
 def _columns(terms: Terms) -> tuple[Any, Any, Any]:
     import casadi as ca
 
     inequal, equal = flatten(terms)
-    return tuple(ca.vertcat(ca.SX(0, 1), *column) for column in (  # type: ignore[return-value]
-        terms.minimise.values(), inequal, equal))
+    f, g, h = (ca.vertcat(ca.SX(0, 1), *c) for c in (terms.minimise.values(), inequal, equal))
+    return f, g, h
 
 
 class Compiled:
@@ -131,12 +130,13 @@ class Compiled:
         self._p = problem.parameter_values()
         self._out = tuple(np.zeros(function.size1_out(k)) for k in range(3))
         self._buffer, self._run = function.buffer()
-        self._buffer.set_arg(0, memoryview(self._x))
-        self._buffer.set_arg(1, memoryview(self._p))
+        self._buffer.set_arg(0, self._x.data)
+        self._buffer.set_arg(1, self._p.data)
         for k, out in enumerate(self._out):
-            self._buffer.set_res(k, memoryview(out))
+            self._buffer.set_res(k, out.data)
 
     def __call__(self, point: Array) -> tuple[Array, Array, Array]:
+        """f, g, h of one point."""
         self._x[:] = point
         self._run()
         return self._out  # type: ignore[return-value]

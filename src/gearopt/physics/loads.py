@@ -23,9 +23,7 @@ def k_factor(pinion_torque: Any, pinion_diameter: Any, face_width: Any, ratio: A
     return 2.0 * pinion_torque / (pinion_diameter**2 * face_width) * (1.0 + 1.0 / ratio)
 
 
-def unit_load(
-    pinion_torque: Any, pinion_diameter: Any, face_width: Any, normal_module: Any
-) -> Any:
+def unit_load(pinion_torque: Any, pinion_diameter: Any, face_width: Any, normal_module: Any) -> Any:
     """Unit load U = W_t/(b m_n) with W_t = 2 T1/d1 [MPa]: the index of tooth-root stress.
 
     pinion_torque T1 [N mm]; pinion_diameter d1, face_width b, normal_module m_n [mm] > 0.

@@ -60,8 +60,13 @@ def _design(design: Mapping[str, Any]) -> RenderableType:
     parts: list[RenderableType] = []
     stages = design.get("stages", [])
     if stages:
-        table = Table("stage", *[SHORT[k] for k in stages[0] if k in SHORT], box=None,
-                      header_style="bold", pad_edge=False)
+        table = Table(
+            "stage",
+            *[SHORT[k] for k in stages[0] if k in SHORT],
+            box=None,
+            header_style="bold",
+            pad_edge=False,
+        )
         for column in table.columns:
             column.justify = "right"
         for k, stage in enumerate(stages, 1):
@@ -80,8 +85,14 @@ def _limits(limits: Mapping[str, float]) -> RenderableType:
         stem, index = (match[1], int(match[2])) if match else (name, 0)
         rows.setdefault(stem, {})[index] = value
     stages = range(1, max((i for r in rows.values() for i in r), default=0) + 1)
-    table = Table("limit used, %", *[f"stage {k}" for k in stages], "drive", box=None,
-                  header_style="bold", pad_edge=False)
+    table = Table(
+        "limit used, %",
+        *[f"stage {k}" for k in stages],
+        "drive",
+        box=None,
+        header_style="bold",
+        pad_edge=False,
+    )
     for column in table.columns[1:]:
         column.justify = "right"
     for stem, values in rows.items():
@@ -99,13 +110,19 @@ def _percent(value: float | None) -> Text:
 
 def _trains(trains: list[Mapping[str, Any]], objective: Mapping[str, Any]) -> RenderableType:
     unit = UNITS.get(objective.get("unit", ""), objective.get("unit", ""))
-    heads = ("", f"{objective['name'].replace('_', ' ')}\n{unit}", "ratio", "m_n, z1/z2",
-             "centre distances\nmm")
+    heads = (
+        "",
+        f"{objective['name'].replace('_', ' ')}\n{unit}",
+        "ratio",
+        "m_n, z1/z2",
+        "centre distances\nmm",
+    )
     table = Table(*heads, box=None, header_style="bold", pad_edge=False)
     for k, train in enumerate(trains, 1):
         teeth = "  ".join(
             f"{s['normal_module_mm']:g}, {s['pinion_teeth']}/{s['wheel_teeth']}"
-            for s in train["stages"])
+            for s in train["stages"]
+        )
         distances = "  ".join(f"{s['centre_distance_mm']:.2f}" for s in train["stages"])
         table.add_row(str(k), number(train["objective"]), f"{train['ratio']:.4f}", teeth, distances)
     return table
@@ -119,28 +136,38 @@ def _proof(result: Result) -> list[str]:
     if result.bound is not None and result.gap is not None:
         lines.append(
             f"Bound: no {name} below {number(result.bound)} {unit} is possible; "
-            f"gap {100 * result.gap:.3g} %.")
+            f"gap {100 * result.gap:.3g} %."
+        )
     proof = result.proof
     if proof.get("method") == "exhausted" and result.status == "infeasible":
-        lines.append("Proof: every choice of teeth and modules was compared or excluded; none "
-                     "meets all limits.")
+        lines.append(
+            "Proof: every choice of teeth and modules was compared or excluded; none "
+            "meets all limits."
+        )
     elif proof.get("method") == "exhausted":
-        lines.append(f"Proof: {proof['trains_compared']:,} trains compared, all others excluded by "
-                     f"a lower bound in {proof['nodes']:,} nodes.")
+        lines.append(
+            f"Proof: {proof['trains_compared']:,} trains compared, all others excluded by "
+            f"a lower bound in {proof['nodes']:,} nodes."
+        )
     elif proof.get("method") == "dual" and result.bound is not None:
-        lines.append("Proof: the problem is convex in logarithms; the bound is a dual one, computed "
-                     "from our own derivatives.")
+        lines.append(
+            "Proof: the problem is convex in logarithms; the bound is a dual one, computed "
+            "from our own derivatives."
+        )
     for part in result.parts:
         if part.name == "sizing" and part.value and result.value:
             lines.append(
                 f"With real-valued teeth and modules: {number(part.value)} {unit} "
                 f"(whole teeth and standard modules cost "
-                f"{100 * (result.value / part.value - 1):.2f} %).")
+                f"{100 * (result.value / part.value - 1):.2f} %)."
+            )
     if "lifting_one_suffices" in proof:
         names = [n.replace("_", " ") for n in proof["lifting_one_suffices"]]
-        lines.append("Lifting any one of these limits alone makes a design possible: "
-                     f"{', '.join(names)}." if names else
-                     "No single limit is the cause: at least two must change together.")
+        lines.append(
+            f"Lifting any one of these limits alone makes a design possible: {', '.join(names)}."
+            if names
+            else "No single limit is the cause: at least two must change together."
+        )
     if assumed := result.report.get("assumed"):
         lines.append(f"Assumed: {assumed}.")
     if result.message:

@@ -87,14 +87,19 @@ class Duty(Table):
     @model_validator(mode="after")
     def _one_ratio(self) -> "Duty":
         if self.output_speed is not None and self.ratio is not None:
-            raise refuse("stands beside output_speed; one is enough", at=("ratio",), action="remove")
+            raise refuse(
+                "stands beside output_speed; one is enough", at=("ratio",), action="remove"
+            )
         if self.output_speed is None and self.ratio is None:
             raise refuse("is missing (or give ratio)", at=("output_speed",))
         if self.total_ratio < 1:
             raise refuse(
                 "is above the input speed; gearopt sizes reducers, and a loss-free speed increaser "
                 "has the same gears with input and output exchanged",
-                "input_speed", ("output_speed",), "swap")
+                "input_speed",
+                ("output_speed",),
+                "swap",
+            )
         if self.total_ratio > 10**6:
             raise refuse("asks for a ratio beyond 1000000", at=("output_speed",))
         return self
@@ -262,20 +267,29 @@ class Scene(Table):
         key = (*place, "face_width_over_diameter")
         if own.face_width is not None:
             if own.face_width_step is not None:
-                raise refuse("stands beside face_width, which fixes the width",
-                             at=(*place, "face_width_step"), action="remove")
+                raise refuse(
+                    "stands beside face_width, which fixes the width",
+                    at=(*place, "face_width_step"),
+                    action="remove",
+                )
             span = own.face_width_over_diameter
             if span is not None and span[0] == span[1]:
-                raise refuse("stands beside face_width: only a range can limit a fixed width",
-                             [0.1, float(span[1])], key)
+                raise refuse(
+                    "stands beside face_width: only a range can limit a fixed width",
+                    [0.1, float(span[1])],
+                    key,
+                )
             return
         span = own.face_width_over_diameter or self.gears.face_width_over_diameter
         if span is None:
             raise refuse("is missing", at=key)
         step = own.face_width_step or self.gears.face_width_step
         if step is not None and span[0] == span[1]:
-            raise refuse("ties the width, so that it cannot keep to face_width_step: give a range",
-                         [float(span[0] / 2), float(span[1])], key)
+            raise refuse(
+                "ties the width, so that it cannot keep to face_width_step: give a range",
+                [float(span[0] / 2), float(span[1])],
+                key,
+            )
 
     def _modules(self, own: StageTable) -> tuple[Fraction, ...]:
         span = own.module or self.limits.module
@@ -327,7 +341,7 @@ class Scene(Table):
         return FaceWidth(span[0], span[1], step=step.exact[0] if step else None)
 
 
-EXAMPLE = '''\
+EXAMPLE = """\
 gearopt = 1
 kind = "drive"
 title = "A two-stage drive"
@@ -357,7 +371,7 @@ modules = "ISO 54 I"
 
 [objective]
 minimise = "gear_volume"       # or mass, sum_of_centre_distances, total_length
-'''
+"""
 
 
 def solve(scene: Scene, ask: Ask) -> Result:

@@ -13,9 +13,19 @@ import numpy as np
 from gearopt.formulations.teeth.search import MARGIN, TIE, Progress, Teeth, search
 from gearopt.formulations.teeth.stage import table
 from gearopt.formulations.train import Sizes, Train, each, terms
-from gearopt.optimise.problem import Array, Problem, Terms, Var, namespace
+from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch
+from gearopt.optimise.terms import Array, Terms, Var, namespace
 from gearopt.physics.geometry import reference_diameter
+
+VARIABLES = {
+    "module": "mm",
+    "pinion_teeth": "",
+    "wheel_teeth": "",
+    "face_width": "mm",
+    "width_steps": "",
+}
+MOST = 1e9  # teeth, steps or mm: no limit
 
 
 def problem(train: Train, count: int = 1) -> Problem:
@@ -47,8 +57,9 @@ def problem(train: Train, count: int = 1) -> Problem:
 
 def _scalars(train: Train) -> dict[str, Any]:
     """`train.numbers()` as `terms` reads it: blocks of one are scalars."""
-    return {k: v[0] if isinstance(v, tuple) and len(v) == 1 else v
-            for k, v in train.numbers().items()}
+    return {
+        k: v[0] if isinstance(v, tuple) and len(v) == 1 else v for k, v in train.numbers().items()
+    }
 
 
 def sizes(train: Train, point: Array) -> Sizes:
@@ -72,31 +83,39 @@ def _width(train: Train, k: int, x: Any, module: Any, z1: Any) -> Any:
 
 
 def _variables(train: Train) -> tuple[Var, ...]:
-    stages, count = train.stages, len(train.stages)
+    stages = train.stages
     series = tuple(sorted({float(m) for s in stages for m in s.modules}))
-    most = 10.0**9
+    ranges: dict[str, list[tuple[float, float]]] = {name: [] for name in VARIABLES}
+    for stage in stages:
+        face = stage.face_width
+        ranges["module"].append((float(stage.modules[0]), float(stage.modules[-1])))
+        ranges["pinion_teeth"].append(_ends(stage.pinion_teeth))
+        ranges["wheel_teeth"].append(_ends(stage.wheel_teeth))
+        given = float(face.fixed or 1)
+        free = not face.tied and face.step is None and face.fixed is None
+        ranges["face_width"].append((1.0 / MOST, MOST) if free else (given, given))
+        ranges["width_steps"].append((1.0, MOST if face.step else 1.0))
+    if all(s.face_width.tied or s.face_width.step for s in stages):
+        del ranges["face_width"]
+    if not any(s.face_width.step for s in stages):
+        del ranges["width_steps"]
+    kinds: dict[str, dict[str, Any]] = {"module": {"values": series}, "face_width": {}}
+    return tuple(
+        Var(
+            name,
+            VARIABLES[name],
+            tuple(low for low, _ in ends),
+            tuple(high for _, high in ends),
+            tuple(low for low, _ in ends),
+            len(stages),
+            **kinds.get(name, {"integer": True}),
+        )
+        for name, ends in ranges.items()
+    )
 
-    def column(name: str, unit: str, low: list[float], high: list[float], **kind: Any) -> Var:
-        return Var(name, unit, tuple(low), tuple(high), tuple(low), size=count, **kind)
 
-    found = [
-        column("module", "mm", [float(s.modules[0]) for s in stages],
-               [float(s.modules[-1]) for s in stages], values=series),
-        column("pinion_teeth", "", [s.pinion_teeth[0] for s in stages],
-               [float(s.pinion_teeth[1] or most) for s in stages], integer=True),
-        column("wheel_teeth", "", [s.wheel_teeth[0] for s in stages],
-               [float(s.wheel_teeth[1] or most) for s in stages], integer=True),
-    ]
-    widths = [s.face_width for s in stages]
-    if any(not w.tied and w.step is None for w in widths):
-        free = [w.fixed is None and not w.tied and w.step is None for w in widths]
-        low = [1e-9 if f else float(w.fixed or 1) for f, w in zip(free, widths, strict=True)]
-        high = [1e9 if f else float(w.fixed or 1) for f, w in zip(free, widths, strict=True)]
-        found.append(column("face_width", "mm", low, high))
-    if any(w.step is not None for w in widths):
-        high = [1.0 if w.step is None else most for w in widths]
-        found.append(column("width_steps", "", [1.0] * count, high, integer=True))
-    return tuple(found)
+def _ends(span: tuple[int, int | None]) -> tuple[float, float]:
+    return float(span[0]), MOST if span[1] is None else float(span[1])
 
 
 def _outcome(train: Train, count: int, budget: Budget, watch: Watch | None) -> Outcome:
@@ -121,14 +140,29 @@ def _outcome(train: Train, count: int, budget: Budget, watch: Watch | None) -> O
     if progress.stopped:
         lower = progress.lower if math.isfinite(progress.lower) else None
         partial = {**proof, "method": "branch and bound, stopped early"}
-        return Outcome(points[0] if points else None, False, bound=lower,
-                       proof=partial, evaluations=progress.looked,
-                       message="the search was stopped before it was exhausted")
+        return Outcome(
+            points[0] if points else None,
+            False,
+            bound=lower,
+            proof=partial,
+            evaluations=progress.looked,
+            message="the search was stopped before it was exhausted",
+        )
     if not points:
-        return Outcome(None, infeasible=True, proof=proof, evaluations=progress.looked,
-                       message="no choice of teeth and modules meets all limits")
-    return Outcome(points[0], bound=progress.found[0][0], proof=proof, others=tuple(points[1:]),
-                   evaluations=progress.looked)
+        return Outcome(
+            None,
+            infeasible=True,
+            proof=proof,
+            evaluations=progress.looked,
+            message="no choice of teeth and modules meets all limits",
+        )
+    return Outcome(
+        points[0],
+        bound=progress.found[0][0],
+        proof=proof,
+        others=tuple(points[1:]),
+        evaluations=progress.looked,
+    )
 
 
 def _in_order(progress: Progress) -> list[Teeth]:
@@ -144,18 +178,17 @@ def _in_order(progress: Progress) -> list[Teeth]:
 
 def _point(train: Train, teeth: Teeth) -> Array:
     """The point of a train: best module and width of every stage for its teeth."""
-    modules, widths, steps = [], [], []
+    columns: dict[str, list[float]] = {name: [] for name in VARIABLES}
     torque = train.torque
     for k, (z1, z2) in enumerate(teeth):
         only = table(train.fixed_teeth(k, z1, z2), k, train.highest_ratio)
         module, width = only.choose(torque, 0)
         face = train.stages[k].face_width
-        modules.append(module)
-        widths.append(float(face.fixed or 1) if face.tied or face.step else width)
-        steps.append(round(width / float(face.step)) if face.step else 1)
+        free = not face.tied and face.step is None and face.fixed is None
+        columns["module"].append(module)
+        columns["pinion_teeth"].append(z1)
+        columns["wheel_teeth"].append(z2)
+        columns["face_width"].append(width if free else float(face.fixed or 1))
+        columns["width_steps"].append(round(width / float(face.step)) if face.step else 1)
         torque *= z2 / z1
-    columns = [modules, [z for z, _ in teeth], [z for _, z in teeth]]
-    names = [v.name for v in _variables(train)]
-    columns += [widths] if "face_width" in names else []
-    columns += [steps] if "width_steps" in names else []
-    return np.array([v for column in columns for v in column], float)
+    return np.array([value for v in _variables(train) for value in columns[v.name]])

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from gearopt.formulations.teeth.stage import Table
 from gearopt.formulations.train import Train
-from gearopt.optimise.problem import Array
+from gearopt.optimise.terms import Array
 
 EDGE = 1e-9  # cells overlap by this much in log ratio, so that rounding never misses a neighbour
 
@@ -93,9 +93,7 @@ def _least(table: Table, cells: int, ratio_cells: int, delta: float) -> Array:
     return np.asarray(np.maximum(grid, loaded))
 
 
-def _last(
-    train: Train, table: Table, cells: int, delta: float, low: float, high: float
-) -> Array:
+def _last(train: Train, table: Table, cells: int, delta: float, low: float, high: float) -> Array:
     """Least cost of the last stage from every cell: exact pairs, least possible torque."""
     edge = np.arange(cells) * delta
     start = np.searchsorted(table.log_ratio, low - edge - delta - EDGE)

@@ -37,10 +37,15 @@ def _lifts() -> dict[str, Callable[[Train], Train]]:
         "unit_load": every(unit_load=FREE),
         "wheel_diameter": every(wheel_diameter=None),
         "stage_ratio": every(ratio=(Fraction(1), None)),
-        "module": lambda t: _stagewise(t, lambda s: replace(
-            s, modules=tuple(sorted({*s.modules, *series})))),
-        "pinion_teeth": lambda t: _stagewise(t, lambda s: replace(
-            s, pinion_teeth=(min(12, s.pinion_teeth[0]), max(100, s.pinion_teeth[1] or 0)))),
+        "module": lambda t: _stagewise(
+            t, lambda s: replace(s, modules=tuple(sorted({*s.modules, *series})))
+        ),
+        "pinion_teeth": lambda t: _stagewise(
+            t,
+            lambda s: replace(
+                s, pinion_teeth=(min(12, s.pinion_teeth[0]), max(100, s.pinion_teeth[1] or 0))
+            ),
+        ),
         "wheel_teeth": every(wheel_teeth=(1, None)),
         "face_width": lambda t: _stagewise(t, _any_width),
         "coprime": lambda t: replace(t, coprime=False),

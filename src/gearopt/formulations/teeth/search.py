@@ -19,8 +19,8 @@ from numpy.typing import NDArray
 from gearopt.formulations.teeth.bound import EDGE, Bound, bound, ragged
 from gearopt.formulations.teeth.stage import Table, table
 from gearopt.formulations.train import Train, share
-from gearopt.optimise.problem import Array
 from gearopt.optimise.result import Budget, Event, Watch
+from gearopt.optimise.terms import Array
 from gearopt.physics.loads import k_factor
 
 TIE = 1e-12  # trains whose objectives differ by less are ties: fewest teeth win
@@ -44,8 +44,9 @@ class Chunk:
 
     def part(self, which: slice | NDArray[np.bool_]) -> "Chunk":
         """Some of the nodes."""
-        return Chunk(self.level, self.bound[which], self.cost[which], self.log_ratio[which],
-                     self.path[which])
+        return Chunk(
+            self.level, self.bound[which], self.cost[which], self.log_ratio[which], self.path[which]
+        )
 
 
 Teeth = tuple[tuple[int, int], ...]
@@ -242,7 +243,7 @@ def _complete(train: Train, tables: list[Table], chunk: Chunk, progress: Progres
     reached = chunk.log_ratio[node[use]] + stage.log_ratio[pair[use]]
     near = np.minimum(np.abs(reached - low), np.abs(reached - high)) < 2 * EDGE
 
-    def teeth(k: int) -> Teeth:
+    def teeth(k: np.int64) -> Teeth:
         path = [*chunk.path[node[k]], pair[k]]
         return tuple((int(t.z1[j]), int(t.z2[j])) for t, j in zip(tables, path, strict=True))
 
@@ -284,8 +285,11 @@ def _reach(train: Train, cut: Fraction, most: Fraction, threshold: float) -> Fra
             lower = share(train, k, 1.0, load, ratios)
         else:
             face = stage.face_width
-            d = (load / float(face.fixed)) ** 0.5 if face.fixed else (
-                load / float(face.high or 1)) ** (1.0 / 3.0)
+            d = (
+                (load / float(face.fixed)) ** 0.5
+                if face.fixed
+                else (load / float(face.high or 1)) ** (1.0 / 3.0)
+            )
             lower = share(train, k, d, 1.0, ratios)
         useful |= np.asarray(lower) <= threshold
     last = int(np.nonzero(useful)[0].max(initial=-1))

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from gearopt.errors import SolveError
 from gearopt.formulations.train import Stage, Train, share
-from gearopt.optimise.problem import Array
+from gearopt.optimise.terms import Array
 from gearopt.physics.geometry import reference_diameter
 from gearopt.physics.loads import k_factor, unit_load
 
@@ -77,8 +77,9 @@ class Table:
         """Least objective share of each pair with a module (index), whatever the torque."""
         pair = np.arange(len(self.z1))
         d = self.diameter(self.modules[module], pair)
-        return np.asarray(share(self.train, self.position, d, self._least_width(module, pair, d),
-                                self.ratio))
+        return np.asarray(
+            share(self.train, self.position, d, self._least_width(module, pair, d), self.ratio)
+        )
 
     def _best(self, torque: Array, pair: Index) -> tuple[Array, Array, Array]:
         if self.steps is not None:
@@ -91,7 +92,9 @@ class Table:
         k = np.minimum(k, len(self.modules) - 1)
         module = self.modules[k]
         d = self.diameter(module, pair)
-        width = np.maximum(self._least_width(0, pair, d), self._loaded_width(torque, pair, d, module))
+        width = np.maximum(
+            self._least_width(0, pair, d), self._loaded_width(torque, pair, d, module)
+        )
         face = self.stage.face_width
         if face.tied or face.fixed is not None:
             width = self._least_width(0, pair, d)
@@ -114,7 +117,9 @@ class Table:
             possible &= count <= self.steps[1][k][pair]
             value = np.where(
                 possible,
-                share(self.train, self.position, d, count * step, self.ratio[pair]), np.inf)
+                share(self.train, self.position, d, count * step, self.ratio[pair]),
+                np.inf,
+            )
             better = value < best * (1.0 - ALLOWANCE)
             best = np.where(better, value, best)
             best_module = np.where(better, module, best_module)
@@ -125,7 +130,7 @@ class Table:
         """Least face width [mm] for K-factor and unit load."""
         by_contact = k_factor(torque, d, 1.0, self.ratio[pair]) / self.stage.k_factor
         by_bending = unit_load(torque, d, 1.0, module) / self.stage.unit_load
-        return np.maximum(by_contact, by_bending)
+        return np.asarray(np.maximum(by_contact, by_bending))
 
     def _least_width(self, module: int, pair: Index, d: Array) -> Array:
         """Least face width [mm] the file allows for a pair."""
@@ -134,7 +139,7 @@ class Table:
             return np.full(len(d), float(face.fixed))
         if self.steps is not None:
             assert face.step is not None
-            return self.steps[0][module][pair] * float(face.step)
+            return np.asarray(self.steps[0][module][pair] * float(face.step))
         return float(face.low) * d
 
 
@@ -152,7 +157,9 @@ def table(train: Train, position: int, cut: Fraction) -> Table:
     contact = k_factor(1.0, 1.0, widest, ratio) / stage.k_factor
     bending = unit_load(1.0, 1.0, widest, 1.0) / stage.unit_load
     power = 1.0 if face.fixed is not None else 2.0
-    need = np.maximum(contact**exponent * cosine / z1, (bending * (cosine / z1) ** power) ** exponent)
+    need = np.maximum(
+        contact**exponent * cosine / z1, (bending * (cosine / z1) ** power) ** exponent
+    )
     load = np.maximum(
         k_factor(1.0, 1.0, 1.0, ratio) / stage.k_factor,
         unit_load(1.0, 1.0, 1.0, 1.0) / stage.unit_load * z1 / cosine,
@@ -161,8 +168,19 @@ def table(train: Train, position: int, cut: Fraction) -> Table:
     slope = np.asarray(share(train, position, 1.0, load, ratio)) if volume else np.zeros(len(z1))
     first, last = _allowed(stage, z1, z2, cosine)
     return Table(
-        train, position, z1, z2, ratio, np.log(ratio), np.array([float(m) for m in modules]),
-        need, exponent, first, last, slope, _steps(stage, z1, cosine),
+        train,
+        position,
+        z1,
+        z2,
+        ratio,
+        np.log(ratio),
+        np.array([float(m) for m in modules]),
+        need,
+        exponent,
+        first,
+        last,
+        slope,
+        _steps(stage, z1, cosine),
     )
 
 
@@ -180,7 +198,8 @@ def _pairs(stage: Stage, low: Fraction, cut: Fraction, coprime: bool) -> tuple[I
     if min(expected, (most_wheel or expected) * (most_z1 - least_z1 + 1)) > PAIRS:
         raise SolveError(
             f"a stage has some {float(expected):.2g} tooth pairs to choose from: "
-            "limit its wheel teeth or its ratio")
+            "limit its wheel teeth or its ratio"
+        )
     for z in range(least_z1, most_z1 + 1):
         start = max(stage.wheel_teeth[0], math.ceil(low * z))
         stop = math.floor(high * z)

@@ -13,8 +13,9 @@ import numpy as np
 
 from gearopt.errors import SolveError
 from gearopt.optimise.form import Form, form
-from gearopt.optimise.problem import Array, Problem
+from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Event, Outcome, Watch
+from gearopt.optimise.terms import Array
 
 ACCEPTED = 1e-9  # an iterate that violates no row by more is kept as the best so far
 STUCK = 1e-6  # violation at which Ipopt's end point counts as not solved
@@ -96,8 +97,12 @@ def _built(problem: Problem, shape: Form) -> tuple[Any, Any]:
         y, p, f, g, h = shape.expressions
         monitor = _monitor_class()(y.numel(), g.numel(), h.numel())
         options = {f"ipopt.{k}": v for k, v in OPTIONS.items()}
-        options |= {"print_time": False, "iteration_callback": monitor, "error_on_fail": False,
-                    "show_eval_warnings": False}
+        options |= {
+            "print_time": False,
+            "iteration_callback": monitor,
+            "error_on_fail": False,
+            "show_eval_warnings": False,
+        }
         nlp = {"x": y, "p": p, "f": f, "g": ca.vertcat(g, h)}
         problem.memo[key] = ca.nlpsol("ipopt", "ipopt", nlp, options), monitor
     found: tuple[Any, Any] = problem.memo[key]

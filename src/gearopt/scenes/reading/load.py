@@ -73,8 +73,14 @@ def read(data: bytes, file: str = "<text>") -> tuple[str, BaseModel]:
     """Kind and scene of the bytes of a problem file; `file` is the name used in messages."""
     content = _parse(data, file)
     if not content:
-        raise SceneError(file, "", "", "is empty", "Start from what `gearopt new drive` prints",
-                         Fix("replace", "", "new drive"))
+        raise SceneError(
+            file,
+            "",
+            "",
+            "is empty",
+            "Start from what `gearopt new drive` prints",
+            Fix("replace", "", "new drive"),
+        )
     version = content.pop("gearopt", None)
     if version != FORMAT or isinstance(version, bool):
         rule = "names no format version" if version is None else "is not a known format version"
@@ -99,16 +105,27 @@ def _parse(data: bytes, file: str) -> dict[str, Any]:
     try:
         text = data.decode("utf-8-sig")  # Windows editors put a byte-order mark first
     except UnicodeDecodeError as wrong:
-        raise SceneError(file, "", "", f"is not UTF-8 text (byte {wrong.start})",
-                         "Save it as UTF-8") from None
+        raise SceneError(
+            file, "", "", f"is not UTF-8 text (byte {wrong.start})", "Save it as UTF-8"
+        ) from None
     try:
         return tomllib.loads(text, parse_float=Decimal)
     except RecursionError:
-        raise SceneError(file, "", "", "is nested too deeply",
-                         "A problem file has tables of depth two at the most") from None
+        raise SceneError(
+            file,
+            "",
+            "",
+            "is nested too deeply",
+            "A problem file has tables of depth two at the most",
+        ) from None
     except ValueError as wrong:  # TOMLDecodeError, and integers of thousands of digits
-        raise SceneError(file, "", "", f"is not valid TOML: {wrong}",
-                         'Texts and quantities stand in quotes, as in power = "7.5 kW"') from None
+        raise SceneError(
+            file,
+            "",
+            "",
+            f"is not valid TOML: {wrong}",
+            'Texts and quantities stand in quotes, as in power = "7.5 kW"',
+        ) from None
 
 
 def _translate(
@@ -133,8 +150,9 @@ def _translate(
         return SceneError(file, key, shown, rule, "Remove it", Fix("remove", key))
     if action == "swap":
         other = _path((*place[:-1], write))
-        return SceneError(file, key, shown, rule, f"Exchange {key} and {other}",
-                          Fix("swap", key, other))
+        return SceneError(
+            file, key, shown, rule, f"Exchange {key} and {other}", Fix("swap", key, other)
+        )
     return _error(file, key, value, rule, _example(model, place) if write is None else write)
 
 
@@ -147,17 +165,35 @@ def _unknown(
     what = "unknown table" if isinstance(value, dict) else "unknown key"
     free = [f for f in fields if f not in parent]
     if near := get_close_matches(str(place[-1])[:80], free, n=1):
-        return SceneError(file, _path(place), "", what, f"Did you mean {near[0]}?",
-                          Fix("rename", _path(place), near[0]))
+        return SceneError(
+            file,
+            _path(place),
+            "",
+            what,
+            f"Did you mean {near[0]}?",
+            Fix("rename", _path(place), near[0]),
+        )
     own = " (tables of your own are named [x-...])" if len(place) == 1 else ""
-    return SceneError(file, _path(place), "", f"{what}; known here: {', '.join(fields)}",
-                      f"Remove it{own}", Fix("remove", _path(place)))
+    return SceneError(
+        file,
+        _path(place),
+        "",
+        f"{what}; known here: {', '.join(fields)}",
+        f"Remove it{own}",
+        Fix("remove", _path(place)),
+    )
 
 
 def _error(file: str, key: str, value: Any, rule: str, write: Any) -> SceneError:
     text = toml_text(write)
-    return SceneError(file, key, "" if value is None else _short(value), rule,
-                      f"Write {key.rsplit('.', 1)[-1]} = {text}", Fix("set", key, text))
+    return SceneError(
+        file,
+        key,
+        "" if value is None else _short(value),
+        rule,
+        f"Write {key.rsplit('.', 1)[-1]} = {text}",
+        Fix("set", key, text),
+    )
 
 
 def _short(value: Any) -> str:
@@ -226,5 +262,8 @@ def _example(model: type[BaseModel], place: tuple[Any, ...]) -> Any:
     table = _table_of(info.annotation)
     assert table is not None, names
     required = {n: _example(table, (n,)) for n, f in table.model_fields.items() if f.is_required()}
-    return required if isinstance(place[-1], int) or get_origin(info.annotation) is not tuple else [
-        required]
+    return (
+        required
+        if isinstance(place[-1], int) or get_origin(info.annotation) is not tuple
+        else [required]
+    )

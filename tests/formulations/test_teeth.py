@@ -1,0 +1,133 @@
+"""Exact teeth: statuses, budgets, objectives and what a caller can see (values: test_problems)."""
+
+import math
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+
+from gearopt.errors import SolveError
+from gearopt.formulations import sizing, teeth
+from gearopt.formulations.teeth.conflict import lifting
+from gearopt.formulations.train import OBJECTIVES, FaceWidth, Stage, Train
+from gearopt.optimise.result import Budget
+from gearopt.optimise.solve import run, solve
+from gearopt.physics.modules import SERIES_I
+
+F = Fraction
+ELEVATOR, ONE_PERCENT = F("1450") / F("66.5"), F(1, 100)
+
+
+def drive(total=ELEVATOR, widths=("0.6", "0.75"), tolerance=ONE_PERCENT, **stage):
+    limits = {"modules": SERIES_I, "pinion_teeth": (20, 40)} | stage
+    stages = tuple(Stage(2.07, 48.0, FaceWidth(F(w), F(w)), **limits) for w in widths)
+    return Train(49392.913, F(total), tolerance, stages, math.radians(25.0))
+
+
+def test_table_2_designs_are_beaten_under_their_own_limits():
+    """Holding the paper's process-one loads as limits (digest 3b): 8,708,993 -> 8,520,524 mm3."""
+    train = drive()
+    own = tuple(replace(s, k_factor=1.416, unit_load=31.78) for s in train.stages)
+    result = solve(teeth.problem(replace(train, stages=own)))
+    assert result.status == "optimal"
+    assert result.value == pytest.approx(8520524, abs=1.0)
+
+
+@pytest.mark.parametrize("objective", OBJECTIVES)
+def test_exact_is_never_below_the_continuous_bound(objective):
+    train = replace(drive(), objective=objective, density=7.85e-9)
+    exact, ideal = solve(teeth.problem(train)), solve(sizing.problem(train))
+    assert exact.status == ideal.status == "optimal"
+    assert ideal.bound <= exact.value <= 1.08 * ideal.value
+
+
+def test_mass_is_density_times_volume():
+    volume = solve(teeth.problem(drive()))
+    mass = solve(teeth.problem(replace(drive(), objective="mass", density=7.85e-9)))
+    assert mass.value == pytest.approx(7.85e-6 * volume.value, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    "stage",
+    [
+        {"modules": (F(1),)},
+        {"wheel_diameter": F(250)},
+        {"ratio": (F(1), F(4))},
+        {"wheel_teeth": (1, 60)},
+    ],
+)
+def test_infeasible_is_proven_by_exhaustion(stage):
+    result = solve(teeth.problem(drive(**stage)))
+    assert result.status == "infeasible" and result.value is None
+    assert result.proof["method"] == "exhausted"
+
+
+def test_what_lifting_one_limit_would_do():
+    assert "wheel_diameter" in lifting(drive(wheel_diameter=F(250)))
+    assert lifting(drive(wheel_diameter=F(250), ratio=(F(1), F(4)))) == []
+    assert "module" in lifting(drive(modules=(F(1),)))
+
+
+def test_a_stopped_search_has_a_bound_and_says_so():
+    train = drive(total=F(3000), widths=("0.6",) * 5 + ("0.75",))
+    stopped = solve(teeth.problem(train), budget=Budget(evaluations=400_000))
+    finished = solve(teeth.problem(train))
+    assert finished.status == "optimal"
+    assert stopped.status == "limit" and stopped.proof["method"].startswith("branch and bound")
+    assert stopped.value >= finished.value
+    assert stopped.bound is None or stopped.bound <= finished.value
+    seen = []
+    watched = solve(teeth.problem(train), watch=lambda event: seen.append(event) or len(seen) < 5)
+    assert watched.status == "limit" and len(seen) == 5
+
+
+def test_no_budget_at_all_still_answers():
+    result = solve(teeth.problem(drive()), budget=Budget(seconds=0.0))
+    assert result.status == "limit" and result.value is None
+
+
+def test_too_many_pairs_are_refused_with_a_remedy():
+    huge = drive(total=F(10**6), widths=("0.6",), tolerance=F(1, 2), pinion_teeth=(5, 1000))
+    with pytest.raises(SolveError, match="limit its wheel teeth or its ratio"):
+        solve(teeth.problem(huge))
+
+
+def test_top_is_in_order_distinct_and_starts_with_the_best():
+    result, outcome = run(teeth.problem(drive(), 20))
+    problem = teeth.problem(drive(), 20)
+    points = [outcome.x, *outcome.others]
+    values = [float(problem.batch(x[None]).F[0, 0]) for x in points]
+    assert len(points) == 20
+    assert values == sorted(values) and values[0] == pytest.approx(result.value, rel=1e-12)
+    assert len({tuple(x[2:6]) for x in points}) == 20
+    assert all((problem.batch(x[None]).G <= 1 + 1e-12).all() for x in points)
+
+
+def test_coprime_teeth_have_no_common_divisor():
+    result, _ = run(teeth.problem(replace(drive(), coprime=True)))
+    pairs = zip(result.design["pinion_teeth"], result.design["wheel_teeth"], strict=True)
+    assert all(math.gcd(a, b) == 1 for a, b in pairs)
+    assert result.limits["common_divisor[1]"] == 1.0
+
+
+def test_fixed_things_stay_fixed():
+    train = drive()
+    first = replace(
+        train.stages[0],
+        modules=(F(5, 2),),
+        pinion_teeth=(24, 24),
+        wheel_teeth=(119, 119),
+        face_width=FaceWidth(F(0), None, fixed=F(40)),
+    )
+    result, outcome = run(teeth.problem(replace(train, stages=(first, train.stages[1]))))
+    assert result.status == "optimal"
+    module, z1, u, width = teeth.sizes(replace(train, stages=(first, train.stages[1])), outcome.x)
+    assert (module[0], z1[0], z1[0] * u[0], width[0]) == (2.5, 24, pytest.approx(119), 40.0)
+
+
+def test_finer_series_and_wider_tolerance_never_hurt():
+    base = solve(teeth.problem(drive())).value
+    finer = tuple(sorted({*SERIES_I, F("1.75"), F("2.75")}))
+    assert solve(teeth.problem(drive(modules=finer))).value <= base
+    assert solve(teeth.problem(drive(tolerance=F(2, 100)))).value <= base
+    assert solve(teeth.problem(drive(tolerance=F(1, 1000)))).value >= base

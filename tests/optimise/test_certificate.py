@@ -1,0 +1,150 @@
+"""Certificates refuse what is not so, whoever claims it."""
+
+import numpy as np
+import pytest
+
+from gearopt.errors import CertificateError
+from gearopt.optimise.certificate import certify, reconcile
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.result import Outcome, Result
+from gearopt.optimise.solve import run
+from gearopt.optimise.solvers import ipopt
+from gearopt.optimise.terms import Terms, Var
+
+
+def hill():
+    """min x + 1/y, x y <= 8 (as a limit), 0.1..10 each: x = 0.1, y = 10."""
+
+    def evaluate(x, p):
+        return Terms({"f": x.x + 1.0 / x.y}, {"product": 4.0 / (x.x * x.y)})
+
+    pair = (Var("x", "", 0.1, 10, 1.0, log=True), Var("y", "", 0.1, 10, 1.0, log=True))
+    return Problem("hill", pair, (), evaluate)
+
+
+def test_right_outcome_is_optimal():
+    result, outcome = run(hill())
+    assert result.status == "optimal"
+    assert result.value == pytest.approx(0.5, rel=1e-9)  # y = 10, x = 0.4
+    assert certify(hill(), outcome, 1e-6).status == "optimal"
+
+
+def test_wrong_point_with_right_multipliers_is_not_optimal():
+    _, outcome = run(hill())
+    worse = Outcome(np.array([0.5, 9.0]), lam_g=outcome.lam_g, lam_h=outcome.lam_h)
+    verdict = certify(hill(), worse, 1e-6)
+    assert verdict.status == "feasible"
+    assert verdict.bound <= 0.5 <= verdict.objective
+    assert verdict.gap > 0.1
+
+
+def test_wrong_multipliers_weaken_the_bound_but_never_falsify_it():
+    _, outcome = run(hill())
+    rng = np.random.default_rng(3)
+    for _ in range(200):
+        lam = outcome.lam_g * np.exp(rng.normal(0, 1)) + rng.normal(0, 0.1)
+        claimed = Outcome(outcome.x, lam_g=lam, lam_h=outcome.lam_h)
+        verdict = certify(hill(), claimed, 1e-12)
+        assert verdict.bound <= 0.5 * (1 + 1e-12)
+
+
+def test_infeasible_point_is_refused():
+    verdict = certify(hill(), Outcome(np.array([0.1, 10.0])), 1e-6)
+    assert verdict.status == "failed" and verdict.objective is None
+    assert "product is violated" in verdict.message
+    outside = certify(hill(), Outcome(np.array([20.0, 5.0])), 1e-6)
+    assert outside.status == "failed" and "bound of x" in outside.message
+
+
+def test_nan_is_refused_by_name():
+    problem = Problem(
+        "root",
+        (Var("x", "", -1, 1, 0.5),),
+        (),
+        lambda x, p: Terms({"f": x.x}, {"root": np.sqrt(x.x)}),
+    )
+    with np.errstate(invalid="ignore"):
+        verdict = certify(problem, Outcome(np.array([-0.5])), 1e-6)
+    assert verdict.status == "failed" and "root" in verdict.message
+
+
+def test_discrete_values_are_checked():
+    problem = Problem(
+        "series",
+        (Var("m", "mm", 1, 2, 1, values=(1.0, 1.25, 2.0)), Var("z", "", 10, 20, 12, integer=True)),
+        (),
+        lambda x, p: Terms({"d": x.m * x.z}),
+    )
+    assert certify(problem, Outcome(np.array([1.25, 12.0])), 1e-6).status == "feasible"
+    assert "values of m" in certify(problem, Outcome(np.array([1.3, 12.0])), 1e-6).message
+    assert "values of z" in certify(problem, Outcome(np.array([1.25, 12.4])), 1e-6).message
+
+
+def test_a_claimed_bound_above_a_feasible_value_is_an_error():
+    with pytest.raises(CertificateError, match="below the claimed bound"):
+        certify(hill(), Outcome(np.array([0.4, 10.0]), bound=0.6, proof={"method": "x"}), 1e-6)
+
+
+def test_false_infeasibility_is_not_believed():
+    lam = np.array([1.0])
+    claim = Outcome(np.array([1.0, 1.0]), lam_g=lam, lam_h=np.empty(0), infeasible=True)
+    verdict = certify(hill(), claim, 1e-6)
+    assert verdict.status == "failed" and "not proven" in verdict.message
+
+
+def test_true_infeasibility_is_proven_with_its_conflict():
+    def evaluate(x, p):
+        rows = {"large": 3.0 / x.x, "small": x.x / 2.0, "idle": x.y / 5.0}
+        return Terms({"f": x.x * x.y}, rows)
+
+    pair = (Var("x", "", 0.1, 10, 1.0, log=True), Var("y", "", 0.1, 10, 1.0, log=True))
+    result, _ = run(Problem("clash", pair, (), evaluate))
+    assert result.status == "infeasible" and result.value is None
+    assert sorted(result.proof["conflict"]) == ["large", "small"]
+    # x = sqrt(6) violates both by sqrt(1.5) - 1, and nothing violates less
+    assert result.proof["least_violation"] == pytest.approx(1.5**0.5 - 1.0, rel=1e-9)
+
+
+def test_nonconvex_failure_is_never_called_infeasible():
+    problem = Problem(
+        "waves",
+        (Var("x", "", 0.0, 6.0, 1.0),),
+        (),
+        lambda x, p: Terms({"f": x.x}, {"never": 2.0 + np.sin(x.x)}),
+    )
+    result, _ = run(problem)
+    assert result.status == "failed" and "not proven" in result.message
+
+
+def test_reconcile_keeps_the_better_bound_and_sees_contradictions():
+    found = Result("a", "limit", "exact", {"name": "f", "value": 10.0}, bound=8.0, gap=0.2)
+    ideal = Result(
+        "b",
+        "optimal",
+        "ipopt",
+        {"name": "f", "value": 9.9},
+        bound=9.9,
+        gap=0.0,
+        proof={"method": "dual"},
+    )
+    better = reconcile(found, ideal, 0.05)
+    assert (better.bound, better.status) == (9.9, "optimal")
+    assert better.gap == pytest.approx(0.01)
+    assert reconcile(found, ideal, 1e-6).status == "limit"
+    with pytest.raises(CertificateError, match="below the relaxation"):
+        reconcile(found, Result("b", "optimal", "ipopt", {"value": 11.0}, bound=11.0), 1e-6)
+    with pytest.raises(CertificateError, match="impossible"):
+        reconcile(found, Result("b", "infeasible", "ipopt", {}), 1e-6)
+
+
+def test_budget_keeps_the_best_feasible_iterate():
+    from gearopt.optimise.result import Budget
+
+    problem = hill()
+    stopped = ipopt.run(problem, Budget(evaluations=4), 0, None, start=np.array([9.0, 9.0]))
+    assert not stopped.finished
+    verdict = certify(problem, stopped, 1e-9)
+    assert verdict.status == "limit" and verdict.objective >= 0.5
+    seen = []
+    watched = ipopt.run(problem, Budget(), 0, lambda event: seen.append(event) or len(seen) < 3)
+    assert len(seen) == 3 and not watched.finished

@@ -1,0 +1,44 @@
+"""The Golinski speed reducer of docs/own_problem.md: all eight optima of its variants."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from gearopt import solve
+
+PAGE = Path(__file__).parents[1] / "docs" / "own_problem.md"
+OPTIMA = {  # (A, B, least x5): optimum
+    (7.477, 16.9e6, 7.3): 2994.341315684,
+    (7.477, 16.91e6, 7.3): 2994.424465757,
+    (7.4777, 16.9e6, 7.3): 2994.471066147,
+    (7.4777, 16.91e6, 7.3): 2994.554223911,
+    (7.477, 16.9e6, 7.8): 2996.218412818,
+    (7.477, 16.91e6, 7.8): 2996.301562890,
+    (7.4777, 16.9e6, 7.8): 2996.348164969,
+    (7.4777, 16.91e6, 7.8): 2996.431322733,
+}
+
+
+def page_code():
+    """The Python block of the page, as a newcomer would paste it."""
+    code = re.search(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.S)[1]
+    assert code.strip().count("\n") <= 45
+    return code
+
+
+def test_the_page_runs_as_printed(capsys):
+    exec(compile(page_code(), str(PAGE), "exec"), {})
+    assert "2994.4710661" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("case", OPTIMA)
+def test_optimum(case, capsys):
+    scope = {}
+    exec(compile(page_code(), str(PAGE), "exec"), scope)
+    a, b, least = case
+    result = solve(scope["reducer"].at(A=a, B=b, x5_least=least))
+    assert result.status == "stationary"  # a signomial: no bound, so never "optimal"
+    assert result.value == pytest.approx(OPTIMA[case], abs=1.5e-9)
+    assert result.certificate["stationarity"] < 1e-9
+    assert max(result.limits.values()) <= 1 + 1e-9

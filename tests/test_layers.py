@@ -1,0 +1,112 @@
+"""Who may import whom, read from the source by ast (docs/contract.md has the table)."""
+
+import ast
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+SRC = Path(__file__).parents[1] / "src" / "gearopt"
+
+INSIDE = {
+    "physics": {"physics"},
+    "optimise": {"optimise", "errors"},
+    "formulations": {"physics", "optimise", "formulations", "errors"},
+    "scenes": {"formulations", "physics", "optimise", "scenes", "units", "errors"},
+    "report": {"physics", "formulations", "optimise", "scenes", "report"},
+    "bench": {"physics", "formulations", "optimise", "scenes", "bench"},
+}
+OUTSIDE = {  # at module level; what is imported inside functions is free
+    "physics": {"numpy"},
+    "optimise": {"numpy"},
+    "formulations": {"numpy"},
+    "scenes": {"pydantic", "pydantic_core"},
+    "report": {"rich"},  # cli imports it inside functions
+    "bench": set(),
+}
+TOP = {"units": set(), "errors": set()}
+
+
+def _imports(path: Path):
+    """(module, at module level) of every import of a file; TYPE_CHECKING blocks are left out."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    skipped = {
+        child
+        for node in ast.walk(tree)
+        if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING"
+        for child in ast.walk(node)
+    }
+    inner = {
+        child
+        for node in ast.walk(tree)
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)
+        for child in ast.walk(node)
+    }
+    for node in ast.walk(tree):
+        if node in skipped:
+            continue
+        if isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{path}: relative import"
+            names = [f"gearopt.{a.name}" for a in node.names] if node.module == "gearopt" else None
+            for name in names or [node.module]:
+                yield name, node not in inner
+        elif isinstance(node, ast.Import):
+            for alias in node.names:
+                yield alias.name, node not in inner
+
+
+def _files():
+    return sorted(SRC.rglob("*.py"))
+
+
+def test_every_room_is_in_the_table():
+    rooms = {p.name for p in SRC.iterdir() if p.is_dir() and p.name != "__pycache__"}
+    assert rooms == set(INSIDE)
+
+
+@pytest.mark.parametrize("path", _files(), ids=lambda p: str(p.relative_to(SRC)))
+def test_imports_follow_the_layers(path):
+    parts = path.relative_to(SRC).parts
+    room = parts[0] if len(parts) > 1 else path.stem
+    if room in ("__init__", "__main__", "api", "cli"):
+        return
+    inside = INSIDE.get(room, TOP.get(room))
+    outside = OUTSIDE.get(room, set())
+    for module, top_level in _imports(path):
+        first, *rest = module.split(".")
+        if first == "gearopt":
+            assert rest and rest[0] in inside, f"{path.name} imports {module}"
+        elif top_level and first not in sys.stdlib_module_names:
+            assert first in outside, f"{path.name} imports {module} at module level"
+
+
+def test_files_are_one_idea_long():
+    long = {p.name: n for p in _files() if (n := p.read_text().count("\n")) > 300}
+    assert not long
+
+
+HEAVY = ("pint", "numba", "cvxpy", "pymoo", "scipy", "plotly", "jinja2", "matplotlib")
+
+
+def test_sizing_path_stays_light():
+    """`gearopt solve` imports none of the heavy libraries."""
+    problem = SRC.parents[1] / "problems" / "elevator.toml"
+    code = (
+        "import sys; sys.argv = ['gearopt', 'solve', sys.argv[1], '--json']\n"
+        "from gearopt.cli import main\n"
+        "try:\n    main()\nexcept SystemExit as end:\n    assert not end.code, end.code\n"
+        f"print([m for m in {HEAVY!r} if m in sys.modules], file=sys.stderr)"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code, str(problem)], capture_output=True, text=True, check=True
+    )
+    assert done.stderr.strip() == "[]"
+
+
+def test_import_of_the_package_needs_no_solver():
+    code = (
+        "import sys, gearopt; print([m for m in ('casadi', 'typer', 'rich') if m in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"

@@ -1,0 +1,34 @@
+"""Every file in problems/ gives the answer it names in its own [x-expected] table."""
+
+import tomllib
+from pathlib import Path
+
+import pytest
+
+import gearopt
+
+PROBLEMS = sorted((Path(__file__).parents[1] / "problems").glob("*.toml"))
+DIGIT = {"objective": 0.06, "sizing": 0.006}  # the values are printed to tenths and hundredths
+
+
+@pytest.mark.parametrize("path", PROBLEMS, ids=lambda p: p.stem)
+def test_expected_value(path):
+    content = tomllib.loads(path.read_text(encoding="utf-8"))
+    expected = content["x-expected"]
+    assert content["source"]
+    result = gearopt.solve(path)
+    assert result.status == expected["status"]
+    assert (result.value is None) == ("objective" not in expected)
+    if result.value is not None:
+        assert result.value == pytest.approx(expected["objective"], abs=DIGIT["objective"])
+        assert result.bound <= result.value * (1 + 1e-12)
+        assert result.gap <= 1e-9
+    if "sizing" in expected:
+        (part,) = result.parts
+        assert part.status == "optimal" and part.gap < 1e-9
+        assert part.value == pytest.approx(expected["sizing"], abs=DIGIT["sizing"])
+    assert result.file == str(path) and len(result.file_sha256) == 64
+
+
+def test_there_are_files():
+    assert {"elevator", "three_stage"} <= {p.stem for p in PROBLEMS}
