@@ -176,11 +176,19 @@ def check(
 
 
 @app.command()
-def schema(kind: Annotated[str, typer.Argument(help="A kind of problem file.")] = "drive") -> None:
+def schema(
+    kind: Annotated[str, typer.Argument(help="A kind of problem file.")] = "drive",
+    table: Annotated[
+        bool, typer.Option("--table", help="Print tables of all keys in Markdown instead.")
+    ] = False,
+) -> None:
     """Print the JSON schema of a kind of problem file, for editors."""
-    from gearopt.scenes.reading.schema import json_schema
+    from gearopt.scenes.reading.schema import json_schema, reference
 
-    print(json.dumps(json_schema(_known(kind)), indent=2))
+    if table:
+        print(reference(_known(kind)), end="")
+    else:
+        print(json.dumps(json_schema(_known(kind)), indent=2))
 
 
 @app.command()

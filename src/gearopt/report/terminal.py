@@ -39,6 +39,7 @@ def show(result: Result, title: str, console: Console) -> None:
     words, colour = VERDICTS[result.status]
     console.print(Text.assemble((title, "bold"), "  ", (words, f"bold {colour}")))
     for block in _blocks(result):
+        console.print()
         console.print(block)
 
 
@@ -50,8 +51,6 @@ def _blocks(result: Result) -> list[RenderableType]:
         if trains := result.report.get("trains"):
             blocks.append(_trains(trains, result.objective))
     blocks.append(Text("\n".join(_proof(result))))
-    spent = f"{result.method}, {result.evaluations:,} evaluations, {result.seconds:.3g} s"
-    blocks.append(Text(spent, style="dim"))
     return blocks
 
 
@@ -72,9 +71,11 @@ def _design(design: Mapping[str, Any]) -> RenderableType:
         for k, stage in enumerate(stages, 1):
             table.add_row(str(k), *[number(v) for n, v in stage.items() if n in SHORT])
         parts.append(table)
-    lines = [f"{heading(k)}  {number(v)}" for k, v in design.items() if k != "stages"]
-    parts.append(Text("\n".join(lines)))
-    return Group(*parts)
+    totals = Table.grid(padding=(0, 2))
+    for key, value in design.items():
+        if key != "stages":
+            totals.add_row(Text(heading(key)), number(value))
+    return Group(*parts, "", totals)
 
 
 def _limits(limits: Mapping[str, float]) -> RenderableType:
@@ -97,7 +98,7 @@ def _limits(limits: Mapping[str, float]) -> RenderableType:
         column.justify = "right"
     for stem, values in rows.items():
         cells = [_percent(values.get(k)) for k in (*stages, 0)]
-        table.add_row(stem.replace("_", " "), *cells)
+        table.add_row(limit_words(stem), *cells)
     return table
 
 
@@ -155,14 +156,17 @@ def _proof(result: Result) -> list[str]:
             "from our own derivatives."
         )
     for part in result.parts:
-        if part.name == "sizing" and part.value and result.value:
+        if part.status == "infeasible" and part.proof.get("conflict"):
+            names = ", ".join(limit_words(n) for n in part.proof["conflict"])
+            lines.append(f"Even with real-valued teeth and modules these clash: {names}.")
+        if part.value is not None and result.value is not None:
             lines.append(
                 f"With real-valued teeth and modules: {number(part.value)} {unit} "
                 f"(whole teeth and standard modules cost "
                 f"{100 * (result.value / part.value - 1):.2f} %)."
             )
     if "lifting_one_suffices" in proof:
-        names = [n.replace("_", " ") for n in proof["lifting_one_suffices"]]
+        names = [limit_words(n) for n in proof["lifting_one_suffices"]]
         lines.append(
             f"Lifting any one of these limits alone makes a design possible: {', '.join(names)}."
             if names
@@ -172,7 +176,15 @@ def _proof(result: Result) -> list[str]:
         lines.append(f"Assumed: {assumed}.")
     if result.message:
         lines.append(result.message[0].upper() + result.message[1:] + ".")
+    lines.append(f"{result.method}, {result.evaluations:,} evaluations, {result.seconds:.3g} s.")
     return lines
+
+
+def limit_words(name: str) -> str:
+    """`k_factor[2]` as "K-factor of stage 2"."""
+    stem, _, index = name.rstrip("]").partition("[")
+    words = stem.replace("_", " ").replace("k factor", "K-factor")
+    return f"{words} of stage {index}" if index else words
 
 
 def heading(key: str) -> str:

@@ -25,7 +25,7 @@ VARIABLES = {
     "face_width": "mm",
     "width_steps": "",
 }
-MOST = 1e9  # teeth, steps or mm: no limit
+MOST = 1e18  # teeth, steps or mm: no limit
 
 
 def problem(train: Train, count: int = 1) -> Problem:
@@ -154,7 +154,6 @@ def _outcome(train: Train, count: int, budget: Budget, watch: Watch | None) -> O
             infeasible=True,
             proof=proof,
             evaluations=progress.looked,
-            message="no choice of teeth and modules meets all limits",
         )
     return Outcome(
         points[0],

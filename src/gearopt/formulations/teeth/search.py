@@ -29,7 +29,7 @@ BEAM = 4  # nodes followed down at once; measured best for two to four stages
 LEAVES = 256  # nodes completed at once
 FIRST_LOOK = 20_000  # pairs looked at for a first train
 PATIENCE = 2_000_000  # pairs looked at before a finer grid is worth its making
-CELLS = 30_000_000  # largest grid, 240 MB
+CELLS = 10_000_000  # largest grid of a stage, 80 MB
 
 
 @dataclass(frozen=True)
@@ -114,10 +114,10 @@ def search(train: Train, wanted: int, budget: Budget, watch: Watch | None) -> Pr
     cut = min(most, Fraction(3.0 * float(train.ratio) ** (1.0 / len(train.stages))))
     closed = _look(train, cut, progress, FIRST_LOOK)
     reach = _reach(train, cut, most, progress.threshold)
-    if progress.stopped or (closed and reach <= cut):
-        progress.lower = progress.lower if reach <= cut else -math.inf
-        return progress
-    _look(train, max(cut, reach), progress, math.inf)
+    if reach > cut:
+        progress.lower = -math.inf  # the bound so far holds for the smaller ratios only
+    if not progress.stopped and not (closed and reach <= cut):
+        _look(train, max(cut, reach), progress, math.inf)
     return progress
 
 

@@ -86,7 +86,7 @@ class Table:
             return self._best_on_steps(torque, pair)
         # The smallest module that carries the torque is the best one: every objective grows
         # with it, for a tied width, and for a free one once the width has its least value.
-        needed = self.need[pair] * torque**self.exponent * (1.0 - ALLOWANCE)
+        needed = self.need[pair] * (torque * (1.0 - ALLOWANCE)) ** self.exponent
         k = np.maximum(np.searchsorted(self.modules, needed), self.first[pair])
         possible = k <= self.last[pair]
         k = np.minimum(k, len(self.modules) - 1)

@@ -1,0 +1,142 @@
+"""The command line: exit codes, one message for bad input, nothing but JSON with --json."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+import gearopt
+
+ROOT = Path(__file__).parents[1]
+ELEVATOR = ROOT / "problems" / "elevator.toml"
+
+
+def gear(*words, **kind):
+    return subprocess.run(
+        [sys.executable, "-m", "gearopt", *map(str, words)], capture_output=True, text=True, **kind
+    )
+
+
+def test_solve_prints_design_limits_bound_and_proof():
+    done = gear("solve", ELEVATOR, "--top", 3)
+    assert done.returncode == 0 and done.stderr == ""
+    for words in (
+        "proven optimal",
+        "21  115",
+        "5,782,370.7",
+        "gap 0 %",
+        "trains compared",
+        "2.92 %",
+        "5,789,181.7",
+        "150.06",
+    ):
+        assert words in done.stdout, words
+
+
+def test_json_is_one_object_and_reads_back():
+    done = gear("solve", ELEVATOR, "--json", "--top", 20)
+    result = gearopt.Result.from_json(done.stdout)
+    assert result.status == "optimal" and result.to_dict() == json.loads(done.stdout)
+    assert len(result.report["trains"]) == 20
+    assert result.scene == "drive" and result.versions["numpy"]
+
+
+def test_infeasible_is_exit_3():
+    done = gear("solve", ROOT / "problems" / "elevator_small_wheels.toml")
+    assert done.returncode == 3
+    assert "impossible, proven" in done.stdout and "wheel diameter" in done.stdout
+
+
+def test_nothing_found_in_time_is_exit_4():
+    done = gear("solve", ELEVATOR, "--seconds", 0, "--json")
+    assert done.returncode == 4
+    assert json.loads(done.stdout)["status"] == "limit"
+
+
+def test_bad_input_is_one_message_and_exit_2(tmp_path):
+    path = tmp_path / "typo.toml"
+    path.write_text(ELEVATOR.read_text().replace("helix_angle", "helix_angel"))
+    for command in ("solve", "check"):
+        done = gear(command, path)
+        assert done.returncode == 2 and done.stdout == ""
+        assert done.stderr.count("\n") == 1
+        assert "gears.helix_angel: unknown key. Did you mean helix_angle?" in done.stderr
+    report = json.loads(gear("check", path, ELEVATOR, "--json").stdout)
+    assert [r["valid"] for r in report] == [False, True]
+    assert report[0]["key"] == "gears.helix_angel"
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("solve", ELEVATOR, "--method", "simplex"),
+        ("solve", ELEVATOR, "--top", "0"),
+        ("schema", "bearing"),
+        ("new", "bearing"),
+        ("bench", "nothing"),
+        ("frobnicate",),
+        ("solve",),
+        ("solve", ROOT / "problems" / "elevator_exact_ratio.toml", "--method", "exact"),
+    ],
+)
+def test_wrong_words_are_exit_2_without_traceback(words):
+    done = gear(*words)
+    assert done.returncode == 2 and done.stdout == ""
+    assert done.stderr and "Traceback" not in done.stderr
+
+
+def test_new_file_solves_and_schema_is_json(tmp_path):
+    path = tmp_path / "new.toml"
+    path.write_text(gear("new", "drive").stdout)
+    assert gear("check", path).returncode == 0
+    schema = json.loads(gear("schema", "drive").stdout)
+    assert "duty" in schema["required"]
+
+
+def test_doctor():
+    done = gear("doctor", "--json")
+    assert done.returncode == 0
+    found = json.loads(done.stdout)
+    assert found["exact works"].startswith("yes") and found["ipopt works"].startswith("yes")
+
+
+def test_a_closed_pipe_is_no_error():
+    line = f"{sys.executable} -m gearopt schema drive | head -1"
+    done = subprocess.run(line, shell=True, capture_output=True, text=True)
+    assert done.stdout == "{\n" and "Traceback" not in done.stderr
+
+
+@pytest.mark.slow
+def test_ctrl_c_keeps_the_best_found(tmp_path):
+    """Six stages with free widths take minutes; an interrupt after two seconds loses nothing."""
+    path = tmp_path / "long.toml"
+    text = (ROOT / "problems" / "six_stages.toml").read_text()
+    for width in ("0.6", "0.75"):
+        text = text.replace(f"diameter = {width}", f"diameter = [0.3, {width}]")
+    path.write_text(text)
+    running = subprocess.Popen(
+        [sys.executable, "-m", "gearopt", "solve", str(path), "--json"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    time.sleep(3.0)
+    os.kill(running.pid, signal.SIGINT)
+    start = time.perf_counter()
+    out, err = running.communicate(timeout=30)
+    assert time.perf_counter() - start < 5.0
+    assert running.returncode == 0 and err == ""
+    result = json.loads(out)
+    assert result["status"] == "limit"
+    assert result["objective"]["value"] > 0 and 0 < result["bound"] < result["objective"]["value"]
+
+
+def test_every_option_has_help():
+    for command in ("solve", "check", "schema", "new", "doctor", "bench"):
+        done = gear(command, "--help")
+        assert done.returncode == 0 and "Usage" in done.stdout
