@@ -103,5 +103,6 @@ def parse(text: str, dimension: str) -> Quantity:
     if unit is None and dimension != "fraction":
         raise ValueError(f"has no unit; units of {dimension}: {', '.join(known)}")
     if unit is not None and unit not in known:
-        raise ValueError(f"has the unknown unit {unit}; units of {dimension}: {', '.join(known)}")
+        shown = f"the unknown unit {unit}" if unit.isprintable() else "an unknown unit"
+        raise ValueError(f"has {shown}; units of {dimension}: {', '.join(known)}")
     return Quantity(Fraction(number), unit or "", dimension)

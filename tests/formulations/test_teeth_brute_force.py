@@ -7,7 +7,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from brute_force import ONE, SAME, Trains, best_choice, cost, every_train, log_uniform, some_drive
+from brute_force import ONE, SAME, every_train, log_uniform, some_drive
 
 from gearopt.formulations.teeth import problem, sizes
 from gearopt.formulations.train import FaceWidth, Stage, Train

@@ -5,6 +5,7 @@ without one, or by the method ipopt, sizes are continuous and proven by a dual b
 """
 
 from dataclasses import replace
+from decimal import Decimal
 from fractions import Fraction
 from typing import Annotated, Any
 
@@ -40,18 +41,22 @@ from gearopt.units import Quantity
 PRESETS = {"chong-lee-elevator": {"k_factor": "300 psi", "unit_load": "7000 psi"}}
 
 LENGTH = quantity("length", "400 mm")
-STRESS = quantity("stress", "2.07 MPa")
+CONTACT = quantity("stress", "2.07 MPa")
+ROOT = quantity("stress", "48 MPa")
+STEP = quantity("length", "1 mm")
 TOOTH_COUNT = whole(21, 5, 1000)
 WHEEL_TEETH = whole(100, 5, 100_000)
 MODULE = quantity("length", "2 mm")
-PROPORTION = span(number(0.6, 0, 10), 0.6, single=True)
+PROPORTION = span(number(0.6, 0, 10), [0.3, 0.6], single=True)
 RATIO = number(20, 1, 10**6)
 RATIOS = span(number(5, 1, 10**6), [1, 10])
 
 Proportion = Annotated[tuple[Fraction, Fraction] | None, PROPORTION]
 Ratios = Annotated[tuple[Fraction, Fraction] | None, RATIOS]
 Length = Annotated[Quantity | None, LENGTH]
-Stress = Annotated[Quantity | None, STRESS]
+Contact = Annotated[Quantity | None, CONTACT]
+Root = Annotated[Quantity | None, ROOT]
+Step = Annotated[Quantity | None, STEP]
 Lengths = tuple[Quantity, Quantity]
 
 PROPORTION_IS = (
@@ -91,18 +96,22 @@ class Duty(Table):
                 "stands beside output_speed; one is enough", at=("ratio",), action="remove"
             )
         if self.output_speed is None and self.ratio is None:
-            raise refuse("is missing (or give ratio)", at=("output_speed",))
+            raise refuse("is missing (or give ratio)", self._slow(), ("output_speed",))
         if self.total_ratio < 1:
             raise refuse(
-                "is above the input speed; gearopt sizes reducers, and a loss-free speed increaser "
+                "is above the input speed: gearopt sizes reducers, and a loss-free speed increaser "
                 "has the same gears with input and output exchanged",
                 "input_speed",
                 ("output_speed",),
                 "swap",
             )
         if self.total_ratio > 10**6:
-            raise refuse("asks for a ratio beyond 1000000", at=("output_speed",))
+            raise refuse("asks for a ratio above 1000000", self._slow(), ("output_speed",))
         return self
+
+    def _slow(self) -> str:
+        """An output speed that suits the input speed: a ratio of 20."""
+        return f"{float(self.input_speed.number / 20):.4g} {self.input_speed.unit}"
 
     @property
     def total_ratio(self) -> Fraction:
@@ -127,7 +136,7 @@ class Gears(Table):
         json_schema_extra={"default": "20 deg"},
     )
     face_width_over_diameter: Proportion = Field(None, description=PROPORTION_IS)
-    face_width_step: Length = Field(None, description=STEP_IS)
+    face_width_step: Step = Field(None, description=STEP_IS)
 
 
 class StageTable(Table):
@@ -146,10 +155,10 @@ class StageTable(Table):
         None, description="Face width, fixed"
     )
     face_width_over_diameter: Proportion = Field(None, description=PROPORTION_IS)
-    face_width_step: Length = Field(None, description=STEP_IS)
+    face_width_step: Step = Field(None, description=STEP_IS)
     ratio: Ratios = Field(None, description="Range of the stage ratio")
-    k_factor: Stress = Field(None, description=K_IS)
-    unit_load: Stress = Field(None, description=U_IS)
+    k_factor: Contact = Field(None, description=K_IS)
+    unit_load: Root = Field(None, description=U_IS)
     wheel_diameter: Length = Field(None, description=WHEEL_IS)
 
 
@@ -161,10 +170,8 @@ class Limits(Table):
         description="K-factor and unit load that a source states: chong-lee-elevator is 300 psi "
         "and 7000 psi",
     )
-    k_factor: Stress = Field(None, description=K_IS)
-    unit_load: Annotated[Quantity | None, quantity("stress", "48 MPa")] = Field(
-        None, description=U_IS
-    )
+    k_factor: Contact = Field(None, description=K_IS)
+    unit_load: Root = Field(None, description=U_IS)
     pinion_teeth: Annotated[tuple[int, int], span(TOOTH_COUNT, [20, 40])] = Field(
         description="Range of pinion teeth"
     )
@@ -181,6 +188,8 @@ class Limits(Table):
 
     @model_validator(mode="after")
     def _loads(self) -> "Limits":
+        if self.preset is None and self.k_factor is None and self.unit_load is None:
+            raise refuse("is missing (or give k_factor and unit_load)", at=("preset",))
         for name in ("k_factor", "unit_load"):
             given = getattr(self, name) is not None
             if given and self.preset is not None:
@@ -248,18 +257,20 @@ class Scene(Table):
     def _consistent(self) -> "Scene":
         number = len(self.stage)
         if self.stages is None and not self.stage:
+            if self.gears.face_width_over_diameter is None:
+                raise refuse("is missing: one table [[stage]] a stage", at=("stage",))
             raise refuse("is missing (or write one [[stage]] table a stage)", at=("stages",))
         if number > 6:
-            raise refuse("has more than six tables", at=("stage", 6), action="remove")
+            raise refuse(
+                "is one more than the six stages allowed", at=("stage", 6), action="remove"
+            )
         if self.stages is not None and self.stage and self.stages != number:
             raise refuse(f"differs from the {number} [[stage]] tables", number, ("stages",))
         for k, own in enumerate(self.stage or (StageTable(),)):
             self._check_width(own, ("stage", k) if self.stage else ("gears",))
             if self.teeth is not None and not self._modules(own):
                 place = ("stage", k, "module") if own.module else ("limits", "module")
-                series = self.teeth.modules
-                whole_series = [f"{float(m):g} mm" for m in (series[0], series[-1])]
-                raise refuse("leaves no module of [teeth] modules", whole_series, place)
+                raise refuse("holds no module that [teeth] allows", self._around(own), place)
         return self
 
     def _check_width(self, own: StageTable, place: tuple[Any, ...]) -> None:
@@ -276,14 +287,14 @@ class Scene(Table):
             if span is not None and span[0] == span[1]:
                 raise refuse(
                     "stands beside face_width: only a range can limit a fixed width",
-                    [0.1, float(span[1])],
+                    [float(span[1] / 2), float(span[1])],
                     key,
                 )
             return
+        step = own.face_width_step or self.gears.face_width_step
         span = own.face_width_over_diameter or self.gears.face_width_over_diameter
         if span is None:
-            raise refuse("is missing", at=key)
-        step = own.face_width_step or self.gears.face_width_step
+            raise refuse("is missing", 0.6 if step is None else None, key)
         if step is not None and span[0] == span[1]:
             raise refuse(
                 "ties the width, so that it cannot keep to face_width_step: give a range",
@@ -300,6 +311,15 @@ class Scene(Table):
             return ends[:1]
         series = self.teeth.modules
         return tuple(m for m in series if not ends or ends[0] <= m <= ends[1])
+
+    def _around(self, own: StageTable) -> list[str]:
+        """The narrowest range of modules of [teeth] around one that holds none of them."""
+        span = own.module or self.limits.module
+        assert span is not None and self.teeth is not None
+        series = self.teeth.modules
+        below = max((m for m in series if m < span[0].exact[0]), default=series[0])
+        above = min((m for m in series if m > span[1].exact[0]), default=series[-1])
+        return [f"{Decimal(m.numerator) / m.denominator} mm" for m in (below, above)]
 
     def train(self) -> Train:
         """The drive as plain numbers."""

@@ -1,14 +1,15 @@
 """Field types of problem files: quantities with units, exact numbers, ranges.
 
 A `Reads` stands in an `Annotated` type; pydantic calls its `read`. Every rejection carries a rule
-and a value to write instead, which `load` turns into a SceneError. Numbers reach the readers
+and a value to write instead, which `remedy` turns into a SceneError. Numbers reach the readers
 exactly as written (int or Decimal).
 """
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from decimal import Decimal
+from difflib import get_close_matches
 from fractions import Fraction
 from typing import Any
 
@@ -20,6 +21,7 @@ from gearopt.units import Quantity
 
 LARGEST = Fraction(10) ** 30  # of any number in a file: beyond it lies a slip, not a gear
 SMALLEST = 1 / LARGEST
+BEYOND = "is out of any sensible range (1e-30 to 1e30)"
 
 
 class Table(BaseModel):
@@ -62,27 +64,56 @@ def refuse(
     return PydanticCustomError("gearopt", "{rule}", context)
 
 
+def near(word: str, names: Iterable[str]) -> str | None:
+    """The name that a word was probably meant to be, in whatever case; None if none is close."""
+    plain = {name.lower(): name for name in names}
+    found = get_close_matches(re.sub(r"[-\s]+", "_", word[:80].lower()), plain, n=1)
+    return plain[found[0]] if found else None
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | Decimal) and not isinstance(value, bool)
+
+
+def _is_far(value: int | Decimal) -> bool:
+    """Whether a number has so many digits that its fraction should not even be formed."""
+    return value.bit_length() > 200 if isinstance(value, int) else abs(value.adjusted()) > 60
+
+
 def quantity(dimension: str, example: str, most: str | None = None, zero: bool = False) -> Reads:
     """A positive quantity such as "7.5 kW"; most: the largest allowed, zero: whether 0 is."""
     limit = units.parse(most, dimension) if most else None
     names = ", ".join(units.UNITS[dimension])
     usual = units.parse(example, dimension).unit
 
+    def fault(found: Quantity) -> str:
+        if found.number < 0 or (found.number == 0 and not zero):
+            return "is below zero" if zero else "is not greater than zero"
+        if found.number and not SMALLEST < found.number < LARGEST:
+            return BEYOND
+        above = limit is not None and found.value > limit.value * (1 + 1e-12)
+        return f"is above {most}" if above else ""
+
+    def usable(text: str) -> str | None:
+        try:
+            return None if fault(units.parse(text, dimension)) else text
+        except ValueError:
+            return None
+
     def read(value: Any, example: str) -> Quantity:
         if isinstance(value, Quantity):
             return value
-        if isinstance(value, int | Decimal) and not isinstance(value, bool):
-            right = _with_unit(value, usual, example)
+        if _is_number(value):
+            right = None if _is_far(value) else usable(f"{value} {usual}")
             raise refuse(f"is a bare number: {dimension} needs a unit ({names})", right)
         if not isinstance(value, str):
             raise refuse(f"is not a text with a number and a unit of {dimension} ({names})")
         try:
             found = units.parse(value, dimension)
         except ValueError as reason:
-            raise refuse(str(reason)) from None
-        _check_range(found.number, zero)
-        if limit is not None and found.value > limit.value * (1 + 1e-12):
-            raise refuse(f"must be at most {most}")
+            raise refuse(str(reason), usable(_meant(value, dimension, usual))) from None
+        if rule := fault(found):
+            raise refuse(rule, usable(value.strip().removeprefix("-")))
         return found
 
     alternatives = "|".join(re.escape(unit) for unit in units.UNITS[dimension])
@@ -91,42 +122,54 @@ def quantity(dimension: str, example: str, most: str | None = None, zero: bool =
     return Reads(read, example, schema)
 
 
-def _with_unit(value: int | Decimal, unit: str, example: str) -> str:
-    """The bare number with a unit, where that is a valid quantity; else the example."""
-    usable = Decimal(value).is_finite() and SMALLEST < Fraction(value) < LARGEST
-    return f"{value} {unit}" if usable else example
+# A comma before three digits may separate thousands, so it is not taken for a decimal one.
+_SLIP = re.compile(r"\s*(\+?[0-9]*(?:\.|,(?![0-9]{3}(?![0-9])))?[0-9]+)\s*(\S*)\s*")
 
 
-def _check_range(number: Fraction, zero: bool) -> None:
-    if number < 0 or (number == 0 and not zero):
-        raise refuse("must be zero or more" if zero else "must be greater than zero")
-    if number and not SMALLEST < number < LARGEST:
-        raise refuse("is out of any sensible range (1e-30 to 1e30)")
+def _meant(text: str, dimension: str, usual: str) -> str:
+    """A text whose decimal comma, missing unit or misspelt unit is mended; "" if it has none."""
+    match = _SLIP.fullmatch(text[:80])
+    unit = near(match[2], units.UNITS[dimension]) if match and match[2] else usual
+    return f"{match[1].replace(',', '.')} {unit}" if match and unit else ""
 
 
 def number(
     example: Any, least: int, most: int | Fraction, percent: bool = False, zero: bool = False
 ) -> Reads:
     """A pure number, kept exactly as a fraction; percent: "1 %" is read too."""
+    largest = f"{float(most):.7g}"
+    sort = 'a number or a percentage such as "1 %"' if percent else "a number"
+
+    def inside(found: Fraction) -> bool:
+        return least <= found <= most and (found > 0 or zero)
 
     def read(value: Any, example: Any) -> Fraction:
         if isinstance(value, Fraction):
             return value
-        if isinstance(value, str) and percent:
+        if isinstance(value, str):
             try:
                 found = units.parse(value, "fraction").exact[0]
             except ValueError:
-                raise refuse('is not a number or a percentage such as "1 %"') from None
-        elif isinstance(value, bool) or not isinstance(value, int | Decimal):
-            raise refuse("is not a number")
+                raise refuse(f"is not {sort}") from None
+            if not percent:
+                raise refuse("is a text, not a number", float(found) if inside(found) else None)
+        elif not _is_number(value):
+            raise refuse(f"is not {sort}")
         elif not Decimal(value).is_finite():
             raise refuse("is not a finite number")
         else:
-            found = Fraction(value)
-        _check_range(found, zero)
-        if not least <= found <= most:
-            raise refuse(f"must be between {least} and {float(most):g}")
+            found = LARGEST if _is_far(value) else Fraction(value)
+        if found and not SMALLEST < abs(found) < LARGEST:
+            raise refuse(BEYOND)
+        if not inside(found):
+            least_is = f"between {least} and" if least or zero else "above 0 and at most"
+            raise refuse(f"is not {least_is} {largest}", slip(value, found))
         return found
+
+    def slip(value: Any, found: Fraction) -> Any:
+        if percent and _is_number(value) and inside(found / 100):
+            return f"{value} %"
+        return -value if _is_number(value) and inside(-found) else None
 
     schema: dict[str, Any] = {"type": "number", "minimum": least, "maximum": float(most)}
     if percent:
@@ -139,17 +182,40 @@ def whole(example: int, least: int, most: int) -> Reads:
     """A whole number."""
 
     def read(value: Any, example: Any) -> int:
+        if isinstance(value, str) and re.fullmatch(r"\s*[0-9]{1,9}\s*", value):
+            raise refuse("is a text, not a whole number", min(max(int(value), least), most))
+        if isinstance(value, Decimal) and value.is_finite() and least <= value <= most:
+            raise refuse("is not a whole number", int(value))
         if isinstance(value, bool) or not isinstance(value, int):
             raise refuse("is not a whole number")
         if not least <= value <= most:
-            raise refuse(f"must be a whole number from {least} to {most}")
+            nearest = min(max(value, least), most)
+            raise refuse(f"is not a whole number from {least} to {most}", nearest)
         return value
 
     return Reads(read, example, {"type": "integer", "minimum": least, "maximum": most})
 
 
+def _mended(item: Reads, values: list[Any]) -> tuple[list[Any], str]:
+    """The values with a right one in place of each wrong one, and the first rule broken."""
+    right, first = [], ""
+    for value in values:
+        try:
+            item.reader(value, item.example)
+        except PydanticCustomError as wrong:
+            context = wrong.context or {}
+            first = first or context["rule"]
+            value = item.example if context["write"] is None else context["write"]
+        right.append(value)
+    return right, first
+
+
 def span(item: Reads, example: Any, single: bool = False) -> Reads:
     """A range [least, most] of items; single: one item is read too and means both ends."""
+
+    def order(value: Any) -> Any:
+        found = item.reader(value, item.example)
+        return found.value if isinstance(found, Quantity) else found
 
     def read(value: Any, example: Any) -> tuple[Any, Any]:
         if isinstance(value, tuple):
@@ -157,24 +223,19 @@ def span(item: Reads, example: Any, single: bool = False) -> Reads:
         if single and not isinstance(value, list):
             only = item.reader(value, item.example)
             return only, only
-        if not isinstance(value, list) or len(value) != 2:
-            raise refuse("is not a range [least, most]")
-        try:
-            low, high = (item.reader(end, item.example) for end in value)
-        except PydanticCustomError as wrong:
-            rule = (wrong.context or {})["rule"]
-            raise refuse(f"has an end that {rule}") from None
-        if _order(low) > _order(high):
+        ends = value if isinstance(value, list) else [value]
+        right, rule = _mended(item, ends[:2])
+        if len(ends) != 2:
+            pair = right * 2 if len(ends) == 1 and not rule else None
+            raise refuse("is not a range [least, most]", pair)
+        if rule:
+            raise refuse(f"has an end that {rule}", sorted(right, key=order))
+        if order(value[0]) > order(value[1]):
             raise refuse("has its ends in the wrong order", value[::-1])
-        return low, high
+        return item.reader(value[0], item.example), item.reader(value[1], item.example)
 
     schema: dict[str, Any] = {"type": "array", "items": item.schema, "minItems": 2, "maxItems": 2}
     return Reads(read, example, {"anyOf": [item.schema, schema]} if single else schema)
-
-
-def _order(value: Any) -> Any:
-    """What a range is ordered by."""
-    return value.value if isinstance(value, Quantity) else value
 
 
 def choice(*names: str) -> Reads:
@@ -183,7 +244,8 @@ def choice(*names: str) -> Reads:
     def read(value: Any, example: Any) -> str:
         if value not in names or not isinstance(value, str):
             known = ", ".join(f'"{n}"' for n in names)
-            raise refuse(f"is not one of {known}")
+            meant = near(value, names) if isinstance(value, str) else None
+            raise refuse(f"is not {'one of ' * (len(names) > 1)}{known}", meant)
         return value
 
     return Reads(read, names[0], {"enum": list(names)})
@@ -194,7 +256,8 @@ def truth() -> Reads:
 
     def read(value: Any, example: Any) -> bool:
         if not isinstance(value, bool):
-            raise refuse("is neither true nor false")
+            word = value.lower() if isinstance(value, str) else value
+            raise refuse("is neither true nor false", word not in ("false", "no", "off", 0))
         return value
 
     return Reads(read, True, {"type": "boolean"})
@@ -205,9 +268,11 @@ def words() -> Reads:
 
     def read(value: Any, example: Any) -> str:
         if not isinstance(value, str):
-            raise refuse("is not a text")
+            plain = _is_number(value) and not _is_far(value)
+            raise refuse("is not a text", str(value) if plain else None)
         if len(value) > 1000 or not value.isprintable():
-            raise refuse("is longer than 1000 characters or has control characters")
+            cleaned = "".join(c for c in " ".join(value.split()) if c.isprintable())[:1000]
+            raise refuse("is longer than 1000 characters or has control characters", cleaned)
         return value
 
     return Reads(read, "a text", {"type": "string", "maxLength": 1000})
@@ -221,15 +286,14 @@ def either(names: dict[str, Any], item: Reads) -> Reads:
             return value
         if isinstance(value, str) and value in names:
             return tuple(names[value])
-        known = ", ".join(f'"{n}"' for n in names)
         if not isinstance(value, list) or not value:
-            raise refuse(f"is neither one of {known} nor a list")
-        try:
-            found = {item.reader(entry, item.example).exact[0] for entry in value}
-        except PydanticCustomError as wrong:
-            rule = (wrong.context or {})["rule"]
-            raise refuse(f"has an entry that {rule}") from None
-        return tuple(sorted(found))
+            known = ", ".join(f'"{n}"' for n in names)
+            meant = near(value, names) if isinstance(value, str) else None
+            raise refuse(f"is neither one of {known} nor a list", meant)
+        right, rule = _mended(item, value)
+        if rule:
+            raise refuse(f"has an entry that {rule}", right)
+        return tuple(sorted({item.reader(entry, item.example).exact[0] for entry in value}))
 
     items = {"type": "array", "items": item.schema, "minItems": 1}
     return Reads(read, next(iter(names)), {"anyOf": [{"enum": list(names)}, items]})

@@ -1,8 +1,12 @@
-"""The JSON schema of a kind of problem file, for editors."""
+"""What a kind of problem file may hold: as JSON schema for editors, as Markdown for people."""
 
-from typing import Any
+from typing import Any, get_origin
+
+from pydantic import BaseModel
 
 from gearopt.scenes.reading.load import FORMAT, scene_module
+from gearopt.scenes.reading.remedy import example_of, table_of
+from gearopt.scenes.reading.toml import toml_text
 
 
 def json_schema(kind: str) -> dict[str, Any]:
@@ -18,3 +22,34 @@ def json_schema(kind: str) -> dict[str, Any]:
     found["$schema"] = "https://json-schema.org/draft/2020-12/schema"
     found["title"] = f"gearopt {kind}"
     return found
+
+
+def reference(kind: str) -> str:
+    """Every table and key of a kind in Markdown: what it is, whether it is needed, an example."""
+    model: type[BaseModel] = scene_module(kind).Scene
+    parts = [f"### top of the file\n\n{_doc(model)}\n\n{_rows(model)}"]
+    for name, info in model.model_fields.items():
+        if table := table_of(info.annotation):
+            title = f"[[{name}]]" if get_origin(info.annotation) is tuple else f"[{name}]"
+            parts.append(f"### {title}\n\n{_doc(table)}\n\n{_rows(table)}")
+    return "\n\n".join(parts) + "\n"
+
+
+def _doc(model: type[BaseModel]) -> str:
+    return " ".join((model.__doc__ or "").split())
+
+
+def _rows(model: type[BaseModel]) -> str:
+    lines = ["| key | needed | meaning | example |", "|---|---|---|---|"]
+    for name, info in model.model_fields.items():
+        if table_of(info.annotation):
+            continue
+        extra = info.json_schema_extra
+        default = extra.get("default") if isinstance(extra, dict) else None
+        if default is None and info.default not in (None, "") and not info.is_required():
+            default = info.default
+        shown = f"default {toml_text(default)}" if default is not None else "no"
+        needed = "yes" if info.is_required() else shown
+        example = toml_text(example_of(model, (name,)))
+        lines.append(f"| `{name}` | {needed} | {info.description} | `{name} = {example}` |")
+    return "\n".join(lines)
