@@ -183,29 +183,30 @@ def whole(example: int, least: int, most: int) -> Reads:
 
     def read(value: Any, example: Any) -> int:
         if isinstance(value, str) and re.fullmatch(r"\s*[0-9]{1,9}\s*", value):
-            raise refuse("is a text, not a whole number", min(max(int(value), least), most))
+            found = int(value)
+            right = found if least <= found <= most else None
+            raise refuse("is a text, not a whole number", right)
         if isinstance(value, Decimal) and value.is_finite() and least <= value <= most:
             raise refuse("is not a whole number", int(value))
         if isinstance(value, bool) or not isinstance(value, int):
             raise refuse("is not a whole number")
         if not least <= value <= most:
-            nearest = min(max(value, least), most)
-            raise refuse(f"is not a whole number from {least} to {most}", nearest)
+            right = least if value < least else None  # the largest is no sensible proposal
+            raise refuse(f"is not a whole number from {least} to {most}", right)
         return value
 
     return Reads(read, example, {"type": "integer", "minimum": least, "maximum": most})
 
 
 def _mended(item: Reads, values: list[Any]) -> tuple[list[Any], str]:
-    """The values with a right one in place of each wrong one, and the first rule broken."""
+    """The values with what to write for each wrong one (None: unknown), and the first rule broken."""
     right, first = [], ""
     for value in values:
         try:
             item.reader(value, item.example)
         except PydanticCustomError as wrong:
             context = wrong.context or {}
-            first = first or context["rule"]
-            value = item.example if context["write"] is None else context["write"]
+            first, value = first or context["rule"], context["write"]
         right.append(value)
     return right, first
 
@@ -229,7 +230,8 @@ def span(item: Reads, example: Any, single: bool = False) -> Reads:
             pair = right * 2 if len(ends) == 1 and not rule else None
             raise refuse("is not a range [least, most]", pair)
         if rule:
-            raise refuse(f"has an end that {rule}", sorted(right, key=order))
+            write = None if None in right else sorted(right, key=order)
+            raise refuse(f"has an end that {rule}", write)
         if order(value[0]) > order(value[1]):
             raise refuse("has its ends in the wrong order", value[::-1])
         return item.reader(value[0], item.example), item.reader(value[1], item.example)
@@ -292,7 +294,8 @@ def either(names: dict[str, Any], item: Reads) -> Reads:
             raise refuse(f"is neither one of {known} nor a list", meant)
         right, rule = _mended(item, value)
         if rule:
-            raise refuse(f"has an entry that {rule}", right)
+            write = [item.example if entry is None else entry for entry in right]
+            raise refuse(f"has an entry that {rule}", write)
         return tuple(sorted({item.reader(entry, item.example).exact[0] for entry in value}))
 
     items = {"type": "array", "items": item.schema, "minItems": 1}

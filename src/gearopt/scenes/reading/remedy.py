@@ -1,0 +1,188 @@
+"""What is wrong with a file as one SceneError: where, the rule, and what to write instead."""
+
+import tomllib
+from decimal import Decimal
+from importlib import import_module
+from typing import Any, get_args, get_origin
+
+from pydantic import BaseModel, ValidationError
+
+from gearopt.errors import Fix, SceneError
+from gearopt.scenes.reading.fields import Reads, near
+from gearopt.scenes.reading.toml import cut, dotted, short, toml_text
+
+
+def wrong_value(file: str, key: str, value: Any, rule: str, write: Any) -> SceneError:
+    """The error for a key that has a wrong value (None: that is missing), with what to write."""
+    found = "" if value is None else short(value)
+    fix = Fix("set", key, toml_text(write))
+    return SceneError(file, key, found, rule, _instruction(key, write), fix)
+
+
+def _instruction(key: str, write: Any) -> str:
+    name = key.rsplit(".", 1)[-1]
+    if isinstance(write, dict):
+        table = f"[[{name.split('[')[0]}]]" if name.endswith("]") else f"[{name}]"
+        return f"Write a table {table} with {_pairs(write)}"
+    if isinstance(write, list) and write and isinstance(write[0], dict):
+        return f"Write tables [[{name}]], such as one with {_pairs(write[0])}"
+    return f"Write {name} = {short(write, 200)}"
+
+
+def _pairs(table: dict[str, Any]) -> str:
+    return ", ".join(f"{k} = {short(v)}" for k, v in table.items())
+
+
+def wrong_name(file: str, key: str, name: str) -> SceneError:
+    """The error for a key whose name is misspelt."""
+    return SceneError(
+        file, cut(key, 80), "", "unknown key", f"Did you mean {name}?", Fix("rename", key, name)
+    )
+
+
+def translate(
+    file: str, model: type[BaseModel], content: dict[str, Any], wrong: ValidationError
+) -> SceneError:
+    """The first error, unknown keys before all others (a typo also makes a key missing)."""
+    errors = wrong.errors(include_url=False, include_input=False)
+    first = next((e for e in errors if e["type"] == "extra_forbidden"), errors[0])
+    context: dict[str, Any] = first.get("ctx", {})
+    place = (*first["loc"], *context.get("at", ()))
+    if first["type"] == "extra_forbidden":
+        return _unknown(file, model, content, place)
+    value, found = _lookup(content, place)
+    key = dotted(place)
+    if first["type"] == "missing":
+        return wrong_value(file, key, None, "is missing", example_of(model, place))
+    if first["type"] != "gearopt":
+        return _no_table(file, model, place, value)
+    if name := _near_name(model, content, place):  # [[stages]] for [[stage]]
+        return wrong_name(file, key, name)
+    rule, write, action = context["rule"], context["write"], context["action"]
+    shown = short(value) if found else ""
+    if action == "remove":
+        return SceneError(file, key, shown, rule, "Remove it", Fix("remove", key))
+    if action == "swap":
+        other = dotted((*place[:-1], write))
+        return SceneError(
+            file, key, shown, rule, f"Exchange {key} and {other}", Fix("swap", key, other)
+        )
+    write = example_of(model, place) if write is None else write
+    return wrong_value(file, key, value, rule, write)
+
+
+def _no_table(file: str, model: type[BaseModel], place: tuple[Any, ...], value: Any) -> SceneError:
+    """The error for another value where a table, or a list of tables, belongs."""
+    name = next(part for part in reversed(place) if isinstance(part, str))
+    many = isinstance(place[-1], str) and _is_many(model, place)
+    rule = f"is not a list of tables [[{name}]]" if many else "is not a table"
+    write = example_of(model, place)
+    if _fits(value, _table_at(model, place)):  # [stage] for [[stage]], or [[duty]] for [duty]
+        write = [value] if many else value[0] if len(value) == 1 else write
+    try:
+        return wrong_value(file, dotted(place), value, rule, write)
+    except RecursionError:
+        return wrong_value(file, dotted(place), value, rule, example_of(model, place))
+
+
+def _unknown(
+    file: str, model: type[BaseModel], content: dict[str, Any], place: tuple[Any, ...]
+) -> SceneError:
+    """The error for an unknown key: what it may have meant, where it belongs, or what is known."""
+    value, _ = _lookup(content, place)
+    name, key, shown = str(place[-1]), dotted(place), cut(dotted(place), 80)
+    what = "unknown table" if isinstance(_first(value), dict) else "unknown key"
+    if homes := _homes(model, name):
+        rule = f"{what} here; it belongs {' or '.join(homes)}"
+        return SceneError(file, shown, "", rule, "Move it or remove it", Fix("remove", key))
+    if meant := _near_name(model, content, place):
+        return SceneError(
+            file, shown, "", what, f"Did you mean {meant}?", Fix("rename", key, meant)
+        )
+    rule = f"{what}; known here: {', '.join(_table_at(model, place[:-1]).model_fields)}"
+    own = " (tables of your own are named [x-...])" if len(place) == 1 else ""
+    return SceneError(file, shown, "", rule, f"Remove it{own}", Fix("remove", key))
+
+
+def _homes(model: type[BaseModel], name: str) -> list[str]:
+    """The places where a key of this name is known."""
+    homes = ["at the top of the file"] if name in model.model_fields else []
+    for field, info in model.model_fields.items():
+        table = table_of(info.annotation)
+        if table is not None and name in table.model_fields:
+            homes.append(f"in [[{field}]]" if _is_many(model, (field,)) else f"in [{field}]")
+    return homes
+
+
+def _near_name(
+    model: type[BaseModel], content: dict[str, Any], place: tuple[Any, ...]
+) -> str | None:
+    """A free name close to the last of a place that takes what stands there: a table or a value."""
+    value, found = _lookup(content, place)
+    parent, _ = _lookup(content, place[:-1])
+    fields = _table_at(model, place[:-1]).model_fields
+    fitting = [f for f in fields if _fits(value, table_of(fields[f].annotation))]
+    if not found or isinstance(place[-1], int) or place[-1] in fitting:
+        return None
+    return near(place[-1], [f for f in fitting if f not in parent])
+
+
+def _fits(value: Any, table: type[BaseModel] | None) -> bool:
+    """Whether a value may be meant for this table or list of tables (None: for a plain key)."""
+    first = _first(value)
+    if table is None or not isinstance(first, dict):
+        return table is None and not isinstance(first, dict)
+    return not first or not table.model_fields.keys().isdisjoint(first)
+
+
+def _first(value: Any) -> Any:
+    return value[0] if isinstance(value, list) and value else value
+
+
+def _is_many(model: type[BaseModel], place: tuple[Any, ...]) -> bool:
+    info = _table_at(model, place[:-1]).model_fields[place[-1]]
+    return get_origin(info.annotation) is tuple
+
+
+def _lookup(content: Any, place: tuple[Any, ...]) -> tuple[Any, bool]:
+    for part in place:
+        if isinstance(content, dict) and part in content:
+            content = content[part]
+        elif isinstance(content, list) and isinstance(part, int) and part < len(content):
+            content = content[part]
+        else:
+            return None, False
+    return content, True
+
+
+def _table_at(model: type[BaseModel], place: tuple[Any, ...]) -> type[BaseModel]:
+    """The class of the table at a place."""
+    for name in (part for part in place if isinstance(part, str)):
+        inner = table_of(model.model_fields[name].annotation)
+        assert inner is not None, name
+        model = inner
+    return model
+
+
+def table_of(annotation: Any) -> type[BaseModel] | None:
+    """The table class inside an annotation such as `tuple[Stage, ...] | None`."""
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return annotation
+    return next((t for a in get_args(annotation) if (t := table_of(a))), None)
+
+
+def example_of(model: type[BaseModel], place: tuple[Any, ...]) -> Any:
+    """A right value for a place: of a key its example, of a table that of the example file."""
+    names = [part for part in place if isinstance(part, str)]
+    info = _table_at(model, tuple(names[:-1])).model_fields[names[-1]]
+    reads = next((m for m in info.metadata if isinstance(m, Reads)), None)
+    if reads is not None:
+        return reads.example
+    table = table_of(info.annotation)
+    assert table is not None, names
+    file = tomllib.loads(import_module(model.__module__).EXAMPLE, parse_float=Decimal)
+    shown, found = _lookup(file, tuple(0 if isinstance(part, int) else part for part in place))
+    required = {
+        n: example_of(table, (n,)) for n, f in table.model_fields.items() if f.is_required()
+    }
+    return shown if found else required

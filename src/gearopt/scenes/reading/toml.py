@@ -1,0 +1,56 @@
+"""Values and keys as TOML writes them, for messages and for remedies a machine can apply."""
+
+import re
+from decimal import Decimal
+from typing import Any
+
+_BARE = re.compile(r"[A-Za-z0-9_-]+")
+_LONGEST_INTEGER = 10_000  # bits; Python refuses to print integers of more than 4300 digits
+
+
+def toml_text(value: Any) -> str:
+    """A value as TOML writes it."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, str):
+        quoted = value.replace("\\", "\\\\").replace('"', '\\"')
+        return '"' + "".join(c if c.isprintable() else _escape(c) for c in quoted) + '"'
+    if isinstance(value, list | tuple):
+        return "[" + ", ".join(toml_text(v) for v in value) + "]"
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{_key(k)} = {toml_text(v)}" for k, v in value.items()) + "}"
+    if isinstance(value, Decimal) and not value.is_finite():
+        return "nan" if value.is_nan() else str(float(value))
+    if isinstance(value, int) and value.bit_length() > _LONGEST_INTEGER:
+        return hex(value)
+    return str(value)
+
+
+def short(value: Any, most: int = 60) -> str:
+    """A value as TOML writes it, cut to `most` characters."""
+    try:
+        return cut(toml_text(value), most)
+    except RecursionError:
+        return "{...}" if isinstance(value, dict) else "[...]"
+
+
+def cut(text: str, most: int) -> str:
+    """A text of at most `most` characters."""
+    return text if len(text) <= most else text[: most - 3] + "..."
+
+
+def dotted(place: tuple[Any, ...]) -> str:
+    """The path of a place in a file: ("stage", 1, "module") is `stage[2].module`."""
+    parts = [f"[{p + 1}]" if isinstance(p, int) else f".{_key(str(p))}" for p in place]
+    return "".join(parts).removeprefix(".")
+
+
+def _escape(character: str) -> str:
+    if character in "\n\t":
+        return {"\n": "\\n", "\t": "\\t"}[character]
+    code = ord(character)
+    return f"\\u{code:04x}" if code < 0x10000 else f"\\U{code:08x}"
+
+
+def _key(name: str) -> str:
+    return name if _BARE.fullmatch(name) else toml_text(name)

@@ -1,0 +1,190 @@
+"""Thousands of wrong problem files: each loads, or is refused in one line that mends it."""
+
+import faulthandler
+import json
+import os
+import subprocess
+import sys
+from collections import Counter
+from decimal import Decimal
+from pathlib import Path
+from random import Random
+
+import jsonschema
+import pytest
+from mutations import MUTATIONS
+from scene_files import BASES, ELEVATOR, mended, parse
+from scrambles import SCRAMBLES
+
+from gearopt.errors import SceneError
+from gearopt.scenes.reading.load import load, read
+from gearopt.scenes.reading.schema import json_schema
+
+KINDS = MUTATIONS | SCRAMBLES
+SLOW = ("deep_dotted_key", "deep_keys_of_ones_own")  # a second each inside tomllib
+VALID = (  # mutations that leave a file right
+    "byte_order_mark",
+    "windows_line_ends",
+    "deep_keys_of_ones_own",
+)
+BLOCKS, SIZE = 20, 500
+HANG = 300  # s for a block of files that takes some seconds
+NO_FIX = ("is not valid TOML", "is not UTF-8 text", "is nested too deeply", "has a whole number of")
+VALIDATOR = jsonschema.Draft202012Validator(json_schema("drive"))
+
+
+@pytest.fixture(autouse=True)
+def _no_hang():
+    faulthandler.dump_traceback_later(HANG, exit=True, file=sys.__stderr__)
+    yield
+    faulthandler.cancel_dump_traceback_later()
+
+
+def refusal(data):
+    """The SceneError of a file, its form checked; None if the file loads."""
+    try:
+        _, scene = read(data, "my.toml")
+    except SceneError as wrong:
+        message = str(wrong)
+        assert message.startswith("my.toml: ") and len(message) < 600
+        assert message.isprintable(), message
+        assert wrong.rule and wrong.remedy
+        assert (wrong.fix is None) == wrong.rule.startswith(NO_FIX), message
+        return wrong
+    scene.train()
+    return None
+
+
+def repaired(data, steps):
+    """(whether the file loads in the end, remedies applied); at most `steps` may be needed."""
+    applied = []
+    while (wrong := refusal(data)) is not None and wrong.fix is not None:
+        applied.append(str(wrong))
+        assert len(applied) <= steps, "\n".join(applied)
+        data = mended(data.decode("utf-8-sig"), wrong.fix).encode()
+    assert wrong is None or not applied, "a remedy broke the file"
+    return wrong is None, len(applied)
+
+
+def judge(kind, base, seed):
+    """What became of a file: "loaded", "mended" or, without a remedy for machines, "refused"."""
+    data = KINDS[kind].make(Random(f"{kind} {base} {seed}"), BASES[base])
+    loads, applied = repaired(data, KINDS[kind].steps)
+    if loads and not applied and kind not in SLOW:
+        VALIDATOR.validate(plain(parse(data.decode("utf-8-sig"))))
+    return "mended" if applied else "loaded" if loads else "refused"
+
+
+def plain(value):
+    """A file's content as JSON has it, without the user's own tables."""
+    if isinstance(value, dict):
+        return {k: plain(v) for k, v in value.items() if not k.startswith("x-")}
+    if isinstance(value, list):
+        return [plain(v) for v in value]
+    return float(value) if isinstance(value, Decimal) else value
+
+
+@pytest.mark.parametrize("base", BASES)
+def test_the_bases_load_and_survive_our_own_writer(base):
+    assert refusal(BASES[base].encode()) is None
+    assert judge("byte_order_mark", base, 0) == "loaded"
+
+
+@pytest.mark.parametrize(
+    "kind", [pytest.param(k, marks=pytest.mark.slow) if k in SLOW else k for k in KINDS]
+)
+def test_every_mutation_of_every_base(kind):
+    found = {judge(kind, base, seed) for base in BASES for seed in range(1 if kind in SLOW else 5)}
+    assert (found == {"loaded"}) == (kind in VALID)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("block", range(BLOCKS))
+def test_ten_thousand_files(block):
+    fast = [kind for kind in KINDS if kind not in SLOW]
+    found = Counter()
+    for seed in range(block * SIZE, (block + 1) * SIZE):
+        found[judge(fast[seed % len(fast)], list(BASES)[seed % len(BASES)], seed)] += 1
+    assert sum(found.values()) == SIZE
+    assert found["mended"] > 0.6 * SIZE and found["refused"] > 0.1 * SIZE, found
+
+
+def refused_file(kind, path):
+    """Write the first refused file of a kind, mutations of the elevator."""
+    for seed in range(100):
+        data = KINDS[kind].make(Random(seed), ELEVATOR)
+        if refusal(data) is not None:
+            path.write_bytes(data)
+            return
+    raise AssertionError(f"{kind} is always right")
+
+
+def gearopt(*words):
+    return subprocess.run(
+        [sys.executable, "-m", "gearopt", *map(str, words)],
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
+
+
+def assert_refused(path):
+    done = gearopt("solve", path)
+    assert done.returncode == 2 and done.stdout == ""
+    assert done.stderr.startswith(f"gearopt: {path}: ")
+    assert done.stderr.endswith("\n") and done.stderr[:-1].isprintable()
+    assert "Traceback" not in done.stderr
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", [kind for kind in KINDS if kind not in VALID])
+def test_the_command_refuses_in_one_line(kind, tmp_path):
+    path = tmp_path / "my.toml"
+    refused_file(kind, path)
+    assert_refused(path)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", VALID)
+def test_the_command_takes_what_editors_add(kind, tmp_path):
+    path = tmp_path / "my.toml"
+    path.write_bytes(KINDS[kind].make(Random(0), ELEVATOR))
+    done = gearopt("solve", path, "--json")
+    assert done.returncode == 0 and done.stderr == ""
+    assert json.loads(done.stdout)["objective"]["value"] == pytest.approx(5782370.7, rel=1e-8)
+
+
+@pytest.mark.slow
+def test_the_command_refuses_what_is_no_file(tmp_path):
+    (tmp_path / "mine.toml").write_text(ELEVATOR)
+    assert_refused(tmp_path)
+    assert_refused(tmp_path / "nine.toml")
+    assert_refused(tmp_path / "none" / "mine.toml")
+    assert_refused(tmp_path / "mine.toml" / "mine.toml")
+    assert_refused(tmp_path / ("long" * 100))
+    if os.geteuid() != 0:  # root reads everything
+        (tmp_path / "mine.toml").chmod(0)
+        assert_refused(tmp_path / "mine.toml")
+
+
+def test_paths_that_are_no_file_name_one(tmp_path):
+    (tmp_path / "mine.toml").write_text(ELEVATOR)
+    for path, words in (
+        (tmp_path, "is a directory, not a file. Did you mean"),
+        (tmp_path / "nine.toml", "there is no such file. Did you mean"),
+    ):
+        with pytest.raises(SceneError, match=words) as wrong:
+            load(path)
+        assert f"Did you mean {tmp_path / 'mine.toml'}?" in wrong.value.remedy
+    with pytest.raises(SceneError, match="cannot be read .*null"):
+        load("a\0b")
+
+
+def test_an_unreadable_file_is_refused(tmp_path, monkeypatch):
+    def denied(self):
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(Path, "read_bytes", denied)
+    with pytest.raises(SceneError, match="cannot be read .Permission denied.. Check") as wrong:
+        load(tmp_path / "mine.toml")
+    assert wrong.value.fix is None

@@ -1,0 +1,73 @@
+"""The JSON schema takes every right file and refuses what it can know to be wrong."""
+
+import tomllib
+from pathlib import Path
+
+import jsonschema
+import pytest
+
+from gearopt.scenes.drive import EXAMPLE, Scene
+from gearopt.scenes.reading.remedy import table_of
+from gearopt.scenes.reading.schema import json_schema
+
+PROBLEMS = sorted((Path(__file__).parents[2] / "problems").glob("*.toml"))
+VALIDATOR = jsonschema.Draft202012Validator(json_schema("drive"))
+
+
+def test_the_schema_is_one():
+    jsonschema.Draft202012Validator.check_schema(json_schema("drive"))
+
+
+@pytest.mark.parametrize("path", PROBLEMS, ids=lambda p: p.stem)
+def test_every_shipped_file_fits(path):
+    VALIDATOR.validate(tomllib.loads(path.read_text(encoding="utf-8")))
+
+
+def test_the_example_fits_and_shows_every_table():
+    content = tomllib.loads(EXAMPLE)
+    VALIDATOR.validate(content)
+    tables = {name for name, info in Scene.model_fields.items() if table_of(info.annotation)}
+    assert tables and all(content[name] for name in tables)
+
+
+def test_every_key_is_described():
+    for name, table in json_schema("drive")["$defs"].items():
+        for key, entry in table["properties"].items():
+            assert len(entry.get("description", "")) > 10, f"{name}.{key}"
+
+
+BROKEN = {
+    "unknown key": lambda c: c["gears"].update(helix_angel="25 deg"),
+    "unknown table": lambda c: c.update(bearings={}),
+    "bare number": lambda c: c["duty"].update(power=7.5),
+    "unknown unit": lambda c: c["duty"].update(power="7.5 KW"),
+    "unit of another dimension": lambda c: c["duty"].update(power="7.5 mm"),
+    "negative quantity": lambda c: c["duty"].update(power="-7.5 kW"),
+    "range of one": lambda c: c["limits"].update(pinion_teeth=[20]),
+    "range of three": lambda c: c["limits"].update(pinion_teeth=[20, 30, 40]),
+    "tooth count with a fraction": lambda c: c["limits"].update(pinion_teeth=[20, 30.5]),
+    "too few teeth": lambda c: c["limits"].update(pinion_teeth=[2, 30]),
+    "missing key": lambda c: c["duty"].pop("power"),
+    "missing table": lambda c: c.pop("limits"),
+    "no version": lambda c: c.pop("gearopt"),
+    "another version": lambda c: c.update(gearopt=2),
+    "another kind": lambda c: c.update(kind="bearing"),
+    "unknown word": lambda c: c["objective"].update(minimise="noise"),
+    "text for a truth": lambda c: c["teeth"].update(coprime="yes"),
+    "table for a list": lambda c: c.update(stage={}),
+    "empty list": lambda c: c["teeth"].update(modules=[]),
+    "too many stages": lambda c: c.update(stages=7),
+}
+
+
+@pytest.mark.parametrize("change", BROKEN.values(), ids=BROKEN)
+def test_wrong_files_are_refused(change):
+    content = tomllib.loads(EXAMPLE)
+    change(content)
+    with pytest.raises(jsonschema.ValidationError):
+        VALIDATOR.validate(content)
+
+
+def test_tables_of_ones_own_are_free():
+    content = tomllib.loads(EXAMPLE) | {"x-notes": {"anything": [1, "a"]}}
+    VALIDATOR.validate(content)

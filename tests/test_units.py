@@ -1,0 +1,108 @@
+"""Units against pint, and what is said about a quantity that cannot be read."""
+
+import math
+from fractions import Fraction
+
+import pint
+import pytest
+
+from gearopt.units import UNITS, parse, quotient
+
+PINT = pint.UnitRegistry()
+INSIDE = {  # dimension -> what one is inside
+    "power": "newton * millimeter / second",
+    "speed": "radian / second",
+    "length": "millimeter",
+    "stress": "megapascal",
+    "angle": "radian",
+    "density": "metric_ton / millimeter**3",
+    "fraction": "dimensionless",
+}
+NAMES = {  # where pint's name is another; a speed of 1/min or 1/s counts revolutions
+    "hp": "horsepower",  # 550 ft lbf/s
+    "PS": "metric_horsepower",
+    "rpm": "revolution / minute",
+    "1/min": "revolution / minute",
+    "1/s": "revolution / second",
+    "deg/s": "degree / second",
+    "rad/s": "radian / second",
+    "in": "inch",
+    "um": "micrometer",
+    "deg": "degree",
+    "%": "percent",
+    "lb/in^3": "pound / inch**3",
+    "ksi": "kilopound_force_per_square_inch",
+    "psi": "pound_force_per_square_inch",
+}
+ALL = [(dimension, unit) for dimension, units in UNITS.items() for unit in units]
+
+
+@pytest.mark.parametrize(("dimension", "unit"), ALL, ids=[f"{d} {u}" for d, u in ALL])
+def test_every_unit_agrees_with_pint(dimension, unit):
+    theirs = PINT.Quantity(7.25, NAMES.get(unit, unit)).to(INSIDE[dimension]).magnitude
+    assert parse(f"7.25 {unit}", dimension).value == pytest.approx(theirs, rel=1e-12)
+
+
+def test_a_quotient_in_one_unit_is_exact():
+    found = quotient(parse("1450 rpm", "speed"), parse("66.5 rpm", "speed"))
+    assert found == Fraction(14500, 665)
+    assert found == quotient(parse("1450 1/min", "speed"), parse("66.5 rpm", "speed"))
+    assert quotient(parse("1 1/s", "speed"), parse("60 rpm", "speed")) == 1
+    assert quotient(parse("360 deg/s", "speed"), parse("1 1/s", "speed")) == 1
+    assert quotient(parse("1 in", "length"), parse("1 mm", "length")) == Fraction("25.4")
+
+
+def test_a_quotient_across_pi_is_right_to_rounding():
+    found = quotient(parse("1500 rpm", "speed"), parse("20 rad/s", "speed"))
+    assert found == pytest.approx(1500 * math.pi / 30 / 20, rel=1e-15)
+    back = quotient(parse("20 rad/s", "speed"), parse("1500 rpm", "speed"))
+    assert float(found * back) == pytest.approx(1, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("text", "number", "unit"),
+    [
+        ("7.5 kW", Fraction(15, 2), "kW"),
+        ("7.5kW", Fraction(15, 2), "kW"),
+        ("  7.5\tkW ", Fraction(15, 2), "kW"),
+        ("7.5\u00a0kW", Fraction(15, 2), "kW"),  # no-break space, as word processors write it
+        ("+.5e1 kW", Fraction(5), "kW"),
+        ("7. kW", Fraction(7), "kW"),
+        ("0.1 W", Fraction(1, 10), "W"),  # exact, not the nearest double
+        ("-3 W", Fraction(-3), "W"),
+    ],
+)
+def test_numbers_are_read_exactly(text, number, unit):
+    found = parse(text, "power")
+    assert (found.number, found.unit) == (number, unit)
+    assert parse(str(found), "power") == found
+
+
+@pytest.mark.parametrize("dimension", UNITS)
+@pytest.mark.parametrize(
+    "text", ["", "kW", "7.5 parsec", "7,5 mm", "1e99999 mm", "\u0667 mm", "nan"]
+)
+def test_errors_name_the_units(dimension, text):
+    with pytest.raises(ValueError) as wrong:
+        parse(text, dimension)
+    assert ", ".join(UNITS[dimension]) in str(wrong.value)
+
+
+def test_only_a_fraction_may_be_bare():
+    assert (
+        parse("0.01", "fraction").exact == parse("1 %", "fraction").exact == (Fraction(1, 100), 0)
+    )
+    with pytest.raises(ValueError, match="has no unit; units of length: mm, cm"):
+        parse("5", "length")
+
+
+def test_an_error_shows_no_control_characters():
+    with pytest.raises(ValueError, match="an unknown unit") as wrong:
+        parse("7 \x1b[31mkW", "power")
+    assert str(wrong.value).isprintable()
+
+
+@pytest.mark.parametrize("text", ["9" * 10**6, "9" * 81 + " mm", "1e9999999 mm", " " * 10**6])
+def test_a_long_text_is_refused_at_once(text):
+    with pytest.raises(ValueError, match="is not a number with a unit of length"):
+        parse(text, "length")
