@@ -166,9 +166,9 @@ def _proof(result: Result) -> list[str]:
                 f"{100 * (result.value / part.value - 1):.2f} %)."
             )
     if "lifting_one_suffices" in proof:
-        names = [limit_words(n) for n in proof["lifting_one_suffices"]]
+        names = ", ".join(limit_words(n) for n in proof["lifting_one_suffices"])
         lines.append(
-            f"Lifting any one of these limits alone makes a design possible: {', '.join(names)}."
+            f"Lifting any one of these limits alone makes a design possible: {names}."
             if names
             else "No single limit is the cause: at least two must change together."
         )
