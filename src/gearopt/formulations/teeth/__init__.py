@@ -12,7 +12,7 @@ import numpy as np
 
 from gearopt.formulations.teeth.search import MARGIN, TIE, Progress, Teeth, search
 from gearopt.formulations.teeth.stage import table
-from gearopt.formulations.train import Sizes, Train, each, terms
+from gearopt.formulations.train import Sizes, Stage, Train, each, terms
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.terms import Array, Terms, Var, namespace
@@ -90,10 +90,12 @@ def _variables(train: Train) -> tuple[Var, ...]:
         face = stage.face_width
         ranges["module"].append((float(stage.modules[0]), float(stage.modules[-1])))
         ranges["pinion_teeth"].append(_ends(stage.pinion_teeth))
-        ranges["wheel_teeth"].append(_ends(stage.wheel_teeth))
+        least, most = _ends(stage.wheel_teeth)
+        reach = math.floor(train.highest_ratio * ranges["pinion_teeth"][-1][1])
+        ranges["wheel_teeth"].append((least, min(most, float(reach))))
         given = float(face.fixed or 1)
         free = not face.tied and face.step is None and face.fixed is None
-        ranges["face_width"].append((1.0 / MOST, MOST) if free else (given, given))
+        ranges["face_width"].append(_widths(train, stage) if free else (given, given))
         ranges["width_steps"].append((1.0, MOST if face.step else 1.0))
     if all(s.face_width.tied or s.face_width.step for s in stages):
         del ranges["face_width"]
@@ -112,6 +114,15 @@ def _variables(train: Train) -> tuple[Var, ...]:
         )
         for name, ends in ranges.items()
     )
+
+
+def _widths(train: Train, stage: Stage) -> tuple[float, float]:
+    """Every free face width [mm] lies in here, by the diameters that teeth and modules allow."""
+    ends = zip((stage.modules[0], stage.modules[-1]), _ends(stage.pinion_teeth), strict=True)
+    least, most = (reference_diameter(float(m), z, train.helix_angle) for m, z in ends)
+    face = stage.face_width
+    low = float(face.low) or 1e-6 * float(face.high or 1)  # thinner than paper
+    return 0.999 * low * least, 1.001 * float(face.high or 1) * most
 
 
 def _ends(span: tuple[int, int | None]) -> tuple[float, float]:

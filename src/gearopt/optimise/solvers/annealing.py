@@ -1,0 +1,104 @@
+"""Simulated annealing (Metropolis) on any problem: many chains side by side, reproducible.
+
+Energy is the logarithm of the objective (or the objective over its scale) plus a penalty that grows
+as the temperature falls. Half of the moves change one coordinate, half change all, with steps that
+shrink with the temperature; discrete coordinates move by at least one value.
+"""
+
+import time
+
+import numpy as np
+
+from gearopt.optimise.box import Box, box, violation
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.result import Budget, Event, Outcome, Watch
+from gearopt.optimise.terms import Array
+
+CHAINS = 32
+SWEEPS = 4000  # where the budget names no evaluations: 128,000 in all
+HOT, COLD = 0.3, 1e-7  # temperatures, in units of the logarithm of the objective
+PENALTY = 5.0  # energy of a violation of 1, at first; grows a hundredfold
+LONGEST, SHORTEST = 0.3, 1e-6  # steps in a box of width 1
+FEASIBLE = 1e-9
+
+
+def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
+    """Anneal CHAINS chains; the best feasible point ever visited is the answer."""
+    clock, rng, space = time.perf_counter(), np.random.default_rng(seed), box(problem)
+    size = len(space.low)
+    sweeps = SWEEPS if budget.evaluations is None else max(1, budget.evaluations // CHAINS - 1)
+    unit = rng.random((CHAINS, size))
+    unit[0] = space.unit(problem.bounds()[2][None])[0]
+    value, excess = violation(problem, space.points(unit))
+    scale = max(abs(float(value[0])), 1e-300) if np.isfinite(value[0]) else 1.0
+    positive = bool((value[np.isfinite(value)] > 0).all())
+    best, least = _kept(space, unit, value, excess, None, np.inf)
+    finished = True
+    for sweep in range(sweeps):
+        done = sweep / sweeps
+        temperature = HOT * (COLD / HOT) ** done
+        moved = _moved(rng, space, unit, LONGEST * (SHORTEST / LONGEST) ** done)
+        new_value, new_excess = violation(problem, space.points(moved))
+        best, least = _kept(space, moved, new_value, new_excess, best, least)
+        weight = PENALTY * 100.0**done
+        energy = _energy(value, excess, weight, scale, positive)
+        rise = _energy(new_value, new_excess, weight, scale, positive) - energy
+        chance = np.exp(-np.maximum(np.nan_to_num(rise, nan=np.inf), 0.0) / temperature)
+        accept = rng.random(CHAINS) < chance
+        unit[accept], value[accept] = moved[accept], new_value[accept]
+        excess[accept] = new_excess[accept]
+        if sweep % 64 == 0 and not _goes_on(clock, budget, watch, sweep * CHAINS, least):
+            finished = False
+            break
+    spent = (sweep + 2) * CHAINS
+    return Outcome(
+        best,
+        finished,
+        evaluations=spent,
+        message="" if best is not None else "no feasible point was visited",
+    )
+
+
+def _moved(rng: np.random.Generator, space: Box, unit: Array, step: float) -> Array:
+    chains, size = unit.shape
+    change = step * rng.standard_normal((chains, size))
+    one = rng.random(chains) < 0.5
+    chosen = rng.integers(0, size, (chains, 1))
+    change[one] *= np.arange(size) == chosen[one]
+    for k, least in _smallest_steps(space).items():
+        short = (change[:, k] != 0) & (np.abs(change[:, k]) < least)
+        change[short, k] = np.sign(change[short, k]) * least * rng.integers(0, 2, short.sum())
+    moved = unit + change
+    return np.abs(np.where(moved > 1.0, 2.0 - moved, moved)).clip(0.0, 1.0)  # reflected
+
+
+def _smallest_steps(space: Box) -> dict[int, float]:
+    """Of discrete coordinates, the step that reaches a neighbour."""
+    steps = {k: 1.0 / max(len(v) - 1, 1) for k, v in space.sets.items()}
+    for k in np.flatnonzero(space.whole):
+        width = space.high[k] - space.low[k]
+        gap = np.log1p(1.0 / max(np.exp(space.low[k]), 1.0)) if space.logarithmic[k] else 1.0
+        steps[int(k)] = float(gap / width) if width > 0 else 0.0
+    return steps
+
+
+def _energy(value: Array, excess: Array, weight: float, scale: float, positive: bool) -> Array:
+    with np.errstate(all="ignore"):
+        return (np.log(value) if positive else value / scale) + weight * excess
+
+
+def _kept(
+    space: Box, unit: Array, value: Array, excess: Array, best: Array | None, least: float
+) -> tuple[Array | None, float]:
+    good = np.where(excess <= FEASIBLE, value, np.inf)
+    k = int(good.argmin())
+    if good[k] < least:
+        return space.points(unit[k : k + 1])[0], float(good[k])
+    return best, least
+
+
+def _goes_on(clock: float, budget: Budget, watch: Watch | None, spent: int, least: float) -> bool:
+    seconds = time.perf_counter() - clock
+    if budget.seconds is not None and seconds > budget.seconds:
+        return False
+    return watch is None or watch(Event(seconds, spent, least if np.isfinite(least) else None))

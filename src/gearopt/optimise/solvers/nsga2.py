@@ -1,0 +1,65 @@
+"""NSGA-II of pymoo on whole populations (`Problem.batch`), integers and finite sets included.
+
+One objective is searched like several: the answer is the best feasible individual.
+"""
+
+import time
+from typing import Any
+
+import numpy as np
+
+from gearopt.optimise.box import box
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.result import Budget, Event, Outcome, Watch
+
+POPULATION = 100
+GENERATIONS = 300  # where the budget names no evaluations
+EQUAL = 1e-6  # an equality counts as met within this
+
+
+def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
+    """Evolve a population of POPULATION; the best feasible individual of the last generation."""
+    from pymoo.algorithms.moo.nsga2 import NSGA2
+    from pymoo.core.problem import Problem as PymooProblem
+
+    clock, space, rows = time.perf_counter(), box(problem), problem.rows
+
+    class Batch(PymooProblem):  # type: ignore[misc]
+        """Our batch as pymoo asks for it: F, G <= 0, with equalities as a pair of bounds."""
+
+        def __init__(self) -> None:
+            super().__init__(
+                n_var=len(space.low),
+                n_obj=len(rows.objectives),
+                n_ieq_constr=len(rows.inequalities) + len(rows.equalities),
+                xl=0.0,
+                xu=1.0,
+            )
+
+        def _evaluate(self, unit: Any, out: dict[str, Any], *rest: Any, **more: Any) -> None:
+            with np.errstate(all="ignore"):
+                found = problem.batch(space.points(unit))
+            equal = np.abs(found.H - 1.0) - EQUAL
+            out["F"] = np.nan_to_num(found.F, nan=1e300, posinf=1e300)
+            out["G"] = np.nan_to_num(np.hstack([found.G - 1.0, equal]), nan=1e300, posinf=1e300)
+
+    size = min(POPULATION, budget.evaluations or POPULATION)
+    generations = GENERATIONS if budget.evaluations is None else budget.evaluations // size
+    algorithm = NSGA2(pop_size=size)
+    algorithm.setup(Batch(), seed=seed, termination=("n_gen", max(1, generations)))
+    finished = True
+    while algorithm.has_next():
+        algorithm.next()
+        seconds = time.perf_counter() - clock
+        late = budget.seconds is not None and seconds > budget.seconds
+        best = algorithm.opt[0].F[0] if algorithm.opt[0].feas else None
+        event = Event(seconds, int(algorithm.evaluator.n_eval), best)
+        if late or (watch is not None and not watch(event)):
+            finished = not algorithm.has_next()
+            break
+    spent = int(algorithm.evaluator.n_eval)
+    good = [one for one in algorithm.opt if one.feas]
+    if not good:
+        return Outcome(None, finished, evaluations=spent, message="no feasible individual")
+    first = min(good, key=lambda one: float(one.F[0]))
+    return Outcome(space.points(first.X[None])[0], finished, evaluations=spent)
