@@ -88,6 +88,11 @@ def test_errors_name_the_units(dimension, text):
     assert ", ".join(UNITS[dimension]) in str(wrong.value)
 
 
+def test_a_unit_of_another_dimension_is_called_so():
+    with pytest.raises(ValueError, match="has the unit mm of length; units of power: W, kW"):
+        parse("7.5 mm", "power")
+
+
 def test_only_a_fraction_may_be_bare():
     assert (
         parse("0.01", "fraction").exact == parse("1 %", "fraction").exact == (Fraction(1, 100), 0)
@@ -97,7 +102,7 @@ def test_only_a_fraction_may_be_bare():
 
 
 def test_an_error_shows_no_control_characters():
-    with pytest.raises(ValueError, match="an unknown unit") as wrong:
+    with pytest.raises(ValueError, match="the unknown unit;") as wrong:
         parse("7 \x1b[31mkW", "power")
     assert str(wrong.value).isprintable()
 

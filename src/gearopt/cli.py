@@ -7,6 +7,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import asdict
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Annotated, Any
@@ -161,6 +162,7 @@ def check(
                     "key": wrong.key,
                     "value": wrong.value,
                     "rule": wrong.rule,
+                    "fix": None if wrong.fix is None else asdict(wrong.fix),
                     "remedy": wrong.remedy,
                 }
             )

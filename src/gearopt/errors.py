@@ -25,10 +25,12 @@ class CertificateError(GearoptError):
 
 @dataclass(frozen=True)
 class Fix:
-    """A remedy that a machine can apply: `action` is set, rename or remove.
+    """A remedy that a machine can apply.
 
-    key: dotted path in the file, `stage[2].module` for the second `[[stage]]`.
-    value: TOML text to write (set), the new name (rename), or empty (remove).
+    action: set, rename, remove, swap (exchange the values of two keys), or replace (the whole file
+    by what `gearopt VALUE` prints). key: dotted path in the file, `stage[2].module` for the second
+    `[[stage]]`. value: TOML text to write (set), the new name (rename), the other key (swap), a
+    command (replace), or empty.
     """
 
     action: str
@@ -59,6 +61,7 @@ class SceneError(GearoptError):
         super().__init__(self._text())
 
     def _text(self) -> str:
-        where = self.file + (f": {self.key}" if self.key else "")
+        name = "".join(c if c.isprintable() else "?" for c in self.file)
+        where = name + (f": {self.key}" if self.key else "")
         found = f" = {self.value}" if self.value else ""
         return f"{where}{found}: {self.rule}. {self.remedy}".rstrip()

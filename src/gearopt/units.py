@@ -103,6 +103,7 @@ def parse(text: str, dimension: str) -> Quantity:
     if unit is None and dimension != "fraction":
         raise ValueError(f"has no unit; units of {dimension}: {', '.join(known)}")
     if unit is not None and unit not in known:
-        shown = f"the unknown unit {unit}" if unit.isprintable() else "an unknown unit"
-        raise ValueError(f"has {shown}; units of {dimension}: {', '.join(known)}")
+        other = next((f" of {d}" for d, names in UNITS.items() if unit in names), "")
+        shown = f"{'' if other else 'unknown '}unit {unit if unit.isprintable() else ''}".rstrip()
+        raise ValueError(f"has the {shown}{other}; units of {dimension}: {', '.join(known)}")
     return Quantity(Fraction(number), unit or "", dimension)

@@ -29,7 +29,13 @@ VALID = (  # mutations that leave a file right
 )
 BLOCKS, SIZE = 20, 500
 HANG = 300  # s for a block of files that takes some seconds
-NO_FIX = ("is not valid TOML", "is not UTF-8 text", "is nested too deeply", "has a whole number of")
+NO_FIX = (
+    "is not valid TOML",
+    "is not UTF-8 text",
+    "is nested too deeply",
+    "has a whole number of",
+    "has a NUL",
+)
 VALIDATOR = jsonschema.Draft202012Validator(json_schema("drive"))
 
 

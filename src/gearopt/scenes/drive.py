@@ -85,7 +85,8 @@ class Scene(Table):
         step = own.face_width_step or self.gears.face_width_step
         span = own.face_width_over_diameter or self.gears.face_width_over_diameter
         if span is None:
-            raise refuse("is missing", 0.6 if step is None else None, key)
+            ways = " (or give face_width, or set it in [gears])" if place[0] == "stage" else ""
+            raise refuse(f"is missing{ways}", 0.6 if step is None else None, key)
         if step is not None and span[0] == span[1]:
             raise refuse(
                 "ties the width, so that it cannot keep to face_width_step: give a range",

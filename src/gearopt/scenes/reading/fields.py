@@ -137,7 +137,7 @@ def number(
     example: Any, least: int, most: int | Fraction, percent: bool = False, zero: bool = False
 ) -> Reads:
     """A pure number, kept exactly as a fraction; percent: "1 %" is read too."""
-    largest = f"{float(most):.7g}"
+    above = f"between {least} and" if least or zero else "above 0 and at most"
     sort = 'a number or a percentage such as "1 %"' if percent else "a number"
 
     def inside(found: Fraction) -> bool:
@@ -162,8 +162,7 @@ def number(
         if found and not SMALLEST < abs(found) < LARGEST:
             raise refuse(BEYOND)
         if not inside(found):
-            least_is = f"between {least} and" if least or zero else "above 0 and at most"
-            raise refuse(f"is not {least_is} {largest}", slip(value, found))
+            raise refuse(f"is not {above} {float(most):.7g}", slip(value, found))
         return found
 
     def slip(value: Any, found: Fraction) -> Any:
@@ -183,23 +182,22 @@ def whole(example: int, least: int, most: int) -> Reads:
 
     def read(value: Any, example: Any) -> int:
         if isinstance(value, str) and re.fullmatch(r"\s*[0-9]{1,9}\s*", value):
-            found = int(value)
-            right = found if least <= found <= most else None
-            raise refuse("is a text, not a whole number", right)
+            meant = int(value) if least <= int(value) <= most else None
+            raise refuse("is a text, not a whole number", meant)
         if isinstance(value, Decimal) and value.is_finite() and least <= value <= most:
             raise refuse("is not a whole number", int(value))
         if isinstance(value, bool) or not isinstance(value, int):
             raise refuse("is not a whole number")
         if not least <= value <= most:
-            right = least if value < least else None  # the largest is no sensible proposal
-            raise refuse(f"is not a whole number from {least} to {most}", right)
+            meant = least if value < least else None  # the largest is no sensible proposal
+            raise refuse(f"is not a whole number from {least} to {most}", meant)
         return value
 
     return Reads(read, example, {"type": "integer", "minimum": least, "maximum": most})
 
 
 def _mended(item: Reads, values: list[Any]) -> tuple[list[Any], str]:
-    """The values with what to write for each wrong one (None: unknown), and the first rule broken."""
+    """The values with what to write for each wrong one (or None), and the first rule broken."""
     right, first = [], ""
     for value in values:
         try:
@@ -230,8 +228,8 @@ def span(item: Reads, example: Any, single: bool = False) -> Reads:
             pair = right * 2 if len(ends) == 1 and not rule else None
             raise refuse("is not a range [least, most]", pair)
         if rule:
-            write = None if None in right else sorted(right, key=order)
-            raise refuse(f"has an end that {rule}", write)
+            known = None not in right
+            raise refuse(f"has an end that {rule}", sorted(right, key=order) if known else None)
         if order(value[0]) > order(value[1]):
             raise refuse("has its ends in the wrong order", value[::-1])
         return item.reader(value[0], item.example), item.reader(value[1], item.example)
@@ -274,7 +272,7 @@ def words() -> Reads:
             raise refuse("is not a text", str(value) if plain else None)
         if len(value) > 1000 or not value.isprintable():
             cleaned = "".join(c for c in " ".join(value.split()) if c.isprintable())[:1000]
-            raise refuse("is longer than 1000 characters or has control characters", cleaned)
+            raise refuse("has line breaks or more than 1000 characters", cleaned)
         return value
 
     return Reads(read, "a text", {"type": "string", "maxLength": 1000})

@@ -20,6 +20,8 @@ from gearopt.scenes.reading.remedy import translate, wrong_name, wrong_value
 from gearopt.scenes.reading.toml import cut, dotted
 
 FORMAT = 1
+LARGEST_FILE = 1_000_000  # bytes
+DEEPEST_KEY = r"(?:[\w-]\s*\.\s*){6000}"  # tomllib's time grows with the square: 1 s at 5000
 
 
 @dataclass(frozen=True)
@@ -97,6 +99,11 @@ def read(data: bytes, file: str = "<text>") -> tuple[str, BaseModel]:
         raise translate(file, model, content, wrong) from None
 
 
+def _too_deep(file: str) -> SceneError:
+    remedy = "A problem file has tables of depth two at the most"
+    return SceneError(file, "", "", "is nested too deeply", remedy)
+
+
 def _pop(content: dict[str, Any], name: str, file: str) -> Any:
     """The value of a key that every file has, None if it is missing; SceneError if misspelt."""
     values = [key for key, value in content.items() if not isinstance(value, dict | list)]
@@ -112,11 +119,18 @@ def _parse(data: bytes, file: str) -> dict[str, Any]:
         line = data.count(b"\n", 0, wrong.start) + 1
         rule = f"is not UTF-8 text (byte {wrong.start + 1}, in line {line})"
         raise SceneError(file, "", "", rule, "Save it with the encoding UTF-8") from None
+    if "\0" in text:
+        rule = "has a NUL byte, as UTF-16 text and binary files have"
+        raise SceneError(file, "", "", rule, "Save it with the encoding UTF-8")
+    if len(data) > LARGEST_FILE:
+        rule = f"has {len(data):,} bytes; a problem file has at most {LARGEST_FILE:,}"
+        raise SceneError(file, "", "", rule, _name_a_file(file))
+    if re.search(DEEPEST_KEY, text):
+        raise _too_deep(file)
     try:
         return tomllib.loads(text, parse_float=_decimal)
     except RecursionError:
-        remedy = "A problem file has tables of depth two at the most"
-        raise SceneError(file, "", "", "is nested too deeply", remedy) from None
+        raise _too_deep(file) from None
     except tomllib.TOMLDecodeError as wrong:
         rule, remedy = _syntax(str(wrong))
         raise SceneError(file, "", "", rule, remedy) from None
