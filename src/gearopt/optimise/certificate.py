@@ -13,6 +13,7 @@ import numpy as np
 
 from gearopt.errors import CertificateError
 from gearopt.optimise.form import Form, form
+from gearopt.optimise.multipliers import multipliers
 from gearopt.optimise.problem import Batch, Problem
 from gearopt.optimise.result import Outcome, Result
 from gearopt.optimise.terms import Array
@@ -56,7 +57,7 @@ def certify(problem: Problem, outcome: Outcome, gap: float) -> Verdict:
     value = float(batch.F[0, 0])
     if outcome.bound is not None:
         return _claimed(outcome, value, certificate, gap)
-    if outcome.lam_g is None:
+    if any(v.discrete for v, _ in problem.columns):
         status = "feasible" if outcome.finished else "limit"
         return Verdict(status, value, certificate=certificate, message=outcome.message)
     return _local(problem, outcome, value, certificate, gap)
@@ -85,28 +86,26 @@ def _local(
     tolerance: float,
 ) -> Verdict:
     """Judge a point with multipliers: KKT residuals, and a dual bound where the form is convex."""
-    assert outcome.x is not None and outcome.lam_g is not None and outcome.lam_h is not None
+    assert outcome.x is not None
     shape = form(problem)
     lower, upper, guess = problem.bounds()
     low, high, y = (shape.to_y(a) for a in (lower, upper, outcome.x))
-    lam_g = np.maximum(outcome.lam_g, 0.0)
-    parts = shape.derivatives(y, problem.parameter_values(), lam_g, outcome.lam_h)
-    f, g, h, gradient_f, gradient = (np.array(part).ravel() for part in parts)
-    scale = 1.0 if shape.log_objective else max(1.0, float(np.abs(gradient_f).max(initial=0)))
-    step = gradient / scale
-    certificate |= {
-        "stationarity": float(np.abs(y - np.clip(y - step, low, high)).max(initial=0.0)),
-        "complementarity": float(np.abs(lam_g * g).max(initial=0.0)) / scale,
-    }
-    kkt = max(certificate["stationarity"] or 0.0, certificate["complementarity"] or 0.0)
-    status = "stationary" if kkt <= STATIONARY else ("feasible" if outcome.finished else "limit")
+    candidates = [multipliers(shape, y, problem.parameter_values(), low, high)]
+    if outcome.lam_g is not None and outcome.lam_h is not None:
+        candidates.append((np.maximum(outcome.lam_g, 0.0), outcome.lam_h))
+    judged = [_kkt(problem, shape, y, low, high, *lam) for lam in candidates if lam is not None]
+    if not judged:
+        return Verdict("feasible" if outcome.finished else "limit", value, certificate=certificate)
+    residuals, _ = min(judged, key=lambda j: max(j[0].values()))
+    certificate |= residuals
+    good = max(residuals.values()) <= STATIONARY
+    status = "stationary" if good else ("feasible" if outcome.finished else "limit")
     runaway = _runaway(problem, outcome.x, lower, upper, guess)
     if runaway:
         return Verdict("failed", value, certificate=certificate, message=runaway)
-    if not (shape.convex and np.isfinite(low).all() and np.isfinite(high).all()):
+    least = max(least for _, least in judged)
+    if not shape.convex or not math.isfinite(least):
         return Verdict(status, value, certificate=certificate, message=outcome.message)
-    lagrangian = f[0] + lam_g @ g + outcome.lam_h @ h
-    least = lagrangian + _box(gradient, y, low, high) - _allowance(f, lam_g * g, outcome.lam_h * h)
     bound = shape.objective(least)
     gap = (value - bound) / abs(value)
     if gap < -100 * FEASIBLE:
@@ -115,6 +114,22 @@ def _local(
         status = "optimal"
     proof = {"method": "dual", "arithmetic": "double, with a rounding allowance"}
     return Verdict(status, value, bound, max(gap, 0.0), certificate, proof, outcome.message)
+
+
+def _kkt(
+    problem: Problem, shape: Form, y: Array, low: Array, high: Array, lam_g: Array, lam_h: Array
+) -> tuple[dict[str, float], float]:
+    """Residuals of the optimality conditions, and the least value of the Lagrangian on the box."""
+    parts = shape.derivatives(y, problem.parameter_values(), lam_g, lam_h)
+    f, g, h, gradient_f, gradient = (np.array(part).ravel() for part in parts)
+    scale = 1.0 if shape.log_objective else max(1.0, float(np.abs(gradient_f).max(initial=0)))
+    residuals = {
+        "stationarity": float(np.abs(y - np.clip(y - gradient / scale, low, high)).max(initial=0)),
+        "complementarity": float(np.abs(lam_g * g).max(initial=0.0)) / scale,
+    }
+    lagrangian = f[0] + lam_g @ g + lam_h @ h
+    slack = _allowance(f, lam_g * g, lam_h * h)
+    return residuals, float(lagrangian + _box(gradient, y, low, high) - slack)
 
 
 def _infeasible(problem: Problem, outcome: Outcome) -> Verdict:
@@ -164,7 +179,9 @@ def farkas(
 
 
 def _box(gradient: Array, y: Array, low: Array, high: Array) -> float:
-    """Least value of gradient.(z - y) over low <= z <= high."""
+    """Least value of gradient.(z - y) over low <= z <= high; -inf where a bound is infinite."""
+    if not (np.isfinite(low).all() and np.isfinite(high).all()):
+        return -math.inf
     return float(np.minimum(gradient * (low - y), gradient * (high - y)).sum())
 
 

@@ -24,10 +24,12 @@ class Form:
 
     logarithmic: which variables are log (n,). log_objective: F is log f. convex: proven convex.
     derivatives(y, p, lam_g, lam_h) -> F, G, H, grad F, grad L with L = F + lam_g.G + lam_h.H.
+    jacobians(y, p) -> of G and of H, sparse.
     """
 
     expressions: tuple[Any, Any, Any, Any, Any]
     derivatives: Any
+    jacobians: Any
     logarithmic: Any
     log_objective: bool
     convex: bool
@@ -87,6 +89,7 @@ def _build(problem: Problem, found: tape.Kinds) -> Form:
     return Form(
         (y, p, objective, inequalities, equalities),
         ca.Function("derivatives", [y, p, lam_g, lam_h], outputs),
+        ca.Function("jacobians", [y, p], [ca.jacobian(r, y) for r in (inequalities, equalities)]),
         logarithmic,
         log_objective,
         bool(found.log_convex and logarithmic.all()),
