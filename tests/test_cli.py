@@ -27,7 +27,7 @@ def test_solve_prints_design_limits_bound_and_proof():
     assert done.returncode == 0 and done.stderr == ""
     for words in (
         "proven optimal",
-        "21  115",
+        "115        91",
         "5,782,370.7",
         "gap 0 %",
         "trains compared",
@@ -140,3 +140,22 @@ def test_every_option_has_help():
     for command in ("solve", "check", "schema", "new", "doctor", "bench"):
         done = gear(command, "--help")
         assert done.returncode == 0 and "Usage" in done.stdout
+
+
+def test_version_and_ascii_terminals():
+    assert gear("--version").stdout.strip() == gearopt.Result("", "", "", {}).gearopt
+    ascii_only = {**os.environ, "PYTHONIOENCODING": "ascii"}
+    done = gear("solve", ELEVATOR, env=ascii_only)
+    assert done.returncode == 0 and "Traceback" not in done.stderr
+
+
+def test_six_stages_fit_a_terminal_of_80_columns():
+    narrow = {**os.environ, "COLUMNS": "80", "FORCE_COLOR": "1", "TERM": "xterm"}
+    done = gear("solve", ROOT / "problems" / "six_stages.toml", env=narrow)
+    assert "224,034.1" in done.stdout and "20,941.64" in done.stdout  # no digit is cut
+
+
+def test_continuous_answer_of_a_teeth_file_says_so():
+    done = gear("solve", ELEVATOR, "--method", "ipopt", "--top", 3)
+    assert "Teeth and modules are real numbers here" in done.stdout
+    assert "centre distances" not in done.stdout.split("total length")[1]

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from gearopt import api, cli
-from gearopt.formulations import teeth
+from gearopt.formulations import sizing, teeth
 from gearopt.scenes import drive
 from gearopt.scenes.reading.load import read
 from gearopt.scenes.reading.schema import reference
@@ -39,7 +39,9 @@ def test_the_reference_page_holds_the_example_file_and_every_unit():
 def test_every_limit_name_is_documented():
     """All limits that a drive with everything switched on can have."""
     _, scene = read(EVERYTHING.encode())
-    names = {re.sub(r"\[\d+\]", "", r.name) for r in teeth.problem(scene.train()).rows.inequalities}
+    problems = (teeth.problem(scene.train()), sizing.problem(scene.train()))
+    rows = [row.name for problem in problems for row in problem.rows.inequalities]
+    names = {re.sub(r"\[\d+\]", "", name) for name in rows}
     page = text("docs/drive.md")
     assert len(names) >= 14
     for name in names:

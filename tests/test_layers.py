@@ -94,7 +94,7 @@ def test_sizing_path_stays_light():
     problem = SRC.parents[1] / "problems" / "elevator.toml"
     code = (
         "import sys; sys.argv = ['gearopt', 'solve', sys.argv[1], '--json']\n"
-        "from gearopt.cli import main\n"
+        "from gearopt.__main__ import main\n"
         "try:\n    main()\nexcept SystemExit as end:\n    assert not end.code, end.code\n"
         f"print([m for m in {HEAVY!r} if m in sys.modules], file=sys.stderr)"
     )

@@ -24,6 +24,7 @@ NAMES = {  # where pint's name is another; a speed of 1/min or 1/s counts revolu
     "rpm": "revolution / minute",
     "1/min": "revolution / minute",
     "1/s": "revolution / second",
+    "Hz": "revolution / second",
     "deg/s": "degree / second",
     "rad/s": "radian / second",
     "in": "inch",

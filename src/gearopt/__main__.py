@@ -1,5 +1,22 @@
-"""`python -m gearopt`."""
+"""The entry point: `gearopt` and `python -m gearopt`."""
 
-from gearopt.cli import main
+import io
+import sys
 
-main()
+
+def main() -> None:
+    """Run the command line; an interrupt, even while it is still loading, is no traceback."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")  # an ASCII terminal has no cubic millimetre
+    try:
+        from gearopt.cli import run
+
+        run()
+    except KeyboardInterrupt:
+        print("gearopt: interrupted", file=sys.stderr)
+        sys.exit(130)
+
+
+if __name__ == "__main__":
+    main()

@@ -27,17 +27,21 @@ def solve(
     budget: Budget | None = None,
     seed: int = 0,
     watch: Watch | None = None,
-    gap: float = GAP,
+    gap: float | None = None,
     top: int = 1,
 ) -> Result:
     """The certified answer to a problem file, to a loaded scene, or to a problem of your own.
 
     method: by default the scene's or problem's own. budget: seconds and evaluations. watch(event)
-    is told of progress; returning False stops the run. gap: largest relative gap to our bound that
-    is called optimal. top: so many next best answers too (scenes with an exact method).
-    SceneError for a wrong file, SolveError where the method does not fit. Not thread-safe.
+    is told of progress; returning False stops the run. gap: relative gap to our bound that is
+    enough, so that a search may end there; None: none is, and 1e-6 is called optimal. top: so many
+    next best answers too (scenes with an exact method). SceneError for a wrong file, SolveError
+    where the method does not fit, ValueError for gap < 0 or top < 1. Not thread-safe.
     """
-    budget = budget or Budget()
+    if (gap is not None and gap < 0.0) or top < 1:
+        raise ValueError(f"needs gap >= 0 and top >= 1, not gap = {gap}, top = {top}")
+    budget = replace(budget or Budget(), gap=gap or 0.0)
+    gap = GAP if gap is None else gap
     if isinstance(what, Problem):
         return solve_problem(what, method, budget, seed, watch, gap)
     ask = Ask(method, budget, seed, watch, gap, top)

@@ -31,8 +31,8 @@ File = Annotated[Path, typer.Argument(help="A problem file (TOML).", show_defaul
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")]
 
 
-def main() -> None:
-    """Entry point: errors on purpose become one message and exit code 2."""
+def run() -> None:
+    """Run a command; errors on purpose become one message and exit code 2."""
     try:
         app()
     except GearoptError as wrong:
@@ -43,12 +43,30 @@ def main() -> None:
         sys.exit(0)
 
 
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        print(version("gearopt"))
+        raise typer.Exit()
+
+
+@app.callback()
+def options(
+    shown: Annotated[
+        bool,
+        typer.Option(
+            "--version", callback=_print_version, is_eager=True, help="Print the version."
+        ),
+    ] = False,
+) -> None:
+    """Size gear drives to a proven optimum."""
+
+
 @app.command()
 def solve(
     file: File,
     method: Annotated[
         str | None,
-        typer.Option(help="exact or ipopt; by default exact where the file has a [teeth] table."),
+        typer.Option(help="exact or ipopt; by default exact where the file has a \\[teeth] table."),
     ] = None,
     top: Annotated[
         int,
@@ -58,11 +76,9 @@ def solve(
     ] = 1,
     seconds: Annotated[float, typer.Option(min=0.0, help="Stop after this time.")] = 60.0,
     gap: Annotated[
-        float,
-        typer.Option(
-            min=0.0, max=1.0, help="Largest relative gap to the bound that is called optimal."
-        ),
-    ] = 1e-6,
+        float | None,
+        typer.Option(min=0.0, max=1.0, help="Stop when this relative gap to the bound is reached."),
+    ] = None,
     seed: Annotated[int, typer.Option(help="Seed of random methods.")] = 0,
     as_json: Json = False,
 ) -> None:
@@ -261,8 +277,8 @@ def bench(
 
     if name not in names():
         raise GearoptError(f"no bench {name!r}; benches: {', '.join(names())}")
-    run: Callable[[int], list[dict[str, Any]]] = import_module(f"gearopt.bench.{name}").run
-    rows = run(repeat)
+    measure: Callable[[int], list[dict[str, Any]]] = import_module(f"gearopt.bench.{name}").run
+    rows = measure(repeat)
     if as_json:
         print(json.dumps(rows, indent=2))
         return

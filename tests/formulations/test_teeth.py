@@ -131,3 +131,16 @@ def test_finer_series_and_wider_tolerance_never_hurt():
     assert solve(teeth.problem(drive(modules=finer))).value <= base
     assert solve(teeth.problem(drive(tolerance=F(2, 100)))).value <= base
     assert solve(teeth.problem(drive(tolerance=F(1, 1000)))).value >= base
+
+
+def test_a_gap_that_is_enough_ends_the_search():
+    """Free widths in six stages take minutes to exhaust; 0.1 % of the continuous bound does not."""
+    free = FaceWidth(F("0.3"), F("0.6"))
+    train = drive(total=F(3000), widths=("0.6",) * 6)
+    train = replace(train, stages=tuple(replace(s, face_width=free) for s in train.stages))
+    bound = solve(sizing.problem(train)).bound
+    budget = Budget(evaluations=3_000_000, gap=1e-3)
+    result = solve(teeth.problem(train, floor=bound), budget=budget, gap=1e-3)
+    assert result.status == "optimal" and result.gap <= 1e-3
+    assert result.bound >= bound and result.evaluations < 2_000_000
+    assert result.message == "the gap asked for is reached"

@@ -148,3 +148,12 @@ def test_budget_keeps_the_best_feasible_iterate():
     seen = []
     watched = ipopt.run(problem, Budget(), 0, lambda event: seen.append(event) or len(seen) < 3)
     assert len(seen) == 3 and not watched.finished
+
+
+def test_an_objective_that_is_no_number_is_refused_by_name():
+    problem = Problem(
+        "log", (Var("x", "", 1, 300, 55.0),), (), lambda x, p: Terms({"loss": np.log(x.x - 200.0)})
+    )
+    with np.errstate(invalid="ignore"):
+        verdict = certify(problem, Outcome(np.array([55.0])), 1e-6)
+    assert verdict.status == "failed" and "loss is not a number at x = 55" in verdict.message

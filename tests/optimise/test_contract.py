@@ -224,3 +224,25 @@ def test_two_objectives_are_refused_by_a_single_objective_solve():
     )
     with pytest.raises(SolveError, match="2 objectives"):
         solve(problem)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (lambda x, p: Terms({"f": x.a}, {"limit": 1.0 <= x.a}), "limits limit is a comparison"),
+        (lambda x, p: {"f": x.a}, "returns dict, not Terms"),
+        (lambda x, p: Terms({"f": x.a}, [x.a]), "limits is not a dict"),
+    ],
+)
+def test_a_text_that_returns_the_wrong_thing_is_named(text, message):
+    problem = Problem("wrong", (Var("a", "", 0.5, 2, 1.0),), (), text)
+    with pytest.raises(SolveError, match=message):
+        solve(problem)
+
+
+def test_an_undeclared_name_is_answered_with_the_declared_ones():
+    problem = Problem(
+        "typo", (Var("radius", "", 0.5, 2, 1.0),), (), lambda x, p: Terms({"f": x.radios})
+    )
+    with pytest.raises(AttributeError, match="'radios' here; declared: radius"):
+        solve(problem)

@@ -52,7 +52,7 @@ ratio_tolerance = 0.02
 
 [[stage]]
 face_width_over_diameter = [0.3, 0.9]
-ratio = [2, 6]
+stage_ratio = [2, 6]
 module = ["2 mm", "4 mm"]
 
 [[stage]]

@@ -17,6 +17,7 @@ from scene_files import BASES, ELEVATOR, mended, parse
 from scrambles import SCRAMBLES
 
 from gearopt.errors import SceneError
+from gearopt.scenes.drive import EXAMPLE
 from gearopt.scenes.reading.load import load, read
 from gearopt.scenes.reading.schema import json_schema
 
@@ -194,3 +195,19 @@ def test_an_unreadable_file_is_refused(tmp_path, monkeypatch):
     with pytest.raises(SceneError, match="cannot be read .Permission denied.. Check") as wrong:
         load(tmp_path / "mine.toml")
     assert wrong.value.fix is None
+
+
+@pytest.mark.parametrize(
+    ("wrong", "write"),
+    [
+        ('power = "7.5 mW"', 'Write, for example, power = "7.5 kW"'),  # not 7.5 MW
+        ('power = "10 horsepower"', 'Write, for example, power = "7.5 kW"'),
+        ('power = "9.5 kw"', 'Write power = "9.5 kW"'),
+        ('power = "9,5 kW"', 'Write power = "9.5 kW"'),
+    ],
+)
+def test_a_remedy_never_changes_the_unit_of_a_number(wrong, write):
+    text = EXAMPLE.replace('power = "7.5 kW"', wrong)
+    with pytest.raises(SceneError) as caught:
+        read(text.encode(), "a.toml")
+    assert caught.value.remedy == write

@@ -25,7 +25,7 @@ def describe(train: Train, sizes: Sizes) -> dict[str, Any]:
                 "pinion_diameter_mm": d,
                 "wheel_diameter_mm": d * u,
                 "centre_distance_mm": centre_distance(d, u),
-                "pinion_torque_Nmm": torque,
+                "pinion_torque_Nm": 1e-3 * torque,
                 "k_factor_MPa": k_factor(torque, d, b, u),
                 "unit_load_MPa": unit_load(torque, d, b, m),
                 "gear_volume_mm3": gear_volume(d, b, u),
@@ -37,10 +37,12 @@ def describe(train: Train, sizes: Sizes) -> dict[str, Any]:
     found = {
         "stages": stages,
         "ratio": total,
-        "ratio_error_percent": 100.0 * (total / float(train.ratio) - 1.0),
-        "output_torque_Nmm": torque,
+        "ratio_error_percent": round(100.0 * (total / float(train.ratio) - 1.0), 9),
+        "output_torque_Nm": 1e-3 * torque,
         "gear_volume_mm3": volume,
         "sum_of_centre_distances_mm": sum(s["centre_distance_mm"] for s in stages),
+        "total_length_mm": 0.5 * (stages[0]["pinion_diameter_mm"] + stages[-1]["wheel_diameter_mm"])
+        + sum(s["centre_distance_mm"] for s in stages),
     }
     if train.density is not None:
         found["mass_kg"] = 1000.0 * train.density * volume

@@ -22,6 +22,7 @@ FEASIBLE = 1e-8  # rows are dimensionless; a stress 1e-8 over its limit is below
 STATIONARY = 1e-6  # of the objective's logarithm (or its largest derivative) per unit step
 ROUNDING = 1e-14  # 50 units in the last place of every term that is added up in a bound
 FARKAS = 1e-9  # an infeasibility proof must show at least this violation
+TINY = 1e-300  # a gap relative to an objective of zero is infinite, not an error
 RUNAWAY = 1e9  # a variable without a bound that moves this factor from its guess is held by nothing
 
 
@@ -55,6 +56,12 @@ def certify(problem: Problem, outcome: Outcome, gap: float) -> Verdict:
         message = f"{worst} is violated by {violation:.3g}. {outcome.message}".strip()
         return Verdict(unsolved, certificate=certificate, message=message)
     value = float(batch.F[0, 0])
+    if not math.isfinite(value):
+        where = ", ".join(
+            f"{n} = {v:.6g}" for (_, n), v in zip(problem.columns, outcome.x, strict=True)
+        )
+        message = f"{problem.rows.objectives[0]} is not a number at {where}"[:300]
+        return Verdict(unsolved, certificate=certificate, message=message)
     if outcome.bound is not None:
         return _claimed(outcome, value, certificate, gap)
     if any(v.discrete for v, _ in problem.columns):
@@ -69,7 +76,7 @@ def _claimed(
     """Judge a point with the bound of an exact algorithm."""
     bound = outcome.bound
     assert bound is not None
-    gap = (value - bound) / abs(value)
+    gap = (value - bound) / max(abs(value), TINY)
     if gap < -FEASIBLE:
         raise CertificateError(f"a feasible value {value!r} lies below the claimed bound {bound!r}")
     status = "optimal" if gap <= tolerance else ("feasible" if outcome.finished else "limit")
@@ -244,6 +251,6 @@ def reconcile(result: Result, relaxation: Result, tolerance: float) -> Result:
         raise CertificateError(f"the value {value!r} lies below the relaxation's bound {bound!r}")
     if result.bound is not None and bound <= result.bound:
         return result
-    gap = max(0.0, (value - bound) / abs(value))
+    gap = max(0.0, (value - bound) / max(abs(value), TINY))
     status = "optimal" if gap <= tolerance else result.status
     return replace(result, bound=bound, gap=gap, status=status, proof=dict(relaxation.proof))

@@ -14,11 +14,13 @@ import numpy as np
 
 from gearopt.optimise.terms import (
     Array,
+    Named,
     Number,
     Param,
     Repeat,
     Terms,
     Var,
+    checked,
     flat,
     flatten,
     inequalities,
@@ -163,15 +165,15 @@ class Problem:
     def _read_rows(self) -> Rows:
         p = namespace(self.parameters, list(self.parameter_values()))
         x = namespace(self.variables, list(_bounds(self.variables)[2]))
-        terms = self.evaluate(x, p)
+        terms = checked(self.evaluate(x, p), self.name)
         objectives = dict(terms.minimise)
         limits = [Row(name, kind) for name, _, kind in inequalities(terms)]
         equal = [name for name, _ in flat(terms.equal)]
         for r in self.repeats:
-            both = SimpleNamespace(**vars(x))
+            both = Named(**vars(x))
             both.__dict__.update(vars(namespace(r.variables, list(_bounds(r.variables)[2]))))
             row = SimpleNamespace(**{k: float(v[0]) for k, v in r.data.items()})
-            found = r.evaluate(both, p, row)
+            found = checked(r.evaluate(both, p, row), f"{self.name}.{r.name}")
             objectives |= found.minimise
             for k in range(1, r.count + 1):
                 limits += [Row(f"{r.name}.{n}[{k}]", kind) for n, _, kind in inequalities(found)]

@@ -20,10 +20,14 @@ STATUSES = ("optimal", "stationary", "feasible", "infeasible", "limit", "failed"
 
 @dataclass(frozen=True)
 class Budget:
-    """What a method may spend: wall seconds and evaluations (None: no bound)."""
+    """What a method may spend: wall seconds and evaluations (None: no bound).
+
+    gap: a method with a bound of its own may stop when its relative gap is this small.
+    """
 
     seconds: float | None = None
     evaluations: int | None = None
+    gap: float = 0.0
 
 
 @dataclass(frozen=True)

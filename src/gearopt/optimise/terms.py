@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from gearopt.errors import SolveError
+
 Array = NDArray[np.float64]
 Number = float | tuple[float, ...]
 
@@ -107,7 +109,14 @@ def spread(value: Number, size: int) -> Array:
     return np.broadcast_to(np.asarray(value, float), (size,)).copy()
 
 
-def namespace(declared: tuple[Any, ...], scalars: list[Any]) -> SimpleNamespace:
+class Named(SimpleNamespace):
+    """Scalars by name; a name that is not declared is answered with those that are."""
+
+    def __getattr__(self, name: str) -> Any:
+        raise AttributeError(f"nothing is named {name!r} here; declared: {', '.join(vars(self))}")
+
+
+def namespace(declared: tuple[Any, ...], scalars: list[Any]) -> Named:
     """Scalars by name: one for size 1, a tuple for more."""
     found: dict[str, Any] = {}
     start = 0
@@ -115,7 +124,7 @@ def namespace(declared: tuple[Any, ...], scalars: list[Any]) -> SimpleNamespace:
         part = tuple(scalars[start : start + item.size])
         found[item.name] = part[0] if item.size == 1 else part
         start += item.size
-    return SimpleNamespace(**found)
+    return Named(**found)
 
 
 def flat(block: Mapping[str, Any]) -> list[tuple[str, Any]]:
@@ -134,6 +143,22 @@ def inequalities(terms: Terms) -> list[tuple[str, Any, str]]:
     return [(n, v, "limits") for n, v in flat(terms.limits)] + [
         (n, v, "defines") for n, v in flat(terms.defines)
     ]
+
+
+def checked(terms: Any, where: str) -> Terms:
+    """The terms of a text at one point; SolveError says what a text must not return."""
+    if not isinstance(terms, Terms):
+        raise SolveError(f"the text of {where} returns {type(terms).__name__}, not Terms(...)")
+    for block in ("minimise", "limits", "defines", "equal", "report"):
+        if not isinstance(getattr(terms, block), Mapping):
+            raise SolveError(f"{where}: {block} is not a dict of names and terms")
+        for name, value in flat(getattr(terms, block)):
+            if isinstance(value, bool | np.bool_):
+                raise SolveError(
+                    f"{where}: {block} {name} is a comparison; write a quotient that must not "
+                    "exceed 1, such as needed/allowed"
+                )
+    return terms
 
 
 def flatten(terms: Terms) -> tuple[list[Any], list[Any]]:

@@ -5,12 +5,21 @@ from collections.abc import Mapping
 from typing import Any
 
 from rich.console import Console, Group, RenderableType
+from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 
 from gearopt.optimise.result import Result
 
-UNITS = {"mm": "mm", "mm3": "mm³", "MPa": "MPa", "Nmm": "N mm", "kg": "kg", "percent": "%"}
+UNITS = {
+    "mm": "mm",
+    "mm3": "mm³",
+    "MPa": "MPa",
+    "Nm": "N m",
+    "kg": "kg",
+    "percent": "%",
+    "ms": "ms",
+}
 VERDICTS = {
     "optimal": ("proven optimal", "green"),
     "stationary": ("locally optimal (no bound)", "yellow"),
@@ -19,25 +28,26 @@ VERDICTS = {
     "limit": ("stopped early", "yellow"),
     "failed": ("failed", "red"),
 }
-SHORT = {  # headings of the stage table, in the field's own letters
-    "normal_module_mm": "m_n\nmm",
-    "pinion_teeth": "z1",
-    "wheel_teeth": "z2",
-    "ratio": "u",
-    "face_width_mm": "b\nmm",
-    "pinion_diameter_mm": "d1\nmm",
-    "wheel_diameter_mm": "d2\nmm",
-    "centre_distance_mm": "a\nmm",
-    "k_factor_MPa": "K\nMPa",
-    "unit_load_MPa": "U\nMPa",
-    "gear_volume_mm3": "V\nmm³",
+ROWS = {  # of the stage table: what it is called, and the factor to its unit
+    "normal_module_mm": ("module m_n [mm]", 1),
+    "pinion_teeth": ("teeth z1", 1),
+    "wheel_teeth": ("teeth z2", 1),
+    "ratio": ("ratio u", 1),
+    "face_width_mm": ("face width b [mm]", 1),
+    "pinion_diameter_mm": ("diameter d1 [mm]", 1),
+    "wheel_diameter_mm": ("diameter d2 [mm]", 1),
+    "centre_distance_mm": ("centres a [mm]", 1),
+    "pinion_torque_Nm": ("torque T1 [N m]", 1),
+    "k_factor_MPa": ("K-factor [MPa]", 1),
+    "unit_load_MPa": ("unit load [MPa]", 1),
+    "gear_volume_mm3": ("volume [cm³]", 1e-3),
 }
 
 
 def show(result: Result, title: str, console: Console) -> None:
     """Print a result."""
     words, colour = VERDICTS[result.status]
-    console.print(Text.assemble((title, "bold"), "  ", (words, f"bold {colour}")))
+    console.print(Text.assemble((title, "bold"), ": ", (words, f"bold {colour}")))
     for block in _blocks(result):
         console.print()
         console.print(block)
@@ -55,27 +65,28 @@ def _blocks(result: Result) -> list[RenderableType]:
 
 
 def _design(design: Mapping[str, Any]) -> RenderableType:
-    """Stages as a table, the rest line by line."""
+    """Stages side by side, then the totals."""
     parts: list[RenderableType] = []
     stages = design.get("stages", [])
     if stages:
-        table = Table(
-            "stage",
-            *[SHORT[k] for k in stages[0] if k in SHORT],
-            box=None,
-            header_style="bold",
-            pad_edge=False,
-        )
-        for column in table.columns:
-            column.justify = "right"
-        for k, stage in enumerate(stages, 1):
-            table.add_row(str(k), *[number(v) for n, v in stage.items() if n in SHORT])
-        parts.append(table)
+        table = _columns("", [f"stage {k}" for k in range(1, len(stages) + 1)])
+        for key, (label, factor) in ROWS.items():
+            values = [s[key] for s in stages]
+            table.add_row(Text(label), *[number(v if factor == 1 else factor * v) for v in values])
+        parts += [table, ""]
     totals = Table.grid(padding=(0, 2))
     for key, value in design.items():
         if key != "stages":
             totals.add_row(Text(heading(key)), number(value))
-    return Group(*parts, "", totals)
+    return Group(*parts, totals)
+
+
+def _columns(first: str, heads: list[str]) -> Table:
+    """A plain table of right-aligned columns beside a column of names."""
+    table = Table(first, *heads, box=None, header_style="bold", pad_edge=False)
+    for column in table.columns[1:]:
+        column.justify, column.no_wrap = "right", True
+    return table
 
 
 def _limits(limits: Mapping[str, float]) -> RenderableType:
@@ -86,16 +97,7 @@ def _limits(limits: Mapping[str, float]) -> RenderableType:
         stem, index = (match[1], int(match[2])) if match else (name, 0)
         rows.setdefault(stem, {})[index] = value
     stages = range(1, max((i for r in rows.values() for i in r), default=0) + 1)
-    table = Table(
-        "limit used, %",
-        *[f"stage {k}" for k in stages],
-        "drive",
-        box=None,
-        header_style="bold",
-        pad_edge=False,
-    )
-    for column in table.columns[1:]:
-        column.justify = "right"
+    table = _columns("limit used, %", [*(f"stage {k}" for k in stages), "drive"])
     for stem, values in rows.items():
         cells = [_percent(values.get(k)) for k in (*stages, 0)]
         table.add_row(limit_words(stem), *cells)
@@ -148,7 +150,7 @@ def _proof(result: Result) -> list[str]:
     elif proof.get("method") == "exhausted":
         lines.append(
             f"Proof: {proof['trains_compared']:,} trains compared, all others excluded by "
-            f"a lower bound in {proof['nodes']:,} nodes."
+            f"lower bounds (nodes opened: {proof['nodes']:,})."
         )
     elif proof.get("method") == "dual" and result.bound is not None:
         lines.append(
@@ -172,8 +174,7 @@ def _proof(result: Result) -> list[str]:
             if names
             else "No single limit is the cause: at least two must change together."
         )
-    if assumed := result.report.get("assumed"):
-        lines.append(f"Assumed: {assumed}.")
+    lines += result.report.get("notes", [])
     if result.message:
         lines.append(result.message[0].upper() + result.message[1:] + ".")
     lines.append(f"{result.method}, {result.evaluations:,} evaluations, {result.seconds:.3g} s.")
@@ -204,13 +205,16 @@ def number(value: Any) -> str:
     if isinstance(value, int):
         return f"{value:,}"
     if abs(value) >= 1e5:
-        return f"{value:,.1f}"
-    return f"{value:.6g}" if abs(value) >= 100 else f"{value:.5g}"
+        return f"{value:,.0f}" if abs(value) >= 1e8 else f"{value:,.1f}"
+    if abs(value) >= 100:
+        return f"{value:,.2f}"
+    return f"{value:.5g}"
 
 
 def rows_table(rows: list[dict[str, Any]]) -> RenderableType:
     """Rows of a bench as a table."""
-    table = Table(*[heading(k) for k in rows[0]], box=None, header_style="bold", pad_edge=False)
+    heads = [escape(heading(k)) for k in rows[0]]
+    table = Table(*heads, box=None, header_style="bold", pad_edge=False)
     for row in rows:
         table.add_row(*["" if v is None else number(v) for v in row.values()])
     return table

@@ -4,6 +4,7 @@ With a [teeth] table the answer has whole teeth and standard modules and is prov
 without one, or by the method ipopt, sizes are continuous and proven by a dual bound.
 """
 
+import math
 from dataclasses import replace
 from decimal import Decimal
 from fractions import Fraction
@@ -17,6 +18,7 @@ from gearopt.formulations.design import describe
 from gearopt.formulations.teeth.conflict import lifting
 from gearopt.formulations.train import FaceWidth, Stage, Train
 from gearopt.optimise.certificate import reconcile
+from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run
 from gearopt.physics.loads import torque
@@ -138,7 +140,7 @@ class Scene(Table):
             modules=self._modules(own),
             pinion_teeth=own.pinion_teeth or limits.pinion_teeth,
             wheel_teeth=own.wheel_teeth or limits.wheel_teeth or (1, None),
-            ratio=own.ratio or limits.stage_ratio or (Fraction(1), None),
+            ratio=own.stage_ratio or limits.stage_ratio or (Fraction(1), None),
             wheel_diameter=diameter.exact[0] if diameter else None,
         )
 
@@ -195,17 +197,18 @@ def solve(scene: Scene, ask: Ask) -> Result:
     train = scene.train()
     if scene.teeth is None and ask.method == "exact":
         raise SolveError("the method exact needs a [teeth] table in the file")
-    ideal = _sized(scene, train, replace(ask, method=None, watch=None), sizing)
+    ideal = _sized(scene, train, replace(ask, method=None, watch=None), sizing.problem(train))
     if scene.teeth is None or ask.method == "ipopt":
         return ideal
-    found = _sized(scene, train, ask, teeth)
+    floor = -math.inf if ideal.bound is None else ideal.bound
+    found = _sized(scene, train, ask, teeth.problem(train, ask.top, floor))
     return reconcile(replace(found, parts=(replace(ideal, name="sizing"),)), ideal, ask.gap)
 
 
-def _sized(scene: Scene, train: Train, ask: Ask, formulation: Any) -> Result:
+def _sized(scene: Scene, train: Train, ask: Ask, problem: Problem) -> Result:
     """Solve one formulation of the drive and put its answer in a drawing's words."""
-    exact = formulation is teeth
-    problem = teeth.problem(train, ask.top) if exact else sizing.problem(train)
+    exact = problem.name == "teeth"
+    formulation = teeth if exact else sizing
     result, outcome = run(problem, ask.method, ask.budget, ask.seed, ask.watch, ask.gap)
     result = replace(result, objective=result.objective | {"unit": train.unit})
     if result.status == "infeasible" and exact:
@@ -218,7 +221,21 @@ def _sized(scene: Scene, train: Train, ask: Ask, formulation: Any) -> Result:
         {"objective": value, "ratio": design["ratio"], "stages": design["stages"]}
         for value, design in zip(values, designs, strict=True)
     ]
-    report: dict[str, Any] = {"trains": trains} if ask.top > 1 else {}
-    if scene.limits.preset is not None:
-        report["assumed"] = f"load limits of preset {scene.limits.preset}, not from a standard"
+    report: dict[str, Any] = {"trains": trains} if exact and ask.top > 1 else {}
+    if notes := _notes(scene, exact):
+        report["notes"] = notes
     return replace(result, name="drive", design=designs[0], report=report)
+
+
+def _notes(scene: Scene, exact: bool) -> list[str]:
+    """What a reader of the result should know beside the numbers."""
+    notes = []
+    limits, stages = scene.limits, scene.stage
+    if limits.preset is not None:
+        notes.append(f"The load limits are those of preset {limits.preset}, not of a standard.")
+    if scene.teeth is not None and not exact:
+        notes.append("Teeth and modules are real numbers here; the table [teeth] was left aside.")
+    names = ("wheel_teeth", "stage_ratio", "wheel_diameter")
+    if not any(getattr(table, name) for table in (limits, *stages) for name in names):
+        notes.append("No limit on wheel teeth, stage ratio or wheel diameter was set.")
+    return notes

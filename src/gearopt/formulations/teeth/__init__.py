@@ -10,7 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from gearopt.formulations.teeth.search import MARGIN, TIE, Progress, Teeth, search
+from gearopt.formulations.teeth.progress import MARGIN, TIE, Progress, Teeth
+from gearopt.formulations.teeth.search import search
 from gearopt.formulations.teeth.stage import table
 from gearopt.formulations.train import Sizes, Stage, Train, each, terms
 from gearopt.optimise.problem import Problem
@@ -28,8 +29,11 @@ VARIABLES = {
 MOST = 1e18  # teeth, steps or mm: no limit
 
 
-def problem(train: Train, count: int = 1) -> Problem:
+def problem(train: Train, count: int = 1, floor: float = -math.inf) -> Problem:
     """The discrete problem of a drive; `exact` finds its `count` best trains in proven order.
+
+    floor: a lower bound on the objective known from elsewhere (`sizing`), which lets `exact` stop
+    early where its budget allows a gap.
 
     Trains are distinct when a tooth number differs; each has its best modules and face widths.
     Variables, one component a stage: module [mm], pinion_teeth, wheel_teeth, and face_width [mm] or
@@ -39,18 +43,20 @@ def problem(train: Train, count: int = 1) -> Problem:
 
     def evaluate(x: Any, p: Any) -> Terms:
         found = terms(train, numbers, *_sizes(train, x))
+        # A module is one of a set: the ends of the set are no limits of their own here.
+        limits = {n: v for n, v in found.limits.items() if not n.startswith("module_")}
         if not train.coprime:
-            return found
+            return Terms(found.minimise, limits, equal=found.equal)
         pairs = zip(each(x.pinion_teeth), each(x.wheel_teeth), strict=True)
         divisors = {
             f"common_divisor[{k}]": np.gcd(np.rint(a).astype(int), np.rint(b).astype(int))
             for k, (a, b) in enumerate(pairs, 1)
         }
-        return Terms(found.minimise, {**found.limits, **divisors}, equal=found.equal)
+        return Terms(found.minimise, {**limits, **divisors}, equal=found.equal)
 
     def exact(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
         """Branch and bound over the teeth; the seed changes nothing."""
-        return _outcome(train, count, budget, watch)
+        return _outcome(train, count, floor, budget, watch)
 
     return Problem("teeth", _variables(train), (), evaluate, methods={"exact": exact})
 
@@ -129,11 +135,13 @@ def _ends(span: tuple[int, int | None]) -> tuple[float, float]:
     return float(span[0]), MOST if span[1] is None else float(span[1])
 
 
-def _outcome(train: Train, count: int, budget: Budget, watch: Watch | None) -> Outcome:
-    progress = search(train, 1, budget, watch)
+def _outcome(
+    train: Train, count: int, floor: float, budget: Budget, watch: Watch | None
+) -> Outcome:
+    progress = search(train, 1, budget, watch, floor)
     found = _in_order(progress)
-    if count > 1 and found and not progress.stopped:
-        more = search(train, count, budget, watch)
+    if count > 1 and found and not (progress.stopped or progress.enough):
+        more = search(train, count, budget, watch, floor)
         found = (found[:1] + [t for t in _in_order(more) if t != found[0]])[:count]
         progress.compared += more.compared
         progress.looked += more.looked
@@ -148,16 +156,16 @@ def _outcome(train: Train, count: int, budget: Budget, watch: Watch | None) -> O
         "nodes": progress.nodes,
         "pruning_margin": MARGIN,
     }
-    if progress.stopped:
-        lower = progress.lower if math.isfinite(progress.lower) else None
+    if progress.stopped or progress.enough:
+        lower = progress.bound if math.isfinite(progress.bound) else None
         partial = {**proof, "method": "branch and bound, stopped early"}
         return Outcome(
             points[0] if points else None,
-            False,
+            finished=progress.enough,
             bound=lower,
             proof=partial,
             evaluations=progress.looked,
-            message="the search was stopped before it was exhausted",
+            message=_why(progress, count),
         )
     if not points:
         return Outcome(
@@ -173,6 +181,14 @@ def _outcome(train: Train, count: int, budget: Budget, watch: Watch | None) -> O
         others=tuple(points[1:]),
         evaluations=progress.looked,
     )
+
+
+def _why(progress: Progress, count: int) -> str:
+    """Why a search ended before it was exhausted, and what that means for the list."""
+    if not progress.found:
+        return "stopped before a train was found: give it more time"
+    why = "the gap asked for is reached" if progress.enough else "stopped before it was exhausted"
+    return why if count == 1 else f"{why}, so only the best train so far is listed, not {count}"
 
 
 def _in_order(progress: Progress) -> list[Teeth]:

@@ -23,7 +23,7 @@ def lifting(train: Train) -> list[str]:
 
 
 def _possible(train: Train) -> bool:
-    return bool(search(train, 1, Budget(seconds=SECONDS), None).found)
+    return bool(search(train, 1, Budget(seconds=SECONDS)).found)
 
 
 def _lifts() -> dict[str, Callable[[Train], Train]]:

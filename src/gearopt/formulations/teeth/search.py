@@ -8,23 +8,20 @@ down to complete trains at once. The search ends when no open bound is below the
 import heapq
 import itertools
 import math
-import time
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gearopt.formulations.teeth.bound import EDGE, Bound, bound, ragged
+from gearopt.formulations.teeth.progress import TIE, Progress, Teeth
 from gearopt.formulations.teeth.stage import Table, table
 from gearopt.formulations.train import Train, share
-from gearopt.optimise.result import Budget, Event, Watch
+from gearopt.optimise.result import Budget, Watch
 from gearopt.optimise.terms import Array
 from gearopt.physics.loads import k_factor
 
-TIE = 1e-12  # trains whose objectives differ by less are ties: fewest teeth win
-MARGIN = 1e-11  # a node is dropped only when its bound exceeds the best by this, so ties survive
 BEAM = 4  # nodes followed down at once; measured best for two to four stages
 LEAVES = 256  # nodes completed at once
 FIRST_LOOK = 20_000  # pairs looked at for a first train
@@ -49,74 +46,27 @@ class Chunk:
         )
 
 
-Teeth = tuple[tuple[int, int], ...]
-
-
-@dataclass
-class Progress:
-    """What a search has found and spent; it has state because it is filled as the search goes.
-
-    found: (objective, teeth) of the best trains; wanted: how many of them.
-    """
-
-    wanted: int
-    budget: Budget
-    watch: Watch | None
-    clock: float = field(default_factory=time.perf_counter)
-    found: list[tuple[float, Teeth]] = field(default_factory=list)
-    lower: float = -math.inf
-    looked: int = 0
-    compared: int = 0
-    nodes: int = 0
-    stopped: bool = False
-
-    @property
-    def threshold(self) -> float:
-        """Nodes with a bound above it are of no use."""
-        if len(self.found) < self.wanted:
-            return math.inf
-        value = self.found[self.wanted - 1][0]
-        return value * (1.0 + MARGIN if self.wanted == 1 else 1.0 - TIE)
-
-    def add(self, totals: Array, trains: Iterator[Teeth]) -> None:
-        """Keep the wanted best (and, for a single one, its ties)."""
-        known = {teeth for _, teeth in self.found}
-        fresh = [(float(v), t) for v, t in zip(totals, trains, strict=True) if t not in known]
-        self.found = sorted(self.found + fresh)
-        if len(self.found) > self.wanted:
-            edge = self.found[self.wanted - 1][0] * (1.0 + TIE if self.wanted == 1 else 1.0)
-            extra = [f for f in self.found[self.wanted :] if f[0] <= edge and self.wanted == 1]
-            self.found = self.found[: self.wanted] + extra
-
-    def goes_on(self) -> bool:
-        """Whether budget and watcher let the search go on."""
-        seconds = time.perf_counter() - self.clock
-        most_s, most_n = self.budget.seconds, self.budget.evaluations
-        over = (most_s is not None and seconds > most_s) or (
-            most_n is not None and self.looked >= most_n
-        )
-        if not over and self.watch is not None:
-            best = self.found[0][0] if self.found else None
-            lower = self.lower if math.isfinite(self.lower) else None
-            over = not self.watch(Event(seconds, self.looked, best, lower))
-        self.stopped = self.stopped or over
-        return not self.stopped
-
-
-def search(train: Train, wanted: int, budget: Budget, watch: Watch | None) -> Progress:
-    """The `wanted` best trains; `stopped` tells an interrupted search from an exhausted one.
+def search(
+    train: Train,
+    wanted: int,
+    budget: Budget,
+    watch: Watch | None = None,
+    floor: float = -math.inf,
+) -> Progress:
+    """The `wanted` best trains; `stopped` or `enough` where the search was not exhausted.
 
     A first look at stage ratios near the even split gives a train; what it does not exclude by
     the ratio of a single stage is then searched to the end.
     """
-    progress = Progress(wanted, budget, watch)
+    progress = Progress(wanted, budget, watch, floor)
     most = train.highest_ratio
     cut = min(most, Fraction(3.0 * float(train.ratio) ** (1.0 / len(train.stages))))
     closed = _look(train, cut, progress, FIRST_LOOK)
     reach = _reach(train, cut, most, progress.threshold)
     if reach > cut:
         progress.lower = -math.inf  # the bound so far holds for the smaller ratios only
-    if not progress.stopped and not (closed and reach <= cut):
+    over = progress.stopped or progress.enough
+    if not over and not (closed and reach <= cut):
         _look(train, max(cut, reach), progress, math.inf)
     return progress
 

@@ -198,7 +198,7 @@ def _pairs(stage: Stage, low: Fraction, cut: Fraction, coprime: bool) -> tuple[I
     if min(expected, (most_wheel or expected) * (most_z1 - least_z1 + 1)) > PAIRS:
         raise SolveError(
             f"a stage has some {float(expected):.2g} tooth pairs to choose from: "
-            "limit its wheel teeth or its ratio"
+            "limit its wheel teeth or its ratio (limits.wheel_teeth, limits.stage_ratio)"
         )
     for z in range(least_z1, most_z1 + 1):
         start = max(stage.wheel_teeth[0], math.ceil(low * z))

@@ -6,10 +6,9 @@ exactly as written (int or Decimal).
 """
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass
 from decimal import Decimal
-from difflib import get_close_matches
 from fractions import Fraction
 from typing import Any
 
@@ -17,6 +16,7 @@ from pydantic import BaseModel, ConfigDict
 from pydantic_core import PydanticCustomError, core_schema
 
 from gearopt import units
+from gearopt.scenes.reading.spelling import meant, near
 from gearopt.units import Quantity
 
 LARGEST = Fraction(10) ** 30  # of any number in a file: beyond it lies a slip, not a gear
@@ -58,17 +58,11 @@ def refuse(
     """The error for a value: what is wrong, and what to do.
 
     write: the value to set (None: the field's example), or for `swap` the key to exchange with.
-    at: the place below the checked table, for checks of several keys. action: as in errors.Fix.
+    at: the place below the checked table, for checks of several keys. action: as in
+    errors.Fix, or sample: to set, but one right value of many.
     """
     context = {"rule": rule, "write": write, "at": at, "action": action}
     return PydanticCustomError("gearopt", "{rule}", context)
-
-
-def near(word: str, names: Iterable[str]) -> str | None:
-    """The name that a word was probably meant to be, in whatever case; None if none is close."""
-    plain = {name.lower(): name for name in names}
-    found = get_close_matches(re.sub(r"[-\s]+", "_", word[:80].lower()), plain, n=1)
-    return plain[found[0]] if found else None
 
 
 def _is_number(value: Any) -> bool:
@@ -111,7 +105,7 @@ def quantity(dimension: str, example: str, most: str | None = None, zero: bool =
         try:
             found = units.parse(value, dimension)
         except ValueError as reason:
-            raise refuse(str(reason), usable(_meant(value, dimension, usual))) from None
+            raise refuse(str(reason), usable(meant(value, dimension, usual))) from None
         if rule := fault(found):
             raise refuse(rule, usable(value.strip().removeprefix("-")))
         return found
@@ -120,17 +114,6 @@ def quantity(dimension: str, example: str, most: str | None = None, zero: bool =
     number = r"\+?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?"
     schema = {"type": "string", "pattern": rf"^\s*{number}\s*({alternatives})\s*$"}
     return Reads(read, example, schema)
-
-
-# A comma before three digits may separate thousands, so it is not taken for a decimal one.
-_SLIP = re.compile(r"\s*(\+?[0-9]*(?:\.|,(?![0-9]{3}(?![0-9])))?[0-9]+)\s*(\S*)\s*")
-
-
-def _meant(text: str, dimension: str, usual: str) -> str:
-    """A text whose decimal comma, missing unit or misspelt unit is mended; "" if it has none."""
-    match = _SLIP.fullmatch(text[:80])
-    unit = near(match[2], units.UNITS[dimension]) if match and match[2] else usual
-    return f"{match[1].replace(',', '.')} {unit}" if match and unit else ""
 
 
 def number(
@@ -244,8 +227,8 @@ def choice(*names: str) -> Reads:
     def read(value: Any, example: Any) -> str:
         if value not in names or not isinstance(value, str):
             known = ", ".join(f'"{n}"' for n in names)
-            meant = near(value, names) if isinstance(value, str) else None
-            raise refuse(f"is not {'one of ' * (len(names) > 1)}{known}", meant)
+            close = near(value, names) if isinstance(value, str) else None
+            raise refuse(f"is not {'one of ' * (len(names) > 1)}{known}", close)
         return value
 
     return Reads(read, names[0], {"enum": list(names)})
@@ -288,8 +271,8 @@ def either(names: dict[str, Any], item: Reads) -> Reads:
             return tuple(names[value])
         if not isinstance(value, list) or not value:
             known = ", ".join(f'"{n}"' for n in names)
-            meant = near(value, names) if isinstance(value, str) else None
-            raise refuse(f"is neither one of {known} nor a list", meant)
+            close = near(value, names) if isinstance(value, str) else None
+            raise refuse(f"is neither one of {known} nor a list", close)
         right, rule = _mended(item, value)
         if rule:
             write = [item.example if entry is None else entry for entry in right]

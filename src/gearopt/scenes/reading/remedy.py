@@ -8,25 +8,31 @@ from typing import Any, get_args, get_origin
 from pydantic import BaseModel, ValidationError
 
 from gearopt.errors import Fix, SceneError
-from gearopt.scenes.reading.fields import Reads, near
+from gearopt.scenes.reading.fields import Reads
+from gearopt.scenes.reading.spelling import near
 from gearopt.scenes.reading.toml import cut, dotted, short, toml_text
 
 
-def wrong_value(file: str, key: str, value: Any, rule: str, write: Any) -> SceneError:
-    """The error for a key that has a wrong value (None: that is missing), with what to write."""
+def wrong_value(
+    file: str, key: str, value: Any, rule: str, write: Any, sample: bool = False
+) -> SceneError:
+    """The error for a key that has a wrong value (None: that is missing), with what to write.
+
+    sample: `write` is one right value of many, not what the user meant.
+    """
     found = "" if value is None else short(value)
     fix = Fix("set", key, toml_text(write))
-    return SceneError(file, key, found, rule, _instruction(key, write), fix)
+    return SceneError(file, key, found, rule, _instruction(key, write, sample), fix)
 
 
-def _instruction(key: str, write: Any) -> str:
+def _instruction(key: str, write: Any, sample: bool) -> str:
     name = key.rsplit(".", 1)[-1]
     if isinstance(write, dict):
         table = f"[[{name.split('[')[0]}]]" if name.endswith("]") else f"[{name}]"
         return f"Write a table {table} with {_pairs(write)}"
     if isinstance(write, list) and write and isinstance(write[0], dict):
         return f"Write tables [[{name}]], such as one with {_pairs(write[0])}"
-    return f"Write {name} = {short(write, 200)}"
+    return f"Write{', for example,' if sample else ''} {name} = {short(write, 200)}"
 
 
 def _pairs(table: dict[str, Any]) -> str:
@@ -53,7 +59,7 @@ def translate(
     value, found = _lookup(content, place)
     key = dotted(place)
     if first["type"] == "missing":
-        return wrong_value(file, key, None, "is missing", example_of(model, place))
+        return wrong_value(file, key, None, "is missing", example_of(model, place), sample=True)
     if first["type"] != "gearopt":
         return _no_table(file, model, place, value)
     if name := _near_name(model, content, place):  # [[stages]] for [[stage]]
@@ -67,8 +73,9 @@ def translate(
         return SceneError(
             file, key, shown, rule, f"Exchange {key} and {other}", Fix("swap", key, other)
         )
+    sample = write is None or action == "sample"
     write = example_of(model, place) if write is None else write
-    return wrong_value(file, key, value, rule, write)
+    return wrong_value(file, key, value, rule, write, sample)
 
 
 def _no_table(file: str, model: type[BaseModel], place: tuple[Any, ...], value: Any) -> SceneError:

@@ -38,7 +38,7 @@ class Duty(Table):
                 "stands beside output_speed; one is enough", at=("ratio",), action="remove"
             )
         if self.output_speed is None and self.ratio is None:
-            raise refuse("is missing (or give ratio)", self._slow(), ("output_speed",))
+            raise refuse("is missing (or give ratio)", self._slow(), ("output_speed",), "sample")
         if self.total_ratio < 1:
             raise refuse(
                 "is above the input speed: gearopt sizes reducers, and a loss-free speed increaser "
@@ -48,7 +48,9 @@ class Duty(Table):
                 "swap",
             )
         if self.total_ratio > 10**6:
-            raise refuse("asks for a ratio above 1000000", self._slow(), ("output_speed",))
+            raise refuse(
+                "asks for a ratio above 1000000", self._slow(), ("output_speed",), "sample"
+            )
         return self
 
     def _slow(self) -> str:

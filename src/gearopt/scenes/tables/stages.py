@@ -70,7 +70,7 @@ class StageTable(Table):
     )
     face_width_over_diameter: Proportion = Field(None, description=PROPORTION_IS)
     face_width_step: Step = Field(None, description=STEP_IS)
-    ratio: Ratios = Field(None, description="Range of the stage ratio")
+    stage_ratio: Ratios = Field(None, description="Range of the stage's ratio")
     k_factor: Contact = Field(None, description=K_IS)
     unit_load: Root = Field(None, description=U_IS)
     wheel_diameter: Length = Field(None, description=WHEEL_IS)

@@ -1,0 +1,76 @@
+"""What a search over trains has found and spent so far, and when it must stop."""
+
+import math
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+from gearopt.optimise.result import Budget, Event, Watch
+from gearopt.optimise.terms import Array
+
+TIE = 1e-12  # trains whose objectives differ by less are ties: fewest teeth win
+MARGIN = 1e-11  # a node is dropped only when its bound exceeds the best by this, so ties survive
+
+Teeth = tuple[tuple[int, int], ...]
+
+
+@dataclass
+class Progress:
+    """What a search has found and spent; it has state because it is filled as the search goes.
+
+    found: (objective, teeth) of the best trains; wanted: how many of them. floor: a bound on the
+    objective known from elsewhere; lower: that of this search. enough: the budget's gap is reached.
+    """
+
+    wanted: int
+    budget: Budget
+    watch: Watch | None
+    floor: float = -math.inf
+    clock: float = field(default_factory=time.perf_counter)
+    found: list[tuple[float, Teeth]] = field(default_factory=list)
+    lower: float = -math.inf
+    looked: int = 0
+    compared: int = 0
+    nodes: int = 0
+    stopped: bool = False
+    enough: bool = False
+
+    @property
+    def bound(self) -> float:
+        """The best lower bound known so far."""
+        return max(self.lower, self.floor)
+
+    @property
+    def threshold(self) -> float:
+        """Nodes with a bound above it are of no use."""
+        if len(self.found) < self.wanted:
+            return math.inf
+        value = self.found[self.wanted - 1][0]
+        return value * (1.0 + MARGIN if self.wanted == 1 else 1.0 - TIE)
+
+    def add(self, totals: Array, trains: Iterator[Teeth]) -> None:
+        """Keep the wanted best (and, for a single one, its ties)."""
+        known = {teeth for _, teeth in self.found}
+        fresh = [(float(v), t) for v, t in zip(totals, trains, strict=True) if t not in known]
+        self.found = sorted(self.found + fresh)
+        if len(self.found) > self.wanted:
+            edge = self.found[self.wanted - 1][0] * (1.0 + TIE if self.wanted == 1 else 1.0)
+            extra = [f for f in self.found[self.wanted :] if f[0] <= edge and self.wanted == 1]
+            self.found = self.found[: self.wanted] + extra
+
+    def goes_on(self) -> bool:
+        """Whether budget and watcher let the search go on."""
+        seconds = time.perf_counter() - self.clock
+        most_s, most_n = self.budget.seconds, self.budget.evaluations
+        over = (most_s is not None and seconds > most_s) or (
+            most_n is not None and self.looked >= most_n
+        )
+        if not over and self.watch is not None:
+            best = self.found[0][0] if self.found else None
+            lower = self.bound if math.isfinite(self.bound) else None
+            over = not self.watch(Event(seconds, self.looked, best, lower))
+        self.stopped = self.stopped or over
+        if self.budget.gap > 0.0 and self.wanted == 1 and self.found:
+            value = self.found[0][0]
+            self.enough = value - self.bound <= self.budget.gap * value
+        return not (self.stopped or self.enough)
