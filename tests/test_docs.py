@@ -11,6 +11,7 @@ import pytest
 
 from gearopt import api, cli
 from gearopt.formulations import sizing, teeth
+from gearopt.optimise.solve import back_ends
 from gearopt.scenes import drive
 from gearopt.scenes.reading.load import read
 from gearopt.scenes.reading.schema import reference
@@ -109,3 +110,9 @@ def test_readme_table_is_what_the_files_give():
 
 def test_schema_command_prints_what_the_library_holds():
     assert api.load(ROOT / "problems" / "elevator.toml").title == "Two-stage elevator drive"
+
+
+def test_every_method_has_its_row():
+    page = text("docs/methods.md")
+    for name in ("exact", *back_ends()):
+        assert f"| `{name}` |" in page, name

@@ -66,7 +66,10 @@ def solve(
     file: File,
     method: Annotated[
         str | None,
-        typer.Option(help="exact or ipopt; by default exact where the file has a \\[teeth] table."),
+        typer.Option(
+            help="By default exact where the file has a \\[teeth] table, else ipopt; "
+            "docs/methods.md lists all."
+        ),
     ] = None,
     top: Annotated[
         int,

@@ -155,6 +155,7 @@ class Scene(Table):
         return FaceWidth(span[0], span[1], step=step.exact[0] if step else None)
 
 
+CONTINUOUS = ("ipopt", "gp", "multistart")  # methods that take no whole teeth
 EXAMPLE = """\
 gearopt = 1
 kind = "drive"
@@ -197,9 +198,9 @@ def solve(scene: Scene, ask: Ask) -> Result:
     train = scene.train()
     if scene.teeth is None and ask.method == "exact":
         raise SolveError("the method exact needs a [teeth] table in the file")
-    ideal = _sized(scene, train, replace(ask, method=None, watch=None), sizing.problem(train))
-    if scene.teeth is None or ask.method == "ipopt":
-        return ideal
+    if scene.teeth is None or ask.method in CONTINUOUS:
+        return _sized(scene, train, ask, sizing.problem(train))
+    ideal = _sized(scene, train, Ask(budget=ask.budget), sizing.problem(train))
     floor = -math.inf if ideal.bound is None else ideal.bound
     found = _sized(scene, train, ask, teeth.problem(train, ask.top, floor))
     return reconcile(replace(found, parts=(replace(ideal, name="sizing"),)), ideal, ask.gap)

@@ -98,7 +98,7 @@ def _variables(train: Train) -> tuple[Var, ...]:
         ranges["pinion_teeth"].append(_ends(stage.pinion_teeth))
         least, most = _ends(stage.wheel_teeth)
         reach = math.floor(train.highest_ratio * ranges["pinion_teeth"][-1][1])
-        ranges["wheel_teeth"].append((least, min(most, float(reach))))
+        ranges["wheel_teeth"].append((least, max(least, min(most, float(reach)))))
         given = float(face.fixed or 1)
         free = not face.tied and face.step is None and face.fixed is None
         ranges["face_width"].append(_widths(train, stage) if free else (given, given))
