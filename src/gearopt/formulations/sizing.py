@@ -74,8 +74,8 @@ def _variables(train: Train) -> tuple[Var, ...]:
     numbers = SimpleNamespace(**train.numbers())
     torque = train.torque
     for k, stage in enumerate(train.stages):
-        z_fixed = stage.pinion_teeth[0] == stage.pinion_teeth[1]
-        z2_fixed = stage.wheel_teeth[0] == stage.wheel_teeth[1]
+        z_fixed = stage.pinion_fixed
+        z2_fixed = stage.wheel_fixed
         z = max(1.0, numbers.pinion_low[k])
         u = float(train.ratio) ** (1.0 / len(train.stages))
         if z_fixed and z2_fixed:

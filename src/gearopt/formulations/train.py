@@ -23,6 +23,23 @@ OBJECTIVES = {  # name -> unit
 }
 
 
+BY_STAGE = (  # of `Train.numbers`, those with a value for every stage
+    "k_factor",
+    "unit_load",
+    "width_low",
+    "width_high",
+    "module_low",
+    "module_high",
+    "pinion_low",
+    "pinion_high",
+    "wheel_low",
+    "wheel_high",
+    "ratio_low",
+    "ratio_high",
+    "wheel_diameter",
+)
+
+
 @dataclass(frozen=True)
 class FaceWidth:
     """How the face width b of a stage is chosen, from the pinion reference diameter d1.
@@ -60,6 +77,16 @@ class Stage:
     wheel_teeth: tuple[int, int | None] = (1, None)
     ratio: tuple[Fraction, Fraction | None] = (Fraction(1), None)
     wheel_diameter: Fraction | None = None
+
+    @property
+    def pinion_fixed(self) -> bool:
+        """Whether z1 is given."""
+        return self.pinion_teeth[0] == self.pinion_teeth[1]
+
+    @property
+    def wheel_fixed(self) -> bool:
+        """Whether z2 is given."""
+        return self.wheel_teeth[0] == self.wheel_teeth[1]
 
 
 @dataclass(frozen=True)
@@ -162,48 +189,17 @@ def terms(
     total, product, torque = 0.0, 1.0, numbers.torque
     limits: dict[str, Any] = {}
     equal: dict[str, Any] = {}
-    for k, stage in enumerate(train.stages):
-
-        def add(name: str, value: Any, k: int = k) -> None:
-            limits[f"{name}[{k + 1}]"] = value
-
-        def of(name: str, k: int = k) -> Any:
-            value = getattr(numbers, name)
-            return value[k] if len(train.stages) > 1 else value
-
-        m, z, u, b = module[k], pinion_teeth[k], ratio[k], face_width[k]
+    for k, (m, z, u, b) in enumerate(zip(module, pinion_teeth, ratio, face_width, strict=True)):
+        own = {name: each(value)[k] for name, value in vars(numbers).items() if name in BY_STAGE}
         d = reference_diameter(m, z, train.helix_angle)
         total = total + share(train, k, d, b, u)
-        add("k_factor", k_factor(torque, d, b, u) / of("k_factor"))
-        add("unit_load", unit_load(torque, d, b, m) / of("unit_load"))
-        if not stage.face_width.tied:
-            if stage.face_width.high is not None:
-                add("face_width_high", b / (of("width_high") * d))
-            if stage.face_width.low > 0:
-                add("face_width_low", of("width_low") * d / b)
-        if len(stage.modules) > 1:
-            add("module_low", of("module_low") / m)
-            add("module_high", m / of("module_high"))
-        least, most = stage.pinion_teeth
-        if least != most:
-            add("pinion_teeth_low", of("pinion_low") / z)
-            if most is not None:
-                add("pinion_teeth_high", z / of("pinion_high"))
-        least, most = stage.wheel_teeth
-        if least == most:
-            if stage.pinion_teeth != (stage.pinion_teeth[0],) * 2:
-                equal[f"wheel_teeth[{k + 1}]"] = z * u / of("wheel_low")
-        else:
-            if least > 1:
-                add("wheel_teeth_low", of("wheel_low") / (z * u))
-            if most is not None:
-                add("wheel_teeth_high", z * u / of("wheel_high"))
-        if stage.ratio[0] > 1:
-            add("stage_ratio_low", of("ratio_low") / u)
-        if stage.ratio[1] is not None:
-            add("stage_ratio_high", u / of("ratio_high"))
-        if stage.wheel_diameter is not None:
-            add("wheel_diameter", u * d / of("wheel_diameter"))
+        found = {
+            "k_factor": k_factor(torque, d, b, u) / own["k_factor"],
+            "unit_load": unit_load(torque, d, b, m) / own["unit_load"],
+        } | _choices(train.stages[k], own, m, z, u, d, b)
+        if train.stages[k].wheel_fixed and not train.stages[k].pinion_fixed:
+            equal[f"wheel_teeth[{k + 1}]"] = z * u / own["wheel_low"]
+        limits |= {f"{name}[{k + 1}]": value for name, value in found.items()}
         torque = torque * u
         product = product * u
     if train.tolerance > 0:
@@ -212,6 +208,38 @@ def terms(
     else:
         equal["ratio"] = product / numbers.highest_ratio
     return Terms({train.objective: total}, limits, equal=equal)
+
+
+def _choices(
+    stage: Stage, own: dict[str, Any], m: Any, z: Any, u: Any, d: Any, b: Any
+) -> dict[str, Any]:
+    """Limits on what a stage may choose: its module, teeth, ratio, face width and wheel."""
+    found: dict[str, Any] = {}
+
+    def between(name: str, value: Any, low: Any, high: Any) -> None:
+        """Ends of a range; None where there is none."""
+        found.update({} if low is None else {f"{name}_low": low / value})
+        found.update({} if high is None else {f"{name}_high": value / high})
+
+    face = stage.face_width
+    if not face.tied:
+        low = own["width_low"] * d if face.low > 0 else None
+        between("face_width", b, low, None if face.high is None else own["width_high"] * d)
+    if len(stage.modules) > 1:
+        between("module", m, own["module_low"], own["module_high"])
+    if not stage.pinion_fixed:
+        high = None if stage.pinion_teeth[1] is None else own["pinion_high"]
+        between("pinion_teeth", z, own["pinion_low"], high)
+    if not stage.wheel_fixed:
+        low = own["wheel_low"] if stage.wheel_teeth[0] > 1 else None
+        between(
+            "wheel_teeth", z * u, low, None if stage.wheel_teeth[1] is None else own["wheel_high"]
+        )
+    low = own["ratio_low"] if stage.ratio[0] > 1 else None
+    between("stage_ratio", u, low, None if stage.ratio[1] is None else own["ratio_high"])
+    if stage.wheel_diameter is not None:
+        found["wheel_diameter"] = u * d / own["wheel_diameter"]
+    return found
 
 
 def each(value: Any) -> tuple[Any, ...]:
