@@ -16,11 +16,9 @@ from gearopt.optimise.terms import Array, Param, Terms, Var, namespace
 from gearopt.physics.geometry import reference_diameter
 from gearopt.physics.loads import k_factor
 
-# Far beyond any gear (a watch to a mill), so that they never bind; finite, for the dual bound.
-MODULE = (1e-4, 1e4)  # mm
+BEYOND = 1e6  # factor between any length of a drive and the ends of the search: they never bind
 TEETH = (1.0, 1e6)
-RATIO = (1.0, 1e6)
-WIDTH = (1e-5, 1e6)  # mm
+RATIO = (1.0, 1e7)
 VARIABLES = {"module": "mm", "pinion_teeth": "", "ratio": "", "face_width": "mm"}
 
 _PARAMETER_UNITS = {
@@ -71,6 +69,7 @@ def _sizes(train: Train, x: Any, proportion: Any) -> Sizes:
 
 def _variables(train: Train) -> tuple[Var, ...]:
     columns: dict[str, list[tuple[float, float, float]]] = {name: [] for name in VARIABLES}
+    lengths = _lengths(train)
     numbers = SimpleNamespace(**train.numbers())
     torque = train.torque
     for k, stage in enumerate(train.stages):
@@ -85,12 +84,12 @@ def _variables(train: Train) -> tuple[Var, ...]:
         m_fixed = len(stage.modules) == 1
         m = numbers.module_low[k] if m_fixed else d * math.cos(train.helix_angle) / z
         b_fixed = stage.face_width.fixed
-        columns["module"].append(_column(MODULE, m, m_fixed))
+        columns["module"].append(_column(lengths, m, m_fixed))
         columns["pinion_teeth"].append(_column(TEETH, z, z_fixed))
         columns["ratio"].append(_column(RATIO, u, z_fixed and z2_fixed))
         width = proportion * d if b_fixed is None else float(b_fixed)
         columns["face_width"].append(
-            _column(WIDTH, width, b_fixed is not None or stage.face_width.tied)
+            _column(lengths, width, b_fixed is not None or stage.face_width.tied)
         )
         torque *= u
     if all(s.face_width.tied for s in train.stages):
@@ -101,6 +100,24 @@ def _variables(train: Train) -> tuple[Var, ...]:
         for name, unit in VARIABLES.items()
         if name in columns
     )
+
+
+def _lengths(train: Train) -> tuple[float, float]:
+    """Ends [mm] of the search for modules and widths, far beyond all that load and file ask for.
+
+    Finite, for the dual bound. A stage's size follows (T/K)^(1/3) or (T/U)^(1/3) at its torque.
+    """
+    torques = (train.torque, train.torque * float(train.highest_ratio))
+    sizes = [
+        (torque / limit) ** (1.0 / 3.0)
+        for stage in train.stages
+        for torque in torques
+        for limit in (stage.k_factor, stage.unit_load)
+    ]
+    for stage in train.stages:
+        given = (*stage.modules, stage.face_width.fixed, stage.wheel_diameter)
+        sizes += [float(length) for length in given if length]
+    return min(sizes) / BEYOND, max(sizes) * BEYOND
 
 
 def _column(bounds: tuple[float, float], guess: float, fixed: bool) -> tuple[float, float, float]:

@@ -106,6 +106,15 @@ class Train:
     objective: str = "gear_volume"
     density: float | None = None
 
+    def __post_init__(self) -> None:
+        numbers = [self.torque, *(x for s in self.stages for x in (s.k_factor, s.unit_load))]
+        if not all(math.isfinite(x) and x > 0 for x in numbers):
+            raise ValueError(f"torque and load limits must be positive numbers: {numbers}")
+        if self.ratio < 1 or not 0 <= self.tolerance < 1 or not self.stages:
+            raise ValueError("a drive needs stages, ratio >= 1 and a tolerance from 0 to below 1")
+        if self.objective == "mass" and self.density is None:
+            raise ValueError("the objective mass needs a density")
+
     @property
     def lowest_ratio(self) -> Fraction:
         """Least total ratio allowed."""
@@ -235,7 +244,8 @@ def _choices(
         between(
             "wheel_teeth", z * u, low, None if stage.wheel_teeth[1] is None else own["wheel_high"]
         )
-    low = own["ratio_low"] if stage.ratio[0] > 1 else None
+    given = stage.pinion_fixed and stage.wheel_fixed  # then no bound of a variable keeps u >= 1
+    low = own["ratio_low"] if stage.ratio[0] > 1 or given else None
     between("stage_ratio", u, low, None if stage.ratio[1] is None else own["ratio_high"])
     if stage.wheel_diameter is not None:
         found["wheel_diameter"] = u * d / own["wheel_diameter"]

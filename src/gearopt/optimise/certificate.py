@@ -39,11 +39,19 @@ class Verdict:
     message: str = ""
 
 
-def certify(problem: Problem, outcome: Outcome, gap: float) -> Verdict:
+def certify(problem: Problem, outcome: Outcome, gap: float, exact: bool = False) -> Verdict:
     """Status, bound and residuals of an outcome; `gap` is the largest one called optimal.
 
-    CertificateError where a method's bound contradicts a feasible point.
+    exact: the outcome is that of the formulation's own exact algorithm, whose bound and exhaustion
+    count; of any other method they do not. CertificateError where a bound contradicts a feasible
+    point, or where a further point of the list is not feasible.
     """
+    if not exact:
+        outcome = replace(outcome, bound=None, proof=None)
+    for other in outcome.others:
+        violation, worst = _violation(problem, other, problem.batch(other[None]))
+        if not violation <= FEASIBLE:
+            raise CertificateError(f"a listed point violates {worst} by {violation:.3g}")
     if outcome.infeasible:
         return _infeasible(problem, outcome)
     unsolved = "failed" if outcome.finished else "limit"
@@ -62,7 +70,7 @@ def certify(problem: Problem, outcome: Outcome, gap: float) -> Verdict:
         )
         message = f"{problem.rows.objectives[0]} is not a number at {where}"[:300]
         return Verdict(unsolved, certificate=certificate, message=message)
-    if outcome.bound is not None:
+    if outcome.bound is not None and math.isfinite(outcome.bound):
         return _claimed(outcome, value, certificate, gap)
     if any(v.discrete for v, _ in problem.columns):
         status = "feasible" if outcome.finished else "limit"
@@ -114,10 +122,10 @@ def _local(
     if not shape.convex or not math.isfinite(least):
         return Verdict(status, value, certificate=certificate, message=outcome.message)
     bound = shape.objective(least)
-    gap = (value - bound) / abs(value)
+    gap = (value - bound) / max(abs(value), TINY)
     if gap < -100 * FEASIBLE:
         raise CertificateError(f"a feasible value {value!r} lies below the dual bound {bound!r}")
-    if gap <= tolerance:
+    if abs(gap) <= max(tolerance, FEASIBLE):
         status = "optimal"
     proof = {"method": "dual", "arithmetic": "double, with a rounding allowance"}
     return Verdict(status, value, bound, max(gap, 0.0), certificate, proof, outcome.message)
@@ -129,14 +137,49 @@ def _kkt(
     """Residuals of the optimality conditions, and the least value of the Lagrangian on the box."""
     parts = shape.derivatives(y, problem.parameter_values(), lam_g, lam_h)
     f, g, h, gradient_f, gradient = (np.array(part).ravel() for part in parts)
-    scale = 1.0 if shape.log_objective else max(1.0, float(np.abs(gradient_f).max(initial=0)))
+    scale = 1.0 if shape.log_objective else _steepness(problem, shape, gradient_f)
+    step = np.clip(gradient / scale, y - high, y - low)  # a bound in the way stops a step
     residuals = {
-        "stationarity": float(np.abs(y - np.clip(y - gradient / scale, low, high)).max(initial=0)),
+        "stationarity": float(np.abs(step).max(initial=0.0)),
         "complementarity": float(np.abs(lam_g * g).max(initial=0.0)) / scale,
     }
     lagrangian = f[0] + lam_g @ g + lam_h @ h
-    slack = _allowance(f, lam_g * g, lam_h * h)
+    slack = _allowance(f, lam_g * (1.0 + np.abs(g)), lam_h * (1.0 + np.abs(h)))
+    slack += _gradient_allowance(problem, shape, y, low, high, gradient_f, lam_g, lam_h)
     return residuals, float(lagrangian + _box(gradient, y, low, high) - slack)
+
+
+def _steepness(problem: Problem, shape: Form, gradient: Array) -> float:
+    """The unit of a gradient: the steepest slope of the objective here or at the guess."""
+    no_g, no_h = (np.zeros(shape.derivatives.numel_out(k)) for k in (1, 2))
+    guess = shape.to_y(problem.bounds()[2])
+    there = np.array(shape.derivatives(guess, problem.parameter_values(), no_g, no_h)[3]).ravel()
+    steepest = np.abs(np.concatenate([gradient, there]))
+    return max(float(steepest[np.isfinite(steepest)].max(initial=0.0)), TINY)
+
+
+def _gradient_allowance(
+    problem: Problem,
+    shape: Form,
+    y: Array,
+    low: Array,
+    high: Array,
+    gradient_f: Array,
+    lam_g: Array,
+    lam_h: Array,
+) -> float:
+    """Rounding of the Lagrangian's gradient, carried to the far side of the box."""
+    import casadi as ca
+
+    if not (np.isfinite(low).all() and np.isfinite(high).all()):
+        return 0.0
+    total = np.abs(gradient_f)
+    for jacobian, lam in zip(
+        shape.jacobians(y, problem.parameter_values()), (lam_g, lam_h), strict=True
+    ):
+        if len(lam):
+            total = total + np.array(ca.mtimes(ca.fabs(jacobian).T, np.abs(lam))).ravel()
+    return float(ROUNDING * (total * np.maximum(high - y, y - low)).sum())
 
 
 def _infeasible(problem: Problem, outcome: Outcome) -> Verdict:
@@ -149,7 +192,7 @@ def _infeasible(problem: Problem, outcome: Outcome) -> Verdict:
     if outcome.x is None or outcome.lam_g is None or not (shape.convex and finite):
         return Verdict("failed", message=f"{outcome.message}; impossibility is not proven".lstrip())
     least, lam_g, lam_h = farkas(problem, shape, outcome, low, high)
-    if least <= FARKAS:
+    if not least > FARKAS:  # NaN proves nothing
         return Verdict("failed", message="no feasible point found; impossibility is not proven")
     names = [r.name for r in problem.rows.inequalities] + list(problem.rows.equalities)
     weights = np.concatenate([lam_g, np.abs(lam_h)])
@@ -180,7 +223,8 @@ def farkas(
     y = shape.to_y(outcome.x)
     parts = shape.derivatives(y, problem.parameter_values(), lam_g, lam_h)
     _, g, h, gradient_f, gradient = (np.array(part).ravel() for part in parts)
-    slack = _allowance(lam_g * g, lam_h * h)
+    slack = _allowance(lam_g * (1.0 + np.abs(g)), lam_h * (1.0 + np.abs(h)))
+    slack += _gradient_allowance(problem, shape, y, low, high, gradient_f, lam_g, lam_h)
     least = lam_g @ g + lam_h @ h + _box(gradient - gradient_f, y, low, high) - slack
     return float(least), lam_g, lam_h
 
@@ -245,6 +289,10 @@ def reconcile(result: Result, relaxation: Result, tolerance: float) -> Result:
     value, bound = result.value, relaxation.bound
     if relaxation.status == "infeasible" and value is not None:
         raise CertificateError("a design was found for what the relaxation proves impossible")
+    if relaxation.status == "infeasible" and result.status != "infeasible":
+        return replace(
+            result, status="infeasible", proof=dict(relaxation.proof), message=relaxation.message
+        )
     if value is None or bound is None:
         return result
     if value < bound * (1.0 - FEASIBLE) if bound > 0 else value < bound - FEASIBLE:

@@ -47,7 +47,7 @@ def run(
     name = method or next(iter(problem.methods), "ipopt")
     start = time.perf_counter()
     outcome = _method(problem, name)(problem, budget or Budget(), seed, watch)
-    verdict = certify(problem, outcome, gap)
+    verdict = certify(problem, outcome, gap, exact=name in problem.methods)
     return _result(problem, name, outcome, verdict, time.perf_counter() - start, seed), outcome
 
 
