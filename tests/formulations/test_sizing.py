@@ -148,3 +148,21 @@ def test_one_watt_to_20_megawatts_from_20_random_starts(power_kW, speed_rpm):
         verdict = certify(problem, ipopt.run(problem, Budget(), 0, None, start=start), 1e-9)
         assert verdict.status == "optimal"
         assert verdict.objective == pytest.approx(best.value, rel=1e-9)
+
+
+@pytest.mark.parametrize("factor", [1e-24, 1e-12, 1e12, 1e24])
+def test_no_scale_is_called_impossible_because_of_the_search_box(factor):
+    """V is proportional to torque at the K limit, at any scale."""
+    train = drive(7.5, 1450, 20, [0.6, 0.75])
+    one = solve(sizing.problem(train))
+    other = solve(sizing.problem(replace(train, torque=factor * train.torque)))
+    assert other.status == "optimal"
+    assert other.value == pytest.approx(factor * one.value, rel=1e-9)
+
+
+def test_fixed_teeth_may_not_speed_up():
+    train = drive(7.5, 1450, 20, [0.6, 0.75], ONE_PERCENT)
+    up = replace(train.stages[0], pinion_teeth=(40, 40), wheel_teeth=(20, 20))
+    result = solve(sizing.problem(replace(train, stages=(up, train.stages[1]))))
+    assert result.status == "infeasible"
+    assert "stage_ratio_low[1]" in result.proof["conflict"]

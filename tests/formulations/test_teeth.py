@@ -8,7 +8,7 @@ import pytest
 
 from gearopt.errors import SolveError
 from gearopt.formulations import sizing, teeth
-from gearopt.formulations.teeth.conflict import lifting
+from gearopt.formulations.teeth.conflict import widened
 from gearopt.formulations.train import OBJECTIVES, FaceWidth, Stage, Train
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import run, solve
@@ -62,10 +62,12 @@ def test_infeasible_is_proven_by_exhaustion(stage):
     assert result.proof["method"] == "exhausted"
 
 
-def test_what_lifting_one_limit_would_do():
-    assert "wheel_diameter" in lifting(drive(wheel_diameter=F(250)))
-    assert lifting(drive(wheel_diameter=F(250), ratio=(F(1), F(4)))) == []
-    assert "module" in lifting(drive(modules=(F(1),)))
+def test_what_widening_one_limit_would_do():
+    assert "wheel_diameter" in widened(drive(wheel_diameter=F(250)), None, None).suffice
+    both = widened(drive(wheel_diameter=F(250), ratio=(F(1), F(4))), None, None)
+    assert both.suffice == () and both.undecided == ()
+    assert "module" in widened(drive(modules=(F(1),)), None, None).suffice
+    assert "wheel_diameter" in widened(drive(wheel_diameter=F(250)), 0.0, None).undecided
 
 
 def test_a_stopped_search_has_a_bound_and_says_so():
@@ -75,7 +77,7 @@ def test_a_stopped_search_has_a_bound_and_says_so():
     assert finished.status == "optimal"
     assert stopped.status == "limit" and stopped.proof["method"].startswith("branch and bound")
     assert stopped.value >= finished.value
-    assert stopped.bound is None or stopped.bound <= finished.value
+    assert stopped.bound is not None and stopped.bound <= finished.value
     seen = []
     watched = solve(teeth.problem(train), watch=lambda event: seen.append(event) or len(seen) < 5)
     assert watched.status == "limit" and len(seen) == 5
@@ -144,3 +146,33 @@ def test_a_gap_that_is_enough_ends_the_search():
     assert result.status == "optimal" and result.gap <= 1e-3
     assert result.bound >= bound and result.evaluations < 2_000_000
     assert result.message == "the gap asked for is reached"
+
+
+@pytest.mark.parametrize(
+    ("total", "widths", "gap"),
+    [
+        (F(110), ("0.6", "0.6", "0.75"), 5e-3),
+        (F(300), ("0.6",) * 3 + ("0.75",), 1e-3),
+        (F(1000), ("0.6",) * 4 + ("0.75",), 1e-2),
+    ],
+)
+def test_a_requested_gap_is_reached_or_the_search_goes_on(total, widths, gap):
+    """The bound of the first look holds for smaller ratios only and must not count."""
+    train = replace(drive(total, widths), torque=21702.9)
+    exact = solve(teeth.problem(train))
+    events = []
+    result = solve(teeth.problem(train), budget=Budget(gap=gap), gap=gap, watch=events.append)
+    assert result.status == "optimal" and result.gap <= gap
+    assert result.bound <= exact.value * (1 + 1e-12)
+    assert all(e.bound is None or e.bound <= exact.value * (1 + 1e-12) for e in events)
+
+
+def test_a_drive_of_nonsense_numbers_is_refused():
+    with pytest.raises(ValueError, match="positive numbers"):
+        replace(drive(), torque=math.nan)
+    with pytest.raises(ValueError, match="positive numbers"):
+        replace(drive(), torque=-1e5)
+    with pytest.raises(ValueError, match="ratio >= 1"):
+        replace(drive(), ratio=F(1, 2))
+    with pytest.raises(ValueError, match="needs a density"):
+        replace(drive(), objective="mass")

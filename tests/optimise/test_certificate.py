@@ -6,14 +6,14 @@ import pytest
 from gearopt.errors import CertificateError
 from gearopt.optimise.certificate import certify, reconcile
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.result import Outcome, Result
+from gearopt.optimise.result import Budget, Outcome, Result
 from gearopt.optimise.solve import run
 from gearopt.optimise.solvers import ipopt
 from gearopt.optimise.terms import Terms, Var
 
 
 def hill():
-    """min x + 1/y, x y <= 8 (as a limit), 0.1..10 each: x = 0.1, y = 10."""
+    """min x + 1/y with x y >= 4, each from 0.1 to 10: x = 0.4, y = 10."""
 
     def evaluate(x, p):
         return Terms({"f": x.x + 1.0 / x.y}, {"product": 4.0 / (x.x * x.y)})
@@ -138,8 +138,6 @@ def test_reconcile_keeps_the_better_bound_and_sees_contradictions():
 
 
 def test_budget_keeps_the_best_feasible_iterate():
-    from gearopt.optimise.result import Budget
-
     problem = hill()
     stopped = ipopt.run(problem, Budget(evaluations=4), 0, None, start=np.array([9.0, 9.0]))
     assert not stopped.finished
@@ -157,3 +155,84 @@ def test_an_objective_that_is_no_number_is_refused_by_name():
     with np.errstate(invalid="ignore"):
         verdict = certify(problem, Outcome(np.array([55.0])), 1e-6)
     assert verdict.status == "failed" and "loss is not a number at x = 55" in verdict.message
+
+
+def test_a_certificate_of_nan_proves_nothing():
+    """0 * log(0) in a row with multiplier 0 makes the sum NaN."""
+    problem = Problem(
+        "under",
+        (Var("x", "", 0.1, 100, 1.0, log=True),),
+        (),
+        lambda x, p: Terms({"f": x.x}, {"a": x.x / 2.0, "u": x.x**-2000.0}),
+    )
+    claim = Outcome(
+        np.array([10.0]), lam_g=np.array([1.0, 0.0]), lam_h=np.empty(0), infeasible=True
+    )
+    assert certify(problem, claim, 1e-6).status == "failed"
+
+
+def test_huge_multipliers_do_not_falsify_the_bound():
+    """min b d with b/d <= 1 and d/b <= 1 in a box from 1e-3: the optimum is 1e-6 at its corner."""
+    problem = Problem(
+        "corner",
+        (Var("b", "", 1e-3, 1e3, 1.0, log=True), Var("d", "", 1e-3, 1e3, 1.0, log=True)),
+        (),
+        lambda x, p: Terms({"f": x.b * x.d}, {"up": x.b / x.d, "down": x.d / x.b}),
+    )
+    for size in (1.0, 1e6, 1e12, 1e16):
+        claim = Outcome(np.array([5.0, 5.0]), lam_g=np.full(2, size), lam_h=np.empty(0))
+        verdict = certify(problem, claim, 1e-6)
+        assert verdict.status != "optimal"
+        assert verdict.bound is None or verdict.bound <= 1e-6 * (1 + 1e-9)
+
+
+def test_only_an_exact_algorithm_of_the_formulation_may_bring_a_bound():
+    claim = Outcome(np.array([0.5, 10.0]), bound=0.5, proof={"method": "solver says"})
+    assert certify(hill(), claim, 1e-6).proof.get("method") != "solver says"
+    no = Outcome(None, infeasible=True, proof={"method": "solver says"})
+    assert certify(hill(), no, 1e-6).status == "failed"
+    assert certify(hill(), no, 1e-6, exact=True).status == "infeasible"
+
+
+def test_a_listed_point_that_is_not_feasible_is_an_error():
+    claim = Outcome(np.array([0.5, 10.0]), others=(np.array([0.1, 10.0]),))
+    with pytest.raises(CertificateError, match="a listed point violates product"):
+        certify(hill(), claim, 1e-6)
+
+
+@pytest.mark.parametrize(
+    ("variable", "objective"),
+    [
+        (Var("x", "", 0.0, np.inf, 1e12), lambda x, p: Terms({"f": -x.x})),
+        (Var("x", "", 0.0, 1.0, 0.5), lambda x, p: Terms({"f": 1e-7 * x.x})),
+    ],
+)
+def test_a_point_on_a_slope_is_not_stationary(variable, objective):
+    """Far out on an unbounded slope, and on a slope that is small in its own unit."""
+    problem = Problem("slope", (variable,), (), objective)
+    for at in (0.3, 1e18) if np.isinf(variable.upper) else (0.3, 0.7):
+        claim = Outcome(np.array([at]), lam_g=np.empty(0), lam_h=np.empty(0))
+        assert certify(problem, claim, 1e-6).status in ("feasible", "failed")
+
+
+def test_a_point_below_its_bound_is_not_optimal():
+    """x >= 1 missed by 9.9e-9 gains 1e-6 where the objective is x^99."""
+    problem = Problem(
+        "steep",
+        (Var("x", "", 0.1, 10, 2.0, log=True),),
+        (),
+        lambda x, p: Terms({"f": x.x**99.0}, {"least": 1.0 / x.x}),
+    )
+    claim = Outcome(np.array([1.0 - 9.9e-9]), lam_g=np.array([99.0]), lam_h=np.empty(0))
+    assert certify(problem, claim, 1e-12).status != "optimal"
+
+
+def test_an_exception_of_the_watcher_reaches_the_caller():
+    def broken(event):
+        raise RuntimeError("my own")
+
+    with pytest.raises(RuntimeError, match="my own"):
+        ipopt.run(hill(), Budget(), 0, broken)
+    told = []
+    assert ipopt.run(hill(), Budget(), 0, told.append).finished  # None is not False
+    assert told

@@ -1,7 +1,7 @@
 """A result on the terminal: the design, its limits, and what is proven in words."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from rich.console import Console, Group, RenderableType
@@ -167,17 +167,26 @@ def _proof(result: Result) -> list[str]:
                 f"(whole teeth and standard modules cost "
                 f"{100 * (result.value / part.value - 1):.2f} %)."
             )
-    if "lifting_one_suffices" in proof:
-        names = ", ".join(limit_words(n) for n in proof["lifting_one_suffices"])
-        lines.append(
-            f"Lifting any one of these limits alone makes a design possible: {names}."
-            if names
-            else "No single limit is the cause: at least two must change together."
-        )
+    if "widening_one_suffices" in proof:
+        lines += _widening(proof["widening_one_suffices"], proof["undecided"])
     lines += result.report.get("notes", [])
     if result.message:
         lines.append(result.message[0].upper() + result.message[1:] + ".")
     lines.append(f"{result.method}, {result.evaluations:,} evaluations, {result.seconds:.3g} s.")
+    return lines
+
+
+def _widening(suffice: Sequence[str], undecided: Sequence[str]) -> list[str]:
+    """Which single limit stands in the way, as far as it was found out."""
+    lines = []
+    if suffice:
+        names = ", ".join(limit_words(n) for n in suffice)
+        lines.append(f"Widening any one of these limits alone makes a design possible: {names}.")
+    elif not undecided:
+        lines.append("No single limit is the cause: at least two must be widened together.")
+    if undecided:
+        names = ", ".join(limit_words(n) for n in undecided)
+        lines.append(f"Not found out in time for: {names}.")
     return lines
 
 

@@ -15,7 +15,7 @@ from pydantic import Field, model_validator
 from gearopt.errors import SolveError
 from gearopt.formulations import sizing, teeth
 from gearopt.formulations.design import describe
-from gearopt.formulations.teeth.conflict import lifting
+from gearopt.formulations.teeth.conflict import widened
 from gearopt.formulations.train import FaceWidth, Stage, Train
 from gearopt.optimise.certificate import reconcile
 from gearopt.optimise.problem import Problem
@@ -213,7 +213,11 @@ def _sized(scene: Scene, train: Train, ask: Ask, problem: Problem) -> Result:
     result, outcome = run(problem, ask.method, ask.budget, ask.seed, ask.watch, ask.gap)
     result = replace(result, objective=result.objective | {"unit": train.unit})
     if result.status == "infeasible" and exact:
-        result = replace(result, proof=result.proof | {"lifting_one_suffices": lifting(train)})
+        seconds = ask.budget.seconds
+        left = None if seconds is None else max(0.0, seconds - result.seconds)
+        single = widened(train, left, ask.watch)
+        words = {"widening_one_suffices": single.suffice, "undecided": single.undecided}
+        result = replace(result, proof=result.proof | words)
     if result.value is None or outcome.x is None:
         return result
     designs = [describe(train, formulation.sizes(train, x)) for x in (outcome.x, *outcome.others)]

@@ -14,10 +14,12 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
+from gearopt.errors import SolveError
 from gearopt.formulations.teeth.stage import Table
 from gearopt.formulations.train import Train
 from gearopt.optimise.terms import Array
 
+ENTRIES = 10_000_000  # of the last stage's table: about 1 GB while it is made
 EDGE = 1e-9  # cells overlap by this much in log ratio, so that rounding never misses a neighbour
 
 
@@ -98,6 +100,11 @@ def _last(train: Train, table: Table, cells: int, delta: float, low: float, high
     edge = np.arange(cells) * delta
     start = np.searchsorted(table.log_ratio, low - edge - delta - EDGE)
     stop = np.searchsorted(table.log_ratio, high - edge + EDGE)
+    if (stop - start).sum() > ENTRIES:
+        raise SolveError(
+            "the ratio tolerance leaves too many pairs to the last stage: narrow it, or limit "
+            "wheel teeth or stage ratio (limits.wheel_teeth, limits.stage_ratio)"
+        )
     cell, pair = ragged(start, stop - start)
     reached = np.maximum(edge[cell], low - table.log_ratio[pair])
     cost = table.cost(train.torque * np.exp(reached - EDGE), pair)

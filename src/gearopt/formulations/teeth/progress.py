@@ -19,7 +19,8 @@ class Progress:
     """What a search has found and spent; it has state because it is filled as the search goes.
 
     found: (objective, teeth) of the best trains; wanted: how many of them. floor: a bound on the
-    objective known from elsewhere; lower: that of this search. enough: the budget's gap is reached.
+    objective known from elsewhere; lower: that of this search, once it covers all trains (whole).
+    enough: the budget's gap is reached.
     """
 
     wanted: int
@@ -29,6 +30,7 @@ class Progress:
     clock: float = field(default_factory=time.perf_counter)
     found: list[tuple[float, Teeth]] = field(default_factory=list)
     lower: float = -math.inf
+    whole: bool = False
     looked: int = 0
     compared: int = 0
     nodes: int = 0
@@ -58,6 +60,11 @@ class Progress:
             extra = [f for f in self.found[self.wanted :] if f[0] <= edge and self.wanted == 1]
             self.found = self.found[: self.wanted] + extra
 
+    def raise_lower(self, bound: float) -> None:
+        """Note the least open bound of a search, if that search covers all trains."""
+        if self.whole:
+            self.lower = max(self.lower, bound)
+
     def goes_on(self) -> bool:
         """Whether budget and watcher let the search go on."""
         seconds = time.perf_counter() - self.clock
@@ -68,7 +75,7 @@ class Progress:
         if not over and self.watch is not None:
             best = self.found[0][0] if self.found else None
             lower = self.bound if math.isfinite(self.bound) else None
-            over = not self.watch(Event(seconds, self.looked, best, lower))
+            over = self.watch(Event(seconds, self.looked, best, lower)) is False
         self.stopped = self.stopped or over
         if self.budget.gap > 0.0 and self.wanted == 1 and self.found:
             value = self.found[0][0]

@@ -61,10 +61,10 @@ def search(
     progress = Progress(wanted, budget, watch, floor)
     most = train.highest_ratio
     cut = min(most, Fraction(3.0 * float(train.ratio) ** (1.0 / len(train.stages))))
+    progress.whole = cut == most
     closed = _look(train, cut, progress, FIRST_LOOK)
     reach = _reach(train, cut, most, progress.threshold)
-    if reach > cut:
-        progress.lower = -math.inf  # the bound so far holds for the smaller ratios only
+    progress.whole = True
     over = progress.stopped or progress.enough
     if not over and not (closed and reach <= cut):
         _look(train, max(cut, reach), progress, math.inf)
@@ -113,7 +113,8 @@ def _closed(
     zero = np.zeros(1)
     wait(Chunk(0, zero, zero, zero, np.empty((1, 0), dtype=np.int64)))
     while heap and heap[0][0] <= progress.threshold:
-        progress.lower = max(progress.lower, heap[0][0]) if heap[0][2].level else progress.lower
+        if heap[0][2].level:
+            progress.raise_lower(heap[0][0])
         if not progress.goes_on():
             return True
         if progress.looked > patience:

@@ -101,4 +101,6 @@ def _goes_on(clock: float, budget: Budget, watch: Watch | None, spent: int, leas
     seconds = time.perf_counter() - clock
     if budget.seconds is not None and seconds > budget.seconds:
         return False
-    return watch is None or watch(Event(seconds, spent, least if np.isfinite(least) else None))
+    return watch is None or (
+        watch(Event(seconds, spent, least if np.isfinite(least) else None)) is not False
+    )

@@ -38,7 +38,7 @@ def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Out
     import cvxpy as cp
 
     clock = time.perf_counter()
-    if watch is not None and not watch(Event(0.0, 0)):
+    if watch is not None and watch(Event(0.0, 0)) is False:
         return Outcome(None, finished=False, message="stopped before it began")
     model = _model(problem)
     _set(problem, model)

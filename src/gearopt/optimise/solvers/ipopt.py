@@ -66,8 +66,8 @@ def run(
     monitor.begin(budget, watch, shape.objective)
     point = _ipopt(problem, solver, y0, low, high, monitor.rows)
     if not monitor.stopped and _violation(problem, shape, point.y) > STUCK:
-        point, least = _least_violation(problem, shape, point, low, high)
-        if least > STUCK:
+        point, least = _least_violation(problem, shape, point, low, high, monitor)
+        if least > STUCK and not monitor.stopped:
             return Outcome(
                 shape.to_x(point.y),
                 lam_g=point.lam_g,
@@ -77,6 +77,8 @@ def run(
                 message=f"Ipopt: {point.status}; the least violation found is {least:.3g}",
             )
         point = _ipopt(problem, solver, point.y, low, high, monitor.rows)
+    if monitor.raised is not None:
+        raise monitor.raised
     best = monitor.best if monitor.stopped else point.y
     return Outcome(
         None if best is None else np.clip(shape.to_x(best), lower, upper),
@@ -136,9 +138,12 @@ def _violation(problem: Problem, shape: Form, y: Array) -> float:
 
 
 def _least_violation(
-    problem: Problem, shape: Form, point: _Point, low: Array, high: Array
+    problem: Problem, shape: Form, point: _Point, low: Array, high: Array, outer: Any
 ) -> tuple[_Point, float]:
-    """Minimise the largest violation t of any row; its multipliers are the conflict."""
+    """Minimise the largest violation t of any row; its multipliers are the conflict.
+
+    outer: the monitor of the run, whose budget and watcher go on counting.
+    """
     import casadi as ca
 
     key = ("ipopt least violation", id(shape))
@@ -148,10 +153,17 @@ def _least_violation(
         t = type(y).sym("t")
         rows = ca.vertcat(g - t, h - t, -h - t)
         options = {f"ipopt.{k}": v for k, v in OPTIONS.items()}
-        options |= {"print_time": False, "error_on_fail": False, "show_eval_warnings": False}
+        monitor = _monitor_class()(y.numel() + 1, rows.numel(), 0)
+        options |= {
+            "print_time": False,
+            "iteration_callback": monitor,
+            "error_on_fail": False,
+            "show_eval_warnings": False,
+        }
         nlp = {"x": ca.vertcat(y, t), "p": p, "f": t, "g": rows}
-        problem.memo[key] = ca.nlpsol("least_violation", "ipopt", nlp, options)
-    solver = problem.memo[key]
+        problem.memo[key] = ca.nlpsol("least_violation", "ipopt", nlp, options), monitor
+    solver, monitor = problem.memo[key]
+    monitor.begin(outer.budget, lambda event: outer._goes_on(), float)
     start = np.where(np.isfinite(point.y), point.y, 0.0)
     found = solver(
         x0=np.append(start, 1.0),
@@ -163,6 +175,7 @@ def _least_violation(
     )
     z = np.array(found["x"]).ravel()
     lam = np.array(found["lam_g"]).ravel()
+    outer.stopped = outer.stopped or monitor.stopped
     lam_h = lam[m_g : m_g + m_h] - lam[m_g + m_h :]
     return _Point(z[:-1], lam[:m_g], lam_h, point.status), float(z[-1])
 
@@ -189,6 +202,7 @@ def _monitor_class() -> Any:
             self.clock, self.evaluations, self.stopped = time.perf_counter(), 0, False
             self.best: Array | None = None
             self.least = np.inf
+            self.raised: BaseException | None = None
 
         def get_n_in(self) -> int:
             return int(ca.nlpsol_n_out())
@@ -221,6 +235,12 @@ def _monitor_class() -> Any:
             if most_n is not None and self.evaluations >= most_n:
                 return False
             best = None if self.best is None else self.objective(self.least)
-            return self.watch is None or self.watch(Event(seconds, self.evaluations, best))
+            if self.watch is None:
+                return True
+            try:
+                return self.watch(Event(seconds, self.evaluations, best)) is not False
+            except BaseException as raised:  # casadi would print and swallow it
+                self.raised = raised
+                return False
 
     return Monitor

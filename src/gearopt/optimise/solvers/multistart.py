@@ -28,7 +28,7 @@ def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Out
         value = None if best is None else least
         late = budget.seconds is not None and seconds > budget.seconds
         full = budget.evaluations is not None and spent + event.evaluations >= budget.evaluations
-        told = watch is None or watch(Event(seconds, spent + event.evaluations, value))
+        told = watch is None or watch(Event(seconds, spent + event.evaluations, value)) is not False
         stopped = stopped or late or full or not told
         return not stopped
 

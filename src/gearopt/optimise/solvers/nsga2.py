@@ -54,7 +54,7 @@ def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Out
         late = budget.seconds is not None and seconds > budget.seconds
         best = algorithm.opt[0].F[0] if algorithm.opt[0].feas else None
         event = Event(seconds, int(algorithm.evaluator.n_eval), best)
-        if late or (watch is not None and not watch(event)):
+        if late or (watch is not None and watch(event) is False):
             finished = not algorithm.has_next()
             break
     spent = int(algorithm.evaluator.n_eval)

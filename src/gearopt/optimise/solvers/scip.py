@@ -160,9 +160,10 @@ def _follow(scip: Any, watch: Watch | None) -> Any:
         def eventexit(self) -> None:
             self.model.dropEvent(SCIP_EVENTTYPE.NODESOLVED, self)
 
-        def eventexec(self, event: Any) -> None:
+        def eventexec(self, happened: Any) -> None:
             seconds = time.perf_counter() - self.clock
-            if watch is not None and not watch(Event(seconds, int(self.model.getNTotalNodes()))):
+            event = Event(seconds, int(self.model.getNTotalNodes()))
+            if watch is not None and watch(event) is False:
                 self.stopped = True
                 self.model.interruptSolve()
 

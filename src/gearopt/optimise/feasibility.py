@@ -1,0 +1,52 @@
+"""How far a point is from feasible, and what has the worst of it."""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from gearopt.optimise.problem import Batch, Problem
+from gearopt.optimise.terms import Array
+
+RUNAWAY = 1e9  # a variable without a bound that moves this factor from its guess is held by nothing
+
+
+def violation(problem: Problem, x: Array, batch: Batch) -> tuple[float, str]:
+    """Largest violation of rows, bounds and discreteness, and the name of what has it."""
+    lower, upper, _ = problem.bounds()
+    logarithmic = np.array([v.log for v, _ in problem.columns])
+    span = np.where(upper > lower, upper - lower, np.inf)
+    width = np.where(logarithmic, np.abs(x), np.minimum(span, np.maximum(1.0, np.abs(x))))
+    names = [r.name for r in problem.rows.inequalities] + list(problem.rows.equalities)
+    names += [f"bound of {name}" for _, name in problem.columns]
+    names += [f"set of values of {name}" for _, name in problem.columns]
+    discrete = [_distance(v, value) for (v, _), value in zip(problem.columns, x, strict=True)]
+    amounts = np.concatenate(
+        [
+            batch.G[0] - 1.0,
+            np.abs(batch.H[0] - 1.0),
+            np.maximum(lower - x, x - upper) / width,
+            np.array(discrete),
+        ]
+    )
+    if np.isnan(amounts).any():
+        return math.nan, names[int(np.isnan(amounts).argmax())]
+    worst = int(amounts.argmax())
+    return max(0.0, float(amounts[worst])), names[worst]
+
+
+def _distance(variable: Any, value: float) -> float:
+    """Distance of a discrete variable from its nearest allowed value."""
+    if variable.values is not None:
+        return float(min(abs(value - v) for v in variable.values))
+    return abs(value - round(value)) if variable.integer else 0.0
+
+
+def runaway(problem: Problem, x: Array, lower: Array, upper: Array, guess: Array) -> str:
+    """Name a variable that nothing holds: unbounded, and far beyond any scale of its guess."""
+    scale = RUNAWAY * np.maximum(1.0, np.abs(guess))
+    loose = ~(np.isfinite(lower) & np.isfinite(upper)) & (np.abs(x) > scale)
+    if not loose.any():
+        return ""
+    k = int(np.argmax(loose))
+    return f"nothing holds {problem.columns[k][1]} ({x[k]:.3g}): give it a bound or a limit"
