@@ -1,4 +1,4 @@
-"""Continuous sizing against closed forms, the source's digest, and hard scales."""
+"""Continuous sizing against closed forms, independent solutions and hard scales."""
 
 import math
 from dataclasses import replace
@@ -27,7 +27,7 @@ def drive(power_kW, speed_rpm, total, widths, tolerance=EXACT, **stage):
 
 
 def g(u):
-    """V = pi T/(2 K) g(u) at the K limit (digest, section 1.1)."""
+    """V = pi T/(2 K) g(u) at the K limit (Chong and Lee, eqs. 2 and 4)."""
     return (u + 1.0) * (u * u + 1.0) / u
 
 
@@ -39,7 +39,7 @@ def test_single_stage_closed_form():
 
 
 def test_two_stages_meet_the_stationarity_of_the_split():
-    """2 u1 (1 + 1/u) + 2 = (u^2 + 1)/u1^2 (digest, section 1.1)."""
+    """2 u1 (1 + 1/u) + 2 = (u^2 + 1)/u1^2 (Chong and Lee, eqs. 2 and 4)."""
     total = F("1450") / F("66.5")
     result = solve(sizing.problem(drive(7.5, 1450, total, [0.6, 0.75])))
     u1, u = result.design["ratio"][0], float(total)
@@ -59,7 +59,7 @@ def test_every_count_of_stages_is_proven_convex_and_optimal(count):
 
 
 def test_the_optimum_does_not_depend_on_tied_width_or_helix():
-    """The digest: V at the K limit is independent of m_a, m and beta."""
+    """V at the K limit is independent of m_a, m and beta."""
     train = drive(8, 3520, 110, [0.6, 0.6, 0.75])
     values = [
         solve(sizing.problem(t)).value
@@ -100,7 +100,7 @@ def test_the_answer_moves_the_right_way(change, sign):
 
 
 def test_safety_squared_closed_form():
-    """Under K limits V is homogeneous: V(S) = S^2 V(1) for K/S^2 (digest, section 4)."""
+    """Under K limits V is homogeneous: V(S) = S^2 V(1) for K/S^2."""
     problem = sizing.problem(drive(7.5, 1450, 20, [0.6, 0.75]))
     one = solve(problem).value
     for safety in (1.1, 1.7):
@@ -110,7 +110,7 @@ def test_safety_squared_closed_form():
 
 @pytest.mark.parametrize("tolerance", [EXACT, ONE_PERCENT])
 def test_impossible_requests_are_proven_and_named(tolerance):
-    """Conflict sets of the digest's section 5."""
+    """Conflict sets that an elastic form in another solver gave."""
     ratio = {"ratio" if tolerance == 0 else "ratio_low"}
     thousand = drive(7.5, 1450, 1000, [0.6, 0.75], tolerance, ratio=(F(1), F(10)))
     result = solve(sizing.problem(thousand))

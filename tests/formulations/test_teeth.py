@@ -25,7 +25,7 @@ def drive(total=ELEVATOR, widths=("0.6", "0.75"), tolerance=ONE_PERCENT, **stage
 
 
 def test_table_2_designs_are_beaten_under_their_own_limits():
-    """Holding the paper's process-one loads as limits (digest 3b): 8,708,993 -> 8,520,524 mm3."""
+    """Holding the paper's process-one loads as limits: 8,708,993 -> 8,520,524 mm3."""
     train = drive()
     own = tuple(replace(s, k_factor=1.416, unit_load=31.78) for s in train.stages)
     result = solve(teeth.problem(replace(train, stages=own)))

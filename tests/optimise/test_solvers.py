@@ -101,7 +101,7 @@ def test_a_watcher_stops_the_run_and_keeps_the_best(method):
 
 
 def test_gp_and_ipopt_share_nothing_and_agree_to_1e_9():
-    """The K/U rows of the digest's table 3a."""
+    """Two and three stages, exact ratio and within 1 %."""
     three = replace(drive(110, ("0.6", "0.6", "0.75"), F(0), modules=()), torque=21702.9)
     for train in (drive(tolerance=F(0), modules=()), drive(), three):
         a, b = (solve(sizing.problem(train), m) for m in ("ipopt", "gp"))

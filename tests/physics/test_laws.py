@@ -41,7 +41,7 @@ def test_volume_is_two_cylinders():
 
 
 def test_volume_at_the_k_limit_depends_on_torque_and_ratio_alone():
-    """V = pi T/(2 K) (u + 1)(u^2 + 1)/u whatever the diameter (digest, section 1.1)."""
+    """V = pi T/(2 K) (u + 1)(u^2 + 1)/u whatever the diameter (Chong and Lee, eqs. 2 and 4)."""
     load, limit, u = 49392.9, 2.07, 4.7
     for d in (20.0, 50.0, 400.0):
         b = k_factor(load, d, 1.0, u) / limit

@@ -1,6 +1,6 @@
 """Sizing of drives: time to a proven answer, and its error against known optima.
 
-Known: the digests of the source paper's two drives, solved there by SCIP and by enumeration; four
+Known: the two drives of Chong and Lee, solved by SCIP and by brute force in the tests; four
 and more stages have no published optimum, so their error is the proven gap.
 """
 

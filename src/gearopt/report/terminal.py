@@ -28,6 +28,8 @@ VERDICTS = {
     "limit": ("stopped early", "yellow"),
     "failed": ("failed", "red"),
 }
+EXACT = 1e-6  # a gap below it is called optimal, one above it is named
+
 ROWS = {  # of the stage table: what it is called, and the factor to its unit
     "normal_module_mm": ("module m_n [mm]", 1),
     "pinion_teeth": ("teeth z1", 1),
@@ -47,6 +49,8 @@ ROWS = {  # of the stage table: what it is called, and the factor to its unit
 def show(result: Result, title: str, console: Console) -> None:
     """Print a result."""
     words, colour = VERDICTS[result.status]
+    if result.status == "optimal" and (result.gap or 0.0) > EXACT:
+        words = f"proven within {100 * (result.gap or 0.0):.2g} % of the optimum"
     console.print(Text.assemble((title, "bold"), ": ", (words, f"bold {colour}")))
     for block in _blocks(result):
         console.print()
@@ -157,10 +161,14 @@ def _proof(result: Result) -> list[str]:
             "Proof: the problem is convex in logarithms; the bound is a dual one, computed "
             "from our own derivatives."
         )
+    if result.status == "infeasible" and proof.get("conflict"):
+        names = ", ".join(limit_words(n) for n in proof["conflict"])
+        least = 100 * proof["least_violation"]
+        lines.append(
+            f"Proof: whatever the sizes, even with real-valued teeth and modules, one of these "
+            f"limits is missed by at least {least:.2g} %: {names}."
+        )
     for part in result.parts:
-        if part.status == "infeasible" and part.proof.get("conflict"):
-            names = ", ".join(limit_words(n) for n in part.proof["conflict"])
-            lines.append(f"Even with real-valued teeth and modules these clash: {names}.")
         if part.value is not None and result.value is not None:
             lines.append(
                 f"With real-valued teeth and modules: {number(part.value)} {unit} "
@@ -170,7 +178,7 @@ def _proof(result: Result) -> list[str]:
     if "widening_one_suffices" in proof:
         lines += _widening(proof["widening_one_suffices"], proof["undecided"])
     lines += result.report.get("notes", [])
-    if result.message:
+    if result.message and result.status != "infeasible":
         lines.append(result.message[0].upper() + result.message[1:] + ".")
     lines.append(f"{result.method}, {result.evaluations:,} evaluations, {result.seconds:.3g} s.")
     return lines

@@ -201,6 +201,8 @@ def solve(scene: Scene, ask: Ask) -> Result:
     if scene.teeth is None or ask.method in CONTINUOUS:
         return _sized(scene, train, ask, sizing.problem(train))
     ideal = _sized(scene, train, Ask(budget=ask.budget), sizing.problem(train))
+    if ideal.status == "infeasible":  # then no whole teeth do either
+        return _explained(replace(ideal, name="drive"), train, ask)
     floor = -math.inf if ideal.bound is None else ideal.bound
     found = _sized(scene, train, ask, teeth.problem(train, ask.top, floor))
     return reconcile(replace(found, parts=(replace(ideal, name="sizing"),)), ideal, ask.gap)
@@ -213,11 +215,7 @@ def _sized(scene: Scene, train: Train, ask: Ask, problem: Problem) -> Result:
     result, outcome = run(problem, ask.method, ask.budget, ask.seed, ask.watch, ask.gap)
     result = replace(result, objective=result.objective | {"unit": train.unit})
     if result.status == "infeasible" and exact:
-        seconds = ask.budget.seconds
-        left = None if seconds is None else max(0.0, seconds - result.seconds)
-        single = widened(train, left, ask.watch)
-        words = {"widening_one_suffices": single.suffice, "undecided": single.undecided}
-        result = replace(result, proof=result.proof | words)
+        return _explained(result, train, ask)
     if result.value is None or outcome.x is None:
         return result
     designs = [describe(train, formulation.sizes(train, x)) for x in (outcome.x, *outcome.others)]
@@ -230,6 +228,15 @@ def _sized(scene: Scene, train: Train, ask: Ask, problem: Problem) -> Result:
     if notes := _notes(scene, exact):
         report["notes"] = notes
     return replace(result, name="drive", design=designs[0], report=report)
+
+
+def _explained(result: Result, train: Train, ask: Ask) -> Result:
+    """Add to an impossible drive which single limits, widened, would make it possible."""
+    seconds = ask.budget.seconds
+    left = None if seconds is None else max(0.0, seconds - result.seconds)
+    single = widened(train, left, ask.watch)
+    words = {"widening_one_suffices": single.suffice, "undecided": single.undecided}
+    return replace(result, proof=result.proof | words)
 
 
 def _notes(scene: Scene, exact: bool) -> list[str]:

@@ -21,7 +21,7 @@ from gearopt.physics.loads import k_factor, unit_load
 
 Index = NDArray[np.int64]
 
-PAIRS = 2_000_000  # tooth pairs of one stage: about half a GB of tables
+PAIRS = 3_000_000  # tooth pairs of one stage: about 1 GB of tables
 ALLOWANCE = 1e-12  # a stress utilisation this little above 1 is rounding, not a violation
 
 
