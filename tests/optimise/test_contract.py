@@ -218,6 +218,19 @@ def test_declarations_are_checked():
         Problem("p", (twice, twice), (), lambda x, p: Terms({"f": x.a}))
 
 
+def test_names_are_unique():
+    one = Var("a", "", 0.0, 2.0, 1.0)
+    with pytest.raises(ValueError, match="parameter 'k' is declared twice"):
+        Problem(
+            "p", (one,), (Param("k", "", 1.0), Param("k", "", 2.0)), lambda x, p: Terms({"f": x.a})
+        )
+    with pytest.raises(ValueError, match="no variables"):
+        Problem("p", (), (), lambda x, p: Terms({"f": 1.0}))
+    clash = Problem("p", (one,), (), lambda x, p: Terms({"f": x.a}, {"a": (x.a,), "a[1]": x.a}))
+    with pytest.raises(SolveError, match=r"two rows are named 'a\[1\]'"):
+        solve(clash)
+
+
 def test_two_objectives_are_refused_by_a_single_objective_solve():
     problem = Problem(
         "p", (Var("a", "", 0.0, 2.0, 1.0),), (), lambda x, p: Terms({"f": x.a, "g": 1.0 - x.a})

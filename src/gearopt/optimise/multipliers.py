@@ -18,10 +18,10 @@ def multipliers(
 ) -> tuple[Array, Array] | None:
     """(lam_g, lam_h) of a feasible point, or None where the system is too large."""
     no_g, no_h = (np.zeros(shape.derivatives.numel_out(k)) for k in (1, 2))
+    if (len(no_g) + len(no_h)) * len(y) > MOST:
+        return None
     _, g, _, gradient, _ = (np.array(v).ravel() for v in shape.derivatives(y, p, no_g, no_h))
     active = np.flatnonzero(g >= -NEAR)
-    if (len(active) + len(no_h)) * len(y) > MOST:
-        return None
     of_g, of_h = (np.array(j).reshape(-1, len(y)) for j in shape.jacobians(y, p))
     rows = np.vstack([of_g[active], of_h])
     free = (y > low + NEAR) & (y < high - NEAR)

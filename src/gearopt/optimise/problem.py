@@ -4,6 +4,7 @@ The same text is run by numpy on whole populations (`Problem.batch`), traced onc
 (`Problem.traced`, for derivatives and certificates) and called compiled (`Problem.compiled`).
 """
 
+from collections import Counter
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -12,6 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from gearopt.errors import SolveError
 from gearopt.optimise.terms import (
     Array,
     Named,
@@ -80,9 +82,12 @@ class Problem:
     def __post_init__(self) -> None:
         names = [v.name for v in self.variables]
         names += [v.name for r in self.repeats for v in r.variables]
-        twice = {name for name in names if names.count(name) > 1}
-        if twice:
-            raise ValueError(f"problem {self.name}: variable {twice.pop()!r} is declared twice")
+        if twice := _twice(names):
+            raise ValueError(f"problem {self.name}: variable {twice!r} is declared twice")
+        if twice := _twice([q.name for q in self.parameters]):
+            raise ValueError(f"problem {self.name}: parameter {twice!r} is declared twice")
+        if not names:
+            raise ValueError(f"problem {self.name} has no variables")
 
     def at(self, **values: Number) -> "Problem":
         """The same problem with other parameter values; what was traced and built is kept."""
@@ -178,6 +183,8 @@ class Problem:
             for k in range(1, r.count + 1):
                 limits += [Row(f"{r.name}.{n}[{k}]", kind) for n, _, kind in inequalities(found)]
                 equal += [f"{r.name}.{n}[{k}]" for n, _ in flat(found.equal)]
+        if twice := _twice([row.name for row in limits] + equal):
+            raise SolveError(f"problem {self.name}: two rows are named {twice!r}")
         return Rows(tuple(objectives), tuple(limits), tuple(equal))
 
     def traced(self) -> "Traced":
@@ -194,6 +201,11 @@ class Problem:
         from gearopt.optimise.trace import Compiled
 
         return Compiled(self)
+
+
+def _twice(names: list[str]) -> str | None:
+    """A name that stands twice in a list."""
+    return next((name for name, times in Counter(names).items() if times > 1), None)
 
 
 def _matrix(values: list[Any], count: int, rows: int) -> Array:
