@@ -159,3 +159,11 @@ def test_continuous_answer_of_a_teeth_file_says_so():
     done = gear("solve", ELEVATOR, "--method", "ipopt", "--top", 3)
     assert "Teeth and modules are real numbers here" in done.stdout
     assert "centre distances" not in done.stdout.split("total length")[1]
+
+
+@pytest.mark.skipif(not Path("/proc/self/mem").exists(), reason="needs a file that cannot be read")
+def test_a_file_that_cannot_be_read_is_one_message():
+    """Even root cannot read the first byte of a process's memory."""
+    done = gear("solve", "/proc/self/mem")
+    assert done.returncode == 2 and done.stdout == ""
+    assert done.stderr.count("\n") == 1 and "cannot be read" in done.stderr

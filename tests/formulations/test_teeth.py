@@ -70,6 +70,7 @@ def test_what_widening_one_limit_would_do():
     assert "wheel_diameter" in widened(drive(wheel_diameter=F(250)), 0.0, None).undecided
 
 
+@pytest.mark.slow
 def test_a_stopped_search_has_a_bound_and_says_so():
     train = drive(total=F(3000), widths=("0.6",) * 5 + ("0.75",))
     stopped = solve(teeth.problem(train), budget=Budget(evaluations=400_000))
@@ -176,3 +177,17 @@ def test_a_drive_of_nonsense_numbers_is_refused():
         replace(drive(), ratio=F(1, 2))
     with pytest.raises(ValueError, match="needs a density"):
         replace(drive(), objective="mass")
+
+
+def test_a_tolerance_that_leaves_too_many_pairs_is_refused_before_memory_is_spent():
+    wide = drive(total=F(100), widths=("0.6",) * 3, tolerance=F(1, 2), pinion_teeth=(5, 200))
+    with pytest.raises(SolveError, match="narrow it, or limit wheel teeth"):
+        solve(teeth.problem(wide))
+
+
+@pytest.mark.slow
+def test_a_widening_that_asks_too_much_is_undecided_not_an_error():
+    """Wheels of 100 mm at 600:1 in three stages: wider pinion ranges mean millions of pairs."""
+    found = widened(drive(total=F(600), widths=("0.6",) * 3, wheel_diameter=F(100)), None, None)
+    assert "wheel_diameter" in found.suffice
+    assert "pinion_teeth" in found.undecided

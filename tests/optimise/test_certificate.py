@@ -133,8 +133,12 @@ def test_reconcile_keeps_the_better_bound_and_sees_contradictions():
     assert reconcile(found, ideal, 1e-6).status == "limit"
     with pytest.raises(CertificateError, match="below the relaxation"):
         reconcile(found, Result("b", "optimal", "ipopt", {"value": 11.0}, bound=11.0), 1e-6)
+    never = Result("b", "infeasible", "ipopt", {}, proof={"method": "dual"})
     with pytest.raises(CertificateError, match="impossible"):
-        reconcile(found, Result("b", "infeasible", "ipopt", {}), 1e-6)
+        reconcile(found, never, 1e-6)
+    nothing = Result("a", "limit", "exact", {"name": "f", "value": None})
+    assert reconcile(nothing, never, 1e-6).status == "infeasible"
+    assert reconcile(nothing, never, 1e-6).proof == {"method": "dual"}
 
 
 def test_budget_keeps_the_best_feasible_iterate():
