@@ -191,3 +191,14 @@ def test_a_widening_that_asks_too_much_is_undecided_not_an_error():
     found = widened(drive(total=F(600), widths=("0.6",) * 3, wheel_diameter=F(100)), None, None)
     assert "wheel_diameter" in found.suffice
     assert "pinion_teeth" in found.undecided
+
+
+def test_a_list_of_the_best_shares_the_budget_of_the_best():
+    """The second search, for the list, gets what the first one left."""
+    alone = solve(teeth.problem(drive()))
+    budget = Budget(evaluations=alone.evaluations + 5000)
+    listed, outcome = run(teeth.problem(drive(), 1000), budget=budget)
+    assert listed.value == alone.value
+    assert listed.evaluations < alone.evaluations + 5000 + 20_000  # a slice more, not a search
+    assert len(outcome.others) == 0
+    assert Budget(3.0, 10, 0.1).less(5.0, 4) == Budget(0.0, 6, 0.1)

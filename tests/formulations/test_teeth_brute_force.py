@@ -48,7 +48,7 @@ def agreed_status(number, stages):
 @pytest.mark.parametrize("block", range(8))
 def test_random_two_stage_drives(block):
     for number in range(25 * block, 25 * block + 25):
-        agreed_status(number, 2)
+        assert agreed_status(number, 2) in ("optimal", "infeasible")  # after `agrees`
 
 
 @pytest.mark.slow

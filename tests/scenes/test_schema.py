@@ -20,7 +20,8 @@ def test_the_schema_is_one():
 
 @pytest.mark.parametrize("path", PROBLEMS, ids=lambda p: p.stem)
 def test_every_shipped_file_fits(path):
-    VALIDATOR.validate(tomllib.loads(path.read_text(encoding="utf-8")))
+    content = tomllib.loads(path.read_text(encoding="utf-8"))
+    assert list(VALIDATOR.iter_errors(content)) == []
 
 
 def test_the_example_fits_and_shows_every_table():
@@ -70,4 +71,4 @@ def test_wrong_files_are_refused(change):
 
 def test_tables_of_ones_own_are_free():
     content = tomllib.loads(EXAMPLE) | {"x-notes": {"anything": [1, "a"]}}
-    VALIDATOR.validate(content)
+    assert list(VALIDATOR.iter_errors(content)) == []

@@ -4,7 +4,7 @@ import json
 import math
 import platform
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import asdict, dataclass, field, fields, replace
 from functools import cache
 from importlib.metadata import version
 from typing import Any
@@ -28,6 +28,16 @@ class Budget:
     seconds: float | None = None
     evaluations: int | None = None
     gap: float = 0.0
+
+    def less(self, seconds: float, evaluations: int = 0) -> "Budget":
+        """What is left of it after so much is spent."""
+        return replace(
+            self,
+            seconds=None if self.seconds is None else max(0.0, self.seconds - seconds),
+            evaluations=None
+            if self.evaluations is None
+            else max(0, self.evaluations - evaluations),
+        )
 
 
 @dataclass(frozen=True)

@@ -203,6 +203,7 @@ def solve(scene: Scene, ask: Ask) -> Result:
     ideal = _sized(scene, train, Ask(budget=ask.budget), sizing.problem(train))
     if ideal.status == "infeasible":  # then no whole teeth do either
         return _explained(replace(ideal, name="drive"), train, ask)
+    ask = replace(ask, budget=ask.budget.less(ideal.seconds))
     floor = -math.inf if ideal.bound is None else ideal.bound
     found = _sized(scene, train, ask, teeth.problem(train, ask.top, floor))
     return reconcile(replace(found, parts=(replace(ideal, name="sizing"),)), ideal, ask.gap)
@@ -232,9 +233,7 @@ def _sized(scene: Scene, train: Train, ask: Ask, problem: Problem) -> Result:
 
 def _explained(result: Result, train: Train, ask: Ask) -> Result:
     """Add to an impossible drive which single limits, widened, would make it possible."""
-    seconds = ask.budget.seconds
-    left = None if seconds is None else max(0.0, seconds - result.seconds)
-    single = widened(train, left, ask.watch)
+    single = widened(train, ask.budget.less(result.seconds).seconds, ask.watch)
     words = {"widening_one_suffices": single.suffice, "undecided": single.undecided}
     return replace(result, proof=result.proof | words)
 

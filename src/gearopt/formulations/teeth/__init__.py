@@ -5,6 +5,7 @@ tied, free or on a step. `exact` proves its answer by exhausting all other train
 """
 
 import math
+import time
 from types import SimpleNamespace
 from typing import Any
 
@@ -141,7 +142,8 @@ def _outcome(
     progress = search(train, 1, budget, watch, floor)
     found = _in_order(progress)
     if count > 1 and found and not (progress.stopped or progress.enough):
-        more = search(train, count, budget, watch, floor)
+        left = budget.less(time.perf_counter() - progress.clock, progress.looked)
+        more = search(train, count, left, watch, floor)
         found = (found[:1] + [t for t in _in_order(more) if t != found[0]])[:count]
         progress.compared += more.compared
         progress.looked += more.looked

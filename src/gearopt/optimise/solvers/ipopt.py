@@ -44,6 +44,48 @@ class _Point:
     status: str
 
 
+class _Run:
+    """One run as its monitor sees it; it has state because casadi reports it step by step.
+
+    rows: number of inequality and of equality rows. best: the best feasible iterate so far. raised:
+    what the watcher raised, which casadi would print and swallow.
+    """
+
+    def __init__(self, rows: tuple[int, int], budget: Budget, watch: Watch | None, unit: Any):
+        self.rows, self.budget, self.watch, self.unit = rows, budget, watch, unit
+        self.clock, self.evaluations, self.stopped = time.perf_counter(), 0, False
+        self.best: Array | None = None
+        self.least = np.inf
+        self.raised: BaseException | None = None
+
+    def note(self, y: Array, value: float, rows: Array) -> bool:
+        """Take an iterate; whether the run goes on."""
+        self.evaluations += 1
+        count = self.rows[0]
+        worst = max(rows[:count].max(initial=0), np.abs(rows[count:]).max(initial=0))
+        if worst <= ACCEPTED and value < self.least:
+            self.least, self.best = value, y
+        self.stopped = not self.goes_on()
+        return not self.stopped
+
+    def goes_on(self) -> bool:
+        """Whether budget and watcher let the run go on."""
+        seconds = time.perf_counter() - self.clock
+        most_s, most_n = self.budget.seconds, self.budget.evaluations
+        if most_s is not None and seconds > most_s:
+            return False
+        if most_n is not None and self.evaluations >= most_n:
+            return False
+        if self.watch is None:
+            return True
+        best = None if self.best is None else self.unit(self.least)
+        try:
+            return self.watch(Event(seconds, self.evaluations, best)) is not False
+        except BaseException as raised:
+            self.raised = raised
+            return False
+
+
 def run(
     problem: Problem,
     budget: Budget,
@@ -63,29 +105,29 @@ def run(
     y0 = shape.to_y(np.clip(guess if start is None else start, lower, upper))
     low, high = shape.to_y(lower), shape.to_y(upper)
     solver, monitor = _built(problem, shape)
-    monitor.begin(budget, watch, shape.objective)
+    following = monitor.begin(budget, watch, shape.objective)
     point = _ipopt(problem, solver, y0, low, high, monitor.rows)
-    if not monitor.stopped and _violation(problem, shape, point.y) > STUCK:
-        point, least = _least_violation(problem, shape, point, low, high, monitor)
-        if least > STUCK and not monitor.stopped:
+    if not following.stopped and _violation(problem, shape, point.y) > STUCK:
+        point, least = _least_violation(problem, shape, point, low, high, following)
+        if least > STUCK and not following.stopped:
             return Outcome(
                 shape.to_x(point.y),
                 lam_g=point.lam_g,
                 lam_h=point.lam_h,
                 infeasible=True,
-                evaluations=monitor.evaluations,
+                evaluations=following.evaluations,
                 message=f"Ipopt: {point.status}; the least violation found is {least:.3g}",
             )
         point = _ipopt(problem, solver, point.y, low, high, monitor.rows)
-    if monitor.raised is not None:
-        raise monitor.raised
-    best = monitor.best if monitor.stopped else point.y
+    if following.raised is not None:
+        raise following.raised
+    best = following.best if following.stopped else point.y
     return Outcome(
         None if best is None else np.clip(shape.to_x(best), lower, upper),
-        finished=not monitor.stopped,
+        finished=not following.stopped,
         lam_g=point.lam_g,
         lam_h=point.lam_h,
-        evaluations=monitor.evaluations,
+        evaluations=following.evaluations,
         message="" if point.status == "Solve_Succeeded" else f"Ipopt: {point.status}",
     )
 
@@ -138,11 +180,11 @@ def _violation(problem: Problem, shape: Form, y: Array) -> float:
 
 
 def _least_violation(
-    problem: Problem, shape: Form, point: _Point, low: Array, high: Array, outer: Any
+    problem: Problem, shape: Form, point: _Point, low: Array, high: Array, outer: _Run
 ) -> tuple[_Point, float]:
     """Minimise the largest violation t of any row; its multipliers are the conflict.
 
-    outer: the monitor of the run, whose budget and watcher go on counting.
+    outer: the run, whose budget and watcher go on counting.
     """
     import casadi as ca
 
@@ -163,7 +205,7 @@ def _least_violation(
         nlp = {"x": ca.vertcat(y, t), "p": p, "f": t, "g": rows}
         problem.memo[key] = ca.nlpsol("least_violation", "ipopt", nlp, options), monitor
     solver, monitor = problem.memo[key]
-    monitor.begin(outer.budget, lambda event: outer._goes_on(), float)
+    inner = monitor.begin(Budget(), lambda event: outer.goes_on(), float)
     start = np.where(np.isfinite(point.y), point.y, 0.0)
     found = solver(
         x0=np.append(start, 1.0),
@@ -175,34 +217,27 @@ def _least_violation(
     )
     z = np.array(found["x"]).ravel()
     lam = np.array(found["lam_g"]).ravel()
-    outer.stopped = outer.stopped or monitor.stopped
+    outer.stopped = outer.stopped or inner.stopped
     lam_h = lam[m_g : m_g + m_h] - lam[m_g + m_h :]
     return _Point(z[:-1], lam[:m_g], lam_h, point.status), float(z[-1])
 
 
 @cache
 def _monitor_class() -> Any:
-    """The class of the iteration callback (casadi is imported late).
-
-    It has state because casadi calls it: the best feasible iterate, the budget and the watcher of
-    the present run.
-    """
+    """The class of casadi's iteration callback, around a `_Run` (casadi is imported late)."""
     import casadi as ca
 
     class Monitor(ca.Callback):  # type: ignore[misc]
         def __init__(self, n: int, m_g: int, m_h: int) -> None:
             super().__init__()
-            self.rows = (m_g, m_h)
             self.sizes = {"f": 1, "x": n, "lam_x": n, "g": m_g + m_h, "lam_g": m_g + m_h}
-            self.begin(Budget(), None, float)
+            self.rows = (m_g, m_h)
+            self.run = _Run(self.rows, Budget(), None, float)
             self.construct("monitor", {})
 
-        def begin(self, budget: Budget, watch: Watch | None, objective: Any) -> None:
-            self.budget, self.watch, self.objective = budget, watch, objective
-            self.clock, self.evaluations, self.stopped = time.perf_counter(), 0, False
-            self.best: Array | None = None
-            self.least = np.inf
-            self.raised: BaseException | None = None
+        def begin(self, budget: Budget, watch: Watch | None, unit: Any) -> _Run:
+            self.run = _Run(self.rows, budget, watch, unit)
+            return self.run
 
         def get_n_in(self) -> int:
             return int(ca.nlpsol_n_out())
@@ -217,30 +252,7 @@ def _monitor_class() -> Any:
             return ca.Sparsity.dense(self.sizes.get(ca.nlpsol_out(i), 0), 1)
 
         def eval(self, arguments: Any) -> list[int]:
-            named = {ca.nlpsol_out(i): value for i, value in enumerate(arguments)}
-            self.evaluations += 1
-            value, rows = float(named["f"]), np.array(named["g"]).ravel()
-            count = self.rows[0]
-            worst = max(rows[:count].max(initial=0), np.abs(rows[count:]).max(initial=0))
-            if worst <= ACCEPTED and value < self.least:
-                self.least, self.best = value, np.array(named["x"]).ravel()
-            self.stopped = not self._goes_on()
-            return [int(self.stopped)]
-
-        def _goes_on(self) -> bool:
-            seconds = time.perf_counter() - self.clock
-            most_s, most_n = self.budget.seconds, self.budget.evaluations
-            if most_s is not None and seconds > most_s:
-                return False
-            if most_n is not None and self.evaluations >= most_n:
-                return False
-            best = None if self.best is None else self.objective(self.least)
-            if self.watch is None:
-                return True
-            try:
-                return self.watch(Event(seconds, self.evaluations, best)) is not False
-            except BaseException as raised:  # casadi would print and swallow it
-                self.raised = raised
-                return False
+            named = {ca.nlpsol_out(i): np.array(v).ravel() for i, v in enumerate(arguments)}
+            return [int(not self.run.note(named["x"], float(named["f"][0]), named["g"]))]
 
     return Monitor
