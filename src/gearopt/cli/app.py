@@ -1,0 +1,61 @@
+"""The typer application that the commands register with, and what they share."""
+
+from importlib.metadata import version
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from gearopt.optimise.result import Result
+
+app = typer.Typer(
+    help="Size gear drives to a proven optimum.",
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    add_completion=False,
+)
+
+EXIT = {"optimal": 0, "stationary": 0, "feasible": 0, "infeasible": 3, "failed": 4}
+
+File = Annotated[Path, typer.Argument(help="A problem file (TOML).", show_default=False)]
+Json = Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")]
+
+
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        print(version("gearopt"))
+        raise typer.Exit()
+
+
+@app.callback()
+def options(
+    shown: Annotated[
+        bool,
+        typer.Option(
+            "--version", callback=_print_version, is_eager=True, help="Print the version."
+        ),
+    ] = False,
+) -> None:
+    """Size gear drives to a proven optimum."""
+
+
+def exit_code(result: Result) -> int:
+    """Exit code of a result."""
+    if result.status == "limit":
+        return 4 if result.value is None else 0
+    return EXIT[result.status]
+
+
+def title(file: Path) -> str:
+    """Title of a problem file."""
+    from gearopt.api import load
+
+    words: str = getattr(load(file), "title", "") or file.name
+    return words
+
+
+def console() -> Console:
+    """The terminal; wide where it is a pipe."""
+    found = Console(highlight=False)
+    return found if found.is_terminal else Console(highlight=False, width=110)

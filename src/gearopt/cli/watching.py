@@ -1,0 +1,52 @@
+"""Following long work: progress on the terminal, and Ctrl-C that keeps the best found so far."""
+
+import signal
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from rich.console import Console
+
+from gearopt.optimise.result import Event, Watch
+
+
+@contextmanager
+def watching(seconds: float, quiet: bool) -> Iterator[Watch]:
+    """A watcher that ends the run at Ctrl-C (the second one kills) and shows long work."""
+    stopped = False
+
+    def stop(number: int, frame: Any) -> None:
+        nonlocal stopped
+        stopped = True
+        signal.signal(signal.SIGINT, before)
+
+    before = signal.signal(signal.SIGINT, stop)
+    screen = Console(stderr=True, highlight=False)
+    status = screen.status("") if screen.is_terminal and not quiet else None
+    started, shown = time.perf_counter(), 0.0
+
+    def watch(event: Event) -> bool:
+        nonlocal shown
+        now = time.perf_counter() - started
+        if status is not None and now > 0.5 and now > shown + 0.2:
+            shown = now
+            status.start()
+            status.update(_progress(event, seconds - now))
+        return not stopped
+
+    try:
+        yield watch
+    finally:
+        if status is not None:
+            status.stop()
+        signal.signal(signal.SIGINT, before)
+
+
+def _progress(event: Event, left: float) -> str:
+    parts = [f"{event.evaluations:,} evaluations"]
+    if event.best is not None:
+        parts.append(f"best {event.best:,.6g}")
+        if event.bound is not None:
+            parts.append(f"gap {100 * (1 - event.bound / event.best):.2g} %")
+    return ", ".join([*parts, f"{max(left, 0.0):.0f} s left"])
