@@ -1,7 +1,8 @@
 """gearopt: constrained optimisation of gears, with a proof of how good the answer is."""
 
-from gearopt.api import load, solve
+from gearopt.api import explain, load, solve
 from gearopt.errors import CertificateError, GearoptError, SceneError, SolveError
+from gearopt.optimise.explanation import Explanation
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Event, Result
 from gearopt.optimise.terms import Param, Repeat, Terms, Var
@@ -10,6 +11,7 @@ __all__ = [
     "Budget",
     "CertificateError",
     "Event",
+    "Explanation",
     "GearoptError",
     "Param",
     "Problem",
@@ -19,6 +21,7 @@ __all__ = [
     "SolveError",
     "Terms",
     "Var",
+    "explain",
     "load",
     "solve",
 ]

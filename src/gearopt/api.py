@@ -6,6 +6,7 @@ from typing import Any
 
 from pydantic import BaseModel
 
+from gearopt.optimise.explanation import Explanation
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Result, Watch
 from gearopt.optimise.solve import GAP
@@ -51,6 +52,36 @@ def solve(
     loaded = load_file(what)
     result = scene_module(loaded.kind).solve(loaded.scene, ask)
     return _named(result, scene=loaded.kind, file=loaded.file, file_sha256=loaded.sha256)
+
+
+def explain(
+    what: str | Path | BaseModel | Problem,
+    *,
+    budget: Budget | None = None,
+    watch: Watch | None = None,
+) -> Explanation:
+    """Why the answer to a file, a scene or a continuous problem is what it is.
+
+    Possible: the limits that bind, and the sensitivity and price of every number of the file (of
+    every parameter of a problem). Impossible: the limits that cannot hold together, and proven
+    remedies: what to write instead. SceneError and SolveError as in `solve`.
+    """
+    from gearopt.optimise.explain import explain as explain_problem
+
+    budget = budget or Budget()
+    if isinstance(what, Problem):
+        return explain_problem(what, budget, watch)
+    ask = Ask(budget=budget, watch=watch)
+    if isinstance(what, BaseModel):
+        kind = type(what).__module__.rsplit(".", 1)[-1]
+        return _of(scene_module(kind).explain(what, ask), scene=kind)
+    loaded = load_file(what)
+    found = scene_module(loaded.kind).explain(loaded.scene, ask)
+    return _of(found, scene=loaded.kind, file=loaded.file, file_sha256=loaded.sha256)
+
+
+def _of(found: Explanation, **names: Any) -> Explanation:
+    return replace(found, result=_named(found.result, **names))
 
 
 def _named(result: Result, **names: Any) -> Result:

@@ -8,7 +8,7 @@ import pytest
 
 from gearopt.errors import SolveError
 from gearopt.formulations import sizing, teeth
-from gearopt.formulations.teeth.conflict import widened
+from gearopt.formulations.teeth.search import possible
 from gearopt.formulations.train import OBJECTIVES, FaceWidth, Stage, Train
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import run, solve
@@ -62,12 +62,10 @@ def test_infeasible_is_proven_by_exhaustion(stage):
     assert result.proof["method"] == "exhausted"
 
 
-def test_what_widening_one_limit_would_do():
-    assert "wheel_diameter" in widened(drive(wheel_diameter=F(250)), None, None).suffice
-    both = widened(drive(wheel_diameter=F(250), ratio=(F(1), F(4))), None, None)
-    assert both.suffice == () and both.undecided == ()
-    assert "module" in widened(drive(modules=(F(1),)), None, None).suffice
-    assert "wheel_diameter" in widened(drive(wheel_diameter=F(250)), 0.0, None).undecided
+def test_possible_answers_yes_no_or_not_in_time():
+    assert possible(drive(), 5.0, None) is True
+    assert possible(drive(wheel_diameter=F(250)), 5.0, None) is False
+    assert possible(drive(wheel_diameter=F(250)), 5.0, lambda event: False) is None
 
 
 @pytest.mark.slow
@@ -186,11 +184,10 @@ def test_a_tolerance_that_leaves_too_many_pairs_is_refused_before_memory_is_spen
 
 
 @pytest.mark.slow
-def test_a_widening_that_asks_too_much_is_undecided_not_an_error():
-    """Wheels of 100 mm at 600:1 in three stages: wider pinion ranges mean millions of pairs."""
-    found = widened(drive(total=F(600), widths=("0.6",) * 3, wheel_diameter=F(100)), None, None)
-    assert "wheel_diameter" in found.suffice
-    assert "pinion_teeth" in found.undecided
+def test_a_question_that_asks_too_much_is_undecided_not_an_error():
+    """Pinions of 12 to 100 teeth, any wheel: millions of pairs."""
+    train = drive(total=F(600), widths=("0.6",) * 3, pinion_teeth=(12, 100))
+    assert possible(train, 0.5, None) is None
 
 
 def test_a_list_of_the_best_shares_the_budget_of_the_best():

@@ -10,7 +10,7 @@ import math
 from types import SimpleNamespace
 from typing import Any
 
-from gearopt.formulations.train import Sizes, Train, each, terms
+from gearopt.formulations.train import BY_STAGE, Sizes, Train, each, terms
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Array, Param, Terms, Var, namespace
 from gearopt.physics.geometry import reference_diameter
@@ -23,6 +23,7 @@ VARIABLES = {"module": "mm", "pinion_teeth": "", "ratio": "", "face_width": "mm"
 
 _PARAMETER_UNITS = {
     "torque": "N mm",
+    "density": "t/mm3",
     "k_factor": "MPa",
     "unit_load": "MPa",
     "wheel_diameter": "mm",
@@ -40,26 +41,41 @@ def problem(train: Train) -> Problem:
     count = len(train.stages)
     numbers = train.numbers()
     parameters = tuple(
-        Param(name, _PARAMETER_UNITS.get(name, ""), value, count if isinstance(value, tuple) else 1)
+        Param(
+            name,
+            _PARAMETER_UNITS.get(name, ""),
+            value,
+            count if isinstance(value, tuple) else 1,
+            role=_role(train, name),
+        )
         for name, value in numbers.items()
     )
 
     def evaluate(x: Any, p: Any) -> Terms:
-        return terms(train, p, *_sizes(train, x, each(p.width_high)))
+        return terms(train, p, *_sizes(train, x, p.helix_cosine, each(p.width_high)))
 
     return Problem("sizing", _variables(train), parameters, evaluate)
+
+
+def _role(train: Train, name: str) -> str | tuple[str, ...]:
+    """The role of a parameter: the ratio is a duty, a tied width no limit."""
+    if name.startswith("width"):
+        return tuple("data" if s.face_width.tied else "limit" for s in train.stages)
+    if name in ("lowest_ratio", "highest_ratio", "torque"):
+        return "given"
+    return "limit" if name in BY_STAGE else "data"
 
 
 def sizes(train: Train, point: Array) -> Sizes:
     """Modules, pinion teeth, ratios and face widths, a tuple each, of a point of `problem`."""
     x = namespace(_variables(train), [float(v) for v in point])
-    return _sizes(train, x, each(train.numbers()["width_high"]))
+    return _sizes(train, x, math.cos(train.helix_angle), each(train.numbers()["width_high"]))
 
 
-def _sizes(train: Train, x: Any, proportion: Any) -> Sizes:
+def _sizes(train: Train, x: Any, cosine: Any, proportion: Any) -> Sizes:
     module, teeth = each(x.module), each(x.pinion_teeth)
     width = tuple(
-        proportion[k] * reference_diameter(module[k], teeth[k], train.helix_angle)
+        proportion[k] * reference_diameter(module[k] / cosine, teeth[k])
         if stage.face_width.tied
         else each(x.face_width)[k]
         for k, stage in enumerate(train.stages)
@@ -96,7 +112,7 @@ def _variables(train: Train) -> tuple[Var, ...]:
         del columns["face_width"]
     count = len(train.stages)
     return tuple(
-        Var(name, unit, *_transposed(columns[name]), count, log=True)
+        Var(name, unit, *_transposed(columns[name]), count, log=True, search=True)
         for name, unit in VARIABLES.items()
         if name in columns
     )

@@ -140,6 +140,8 @@ class Train:
         stages = self.stages
         return {
             "torque": self.torque,
+            "helix_cosine": math.cos(self.helix_angle),
+            "density": 1.0 if self.density is None else self.density,
             "lowest_ratio": float(self.lowest_ratio),
             "highest_ratio": float(self.highest_ratio),
             "k_factor": tuple(s.k_factor for s in stages),
@@ -162,18 +164,21 @@ def _or_inf(number: Fraction | int | None) -> float:
     return math.inf if number is None else float(number)
 
 
-def share(train: Train, stage: int, pinion_diameter: Any, face_width: Any, ratio: Any) -> Any:
+def share(
+    train: Train, stage: int, pinion_diameter: Any, face_width: Any, ratio: Any, density: Any = None
+) -> Any:
     """What a stage (counted from 0) adds to the objective, in its unit (mm3, kg or mm).
 
-    pinion_diameter, face_width [mm] and ratio: floats, arrays or casadi scalars. total_length is
-    that of the shafts in one line, from the rim of the first pinion to that of the last wheel over
-    reference circles: d1/2 + sum of centre distances + d2/2.
+    pinion_diameter, face_width [mm], ratio and density [t/mm3] (by default the train's): floats,
+    arrays or casadi scalars. total_length is that of the shafts in one line, from the rim of the
+    first pinion to that of the last wheel over reference circles: d1/2 + sum of centre distances +
+    d2/2.
     """
     if train.objective == "gear_volume":
         return gear_volume(pinion_diameter, face_width, ratio)
     if train.objective == "mass":
-        assert train.density is not None
-        return 1000.0 * train.density * gear_volume(pinion_diameter, face_width, ratio)
+        rho: Any = train.density if density is None else density
+        return 1000.0 * rho * gear_volume(pinion_diameter, face_width, ratio)
     length = centre_distance(pinion_diameter, ratio)
     if train.objective == "total_length" and stage == 0:
         length = length + 0.5 * pinion_diameter
@@ -200,8 +205,8 @@ def terms(
     equal: dict[str, Any] = {}
     for k, (m, z, u, b) in enumerate(zip(module, pinion_teeth, ratio, face_width, strict=True)):
         own = {name: each(value)[k] for name, value in vars(numbers).items() if name in BY_STAGE}
-        d = reference_diameter(m, z, train.helix_angle)
-        total = total + share(train, k, d, b, u)
+        d = reference_diameter(m / numbers.helix_cosine, z)
+        total = total + share(train, k, d, b, u, numbers.density)
         found = {
             "k_factor": k_factor(torque, d, b, u) / own["k_factor"],
             "unit_load": unit_load(torque, d, b, m) / own["unit_load"],

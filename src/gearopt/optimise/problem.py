@@ -112,16 +112,32 @@ class Problem:
             ]
         return tuple(found)
 
+    def within(self, name: str, lower: Number, upper: Number) -> "Problem":
+        """The same problem with other bounds of one shared variable; what was built is kept."""
+        if name not in {v.name for v in self.variables}:
+            raise ValueError(f"problem {self.name} has no variable {name!r}")
+        variables = tuple(
+            replace(v, lower=lower, upper=upper, guess=_between(v, lower, upper))
+            if v.name == name
+            else v
+            for v in self.variables
+        )
+        other = replace(self, variables=variables)
+        object.__setattr__(other, "memo", self.memo)
+        return other
+
     def bounds(self) -> tuple[Array, Array, Array]:
         """Lower bounds, upper bounds and guess of a point, each (n,); not to be written to."""
-        if "bounds" not in self.memo:
-            parts = [_bounds(self.variables)]
-            for r in self.repeats:
-                lower, upper, guess = (np.tile(a, r.count) for a in _bounds(r.variables))
-                parts.append((lower, upper, guess))
-            self.memo["bounds"] = tuple(np.concatenate(c) for c in zip(*parts, strict=True))
-        found: tuple[Array, Array, Array] = self.memo["bounds"]
-        return found
+        return self._bounds
+
+    @cached_property
+    def _bounds(self) -> tuple[Array, Array, Array]:
+        parts = [_bounds(self.variables)]
+        for r in self.repeats:
+            lower, upper, guess = (np.tile(a, r.count) for a in _bounds(r.variables))
+            parts.append((lower, upper, guess))
+        lower, upper, guess = (np.concatenate(c) for c in zip(*parts, strict=True))
+        return lower, upper, guess
 
     def parameter_values(self) -> Array:
         """All parameter values in order, (np,)."""
@@ -224,6 +240,12 @@ def _bounds(variables: tuple[Var, ...]) -> tuple[Array, Array, Array]:
         )
 
     return column("lower"), column("upper"), column("guess")
+
+
+def _between(variable: Var, lower: Number, upper: Number) -> Number:
+    """The guess of a variable, moved into other bounds."""
+    ends = (spread(v, variable.size) for v in (variable.guess, lower, upper))
+    return tuple(float(v) for v in np.clip(*ends))
 
 
 def _name(name: str, size: int, k: int) -> str:

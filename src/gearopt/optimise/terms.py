@@ -19,7 +19,9 @@ class Param:
     """A number that a sweep, a homotopy, a sensitivity or a repair may change.
 
     name: an identifier; unit: text for reports ("" for a pure number); value: a float, or `size`
-    floats; key: its place in the problem file, if it has one.
+    floats; key: its place in the problem file, if it has one. role: "data" stays as it is, a
+    "limit" may be relaxed by `explain`, what is "given" (a duty, a fixed size) only where relaxing
+    limits does not help; one word, or one a component.
     """
 
     name: str
@@ -27,6 +29,7 @@ class Param:
     value: Number
     size: int = 1
     key: str = ""
+    role: str | tuple[str, ...] = "data"
 
 
 @dataclass(frozen=True)
@@ -35,7 +38,8 @@ class Var:
 
     log: positive and searched as its logarithm. integer: whole numbers only. values: the finite
     set a component may take (module series, grades). Infinite bounds are allowed, but without
-    finite ones no dual bound can be computed.
+    finite ones no dual bound can be computed. search: the bounds are only the ends of a search, no
+    limits of the user (a component whose bounds are equal is given by the user all the same).
     """
 
     name: str
@@ -47,6 +51,7 @@ class Var:
     integer: bool = False
     log: bool = False
     values: tuple[float, ...] | None = None
+    search: bool = False
 
     def __post_init__(self) -> None:
         lower, upper, guess = (spread(v, self.size) for v in (self.lower, self.upper, self.guess))

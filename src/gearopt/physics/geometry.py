@@ -8,13 +8,14 @@ from typing import Any
 import numpy as np
 
 
-def reference_diameter(normal_module: Any, teeth: Any, helix_angle: float) -> Any:
+def reference_diameter(module: Any, teeth: Any, helix_angle: float = 0.0) -> Any:
     """Reference (pitch) diameter d = m_n z / cos(beta) [mm].
 
-    normal_module [mm] > 0; teeth > 0; helix_angle [rad], |beta| < pi/2.
+    module [mm] > 0, the normal one, or the transverse one m_n/cos(beta) without a helix angle;
+    teeth > 0; helix_angle [rad], |beta| < pi/2.
     Source: ISO 21771:2007, reference diameter.
     """
-    return normal_module * teeth / np.cos(helix_angle)
+    return module * teeth / np.cos(helix_angle)
 
 
 def centre_distance(pinion_diameter: Any, ratio: Any) -> Any:

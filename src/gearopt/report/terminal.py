@@ -1,7 +1,7 @@
 """A result on the terminal: the design, its limits, and what is proven in words."""
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 from rich.console import Console, Group, RenderableType
@@ -10,16 +10,9 @@ from rich.table import Table
 from rich.text import Text
 
 from gearopt.optimise.result import Result
+from gearopt.report.explaining import remedies
+from gearopt.report.words import UNITS, columns, heading, limit_words, number
 
-UNITS = {
-    "mm": "mm",
-    "mm3": "mm³",
-    "MPa": "MPa",
-    "Nm": "N m",
-    "kg": "kg",
-    "percent": "%",
-    "ms": "ms",
-}
 VERDICTS = {
     "optimal": ("proven optimal", "green"),
     "stationary": ("locally optimal (no bound)", "yellow"),
@@ -64,6 +57,8 @@ def _blocks(result: Result) -> list[RenderableType]:
         blocks.append(_limits(result.limits))
         if trains := result.report.get("trains"):
             blocks.append(_trains(trains, result.objective))
+    if "remedies" in result.report:
+        blocks += remedies(result.report["conflict"], result.report["remedies"])
     blocks.append(Text("\n".join(_proof(result))))
     return blocks
 
@@ -73,7 +68,7 @@ def _design(design: Mapping[str, Any]) -> RenderableType:
     parts: list[RenderableType] = []
     stages = design.get("stages", [])
     if stages:
-        table = _columns("", [f"stage {k}" for k in range(1, len(stages) + 1)])
+        table = columns("", [f"stage {k}" for k in range(1, len(stages) + 1)])
         for key, (label, factor) in ROWS.items():
             values = [s[key] for s in stages]
             table.add_row(Text(label), *[number(v if factor == 1 else factor * v) for v in values])
@@ -85,14 +80,6 @@ def _design(design: Mapping[str, Any]) -> RenderableType:
     return Group(*parts, totals)
 
 
-def _columns(first: str, heads: list[str]) -> Table:
-    """A plain table of right-aligned columns beside a column of names."""
-    table = Table(first, *heads, box=None, header_style="bold", pad_edge=False)
-    for column in table.columns[1:]:
-        column.justify, column.no_wrap = "right", True
-    return table
-
-
 def _limits(limits: Mapping[str, float]) -> RenderableType:
     """Utilisation of every limit in percent, stages side by side."""
     rows: dict[str, dict[int, float]] = {}
@@ -101,7 +88,7 @@ def _limits(limits: Mapping[str, float]) -> RenderableType:
         stem, index = (match[1], int(match[2])) if match else (name, 0)
         rows.setdefault(stem, {})[index] = value
     stages = range(1, max((i for r in rows.values() for i in r), default=0) + 1)
-    table = _columns("limit used, %", [*(f"stage {k}" for k in stages), "drive"])
+    table = columns("limit used, %", [*(f"stage {k}" for k in stages), "drive"])
     for stem, values in rows.items():
         cells = [_percent(values.get(k)) for k in (*stages, 0)]
         table.add_row(limit_words(stem), *cells)
@@ -175,57 +162,11 @@ def _proof(result: Result) -> list[str]:
                 f"(whole teeth and standard modules cost "
                 f"{100 * (result.value / part.value - 1):.2f} %)."
             )
-    if "widening_one_suffices" in proof:
-        lines += _widening(proof["widening_one_suffices"], proof["undecided"])
     lines += result.report.get("notes", [])
     if result.message and result.status != "infeasible":
         lines.append(result.message[0].upper() + result.message[1:] + ".")
     lines.append(f"{result.method}, {result.evaluations:,} evaluations, {result.seconds:.3g} s.")
     return lines
-
-
-def _widening(suffice: Sequence[str], undecided: Sequence[str]) -> list[str]:
-    """Which single limit stands in the way, as far as it was found out."""
-    lines = []
-    if suffice:
-        names = ", ".join(limit_words(n) for n in suffice)
-        lines.append(f"Widening any one of these limits alone makes a design possible: {names}.")
-    elif not undecided:
-        lines.append("No single limit is the cause: at least two must be widened together.")
-    if undecided:
-        names = ", ".join(limit_words(n) for n in undecided)
-        lines.append(f"Not found out in time for: {names}.")
-    return lines
-
-
-def limit_words(name: str) -> str:
-    """`k_factor[2]` as "K-factor of stage 2"."""
-    stem, _, index = name.rstrip("]").partition("[")
-    words = stem.replace("_", " ").replace("k factor", "K-factor")
-    return f"{words} of stage {index}" if index else words
-
-
-def heading(key: str) -> str:
-    """`face_width_mm` as "face width [mm]"."""
-    stem, _, last = key.rpartition("_")
-    if last in UNITS and stem:
-        return f"{stem.replace('_', ' ')} [{UNITS[last]}]"
-    return key.replace("_", " ")
-
-
-def number(value: Any) -> str:
-    """A number for reading: thousands apart, six significant digits, tenths of large ones."""
-    if isinstance(value, list):
-        return "  ".join(number(v) for v in value)
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        return str(value)
-    if isinstance(value, int):
-        return f"{value:,}"
-    if abs(value) >= 1e5:
-        return f"{value:,.0f}" if abs(value) >= 1e8 else f"{value:,.1f}"
-    if abs(value) >= 100:
-        return f"{value:,.2f}"
-    return f"{value:.5g}"
 
 
 def rows_table(rows: list[dict[str, Any]]) -> RenderableType:

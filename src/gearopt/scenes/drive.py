@@ -5,7 +5,7 @@ without one, or by the method ipopt, sizes are continuous and proven by a dual b
 """
 
 import math
-from dataclasses import replace
+from dataclasses import asdict, replace
 from decimal import Decimal
 from fractions import Fraction
 from typing import Annotated, Any
@@ -15,10 +15,12 @@ from pydantic import Field, model_validator
 from gearopt.errors import SolveError
 from gearopt.formulations import sizing, teeth
 from gearopt.formulations.design import describe
-from gearopt.formulations.teeth.conflict import widened
 from gearopt.formulations.train import FaceWidth, Stage, Train
 from gearopt.optimise.certificate import reconcile
+from gearopt.optimise.explain import binding
+from gearopt.optimise.explanation import Explanation
 from gearopt.optimise.problem import Problem
+from gearopt.optimise.repair import Clock
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run
 from gearopt.physics.loads import torque
@@ -195,6 +197,39 @@ def solve(scene: Scene, ask: Ask) -> Result:
     The exact answer carries the continuous one as a part: what whole teeth and standard modules
     cost, and a second, independent bound.
     """
+    result = _answer(scene, ask)
+    if result.status != "infeasible":
+        return result
+    from gearopt.scenes.explaining.drive import remedies
+
+    clock = Clock(ask.budget.less(result.seconds), ask.watch)
+    conflict, found = remedies(scene, clock)
+    ways = {"conflict": list(conflict), "remedies": [asdict(r) for r in found]}
+    return replace(result, report=result.report | ways)
+
+
+def explain(scene: Scene, ask: Ask) -> Explanation:
+    """Why the drive is as it is, or what would make it possible, in the numbers of its file."""
+    from gearopt.scenes.explaining.drive import influences, remedies
+
+    clock = Clock(ask.budget, ask.watch)
+    result = _answer(scene, ask)
+    if result.status == "infeasible":
+        conflict, ways = remedies(scene, clock)
+        return Explanation(result, conflict, ways, seconds=clock.seconds)
+    if result.value is None:
+        return Explanation(result, seconds=clock.seconds)
+
+    def price(other: Scene) -> float | None:
+        return _answer(other, replace(ask, budget=clock.left, top=1)).value
+
+    ideal = run(sizing.problem(scene.train()), "ipopt", clock.left, watch=ask.watch)
+    point = ideal[1].x if ideal[0].status == "optimal" else None
+    found = tuple(influences(scene, result, point, clock, price))
+    return Explanation(result, binding=binding(result), influences=found, seconds=clock.seconds)
+
+
+def _answer(scene: Scene, ask: Ask) -> Result:
     train = scene.train()
     if scene.teeth is None and ask.method == "exact":
         raise SolveError("the method exact needs a [teeth] table in the file")
@@ -202,7 +237,7 @@ def solve(scene: Scene, ask: Ask) -> Result:
         return _sized(scene, train, ask, sizing.problem(train))
     ideal = _sized(scene, train, Ask(budget=ask.budget), sizing.problem(train))
     if ideal.status == "infeasible":  # then no whole teeth do either
-        return _explained(replace(ideal, name="drive"), train, ask)
+        return replace(ideal, name="drive")
     ask = replace(ask, budget=ask.budget.less(ideal.seconds))
     floor = -math.inf if ideal.bound is None else ideal.bound
     found = _sized(scene, train, ask, teeth.problem(train, ask.top, floor))
@@ -215,8 +250,6 @@ def _sized(scene: Scene, train: Train, ask: Ask, problem: Problem) -> Result:
     formulation = teeth if exact else sizing
     result, outcome = run(problem, ask.method, ask.budget, ask.seed, ask.watch, ask.gap)
     result = replace(result, objective=result.objective | {"unit": train.unit})
-    if result.status == "infeasible" and exact:
-        return _explained(result, train, ask)
     if result.value is None or outcome.x is None:
         return result
     designs = [describe(train, formulation.sizes(train, x)) for x in (outcome.x, *outcome.others)]
@@ -229,13 +262,6 @@ def _sized(scene: Scene, train: Train, ask: Ask, problem: Problem) -> Result:
     if notes := _notes(scene, exact):
         report["notes"] = notes
     return replace(result, name="drive", design=designs[0], report=report)
-
-
-def _explained(result: Result, train: Train, ask: Ask) -> Result:
-    """Add to an impossible drive which single limits, widened, would make it possible."""
-    single = widened(train, ask.budget.less(result.seconds).seconds, ask.watch)
-    words = {"widening_one_suffices": single.suffice, "undecided": single.undecided}
-    return replace(result, proof=result.proof | words)
 
 
 def _notes(scene: Scene, exact: bool) -> list[str]:

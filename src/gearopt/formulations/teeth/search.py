@@ -14,11 +14,12 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
+from gearopt.errors import SolveError
 from gearopt.formulations.teeth.bound import EDGE, Bound, bound, ragged
 from gearopt.formulations.teeth.progress import TIE, Progress, Teeth
 from gearopt.formulations.teeth.stage import Table, table
 from gearopt.formulations.train import Train, share
-from gearopt.optimise.result import Budget, Watch
+from gearopt.optimise.result import Budget, Event, Watch
 from gearopt.optimise.terms import Array
 from gearopt.physics.loads import k_factor
 
@@ -245,3 +246,19 @@ def _reach(train: Train, cut: Fraction, most: Fraction, threshold: float) -> Fra
         useful |= np.asarray(lower) <= threshold
     last = int(np.nonzero(useful)[0].max(initial=-1))
     return cut if last < 0 else min(most, Fraction(float(ratios[min(last + 1, len(ratios) - 1)])))
+
+
+def possible(train: Train, seconds: float, watch: Watch | None) -> bool | None:
+    """Whether any train meets all limits; None where that is not known in time."""
+
+    def first(event: Event) -> bool:
+        told = watch is None or watch(event) is not False
+        return event.best is None and told  # one train is enough
+
+    try:
+        progress = search(train, 1, Budget(seconds=seconds), first)
+    except SolveError:  # too many pairs to look at
+        return None
+    if progress.found:
+        return True
+    return None if progress.stopped else False

@@ -72,9 +72,10 @@ def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Out
 
 def _model(problem: Problem) -> _Model:
     """Run the text on cvxpy scalars, once a problem."""
-    if "gp" not in problem.memo:
-        problem.memo["gp"] = _build(problem)
-    found: _Model = problem.memo["gp"]
+    key = ("gp", *(end.tobytes() for end in problem.bounds()[:2]))
+    if key not in problem.memo:
+        problem.memo[key] = _build(problem)
+    found: _Model = problem.memo[key]
     return found
 
 

@@ -1,0 +1,38 @@
+"""`explain`: why an answer is what it is, or what would make a request possible."""
+
+from typing import Annotated
+
+import typer
+
+from gearopt.cli.app import File, Json, app, console, exit_code, title
+from gearopt.cli.watching import watching
+from gearopt.optimise.result import Budget
+
+
+@app.command()
+def explain(
+    file: File,
+    seconds: Annotated[float, typer.Option(min=0.0, help="Stop after this time.")] = 60.0,
+    as_json: Json = False,
+) -> None:
+    """Say what each number of the file costs; for an impossible request, what to write instead."""
+    from dataclasses import asdict, replace
+
+    from gearopt.api import explain as explain_file
+
+    with watching(seconds, quiet=as_json) as watch:
+        found = explain_file(file, budget=Budget(seconds), watch=watch)
+    if as_json:
+        print(found.to_json())
+    elif found.result.value is None:
+        from gearopt.report.terminal import show as show_result
+
+        ways = {"conflict": found.conflict, "remedies": [asdict(r) for r in found.remedies]}
+        show_result(
+            replace(found.result, report=found.result.report | ways), title(file), console()
+        )
+    else:
+        from gearopt.report.explaining import show
+
+        show(found, title(file), console())
+    raise typer.Exit(exit_code(found.result))

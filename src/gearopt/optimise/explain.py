@@ -1,0 +1,161 @@
+"""`explain`: what would make a problem possible, or what its answer owes to each input."""
+
+import math
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
+
+import numpy as np
+
+from gearopt.optimise.elastic import PARAM, Handle, effective, elastic, handles
+from gearopt.optimise.explanation import Change, Explanation, Influence, Remedy
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.repair import Clock, Repair, impossible
+from gearopt.optimise.result import Budget, Outcome, Result, Watch
+from gearopt.optimise.sensitivity import BINDS, sensitivities
+from gearopt.optimise.solve import run
+from gearopt.optimise.terms import Array, spread
+
+STEP = 1e-3  # relative, of the re-solves that check a sensitivity
+EASE = 0.01  # relative, of the step whose price is told
+TAKEN_BACK = 1e-3  # a remedy this much smaller must be impossible
+DIGITS = 6  # of a number that is proposed; rounded to the easy side
+ROOM = 2e-7  # a proposal asks for this much more than the least factor, to be feasible in doubles
+
+
+def explain(
+    problem: Problem, budget: Budget | None = None, watch: Watch | None = None
+) -> Explanation:
+    """Explain the answer to a continuous problem.
+
+    Impossible: the conflict and its remedies. Possible: the limits that bind, and for every
+    parameter its sensitivity, checked by re-solving, and the price of easing it by 1 % if it is a
+    limit. SolveError for discrete variables.
+    """
+    start = time.perf_counter()
+    clock = Clock(budget or Budget(), watch)
+    result, outcome = run(problem, "ipopt", clock.left, watch=watch)
+    if result.value is None:
+        conflict, repairs = impossible(problem, clock, handles(problem))
+        found = Explanation(
+            result,
+            tuple(h.name for h in conflict),
+            tuple(_remedy(problem, r, clock) for r in repairs),
+        )
+    else:
+        assert outcome.x is not None
+        influences = tuple(_influences(problem, result, outcome, clock))
+        found = Explanation(result, binding=binding(result), influences=influences)
+    return replace(found, seconds=time.perf_counter() - start)
+
+
+def binding(result: Result) -> tuple[str, ...]:
+    """Names of the limits that are used to the full."""
+    return tuple(name for name, used in result.limits.items() if used >= 1.0 - BINDS)
+
+
+def slopes(
+    value: float, solve_at: Callable[[float], float | None]
+) -> tuple[float | None, float | None]:
+    """D ln objective / d ln input from below and from above, by re-solving at (1 -+ STEP)."""
+
+    def slope(factor: float) -> float | None:
+        other = solve_at(factor)
+        if other is None or value <= 0 or other <= 0:
+            return None
+        return math.log(other / value) / math.log(factor)
+
+    return slope(1.0 - STEP), slope(1.0 + STEP)
+
+
+def _influences(
+    problem: Problem, result: Result, outcome: Outcome, clock: Clock
+) -> Iterator[Influence]:
+    assert outcome.x is not None and result.value is not None
+    value = result.value
+    slope = sensitivities(problem, outcome.x).parameters
+    limits = {h.place: h for h in handles(problem) if h.kind == PARAM and not h.given}
+    used = effective(problem)
+    for place, (name, key, number) in enumerate(_inputs(problem)):
+        if clock.over:
+            return
+        if not (used[place] and math.isfinite(number)) or number == 0.0:
+            continue
+
+        def solved(factor: float, place: int = place) -> float | None:
+            return clock.solve(_scaled(problem, place, factor)).value
+
+        step, price = "", None
+        if place in limits:
+            direction = limits[place].direction
+            eased = solved(1.0 + direction * EASE)
+            step = f"{direction * EASE:+.0%}"
+            price = None if eased is None else eased / value - 1.0
+        yield Influence(
+            key or name,
+            f"{number:.10g}",
+            float(slope[place]),
+            slopes(value, solved),
+            step,
+            price,
+        )
+
+
+def _inputs(problem: Problem) -> list[tuple[str, str, float]]:
+    """Name, key and value of every parameter component."""
+    return [
+        (q.name if q.size == 1 else f"{q.name}[{k + 1}]", q.key, float(v))
+        for q in problem.parameters
+        for k, v in enumerate(spread(q.value, q.size))
+    ]
+
+
+def _scaled(problem: Problem, place: int, factor: float) -> Problem:
+    """The problem with one parameter component times a factor."""
+    values = problem.parameter_values()
+    values[place] *= factor
+    return _with(problem, values)
+
+
+def _with(problem: Problem, values: Array) -> Problem:
+    found, start = {}, 0
+    for q in problem.parameters:
+        part = values[start : start + q.size]
+        found[q.name] = float(part[0]) if q.size == 1 else tuple(map(float, part))
+        start += q.size
+    return problem.at(**found)
+
+
+def _remedy(problem: Problem, repair: Repair, clock: Clock) -> Remedy:
+    """A repair as edits of parameters and bounds, verified by solving with them and with less."""
+    handles_, factors = zip(*repair.moves, strict=True)
+    asked = np.array([_asked(h, f) for h, f in repair.moves])
+    form = elastic(problem, [[h] for h in handles_])
+
+    def status(now: Array) -> str:
+        return clock.solve(form.within("relaxation", tuple(now), tuple(now))).status
+
+    back = np.eye(len(asked)) if repair.kind == "least" else np.ones((1, len(asked)))
+    words = {status(np.maximum(asked * (1.0 - TAKEN_BACK * row), 1.0)) for row in back}
+    return Remedy(
+        repair.kind,
+        ", ".join(dict.fromkeys(h.family for h in handles_)),
+        tuple(
+            Change(h.key or h.name, f"{h.value:.10g}", f"{h.relaxed(a):.{DIGITS + 2}g}", float(a))
+            for h, a in zip(handles_, asked, strict=True)
+        ),
+        float(asked.prod() if repair.kind == "least" else asked.max()),
+        repair.bound,
+        {"with": status(asked), "with_less": words.pop() if len(words) == 1 else "mixed"},
+    )
+
+
+def _asked(handle: Handle, factor: float) -> float:
+    """The factor that leads to a number of DIGITS digits, on the easy side of what is needed."""
+    needed = handle.relaxed(factor * (1.0 + ROOM))
+    rounding = ROUND_CEILING if handle.direction > 0 else ROUND_FLOOR
+    number = float(Context(prec=DIGITS, rounding=rounding).plus(Decimal(needed)))
+    if handle.value <= 0:
+        return factor * (1.0 + ROOM)
+    return float((number / handle.value) ** handle.direction)

@@ -1,0 +1,86 @@
+"""What `explain` answers: remedies for an impossible request, influences on a possible one."""
+
+import json
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+from gearopt.optimise.result import Result, plain
+
+FORMAT = 1
+
+
+@dataclass(frozen=True)
+class Change:
+    """One edit: at `key`, where `was` stands (or is inherited), write `write`.
+
+    factor: how far the limit moves, >= 1.
+    """
+
+    key: str
+    was: str
+    write: str
+    factor: float
+
+
+@dataclass(frozen=True)
+class Remedy:
+    """Edits that make a design possible, applied together.
+
+    kind: "least" (smallest product of factors over all limits), "even" (one factor for one kind of
+    limit), "less" (the same for the duty), or "choice" (a switch of the file). what: the limits
+    that move. factor: that product or common factor, as written. bound: a smaller one is proven
+    impossible (None: not proven). verified: status with the edits, and with each taken back by
+    0.1 % or one tooth ({"with": ..., "with_less": ...}).
+    """
+
+    kind: str
+    what: str
+    changes: tuple[Change, ...]
+    factor: float
+    bound: float | None
+    verified: dict[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Influence:
+    """What one input does to the objective.
+
+    sensitivity: d ln objective / d ln input by multipliers; resolved: the same by re-solving with
+    the input a little smaller and larger (None: no design there). Where the two sides of `resolved`
+    differ, a limit is just about to bind. step: an edit that eases a limit, and price: the relative
+    change of the objective that it brings (negative: better).
+    """
+
+    key: str
+    value: str
+    sensitivity: float | None
+    resolved: tuple[float | None, float | None]
+    step: str = ""
+    price: float | None = None
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """Why an answer is what it is.
+
+    result: the answer itself. conflict: limits that cannot hold together, none of them to spare.
+    remedies: proven ways out, least first. binding: limits used to the full. influences: one an
+    input.
+    """
+
+    result: Result
+    conflict: tuple[str, ...] = ()
+    remedies: tuple[Remedy, ...] = ()
+    binding: tuple[str, ...] = ()
+    influences: tuple[Influence, ...] = ()
+    message: str = ""
+    seconds: float = 0.0
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain dicts, lists and numbers; no NaN and no infinity (None instead)."""
+        found: dict[str, Any] = plain(asdict(self))
+        return {"explanation": FORMAT, **found}
+
+    def to_json(self) -> str:
+        """One JSON object."""
+        return json.dumps(self.to_dict(), indent=2, allow_nan=False)

@@ -1,0 +1,181 @@
+"""Why a request is impossible, and the least change of its limits that makes it possible.
+
+Three answers, each proven by our own bound: the conflict (limits that cannot hold together, none of
+them to spare), the least repair (the smallest product of factors over all limits) and, for every
+kind of limit, the even repair (one factor for that kind alone).
+"""
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from gearopt.optimise.elastic import Handle, elastic
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.result import Budget, Result, Watch
+from gearopt.optimise.solve import solve
+
+SAME = 1e-7  # relative: two repairs as small as each other; a factor below 1 + SAME is none
+NEAR = 1e-4  # a verified repair may ask for this much more than the least factor
+
+
+@dataclass(frozen=True)
+class Repair:
+    """Factors by which limits are relaxed so that a design exists.
+
+    kind: "least" (the smallest product over all limits) or "even" (one factor for a family).
+    factor: that product or that common factor; bound: no smaller one can do (None: not proven).
+    moves: (handle, factor) of every limit that moves.
+    """
+
+    kind: str
+    factor: float
+    bound: float | None
+    moves: tuple[tuple[Handle, float], ...]
+
+    @property
+    def family(self) -> str:
+        """Name of the limits of an even repair."""
+        return self.moves[0][0].family if self.kind == "even" else ""
+
+
+class Clock:
+    """What is left of a budget shared by many solves; it has state because time passes."""
+
+    def __init__(self, budget: Budget, watch: Watch | None = None) -> None:
+        self._budget, self.watch, self._start = budget, watch, time.perf_counter()
+        self.stopped = False
+
+    @property
+    def seconds(self) -> float:
+        """Time spent."""
+        return time.perf_counter() - self._start
+
+    @property
+    def left(self) -> Budget:
+        """The budget of the next solve."""
+        return self._budget.less(self.seconds)
+
+    @property
+    def over(self) -> bool:
+        """Whether nothing is left, or the user stopped."""
+        return self.stopped or self.left.seconds == 0.0
+
+    def solve(self, problem: Problem) -> Result:
+        """Solve within what is left; a run that the user stops ends the rest too."""
+        result = solve(problem, "ipopt", self.left, watch=self.watch)
+        self.stopped = self.stopped or result.status == "limit"
+        return result
+
+
+def least(problem: Problem, movable: Sequence[Handle], clock: Clock) -> Repair | None:
+    """The repair of the smallest product of factors, with as few moves as that product allows.
+
+    None where no factors within reach suffice, or time ran out.
+    """
+    form = elastic(problem, [[h] for h in movable])
+    found = clock.solve(form)
+    if found.value is None:
+        return None
+    factors = np.atleast_1d(found.design["relaxation"])
+    reach = np.array([h.reach for h in movable])
+    allowed = np.where(factors > 1.0 + SAME, reach, 1.0)
+    for k in np.argsort(factors, kind="stable"):
+        if allowed[k] == 1.0 or clock.over:
+            continue
+        fewer = allowed.copy()
+        fewer[k] = 1.0
+        other = clock.solve(form.within("relaxation", 1.0, tuple(fewer)))
+        if other.value is not None and other.value <= found.value * (1.0 + SAME):
+            allowed, factors = fewer, np.atleast_1d(other.design["relaxation"])
+    moves = tuple((h, float(f)) for h, f in zip(movable, factors, strict=True) if f > 1.0 + SAME)
+    return Repair("least", found.value, found.bound, moves)
+
+
+def even(problem: Problem, family: Sequence[Handle], clock: Clock) -> Repair | None:
+    """The repair of one common factor for a family of limits; None where it cannot suffice."""
+    found = clock.solve(elastic(problem, [family]))
+    if found.value is None:
+        return None
+    moves = tuple((h, found.value) for h in family)
+    return Repair("even", found.value, found.bound, moves)
+
+
+def impossible(
+    problem: Problem, clock: Clock, movable: Sequence[Handle]
+) -> tuple[tuple[Handle, ...], list[Repair]]:
+    """The conflict of an impossible problem and its repairs: the least one, then the even ones.
+
+    Limits are tried first; values that are given (a duty, a fixed size) move only where relaxing
+    limits does not help. Even repairs of given values are listed beside, as ways to ask for less.
+    """
+    limits = [h for h in movable if not h.given]
+    found: list[Repair] = []
+    for allowed in (limits, list(movable)):
+        best = least(problem, allowed, clock) if allowed else None
+        if best is not None:
+            break
+    else:
+        return (), []
+    if not best.moves:  # it was possible all along
+        return (), []
+    blamed = conflict(problem, allowed, clock)
+    found.append(best)
+    for family in families(movable).values():
+        if clock.over:
+            break
+        alike = even(problem, family, clock)
+        alone = alike is not None and len(family) == 1 and best.moves == alike.moves
+        if alike is not None and not alone:
+            found.append(alike)
+    return blamed, found
+
+
+def families(movable: Sequence[Handle]) -> dict[str, list[Handle]]:
+    """Handles by family, in their order."""
+    found: dict[str, list[Handle]] = {}
+    for handle in movable:
+        found.setdefault(handle.family, []).append(handle)
+    return found
+
+
+def conflict(problem: Problem, movable: Sequence[Handle], clock: Clock) -> tuple[Handle, ...]:
+    """Limits that cannot hold together although all others are dropped, and none is to spare.
+
+    A deletion filter: a limit that can be dropped without making a design possible is dropped for
+    good; for each that stays, a design exists without it. Empty where that is not proven: time ran
+    out, or the problem is not convex in logarithms.
+    """
+    form = elastic(problem, [[h] for h in movable])
+    kept = list(range(len(movable)))
+    needed: set[int] = set()
+    first = _verdict(form, kept, movable, clock)
+    if first.status != "infeasible":
+        return ()
+    kept = _blamed(first, kept, movable)
+    while spare := [k for k in kept if k not in needed]:
+        without = [k for k in kept if k != spare[0]]
+        verdict = _verdict(form, without, movable, clock)
+        if verdict.status == "infeasible":
+            kept = _blamed(verdict, without, movable)
+        elif verdict.value is not None:
+            needed.add(spare[0])
+        else:
+            return ()
+    return tuple(movable[k] for k in kept)
+
+
+def _verdict(form: Problem, kept: Sequence[int], movable: Sequence[Handle], clock: Clock) -> Result:
+    """Solve with the kept limits as they are and all others dropped."""
+    upper = np.array([h.reach for h in movable])
+    upper[list(kept)] = 1.0
+    return clock.solve(form.within("relaxation", 1.0, tuple(upper)))
+
+
+def _blamed(verdict: Result, kept: Sequence[int], movable: Sequence[Handle]) -> list[int]:
+    """Those of the kept limits that the proof of impossibility uses."""
+    rows = set(verdict.proof.get("conflict", ()))
+    bounds = {f"{movable[k].name}": k for k in kept if not movable[k].rows}
+    used = [k for k in kept if rows & set(movable[k].rows) or k in bounds.values()]
+    return used or list(kept)

@@ -1,0 +1,53 @@
+"""Names, numbers and plain tables, as every report writes them."""
+
+from typing import Any
+
+from rich.table import Table
+
+UNITS = {
+    "mm": "mm",
+    "mm3": "mm³",
+    "MPa": "MPa",
+    "Nm": "N m",
+    "kg": "kg",
+    "percent": "%",
+    "ms": "ms",
+}
+
+
+def columns(first: str, heads: list[str]) -> Table:
+    """A plain table of right-aligned columns beside a column of names."""
+    table = Table(first, *heads, box=None, header_style="bold", pad_edge=False)
+    for column in table.columns[1:]:
+        column.justify, column.no_wrap = "right", True
+    return table
+
+
+def limit_words(name: str) -> str:
+    """`k_factor[2]` as "K-factor of stage 2"."""
+    stem, _, index = name.rstrip("]").partition("[")
+    words = stem.replace("_", " ").replace("k factor", "K-factor")
+    return f"{words} of stage {index}" if index else words
+
+
+def heading(key: str) -> str:
+    """`face_width_mm` as "face width [mm]"."""
+    stem, _, last = key.rpartition("_")
+    if last in UNITS and stem:
+        return f"{stem.replace('_', ' ')} [{UNITS[last]}]"
+    return key.replace("_", " ")
+
+
+def number(value: Any) -> str:
+    """A number for reading: thousands apart, six significant digits, tenths of large ones."""
+    if isinstance(value, list):
+        return "  ".join(number(v) for v in value)
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return str(value)
+    if isinstance(value, int):
+        return f"{value:,}"
+    if abs(value) >= 1e5:
+        return f"{value:,.0f}" if abs(value) >= 1e8 else f"{value:,.1f}"
+    if abs(value) >= 100:
+        return f"{value:,.2f}"
+    return f"{value:.5g}"

@@ -1,0 +1,1 @@
+"""What a scene's answer rests on, said in the numbers of its file."""

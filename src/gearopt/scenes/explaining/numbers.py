@@ -1,0 +1,128 @@
+"""The numbers of a scene by their place in the file: list them, move them, write them."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
+from fractions import Fraction
+from typing import Any
+
+from pydantic import BaseModel
+
+from gearopt.scenes.reading.fields import Reads
+from gearopt.scenes.reading.toml import dotted, toml_text
+from gearopt.units import Quantity
+
+Path = tuple[str | int, ...]
+DIGITS = 6  # of a number that is proposed; rounded to the easy side
+
+
+@dataclass(frozen=True)
+class Number:
+    """A number of the file. path: its place; value: a quantity, an exact fraction or an integer.
+
+    A pair of equal ends (one number in the file means both) is one number.
+    """
+
+    path: Path
+    value: Any
+
+    @property
+    def key(self) -> str:
+        """Its place as messages write it: `stage[2].face_width_over_diameter`."""
+        return dotted(self.path)
+
+    @property
+    def text(self) -> str:
+        """The number as the file writes it."""
+        return toml_text(written(self.value, self.path)).strip('"')
+
+
+def numbers(scene: BaseModel) -> tuple[Number, ...]:
+    """Every number that the file gives, in the order of the file's tables; counts are left out."""
+    return tuple(n for n in _walk(scene, ()) if n.path != ("stages",))
+
+
+def _walk(value: Any, path: Path) -> Iterator[Number]:
+    if isinstance(value, BaseModel):
+        for name in type(value).model_fields:
+            if name in value.model_fields_set:
+                yield from _walk(getattr(value, name), (*path, name))
+    elif isinstance(value, tuple):
+        if len(value) == 2 and value[0] == value[1] and not isinstance(value[0], BaseModel):
+            yield Number(path, value[0])
+        else:
+            for k, item in enumerate(value):
+                yield from _walk(item, (*path, k))
+    elif isinstance(value, Quantity | Fraction | int) and not isinstance(value, bool):
+        yield Number(path, value)
+
+
+def at(scene: Any, path: Path) -> Any:
+    """What stands at a place."""
+    for step in path:
+        scene = scene[step] if isinstance(step, int) else getattr(scene, step)
+    return scene
+
+
+def put(scene: Any, path: Path, value: Any) -> Any:
+    """The scene with another value at a place; not checked against the file's rules."""
+    if not path:
+        return value
+    step, rest = path[0], path[1:]
+    if isinstance(step, int):
+        return scene[:step] + (put(scene[step], rest, value),) + scene[step + 1 :]
+    here = getattr(scene, step)
+    pair = not rest and isinstance(here, tuple) and not isinstance(value, tuple)
+    return scene.model_copy(update={step: put(here, rest, (value, value) if pair else value)})
+
+
+def times(value: Any, factor: float) -> Any:
+    """A number of a file times a factor, unrounded."""
+    if isinstance(value, Quantity):
+        return replace(value, number=value.number * Fraction(factor))
+    return value * Fraction(factor)
+
+
+def read(model: type[BaseModel], field: str, raw: Any) -> Any:
+    """A raw value through the reader of a field; PydanticCustomError where a file is refused."""
+    (reads,) = (m for m in model.model_fields[field].metadata if isinstance(m, Reads))
+    return reads.reader(raw, reads.example)
+
+
+def written(value: Any, path: Path) -> Any:
+    """A value as a file holds it at a place: texts for quantities, decimals, integers, lists."""
+    if path[-1:] == ("ratio_tolerance",):
+        return f"{exact(100 * value)} %"
+    if isinstance(value, Quantity):
+        return f"{exact(value.number)} {value.unit}".rstrip()
+    if isinstance(value, Fraction):
+        return exact(value)
+    if isinstance(value, tuple):
+        ends: Sequence[Any] = [written(v, path) for v in value]
+        return ends[0] if len(ends) == 2 and value[0] == value[1] else ends
+    return value
+
+
+def eased(value: Any, factor: float, direction: int) -> Any:
+    """A number moved by a factor >= 1 up (+1) or down (-1), rounded to its easy side.
+
+    Integers stay integers; others keep DIGITS digits.
+    """
+    moved = Fraction(factor) ** direction
+    if isinstance(value, Quantity):
+        return replace(value, number=Fraction(_rounded(value.number * moved, direction)))
+    if isinstance(value, int):
+        return int((value * moved).__ceil__() if direction > 0 else (value * moved).__floor__())
+    return Fraction(_rounded(value * moved, direction))
+
+
+def _rounded(value: Fraction, direction: int) -> Decimal:
+    context = Context(prec=DIGITS, rounding=ROUND_CEILING if direction > 0 else ROUND_FLOOR)
+    return context.divide(Decimal(value.numerator), Decimal(value.denominator))
+
+
+def exact(value: Fraction) -> Decimal | int:
+    """A fraction of a file as the decimal number it was."""
+    if value.denominator == 1:
+        return value.numerator
+    return Context(prec=40).divide(Decimal(value.numerator), Decimal(value.denominator))

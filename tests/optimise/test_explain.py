@@ -1,0 +1,143 @@
+"""Repairs, conflicts and sensitivities of problems of one's own, against closed forms."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+from gearopt import Param, Problem, Repeat, SolveError, Terms, Var, explain
+from gearopt.optimise.elastic import elastic, handles
+from gearopt.optimise.repair import Clock, least
+from gearopt.optimise.result import Budget
+
+# A bar of diameter d under a force F: least d^2 with 4 F S/(pi d^2 s) <= 1 and d <= D.
+F, STRESS, SAFETY = 1.0e4, 100.0, 1.5
+NEEDED = math.sqrt(4 * F * SAFETY / (math.pi * STRESS))  # 13.82 mm
+
+
+def bar(most=10.0, power=1.0, role="limit"):
+    """The safety factor enters the row to a power; d <= most is written as a bound."""
+
+    def evaluate(x, p):
+        stress = 4 * F * p.safety**power / (math.pi * x.d**2 * p.stress)
+        return Terms({"area": x.d**2}, {"stress": stress})
+
+    parameters = (
+        Param("safety", "", SAFETY ** (1 / power), role=role, key="limits.safety"),
+        Param("stress", "MPa", STRESS, role="data"),
+    )
+    variables = (Var("d", "mm", 1.0, most, min(5.0, most), log=True),)
+    return Problem("bar", variables, parameters, evaluate)
+
+
+def test_a_bound_and_a_safety_factor_that_enters_squared():
+    """Either d <= 13.82, or the safety factor whose square is 1.5/1.91."""
+    found = explain(bar(power=2.0))
+    assert found.result.status == "infeasible"
+    assert set(found.conflict) == {"stress", "d upper"}
+    even = {r.what: r for r in found.remedies}
+    ratio = NEEDED / 10.0
+    assert even["d upper"].bound == pytest.approx(ratio, rel=1e-9)
+    assert float(even["d upper"].changes[0].write) == pytest.approx(NEEDED, rel=1e-5)
+    (change,) = even["stress"].changes
+    assert change.key == "limits.safety"  # S^2 falls by ratio^2, so S by ratio
+    assert float(change.write) == pytest.approx(math.sqrt(SAFETY) / ratio, rel=1e-5)
+    assert even["stress"].bound == pytest.approx(ratio, rel=1e-9)
+    for remedy in found.remedies:
+        assert remedy.verified == {"with": "optimal", "with_less": "infeasible"}
+
+
+def test_a_row_without_a_parameter_is_relaxed_itself():
+    """Its factor is the utilisation up to which it must be allowed: (13.82/10)^2."""
+    found = explain(bar(role="data"))
+    (row,) = (r for r in found.remedies if r.what == "stress")
+    assert row.bound == pytest.approx((NEEDED / 10.0) ** 2, rel=1e-9)
+
+
+def test_what_is_given_moves_only_when_limits_do_not_help():
+    fixed = bar(most=10.0, role="data")
+    (d,) = fixed.variables
+    given = Problem("bar", (Var("d", "mm", 10.0, 10.0, 10.0, log=True),), *_rest(fixed))
+    kinds = {h.name: h.given for h in handles(given)}
+    assert kinds == {"stress": False, "d": True} and d.upper == 10.0
+    assert explain(given).remedies[0].what == "stress"
+
+
+def _rest(problem):
+    return problem.parameters, problem.evaluate
+
+
+def test_least_repair_is_sparse_and_its_product_is_proven():
+    """x1 x2 x3 >= 1000 with x <= 5 each: the product must grow by 8, in one bound alone."""
+
+    def evaluate(x, p):
+        return Terms({"sum": sum(x.x)}, {"product": p.product / (x.x[0] * x.x[1] * x.x[2])})
+
+    product = Param("product", "", 1000.0)
+    box = (Var("x", "", 1.0, 5.0, 2.0, 3, log=True),)
+    problem = Problem("boxes", box, (product,), evaluate)
+    movable = [h for h in handles(problem) if h.name.startswith("x")]
+    repair = least(problem, movable, Clock(Budget()))
+    assert len(repair.moves) == 1
+    assert repair.factor == pytest.approx(8.0, rel=1e-9)
+    assert repair.bound == pytest.approx(8.0, rel=1e-9)
+
+
+def test_signed_rows_and_bounds_below_zero():
+    """x >= 2 is asked of x <= -1: no logarithms, so nothing is proven, but a repair is found."""
+
+    def evaluate(x, p):
+        return Terms({"square": x.x**2}, {"reach": 1 + (2.0 - x.x) / 4.0})
+
+    problem = Problem("signed", (Var("x", "", -5.0, -1.0, -2.0),), (), evaluate)
+    found = explain(problem)
+    assert found.result.value is None and found.conflict == ()
+    assert {"reach", "x upper"} >= {r.what for r in found.remedies if r.kind == "even"} != set()
+    for remedy in found.remedies:
+        assert remedy.bound is None  # not convex in logarithms
+
+
+def test_repeats_share_one_factor():
+    def evaluate(x, p):
+        return Terms({"d": x.d})
+
+    def row(x, p, r):
+        return Terms({}, {"load": r.load / (x.d * p.allowed)})
+
+    loads = {"load": np.array([2.0, 8.0, 4.0])}
+    problem = Problem(
+        "loads",
+        (Var("d", "mm", 0.1, 2.0, 1.0, log=True),),
+        (Param("allowed", "", 2.0, role="limit"),),
+        evaluate,
+        (Repeat("speed", (), loads, row),),
+    )
+    found = explain(problem)
+    even = {r.what: r.bound for r in found.remedies}
+    assert even["allowed"] == pytest.approx(2.0, rel=1e-9)
+    assert even["d upper"] == pytest.approx(2.0, rel=1e-9)
+
+
+def test_sensitivities_against_the_closed_form():
+    """Area = 4 F S/(pi s): +1 in S, -1 in s; the bound d <= 50 costs nothing."""
+    found = explain(bar(most=50.0))
+    slope = {i.key: i for i in found.influences}
+    assert slope["limits.safety"].sensitivity == pytest.approx(1.0, abs=1e-9)
+    assert slope["stress"].sensitivity == pytest.approx(-1.0, abs=1e-9)
+    assert slope["stress"].resolved == pytest.approx((-1.0, -1.0), abs=1e-6)
+    assert slope["limits.safety"].step == "-1%"
+    assert slope["limits.safety"].price == pytest.approx(-0.01, abs=1e-9)
+    assert found.binding == ("stress",)
+
+
+def test_json_round_trip():
+    data = json.loads(explain(bar()).to_json())
+    assert data["explanation"] == 1 and data["result"]["status"] == "infeasible"
+    assert data["remedies"][0]["changes"][0]["write"]
+
+
+def test_discrete_problems_are_refused_by_name():
+    problem = Problem("whole", (Var("z", "", 1, 9, 5, integer=True),), (), lambda x, p: None)
+    with pytest.raises(SolveError, match="z is discrete"):
+        elastic(problem, [])

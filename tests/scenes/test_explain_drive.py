@@ -1,0 +1,255 @@
+"""Impossible drives and their remedies, possible ones and the influence of every number.
+
+Factors: digest of Chong and Lee, section 5 (elastic form with Clarabel and Ipopt, done apart).
+"""
+
+import random
+from pathlib import Path
+
+import pytest
+from edits import edited, scene_of
+
+from gearopt import Budget, explain, solve
+
+PROBLEMS = Path(__file__).parents[2] / "problems"
+ELEVATOR = (PROBLEMS / "elevator.toml").read_text(encoding="utf-8")
+THREE = (PROBLEMS / "three_stage.toml").read_text(encoding="utf-8")
+SMALL_WHEELS = (PROBLEMS / "elevator_small_wheels.toml").read_text(encoding="utf-8")
+POSSIBLE = ("optimal", "feasible")
+
+
+def without_teeth(text):
+    head, _, rest = text.partition("[teeth]")
+    return head + "[x-" + rest.partition("[x-")[2]
+
+
+def with_limits(text, *lines):
+    return text.replace("[limits]", "\n".join(["[limits]", *lines]))
+
+
+THOUSAND = with_limits(ELEVATOR, "stage_ratio = [1, 10]").replace(
+    'output_speed = "66.5 rpm"', "ratio = 1000"
+)
+COARSE = with_limits(THREE, 'module = ["3 mm", "50 mm"]', 'wheel_diameter = "300 mm"')
+EXACT = ('ratio_tolerance = "1 %"', "ratio_tolerance = 0")
+CASES = {  # file, exact ratio: least factor, even factor, where, conflict
+    "1000:1 by two stages of 10": (THOUSAND, 9.9, 10.0, "stage_ratio", "stage_ratio_high[1] [2]"),
+    "wheels of 250 mm": (
+        SMALL_WHEELS,
+        1.19351,
+        1.20475,
+        "wheel_diameter",
+        "k_factor[1] [2] wheel_diameter[1] [2]",
+    ),
+    "modules of 3 mm, wheels of 300 mm": (
+        COARSE,
+        1.55630,
+        1.57119,
+        "wheel_diameter",
+        "k_factor[2] [3] module_low[1] pinion_teeth_low[1] wheel_diameter[1] [2] [3]",
+    ),
+}
+
+
+def spelt(names):
+    """ "a[1] [2] b" as {"a[1]", "a[2]", "b"}."""
+    found, stem = set(), ""
+    for word in names.split():
+        stem = word.split("[")[0] or stem
+        found.add(word if not word.startswith("[") else stem + word)
+    return found
+
+
+@pytest.mark.parametrize("exact", [False, True], ids=["1 %", "exact"])
+@pytest.mark.parametrize("case", CASES)
+def test_least_repair_of_the_digest(case, exact):
+    text, percent, precise, where, conflict = CASES[case]
+    text = without_teeth(text).replace(*EXACT) if exact else without_teeth(text)
+    scene, content = scene_of(text)
+    found = explain(scene)
+    assert found.result.status == "infeasible"
+    assert set(found.conflict) == spelt(conflict)
+    least = found.remedies[0]
+    assert least.kind == "least" and len(least.changes) == 1 and where in least.changes[0].key
+    assert least.bound == pytest.approx(precise if exact else percent, rel=1e-5)
+    assert least.changes[0].factor == pytest.approx(least.bound, rel=1e-6)
+    assert verify(content, least)
+
+
+def test_even_repair_of_the_digest():
+    """The same factor on both wheels: 1.12132 at the exact ratio."""
+    scene, content = scene_of(without_teeth(SMALL_WHEELS).replace(*EXACT))
+    ways = explain(scene).remedies
+    (even,) = (r for r in ways if r.what == "wheel_diameter" and r.kind == "even")
+    assert even.bound == pytest.approx(1.12132, rel=1e-5)
+    (change,) = even.changes
+    expected = ("limits.wheel_diameter", '"250 mm"', '"280.33 mm"')
+    assert (change.key, change.was, change.write) == expected
+    assert verify(content, even)
+
+
+@pytest.mark.slow
+def test_whole_teeth_need_more_than_real_valued_ones():
+    scene, content = scene_of(SMALL_WHEELS)
+    for remedy in explain(scene).remedies:
+        assert remedy.factor > remedy.bound * 1.001
+        assert remedy.verified == {"with": "feasible", "with_less": "infeasible"}
+        assert verify(content, remedy)
+
+
+def test_only_whole_teeth_are_impossible():
+    """Real-valued sizes exist, so no limits conflict; the remedies are for the teeth."""
+    fine = ELEVATOR.replace(*EXACT).replace("[20, 40]", "[20, 21]")
+    scene, content = scene_of(fine.replace('"ISO 54 I"', '"ISO 54 I"\ncoprime = true'))
+    found = explain(scene)
+    assert found.result.status == "infeasible" and found.conflict == ()
+    assert [r.what for r in found.remedies] and all(verify(content, r) for r in found.remedies)
+
+
+@pytest.mark.slow
+def test_given_teeth_that_contradict_the_ratio():
+    """No limit helps, so what is given moves: the teeth, or the ratio."""
+    given = without_teeth(ELEVATOR)
+    for ratio in ("0.6", "0.75"):
+        line = f"face_width_over_diameter = {ratio}"
+        given = given.replace(line, line + "\npinion_teeth = 20\nwheel_teeth = 80")
+    scene, content = scene_of(given)
+    found = explain(scene)
+    assert found.result.status == "infeasible"
+    assert any("wheel_teeth" in c.key for r in found.remedies for c in r.changes)
+    assert all(verify(content, r) for r in found.remedies)
+
+
+def test_solve_says_the_same():
+    result = solve(PROBLEMS / "elevator_small_wheels.toml")
+    found = explain(PROBLEMS / "elevator_small_wheels.toml")
+    assert tuple(result.report["conflict"]) == found.conflict
+    assert [r["changes"][0]["write"] for r in result.report["remedies"]] == [
+        r.changes[0].write for r in found.remedies
+    ]
+
+
+def verify(content, remedy):
+    """Read the edited file anew: a design exists with the edits, and none with less."""
+    assert solve(edited(content, remedy)).status in POSSIBLE, remedy
+    alone = remedy.kind == "least" and remedy.factor < 1.001 * (remedy.bound or 0.0)
+    parts = [(c,) for c in remedy.changes] if alone else [remedy.changes]
+    for part in parts if remedy.kind != "choice" else []:
+        assert solve(edited(content, remedy, part)).status == "infeasible", remedy
+    return True
+
+
+def random_file(seed):
+    """A drive whose limits contradict each other, with real-valued sizes or whole teeth."""
+    draw = random.Random(seed)
+    stages = draw.choice([2, 2, 3])
+    ratio = draw.uniform(8, 40) if stages == 2 else draw.uniform(40, 200)
+    widths = [round(draw.uniform(0.4, 1.0), 2) for _ in range(stages)]
+    least = draw.randint(17, 24)
+    wheels = 'wheel_diameter = "{:.0f} mm"'
+    rule = draw.randrange(4)
+    mean = ratio ** (1 / stages)
+    power = draw.uniform(2, 40)
+    limits = [
+        f'k_factor = "{draw.uniform(1.5, 2.5):.2f} MPa"',
+        f'unit_load = "{draw.uniform(40, 60):.1f} MPa"',
+        f"pinion_teeth = [{least}, {least + draw.randint(8, 20)}]",
+    ]
+    size = 29 * (9.549 * power / 1.45 * ratio) ** (1 / 3)  # mm, of the last wheel
+    if rule in (0, 3):
+        limits.append(wheels.format(size * draw.uniform(0.5, 0.9)))
+    if rule == 1:
+        limits.append(f"stage_ratio = [1, {mean * draw.uniform(0.7, 0.95):.2f}]")
+    if rule == 2:
+        limits += [
+            f'module = ["{draw.choice([5, 6, 8])} mm", "50 mm"]',
+            wheels.format(size * draw.uniform(0.6, 1.0)),
+        ]
+    if rule == 3:
+        limits.append(f"wheel_teeth = [20, {int(least * mean * draw.uniform(0.6, 0.9))}]")
+    teeth = '[teeth]\nmodules = "ISO 54 I"' if draw.random() < 0.5 else ""
+    body = "\n".join(f"[[stage]]\nface_width_over_diameter = {w}" for w in widths)
+    tolerance = draw.choice(["1 %", "2 %", "0.5 %"])
+    return f"""
+[duty]
+power = "{power:.2f} kW"
+input_speed = "1450 rpm"
+ratio = {ratio:.3f}
+ratio_tolerance = "{tolerance}"
+[gears]
+helix_angle = "{draw.choice([0, 12, 25])} deg"
+{body}
+[limits]
+{chr(10).join(limits)}
+{teeth}
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("block", range(10))
+def test_every_remedy_of_random_impossible_drives_is_verified(block):
+    """100 impossible drives in all; those drawn possible are left out and counted."""
+    impossible = 0
+    seed = 1000 * block
+    while impossible < 10:
+        seed += 1
+        scene, content = scene_of(random_file(seed))
+        found = explain(scene, budget=Budget(seconds=60))
+        if found.result.status in POSSIBLE:
+            continue
+        impossible += 1
+        assert found.result.status == "infeasible"
+        assert found.remedies, seed
+        assert all(verify(content, r) for r in found.remedies)
+    assert seed - 1000 * block < 30
+
+
+@pytest.mark.parametrize("text", [ELEVATOR, THREE], ids=["elevator", "three stages"])
+def test_sensitivity_of_every_number_against_re_solving(text):
+    """Multipliers and central differences of independent solves agree to 1e-3 for every input."""
+    scene, _ = scene_of(text)
+    found = {i.key: i for i in explain(scene).influences}
+    written = {"duty.power", "duty.input_speed", "duty.output_speed", "duty.ratio_tolerance"}
+    written |= {"gears.helix_angle", "gears.pressure_angle", "limits.k_factor", "limits.unit_load"}
+    written |= {"limits.pinion_teeth[1]", "limits.pinion_teeth[2]"}
+    written |= {f"stage[{k + 1}].face_width_over_diameter" for k in range(len(scene.stage))}
+    assert set(found) == written
+    for i in found.values():
+        assert i.sensitivity == pytest.approx(sum(i.resolved) / 2, abs=1e-3), i.key
+    assert found["limits.k_factor"].sensitivity == pytest.approx(-1, abs=1e-9)  # V ~ T/K
+    assert found["duty.power"].sensitivity == pytest.approx(1, abs=1e-9)
+
+
+def test_sensitivities_where_other_limits_bind():
+    """Large modules, given teeth and width, mass: all kinds of numbers have their effect."""
+    text = without_teeth(with_limits(ELEVATOR, 'module = ["3 mm", "10 mm"]'))
+    text = text.replace("face_width_over_diameter = 0.6", "pinion_teeth = 25\nface_width = '30 mm'")
+    text += '\n[objective]\nminimise = "mass"\ndensity = "7.85 kg/dm^3"\n'
+    scene, _ = scene_of(text)
+    found = {i.key: i for i in explain(scene).influences}
+    for key in ("stage[1].pinion_teeth", "stage[1].face_width", "objective.density"):
+        assert abs(found[key].sensitivity) > 0.01
+    for i in found.values():
+        below, above = i.resolved
+        assert min(below, above) - 1e-3 <= i.sensitivity <= max(below, above) + 1e-3, i.key
+
+
+def test_prices_are_those_of_the_drive_solved_again():
+    """1 % more K-factor, one tooth less: exact re-solves of the edited file."""
+    scene, content = scene_of(ELEVATOR)
+    found = explain(scene)
+    (k,) = (i for i in found.influences if i.key == "limits.k_factor")
+    content["limits"]["k_factor"] = "2.0907 MPa"
+    again = solve(type(scene).model_validate(content)).value
+    assert k.step == "+1%" and k.price == pytest.approx(again / found.result.value - 1, rel=1e-9)
+    assert all(i.price is None or i.price < 1e-9 for i in found.influences)  # easing never costs
+
+
+def test_a_stopped_explanation_says_what_it_has():
+    """No time: the answer's status stays honest, and nothing is claimed."""
+    scene, _ = scene_of(SMALL_WHEELS)
+    found = explain(scene, budget=Budget(seconds=0.0))
+    assert found.result.status in ("limit", "infeasible") and found.remedies == ()
+    calls = iter(range(40))
+    stopped = explain(scene, watch=lambda event: next(calls, None) is not None)
+    assert all(r.verified.get("with") in POSSIBLE for r in stopped.remedies if r.verified)
