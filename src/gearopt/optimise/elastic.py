@@ -29,7 +29,7 @@ class Handle:
     index among parameter values, inequality rows or columns. value, unit, key: what stands there
     now. direction: +1 where a larger value is easier, -1 where a smaller one is. rows: names of
     the rows it governs. given: a value that the user fixed, no limit. reach: the largest factor by
-    which it may move.
+    which it may move. whole: it is written as an integer.
     """
 
     name: str
@@ -42,6 +42,7 @@ class Handle:
     rows: tuple[str, ...] = ()
     given: bool = False
     reach: float = REACH
+    whole: bool = False
 
     @property
     def family(self) -> str:
@@ -53,6 +54,22 @@ class Handle:
         if self.kind in (LOWER, UPPER) and self.value <= 0:
             return self.value + self.direction * (factor - 1.0) * _scale(self.value)
         return self.value * factor**self.direction
+
+    def eased(self, factor: float) -> float:
+        """The factor that is asked for a needed one: of a whole number, that of the next easier."""
+        if not self.whole:
+            return factor
+        number = self.relaxed(factor)
+        near = round(number)
+        if abs(number - near) > 1e-6 * abs(number):
+            near = math.ceil(number) if self.direction > 0 else math.floor(number)
+        return float((near / self.value) ** self.direction)
+
+    def one_back(self, factor: float) -> float:
+        """The factor of the next harder whole number."""
+        return float(
+            ((round(self.relaxed(factor)) - self.direction) / self.value) ** self.direction
+        )
 
 
 def handles(problem: Problem) -> tuple[Handle, ...]:

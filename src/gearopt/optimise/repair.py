@@ -15,6 +15,7 @@ from gearopt.optimise.elastic import Handle, elastic
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Result, Watch
 from gearopt.optimise.solve import solve
+from gearopt.optimise.terms import Array
 
 SAME = 1e-7  # relative: two repairs as small as each other; a factor below 1 + SAME is none
 NEAR = 1e-4  # a verified repair may ask for this much more than the least factor
@@ -89,8 +90,41 @@ def least(problem: Problem, movable: Sequence[Handle], clock: Clock) -> Repair |
         other = clock.solve(form.within("relaxation", 1.0, tuple(fewer)))
         if other.value is not None and other.value <= found.value * (1.0 + SAME):
             allowed, factors = fewer, np.atleast_1d(other.design["relaxation"])
+    factors = _whole(form, movable, factors, allowed, clock)
     moves = tuple((h, float(f)) for h, f in zip(movable, factors, strict=True) if f > 1.0 + SAME)
     return Repair("least", found.value, found.bound, moves)
+
+
+def _whole(
+    form: Problem, movable: Sequence[Handle], factors: Array, allowed: Array, clock: Clock
+) -> Array:
+    """The factors with whole numbers at whole values, none of which is easier than it must be.
+
+    One after the other is moved to the next easier value and the others follow; then each is taken
+    back one by one as long as a design exists.
+    """
+    low, high = np.ones(len(factors)), allowed.copy()
+
+    def follow() -> Array | None:
+        found = clock.solve(form.within("relaxation", tuple(low), tuple(high)))
+        return None if found.value is None else np.atleast_1d(found.design["relaxation"])
+
+    whole = [k for k, h in enumerate(movable) if h.whole and factors[k] > 1.0 + SAME]
+    for k in whole:
+        low[k] = high[k] = movable[k].eased(float(factors[k]))
+        after = follow()
+        if after is None:
+            return factors
+        factors = after
+    for k in whole:
+        last = low[k]
+        while (back := movable[k].one_back(last)) >= 1.0:
+            low[k] = high[k] = back
+            if (after := follow()) is None:
+                break
+            last, factors = back, after
+        low[k] = high[k] = last
+    return factors
 
 
 def even(problem: Problem, family: Sequence[Handle], clock: Clock) -> Repair | None:

@@ -36,7 +36,6 @@ FIELDS = {  # name of a limit or of a given size -> key in the file, and its end
     "face_width": ("face_width", None),
     "ratio": ("wheel_teeth", None),  # of a stage whose teeth are both given
 }
-ROOM = 2e-7  # a proposal asks for this much more than the least factor, to be feasible in doubles
 
 
 @dataclass(frozen=True)
@@ -138,11 +137,11 @@ def _moved(
         value: Any = eased(max(_tolerance(now, end, f) for end, (f, _) in moved.items()), 1.0, 1)
     elif not isinstance(now, tuple):
         ((factor, direction),) = moved.values()
-        value = eased(now, factor * (1.0 + ROOM), direction)
+        value = eased(now, factor, direction)
     else:
         low, high = now
         for end, (factor, direction) in moved.items():
-            changed = eased(now[0 if end is None else end], factor * (1.0 + ROOM), direction)
+            changed = eased(now[0 if end is None else end], factor, direction)
             low = low if end == 1 else changed
             high = high if end == 0 else changed
         value = (low, high)
@@ -157,7 +156,7 @@ def _moved(
 
 def _tolerance(now: Fraction, end: int | None, factor: float) -> Fraction:
     """The ratio tolerance at which the lowest (0) or highest (1) ratio is a factor further out."""
-    f = Fraction(factor * (1.0 + ROOM))
+    f = Fraction(factor)
     return 1 - (1 - now) / f if end == 0 else (1 + now) * f - 1
 
 

@@ -17,7 +17,7 @@ from gearopt.optimise.result import Result
 from gearopt.optimise.sensitivity import sensitivities
 from gearopt.optimise.terms import Array
 from gearopt.physics.modules import MODULES
-from gearopt.scenes.explaining.cures import FIELDS, cure, less
+from gearopt.scenes.explaining.cures import FIELDS, Cure, cure, less
 from gearopt.scenes.explaining.numbers import Number, eased, numbers, put, times
 
 if TYPE_CHECKING:
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
 WIDEST = (1.02, 1.1, 1.3, 2.0, 4.0)  # extra factors that are tried for whole teeth, in turn
 CLOSE = 1.0 + 0.5 * TAKEN_BACK  # ratio of an impossible to a possible factor that ends a search
+LEAST = 1.0 + 1e-7  # a search between two factors this close ends in any case
 SECONDS = 2.0  # at most, for one question whether whole teeth are possible
 SMALL = 1e-5  # of ln input: the step for how parameters follow from the numbers of the file
 EASE = 0.01  # the step whose price is told; one for teeth
@@ -36,14 +37,19 @@ def remedies(scene: "Scene", clock: Clock) -> tuple[tuple[str, ...], tuple[Remed
     Empty where time ran out first.
     """
     base = sizing.problem(scene.train())
-    movable = [replace(h, reach=r) for h in handles(base) if (r := _reach(scene, h)) > 1.0]
+    movable = [
+        replace(h, reach=reach, whole="teeth" in h.family)
+        for h in handles(base)
+        if (reach := _reach(scene, h)) > 1.0
+    ]
     conflict, repairs = impossible(base, clock, movable)
     if not repairs and scene.teeth is not None:  # possible but for whole teeth
         repairs = [
             Repair("even", 1.0, 1.0, tuple((h, 1.0) for h in family))
             for family in families(movable).values()
         ]
-    tried = [_remedy(scene, repair, clock) for repair in repairs]
+    wider = [list(conflict), [h for h in movable if not h.given]]
+    tried = [_remedy(scene, repair, wider, clock) for repair in repairs]
     found = [remedy for remedy in tried if remedy is not None]
     if scene.teeth is not None:
         found += _choices(scene, clock)
@@ -62,14 +68,20 @@ def _reach(scene: "Scene", handle: Handle) -> float:
     return low
 
 
-def _remedy(scene: "Scene", repair: Repair, clock: Clock) -> Remedy | None:
-    """A repair as edits, large enough for whole teeth where the file has them; None if none is."""
-    extra = 1.0 if scene.teeth is None else _extra(scene, repair.moves, clock)
-    moves = [(h, f * (extra or 1.0)) for h, f in repair.moves]
-    cured = cure(scene, moves)
-    if extra is None or cured is None:
+def _remedy(
+    scene: "Scene", repair: Repair, wider: Sequence[Sequence[Handle]], clock: Clock
+) -> Remedy | None:
+    """A repair as edits, large enough for whole teeth where the file has them; None if none is.
+
+    wider: limits to move as well where those of a least repair do not suffice for whole teeth.
+    """
+    found = _for_teeth(scene, repair, wider, clock)
+    if found is None:
         return None
-    each = range(len(cured.changes)) if repair.kind == "least" and extra == 1.0 else (None,)
+    moves, cured = found
+    each = (
+        range(len(cured.changes)) if repair.kind == "least" and moves == repair.moves else (None,)
+    )
     words = {_status(less(scene, cured, TAKEN_BACK, k), clock) for k in each}
     product = math.prod(f for _, f in moves)
     return Remedy(
@@ -105,27 +117,43 @@ def _possible(train: Train, clock: Clock) -> bool | None:
     return possible(train, SECONDS if left is None else min(SECONDS, left), clock.watch)
 
 
+def _for_teeth(
+    scene: "Scene", repair: Repair, wider: Sequence[Sequence[Handle]], clock: Clock
+) -> tuple[tuple[tuple[Handle, float], ...], Cure] | None:
+    """The moves of a repair, enlarged until whole teeth exist, and the cure they make."""
+    known = {h for h, _ in repair.moves}
+    also = [()] if repair.kind != "least" else [(), *wider]
+    for handles_ in also:
+        moves = repair.moves + tuple((h, 1.0) for h in handles_ if h not in known)
+        extra = 1.0 if scene.teeth is None else _extra(scene, moves, clock)
+        if extra is not None:
+            moves = tuple((h, f * extra) for h, f in moves)
+            cured = cure(scene, moves)
+            return None if cured is None else (moves, cured)
+    return None
+
+
 def _extra(scene: "Scene", moves: Sequence[tuple[Handle, float]], clock: Clock) -> float | None:
     """The least common factor beyond a continuous repair with which whole teeth are possible."""
 
-    def works(extra: float) -> tuple[bool | None, tuple[Change, ...]]:
+    def works(extra: float, back: float = 0.0) -> bool | None:
         cured = cure(scene, [(h, f * extra) for h, f in moves])
         if cured is None:
-            return None, ()
-        return _possible(cured.scene.train(), clock), cured.changes
+            return None
+        return _possible((less(scene, cured, back) if back else cured.scene).train(), clock)
 
-    found, _ = works(1.0)
+    found = works(1.0)
     low, high = 1.0, 1.0
     for high in () if found else WIDEST:
-        found, _ = works(high)
+        found = works(high)
         if found is not False:
             break
         low = high
     if not found:
         return None
-    while high > low * CLOSE:
+    while high > low * CLOSE or (high > low * LEAST and works(high, TAKEN_BACK)):
         middle = math.sqrt(low * high)
-        found, changes = works(middle)
+        found = works(middle)
         if found is None:
             return None
         low, high = (low, middle) if found else (middle, high)

@@ -1,5 +1,6 @@
 """The numbers of a scene by their place in the file: list them, move them, write them."""
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
@@ -14,6 +15,7 @@ from gearopt.units import Quantity
 
 Path = tuple[str | int, ...]
 DIGITS = 6  # of a number that is proposed; rounded to the easy side
+ROOM = 2e-7  # a proposal asks for this much more than the least factor
 
 
 @dataclass(frozen=True)
@@ -106,13 +108,17 @@ def written(value: Any, path: Path) -> Any:
 def eased(value: Any, factor: float, direction: int) -> Any:
     """A number moved by a factor >= 1 up (+1) or down (-1), rounded to its easy side.
 
-    Integers stay integers; others keep DIGITS digits.
+    Integers stay integers (one that is meant but for rounding is taken); others keep DIGITS digits
+    and get ROOM, to be feasible in doubles.
     """
-    moved = Fraction(factor) ** direction
+    moved = Fraction(factor * (1.0 if isinstance(value, int) else 1.0 + ROOM)) ** direction
     if isinstance(value, Quantity):
         return replace(value, number=Fraction(_rounded(value.number * moved, direction)))
     if isinstance(value, int):
-        return int((value * moved).__ceil__() if direction > 0 else (value * moved).__floor__())
+        number, near = float(value * moved), round(value * moved)
+        if abs(number - near) <= ROOM * number:
+            return near
+        return math.ceil(number) if direction > 0 else math.floor(number)
     return Fraction(_rounded(value * moved, direction))
 
 
