@@ -233,7 +233,7 @@ def test_curvature_is_that_of_the_scaled_matrix():
     units = np.diag([1e6, 1.0, 1e-6])
     good = np.array([[2.0, 1.0, 0.0], [1.0, 2.0, 0.0], [0.0, 0.0, 2.0]])
     found = curvature(units @ good @ units)
-    assert found.convex and found.floor == pytest.approx(0.5, abs=1e-12)
+    assert found.convex and 0.5 - 1e-12 < found.floor <= 0.5
     bad = good + np.array([[0, 1.1, 0], [1.1, 0, 0], [0, 0, 0]])
     assert not curvature(units @ bad @ units).convex
     assert curvature(np.ones((2, 2))).convex and curvature(np.ones((2, 2))).floor < 0.0

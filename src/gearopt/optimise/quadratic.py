@@ -17,6 +17,8 @@ from gearopt.optimise.terms import Array
 
 ROUNDING = 1e-14  # 50 units in the last place, of a matrix scaled to unit diagonal, times its size
 
+MOST = 3000  # variables; the Hessian is dense
+
 
 @dataclass(frozen=True)
 class Curvature:
@@ -40,8 +42,11 @@ def curvature(hessian: Array) -> Curvature:
     if not np.isfinite(hessian).all() or (diagonal[used] <= 0.0).any():
         return Curvature(diagonal, -np.inf, rounding)
     root = np.sqrt(diagonal[used])
-    eigenvalues = np.linalg.eigvalsh(hessian[np.ix_(used, used)] / np.outer(root, root))
-    return Curvature(diagonal, float(eigenvalues.min(initial=1.0)) - rounding, rounding)
+    scaled = hessian[np.ix_(used, used)] / np.outer(root, root)
+    least = 2.0 - float(np.abs(scaled).sum(axis=1).max(initial=1.0))  # Gershgorin's circles
+    if least < 0.5:  # else good enough, and cheap
+        least = float(np.linalg.eigvalsh(scaled)[0])
+    return Curvature(diagonal, least - rounding, rounding)
 
 
 def natural(problem: Problem) -> Form | None:
@@ -62,6 +67,8 @@ def natural(problem: Problem) -> Form | None:
 def misfit(problem: Problem) -> str:
     """The term that is of too high a degree for a quadratic program, in words; "" if none is."""
     found, rows = degrees(problem), problem.rows
+    if len(problem.columns) > MOST:
+        return f"it has {len(problem.columns)} variables, more than {MOST}"
     if found.objective > QUADRATIC:
         return f"the objective {rows.objectives[0]} is not quadratic"
     names = [r.name for r in rows.inequalities] + list(rows.equalities)

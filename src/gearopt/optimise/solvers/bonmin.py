@@ -49,6 +49,8 @@ def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Out
     clock = time.perf_counter()
     columns = [_column(problem, k) for k in range(len(problem.columns))]
     job = _job(problem, columns)
+    if not job["guess"]:  # one point is all there is; Bonmin would crash
+        return _outcome(problem, columns, {"status": "SUCCESS", "x": []})
     if budget.seconds is not None:
         job["options"] |= {"time_limit": max(budget.seconds, 1e-3)}
     process = _started()
@@ -99,7 +101,9 @@ def _column(problem: Problem, index: int) -> _Column:
     if not low > 0.0:
         raise SolveError(f"bonmin takes positive variables only; {name} may be {low:g}")
     allowed = tuple(v for v in variable.values or () if low <= v <= high)
-    if variable.values is not None and not allowed:
+    if variable.integer:
+        low, high = (float(b) for b in (np.ceil(low), np.floor(high)))
+    if low > high or (variable.values is not None and not allowed):
         raise SolveError(f"{problem.name}: no value of {name} is within its bounds")
     if len(allowed) == 1 or low == high:
         only = allowed or (low,)
@@ -112,7 +116,7 @@ def _column(problem: Problem, index: int) -> _Column:
         return _Column(logs, picks, allowed, True, (0.0,) * count, (1.0,) * count, share)
     one = ca.SX.sym(name)
     if variable.integer:
-        return _Column(ca.log(one), one, (), True, (math.ceil(low),), (math.floor(high),), (guess,))
+        return _Column(ca.log(one), one, (), True, (low,), (high,), (guess,))
     logs = (math.log(b) for b in (low, high, guess))
     return _Column(one, one, (), False, *((b,) for b in logs))
 
