@@ -188,6 +188,20 @@ def test_rows_that_exclude_each_other_are_proven_and_named():
     assert solve(plane(evaluate, -INF, INF), "qp").status == "failed"
 
 
+def test_equalities_that_repeat_others_are_left_out():
+    def evaluate(x, p):
+        total = x.x[0] + x.x[1]
+        rows = {"sum": total, "again": (2.0 * total + p.a) / 4.0, "first": x.x[0] / 0.3}
+        return Terms({"f": x.x[0] ** 2 + 3.0 * x.x[1] ** 2}, equal=rows)
+
+    result = solve(plane(evaluate), "qp")
+    assert result.status == "optimal" and result.evaluations == 3
+    assert result.design["x"] == pytest.approx([0.3, 0.7], abs=1e-12)
+    contradicted = solve(plane(evaluate).at(a=2.5), "qp")
+    assert contradicted.status == "infeasible"
+    assert {"sum", "again"} <= set(contradicted.proof["conflict"])
+
+
 def test_unbounded_below_is_not_solved():
     result = solve(plane(lambda x, p: Terms({"f": x.x[0] + x.x[1] ** 2}), -INF, INF), "qp")
     assert result.status == "failed" and result.value is None

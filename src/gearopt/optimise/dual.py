@@ -11,7 +11,7 @@ import numpy as np
 
 from gearopt.optimise.form import Form
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.quadratic import box, curvature, least
+from gearopt.optimise.quadratic import box, curvature, hessian_of, least
 from gearopt.optimise.result import Outcome
 from gearopt.optimise.terms import Array
 
@@ -36,7 +36,7 @@ def kkt(
     doubt = _doubt(problem, shape, y, gradient_f, lam_g, lam_h)
     if shape.hessian is None:
         return residuals, float(lagrangian + box(gradient, doubt, y, low, high).sum() - slack)
-    hessian = np.array(shape.hessian(problem.parameter_values()))
+    hessian = hessian_of(problem, shape)
     linear = gradient_f - hessian @ y
     sizes = np.abs(y) * (np.abs(hessian) @ np.abs(y)), np.abs(linear) * np.abs(y)
     doubt = doubt + ROUNDING * (np.abs(hessian) @ np.abs(y) + np.abs(linear))

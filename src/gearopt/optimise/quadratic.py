@@ -60,8 +60,15 @@ def natural(problem: Problem) -> Form | None:
     if key not in problem.memo:
         problem.memo[key] = _build(problem)
     shape: Form = problem.memo[key]
-    hessian = np.array(shape.hessian(problem.parameter_values()))
-    return replace(shape, convex=curvature(hessian).convex)
+    return replace(shape, convex=curvature(hessian_of(problem, shape)).convex)
+
+
+def hessian_of(problem: Problem, shape: Form) -> Array:
+    """Q (n, n) at the present parameters; casadi's own way to a dense array is slow."""
+    found = shape.hessian(problem.parameter_values())
+    hessian = np.zeros(found.shape)
+    hessian[found.sparsity().get_triplet()] = found.nonzeros()
+    return hessian
 
 
 def misfit(problem: Problem) -> str:
@@ -85,7 +92,7 @@ def _build(problem: Problem) -> Form:
     x = kind.sym("x", len(problem.columns))
     p = kind.sym("p", len(problem.parameter_values()))
     f, g, h = problem.traced().terms(x, p)
-    hessian = ca.Function("hessian", [x, p], [ca.densify(ca.hessian(f, x)[0])])(0, p)
+    hessian = ca.Function("hessian", [x, p], [ca.hessian(f, x)[0]])(0, p)
     return assembled(
         (x, p, f, g - 1, h - 1),
         np.zeros(x.numel(), bool),

@@ -118,7 +118,7 @@ def run(
     point = _ipopt(problem, solver, y0, low, high, monitor.rows)
     if not following.stopped and _violation(problem, shape, point.y) > STUCK:
         point, least = _least_violation(problem, shape, point, low, high, following)
-        if least > STUCK and not following.stopped:
+        if least > STUCK and not following.stopped and following.best is None:
             return Outcome(
                 shape.to_x(point.y),
                 lam_g=point.lam_g,

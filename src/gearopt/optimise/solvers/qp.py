@@ -1,8 +1,9 @@
 """Small dense quadratic programs by CasADi's active-set solvers, DAQP and then qrqp.
 
 The text is proven quadratic and convex first (`quadratic`). Built once a problem, re-solved at new
-parameter values. What DAQP leaves open is given to qrqp; where neither meets every row, the
-least-squares violation is found, whose residuals are the multipliers of a conflict.
+parameter values. What DAQP leaves open is given to qrqp, then to DAQP without equalities that
+repeat others (both fail on those). Where no point meets every row, the least-squares violation is
+found, whose residuals are the multipliers of a conflict.
 """
 
 import time
@@ -14,11 +15,13 @@ import numpy as np
 from gearopt.errors import SolveError
 from gearopt.optimise.form import Form
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.quadratic import Curvature, curvature, misfit, natural
+from gearopt.optimise.quadratic import Curvature, curvature, hessian_of, misfit, natural
 from gearopt.optimise.result import Budget, Event, Outcome, Watch
 from gearopt.optimise.terms import Array
 
 VIOLATED = 1e-9  # a row, whose unit is 1, is not met beyond it
+DEPENDENT = 1e-10  # of a row of length 1: what others leave of it
+TINY = 1e-300  # a row of zeros has no direction
 PROXIMAL = {"eps_prox": 1e-3, "eta_prox": 1e-14}  # DAQP's way with a singular Hessian
 TOLERANCES = {"primal_tol": 1e-11, "dual_tol": 1e-12}  # DAQP's own are 1e-6 and 1e-12
 SOLVERS: dict[str, dict[str, Any]] = {
@@ -63,10 +66,13 @@ def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Out
         event = Event(seconds, len(words), best)
         return not late and (watch is None or watch(event) is not False)
 
-    for name in SOLVERS:
+    for name in (*SOLVERS, "daqp"):
         if not goes_on():
             return Outcome(None, False, evaluations=len(words), message="stopped before the end")
-        x, lam, status = _solved(problem, name, program, curved)
+        given = np.arange(len(program.most))
+        if len(words) == len(SOLVERS) and len(given := _independent(program)) == len(program.most):
+            break
+        x, lam, status = _solved(problem, name, program, curved, given)
         words.append(f"{name}: {status or 'a row is not met'}")
         if status == "" and program.violation(x) <= VIOLATED:
             finished = goes_on(float(problem.batch(x[None]).F[0, 0]))
@@ -85,7 +91,7 @@ def _checked(problem: Problem) -> tuple[Form, Curvature]:
     shape = natural(problem)
     if shape is None:
         raise SolveError(f"{problem.name} is no quadratic program: " + misfit(problem))
-    hessian = np.array(shape.hessian(problem.parameter_values()))
+    hessian = hessian_of(problem, shape)
     curved = curvature(hessian)
     if not shape.convex:
         least = np.linalg.eigvalsh(hessian)[0] if np.isfinite(hessian).all() else np.nan
@@ -104,7 +110,7 @@ def _program(problem: Problem, shape: Form) -> _Program:
     rows = [np.array(j).reshape(-1, len(origin)) for j in shape.jacobians(origin, p)]
     low, high, _ = problem.bounds()
     return _Program(
-        np.array(shape.hessian(p)),
+        hessian_of(problem, shape),
         linear,
         np.vstack(rows),
         np.concatenate([np.full(len(g), -np.inf), -h]),
@@ -116,16 +122,17 @@ def _program(problem: Problem, shape: Form) -> _Program:
 
 
 def _solved(
-    problem: Problem, name: str, program: _Program, curved: Curvature
+    problem: Problem, name: str, program: _Program, curved: Curvature, given: Any
 ) -> tuple[Array, Array, str]:
     """Point, multipliers of the rows, and what the solver complains of ("" for nothing).
 
+    given: which rows the solver is given.
     Variables are scaled to a Hessian of unit diagonal, which the solvers' tolerances expect.
     """
     import casadi as ca
 
     definite = curved.floor > 0.0 and bool((curved.diagonal > 0.0).all())
-    size, rows = len(program.linear), len(program.most)
+    size, rows = len(program.linear), len(given)
     key = ("qp", name, definite, size, rows)
     if key not in problem.memo:
         options = SOLVERS[name] | {"error_on_fail": False}
@@ -138,16 +145,30 @@ def _solved(
     found = solver(
         h=program.hessian * np.outer(unit, unit),
         g=program.linear * unit,
-        a=program.rows * unit,
-        lba=program.least,
-        uba=program.most,
+        a=program.rows[given] * unit,
+        lba=program.least[given],
+        uba=program.most[given],
         lbx=program.low / unit,
         ubx=program.high / unit,
     )
     stats = solver.stats()
     x = np.clip(np.array(found["x"]).ravel() * unit, program.low, program.high)
     status = "" if stats["success"] else str(stats["return_status"])
-    return x, np.array(found["lam_a"]).ravel(), status
+    lam = np.zeros(len(program.most))
+    lam[given] = np.array(found["lam_a"]).ravel()
+    return x, lam, status
+
+
+def _independent(program: _Program) -> Any:
+    """All limits, and those equalities that are no combination of equalities before them."""
+    basis = np.empty((0, len(program.linear)))
+    kept = list(range(program.count))
+    for k in range(program.count, len(program.most)):
+        row = program.rows[k] / max(float(np.linalg.norm(program.rows[k])), TINY)
+        rest = row - basis.T @ (basis @ row)
+        if (length := float(np.linalg.norm(rest))) > DEPENDENT:
+            basis, kept = np.vstack([basis, rest / length]), [*kept, k]
+    return np.array(kept, int)
 
 
 def _nearest(problem: Problem, program: _Program, runs: int, words: str) -> Outcome:
@@ -167,7 +188,7 @@ def _nearest(problem: Problem, program: _Program, runs: int, words: str) -> Outc
         np.concatenate([program.high, free]),
         program.count,
     )
-    z, _, status = _solved(problem, "daqp", wide, curvature(wide.hessian))
+    z, _, status = _solved(problem, "daqp", wide, curvature(wide.hessian), np.arange(rows))
     x, s = z[:size], z[size:]
     worst = program.violation(x)
     if status or worst <= VIOLATED:
