@@ -5,8 +5,9 @@ answer is a point, never a proof. The other algorithms, B-OA and B-Hyb, are not 
 success 3 to 95 % above the optimum of drives.
 
 Bonmin runs in a process of its own, because it writes to the standard output whatever its options
-say, has loops that its time limit does not end, and stops for no callback. It can be killed; what
-it had found is lost then, and the outcome has no point.
+say, has had loops that its time limit does not end, and calls nothing back. Within a budget it ends
+by its own limit, as a rule with its best point; killed, by a longer node or by the watcher, it
+takes what it had found with it.
 """
 
 import json
@@ -26,7 +27,9 @@ from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Event, Outcome, Watch
 
 POLL = 0.05  # seconds between two looks at budget and watcher
-GRACE = 0.1  # seconds beyond the budget in which Bonmin may end by itself, and keeps its point
+MOST = 700.0  # logarithm of the largest double
+SHARE = 0.6  # of the time left is Bonmin's own limit, which it looks at between nodes
+GRACE = 0.1  # seconds beyond the budget after which it is killed
 SCALE = 1e3  # the objective at the guess: Bonmin cuts off what is better by less than 1e-5
 OPTIONS = {
     "algorithm": "B-BB",
@@ -52,7 +55,7 @@ def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Out
     if not job["guess"]:  # one point is all there is; Bonmin would crash
         return _outcome(problem, columns, {"status": "SUCCESS", "x": []})
     if budget.seconds is not None:
-        job["options"] |= {"time_limit": max(budget.seconds, 1e-3)}
+        job["deadline"] = time.time() + budget.seconds
     process = _started()
     text: str | None = json.dumps(job)
     try:
@@ -178,7 +181,9 @@ def _outcome(problem: Problem, columns: list[_Column], answer: dict[str, Any]) -
     status, unknowns = answer["status"], answer["x"]
     if status == "INFEASIBLE":
         return Outcome(None, message="Bonmin claims infeasible; not proven by us")
-    finished = status == "SUCCESS"
+    finished, message = status == "SUCCESS", f"Bonmin: {status}, which is its word"
+    if not np.isfinite(unknowns).all():
+        return Outcome(None, finished, message=message)
     lower, upper, _ = problem.bounds()
     point, start = lower.copy(), 0
     for k, column in enumerate(columns):
@@ -187,8 +192,7 @@ def _outcome(problem: Problem, columns: list[_Column], answer: dict[str, Any]) -
         if column.allowed:
             point[k] = column.allowed[int(np.argmax(part)) if part else 0]
         else:
-            point[k] = float(round(part[0])) if column.whole else math.exp(part[0])
-    message = f"Bonmin: {status}, which is its word"
+            point[k] = float(round(part[0])) if column.whole else np.exp(min(part[0], MOST))
     return Outcome(np.clip(point, lower, upper), finished, message=message)
 
 
@@ -209,6 +213,8 @@ def child() -> None:
     nlp, discrete = {"x": x, "f": f, "g": g}, np.array(job["discrete"], bool)
     ends = {"lbg": job["least"], "ubg": job["most"]}
     quiet = {"print_time": False, "error_on_fail": False, "show_eval_warnings": False}
+    if "deadline" in job:  # counted from here, where this process is up
+        job["options"] |= {"time_limit": max(SHARE * (job["deadline"] - time.time()), 1e-3)}
     solver = ca.nlpsol(
         "s", "bonmin", nlp, quiet | {"discrete": job["discrete"], "bonmin": job["options"]}
     )
