@@ -14,9 +14,10 @@ import numpy as np
 from gearopt.errors import CertificateError
 from gearopt.optimise.dual import TINY, farkas, kkt
 from gearopt.optimise.feasibility import runaway, violation
-from gearopt.optimise.form import form
+from gearopt.optimise.form import Form, form
 from gearopt.optimise.multipliers import multipliers
 from gearopt.optimise.problem import Problem
+from gearopt.optimise.quadratic import natural
 from gearopt.optimise.result import Outcome, Result
 
 FEASIBLE = 1e-8  # rows are dimensionless; a stress 1e-8 over its limit is below any data error
@@ -77,6 +78,13 @@ def certify(problem: Problem, outcome: Outcome, gap: float, exact: bool = False)
     return _local(problem, outcome, value, certificate, gap)
 
 
+def _shape(problem: Problem) -> Form:
+    """The form of a problem, or where only that is proven convex, the one in natural variables."""
+    shape = form(problem)
+    plain = None if shape.convex else natural(problem)
+    return plain if plain is not None and plain.convex else shape
+
+
 def _claimed(
     outcome: Outcome, value: float, certificate: dict[str, float | None], tolerance: float
 ) -> Verdict:
@@ -101,7 +109,7 @@ def _local(
 ) -> Verdict:
     """Judge a point with multipliers: KKT residuals, and a dual bound where the form is convex."""
     assert outcome.x is not None
-    shape = form(problem)
+    shape = _shape(problem)
     lower, upper, guess = problem.bounds()
     low, high, y = (shape.to_y(a) for a in (lower, upper, outcome.x))
     candidates = [multipliers(shape, y, problem.parameter_values(), low, high)]
@@ -134,7 +142,7 @@ def _infeasible(problem: Problem, outcome: Outcome) -> Verdict:
     """Accept an infeasibility claim only with an exhausted search or a Farkas certificate."""
     if outcome.proof:
         return Verdict("infeasible", proof=outcome.proof, message=outcome.message)
-    shape = form(problem)
+    shape = _shape(problem)
     low, high = (shape.to_y(a) for a in problem.bounds()[:2])
     finite = np.isfinite(low).all() and np.isfinite(high).all()
     if outcome.x is None or outcome.lam_g is None or not (shape.convex and finite):
@@ -145,7 +153,8 @@ def _infeasible(problem: Problem, outcome: Outcome) -> Verdict:
     names = [r.name for r in problem.rows.inequalities] + list(problem.rows.equalities)
     weights = np.concatenate([lam_g, np.abs(lam_h)])
     conflict = [names[k] for k in np.argsort(-weights, kind="stable") if weights[k] > 1e-6]
-    proof = {"method": "dual", "conflict": conflict, "least_violation": math.expm1(least)}
+    excess = least if shape.hessian is not None else math.expm1(least)  # rows or their logarithms
+    proof = {"method": "dual", "conflict": conflict, "least_violation": excess}
     return Verdict(
         "infeasible",
         proof=proof,

@@ -1,8 +1,8 @@
 """What multipliers prove: optimality residuals, a lower bound, or that nothing is feasible.
 
 With l >= 0 and any v the Lagrangian of a convex form is convex, so on the box it is at least its
-value at a point plus the least of its linear part. Rounding of every term, of the gradient too, is
-taken off.
+value at a point plus the least of its linear part; that of a strictly convex quadratic program is
+bounded without a box. Rounding of every term, of the gradient too, is taken off.
 """
 
 import math
@@ -11,6 +11,7 @@ import numpy as np
 
 from gearopt.optimise.form import Form
 from gearopt.optimise.problem import Problem
+from gearopt.optimise.quadratic import box, curvature, hessian_of, least
 from gearopt.optimise.result import Outcome
 from gearopt.optimise.terms import Array
 
@@ -32,8 +33,15 @@ def kkt(
     }
     lagrangian = f[0] + lam_g @ g + lam_h @ h
     slack = _allowance(f, lam_g * (1.0 + np.abs(g)), lam_h * (1.0 + np.abs(h)))
-    slack += _gradient_allowance(problem, shape, y, low, high, gradient_f, lam_g, lam_h)
-    return residuals, float(lagrangian + _box(gradient, y, low, high) - slack)
+    doubt = _doubt(problem, shape, y, gradient_f, lam_g, lam_h)
+    if shape.hessian is None:
+        return residuals, float(lagrangian + box(gradient, doubt, y, low, high).sum() - slack)
+    hessian = hessian_of(problem, shape)
+    linear = gradient_f - hessian @ y
+    sizes = np.abs(y) * (np.abs(hessian) @ np.abs(y)), np.abs(linear) * np.abs(y)
+    doubt = doubt + ROUNDING * (np.abs(hessian) @ np.abs(y) + np.abs(linear))
+    drop = least(gradient, doubt, y, low, high, curvature(hessian))
+    return residuals, float(lagrangian + drop - slack - _allowance(*sizes))
 
 
 def _steepness(problem: Problem, shape: Form, gradient: Array) -> float:
@@ -45,28 +53,19 @@ def _steepness(problem: Problem, shape: Form, gradient: Array) -> float:
     return max(float(steepest[np.isfinite(steepest)].max(initial=0.0)), TINY)
 
 
-def _gradient_allowance(
-    problem: Problem,
-    shape: Form,
-    y: Array,
-    low: Array,
-    high: Array,
-    gradient_f: Array,
-    lam_g: Array,
-    lam_h: Array,
-) -> float:
-    """Rounding of the Lagrangian's gradient, carried to the far side of the box."""
+def _doubt(
+    problem: Problem, shape: Form, y: Array, gradient_f: Array, lam_g: Array, lam_h: Array
+) -> Array:
+    """Rounding of the Lagrangian's gradient, (n,)."""
     import casadi as ca
 
-    if not (np.isfinite(low).all() and np.isfinite(high).all()):
-        return 0.0
     total = np.abs(gradient_f)
     for jacobian, lam in zip(
         shape.jacobians(y, problem.parameter_values()), (lam_g, lam_h), strict=True
     ):
         if len(lam):
             total = total + np.array(ca.mtimes(ca.fabs(jacobian).T, np.abs(lam))).ravel()
-    return float(ROUNDING * (total * np.maximum(high - y, y - low)).sum())
+    return ROUNDING * total
 
 
 def farkas(
@@ -88,16 +87,9 @@ def farkas(
     parts = shape.derivatives(y, problem.parameter_values(), lam_g, lam_h)
     _, g, h, gradient_f, gradient = (np.array(part).ravel() for part in parts)
     slack = _allowance(lam_g * (1.0 + np.abs(g)), lam_h * (1.0 + np.abs(h)))
-    slack += _gradient_allowance(problem, shape, y, low, high, gradient_f, lam_g, lam_h)
-    least = lam_g @ g + lam_h @ h + _box(gradient - gradient_f, y, low, high) - slack
+    doubt = _doubt(problem, shape, y, gradient_f, lam_g, lam_h)
+    least = lam_g @ g + lam_h @ h + box(gradient - gradient_f, doubt, y, low, high).sum() - slack
     return float(least), lam_g, lam_h
-
-
-def _box(gradient: Array, y: Array, low: Array, high: Array) -> float:
-    """Least value of gradient.(z - y) over low <= z <= high; -inf where a bound is infinite."""
-    if not (np.isfinite(low).all() and np.isfinite(high).all()):
-        return -math.inf
-    return float(np.minimum(gradient * (low - y), gradient * (high - y)).sum())
 
 
 def _allowance(*terms: Array) -> float:

@@ -24,7 +24,8 @@ class Form:
 
     logarithmic: which variables are log (n,). log_objective: F is log f. convex: proven convex.
     derivatives(y, p, lam_g, lam_h) -> F, G, H, grad F, grad L with L = F + lam_g.G + lam_h.H.
-    jacobians(y, p) -> of G and of H, sparse.
+    jacobians(y, p) -> of G and of H, sparse. hessian(p) -> of F where it is proven constant (see
+    `quadratic`; G and H are then affine), else None.
     """
 
     expressions: tuple[Any, Any, Any, Any, Any]
@@ -33,6 +34,7 @@ class Form:
     logarithmic: Any
     log_objective: bool
     convex: bool
+    hessian: Any = None
 
     def to_y(self, x: Array) -> Array:
         """The y of a natural point."""
@@ -82,17 +84,35 @@ def _build(problem: Problem, found: tape.Kinds) -> Form:
     objective = ca.log(f) if log_objective else f
     inequalities = _rows(g, [k <= tape.POSYNOMIAL for k in found.inequalities])
     equalities = _rows(h, [k <= tape.MONOMIAL for k in found.equalities])
-    lam_g, lam_h = kind.sym("lam_g", g.numel()), kind.sym("lam_h", h.numel())
+    convex = bool(found.log_convex and logarithmic.all())
+    return assembled(
+        (y, p, objective, inequalities, equalities), logarithmic, log_objective, convex
+    )
+
+
+def assembled(
+    expressions: tuple[Any, Any, Any, Any, Any],
+    logarithmic: Any,
+    log_objective: bool,
+    convex: bool,
+    hessian: Any = None,
+) -> Form:
+    """A form of casadi expressions (y, p, F, G, H), with their derivatives."""
+    import casadi as ca
+
+    y, p, objective, inequalities, equalities = expressions
+    lam_g, lam_h = (type(y).sym(n, r.numel()) for n, r in zip("gh", expressions[3:], strict=True))
     lagrangian = objective + ca.dot(lam_g, inequalities) + ca.dot(lam_h, equalities)
     gradients = [ca.gradient(objective, y), ca.gradient(lagrangian, y)]
     outputs = [ca.densify(e) for e in (objective, inequalities, equalities, *gradients)]
     return Form(
-        (y, p, objective, inequalities, equalities),
+        expressions,
         ca.Function("derivatives", [y, p, lam_g, lam_h], outputs),
         ca.Function("jacobians", [y, p], [ca.jacobian(r, y) for r in (inequalities, equalities)]),
         logarithmic,
         log_objective,
-        bool(found.log_convex and logarithmic.all()),
+        convex,
+        hessian,
     )
 
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from gearopt.errors import SolveError
 from gearopt.optimise.problem import Problem
+from gearopt.optimise.tape import walk
 from gearopt.optimise.terms import Array
 
 MOST_TERMS = 200  # of one expanded row; beyond it the text should name an intermediate variable
@@ -51,29 +52,15 @@ def read(problem: Problem) -> Model:
 
 
 def _outputs(problem: Problem, function: Any) -> list[list[Any]]:
-    import casadi as ca
-
     lower, _, _ = problem.bounds()
     count = len(lower)
-    parameters = problem.parameter_values()
-    work: list[Posynomial | None] = [None] * function.sz_w()
-    found: list[list[Any]] = [[None] * function.size1_out(k) for k in range(3)]
-    for k in range(function.n_instructions()):
-        operation = function.instruction_id(k)
-        source, target = function.instruction_input(k), function.instruction_output(k)
-        if operation == ca.OP_INPUT:
-            work[target[0]] = (
-                _variable(source[1], lower)
-                if source[0] == 0
-                else _constant(parameters[source[1]], count)
-            )
-        elif operation == ca.OP_CONST:
-            work[target[0]] = _constant(function.instruction_constant(k), count)
-        elif operation == ca.OP_OUTPUT:
-            found[target[0]][target[1]] = work[source[0]]
-        else:
-            work[target[0]] = _apply(operation, [work[s] for s in source])
-    return found
+    inputs: list[list[Any]] = [
+        [_variable(k, lower) for k in range(count)],
+        [],
+        [_constant(value, count) for value in problem.parameter_values()],
+        [],
+    ]
+    return walk(function, inputs, lambda value: _constant(value, count), _apply)
 
 
 def _constant(value: float, count: int) -> Posynomial:

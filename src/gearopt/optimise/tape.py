@@ -79,11 +79,23 @@ def _kinds(problem: Problem) -> Kinds:
 
 
 def _read(problem: Problem, block: Block) -> tuple[list[int], list[int], list[int]]:
+    rows = walk(
+        block.function, _inputs(problem, block), lambda value: _Term(CONSTANT, value), _apply
+    )
+    f, g, h = ([_as_row(term) for term in out] for out in rows)
+    return f, g, h
+
+
+def walk(function: Any, inputs: list[list[Any]], constant: Any, apply: Any) -> list[list[Any]]:
+    """Run a reader over a tape: what it makes of every scalar of every output.
+
+    inputs: one reading of every scalar of every input; constant(value) reads a number and
+    apply(operation, readings) an operation.
+    """
     import casadi as ca
 
-    function, inputs = block.function, _inputs(problem, block)
-    work: list[_Term] = [_UNKNOWN] * function.sz_w()
-    results: dict[tuple[int, int], _Term] = {}
+    work: list[Any] = [None] * function.sz_w()
+    found = [[constant(0.0)] * function.size1_out(k) for k in range(function.n_out())]
     with np.errstate(all="ignore"):
         for k in range(function.n_instructions()):
             operation = function.instruction_id(k)
@@ -91,18 +103,12 @@ def _read(problem: Problem, block: Block) -> tuple[list[int], list[int], list[in
             if operation == ca.OP_INPUT:
                 work[target[0]] = inputs[source[0]][source[1]]
             elif operation == ca.OP_CONST:
-                work[target[0]] = _Term(CONSTANT, function.instruction_constant(k))
+                work[target[0]] = constant(function.instruction_constant(k))
             elif operation == ca.OP_OUTPUT:
-                results[target[0], target[1]] = work[source[0]]
+                found[target[0]][target[1]] = work[source[0]]
             else:
-                work[target[0]] = _apply(operation, [work[s] for s in source])
-    return tuple(  # type: ignore[return-value]
-        [
-            _as_row(results.get((out, row), _Term(CONSTANT, 0.0)))
-            for row in range(function.size1_out(out))
-        ]
-        for out in range(3)
-    )
+                work[target[0]] = apply(operation, [work[s] for s in source])
+    return found
 
 
 def _as_row(term: _Term) -> int:
@@ -129,7 +135,8 @@ def _apply(operation: int, terms: list[_Term]) -> _Term:
     import casadi as ca
 
     if all(t.kind == CONSTANT for t in terms):
-        return _constant(operation, [t.value for t in terms])
+        value = fold(operation, [t.value for t in terms])
+        return _UNKNOWN if value is None else _Term(CONSTANT, value)
     first, last = terms[0], terms[-1]
     if operation in (ca.OP_CONSTPOW, ca.OP_POW):
         return _power(first, last)
@@ -158,14 +165,15 @@ def _power(base: _Term, exponent: _Term) -> _Term:
     return _Term(max(MONOMIAL, base.kind))
 
 
-def _constant(operation: int, values: list[Any]) -> _Term:
-    fold = _folds().get(operation)
-    return _Term(CONSTANT, fold(*values)) if fold else _UNKNOWN
+def fold(operation: int, values: list[Any]) -> Any:
+    """What an operation makes of numbers, or None where this reader does not know it."""
+    known = _folds().get(operation)
+    return known(*values) if known else None
 
 
 @cache
 def _folds() -> dict[int, Any]:
-    """How casadi's operations act on numbers; one that is missing makes the term OTHER."""
+    """How casadi's operations act on numbers."""
     import casadi as ca
 
     return {

@@ -18,6 +18,8 @@ from gearopt.optimise.result import Budget, Event, Outcome, Watch
 from gearopt.optimise.terms import Array
 
 ACCEPTED = 1e-9  # an iterate that violates no row by more is kept as the best so far
+FEASIBLE = 1e-8  # that of a certificate
+ROUNDING = 1e-12  # of two values of the objective
 STUCK = 1e-6  # violation at which Ipopt's end point counts as not solved
 
 OPTIONS = {
@@ -61,12 +63,16 @@ class _Run:
     def note(self, y: Array, value: float, rows: Array) -> bool:
         """Take an iterate; whether the run goes on."""
         self.evaluations += 1
+        self.keep(y, value, rows)
+        self.stopped = not self.goes_on()
+        return not self.stopped
+
+    def keep(self, y: Array, value: float, rows: Array) -> None:
+        """Remember a point that is feasible and lower than those before."""
         count = self.rows[0]
         worst = max(rows[:count].max(initial=0), np.abs(rows[count:]).max(initial=0))
         if worst <= ACCEPTED and value < self.least:
             self.least, self.best = value, y
-        self.stopped = not self.goes_on()
-        return not self.stopped
 
     def goes_on(self) -> bool:
         """Whether budget and watcher let the run go on."""
@@ -95,7 +101,9 @@ def run(
 ) -> Outcome:
     """Solve a continuous problem from its guess (or from the natural point `start`).
 
-    SolveError for discrete variables. Ipopt is deterministic: the seed changes nothing.
+    A feasible start and the feasible iterates are kept: what Ipopt ends with is returned only where
+    none of them is lower. SolveError for discrete variables. Ipopt is deterministic: the seed
+    changes nothing.
     """
     for variable, name in problem.columns:
         if variable.discrete:
@@ -106,10 +114,11 @@ def run(
     low, high = shape.to_y(lower), shape.to_y(upper)
     solver, monitor = _built(problem, shape)
     following = monitor.begin(budget, watch, shape.objective)
+    following.keep(y0, *_values(problem, shape, y0))
     point = _ipopt(problem, solver, y0, low, high, monitor.rows)
     if not following.stopped and _violation(problem, shape, point.y) > STUCK:
         point, least = _least_violation(problem, shape, point, low, high, following)
-        if least > STUCK and not following.stopped:
+        if least > STUCK and not following.stopped and following.best is None:
             return Outcome(
                 shape.to_x(point.y),
                 lam_g=point.lam_g,
@@ -121,14 +130,16 @@ def run(
         point = _ipopt(problem, solver, point.y, low, high, monitor.rows)
     if following.raised is not None:
         raise following.raised
-    best = following.best if following.stopped else point.y
+    lost = _lost(problem, shape, point, following)
+    best = following.best if following.stopped or lost else point.y
+    message = "" if point.status == "Solve_Succeeded" else f"Ipopt: {point.status}"
     return Outcome(
         None if best is None else np.clip(shape.to_x(best), lower, upper),
         finished=not following.stopped,
         lam_g=point.lam_g,
         lam_h=point.lam_h,
         evaluations=following.evaluations,
-        message="" if point.status == "Solve_Succeeded" else f"Ipopt: {point.status}",
+        message="Ipopt ended higher than a point it passed, which is kept" if lost else message,
     )
 
 
@@ -171,12 +182,34 @@ def _ipopt(
     return _Point(np.array(found["x"]).ravel(), lam[:m_g], lam[m_g:], status)
 
 
-def _violation(problem: Problem, shape: Form, y: Array) -> float:
+def _values(problem: Problem, shape: Form, y: Array) -> tuple[float, Array]:
+    """F, and G and H together, at a point."""
     no_g, no_h = (np.zeros(shape.derivatives.numel_out(k)) for k in (1, 2))
     parts = shape.derivatives(y, problem.parameter_values(), no_g, no_h)
-    _, g, h = (np.array(part).ravel() for part in parts[:3])
-    worst = np.concatenate([g, np.abs(h), [0.0]])
+    f, g, h = (np.array(part).ravel() for part in parts[:3])
+    return float(f[0]), np.concatenate([g, h])
+
+
+def _violation(problem: Problem, shape: Form, y: Array) -> float:
+    count = shape.derivatives.numel_out(1)
+    rows = _values(problem, shape, y)[1]
+    worst = np.concatenate([rows[:count], np.abs(rows[count:]), [0.0]])
     return float(np.inf if np.isnan(worst).any() else worst.max())
+
+
+def _lost(problem: Problem, shape: Form, point: _Point, following: _Run) -> bool:
+    """Whether the end point is worse than the best one passed, by more than tolerance buys.
+
+    A violation of ACCEPTED lowers the objective of a solved problem by at most its multipliers
+    times it. An end point that is not feasible is worse than any that is.
+    """
+    if following.best is None or following.stopped:
+        return False
+    value = _values(problem, shape, point.y)[0]
+    prices = np.abs(np.concatenate([point.lam_g, point.lam_h]))
+    bought = ACCEPTED * float(np.nan_to_num(prices).sum()) + ROUNDING * abs(value)
+    ended = _violation(problem, shape, point.y) <= FEASIBLE
+    return not (ended and value <= following.least + bought)
 
 
 def _least_violation(

@@ -1,0 +1,130 @@
+"""Convex quadratic programs in the natural variables: proven on the tape, bounded without a box.
+
+    minimise 1/2 x'Qx + c'x + f0   subject to   A x + a <= 1,   B x + b = 1,   lower <= x <= upper
+
+That f is quadratic and the rows affine is read from the tape (`degree`); that Q is positive
+semidefinite is our own eigenvalue, with a rounding allowance.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from gearopt.optimise.degree import AFFINE, QUADRATIC, degrees
+from gearopt.optimise.form import Form, assembled
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.terms import Array
+
+ROUNDING = 1e-14  # 50 units in the last place, of a matrix scaled to unit diagonal, times its size
+
+MOST = 3000  # variables; the Hessian is dense
+
+
+@dataclass(frozen=True)
+class Curvature:
+    """Q >= floor * diag(diagonal), proven; diagonal (n,) is that of Q, with 0 for empty rows."""
+
+    diagonal: Array
+    floor: float
+    rounding: float
+
+    @property
+    def convex(self) -> bool:
+        """Whether Q is positive semidefinite, within the rounding of its eigenvalues."""
+        return self.floor >= -2.0 * self.rounding
+
+
+def curvature(hessian: Array) -> Curvature:
+    """The curvature of a symmetric Q (n, n), from the eigenvalues of D^-1/2 Q D^-1/2."""
+    diagonal = np.diag(hessian).copy()
+    used = np.abs(hessian).max(axis=1, initial=0.0) > 0.0
+    rounding = ROUNDING * max(1, int(used.sum()))
+    if not np.isfinite(hessian).all() or (diagonal[used] <= 0.0).any():
+        return Curvature(diagonal, -np.inf, rounding)
+    root = np.sqrt(diagonal[used])
+    scaled = hessian[np.ix_(used, used)] / np.outer(root, root)
+    least = 2.0 - float(np.abs(scaled).sum(axis=1).max(initial=1.0))  # Gershgorin's circles
+    if least < 0.5:  # else good enough, and cheap
+        least = float(np.linalg.eigvalsh(scaled)[0])
+    return Curvature(diagonal, least - rounding, rounding)
+
+
+def natural(problem: Problem) -> Form | None:
+    """The form in the natural variables, where a problem is proven quadratic; else None.
+
+    `convex` says whether it is a convex quadratic program at the present parameters.
+    """
+    if misfit(problem) or len(problem.rows.objectives) != 1:
+        return None
+    key = ("natural", degrees(problem))
+    if key not in problem.memo:
+        problem.memo[key] = _build(problem)
+    shape: Form = problem.memo[key]
+    return replace(shape, convex=curvature(hessian_of(problem, shape)).convex)
+
+
+def hessian_of(problem: Problem, shape: Form) -> Array:
+    """Q (n, n) at the present parameters; casadi's own way to a dense array is slow."""
+    found = shape.hessian(problem.parameter_values())
+    hessian = np.zeros(found.shape)
+    hessian[found.sparsity().get_triplet()] = found.nonzeros()
+    return hessian
+
+
+def misfit(problem: Problem) -> str:
+    """The term that is of too high a degree for a quadratic program, in words; "" if none is."""
+    found, rows = degrees(problem), problem.rows
+    if len(problem.columns) > MOST:
+        return f"it has {len(problem.columns)} variables, more than {MOST}"
+    if found.objective > QUADRATIC:
+        return f"the objective {rows.objectives[0]} is not quadratic"
+    names = [r.name for r in rows.inequalities] + list(rows.equalities)
+    for name, degree in zip(names, found.inequalities + found.equalities, strict=True):
+        if degree > AFFINE:
+            return f"{name} is not affine"
+    return ""
+
+
+def _build(problem: Problem) -> Form:
+    import casadi as ca
+
+    kind = ca.MX if problem.repeats else ca.SX
+    x = kind.sym("x", len(problem.columns))
+    p = kind.sym("p", len(problem.parameter_values()))
+    f, g, h = problem.traced().terms(x, p)
+    hessian = ca.Function("hessian", [x, p], [ca.hessian(f, x)[0]])(0, p)
+    return assembled(
+        (x, p, f, g - 1, h - 1),
+        np.zeros(x.numel(), bool),
+        log_objective=False,
+        convex=False,
+        hessian=ca.Function("hessian", [p], [hessian]),
+    )
+
+
+def box(gradient: Array, doubt: Array, y: Array, low: Array, high: Array) -> Array:
+    """Least of t (z - y) over low <= z <= high and |t - gradient| <= doubt, of each variable."""
+    slopes = np.array([gradient - doubt, gradient + doubt])[:, None, :]
+    with np.errstate(invalid="ignore"):
+        ends = slopes * np.array([low - y, high - y])[None, :, :]
+    lowest: Array = np.where(np.isnan(ends), 0.0, ends).min(axis=(0, 1))
+    return lowest  # NaN, taken as 0: a slope of 0 to infinity
+
+
+def least(
+    gradient: Array, doubt: Array, y: Array, low: Array, high: Array, curved: Curvature
+) -> float:
+    """Lower bound of gradient.(z - y) + 1/2 (z - y)'Q(z - y) over the box.
+
+    Every variable is charged the less of its linear part over its bounds and, where Q is definite,
+    of slope^2/(2 floor Q_jj), which needs no bounds. Q below 0 by rounding is charged over the box.
+    """
+    linear = box(gradient, doubt, y, low, high)
+    steep = np.abs(gradient) + doubt
+    diagonal = curved.diagonal
+    if curved.floor <= 0.0:
+        width = np.where(diagonal > 0.0, np.maximum(high - y, y - low), 0.0)
+        return float(linear.sum() + 0.5 * curved.floor * (diagonal * width**2).sum())
+    with np.errstate(divide="ignore", invalid="ignore"):
+        bowl = np.where(diagonal > 0.0, -0.5 * steep**2 / (curved.floor * diagonal), -np.inf)
+    return float(np.maximum(linear, bowl).sum())

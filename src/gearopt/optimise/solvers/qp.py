@@ -1,0 +1,203 @@
+"""Small dense quadratic programs by CasADi's active-set solvers, DAQP and then qrqp.
+
+The text is proven quadratic and convex first (`quadratic`). Built once a problem, re-solved at new
+parameter values. What DAQP leaves open is given to qrqp, then to DAQP without equalities that
+repeat others (both fail on those). Where no point meets every row, the least-squares violation is
+found, whose residuals are the multipliers of a conflict.
+"""
+
+import time
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from gearopt.errors import SolveError
+from gearopt.optimise.form import Form
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.quadratic import Curvature, curvature, hessian_of, misfit, natural
+from gearopt.optimise.result import Budget, Event, Outcome, Watch
+from gearopt.optimise.terms import Array
+
+VIOLATED = 1e-9  # a row, whose unit is 1, is not met beyond it
+DEPENDENT = 1e-10  # of a row of length 1: what others leave of it
+TINY = 1e-300  # a row of zeros has no direction
+PROXIMAL = {"eps_prox": 1e-3, "eta_prox": 1e-14}  # DAQP's way with a singular Hessian
+TOLERANCES = {"primal_tol": 1e-11, "dual_tol": 1e-12}  # DAQP's own are 1e-6 and 1e-12
+SOLVERS: dict[str, dict[str, Any]] = {
+    "daqp": {"daqp": TOLERANCES},
+    "qrqp": {"print_iter": False, "print_header": False, "print_info": False},
+}
+
+
+@dataclass(frozen=True)
+class _Program:
+    """1/2 x'Qx + c'x, least <= A x <= most, low <= x <= high; the first `count` rows are limits."""
+
+    hessian: Array
+    linear: Array
+    rows: Array
+    least: Array
+    most: Array
+    low: Array
+    high: Array
+    count: int
+
+    def violation(self, x: Array) -> float:
+        """Largest violation of a row."""
+        value = self.rows @ x
+        return float(np.maximum(self.least - value, value - self.most).max(initial=0.0))
+
+
+def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
+    """Solve a convex quadratic program; SolveError names what makes the problem none.
+
+    The solvers are deterministic, and cannot be interrupted: `watch` and the budget are asked
+    before each, and `watch` with the answer.
+    """
+    clock = time.perf_counter()
+    shape, curved = _checked(problem)
+    program = _program(problem, shape)
+    words: list[str] = []
+
+    def goes_on(best: float | None = None) -> bool:
+        seconds = time.perf_counter() - clock
+        late = budget.seconds is not None and seconds > budget.seconds
+        event = Event(seconds, len(words), best)
+        return not late and (watch is None or watch(event) is not False)
+
+    for name in (*SOLVERS, "daqp"):
+        if not goes_on():
+            return Outcome(None, False, evaluations=len(words), message="stopped before the end")
+        given = np.arange(len(program.most))
+        if len(words) == len(SOLVERS) and len(given := _independent(program)) == len(program.most):
+            break
+        x, lam, status = _solved(problem, name, program, curved, given)
+        words.append(f"{name}: {status or 'a row is not met'}")
+        if status == "" and program.violation(x) <= VIOLATED:
+            finished = goes_on(float(problem.batch(x[None]).F[0, 0]))
+            lam_g, lam_h = lam[: program.count], lam[program.count :]
+            return Outcome(x, finished, lam_g, lam_h, evaluations=len(words))
+    return _nearest(problem, program, len(words), "; ".join(words))
+
+
+def _checked(problem: Problem) -> tuple[Form, Curvature]:
+    """The natural form and its curvature, or a SolveError."""
+    for variable, name in problem.columns:
+        if variable.discrete:
+            raise SolveError(f"qp takes continuous variables only; {name} is discrete")
+    if len(problem.rows.objectives) != 1:
+        raise SolveError(f"qp takes one objective; {problem.name} has several")
+    shape = natural(problem)
+    if shape is None:
+        raise SolveError(f"{problem.name} is no quadratic program: " + misfit(problem))
+    hessian = hessian_of(problem, shape)
+    curved = curvature(hessian)
+    if not shape.convex:
+        least = np.linalg.eigvalsh(hessian)[0] if np.isfinite(hessian).all() else np.nan
+        raise SolveError(
+            f"{problem.name} is no convex quadratic program: {problem.rows.objectives[0]} has "
+            f"curvature {least:.3g}"
+        )
+    return shape, curved
+
+
+def _program(problem: Problem, shape: Form) -> _Program:
+    """The numbers of a quadratic program at the present parameters, from its values at x = 0."""
+    p, origin = problem.parameter_values(), np.zeros(len(problem.columns))
+    no_g, no_h = (np.zeros(shape.derivatives.numel_out(k)) for k in (1, 2))
+    _, g, h, linear, _ = (np.array(v).ravel() for v in shape.derivatives(origin, p, no_g, no_h))
+    rows = [np.array(j).reshape(-1, len(origin)) for j in shape.jacobians(origin, p)]
+    low, high, _ = problem.bounds()
+    return _Program(
+        hessian_of(problem, shape),
+        linear,
+        np.vstack(rows),
+        np.concatenate([np.full(len(g), -np.inf), -h]),
+        np.concatenate([-g, -h]),
+        low,
+        high,
+        len(g),
+    )
+
+
+def _solved(
+    problem: Problem, name: str, program: _Program, curved: Curvature, given: Any
+) -> tuple[Array, Array, str]:
+    """Point, multipliers of the rows, and what the solver complains of ("" for nothing).
+
+    given: which rows the solver is given.
+    Variables are scaled to a Hessian of unit diagonal, which the solvers' tolerances expect.
+    """
+    import casadi as ca
+
+    definite = curved.floor > 0.0 and bool((curved.diagonal > 0.0).all())
+    size, rows = len(program.linear), len(given)
+    key = ("qp", name, definite, size, rows)
+    if key not in problem.memo:
+        options = SOLVERS[name] | {"error_on_fail": False}
+        if name == "daqp" and not definite:
+            options = options | {"daqp": TOLERANCES | PROXIMAL}
+        shapes = {"h": ca.Sparsity.dense(size, size), "a": ca.Sparsity.dense(rows, size)}
+        problem.memo[key] = ca.conic("qp", name, shapes, options)
+    solver = problem.memo[key]
+    unit = 1.0 / np.sqrt(np.where(curved.diagonal > 0.0, curved.diagonal, 1.0))
+    found = solver(
+        h=program.hessian * np.outer(unit, unit),
+        g=program.linear * unit,
+        a=program.rows[given] * unit,
+        lba=program.least[given],
+        uba=program.most[given],
+        lbx=program.low / unit,
+        ubx=program.high / unit,
+    )
+    stats = solver.stats()
+    x = np.clip(np.array(found["x"]).ravel() * unit, program.low, program.high)
+    status = "" if stats["success"] else str(stats["return_status"])
+    lam = np.zeros(len(program.most))
+    lam[given] = np.array(found["lam_a"]).ravel()
+    return x, lam, status
+
+
+def _independent(program: _Program) -> Any:
+    """All limits, and those equalities that are no combination of equalities before them."""
+    basis = np.empty((0, len(program.linear)))
+    kept = list(range(program.count))
+    for k in range(program.count, len(program.most)):
+        row = program.rows[k] / max(float(np.linalg.norm(program.rows[k])), TINY)
+        rest = row - basis.T @ (basis @ row)
+        if (length := float(np.linalg.norm(rest))) > DEPENDENT:
+            basis, kept = np.vstack([basis, rest / length]), [*kept, k]
+    return np.array(kept, int)
+
+
+def _nearest(problem: Problem, program: _Program, runs: int, words: str) -> Outcome:
+    """The point of least squared violation; its residuals s are multipliers that prove a conflict.
+
+    minimise 1/2 s's  subject to  least <= A x - s <= most,  low <= x <= high
+    """
+    size, rows = len(program.linear), len(program.most)
+    free = np.full(rows, np.inf)
+    wide = _Program(
+        np.diag(np.repeat([0.0, 1.0], [size, rows])),
+        np.zeros(size + rows),
+        np.hstack([program.rows, -np.eye(rows)]),
+        program.least,
+        program.most,
+        np.concatenate([program.low, -free]),
+        np.concatenate([program.high, free]),
+        program.count,
+    )
+    z, _, status = _solved(problem, "daqp", wide, curvature(wide.hessian), np.arange(rows))
+    x, s = z[:size], z[size:]
+    worst = program.violation(x)
+    if status or worst <= VIOLATED:
+        return Outcome(None, evaluations=runs, message=f"not solved; {words}")
+    return Outcome(
+        x,
+        lam_g=s[: program.count],
+        lam_h=s[program.count :],
+        infeasible=True,
+        evaluations=runs + 1,
+        message=f"the least violation found is {worst:.3g}",
+    )
