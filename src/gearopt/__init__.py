@@ -1,7 +1,8 @@
 """gearopt: constrained optimisation of gears, with a proof of how good the answer is."""
 
-from gearopt.api import load, solve
+from gearopt.api import compare, load, solve
 from gearopt.errors import CertificateError, GearoptError, SceneError, SolveError
+from gearopt.optimise.comparison import Comparison
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Event, Result
 from gearopt.optimise.terms import Param, Repeat, Terms, Var
@@ -9,6 +10,7 @@ from gearopt.optimise.terms import Param, Repeat, Terms, Var
 __all__ = [
     "Budget",
     "CertificateError",
+    "Comparison",
     "Event",
     "GearoptError",
     "Param",
@@ -19,6 +21,7 @@ __all__ = [
     "SolveError",
     "Terms",
     "Var",
+    "compare",
     "load",
     "solve",
 ]

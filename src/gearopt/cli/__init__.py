@@ -6,7 +6,7 @@ import sys
 from gearopt.cli import solving  # noqa: F401
 
 # isort: split
-from gearopt.cli import files, machine  # noqa: F401
+from gearopt.cli import comparing, files, machine  # noqa: F401
 from gearopt.cli.app import app
 from gearopt.errors import GearoptError
 
