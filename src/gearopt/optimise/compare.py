@@ -141,14 +141,14 @@ def _work(
 
 
 def _expected(job: _Job, plan: Plan) -> float:
-    """Seconds of a run, from the speed of the warm-up."""
+    """A guess of the seconds of a run, from its warm-up; runs that are made correct it."""
     entry = job.entry
     if entry.finished and not entry.paced:
         return entry.seconds
     if job.kind == KINDS[1]:
         return plan.seconds
     seconds = entry.seconds * plan.evaluations / max(entry.evaluations, 1)
-    return min(seconds, PATIENCE * plan.seconds)
+    return min(seconds, (PATIENCE if entry.paced else 1.0) * plan.seconds)
 
 
 def _budget(job: _Job, plan: Plan, before: Sequence[Run]) -> Budget:
