@@ -1,7 +1,8 @@
 """gearopt: constrained optimisation of gears, with a proof of how good the answer is."""
 
-from gearopt.api import explain, load, solve
+from gearopt.api import compare, explain, load, solve
 from gearopt.errors import CertificateError, GearoptError, SceneError, SolveError
+from gearopt.optimise.comparison import Comparison
 from gearopt.optimise.explanation import Explanation
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Event, Result
@@ -10,6 +11,7 @@ from gearopt.optimise.terms import Param, Repeat, Terms, Var
 __all__ = [
     "Budget",
     "CertificateError",
+    "Comparison",
     "Event",
     "Explanation",
     "GearoptError",
@@ -21,6 +23,7 @@ __all__ = [
     "SolveError",
     "Terms",
     "Var",
+    "compare",
     "explain",
     "load",
     "solve",

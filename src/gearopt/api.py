@@ -1,16 +1,21 @@
-"""The way in from Python: `load` a problem file, `solve` a file, a scene or a problem."""
+"""The way in from Python: `load` a problem file; `solve` or `compare` a file, scene or problem."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from pydantic import BaseModel
 
+from gearopt.optimise.compare import EVALUATIONS, SECONDS, SEEDS, Follow, Plan
+from gearopt.optimise.compare import compare as compare_methods
+from gearopt.optimise.comparison import Comparison
 from gearopt.optimise.explanation import Explanation
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Result, Watch
 from gearopt.optimise.solve import GAP
 from gearopt.optimise.solve import solve as solve_problem
+from gearopt.optimise.trial import Model
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.load import load as load_file
 from gearopt.scenes.reading.load import scene_module
@@ -82,6 +87,45 @@ def explain(
 
 def _of(found: Explanation, **names: Any) -> Explanation:
     return replace(found, result=_named(found.result, **names))
+
+
+DEFAULT = ("ipopt", "annealing", "nsga2")  # compared beside exact algorithms where none are named
+
+
+def compare(
+    what: str | Path | BaseModel | Problem,
+    methods: Sequence[str] | None = None,
+    *,
+    seeds: int = SEEDS,
+    evaluations: int = EVALUATIONS,
+    seconds: float = SECONDS,
+    bound_from: str | None = None,
+    watch: Follow | None = None,
+) -> Comparison:
+    """Methods compared on a problem file, a loaded scene, or a problem of your own.
+
+    methods: by default exact where there is one, ipopt, annealing and nsga2. Every method is run by
+    evaluations and by seconds, random ones once for each of the seeds 0, 1, ... bound_from: a
+    method run once to prove a bound. watch(progress) ends the comparison by returning False, and
+    what is finished is reported. SceneError for a wrong file, SolveError where a method is unknown
+    or none takes the problem, ValueError for a budget or number of seeds below 1.
+    """
+    plan = Plan(evaluations, seconds, seeds)
+    if isinstance(what, Problem):
+        named = (*what.methods, *DEFAULT) if methods is None else methods
+        own = Model(what)
+        found = compare_methods(named, lambda method: own, plan, watch, bound_from)
+        return replace(found, title=what.name)
+    loaded = None if isinstance(what, BaseModel) else load_file(what)
+    scene = what if loaded is None else loaded.scene
+    kind = type(scene).__module__.rsplit(".", 1)[-1]
+    module = scene_module(kind)
+    named = ("exact", *DEFAULT) if methods is None else methods
+    found = compare_methods(named, lambda m: module.model(scene, m), plan, watch, bound_from)
+    found = replace(found, scene=kind, title=getattr(scene, "title", "") or kind)
+    if loaded is None:
+        return found
+    return replace(found, file=loaded.file, file_sha256=loaded.sha256)
 
 
 def _named(result: Result, **names: Any) -> Result:

@@ -39,7 +39,7 @@ def run(repeat: int) -> list[dict[str, Any]]:
     """Rows: case, method, ms (median, least, most), objective, error to the known, gap."""
     rows = []
     for name, (duty, widths, known) in CASES.items():
-        train = _train(duty, widths)
+        train = train_of(duty, widths)
         rows.append(_row(name, "exact", lambda t=train: solve(teeth.problem(t)), known, repeat))
         # The continuous form has another optimum; its error is the certified gap alone.
         rows.append(_row(name, "ipopt", lambda t=train: solve(sizing.problem(t)), None, repeat))
@@ -49,7 +49,8 @@ def run(repeat: int) -> list[dict[str, Any]]:
     return rows
 
 
-def _train(duty: str, widths: list[float]) -> Train:
+def train_of(duty: str, widths: list[float]) -> Train:
+    """The drive of a case."""
     stages = "".join(f"[[stage]]\nface_width_over_diameter = {w}\n" for w in widths)
     if duty[0] == '"':
         power, first, last = duty.split(", ")

@@ -25,14 +25,14 @@ def explain(
     if as_json:
         print(found.to_json())
     elif found.result.value is None:
-        from gearopt.report.terminal import show as show_result
+        from gearopt.report.terminal.result import show as show_result
 
         ways = {"conflict": found.conflict, "remedies": [asdict(r) for r in found.remedies]}
         show_result(
             replace(found.result, report=found.result.report | ways), title(file), console()
         )
     else:
-        from gearopt.report.explaining import show
+        from gearopt.report.terminal.explanation import show
 
         show(found, title(file), console())
     raise typer.Exit(exit_code(found.result))

@@ -43,7 +43,7 @@ def solve(
     if as_json:
         print(result.to_json())
     else:
-        from gearopt.report.terminal import show
+        from gearopt.report.terminal.result import show
 
         show(result, title(file), console())
     raise typer.Exit(exit_code(result))

@@ -2,7 +2,7 @@
 
 import signal
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
@@ -13,7 +13,19 @@ from gearopt.optimise.result import Event, Watch
 
 @contextmanager
 def watching(seconds: float, quiet: bool) -> Iterator[Watch]:
-    """A watcher that ends the run at Ctrl-C (the second one kills) and shows long work."""
+    """A watcher of one run that ends it at Ctrl-C and shows long work."""
+    started = time.perf_counter()
+
+    def words(event: Event) -> str:
+        return _progress(event, seconds - (time.perf_counter() - started))
+
+    with following(words, quiet) as watch:
+        yield watch
+
+
+@contextmanager
+def following(words: Callable[[Any], str], quiet: bool) -> Iterator[Callable[[Any], bool]]:
+    """A watcher, False after Ctrl-C (the second one kills), that shows words(progress)."""
     stopped = False
 
     def stop(number: int, frame: Any) -> None:
@@ -26,13 +38,13 @@ def watching(seconds: float, quiet: bool) -> Iterator[Watch]:
     status = screen.status("") if screen.is_terminal and not quiet else None
     started, shown = time.perf_counter(), 0.0
 
-    def watch(event: Event) -> bool:
+    def watch(progress: Any) -> bool:
         nonlocal shown
         now = time.perf_counter() - started
         if status is not None and now > 0.5 and now > shown + 0.2:
             shown = now
             status.start()
-            status.update(_progress(event, seconds - now))
+            status.update(words(progress))
         return not stopped
 
     try:

@@ -46,7 +46,7 @@ def run(
     """Like `solve`, with the method's raw outcome beside the result."""
     name = method or next(iter(problem.methods), "ipopt")
     start = time.perf_counter()
-    outcome = _method(problem, name)(problem, budget or Budget(), seed, watch)
+    outcome = method_of(problem, name)(problem, budget or Budget(), seed, watch)
     verdict = certify(problem, outcome, gap, exact=name in problem.methods)
     return _result(problem, name, outcome, verdict, time.perf_counter() - start, seed), outcome
 
@@ -56,7 +56,8 @@ def back_ends() -> tuple[str, ...]:
     return tuple(sorted(m.name for m in iter_modules(solvers.__path__)))
 
 
-def _method(problem: Problem, name: str) -> Callable[..., Outcome]:
+def method_of(problem: Problem, name: str) -> Callable[..., Outcome]:
+    """The `run` of a method for a problem; SolveError lists the methods where there is none."""
     if name in problem.methods:
         return problem.methods[name]
     if name in back_ends():

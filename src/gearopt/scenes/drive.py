@@ -23,6 +23,7 @@ from gearopt.optimise.problem import Problem
 from gearopt.optimise.repair import Clock
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run
+from gearopt.optimise.trial import Model
 from gearopt.physics.loads import torque
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.fields import Table, refuse, whole, words
@@ -231,9 +232,7 @@ def explain(scene: Scene, ask: Ask) -> Explanation:
 
 def _answer(scene: Scene, ask: Ask) -> Result:
     train = scene.train()
-    if scene.teeth is None and ask.method == "exact":
-        raise SolveError("the method exact needs a [teeth] table in the file")
-    if scene.teeth is None or ask.method in CONTINUOUS:
+    if _continuous(scene, ask.method):
         return _sized(scene, train, ask, sizing.problem(train))
     ideal = _sized(scene, train, Ask(budget=ask.budget), sizing.problem(train))
     if ideal.status == "infeasible":  # then no whole teeth do either
@@ -242,6 +241,21 @@ def _answer(scene: Scene, ask: Ask) -> Result:
     floor = -math.inf if ideal.bound is None else ideal.bound
     found = _sized(scene, train, ask, teeth.problem(train, ask.top, floor))
     return reconcile(replace(found, parts=(replace(ideal, name="sizing"),)), ideal, ask.gap)
+
+
+def model(scene: Scene, method: str) -> Model:
+    """The problem that a method solves for this drive; SolveError where there is none for it."""
+    train = scene.train()
+    if _continuous(scene, method):
+        return Model(sizing.problem(train), "Real-valued teeth and modules", train.unit)
+    return Model(teeth.problem(train), "Whole teeth and standard modules", train.unit)
+
+
+def _continuous(scene: Scene, method: str | None) -> bool:
+    """Whether a method gets real-valued teeth."""
+    if scene.teeth is None and method == "exact":
+        raise SolveError("the method exact needs a [teeth] table in the file")
+    return scene.teeth is None or method in CONTINUOUS
 
 
 def _sized(scene: Scene, train: Train, ask: Ask, problem: Problem) -> Result:

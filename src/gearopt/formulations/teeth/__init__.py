@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from gearopt.formulations.teeth.progress import MARGIN, TIE, Progress, Teeth
-from gearopt.formulations.teeth.search import search
+from gearopt.formulations.teeth.search import BEAM, search
 from gearopt.formulations.teeth.stage import table
 from gearopt.formulations.train import Sizes, Stage, Train, each, terms
 from gearopt.optimise.problem import Problem
@@ -28,6 +28,10 @@ VARIABLES = {
     "width_steps": "",
 }
 MOST = 1e18  # teeth, steps or mm: no limit
+
+RANDOM = False
+COUNTS = "tooth pair sized, in whole expansions of a node"
+SETTINGS = {"nodes followed at once": BEAM, "pruning margin": MARGIN}
 
 
 def problem(train: Train, count: int = 1, floor: float = -math.inf) -> Problem:

@@ -21,6 +21,16 @@ PENALTY = 5.0  # energy of a violation of 1, at first; grows a hundredfold
 LONGEST, SHORTEST = 0.3, 1e-6  # steps in a box of width 1
 FEASIBLE = 1e-9
 
+RANDOM = True
+PACED = True  # the cooling is stretched over the evaluations it is given
+COUNTS = "point evaluated"
+SETTINGS = {
+    "chains": CHAINS,
+    "temperatures": (HOT, COLD),
+    "penalty": PENALTY,
+    "steps": (LONGEST, SHORTEST),
+}
+
 
 def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
     """Anneal CHAINS chains; the best feasible point ever visited is the answer."""
@@ -47,7 +57,7 @@ def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Out
         accept = rng.random(CHAINS) < chance
         unit[accept], value[accept] = moved[accept], new_value[accept]
         excess[accept] = new_excess[accept]
-        if sweep % 64 == 0 and not _goes_on(clock, budget, watch, sweep * CHAINS, least):
+        if not _goes_on(clock, budget, watch, (sweep + 2) * CHAINS, least):
             finished = False
             break
     spent = (sweep + 2) * CHAINS

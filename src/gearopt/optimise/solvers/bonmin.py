@@ -41,6 +41,9 @@ OPTIONS = {
     "integer_tolerance": 1e-5,
 }
 POLISH = {"tol": 1e-12, "constr_viol_tol": 1e-12, "bound_relax_factor": 0.0, "sb": "yes"}
+RANDOM = False
+COUNTS = "not counted"
+SETTINGS = {k: v for k, v in OPTIONS.items() if k != "sb"}
 CHILD = "from gearopt.optimise.solvers.bonmin import child; child()"
 
 

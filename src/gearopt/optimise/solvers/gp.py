@@ -21,6 +21,10 @@ from gearopt.optimise.terms import Array, flatten, namespace
 # next; what it then reached is for the certificate to say.
 TOLERANCES = (1e-12, 1e-10)
 
+RANDOM = False
+COUNTS = "Clarabel iteration"
+SETTINGS = {"solver": "Clarabel", "tolerances": TOLERANCES}
+
 
 @dataclass(frozen=True)
 class _Model:
@@ -43,7 +47,10 @@ def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Out
     model = _model(problem)
     _set(problem, model)
     limit = {} if budget.seconds is None else {"time_limit": max(budget.seconds, 1e-3)}
+    steps, most = 0, budget.evaluations
     for tolerance in TOLERANCES:
+        if most is not None:
+            limit["max_iter"] = max(most - steps, 1)
         accuracy = {f"tol_{name}": tolerance for name in ("gap_abs", "gap_rel", "feas")}
         try:
             with warnings.catch_warnings():  # "may be inaccurate": the certificate says how much
@@ -51,11 +58,13 @@ def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Out
                 model.problem.solve(gp=True, solver=cp.CLARABEL, **accuracy, **limit)
         except cp.error.SolverError as broken:
             raise SolveError(f"gp on {problem.name}: {broken}") from broken
-        if model.problem.status != cp.OPTIMAL_INACCURATE:
+        steps += int(model.problem.solver_stats.num_iters or 0)
+        full = most is not None and steps >= most
+        if full or model.problem.status != cp.OPTIMAL_INACCURATE:
             break
     status = model.problem.status
-    steps = int(model.problem.solver_stats.num_iters or 0)
     late = budget.seconds is not None and time.perf_counter() - clock > budget.seconds
+    late = late or full
     x = _point(problem, model)
     if x is None:
         return Outcome(None, finished=not late, evaluations=steps, message=f"Clarabel: {status}")

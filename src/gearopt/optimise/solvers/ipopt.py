@@ -35,6 +35,10 @@ OPTIONS = {
     "max_iter": 3000,
 }
 
+RANDOM = False
+COUNTS = "iteration"
+SETTINGS = {k: v for k, v in OPTIONS.items() if k not in ("print_level", "sb")}
+
 
 @dataclass(frozen=True)
 class _Point:

@@ -3,6 +3,7 @@
 The best certified point is kept.
 """
 
+import math
 import time
 
 import numpy as np
@@ -15,6 +16,10 @@ from gearopt.optimise.solvers import ipopt
 
 STARTS = 50  # where the budget names no end
 
+RANDOM = True
+COUNTS = "Ipopt iteration of any start"
+SETTINGS = {"starts": STARTS, "local method": "ipopt"}
+
 
 def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
     """Run ipopt from STARTS starts, or until the budget is spent."""
@@ -25,7 +30,8 @@ def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Out
     def goes_on(event: Event) -> bool:
         nonlocal stopped
         seconds = time.perf_counter() - clock
-        value = None if best is None else least
+        found = min(least, math.inf if event.best is None else event.best)
+        value = found if math.isfinite(found) else None
         late = budget.seconds is not None and seconds > budget.seconds
         full = budget.evaluations is not None and spent + event.evaluations >= budget.evaluations
         told = watch is None or watch(Event(seconds, spent + event.evaluations, value)) is not False

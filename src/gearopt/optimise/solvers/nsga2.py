@@ -16,6 +16,15 @@ POPULATION = 100
 GENERATIONS = 300  # where the budget names no evaluations
 EQUAL = 1e-6  # an equality counts as met within this
 
+RANDOM = True
+PACED = True  # its generations are those that its evaluations pay for
+COUNTS = "point evaluated"
+SETTINGS = {
+    "population": POPULATION,
+    "crossover and mutation": "simulated binary, polynomial; pymoo's defaults",
+    "equalities within": EQUAL,
+}
+
 
 def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
     """Evolve a population of POPULATION; the best feasible individual of the last generation."""

@@ -28,6 +28,9 @@ SOLVERS: dict[str, dict[str, Any]] = {
     "daqp": {"daqp": TOLERANCES},
     "qrqp": {"print_iter": False, "print_header": False, "print_info": False},
 }
+RANDOM = False
+COUNTS = "quadratic program solved"
+SETTINGS = {"solvers": ", ".join(SOLVERS), **TOLERANCES}
 
 
 @dataclass(frozen=True)

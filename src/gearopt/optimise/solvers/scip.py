@@ -25,11 +25,15 @@ FEASIBILITY = 1e-9
 GAP = 1e-7  # relative
 SMALL = 1e3 * FEASIBILITY  # scaled objectives below it are within SCIP's tolerance of anything
 
+RANDOM = True  # the seed shifts SCIP's own
+COUNTS = "branch-and-bound node"
+SETTINGS = {"limits/gap": GAP, "numerics/feastol": FEASIBILITY, "binaries up to": FEW}
+
 
 def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
     """Solve by SCIP; SolveError where the text is no posynomial or pyscipopt is not installed."""
     scip, logs = _model(problem, posynomial.read(problem), budget, seed)
-    follower = _follow(scip, watch)
+    follower = _follow(scip, watch, _scale(problem))
     scip.optimize()
     status, nodes = str(scip.getStatus()), int(scip.getNTotalNodes())
     if status == "infeasible":
@@ -68,7 +72,12 @@ def _model(
     scip = Model()
     scip.hideOutput()
     scip.setParams(
-        {"limits/gap": GAP, "numerics/feastol": FEASIBILITY, "randomization/randomseedshift": seed}
+        {
+            "limits/gap": GAP,
+            "numerics/feastol": FEASIBILITY,
+            "randomization/randomseedshift": seed,
+            "misc/catchctrlc": False,  # who watches decides
+        }
     )
     if budget.seconds is not None:
         scip.setParam("limits/time", max(budget.seconds, 0.0))
@@ -144,9 +153,11 @@ def _point(problem: Problem, logs: Array) -> Array:
     return point
 
 
-def _follow(scip: Any, watch: Watch | None) -> Any:
+def _follow(scip: Any, watch: Watch | None, scale: float) -> Any:
     """An event handler that tells `watch` of progress and stops SCIP when it says so."""
     from pyscipopt import SCIP_EVENTTYPE, Eventhdlr
+
+    kinds = (SCIP_EVENTTYPE.NODESOLVED, SCIP_EVENTTYPE.BESTSOLFOUND)
 
     class Follower(Eventhdlr):  # type: ignore[misc]
         """It has state because SCIP calls it."""
@@ -155,14 +166,18 @@ def _follow(scip: Any, watch: Watch | None) -> Any:
         clock = time.perf_counter()
 
         def eventinit(self) -> None:
-            self.model.catchEvent(SCIP_EVENTTYPE.NODESOLVED, self)
+            for kind in kinds:
+                self.model.catchEvent(kind, self)
 
         def eventexit(self) -> None:
-            self.model.dropEvent(SCIP_EVENTTYPE.NODESOLVED, self)
+            for kind in kinds:
+                self.model.dropEvent(kind, self)
 
         def eventexec(self, happened: Any) -> None:
             seconds = time.perf_counter() - self.clock
-            event = Event(seconds, int(self.model.getNTotalNodes()))
+            value = self.model.getPrimalbound()
+            best = scale * value if value < self.model.infinity() else None
+            event = Event(seconds, int(self.model.getNTotalNodes()), best)
             if watch is not None and watch(event) is False:
                 self.stopped = True
                 self.model.interruptSolve()

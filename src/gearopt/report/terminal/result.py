@@ -10,7 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from gearopt.optimise.result import Result
-from gearopt.report.explaining import remedies
+from gearopt.report.terminal.explanation import remedies
 from gearopt.report.words import UNITS, columns, heading, limit_words, number
 
 VERDICTS = {

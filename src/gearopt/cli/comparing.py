@@ -1,0 +1,93 @@
+"""`compare`: methods side by side, on the same model, seeds and budget."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from gearopt.cli.app import File, Json, app, console
+from gearopt.cli.watching import following
+from gearopt.errors import GearoptError
+from gearopt.optimise.compare import EVALUATIONS, SECONDS, SEEDS, Progress
+
+
+@app.command()
+def compare(
+    file: File,
+    methods: Annotated[
+        str, typer.Option(help="Methods by name, with commas between; docs/methods.md lists all.")
+    ] = "exact,ipopt,annealing,nsga2",
+    seeds: Annotated[int, typer.Option(min=1, help="Runs of every random method.")] = SEEDS,
+    evaluations: Annotated[
+        int, typer.Option(min=1, help="Evaluations of a run, where these are held equal.")
+    ] = EVALUATIONS,
+    seconds: Annotated[
+        float, typer.Option(min=0.01, help="Time of a run, where that is held equal.")
+    ] = SECONDS,
+    bound_from: Annotated[
+        str | None,
+        typer.Option(help="A method that is run once, up to a minute, to prove a bound."),
+    ] = None,
+    html: Annotated[
+        Path | None, typer.Option(help="Write a page that any browser shows, without a network.")
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Compare methods by their gap to what is proven. Ctrl-C reports the runs that are finished."""
+    from gearopt.api import compare as compare_file
+
+    if html is not None and not html.resolve().parent.is_dir():
+        raise GearoptError(f"--html {html}: there is no folder {html.resolve().parent}")
+    named = [name.strip() for name in methods.split(",") if name.strip()]
+    with following(_words, quiet=as_json) as watch:
+        found = compare_file(
+            file,
+            named,
+            seeds=seeds,
+            evaluations=evaluations,
+            seconds=seconds,
+            bound_from=bound_from,
+            watch=watch if as_json else _announced(watch),
+        )
+    if html is not None:
+        from gearopt.report.pages.comparison import page
+
+        html.write_text(page(found), encoding="utf-8")
+    if as_json:
+        print(found.to_json())
+        return
+    from gearopt.report.terminal.comparison import show
+
+    show(found, console())
+    if html is not None:
+        print(f"\nPage: {html}")
+
+
+def _announced(watch: Callable[[Progress], bool]) -> Callable[[Progress], bool]:
+    """The watcher, which says first how long all will take."""
+    told = False
+
+    def announcing(progress: Progress) -> bool:
+        nonlocal told
+        if progress.total and not told:
+            told = True
+            words = f"{progress.total} runs, about {_time(progress.left)}"
+            Console(stderr=True, highlight=False).print(words, style="dim")
+        return watch(progress)
+
+    return announcing
+
+
+def _words(now: Progress) -> str:
+    if not now.total:
+        return f"a bound from {now.method}"
+    parts = [f"run {now.done + 1} of {now.total}: {now.method}, seed {now.seed}"]
+    if now.event is not None and now.event.best is not None:
+        parts.append(f"best {now.event.best:,.6g}")
+    return ", ".join([*parts, f"about {_time(now.left)} left"])
+
+
+def _time(seconds: float) -> str:
+    return f"{seconds:.0f} s" if seconds < 100 else f"{seconds / 60:.0f} min"

@@ -1,0 +1,254 @@
+"""What a comparison of methods found: runs, their statistics and curves; to JSON and back.
+
+A gap is (objective - reference)/|reference| (absolute where the reference is 0). The reference is
+the best bound that we proved in any run, or, where none is proven, the best feasible objective. A
+point that is not feasible by our own check has no objective and no gap, and counts as worse than
+any that is.
+"""
+
+import json
+import math
+import os
+import platform
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, field, replace
+from datetime import date
+from typing import Any
+
+from gearopt.errors import CertificateError
+from gearopt.optimise.result import plain, versions
+
+FORMAT = 1
+CLOSE, TIGHT = 1e-3, 1e-6  # gaps that count as success: a catalogue's accuracy, a proof's
+BELOW = 1e-6  # a value below a proven bound by more contradicts it; rows may be off by 1e-8
+POINTS = 160  # of a curve, beyond which it is thinned to steps even in the logarithm
+
+
+@dataclass(frozen=True)
+class Run:
+    """One run of a method: what it spent, and what our own check found.
+
+    objective and gap: None without a feasible point. violation: of the point it returned, None
+    where it returned none. seconds: of the method alone. steps: (seconds, evaluations, best so far)
+    as the method told, no better than the objective it ended with; clipped: it told of better.
+    """
+
+    seed: int
+    status: str
+    objective: float | None
+    bound: float | None
+    violation: float | None
+    evaluations: int
+    seconds: float
+    message: str = ""
+    gap: float | None = None
+    steps: tuple[tuple[float, int, float], ...] = ()
+    clipped: bool = False
+
+
+@dataclass(frozen=True)
+class Summary:
+    """Statistics of the runs of a row; a run without a feasible point is worse than any other.
+
+    median_gap, worst_gap: None where that run has no feasible point. close, tight: share of seeds
+    whose gap is at most CLOSE, TIGHT. without: number of seeds without a feasible point. violation:
+    the worst. evaluations, seconds, objective: medians.
+    """
+
+    seeds: int
+    without: int
+    objective: float | None
+    median_gap: float | None
+    worst_gap: float | None
+    close: float
+    tight: float
+    violation: float | None
+    evaluations: float
+    seconds: float
+
+
+@dataclass(frozen=True)
+class Curve:
+    """Gap so far against what was spent: median and quartiles over seeds, None: not feasible."""
+
+    spent: tuple[float, ...]
+    low: tuple[float | None, ...]
+    median: tuple[float | None, ...]
+    high: tuple[float | None, ...]
+
+
+@dataclass(frozen=True)
+class Sample:
+    """The runs of a method at one budget."""
+
+    runs: tuple[Run, ...]
+    summary: Summary
+    curve: Curve
+
+
+@dataclass(frozen=True)
+class Row:
+    """A method in a group; refused: why it cannot take the problem, "" where it can.
+
+    counts: what it counts as an evaluation. equal_evaluations, equal_time: None before any run.
+    """
+
+    method: str
+    random: bool = True
+    counts: str = ""
+    start_up_seconds: float | None = None
+    refused: str = ""
+    equal_evaluations: Sample | None = None
+    equal_time: Sample | None = None
+
+
+@dataclass(frozen=True)
+class Group:
+    """The methods that solve one model; proven: the reference is a bound, else the best known."""
+
+    model: str
+    words: str
+    objective: str
+    unit: str
+    reference: float | None
+    proven: bool
+    bound_from: str
+    best: float | None
+    rows: tuple[Row, ...]
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """All groups with what they rest on.
+
+    budget: {evaluations, seconds, patience_seconds}; settings: {method: {name: value}}. bound_from:
+    the method that was asked for a bound. complete: every run was made; else message says how many.
+    """
+
+    groups: tuple[Group, ...]
+    seeds: tuple[int, ...]
+    budget: Mapping[str, float]
+    settings: Mapping[str, Any]
+    bound_from: str | None = None
+    complete: bool = True
+    message: str = ""
+    title: str = ""
+    scene: str | None = None
+    file: str | None = None
+    file_sha256: str | None = None
+    date: str = field(default_factory=lambda: date.today().isoformat())
+    machine: Mapping[str, Any] = field(default_factory=lambda: machine())
+    versions: Mapping[str, str] = field(default_factory=lambda: versions("numpy", "casadi"))
+    comparison: int = FORMAT
+    gearopt: str = field(default_factory=lambda: versions("gearopt")["gearopt"])
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain dicts, lists and numbers; no NaN and no infinity (None instead)."""
+        found: dict[str, Any] = plain(asdict(self))
+        return found
+
+    def to_json(self) -> str:
+        """One JSON object."""
+        return json.dumps(self.to_dict(), indent=2, allow_nan=False)
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any]) -> "Comparison":
+        """The inverse of `to_dict`; ValueError for another format version."""
+        if data.get("comparison") != FORMAT:
+            raise ValueError(f"comparison format {data.get('comparison')!r}: this reads {FORMAT}")
+        groups = tuple(
+            Group(**{**g, "rows": tuple(_row(r) for r in g["rows"])}) for g in data["groups"]
+        )
+        return cls(**{**data, "groups": groups, "seeds": tuple(data["seeds"])})
+
+    @classmethod
+    def from_json(cls, text: str) -> "Comparison":
+        """The inverse of `to_json`."""
+        return cls.from_dict(json.loads(text))
+
+
+def _row(data: Mapping[str, Any]) -> Row:
+    kinds = ("equal_evaluations", "equal_time")
+    return Row(**{**data, **{k: _sample(data[k]) for k in kinds}})
+
+
+def _sample(data: Mapping[str, Any] | None) -> Sample | None:
+    if data is None:
+        return None
+    runs = tuple(Run(**{**r, "steps": tuple(map(tuple, r["steps"]))}) for r in data["runs"])
+    curve = Curve(**{k: tuple(v) for k, v in data["curve"].items()})
+    return Sample(runs, Summary(**data["summary"]), curve)
+
+
+def machine() -> dict[str, Any]:
+    """Where it was measured."""
+    return {"cpus": os.cpu_count(), "platform": platform.platform()}
+
+
+def excess(value: float, reference: float) -> float:
+    """The gap of a value above a reference, at least 0.
+
+    CertificateError where it lies below by more than rounding: then the bound is wrong.
+    """
+    gap = (value - reference) / (abs(reference) or 1.0)
+    if gap < -BELOW:
+        raise CertificateError(f"a feasible value {value!r} lies below the bound {reference!r}")
+    return max(gap, 0.0)
+
+
+def sample(runs: Sequence[Run], reference: float | None, by_time: bool) -> Sample | None:
+    """The runs of a method with their gaps, statistics and curve; None without a run."""
+    if not runs:
+        return None
+    judged = tuple(_judged(run, reference) for run in runs)
+    return Sample(judged, _summary(judged), _curve(judged, reference, by_time))
+
+
+def _judged(run: Run, reference: float | None) -> Run:
+    if run.objective is None or reference is None:
+        return run
+    return replace(run, gap=excess(run.objective, reference))
+
+
+def quantile(values: Sequence[float], share: float) -> float | None:
+    """The value that `share` of the sorted values lie below, the worse of two; None for inf."""
+    found = sorted(values)[min(int(share * len(values)), len(values) - 1)]
+    return found if math.isfinite(found) else None
+
+
+def _summary(runs: Sequence[Run]) -> Summary:
+    gaps = [math.inf if r.gap is None else r.gap for r in runs]
+    values = [math.inf if r.objective is None else r.objective for r in runs]
+    violations = [r.violation for r in runs if r.violation is not None]
+    return Summary(
+        seeds=len(runs),
+        without=sum(r.objective is None for r in runs),
+        objective=quantile(values, 0.5),
+        median_gap=quantile(gaps, 0.5),
+        worst_gap=quantile(gaps, 1.0),
+        close=sum(g <= CLOSE for g in gaps) / len(runs),
+        tight=sum(g <= TIGHT for g in gaps) / len(runs),
+        violation=max(violations, default=None),
+        evaluations=quantile([r.evaluations for r in runs], 0.5) or 0,
+        seconds=quantile([r.seconds for r in runs], 0.5) or 0.0,
+    )
+
+
+def _curve(runs: Sequence[Run], reference: float | None, by_time: bool) -> Curve:
+    """Quantiles of the gap so far wherever a run improved; a finished run keeps what it has."""
+    if reference is None:
+        return Curve((), (), (), ())
+    traces = [[(s[0] if by_time else float(s[1]), s[2]) for s in run.steps] for run in runs]
+    ends = [run.seconds if by_time else float(run.evaluations) for run in runs]
+    spent = sorted({at for trace in traces for at, _ in trace} | {max(ends)})
+    if len(spent) > POINTS:
+        first, last = max(spent[0], 1e-9), spent[-1]
+        spent = [first * (last / first) ** (k / (POINTS - 1)) for k in range(POINTS)]
+    columns = [[_so_far(trace, at, reference) for trace in traces] for at in spent]
+    quarters = [tuple(quantile(c, q) for c in columns) for q in (0.25, 0.5, 0.75)]
+    return Curve(tuple(spent), *quarters)
+
+
+def _so_far(trace: Sequence[tuple[float, float]], at: float, reference: float) -> float:
+    reached = [value for spent, value in trace if spent <= at * (1.0 + 1e-12)]
+    return excess(reached[-1], reference) if reached else math.inf

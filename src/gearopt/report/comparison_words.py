@@ -1,0 +1,180 @@
+"""A comparison in words and cells, the same on the terminal and on a page."""
+
+import shlex
+from collections.abc import Mapping
+from typing import Any
+
+from gearopt.optimise.comparison import CLOSE, TIGHT, Comparison, Group, Row, Sample
+from gearopt.report.words import UNITS, number
+
+NOTHING = 1e-12  # a gap below it is rounding
+COLUMNS = (  # of a table: heading, unit, what it says
+    ("median gap", "%", "Gap to the reference that half of the seeds are within"),
+    ("worst gap", "%", "Gap of the worst seed"),
+    ("within 0.1\u00a0%", "seeds", "Seeds whose feasible point is within 0.1 % of the reference"),
+    ("within 1e-6", "seeds", "Seeds whose feasible point is within a millionth of it"),
+    ("no point", "seeds", "Seeds without a feasible point"),
+    ("violation", "", "Largest violation of any limit by our own check, of all seeds"),
+    ("spent", "evals", "Median of evaluations; what counts as one differs by method"),
+    ("time", "s", "Median wall time, start-up left out"),
+)
+assert (CLOSE, TIGHT) == (1e-3, 1e-6)  # as the headings say
+
+
+def cells(sample: Sample) -> tuple[str, ...]:
+    """The row of a method, in the order of COLUMNS."""
+    s = sample.summary
+    return (
+        percent(s.median_gap),
+        percent(s.worst_gap),
+        f"{round(s.close * s.seeds)}/{s.seeds}",
+        f"{round(s.tight * s.seeds)}/{s.seeds}",
+        f"{s.without}/{s.seeds}" if s.without else "0",
+        "–" if s.violation is None else "0" if s.violation == 0 else f"{s.violation:.0e}",
+        f"{s.evaluations:,.0f}",
+        f"{s.seconds:.3g}",
+    )
+
+
+def percent(gap: float | None) -> str:
+    """A gap in percent; "none" where there is no feasible point."""
+    if gap is None:
+        return "none"
+    if gap <= NOTHING:
+        return "0"
+    value = 100.0 * gap
+    return f"{value:,.0f}" if value >= 100 else f"{value:.2g}" if value < 10 else f"{value:.3g}"
+
+
+def kinds(found: Comparison) -> tuple[tuple[str, str, str], ...]:
+    """Field of a row, heading and budget of the two ways to be equal."""
+    budget = found.budget
+    return (
+        ("equal_evaluations", "Equal evaluations", f"{budget['evaluations']:,} a run"),
+        ("equal_time", "Equal time", f"{budget['seconds']:g} s a run"),
+    )
+
+
+def quantity(value: float, unit: str) -> str:
+    """A value with its unit."""
+    return f"{number(value)} {UNITS.get(unit, unit)}".rstrip()
+
+
+def reference(group: Group) -> str:
+    """What the gaps of a group are measured from."""
+    name = group.objective.replace("_", " ")
+    proving = [row.method for row in group.rows if _impossible(row)]
+    if proving:
+        return f"No design meets all limits, proven ({', '.join(proving)}): there are no gaps."
+    if group.reference is None:
+        return "No method found a feasible point, and nothing is proven: there are no gaps."
+    value = quantity(group.reference, group.unit)
+    if not group.proven:
+        return (
+            f"Nothing is proven here: gaps are to the best {name} known, {value}, which may "
+            "itself not be the optimum."
+        )
+    words = f"Gaps are to the proven bound: no {name} below {value} is possible ({group.bound_from}"
+    if group.best is None:
+        return f"{words}). No method found a feasible point."
+    apart = group.best / group.reference - 1.0 if group.reference else 0.0
+    if _closed(group):
+        return f"{words}, and it is reached: the optimum is known)."
+    return f"{words}). The best known is {100 * apart:.2g} % above it, so the optimum is between."
+
+
+def _closed(group: Group) -> bool:
+    """Whether the reference is the proven optimum."""
+    if not group.proven or group.best is None or group.reference is None:
+        return False
+    return group.best - group.reference <= TIGHT * abs(group.reference)
+
+
+def _impossible(row: Row) -> bool:
+    """Whether a method proved that there is no feasible point."""
+    samples = (row.equal_evaluations, row.equal_time)
+    return any(run.status == "infeasible" for s in samples if s is not None for run in s.runs)
+
+
+def verdict(group: Group, row: Row) -> str:
+    """What a method came to in equal time, in one sentence without its name."""
+    if row.refused:
+        return f"cannot take this problem: {row.refused}"
+    sample = row.equal_time
+    if sample is None:
+        return "not run"
+    s = sample.summary
+    if _impossible(row):
+        return "proves that no design meets the limits"
+    if s.without == s.seeds:
+        return f"no feasible point in any of {s.seeds} seeds" if row.random else "no feasible point"
+    than = "proven optimum" if _closed(group) else "bound" if group.proven else "best known"
+    if not row.random:
+        if s.median_gap is not None and s.median_gap <= TIGHT:
+            return f"reaches the {than} in {s.seconds:.2g} s, in the one run it needs"
+        return f"{percent(s.median_gap)} % above the {than}, in the one run it needs"
+    missed = f", {s.without} without a feasible point" if s.without else ""
+    close = f"{round(s.close * s.seeds)} of {s.seeds} seeds within 0.1 %{missed}"
+    if s.median_gap is None:
+        return f"no feasible point in the median seed; {close}"
+    if s.median_gap <= TIGHT:
+        return f"reaches the {than} in the median seed, {s.seconds:.2g} s; {close}"
+    return f"median {percent(s.median_gap)} % above the {than}, {close}"
+
+
+def ended(found: Comparison, row: Row) -> str:
+    """How many runs by evaluations the clock ended, "" for none."""
+    sample = row.equal_evaluations
+    most, patience = found.budget["evaluations"], found.budget["patience_seconds"]
+    runs = sample.runs if sample else ()
+    late = [run for run in runs if run.seconds >= patience and run.evaluations < most]
+    if not late:
+        return ""
+    return f"{len(late)} runs of {row.method} ended by the clock, after {patience:g} s"
+
+
+def settings(values: Mapping[str, Any]) -> str:
+    """The settings of a method on one line."""
+    return ", ".join(f"{name} {_setting(value)}" for name, value in values.items())
+
+
+def _setting(value: Any) -> str:
+    if isinstance(value, list | tuple):
+        return " … ".join(_setting(v) for v in value)
+    return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def command(found: Comparison) -> str:
+    """How to make the comparison again."""
+    methods = [row.method for group in found.groups for row in group.rows]
+    budget = found.budget
+    if found.file is None:
+        return (
+            f"gearopt.compare(problem, {methods}, seeds={len(found.seeds)}, "
+            f"evaluations={budget['evaluations']}, seconds={budget['seconds']:g})"
+        )
+    more = f" --bound-from {found.bound_from}" if found.bound_from else ""
+    return (
+        f"gearopt compare {shlex.quote(found.file)} --methods {','.join(methods)} "
+        f"--seeds {len(found.seeds)} --evaluations {budget['evaluations']} "
+        f"--seconds {budget['seconds']:g}{more}"
+    )
+
+
+FAIRNESS = (
+    "All methods of a table solve the same model from the same file, with settings fixed "
+    "beforehand and none tuned to the problem.",
+    "Equal evaluations: a run ends at the given number of what its method counts as one, up to "
+    "one generation, sweep or expansion. Equal time: a run ends at the given wall time of the "
+    "method alone; checking its answer is not counted. A method that is done earlier ends "
+    "earlier, and the clock ends a run by evaluations that takes ten times the time budget.",
+    "Start-up (imports, tracing, building the model) is the first short call less the same call "
+    "again, and is in no other number. A library that methods share is charged to the first of "
+    "them; CasADi, which our own check needs, to none.",
+    "Random methods run once for each of the same seeds; a deterministic one runs once. Methods "
+    "take turns, so that a slower minute of the machine meets all alike.",
+    "A point counts only if it passes our own check of every limit (within 1e-8). A seed without "
+    "one has no gap and ranks behind every other in the median and the worst.",
+    "Annealing and NSGA-II plan their run over the evaluations they are given; for equal time they "
+    "are told how many their own speed, measured before, will allow.",
+)

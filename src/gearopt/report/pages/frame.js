@@ -1,0 +1,38 @@
+"use strict";
+(function () {
+  const root = document.documentElement;
+  const dark = window.matchMedia("(prefers-color-scheme: dark)");
+  const options = { displaylogo: false, displayModeBar: false, responsive: true };
+  const narrow = 560;
+
+  function colour(style, word) {
+    const [, name, opacity] = word.match(/^(--[\w-]+)(?:\/([\d.]+))?$/);
+    const value = style.getPropertyValue(name).trim();
+    if (!opacity) return value;
+    const [r, g, b] = [1, 3, 5].map((k) => parseInt(value.slice(k, k + 2), 16));
+    return `rgba(${r},${g},${b},${opacity})`;
+  }
+
+  function resolved(style, part) {
+    if (typeof part === "string") return part.startsWith("--") ? colour(style, part) : part;
+    if (Array.isArray(part)) return part.map((one) => resolved(style, one));
+    if (part === null || typeof part !== "object") return part;
+    return Object.fromEntries(Object.entries(part).map(([k, v]) => [k, resolved(style, v)]));
+  }
+
+  function draw() {
+    const style = getComputedStyle(root);
+    for (const figure of document.querySelectorAll("figure")) {
+      const place = figure.querySelector(".plot");
+      const spec = JSON.parse(figure.querySelector("script").textContent);
+      const { data, layout } = resolved(style, spec);
+      if (place.clientWidth < narrow) layout.font.size = 11;
+      Plotly.react(place, data, layout, options);
+    }
+  }
+
+  dark.addEventListener("change", draw);
+  window.addEventListener("beforeprint", () => { root.classList.add("paper"); draw(); });
+  window.addEventListener("afterprint", () => { root.classList.remove("paper"); draw(); });
+  draw();
+})();

@@ -1,0 +1,1 @@
+"""Results, explanations and comparisons on a terminal."""
