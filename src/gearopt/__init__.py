@@ -2,6 +2,7 @@
 
 from gearopt.api import load, solve
 from gearopt.errors import CertificateError, GearoptError, SceneError, SolveError
+from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Event, Result
 from gearopt.optimise.terms import Param, Repeat, Terms, Var
@@ -9,6 +10,7 @@ from gearopt.optimise.terms import Param, Repeat, Terms, Var
 __all__ = [
     "Budget",
     "CertificateError",
+    "Conic",
     "Event",
     "GearoptError",
     "Param",

@@ -6,6 +6,7 @@ from typing import Any
 
 from pydantic import BaseModel
 
+from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Result, Watch
 from gearopt.optimise.solve import GAP
@@ -21,7 +22,7 @@ def load(path: str | Path) -> BaseModel:
 
 
 def solve(
-    what: str | Path | BaseModel | Problem,
+    what: str | Path | BaseModel | Problem | Conic,
     method: str | None = None,
     *,
     budget: Budget | None = None,
@@ -42,7 +43,7 @@ def solve(
         raise ValueError(f"needs gap >= 0 and top >= 1, not gap = {gap}, top = {top}")
     budget = replace(budget or Budget(), gap=gap or 0.0)
     gap = GAP if gap is None else gap
-    if isinstance(what, Problem):
+    if isinstance(what, Problem | Conic):
         return solve_problem(what, method, budget, seed, watch, gap)
     ask = Ask(method, budget, seed, watch, gap, top)
     if isinstance(what, BaseModel):

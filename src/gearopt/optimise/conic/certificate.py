@@ -1,0 +1,146 @@
+"""Judges an outcome of a conic problem: the user's own rows, and bounds from canonical data.
+
+A claim is a list of leaves that together cover the box: each with multipliers that bound the cost
+there, or prove that nothing is there. A problem without discrete variables has one leaf.
+"""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from gearopt.errors import CertificateError
+from gearopt.optimise.certificate import FARKAS, FEASIBLE, Verdict
+from gearopt.optimise.conic.bound import Leaf, emptiness, lagrangian
+from gearopt.optimise.conic.canonical import Canonical, canonical
+from gearopt.optimise.conic.problem import Conic
+from gearopt.optimise.conic.propagate import propagate
+from gearopt.optimise.dual import TINY
+from gearopt.optimise.feasibility import runaway, violation
+from gearopt.optimise.result import Outcome
+from gearopt.optimise.terms import Array
+
+ARITHMETIC = "double, with a rounding allowance"
+
+
+@np.errstate(all="ignore")
+def certify(problem: Conic, outcome: Outcome, gap: float) -> Verdict:
+    """Status, bound and residuals of an outcome; `gap` is the largest one called optimal.
+
+    CertificateError where a bound contradicts a feasible point.
+    """
+    if outcome.infeasible:
+        return _infeasible(problem, outcome)
+    unsolved = "failed" if outcome.finished else "limit"
+    if outcome.x is None:
+        return Verdict(unsolved, message=outcome.message or "no point found")
+    lower, upper, guess = problem.bounds()
+    batch = problem.batch(outcome.x[None])
+    excess, worst = violation(problem, outcome.x, batch)
+    certificate: dict[str, float | None] = {"feasibility": excess}
+    value = float(batch.F[0, 0])
+    if not (excess <= FEASIBLE and math.isfinite(value)):
+        message = f"{worst} is violated by {excess:.3g}. {outcome.message}".strip()
+        return Verdict(unsolved, certificate=certificate, message=message)
+    if loose := runaway(problem, outcome.x, lower, upper, guess):
+        return Verdict("failed", value, certificate=certificate, message=loose)
+    status = "feasible" if outcome.finished else "limit"
+    bound, residuals, loose = _bound(problem, outcome, value)
+    certificate |= residuals
+    if not math.isfinite(bound):
+        message = f"{loose} {outcome.message}".strip()
+        return Verdict(status, value, certificate=certificate, message=message)
+    distance = (value - bound) / max(abs(value), TINY)
+    if distance < -100 * FEASIBLE and excess < FEASIBLE / 100:
+        raise CertificateError(f"a feasible value {value!r} lies below the dual bound {bound!r}")
+    if distance <= max(gap, FEASIBLE):
+        status = "optimal"
+    proof = {"method": "dual", "arithmetic": ARITHMETIC, "nodes": len(outcome.leaves)}
+    return Verdict(status, value, bound, max(distance, 0.0), certificate, proof, outcome.message)
+
+
+def _bound(
+    problem: Conic, outcome: Outcome, value: float
+) -> tuple[float, dict[str, float | None], str]:
+    """The least cost over all leaves, residuals of the leaf that has it, and what nothing holds."""
+    data = canonical(problem)
+    if not covers(data, outcome.leaves):
+        return -math.inf, {}, ""
+    least, residuals, loose = math.inf, {}, ""
+    for leaf in outcome.leaves:
+        box = propagate(data, leaf.lower, leaf.upper, value)
+        if box is None or (leaf.ray and _empty(data, leaf)):
+            continue
+        unheld = [n for (_, n), k in zip(problem.columns, data.user, strict=True)
+                  if not np.isfinite(box[0][k]) or not np.isfinite(box[1][k])]
+        if unheld:
+            loose = f"nothing holds {unheld[0]}: give it a bound or a limit, for a proof."
+        if leaf.y is None or leaf.ray:
+            return -math.inf, {}, loose
+        proof = lagrangian(data, *box, leaf.x, leaf.y)
+        if proof.least < least:
+            least = proof.least
+            scale = max(abs(value), TINY)
+            residuals = {
+                "stationarity": proof.charge / scale,
+                "complementarity": proof.slack / scale,
+            }
+    return min(least, value) if least > value else least, residuals, loose
+
+
+def _empty(data: Canonical, leaf: Leaf) -> dict[int, float]:
+    """Weights of the rows whose multipliers prove a leaf empty; none where they do not."""
+    box = propagate(data, leaf.lower, leaf.upper)
+    if box is None or leaf.y is None:
+        return {}
+    widening, shares = emptiness(data, *box, leaf.x, leaf.y)
+    return shares if widening > FARKAS else {}
+
+
+def _infeasible(problem: Conic, outcome: Outcome) -> Verdict:
+    """Accept the claim only if every leaf is empty by its bounds or by its multipliers."""
+    data = canonical(problem)
+    refused = Verdict("failed", message="no feasible point found; impossibility is not proven")
+    if not covers(data, outcome.leaves):
+        return refused
+    weights: dict[int, float] = {}
+    for leaf in outcome.leaves:
+        shares = _empty(data, leaf)
+        if not shares and propagate(data, leaf.lower, leaf.upper) is not None:
+            return refused
+        for number, share in shares.items():
+            weights[number] = max(weights.get(number, 0.0), share)
+    names = [r.name for r in problem.rows.inequalities] + list(problem.rows.equalities)
+    order = sorted(weights, key=lambda k: -weights[k])
+    conflict = [names[k] for k in order if weights[k] > 1e-6]
+    proof = {"method": "dual", "conflict": conflict, "nodes": len(outcome.leaves)}
+    what = f"no design meets these together: {', '.join(conflict)}"
+    return Verdict("infeasible", proof=proof, message=what if conflict else "the bounds exclude all")
+
+
+def covers(data: Canonical, leaves: tuple[Leaf, ...]) -> bool:
+    """Whether the leaves cover the whole box: disjoint in the discrete columns, none missing.
+
+    Counted in whole numbers: the choices of all leaves add up to the choices of the box.
+    """
+    columns = sorted(data.allowed)
+    free = np.setdiff1d(np.arange(len(data.c)), columns)
+    low = np.array([leaf.lower for leaf in leaves]).reshape(len(leaves), -1)
+    high = np.array([leaf.upper for leaf in leaves]).reshape(len(leaves), -1)
+    if (low[:, free] > data.lower[free]).any() or (high[:, free] < data.upper[free]).any():
+        return False
+    first, last = (_indices(data, columns, ends) for ends in (low, high))
+    if not columns:
+        return len(leaves) > 0
+    for k in range(1, len(leaves)):
+        apart = (first[:k] > last[k]) | (last[:k] < first[k])
+        if not apart.any(axis=1).all():
+            return False
+    counts = [math.prod(int(v) for v in row) for row in last - first + 1]
+    return sum(counts) == math.prod(len(data.allowed[k]) for k in columns)
+
+
+def _indices(data: Canonical, columns: list[int], ends: Array) -> Any:
+    """Positions of the ends of discrete columns among their allowed values, (leaves, columns)."""
+    found = [np.searchsorted(data.allowed[k], ends[:, k]) for k in columns]
+    return np.stack(found, axis=1) if found else np.zeros((len(ends), 0), int)
