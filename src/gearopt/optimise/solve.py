@@ -32,8 +32,9 @@ def solve(
     """The certified answer of one method to one problem.
 
     method: a name of `problem.methods` or of a back end in `optimise/solvers`; by default the
-    problem's own exact algorithm, else ipopt for a Problem and conic for a Conic. gap: relative gap to our bound that is called
-    optimal. SolveError where the method does not fit the problem. Not thread-safe.
+    problem's own exact algorithm, else ipopt for a Problem and conic for a Conic. gap: relative gap
+    to our bound that is called optimal. SolveError where the method does not fit the problem. Not
+    thread-safe.
     """
     return run(problem, method, budget, seed, watch, gap)[0]
 
@@ -82,7 +83,12 @@ def _method(problem: Problem | Conic, name: str) -> Callable[..., Outcome]:
 
 
 def _result(
-    problem: Problem | Conic, method: str, outcome: Outcome, verdict: Verdict, seconds: float, seed: int
+    problem: Problem | Conic,
+    method: str,
+    outcome: Outcome,
+    verdict: Verdict,
+    seconds: float,
+    seed: int,
 ) -> Result:
     solved = verdict.objective is not None and outcome.x is not None
     point = outcome.x if solved else None

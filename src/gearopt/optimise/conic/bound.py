@@ -1,8 +1,8 @@
 """What multipliers of the canonical rows prove: a lower bound, or that nothing is feasible.
 
-With y in the dual cone, y.(b - A x) >= 0 for every feasible x. Hence cost(x) >= cost(x) + y.(A x - b),
-a convex function, which on a box is at least its value at any point plus the least of its linear
-part there. Rounding of every term is taken off; the cone is entered strictly.
+With y in the dual cone, y.(b - A x) >= 0 for every feasible x. Hence cost(x) is at least
+cost(x) + y.(A x - b), a convex function, which on a box is at least its value at any point plus the
+least of its linear part there. Rounding of every term is taken off; the cone is entered strictly.
 """
 
 import math
@@ -34,8 +34,10 @@ class Leaf:
 
 @dataclass(frozen=True)
 class Proof:
-    """least: no feasible point of the box is cheaper. charge, slack: what it lost (stationarity,
-    complementarity), in units of the cost. weights (m,): the multipliers used.
+    """What multipliers prove on a box.
+
+    least: no feasible point of the box is cheaper. charge, slack: what it lost to the gradient that
+    is left and to rows off their limit, in units of the cost. weights (m,): the multipliers used.
     """
 
     least: float
@@ -98,6 +100,7 @@ def lagrangian(
     )
 
 
+@np.errstate(all="ignore")
 def emptiness(
     data: Canonical, low: Array, high: Array, x: Array, y: Array
 ) -> tuple[float, dict[int, float]]:

@@ -19,7 +19,7 @@ from gearopt.optimise.terms import Array
 
 @dataclass(frozen=True)
 class Block:
-    """Rows start .. start + size of one second-order block; rotated: p, q, w instead of s_0, s_1."""
+    """One second-order block of `size` rows from `start`; rotated: p, q, w in place of s_0, s_1."""
 
     start: int
     size: int
@@ -168,7 +168,7 @@ def _canonical(problem: Conic) -> Canonical:
 
 
 def _data(name: str, problem: Any) -> tuple[dict[str, Any], float]:
-    """cvxpy's data for Clarabel, and the constant of the objective."""
+    """Cvxpy's data for Clarabel, and the constant of the objective."""
     import cvxpy as cp
 
     try:
@@ -191,7 +191,7 @@ def _product(A: Any, b: Array, start: int) -> bool:
         for lo, hi in (A.indptr[start : start + 2], A.indptr[start + 1 : start + 3])
     )
     first[-1], second[-1] = b[start], b[start + 1]
-    kept = 0
+    kept, before = 0, 0
     for key in first.keys() | second.keys():
         u, v = float(first.get(key, 0.0)), float(second.get(key, 0.0))
         for one, other in ((u, v), (u, -v)):
@@ -199,7 +199,8 @@ def _product(A: Any, b: Array, start: int) -> bool:
             if total - one != other or total - other != one:
                 return False
             kept += total != 0.0
-    return kept < sum(v != 0.0 for v in [*first.values(), *second.values()])
+        before += (u != 0.0) + (v != 0.0)
+    return kept < before
 
 
 def _turn(count: int, blocks: list[Block]) -> Any:

@@ -66,13 +66,19 @@ def _bound(
     data = canonical(problem)
     if not covers(data, outcome.leaves):
         return -math.inf, {}, ""
-    least, residuals, loose = math.inf, {}, ""
+    least, loose = math.inf, ""
+    residuals: dict[str, float | None] = {}
     for leaf in outcome.leaves:
         box = propagate(data, leaf.lower, leaf.upper, value)
-        if box is None or (leaf.ray and _empty(data, leaf)):
+        if box is None:
             continue
-        unheld = [n for (_, n), k in zip(problem.columns, data.user, strict=True)
-                  if not np.isfinite(box[0][k]) or not np.isfinite(box[1][k])]
+        if leaf.ray and leaf.y is not None and emptiness(data, *box, leaf.x, leaf.y)[0] > 0:
+            continue
+        unheld = [
+            n
+            for (_, n), k in zip(problem.columns, data.user, strict=True)
+            if not np.isfinite(box[0][k]) or not np.isfinite(box[1][k])
+        ]
         if unheld:
             loose = f"nothing holds {unheld[0]}: give it a bound or a limit, for a proof."
         if leaf.y is None or leaf.ray:
@@ -90,11 +96,14 @@ def _bound(
 
 def _empty(data: Canonical, leaf: Leaf) -> dict[int, float]:
     """Weights of the rows whose multipliers prove a leaf empty; none where they do not."""
-    box = propagate(data, leaf.lower, leaf.upper)
-    if box is None or leaf.y is None:
+    if leaf.y is None:
         return {}
-    widening, shares = emptiness(data, *box, leaf.x, leaf.y)
-    return shares if widening > FARKAS else {}
+    box = propagate(data, leaf.lower, leaf.upper) or (leaf.lower, leaf.upper)
+    for y in (leaf.y, np.where(data.label >= 0, leaf.y, 0.0)):  # then without the noise of the rest
+        widening, shares = emptiness(data, *box, leaf.x, y)
+        if widening > FARKAS:
+            return shares
+    return {}
 
 
 def _infeasible(problem: Conic, outcome: Outcome) -> Verdict:
@@ -115,7 +124,9 @@ def _infeasible(problem: Conic, outcome: Outcome) -> Verdict:
     conflict = [names[k] for k in order if weights[k] > 1e-6]
     proof = {"method": "dual", "conflict": conflict, "nodes": len(outcome.leaves)}
     what = f"no design meets these together: {', '.join(conflict)}"
-    return Verdict("infeasible", proof=proof, message=what if conflict else "the bounds exclude all")
+    return Verdict(
+        "infeasible", proof=proof, message=what if conflict else "the bounds exclude all"
+    )
 
 
 def covers(data: Canonical, leaves: tuple[Leaf, ...]) -> bool:

@@ -106,6 +106,7 @@ class Conic:
         report = {name: np.array([r[name] for r in reports]) for name in reports[0]}
         return Batch(np.array(f)[:, None], np.array(g), np.array(h), report)
 
+    @np.errstate(all="ignore")  # 1/0 is infinite, and infinite is not feasible
     def _at(self, model: Model, x: Array) -> tuple[float, Array, Array, dict[str, Any]]:
         start = 0
         for variable in model.variables:

@@ -4,6 +4,8 @@ Epigraph variables have no bounds of their own; a dual bound needs them. They fo
 the cones, and from the wish to be no worse than a design that is known.
 """
 
+from typing import Any
+
 import numpy as np
 
 from gearopt.optimise.conic.canonical import Canonical
@@ -60,7 +62,9 @@ def propagate(
             return None
         crossed = new_low > new_high
         new_low[crossed], new_high[crossed] = new_high[crossed], new_low[crossed]
-        finer = np.isfinite(new_low) & ~np.isfinite(low) | np.isfinite(new_high) & ~np.isfinite(high)
+        finer = np.isfinite(new_low) & ~np.isfinite(low) | np.isfinite(new_high) & ~np.isfinite(
+            high
+        )
         width = high - low
         finer |= np.isfinite(width) & (new_high - new_low < (1.0 - ENOUGH) * width)
         low, high = new_low, new_high
@@ -80,7 +84,7 @@ def _to_allowed(data: Canonical, low: Array, high: Array) -> bool:
     return True
 
 
-def _sums(row: Array, terms: Array, count: int) -> tuple[Array, Array, Array]:
+def _sums(row: Any, terms: Array, count: int) -> tuple[Any, Any, Any]:
     """Sum of the finite terms of each row, number of infinite ones, sum of magnitudes."""
     finite = np.isfinite(terms)
     kept = np.where(finite, terms, 0.0)
@@ -91,14 +95,14 @@ def _sums(row: Array, terms: Array, count: int) -> tuple[Array, Array, Array]:
     )
 
 
-def _rest(row: Array, terms: Array, total: Array, infinite: Array, bad: float) -> Array:
+def _rest(row: Any, terms: Array, total: Array, infinite: Any, bad: float) -> Array:
     """Each row's sum without the entry itself; `bad` where another entry is infinite."""
     finite = np.isfinite(terms)
     others = infinite[row] - ~finite
     return np.where(others > 0, bad, total[row] - np.where(finite, terms, 0.0))
 
 
-def _tighten(better: np.ufunc, bound: Array, column: Array, found: Array, out: float) -> None:
+def _tighten(better: np.ufunc, bound: Array, column: Any, found: Array, out: float) -> None:
     """Improve bounds in place by what was found, rounded outwards; NaN improves nothing."""
     found = np.where(np.isnan(found), out * np.inf, found + out * EPSILON * np.abs(found))
     better.at(bound, column, found)

@@ -19,17 +19,20 @@ from gearopt.optimise.conic.scaling import Scale, Scaled, after, equal, scaled
 from gearopt.optimise.dual import TINY
 from gearopt.optimise.terms import Array
 
-ROUNDS = 8
+ROUNDS = 16
 CLOSED = 1e-10  # a relative gap that no further round is spent on
-PATIENCE = 2  # rounds without a better gap
+PATIENCE = 4  # rounds without a better gap, once there is one
 TIGHT = 1e-11  # a row violated by more is repaired; the certificate bears 1e-8
+FARKAS = 1e-9  # widening that an emptiness must show, as in the certificate
 MARGIN = 1e-6  # of the strictly feasible point that a repair moves towards
 
 
 @dataclass(frozen=True)
 class Found:
-    """x (k,): the user's point, value its cost, excess its largest violation. leaf: multipliers
-    with the certified bound `least`, or a proof of emptiness (leaf.ray). z (n,): canonical point.
+    """The best of the rounds so far.
+
+    x (k,): the user's point, value its cost, excess its largest violation. leaf: multipliers with
+    the bound `least` that they prove, or a proof of emptiness (leaf.ray). z (n,): canonical point.
     """
 
     leaf: Leaf
@@ -55,15 +58,14 @@ def solved(problem: Conic, data: Canonical, deadline: float) -> Found:
     scale, idle = best.scale, 0
     for _ in range(ROUNDS):
         before = best.gap
-        last = _round(problem, data, scaled(data, scale), best, deadline)
-        best = last[0]
+        best, z = _round(problem, data, scaled(data, scale), best, deadline)
         if best.leaf.ray or best.gap <= CLOSED or time.perf_counter() > deadline:
             break
-        idle = 0 if not best.gap >= 0.5 * before else idle + 1
-        if idle > PATIENCE:
+        idle = idle + 1 if best.gap >= 0.5 * before else 0
+        if idle > PATIENCE or not np.isfinite(z).all():
             break
-        scale = after(data, scale, last[1])
-    if best.x is None or best.excess > TIGHT and not best.leaf.ray:
+        scale = after(data, scale, z)
+    if best.x is not None and best.excess > TIGHT and not best.leaf.ray:
         best = _repaired(problem, data, best, deadline)
     return best
 
@@ -71,14 +73,14 @@ def solved(problem: Conic, data: Canonical, deadline: float) -> Found:
 def _round(
     problem: Conic, data: Canonical, one: Scaled, best: Found, deadline: float
 ) -> tuple[Found, Array]:
-    """One solve in one scale; the best so far, and the last canonical point."""
+    """One solve in one scale; the best so far, and the last canonical point, wrong as it may be."""
     point = interior(one, _left(deadline))
     best = replace(best, steps=best.steps + point.steps, words=point.words)
-    z = best.z
+    z = one.scale.column * point.x
     if point.ray:
         leaf = replace(best.leaf, y=multipliers(one, point), ray=True)
         box = propagate(data, leaf.lower, leaf.upper)
-        if box is None or emptiness(data, *box, leaf.x, _given(leaf))[0] > 0:
+        if box is None or emptiness(data, *box, leaf.x, _given(leaf))[0] > FARKAS:
             return replace(best, leaf=leaf), z
         return best, z
     for candidate in candidates(one, point):
@@ -139,17 +141,23 @@ def judged(problem: Conic, x: Array) -> tuple[float, float]:
 
 
 def _repaired(problem: Conic, data: Canonical, best: Found, deadline: float) -> Found:
-    """Blend towards a point that meets every limit with a margin, just as far as needed."""
-    strict = shifted(problem, data, MARGIN)
-    one = scaled(strict, best.scale)
+    """Move towards a point that meets every limit with a margin, just as far as needed.
+
+    The rows are convex, so a step of excess/(excess + MARGIN) is enough but for rounding.
+    """
+    assert best.x is not None
+    one = scaled(shifted(problem, data, MARGIN), best.scale)
     point = interior(one, _left(deadline))
     if not point.solved:
         return best
-    for candidate in candidates(one, point):
-        inner = np.clip(one.scale.column * candidate.x, data.lower, data.upper)[data.user]
-        value, excess = judged(problem, inner)
-        if _rank(value, excess) < _rank(best.value, best.excess):
-            best = replace(best, x=inner, value=value, excess=excess)
+    inner = np.clip(one.scale.column * point.x, data.lower, data.upper)[data.user]
+    step = best.excess / (best.excess + MARGIN)
+    while step < 1.0:
+        step = min(1.0, 1.5 * step)
+        x = best.x + step * (inner - best.x)
+        value, excess = judged(problem, x)
+        if excess <= TIGHT:
+            return replace(best, x=x, value=value, excess=excess)
     return best
 
 
