@@ -88,7 +88,9 @@ def lagrangian(
     reach = np.maximum(np.abs(high - x), np.abs(low - x))
     loss = np.where(gradient == 0.0, 0.0, np.minimum(gradient * (low - x), gradient * (high - x)))
     error = np.where(sizes == 0.0, 0.0, sizes * np.maximum(reach, np.abs(x)))
-    allowance = ROUNDING * (1.0 + len(x) / 100.0) * (error.sum() + np.abs(weighted).sum())
+    allowance = (
+        ROUNDING * (1.0 + max(len(x), len(y)) / 100.0) * (error.sum() + np.abs(weighted).sum())
+    )
     shortfall, unit = data.convexity
     if priced and shortfall:
         allowance += 0.5 * shortfall * float(((reach / unit)[P.diagonal() != 0] ** 2).sum())

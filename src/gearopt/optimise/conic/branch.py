@@ -7,7 +7,6 @@ leaves is the claim, and is judged again by the certificate.
 
 import heapq
 import itertools
-import time
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -16,10 +15,17 @@ from gearopt.optimise.conic.bound import Leaf, emptiness, lagrangian
 from gearopt.optimise.conic.canonical import Canonical
 from gearopt.optimise.conic.interior import interior
 from gearopt.optimise.conic.problem import Conic
-from gearopt.optimise.conic.propagate import propagate
-from gearopt.optimise.conic.relaxation import Found, candidates, cutoff, judged, multipliers
+from gearopt.optimise.conic.propagate import cutoff, propagate
+from gearopt.optimise.conic.relaxation import (
+    Found,
+    GoesOn,
+    candidates,
+    judged,
+    left,
+    multipliers,
+)
 from gearopt.optimise.conic.scaling import Scaled, scaled
-from gearopt.optimise.result import Budget, Event, Outcome, Watch
+from gearopt.optimise.result import Budget, Outcome
 from gearopt.optimise.terms import Array
 
 NODES = 20_000  # where the budget names no evaluations
@@ -45,14 +51,13 @@ class _Search:
 
 
 def branch(
-    problem: Conic, data: Canonical, root: Found, budget: Budget, watch: Watch | None, clock: float
+    problem: Conic, data: Canonical, root: Found, budget: Budget, deadline: float, goes_on: GoesOn
 ) -> Outcome:
     """Search until every leaf is closed within `budget.gap` of the best design."""
-    deadline = clock + (np.inf if budget.seconds is None else budget.seconds)
-    most = NODES if budget.evaluations is None else budget.evaluations
-    search = _Search(problem, data, scaled(data, root.scale), deadline)
     if root.leaf.ray:
         return Outcome(None, infeasible=True, leaves=(root.leaf,), evaluations=1)
+    search = _Search(problem, data, scaled(data, root.scale), deadline)
+    most = NODES if budget.evaluations is None else budget.evaluations
     order = itertools.count()
     first, least = _closed(search, root.leaf.lower, root.leaf.upper)
     if root.leaf.y is not None and root.least > least:
@@ -61,18 +66,12 @@ def branch(
     finished = True
     while heap:
         least, _, leaf = heapq.heappop(heap)
-        if least >= search.value - budget.gap * abs(search.value) - SLACK * abs(search.value):
-            search.leaves.append(leaf)
-            continue
-        halves = _halves(data, leaf)
+        done = least >= search.value - max(budget.gap, SLACK) * abs(search.value)
+        halves = [] if done else _halves(data, leaf)
         if not halves:
             search.leaves.append(leaf)
             continue
-        seconds = time.perf_counter() - clock
-        best = search.value if np.isfinite(search.value) else None
-        event = Event(seconds, search.spent, best, least if np.isfinite(least) else None)
-        on = watch is None or watch(event) is not False
-        if not on or time.perf_counter() > deadline or search.spent >= most:
+        if search.spent >= most or not goes_on(search.spent, search.value, least):
             search.leaves += [leaf, *(item[2] for item in heap)]
             finished = False
             break
@@ -107,7 +106,7 @@ def _closed(search: _Search, lower: Array, upper: Array) -> tuple[Leaf, float]:
         for k in (0, 1)
     ]
     one = search.one.within(*ends)
-    point = interior(one, _left(search))
+    point = interior(one, left(search.deadline))
     if point.ray:
         y = multipliers(one, point)
         empty = emptiness(data, *box, leaf.x, y)[0] > 0
@@ -160,7 +159,7 @@ def _fixed(search: _Search, rounded: Array, lower: Array, upper: Array) -> None:
     if propagate(search.data, low, high, search.value) is None:
         return
     one = search.one.within(low, high)
-    point = interior(one, _left(search))
+    point = interior(one, left(search.deadline))
     search.spent += 1
     if point.ray:
         return
@@ -194,8 +193,3 @@ def _halves(data: Canonical, leaf: Leaf) -> list[tuple[Array, Array]]:
     low, high = leaf.lower.copy(), leaf.upper.copy()
     low[column], high[column] = above, below
     return [(leaf.lower, high), (low, leaf.upper)]
-
-
-def _left(search: _Search) -> float | None:
-    left = search.deadline - time.perf_counter()
-    return left if np.isfinite(left) else None

@@ -14,7 +14,7 @@ from gearopt.optimise.certificate import FARKAS, FEASIBLE, Verdict
 from gearopt.optimise.conic.bound import Leaf, emptiness, lagrangian
 from gearopt.optimise.conic.canonical import Canonical, canonical
 from gearopt.optimise.conic.problem import Conic
-from gearopt.optimise.conic.propagate import propagate
+from gearopt.optimise.conic.propagate import cutoff, propagate
 from gearopt.optimise.dual import TINY
 from gearopt.optimise.feasibility import runaway, violation
 from gearopt.optimise.result import Outcome
@@ -53,7 +53,7 @@ def certify(problem: Conic, outcome: Outcome, gap: float) -> Verdict:
     distance = (value - bound) / max(abs(value), TINY)
     if distance < -100 * FEASIBLE and excess < FEASIBLE / 100:
         raise CertificateError(f"a feasible value {value!r} lies below the dual bound {bound!r}")
-    if distance <= max(gap, FEASIBLE):
+    if abs(distance) <= max(gap, FEASIBLE):
         status = "optimal"
     proof = {"method": "dual", "arithmetic": ARITHMETIC, "nodes": len(outcome.leaves)}
     return Verdict(status, value, bound, max(distance, 0.0), certificate, proof, outcome.message)
@@ -66,10 +66,10 @@ def _bound(
     data = canonical(problem)
     if not covers(data, outcome.leaves):
         return -math.inf, {}, ""
-    least, loose = math.inf, ""
+    least, loose, most = math.inf, "", cutoff(value)
     residuals: dict[str, float | None] = {}
     for leaf in outcome.leaves:
-        box = propagate(data, leaf.lower, leaf.upper, value)
+        box = propagate(data, leaf.lower, leaf.upper, most)
         if box is None:
             continue
         if leaf.ray and leaf.y is not None and emptiness(data, *box, leaf.x, leaf.y)[0] > 0:
@@ -91,7 +91,7 @@ def _bound(
                 "stationarity": proof.charge / scale,
                 "complementarity": proof.slack / scale,
             }
-    return min(least, value) if least > value else least, residuals, loose
+    return min(least, most), residuals, loose
 
 
 def _empty(data: Canonical, leaf: Leaf) -> dict[int, float]:
@@ -130,28 +130,43 @@ def _infeasible(problem: Conic, outcome: Outcome) -> Verdict:
 
 
 def covers(data: Canonical, leaves: tuple[Leaf, ...]) -> bool:
-    """Whether the leaves cover the whole box: disjoint in the discrete columns, none missing.
+    """Whether the leaves are a partition of the box by cuts between allowed values.
 
-    Counted in whole numbers: the choices of all leaves add up to the choices of the box.
+    The box is cut where no leaf straddles, again and again, until each part is one leaf's.
     """
     columns = sorted(data.allowed)
     free = np.setdiff1d(np.arange(len(data.c)), columns)
-    low = np.array([leaf.lower for leaf in leaves]).reshape(len(leaves), -1)
-    high = np.array([leaf.upper for leaf in leaves]).reshape(len(leaves), -1)
+    if not leaves:
+        return False
+    low, high = (np.array([getattr(leaf, end) for leaf in leaves]) for end in ("lower", "upper"))
     if (low[:, free] > data.lower[free]).any() or (high[:, free] < data.upper[free]).any():
         return False
-    first, last = (_indices(data, columns, ends) for ends in (low, high))
-    if not columns:
-        return len(leaves) > 0
-    for k in range(1, len(leaves)):
-        apart = (first[:k] > last[k]) | (last[:k] < first[k])
-        if not apart.any(axis=1).all():
+    first = _positions(data, columns, low, "left")
+    last = _positions(data, columns, high, "right") - 1
+    counts = np.array([len(data.allowed[k]) for k in columns], int)
+    parts = [(np.arange(len(leaves)), 0 * counts, counts - 1)]
+    while parts:
+        here, start, end = parts.pop()
+        own_first, own_last = first[here], last[here]
+        if len(here) == 1:
+            if (own_first > start).any() or (own_last < end).any():
+                return False
+            continue
+        order = np.argsort(own_first, axis=0, kind="stable")
+        reach = np.maximum.accumulate(np.take_along_axis(own_last, order, 0), axis=0)
+        gaps = np.argwhere(reach[:-1] < np.take_along_axis(own_first, order, 0)[1:])
+        if not len(gaps):
             return False
-    counts = [math.prod(int(v) for v in row) for row in last - first + 1]
-    return sum(counts) == math.prod(len(data.allowed[k]) for k in columns)
+        k, column = gaps[0]
+        cut = reach[k, column]
+        below, above = end.copy(), start.copy()
+        below[column], above[column] = cut, cut + 1
+        parts.append((here[own_last[:, column] <= cut], start, below))
+        parts.append((here[own_first[:, column] > cut], above, end))
+    return True
 
 
-def _indices(data: Canonical, columns: list[int], ends: Array) -> Any:
-    """Positions of the ends of discrete columns among their allowed values, (leaves, columns)."""
-    found = [np.searchsorted(data.allowed[k], ends[:, k]) for k in columns]
+def _positions(data: Canonical, columns: list[int], ends: Array, side: Any) -> Any:
+    """Positions of ends (leaves, n) among the allowed values of discrete columns."""
+    found = [np.searchsorted(data.allowed[k], ends[:, k], side) for k in columns]
     return np.stack(found, axis=1) if found else np.zeros((len(ends), 0), int)

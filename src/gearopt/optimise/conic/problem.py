@@ -49,7 +49,6 @@ class Conic:
     variables: tuple[Var, ...]
     parameters: tuple[Param, ...]
     evaluate: Callable[[Any, Any], Terms]
-    methods: Mapping[str, Callable[..., Any]] = field(default_factory=dict)
     memo: dict[Any, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
@@ -59,6 +58,11 @@ class Conic:
     def _declared(self) -> Problem:
         """The same declarations; its text is never run."""
         return Problem(self.name, self.variables, self.parameters, self.evaluate)
+
+    @property
+    def methods(self) -> Mapping[str, Callable[..., Any]]:
+        """Algorithms of its own: none."""
+        return {}
 
     def at(self, **values: Number) -> "Conic":
         """The same problem with other parameter values; what was canonicalised is kept."""

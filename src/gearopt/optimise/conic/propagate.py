@@ -14,7 +14,13 @@ from gearopt.optimise.terms import Array
 PASSES = 12  # a chain of epigraphs longer than that is rare; looser bounds stay valid
 EPSILON = 2.3e-16
 CONTRADICTION = 1e-9  # relative crossing of two bounds that proves emptiness
+MARGIN = 1e-5  # relative; a contradiction of bound and point shows up to here
 ENOUGH = 0.01  # a pass that narrows no column by this share is the last
+
+
+def cutoff(value: float) -> float:
+    """A cost a little above that of a known point, whose rows may be violated a little."""
+    return value + MARGIN * abs(value)
 
 
 @np.errstate(all="ignore")

@@ -5,16 +5,17 @@ highest certified bound; they need not come from the same round.
 """
 
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from gearopt.optimise.certificate import FARKAS
 from gearopt.optimise.conic.bound import Leaf, emptiness, lagrangian
 from gearopt.optimise.conic.canonical import Canonical, shifted
 from gearopt.optimise.conic.interior import Point, interior, polished
 from gearopt.optimise.conic.problem import Conic
-from gearopt.optimise.conic.propagate import propagate
+from gearopt.optimise.conic.propagate import cutoff, propagate
 from gearopt.optimise.conic.scaling import Scale, Scaled, after, equal, scaled
 from gearopt.optimise.dual import TINY
 from gearopt.optimise.terms import Array
@@ -23,8 +24,10 @@ ROUNDS = 16
 CLOSED = 1e-10  # a relative gap that no further round is spent on
 PATIENCE = 4  # rounds without a better gap, once there is one
 TIGHT = 1e-11  # a row violated by more is repaired; the certificate bears 1e-8
-FARKAS = 1e-9  # widening that an emptiness must show, as in the certificate
 MARGIN = 1e-6  # of the strictly feasible point that a repair moves towards
+
+
+GoesOn = Callable[[int, float, float], bool]
 
 
 @dataclass(frozen=True)
@@ -51,15 +54,18 @@ class Found:
         return (self.value - self.least) / max(abs(self.value), TINY)
 
 
-def solved(problem: Conic, data: Canonical, deadline: float) -> Found:
-    """The continuous relaxation of the whole box, in as many scales as help."""
+def solved(problem: Conic, data: Canonical, deadline: float, goes_on: GoesOn) -> Found:
+    """The continuous relaxation of the whole box, in as many scales as help.
+
+    goes_on(spent, best, bound) is asked between rounds.
+    """
     start = Leaf(data.lower, data.upper, np.zeros(len(data.c)), None)
     best = Found(start, equal(data), start.x)
     scale, idle = best.scale, 0
     for _ in range(ROUNDS):
         before = best.gap
         best, z = _round(problem, data, scaled(data, scale), best, deadline)
-        if best.leaf.ray or best.gap <= CLOSED or time.perf_counter() > deadline:
+        if best.leaf.ray or best.gap <= CLOSED or not goes_on(best.steps, best.value, best.least):
             break
         idle = idle + 1 if best.gap >= 0.5 * before else 0
         if idle > PATIENCE or not np.isfinite(z).all():
@@ -74,7 +80,7 @@ def _round(
     problem: Conic, data: Canonical, one: Scaled, best: Found, deadline: float
 ) -> tuple[Found, Array]:
     """One solve in one scale; the best so far, and the last canonical point, wrong as it may be."""
-    point = interior(one, _left(deadline))
+    point = interior(one, left(deadline))
     best = replace(best, steps=best.steps + point.steps, words=point.words)
     z = one.scale.column * point.x
     if point.ray:
@@ -121,11 +127,6 @@ def _better(
     return best
 
 
-def cutoff(value: float) -> float:
-    """A little above a value that a point with small violations has."""
-    return value + 1e-6 * abs(value)
-
-
 def _rank(value: float, excess: float) -> tuple[float, float]:
     """Points that need no repair by their cost, others by their violation."""
     return (0.0, value) if excess <= TIGHT else (max(excess, TIGHT), value)
@@ -147,7 +148,7 @@ def _repaired(problem: Conic, data: Canonical, best: Found, deadline: float) -> 
     """
     assert best.x is not None
     one = scaled(shifted(problem, data, MARGIN), best.scale)
-    point = interior(one, _left(deadline))
+    point = interior(one, left(deadline))
     if not point.solved:
         return best
     inner = np.clip(one.scale.column * point.x, data.lower, data.upper)[data.user]
@@ -166,5 +167,6 @@ def _given(leaf: Leaf) -> Array:
     return leaf.y
 
 
-def _left(deadline: float) -> float | None:
+def left(deadline: float) -> float | None:
+    """Seconds until a deadline, None where there is none."""
     return deadline - time.perf_counter() if np.isfinite(deadline) else None

@@ -19,17 +19,26 @@ from gearopt.optimise.result import Budget, Event, Outcome, Watch
 def run(problem: Conic, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
     """Solve a conic problem; SolveError where cvxpy's rules do not find it convex."""
     clock = time.perf_counter()
-    if watch is not None and watch(Event(0.0, 0)) is False:
-        return Outcome(None, finished=False, message="stopped before it began")
     deadline = clock + (np.inf if budget.seconds is None else budget.seconds)
+    stopped = False
+
+    def goes_on(spent: int, best: float, bound: float) -> bool:
+        nonlocal stopped
+        known = [float(v) if np.isfinite(v) else None for v in (best, bound)]
+        event = Event(time.perf_counter() - clock, spent, *known)
+        late = time.perf_counter() > deadline
+        stopped = stopped or late or (watch is not None and watch(event) is False)
+        return not stopped
+
+    if not goes_on(0, np.inf, -np.inf):
+        return Outcome(None, finished=False, message="stopped before it began")
     data = canonical(problem)
-    found = solved(problem, replace(data, allowed={}), deadline)
-    if data.allowed:
-        return branch(problem, data, found, budget, watch, clock)
-    finished = time.perf_counter() <= deadline
+    found = solved(problem, replace(data, allowed={}), deadline, goes_on)
+    if data.allowed and not stopped:
+        return branch(problem, data, found, budget, deadline, goes_on)
     return Outcome(
         found.x,
-        finished,
+        finished=not stopped,
         infeasible=found.leaf.ray,
         leaves=(found.leaf,),
         evaluations=found.steps,
