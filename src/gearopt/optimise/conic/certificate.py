@@ -53,10 +53,13 @@ def certify(problem: Conic, outcome: Outcome, gap: float) -> Verdict:
     distance = (value - bound) / max(abs(value), TINY)
     if distance < -100 * FEASIBLE and excess < FEASIBLE / 100:
         raise CertificateError(f"a feasible value {value!r} lies below the dual bound {bound!r}")
+    message = outcome.message
     if abs(distance) <= max(gap, FEASIBLE):
         status = "optimal"
+    elif distance < 0.0:
+        message = f"{worst} is violated by {excess:.3g}, which the objective gains from. {message}"
     proof = {"method": "dual", "arithmetic": ARITHMETIC, "nodes": len(outcome.leaves)}
-    return Verdict(status, value, bound, max(distance, 0.0), certificate, proof, outcome.message)
+    return Verdict(status, value, bound, max(distance, 0.0), certificate, proof, message.strip())
 
 
 def _bound(
@@ -81,7 +84,7 @@ def _bound(
         ]
         if unheld:
             loose = f"nothing holds {unheld[0]}: give it a bound or a limit, for a proof."
-        if leaf.y is None or leaf.ray:
+        if unheld or leaf.y is None or leaf.ray:
             return -math.inf, {}, loose
         proof = lagrangian(data, *box, leaf.x, leaf.y)
         if proof.least < least:

@@ -22,6 +22,7 @@ from gearopt.optimise.terms import Array
 
 ROUNDS = 16
 CLOSED = 1e-10  # a relative gap that no further round is spent on
+ENOUGH = 1e-8  # with this one the second idle round is the last
 PATIENCE = 4  # rounds without a better gap, once there is one
 TIGHT = 1e-11  # a row violated by more is repaired; the certificate bears 1e-8
 MARGIN = 1e-6  # of the strictly feasible point that a repair moves towards
@@ -68,7 +69,7 @@ def solved(problem: Conic, data: Canonical, deadline: float, goes_on: GoesOn) ->
         if best.leaf.ray or best.gap <= CLOSED or not goes_on(best.steps, best.value, best.least):
             break
         idle = idle + 1 if best.gap >= 0.5 * before else 0
-        if idle > PATIENCE or not np.isfinite(z).all():
+        if idle > (1 if best.gap <= ENOUGH else PATIENCE) or not np.isfinite(z).all():
             break
         scale = after(data, scale, z)
     if best.x is not None and best.excess > TIGHT and not best.leaf.ray:
