@@ -105,8 +105,6 @@ def test_sizing_path_stays_light():
 
 
 def test_import_of_the_package_needs_no_solver():
-    code = (
-        "import sys, gearopt; print([m for m in ('casadi', 'typer', 'rich') if m in sys.modules])"
-    )
+    code = "import sys, gearopt; print([m for m in ('casadi', 'cvxpy', 'scipy', 'typer', 'rich') if m in sys.modules])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"

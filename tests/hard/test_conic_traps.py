@@ -216,8 +216,9 @@ def test_just_impossible_and_just_possible(half):
         least = tuple(share / 8.0 / s)
         most = tuple(1e3 / s)
         given = allocation(a, s)
-        return Conic("least", (Var("t", "mm", least, most, least, size=8),), given.parameters,
-                     given.evaluate)
+        return Conic(
+            "least", (Var("t", "mm", least, most, least, size=8),), given.parameters, given.evaluate
+        )
 
     never = solve(problem(1.0 + 1e-6))
     assert never.status == "infeasible" and never.proof["conflict"] == ["budget"]

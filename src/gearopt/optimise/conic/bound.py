@@ -97,28 +97,18 @@ def lagrangian(
     offset = data.d if priced else 0.0
     least = at + offset + loss.sum() - allowance - ROUNDING * abs(offset)
     cost = c @ x + 0.5 * x @ (P @ x)
-    return Proof(
-        float(np.nan_to_num(least, nan=-np.inf)), float(-loss.sum()), abs(float(cost - at)), y
-    )
+    proven = -math.inf if math.isnan(least) else float(least)
+    return Proof(proven, float(-loss.sum()), abs(float(cost - at)), y)
 
 
 @np.errstate(all="ignore")
-def emptiness(
-    data: Canonical, low: Array, high: Array, x: Array, y: Array
-) -> tuple[float, dict[int, float]]:
-    """How far the named rows would have to be widened together, at least, for a point to exist.
+def emptiness(data: Canonical, low: Array, high: Array, x: Array, y: Array) -> float:
+    """How far the user's rows would have to be widened together, at least, for a point to exist.
 
-    Returns (widening, {row number: weight}); the widening is proven where it is positive.
+    Proven where it is positive; -inf where nothing is known.
     """
     proof = lagrangian(data, low, high, x, y, priced=False)
-    named = data.label >= 0
     weights = np.abs(proof.weights)
-    total = weights[named].sum()
+    total = weights[data.label >= 0].sum()
     scale = total if total > 0 else float(weights @ (1.0 + np.abs(data.b)))
-    if not (scale > 0 and math.isfinite(proof.least)):
-        return -math.inf, {}
-    shares: dict[int, float] = {}
-    for k in np.flatnonzero(named & (weights > 0)):
-        number = int(data.label[k])
-        shares[number] = shares.get(number, 0.0) + float(weights[k] / scale)
-    return proof.least / scale, shares
+    return proof.least / scale if scale > 0 and math.isfinite(proof.least) else -math.inf

@@ -109,7 +109,7 @@ def _closed(search: _Search, lower: Array, upper: Array) -> tuple[Leaf, float]:
     point = interior(one, left(search.deadline))
     if point.ray:
         y = multipliers(one, point)
-        empty = emptiness(data, *box, leaf.x, y)[0] > 0
+        empty = emptiness(data, *box, leaf.x, y) > 0.0
         return (replace(leaf, y=y, ray=True), np.inf) if empty else (leaf, bound)
     for candidate in candidates(one, point):
         z, y = one.scale.column * candidate.x, multipliers(one, candidate)

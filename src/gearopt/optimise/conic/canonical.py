@@ -76,8 +76,8 @@ class Canonical:
         scaled = (self.P.multiply(unit[:, None]).multiply(unit[None, :])).tocsr()[support][
             :, support
         ]
-        if (abs(scaled).sum(axis=0) <= 2.0).all():  # diagonally dominant
-            least = 0.0 if scaled.nnz == len(support) else -len(support) * 4e-16
+        if (abs(scaled).sum(axis=0) <= 2.0 - 1e-12 * (scaled.nnz > len(support))).all():
+            least = 0.0  # diagonally dominant
         elif len(support) <= 3000:
             least = float(np.linalg.eigvalsh(scaled.toarray())[0]) - len(support) ** 2 * 4e-16
         else:
@@ -173,7 +173,7 @@ def _data(name: str, problem: Any) -> tuple[dict[str, Any], float]:
 
     try:
         data, _, inverse = problem.get_problem_data(cp.CLARABEL)
-    except cp.error.SolverError as broken:
+    except (cp.error.SolverError, cp.error.ParameterError) as broken:
         raise SolveError(f"conic on {name}: {broken}") from broken
     dims = data["dims"]
     if dims.exp or dims.psd or dims.p3d or dims.pnd:

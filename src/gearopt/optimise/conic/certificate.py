@@ -5,6 +5,7 @@ there, or prove that nothing is there. A problem without discrete variables has 
 """
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -14,12 +15,14 @@ from gearopt.optimise.certificate import FARKAS, FEASIBLE, Verdict
 from gearopt.optimise.conic.bound import Leaf, emptiness, lagrangian
 from gearopt.optimise.conic.canonical import Canonical, canonical
 from gearopt.optimise.conic.problem import Conic
-from gearopt.optimise.conic.propagate import cutoff, propagate
+from gearopt.optimise.conic.propagate import cutoff, narrowed, propagate
 from gearopt.optimise.dual import TINY
 from gearopt.optimise.feasibility import runaway, violation
 from gearopt.optimise.result import Outcome
 from gearopt.optimise.terms import Array
 
+EXCLUDED = "the bounds of the variables exclude every point"
+MOST = 2000  # proofs tried to name the fewest rows of a conflict
 ARITHMETIC = "double, with a rounding allowance"
 
 
@@ -75,7 +78,7 @@ def _bound(
         box = propagate(data, leaf.lower, leaf.upper, most)
         if box is None:
             continue
-        if leaf.ray and leaf.y is not None and emptiness(data, *box, leaf.x, leaf.y)[0] > 0:
+        if leaf.ray and leaf.y is not None and emptiness(data, *box, leaf.x, leaf.y) > 0.0:
             continue
         unheld = [
             n
@@ -97,39 +100,61 @@ def _bound(
     return min(least, most), residuals, loose
 
 
-def _empty(data: Canonical, leaf: Leaf) -> dict[int, float]:
-    """Weights of the rows whose multipliers prove a leaf empty; none where they do not."""
-    if leaf.y is None:
-        return {}
-    box = propagate(data, leaf.lower, leaf.upper) or (leaf.lower, leaf.upper)
-    for y in (leaf.y, np.where(data.label >= 0, leaf.y, 0.0)):  # then without the noise of the rest
-        widening, shares = emptiness(data, *box, leaf.x, y)
-        if widening > FARKAS:
-            return shares
-    return {}
-
-
 def _infeasible(problem: Conic, outcome: Outcome) -> Verdict:
-    """Accept the claim only if every leaf is empty by its bounds or by its multipliers."""
+    """Accept the claim only if every leaf is empty by its intervals or by its multipliers."""
     data = canonical(problem)
-    refused = Verdict("failed", message="no feasible point found; impossibility is not proven")
-    if not covers(data, outcome.leaves):
-        return refused
-    weights: dict[int, float] = {}
-    for leaf in outcome.leaves:
-        shares = _empty(data, leaf)
-        if not shares and propagate(data, leaf.lower, leaf.upper) is not None:
-            return refused
-        for number, share in shares.items():
-            weights[number] = max(weights.get(number, 0.0), share)
+    empty = covers(data, outcome.leaves) and all(_empty(data, leaf) for leaf in outcome.leaves)
+    if not empty:
+        return Verdict("failed", message="no feasible point found; impossibility is not proven")
     names = [r.name for r in problem.rows.inequalities] + list(problem.rows.equalities)
-    order = sorted(weights, key=lambda k: -weights[k])
-    conflict = [names[k] for k in order if weights[k] > 1e-6]
+    numbers = {number for leaf in outcome.leaves for number in _weights(data, leaf)}
+    if len(names) * len(outcome.leaves) <= MOST:
+        numbers = set(range(len(names)))
+        weights = _weights(data, outcome.leaves[0])
+        for number in sorted(numbers, key=lambda k: weights.get(k, 0.0)):
+            fewer = numbers - {number}
+            if all(_empty(*_only(data, leaf, fewer)) for leaf in outcome.leaves):
+                numbers = fewer
+    conflict = [names[k] for k in sorted(numbers)]
     proof = {"method": "dual", "conflict": conflict, "nodes": len(outcome.leaves)}
-    what = f"no design meets these together: {', '.join(conflict)}"
-    return Verdict(
-        "infeasible", proof=proof, message=what if conflict else "the bounds exclude all"
+    words = f"no design meets these together: {', '.join(conflict)}" if conflict else EXCLUDED
+    return Verdict("infeasible", proof=proof, message=words)
+
+
+def _empty(data: Canonical, leaf: Leaf) -> bool:
+    """Whether intervals or a leaf's multipliers prove that no point of it is feasible."""
+    low, high, crossed = narrowed(data, leaf.lower, leaf.upper)
+    if crossed or leaf.y is None:
+        return crossed
+    return any(
+        emptiness(data, low, high, leaf.x, y) > FARKAS
+        for y in (leaf.y, np.where(data.label >= 0, leaf.y, 0.0))  # the rest may be noise
     )
+
+
+def _weights(data: Canonical, leaf: Leaf) -> dict[int, float]:
+    """Multipliers of the user's rows by number."""
+    found = dict.fromkeys((int(k) for k in data.label if k >= 0), 0.0)
+    for k in np.flatnonzero(data.label >= 0):
+        found[int(data.label[k])] += 0.0 if leaf.y is None else abs(float(leaf.y[k]))
+    return found
+
+
+def _only(data: Canonical, leaf: Leaf, numbers: set[int]) -> tuple[Canonical, Leaf]:
+    """Data and leaf with these of the user's rows alone; they are linear rows of the data."""
+    keep = np.isin(data.label, [-1, *numbers])
+    gone = ~keep
+    front = data.zero + data.nonneg
+    fewer = replace(
+        data,
+        A=data.A[keep],
+        b=data.b[keep],
+        label=data.label[keep],
+        zero=data.zero - int(gone[: data.zero].sum()),
+        nonneg=data.nonneg - int(gone[data.zero : front].sum()),
+        blocks=tuple(replace(b, start=b.start - int(gone.sum())) for b in data.blocks),
+    )
+    return fewer, replace(leaf, y=None if leaf.y is None else leaf.y[keep])
 
 
 def covers(data: Canonical, leaves: tuple[Leaf, ...]) -> bool:

@@ -21,6 +21,7 @@ from gearopt.optimise.terms import Array, Named, Number, Param, Terms, Var, chec
 class Model:
     """A text as cvxpy holds it: what to set, what to read.
 
+    inverses: 1/p of every parameter, for the text to multiply by; divided: ids of those it uses.
     blocks: (kind, expression (k,)) of limits, defines and equal rows, in the order of `names`.
     shifts: a cvxpy parameter (rows,); row k is held to 1 - shifts[k].
     """
@@ -28,6 +29,8 @@ class Model:
     problem: Any
     variables: tuple[Any, ...]
     parameters: tuple[Any, ...]
+    inverses: tuple[Any, ...]
+    divided: frozenset[int]
     objective: Any
     blocks: tuple[tuple[str, Any], ...]
     report: Mapping[str, Any]
@@ -40,7 +43,8 @@ class Conic:
     """A convex problem in cvxpy text: minimise one term, limits <= 1, equal rows = 1.
 
     evaluate(x, p) -> Terms: x.name are cvxpy variables made from `Var` (vectors for size > 1),
-    p.name cvxpy parameters. The objective, limits and defines are convex by cvxpy's rules, equal
+    p.name cvxpy parameters, p.per.name their inverses (cvxpy lets no text divide by a parameter and
+    keep its canonical form). The objective, limits and defines are convex by cvxpy's rules, equal
     rows affine; a vector expression is a block name[1], name[2], ... Variables with `integer` or
     `values` are branched on. ValueError for names declared twice.
     """
@@ -98,8 +102,12 @@ class Conic:
         if ("model", signs) not in self.memo:
             self.memo["model", signs] = _build(self, signs)
         found: Model = self.memo["model", signs]
-        for parameter, value in zip(found.parameters, values, strict=True):
+        for parameter, inverse, value in zip(found.parameters, found.inverses, values, strict=True):
             parameter.value = value if parameter.ndim else float(value[0])
+            if (value != 0).all():
+                inverse.value = 1.0 / parameter.value
+            elif inverse.id in found.divided:
+                raise SolveError(f"{self.name} divides by a parameter that is zero")
         return found
 
     def batch(self, points: Array) -> Batch:
@@ -136,12 +144,17 @@ def _build(problem: Conic, signs: tuple[str, ...]) -> Model:
         cp.Variable(() if v.size == 1 else v.size, name=f"x.{v.name}", **_known_sign(v))
         for v in problem.variables
     )
-    parameters = tuple(
-        cp.Parameter(() if q.size == 1 else q.size, **({sign: True} if sign else {}))
-        for q, sign in zip(problem.parameters, signs, strict=True)
+    parameters, inverses = (
+        tuple(
+            cp.Parameter(() if q.size == 1 else q.size, **({sign: True} if sign else {}))
+            for q, sign in zip(problem.parameters, signs, strict=True)
+        )
+        for _ in range(2)
     )
     x = Named(**{v.name: made for v, made in zip(problem.variables, variables, strict=True)})
-    p = Named(**{q.name: made for q, made in zip(problem.parameters, parameters, strict=True)})
+    names = [q.name for q in problem.parameters]
+    per = Named(**dict(zip(names, inverses, strict=True)))
+    p = Named(**{"per": per, **dict(zip(names, parameters, strict=True))})
     terms = checked(problem.evaluate(x, p), problem.name)
     if len(terms.minimise) != 1:
         raise SolveError(f"{problem.name}: conic takes one objective, not {len(terms.minimise)}")
@@ -173,7 +186,10 @@ def _build(problem: Conic, signs: tuple[str, ...]) -> Model:
     report = {n: _expression(v, problem.name, n) for n, v in flat(terms.report)}
     blocks = tuple((kind, e) for kind, _, e in found)
     whole = cp.Problem(cp.Minimize(cp.sum(objective)), constraints)
-    return Model(whole, variables, parameters, objective, blocks, report, rows, shifts)
+    used = frozenset(one.id for one in whole.parameters())
+    return Model(
+        whole, variables, parameters, inverses, used, objective, blocks, report, rows, shifts
+    )
 
 
 def _known_sign(variable: Var) -> dict[str, bool]:
@@ -204,7 +220,7 @@ def _refuse(where: str, kind: str, label: str, expression: Any) -> None:
     if not expression.is_dpp():
         raise SolveError(
             f"{where}: {kind} {label} is not affine in the parameters (cvxpy's DPP rules); "
-            "declare the combination as a parameter of its own"
+            "multiply by p.per.NAME to divide by a parameter, or declare a combination as one"
         )
 
 

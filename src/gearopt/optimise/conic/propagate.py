@@ -23,13 +23,24 @@ def cutoff(value: float) -> float:
     return value + MARGIN * abs(value)
 
 
-@np.errstate(all="ignore")
 def propagate(
-    data: Canonical, lower: Array, upper: Array, cutoff: float = np.inf
+    data: Canonical, lower: Array, upper: Array, most: float = np.inf
 ) -> tuple[Array, Array] | None:
-    """Bounds (n,), (n,) of all points of the box that are feasible and cost at most `cutoff`.
+    """Bounds (n,), (n,) of all points of the box that are feasible and cost at most `most`.
 
-    None: there are none. Interval evaluation of A x + s = b, s in K, x.c + d <= cutoff.
+    None: there are none.
+    """
+    low, high, empty = narrowed(data, lower, upper, most)
+    return None if empty else (low, high)
+
+
+@np.errstate(all="ignore")
+def narrowed(
+    data: Canonical, lower: Array, upper: Array, most: float = np.inf
+) -> tuple[Array, Array, bool]:
+    """The same bounds, and whether they cross; then they are those before, which still hold.
+
+    Interval evaluation of A x + s = b, s in K, c.x + d <= most.
     """
     row, column, value = data.entries
     priced = np.flatnonzero(data.c)
@@ -37,25 +48,25 @@ def propagate(
     row = np.concatenate([row, np.full(len(priced), size)])
     column = np.concatenate([column, priced])
     value = np.concatenate([value, data.c[priced]])
-    b = np.append(data.b, cutoff - data.d + EPSILON * 4 * (abs(cutoff) + abs(data.d)))
+    b = np.append(data.b, most - data.d + EPSILON * 4 * (abs(most) + abs(data.d)))
     rounding = EPSILON * (10.0 + np.bincount(row, minlength=size + 1))
     low, high = lower.copy(), upper.copy()
     for _ in range(PASSES):
         if not _to_allowed(data, low, high):
-            return None
+            return low, high, True
         at_low, at_high = value * low[column], value * high[column]
-        least, most = np.minimum(at_low, at_high), np.maximum(at_low, at_high)
-        below, below_inf, size_below = _sums(row, least, size + 1)
-        above, above_inf, size_above = _sums(row, most, size + 1)
+        small, large = np.minimum(at_low, at_high), np.maximum(at_low, at_high)
+        below, below_inf, size_below = _sums(row, small, size + 1)
+        above, above_inf, size_above = _sums(row, large, size + 1)
         error = rounding * (size_below + size_above + np.abs(b))
         s_low = np.where(above_inf > 0, -np.inf, b - above - error)
         s_high = np.where(below_inf > 0, np.inf, b - below + error)
         _cones(data, s_low, s_high)
         s_low[size] = 0.0
         if (s_low > s_high + CONTRADICTION * (np.abs(s_low) + np.abs(b)) + error).any():
-            return None
-        rest_low = _rest(row, least, below, below_inf, -np.inf)
-        rest_high = _rest(row, most, above, above_inf, np.inf)
+            return low, high, True
+        rest_low = _rest(row, small, below, below_inf, -np.inf)
+        rest_high = _rest(row, large, above, above_inf, np.inf)
         extra = (rounding * 2)[row] * (size_below + size_above + np.abs(b))[row]
         top = (b - s_low)[row] - rest_low + extra
         bottom = (b - s_high)[row] - rest_high - extra
@@ -64,19 +75,19 @@ def propagate(
         _tighten(np.maximum, new_low, column, np.where(value > 0, first, second), -1.0)
         _tighten(np.minimum, new_high, column, np.where(value > 0, second, first), 1.0)
         scale = np.maximum(np.abs(new_low), np.abs(new_high))
-        if (new_low > new_high + CONTRADICTION * scale).any():
-            return None
         crossed = new_low > new_high
+        empty = (new_low > new_high + CONTRADICTION * scale).any()
         new_low[crossed], new_high[crossed] = new_high[crossed], new_low[crossed]
-        finer = np.isfinite(new_low) & ~np.isfinite(low) | np.isfinite(new_high) & ~np.isfinite(
-            high
-        )
+        if empty:
+            return new_low, new_high, True
         width = high - low
+        finer = np.isfinite(new_low) & ~np.isfinite(low)
+        finer |= np.isfinite(new_high) & ~np.isfinite(high)
         finer |= np.isfinite(width) & (new_high - new_low < (1.0 - ENOUGH) * width)
         low, high = new_low, new_high
         if not finer.any():
             break
-    return low, high
+    return low, high, False
 
 
 def _to_allowed(data: Canonical, low: Array, high: Array) -> bool:

@@ -87,7 +87,7 @@ def _round(
     if point.ray:
         leaf = replace(best.leaf, y=multipliers(one, point), ray=True)
         box = propagate(data, leaf.lower, leaf.upper)
-        if box is None or emptiness(data, *box, leaf.x, _given(leaf))[0] > FARKAS:
+        if box is None or emptiness(data, *box, leaf.x, _given(leaf)) > FARKAS:
             return replace(best, leaf=leaf), z
         return best, z
     for candidate in candidates(one, point):
