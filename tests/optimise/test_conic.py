@@ -355,6 +355,30 @@ def test_integers_that_no_point_meets():
     assert solve(two).status == "infeasible"
 
 
+@pytest.mark.parametrize("weights", [(0.0, 0.0), (0.0, 2.0), (-0.0, 1.0)])
+def test_parameters_that_are_zero(weights):
+    """An entry of zero in the canonical data bounds nothing: x <= 1/w, or 10 where w is 0."""
+    problem = Conic(
+        "zero",
+        (Var("x", "", 0.0, 10.0, 1.0, size=2),),
+        (Param("w", "", (1.0, 1.0), 2),),
+        lambda x, p: Terms({"c": -cp.sum(x.x)}, {"use": cp.multiply(p.w, x.x)}),
+    )
+    assert solve(problem).value == pytest.approx(-2.0, rel=1e-10)
+    best = -sum(min(10.0, 1.0 / w) if w else 10.0 for w in weights)
+    result = solve(problem.at(w=weights))
+    assert result.status == "optimal" and result.value == pytest.approx(best, rel=1e-10)
+
+
+def test_a_stored_zero_bounds_nothing():
+    """0 x <= 1 is no bound of x, however the entry is stored."""
+    data = canonical(linear(np.array([1.0]), np.array([[1.0]]), np.array([1.0]), 5.0))
+    stored = data.A.copy()
+    stored.data[:] = 0.0
+    low, high = propagate(replace(data, A=stored, b=np.ones_like(data.b)), data.lower, data.upper)
+    assert low.tolist() == [0.0] and high.tolist() == [5.0]
+
+
 def test_what_is_not_bounded_is_named():
     down = Conic(
         "down",

@@ -57,9 +57,10 @@ class Canonical:
 
     @cached_property
     def entries(self) -> tuple[Any, Any, Array]:
-        """Row, column and value of every entry of A."""
+        """Row, column and value of every entry of A that is not zero."""
         table = self.A.tocoo()
-        return table.row, table.col, table.data
+        there = table.data != 0.0  # a parameter that is zero leaves an entry
+        return table.row[there], table.col[there], table.data[there]
 
     @cached_property
     def convexity(self) -> tuple[float, Array]:
