@@ -372,11 +372,11 @@ def test_parameters_that_are_zero(weights):
 
 def test_a_stored_zero_bounds_nothing():
     """0 x <= 1 is no bound of x, however the entry is stored."""
-    data = canonical(linear(np.array([1.0]), np.array([[1.0]]), np.array([1.0]), 5.0))
+    data = canonical(linear(np.ones(2), np.ones((1, 2)), np.ones(1), 5.0))
     stored = data.A.copy()
     stored.data[:] = 0.0
     low, high = propagate(replace(data, A=stored, b=np.ones_like(data.b)), data.lower, data.upper)
-    assert low.tolist() == [0.0] and high.tolist() == [5.0]
+    assert low.tolist() == [0.0, 0.0] and high.tolist() == [5.0, 5.0]
 
 
 def test_what_is_not_bounded_is_named():
