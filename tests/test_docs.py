@@ -98,6 +98,15 @@ def test_python_of_the_start_page_runs():
     assert "2.0 21 115" in done.stdout
 
 
+def test_python_of_the_conic_section_runs():
+    section = text("docs/contract.md").split("## Conic problems")[1]
+    code = re.search(r"```python\n(.*?)```", section, re.S)[1]
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    best = (3**0.5 + 2.0 + 3**0.5) ** 2 / 0.2  # (sum sqrt(a s))^2 / E
+    assert done.stdout == f"optimal {round(best, 6)}\n"
+
+
 def test_readme_table_is_what_the_files_give():
     """Each row: file, stages, paper, optimum; the optimum is the file's own expected value."""
     rows = re.findall(r"\| `(\w+)\.toml` \|[^|]*\|[^|]*\| ([\d,.]+) \|", text("README.md"))

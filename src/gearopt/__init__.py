@@ -3,6 +3,7 @@
 from gearopt.api import compare, explain, load, solve
 from gearopt.errors import CertificateError, GearoptError, SceneError, SolveError
 from gearopt.optimise.comparison import Comparison
+from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.explanation import Explanation
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Event, Result
@@ -12,6 +13,7 @@ __all__ = [
     "Budget",
     "CertificateError",
     "Comparison",
+    "Conic",
     "Event",
     "Explanation",
     "GearoptError",

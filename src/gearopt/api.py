@@ -7,9 +7,11 @@ from typing import Any
 
 from pydantic import BaseModel
 
+from gearopt.errors import SolveError
 from gearopt.optimise.compare import EVALUATIONS, SECONDS, SEEDS, Follow, Plan
 from gearopt.optimise.compare import compare as compare_methods
 from gearopt.optimise.comparison import Comparison
+from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.explanation import Explanation
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Result, Watch
@@ -27,7 +29,7 @@ def load(path: str | Path) -> BaseModel:
 
 
 def solve(
-    what: str | Path | BaseModel | Problem,
+    what: str | Path | BaseModel | Problem | Conic,
     method: str | None = None,
     *,
     budget: Budget | None = None,
@@ -48,7 +50,7 @@ def solve(
         raise ValueError(f"needs gap >= 0 and top >= 1, not gap = {gap}, top = {top}")
     budget = replace(budget or Budget(), gap=gap or 0.0)
     gap = GAP if gap is None else gap
-    if isinstance(what, Problem):
+    if isinstance(what, Problem | Conic):
         return solve_problem(what, method, budget, seed, watch, gap)
     ask = Ask(method, budget, seed, watch, gap, top)
     if isinstance(what, BaseModel):
@@ -60,7 +62,7 @@ def solve(
 
 
 def explain(
-    what: str | Path | BaseModel | Problem,
+    what: str | Path | BaseModel | Problem | Conic,
     *,
     budget: Budget | None = None,
     watch: Watch | None = None,
@@ -74,6 +76,10 @@ def explain(
     from gearopt.optimise.explain import explain as explain_problem
 
     budget = budget or Budget()
+    if isinstance(what, Conic):
+        raise SolveError(
+            f"explain takes a Problem; {what.name} is a Conic, whose conflict `solve` names already"
+        )
     if isinstance(what, Problem):
         return explain_problem(what, budget, watch)
     ask = Ask(budget=budget, watch=watch)
@@ -93,7 +99,7 @@ DEFAULT = ("ipopt", "annealing", "nsga2")  # compared beside exact algorithms wh
 
 
 def compare(
-    what: str | Path | BaseModel | Problem,
+    what: str | Path | BaseModel | Problem | Conic,
     methods: Sequence[str] | None = None,
     *,
     seeds: int = SEEDS,
@@ -104,15 +110,16 @@ def compare(
 ) -> Comparison:
     """Methods compared on a problem file, a loaded scene, or a problem of your own.
 
-    methods: by default exact where there is one, ipopt, annealing and nsga2. Every method is run by
+    methods: by default exact where there is one, ipopt, annealing and nsga2 (of a Conic: conic). Every method is run by
     evaluations and by seconds, random ones once for each of the seeds 0, 1, ... bound_from: a
     method run once to prove a bound. watch(progress) ends the comparison by returning False, and
     what is finished is reported. SceneError for a wrong file, SolveError where a method is unknown
     or none takes the problem, ValueError for a budget or number of seeds below 1.
     """
     plan = Plan(evaluations, seconds, seeds)
-    if isinstance(what, Problem):
-        named = (*what.methods, *DEFAULT) if methods is None else methods
+    if isinstance(what, Problem | Conic):
+        usual = ("conic",) if isinstance(what, Conic) else (*what.methods, *DEFAULT)
+        named = usual if methods is None else methods
         own = Model(what)
         found = compare_methods(named, lambda method: own, plan, watch, bound_from)
         return replace(found, title=what.name)

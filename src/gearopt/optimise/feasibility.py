@@ -5,13 +5,14 @@ from typing import Any
 
 import numpy as np
 
+from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.problem import Batch, Problem
 from gearopt.optimise.terms import Array
 
 RUNAWAY = 1e9  # a variable without a bound that moves this factor from its guess is held by nothing
 
 
-def violation(problem: Problem, x: Array, batch: Batch) -> tuple[float, str]:
+def violation(problem: Problem | Conic, x: Array, batch: Batch) -> tuple[float, str]:
     """Largest violation of rows, bounds and discreteness, and the name of what has it."""
     lower, upper, _ = problem.bounds()
     logarithmic = np.array([v.log for v, _ in problem.columns])
@@ -42,7 +43,7 @@ def _distance(variable: Any, value: float) -> float:
     return abs(value - round(value)) if variable.integer else 0.0
 
 
-def runaway(problem: Problem, x: Array, lower: Array, upper: Array, guess: Array) -> str:
+def runaway(problem: Problem | Conic, x: Array, lower: Array, upper: Array, guess: Array) -> str:
     """Name a variable that nothing holds: unbounded, and far beyond any scale of its guess."""
     scale = RUNAWAY * np.maximum(1.0, np.abs(guess))
     loose = ~(np.isfinite(lower) & np.isfinite(upper)) & (np.abs(x) > scale)

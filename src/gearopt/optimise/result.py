@@ -7,11 +7,14 @@ from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field, fields, replace
 from functools import cache
 from importlib.metadata import version
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from gearopt.optimise.terms import Array
+
+if TYPE_CHECKING:
+    from gearopt.optimise.conic.bound import Leaf
 
 FORMAT = 1
 _version = cache(version)  # reading package metadata takes a millisecond
@@ -60,7 +63,8 @@ class Outcome:
     x: the best point (n,), or None. finished: it ran to its own end, not out of budget.
     lam_g, lam_h: multipliers of the form's rows. infeasible: it claims there is no feasible point,
     by lam_g, lam_h (a Farkas certificate) or by `proof`. bound and proof: of an exact algorithm.
-    others: further points in proven order. message: what it has to say.
+    others: further points in proven order. leaves: of a conic problem, the parts of its box with
+    their multipliers. message: what it has to say.
     """
 
     x: Array | None
@@ -71,6 +75,7 @@ class Outcome:
     bound: float | None = None
     proof: Mapping[str, Any] | None = None
     others: tuple[Array, ...] = ()
+    leaves: tuple["Leaf", ...] = ()
     evaluations: int = 0
     message: str = ""
 

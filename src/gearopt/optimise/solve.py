@@ -11,15 +11,18 @@ import numpy as np
 from gearopt.errors import SolveError
 from gearopt.optimise import solvers
 from gearopt.optimise.certificate import Verdict, certify
+from gearopt.optimise.conic import certificate as conic
+from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Result, Watch, versions
 from gearopt.optimise.terms import Array
 
+LIBRARIES = {Problem: ("casadi",), Conic: ("cvxpy", "clarabel")}  # what an answer rests on
 GAP = 1e-6  # relative; what `optimal` means unless the caller says otherwise
 
 
 def solve(
-    problem: Problem,
+    problem: Problem | Conic,
     method: str | None = None,
     budget: Budget | None = None,
     seed: int = 0,
@@ -29,14 +32,15 @@ def solve(
     """The certified answer of one method to one problem.
 
     method: a name of `problem.methods` or of a back end in `optimise/solvers`; by default the
-    problem's own exact algorithm, else ipopt. gap: relative gap to our bound that is called
-    optimal. SolveError where the method does not fit the problem. Not thread-safe.
+    problem's own exact algorithm, else ipopt for a Problem and conic for a Conic. gap: relative gap
+    to our bound that is called optimal. SolveError where the method does not fit the problem. Not
+    thread-safe.
     """
     return run(problem, method, budget, seed, watch, gap)[0]
 
 
 def run(
-    problem: Problem,
+    problem: Problem | Conic,
     method: str | None = None,
     budget: Budget | None = None,
     seed: int = 0,
@@ -44,10 +48,10 @@ def run(
     gap: float = GAP,
 ) -> tuple[Result, Outcome]:
     """Like `solve`, with the method's raw outcome beside the result."""
-    name = method or next(iter(problem.methods), "ipopt")
+    name = method or next(iter(problem.methods), _default(problem))
     start = time.perf_counter()
     outcome = method_of(problem, name)(problem, budget or Budget(), seed, watch)
-    verdict = certify(problem, outcome, gap, exact=name in problem.methods)
+    verdict = judge(problem, name, outcome, gap)
     return _result(problem, name, outcome, verdict, time.perf_counter() - start, seed), outcome
 
 
@@ -56,11 +60,26 @@ def back_ends() -> tuple[str, ...]:
     return tuple(sorted(m.name for m in iter_modules(solvers.__path__)))
 
 
-def method_of(problem: Problem, name: str) -> Callable[..., Outcome]:
+def _default(problem: Problem | Conic) -> str:
+    return "conic" if isinstance(problem, Conic) else "ipopt"
+
+
+def judge(problem: Problem | Conic, method: str, outcome: Outcome, gap: float) -> Verdict:
+    """What is certain of a method's outcome, by the certificate of the problem's kind."""
+    if isinstance(problem, Conic):
+        return conic.certify(problem, outcome, gap)
+    return certify(problem, outcome, gap, exact=method in problem.methods)
+
+
+def method_of(problem: Problem | Conic, name: str) -> Callable[..., Outcome]:
     """The `run` of a method for a problem; SolveError lists the methods where there is none."""
     if name in problem.methods:
         return problem.methods[name]
     if name in back_ends():
+        if (name == "conic") != isinstance(problem, Conic):
+            takes = "a Conic (cvxpy text)" if name == "conic" else "a Problem (numpy text)"
+            kind = type(problem).__name__
+            raise SolveError(f"{name} takes {takes}; {problem.name} is a {kind}")
         run: Callable[..., Outcome] = import_module(f"gearopt.optimise.solvers.{name}").run
         return run
     known = ", ".join([*problem.methods, *back_ends()])
@@ -68,7 +87,12 @@ def method_of(problem: Problem, name: str) -> Callable[..., Outcome]:
 
 
 def _result(
-    problem: Problem, method: str, outcome: Outcome, verdict: Verdict, seconds: float, seed: int
+    problem: Problem | Conic,
+    method: str,
+    outcome: Outcome,
+    verdict: Verdict,
+    seconds: float,
+    seed: int,
 ) -> Result:
     solved = verdict.objective is not None and outcome.x is not None
     point = outcome.x if solved else None
@@ -88,11 +112,11 @@ def _result(
         evaluations=outcome.evaluations,
         seconds=seconds,
         seed=seed,
-        versions=versions("numpy", "casadi"),
+        versions=versions("numpy", *LIBRARIES[type(problem)]),
     )
 
 
-def design(problem: Problem, x: Array) -> dict[str, Any]:
+def design(problem: Problem | Conic, x: Array) -> dict[str, Any]:
     """Every variable by name and unit (`face_width_mm`); lists for blocks."""
     found: dict[str, Any] = {}
     for (variable, name), value in zip(problem.columns, x, strict=True):
@@ -106,14 +130,14 @@ def design(problem: Problem, x: Array) -> dict[str, Any]:
     return found
 
 
-def limits(problem: Problem, x: Array) -> dict[str, float]:
+def limits(problem: Problem | Conic, x: Array) -> dict[str, float]:
     """Utilisation of every user limit at a point."""
     rows = problem.batch(x[None]).G[0]
     named = zip(problem.rows.inequalities, rows, strict=True)
     return {row.name: float(v) for row, v in named if row.kind == "limits"}
 
 
-def report(problem: Problem, x: Array) -> dict[str, Any]:
+def report(problem: Problem | Conic, x: Array) -> dict[str, Any]:
     """The problem's report terms at a point; lists for the rows of a repeat."""
     values = problem.batch(x[None]).report
     return {

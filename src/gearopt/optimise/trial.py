@@ -12,11 +12,11 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from gearopt.errors import GearoptError, SolveError
-from gearopt.optimise.certificate import Verdict, certify
+from gearopt.optimise.certificate import Verdict
 from gearopt.optimise.comparison import Run
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Event, Outcome
-from gearopt.optimise.solve import GAP, method_of
+from gearopt.optimise.solve import GAP, judge, method_of
 
 WARM = Budget(seconds=1.0, evaluations=256)  # two generations, eight moves of every chain
 ROUNDING = 1e-9  # relative; a method's word that is better than the checked value by more is noted
@@ -107,7 +107,7 @@ def attempt(entry: Entry, seed: int, budget: Budget, told: Callable[[Event], boo
     try:
         outcome = method_of(problem, method)(problem, budget, seed, watch)
         seconds = time.perf_counter() - clock
-        verdict = certify(problem, outcome, GAP, exact=method in problem.methods)
+        verdict = judge(problem, method, outcome, GAP)
     except GearoptError as broken:
         seconds = time.perf_counter() - clock
         outcome, verdict = Outcome(None), Verdict("failed", message=str(broken))

@@ -1,0 +1,195 @@
+"""Best-first branch and bound over certified relaxations, for integers and finite value sets.
+
+A node narrows the range of one discrete column between two neighbouring allowed values; the
+canonical data stay, only bounds move. Every closed node is a leaf with multipliers: the list of
+leaves is the claim, and is judged again by the certificate.
+"""
+
+import heapq
+import itertools
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from gearopt.optimise.conic.bound import Leaf, emptiness, lagrangian
+from gearopt.optimise.conic.canonical import Canonical
+from gearopt.optimise.conic.interior import interior
+from gearopt.optimise.conic.problem import Conic
+from gearopt.optimise.conic.propagate import cutoff, propagate
+from gearopt.optimise.conic.relaxation import (
+    Found,
+    GoesOn,
+    candidates,
+    judged,
+    left,
+    multipliers,
+)
+from gearopt.optimise.conic.scaling import Scaled, scaled
+from gearopt.optimise.result import Budget, Outcome
+from gearopt.optimise.terms import Array
+
+NODES = 20_000  # where the budget names no evaluations
+WHOLE = 1e-6  # a discrete column this close to an allowed value (relative to the gap) takes it
+SLACK = 1e-9  # feasibility asked of a design that is kept; the certificate bears 1e-8
+
+
+@dataclass
+class _Search:
+    """What the search knows; it has state because nodes share the best design.
+
+    x, value: best design so far. leaves: closed nodes. spent: relaxations solved.
+    """
+
+    problem: Conic
+    data: Canonical
+    one: Scaled
+    deadline: float
+    x: Array | None = None
+    value: float = np.inf
+    leaves: list[Leaf] = field(default_factory=list)
+    spent: int = 0
+
+
+def branch(
+    problem: Conic, data: Canonical, root: Found, budget: Budget, deadline: float, goes_on: GoesOn
+) -> Outcome:
+    """Search until every leaf is closed within `budget.gap` of the best design."""
+    if root.leaf.ray:
+        return Outcome(None, infeasible=True, leaves=(root.leaf,), evaluations=1)
+    search = _Search(problem, data, scaled(data, root.scale), deadline)
+    most = NODES if budget.evaluations is None else budget.evaluations
+    order = itertools.count()
+    first, least = _closed(search, root.leaf.lower, root.leaf.upper)
+    if root.leaf.y is not None and root.least > least:
+        first, least = root.leaf, root.least
+    heap = [(least, next(order), first)]
+    finished = True
+    while heap:
+        least, _, leaf = heapq.heappop(heap)
+        done = least >= search.value - max(budget.gap, SLACK) * abs(search.value)
+        halves = [] if done else _halves(data, leaf)
+        if not halves:
+            search.leaves.append(leaf)
+            continue
+        if search.spent >= most or not goes_on(search.spent, search.value, least):
+            search.leaves += [leaf, *(item[2] for item in heap)]
+            finished = False
+            break
+        for lower, upper in halves:
+            child, bound = _closed(search, lower, upper)
+            heapq.heappush(heap, (max(bound, least), next(order), _inherited(child, leaf)))
+    return Outcome(
+        search.x,
+        finished,
+        infeasible=search.x is None and finished,
+        leaves=tuple(search.leaves),
+        evaluations=search.spent,
+        message="" if finished else "branch and bound stopped early",
+    )
+
+
+def _inherited(child: Leaf, parent: Leaf) -> Leaf:
+    """A child whose own multipliers failed keeps its parent's."""
+    return replace(child, x=parent.x, y=parent.y, ray=parent.ray) if child.y is None else child
+
+
+def _closed(search: _Search, lower: Array, upper: Array) -> tuple[Leaf, float]:
+    """A node's relaxation: its leaf, with the best multipliers found, and the bound they prove."""
+    data = search.data
+    leaf, bound = Leaf(lower, upper, np.zeros(len(lower)), None), -np.inf
+    box = propagate(data, lower, upper, cutoff(search.value))
+    if box is None:
+        return leaf, np.inf
+    search.spent += 1
+    ends = [
+        np.where(np.isin(np.arange(len(lower)), list(data.allowed)), box[k], (lower, upper)[k])
+        for k in (0, 1)
+    ]
+    one = search.one.within(*ends)
+    point = interior(one, left(search.deadline))
+    if point.ray:
+        y = multipliers(one, point)
+        empty = emptiness(data, *box, leaf.x, y) > 0.0
+        return (replace(leaf, y=y, ray=True), np.inf) if empty else (leaf, bound)
+    for candidate in candidates(one, point):
+        z, y = one.scale.column * candidate.x, multipliers(one, candidate)
+        if not np.isfinite(z).all():
+            continue
+        _keep(search, z, lower, upper)
+        worst = _worst(search, z)
+        narrow = propagate(data, lower, upper, worst)
+        if narrow is None and np.isfinite(search.value):
+            return replace(leaf, x=z, y=y), np.inf
+        least = worst if narrow is None else min(lagrangian(data, *narrow, z, y).least, worst)
+        if least > bound or leaf.y is None:
+            leaf, bound = replace(leaf, x=z, y=y), least
+    return leaf, bound
+
+
+def _worst(search: _Search, z: Array) -> float:
+    """Of dearer points a node's bound says nothing: the best design's cost, or the relaxed one."""
+    if np.isfinite(search.value):
+        return cutoff(search.value)
+    value, excess = judged(
+        search.problem, np.clip(z, search.data.lower, search.data.upper)[search.data.user]
+    )
+    return cutoff(value) if excess <= 1e-6 else np.inf
+
+
+def _keep(search: _Search, z: Array, lower: Array, upper: Array) -> None:
+    """Take the relaxed point as a design, discrete columns at their nearest allowed values."""
+    data = search.data
+    rounded, moved = z.copy(), 0.0
+    for column, allowed in data.allowed.items():
+        nearest = allowed[np.abs(allowed - z[column]).argmin()]
+        moved = max(moved, abs(nearest - z[column]))
+        rounded[column] = nearest
+    continuous = len(data.user) > len(data.allowed)
+    if continuous and moved > 0.0 and (moved < WHOLE or search.x is None):
+        _fixed(search, rounded, lower, upper)
+    else:
+        _take(search, rounded)
+
+
+def _fixed(search: _Search, rounded: Array, lower: Array, upper: Array) -> None:
+    """Solve for the continuous columns with the discrete ones fixed."""
+    low, high = search.data.lower.copy(), search.data.upper.copy()
+    for column in search.data.allowed:
+        low[column] = high[column] = rounded[column]
+    if propagate(search.data, low, high, search.value) is None:
+        return
+    one = search.one.within(low, high)
+    point = interior(one, left(search.deadline))
+    search.spent += 1
+    if point.ray:
+        return
+    for candidate in candidates(one, point):
+        _take(search, np.clip(one.scale.column * candidate.x, low, high))
+
+
+def _take(search: _Search, z: Array) -> None:
+    x = np.clip(z, search.data.lower, search.data.upper)[search.data.user]
+    value, excess = judged(search.problem, x)
+    if excess <= SLACK and value < search.value:
+        search.x, search.value = x, value
+
+
+def _halves(data: Canonical, leaf: Leaf) -> list[tuple[Array, Array]]:
+    """The two parts of a node, cut where its point is farthest from allowed values."""
+    cut, worst = None, -1.0
+    for column, allowed in data.allowed.items():
+        here = allowed[(allowed >= leaf.lower[column]) & (allowed <= leaf.upper[column])]
+        if len(here) < 2:
+            continue
+        at = min(max(leaf.x[column], here[0]), here[-1])
+        k = min(max(int(np.searchsorted(here, at, "right")) - 1, 0), len(here) - 2)
+        share = (at - here[k]) / (here[k + 1] - here[k])
+        distance = min(share, 1.0 - share)
+        if distance > worst:
+            cut, worst = (column, here[k], here[k + 1]), distance
+    if cut is None:
+        return []
+    column, below, above = cut
+    low, high = leaf.lower.copy(), leaf.upper.copy()
+    low[column], high[column] = above, below
+    return [(leaf.lower, high), (low, leaf.upper)]

@@ -1,0 +1,200 @@
+"""Judges an outcome of a conic problem: the user's own rows, and bounds from canonical data.
+
+A claim is a list of leaves that together cover the box: each with multipliers that bound the cost
+there, or prove that nothing is there. A problem without discrete variables has one leaf.
+"""
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from gearopt.errors import CertificateError
+from gearopt.optimise.certificate import FARKAS, FEASIBLE, Verdict
+from gearopt.optimise.conic.bound import Leaf, emptiness, lagrangian
+from gearopt.optimise.conic.canonical import Canonical, canonical
+from gearopt.optimise.conic.problem import Conic
+from gearopt.optimise.conic.propagate import cutoff, narrowed, propagate
+from gearopt.optimise.dual import TINY
+from gearopt.optimise.feasibility import runaway, violation
+from gearopt.optimise.result import Outcome
+from gearopt.optimise.terms import Array
+
+EXCLUDED = "the bounds of the variables exclude every point"
+MOST = 2000  # proofs tried to name the fewest rows of a conflict
+ARITHMETIC = "double, with a rounding allowance"
+
+
+@np.errstate(all="ignore")
+def certify(problem: Conic, outcome: Outcome, gap: float) -> Verdict:
+    """Status, bound and residuals of an outcome; `gap` is the largest one called optimal.
+
+    CertificateError where a bound contradicts a feasible point.
+    """
+    if outcome.infeasible:
+        return _infeasible(problem, outcome)
+    unsolved = "failed" if outcome.finished else "limit"
+    if outcome.x is None:
+        return Verdict(unsolved, message=outcome.message or "no point found")
+    lower, upper, guess = problem.bounds()
+    batch = problem.batch(outcome.x[None])
+    excess, worst = violation(problem, outcome.x, batch)
+    certificate: dict[str, float | None] = {"feasibility": excess}
+    value = float(batch.F[0, 0])
+    if not (excess <= FEASIBLE and math.isfinite(value)):
+        message = f"{worst} is violated by {excess:.3g}. {outcome.message}".strip()
+        return Verdict(unsolved, certificate=certificate, message=message)
+    if loose := runaway(problem, outcome.x, lower, upper, guess):
+        return Verdict("failed", value, certificate=certificate, message=loose)
+    status = "feasible" if outcome.finished else "limit"
+    bound, residuals, loose = _bound(problem, outcome, value)
+    certificate |= residuals
+    if not math.isfinite(bound):
+        message = f"{loose} {outcome.message}".strip()
+        return Verdict(status, value, certificate=certificate, message=message)
+    distance = (value - bound) / max(abs(value), TINY)
+    if distance < -100 * FEASIBLE and excess < FEASIBLE / 100:
+        raise CertificateError(f"a feasible value {value!r} lies below the dual bound {bound!r}")
+    message = outcome.message
+    if abs(distance) <= max(gap, FEASIBLE):
+        status = "optimal"
+    elif distance < 0.0:
+        message = f"{worst} is violated by {excess:.3g}, which the objective gains from. {message}"
+    proof = {"method": "dual", "arithmetic": ARITHMETIC, "nodes": len(outcome.leaves)}
+    return Verdict(status, value, bound, max(distance, 0.0), certificate, proof, message.strip())
+
+
+def _bound(
+    problem: Conic, outcome: Outcome, value: float
+) -> tuple[float, dict[str, float | None], str]:
+    """The least cost over all leaves, residuals of the leaf that has it, and what nothing holds."""
+    data = canonical(problem)
+    if not covers(data, outcome.leaves):
+        return -math.inf, {}, ""
+    least, loose, most = math.inf, "", cutoff(value)
+    residuals: dict[str, float | None] = {}
+    for leaf in outcome.leaves:
+        box = propagate(data, leaf.lower, leaf.upper, most)
+        if box is None:
+            continue
+        if leaf.ray and leaf.y is not None and emptiness(data, *box, leaf.x, leaf.y) > 0.0:
+            continue
+        unheld = [
+            n
+            for (_, n), k in zip(problem.columns, data.user, strict=True)
+            if not np.isfinite(box[0][k]) or not np.isfinite(box[1][k])
+        ]
+        if unheld:
+            loose = f"nothing holds {unheld[0]}: give it a bound or a limit, for a proof."
+        if unheld or leaf.y is None or leaf.ray:
+            return -math.inf, {}, loose
+        proof = lagrangian(data, *box, leaf.x, leaf.y)
+        if proof.least < least:
+            least = proof.least
+            scale = max(abs(value), TINY)
+            residuals = {
+                "stationarity": proof.charge / scale,
+                "complementarity": proof.slack / scale,
+            }
+    return min(least, most), residuals, loose
+
+
+def _infeasible(problem: Conic, outcome: Outcome) -> Verdict:
+    """Accept the claim only if every leaf is empty by its intervals or by its multipliers."""
+    data = canonical(problem)
+    empty = covers(data, outcome.leaves) and all(_empty(data, leaf) for leaf in outcome.leaves)
+    if not empty:
+        return Verdict("failed", message="no feasible point found; impossibility is not proven")
+    names = [r.name for r in problem.rows.inequalities] + list(problem.rows.equalities)
+    numbers = {number for leaf in outcome.leaves for number in _weights(data, leaf)}
+    if len(names) * len(outcome.leaves) <= MOST:
+        numbers = set(range(len(names)))
+        weights = _weights(data, outcome.leaves[0])
+        for number in sorted(numbers, key=lambda k: weights.get(k, 0.0)):
+            fewer = numbers - {number}
+            if all(_empty(*_only(data, leaf, fewer)) for leaf in outcome.leaves):
+                numbers = fewer
+    conflict = [names[k] for k in sorted(numbers)]
+    proof = {"method": "dual", "conflict": conflict, "nodes": len(outcome.leaves)}
+    words = f"no design meets these together: {', '.join(conflict)}" if conflict else EXCLUDED
+    return Verdict("infeasible", proof=proof, message=words)
+
+
+def _empty(data: Canonical, leaf: Leaf) -> bool:
+    """Whether intervals or a leaf's multipliers prove that no point of it is feasible."""
+    low, high, crossed = narrowed(data, leaf.lower, leaf.upper)
+    if crossed or leaf.y is None:
+        return crossed
+    return any(
+        emptiness(data, low, high, leaf.x, y) > FARKAS
+        for y in (leaf.y, np.where(data.label >= 0, leaf.y, 0.0))  # the rest may be noise
+    )
+
+
+def _weights(data: Canonical, leaf: Leaf) -> dict[int, float]:
+    """Multipliers of the user's rows by number."""
+    found = dict.fromkeys((int(k) for k in data.label if k >= 0), 0.0)
+    for k in np.flatnonzero(data.label >= 0):
+        found[int(data.label[k])] += 0.0 if leaf.y is None else abs(float(leaf.y[k]))
+    return found
+
+
+def _only(data: Canonical, leaf: Leaf, numbers: set[int]) -> tuple[Canonical, Leaf]:
+    """Data and leaf with these of the user's rows alone; they are linear rows of the data."""
+    keep = np.isin(data.label, [-1, *numbers])
+    gone = ~keep
+    front = data.zero + data.nonneg
+    fewer = replace(
+        data,
+        A=data.A[keep],
+        b=data.b[keep],
+        label=data.label[keep],
+        zero=data.zero - int(gone[: data.zero].sum()),
+        nonneg=data.nonneg - int(gone[data.zero : front].sum()),
+        blocks=tuple(replace(b, start=b.start - int(gone.sum())) for b in data.blocks),
+    )
+    return fewer, replace(leaf, y=None if leaf.y is None else leaf.y[keep])
+
+
+def covers(data: Canonical, leaves: tuple[Leaf, ...]) -> bool:
+    """Whether the leaves are a partition of the box by cuts between allowed values.
+
+    The box is cut where no leaf straddles, again and again, until each part is one leaf's.
+    """
+    columns = sorted(data.allowed)
+    free = np.setdiff1d(np.arange(len(data.c)), columns)
+    if not leaves:
+        return False
+    low, high = (np.array([getattr(leaf, end) for leaf in leaves]) for end in ("lower", "upper"))
+    if (low[:, free] > data.lower[free]).any() or (high[:, free] < data.upper[free]).any():
+        return False
+    first = _positions(data, columns, low, "left")
+    last = _positions(data, columns, high, "right") - 1
+    counts = np.array([len(data.allowed[k]) for k in columns], int)
+    parts = [(np.arange(len(leaves)), 0 * counts, counts - 1)]
+    while parts:
+        here, start, end = parts.pop()
+        own_first, own_last = first[here], last[here]
+        if len(here) == 1:
+            if (own_first > start).any() or (own_last < end).any():
+                return False
+            continue
+        order = np.argsort(own_first, axis=0, kind="stable")
+        reach = np.maximum.accumulate(np.take_along_axis(own_last, order, 0), axis=0)
+        gaps = np.argwhere(reach[:-1] < np.take_along_axis(own_first, order, 0)[1:])
+        if not len(gaps):
+            return False
+        k, column = gaps[0]
+        cut = reach[k, column]
+        below, above = end.copy(), start.copy()
+        below[column], above[column] = cut, cut + 1
+        parts.append((here[own_last[:, column] <= cut], start, below))
+        parts.append((here[own_first[:, column] > cut], above, end))
+    return True
+
+
+def _positions(data: Canonical, columns: list[int], ends: Array, side: Any) -> Any:
+    """Positions of ends (leaves, n) among the allowed values of discrete columns."""
+    found = [np.searchsorted(data.allowed[k], ends[:, k], side) for k in columns]
+    return np.stack(found, axis=1) if found else np.zeros((len(ends), 0), int)

@@ -1,0 +1,230 @@
+"""The second kind of problem: linear, convex quadratic and second-order cone text in cvxpy.
+
+The text is run once on cvxpy variables and canonicalised once (DPP). New parameter values are
+re-solved without building anything again, and points are judged on the user's own expressions.
+"""
+
+from collections import Counter
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from gearopt.errors import SolveError
+from gearopt.optimise.problem import Batch, Problem, Row, Rows
+from gearopt.optimise.terms import Array, Named, Number, Param, Terms, Var, checked, flat, spread
+
+
+@dataclass(frozen=True)
+class Model:
+    """A text as cvxpy holds it: what to set, what to read.
+
+    inverses: 1/p of every parameter, for the text to multiply by; divided: ids of those it uses.
+    blocks: (kind, expression (k,)) of limits, defines and equal rows, in the order of `names`.
+    shifts: a cvxpy parameter (rows,); row k is held to 1 - shifts[k].
+    """
+
+    problem: Any
+    variables: tuple[Any, ...]
+    parameters: tuple[Any, ...]
+    inverses: tuple[Any, ...]
+    divided: frozenset[int]
+    objective: Any
+    blocks: tuple[tuple[str, Any], ...]
+    report: Mapping[str, Any]
+    rows: Rows
+    shifts: Any
+
+
+@dataclass(frozen=True)
+class Conic:
+    """A convex problem in cvxpy text: minimise one term, limits <= 1, equal rows = 1.
+
+    evaluate(x, p) -> Terms: x.name are cvxpy variables made from `Var` (vectors for size > 1),
+    p.name cvxpy parameters, p.per.name their inverses (cvxpy lets no text divide by a parameter and
+    keep its canonical form). The objective, limits and defines are convex by cvxpy's rules, equal
+    rows affine; a vector expression is a block name[1], name[2], ... Variables with `integer` or
+    `values` are branched on. ValueError for names declared twice.
+    """
+
+    name: str
+    variables: tuple[Var, ...]
+    parameters: tuple[Param, ...]
+    evaluate: Callable[[Any, Any], Terms]
+    memo: dict[Any, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        _ = self._declared
+
+    @cached_property
+    def _declared(self) -> Problem:
+        """The same declarations; its text is never run."""
+        return Problem(self.name, self.variables, self.parameters, self.evaluate)
+
+    @property
+    def methods(self) -> Mapping[str, Callable[..., Any]]:
+        """Algorithms of its own: none."""
+        return {}
+
+    def at(self, **values: Number) -> "Conic":
+        """The same problem with other parameter values; what was canonicalised is kept."""
+        other = replace(self, parameters=self._declared.at(**values).parameters)
+        object.__setattr__(other, "memo", self.memo)
+        return other
+
+    @property
+    def columns(self) -> tuple[tuple[Var, str], ...]:
+        """Variable and printed name of every component of a point, in order."""
+        return self._declared.columns
+
+    @property
+    def rows(self) -> Rows:
+        """Names of objectives, inequalities and equalities, in the order of `batch`."""
+        return self.model().rows
+
+    def bounds(self) -> tuple[Array, Array, Array]:
+        """Lower bounds, upper bounds and guess of a point, each (n,); not to be written to."""
+        return self._declared.bounds()
+
+    def parameter_values(self) -> Array:
+        """All parameter values in order, (np,)."""
+        return self._declared.parameter_values()
+
+    def model(self) -> Model:
+        """The text on cvxpy variables, with the parameter values set.
+
+        cvxpy's rules rest on signs, so values of another sign are another model.
+        """
+        values = [spread(q.value, q.size) for q in self.parameters]
+        signs = tuple(_sign(v) for v in values)
+        if ("model", signs) not in self.memo:
+            self.memo["model", signs] = _build(self, signs)
+        found: Model = self.memo["model", signs]
+        for parameter, inverse, value in zip(found.parameters, found.inverses, values, strict=True):
+            parameter.value = value if parameter.ndim else float(value[0])
+            if (value != 0).all():
+                inverse.value = 1.0 / parameter.value
+            elif inverse.id in found.divided:
+                raise SolveError(f"{self.name} divides by a parameter that is zero")
+        return found
+
+    def batch(self, points: Array) -> Batch:
+        """The user's own expressions at points (N, n), evaluated by cvxpy one after the other."""
+        model = self.model()
+        found = [self._at(model, x) for x in np.asarray(points, float)]
+        f, g, h, reports = zip(*found, strict=True)
+        report = {name: np.array([r[name] for r in reports]) for name in reports[0]}
+        return Batch(np.array(f)[:, None], np.array(g), np.array(h), report)
+
+    @np.errstate(all="ignore")  # 1/0 is infinite, and infinite is not feasible
+    def _at(self, model: Model, x: Array) -> tuple[float, Array, Array, dict[str, Any]]:
+        start = 0
+        for variable in model.variables:
+            part = x[start : start + variable.size]
+            variable.save_value(part if variable.ndim else part[0])
+            start += variable.size
+        kinds: dict[bool, list[Array]] = {True: [np.empty(0)], False: [np.empty(0)]}
+        for kind, expression in model.blocks:
+            kinds[kind == "equal"].append(np.ravel(expression.value))
+        report = {name: np.squeeze(e.value) for name, e in model.report.items()}
+        value = float(np.ravel(model.objective.value)[0])
+        return value, np.concatenate(kinds[False]), np.concatenate(kinds[True]), report
+
+
+def _sign(values: Array) -> str:
+    return "nonneg" if (values >= 0).all() else "nonpos" if (values <= 0).all() else ""
+
+
+def _build(problem: Conic, signs: tuple[str, ...]) -> Model:
+    import cvxpy as cp
+
+    variables = tuple(
+        cp.Variable(() if v.size == 1 else v.size, name=f"x.{v.name}", **_known_sign(v))
+        for v in problem.variables
+    )
+    parameters, inverses = (
+        tuple(
+            cp.Parameter(() if q.size == 1 else q.size, **({sign: True} if sign else {}))
+            for q, sign in zip(problem.parameters, signs, strict=True)
+        )
+        for _ in range(2)
+    )
+    x = Named(**{v.name: made for v, made in zip(problem.variables, variables, strict=True)})
+    names = [q.name for q in problem.parameters]
+    per = Named(**dict(zip(names, inverses, strict=True)))
+    p = Named(**{"per": per, **dict(zip(names, parameters, strict=True))})
+    terms = checked(problem.evaluate(x, p), problem.name)
+    if len(terms.minimise) != 1:
+        raise SolveError(f"{problem.name}: conic takes one objective, not {len(terms.minimise)}")
+    name, objective = next(iter(terms.minimise.items()))
+    objective = _expression(objective, problem.name, name)
+    if objective.size != 1:
+        raise SolveError(f"{problem.name}: the objective {name} is not a scalar")
+    found = [
+        (kind, label, _expression(value, problem.name, label))
+        for kind in ("limits", "defines", "equal")
+        for label, value in flat(getattr(terms, kind))
+    ]
+    for kind, label, expression in (("minimise", name, objective), *found):
+        _refuse(problem.name, kind, label, expression)
+    named = [(kind, n) for kind, label, e in found for n in _names(label, e)]
+    if twice := next((n for n, k in Counter(n for _, n in named).items() if k > 1), None):
+        raise SolveError(f"problem {problem.name}: two rows are named {twice!r}")
+    rows = Rows(
+        (name,),
+        tuple(Row(n, kind) for kind, n in named if kind != "equal"),
+        tuple(n for kind, n in named if kind == "equal"),
+    )
+    shifts = cp.Parameter(max(1, len(named)), value=np.zeros(max(1, len(named))))
+    constraints, start = [], 0
+    for kind, _, expression in found:
+        held = 1.0 - shifts[start : start + expression.size]
+        constraints.append(expression == held if kind == "equal" else expression <= held)
+        start += expression.size
+    report = {n: _expression(v, problem.name, n) for n, v in flat(terms.report)}
+    blocks = tuple((kind, e) for kind, _, e in found)
+    whole = cp.Problem(cp.Minimize(cp.sum(objective)), constraints)
+    used = frozenset(one.id for one in whole.parameters())
+    return Model(
+        whole, variables, parameters, inverses, used, objective, blocks, report, rows, shifts
+    )
+
+
+def _known_sign(variable: Var) -> dict[str, bool]:
+    """What cvxpy may conclude curvature from."""
+    lower, upper = spread(variable.lower, variable.size), spread(variable.upper, variable.size)
+    if (lower >= 0).all():
+        return {"nonneg": True}
+    return {"nonpos": True} if (upper <= 0).all() else {}
+
+
+def _expression(value: Any, where: str, label: str) -> Any:
+    """A term as a cvxpy expression (k,)."""
+    import cvxpy as cp
+
+    if isinstance(value, cp.constraints.constraint.Constraint):
+        raise SolveError(
+            f"{where}: {label} is a comparison; write a quotient that must not exceed 1"
+        )
+    expression = value if isinstance(value, cp.Expression) else cp.Constant(value)
+    return cp.reshape(expression, (expression.size,), order="C")
+
+
+def _refuse(where: str, kind: str, label: str, expression: Any) -> None:
+    """SolveError unless cvxpy proves the curvature, for any values of the parameters."""
+    wanted = "affine" if kind == "equal" else "convex"
+    if not getattr(expression, f"is_{wanted}")():
+        raise SolveError(f"{where}: {kind} {label} is not {wanted} by cvxpy's rules")
+    if not expression.is_dpp():
+        raise SolveError(
+            f"{where}: {kind} {label} is not affine in the parameters (cvxpy's DPP rules); "
+            "multiply by p.per.NAME to divide by a parameter, or declare a combination as one"
+        )
+
+
+def _names(label: str, expression: Any) -> list[str]:
+    if expression.size == 1:
+        return [label]
+    return [f"{label}[{k + 1}]" for k in range(expression.size)]
