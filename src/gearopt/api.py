@@ -110,11 +110,12 @@ def compare(
 ) -> Comparison:
     """Methods compared on a problem file, a loaded scene, or a problem of your own.
 
-    methods: by default exact where there is one, ipopt, annealing and nsga2 (of a Conic: conic). Every method is run by
-    evaluations and by seconds, random ones once for each of the seeds 0, 1, ... bound_from: a
-    method run once to prove a bound. watch(progress) ends the comparison by returning False, and
-    what is finished is reported. SceneError for a wrong file, SolveError where a method is unknown
-    or none takes the problem, ValueError for a budget or number of seeds below 1.
+    methods: by default exact where there is one, ipopt, annealing and nsga2 (of a Conic: conic).
+    Every method is run by evaluations and by seconds, random ones once for each of the seeds 0, 1,
+    ... bound_from: a method run once to prove a bound. watch(progress) ends the comparison by
+    returning False, and what is finished is reported. SceneError for a wrong file, SolveError where
+    a method is unknown or none takes the problem, ValueError for a budget or number of seeds below
+    1.
     """
     plan = Plan(evaluations, seconds, seeds)
     if isinstance(what, Problem | Conic):

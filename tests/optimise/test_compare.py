@@ -1,6 +1,7 @@
 """Comparisons on problems with known optima: what is equal, what counts, what is kept."""
 
 import math
+import sys
 import types
 from importlib import import_module
 from pathlib import Path

@@ -8,10 +8,9 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from gearopt.errors import SolveError
-from gearopt.optimise.certificate import certify
 from gearopt.optimise.comparison import Comparison, Group, Row, Run, sample
 from gearopt.optimise.result import Budget, Event
-from gearopt.optimise.solve import GAP, method_of
+from gearopt.optimise.solve import GAP, judge, method_of
 from gearopt.optimise.trial import Entry, Model, attempt, enter
 
 EVALUATIONS, SECONDS, SEEDS = 20_000, 2.0, 25
@@ -115,7 +114,7 @@ def _bound(
         return watch is None or watch(Progress(0, 0, method, 0, 0.0, event)) is not False
 
     outcome = method_of(problem, method)(problem, Budget(BOUND_SECONDS), 0, told)
-    bound = certify(problem, outcome, GAP, exact=method in problem.methods).bound
+    bound = judge(problem, method, outcome, GAP).bound
     return None if bound is None else (problem.name, method, bound)
 
 

@@ -14,6 +14,7 @@ from typing import Any
 from gearopt.errors import GearoptError, SolveError
 from gearopt.optimise.certificate import Verdict
 from gearopt.optimise.comparison import Run
+from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Event, Outcome
 from gearopt.optimise.solve import GAP, judge, method_of
@@ -26,7 +27,7 @@ ROUNDING = 1e-9  # relative; a method's word that is better than the checked val
 class Model:
     """A problem with what a reader calls it, and the unit of its objective."""
 
-    problem: Problem
+    problem: Problem | Conic
     words: str = ""
     unit: str = ""
 
@@ -41,7 +42,7 @@ class Entry:
 
     method: str
     model: Model | None = None
-    problem: Problem | None = None
+    problem: Problem | Conic | None = None
     random: bool = True
     paced: bool = False
     counts: str = ""
