@@ -27,6 +27,10 @@ def test_expected_value(path):
         (part,) = result.parts
         assert part.status == "optimal" and part.gap < 1e-9
         assert part.value == pytest.approx(expected["sizing"], abs=DIGIT["sizing"])
+    if "least_factor" in expected:
+        least = result.report["remedies"][0]
+        assert least["kind"] == "least" and result.report["conflict"]
+        assert least["bound"] == pytest.approx(expected["least_factor"], rel=1e-5)
     assert result.file == str(path) and len(result.file_sha256) == 64
 
 
