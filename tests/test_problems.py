@@ -28,8 +28,8 @@ def test_expected_value(path):
         assert part.status == "optimal" and part.gap < 1e-9
         assert part.value == pytest.approx(expected["sizing"], abs=DIGIT["sizing"])
     if "least_factor" in expected:
-        least = result.report["remedies"][0]
-        assert least["kind"] == "least" and result.report["conflict"]
+        least = result.report["ways_out"]["remedies"][0]
+        assert least["kind"] == "least" and result.report["ways_out"]["conflict"]
         assert least["bound"] == pytest.approx(expected["least_factor"], rel=1e-5)
     assert result.file == str(path) and len(result.file_sha256) == 64
 

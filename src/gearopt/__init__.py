@@ -2,9 +2,9 @@
 
 from gearopt.api import compare, explain, load, solve
 from gearopt.errors import CertificateError, GearoptError, SceneError, SolveError
-from gearopt.optimise.comparison import Comparison
+from gearopt.optimise.comparing.comparison import Comparison
 from gearopt.optimise.conic.problem import Conic
-from gearopt.optimise.explanation import Explanation
+from gearopt.optimise.explaining.explanation import Explanation
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Event, Result
 from gearopt.optimise.terms import Param, Repeat, Terms, Var

@@ -8,16 +8,16 @@ from typing import Any
 from pydantic import BaseModel
 
 from gearopt.errors import SolveError
-from gearopt.optimise.compare import EVALUATIONS, SECONDS, SEEDS, Follow, Plan
-from gearopt.optimise.compare import compare as compare_methods
-from gearopt.optimise.comparison import Comparison
+from gearopt.optimise.comparing.compare import EVALUATIONS, SECONDS, SEEDS, Follow, Plan
+from gearopt.optimise.comparing.compare import compare as compare_methods
+from gearopt.optimise.comparing.comparison import Comparison
+from gearopt.optimise.comparing.trial import Model
 from gearopt.optimise.conic.problem import Conic
-from gearopt.optimise.explanation import Explanation
+from gearopt.optimise.explaining.explanation import Explanation
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Result, Watch
 from gearopt.optimise.solve import GAP
 from gearopt.optimise.solve import solve as solve_problem
-from gearopt.optimise.trial import Model
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.load import load as load_file
 from gearopt.scenes.reading.load import scene_module
@@ -73,7 +73,7 @@ def explain(
     every parameter of a problem). Impossible: the limits that cannot hold together, and proven
     remedies: what to write instead. SceneError and SolveError as in `solve`.
     """
-    from gearopt.optimise.explain import explain as explain_problem
+    from gearopt.optimise.explaining.explain import explain as explain_problem
 
     budget = budget or Budget()
     if isinstance(what, Conic):
@@ -100,7 +100,7 @@ DEFAULT = ("ipopt", "annealing", "nsga2")  # compared beside exact algorithms wh
 
 def compare(
     what: str | Path | BaseModel | Problem | Conic,
-    methods: Sequence[str] | None = None,
+    methods: Sequence[str] | str | None = None,
     *,
     seeds: int = SEEDS,
     evaluations: int = EVALUATIONS,
@@ -118,6 +118,7 @@ def compare(
     1.
     """
     plan = Plan(evaluations, seconds, seeds)
+    methods = methods.split(",") if isinstance(methods, str) else methods
     if isinstance(what, Problem | Conic):
         usual = ("conic",) if isinstance(what, Conic) else (*what.methods, *DEFAULT)
         named = usual if methods is None else methods

@@ -12,11 +12,11 @@ import pytest
 import gearopt
 from gearopt import Comparison, Problem, SolveError, Terms, Var
 from gearopt.errors import CertificateError
-from gearopt.optimise.compare import KINDS, PATIENCE
-from gearopt.optimise.comparison import excess, quantile
+from gearopt.optimise.comparing.compare import KINDS, PATIENCE
+from gearopt.optimise.comparing.comparison import excess, quantile
+from gearopt.optimise.comparing.trial import WARM
 from gearopt.optimise.result import Event, Outcome
 from gearopt.optimise.solve import back_ends
-from gearopt.optimise.trial import WARM
 
 PROBLEMS = Path(__file__).parents[2] / "problems"
 SMALL = {"evaluations": 2000, "seconds": 0.02}

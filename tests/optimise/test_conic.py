@@ -105,7 +105,7 @@ def test_the_two_kinds_refuse_each_others_methods():
         solve(disc(), "ipopt")
     with pytest.raises(SolveError, match=r"conic takes a Conic .*; smooth is a Problem"):
         solve(smooth, "conic")
-    with pytest.raises(SolveError, match="no method 'simplex' for disc"):
+    with pytest.raises(SolveError, match="no method 'simplex'; methods: conic"):
         solve(disc(), "simplex")
 
 

@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from gearopt import Param, Problem, Repeat, SolveError, Terms, Var, explain
-from gearopt.optimise.elastic import elastic, handles
-from gearopt.optimise.repair import Clock, least
+from gearopt.optimise.explaining.elastic import elastic
+from gearopt.optimise.explaining.handles import handles
+from gearopt.optimise.explaining.repair import Clock, least
 from gearopt.optimise.result import Budget
 
 # A bar of diameter d under a force F: least d^2 with 4 F S/(pi d^2 s) <= 1 and d <= D.
@@ -114,9 +115,59 @@ def test_repeats_share_one_factor():
         (Repeat("speed", (), loads, row),),
     )
     found = explain(problem)
+    assert set(found.conflict) == {"allowed", "d upper"}
     even = {r.what: r.bound for r in found.remedies}
     assert even["allowed"] == pytest.approx(2.0, rel=1e-9)
     assert even["d upper"] == pytest.approx(2.0, rel=1e-9)
+
+
+def test_rows_of_a_repeat_are_one_limit():
+    """Load 8 needs d = 8: neither the other rows nor the lower bound of d have a part in that."""
+
+    def row(x, p, r):
+        return Terms({}, {"load": r.load / x.d})
+
+    loads = {"load": np.array([1.0, 3.0, 8.0])}
+    d = Var("d", "mm", 1.0, 5.0, 2.0, log=True)
+    repeat = Repeat("speed", (), loads, row)
+    found = explain(Problem("loads", (d,), (), lambda x, p: Terms({"d": x.d}), (repeat,)))
+    assert set(found.conflict) == {"speed.load", "d upper"}
+    assert {r.what: round(r.bound, 9) for r in found.remedies} == {
+        "speed.load": 1.6,
+        "d upper": 1.6,
+    }
+
+
+def test_a_parameter_without_effect_at_the_guess_is_still_the_limit():
+    """(x/S)^2 <= 1 at x = 0: no slope there, but S is what must be written."""
+
+    def evaluate(x, p):
+        return Terms({"x": x.x}, {"reach": (x.x / p.S) ** 2, "need": 1 + (3.0 - x.x) / 4.0})
+
+    least_s = Param("S", "", 2.0, role="limit", key="limits.S")
+    problem = Problem("guess", (Var("x", "", -5.0, 5.0, 0.0),), (least_s,), evaluate)
+    keys = {c.key: float(c.write) for r in explain(problem).remedies for c in r.changes}
+    assert keys["limits.S"] == pytest.approx(3.0, rel=1e-5)
+
+
+def test_an_objective_of_zero_or_below():
+    """min x - 1 over x >= a: 0 at a = 1 (no relative price), -0.5 at a = 0.5."""
+    problem = Problem(
+        "shifted",
+        (Var("x", "", 0.0, 5.0, 2.0),),
+        (Param("a", "", 1.0, role="limit"),),
+        lambda x, p: Terms({"x": x.x - 1.0}, {"least": 1 + (p.a - x.x)}),
+    )
+    assert all(i.price is None for i in explain(problem.at(a=1.0)).influences)
+    (below,) = explain(problem.at(a=0.5)).influences
+    assert below.price == pytest.approx(-0.01, rel=1e-6)  # easing is better, so negative
+    assert below.sensitivity == pytest.approx(1.0, rel=1e-9)
+    assert below.resolved == pytest.approx((1.0, 1.0), rel=1e-2)
+
+
+def test_a_misspelt_role_is_refused():
+    with pytest.raises(ValueError, match="no role 'limt'"):
+        Param("S", "", 1.0, role="limt")
 
 
 def test_sensitivities_against_the_closed_form():

@@ -11,11 +11,11 @@ from typing import Any
 from gearopt.bench.drive import CASES, train_of
 from gearopt.formulations import sizing, teeth
 from gearopt.formulations.train import FaceWidth, Stage, Train
-from gearopt.optimise.compare import Plan, compare
-from gearopt.optimise.comparison import Comparison
+from gearopt.optimise.comparing.compare import Plan, compare
+from gearopt.optimise.comparing.comparison import Comparison
+from gearopt.optimise.comparing.trial import Model
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Param, Terms, Var
-from gearopt.optimise.trial import Model
 from gearopt.physics.modules import SERIES_I
 
 METHODS = ("exact", "scip", "annealing", "nsga2", "ipopt", "gp", "multistart")

@@ -10,7 +10,7 @@ from rich.console import Console
 from gearopt.cli.app import File, Json, app, console
 from gearopt.cli.watching import following
 from gearopt.errors import GearoptError
-from gearopt.optimise.compare import EVALUATIONS, SECONDS, SEEDS, Progress
+from gearopt.optimise.comparing.compare import EVALUATIONS, SECONDS, SEEDS, Progress
 
 
 @app.command()
@@ -38,6 +38,8 @@ def compare(
     """Compare methods by their gap to what is proven. Ctrl-C reports the runs that are finished."""
     from gearopt.api import compare as compare_file
 
+    if html is not None and html.is_dir():
+        raise GearoptError(f"--html {html}: is a folder; name a file, such as {html / 'page.html'}")
     if html is not None and not html.resolve().parent.is_dir():
         raise GearoptError(f"--html {html}: there is no folder {html.resolve().parent}")
     named = [name.strip() for name in methods.split(",") if name.strip()]

@@ -27,9 +27,16 @@ def explain(
     elif found.result.value is None:
         from gearopt.report.terminal.result import show as show_result
 
-        ways = {"conflict": found.conflict, "remedies": [asdict(r) for r in found.remedies]}
+        ways = {k: getattr(found, k) for k in ("conflict", "message")}
+        ways |= {"remedies": [asdict(r) for r in found.remedies]}
         show_result(
-            replace(found.result, report=found.result.report | ways), title(file), console()
+            replace(
+                found.result,
+                report=found.result.report
+                | ({"ways_out": ways} if found.result.status == "infeasible" else {}),
+            ),
+            title(file),
+            console(),
         )
     else:
         from gearopt.report.terminal.explanation import show

@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable
+from difflib import get_close_matches
 from importlib import import_module
 from pkgutil import iter_modules
 from typing import Any
@@ -82,8 +83,11 @@ def method_of(problem: Problem | Conic, name: str) -> Callable[..., Outcome]:
             raise SolveError(f"{name} takes {takes}; {problem.name} is a {kind}")
         run: Callable[..., Outcome] = import_module(f"gearopt.optimise.solvers.{name}").run
         return run
-    known = ", ".join([*problem.methods, *back_ends()])
-    raise SolveError(f"no method {name!r} for {problem.name}; methods: {known}")
+    conic_only = isinstance(problem, Conic)
+    known = [*problem.methods, *(n for n in back_ends() if (n == "conic") == conic_only)]
+    close = get_close_matches(name, known, 1)
+    meant = f" (did you mean {close[0]}?)" if close else ""
+    raise SolveError(f"no method {name!r}{meant}; methods: {', '.join(known)}")
 
 
 def _result(

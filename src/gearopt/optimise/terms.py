@@ -31,6 +31,13 @@ class Param:
     key: str = ""
     role: str | tuple[str, ...] = "data"
 
+    def __post_init__(self) -> None:
+        words = (self.role,) if isinstance(self.role, str) else self.role
+        if unknown := set(words) - {"data", "limit", "given"}:
+            raise ValueError(
+                f"parameter {self.name}: no role {unknown.pop()!r}; data, limit, given"
+            )
+
 
 @dataclass(frozen=True)
 class Var:

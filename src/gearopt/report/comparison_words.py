@@ -4,7 +4,7 @@ import shlex
 from collections.abc import Mapping
 from typing import Any
 
-from gearopt.optimise.comparison import CLOSE, TIGHT, Comparison, Group, Row, Sample
+from gearopt.optimise.comparing.comparison import CLOSE, TIGHT, Comparison, Group, Row, Sample
 from gearopt.report.words import UNITS, number
 
 NOTHING = 1e-12  # a gap below it is rounding

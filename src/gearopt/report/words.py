@@ -13,6 +13,14 @@ UNITS = {
     "percent": "%",
     "ms": "ms",
 }
+VERDICTS = {
+    "optimal": ("proven optimal", "green"),
+    "stationary": ("locally optimal (no bound)", "yellow"),
+    "feasible": ("feasible, not proven optimal", "yellow"),
+    "infeasible": ("impossible, proven", "red"),
+    "limit": ("stopped early", "yellow"),
+    "failed": ("failed", "red"),
+}
 
 
 def columns(first: str, heads: list[str]) -> Table:

@@ -6,190 +6,25 @@ without one, or by the method ipopt, sizes are continuous and proven by a dual b
 
 import math
 from dataclasses import asdict, replace
-from decimal import Decimal
-from fractions import Fraction
-from typing import Annotated, Any
-
-from pydantic import Field, model_validator
+from typing import Any
 
 from gearopt.errors import SolveError
 from gearopt.formulations import sizing, teeth
 from gearopt.formulations.design import describe
-from gearopt.formulations.train import FaceWidth, Stage, Train
+from gearopt.formulations.train import Train
 from gearopt.optimise.certificate import reconcile
-from gearopt.optimise.explain import binding
-from gearopt.optimise.explanation import Explanation
+from gearopt.optimise.comparing.trial import Model
+from gearopt.optimise.explaining.explain import binding
+from gearopt.optimise.explaining.explanation import Explanation
+from gearopt.optimise.explaining.repair import CERTAIN, Clock
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.repair import Clock
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run
-from gearopt.optimise.trial import Model
-from gearopt.physics.loads import torque
 from gearopt.scenes.reading.ask import Ask
-from gearopt.scenes.reading.fields import Table, refuse, whole, words
-from gearopt.scenes.tables.duty import Duty
-from gearopt.scenes.tables.limits import Limits, Objective, Teeth
-from gearopt.scenes.tables.stages import Gears, StageTable
+from gearopt.scenes.tables.drive import EXAMPLE, Scene
 
-
-class Scene(Table):
-    """A drive."""
-
-    title: Annotated[str, words()] = Field("", description="A line for the report")
-    source: Annotated[str, words()] = Field(
-        "", description="Where the data and the expected value come from"
-    )
-    duty: Duty
-    stages: Annotated[int | None, whole(2, 1, 6)] = Field(
-        None, description="Number of stages (or write one [[stage]] table a stage)"
-    )
-    gears: Gears = Field(default_factory=Gears)
-    stage: tuple[StageTable, ...] = Field((), description="One table a stage, from the input on")
-    limits: Limits
-    teeth: Teeth | None = None
-    objective: Objective = Field(default_factory=Objective)
-
-    @model_validator(mode="after")
-    def _consistent(self) -> "Scene":
-        number = len(self.stage)
-        if self.stages is None and not self.stage:
-            if self.gears.face_width_over_diameter is None:
-                raise refuse("is missing: one table [[stage]] a stage", at=("stage",))
-            raise refuse("is missing (or write one [[stage]] table a stage)", at=("stages",))
-        if number > 6:
-            raise refuse(
-                "is one more than the six stages allowed", at=("stage", 6), action="remove"
-            )
-        if self.stages is not None and self.stage and self.stages != number:
-            raise refuse(f"differs from the {number} [[stage]] tables", number, ("stages",))
-        for k, own in enumerate(self.stage or (StageTable(),)):
-            self._check_width(own, ("stage", k) if self.stage else ("gears",))
-            if self.teeth is not None and not self._modules(own):
-                place = ("stage", k, "module") if own.module else ("limits", "module")
-                raise refuse("holds no module that [teeth] allows", self._around(own), place)
-        return self
-
-    def _check_width(self, own: StageTable, place: tuple[Any, ...]) -> None:
-        """One rule for the face width, and a range where a range is needed."""
-        key = (*place, "face_width_over_diameter")
-        if own.face_width is not None:
-            if own.face_width_step is not None:
-                raise refuse(
-                    "stands beside face_width, which fixes the width",
-                    at=(*place, "face_width_step"),
-                    action="remove",
-                )
-            span = own.face_width_over_diameter
-            if span is not None and span[0] == span[1]:
-                raise refuse(
-                    "stands beside face_width: only a range can limit a fixed width",
-                    [float(span[1] / 2), float(span[1])],
-                    key,
-                )
-            return
-        step = own.face_width_step or self.gears.face_width_step
-        span = own.face_width_over_diameter or self.gears.face_width_over_diameter
-        if span is None:
-            ways = " (or give face_width, or set it in [gears])" if place[0] == "stage" else ""
-            raise refuse(f"is missing{ways}", 0.6 if step is None else None, key)
-        if step is not None and span[0] == span[1]:
-            raise refuse(
-                "ties the width, so that it cannot keep to face_width_step: give a range",
-                [float(span[0] / 2), float(span[1])],
-                key,
-            )
-
-    def _modules(self, own: StageTable) -> tuple[Fraction, ...]:
-        span = own.module or self.limits.module
-        ends = () if span is None else tuple(end.exact[0] for end in span)
-        if self.teeth is None:
-            return tuple(sorted(set(ends)))
-        if own.module and ends[0] == ends[1]:
-            return ends[:1]
-        series = self.teeth.modules
-        return tuple(m for m in series if not ends or ends[0] <= m <= ends[1])
-
-    def _around(self, own: StageTable) -> list[str]:
-        """The narrowest range of modules of [teeth] around one that holds none of them."""
-        span = own.module or self.limits.module
-        assert span is not None and self.teeth is not None
-        series = self.teeth.modules
-        below = max((m for m in series if m < span[0].exact[0]), default=series[0])
-        above = min((m for m in series if m > span[1].exact[0]), default=series[-1])
-        return [f"{Decimal(m.numerator) / m.denominator} mm" for m in (below, above)]
-
-    def train(self) -> Train:
-        """The drive as plain numbers."""
-        stages = self.stage or (StageTable(),) * int(self.stages or 0)
-        density = self.objective.density
-        return Train(
-            torque=torque(self.duty.power.value, self.duty.input_speed.value),
-            ratio=self.duty.total_ratio,
-            tolerance=self.duty.ratio_tolerance,
-            stages=tuple(self._stage(s) for s in stages),
-            helix_angle=self.gears.helix_angle.value,
-            coprime=bool(self.teeth and self.teeth.coprime),
-            objective=self.objective.minimise,
-            density=density.value if density else None,
-        )
-
-    def _stage(self, own: StageTable) -> Stage:
-        limits = self.limits
-        diameter = own.wheel_diameter or limits.wheel_diameter
-        return Stage(
-            k_factor=(own.k_factor or limits.load("k_factor")).value,
-            unit_load=(own.unit_load or limits.load("unit_load")).value,
-            face_width=self._face_width(own),
-            modules=self._modules(own),
-            pinion_teeth=own.pinion_teeth or limits.pinion_teeth,
-            wheel_teeth=own.wheel_teeth or limits.wheel_teeth or (1, None),
-            ratio=own.stage_ratio or limits.stage_ratio or (Fraction(1), None),
-            wheel_diameter=diameter.exact[0] if diameter else None,
-        )
-
-    def _face_width(self, own: StageTable) -> FaceWidth:
-        proportion = own.face_width_over_diameter
-        if own.face_width is not None:
-            low, high = proportion or (Fraction(0), None)
-            return FaceWidth(low, high, fixed=own.face_width.exact[0])
-        span = proportion or self.gears.face_width_over_diameter
-        assert span is not None  # checked by _check_width
-        step = own.face_width_step or self.gears.face_width_step
-        return FaceWidth(span[0], span[1], step=step.exact[0] if step else None)
-
-
+__all__ = ["EXAMPLE", "Scene", "explain", "model", "solve"]
 CONTINUOUS = ("ipopt", "gp", "multistart")  # methods that take no whole teeth
-EXAMPLE = """\
-gearopt = 1
-kind = "drive"
-title = "A two-stage drive"
-
-[duty]
-power = "7.5 kW"
-input_speed = "1450 rpm"
-output_speed = "66.5 rpm"      # or: ratio = 21.8
-ratio_tolerance = "1 %"
-
-[gears]
-helix_angle = "25 deg"
-
-[[stage]]                      # from the input on; what is fixed or differs in this stage
-face_width_over_diameter = 0.6 # b/d1; a range [0.3, 0.6] leaves the width free
-
-[[stage]]
-face_width_over_diameter = 0.75
-
-[limits]
-k_factor = "2.07 MPa"          # contact; or: preset = "chong-lee-elevator"
-unit_load = "48 MPa"           # tooth root
-pinion_teeth = [20, 40]
-
-[teeth]                        # whole teeth, standard modules; without it sizes are continuous
-modules = "ISO 54 I"
-
-[objective]
-minimise = "gear_volume"       # or mass, sum_of_centre_distances, total_length
-"""
 
 
 def solve(scene: Scene, ask: Ask) -> Result:
@@ -201,33 +36,44 @@ def solve(scene: Scene, ask: Ask) -> Result:
     result = _answer(scene, ask)
     if result.status != "infeasible":
         return result
-    from gearopt.scenes.explaining.drive import remedies
+    from gearopt.scenes.explaining.remedies import remedies
 
-    clock = Clock(ask.budget.less(result.seconds), ask.watch)
-    conflict, found = remedies(scene, clock)
-    ways = {"conflict": list(conflict), "remedies": [asdict(r) for r in found]}
-    return replace(result, report=result.report | ways)
+    ways = asdict(remedies(scene, Clock(ask.budget.less(result.seconds), ask.watch)))
+    return replace(result, report=result.report | {"ways_out": ways})
 
 
 def explain(scene: Scene, ask: Ask) -> Explanation:
     """Why the drive is as it is, or what would make it possible, in the numbers of its file."""
-    from gearopt.scenes.explaining.drive import influences, remedies
+    from gearopt.scenes.explaining.influences import influences
+    from gearopt.scenes.explaining.numbers import numbers
+    from gearopt.scenes.explaining.remedies import remedies
 
     clock = Clock(ask.budget, ask.watch)
-    result = _answer(scene, ask)
+    half = replace(ask.budget, seconds=ask.budget.seconds and 0.5 * ask.budget.seconds)
+    result = _answer(scene, replace(ask, budget=half))
     if result.status == "infeasible":
-        conflict, ways = remedies(scene, clock)
-        return Explanation(result, conflict, ways, seconds=clock.seconds)
+        ways = remedies(scene, clock)
+        return Explanation(result, **vars(ways), seconds=clock.seconds)
     if result.value is None:
-        return Explanation(result, seconds=clock.seconds)
+        return Explanation(result, message="no design was found in time", seconds=clock.seconds)
 
     def price(other: Scene) -> float | None:
-        return _answer(other, replace(ask, budget=clock.left, top=1)).value
+        if result.status not in CERTAIN:  # a difference to what is not the best means nothing
+            return None
+        found = _answer(other, replace(ask, budget=clock.left, top=1))
+        return found.value if found.status in CERTAIN else None
 
     ideal = run(sizing.problem(scene.train()), "ipopt", clock.left, watch=ask.watch)
     point = ideal[1].x if ideal[0].status == "optimal" else None
     found = tuple(influences(scene, result, point, clock, price))
-    return Explanation(result, binding=binding(result), influences=found, seconds=clock.seconds)
+    late = f"stopped after {len(found)} of {len(numbers(scene))} numbers" if clock.over else ""
+    return Explanation(
+        result,
+        binding=tuple(n for n in binding(result) if not n.startswith("common_divisor")),
+        influences=found,
+        message=late,
+        seconds=clock.seconds,
+    )
 
 
 def _answer(scene: Scene, ask: Ask) -> Result:

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from gearopt.errors import SolveError
 from gearopt.formulations.teeth.progress import MARGIN, TIE, Progress, Teeth
 from gearopt.formulations.teeth.search import BEAM, search
 from gearopt.formulations.teeth.stage import table
@@ -53,6 +54,8 @@ def problem(train: Train, count: int = 1, floor: float = -math.inf) -> Problem:
         if not train.coprime:
             return Terms(found.minimise, limits, equal=found.equal)
         pairs = zip(each(x.pinion_teeth), each(x.wheel_teeth), strict=True)
+        if not isinstance(each(x.pinion_teeth)[0], float | np.ndarray | np.generic):
+            raise SolveError("hunting teeth (coprime) are for exact, annealing and nsga2 only")
         divisors = {
             f"common_divisor[{k}]": np.gcd(np.rint(a).astype(int), np.rint(b).astype(int))
             for k, (a, b) in enumerate(pairs, 1)

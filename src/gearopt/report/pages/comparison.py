@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from gearopt.optimise.comparison import Comparison, Group
+from gearopt.optimise.comparing.comparison import Comparison, Group
 from gearopt.report import comparison_words as words
 from gearopt.report.pages.comparison_figures import LEAST, anytime, final, span
 from gearopt.report.pages.frame import render

@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from gearopt.optimise.comparison import Group, Sample
+from gearopt.optimise.comparing.comparison import Group, Sample
 from gearopt.report.pages.frame import Figure, axis, layout
 
 LEAST = 1e-9  # gaps below it are drawn as none

@@ -4,7 +4,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from gearopt.optimise.comparison import Comparison, Group
+from gearopt.optimise.comparing.comparison import Comparison, Group
 from gearopt.report import comparison_words as words
 
 

@@ -1,47 +1,62 @@
 """An explanation on the terminal: ways out of the impossible, influences on the possible."""
 
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Mapping
 from typing import Any
 
 from rich.console import Console, RenderableType
 from rich.text import Text
 
-from gearopt.optimise.explanation import Explanation
-from gearopt.report.words import UNITS, columns, limit_words, number
+from gearopt.optimise.explaining.explanation import Explanation
+from gearopt.report.words import UNITS, VERDICTS, columns, limit_words, number
 
 KINDS = {"least": "least change", "less": "or ask for less", "choice": "or choose"}
 
 
-def remedies(conflict: Sequence[str], ways: Sequence[Mapping[str, Any]]) -> list[RenderableType]:
-    """What cannot hold together, and the edits that make a design possible."""
+def remedies(found: Mapping[str, Any]) -> list[RenderableType]:
+    """What cannot hold together, and the edits that make a design possible.
+
+    found: conflict, remedies and message, as `explain` and `solve` have them.
+    """
     blocks: list[RenderableType] = []
+    conflict, ways, late = found["conflict"], found["remedies"], found["message"]
     if conflict:
         names = ", ".join(limit_words(n) for n in conflict)
         blocks.append(Text(f"These cannot hold together, and none of them is to spare: {names}."))
     if not ways:
-        blocks.append(Text("No way out was found by moving limits; see docs/explain.md."))
+        words = (
+            f"{late[0].upper()}{late[1:]}." if late else "No way out was found by moving limits."
+        )
+        blocks.append(Text(words))
         return blocks
     heads = ["write in the file", "instead of", "factor", "proven least"]
     table = columns("ways out, one is enough", heads)
     table.columns[1].justify = table.columns[2].justify = "left"
     for way in ways:
         label = KINDS.get(way["kind"], f"{way['what'].replace('_', ' ')}, all alike")
+        product = "product " if len(way["changes"]) > 1 and way["kind"] == "least" else ""
         for k, change in enumerate(way["changes"]):
             first = k == 0 and way["kind"] != "choice"
             table.add_row(
                 Text(label if k == 0 else "  and"),
                 Text(f"{change['key']} = {change['write']}"),
                 Text(change["was"].strip('"')),
-                f"{change['factor']:.4f}" if way["kind"] != "choice" else "",
-                f"{way['bound']:.4f}" if first and way["bound"] is not None else "",
+                _factor(change["factor"]) if way["kind"] != "choice" else "",
+                f"{product}{way['bound']:.4f}" if first and way["bound"] is not None else "",
             )
     blocks.append(table)
     sure = all(way["verified"].get("with_less", "infeasible") == "infeasible" for way in ways)
     words = "Each was tried: a design exists with it"
     words += ", and none with 0.1 % (or one tooth) less. " if sure else ". "
     words += "Proven least: no smaller factor does, even with real-valued teeth and modules."
+    words += f" {late[0].upper()}{late[1:]}." if late else ""
     blocks.append(Text(words))
     return blocks
+
+
+def _factor(factor: float | None) -> str:
+    """A factor; nothing where a number moves away from zero."""
+    return "" if factor is None or math.isinf(factor) else f"{factor:.4f}"
 
 
 def show(explanation: Explanation, title: str, console: Console) -> None:
@@ -49,7 +64,16 @@ def show(explanation: Explanation, title: str, console: Console) -> None:
     result = explanation.result
     unit = UNITS.get(result.objective.get("unit", ""), result.objective.get("unit", ""))
     name = str(result.objective["name"]).replace("_", " ")
-    console.print(Text.assemble((title, "bold"), f": {name} {number(result.value)} {unit}"))
+    words, colour = VERDICTS[result.status]
+    console.print(
+        Text.assemble(
+            (title, "bold"),
+            f": {name} {number(result.value)} {unit}, ",
+            (words, f"bold {colour}"),
+        )
+    )
+    if explanation.message:
+        console.print(Text(f"{explanation.message[0].upper()}{explanation.message[1:]}."))
     full = ", ".join(limit_words(n) for n in explanation.binding)
     console.print(Text(f"Used to the full: {full}." if full else "No limit is used to the full."))
     console.print()

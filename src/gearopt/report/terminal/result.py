@@ -11,16 +11,8 @@ from rich.text import Text
 
 from gearopt.optimise.result import Result
 from gearopt.report.terminal.explanation import remedies
-from gearopt.report.words import UNITS, columns, heading, limit_words, number
+from gearopt.report.words import UNITS, VERDICTS, columns, heading, limit_words, number
 
-VERDICTS = {
-    "optimal": ("proven optimal", "green"),
-    "stationary": ("locally optimal (no bound)", "yellow"),
-    "feasible": ("feasible, not proven optimal", "yellow"),
-    "infeasible": ("impossible, proven", "red"),
-    "limit": ("stopped early", "yellow"),
-    "failed": ("failed", "red"),
-}
 EXACT = 1e-6  # a gap below it is called optimal, one above it is named
 
 ROWS = {  # of the stage table: what it is called, and the factor to its unit
@@ -57,8 +49,8 @@ def _blocks(result: Result) -> list[RenderableType]:
         blocks.append(_limits(result.limits))
         if trains := result.report.get("trains"):
             blocks.append(_trains(trains, result.objective))
-    if "remedies" in result.report:
-        blocks += remedies(result.report["conflict"], result.report["remedies"])
+    if "ways_out" in result.report:
+        blocks += remedies(result.report["ways_out"])
     blocks.append(Text("\n".join(_proof(result))))
     return blocks
 
@@ -156,7 +148,7 @@ def _proof(result: Result) -> list[str]:
             f"limits is missed by at least {least:.2g} %: {names}."
         )
     for part in result.parts:
-        if part.value is not None and result.value is not None:
+        if part.value is not None and result.value is not None and result.status == "optimal":
             lines.append(
                 f"With real-valued teeth and modules: {number(part.value)} {unit} "
                 f"(whole teeth and standard modules cost "

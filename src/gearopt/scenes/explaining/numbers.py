@@ -3,19 +3,20 @@
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
+from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Context, Decimal
 from fractions import Fraction
 from typing import Any
 
 from pydantic import BaseModel
 
+from gearopt.optimise.explaining.explain import DIGITS, ROOM
 from gearopt.scenes.reading.fields import Reads
 from gearopt.scenes.reading.toml import dotted, toml_text
 from gearopt.units import Quantity
 
+SHORT = 4  # digits of a number that is kept as it is
+MET = 5e-9  # relative, by which it may miss: half of what a row may exceed its limit
 Path = tuple[str | int, ...]
-DIGITS = 6  # of a number that is proposed; rounded to the easy side
-ROOM = 2e-7  # a proposal asks for this much more than the least factor
 
 
 @dataclass(frozen=True)
@@ -111,20 +112,29 @@ def eased(value: Any, factor: float, direction: int) -> Any:
     Integers stay integers (one that is meant but for rounding is taken); others keep DIGITS digits
     and get ROOM, to be feasible in doubles.
     """
-    moved = Fraction(factor * (1.0 if isinstance(value, int) else 1.0 + ROOM)) ** direction
+    moved = Fraction(factor) ** direction
     if isinstance(value, Quantity):
-        return replace(value, number=Fraction(_rounded(value.number * moved, direction)))
+        return replace(value, number=_rounded(value.number * moved, direction))
     if isinstance(value, int):
         number, near = float(value * moved), round(value * moved)
         if abs(number - near) <= ROOM * number:
             return near
         return math.ceil(number) if direction > 0 else math.floor(number)
-    return Fraction(_rounded(value * moved, direction))
+    return _rounded(value * moved, direction)
 
 
-def _rounded(value: Fraction, direction: int) -> Decimal:
-    context = Context(prec=DIGITS, rounding=ROUND_CEILING if direction > 0 else ROUND_FLOOR)
-    return context.divide(Decimal(value.numerator), Decimal(value.denominator))
+def _rounded(value: Fraction, direction: int) -> Fraction:
+    """A number with room, of DIGITS digits, on the easy side; a short one that is met is kept."""
+
+    def decimal(number: Fraction, digits: int, rounding: str) -> Fraction:
+        context = Context(prec=digits, rounding=rounding)
+        return Fraction(context.divide(Decimal(number.numerator), Decimal(number.denominator)))
+
+    short = decimal(value, SHORT, ROUND_HALF_EVEN)
+    if abs(short - value) <= MET * value:
+        return short
+    roomy = value * Fraction(1.0 + ROOM) ** direction
+    return decimal(roomy, DIGITS, ROUND_CEILING if direction > 0 else ROUND_FLOOR)
 
 
 def exact(value: Fraction) -> Decimal | int:

@@ -13,7 +13,7 @@ from typing import Any
 
 from gearopt.errors import GearoptError, SolveError
 from gearopt.optimise.certificate import Verdict
-from gearopt.optimise.comparison import Run
+from gearopt.optimise.comparing.comparison import Run
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Event, Outcome

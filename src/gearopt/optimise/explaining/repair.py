@@ -11,14 +11,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gearopt.optimise.elastic import Handle, elastic
+from gearopt.optimise.explaining.elastic import elastic
+from gearopt.optimise.explaining.handles import REACH, Handle
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Result, Watch
 from gearopt.optimise.solve import solve
 from gearopt.optimise.terms import Array
 
+CERTAIN = ("optimal", "stationary")
 SAME = 1e-7  # relative: two repairs as small as each other; a factor below 1 + SAME is none
-NEAR = 1e-4  # a verified repair may ask for this much more than the least factor
 
 
 @dataclass(frozen=True)
@@ -34,11 +35,6 @@ class Repair:
     factor: float
     bound: float | None
     moves: tuple[tuple[Handle, float], ...]
-
-    @property
-    def family(self) -> str:
-        """Name of the limits of an even repair."""
-        return self.moves[0][0].family if self.kind == "even" else ""
 
 
 class Clock:
@@ -69,6 +65,11 @@ class Clock:
         self.stopped = self.stopped or result.status == "limit"
         return result
 
+    def value(self, problem: Problem) -> float | None:
+        """The optimal value of a problem; None where it is not certain that it is one."""
+        result = self.solve(problem)
+        return result.value if result.status in CERTAIN else None
+
 
 def least(problem: Problem, movable: Sequence[Handle], clock: Clock) -> Repair | None:
     """The repair of the smallest product of factors, with as few moves as that product allows.
@@ -77,7 +78,7 @@ def least(problem: Problem, movable: Sequence[Handle], clock: Clock) -> Repair |
     """
     form = elastic(problem, [[h] for h in movable])
     found = clock.solve(form)
-    if found.value is None:
+    if found.value is None or found.status not in CERTAIN:
         return None
     factors = np.atleast_1d(found.design["relaxation"])
     reach = np.array([h.reach for h in movable])
@@ -88,7 +89,11 @@ def least(problem: Problem, movable: Sequence[Handle], clock: Clock) -> Repair |
         fewer = allowed.copy()
         fewer[k] = 1.0
         other = clock.solve(form.within("relaxation", 1.0, tuple(fewer)))
-        if other.value is not None and other.value <= found.value * (1.0 + SAME):
+        if (
+            other.status in CERTAIN
+            and other.value is not None
+            and other.value <= found.value * (1.0 + SAME)
+        ):
             allowed, factors = fewer, np.atleast_1d(other.design["relaxation"])
     factors = _whole(form, movable, factors, allowed, clock)
     moves = tuple((h, float(f)) for h, f in zip(movable, factors, strict=True) if f > 1.0 + SAME)
@@ -130,23 +135,23 @@ def _whole(
 def even(problem: Problem, family: Sequence[Handle], clock: Clock) -> Repair | None:
     """The repair of one common factor for a family of limits; None where it cannot suffice."""
     found = clock.solve(elastic(problem, [family]))
-    if found.value is None:
+    if found.value is None or found.status not in CERTAIN:
         return None
     moves = tuple((h, found.value) for h in family)
     return Repair("even", found.value, found.bound, moves)
 
 
 def impossible(
-    problem: Problem, clock: Clock, movable: Sequence[Handle]
+    problem: Problem, clock: Clock, movable: Sequence[Handle], limits: Sequence[Handle]
 ) -> tuple[tuple[Handle, ...], list[Repair]]:
     """The conflict of an impossible problem and its repairs: the least one, then the even ones.
 
+    movable: what a repair may move; limits: what may be named in the conflict.
     Limits are tried first; values that are given (a duty, a fixed size) move only where relaxing
     limits does not help. Even repairs of given values are listed beside, as ways to ask for less.
     """
-    limits = [h for h in movable if not h.given]
     found: list[Repair] = []
-    for allowed in (limits, list(movable)):
+    for allowed in ([h for h in movable if not h.given], list(movable)):
         best = least(problem, allowed, clock) if allowed else None
         if best is not None:
             break
@@ -154,7 +159,8 @@ def impossible(
         return (), []
     if not best.moves:  # it was possible all along
         return (), []
-    blamed = conflict(problem, allowed, clock)
+    given = [h for h in allowed if h.given]
+    blamed = conflict(problem, [*limits, *given], clock)
     found.append(best)
     for family in families(movable).values():
         if clock.over:
@@ -167,10 +173,11 @@ def impossible(
 
 
 def families(movable: Sequence[Handle]) -> dict[str, list[Handle]]:
-    """Handles by family, in their order."""
+    """Handles by family, in their order; values that are given apart for up and down."""
     found: dict[str, list[Handle]] = {}
     for handle in movable:
-        found.setdefault(handle.family, []).append(handle)
+        way = f" {handle.direction:+d}" if handle.given else ""
+        found.setdefault(f"{handle.family}{way}", []).append(handle)
     return found
 
 
@@ -202,7 +209,7 @@ def conflict(problem: Problem, movable: Sequence[Handle], clock: Clock) -> tuple
 
 def _verdict(form: Problem, kept: Sequence[int], movable: Sequence[Handle], clock: Clock) -> Result:
     """Solve with the kept limits as they are and all others dropped."""
-    upper = np.array([h.reach for h in movable])
+    upper = np.full(len(movable), REACH)
     upper[list(kept)] = 1.0
     return clock.solve(form.within("relaxation", 1.0, tuple(upper)))
 
@@ -210,6 +217,4 @@ def _verdict(form: Problem, kept: Sequence[int], movable: Sequence[Handle], cloc
 def _blamed(verdict: Result, kept: Sequence[int], movable: Sequence[Handle]) -> list[int]:
     """Those of the kept limits that the proof of impossibility uses."""
     rows = set(verdict.proof.get("conflict", ()))
-    bounds = {f"{movable[k].name}": k for k in kept if not movable[k].rows}
-    used = [k for k in kept if rows & set(movable[k].rows) or k in bounds.values()]
-    return used or list(kept)
+    return [k for k in kept if rows & set(movable[k].rows)] or list(kept)

@@ -8,10 +8,10 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from gearopt.errors import SolveError
-from gearopt.optimise.comparison import Comparison, Group, Row, Run, sample
+from gearopt.optimise.comparing.comparison import Comparison, Group, Row, Run, sample
+from gearopt.optimise.comparing.trial import Entry, Model, attempt, enter
 from gearopt.optimise.result import Budget, Event
 from gearopt.optimise.solve import GAP, judge, method_of
-from gearopt.optimise.trial import Entry, Model, attempt, enter
 
 EVALUATIONS, SECONDS, SEEDS = 20_000, 2.0, 25
 PATIENCE = 10.0  # times the seconds: the end of a run by evaluations whose evaluations are slow

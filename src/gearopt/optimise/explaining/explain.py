@@ -8,16 +8,19 @@ from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 
 import numpy as np
 
-from gearopt.optimise.elastic import PARAM, Handle, effective, elastic, handles
-from gearopt.optimise.explanation import Change, Explanation, Influence, Remedy
+from gearopt.optimise.explaining.elastic import elastic
+from gearopt.optimise.explaining.explanation import Change, Explanation, Influence, Remedy
+from gearopt.optimise.explaining.handles import PARAM, Handle, effective, handles
+from gearopt.optimise.explaining.repair import Clock, Repair, impossible
+from gearopt.optimise.explaining.sensitivity import BINDS, sensitivities
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.repair import Clock, Repair, impossible
 from gearopt.optimise.result import Budget, Outcome, Result, Watch
-from gearopt.optimise.sensitivity import BINDS, sensitivities
 from gearopt.optimise.solve import run
 from gearopt.optimise.terms import Array, spread
 
+THERE = ("optimal", "stationary", "feasible")  # a design exists
 STEP = 1e-3  # relative, of the re-solves that check a sensitivity
+ZERO = 1e-9  # of the objective at the guess
 EASE = 0.01  # relative, of the step whose price is told
 TAKEN_BACK = 1e-3  # a remedy this much smaller must be impossible
 DIGITS = 6  # of a number that is proposed; rounded to the easy side
@@ -36,17 +39,23 @@ def explain(
     start = time.perf_counter()
     clock = Clock(budget or Budget(), watch)
     result, outcome = run(problem, "ipopt", clock.left, watch=watch)
-    if result.value is None:
-        conflict, repairs = impossible(problem, clock, handles(problem))
+    if result.status in ("infeasible", "failed"):
+        found_ = handles(problem)
+        limits = [h for h in found_ if not h.given]
+        conflict, repairs = impossible(problem, clock, found_, limits)
+        ways = [_remedy(problem, r, clock) for r in repairs]
         found = Explanation(
             result,
             tuple(h.name for h in conflict),
-            tuple(_remedy(problem, r, clock) for r in repairs),
+            tuple(way for way in ways if way.verified["with"] in THERE),
+            message="time ran out before all ways out were tried" if clock.over else "",
         )
+    elif result.value is None or outcome.x is None:
+        found = Explanation(result, message="no design was found in time")
     else:
-        assert outcome.x is not None
         influences = tuple(_influences(problem, result, outcome, clock))
-        found = Explanation(result, binding=binding(result), influences=influences)
+        late = "stopped before all numbers were looked at" if clock.over else ""
+        found = Explanation(result, (), (), binding(result), influences, late)
     return replace(found, seconds=time.perf_counter() - start)
 
 
@@ -62,9 +71,11 @@ def slopes(
 
     def slope(factor: float) -> float | None:
         other = solve_at(factor)
-        if other is None or value <= 0 or other <= 0:
+        if other is None or value == 0.0:
             return None
-        return math.log(other / value) / math.log(factor)
+        if min(other, value) > 0.0:
+            return math.log(other / value) / math.log(factor)
+        return (other - value) / (abs(value) * math.log(factor))
 
     return slope(1.0 - STEP), slope(1.0 + STEP)
 
@@ -73,7 +84,7 @@ def _influences(
     problem: Problem, result: Result, outcome: Outcome, clock: Clock
 ) -> Iterator[Influence]:
     assert outcome.x is not None and result.value is not None
-    value = result.value
+    value = _nonzero(problem, result.value)
     slope = sensitivities(problem, outcome.x).parameters
     limits = {h.place: h for h in handles(problem) if h.kind == PARAM and not h.given}
     used = effective(problem)
@@ -84,22 +95,31 @@ def _influences(
             continue
 
         def solved(factor: float, place: int = place) -> float | None:
-            return clock.solve(_scaled(problem, place, factor)).value
+            return clock.value(_scaled(problem, place, factor))
 
         step, price = "", None
         if place in limits:
             direction = limits[place].direction
             eased = solved(1.0 + direction * EASE)
             step = f"{direction * EASE:+.0%}"
-            price = None if eased is None else eased / value - 1.0
+            price = None if eased is None or value == 0.0 else (eased - value) / abs(value)
+        sides = slopes(value, solved)
+        if clock.over:  # the row may be half done
+            return
         yield Influence(
             key or name,
             f"{number:.10g}",
-            float(slope[place]),
-            slopes(value, solved),
+            float(slope[place]) if value else None,
+            sides,
             step,
             price,
         )
+
+
+def _nonzero(problem: Problem, value: float) -> float:
+    """An objective, or 0 where it is rounding beside that of the guess: nothing is relative to it."""
+    there = float(problem.batch(problem.bounds()[2][None]).F[0, 0])
+    return 0.0 if math.isfinite(there) and abs(value) <= ZERO * abs(there) else value
 
 
 def _inputs(problem: Problem) -> list[tuple[str, str, float]]:

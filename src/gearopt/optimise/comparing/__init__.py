@@ -1,0 +1,1 @@
+"""Methods on one problem, held side by side."""

@@ -1,0 +1,1 @@
+"""Repairs of an impossible problem, sensitivities of a possible one."""

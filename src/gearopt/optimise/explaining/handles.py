@@ -1,0 +1,204 @@
+"""What of a problem its user may relax: parameters that are limits, bounds, and else rows.
+
+A limit is relaxed where the user wrote it: in its parameter (so that a safety factor that enters
+squared is answered by the number to write), in a bound of a variable, and only where neither exists
+in the row itself.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.terms import Array, spread
+
+REACH = 1e6  # the largest factor by which a limit may be relaxed; finite, for the dual bound
+POINTS = 8  # around the guess at which the direction of a parameter is looked at
+PARAM, ROW, LOWER, UPPER = "parameter", "row", "lower bound", "upper bound"
+
+
+@dataclass(frozen=True)
+class Handle:
+    """One number of the user that may be relaxed.
+
+    name: of the limit as reported. kind: parameter, row, lower bound or upper bound; place: its
+    index among parameter values, inequality rows or columns. value, unit, key: what stands there
+    now. direction: +1 where a larger value is easier, -1 where a smaller one is. rows: names of
+    the rows it governs. given: a value that the user fixed, no limit. reach: the largest factor by
+    which it may move. whole: it is written as an integer.
+    """
+
+    name: str
+    kind: str
+    place: int
+    value: float
+    direction: int
+    unit: str = ""
+    key: str = ""
+    rows: tuple[str, ...] = ()
+    given: bool = False
+    reach: float = REACH
+    whole: bool = False
+
+    @property
+    def family(self) -> str:
+        """What the limits of all stages or components have in common: the name before [k]."""
+        return self.name.split("[")[0]
+
+    def relaxed(self, factor: float) -> float:
+        """The value to write for a factor >= 1."""
+        if self.kind in (LOWER, UPPER) and self.value <= 0:
+            return self.value + self.direction * (factor - 1.0) * scale(self.value)
+        return self.value * factor**self.direction
+
+    def eased(self, factor: float) -> float:
+        """The factor that is asked for a needed one: of a whole number, that of the next easier."""
+        if not self.whole:
+            return factor
+        number = self.relaxed(factor)
+        near = round(number)
+        if abs(number - near) > 1e-6 * abs(number):
+            near = math.ceil(number) if self.direction > 0 else math.floor(number)
+        return float((near / self.value) ** self.direction)
+
+    def one_back(self, factor: float) -> float:
+        """The factor of the next harder whole number."""
+        return float(
+            ((round(self.relaxed(factor)) - self.direction) / self.value) ** self.direction
+        )
+
+
+def handles(problem: Problem) -> tuple[Handle, ...]:
+    """Every number that a repair may move: limits first, then values that are given."""
+    found, governed = _parameters(problem)
+    own: dict[str, list[int]] = {}  # rows of a repeat are one limit
+    for k, row in enumerate(problem.rows.inequalities):
+        if row.kind == "limits" and k not in governed:
+            own.setdefault(_limit(problem, row.name), []).append(k)
+    for name, places in own.items():
+        rows = tuple(problem.rows.inequalities[k].name for k in places)
+        found.append(Handle(name, ROW, places[0], 1.0, 1, rows=rows))
+    found += _bounds(problem)
+    return tuple(sorted(found, key=lambda h: h.given))
+
+
+def _limit(problem: Problem, row: str) -> str:
+    """The name of the limit a row belongs to: without its number if it is a repeat's."""
+    repeated = any(row.startswith(f"{r.name}.") for r in problem.repeats)
+    return row.rsplit("[", 1)[0] if repeated else row
+
+
+def _parameters(problem: Problem) -> tuple[list[Handle], set[int]]:
+    """Parameters that may move, and the rows they govern."""
+    acts, signs, elsewhere = _slopes(problem)
+    rows = problem.rows.inequalities
+    roles = [np.broadcast_to(np.asarray(q.role), (q.size,)) for q in problem.parameters]
+    movers = np.concatenate(roles or [np.empty(0, str)]) != "data"
+    found: list[Handle] = []
+    governed: set[int] = set()
+    start = 0
+    for parameter, own in zip(problem.parameters, roles, strict=True):
+        values = spread(parameter.value, parameter.size)
+        for k, (role, value) in enumerate(zip(own, values, strict=True)):
+            place = start + k
+            touched = np.flatnonzero(acts[:, place])
+            ways = {int(s) for s in signs[touched, place]}
+            only = all(rows[r].kind == "limits" for r in touched) and not elsewhere[place]
+            movable = only and len(ways) == 1 and value > 0 and math.isfinite(value)
+            if role == "data" or not movable:
+                continue
+            names = tuple(rows[r].name for r in touched)
+            label = parameter.name if parameter.size == 1 else f"{parameter.name}[{k + 1}]"
+            alone = len(names) == 1 and acts[touched[0]][movers].sum() == 1
+            name = names[0] if alone else label
+            sign = -ways.pop()
+            found.append(
+                Handle(
+                    name,
+                    PARAM,
+                    place,
+                    value,
+                    sign,
+                    parameter.unit,
+                    parameter.key,
+                    names,
+                    role == "given",
+                )
+            )
+            governed |= set(touched.tolist())
+        start += parameter.size
+    return found, governed
+
+
+def _slopes(problem: Problem) -> tuple[Array, Array, Array]:
+    """How rows depend on parameters: acts (ng, np), signs (ng, np), elsewhere (np,).
+
+    acts: a parameter stands in the row; signs: the one sign of its derivative at points of the box,
+    0 where it changes; elsewhere: it acts on the objective or an equality.
+    """
+    import casadi as ca
+
+    x, p, (f, g, h) = _symbols(problem)
+    slopes = ca.jacobian(g, p)
+    acts = np.array(ca.DM(slopes.sparsity(), 1.0), float).reshape(g.numel(), p.numel()) != 0
+    at = ca.Function("slopes", [x, p], [slopes])
+    lower, upper, guess = problem.bounds()
+    logarithmic = np.array([v.log for v, _ in problem.columns])
+    draw = np.random.default_rng(0)
+    signs = np.zeros(acts.shape)
+    mixed = np.zeros(acts.shape, bool)
+    for spread_ in (0.0, *[0.1] * POINTS):
+        step = spread_ * draw.standard_normal(len(guess))
+        point = np.where(logarithmic, guess * np.exp(step), guess + step * (1.0 + np.abs(guess)))
+        values = np.array(at(np.clip(point, lower, upper), problem.parameter_values()), float)
+        here = np.sign(np.nan_to_num(values)).reshape(acts.shape)
+        mixed |= (signs * here) < 0
+        signs = np.where(signs == 0, here, signs)
+    other = ca.which_depends(ca.vertcat(f, h), p, 1, False) if p.numel() else []
+    return acts, np.where(mixed, 0.0, signs), np.array(other, bool)
+
+
+def effective(problem: Problem) -> Array:
+    """Which parameter components (np,) the text uses at all."""
+    import casadi as ca
+
+    x, p, outputs = _symbols(problem)
+    used = ca.which_depends(ca.vertcat(*outputs), p, 1, False) if p.numel() else []
+    return np.array(used, bool)
+
+
+def _symbols(problem: Problem) -> tuple[Any, Any, Any]:
+    """Symbols of point and parameters, and the terms f, g, h of them."""
+    terms = problem.traced().terms
+    x, p = terms.sx_in() if terms.is_a("SXFunction") else terms.mx_in()
+    return x, p, terms(x, p)
+
+
+def _bounds(problem: Problem) -> list[Handle]:
+    """Bounds that the user wrote, and values that are given by equal ones."""
+    import casadi as ca
+
+    lower, upper, _ = problem.bounds()
+    x, _, outputs = _symbols(problem)
+    used = ca.which_depends(ca.vertcat(*outputs), x, 1, False)
+    shared = sum(v.size for v in problem.variables)  # bounds within a repeat stay as they are
+    found = []
+    for k, (variable, name) in enumerate(problem.columns):
+        given = lower[k] == upper[k]
+        if not used[k] or (variable.search and not given) or k >= shared:
+            continue
+        for kind, value, sign in ((LOWER, lower[k], -1), (UPPER, upper[k], 1)):
+            if math.isfinite(value):
+                word = name if given else f"{name} {kind.split()[0]}"
+                own = (f"{name} {kind}",)
+                found.append(
+                    Handle(word, kind, k, float(value), sign, variable.unit, rows=own, given=given)
+                )
+    return found
+
+
+def scale(value: float) -> float:
+    """The unit in which a bound at or below zero moves."""
+    return max(abs(value), 1.0)
