@@ -67,6 +67,8 @@ def explain(scene: Scene, ask: Ask) -> Explanation:
     point = ideal[1].x if ideal[0].status == "optimal" else None
     found = tuple(influences(scene, result, point, clock, price))
     late = f"stopped after {len(found)} of {len(numbers(scene))} numbers" if clock.over else ""
+    if result.status not in CERTAIN:
+        late = late or "easing a limit is not priced, because the answer is not proven"
     return Explanation(
         result,
         binding=tuple(n for n in binding(result) if not n.startswith("common_divisor")),

@@ -117,7 +117,7 @@ def _influences(
 
 
 def _nonzero(problem: Problem, value: float) -> float:
-    """An objective, or 0 where it is rounding beside that of the guess: nothing is relative to it."""
+    """An objective, or 0 where it is rounding beside that of the guess."""
     there = float(problem.batch(problem.bounds()[2][None]).F[0, 0])
     return 0.0 if math.isfinite(there) and abs(value) <= ZERO * abs(there) else value
 

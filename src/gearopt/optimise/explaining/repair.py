@@ -142,11 +142,16 @@ def even(problem: Problem, family: Sequence[Handle], clock: Clock) -> Repair | N
 
 
 def impossible(
-    problem: Problem, clock: Clock, movable: Sequence[Handle], limits: Sequence[Handle]
+    problem: Problem,
+    clock: Clock,
+    movable: Sequence[Handle],
+    limits: Sequence[Handle],
+    together: Sequence[Sequence[Handle]] = (),
 ) -> tuple[tuple[Handle, ...], list[Repair]]:
     """The conflict of an impossible problem and its repairs: the least one, then the even ones.
 
-    movable: what a repair may move; limits: what may be named in the conflict.
+    movable: what a repair may move; limits: what may be named in the conflict; together: further
+    groups of limits to move alike.
     Limits are tried first; values that are given (a duty, a fixed size) move only where relaxing
     limits does not help. Even repairs of given values are listed beside, as ways to ask for less.
     """
@@ -162,7 +167,7 @@ def impossible(
     given = [h for h in allowed if h.given]
     blamed = conflict(problem, [*limits, *given], clock)
     found.append(best)
-    for family in families(movable).values():
+    for family in (*families(movable).values(), *together):
         if clock.over:
             break
         alike = even(problem, family, clock)

@@ -32,7 +32,7 @@ def influences(
     base = sizing.problem(scene.train())
     slope = None if ideal is None else sensitivities(base, ideal)
     value = None if ideal is None else float(base.batch(ideal[None]).F[0, 0])
-    for number in numbers(scene):
+    for number in (*numbers(scene), *_preset(scene)):
         if clock.over:
             return
         if number.path[:2] == ("teeth", "modules") and _is_series(scene):
@@ -59,6 +59,12 @@ def _smooth(scene: Scene, number: Number) -> bool:
     """
     in_series = scene.teeth is not None and _is_range(number) and "module" in number.path
     return bool(getattr(number.value, "number", number.value)) and not in_series
+
+
+def _preset(scene: Scene) -> tuple[Number, ...]:
+    """The load limits that a preset sets, which the file does not write."""
+    names = ("k_factor", "unit_load") if scene.limits.preset else ()
+    return tuple(Number(("limits", name), scene.limits.load(name)) for name in names)
 
 
 def _is_range(number: Number) -> bool:

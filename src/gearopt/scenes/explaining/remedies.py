@@ -49,11 +49,12 @@ def remedies(scene: Scene, clock: Clock) -> Ways:
         if (reach := _reach(scene, h)) > 1.0
     ]
     everything = [h for h in handles(base) if not h.given]
-    conflict, repairs = impossible(base, clock, movable, everything)
+    loads = [h for h in movable if h.family in ("k_factor", "unit_load")]  # a better material
+    conflict, repairs = impossible(base, clock, movable, everything, [loads])
     if not repairs and scene.teeth is not None:  # possible but for whole teeth
         repairs = [
-            Repair("even", 1.0, 1.0, tuple((h, 1.0) for h in family))
-            for family in families(movable).values()
+            Repair("even", 1.0, None, tuple((h, 1.0) for h in family))
+            for family in (*families(movable).values(), loads)
         ]
     wider = [list(conflict), [h for h in movable if not h.given]]
     tried = [_remedy(scene, repair, wider, clock) for repair in repairs]
