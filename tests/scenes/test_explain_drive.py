@@ -348,3 +348,27 @@ def test_what_a_stopped_explanation_prints_is_what_the_whole_one_prints():
             full = whole[i.key]
             assert i.sensitivity == pytest.approx(full.sensitivity, abs=1e-9)
             assert i.price is None or i.price == pytest.approx(full.price, abs=1e-9)
+
+
+PRESET = SMALL_WHEELS.replace('k_factor = "2.07 MPa"', 'preset = "chong-lee-elevator"').replace(
+    'unit_load = "48 MPa"\n', ""
+)
+
+
+def test_a_better_material_is_worth_as_much_as_less_power():
+    """K and U enter as T/K and T/U: both limits times f is the same as the power over f."""
+    scene, content = scene_of(without_teeth(PRESET))
+    ways = {r.what: r for r in explain(scene).remedies}
+    loads, power = ways["k_factor, unit_load"], ways["torque"]
+    assert loads.bound == pytest.approx(power.bound, rel=1e-9)
+    assert {c.key for c in loads.changes} == {
+        f"stage[{k}].{name}" for k in (1, 2) for name in ("k_factor", "unit_load")
+    }
+    assert verify(content, loads) and verify(content, power)
+
+
+def test_load_limits_of_a_preset_have_their_influence():
+    text = PRESET.replace('wheel_diameter = "250 mm"', "")
+    found = {i.key: i for i in explain(scene_of(text)[0]).influences}
+    assert found["limits.k_factor"].value == "300 psi"
+    assert found["limits.k_factor"].sensitivity == pytest.approx(-1, abs=1e-9)
