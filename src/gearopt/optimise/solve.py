@@ -12,7 +12,6 @@ import numpy as np
 from gearopt.errors import SolveError
 from gearopt.optimise import solvers
 from gearopt.optimise.certificate import Verdict, certify
-from gearopt.optimise.conic import certificate as conic
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Result, Watch, versions
@@ -68,6 +67,8 @@ def _default(problem: Problem | Conic) -> str:
 def judge(problem: Problem | Conic, method: str, outcome: Outcome, gap: float) -> Verdict:
     """What is certain of a method's outcome, by the certificate of the problem's kind."""
     if isinstance(problem, Conic):
+        from gearopt.optimise.conic import certificate as conic
+
         return conic.certify(problem, outcome, gap)
     return certify(problem, outcome, gap, exact=method in problem.methods)
 

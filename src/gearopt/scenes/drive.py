@@ -14,9 +14,7 @@ from gearopt.formulations.design import describe
 from gearopt.formulations.train import Train
 from gearopt.optimise.certificate import reconcile
 from gearopt.optimise.comparing.trial import Model
-from gearopt.optimise.explaining.explain import binding
 from gearopt.optimise.explaining.explanation import Explanation
-from gearopt.optimise.explaining.repair import CERTAIN, Clock
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run
@@ -36,6 +34,7 @@ def solve(scene: Scene, ask: Ask) -> Result:
     result = _answer(scene, ask)
     if result.status != "infeasible":
         return result
+    from gearopt.optimise.explaining.repair import Clock
     from gearopt.scenes.explaining.remedies import remedies
 
     ways = asdict(remedies(scene, Clock(ask.budget.less(result.seconds), ask.watch)))
@@ -44,6 +43,8 @@ def solve(scene: Scene, ask: Ask) -> Result:
 
 def explain(scene: Scene, ask: Ask) -> Explanation:
     """Why the drive is as it is, or what would make it possible, in the numbers of its file."""
+    from gearopt.optimise.explaining.explain import binding
+    from gearopt.optimise.explaining.repair import CERTAIN, Clock
     from gearopt.scenes.explaining.influences import influences
     from gearopt.scenes.explaining.numbers import numbers
     from gearopt.scenes.explaining.remedies import remedies
