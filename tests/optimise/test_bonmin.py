@@ -2,17 +2,20 @@
 
 import math
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import gearopt
+from gearopt import load
 from gearopt.errors import SolveError
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import solve
 from gearopt.optimise.solvers import bonmin
 from gearopt.optimise.terms import Terms, Var
+from gearopt.scenes.drive import model
 
 SERIES = (1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0)
 
@@ -150,3 +153,16 @@ def test_budget_and_watcher_kill_it(monkeypatch):
 
     with pytest.raises(KeyboardInterrupt):
         solve(problem, "bonmin", watch=interrupted)
+
+
+@pytest.mark.slow
+def test_stopped_after_its_first_point_it_gives_that_point():
+    """Three stages: the first point comes within a second, the best after two or more."""
+    path = Path(__file__).parents[2] / "problems" / "three_stage.toml"
+    problem = model(load(path), "bonmin").problem
+    for seconds in (1.0, 2.0, 4.0, 8.0):  # until the first point is there, before the best one is
+        result = solve(problem, "bonmin", watch=lambda event, s=seconds: event.seconds < s)
+        if result.value is not None:
+            break
+    assert result.value is not None and result.value >= 12677057.9
+    assert result.status == "limit" or result.value == pytest.approx(12677057.9, rel=1e-6)

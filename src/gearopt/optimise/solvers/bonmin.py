@@ -7,7 +7,7 @@ success 3 to 95 % above the optimum of drives.
 Bonmin runs in a process of its own, because it writes to the standard output whatever its options
 say, has had loops that its time limit does not end, and calls nothing back. Within a budget it ends
 by its own limit, as a rule with its best point; killed, by a longer node or by the watcher, it
-takes what it had found with it.
+takes with it what it had found after its first point.
 """
 
 import json
@@ -16,7 +16,7 @@ import os
 import subprocess
 import sys
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -30,6 +30,7 @@ POLL = 0.05  # seconds between two looks at budget and watcher
 MOST = 700.0  # logarithm of the largest double
 SHARE = 0.6  # of the time left is Bonmin's own limit, which it looks at between nodes
 GRACE = 0.1  # seconds beyond the budget after which it is killed
+AMPLE = 10.0  # seconds left with which a first point is asked for before the best one
 SCALE = 1e3  # the objective at the guess: Bonmin cuts off what is better by less than 1e-5
 OPTIONS = {
     "algorithm": "B-BB",
@@ -66,7 +67,8 @@ def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Out
             seconds = time.perf_counter() - clock
             late = budget.seconds is not None and seconds > budget.seconds + GRACE
             if late or (watch is not None and watch(Event(seconds, 0)) is False):
-                return Outcome(None, finished=False, message="Bonmin was stopped without a point")
+                process.kill()
+                return _stopped(problem, columns, process.communicate()[0])
             try:
                 answer, broken = process.communicate(text, timeout=POLL)
                 break
@@ -78,7 +80,7 @@ def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Out
     if process.returncode != 0 or not answer:
         reason = (broken.strip().splitlines() or [f"it ended with {process.returncode}"])[-1]
         raise SolveError(f"bonmin on {problem.name}: {reason}")
-    return _outcome(problem, columns, json.loads(answer))
+    return _outcome(problem, columns, json.loads(answer.splitlines()[-1]))
 
 
 @dataclass(frozen=True)
@@ -199,28 +201,46 @@ def _outcome(problem: Problem, columns: list[_Column], answer: dict[str, Any]) -
     return Outcome(np.clip(point, lower, upper), finished, message=message)
 
 
+def _stopped(problem: Problem, columns: list[_Column], text: str) -> Outcome:
+    """What a killed process had said: its first point, if it had one."""
+    lines = [line for line in text.splitlines() if line.endswith("}")]
+    if not lines:
+        return Outcome(None, finished=False, message="Bonmin was stopped without a point")
+    first = _outcome(problem, columns, json.loads(lines[-1]))
+    return replace(first, finished=False, message="Bonmin was stopped; this is its first point")
+
+
 def child() -> None:
-    """Solve the job on the standard input and write its answer, in the process of its own.
+    """Solve the job on the standard input, in the process of its own; a line for each answer.
 
-    Continuous variables are polished by Ipopt with the discrete ones held at what Bonmin gave.
+    Where time is ample Bonmin is first run up to its first point, so that there is one if the
+    longer run is killed.
     """
-    import casadi as ca
-
     job = json.loads(sys.stdin.read())
     answers = os.fdopen(os.dup(1), "w")
     with open(os.devnull, "w") as nowhere:
         os.dup2(nowhere.fileno(), 1)
+    short = "deadline" in job and job["deadline"] - time.time() < AMPLE
+    for options in ({},) if short else ({"solution_limit": 1}, {}):
+        answers.write(json.dumps(_answer(job, options)) + "\n")
+        answers.flush()
+    answers.close()
+
+
+def _answer(job: dict[str, Any], options: dict[str, Any]) -> dict[str, Any]:
+    """Bonmin's status and point; continuous variables polished by Ipopt, discrete ones held."""
+    import casadi as ca
+
     function = ca.Function.deserialize(job["nlp"])
     x = ca.SX.sym("x", function.size1_in(0))
     f, g = function(x)
     nlp, discrete = {"x": x, "f": f, "g": g}, np.array(job["discrete"], bool)
     ends = {"lbg": job["least"], "ubg": job["most"]}
     quiet = {"print_time": False, "error_on_fail": False, "show_eval_warnings": False}
+    own = job["options"] | options
     if "deadline" in job:  # counted from here, where this process is up
-        job["options"] |= {"time_limit": max(SHARE * (job["deadline"] - time.time()), 1e-3)}
-    solver = ca.nlpsol(
-        "s", "bonmin", nlp, quiet | {"discrete": job["discrete"], "bonmin": job["options"]}
-    )
+        own["time_limit"] = max(SHARE * (job["deadline"] - time.time()), 1e-3)
+    solver = ca.nlpsol("s", "bonmin", nlp, quiet | {"discrete": job["discrete"], "bonmin": own})
     found = solver(x0=job["guess"], lbx=job["low"], ubx=job["high"], **ends)
     status = str(solver.stats()["return_status"])
     point = np.array(found["x"]).ravel()
@@ -230,5 +250,4 @@ def child() -> None:
         low[discrete] = high[discrete] = point[discrete]
         polish = ca.nlpsol("p", "ipopt", nlp, quiet | {"ipopt": POLISH})
         point = np.array(polish(x0=point, lbx=low, ubx=high, **ends)["x"]).ravel()
-    answers.write(json.dumps({"status": status, "x": point.tolist()}))
-    answers.close()
+    return {"status": status, "x": point.tolist()}
