@@ -53,12 +53,8 @@ def solve(
     if isinstance(what, Problem | Conic):
         return solve_problem(what, method, budget, seed, watch, gap)
     ask = Ask(method, budget, seed, watch, gap, top)
-    if isinstance(what, BaseModel):
-        kind = type(what).__module__.rsplit(".", 1)[-1]
-        return _named(scene_module(kind).solve(what, ask), scene=kind)
-    loaded = load_file(what)
-    result = scene_module(loaded.kind).solve(loaded.scene, ask)
-    return _named(result, scene=loaded.kind, file=loaded.file, file_sha256=loaded.sha256)
+    scene, module, names = _opened(what)
+    return _named(module.solve(scene, ask), **names)
 
 
 def explain(
@@ -83,15 +79,8 @@ def explain(
     if isinstance(what, Problem):
         return explain_problem(what, budget, watch)
     ask = Ask(budget=budget, watch=watch)
-    if isinstance(what, BaseModel):
-        kind = type(what).__module__.rsplit(".", 1)[-1]
-        return _of(scene_module(kind).explain(what, ask), scene=kind)
-    loaded = load_file(what)
-    found = scene_module(loaded.kind).explain(loaded.scene, ask)
-    return _of(found, scene=loaded.kind, file=loaded.file, file_sha256=loaded.sha256)
-
-
-def _of(found: Explanation, **names: Any) -> Explanation:
+    scene, module, names = _opened(what)
+    found: Explanation = module.explain(scene, ask)
     return replace(found, result=_named(found.result, **names))
 
 
@@ -125,16 +114,24 @@ def compare(
         own = Model(what)
         found = compare_methods(named, lambda method: own, plan, watch, bound_from)
         return replace(found, title=what.name)
-    loaded = None if isinstance(what, BaseModel) else load_file(what)
-    scene = what if loaded is None else loaded.scene
-    kind = type(scene).__module__.rsplit(".", 1)[-1]
-    module = scene_module(kind)
+    scene, module, names = _opened(what)
     named = ("exact", *DEFAULT) if methods is None else methods
     found = compare_methods(named, lambda m: module.model(scene, m), plan, watch, bound_from)
-    found = replace(found, scene=kind, title=getattr(scene, "title", "") or kind)
-    if loaded is None:
-        return found
-    return replace(found, file=loaded.file, file_sha256=loaded.sha256)
+    return replace(found, title=getattr(scene, "title", "") or names["scene"], **names)
+
+
+def _opened(what: str | Path | BaseModel) -> tuple[BaseModel, Any, dict[str, Any]]:
+    """The scene of a file (or the scene itself), the module of its kind, and what it is called."""
+    if isinstance(what, BaseModel):
+        kind = type(what).__module__.rsplit(".", 1)[-1]
+        return what, scene_module(kind), {"scene": kind}
+    loaded = load_file(what)
+    names: dict[str, Any] = {
+        "scene": loaded.kind,
+        "file": loaded.file,
+        "file_sha256": loaded.sha256,
+    }
+    return loaded.scene, scene_module(loaded.kind), names
 
 
 def _named(result: Result, **names: Any) -> Result:
