@@ -1,7 +1,7 @@
 """The frame of a page: header, sections, tables, figures, footer; light and dark; printable.
 
 A figure is a plain plotly specification whose colours are CSS variables of frame.css, written
-"--ink" or "--method-1/0.2" (with opacity): frame.js resolves them, and again when the reader's
+"--ink" or "--series-1/0.2" (with opacity): frame.js resolves them, and again when the reader's
 system turns dark or prints.
 """
 

@@ -1,0 +1,213 @@
+"""Bodies in three dimensions as plotly traces: toothed gears, cylinders, boxes of lines.
+
+Coordinates are (x, y, z) in mm, x along the shafts. A mesh is a list of points and a list of
+triangles of their numbers.
+"""
+
+import math
+import sys
+from array import array
+from base64 import b64encode
+from dataclasses import dataclass
+from typing import Any
+
+Point = tuple[float, float, float]
+Mesh = tuple[list[Point], list[tuple[int, int, int]]]
+
+PRESSURE_ANGLE = math.radians(20.0)  # normal; of the basic rack that nearly all gears have
+BACKLASH = 0.03  # of a pitch, so that flanks in mesh are seen apart
+ROUND = 40  # sides of a cylinder
+EYE = (0.55, -0.75, 0.37)  # direction of the first view: from the output end, the left, above
+AWAY = 1.05  # diagonals between the eye and the middle, so that all is inside the picture
+LIGHT = {"ambient": 0.72, "diffuse": 0.7, "specular": 0.12, "roughness": 0.7, "fresnel": 0.05}
+
+
+@dataclass(frozen=True)
+class Toothed:
+    """A gear: teeth, diameters [mm], faces from..to along x [mm], helix angle [rad, signed].
+
+    centre: (y, z) of its axis. phase: direction of the middle of a tooth at x = middle [rad].
+    """
+
+    teeth: int
+    reference: float
+    tip: float
+    root: float
+    start: float
+    end: float
+    centre: tuple[float, float]
+    helix: float = 0.0
+    phase: float = 0.0
+    middle: float = 0.0
+
+
+def gear_mesh(gear: Toothed, flank: int, step: float) -> Mesh:
+    """A helical gear with involute flanks.
+
+    flank: points on a flank, at least 2. step: largest twist between two sections [rad].
+    Half the angle of a tooth at radius r is pi/(2 z) + inv(alpha_t) - inv(alpha_r).
+    """
+    outline = _outline(gear, flank)
+    rate = 2.0 * math.tan(gear.helix) / gear.reference  # twist per mm
+    sections = 1 + max(1, math.ceil(abs(rate) * (gear.end - gear.start) / step))
+    points: list[Point] = []
+    for k in range(sections):
+        x = gear.start + (gear.end - gear.start) * k / (sections - 1)
+        turn = gear.phase + rate * (x - gear.middle)
+        for angle, r in outline:
+            at = angle + turn
+            points.append((x, gear.centre[0] + r * math.cos(at), gear.centre[1] + r * math.sin(at)))
+    return _capped(points, len(outline), sections, gear.centre)
+
+
+def _outline(gear: Toothed, flank: int) -> list[tuple[float, float]]:
+    """(angle, radius) once round the gear, a tooth in the middle of angle 0."""
+    transverse = math.atan(math.tan(PRESSURE_ANGLE) / math.cos(gear.helix))
+    base = gear.reference / 2.0 * math.cos(transverse)
+    half = math.pi / (2.0 * gear.teeth) * (1.0 - 2.0 * BACKLASH)
+    low, high = gear.root / 2.0, gear.tip / 2.0
+    side = []
+    for k in range(flank):
+        at = low + (high - low) * k / (flank - 1)
+        angle = math.acos(min(1.0, base / max(at, base)))
+        thick = half + _involute(transverse) - _involute(angle)
+        side.append((max(thick, 0.1 * half), at))
+    side[0] = (min(side[0][0], math.pi / gear.teeth * 0.9), side[0][1])
+    tooth = [(-angle, at) for angle, at in side] + side[::-1]
+    pitch = 2.0 * math.pi / gear.teeth
+    return [(k * pitch + angle, at) for k in range(gear.teeth) for angle, at in tooth]
+
+
+def _involute(angle: float) -> float:
+    return math.tan(angle) - angle
+
+
+def _capped(points: list[Point], around: int, sections: int, centre: tuple[float, float]) -> Mesh:
+    """The skin over rings of points, closed by fans at both ends."""
+    faces = []
+    for ring in range(sections - 1):
+        a = ring * around
+        for k in range(around):
+            n = (k + 1) % around
+            faces += [(a + k, a + n, a + around + n), (a + k, a + around + n, a + around + k)]
+    last = (sections - 1) * around
+    ends = (len(points), len(points) + 1)
+    points = [*points, (points[0][0], *centre), (points[-1][0], *centre)]
+    for k in range(around):
+        n = (k + 1) % around
+        faces += [(ends[0], n, k), (ends[1], last + k, last + n)]
+    return points, faces
+
+
+def rod(
+    centre: tuple[float, float], radius: float, start: float, end: float, sides: int = ROUND
+) -> Mesh:
+    """A cylinder along x."""
+    turns = [2.0 * math.pi * k / sides for k in range(sides)]
+    y, z = centre
+    points = [
+        (x, y + radius * math.cos(t), z + radius * math.sin(t)) for x in (start, end) for t in turns
+    ]
+    return _capped(points, sides, 2, centre)
+
+
+def upright(mesh: Mesh) -> Mesh:
+    """A body along x, turned so that it stands along z: (x, y, z) becomes (y, z, x)."""
+    points, faces = mesh
+    return [(y, z, x) for x, y, z in points], faces
+
+
+def block(low: Point, high: Point) -> Mesh:
+    """A box between two corners."""
+    points = [
+        (x, y, z) for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])
+    ]
+    sides = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
+    return points, [t for a, b, c, d in sides for t in ((a, b, c), (a, c, d))]
+
+
+def mesh_trace(mesh: Mesh, name: str, colour: str, group: str, **more: Any) -> dict[str, Any]:
+    """A mesh as plotly draws it, its numbers packed; shown and hidden with its group."""
+    points, faces = mesh
+    axes = {axis: _packed("f", [p[k] for p in points]) for k, axis in enumerate("xyz")}
+    corners = {corner: _packed("I", [f[k] for f in faces]) for k, corner in enumerate("ijk")}
+    look = {
+        "type": "mesh3d",
+        "name": group,
+        "color": colour,
+        "legendgroup": group,
+        "flatshading": True,
+        "lighting": LIGHT,
+        "lightposition": {"x": 5000.0, "y": -6000.0, "z": 8000.0},
+        "hovertemplate": f"{name}<extra></extra>",
+    }
+    return look | axes | corners | more
+
+
+def line_trace(
+    points: list[Point | None], name: str, colour: str, width: float, **more: Any
+) -> dict[str, Any]:
+    """Lines in space; None lifts the pen."""
+    axes = {axis: [None if p is None else p[k] for p in points] for k, axis in enumerate("xyz")}
+    look = {
+        "type": "scatter3d",
+        "mode": "lines",
+        "name": name,
+        "legendgroup": name,
+        "line": {"color": colour, "width": width},
+        "hoverinfo": "skip",
+    }
+    return look | axes | more
+
+
+def edges(low: Point, high: Point) -> list[Point | None]:
+    """The twelve edges of a box as lines."""
+    (x0, y0, z0), (x1, y1, z1) = low, high
+    found: list[Point | None] = []
+    for x in (x0, x1):
+        found += [(x, y0, z0), (x, y1, z0), (x, y1, z1), (x, y0, z1), (x, y0, z0), None]
+    for y in (y0, y1):
+        for z in (z0, z1):
+            found += [(x0, y, z), (x1, y, z), None]
+    return found
+
+
+def space(low: Point, high: Point, height: int = 640) -> dict[str, Any]:
+    """The layout of a plot in three dimensions, in the page's look, one scale on all axes.
+
+    low, high: corners of all that is drawn, seen whole at first. Plotly measures where the eye is
+    in the cube root of their volume.
+    """
+    size = [b - a for a, b in zip(low, high, strict=True)]
+    away = AWAY * math.hypot(*size) / math.prod(size) ** (1 / 3)
+    eye = {axis: away * share for axis, share in zip("xyz", EYE, strict=True)}
+    ax = {
+        "showbackground": False,
+        "gridcolor": "--grid",
+        "linecolor": "--axis",
+        "zerolinecolor": "--grid",
+        "tickfont": {"size": 11, "color": "--soft"},
+        "showspikes": False,
+    }
+    names = {f"{a}axis": ax | {"title": {"text": f"{a} [mm]", "font": {"size": 12}}} for a in "xyz"}
+    return {
+        "height": height,
+        "margin": {"l": 0, "r": 0, "t": 0, "b": 0},
+        "paper_bgcolor": "--card",
+        "font": {"family": "--font", "size": 13, "color": "--ink"},
+        "hoverlabel": {"bgcolor": "--card", "bordercolor": "--axis", "font": {"color": "--ink"}},
+        "legend": {"orientation": "h", "x": 0, "y": 1.0, "yanchor": "bottom"},
+        "scene": names | {"aspectmode": "data", "camera": {"eye": eye}, "dragmode": "orbit"},
+        "uirevision": "kept",  # the reader's view survives a change from light to dark
+    }
+
+
+def _packed(kind: str, values: list[Any]) -> dict[str, str]:
+    """Numbers as plotly reads them from base64: f = 32-bit floats, I = unsigned integers."""
+    data = array(kind, values)
+    if kind == "I" and max(values, default=0) < 2**16:
+        data = array("H", values)
+    if sys.byteorder == "big":
+        data.byteswap()
+    word = {"f": "f4", "I": "u4", "H": "u2"}[data.typecode]
+    return {"dtype": word, "bdata": b64encode(data.tobytes()).decode("ascii")}
