@@ -28,8 +28,8 @@ class Place:
         return 0.5 * LETTER * SIZE * len(text) + 2.0
 
     def spots(self, text: str) -> Iterator[tuple[float, float]]:
-        """Points along the middle of the text, half a size apart."""
-        reach = max(0.0, self.half_width(text) - 0.5 * SIZE)
+        """Points along the middle of the text and a little beyond, half a size apart."""
+        reach = max(0.0, self.half_width(text) - 0.2 * SIZE) if len(text) > 2 else 0.0
         turn = math.radians(self.angle)
         count = math.ceil(2.0 * reach / (0.5 * SIZE))
         for k in range(count + 1):

@@ -53,8 +53,9 @@ def _traces(found: Layout) -> list[dict[str, Any]]:
         words = f"shaft {shaft['shaft']}: diameter {shaft['diameter_mm']:.2f} mm"
         traces.append(mesh_trace(mesh, words, "--metal", "shafts", showlegend=k == 0))
     for k, it in enumerate(found["bearings"]):
+        bore = next(s["diameter_mm"] for s in found["shafts"] if s["shaft"] == it["shaft"]) / 2
         ends = it["from_mm"], it["to_mm"]
-        mesh = rod(places[it["shaft"]], it["diameter_mm"] / 2, *ends)
+        mesh = rod(places[it["shaft"]], it["diameter_mm"] / 2, *ends, bore)
         words = f"bearing of shaft {it['shaft']}"
         traces.append(mesh_trace(mesh, words, "--soft", "bearings", showlegend=k == 0))
     traces += _housing(found)
@@ -156,7 +157,7 @@ def _clearances(found: Layout, places: Mapping[int, tuple[float, float]]) -> lis
     hidden |= {"showlegend": False}
     for gear in found["gears"]:
         r = gear["tip_diameter_mm"] / 2 + (room.get("gear_to_shaft_mm") or 0.0)
-        mesh: Mesh = rod(places[gear["shaft"]], r, gear["from_mm"], gear["to_mm"], 72)
+        mesh: Mesh = rod(places[gear["shaft"]], r, gear["from_mm"], gear["to_mm"])
         look = hidden | {"opacity": 0.18, "hoverinfo": "skip", "hovertemplate": None}
         traces.append(mesh_trace(mesh, "", "--accent", "clearances", **look))
     gap = found["gaps"][0] if found["gaps"] else {"between": ["", ""]}

@@ -12,13 +12,15 @@ from dataclasses import dataclass
 from typing import Any
 
 Point = tuple[float, float, float]
-Mesh = tuple[list[Point], list[tuple[int, int, int]]]
+Face = tuple[int, int, int]
+Mesh = tuple[list[Point], list[Face]]
 
 PRESSURE_ANGLE = math.radians(20.0)  # normal; of the basic rack that nearly all gears have
 BACKLASH = 0.03  # of a pitch, so that flanks in mesh are seen apart
-ROUND = 40  # sides of a cylinder
+ROUND = 48  # sides of a cylinder
+FACE = 0.2  # of the root radius: the ring of a gear's face
 EYE = (0.55, -0.75, 0.37)  # direction of the first view: from the output end, the left, above
-AWAY = 1.05  # diagonals between the eye and the middle, so that all is inside the picture
+AWAY = 1.2  # diagonals between the eye and the middle, so that all is inside the picture
 LIGHT = {"ambient": 0.72, "diffuse": 0.7, "specular": 0.12, "roughness": 0.7, "fresnel": 0.05}
 
 
@@ -42,7 +44,7 @@ class Toothed:
 
 
 def gear_mesh(gear: Toothed, flank: int, step: float) -> Mesh:
-    """A helical gear with involute flanks.
+    """A helical gear with involute flanks; the bore is left out.
 
     flank: points on a flank, at least 2. step: largest twist between two sections [rad].
     Half the angle of a tooth at radius r is pi/(2 z) + inv(alpha_t) - inv(alpha_r).
@@ -57,7 +59,11 @@ def gear_mesh(gear: Toothed, flank: int, step: float) -> Mesh:
         for angle, r in outline:
             at = angle + turn
             points.append((x, gear.centre[0] + r * math.cos(at), gear.centre[1] + r * math.sin(at)))
-    return _capped(points, len(outline), sections, gear.centre)
+    faces = _skin(len(outline), sections)
+    ends = [(gear.start, points[: len(outline)]), (gear.end, points[-len(outline) :])]
+    for (x, rim), first in zip(ends, (0, len(points) - len(outline)), strict=True):
+        _face(points, faces, gear, x, rim, first)
+    return points, faces
 
 
 def _outline(gear: Toothed, flank: int) -> list[tuple[float, float]]:
@@ -82,33 +88,59 @@ def _involute(angle: float) -> float:
     return math.tan(angle) - angle
 
 
-def _capped(points: list[Point], around: int, sections: int, centre: tuple[float, float]) -> Mesh:
-    """The skin over rings of points, closed by fans at both ends."""
+def _skin(around: int, sections: int) -> list[Face]:
+    """Triangles between rings of points that follow each other."""
     faces = []
     for ring in range(sections - 1):
         a = ring * around
         for k in range(around):
             n = (k + 1) % around
             faces += [(a + k, a + n, a + around + n), (a + k, a + around + n, a + around + k)]
-    last = (sections - 1) * around
-    ends = (len(points), len(points) + 1)
-    points = [*points, (points[0][0], *centre), (points[-1][0], *centre)]
-    for k in range(around):
-        n = (k + 1) % around
-        faces += [(ends[0], n, k), (ends[1], last + k, last + n)]
-    return points, faces
+    return faces
+
+
+def _face(
+    points: list[Point], faces: list[Face], gear: Toothed, x: float, rim: list[Point], first: int
+) -> None:
+    """Add a toothed face: teeth down to a ring, and a disc that reaches over it.
+
+    One fan from the axis to all points of the rim would be of slivers, which are shaded unevenly.
+    """
+    per = len(rim) // gear.teeth
+    y, z = gear.centre
+    ring = len(points)
+    for k in range(gear.teeth):
+        (_, y0, z0), (_, y1, z1) = rim[k * per], rim[(k + 1) * per - 1]
+        at = math.atan2(z0 + z1 - 2.0 * z, y0 + y1 - 2.0 * y)
+        r = (1.0 - FACE) * gear.root / 2.0
+        points.append((x, y + r * math.cos(at), z + r * math.sin(at)))
+    for k in range(gear.teeth):
+        a, n = first + k * per, (k + 1) % gear.teeth
+        faces += [(ring + k, a + j, a + j + 1) for j in range(per - 1)]
+        faces += [(ring + k, a + per - 1, first + n * per), (ring + k, first + n * per, ring + n)]
+    disc, triangles = _disc(gear.centre, (1.0 - FACE / 2.0) * gear.root / 2.0, x)
+    faces += [(a + len(points), b + len(points), c + len(points)) for a, b, c in triangles]
+    points += disc
+
+
+def _disc(centre: tuple[float, float], radius: float, x: float) -> Mesh:
+    """A round plate across x."""
+    turns = [2.0 * math.pi * k / ROUND for k in range(ROUND)]
+    points = [
+        (x, centre[0] + radius * math.cos(t), centre[1] + radius * math.sin(t)) for t in turns
+    ]
+    return [*points, (x, *centre)], [(k, (k + 1) % ROUND, ROUND) for k in range(ROUND)]
 
 
 def rod(
-    centre: tuple[float, float], radius: float, start: float, end: float, sides: int = ROUND
+    centre: tuple[float, float], radius: float, start: float, end: float, bore: float = 0.0
 ) -> Mesh:
-    """A cylinder along x."""
-    turns = [2.0 * math.pi * k / sides for k in range(sides)]
+    """A cylinder along x, with a bore of a radius through it or none [mm]."""
+    turns = [2.0 * math.pi * k / ROUND for k in range(ROUND)]
     y, z = centre
-    points = [
-        (x, y + radius * math.cos(t), z + radius * math.sin(t)) for x in (start, end) for t in turns
-    ]
-    return _capped(points, sides, 2, centre)
+    rings = ((start, bore), (start, radius), (end, radius), (end, bore))
+    points = [(x, y + r * math.cos(t), z + r * math.sin(t)) for x, r in rings for t in turns]
+    return points, _skin(ROUND, len(rings))
 
 
 def upright(mesh: Mesh) -> Mesh:
@@ -190,6 +222,7 @@ def space(low: Point, high: Point, height: int = 640) -> dict[str, Any]:
         "showspikes": False,
     }
     names = {f"{a}axis": ax | {"title": {"text": f"{a} [mm]", "font": {"size": 12}}} for a in "xyz"}
+    camera = {"eye": eye, "center": {"x": 0.0, "y": 0.0, "z": -0.1}}  # room for the axes below
     return {
         "height": height,
         "margin": {"l": 0, "r": 0, "t": 0, "b": 0},
@@ -197,7 +230,12 @@ def space(low: Point, high: Point, height: int = 640) -> dict[str, Any]:
         "font": {"family": "--font", "size": 13, "color": "--ink"},
         "hoverlabel": {"bgcolor": "--card", "bordercolor": "--axis", "font": {"color": "--ink"}},
         "legend": {"orientation": "h", "x": 0, "y": 1.0, "yanchor": "bottom"},
-        "scene": names | {"aspectmode": "data", "camera": {"eye": eye}, "dragmode": "orbit"},
+        "scene": names
+        | {
+            "aspectmode": "data",
+            "camera": camera,
+            "dragmode": "orbit",
+        },
         "uirevision": "kept",  # the reader's view survives a change from light to dark
     }
 
