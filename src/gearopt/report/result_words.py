@@ -47,6 +47,23 @@ def stage_rows(stages: Sequence[Mapping[str, Any]]) -> list[tuple[str, list[str]
     ]
 
 
+def train_rows(
+    trains: Sequence[Mapping[str, Any]], result: Result
+) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
+    """Heads (a second line is the unit) and rows of the table of next best trains."""
+    name, unit = objective(result)
+    heads = ("", f"{name}\n{unit}", "ratio", "m_n, z1/z2", "centre distances\nmm")
+    rows: list[tuple[str, ...]] = []
+    for k, train in enumerate(trains, 1):
+        teeth = "  ".join(
+            f"{s['normal_module_mm']:g}, {s['pinion_teeth']}/{s['wheel_teeth']}"
+            for s in train["stages"]
+        )
+        distances = "  ".join(f"{s['centre_distance_mm']:.2f}" for s in train["stages"])
+        rows.append((str(k), number(train["objective"]), f"{train['ratio']:.4f}", teeth, distances))
+    return heads, rows
+
+
 def limit_rows(limits: Mapping[str, float]) -> tuple[int, list[tuple[str, list[float | None]]]]:
     """Number of stages; every limit with its utilisation in each stage, then in the whole."""
     rows: dict[str, dict[int, float]] = {}

@@ -5,7 +5,7 @@ from typing import Any
 
 from gearopt.optimise.result import Result
 from gearopt.report.pages.section import Section, Table
-from gearopt.report.result_words import stage_rows
+from gearopt.report.result_words import stage_rows, train_rows
 from gearopt.report.words import heading, number
 
 
@@ -19,6 +19,17 @@ def section(result: Result) -> Section | None:
         heads = ["", *(f"stage {k}" for k in range(1, len(stages) + 1))]
         tables.append(Table(heads, [[label, *cells] for label, cells in stage_rows(stages)]))
     return Section("Design", tables=[*tables, *_tables("", design)])
+
+
+def trains(result: Result) -> Section | None:
+    """The best distinct trains in proven order; None where only one was asked for."""
+    found = result.report.get("trains") or []
+    if not found:
+        return None
+    heads, rows = train_rows(found, result)
+    return Section(
+        "Best trains", tables=(Table([head.replace("\n", " ") for head in heads], rows),)
+    )
 
 
 def _tables(name: str, group: Mapping[str, Any]) -> list[Table]:

@@ -25,9 +25,13 @@ def render(
     subtitle: str,
     versions: Mapping[str, str],
     command: str,
+    plots: bool = True,
     **content: Any,
 ) -> str:
-    """A page from a template that extends frame.html; everything but our own files is escaped."""
+    """A page from a template that extends frame.html; everything but our own files is escaped.
+
+    plots: the page has figures, which need plotly (4.8 MB) inside it.
+    """
     from jinja2 import Environment, PackageLoader, StrictUndefined
     from markupsafe import Markup
     from plotly.offline import get_plotlyjs
@@ -51,7 +55,7 @@ def render(
         command=command,
         style=inlined("frame.css"),
         script=inlined("frame.js"),
-        plotly=Markup(get_plotlyjs()),
+        plotly=Markup(get_plotlyjs()) if plots else "",
         **content,
     )
 

@@ -8,8 +8,6 @@ from gearopt.report.pages.section import Section, Table
 from gearopt.report.result_words import limit_rows, objective, proof, verdict
 from gearopt.report.words import number
 
-FULL = 0.9995  # a limit used so far is shown as 100.0 %
-
 
 def summary(result: Result) -> Section:
     """Status, objective, bound and gap in a table; the proof and the notes in sentences."""
@@ -40,14 +38,16 @@ def ways_out(result: Result) -> Section | None:
     """What to write instead, where nothing meets the limits; None elsewhere."""
     ways: Mapping[str, Any] = result.report.get("ways_out") or {}
     rows = [
-        (f"{change['key']} = {change['write']}", change["was"].strip('"'))
+        (
+            " and ".join(f"{change['key']} = {change['write']}" for change in way["changes"]),
+            " and ".join(change["was"].strip('"') for change in way["changes"]),
+        )
         for way in ways.get("remedies", ())
-        for change in way["changes"]
     ]
     if not rows:
         return None
     heads = ("write in the file", "instead of")
-    words = "Changes of the file that make a design possible."
+    words = "Changes of the file that make a design possible; one is enough."
     return Section("Ways out", (words,), tables=(Table(heads, rows, words=True),))
 
 

@@ -26,20 +26,22 @@ SECTIONS = (
     trade_off.section,
     outcome.limits,
     design_tables.section,
+    design_tables.trains,
 )
 
 
 def page(result: Result, title: str, command: str) -> str:
     """One self-contained HTML page; command: what makes it again."""
-    found = [section(result) for section in SECTIONS]
+    sections = [made for section in SECTIONS if (made := section(result)) is not None]
     return render(
         "result.html",
         title,
         _subtitle(result),
         {"gearopt": result.gearopt, **result.versions},
         command,
-        sections=[section for section in found if section is not None],
-        source=result.file and f"File {result.file}, SHA-256 {(result.file_sha256 or '')[:16]}….",
+        plots=any(section.figures for section in sections),
+        sections=sections,
+        source=result.file and f"File {result.file}, SHA-256 {(result.file_sha256 or '')[:16]}…",
     )
 
 

@@ -9,9 +9,9 @@ from rich.table import Table
 from rich.text import Text
 
 from gearopt.optimise.result import Result
-from gearopt.report.result_words import limit_rows, proof, stage_rows, verdict
+from gearopt.report.result_words import limit_rows, proof, stage_rows, train_rows, verdict
 from gearopt.report.terminal.explanation import remedies
-from gearopt.report.words import UNITS, columns, heading, number
+from gearopt.report.words import columns, heading, number
 
 
 def show(result: Result, title: str, console: Console) -> None:
@@ -29,7 +29,7 @@ def _blocks(result: Result) -> list[RenderableType]:
         blocks.append(_design(result.design))
         blocks.append(_limits(result.limits))
         if trains := result.report.get("trains"):
-            blocks.append(_trains(trains, result.objective))
+            blocks.append(_trains(trains, result))
     if "ways_out" in result.report:
         blocks += remedies(result.report["ways_out"])
     blocks.append(Text("\n".join(proof(result))))
@@ -69,23 +69,11 @@ def _percent(value: float | None) -> Text:
     return Text(text, style="bold" if value > 0.9995 else "")
 
 
-def _trains(trains: list[Mapping[str, Any]], objective: Mapping[str, Any]) -> RenderableType:
-    unit = UNITS.get(objective.get("unit", ""), objective.get("unit", ""))
-    heads = (
-        "",
-        f"{objective['name'].replace('_', ' ')}\n{unit}",
-        "ratio",
-        "m_n, z1/z2",
-        "centre distances\nmm",
-    )
+def _trains(trains: list[Mapping[str, Any]], result: Result) -> RenderableType:
+    heads, rows = train_rows(trains, result)
     table = Table(*heads, box=None, header_style="bold", pad_edge=False)
-    for k, train in enumerate(trains, 1):
-        teeth = "  ".join(
-            f"{s['normal_module_mm']:g}, {s['pinion_teeth']}/{s['wheel_teeth']}"
-            for s in train["stages"]
-        )
-        distances = "  ".join(f"{s['centre_distance_mm']:.2f}" for s in train["stages"])
-        table.add_row(str(k), number(train["objective"]), f"{train['ratio']:.4f}", teeth, distances)
+    for row in rows:
+        table.add_row(*row)
     return table
 
 
