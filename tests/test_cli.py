@@ -46,6 +46,25 @@ def test_json_is_one_object_and_reads_back():
     assert result.scene == "drive" and result.versions["numpy"]
 
 
+def test_html_writes_a_page_beside_the_report_or_the_json(tmp_path):
+    path = tmp_path / "a page.html"
+    done = gear("solve", ELEVATOR, "--html", path, "--top", 3)
+    assert done.returncode == 0 and done.stderr == ""
+    assert "proven optimal" in done.stdout and done.stdout.endswith(f"\nPage: {path}\n")
+    first = path.read_text(encoding="utf-8")
+    assert "<h1>Two-stage elevator drive</h1>" in first and "5,789,181.7" in first
+    assert f"{ELEVATOR} --top 3 --html &#39;{path}&#39;" in first
+    path.unlink()
+    done = gear("solve", ELEVATOR, "--html", path, "--json")
+    assert json.loads(done.stdout)["status"] == "optimal" and path.exists()
+
+
+@pytest.mark.parametrize("page", ["", "/no/such/folder/page.html"])
+def test_a_page_that_cannot_be_written_is_told_before_solving(page, tmp_path):
+    done = gear("solve", ELEVATOR, "--html", page or tmp_path)
+    assert done.returncode == 2 and done.stdout == "" and done.stderr.count("\n") == 1
+
+
 def test_infeasible_is_exit_3():
     done = gear("solve", ROOT / "problems" / "elevator_small_wheels.toml")
     assert done.returncode == 3

@@ -4,12 +4,12 @@ import json
 import re
 import time
 from dataclasses import replace
-from html.parser import HTMLParser
 from io import StringIO
 from pathlib import Path
 
 import numpy as np
 import pytest
+from html_reader import ATTACK, Reader
 from rich.console import Console
 
 import gearopt
@@ -21,7 +21,6 @@ from gearopt.report.pages.comparison import colours, page
 from gearopt.report.terminal.comparison import show
 
 ROOM = Path(frame.__file__).parent
-ATTACK = "</title><script>alert('x')</script><b>&"
 
 
 def problem():
@@ -47,31 +46,6 @@ def found():
     )
     group = replace(group, rows=(*others, refused), words=f"Boxes {ATTACK}")
     return replace(made, title=f"Title {ATTACK}", groups=(group,), message=f"stopped {ATTACK}")
-
-
-class Reader(HTMLParser):
-    """Tags with their attributes, visible text, and the content of scripts by type."""
-
-    def __init__(self, html):
-        super().__init__(convert_charrefs=True)
-        self.tags, self.text, self.scripts, self.open = [], [], [], ""
-        self.feed(html)
-        self.close()
-
-    def handle_starttag(self, tag, attributes):
-        self.tags.append((tag, dict(attributes)))
-        self.open = tag if tag in ("script", "style") else ""
-        if tag == "script":
-            self.scripts.append((dict(attributes).get("type", ""), ""))
-
-    def handle_endtag(self, tag):
-        self.open = ""
-
-    def handle_data(self, data):
-        if self.open == "script":
-            self.scripts[-1] = (self.scripts[-1][0], self.scripts[-1][1] + data)
-        elif not self.open:
-            self.text.append(data)
 
 
 @pytest.fixture(scope="module")

@@ -158,7 +158,7 @@ def _clearances(found: Layout, places: Mapping[int, tuple[float, float]]) -> lis
     for gear in found["gears"]:
         r = gear["tip_diameter_mm"] / 2 + (room.get("gear_to_shaft_mm") or 0.0)
         mesh: Mesh = rod(places[gear["shaft"]], r, gear["from_mm"], gear["to_mm"])
-        look = hidden | {"opacity": 0.18, "hoverinfo": "skip", "hovertemplate": None}
+        look = hidden | {"opacity": 0.18, "hoverinfo": "skip", "hovertemplate": ""}
         traces.append(mesh_trace(mesh, "", "--accent", "clearances", **look))
     gap = found["gaps"][0] if found["gaps"] else {"between": ["", ""]}
     ends = nearest(found, *gap["between"])

@@ -164,7 +164,7 @@ class Sheet:
 
     def drawing(self, name: str, caption: str) -> Drawing:
         """The SVG."""
-        box = f'viewBox="0 0 {self.width:.1f} {self.height:.1f}"'
+        box = f'viewBox="0 0 {self.width:.3f} {self.height:.3f}"'
         marks = "\n".join(self._marks + self._labels)
         svg = f'<svg {box} role="img" aria-label="{escape(name)}">\n{marks}\n</svg>'
         return Drawing(svg, self.width, self.height, caption)

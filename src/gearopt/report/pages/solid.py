@@ -18,10 +18,17 @@ Mesh = tuple[list[Point], list[Face]]
 PRESSURE_ANGLE = math.radians(20.0)  # normal; of the basic rack that nearly all gears have
 BACKLASH = 0.03  # of a pitch, so that flanks in mesh are seen apart
 ROUND = 48  # sides of a cylinder
-FACE = 0.2  # of the root radius: the ring of a gear's face
 EYE = (0.55, -0.75, 0.37)  # direction of the first view: from the output end, the left, above
-AWAY = 1.2  # diagonals between the eye and the middle, so that all is inside the picture
-LIGHT = {"ambient": 0.72, "diffuse": 0.7, "specular": 0.12, "roughness": 0.7, "fresnel": 0.05}
+AWAY = 1.28  # diagonals between the eye and the middle, so that all is inside the picture
+LIGHT = {
+    "ambient": 0.6,
+    "diffuse": 0.8,
+    "specular": 0.12,
+    "roughness": 0.7,
+    "fresnel": 0.05,
+    "facenormalsepsilon": 0,  # plotly's own, 1e-6, takes the normals of small triangles for none
+    "vertexnormalsepsilon": 0,
+}
 
 
 @dataclass(frozen=True)
@@ -60,9 +67,12 @@ def gear_mesh(gear: Toothed, flank: int, step: float) -> Mesh:
             at = angle + turn
             points.append((x, gear.centre[0] + r * math.cos(at), gear.centre[1] + r * math.sin(at)))
     faces = _skin(len(outline), sections)
-    ends = [(gear.start, points[: len(outline)]), (gear.end, points[-len(outline) :])]
-    for (x, rim), first in zip(ends, (0, len(points) - len(outline)), strict=True):
-        _face(points, faces, gear, x, rim, first)
+    around, last = len(outline), len(points) - len(outline)
+    middle = len(points)
+    points += [(gear.start, *gear.centre), (gear.end, *gear.centre)]
+    for k in range(around):  # a fan over each face
+        n = (k + 1) % around
+        faces += [(middle, n, k), (middle + 1, last + k, last + n)]
     return points, faces
 
 
@@ -99,46 +109,13 @@ def _skin(around: int, sections: int) -> list[Face]:
     return faces
 
 
-def _face(
-    points: list[Point], faces: list[Face], gear: Toothed, x: float, rim: list[Point], first: int
-) -> None:
-    """Add a toothed face: teeth down to a ring, and a disc that reaches over it.
-
-    One fan from the axis to all points of the rim would be of slivers, which are shaded unevenly.
-    """
-    per = len(rim) // gear.teeth
-    y, z = gear.centre
-    ring = len(points)
-    for k in range(gear.teeth):
-        (_, y0, z0), (_, y1, z1) = rim[k * per], rim[(k + 1) * per - 1]
-        at = math.atan2(z0 + z1 - 2.0 * z, y0 + y1 - 2.0 * y)
-        r = (1.0 - FACE) * gear.root / 2.0
-        points.append((x, y + r * math.cos(at), z + r * math.sin(at)))
-    for k in range(gear.teeth):
-        a, n = first + k * per, (k + 1) % gear.teeth
-        faces += [(ring + k, a + j, a + j + 1) for j in range(per - 1)]
-        faces += [(ring + k, a + per - 1, first + n * per), (ring + k, first + n * per, ring + n)]
-    disc, triangles = _disc(gear.centre, (1.0 - FACE / 2.0) * gear.root / 2.0, x)
-    faces += [(a + len(points), b + len(points), c + len(points)) for a, b, c in triangles]
-    points += disc
-
-
-def _disc(centre: tuple[float, float], radius: float, x: float) -> Mesh:
-    """A round plate across x."""
-    turns = [2.0 * math.pi * k / ROUND for k in range(ROUND)]
-    points = [
-        (x, centre[0] + radius * math.cos(t), centre[1] + radius * math.sin(t)) for t in turns
-    ]
-    return [*points, (x, *centre)], [(k, (k + 1) % ROUND, ROUND) for k in range(ROUND)]
-
-
 def rod(
     centre: tuple[float, float], radius: float, start: float, end: float, bore: float = 0.0
 ) -> Mesh:
     """A cylinder along x, with a bore of a radius through it or none [mm]."""
     turns = [2.0 * math.pi * k / ROUND for k in range(ROUND)]
     y, z = centre
-    rings = ((start, bore), (start, radius), (end, radius), (end, bore))
+    rings = ((start, bore), (start, radius), (end, radius), (end, bore), (start, bore))
     points = [(x, y + r * math.cos(t), z + r * math.sin(t)) for x, r in rings for t in turns]
     return points, _skin(ROUND, len(rings))
 

@@ -1,0 +1,136 @@
+"""A layout seen along its shafts: circles, centre distances, the narrowest gap."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+
+from gearopt.report.pages.bodies import circle, nearest
+from gearopt.report.pages.labels import SIZE, Place, around
+from gearopt.report.pages.layout_marks import (
+    Layout,
+    across_dimension,
+    box_lines,
+    keep_out,
+    walls,
+)
+from gearopt.report.pages.section import meaning, series
+from gearopt.report.pages.sheet import Drawing, Sheet, Window
+
+
+def front_view(found: Layout, window: Window, scale: float) -> Drawing:
+    """Along the shafts, y to the right and z up."""
+    sheet = Sheet(window, scale)
+    box_lines(sheet, found, "y", "z")
+    if found["motor"]:
+        sheet.circle(0.0, 0.0, 0.5 * found["motor"]["diameter_mm"], "motor", title="motor")
+    for it in found["obstacles"]:
+        keep_out(sheet, it, "left_mm", "right_mm", "bottom_mm", "top_mm")
+    places = {s["shaft"]: (s["y_mm"], s["z_mm"]) for s in found["shafts"]}
+    gears = sorted(found["gears"], key=lambda g: (g["from_mm"], -g["tip_diameter_mm"]))
+    for gear in gears:
+        y, z = places[gear["shaft"]]
+        sheet.circle(
+            y, z, 0.5 * gear["tip_diameter_mm"], "tip", series(gear["stage"]), meaning(gear)
+        )
+        sheet.circle(y, z, 0.5 * gear["reference_diameter_mm"], "reference", series(gear["stage"]))
+    for shaft in found["shafts"]:
+        y, z = places[shaft["shaft"]]
+        title = f"shaft {shaft['shaft']}: diameter {shaft['diameter_mm']:.2f} mm"
+        sheet.circle(y, z, 0.5 * shaft["diameter_mm"], "shaft", title=title)
+        sheet.cross(y, z, 0.5 * shaft["diameter_mm"])
+    _split(sheet, found, places)
+    across_dimension(sheet, found, "y", "z")
+    left, (bottom, top) = walls(found, "y")[0], walls(found, "z")
+    away = sheet.at(left, 0.0)[0] - 20.0
+    sheet.dimension((left, bottom), (left, top), away, f"{top - bottom:.2f}")
+    _centre_distances(sheet, found, places)
+    _narrowest(sheet, found)
+    for number, (y, z) in places.items():
+        sheet.balloon(str(number), around(sheet.at(y, z), (26.0, 36.0, 50.0), 0.0))
+    for gear in sorted(found["gears"], key=lambda g: -g["tip_diameter_mm"]):
+        _name(sheet, found, gear)
+    caption = (
+        f"Front view along the shafts, y to the right and z up, from the end x = "
+        f"{found['box']['length_mm']:.1f}: each gear is drawn over those behind it."
+    )
+    return sheet.drawing("front view", caption)
+
+
+def _split(sheet: Sheet, found: Layout, places: Mapping[int, tuple[float, float]]) -> None:
+    """The plane in which the housing is parted: through its shafts, level where there is one."""
+    on = [places[k] for k in found["split"]]
+    if not on:
+        return
+    left, right = walls(found, "y")
+    (y0, z0), (y1, z1) = min(on), max(on)
+    slope = (z1 - z0) / (y1 - y0) if y1 - y0 > 1e-9 else 0.0
+    ends = [(y, z0 + slope * (y - y0)) for y in (left, right)]
+    sheet.line(ends[0], ends[1], "split")
+    spots = [ends[0][0] + share * (right - left) for share in (0.1, 0.9, 0.3, 0.7)]
+    points = [sheet.at(y, z0 + slope * (y - y0)) for y in spots]
+    sheet.label("split", [Place(x, v + s * 9.0) for x, v in points for s in (-1, 1)], "split")
+
+
+def _centre_distances(
+    sheet: Sheet, found: Layout, places: Mapping[int, tuple[float, float]]
+) -> None:
+    """Between the shafts of every stage, along the line of centres."""
+    for a, b, stage in _meshes(found):
+        (y0, z0), (y1, z1) = places[a], places[b]
+        sheet.line((y0, z0), (y1, z1), "centres")
+        start, end = sheet.at(y0, z0), sheet.at(y1, z1)
+        text = f"a{stage} = {math.dist(places[a], places[b]):.2f}"
+        angle = math.degrees(math.atan2(end[1] - start[1], end[0] - start[0]))
+        angle = (angle + 90.0) % 180.0 - 90.0  # never upside down
+        nx, ny = -math.sin(math.radians(angle)), math.cos(math.radians(angle))
+        spots = []
+        for k, share in enumerate((0.5, 0.42, 0.58, 0.35, 0.65, 0.28, 0.72)):
+            x, y = (s + share * (e - s) for s, e in zip(start, end, strict=True))
+            spots += [
+                Place(x + side * 9.0 * nx, y + side * 9.0 * ny, angle, 2.0 * k) for side in (-1, 1)
+            ]
+        sheet.label(text, spots, "size")
+
+
+def _meshes(found: Layout) -> list[tuple[int, int, int]]:
+    """Shaft of the pinion, shaft of the wheel, stage."""
+    on = {(g["stage"], g["member"]): g["shaft"] for g in found["gears"]}
+    stages = sorted({g["stage"] for g in found["gears"]})
+    return [
+        (on[s, "pinion"], on[s, "wheel"], s)
+        for s in stages
+        if (s, "pinion") in on and (s, "wheel") in on
+    ]
+
+
+def _narrowest(sheet: Sheet, found: Layout) -> None:
+    """The narrowest gap between two bodies, with its value."""
+    if not found["gaps"]:
+        return
+    gap = found["gaps"][0]
+    ends = nearest(found, *gap["between"])
+    if ends is None:
+        return
+    start, end = sheet.at(*ends[0]), sheet.at(*ends[1])
+    sheet.arrows(start, end, "gap")
+    middle = ((start[0] + end[0]) / 2, (start[1] + end[1]) / 2)
+    text = f"gap {gap['gap_mm']:.2f}"
+    sheet.label(text, around(middle, (44.0, 60.0, 80.0), 4.0), "gap")
+
+
+def _name(sheet: Sheet, found: Layout, gear: Layout) -> None:
+    """The gear's name where it is alone inside it, else outside with a line to it."""
+    discs = [circle(found, g["name"]) for g in found["gears"] if g is not gear]
+    (place, radius) = circle(found, gear["name"]) or ((0.0, 0.0), 0.0)
+    centre, r = sheet.at(*place), radius * sheet.scale
+    half = Place(0, 0).half_width(gear["name"])
+    inside = around(centre, [share * r for share in (0.6, 0.75, 0.45) if share * r > 24.0])
+    inside = [p for p in inside if math.dist((p.x, p.y), centre) + 0.8 * half < r]
+    shared = [sum(_within(sheet, p, disc) for disc in discs if disc) for p in inside]
+    alone = [replace(p, cost=p.cost + 8.0 * n) for p, n in zip(inside, shared, strict=True)]
+    outside = around(centre, (r + half + 6, r + half + 20, r + half + 40), r, 20.0)
+    sheet.label(gear["name"], alone + outside, "name", series(gear["stage"]))
+
+
+def _within(sheet: Sheet, spot: Place, disc: tuple[tuple[float, float], float]) -> bool:
+    return math.dist(sheet.at(*disc[0]), (spot.x, spot.y)) < disc[1] * sheet.scale + SIZE

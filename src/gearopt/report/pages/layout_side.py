@@ -1,0 +1,120 @@
+"""A layout seen across its shafts: gears as rectangles, bearings, motor, face widths."""
+
+from gearopt.report.pages.labels import SIZE, Place
+from gearopt.report.pages.layout_marks import (
+    Layout,
+    across_dimension,
+    box_lines,
+    keep_out,
+    walls,
+)
+from gearopt.report.pages.section import meaning, series
+from gearopt.report.pages.sheet import Drawing, Sheet, Window
+
+
+def side_view(found: Layout, window: Window, scale: float, axis: str) -> Drawing:
+    """Along x to the right and z (from the side) or y (from above) up."""
+    sheet = Sheet(window, scale)
+    box_lines(sheet, found, "x", axis)
+    low, high = ("bottom_mm", "top_mm") if axis == "z" else ("left_mm", "right_mm")
+    for it in found["obstacles"]:
+        keep_out(sheet, it, "from_mm", "to_mm", low, high)
+    _motor(sheet, found)
+    depth = "y_mm" if axis == "z" else "z_mm"
+    shafts = sorted(found["shafts"], key=lambda s: s[depth], reverse=axis == "z")
+    for shaft in shafts:  # the farthest first
+        _shaft(sheet, found, shaft, axis)
+    heights = {s["shaft"]: s[f"{axis}_mm"] for s in shafts}
+    across_dimension(sheet, found, "x", axis)
+    _widths(sheet, found, axis)
+    right = sheet.at(walls(found, "x")[1], 0.0)[0]
+    for shaft in found["shafts"]:
+        x = sheet.at(shaft["to_mm"], 0.0)[0]
+        y = sheet.at(0.0, heights[shaft["shaft"]])[1]
+        spots = [
+            Place(right + dx, y + dy, 0.0, abs(dx - 18.0) + abs(dy), (x, y))
+            for dx in (18.0, 34.0)
+            for dy in (0.0, -12.0, 12.0, -24.0, 24.0, -36.0, 36.0)
+        ]
+        sheet.balloon(str(shaft["shaft"]), spots)
+    for gear in sorted(found["gears"], key=lambda g: -g["tip_diameter_mm"]):
+        _side_name(sheet, gear, heights[gear["shaft"]])
+    if axis == "z":
+        return sheet.drawing("side view", "Side view, x to the right and z up.")
+    return sheet.drawing("top view", "Top view, x to the right and y up.")
+
+
+def _shaft(sheet: Sheet, found: Layout, shaft: Layout, axis: str) -> None:
+    """A shaft with what sits on it, as rectangles."""
+    height, r = shaft[f"{axis}_mm"], 0.5 * shaft["diameter_mm"]
+    start, end = shaft["from_mm"], shaft["to_mm"]
+    sheet.rectangle((start, height - r), (end, height + r), "shaft")
+    for it in found["bearings"]:
+        if it["shaft"] == shaft["shaft"]:
+            half = 0.5 * it["diameter_mm"]
+            a, b = (it["from_mm"], height - half), (it["to_mm"], height + half)
+            sheet.rectangle(a, b, "bearing", title=f"bearing of shaft {shaft['shaft']}")
+            sheet.line(a, b, "bearing")
+            sheet.line((a[0], b[1]), (b[0], a[1]), "bearing")
+    for gear in found["gears"]:
+        if gear["shaft"] == shaft["shaft"]:
+            half = 0.5 * gear["tip_diameter_mm"]
+            a, b = (gear["from_mm"], height - half), (gear["to_mm"], height + half)
+            sheet.rectangle(a, b, "tip", series(gear["stage"]), meaning(gear))
+            for z in (-0.5, 0.5):
+                level = height + z * gear["reference_diameter_mm"]
+                sheet.line((a[0], level), (b[0], level), "reference", series(gear["stage"]))
+    past = 6.0 / sheet.scale
+    sheet.line((start - past, height), (end + past, height), "axis")
+
+
+def _motor(sheet: Sheet, found: Layout) -> None:
+    motor = found["motor"]
+    if not motor:
+        return
+    r, length = 0.5 * motor["diameter_mm"], motor["length_mm"]
+    start = -length if motor["at"] == "start" else found["box"]["length_mm"]
+    sheet.rectangle((start, -r), (start + length, r), "motor", title="motor", round_=6.0)
+    sheet.line((start, 0.0), (start + length, 0.0), "axis")
+    x, y = sheet.at(start + length / 2, 0.0)
+    text = f"motor ⌀ {2 * r:g} x {length:g}"
+    sheet.label(text, [Place(x, y - 12.0), Place(x, y + 12.0)], "obstacle")
+
+
+def _widths(sheet: Sheet, found: Layout, axis: str) -> None:
+    """Face widths above the box, slab after slab."""
+    top = walls(found, axis)[1]
+    wheels = {g["stage"]: g for g in found["gears"] if g["member"] == "wheel"}
+    for slab in found["slabs"]:
+        for stage in slab:
+            if stage not in wheels:
+                continue
+            a, b = ((wheels[stage][key], top) for key in ("from_mm", "to_mm"))
+            (x0, y), (x1, _) = sheet.at(*a), sheet.at(*b)
+            for x in (x0, x1):
+                sheet.tick((x, y), (x, y - 16.0))
+            sheet.arrows((x0, y - 12.0), (x1, y - 12.0))
+            middle = ((x0 + x1) / 2, y - 12.0)
+            text = f"b{stage} {wheels[stage]['to_mm'] - wheels[stage]['from_mm']:.1f}"
+            levels = [Place(middle[0], y - dy, 0.0, dy / 10) for dy in (21.0, 36.0)]
+            sheet.label(text, levels, "size")
+
+
+def _side_name(sheet: Sheet, gear: Layout, height: float) -> None:
+    """The name in its rectangle, level or upright, else beside it."""
+    r = 0.5 * gear["tip_diameter_mm"] * sheet.scale
+    wide = (gear["to_mm"] - gear["from_mm"]) * sheet.scale
+    x, y = sheet.at(0.5 * (gear["from_mm"] + gear["to_mm"]), height)
+    half = Place(0, 0).half_width(gear["name"])
+    shares = (0.0, 0.25, -0.25, 0.5, -0.5, 0.75, -0.75)
+    places = []
+    if wide > 2.0 * half:
+        places += [Place(x, y + s * r) for s in shares if abs(s) * r + SIZE / 2 < r]
+    if wide > SIZE:
+        places += [Place(x, y + s * r, -90.0, 4.0) for s in shares if abs(s) * r + half < r + 6.0]
+    for side in (-1, 1):
+        for dy in (0.0, -16.0, 16.0, -32.0, 32.0, -r - 14.0, r + 14.0):
+            u = x + side * (wide / 2 + half + 8.0)
+            edge = (x + side * wide / 2, y + max(-r, min(r, dy)))
+            places.append(Place(u, y + dy, 0.0, 20.0 + abs(dy) / 8, edge))
+    sheet.label(gear["name"], places, "name", series(gear["stage"]))
