@@ -69,11 +69,15 @@ def test_views_have_one_scale(layout):
     scale = np.array(scales(found, svgs))
     assert scale.shape == (3, 2) and np.ptp(scale) < 1e-4 * scale.mean()
     shares = [float(v) for v in re.findall(r"px; max-width: ([\d.]+)%", html)]
-    widths = [float(v) for v in re.findall(r'<figure style="width: ([\d.]+)px', html)]
+    widths = [float(v) for v in re.findall(r'<figure style="--width: ([\d.]+)px', html)]
     drawn = [float(svg.get("viewBox").split()[2]) for svg in svgs]
     assert widths == drawn and max(shares) == 100.0
     assert np.ptp(np.divide(shares, drawn)) < 1e-6  # so they also shrink alike
     assert max(drawn) <= 640.0
+    printed = float(re.search(r"--printed: ([\d.]+)", html)[1])
+    assert printed == 1.0 or math.isclose(
+        printed * (drawn[0] + drawn[1] + 18.0), 660.0, rel_tol=1e-4
+    )
 
 
 def test_heights_of_front_and_side_view_are_the_same(layout):
@@ -371,7 +375,7 @@ def test_colours_are_those_of_the_page():
             used = set(re.findall(r'"(--[\w-]+)(?:/[\d.]+)?"', json.dumps(figure)))
             assert used and used <= known
     drawing = (ROOM / "drawing.css").read_text(encoding="utf-8")
-    assert set(re.findall(r"var\((--[\w-]+)\)", drawing)) <= known | {"--c"}
+    assert set(re.findall(r"var\((--[\w-]+)\)", drawing)) <= known | {"--c", "--width", "--printed"}
     assert f"font: {SIZE:g}px" in drawing
 
 

@@ -62,6 +62,14 @@ def check_html(path: Path | None) -> None:
         raise GearoptError(f"--html {path}: there is no folder {path.resolve().parent}")
 
 
+def write_html(path: Path, page: str) -> None:
+    """Write a page; GearoptError where the system refuses."""
+    try:
+        path.write_text(page, encoding="utf-8")
+    except OSError as refused:
+        raise GearoptError(f"--html {path}: {refused.strerror}") from refused
+
+
 def title(file: Path) -> str:
     """Title of a problem file."""
     from gearopt.api import load

@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from gearopt.cli.app import File, Html, Json, app, check_html, console
+from gearopt.cli.app import File, Html, Json, app, check_html, console, write_html
 from gearopt.cli.watching import following
 from gearopt.optimise.comparing.compare import EVALUATIONS, SECONDS, SEEDS, Progress
 
@@ -49,7 +49,7 @@ def compare(
     if html is not None:
         from gearopt.report.pages.comparison import page
 
-        html.write_text(page(found), encoding="utf-8")
+        write_html(html, page(found))
     if as_json:
         print(found.to_json())
         return

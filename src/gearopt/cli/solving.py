@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from gearopt.cli.app import File, Html, Json, app, check_html, console, exit_code, title
+from gearopt.cli.app import File, Html, Json, app, check_html, console, exit_code, title, write_html
 from gearopt.cli.watching import watching
 from gearopt.optimise.result import Budget
 
@@ -46,18 +46,18 @@ def solve(
         result = solve_file(
             file, method, budget=Budget(seconds), seed=seed, watch=watch, gap=gap, top=top
         )
-    if html is not None:
-        from gearopt.report.pages.result import page
-
-        command = _again(file, html, method=method, top=top, seconds=seconds, gap=gap, seed=seed)
-        html.write_text(page(result, title(file), command), encoding="utf-8")
     if as_json:
         print(result.to_json())
     else:
         from gearopt.report.terminal.result import show
 
         show(result, title(file), console())
-        if html is not None:
+    if html is not None:
+        from gearopt.report.pages.result import page
+
+        command = _again(file, html, method=method, top=top, seconds=seconds, gap=gap, seed=seed)
+        write_html(html, page(result, title(file), command))
+        if not as_json:
             print(f"\nPage: {html}")
     raise typer.Exit(exit_code(result))
 

@@ -7,6 +7,9 @@ from typing import Any
 from gearopt.report.pages.frame import Figure
 from gearopt.report.pages.sheet import Drawing
 
+SHEET = 660.0  # px across an A4 sheet inside its margins
+GUTTER = 18.0  # px between drawings, as in drawing.css
+LEGIBLE = 0.6  # of a text of 12 px: 5.4 pt on paper
 COLOURS = 8  # --series-1 ... in frame.css, told apart by the colour-blind
 
 
@@ -37,6 +40,16 @@ class Section:
     def widest(self) -> float:
         """Width of the widest drawing [px]: all shrink with it, so that they keep one scale."""
         return max(drawing.width for drawing in self.drawings)
+
+    @property
+    def printed(self) -> float:
+        """How much the drawings shrink in print so that the first two stand side by side.
+
+        1 where their text would become too small.
+        """
+        both = sum(drawing.width for drawing in self.drawings[:2]) + GUTTER
+        share = SHEET / both
+        return min(1.0, share) if share > LEGIBLE else 1.0
 
 
 def series(k: int) -> str:
