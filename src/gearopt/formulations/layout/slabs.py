@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 
 import numpy as np
 
@@ -63,6 +63,7 @@ class Clash:
         return self.need.distance - self.there
 
 
+@lru_cache(maxsize=64)
 def arrangements(box: Gearbox) -> tuple[Arrangement, ...]:
     """Arrangements worth trying, the shortest first: the given one, or all that none betters."""
     if box.slabs is not None:
@@ -70,7 +71,8 @@ def arrangements(box: Gearbox) -> tuple[Arrangement, ...]:
     kept: list[Arrangement] = []
     for slabs in sorted(_orders(len(box.pairs)), key=lambda s: (-len(s), s)):
         one = arrange(box, slabs)
-        if not clashes(box, one) and not any(_dominates(k, one) for k in kept):
+        fits = not clashes(box, one) and one.length <= box.largest[2] * (1.0 + TOUCH)
+        if fits and not any(_dominates(k, one) for k in kept):
             kept = [k for k in kept if not _dominates(one, k)] + [one]
     return tuple(sorted(kept, key=lambda a: a.length)) or (arrange(box, in_order(box)),)
 

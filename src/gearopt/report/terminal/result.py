@@ -11,6 +11,7 @@ from rich.text import Text
 
 from gearopt.optimise.result import Result
 from gearopt.report.terminal.explanation import remedies
+from gearopt.report.terminal.layout import layout
 from gearopt.report.words import UNITS, VERDICTS, columns, heading, limit_words, number
 
 EXACT = 1e-6  # a gap below it is called optimal, one above it is named
@@ -46,10 +47,14 @@ def _blocks(result: Result) -> list[RenderableType]:
     blocks: list[RenderableType] = []
     if result.value is not None:
         blocks.append(_design(result.design))
+        if "layout" in result.design:
+            blocks.append(layout(result.design["layout"]))
         blocks.append(_limits(result.limits))
         if trains := result.report.get("trains"):
             blocks.append(_trains(trains, result.objective))
     if "ways_out" in result.report:
+        if not result.report["ways_out"]["conflict"] and result.message:
+            blocks.append(Text(result.message))
         blocks += remedies(result.report["ways_out"])
     blocks.append(Text("\n".join(_proof(result))))
     return blocks
@@ -67,7 +72,7 @@ def _design(design: Mapping[str, Any]) -> RenderableType:
         parts += [table, ""]
     totals = Table.grid(padding=(0, 2))
     for key, value in design.items():
-        if key != "stages":
+        if not isinstance(value, list | Mapping):
             totals.add_row(Text(heading(key)), number(value))
     return Group(*parts, totals)
 
@@ -125,15 +130,21 @@ def _proof(result: Result) -> list[str]:
             f"gap {100 * result.gap:.3g} %."
         )
     proof = result.proof
-    if proof.get("method") == "exhausted" and result.status == "infeasible":
+    whole = "trains_compared" in proof
+    if whole and proof["method"] == "exhausted" and result.status == "infeasible":
         lines.append(
             "Proof: every choice of teeth and modules was compared or excluded; none "
             "meets all limits."
         )
-    elif proof.get("method") == "exhausted":
+    elif whole and proof["method"] == "exhausted":
         lines.append(
             f"Proof: {proof['trains_compared']:,} trains compared, all others excluded by "
             f"lower bounds (nodes opened: {proof['nodes']:,})."
+        )
+    elif "pruning_margin" in proof and "nodes" in proof and result.bound is not None:
+        lines.append(
+            f"Proof: {proof['nodes']:,} cells of link angles, each bounded by intervals "
+            f"({proof['method']})."
         )
     elif proof.get("method") == "dual" and result.bound is not None:
         lines.append(
@@ -148,13 +159,15 @@ def _proof(result: Result) -> list[str]:
             f"limits is missed by at least {least:.2g} %: {names}."
         )
     for part in result.parts:
+        if part.objective["name"] != result.objective["name"]:
+            continue
         if part.value is not None and result.value is not None and result.status == "optimal":
             lines.append(
                 f"With real-valued teeth and modules: {number(part.value)} {unit} "
                 f"(whole teeth and standard modules cost "
                 f"{100 * (result.value / part.value - 1):.2f} %)."
             )
-    lines += result.report.get("notes", [])
+    lines += result.report.get("notes", []) if result.status != "infeasible" else []
     if result.message and result.status != "infeasible":
         lines.append(result.message[0].upper() + result.message[1:] + ".")
     lines.append(f"{result.method}, {result.evaluations:,} evaluations, {result.seconds:.3g} s.")
