@@ -22,7 +22,10 @@ def layout(found: Mapping[str, Any]) -> RenderableType:
     table = columns("", [f"shaft {s['shaft']}" for s in found["shafts"]])
     rows = {"right of the input y": "y_mm", "above the input z": "z_mm", "diameter": "diameter_mm"}
     for words, key in rows.items():
-        table.add_row(Text(f"{words} [mm]"), *[f"{s[key]:.2f}" for s in found["shafts"]])
+        table.add_row(
+            Text(f"{words} [mm]"),
+            *[f"{s[key]:.2f}".replace("-0.00", "0.00") for s in found["shafts"]],
+        )
     parts.append(table)
     slabs = ", ".join(" and ".join(str(s) for s in slab) for slab in found["slabs"])
     parts += ["", Text(f"Stages along the shafts: {slabs}.")]

@@ -41,7 +41,7 @@ def described(
         "bearings": bearings,
         "link_angles_deg": [math.degrees(t) for t in angles],
         "slabs": [[s + 1 for s in slab] for slab in one.slabs],
-        "gaps": _gaps(one, found),
+        "gaps": _gaps(box, one, found),
         "clearances": _clearances(box),
         "obstacles": [_keep_out(k, found) for k in box.keep_outs],
         "motor": {"diameter_mm": 2 * box.motor} if box.motor else None,
@@ -98,7 +98,7 @@ def _gears(scene: Scene, one: Arrangement, sized: Result) -> list[dict[str, Any]
     return gears
 
 
-def _gaps(one: Arrangement, found: Placed) -> list[dict[str, Any]]:
+def _gaps(box: Gearbox, one: Arrangement, found: Placed) -> list[dict[str, Any]]:
     """Clear distances of bodies that must keep apart, the narrowest over its need first."""
     gaps = []
     for (i, j), need in one.needs.items():
@@ -113,6 +113,19 @@ def _gaps(one: Arrangement, found: Placed) -> list[dict[str, Any]]:
                 "axes_mm": there,
             }
         )
+    for k, keep in enumerate(box.keep_outs):
+        for i, (y, z) in enumerate(found.axes):
+            if (needed := float(one.keep_apart[k, i])) > 0.0:
+                dy = max(keep.y[0] - y, y - keep.y[1], 0.0)
+                dz = max(keep.z[0] - z, z - keep.z[1], 0.0)
+                gaps.append(
+                    {
+                        "between": [f"shaft {i + 1} with its gears", keep.name],
+                        "gap_mm": math.hypot(dy, dz) - needed + box.clearances.shafts,
+                        "needed_mm": box.clearances.shafts,
+                        "axes_mm": math.hypot(dy, dz),
+                    }
+                )
     return sorted(gaps, key=lambda g: float(g["gap_mm"]) - float(g["needed_mm"]))
 
 
