@@ -1,15 +1,13 @@
 """`compare`: methods side by side, on the same model, seeds and budget."""
 
 from collections.abc import Callable
-from pathlib import Path
 from typing import Annotated
 
 import typer
 from rich.console import Console
 
-from gearopt.cli.app import File, Json, app, console
+from gearopt.cli.app import File, Html, Json, app, check_html, console
 from gearopt.cli.watching import following
-from gearopt.errors import GearoptError
 from gearopt.optimise.comparing.compare import EVALUATIONS, SECONDS, SEEDS, Progress
 
 
@@ -30,18 +28,13 @@ def compare(
         str | None,
         typer.Option(help="A method that is run once, up to a minute, to prove a bound."),
     ] = None,
-    html: Annotated[
-        Path | None, typer.Option(help="Write a page that any browser shows, without a network.")
-    ] = None,
+    html: Html = None,
     as_json: Json = False,
 ) -> None:
     """Compare methods by their gap to what is proven. Ctrl-C reports the runs that are finished."""
     from gearopt.api import compare as compare_file
 
-    if html is not None and html.is_dir():
-        raise GearoptError(f"--html {html}: is a folder; name a file, such as {html / 'page.html'}")
-    if html is not None and not html.resolve().parent.is_dir():
-        raise GearoptError(f"--html {html}: there is no folder {html.resolve().parent}")
+    check_html(html)
     named = [name.strip() for name in methods.split(",") if name.strip()]
     with following(_words, quiet=as_json) as watch:
         found = compare_file(
