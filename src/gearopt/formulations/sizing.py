@@ -10,9 +10,9 @@ import math
 from types import SimpleNamespace
 from typing import Any
 
-from gearopt.formulations.train import BY_STAGE, Sizes, Train, each, terms
+from gearopt.formulations.train import BY_STAGE, Sizes, Train, terms
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.terms import Array, Param, Terms, Var, namespace
+from gearopt.optimise.terms import Array, Param, Terms, Var, each, namespace
 from gearopt.physics.geometry import reference_diameter
 from gearopt.physics.loads import k_factor
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
-from gearopt.optimise.terms import Terms
+from gearopt.optimise.terms import Terms, each
 from gearopt.physics.geometry import centre_distance, gear_volume, reference_diameter
 from gearopt.physics.loads import k_factor, unit_load
 
@@ -255,8 +255,3 @@ def _choices(
     if stage.wheel_diameter is not None:
         found["wheel_diameter"] = u * d / own["wheel_diameter"]
     return found
-
-
-def each(value: Any) -> tuple[Any, ...]:
-    """A block of scalars as a tuple, whatever its size."""
-    return value if isinstance(value, tuple) else (value,)

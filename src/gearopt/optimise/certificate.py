@@ -72,7 +72,8 @@ def certify(problem: Problem, outcome: Outcome, gap: float, exact: bool = False)
         return Verdict(unsolved, certificate=certificate, message=message)
     if outcome.bound is not None and math.isfinite(outcome.bound):
         return _claimed(outcome, value, certificate, gap)
-    if any(v.discrete for v, _ in problem.columns):
+    several = len(problem.rows.objectives) > 1  # then the first counts, and no multipliers do
+    if several or any(v.discrete for v, _ in problem.columns):
         status = "feasible" if outcome.finished else "limit"
         return Verdict(status, value, certificate=certificate, message=outcome.message)
     return _local(problem, outcome, value, certificate, gap)

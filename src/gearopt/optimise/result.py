@@ -63,7 +63,8 @@ class Outcome:
     x: the best point (n,), or None. finished: it ran to its own end, not out of budget.
     lam_g, lam_h: multipliers of the form's rows. infeasible: it claims there is no feasible point,
     by lam_g, lam_h (a Farkas certificate) or by `proof`. bound and proof: of an exact algorithm.
-    others: further points in proven order. leaves: of a conic problem, the parts of its box with
+    others: further points, of an exact algorithm in proven order, of several objectives the rest of
+    the front. leaves: of a conic problem, the parts of its box with
     their multipliers. message: what it has to say.
     """
 

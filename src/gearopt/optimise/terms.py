@@ -121,6 +121,11 @@ def spread(value: Number, size: int) -> Array:
     return np.broadcast_to(np.asarray(value, float), (size,)).copy()
 
 
+def each(value: Any) -> tuple[Any, ...]:
+    """A block of scalars as a tuple, whatever its size."""
+    return value if isinstance(value, tuple) else (value,)
+
+
 class Named(SimpleNamespace):
     """Scalars by name; a name that is not declared is answered with those that are."""
 

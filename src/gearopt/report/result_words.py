@@ -85,16 +85,41 @@ def proof(result: Result) -> list[str]:
             f"Bound: no {name} below {number(result.bound)} {unit} is possible; "
             f"gap {100 * result.gap:.3g} %."
         )
-    proof = result.proof
-    if proof.get("method") == "exhausted" and result.status == "infeasible":
+    lines += _method(result)
+    for part in result.parts:
+        if part.objective["name"] != result.objective["name"]:
+            continue
+        if part.value is not None and result.value is not None and result.status == "optimal":
+            lines.append(
+                f"With real-valued teeth and modules: {number(part.value)} {unit} "
+                f"(whole teeth and standard modules cost "
+                f"{100 * (result.value / part.value - 1):.2f} %)."
+            )
+    lines += result.report.get("notes", []) if result.status != "infeasible" else []
+    if result.message and result.status != "infeasible":
+        lines.append(result.message[0].upper() + result.message[1:] + ".")
+    lines.append(f"{result.method}, {result.evaluations:,} evaluations, {result.seconds:.3g} s.")
+    return lines
+
+
+def _method(result: Result) -> list[str]:
+    """How it was proven: whole teeth exhausted, cells of angles bounded, or a dual bound."""
+    proof, lines = result.proof, []
+    exhausted = proof.get("method") == "exhausted"
+    if "trains_compared" in proof and exhausted and result.status == "infeasible":
         lines.append(
             "Proof: every choice of teeth and modules was compared or excluded; none "
             "meets all limits."
         )
-    elif proof.get("method") == "exhausted":
+    elif "trains_compared" in proof and exhausted:
         lines.append(
             f"Proof: {proof['trains_compared']:,} trains compared, all others excluded by "
             f"lower bounds (nodes opened: {proof['nodes']:,})."
+        )
+    elif "pruning_margin" in proof and "nodes" in proof:
+        lines.append(
+            f"Proof: {proof['nodes']:,} cells of link angles, each bounded by intervals "
+            f"({proof['method']})."
         )
     elif proof.get("method") == "dual" and result.bound is not None:
         lines.append(
@@ -108,15 +133,4 @@ def proof(result: Result) -> list[str]:
             f"Proof: whatever the sizes, even with real-valued teeth and modules, one of these "
             f"limits is missed by at least {least:.2g} %: {names}."
         )
-    for part in result.parts:
-        if part.value is not None and result.value is not None and result.status == "optimal":
-            lines.append(
-                f"With real-valued teeth and modules: {number(part.value)} {unit} "
-                f"(whole teeth and standard modules cost "
-                f"{100 * (result.value / part.value - 1):.2f} %)."
-            )
-    lines += result.report.get("notes", [])
-    if result.message and result.status != "infeasible":
-        lines.append(result.message[0].upper() + result.message[1:] + ".")
-    lines.append(f"{result.method}, {result.evaluations:,} evaluations, {result.seconds:.3g} s.")
     return lines

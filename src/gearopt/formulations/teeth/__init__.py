@@ -15,10 +15,10 @@ from gearopt.errors import SolveError
 from gearopt.formulations.teeth.progress import MARGIN, TIE, Progress, Teeth
 from gearopt.formulations.teeth.search import BEAM, search
 from gearopt.formulations.teeth.stage import table
-from gearopt.formulations.train import Sizes, Stage, Train, each, terms
+from gearopt.formulations.train import Sizes, Stage, Train, terms
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch
-from gearopt.optimise.terms import Array, Terms, Var, namespace
+from gearopt.optimise.terms import Array, Terms, Var, each, namespace
 from gearopt.physics.geometry import reference_diameter
 
 VARIABLES = {

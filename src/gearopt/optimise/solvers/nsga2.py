@@ -1,6 +1,7 @@
 """NSGA-II of pymoo on whole populations (`Problem.batch`), integers and finite sets included.
 
-One objective is searched like several: the answer is the best feasible individual.
+One objective is searched like several: the answer is the best feasible individual in the first
+objective; where there are several, the rest of the front comes with it.
 """
 
 import time
@@ -61,7 +62,7 @@ def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Out
         algorithm.next()
         seconds = time.perf_counter() - clock
         late = budget.seconds is not None and seconds > budget.seconds
-        best = algorithm.opt[0].F[0] if algorithm.opt[0].feas else None
+        best = min((float(one.F[0]) for one in algorithm.opt if one.feas), default=None)
         event = Event(seconds, int(algorithm.evaluator.n_eval), best)
         if late or (watch is not None and watch(event) is False):
             finished = not algorithm.has_next()
@@ -70,5 +71,7 @@ def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Out
     good = [one for one in algorithm.opt if one.feas]
     if not good:
         return Outcome(None, finished, evaluations=spent, message="no feasible individual")
-    first = min(good, key=lambda one: float(one.F[0]))
-    return Outcome(space.points(first.X[None])[0], finished, evaluations=spent)
+    front = sorted(good, key=lambda one: float(one.F[0]))
+    points = [space.points(one.X[None])[0] for one in front]
+    others = tuple(points[1:]) if len(rows.objectives) > 1 else ()
+    return Outcome(points[0], finished, others=others, evaluations=spent)

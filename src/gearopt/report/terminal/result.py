@@ -11,6 +11,7 @@ from rich.text import Text
 from gearopt.optimise.result import Result
 from gearopt.report.result_words import limit_rows, proof, stage_rows, train_rows, verdict
 from gearopt.report.terminal.explanation import remedies
+from gearopt.report.terminal.layout import layout
 from gearopt.report.words import columns, heading, number
 
 
@@ -27,10 +28,14 @@ def _blocks(result: Result) -> list[RenderableType]:
     blocks: list[RenderableType] = []
     if result.value is not None:
         blocks.append(_design(result.design))
+        if "layout" in result.design:
+            blocks.append(layout(result.design["layout"]))
         blocks.append(_limits(result.limits))
         if trains := result.report.get("trains"):
             blocks.append(_trains(trains, result))
     if "ways_out" in result.report:
+        if not result.report["ways_out"]["conflict"] and result.message:
+            blocks.append(Text(result.message))
         blocks += remedies(result.report["ways_out"])
     blocks.append(Text("\n".join(proof(result))))
     return blocks
@@ -47,7 +52,7 @@ def _design(design: Mapping[str, Any]) -> RenderableType:
         parts += [table, ""]
     totals = Table.grid(padding=(0, 2))
     for key, value in design.items():
-        if key != "stages":
+        if not isinstance(value, list | Mapping):
             totals.add_row(Text(heading(key)), number(value))
     return Group(*parts, totals)
 

@@ -1,0 +1,81 @@
+"""The layout of a gearbox: where the shafts go, so that the box around the gears is smallest.
+
+Centre distances are given, so a layout is one angle a link and the order of the slabs along the
+shafts; distances are never penalised, because links are exact.
+"""
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from gearopt.errors import SolveError
+from gearopt.formulations.layout import annealing, exact
+from gearopt.formulations.layout.chain import Chain, chain, turns
+from gearopt.formulations.layout.faults import faults
+from gearopt.formulations.layout.gearbox import Gearbox
+from gearopt.formulations.layout.slabs import Arrangement, arrangements
+from gearopt.formulations.layout.text import direct, positions, sides, smooth
+from gearopt.optimise.box import violation
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.result import Budget
+from gearopt.optimise.solvers import ipopt
+from gearopt.optimise.terms import Array
+
+__all__ = ["GRADIENT", "faults", "problem"]
+
+GRADIENT = ("ipopt", "multistart")  # methods that take the smooth text
+CLOSE = 1e-9  # what a polished layout may violate
+
+
+def problem(box: Gearbox, method: str | None = None) -> Problem:
+    """The layout problem of a gearbox, in the text that suits a method (by default `exact`).
+
+    Variables are those of `text.direct` or `text.smooth`. SolveError where the arrangement of slabs
+    is open and the method cannot choose one.
+    """
+    orders = arrangements(box)
+    if method in (*GRADIENT, "sa-paper") and len(orders) > 1:
+        known = "; ".join(str([list(s) for s in _counted(a)]) for a in orders[:4])
+        raise SolveError(f"{method} takes one order of slabs, and {len(orders)} compete: {known}")
+    if method in GRADIENT:
+        return smooth(box, orders[0])
+    return direct(box, orders, _methods(box, orders), front=method == "nsga2")
+
+
+def _counted(one: Arrangement) -> tuple[tuple[int, ...], ...]:
+    return tuple(tuple(s + 1 for s in slab) for slab in one.slabs)
+
+
+def _methods(box: Gearbox, orders: tuple[Arrangement, ...]) -> dict[str, Any]:
+    shape = chain(box, orders)
+    texts = cache(lambda m: smooth(box, orders[m]))
+    plain = direct(box, orders, {})
+
+    def polished(x: Array) -> tuple[Array, float]:
+        """A point no worse than x, by Ipopt from there, and its value."""
+        m = round(x[-1]) if len(orders) > 1 else 0
+        return _polish(plain, texts(m), shape, x)
+
+    found: dict[str, Any] = {
+        "exact": exact.method(shape, turns(box), polished),
+        "sa": annealing.method(shape, free=False),
+        "sa-polish": annealing.method(shape, free=False, polish=lambda x: polished(x)[0]),
+    }
+    return found | ({} if len(orders) > 1 else {"sa-paper": annealing.method(shape, free=True)})
+
+
+def _polish(plain: Problem, text: Problem, shape: Chain, x: Array) -> tuple[Array, float]:
+    """X or a better point that Ipopt reaches from it."""
+    links = shape.link.size
+    value = float(violation(plain, x[None])[0][0])
+    box = sides(shape, *positions(shape, tuple(x[:links])))
+    start = np.concatenate([x[:links], [box[n] for n in ("left", "bottom", "width", "height")]])
+    if shape.longest:
+        start = np.append(start, value)
+    end = ipopt.run(text, Budget(), 0, None, start=start).x
+    if end is None:
+        return x, value
+    moved = np.concatenate([np.remainder(end[:links] + np.pi, 2 * np.pi) - np.pi, x[links:]])
+    found, excess = (float(v[0]) for v in violation(plain, moved[None]))
+    return (moved, found) if excess <= CLOSE and found < value else (x, value)

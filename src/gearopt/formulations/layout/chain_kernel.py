@@ -1,0 +1,298 @@
+"""Kernels on the chain of shafts: what a point measures, and what no point of a cell is below.
+
+A chain is the NamedTuple of arrays of `chain.Chain`; theta (N,) are the link angles. Lengths in mm,
+angles in rad.
+"""
+
+import math
+
+import numpy as np
+from numba import njit
+
+FULL = 2.0 * math.pi
+MARGIN = 1e-12  # relative; far above the rounding of some ten sums and products of doubles
+ROUNDING = 1e-9  # mm; what exact positions may seem to lack
+ROUNDS = 6  # mixtures tried of a cell's box bounds; more cost more than they prune
+
+
+@njit(cache=True)
+def measure(chain, m, theta, y, z):
+    """Width, height, and violation [mm] (the sum of what is missing); y, z are filled in."""
+    y[0] = z[0] = 0.0
+    for i in range(theta.size):
+        y[i + 1] = y[i] + chain.link[i] * math.cos(theta[i])
+        z[i + 1] = z[i] + chain.link[i] * math.sin(theta[i])
+    return measured(chain, m, y, z)
+
+
+@njit(cache=True)
+def measured(chain, m, y, z):
+    """Width, height and violation of shafts at y, z."""
+    count = y.size
+    left = bottom = math.inf
+    right = top = -math.inf
+    short = 0.0
+    for i in range(count):
+        r = chain.reach[i]
+        left, right = min(left, y[i] - r), max(right, y[i] + r)
+        bottom, top = min(bottom, z[i] - r), max(top, z[i] + r)
+        for j in range(i + 2, count):
+            need = chain.apart[m, i, j]
+            dy, dz = y[i] - y[j], z[i] - z[j]
+            there = dy * dy + dz * dz
+            if there < need * need:
+                short += need - math.sqrt(there)
+        short += max(0.0, chain.place[i, 0] - y[i]) + max(0.0, y[i] - chain.place[i, 1])
+        short += max(0.0, chain.place[i, 2] - z[i]) + max(0.0, z[i] - chain.place[i, 3])
+        for k in range(chain.keep.shape[0]):
+            dy = max(chain.keep[k, 0] - y[i], y[i] - chain.keep[k, 1], 0.0)
+            dz = max(chain.keep[k, 2] - z[i], z[i] - chain.keep[k, 3], 0.0)
+            need = chain.keep_apart[m, k, i]
+            there = dy * dy + dz * dz
+            if there < need * need:
+                short += need - math.sqrt(there)
+    for k in range(1, chain.level.size):
+        short += abs(z[chain.level[k]] - z[chain.level[0]])
+    width, height = right - left, top - bottom
+    short += max(0.0, width - chain.most[0]) + max(0.0, height - chain.most[1])
+    return width, height, short
+
+
+@njit(cache=True)
+def value(chain, m, width, height):
+    """The objective: factor W^p H^q, or the longest side."""
+    if chain.longest:
+        return max(width, height, chain.factor[m])
+    found = chain.factor[m]
+    if chain.power[0] > 0.0:
+        found *= width
+    if chain.power[1] > 0.0:
+        found *= height
+    return found
+
+
+@njit(cache=True)
+def cosines(low, high):
+    """Least and largest cosine on an interval, widened by MARGIN."""
+    if high - low >= FULL:
+        return -1.0, 1.0
+    a, b = math.cos(low), math.cos(high)
+    least, most = min(a, b) - MARGIN, max(a, b) + MARGIN
+    if math.floor(high / FULL) != math.floor(low / FULL):
+        most = 1.0
+    if math.floor((high - math.pi) / FULL) != math.floor((low - math.pi) / FULL):
+        least = -1.0
+    return max(least, -1.0), min(most, 1.0)
+
+
+@njit(cache=True)
+def lowest(a, b, low, high):
+    """Where a cos(t) + b sin(t) is least on an interval, and its value there."""
+    t = math.atan2(b, a) + math.pi  # a minimum; bring it to the first one not below `low`
+    t += FULL * math.ceil((low - t) / FULL)
+    if t <= high:
+        return t, -math.hypot(a, b)
+    first = a * math.cos(low) + b * math.sin(low)
+    last = a * math.cos(high) + b * math.sin(high)
+    return (low, first) if first < last else (high, last)
+
+
+@njit(cache=True)
+def excluded(chain, m, low, high, ly, hy, lz, hz):
+    """Whether no point of a cell keeps the distances and places; fills in the intervals.
+
+    ly[i, j] to hy[i, j] holds y_j - y_i of the whole cell, lz, hz the same of z; j > i.
+    """
+    links = low.size
+    for i in range(links):
+        c0, c1 = cosines(low[i], high[i])
+        s0, s1 = cosines(low[i] - 0.5 * math.pi, high[i] - 0.5 * math.pi)
+        ly[i, i + 1], hy[i, i + 1] = chain.link[i] * c0, chain.link[i] * c1
+        lz[i, i + 1], hz[i, i + 1] = chain.link[i] * s0, chain.link[i] * s1
+    for span in range(2, links + 1):
+        for i in range(links - span + 1):
+            j = i + span
+            ly[i, j], hy[i, j] = ly[i, j - 1] + ly[j - 1, j], hy[i, j - 1] + hy[j - 1, j]
+            lz[i, j], hz[i, j] = lz[i, j - 1] + lz[j - 1, j], hz[i, j - 1] + hz[j - 1, j]
+            need = chain.apart[m, i, j] * (1.0 - MARGIN)
+            if need <= 0.0:
+                continue
+            y, z = max(-ly[i, j], hy[i, j]), max(-lz[i, j], hz[i, j])
+            if y * y + z * z < need * need:
+                return True
+            if span == 2:  # exactly, by the angle between the two links
+                a, b = chain.link[i], chain.link[i + 1]
+                most = cosines(low[i + 1] - high[i], high[i + 1] - low[i])[1]
+                if a * a + b * b + 2.0 * a * b * most < need * need:
+                    return True
+    return misplaced(chain, m, ly, hy, lz, hz)
+
+
+@njit(cache=True)
+def misplaced(chain, m, ly, hy, lz, hz):
+    """Whether every point of a cell misses a given place, level, keep-out or largest side."""
+    count = chain.reach.size
+    slack = MARGIN * (1.0 + hy[0, count - 1] - ly[0, count - 1] + chain.reach[0])
+    for i in range(1, count):
+        if ly[0, i] > chain.place[i, 1] + slack or hy[0, i] < chain.place[i, 0] - slack:
+            return True
+        if lz[0, i] > chain.place[i, 3] + slack or hz[0, i] < chain.place[i, 2] - slack:
+            return True
+        for k in range(chain.keep.shape[0]):
+            need = chain.keep_apart[m, k, i] - slack
+            if need <= 0.0:
+                continue
+            y = max(chain.keep[k, 0] - ly[0, i], hy[0, i] - chain.keep[k, 1], 0.0)
+            z = max(chain.keep[k, 2] - lz[0, i], hz[0, i] - chain.keep[k, 3], 0.0)
+            if y * y + z * z < need * need:
+                return True
+    for k in range(1, chain.level.size):
+        i, j = chain.level[k - 1], chain.level[k]
+        if lz[i, j] > slack or hz[i, j] < -slack:
+            return True
+    return False
+
+
+@njit(cache=True)
+def sides(chain, ly, hy, lz, hz):
+    """Bounds of width and height of every point of a cell: W low, W high, H low, H high."""
+    w0 = w1 = h0 = h1 = 0.0
+    count = chain.reach.size
+    for i in range(count):
+        r = 2.0 * chain.reach[i]
+        w0, w1, h0, h1 = max(w0, r), max(w1, r), max(h0, r), max(h1, r)
+        for j in range(i + 1, count):
+            r = chain.reach[i] + chain.reach[j]
+            w0 = max(w0, r + max(ly[i, j], -hy[i, j]))
+            w1 = max(w1, r + max(hy[i, j], -ly[i, j]))
+            h0 = max(h0, r + max(lz[i, j], -hz[i, j]))
+            h1 = max(h1, r + max(hz[i, j], -lz[i, j]))
+    return w0, w1, h0, h1
+
+
+@njit(cache=True)
+def widest(chain, y):
+    """The pair of shafts (i <= j) that makes a side at y, the sign of y_j - y_i, and the side."""
+    first = last = 0
+    for i in range(1, y.size):
+        if y[i] - chain.reach[i] < y[first] - chain.reach[first]:
+            first = i
+        if y[i] + chain.reach[i] > y[last] + chain.reach[last]:
+            last = i
+    side = y[last] + chain.reach[last] - y[first] + chain.reach[first]
+    return min(first, last), max(first, last), 1.0 if last >= first else -1.0, side
+
+
+@njit(cache=True)
+def mixed(chain, low, high, w0, w1, h0, h1, aim, work):
+    """A lower bound of log(W H) over a cell, tight to second order in its size.
+
+    log is above its chord on [w0, w1], and W is at least any mixture of the sides
+    R_i + R_j +- (y_j - y_i), each a sum over links of one cosine each: so a mixture of widths and
+    heights is a sum over links of one sinusoid each, whose least value on an interval is exact.
+    Mixtures are improved by the sides that the minimiser violates (Frank and Wolfe); any of them is
+    a valid bound, the best is returned, early if it exceeds `aim`. work: (6, N + 1) scratch.
+    """
+    links = low.size
+    pull_y, pull_z, theta = work[0], work[1], work[2]  # weights of cos and sin; the minimiser
+    y, z = work[3], work[4]
+    slope_w = (math.log(w1) - math.log(w0)) / (w1 - w0) if w1 - w0 > 1e-9 * w1 else 1.0 / w1
+    slope_h = (math.log(h1) - math.log(h0)) / (h1 - h0) if h1 - h0 > 1e-9 * h1 else 1.0 / h1
+    base = math.log(w0) - slope_w * w0 + math.log(h0) - slope_h * h0
+    offset_w = offset_h = 0.0
+    for k in range(links):
+        pull_y[k] = pull_z[k] = 0.0
+        theta[k] = 0.5 * (low[k] + high[k])
+    best = math.log(w0) + math.log(h0)
+    for turn in range(ROUNDS):
+        y[0] = z[0] = 0.0
+        for k in range(links):
+            y[k + 1] = y[k] + chain.link[k] * math.cos(theta[k])
+            z[k + 1] = z[k] + chain.link[k] * math.sin(theta[k])
+        step = 1.0 if turn == 0 else 1.0 / (turn + 1.0)
+        offset_w *= 1.0 - step
+        offset_h *= 1.0 - step
+        for k in range(links):
+            pull_y[k] *= 1.0 - step
+            pull_z[k] *= 1.0 - step
+        i, j, sign, _ = widest(chain, y)
+        offset_w += step * (chain.reach[i] + chain.reach[j])
+        for k in range(i, j):
+            pull_y[k] += step * sign
+        i, j, sign, _ = widest(chain, z)
+        offset_h += step * (chain.reach[i] + chain.reach[j])
+        for k in range(i, j):
+            pull_z[k] += step * sign
+        found = base + slope_w * offset_w + slope_h * offset_h
+        for k in range(links):
+            a = chain.link[k] * slope_w * pull_y[k]
+            b = chain.link[k] * slope_h * pull_z[k]
+            if a == 0.0 and b == 0.0:
+                theta[k] = 0.5 * (low[k] + high[k])
+                continue
+            theta[k], least = lowest(a, b, low[k], high[k])
+            found += least
+        best = max(best, found - 1e-13 * (1.0 + abs(base)))
+        if best > aim:
+            break
+    return best
+
+
+@njit(cache=True)
+def branch(chain, m, cells, bounds, count, best, floor, rel, limit, theta):
+    """Depth-first branch and bound on cells of link angles, for one slice of `limit` nodes.
+
+    cells (size, 2, N): low and high of the open cells, of which `count` are in use; bounds (size,):
+    theirs. A cell is dropped if nothing in it is feasible or all of it is above best (1 - rel).
+    Points at cell centres improve `best`, `theta` holds the best one. floor: least bound of the
+    cells dropped for being too good to matter. Returns count, best, floor, nodes.
+    """
+    links = theta.size
+    ly, hy = np.zeros((links + 1, links + 1)), np.zeros((links + 1, links + 1))
+    lz, hz = np.zeros((links + 1, links + 1)), np.zeros((links + 1, links + 1))
+    work = np.zeros((6, links + 1))
+    middle, low, high = np.empty(links), np.empty(links), np.empty(links)
+    y, z = np.zeros(links + 1), np.zeros(links + 1)
+    nodes = 0
+    while count > 0 and nodes < limit and count + 2 <= bounds.size:
+        count -= 1
+        nodes += 1
+        if bounds[count] >= best * (1.0 - rel):
+            floor = min(floor, bounds[count])
+            continue
+        low[:] = cells[count, 0]
+        high[:] = cells[count, 1]
+        if excluded(chain, m, low, high, ly, hy, lz, hz):
+            continue
+        w0, w1, h0, h1 = sides(chain, ly, hy, lz, hz)
+        if w0 > chain.most[0] * (1.0 + MARGIN) or h0 > chain.most[1] * (1.0 + MARGIN):
+            continue
+        bound = max(bounds[count], value(chain, m, w0, h0) * (1.0 - 4.0 * MARGIN))
+        if bound < best * (1.0 - rel) and not chain.longest and chain.power.min() > 0.0:
+            aim = math.log(best * (1.0 - rel) / chain.factor[m])
+            sharp = mixed(chain, low, high, w0, w1, h0, h1, aim, work)
+            bound = max(bound, chain.factor[m] * math.exp(sharp) * (1.0 - 4.0 * MARGIN))
+        if bound >= best * (1.0 - rel):
+            floor = min(floor, bound)
+            continue
+        for k in range(links):
+            middle[k] = 0.5 * (low[k] + high[k])
+        width, height, short = measure(chain, m, middle, y, z)
+        if short <= ROUNDING:
+            found = value(chain, m, width, height)
+            if found < best:
+                best = found
+                theta[:] = middle
+        longest = 0
+        for k in range(1, links):
+            if chain.link[k] * (high[k] - low[k]) > chain.link[longest] * (
+                high[longest] - low[longest]
+            ):
+                longest = k
+        for half in range(2):
+            cells[count, 0] = low
+            cells[count, 1] = high
+            cells[count, 1 - half, longest] = middle[longest]
+            bounds[count] = bound
+            count += 1
+    return count, best, floor, nodes

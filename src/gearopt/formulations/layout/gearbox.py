@@ -1,0 +1,107 @@
+"""The input of a layout: gear pairs, shafts, clearances, what is in the way, what is wanted.
+
+Stages and shafts are counted from 0 here; shaft k carries wheel k - 1 and pinion k, so that the
+input shaft is 0 and the output shaft is the number of stages. y and z lie across the shafts with
+the input shaft at 0, 0; x runs along them from the inner face of the box. All lengths in mm.
+"""
+
+import math
+from dataclasses import dataclass
+
+Range = tuple[float, float]
+ANYWHERE: Range = (-math.inf, math.inf)
+OBJECTIVES = {  # name -> unit; width along y, height along z, length along x
+    "box_volume": "mm3",
+    "plan_area": "mm2",  # width times length, seen from above
+    "face_area": "mm2",  # width times height, seen along the shafts
+    "height": "mm",
+    "longest_side": "mm",
+}
+
+
+@dataclass(frozen=True)
+class Pair:
+    """The two gears of a stage: centre distance, tip radii, face width."""
+
+    centre_distance: float
+    pinion_radius: float
+    wheel_radius: float
+    face_width: float
+
+
+@dataclass(frozen=True)
+class Shaft:
+    """Radius of a shaft; radius and width of each of its two bearings (0: none)."""
+
+    radius: float
+    bearing_radius: float = 0.0
+    bearing_width: float = 0.0
+
+
+@dataclass(frozen=True)
+class Clearances:
+    """Least distances: of gears, of a gear (or shaft) and another shaft, to the walls, along x."""
+
+    gears: float = 5.0
+    shafts: float = 2.0
+    wall: float = 10.0
+    axial: float = 10.0
+
+
+@dataclass(frozen=True)
+class KeepOut:
+    """A box that no gear, shaft or bearing may enter, nor come closer to than the clearance."""
+
+    name: str
+    y: Range
+    z: Range
+    x: Range = ANYWHERE
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where the axis of a shaft must be, measured from that of the input shaft."""
+
+    shaft: int
+    y: Range = ANYWHERE
+    z: Range = ANYWHERE
+
+
+@dataclass(frozen=True)
+class Gearbox:
+    """What is to be laid out.
+
+    partial: shafts end beside their gears instead of passing the whole box. slabs: the stages of
+    each axial slab in order (None: the best). motor: radius of a motor on the input shaft at the
+    face where the output shaft leaves (0: none in its way). level: shafts on the split line of the
+    housing, of equal z. width: the box is made as wide as this. largest: most width, height and
+    length.
+    """
+
+    pairs: tuple[Pair, ...]
+    shafts: tuple[Shaft, ...]
+    clearances: Clearances = Clearances()
+    partial: bool = False
+    slabs: tuple[tuple[int, ...], ...] | None = None
+    keep_outs: tuple[KeepOut, ...] = ()
+    motor: float = 0.0
+    places: tuple[Place, ...] = ()
+    level: tuple[int, ...] = ()
+    objective: str = "box_volume"
+    width: float | None = None
+    largest: tuple[float, float, float] = (math.inf, math.inf, math.inf)
+
+    def __post_init__(self) -> None:
+        if len(self.shafts) != len(self.pairs) + 1 or not self.pairs:
+            raise ValueError("a gearbox of N stages has N + 1 shafts")
+        if self.objective not in OBJECTIVES:
+            raise ValueError(f"no objective {self.objective!r}; {', '.join(OBJECTIVES)}")
+        if self.slabs is not None and sorted(s for slab in self.slabs for s in slab) != list(
+            range(len(self.pairs))
+        ):
+            raise ValueError("slabs must name every stage once")
+
+    @property
+    def unit(self) -> str:
+        """Unit of the objective."""
+        return OBJECTIVES[self.objective]

@@ -1,0 +1,155 @@
+"""A layout as a problem: link angles are the variables, so every mesh is exact.
+
+`direct` takes width and height as they are, for samplers and for the exact search; `smooth` holds
+them by the four sides of the box, for gradients.
+"""
+
+import math
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+
+from gearopt.formulations.layout.chain import Chain, chain
+from gearopt.formulations.layout.gearbox import Gearbox
+from gearopt.formulations.layout.slabs import Arrangement
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.terms import Array, Terms, Var, each
+
+Point = tuple[list[Any], list[Any]]  # y and z of every shaft
+
+
+def direct(
+    box: Gearbox,
+    orders: tuple[Arrangement, ...],
+    methods: Mapping[str, Callable[..., Any]],
+    front: bool = False,
+) -> Problem:
+    """Variables: angle [rad], one a link, and, where there are several, the arrangement of slabs.
+
+    front: width and height are objectives too, beside the first.
+    """
+    shape = chain(box, orders)
+    links = len(box.pairs)
+    variables = [Var("angle", "rad", -math.pi, math.pi, 0.1, links)]
+    if len(orders) > 1:
+        variables.append(Var("arrangement", "", 0, len(orders) - 1, 0, integer=True))
+
+    def evaluate(x: Any, p: Any) -> Terms:
+        m = np.rint(x.arrangement).astype(int) if len(orders) > 1 else 0
+        y, z = positions(shape, each(x.angle))
+        width, height = _side(shape, y), _side(shape, z)
+        objective = {box.objective: _value(shape, m, width, height)}
+        if front:
+            objective |= {"width": width, "height": height}
+        limits, equal = _rows(shape, m, (y, z))
+        return Terms(objective, limits | _largest(shape, width, height), equal=equal)
+
+    return Problem("layout", tuple(variables), (), evaluate, methods=methods)
+
+
+def smooth(box: Gearbox, order: Arrangement) -> Problem:
+    """Variables: angle [rad] of each link; left, bottom, width and height of the box [mm]."""
+    shape = chain(box, (order,))
+    links, span = len(box.pairs), 2.0 * float(shape.link.sum() + shape.reach.max())
+    least = 2.0 * float(shape.reach.max())
+    variables = (
+        Var("angle", "rad", -2.0 * math.pi, 2.0 * math.pi, 0.1, links, search=True),
+        Var("left", "mm", -span, 0.0, -0.5 * span, search=True),
+        Var("bottom", "mm", -span, 0.0, -0.5 * span, search=True),
+        Var("width", "mm", 0.5 * least, 2.0 * span, span, search=True),
+        Var("height", "mm", 0.5 * least, 2.0 * span, span, search=True),
+        Var("longest", "mm", 0.5 * least, 4.0 * span + shape.factor[0], span, search=True),
+    )[: 6 if shape.longest else 5]
+
+    def evaluate(x: Any, p: Any) -> Terms:
+        y, z = positions(shape, each(x.angle))
+        rows: dict[str, Any] = {}
+        for k, r in enumerate(shape.reach):
+            rows[f"left[{k + 1}]"] = 1.0 + (x.left - (y[k] - r)) / span
+            rows[f"right[{k + 1}]"] = 1.0 + (y[k] + r - x.left - x.width) / span
+            rows[f"bottom[{k + 1}]"] = 1.0 + (x.bottom - (z[k] - r)) / span
+            rows[f"top[{k + 1}]"] = 1.0 + (z[k] + r - x.bottom - x.height) / span
+        if shape.longest:
+            sides = {"width": x.width, "height": x.height, "third": shape.factor[0]}
+            rows |= {f"{n}_below": 1.0 + (v - x.longest) / span for n, v in sides.items()}
+            objective = x.longest
+        else:
+            objective = _value(shape, 0, x.width, x.height)
+        limits, equal = _rows(shape, 0, (y, z))
+        limits |= _largest(shape, x.width, x.height)
+        return Terms({box.objective: objective}, limits, rows, equal)
+
+    return Problem("layout", variables, (), evaluate)
+
+
+def positions(shape: Chain, angle: tuple[Any, ...]) -> Point:
+    """Y and z of every shaft [mm] for link angles [rad]."""
+    y, z = [0.0 * angle[0]], [0.0 * angle[0]]
+    for a, t in zip(shape.link, angle, strict=True):
+        y.append(y[-1] + float(a) * np.cos(t))
+        z.append(z[-1] + float(a) * np.sin(t))
+    return y, z
+
+
+def sides(shape: Chain, y: list[Any], z: list[Any]) -> dict[str, float]:
+    """Left, bottom, width and height of the box around shafts at y, z [mm]."""
+    left, bottom = (min(v - r for v, r in zip(c, shape.reach, strict=True)) for c in (y, z))
+    found = {"left": left, "bottom": bottom, "width": _side(shape, y), "height": _side(shape, z)}
+    return {name: float(value) for name, value in found.items()}
+
+
+def _side(shape: Chain, c: list[Any]) -> Any:
+    low, high = c[0] - shape.reach[0], c[0] + shape.reach[0]
+    for v, r in zip(c[1:], shape.reach[1:], strict=True):
+        low, high = np.minimum(low, v - r), np.maximum(high, v + r)
+    return high - low
+
+
+def _value(shape: Chain, m: Any, width: Any, height: Any) -> Any:
+    factor = _of(shape.factor, m)
+    if shape.longest:
+        return np.maximum(np.maximum(width, height), factor)
+    return factor * width ** float(shape.power[0]) * height ** float(shape.power[1])
+
+
+def _of(values: Array, m: Any) -> Any:
+    """The value of an arrangement: one, or one for each point of a population."""
+    return float(values[m]) if isinstance(m, int) else values[m]
+
+
+def _largest(shape: Chain, width: Any, height: Any) -> dict[str, Any]:
+    found = {"largest_width": (width, 0), "largest_height": (height, 1)}
+    return {
+        n: v / float(shape.most[k]) for n, (v, k) in found.items() if math.isfinite(shape.most[k])
+    }
+
+
+def _rows(shape: Chain, m: Any, point: Point) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Limits and equalities of a point: distances (squared), keep-outs, places, split line."""
+    y, z = point
+    limits: dict[str, Any] = {}
+    equal: dict[str, Any] = {}
+    for i in range(len(y)):
+        for j in range(i + 2, len(y)):
+            if (need := shape.apart[:, i, j]).any():
+                there = (y[i] - y[j]) ** 2 + (z[i] - z[j]) ** 2
+                name = f"shafts_apart[{i + 1},{j + 1}]"
+                limits[name] = 1.0 + (_of(need, m) ** 2 - there) / float(need.max()) ** 2
+        for k, (left, right, bottom, top) in enumerate(shape.keep):
+            if (need := shape.keep_apart[:, k, i]).any():
+                dy = np.maximum(np.maximum(left - y[i], y[i] - right), 0.0)
+                dz = np.maximum(np.maximum(bottom - z[i], z[i] - top), 0.0)
+                name = f"clear_of_keep_out[{k + 1},{i + 1}]"
+                limits[name] = 1.0 + (_of(need, m) ** 2 - dy**2 - dz**2) / float(need.max()) ** 2
+        for axis, c, (low, high) in (("y", y, shape.place[i, :2]), ("z", z, shape.place[i, 2:])):
+            name, scale = f"place_{axis}[{i + 1}]", float(shape.link.max())
+            if low == high:
+                equal[name] = 1.0 + (c[i] - low) / scale
+            elif math.isfinite(high - low):
+                limits[f"{name}_low"] = 1.0 + (low - c[i]) / scale
+                limits[f"{name}_high"] = 1.0 + (c[i] - high) / scale
+    for k in range(1, len(shape.level)):
+        i, j = shape.level[0], shape.level[k]
+        equal[f"split_line[{j + 1}]"] = 1.0 + (z[j] - z[i]) / float(shape.link.max())
+    return limits, equal
