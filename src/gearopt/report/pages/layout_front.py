@@ -4,10 +4,9 @@ import math
 from collections.abc import Mapping
 from dataclasses import replace
 
-from gearopt.report.pages.bodies import circle, nearest
+from gearopt.report.pages.bodies import Disc, Layout, disc, keep_outs, motor, nearest
 from gearopt.report.pages.labels import SIZE, Place, around
 from gearopt.report.pages.layout_marks import (
-    Layout,
     across_dimension,
     box_lines,
     keep_out,
@@ -21,10 +20,10 @@ def front_view(found: Layout, window: Window, scale: float) -> Drawing:
     """Along the shafts, y to the right and z up."""
     sheet = Sheet(window, scale)
     box_lines(sheet, found, "y", "z")
-    if found["motor"]:
-        sheet.circle(0.0, 0.0, 0.5 * found["motor"]["diameter_mm"], "motor", title="motor")
-    for it in found["obstacles"]:
-        keep_out(sheet, it, "left_mm", "right_mm", "bottom_mm", "top_mm")
+    if told := motor(found):
+        sheet.circle(0.0, 0.0, told[0], "motor", title="motor")
+    for it in keep_outs(found):
+        keep_out(sheet, it, "y", "z")
     places = {s["shaft"]: (s["y_mm"], s["z_mm"]) for s in found["shafts"]}
     gears = sorted(found["gears"], key=lambda g: (g["from_mm"], -g["tip_diameter_mm"]))
     for gear in gears:
@@ -111,7 +110,7 @@ def _narrowest(sheet: Sheet, found: Layout) -> None:
     ends = nearest(found, *gap["between"])
     if ends is None:
         return
-    start, end = sheet.at(*ends[0]), sheet.at(*ends[1])
+    start, end = sheet.at(*ends[0][1:]), sheet.at(*ends[1][1:])
     sheet.arrows(start, end, "gap")
     middle = ((start[0] + end[0]) / 2, (start[1] + end[1]) / 2)
     text = f"gap {gap['gap_mm']:.2f}"
@@ -120,17 +119,18 @@ def _narrowest(sheet: Sheet, found: Layout) -> None:
 
 def _name(sheet: Sheet, found: Layout, gear: Layout) -> None:
     """The gear's name where it is alone inside it, else outside with a line to it."""
-    discs = [circle(found, g["name"]) for g in found["gears"] if g is not gear]
-    (place, radius) = circle(found, gear["name"]) or ((0.0, 0.0), 0.0)
-    centre, r = sheet.at(*place), radius * sheet.scale
+    discs = {g["name"]: disc(found, g["name"]) for g in found["gears"]}
+    own = discs.pop(gear["name"])
+    assert own is not None
+    centre, r = sheet.at(*own.centre), own.radius * sheet.scale
     half = Place(0, 0).half_width(gear["name"])
     inside = around(centre, [share * r for share in (0.6, 0.75, 0.45) if share * r > 24.0])
     inside = [p for p in inside if math.dist((p.x, p.y), centre) + 0.8 * half < r]
-    shared = [sum(_within(sheet, p, disc) for disc in discs if disc) for p in inside]
+    shared = [sum(_within(sheet, p, one) for one in discs.values() if one) for p in inside]
     alone = [replace(p, cost=p.cost + 8.0 * n) for p, n in zip(inside, shared, strict=True)]
     outside = around(centre, (r + half + 6, r + half + 20, r + half + 40), r, 20.0)
     sheet.label(gear["name"], alone + outside, "name", series(gear["stage"]))
 
 
-def _within(sheet: Sheet, spot: Place, disc: tuple[tuple[float, float], float]) -> bool:
-    return math.dist(sheet.at(*disc[0]), (spot.x, spot.y)) < disc[1] * sheet.scale + SIZE
+def _within(sheet: Sheet, spot: Place, one: Disc) -> bool:
+    return math.dist(sheet.at(*one.centre), (spot.x, spot.y)) < one.radius * sheet.scale + SIZE

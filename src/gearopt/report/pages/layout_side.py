@@ -1,8 +1,8 @@
 """A layout seen across its shafts: gears as rectangles, bearings, motor, face widths."""
 
+from gearopt.report.pages.bodies import ENDS, Layout, keep_outs, motor
 from gearopt.report.pages.labels import SIZE, Place
 from gearopt.report.pages.layout_marks import (
-    Layout,
     across_dimension,
     box_lines,
     keep_out,
@@ -11,14 +11,21 @@ from gearopt.report.pages.layout_marks import (
 from gearopt.report.pages.section import meaning, series
 from gearopt.report.pages.sheet import Drawing, Sheet, Window
 
+LEVEL = 32.0  # px from the upper edge: where face widths stand
+
 
 def side_view(found: Layout, window: Window, scale: float, axis: str) -> Drawing:
     """Along x to the right and z (from the side) or y (from above) up."""
     sheet = Sheet(window, scale)
     box_lines(sheet, found, "x", axis)
-    low, high = ("bottom_mm", "top_mm") if axis == "z" else ("left_mm", "right_mm")
-    for it in found["obstacles"]:
-        keep_out(sheet, it, "from_mm", "to_mm", low, high)
+    for it in keep_outs(found):
+        aside = any(
+            it[start] >= high or it[end] <= low
+            for (start, end), (low, high) in (
+                (ENDS["xyz".index(a)], walls(found, a)) for a in ("x", axis)
+            )
+        )
+        keep_out(sheet, it, "x", axis, hatched=aside)
     _motor(sheet, found)
     depth = "y_mm" if axis == "z" else "z_mm"
     shafts = sorted(found["shafts"], key=lambda s: s[depth], reverse=axis == "z")
@@ -69,20 +76,19 @@ def _shaft(sheet: Sheet, found: Layout, shaft: Layout, axis: str) -> None:
 
 
 def _motor(sheet: Sheet, found: Layout) -> None:
-    motor = found["motor"]
-    if not motor:
+    if (told := motor(found)) is None:
         return
-    r, length = 0.5 * motor["diameter_mm"], motor["length_mm"]
-    start = -length if motor["at"] == "start" else found["box"]["length_mm"]
-    sheet.rectangle((start, -r), (start + length, r), "motor", title="motor", round_=6.0)
-    sheet.line((start, 0.0), (start + length, 0.0), "axis")
-    x, y = sheet.at(start + length / 2, 0.0)
-    text = f"motor ⌀ {2 * r:g} x {length:g}"
+    r, start, end = told
+    sheet.rectangle((start, -r), (end, r), "motor", title="motor", round_=6.0)
+    sheet.line((start, 0.0), (end, 0.0), "axis")
+    x, y = sheet.at((start + end) / 2, 0.0)
+    given = f" x {end - start:g}" if "length_mm" in found["motor"] else ""
+    text = f"motor ⌀ {2 * r:g}{given}"
     sheet.label(text, [Place(x, y - 12.0), Place(x, y + 12.0)], "obstacle")
 
 
 def _widths(sheet: Sheet, found: Layout, axis: str) -> None:
-    """Face widths above the box, slab after slab."""
+    """Face widths above all that is drawn, slab after slab."""
     top = walls(found, axis)[1]
     wheels = {g["stage"]: g for g in found["gears"] if g["member"] == "wheel"}
     for slab in found["slabs"]:
@@ -90,13 +96,12 @@ def _widths(sheet: Sheet, found: Layout, axis: str) -> None:
             if stage not in wheels:
                 continue
             a, b = ((wheels[stage][key], top) for key in ("from_mm", "to_mm"))
-            (x0, y), (x1, _) = sheet.at(*a), sheet.at(*b)
+            (x0, wall), (x1, _) = sheet.at(*a), sheet.at(*b)
             for x in (x0, x1):
-                sheet.tick((x, y), (x, y - 16.0))
-            sheet.arrows((x0, y - 12.0), (x1, y - 12.0))
-            middle = ((x0 + x1) / 2, y - 12.0)
+                sheet.tick((x, wall), (x, LEVEL - 4.0))
+            sheet.arrows((x0, LEVEL), (x1, LEVEL))
             text = f"b{stage} {wheels[stage]['to_mm'] - wheels[stage]['from_mm']:.1f}"
-            levels = [Place(middle[0], y - dy, 0.0, dy / 10) for dy in (21.0, 36.0)]
+            levels = [Place((x0 + x1) / 2, LEVEL - up, 0.0, up / 10) for up in (9.0, 24.0)]
             sheet.label(text, levels, "size")
 
 

@@ -6,12 +6,18 @@ from html import escape
 from typing import Any
 
 from gearopt.optimise.result import Result
-from gearopt.report.pages.bodies import nearest
+from gearopt.report.pages.bodies import (
+    Layout,
+    box_corners,
+    drawn_corners,
+    keep_outs,
+    motor,
+    nearest,
+)
 from gearopt.report.pages.frame import Figure
 from gearopt.report.pages.section import Section, meaning, series
 from gearopt.report.pages.solid import (
     Mesh,
-    Point,
     Toothed,
     block,
     edges,
@@ -24,13 +30,13 @@ from gearopt.report.pages.solid import (
 
 MOST = 50_000  # triangles of all gears together, for a page that turns smoothly without a GPU
 DETAIL = ((3, 0.12), (3, 0.3), (2, 0.6), (2, 10.0))  # points on a flank, twist a section [rad]
+FLUSH = 0.003  # of the box: a shaft is drawn so much longer, to be seen where it ends in a face
 CAPTION = (
     "Drag to turn, scroll to come nearer, click a name to hide or show it. Tooth numbers, "
     "diameters and helix angles are those of the design; flanks are involutes of 20 degrees. "
     "Clearances, hidden at first, are the room that other shafts must leave to each gear, the "
     "limit within the walls, and the narrowest gap."
 )
-Layout = Mapping[str, Any]
 
 
 def section(result: Result) -> Section | None:
@@ -39,7 +45,8 @@ def section(result: Result) -> Section | None:
     if not found:
         return None
     return Section(
-        "In three dimensions", figures=(Figure(_traces(found), space(*_corners(found)), CAPTION),)
+        "In three dimensions",
+        figures=(Figure(_traces(found), space(*drawn_corners(found)), CAPTION),),
     )
 
 
@@ -47,9 +54,9 @@ def _traces(found: Layout) -> list[dict[str, Any]]:
     places = {s["shaft"]: (s["y_mm"], s["z_mm"]) for s in found["shafts"]}
     traces = _gears(found, places)
     for k, shaft in enumerate(found["shafts"]):
-        mesh = rod(
-            places[shaft["shaft"]], shaft["diameter_mm"] / 2, shaft["from_mm"], shaft["to_mm"]
-        )
+        past = FLUSH * found["box"]["length_mm"]
+        span = shaft["from_mm"] - past, shaft["to_mm"] + past
+        mesh = rod(places[shaft["shaft"]], shaft["diameter_mm"] / 2, *span)
         words = f"shaft {shaft['shaft']}: diameter {shaft['diameter_mm']:.2f} mm"
         traces.append(mesh_trace(mesh, words, "--metal", "shafts", showlegend=k == 0))
     for k, it in enumerate(found["bearings"]):
@@ -107,34 +114,16 @@ def _toothed(found: Layout, gear: Layout, places: Mapping[int, tuple[float, floa
     )
 
 
-def _walls(found: Layout) -> tuple[Point, Point]:
-    """Two corners of the box."""
-    box = found["box"]
-    y, z = box["left_mm"], box["bottom_mm"]
-    return (0.0, y, z), (box["length_mm"], y + box["width_mm"], z + box["height_mm"])
-
-
-def _corners(found: Layout) -> tuple[Point, Point]:
-    """Two corners of the box and what is outside it."""
-    (x0, y0, z0), (x1, y1, z1) = _walls(found)
-    motor = found["motor"] or {"diameter_mm": 0.0, "length_mm": 0.0, "at": "start"}
-    r, length = motor["diameter_mm"] / 2, motor["length_mm"]
-    before = length if motor["at"] == "start" else 0.0
-    low = (x0 - before, min(y0, -r), min(z0, -r))
-    return low, (x1 + length - before, max(y1, r), max(z1, r))
-
-
 def _housing(found: Layout) -> list[dict[str, Any]]:
     """Walls as lines, the motor, keep-outs."""
     box = found["box"]
-    low, high = _walls(found)
+    low, high = box_corners(found)
     size = " x ".join(f"{box[k]:.2f}" for k in ("width_mm", "height_mm", "length_mm"))
     traces = [line_trace(edges(low, high), f"box {size} mm", "--ink", 3.0)]
-    if motor := found["motor"]:
-        start = -motor["length_mm"] if motor["at"] == "start" else box["length_mm"]
-        mesh = rod((0.0, 0.0), motor["diameter_mm"] / 2, start, start + motor["length_mm"])
+    if told := motor(found):
+        mesh = rod((0.0, 0.0), *told)
         traces.append(mesh_trace(mesh, "motor", "--axis", "motor", opacity=0.6, showlegend=True))
-    for k, it in enumerate(found["obstacles"]):
+    for k, it in enumerate(keep_outs(found)):
         ends = [
             (it["from_mm"], it["left_mm"], it["bottom_mm"]),
             (it["to_mm"], it["right_mm"], it["top_mm"]),
@@ -150,7 +139,7 @@ def _clearances(found: Layout, places: Mapping[int, tuple[float, float]]) -> lis
     room = found["clearances"]
     hidden: dict[str, Any] = {"visible": "legendonly", "legendgroup": "clearances"}
     wall, axial = room.get("wall_mm") or 0.0, room.get("axial_mm") or 0.0
-    low, high = _walls(found)
+    low, high = box_corners(found)
     low = (low[0] + axial, low[1] + wall, low[2] + wall)
     high = (high[0] - axial, high[1] - wall, high[2] - wall)
     traces = [line_trace(edges(low, high), "clearances", "--accent", 2.0, **hidden)]
@@ -160,13 +149,7 @@ def _clearances(found: Layout, places: Mapping[int, tuple[float, float]]) -> lis
         mesh: Mesh = rod(places[gear["shaft"]], r, gear["from_mm"], gear["to_mm"])
         look = hidden | {"opacity": 0.18, "hoverinfo": "skip", "hovertemplate": ""}
         traces.append(mesh_trace(mesh, "", "--accent", "clearances", **look))
-    gap = found["gaps"][0] if found["gaps"] else {"between": ["", ""]}
-    ends = nearest(found, *gap["between"])
-    if ends is not None:
-        bodies = found["gears"] + found["shafts"]
-        names = [b.get("name", f"shaft {b['shaft']}") for b in bodies]
-        spans = [b for b, name in zip(bodies, names, strict=True) if name in gap["between"]]
-        x = 0.5 * (max(b["from_mm"] for b in spans) + min(b["to_mm"] for b in spans))
-        points: list[Any] = [(x, *ends[0]), (x, *ends[1])]
-        traces.append(line_trace(points, "clearances", "--warn", 8.0, **hidden))
+    for gap in found["gaps"][:1]:
+        if (ends := nearest(found, *gap["between"])) is not None:
+            traces.append(line_trace(list(ends), "clearances", "--warn", 8.0, **hidden))
     return traces

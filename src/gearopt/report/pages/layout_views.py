@@ -1,8 +1,8 @@
 """A gearbox layout as a technical drawing: along the shafts, from the side, from above."""
 
 from gearopt.optimise.result import Result
+from gearopt.report.pages.bodies import Layout, along, drawn_corners
 from gearopt.report.pages.layout_front import front_view
-from gearopt.report.pages.layout_marks import Layout, walls
 from gearopt.report.pages.layout_side import side_view
 from gearopt.report.pages.section import Section
 from gearopt.report.pages.sheet import Window
@@ -17,30 +17,27 @@ def section(result: Result) -> Section | None:
         return None
     windows = [_window(found, axis) for axis in ("", "z", "y")]
     scale = min(window.scale(WIDE, HIGH) for window in windows)
-    words = (
+    words = [
         f"Drawn to one scale; dimensions in mm. The axis of shaft 1, the input, is y = z = 0; "
         f"shaft {len(found['shafts'])} is the output. Dash-dotted circles are reference circles, "
         "solid ones tip circles; numbers in circles are shafts. The thin dashed line is as far "
         "from the wall as every gear has to stay."
-    )
+    ]
+    if found["obstacles"]:
+        words.append("Hatched boxes must stay free; those that reach far out are cut off.")
+    if found["motor"] and "length_mm" not in found["motor"]:
+        words.append("No length of the motor was given: it is drawn as long as it is wide.")
     views = (
         front_view(found, windows[0], scale),
         side_view(found, windows[1], scale, "z"),
         side_view(found, windows[2], scale, "y"),
     )
-    return Section("Layout", (words,), views)
+    return Section("Layout", words, views)
 
 
 def _window(found: Layout, axis: str) -> Window:
-    """Of the front view, or of the view whose upright axis is given; the motor is inside."""
-    motor = found["motor"]
-    (bottom, top), (left, right) = walls(found, axis or "z"), walls(found, "x" if axis else "y")
-    r = 0.5 * motor["diameter_mm"] if motor else 0.0
-    bottom, top = min(bottom, -r), max(top, r)
-    if not axis:
-        return Window(min(left, -r), max(right, r), bottom, top, (52.0, 20.0, 48.0, 44.0))
-    if motor and motor["at"] == "start":
-        left -= motor["length_mm"]
-    elif motor:
-        right += motor["length_mm"]
-    return Window(left, right, bottom, top, (20.0, 44.0, 48.0, 44.0))
+    """Of the front view, or of the view whose upright axis is given, with all that is drawn."""
+    ends = drawn_corners(found)
+    (bottom, top), (left, right) = along(ends, axis or "z"), along(ends, "x" if axis else "y")
+    free = (20.0, 44.0, 48.0, 44.0) if axis else (52.0, 20.0, 48.0, 44.0)
+    return Window(left, right, bottom, top, free)
