@@ -170,6 +170,30 @@ def elevator(**more):
     return result(made, **more)
 
 
+def boxed_in(**more):
+    """The elevator drive between far keep-outs, with bearings and a motor of unknown length."""
+    sides = {"left_mm": -1000.0, "right_mm": 1000.0, "from_mm": -11.5, "to_mm": 126.4}
+    obstacles = [
+        {"name": "floor", "bottom_mm": -1000.0, "top_mm": -60.0} | sides,
+        {"name": "step", "bottom_mm": -60.0, "top_mm": 20.0} | sides | {"left_mm": 300.0},
+        {"name": "far wall", "bottom_mm": 2000.0, "top_mm": 3000.0} | sides,
+    ]
+    obstacles[1]["to_mm"] = 60.0
+    motor = {"diameter_mm": 100.0}
+    made = layout(ELEVATOR, ELEVATOR_AXES, ELEVATOR_RADII, True, obstacles=obstacles, motor=motor)
+    (y1, z1), (y2, z2), (y3, z3) = ELEVATOR_AXES
+    wheel_1, wheel_2 = (g["tip_diameter_mm"] / 2 for g in made["gears"][1::2])
+    more_gaps = [
+        (["motor", "shaft 3"], math.hypot(y3, z3) - 50.0 - ELEVATOR_RADII[2]),
+        (["shaft 3 with its gears", "floor"], z3 + 60.0 - wheel_2),
+        (["shaft 2 with its gears", "step"], math.hypot(300.0 - y2, z2 - 20.0) - wheel_1),
+        (["bearing of shaft 1", "wheel 1"], math.hypot(y2, z2) - 20.0 - wheel_1),
+    ]
+    found = [{"between": b, "gap_mm": gap, "needed_mm": 2.0} for b, gap in more_gaps]
+    made["gaps"] = sorted(made["gaps"] + found, key=lambda row: row["gap_mm"])
+    return result(made, **more)
+
+
 def cylinder(name, x, y, diameter, layer=1, fixed=False):
     place = {"name": name, "x_mm": x, "y_mm": y, "diameter_mm": diameter, "height_mm": 10.0}
     ends = {"layer": layer, "from_mm": 10.0 * (layer - 1), "to_mm": 10.0 * layer}

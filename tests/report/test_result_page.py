@@ -15,13 +15,15 @@ from html_reader import ATTACK, Reader
 
 import gearopt
 from gearopt.report.pages import frame
+from gearopt.report.pages.bodies import keep_outs, nearest
 from gearopt.report.pages.labels import LETTER, SIZE
 from gearopt.report.pages.layout_solid import MOST
 from gearopt.report.pages.result import page
 from gearopt.report.pages.solid import Toothed, block, gear_mesh, rod, upright
 
 ROOM = Path(frame.__file__).parent
-LAYOUTS = {f.__name__: f for f in (cases.three_stage, cases.partial_span, cases.elevator)}
+MADE = (cases.three_stage, cases.partial_span, cases.elevator, cases.boxed_in)
+LAYOUTS = {f.__name__: f for f in MADE}
 PACKINGS = {f.__name__: f for f in (cases.packing, cases.round_packing)}
 
 
@@ -119,8 +121,35 @@ def test_gears_from_the_side_are_as_wide_as_they_are(layout):
         )
         assert np.allclose(drawn, meant, atol=0.02)
         assert len(marks(svg, "rect", "bearing")) == len(found["bearings"])
-        assert len(marks(svg, "rect", "obstacle")) == len(found["obstacles"])
+        assert len(marks(svg, "rect", "obstacle")) == len(keep_outs(found))
         assert len(marks(svg, "rect", "motor")) == (found["motor"] is not None)
+
+
+def test_keep_outs_are_cut_off_near_the_box():
+    result = cases.boxed_in()
+    found = result.design["layout"]
+    near = {it["name"]: it for it in keep_outs(found)}
+    assert set(near) == {"floor", "step"}
+    bottom, height = found["box"]["bottom_mm"], found["box"]["height_mm"]
+    lowest = min(bottom, -50.0)  # the motor's underside is lower than the box
+    assert math.isclose(near["floor"]["bottom_mm"], lowest - 0.12 * (bottom + height - lowest))
+    assert near["floor"]["top_mm"] == -60.0 and near["step"]["left_mm"] == 300.0
+    html = page(result, "Gearbox", "x")
+    words = text(html)
+    assert "cut off" in words and "as long as it is wide" in words and "far wall" in words
+    front, side, _ = drawings(html)
+    assert {"floor", "step", "motor ⌀ 100"} <= {t.text for t in (*front.iter(), *side.iter())}
+
+
+@pytest.mark.parametrize("case", LAYOUTS)
+def test_gaps_are_drawn_as_long_as_they_are(case):
+    found = LAYOUTS[case]().design["layout"]
+    for gap in found["gaps"]:
+        for names in (gap["between"], gap["between"][::-1]):
+            ends = nearest(found, *names)
+            assert ends is not None, names
+            assert math.isclose(math.dist(*ends), gap["gap_mm"], rel_tol=1e-9), names
+    assert nearest(found, "wheel 1", "nothing") is None
 
 
 def extents(svg):
@@ -398,6 +427,20 @@ def test_an_impossible_request_says_what_to_write():
     assert "impossible, proven" in shown and "Ways out" in shown
     for way in result.report["ways_out"]["remedies"]:
         assert f"{way['changes'][0]['key']} = {way['changes'][0]['write']}" in shown
+
+
+@pytest.mark.slow
+def test_the_page_takes_what_the_solver_gives():
+    result = gearopt.solve("problems/table4_process_one_layout.toml")
+    front, side, _ = drawings(page(result, "Gearbox", "x"))
+    words = {t.text for t in front.iter("text")}
+    assert {"411.98", "873.29", "a1 = 211.85"} <= words and any(w[:4] == "gap " for w in words)
+    assert "209.90" in {t.text for t in side.iter("text")}
+    found = result.design["layout"]
+    for gap in found["gaps"]:
+        ends = nearest(found, *gap["between"])
+        assert ends is not None
+        assert math.isclose(math.dist(*ends), abs(gap["gap_mm"]), rel_tol=1e-9)
 
 
 def test_numbers_of_the_layout_are_in_its_tables():
