@@ -6,6 +6,7 @@ from rich.table import Table
 
 UNITS = {
     "mm": "mm",
+    "mm2": "mm²",
     "mm3": "mm³",
     "MPa": "MPa",
     "Nm": "N m",

@@ -10,6 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from gearopt.optimise.result import Result
+from gearopt.report.terminal import packing
 from gearopt.report.terminal.explanation import remedies
 from gearopt.report.words import UNITS, VERDICTS, columns, heading, limit_words, number
 
@@ -45,8 +46,10 @@ def show(result: Result, title: str, console: Console) -> None:
 def _blocks(result: Result) -> list[RenderableType]:
     blocks: list[RenderableType] = []
     if result.value is not None:
-        blocks.append(_design(result.design))
-        blocks.append(_limits(result.limits))
+        if result.scene == "packing":
+            blocks.append(packing.design(result.design))
+        else:
+            blocks += [_design(result.design), _limits(result.limits)]
         if trains := result.report.get("trains"):
             blocks.append(_trains(trains, result.objective))
     if "ways_out" in result.report:
@@ -140,6 +143,8 @@ def _proof(result: Result) -> list[str]:
             "Proof: the problem is convex in logarithms; the bound is a dual one, computed "
             "from our own derivatives."
         )
+    elif "ways_to_share_out" in proof:
+        lines.append(packing.proof(proof))
     if result.status == "infeasible" and proof.get("conflict"):
         names = ", ".join(limit_words(n) for n in proof["conflict"])
         least = 100 * proof["least_violation"]

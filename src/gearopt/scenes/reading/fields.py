@@ -74,16 +74,22 @@ def _is_far(value: int | Decimal) -> bool:
     return value.bit_length() > 200 if isinstance(value, int) else abs(value.adjusted()) > 60
 
 
-def quantity(dimension: str, example: str, most: str | None = None, zero: bool = False) -> Reads:
-    """A positive quantity such as "7.5 kW"; most: the largest allowed, zero: whether 0 is."""
+def quantity(
+    dimension: str,
+    example: str,
+    most: str | None = None,
+    zero: bool = False,
+    negative: bool = False,
+) -> Reads:
+    """A positive quantity such as "7.5 kW"; most: the largest; whether 0 and less are allowed."""
     limit = units.parse(most, dimension) if most else None
     names = ", ".join(units.UNITS[dimension])
     usual = units.parse(example, dimension).unit
 
     def fault(found: Quantity) -> str:
-        if found.number < 0 or (found.number == 0 and not zero):
+        if (found.number < 0 and not negative) or (found.number == 0 and not zero):
             return "is below zero" if zero else "is not greater than zero"
-        if found.number and not SMALLEST < found.number < LARGEST:
+        if found.number and not SMALLEST < abs(found.number) < LARGEST:
             return BEYOND
         above = limit is not None and found.value > limit.value * (1 + 1e-12)
         return f"is above {most}" if above else ""
@@ -111,7 +117,7 @@ def quantity(dimension: str, example: str, most: str | None = None, zero: bool =
         return found
 
     alternatives = "|".join(re.escape(unit) for unit in units.UNITS[dimension])
-    number = r"\+?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?"
+    number = ("[+-]?" if negative else r"\+?") + r"([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?"
     schema = {"type": "string", "pattern": rf"^\s*{number}\s*({alternatives})\s*$"}
     return Reads(read, example, schema)
 
@@ -179,7 +185,7 @@ def whole(example: int, least: int, most: int) -> Reads:
     return Reads(read, example, {"type": "integer", "minimum": least, "maximum": most})
 
 
-def _mended(item: Reads, values: list[Any]) -> tuple[list[Any], str]:
+def mended(item: Reads, values: list[Any]) -> tuple[list[Any], str]:
     """The values with what to write for each wrong one (or None), and the first rule broken."""
     right, first = [], ""
     for value in values:
@@ -206,7 +212,7 @@ def span(item: Reads, example: Any, single: bool = False) -> Reads:
             only = item.reader(value, item.example)
             return only, only
         ends = value if isinstance(value, list) else [value]
-        right, rule = _mended(item, ends[:2])
+        right, rule = mended(item, ends[:2])
         if len(ends) != 2:
             pair = right * 2 if len(ends) == 1 and not rule else None
             raise refuse("is not a range [least, most]", pair)
@@ -273,7 +279,7 @@ def either(names: dict[str, Any], item: Reads) -> Reads:
             known = ", ".join(f'"{n}"' for n in names)
             close = near(value, names) if isinstance(value, str) else None
             raise refuse(f"is neither one of {known} nor a list", close)
-        right, rule = _mended(item, value)
+        right, rule = mended(item, value)
         if rule:
             write = [item.example if entry is None else entry for entry in right]
             raise refuse(f"has an entry that {rule}", write)
