@@ -15,7 +15,7 @@ from itertools import product
 import numpy as np
 
 from gearopt.formulations.packing.depth import depth
-from gearopt.formulations.packing.plan import Plan
+from gearopt.formulations.packing.plan import Plan, least_layers
 from gearopt.optimise.terms import Array
 
 CHOICES = 3000  # ways to share out; beyond it the bound is the volume of the cylinders
@@ -67,6 +67,8 @@ def _ways(
     plan: Plan, kinds: dict[tuple[float, float, int], int]
 ) -> Iterator[tuple[tuple[tuple[float, float], ...], ...]]:
     """Every way to share out: (radius, height) of the cylinders of each layer, in any order."""
+    named = any(layer for _, _, layer in kinds)
+    needed = 1 if named else least_layers(plan)  # by fixed places that overlap
     shares = [
         [tuple(n * (k == layer) for k in range(1, plan.most + 1))]
         if layer
@@ -82,7 +84,7 @@ def _ways(
             )
             for k in range(plan.most)
         ]
-        if all(layers[: plan.least]):
+        if all(layers[: plan.least]) and sum(map(bool, layers)) >= needed:
             yield tuple(sorted(layers))
 
 

@@ -131,7 +131,10 @@ class Places(NamedTuple):
 
 
 def row(plan: Plan) -> Places:
-    """A packing that meets all limits: the free cylinders in a row behind the fixed ones."""
+    """A packing that meets all limits: the free cylinders in a row behind the fixed ones.
+
+    ValueError where the fixed ones overlap.
+    """
     left, _, _, end = plan.held_box
     x, y = np.zeros(len(plan.radius)), np.zeros(len(plan.radius))
     for k, c in enumerate(plan.cylinders):
@@ -141,11 +144,13 @@ def row(plan: Plan) -> Places:
         end += plan.gap if end > 0 or plan.fixed else 0.0
         x[k], y[k] = left + c.radius, end + c.radius
         end = y[k] + c.radius
-    layer = np.array(colours(plan, plan.most), dtype=np.int64)
+    coloured = colours(plan, plan.most)
+    if coloured is None:
+        raise ValueError("fixed cylinders overlap in more layers than there are")
+    layer = np.array(coloured, dtype=np.int64)
     for level in range(1, plan.least + 1):  # every layer asked for holds one
         if not (layer == level).any():
-            spare = [k for k in plan.free if k in plan.lifted and (layer == layer[k]).sum() > 1]
-            layer[spare[0]] = level
+            layer[next(k for k in plan.lifted if (layer == layer[k]).sum() > 1)] = level
     centre = np.zeros(2)
     if plan.shape == "circle":
         low, high = (x - plan.radius).min(), (x + plan.radius).max()

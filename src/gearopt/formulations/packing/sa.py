@@ -11,7 +11,7 @@ from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch
 
 MOVES = 300_000  # for each cylinder, where the budget names no evaluations
-HOT, COLD = 0.1, 1e-7  # temperatures, in units of the objective's logarithm
+HOT, COLD = 0.3, 1e-6  # temperatures, in units of the objective's logarithm
 
 RANDOM = True
 PACED = True  # the cooling is stretched over the evaluations it is given

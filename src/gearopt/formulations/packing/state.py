@@ -65,10 +65,8 @@ def numbers(plan: Plan, most: int) -> Array:
     """The scalars of the kernel, for `most` layers."""
     code = 3 if plan.width is not None else CODES[plan.shape]
     volume = float(plan.objective == "volume")
-    anchored = float(bool(plan.fixed))
-    return np.array(
-        [plan.gap, plan.wall, plan.width or 0.0, code, volume, plan.least, most, anchored]
-    )
+    anchored, least = float(bool(plan.fixed)), plan.least if plan.least > 1 else 0
+    return np.array([plan.gap, plan.wall, plan.width or 0.0, code, volume, least, most, anchored])
 
 
 def held(plan: Plan) -> Any:

@@ -37,13 +37,10 @@ def direct(plan: Plan, **methods: Any) -> Problem:
         layer = points.layers(plan, x)
         area, limits = _container(plan, axes, x)
         defines: dict[str, Any] = {}
-        pairs = list(plan.pairs)
-        if plan.lifted:
-            pairs = list(combinations(range(len(axes)), 2))
-        rows = tuple(_close(plan, axes, layer, i, j) for i, j in pairs)
+        rows = tuple(_close(plan, axes, layer, i, j) for i, j in _near(plan))
         if rows:
             defines["apart"] = rows
-        if plan.least > 1:
+        if plan.lifted and plan.least > 1:
             held = [sum(np.where(at == k, 1.0, 0.0) for at in layer) for k in _levels(plan.least)]
             defines["occupied"] = tuple(2.0 - count for count in held)
         return Terms(_objective(plan, area, stack(plan, layer)), limits, defines)
@@ -171,12 +168,23 @@ def _square(plan: Plan, axes: list[tuple[Any, Any]], i: int, j: int) -> Any:
     return ((a - c) ** 2 + (b - d) ** 2) / plan.apart(i, j) ** 2
 
 
+def _near(plan: Plan) -> list[tuple[int, int]]:
+    """Pairs that may come too close: in layers that are or may be the same, not both fixed."""
+    lifted, cylinders = set(plan.lifted), plan.cylinders
+    found = []
+    for i, j in combinations(range(len(cylinders)), 2):
+        free = not lifted.isdisjoint((i, j))
+        same = (cylinders[i].layer or 1) == (cylinders[j].layer or 1)
+        moved = cylinders[i].at is None or cylinders[j].at is None
+        if free or (same and moved):
+            found.append((i, j))
+    return found
+
+
 def _close(plan: Plan, axes: list[tuple[Any, Any]], layer: list[Any], i: int, j: int) -> Any:
     """The row of a pair: 2 - d^2/D^2 in one layer, 0 in different ones."""
     row_of = 2.0 - _square(plan, axes, i, j)
-    if not plan.lifted:
-        return row_of if layer[i] == layer[j] else 0.0 * row_of
-    return np.where(layer[i] == layer[j], row_of, 0.0)
+    return np.where(layer[i] == layer[j], row_of, 0.0) if plan.lifted else row_of
 
 
 def _extent(values: list[Any], radius: Array) -> Any:

@@ -56,8 +56,10 @@ DIGITS = 1e4  # a place that is proposed is rounded to 0.1 um, away from the ove
 class CylinderTable(Table):
     """One or more cylinders of a size, with upright axes."""
 
-    diameter: Annotated[Quantity, LENGTH] = Field(description="Diameter")
-    height: Annotated[Quantity, quantity("length", "10 mm")] = Field(description="Height")
+    diameter: Annotated[Quantity, LENGTH] = Field(description="Diameter of the cylinder")
+    height: Annotated[Quantity, quantity("length", "10 mm")] = Field(
+        description="Height of the cylinder, along its axis"
+    )
     count: Annotated[int, whole(1, 1, MOST)] = Field(1, description="How many of them")
     name: Annotated[str, words()] = Field("", description="What the report calls it")
     at: Annotated[tuple[Quantity, Quantity] | None, PLACE] = Field(
@@ -148,9 +150,11 @@ class Scene(Table):
             rule = f"makes {total} cylinders; at most {MOST} can be packed"
             left = max(1, self.cylinder[most].count - (total - MOST))
             raise refuse(rule, left, ("cylinder", most, "count"))
-        if (self.layers.exactly or 0) > total:
-            rule = f"is more than the {total} cylinders, and no layer may be empty"
-            raise refuse(rule, total, ("layers", "exactly"))
+        given = {own.layer for own in self.cylinder if own.layer is not None}
+        movable = sum(own.count for own in self.cylinder if own.layer is None)
+        if (self.layers.exactly or 0) > len(given) + movable:
+            rule = f"leaves a layer empty: {movable} cylinders have no layer of their own"
+            raise refuse(rule, len(given) + movable, ("layers", "exactly"))
         self._check_container()
         self._check_places()
         return self
