@@ -15,8 +15,12 @@ from gearopt.optimise.comparing.compare import EVALUATIONS, SECONDS, SEEDS, Prog
 def compare(
     file: File,
     methods: Annotated[
-        str, typer.Option(help="Methods by name, with commas between; docs/methods.md lists all.")
-    ] = "exact,ipopt,annealing,nsga2",
+        str | None,
+        typer.Option(
+            help="Methods by name, with commas between; docs/methods.md lists all. By default a "
+            "choice for the kind of the file."
+        ),
+    ] = None,
     seeds: Annotated[int, typer.Option(min=1, help="Runs of every random method.")] = SEEDS,
     evaluations: Annotated[
         int, typer.Option(min=1, help="Evaluations of a run, where these are held equal.")
@@ -35,7 +39,9 @@ def compare(
     from gearopt.api import compare as compare_file
 
     check_html(html)
-    named = [name.strip() for name in methods.split(",") if name.strip()]
+    named = None
+    if methods is not None:
+        named = [name.strip() for name in methods.split(",") if name.strip()]
     with following(_words, quiet=as_json) as watch:
         found = compare_file(
             file,

@@ -116,6 +116,8 @@ def _method(result: Result) -> list[str]:
             f"Proof: {proof['trains_compared']:,} trains compared, all others excluded by "
             f"lower bounds (nodes opened: {proof['nodes']:,})."
         )
+    elif "ways_to_share_out" in proof:
+        lines.append(_shared_out(proof))
     elif "pruning_margin" in proof and "nodes" in proof:
         lines.append(
             f"Proof: {proof['nodes']:,} cells of link angles, each bounded by intervals "
@@ -134,3 +136,15 @@ def _method(result: Result) -> list[str]:
             f"limits is missed by at least {least:.2g} %: {names}."
         )
     return lines
+
+
+def _shared_out(found: Mapping[str, Any]) -> str:
+    """How the bound is known, in a sentence."""
+    if found["method"] == "volume":
+        return "Bound: the volume of the cylinders, and the widest with the highest of them."
+    ways = found["ways_to_share_out"]
+    shared = f"{ways:,} ways to share the cylinders out among layers" if ways > 1 else "one layer"
+    return (
+        f"Bound: {shared}; for each the least plan that discs, pairs and triples in any order "
+        "need, by subdivision of the width."
+    )

@@ -21,7 +21,8 @@ from gearopt.optimise.solve import run
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.tables.drive import EXAMPLE, Scene
 
-__all__ = ["EXAMPLE", "Scene", "explain", "model", "solve"]
+__all__ = ["COMPARED", "EXAMPLE", "Scene", "explain", "model", "solve"]
+COMPARED = ("exact", "ipopt", "annealing", "nsga2")  # where a comparison names no methods
 CONTINUOUS = ("ipopt", "gp", "multistart")  # methods that take no whole teeth
 
 

@@ -10,6 +10,7 @@ from rich.text import Text
 
 from gearopt.optimise.result import Result
 from gearopt.report.result_words import limit_rows, proof, stage_rows, train_rows, verdict
+from gearopt.report.terminal import packing
 from gearopt.report.terminal.explanation import remedies
 from gearopt.report.terminal.layout import layout
 from gearopt.report.words import columns, heading, number
@@ -27,10 +28,7 @@ def show(result: Result, title: str, console: Console) -> None:
 def _blocks(result: Result) -> list[RenderableType]:
     blocks: list[RenderableType] = []
     if result.value is not None:
-        blocks.append(_design(result.design))
-        if "layout" in result.design:
-            blocks.append(layout(result.design["layout"]))
-        blocks.append(_limits(result.limits))
+        blocks += _answer(result)
         if trains := result.report.get("trains"):
             blocks.append(_trains(trains, result))
     if "ways_out" in result.report:
@@ -39,6 +37,16 @@ def _blocks(result: Result) -> list[RenderableType]:
         blocks += remedies(result.report["ways_out"])
     blocks.append(Text("\n".join(proof(result))))
     return blocks
+
+
+def _answer(result: Result) -> list[RenderableType]:
+    """The design, in the words of its kind."""
+    if result.scene == "packing":
+        return [packing.design(result.design)]
+    blocks = [_design(result.design)]
+    if "layout" in result.design:
+        blocks.append(layout(result.design["layout"]))
+    return [*blocks, _limits(result.limits)]
 
 
 def _design(design: Mapping[str, Any]) -> RenderableType:
