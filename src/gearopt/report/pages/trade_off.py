@@ -1,6 +1,5 @@
 """Width against height of the boxes of a front, with lines of equal area."""
 
-import math
 from typing import Any
 
 from gearopt.optimise.result import Result
@@ -64,17 +63,16 @@ def _ends(values: tuple[float, ...]) -> tuple[float, float]:
 
 
 def _equal(area: float, across: tuple[float, float], up: tuple[float, float]) -> dict[str, Any]:
-    """A line of equal area through the plot, named at its upper end."""
+    """A line of equal area through the plot, named near its upper end."""
     start, end = max(across[0], area / up[1]), min(across[1], area / up[0])
     x = [start * (end / start) ** (k / 40) for k in range(41)]
-    middle = 20
     name = f"{area / 100.0:,.{0 if area > 1e4 else 1}f} cm²"
     return {
         "type": "scatter",
         "mode": "lines+text",
         "x": x,
         "y": [area / v for v in x],
-        "text": [name if k == middle and math.isfinite(area) else "" for k in range(41)],
+        "text": [name if k == 2 else "" for k in range(41)],
         "textposition": "top right",
         "textfont": {"size": 11, "color": "--soft"},
         "line": {"color": "--axis", "width": 1, "dash": "dot"},
