@@ -12,8 +12,7 @@ import pytest
 from gearopt import api, cli
 from gearopt.formulations import sizing, teeth
 from gearopt.optimise.solve import back_ends
-from gearopt.scenes import drive
-from gearopt.scenes.reading.load import read
+from gearopt.scenes.reading.load import kinds, read, scene_module
 from gearopt.scenes.reading.schema import reference
 from gearopt.units import UNITS
 
@@ -25,13 +24,15 @@ def text(name):
     return (ROOT / name).read_text(encoding="utf-8")
 
 
-def test_the_reference_page_holds_the_generated_tables():
-    assert reference("drive") in text("docs/drive.md")
+@pytest.mark.parametrize("kind", kinds())
+def test_the_reference_page_holds_the_generated_tables_and_the_example_file(kind):
+    page = text(f"docs/{kind}.md")
+    assert reference(kind) in page
+    assert scene_module(kind).EXAMPLE in page
 
 
-def test_the_reference_page_holds_the_example_file_and_every_unit():
+def test_the_reference_page_holds_every_unit():
     page = text("docs/drive.md")
-    assert drive.EXAMPLE in page
     for dimension, units in UNITS.items():
         if dimension != "fraction":
             assert f"{dimension}: {', '.join(f'`{u}`' for u in units)}" in page
@@ -123,5 +124,5 @@ def test_schema_command_prints_what_the_library_holds():
 
 def test_every_method_has_its_row():
     page = text("docs/methods.md")
-    for name in ("exact", *back_ends()):
+    for name in ("exact", "hop", "sa", *back_ends()):
         assert f"| `{name}` |" in page, name

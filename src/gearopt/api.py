@@ -99,7 +99,8 @@ def compare(
 ) -> Comparison:
     """Methods compared on a problem file, a loaded scene, or a problem of your own.
 
-    methods: by default exact where there is one, ipopt, annealing and nsga2 (of a Conic: conic).
+    methods: by default those of the file's kind; of a problem its own exact ones, ipopt, annealing
+    and nsga2 (of a Conic: conic).
     Every method is run by evaluations and by seconds, random ones once for each of the seeds 0, 1,
     ... bound_from: a method run once to prove a bound. watch(progress) ends the comparison by
     returning False, and what is finished is reported. SceneError for a wrong file, SolveError where
@@ -115,7 +116,7 @@ def compare(
         found = compare_methods(named, lambda method: own, plan, watch, bound_from)
         return replace(found, title=what.name)
     scene, module, names = _opened(what)
-    named = ("exact", *DEFAULT) if methods is None else methods
+    named = module.COMPARED if methods is None else methods
     found = compare_methods(named, lambda m: module.model(scene, m), plan, watch, bound_from)
     return replace(found, title=getattr(scene, "title", "") or names["scene"], **names)
 

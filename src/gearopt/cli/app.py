@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
+from gearopt.errors import GearoptError
 from gearopt.optimise.result import Result
 
 app = typer.Typer(
@@ -20,6 +21,10 @@ EXIT = {"optimal": 0, "stationary": 0, "feasible": 0, "infeasible": 3, "failed":
 
 File = Annotated[Path, typer.Argument(help="A problem file (TOML).", show_default=False)]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")]
+Html = Annotated[
+    Path | None,
+    typer.Option("--html", help="Write a page that any browser shows, without a network."),
+]
 
 
 def _print_version(wanted: bool) -> None:
@@ -45,6 +50,16 @@ def exit_code(result: Result) -> int:
     if result.status == "limit":
         return 4 if result.value is None else 0
     return EXIT[result.status]
+
+
+def check_html(path: Path | None) -> None:
+    """GearoptError where a page cannot be written there: said before long work, not after it."""
+    if path is None:
+        return
+    if path.is_dir():
+        raise GearoptError(f"--html {path}: is a folder; name a file, such as {path / 'page.html'}")
+    if not path.resolve().parent.is_dir():
+        raise GearoptError(f"--html {path}: there is no folder {path.resolve().parent}")
 
 
 def title(file: Path) -> str:

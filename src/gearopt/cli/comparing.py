@@ -1,15 +1,13 @@
 """`compare`: methods side by side, on the same model, seeds and budget."""
 
 from collections.abc import Callable
-from pathlib import Path
 from typing import Annotated
 
 import typer
 from rich.console import Console
 
-from gearopt.cli.app import File, Json, app, console
+from gearopt.cli.app import File, Html, Json, app, check_html, console
 from gearopt.cli.watching import following
-from gearopt.errors import GearoptError
 from gearopt.optimise.comparing.compare import EVALUATIONS, SECONDS, SEEDS, Progress
 
 
@@ -17,8 +15,12 @@ from gearopt.optimise.comparing.compare import EVALUATIONS, SECONDS, SEEDS, Prog
 def compare(
     file: File,
     methods: Annotated[
-        str, typer.Option(help="Methods by name, with commas between; docs/methods.md lists all.")
-    ] = "exact,ipopt,annealing,nsga2",
+        str | None,
+        typer.Option(
+            help="Methods by name, with commas between; docs/methods.md lists all. By default a "
+            "choice for the kind of the file."
+        ),
+    ] = None,
     seeds: Annotated[int, typer.Option(min=1, help="Runs of every random method.")] = SEEDS,
     evaluations: Annotated[
         int, typer.Option(min=1, help="Evaluations of a run, where these are held equal.")
@@ -30,19 +32,16 @@ def compare(
         str | None,
         typer.Option(help="A method that is run once, up to a minute, to prove a bound."),
     ] = None,
-    html: Annotated[
-        Path | None, typer.Option(help="Write a page that any browser shows, without a network.")
-    ] = None,
+    html: Html = None,
     as_json: Json = False,
 ) -> None:
     """Compare methods by their gap to what is proven. Ctrl-C reports the runs that are finished."""
     from gearopt.api import compare as compare_file
 
-    if html is not None and html.is_dir():
-        raise GearoptError(f"--html {html}: is a folder; name a file, such as {html / 'page.html'}")
-    if html is not None and not html.resolve().parent.is_dir():
-        raise GearoptError(f"--html {html}: there is no folder {html.resolve().parent}")
-    named = [name.strip() for name in methods.split(",") if name.strip()]
+    check_html(html)
+    named = None
+    if methods is not None:
+        named = [name.strip() for name in methods.split(",") if name.strip()]
     with following(_words, quiet=as_json) as watch:
         found = compare_file(
             file,

@@ -3,6 +3,7 @@
 Arguments are floats, arrays of one shape, or casadi scalars.
 """
 
+import math
 from typing import Any
 
 
@@ -30,3 +31,12 @@ def unit_load(pinion_torque: Any, pinion_diameter: Any, face_width: Any, normal_
     Source: Chong and Lee, eq. (11).
     """
     return 2.0 * pinion_torque / (pinion_diameter * face_width * normal_module)
+
+
+def torsion_diameter(torque: Any, shear_stress: Any) -> Any:
+    """Diameter d = (16 T/(pi tau))^(1/3) [mm] of a solid shaft twisted to a shear stress.
+
+    torque T [N mm], shear_stress tau [MPa] > 0; torsion alone, no bending and no notches.
+    Source: polar section modulus pi d^3/16 of a round bar.
+    """
+    return (16.0 * torque / (math.pi * shear_stress)) ** (1.0 / 3.0)

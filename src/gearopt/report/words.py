@@ -6,11 +6,13 @@ from rich.table import Table
 
 UNITS = {
     "mm": "mm",
+    "mm2": "mm²",
     "mm3": "mm³",
     "MPa": "MPa",
     "Nm": "N m",
     "kg": "kg",
     "percent": "%",
+    "deg": "°",
     "ms": "ms",
 }
 VERDICTS = {

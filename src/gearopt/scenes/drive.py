@@ -14,14 +14,15 @@ from gearopt.formulations.design import describe
 from gearopt.formulations.train import Train
 from gearopt.optimise.certificate import reconcile
 from gearopt.optimise.comparing.trial import Model
-from gearopt.optimise.explaining.explanation import Explanation
+from gearopt.optimise.explaining.explanation import Change, Explanation, Remedy
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.tables.drive import EXAMPLE, Scene
 
-__all__ = ["EXAMPLE", "Scene", "explain", "model", "solve"]
+__all__ = ["COMPARED", "EXAMPLE", "Scene", "explain", "model", "solve"]
+COMPARED = ("exact", "ipopt", "annealing", "nsga2")  # where a comparison names no methods
 CONTINUOUS = ("ipopt", "gp", "multistart")  # methods that take no whole teeth
 
 
@@ -31,6 +32,11 @@ def solve(scene: Scene, ask: Ask) -> Result:
     The exact answer carries the continuous one as a part: what whole teeth and standard modules
     cost, and a second, independent bound.
     """
+    if scene.layout is not None:
+        from gearopt.scenes.box.lay_out import lay_out
+
+        sized = solve(bare(scene), replace(ask, method=None))
+        return sized if sized.value is None else lay_out(scene, ask, sized)
     result = _answer(scene, ask)
     if result.status != "infeasible":
         return result
@@ -49,6 +55,8 @@ def explain(scene: Scene, ask: Ask) -> Explanation:
     from gearopt.scenes.explaining.numbers import numbers
     from gearopt.scenes.explaining.remedies import remedies
 
+    if scene.layout is not None:
+        return _box_explained(scene, ask)
     clock = Clock(ask.budget, ask.watch)
     half = replace(ask.budget, seconds=ask.budget.seconds and 0.5 * ask.budget.seconds)
     result = _answer(scene, replace(ask, budget=half))
@@ -79,6 +87,25 @@ def explain(scene: Scene, ask: Ask) -> Explanation:
     )
 
 
+def _box_explained(scene: Scene, ask: Ask) -> Explanation:
+    from gearopt.scenes.box.explain import explained
+
+    result = solve(scene, ask)
+    if result.status == "infeasible":
+        ways = result.report["ways_out"]
+        found = tuple(
+            Remedy(**{**r, "changes": tuple(Change(**c) for c in r["changes"])})
+            for r in ways["remedies"]
+        )
+        return Explanation(result, tuple(ways["conflict"]), found, message=ways["message"])
+    return explained(scene, ask, result)
+
+
+def bare(scene: Scene) -> Scene:
+    """The drive without its layout: what is sized."""
+    return scene.model_copy(update={"layout": None, "place": (), "keep_out": ()})
+
+
 def _answer(scene: Scene, ask: Ask) -> Result:
     train = scene.train()
     if _continuous(scene, ask.method):
@@ -93,7 +120,14 @@ def _answer(scene: Scene, ask: Ask) -> Result:
 
 
 def model(scene: Scene, method: str) -> Model:
-    """The problem that a method solves for this drive; SolveError where there is none for it."""
+    """The problem that a method solves for this drive; SolveError where there is none for it.
+
+    With a [layout] that is the layout of the gears that are best without it.
+    """
+    if scene.layout is not None:
+        from gearopt.scenes.box.lay_out import posed
+
+        return posed(scene, method, solve(bare(scene), Ask()))
     train = scene.train()
     if _continuous(scene, method):
         return Model(sizing.problem(train), "Real-valued teeth and modules", train.unit)

@@ -12,6 +12,7 @@ import numpy as np
 from gearopt.errors import SolveError
 from gearopt.formulations.layout import annealing, exact
 from gearopt.formulations.layout.chain import Chain, chain, turns
+from gearopt.formulations.layout.faults import faults
 from gearopt.formulations.layout.gearbox import Gearbox
 from gearopt.formulations.layout.slabs import Arrangement, arrangements
 from gearopt.formulations.layout.text import direct, positions, sides, smooth
@@ -20,6 +21,8 @@ from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solvers import ipopt
 from gearopt.optimise.terms import Array
+
+__all__ = ["GRADIENT", "faults", "problem"]
 
 GRADIENT = ("ipopt", "multistart")  # methods that take the smooth text
 CLOSE = 1e-9  # what a polished layout may violate

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 
 import numpy as np
 
@@ -63,6 +63,7 @@ class Clash:
         return self.need.distance - self.there
 
 
+@lru_cache(maxsize=64)
 def arrangements(box: Gearbox) -> tuple[Arrangement, ...]:
     """Arrangements worth trying, the shortest first: the given one, or all that none betters.
 

@@ -27,7 +27,7 @@ def direct(
 ) -> Problem:
     """Variables: angle [rad], one a link, and, where there are several, the arrangement of slabs.
 
-    front: height (or width) is a second objective, beside the first.
+    front: width and height are objectives too, beside the first.
     """
     shape = chain(box, orders)
     links = len(box.pairs)
@@ -41,7 +41,7 @@ def direct(
         width, height = _side(shape, y), _side(shape, z)
         objective = {box.objective: _value(shape, m, width, height)}
         if front:
-            objective |= {"width": width} if box.objective == "height" else {"height": height}
+            objective |= {"width": width, "height": height}
         limits, equal = _rows(shape, m, (y, z))
         return Terms(
             objective, limits | _largest(shape, width, height, _of(shape.length, m)), equal=equal

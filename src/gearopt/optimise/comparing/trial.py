@@ -16,6 +16,7 @@ from gearopt.optimise.certificate import Verdict
 from gearopt.optimise.comparing.comparison import Run
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.problem import Problem
+from gearopt.optimise.progress import following
 from gearopt.optimise.result import Budget, Event, Outcome
 from gearopt.optimise.solve import GAP, judge, method_of
 
@@ -93,18 +94,15 @@ def attempt(entry: Entry, seed: int, budget: Budget, told: Callable[[Event], boo
     """One run; None where `told` ended it. What is wrong with an answer is the run's message."""
     problem, method = entry.problem, entry.method
     assert problem is not None
-    steps: list[tuple[float, int, float]] = []
     clock = time.perf_counter()
     stopped = False
 
-    def watch(event: Event) -> bool:
+    def goes_on(event: Event) -> bool:
         nonlocal stopped
-        if event.best is not None and (not steps or event.best < steps[-1][2]):
-            spent = time.perf_counter() - clock
-            steps.append((spent, event.evaluations, float(event.best)))
         stopped = stopped or not told(event)
         return not stopped
 
+    watch, events = following(goes_on)
     try:
         outcome = method_of(problem, method)(problem, budget, seed, watch)
         seconds = time.perf_counter() - clock
@@ -114,6 +112,7 @@ def attempt(entry: Entry, seed: int, budget: Budget, told: Callable[[Event], boo
         outcome, verdict = Outcome(None), Verdict("failed", message=str(broken))
     if stopped:
         return None
+    found = [e for e in events if e["best"] is not None]
     return _clipped(
         Run(
             seed,
@@ -124,7 +123,7 @@ def attempt(entry: Entry, seed: int, budget: Budget, told: Callable[[Event], boo
             outcome.evaluations,
             seconds,
             verdict.message,
-            steps=tuple(steps),
+            steps=tuple((e["seconds"], e["evaluations"], e["best"]) for e in found),
         )
     )
 

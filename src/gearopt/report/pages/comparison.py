@@ -8,7 +8,7 @@ from gearopt.report.pages.comparison_figures import LEAST, anytime, final, span
 from gearopt.report.pages.frame import render
 
 KNOWN = ("exact", "ipopt", "annealing", "nsga2", "scip", "gp", "multistart", "bonmin")
-COLOURS = 8  # --method-1 ... in frame.css, told apart by the colour-blind
+COLOURS = 8  # --series-1 ... in frame.css, told apart by the colour-blind
 
 
 def page(found: Comparison) -> str:
@@ -39,7 +39,7 @@ def colours(methods: list[str]) -> dict[str, str]:
     free = [k for k in range(COLOURS, 0, -1) if k not in taken.values()] or [COLOURS]
     others = (name for name in dict.fromkeys(methods) if name not in KNOWN)
     taken |= {name: free[k % len(free)] for k, name in enumerate(others)}
-    return {name: f"--method-{k}" for name, k in taken.items()}
+    return {name: f"--series-{k}" for name, k in taken.items()}
 
 
 def _subtitle(found: Comparison) -> str:

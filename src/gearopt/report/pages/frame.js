@@ -22,9 +22,8 @@
 
   function draw() {
     const style = getComputedStyle(root);
-    for (const figure of document.querySelectorAll("figure")) {
-      const place = figure.querySelector(".plot");
-      const spec = JSON.parse(figure.querySelector("script").textContent);
+    for (const place of document.querySelectorAll(".plot")) {
+      const spec = JSON.parse(place.parentElement.querySelector("script").textContent);
       const { data, layout } = resolved(style, spec);
       if (place.clientWidth < narrow) layout.font.size = 11;
       Plotly.react(place, data, layout, options);

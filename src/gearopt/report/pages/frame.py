@@ -1,7 +1,7 @@
 """The frame of a page: header, sections, tables, figures, footer; light and dark; printable.
 
 A figure is a plain plotly specification whose colours are CSS variables of frame.css, written
-"--ink" or "--method-1/0.2" (with opacity): frame.js resolves them, and again when the reader's
+"--ink" or "--series-1/0.2" (with opacity): frame.js resolves them, and again when the reader's
 system turns dark or prints.
 """
 
@@ -25,9 +25,13 @@ def render(
     subtitle: str,
     versions: Mapping[str, str],
     command: str,
+    plots: bool = True,
     **content: Any,
 ) -> str:
-    """A page from a template that extends frame.html; everything but our own files is escaped."""
+    """A page from a template that extends frame.html; everything but our own files is escaped.
+
+    plots: the page has figures, which need plotly (4.8 MB) inside it.
+    """
     from jinja2 import Environment, PackageLoader, StrictUndefined
     from markupsafe import Markup
     from plotly.offline import get_plotlyjs
@@ -51,7 +55,7 @@ def render(
         command=command,
         style=inlined("frame.css"),
         script=inlined("frame.js"),
-        plotly=Markup(get_plotlyjs()),
+        plotly=Markup(get_plotlyjs()) if plots else "",
         **content,
     )
 

@@ -48,7 +48,8 @@ def remedies(found: Mapping[str, Any]) -> list[RenderableType]:
     sure = all(way["verified"].get("with_less", "infeasible") == "infeasible" for way in ways)
     words = "Each was tried: a design exists with it"
     words += ", and none with 0.1 % (or one tooth) less. " if sure else ". "
-    words += "Proven least: no smaller factor does, even with real-valued teeth and modules."
+    if conflict:
+        words += "Proven least: no smaller factor does, even with real-valued teeth and modules."
     words += f" {late[0].upper()}{late[1:]}." if late else ""
     blocks.append(Text(words))
     return blocks
@@ -85,13 +86,14 @@ def show(explanation: Explanation, title: str, console: Console) -> None:
         table.add_row(i.key, i.value, _percent(i.sensitivity), _sides(i.resolved), i.step, price)
     console.print(table)
     console.print()
-    console.print(
-        Text(
-            f"What +1 % brings: slope of the {name} (d ln objective / d ln number) with "
-            "real-valued teeth and modules, by multipliers and, to check, by solving again. "
+    slope = f"What +1 % brings: slope of the {name} (d ln objective / d ln number)"
+    words = ", by solving again."
+    if any(i.sensitivity is not None for i in explanation.influences):
+        words = (
+            " with real-valued teeth and modules, by multipliers and, to check, by solving again. "
             "What easing a limit brings: the drive itself solved again."
         )
-    )
+    console.print(Text(slope + words))
 
 
 def _percent(slope: float | None) -> str:

@@ -1,4 +1,4 @@
-"""Field types of problem files: quantities with units, exact numbers, ranges.
+"""Field types of problem files: quantities with units, exact numbers, words.
 
 A `Reads` stands in an `Annotated` type; pydantic calls its `read`. Every rejection carries a rule
 and a value to write instead, which `remedy` turns into a SceneError. Numbers reach the readers
@@ -74,16 +74,25 @@ def _is_far(value: int | Decimal) -> bool:
     return value.bit_length() > 200 if isinstance(value, int) else abs(value.adjusted()) > 60
 
 
-def quantity(dimension: str, example: str, most: str | None = None, zero: bool = False) -> Reads:
-    """A positive quantity such as "7.5 kW"; most: the largest allowed, zero: whether 0 is."""
+def quantity(
+    dimension: str,
+    example: str,
+    most: str | None = None,
+    zero: bool = False,
+    signed: bool = False,
+) -> Reads:
+    """A positive quantity such as "7.5 kW"; most: the largest allowed, zero: whether 0 is.
+
+    signed: it may be below zero as well (a place).
+    """
     limit = units.parse(most, dimension) if most else None
     names = ", ".join(units.UNITS[dimension])
     usual = units.parse(example, dimension).unit
 
     def fault(found: Quantity) -> str:
-        if found.number < 0 or (found.number == 0 and not zero):
+        if not signed and (found.number < 0 or (found.number == 0 and not zero)):
             return "is below zero" if zero else "is not greater than zero"
-        if found.number and not SMALLEST < found.number < LARGEST:
+        if found.number and not SMALLEST < abs(found.number) < LARGEST:
             return BEYOND
         above = limit is not None and found.value > limit.value * (1 + 1e-12)
         return f"is above {most}" if above else ""
@@ -111,7 +120,8 @@ def quantity(dimension: str, example: str, most: str | None = None, zero: bool =
         return found
 
     alternatives = "|".join(re.escape(unit) for unit in units.UNITS[dimension])
-    number = r"\+?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?"
+    sign = "[+-]?" if signed else r"\+?"
+    number = sign + r"([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?"
     schema = {"type": "string", "pattern": rf"^\s*{number}\s*({alternatives})\s*$"}
     return Reads(read, example, schema)
 
@@ -179,48 +189,6 @@ def whole(example: int, least: int, most: int) -> Reads:
     return Reads(read, example, {"type": "integer", "minimum": least, "maximum": most})
 
 
-def _mended(item: Reads, values: list[Any]) -> tuple[list[Any], str]:
-    """The values with what to write for each wrong one (or None), and the first rule broken."""
-    right, first = [], ""
-    for value in values:
-        try:
-            item.reader(value, item.example)
-        except PydanticCustomError as wrong:
-            context = wrong.context or {}
-            first, value = first or context["rule"], context["write"]
-        right.append(value)
-    return right, first
-
-
-def span(item: Reads, example: Any, single: bool = False) -> Reads:
-    """A range [least, most] of items; single: one item is read too and means both ends."""
-
-    def order(value: Any) -> Any:
-        found = item.reader(value, item.example)
-        return found.value if isinstance(found, Quantity) else found
-
-    def read(value: Any, example: Any) -> tuple[Any, Any]:
-        if isinstance(value, tuple):
-            return value[0], value[1]
-        if single and not isinstance(value, list):
-            only = item.reader(value, item.example)
-            return only, only
-        ends = value if isinstance(value, list) else [value]
-        right, rule = _mended(item, ends[:2])
-        if len(ends) != 2:
-            pair = right * 2 if len(ends) == 1 and not rule else None
-            raise refuse("is not a range [least, most]", pair)
-        if rule:
-            known = None not in right
-            raise refuse(f"has an end that {rule}", sorted(right, key=order) if known else None)
-        if order(value[0]) > order(value[1]):
-            raise refuse("has its ends in the wrong order", value[::-1])
-        return item.reader(value[0], item.example), item.reader(value[1], item.example)
-
-    schema: dict[str, Any] = {"type": "array", "items": item.schema, "minItems": 2, "maxItems": 2}
-    return Reads(read, example, {"anyOf": [item.schema, schema]} if single else schema)
-
-
 def choice(*names: str) -> Reads:
     """One of some words."""
 
@@ -259,25 +227,3 @@ def words() -> Reads:
         return value
 
     return Reads(read, "a text", {"type": "string", "maxLength": 1000})
-
-
-def either(names: dict[str, Any], item: Reads) -> Reads:
-    """A named set, or a list of items, as a sorted tuple of exact inside-unit numbers."""
-
-    def read(value: Any, example: Any) -> tuple[Fraction, ...]:
-        if isinstance(value, tuple):
-            return value
-        if isinstance(value, str) and value in names:
-            return tuple(names[value])
-        if not isinstance(value, list) or not value:
-            known = ", ".join(f'"{n}"' for n in names)
-            close = near(value, names) if isinstance(value, str) else None
-            raise refuse(f"is neither one of {known} nor a list", close)
-        right, rule = _mended(item, value)
-        if rule:
-            write = [item.example if entry is None else entry for entry in right]
-            raise refuse(f"has an entry that {rule}", write)
-        return tuple(sorted({item.reader(entry, item.example).exact[0] for entry in value}))
-
-    items = {"type": "array", "items": item.schema, "minItems": 1}
-    return Reads(read, next(iter(names)), {"anyOf": [{"enum": list(names)}, items]})

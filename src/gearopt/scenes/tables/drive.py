@@ -6,10 +6,12 @@ from typing import Annotated, Any
 
 from pydantic import Field, model_validator
 
-from gearopt.formulations.train import FaceWidth, Stage, Train
+from gearopt.formulations.layout.gearbox import Gearbox
+from gearopt.formulations.train import FaceWidth, Sizes, Stage, Train
 from gearopt.physics.loads import torque
 from gearopt.scenes.reading.fields import Table, refuse, whole, words
 from gearopt.scenes.tables.duty import Duty
+from gearopt.scenes.tables.layout import KeepOutTable, Layout, PlaceTable, gearbox
 from gearopt.scenes.tables.limits import Limits, Objective, Teeth
 from gearopt.scenes.tables.stages import Gears, StageTable
 
@@ -43,6 +45,10 @@ modules = "ISO 54 I"
 
 [objective]
 minimise = "gear_volume"       # or mass, sum_of_centre_distances, total_length
+
+# [layout]                     # without the # the gears are laid out in the smallest box
+# shaft_stress = "40 MPa"      # torsion; or: shaft_diameters = ["20 mm", "35 mm", "60 mm"]
+# span = "full"                # shafts from wall to wall; or partial
 """
 
 
@@ -62,6 +68,9 @@ class Scene(Table):
     limits: Limits
     teeth: Teeth | None = None
     objective: Objective = Field(default_factory=Objective)
+    layout: Layout | None = None
+    place: tuple[PlaceTable, ...] = Field((), description="One table a place")
+    keep_out: tuple[KeepOutTable, ...] = Field((), description="One table a keep-out")
 
     @model_validator(mode="after")
     def _consistent(self) -> "Scene":
@@ -81,7 +90,23 @@ class Scene(Table):
             if self.teeth is not None and not self._modules(own):
                 place = ("stage", k, "module") if own.module else ("limits", "module")
                 raise refuse("holds no module that [teeth] allows", self._around(own), place)
+        self._check_layout(len(self.stage) or int(self.stages or 0))
         return self
+
+    def _check_layout(self, stages: int) -> None:
+        """The tables of a layout, against the drive and each other."""
+        if self.layout is None:
+            for name in ("place", "keep_out"):
+                if getattr(self, name):
+                    raise refuse("needs a table [layout]", at=(name,), action="remove")
+            return
+        self.layout.check(stages)
+        for k, place in enumerate(self.place):
+            if place.shaft > stages + 1:
+                rule = f"is above {stages + 1}, the output shaft"
+                raise refuse(rule, stages + 1, ("place", k, "shaft"), "sample")
+        if self.layout.together and self.teeth is None:
+            raise refuse("needs a table [teeth]", False, ("layout", "together"))
 
     def _check_width(self, own: StageTable, place: tuple[Any, ...]) -> None:
         """One rule for the face width, and a range where a range is needed."""
@@ -132,6 +157,18 @@ class Scene(Table):
         above = min((m for m in series if m > span[1].exact[0]), default=series[-1])
         return [f"{Decimal(m.numerator) / m.denominator} mm" for m in (below, above)]
 
+    @property
+    def given(self) -> bool:
+        """Whether teeth, modules and face widths are all given, so that nothing is to be sized."""
+
+        def one(ends: tuple[Any, Any] | None) -> bool:
+            return ends is not None and ends[0] == ends[1]
+
+        return bool(self.stage) and all(
+            one(s.pinion_teeth) and one(s.wheel_teeth) and one(s.module) and s.face_width
+            for s in self.stage
+        )
+
     def train(self) -> Train:
         """The drive as plain numbers."""
         stages = self.stage or (StageTable(),) * int(self.stages or 0)
@@ -146,6 +183,11 @@ class Scene(Table):
             objective=self.objective.minimise,
             density=density.value if density else None,
         )
+
+    def gearbox(self, sizes: Sizes) -> Gearbox:
+        """The drive of given sizes, to be laid out; it needs the table [layout]."""
+        assert self.layout is not None
+        return gearbox(self.layout, self.place, self.keep_out, self.train(), sizes)
 
     def _stage(self, own: StageTable) -> Stage:
         limits = self.limits

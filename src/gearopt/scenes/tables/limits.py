@@ -8,7 +8,8 @@ from pydantic import Field, model_validator
 from gearopt import units
 from gearopt.formulations.train import OBJECTIVES
 from gearopt.physics.modules import MODULES
-from gearopt.scenes.reading.fields import Table, choice, either, quantity, refuse, span, truth
+from gearopt.scenes.reading.fields import Table, choice, quantity, refuse, truth
+from gearopt.scenes.reading.lists import either, span
 from gearopt.scenes.tables.stages import (
     K_IS,
     MODULE,

@@ -6,7 +6,8 @@ from typing import Annotated
 from pydantic import Field
 
 from gearopt import units
-from gearopt.scenes.reading.fields import Table, number, quantity, span, whole
+from gearopt.scenes.reading.fields import Table, number, quantity, whole
+from gearopt.scenes.reading.lists import span
 from gearopt.units import Quantity
 
 LENGTH = quantity("length", "400 mm")

@@ -1,0 +1,48 @@
+"""Packing: cylinders with upright axes in layers, in the smallest container.
+
+`problem` is the packing for samplers, with two methods of its own (`hop`, `sa`) that bring the
+computed bound; `text.smooth` is the same packing for gradient methods.
+"""
+
+from dataclasses import replace
+from typing import Any
+
+from gearopt.formulations.packing import hop, sa, text
+from gearopt.formulations.packing.bound import Bound, bound
+from gearopt.formulations.packing.plan import Plan
+from gearopt.formulations.packing.state import Spent
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.result import Outcome
+
+CERTAIN = 1e-6  # relative gap to the bound within which a packing counts as proven
+
+
+def problem(plan: Plan, loose: bool = True) -> Problem:
+    """The packing of a plan: places of the free cylinders [mm], and layers where they are free.
+
+    loose: methods also claim a bound that does not prove their packing. A comparison must not, as
+    it measures gaps to the best bound: a distant one hides the differences between methods.
+    """
+
+    def floor(packing: Problem) -> Bound:
+        if "bound" not in packing.memo:
+            packing.memo["bound"] = bound(plan)
+        found: Bound = packing.memo["bound"]
+        return found
+
+    def finish(outcome: Outcome, spent: Spent, floor: Bound) -> Outcome:
+        if not loose and spent.best - floor.value > CERTAIN * spent.best:
+            return outcome
+        return replace(outcome, bound=floor.value, proof=proof(floor))
+
+    methods = {"hop": hop.method(plan, floor, finish), "sa": sa.method(plan, floor, finish)}
+    return text.direct(plan, **methods)
+
+
+def proof(floor: Bound) -> dict[str, Any]:
+    """How a bound was proven, as a result says it."""
+    return {
+        "method": "subdivision" if floor.choices else "volume",
+        "arithmetic": "double, with a rounding allowance",
+        "ways_to_share_out": floor.choices,
+    }

@@ -1,0 +1,206 @@
+"""A lower bound on the objective of any packing, computed here and valid for every choice.
+
+Every way to share the cylinders out among the layers is looked at, by the counts of each kind. Its
+height is exact; the plan must hold each layer, so its area is at least the least of w d(w) with
+d(w) the most that any layer needs (`depth`), found by subdivision: on [a, b] w d(w) >= a d(b).
+
+Discs are grown by half the gap, so that the container's inside is its size less 2 wall - gap.
+"""
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+
+from gearopt.formulations.packing.depth import depth
+from gearopt.formulations.packing.plan import Plan, least_layers
+from gearopt.optimise.terms import Array
+
+CHOICES = 3000  # ways to share out; beyond it the bound is the volume of the cylinders
+TIGHT = 1e-9  # relative; how near to its infimum the subdivision takes the bound
+ROUNDING = 1e-12  # relative, taken off every bound: some thousand roundings
+CELLS = 20_000  # of a subdivision, which then ends with what it has proven
+Layer = tuple[float, ...]  # grown radii
+Need = Callable[[Array], Array]  # depth at widths
+
+
+@dataclass(frozen=True)
+class Bound:
+    """value: no objective is below. choices: ways to share out that were looked at; 0: none."""
+
+    value: float
+    choices: int
+
+
+def bound(plan: Plan) -> Bound:
+    """The bound of a plan."""
+    kinds = _kinds(plan)
+    if math.prod(math.comb(n + plan.most - 1, plan.most - 1) for n in kinds.values()) > CHOICES:
+        return Bound(_coarse(plan) * (1.0 - ROUNDING), 0)
+    ways = []
+    for layers in set(_ways(plan, kinds)):
+        tall = sum(max((h for _, h in layer), default=0.0) for layer in layers)
+        tall = tall if plan.objective == "volume" else 1.0
+        discs = tuple({tuple(sorted(r for r, _ in layer)) for layer in layers if layer})
+        ways.append((tall * _quick(plan, discs), tall, discs))
+    least = math.inf
+    for quick, tall, discs in sorted(ways):
+        if quick >= least:
+            break
+        least = min(least, tall * _area(plan, discs, least / tall))
+    return Bound(least * (1.0 - ROUNDING), len(ways))
+
+
+def _kinds(plan: Plan) -> dict[tuple[float, float, int], int]:
+    """Number of cylinders of each grown radius, height and layer (0: free)."""
+    found: dict[tuple[float, float, int], int] = {}
+    for c in plan.cylinders:
+        layer = 0 if plan.most > 1 and c.layer is None else c.layer or 1
+        kind = (c.radius + 0.5 * plan.gap, c.height, layer)
+        found[kind] = found.get(kind, 0) + 1
+    return found
+
+
+def _ways(
+    plan: Plan, kinds: dict[tuple[float, float, int], int]
+) -> Iterator[tuple[tuple[tuple[float, float], ...], ...]]:
+    """Every way to share out: (radius, height) of the cylinders of each layer, in any order."""
+    named = any(layer for _, _, layer in kinds)
+    needed = 1 if named else least_layers(plan)  # by fixed places that overlap
+    shares = [
+        [tuple(n * (k == layer) for k in range(1, plan.most + 1))]
+        if layer
+        else list(_shares(n, plan.most))
+        for (_, _, layer), n in kinds.items()
+    ]
+    for chosen in product(*shares):
+        layers = [
+            tuple(
+                (r, h)
+                for (r, h, _), share in zip(kinds, chosen, strict=True)
+                for _ in range(share[k])
+            )
+            for k in range(plan.most)
+        ]
+        if all(layers[: plan.least]) and sum(map(bool, layers)) >= needed:
+            yield tuple(sorted(layers))
+
+
+def _shares(count: int, most: int) -> Iterator[tuple[int, ...]]:
+    """Every way to write a count as a sum over layers."""
+    if most == 1:
+        yield (count,)
+        return
+    for own in range(count + 1):
+        for rest in _shares(count - own, most - 1):
+            yield (own, *rest)
+
+
+def _coarse(plan: Plan) -> float:
+    """The bound that needs no sharing out: all volumes, and the widest and highest cylinder."""
+    area, volume = math.pi * plan.radius**2, 0.0
+    if plan.objective == "area":
+        volume = float(area.sum()) / plan.most
+        return max(volume, _quick(plan, ((float(plan.radius.max() + 0.5 * plan.gap),),)))
+    volume = float((area * plan.height).sum())
+    widest = _quick(plan, ((float(plan.radius.max() + 0.5 * plan.gap),),))
+    return max(volume, widest * float(plan.height.max()))
+
+
+def _spare(plan: Plan) -> float:
+    """Size of the container less that of the inside of grown discs."""
+    return 2.0 * plan.wall - plan.gap
+
+
+def _held(plan: Plan) -> tuple[float, float]:
+    """Inside width and depth that the fixed cylinders take."""
+    low, high, near, far = plan.held_box
+    grown = plan.gap if plan.fixed else 0.0
+    return high - low + grown, far - near + grown
+
+
+def _quick(plan: Plan, layers: tuple[Layer, ...]) -> float:
+    """Area of the container around the largest disc."""
+    size = 2.0 * max(max(layer) for layer in layers) + _spare(plan)
+    if plan.shape == "circle":
+        return 0.25 * math.pi * size**2
+    return size * (size if plan.width is None else plan.width)
+
+
+def _area(plan: Plan, layers: tuple[Layer, ...], enough: float) -> float:
+    """Least area of the container of some layers (any of them alone needs no more).
+
+    enough: an area beyond which the answer need not be told from it.
+    """
+    if plan.shape == "circle":
+        return math.pi * _circle(plan, layers) ** 2
+    spare, (across, along) = _spare(plan), _held(plan)
+    widest = 2.0 * max(max(layer) for layer in layers)
+
+    def need(w: Array) -> Array:
+        return np.asarray(np.max([depth(layer, w) for layer in layers], axis=0))
+
+    if plan.width is not None:
+        deep = max(along, float(need(np.array([plan.width - spare]))[0]))
+        return plan.width * (deep + spare)
+    if plan.shape == "square":
+        return float(_square(need, max(widest, across, along)) + spare) ** 2
+    return min(
+        _rectangle(need, max(widest, a), max(widest, b), spare, enough)
+        for a, b in {(across, along), (along, across)}
+    )
+
+
+def _square(need: Need, least: float) -> float:
+    """Lower end of the side at which a square is deep enough."""
+    low, high = least, max(least, float(need(np.array([least]))[0]))
+    if high <= least:
+        return least
+    while high - low > TIGHT * high:
+        middle = 0.5 * (low + high)
+        enough = float(need(np.array([middle]))[0]) <= middle
+        low, high = (low, middle) if enough else (middle, high)
+    return low
+
+
+def _rectangle(need: Need, across: float, along: float, spare: float, enough: float) -> float:
+    """Least area of a rectangle not wider than deep, `across` by `along` at the least."""
+
+    def deep(w: Array) -> Array:
+        return np.asarray(np.maximum(np.maximum(need(w), along), w) + spare)
+
+    first = np.array([across])
+    least = float((first + spare)[0] * deep(first)[0])
+    edge = np.linspace(across, max(across, math.sqrt(least) - spare), 65)
+    low, high = edge[:-1], edge[1:]
+    proven = math.inf
+    while len(low):
+        values = deep(high)
+        least = min(least, float(((high + spare) * values).min()))
+        floor = (low + spare) * values
+        open_ = floor < min(enough, least * (1.0 - TIGHT))
+        proven = min(proven, float(floor[~open_].min(initial=math.inf)))
+        low, high, floor = low[open_], high[open_], floor[open_]
+        if len(low) > CELLS:
+            return min(proven, float(floor.min()))
+        middle = 0.5 * (low + high)
+        low, high = np.concatenate([low, middle]), np.concatenate([middle, high])
+    return min(proven, least)
+
+
+def _circle(plan: Plan, layers: tuple[Layer, ...]) -> float:
+    """Least radius of a circular container: discs, pairs, Oler's inequality, what is fixed."""
+    inside = 0.0
+    for layer in layers:
+        rho = np.sort(np.array(layer))[::-1]
+        inside = max(inside, float(rho[:2].sum()), math.sqrt(float((rho**2).sum())))
+        for least in np.unique(rho):
+            count = int((rho >= least).sum())
+            # 2 pi q^2/sqrt(3) + pi q + 1 >= count with q = (R - rho)/(2 rho)
+            a = 2.0 * math.pi / math.sqrt(3.0)
+            q = (-math.pi + math.sqrt(math.pi**2 + 4.0 * a * (count - 1))) / (2.0 * a)
+            inside = max(inside, float(least * (1.0 + 2.0 * q)))
+    inside = max(inside, 0.5 * max(_held(plan)))
+    return inside + 0.5 * _spare(plan)

@@ -1,0 +1,197 @@
+"""What is to be packed, and where things lie: cylinders, container, layers as plain numbers."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import combinations
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearopt.optimise.terms import Array
+
+SHAPES = ("rectangle", "square", "circle")
+OBJECTIVES = {"volume": "mm3", "area": "mm2"}
+TOUCHING = 1e-9  # mm; overlaps below it are rounding of the places written in a file
+
+
+@dataclass(frozen=True)
+class Cylinder:
+    """A cylinder with an upright axis: radius and height [mm].
+
+    at: the place of its axis [mm], layer: its layer (from 1, the lowest), each None where free.
+    """
+
+    name: str
+    radius: float
+    height: float
+    at: tuple[float, float] | None = None
+    layer: int | None = None
+
+
+@dataclass(frozen=True)
+class Plan:
+    """A packing that is asked for.
+
+    width: of the rectangle [mm], None where free. gap: between cylinders, wall: to the container,
+    both sideways [mm]. least, most: number of layers. objective: volume or area (of the plan).
+    """
+
+    cylinders: tuple[Cylinder, ...]
+    shape: str = "rectangle"
+    width: float | None = None
+    gap: float = 0.0
+    wall: float = 0.0
+    least: int = 1
+    most: int = 1
+    objective: str = "volume"
+
+    def __post_init__(self) -> None:
+        if not self.free:
+            raise ValueError("every cylinder is fixed: nothing is left to place")
+
+    @cached_property
+    def radius(self) -> Array:
+        """Radii [mm], (n,)."""
+        return np.array([c.radius for c in self.cylinders])
+
+    @cached_property
+    def height(self) -> Array:
+        """Heights [mm], (n,)."""
+        return np.array([c.height for c in self.cylinders])
+
+    @cached_property
+    def free(self) -> tuple[int, ...]:
+        """The cylinders whose place is free."""
+        return tuple(k for k, c in enumerate(self.cylinders) if c.at is None)
+
+    @cached_property
+    def fixed(self) -> tuple[int, ...]:
+        """The cylinders whose place is fixed."""
+        return tuple(k for k, c in enumerate(self.cylinders) if c.at is not None)
+
+    @cached_property
+    def lifted(self) -> tuple[int, ...]:
+        """The cylinders whose layer is to be chosen."""
+        one = self.most == 1
+        return tuple(k for k, c in enumerate(self.cylinders) if c.layer is None and not one)
+
+    @cached_property
+    def fewest(self) -> int:
+        """Layers without which fixed places and layers cannot be kept."""
+        given = max(c.layer or 1 for c in self.cylinders)
+        return max(self.least, given, least_layers(self))
+
+    @property
+    def pairs(self) -> Iterator[tuple[int, int]]:
+        """Pairs of cylinders that a search can move apart."""
+        held = set(self.fixed)
+        return (p for p in combinations(range(len(self.cylinders)), 2) if not held.issuperset(p))
+
+    def apart(self, i: int, j: int) -> float:
+        """Least distance of two axes in one layer [mm]."""
+        return self.cylinders[i].radius + self.cylinders[j].radius + self.gap
+
+    @cached_property
+    def reach(self) -> float:
+        """Length of a row of all cylinders [mm]; no sensible container is longer."""
+        n = len(self.cylinders)
+        return float(2.0 * self.radius.sum() + (n - 1) * self.gap + 2.0 * self.wall)
+
+    @cached_property
+    def held_box(self) -> tuple[float, float, float, float]:
+        """Ends in x and y of what the fixed cylinders cover [mm]; zeros where none is fixed."""
+        if not self.fixed:
+            return 0.0, 0.0, 0.0, 0.0
+        at = [(*(c.at or ()), c.radius) for c in self.cylinders if c.at is not None]
+        return (
+            min(x - r for x, _, r in at),
+            max(x + r for x, _, r in at),
+            min(y - r for _, y, r in at),
+            max(y + r for _, y, r in at),
+        )
+
+    def unit(self) -> str:
+        """Unit of the objective."""
+        return OBJECTIVES[self.objective]
+
+
+class Places(NamedTuple):
+    """Where all cylinders are: axes x, y [mm] and layers from 1, (n,); centre of a circle [mm]."""
+
+    x: Array
+    y: Array
+    layer: NDArray[np.int64]
+    centre: Array
+
+    def copied(self) -> "Places":
+        """The same in arrays of its own."""
+        return Places(self.x.copy(), self.y.copy(), self.layer.copy(), self.centre.copy())
+
+
+def row(plan: Plan) -> Places:
+    """A packing that meets all limits: the free cylinders in a row behind the fixed ones.
+
+    ValueError where the fixed ones overlap.
+    """
+    left, _, _, end = plan.held_box
+    x, y = np.zeros(len(plan.radius)), np.zeros(len(plan.radius))
+    for k, c in enumerate(plan.cylinders):
+        if c.at is not None:
+            x[k], y[k] = c.at
+            continue
+        end += plan.gap if end > 0 or plan.fixed else 0.0
+        x[k], y[k] = left + c.radius, end + c.radius
+        end = y[k] + c.radius
+    coloured = colours(plan, plan.most)
+    if coloured is None:
+        raise ValueError("fixed cylinders overlap in more layers than there are")
+    layer = np.array(coloured, dtype=np.int64)
+    for level in range(1, plan.least + 1):  # every layer asked for holds one
+        if not (layer == level).any():
+            layer[next(k for k in plan.lifted if (layer == layer[k]).sum() > 1)] = level
+    centre = np.zeros(2)
+    if plan.shape == "circle":
+        low, high = (x - plan.radius).min(), (x + plan.radius).max()
+        near, far = (y - plan.radius).min(), (y + plan.radius).max()
+        centre = np.array([0.5 * (low + high), 0.5 * (near + far)])
+        if not plan.fixed:
+            x, y, centre = x - centre[0], y - centre[1], np.zeros(2)
+    return Places(x, y, layer, centre)
+
+
+def overlap(plan: Plan, i: int, j: int) -> float:
+    """By how much two fixed cylinders, were they in one layer, are too close [mm]; 0 if not."""
+    a, b = plan.cylinders[i].at, plan.cylinders[j].at
+    assert a is not None and b is not None
+    missing = plan.apart(i, j) - float(np.hypot(a[0] - b[0], a[1] - b[1]))
+    return missing if missing > TOUCHING else 0.0
+
+
+def least_layers(plan: Plan) -> int:
+    """The least number of layers in which no two fixed cylinders overlap."""
+    given = max(c.layer or 1 for c in plan.cylinders)
+    return next(k for k in range(given, len(plan.cylinders) + given) if colours(plan, k))
+
+
+def colours(plan: Plan, most: int) -> list[int] | None:
+    """A layer from 1 to `most` for every cylinder in which no fixed ones overlap; None if none."""
+    found = [c.layer or 0 for c in plan.cylinders]
+    open_ = [k for k in plan.fixed if not found[k]]
+    settled = [k for k in plan.fixed if found[k]]
+
+    def fill(rank: int) -> bool:
+        if rank == len(open_):
+            return True
+        k = open_[rank]
+        before = settled + open_[:rank]
+        for level in range(1, most + 1):
+            if all(found[o] != level or not overlap(plan, k, o) for o in before):
+                found[k] = level
+                if fill(rank + 1):
+                    return True
+        found[k] = 0
+        return False
+
+    return [level or 1 for level in found] if fill(0) else None

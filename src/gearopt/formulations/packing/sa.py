@@ -1,0 +1,38 @@
+"""`sa`: one long annealing run of the kernel alone, without a local method."""
+
+from typing import Any
+
+import numpy as np
+
+from gearopt.formulations.packing import points
+from gearopt.formulations.packing.plan import Plan, row
+from gearopt.formulations.packing.state import Finish, Floor, Spent, anneal, scattered
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.result import Budget, Outcome, Watch
+
+MOVES = 300_000  # for each cylinder, where the budget names no evaluations
+HOT, COLD = 0.3, 1e-6  # temperatures, in units of the objective's logarithm
+
+RANDOM = True
+PACED = True  # the cooling is stretched over the evaluations it is given
+COUNTS = "annealing move"
+SETTINGS = {"temperatures": (HOT, COLD), "moves, each cylinder, where none are given": MOVES}
+
+
+def method(plan: Plan, floor: Floor, finish: Finish) -> Any:
+    """The run of `sa` for a plan: `finish` adds bound and proof."""
+
+    def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
+        """Anneal once; the best state that meets all limits, or else the row of all, is kept."""
+        least, rng = floor(problem), np.random.default_rng(seed)
+        spent = Spent(budget, watch, least.value)
+        best = points.point(plan, row(plan))
+        spent.best = float(problem.batch(best[None]).F[0, 0])
+        moves = budget.evaluations or MOVES * len(plan.radius)
+        begin = scattered(plan, plan.most, rng)
+        _, found, value = anneal(plan, begin, plan.most, moves, (HOT, COLD), rng, spent)
+        if found is not None and value < spent.best:
+            spent.best, best = value, points.point(plan, found)
+        return finish(Outcome(best, not spent.stopped, evaluations=spent.evaluations), spent, least)
+
+    return run

@@ -1,0 +1,141 @@
+"""The annealing kernel's view of a packing: arrays in, best packing out, in slices of time."""
+
+import math
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from gearopt.formulations.packing.bound import Bound
+from gearopt.formulations.packing.plan import Places, Plan, row
+from gearopt.optimise.kernels import kernel
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.result import Budget, Event, Outcome, Watch
+from gearopt.optimise.terms import Array
+
+KERNEL = "gearopt.formulations.packing.anneal_kernel"
+SLICE = 100_000  # moves times cylinders of one call: some hundredths of a second
+CODES = {"rectangle": 0, "square": 1, "circle": 2}
+
+
+@dataclass
+class Spent:
+    """What a search has spent and found; it has state because it is filled as the search goes.
+
+    bound: nothing lies below it. best: the least objective found.
+    """
+
+    budget: Budget
+    watch: Watch | None
+    bound: float
+    clock: float = field(default_factory=time.perf_counter)
+    evaluations: int = 0
+    best: float = math.inf
+    stopped: bool = False
+
+    def goes_on(self, more: int = 0) -> bool:
+        """Whether budget and watcher let the search go on, `more` evaluations being under way."""
+        spent = self.evaluations + more
+        seconds = time.perf_counter() - self.clock
+        most_s, most_n = self.budget.seconds, self.budget.evaluations
+        over = (most_s is not None and seconds > most_s) or (most_n is not None and spent >= most_n)
+        if not over and self.watch is not None:
+            best = self.best if math.isfinite(self.best) else None
+            over = self.watch(Event(seconds, spent, best, self.bound)) is False
+        self.stopped = self.stopped or over
+        return not self.stopped
+
+    def left(self) -> int:
+        """Evaluations that are left."""
+        most = self.budget.evaluations
+        return 10**15 if most is None else max(0, most - self.evaluations)
+
+    def close(self, gap: float) -> bool:
+        """Whether the best found is within a relative gap of the bound."""
+        return self.best - self.bound <= max(gap, self.budget.gap) * abs(self.best)
+
+
+Floor = Callable[[Problem], Bound]
+Finish = Callable[[Outcome, Spent, Bound], Outcome]  # the outcome with bound and proof
+
+
+def numbers(plan: Plan, most: int) -> Array:
+    """The scalars of the kernel, for `most` layers."""
+    code = 3 if plan.width is not None else CODES[plan.shape]
+    volume = float(plan.objective == "volume")
+    anchored, least = float(bool(plan.fixed)), plan.least if plan.least > 1 else 0
+    return np.array([plan.gap, plan.wall, plan.width or 0.0, code, volume, least, most, anchored])
+
+
+def held(plan: Plan) -> Any:
+    """What is fixed of each cylinder: 1 its place, 2 its layer."""
+    lifted = set(plan.lifted)
+    return np.array(
+        [(c.at is not None) + 2 * (k not in lifted) for k, c in enumerate(plan.cylinders)],
+        dtype=np.int64,
+    )
+
+
+def scattered(plan: Plan, most: int, rng: np.random.Generator) -> Places:
+    """Free cylinders at random in `most` layers on a plan of 4/pi times their discs."""
+    first = row(plan)
+    area = 4.0 * float(((plan.radius + 0.5 * plan.gap) ** 2).sum()) / most
+    across, low, near = math.sqrt(area), 0.0, 0.0
+    along = across
+    if plan.fixed:
+        low, high, near, far = plan.held_box
+        across, along = max(across, high - low), max(along, far - near)
+    if plan.width is not None:
+        across, along = min(across, plan.width), area / min(across, plan.width)
+    x, y, layer = first.x.copy(), first.y.copy(), first.layer.copy()
+    free, lifted = list(plan.free), list(plan.lifted)
+    x[free] = low + across * rng.random(len(free))
+    y[free] = near + along * rng.random(len(free))
+    layer[lifted] = rng.integers(1, most + 1, len(lifted))
+    centre = np.zeros(2)
+    if plan.shape == "circle":
+        middle = np.array([low + 0.5 * across, near + 0.5 * along])
+        if plan.fixed:
+            centre = middle
+        else:
+            x, y = x - middle[0], y - middle[1]
+    return Places(x, y, layer, centre)
+
+
+def anneal(
+    plan: Plan,
+    begin: Places,
+    most: int,
+    moves: int,
+    temperatures: tuple[float, float],
+    rng: np.random.Generator,
+    spent: Spent,
+) -> tuple[Places, Places | None, float]:
+    """Anneal from a packing: the last state, the best that meets all limits, and its objective.
+
+    most: layers of this run. moves: of the whole run, which ends early where the budget does.
+    """
+    anneal_slice = kernel(KERNEL).anneal
+    n = len(plan.radius)
+    x, y, layer, centre = begin.copied()
+    best = np.append(np.zeros(3 * n + 2), np.inf)
+    size = max(1, SLICE // n)
+    done = 0
+    while done < moves:
+        last = min(moves, done + size)
+        seed = int(rng.integers(2**31))
+        anneal_slice(
+            seed, done, last, moves, *temperatures, x, y, layer, centre,
+            plan.radius, plan.height, held(plan), numbers(plan, most), best,
+        )  # fmt: skip
+        spent.evaluations += last - done
+        done = last
+        if done < moves and not spent.goes_on():
+            break
+    found = None
+    if math.isfinite(best[-1]):
+        levels = best[2 * n : 3 * n].astype(np.int64)
+        found = Places(best[:n], best[n : 2 * n], levels, best[3 * n : -1])
+    return Places(x, y, layer, centre), found, float(best[-1])

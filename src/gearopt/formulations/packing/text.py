@@ -1,0 +1,257 @@
+"""The text of a packing, twice: with largest extents for samplers, with epigraphs for gradients.
+
+Both have x, y [mm] of the free cylinders. Pairs of one layer keep 2 - d^2/D^2 <= 1 (d: distance,
+D: least distance of the axes), so nothing is divided by a distance that may vanish.
+"""
+
+import math
+from functools import reduce
+from itertools import combinations
+from typing import Any
+
+import numpy as np
+
+from gearopt.errors import SolveError
+from gearopt.formulations.packing import points
+from gearopt.formulations.packing.plan import Places, Plan, row
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.terms import Array, Param, Terms, Var
+
+NEVER = -1.0  # needed d^2/D^2 of a pair in different layers
+
+
+def direct(plan: Plan, **methods: Any) -> Problem:
+    """The packing for samplers: the objective is that of the smallest container around all.
+
+    Variables: x, y, the layers that are free, and the centre of a circle around fixed cylinders.
+    """
+    guess = row(plan)
+    variables = [*_axes(plan, guess), *_centre(plan, guess)]
+    if plan.lifted:
+        start = tuple(float(guess.layer[k]) for k in plan.lifted)
+        layers = Var("layer", "", 1, plan.most, start, len(plan.lifted), integer=True)
+        variables.append(layers)
+
+    def evaluate(x: Any, p: Any) -> Terms:
+        axes = points.axes(plan, x)
+        layer = points.layers(plan, x)
+        area, limits = _container(plan, axes, x)
+        defines: dict[str, Any] = {}
+        rows = tuple(_close(plan, axes, layer, i, j) for i, j in _near(plan))
+        if rows:
+            defines["apart"] = rows
+        if plan.lifted and plan.least > 1:
+            held = [sum(np.where(at == k, 1.0, 0.0) for at in layer) for k in _levels(plan.least)]
+            defines["occupied"] = tuple(2.0 - count for count in held)
+        return Terms(_objective(plan, area, stack(plan, layer)), limits, defines)
+
+    return Problem("packing", tuple(variables), (), evaluate, methods=methods)
+
+
+def smooth(plan: Plan, layer: Any = None) -> Problem:
+    """The packing for gradient methods: sizes of the container are variables; layers are data.
+
+    layer: that of every cylinder (n,), by default the fixed ones; parameters `needed` (pairs; the
+    square of least distance over D, or NEVER) and `height` of the stack let other layers be solved
+    without tracing again. SolveError where layers are free and not given.
+    """
+    if layer is None and plan.lifted:
+        raise SolveError(
+            "gradient methods take no free layers: give every [[cylinder]] its layer, or take hop"
+        )
+    guess = row(plan)
+    levels = guess.layer if layer is None else layer
+    pairs = tuple(plan.pairs)
+    needed, tall = of_layers(plan, levels)
+    parameters: tuple[Param, ...] = (Param("height", "mm", tall),)
+    if pairs:
+        parameters = (*parameters, Param("needed", "", needed, len(pairs)))
+    variables = (*_axes(plan, guess), *_sides(plan, guess))
+
+    def evaluate(x: Any, p: Any) -> Terms:
+        axes = points.axes(plan, x)
+        walls = _walls(plan, axes, x)
+        if pairs:
+            squares = [_square(plan, axes, i, j) for i, j in pairs]
+            walls["apart"] = tuple(
+                1.0 + (least - there)
+                for least, there in zip(points.each(p.needed), squares, strict=True)
+            )
+        return Terms(_objective(plan, _area(plan, x), p.height), defines=walls)
+
+    return Problem("packing", variables, parameters, evaluate)
+
+
+def of_layers(plan: Plan, layer: Any) -> tuple[tuple[float, ...], float]:
+    """The parameters of `smooth` for given layers (n,): needed of every pair, height of all."""
+    needed = tuple(1.0 if layer[i] == layer[j] else NEVER for i, j in plan.pairs)
+    return needed, float(stack(plan, layer))
+
+
+def stack(plan: Plan, layer: Any) -> Any:
+    """Sum of the layers' heights [mm]; a layer is as high as its highest cylinder."""
+    height = plan.height
+    return sum(
+        reduce(
+            np.maximum,
+            [np.where(at == k, h, 0.0) for at, h in zip(layer, height, strict=True)],
+        )
+        for k in _levels(plan.most)
+    )
+
+
+def _levels(most: int) -> range:
+    return range(1, most + 1)
+
+
+def _ends(plan: Plan) -> tuple[float, float, float, float]:
+    """Ends of a search in x and y [mm]: a row of all beyond what is fixed."""
+    if plan.fixed:
+        low, high, near, far = plan.held_box
+        return low - plan.reach, high + plan.reach, near - plan.reach, far + plan.reach
+    return (-plan.reach, plan.reach, -plan.reach, plan.reach)
+
+
+def _axes(plan: Plan, guess: Places) -> tuple[Var, ...]:
+    low, high, near, far = _ends(plan)
+    free, r, wall = list(plan.free), plan.radius, plan.wall
+    count = len(free)
+    if plan.fixed or plan.shape == "circle":
+        across, along = ((low,) * count, (high,) * count), ((near,) * count, (far,) * count)
+    else:  # the container's corner is the origin
+        least = tuple(float(v) for v in r[free] + wall)
+        most = tuple(float(v) for v in plan.reach - r[free] - wall)
+        across = along = (least, tuple(max(a, b) for a, b in zip(least, most, strict=True)))
+    gx, gy = guess.x[free], guess.y[free]
+    if not (plan.fixed or plan.shape == "circle"):
+        gx, gy = gx + wall, gy + wall
+    return (
+        Var("x", "mm", *across, tuple(gx.tolist()), count, search=True),
+        Var("y", "mm", *along, tuple(gy.tolist()), count, search=True),
+    )
+
+
+def _centre(plan: Plan, guess: Places) -> tuple[Var, ...]:
+    if not points.has_centre(plan):
+        return ()
+    low, high, near, far = _ends(plan)
+    return (
+        Var("centre_x", "mm", low, high, float(guess.centre[0]), search=True),
+        Var("centre_y", "mm", near, far, float(guess.centre[1]), search=True),
+    )
+
+
+def _sides(plan: Plan, guess: Places) -> tuple[Var, ...]:
+    """The container's variables; a corner or centre only where something is fixed."""
+    at = points.start(plan, guess)[2 * len(plan.free) :]
+    low, high, near, far = _ends(plan)
+    most = 2.0 * max(high - low, far - near)
+    least = 2.0 * float(plan.radius.max() + plan.wall)
+    names: dict[str, tuple[float, float]] = {}
+    if plan.shape == "circle":
+        names = {"centre_x": (low, high), "centre_y": (near, far)} if plan.fixed else {}
+        names |= {"container_radius": (0.5 * least, most)}
+    else:
+        if plan.fixed:
+            names = {"left": (low - most, high), "front": (near - most, far)}
+        sides = ("side",) if plan.shape == "square" else ("width", "depth")
+        names |= {n: (least, most) for n in (sides if plan.width is None else ("depth",))}
+    return tuple(
+        Var(name, "mm", *ends, float(v), search=True)
+        for (name, ends), v in zip(names.items(), at, strict=True)
+    )
+
+
+def _square(plan: Plan, axes: list[tuple[Any, Any]], i: int, j: int) -> Any:
+    """d^2/D^2 of a pair."""
+    (a, b), (c, d) = axes[i], axes[j]
+    return ((a - c) ** 2 + (b - d) ** 2) / plan.apart(i, j) ** 2
+
+
+def _near(plan: Plan) -> list[tuple[int, int]]:
+    """Pairs that may come too close: in layers that are or may be the same, not both fixed."""
+    lifted, cylinders = set(plan.lifted), plan.cylinders
+    found = []
+    for i, j in combinations(range(len(cylinders)), 2):
+        free = not lifted.isdisjoint((i, j))
+        same = (cylinders[i].layer or 1) == (cylinders[j].layer or 1)
+        moved = cylinders[i].at is None or cylinders[j].at is None
+        if free or (same and moved):
+            found.append((i, j))
+    return found
+
+
+def _close(plan: Plan, axes: list[tuple[Any, Any]], layer: list[Any], i: int, j: int) -> Any:
+    """The row of a pair: 2 - d^2/D^2 in one layer, 0 in different ones."""
+    row_of = 2.0 - _square(plan, axes, i, j)
+    return np.where(layer[i] == layer[j], row_of, 0.0) if plan.lifted else row_of
+
+
+def _extent(values: list[Any], radius: Array) -> Any:
+    high = reduce(np.maximum, [v + r for v, r in zip(values, radius, strict=True)])
+    return high - reduce(np.minimum, [v - r for v, r in zip(values, radius, strict=True)])
+
+
+def _container(plan: Plan, axes: list[tuple[Any, Any]], x: Any) -> tuple[Any, dict[str, Any]]:
+    """Area of the smallest container around all [mm2], and the limit of a given width."""
+    if plan.shape == "circle":
+        a, b = getattr(x, "centre_x", 0.0), getattr(x, "centre_y", 0.0)
+        far = reduce(
+            np.maximum,
+            [
+                np.sqrt((u - a) ** 2 + (v - b) ** 2) + r
+                for (u, v), r in zip(axes, plan.radius, strict=True)
+            ],
+        )
+        return math.pi * (far + plan.wall) ** 2, {}
+    across = _extent([a for a, _ in axes], plan.radius) + 2.0 * plan.wall
+    along = _extent([b for _, b in axes], plan.radius) + 2.0 * plan.wall
+    if plan.shape == "square":
+        return np.maximum(across, along) ** 2, {}
+    if plan.width is not None:
+        return plan.width * along, {"width": across / plan.width}
+    return across * along, {}
+
+
+def _area(plan: Plan, x: Any) -> Any:
+    if plan.shape == "circle":
+        return math.pi * x.container_radius**2
+    if plan.shape == "square":
+        return x.side**2
+    return x.depth * (x.width if plan.width is None else plan.width)
+
+
+def _walls(plan: Plan, axes: list[tuple[Any, Any]], x: Any) -> dict[str, Any]:
+    """Rows that keep all inside the container; bounds of x and y hold two sides where they can."""
+    scale = 2.0 * float(plan.radius.mean())
+    if plan.shape == "circle":
+        a, b = getattr(x, "centre_x", 0.0), getattr(x, "centre_y", 0.0)
+        rows = [
+            1.0
+            + ((u - a) ** 2 + (v - b) ** 2 - (x.container_radius - plan.wall - r) ** 2) / scale**2
+            for (u, v), r in zip(axes, plan.radius, strict=True)
+        ]
+        return {"inside": tuple(rows)}
+    left, front = getattr(x, "left", 0.0), getattr(x, "front", 0.0)
+    width = getattr(x, "side", getattr(x, "width", plan.width))
+    depth = getattr(x, "side", getattr(x, "depth", None))
+    need = plan.radius + plan.wall
+    found: dict[str, Any] = {}
+    if plan.fixed:
+        found["left_side"] = tuple(
+            1.0 + (left + n - u) / scale for (u, _), n in zip(axes, need, strict=True)
+        )
+        found["front_side"] = tuple(
+            1.0 + (front + n - v) / scale for (_, v), n in zip(axes, need, strict=True)
+        )
+    found["right_side"] = tuple(
+        1.0 + (u + n - left - width) / scale for (u, _), n in zip(axes, need, strict=True)
+    )
+    found["back_side"] = tuple(
+        1.0 + (v + n - front - depth) / scale for (_, v), n in zip(axes, need, strict=True)
+    )
+    return found
+
+
+def _objective(plan: Plan, area: Any, height: Any) -> dict[str, Any]:
+    return {"volume": area * height} if plan.objective == "volume" else {"area": area}

@@ -1,0 +1,172 @@
+"""A gearbox layout in three dimensions: toothed gears in mesh, shafts, housing, keep-outs."""
+
+import math
+from collections.abc import Mapping
+from html import escape
+from typing import Any
+
+from gearopt.optimise.result import Result
+from gearopt.report.pages.bodies import nearest
+from gearopt.report.pages.frame import Figure
+from gearopt.report.pages.section import Section, meaning, series
+from gearopt.report.pages.solid import (
+    Mesh,
+    Point,
+    Toothed,
+    block,
+    edges,
+    gear_mesh,
+    line_trace,
+    mesh_trace,
+    rod,
+    space,
+)
+
+MOST = 50_000  # triangles of all gears together, for a page that turns smoothly without a GPU
+DETAIL = ((3, 0.12), (3, 0.3), (2, 0.6), (2, 10.0))  # points on a flank, twist a section [rad]
+CAPTION = (
+    "Drag to turn, scroll to come nearer, click a name to hide or show it. Tooth numbers, "
+    "diameters and helix angles are those of the design; flanks are involutes of 20 degrees. "
+    "Clearances, hidden at first, are the room that other shafts must leave to each gear, the "
+    "limit within the walls, and the narrowest gap."
+)
+Layout = Mapping[str, Any]
+
+
+def section(result: Result) -> Section | None:
+    """The gearbox to turn; None where there is no layout."""
+    found = result.design.get("layout")
+    if not found:
+        return None
+    return Section(
+        "In three dimensions", figures=(Figure(_traces(found), space(*_corners(found)), CAPTION),)
+    )
+
+
+def _traces(found: Layout) -> list[dict[str, Any]]:
+    places = {s["shaft"]: (s["y_mm"], s["z_mm"]) for s in found["shafts"]}
+    traces = _gears(found, places)
+    for k, shaft in enumerate(found["shafts"]):
+        mesh = rod(
+            places[shaft["shaft"]], shaft["diameter_mm"] / 2, shaft["from_mm"], shaft["to_mm"]
+        )
+        words = f"shaft {shaft['shaft']}: diameter {shaft['diameter_mm']:.2f} mm"
+        traces.append(mesh_trace(mesh, words, "--metal", "shafts", showlegend=k == 0))
+    for k, it in enumerate(found["bearings"]):
+        bore = next(s["diameter_mm"] for s in found["shafts"] if s["shaft"] == it["shaft"]) / 2
+        ends = it["from_mm"], it["to_mm"]
+        mesh = rod(places[it["shaft"]], it["diameter_mm"] / 2, *ends, bore)
+        words = f"bearing of shaft {it['shaft']}"
+        traces.append(mesh_trace(mesh, words, "--soft", "bearings", showlegend=k == 0))
+    traces += _housing(found)
+    return traces + _clearances(found, places)
+
+
+def _gears(found: Layout, places: Mapping[int, tuple[float, float]]) -> list[dict[str, Any]]:
+    solids = [(gear, _toothed(found, gear, places)) for gear in found["gears"]]
+    for flank, step in DETAIL:
+        meshes = [gear_mesh(solid, flank, step) for _, solid in solids]
+        if sum(len(faces) for _, faces in meshes) <= MOST:
+            break
+    seen: set[int] = set()
+    traces = []
+    for (gear, _), mesh in zip(solids, meshes, strict=True):
+        stage = gear["stage"]
+        first, colour = stage not in seen, series(stage)
+        seen.add(stage)
+        words = escape(meaning(gear))
+        traces.append(mesh_trace(mesh, words, colour, f"stage {stage}", showlegend=first))
+    return traces
+
+
+def _toothed(found: Layout, gear: Layout, places: Mapping[int, tuple[float, float]]) -> Toothed:
+    """The gear turned so that it meshes with its mate.
+
+    At the middle of the stage the pinion has a tooth on the line of centres and the wheel a gap.
+    The hands of a pair are opposite; those of the two gears on a shaft are equal, so that their
+    axial forces are.
+    """
+    pair = {g["member"]: g for g in found["gears"] if g["stage"] == gear["stage"]}
+    wheel = gear["member"] == "wheel"
+    mate = pair.get("pinion" if wheel else "wheel", gear)
+    here, there = places[gear["shaft"]], places[mate["shaft"]]
+    phase = math.atan2(there[1] - here[1], there[0] - here[0])
+    middle = sum(g["from_mm"] + g["to_mm"] for g in pair.values()) / (2.0 * len(pair))
+    hand = 1.0 if (gear["stage"] % 2 == 1) != wheel else -1.0
+    return Toothed(
+        gear["teeth"],
+        gear["reference_diameter_mm"],
+        gear["tip_diameter_mm"],
+        gear["root_diameter_mm"],
+        gear["from_mm"],
+        gear["to_mm"],
+        here,
+        hand * math.radians(abs(gear["helix_angle_deg"])),
+        phase + (math.pi / gear["teeth"] if wheel else 0.0),
+        middle,
+    )
+
+
+def _walls(found: Layout) -> tuple[Point, Point]:
+    """Two corners of the box."""
+    box = found["box"]
+    y, z = box["left_mm"], box["bottom_mm"]
+    return (0.0, y, z), (box["length_mm"], y + box["width_mm"], z + box["height_mm"])
+
+
+def _corners(found: Layout) -> tuple[Point, Point]:
+    """Two corners of the box and what is outside it."""
+    (x0, y0, z0), (x1, y1, z1) = _walls(found)
+    motor = found["motor"] or {"diameter_mm": 0.0, "length_mm": 0.0, "at": "start"}
+    r, length = motor["diameter_mm"] / 2, motor["length_mm"]
+    before = length if motor["at"] == "start" else 0.0
+    low = (x0 - before, min(y0, -r), min(z0, -r))
+    return low, (x1 + length - before, max(y1, r), max(z1, r))
+
+
+def _housing(found: Layout) -> list[dict[str, Any]]:
+    """Walls as lines, the motor, keep-outs."""
+    box = found["box"]
+    low, high = _walls(found)
+    size = " x ".join(f"{box[k]:.2f}" for k in ("width_mm", "height_mm", "length_mm"))
+    traces = [line_trace(edges(low, high), f"box {size} mm", "--ink", 3.0)]
+    if motor := found["motor"]:
+        start = -motor["length_mm"] if motor["at"] == "start" else box["length_mm"]
+        mesh = rod((0.0, 0.0), motor["diameter_mm"] / 2, start, start + motor["length_mm"])
+        traces.append(mesh_trace(mesh, "motor", "--axis", "motor", opacity=0.6, showlegend=True))
+    for k, it in enumerate(found["obstacles"]):
+        ends = [
+            (it["from_mm"], it["left_mm"], it["bottom_mm"]),
+            (it["to_mm"], it["right_mm"], it["top_mm"]),
+        ]
+        look = {"opacity": 0.35, "showlegend": k == 0}
+        traces.append(mesh_trace(block(*ends), escape(it["name"]), "--warn", "keep-outs", **look))
+        traces.append(line_trace(edges(*ends), "keep-outs", "--warn", 2.0, showlegend=False))
+    return traces
+
+
+def _clearances(found: Layout, places: Mapping[int, tuple[float, float]]) -> list[dict[str, Any]]:
+    """Shells, the limit within the walls, the narrowest gap; hidden until they are asked for."""
+    room = found["clearances"]
+    hidden: dict[str, Any] = {"visible": "legendonly", "legendgroup": "clearances"}
+    wall, axial = room.get("wall_mm") or 0.0, room.get("axial_mm") or 0.0
+    low, high = _walls(found)
+    low = (low[0] + axial, low[1] + wall, low[2] + wall)
+    high = (high[0] - axial, high[1] - wall, high[2] - wall)
+    traces = [line_trace(edges(low, high), "clearances", "--accent", 2.0, **hidden)]
+    hidden |= {"showlegend": False}
+    for gear in found["gears"]:
+        r = gear["tip_diameter_mm"] / 2 + (room.get("gear_to_shaft_mm") or 0.0)
+        mesh: Mesh = rod(places[gear["shaft"]], r, gear["from_mm"], gear["to_mm"])
+        look = hidden | {"opacity": 0.18, "hoverinfo": "skip", "hovertemplate": None}
+        traces.append(mesh_trace(mesh, "", "--accent", "clearances", **look))
+    gap = found["gaps"][0] if found["gaps"] else {"between": ["", ""]}
+    ends = nearest(found, *gap["between"])
+    if ends is not None:
+        bodies = found["gears"] + found["shafts"]
+        names = [b.get("name", f"shaft {b['shaft']}") for b in bodies]
+        spans = [b for b, name in zip(bodies, names, strict=True) if name in gap["between"]]
+        x = 0.5 * (max(b["from_mm"] for b in spans) + min(b["to_mm"] for b in spans))
+        points: list[Any] = [(x, *ends[0]), (x, *ends[1])]
+        traces.append(line_trace(points, "clearances", "--warn", 8.0, **hidden))
+    return traces

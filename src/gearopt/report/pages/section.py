@@ -1,0 +1,53 @@
+"""What a page is made of: sections of drawings, plots, tables and sentences."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from gearopt.report.pages.frame import Figure
+from gearopt.report.pages.sheet import Drawing
+
+COLOURS = 8  # --series-1 ... in frame.css, told apart by the colour-blind
+
+
+@dataclass(frozen=True)
+class Table:
+    """Heads, rows of cells as they are shown, and what it is called.
+
+    words: sentences, not numbers, that may break over lines.
+    """
+
+    heads: Sequence[str]
+    rows: Sequence[Sequence[str]]
+    caption: str = ""
+    words: bool = False
+
+
+@dataclass(frozen=True)
+class Section:
+    """A heading, then sentences, drawings side by side at one scale, plots, tables."""
+
+    heading: str
+    words: Sequence[str] = ()
+    drawings: Sequence[Drawing] = ()
+    figures: Sequence[Figure] = ()
+    tables: Sequence[Table] = ()
+
+    @property
+    def widest(self) -> float:
+        """Width of the widest drawing [px]: all shrink with it, so that they keep one scale."""
+        return max(drawing.width for drawing in self.drawings)
+
+
+def series(k: int) -> str:
+    """The colour of the k-th of a series, from 1; after eight they begin again."""
+    return f"--series-{(k - 1) % COLOURS + 1}"
+
+
+def meaning(gear: dict[str, Any]) -> str:
+    """A gear in a line, as drawings tell it where the pointer rests."""
+    return (
+        f"{gear['name']}: z {gear['teeth']}, m_n {gear['normal_module_mm']:g} mm, "
+        f"d {gear['reference_diameter_mm']:.2f} mm, d_a {gear['tip_diameter_mm']:.2f} mm, "
+        f"b {gear['to_mm'] - gear['from_mm']:.2f} mm"
+    )

@@ -1,0 +1,205 @@
+"""Technical drawings to scale as inline SVG: shapes in mm, dimensions, labels that keep clear.
+
+An SVG of our own, not a plot: equal scale by construction, crisp in print, a few kilobytes, and
+coloured by the classes of drawing.css in light and dark.
+"""
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from html import escape
+
+from gearopt.report.pages.labels import SIZE, Ink, Place, best
+
+ARROW = (9.0, 2.6)  # length and half width of an arrow head, px
+HATCH = 9.0  # between the lines of a hatch, px
+Point = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """An SVG (all text in it is escaped), its size at full scale [px], what is told below it."""
+
+    svg: str
+    width: float
+    height: float
+    caption: str
+
+
+@dataclass(frozen=True)
+class Window:
+    """What a drawing shows: ends of both axes [mm], and what is kept free around them [px]."""
+
+    left: float
+    right: float
+    bottom: float
+    top: float
+    free: tuple[float, float, float, float] = (24.0, 24.0, 24.0, 24.0)  # left, right, bottom, top
+
+    def scale(self, width: float, height: float) -> float:
+        """The largest scale [px/mm] that fits into so many px."""
+        left, right, bottom, top = self.free
+        across = (width - left - right) / (self.right - self.left)
+        return min(across, (height - bottom - top) / (self.top - self.bottom))
+
+
+class Sheet:
+    """A drawing under way: it keeps what is drawn, because labels are placed where little is."""
+
+    def __init__(self, window: Window, scale: float) -> None:
+        left, right, bottom, top = window.free
+        self.scale = scale
+        self.width = left + right + scale * (window.right - window.left)
+        self.height = bottom + top + scale * (window.top - window.bottom)
+        self._origin = (left - scale * window.left, top + scale * window.top)
+        self._marks: list[str] = []
+        self._labels: list[str] = []
+        self._ink = Ink(self.width, self.height)
+
+    def at(self, x: float, y: float) -> Point:
+        """A point [mm] in px, y downwards."""
+        return self._origin[0] + self.scale * x, self._origin[1] - self.scale * y
+
+    def circle(
+        self, x: float, y: float, r: float, style: str, colour: str = "", title: str = ""
+    ) -> None:
+        """A circle [mm]."""
+        cx, cy = self.at(x, y)
+        size = self.scale * r
+        self._add("circle", f'cx="{cx:.2f}" cy="{cy:.2f}" r="{size:.2f}"', style, colour, title)
+        count = max(8, int(size))
+        turns = (2.0 * math.pi * k / count for k in range(count))
+        self._ink.add((cx + size * math.cos(t), cy + size * math.sin(t)) for t in turns)
+
+    def rectangle(
+        self, a: Point, b: Point, style: str, colour: str = "", title: str = "", round_: float = 0
+    ) -> None:
+        """A rectangle between two corners [mm]."""
+        (x0, y0), (x1, y1) = self.at(*a), self.at(*b)
+        x, y, width, height = min(x0, x1), min(y0, y1), abs(x1 - x0), abs(y1 - y0)
+        corners = f'x="{x:.2f}" y="{y:.2f}" width="{width:.2f}" height="{height:.2f}"'
+        self._add("rect", f'{corners} rx="{round_:g}"', style, colour, title)
+        ends = ((x, y), (x + width, y), (x + width, y + height), (x, y + height), (x, y))
+        for start, end in zip(ends, ends[1:], strict=False):
+            self._ink.add(_along(start, end))
+
+    def line(self, a: Point, b: Point, style: str, colour: str = "") -> None:
+        """A line [mm]."""
+        self._stroke(self.at(*a), self.at(*b), style, colour)
+
+    def cross(self, x: float, y: float, r: float) -> None:
+        """The cross of an axis, a little larger than a circle of radius r [mm]."""
+        (cx, cy), reach = self.at(x, y), self.scale * r + 6.0
+        self._stroke((cx - reach, cy), (cx + reach, cy), "axis")
+        self._stroke((cx, cy - reach), (cx, cy + reach), "axis")
+
+    def hatch(self, a: Point, b: Point) -> None:
+        """Lines at 45 degrees that fill a rectangle [mm]."""
+        (x0, y0), (x1, y1) = self.at(*a), self.at(*b)
+        left, right, top, bottom = min(x0, x1), max(x0, x1), min(y0, y1), max(y0, y1)
+        start = left + top + HATCH / 2
+        for k in range(math.ceil((right + bottom - start) / HATCH)):
+            total = start + k * HATCH  # x + y along a line
+            from_x, to_x = max(left, total - bottom), min(right, total - top)
+            self._stroke((from_x, total - from_x), (to_x, total - to_x), "hatch")
+
+    def dimension(self, a: Point, b: Point, away: float, text: str) -> None:
+        """A dimension between two points [mm] on a level or upright line, `away` px from it.
+
+        away > 0: below a level line, left of an upright one.
+        """
+        (x0, y0), (x1, y1) = self.at(*a), self.at(*b)
+        upright = abs(x1 - x0) < abs(y1 - y0)
+        dx, dy = (-away, 0.0) if upright else (0.0, away)
+        past = 1.0 + 5.0 / abs(away)
+        for x, y in ((x0, y0), (x1, y1)):
+            self._stroke((x + 0.1 * dx, y + 0.1 * dy), (x + past * dx, y + past * dy), "extension")
+        start, end = (x0 + dx, y0 + dy), (x1 + dx, y1 + dy)
+        self.arrows(start, end)
+        x, y = (start[0] + end[0]) / 2, (start[1] + end[1]) / 2
+        if upright:
+            self.label(text, [Place(x - 9.0, y, -90.0)], "size")
+        else:
+            self.label(text, [Place(x, y - 9.0 if away > 0 else y - 9.0)], "size")
+
+    def tick(self, start: Point, end: Point) -> None:
+        """A thin line [px], as those that lead from a body to its dimension."""
+        self._stroke(start, end, "extension")
+
+    def arrows(self, start: Point, end: Point, style: str = "size") -> None:
+        """A line with two heads [px]; heads point inwards from outside where there is no room."""
+        length = math.dist(start, end) or 1.0
+        ux, uy = (end[0] - start[0]) / length, (end[1] - start[1]) / length
+        inside = length > 2.5 * ARROW[0]
+        if inside:
+            self._stroke(start, end, style)
+        for (x, y), sign in ((start, 1.0), (end, -1.0)):
+            s = sign if inside else -sign
+            bx, by = x + s * ARROW[0] * ux, y + s * ARROW[0] * uy
+            nx, ny = -uy * ARROW[1], ux * ARROW[1]
+            corners = f"{x:.2f},{y:.2f} {bx + nx:.2f},{by + ny:.2f} {bx - nx:.2f},{by - ny:.2f}"
+            self._add("polygon", f'points="{corners}"', f"{style} head")
+            if not inside:
+                self._stroke((bx, by), (bx + s * 6.0 * ux, by + s * 6.0 * uy), style)
+
+    def label(self, text: str, places: Sequence[Place], style: str, colour: str = "") -> None:
+        """A text at the place, of several, where it meets least; its centre there."""
+        place = best(text, places, self._ink)
+        if place.leader is not None:
+            self._leader(text, place, style)
+        x, y = place.x, place.y
+        turned = f' transform="rotate({place.angle:.2f} {x:.2f} {y:.2f})"' if place.angle else ""
+        where = f'x="{x:.2f}" y="{y:.2f}"{turned}{_colour(colour)}'
+        self._labels.append(f'<text class="{style}" {where}>{escape(text)}</text>')
+
+    def balloon(self, text: str, places: Sequence[Place]) -> None:
+        """A short text in a circle."""
+        place = best(text, places, self._ink, 0.85 * SIZE)
+        if place.leader is not None:
+            self._leader(text, place, "balloon")
+        where = f'cx="{place.x:.2f}" cy="{place.y:.2f}" r="{SIZE * 0.8:.1f}"'
+        self._labels.append(f'<circle class="balloon" {where}/>')
+        where = f'x="{place.x:.2f}" y="{place.y:.2f}"'
+        self._labels.append(f'<text class="balloon" {where}>{escape(text)}</text>')
+
+    def drawing(self, name: str, caption: str) -> Drawing:
+        """The SVG."""
+        box = f'viewBox="0 0 {self.width:.1f} {self.height:.1f}"'
+        marks = "\n".join(self._marks + self._labels)
+        svg = f'<svg {box} role="img" aria-label="{escape(name)}">\n{marks}\n</svg>'
+        return Drawing(svg, self.width, self.height, caption)
+
+    def _leader(self, text: str, place: Place, style: str) -> None:
+        """A thin line from what a label names to the label's edge."""
+        assert place.leader is not None
+        x, y = place.leader
+        reach = (SIZE, SIZE) if style == "balloon" else (place.half_width(text), SIZE * 0.6)
+        dx, dy = place.x - x, place.y - y
+        share = min(1.0, *(r / abs(d) for r, d in zip(reach, (dx, dy), strict=True) if d))
+        if share < 1.0:
+            self._stroke((x, y), (x + (1 - share) * dx, y + (1 - share) * dy), "leader")
+
+    def _stroke(self, start: Point, end: Point, style: str, colour: str = "") -> None:
+        ends = f'x1="{start[0]:.2f}" y1="{start[1]:.2f}" x2="{end[0]:.2f}" y2="{end[1]:.2f}"'
+        self._add("line", ends, style, colour)
+        if style != "hatch":
+            self._ink.add(_along(start, end))
+
+    def _add(self, tag: str, ends: str, style: str, colour: str = "", title: str = "") -> None:
+        inner = f"<title>{escape(title)}</title>" if title else ""
+        self._marks.append(f'<{tag} class="{style}"{_colour(colour)} {ends}>{inner}</{tag}>')
+
+
+def _colour(name: str) -> str:
+    """The colour of a mark, which drawing.css knows as --c."""
+    return f' style="--c: var({name})"' if name else ""
+
+
+def _along(start: Point, end: Point) -> Iterable[Point]:
+    count = max(1, int(math.dist(start, end) / 4.0))
+    for k in range(count + 1):
+        share = k / count
+        yield (
+            start[0] + share * (end[0] - start[0]),
+            start[1] + share * (end[1] - start[1]),
+        )

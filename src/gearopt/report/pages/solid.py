@@ -1,0 +1,251 @@
+"""Bodies in three dimensions as plotly traces: toothed gears, cylinders, boxes of lines.
+
+Coordinates are (x, y, z) in mm, x along the shafts. A mesh is a list of points and a list of
+triangles of their numbers.
+"""
+
+import math
+import sys
+from array import array
+from base64 import b64encode
+from dataclasses import dataclass
+from typing import Any
+
+Point = tuple[float, float, float]
+Face = tuple[int, int, int]
+Mesh = tuple[list[Point], list[Face]]
+
+PRESSURE_ANGLE = math.radians(20.0)  # normal; of the basic rack that nearly all gears have
+BACKLASH = 0.03  # of a pitch, so that flanks in mesh are seen apart
+ROUND = 48  # sides of a cylinder
+FACE = 0.2  # of the root radius: the ring of a gear's face
+EYE = (0.55, -0.75, 0.37)  # direction of the first view: from the output end, the left, above
+AWAY = 1.2  # diagonals between the eye and the middle, so that all is inside the picture
+LIGHT = {"ambient": 0.72, "diffuse": 0.7, "specular": 0.12, "roughness": 0.7, "fresnel": 0.05}
+
+
+@dataclass(frozen=True)
+class Toothed:
+    """A gear: teeth, diameters [mm], faces from..to along x [mm], helix angle [rad, signed].
+
+    centre: (y, z) of its axis. phase: direction of the middle of a tooth at x = middle [rad].
+    """
+
+    teeth: int
+    reference: float
+    tip: float
+    root: float
+    start: float
+    end: float
+    centre: tuple[float, float]
+    helix: float = 0.0
+    phase: float = 0.0
+    middle: float = 0.0
+
+
+def gear_mesh(gear: Toothed, flank: int, step: float) -> Mesh:
+    """A helical gear with involute flanks; the bore is left out.
+
+    flank: points on a flank, at least 2. step: largest twist between two sections [rad].
+    Half the angle of a tooth at radius r is pi/(2 z) + inv(alpha_t) - inv(alpha_r).
+    """
+    outline = _outline(gear, flank)
+    rate = 2.0 * math.tan(gear.helix) / gear.reference  # twist per mm
+    sections = 1 + max(1, math.ceil(abs(rate) * (gear.end - gear.start) / step))
+    points: list[Point] = []
+    for k in range(sections):
+        x = gear.start + (gear.end - gear.start) * k / (sections - 1)
+        turn = gear.phase + rate * (x - gear.middle)
+        for angle, r in outline:
+            at = angle + turn
+            points.append((x, gear.centre[0] + r * math.cos(at), gear.centre[1] + r * math.sin(at)))
+    faces = _skin(len(outline), sections)
+    ends = [(gear.start, points[: len(outline)]), (gear.end, points[-len(outline) :])]
+    for (x, rim), first in zip(ends, (0, len(points) - len(outline)), strict=True):
+        _face(points, faces, gear, x, rim, first)
+    return points, faces
+
+
+def _outline(gear: Toothed, flank: int) -> list[tuple[float, float]]:
+    """(angle, radius) once round the gear, a tooth in the middle of angle 0."""
+    transverse = math.atan(math.tan(PRESSURE_ANGLE) / math.cos(gear.helix))
+    base = gear.reference / 2.0 * math.cos(transverse)
+    half = math.pi / (2.0 * gear.teeth) * (1.0 - 2.0 * BACKLASH)
+    low, high = gear.root / 2.0, gear.tip / 2.0
+    side = []
+    for k in range(flank):
+        at = low + (high - low) * k / (flank - 1)
+        angle = math.acos(min(1.0, base / max(at, base)))
+        thick = half + _involute(transverse) - _involute(angle)
+        side.append((max(thick, 0.1 * half), at))
+    side[0] = (min(side[0][0], math.pi / gear.teeth * 0.9), side[0][1])
+    tooth = [(-angle, at) for angle, at in side] + side[::-1]
+    pitch = 2.0 * math.pi / gear.teeth
+    return [(k * pitch + angle, at) for k in range(gear.teeth) for angle, at in tooth]
+
+
+def _involute(angle: float) -> float:
+    return math.tan(angle) - angle
+
+
+def _skin(around: int, sections: int) -> list[Face]:
+    """Triangles between rings of points that follow each other."""
+    faces = []
+    for ring in range(sections - 1):
+        a = ring * around
+        for k in range(around):
+            n = (k + 1) % around
+            faces += [(a + k, a + n, a + around + n), (a + k, a + around + n, a + around + k)]
+    return faces
+
+
+def _face(
+    points: list[Point], faces: list[Face], gear: Toothed, x: float, rim: list[Point], first: int
+) -> None:
+    """Add a toothed face: teeth down to a ring, and a disc that reaches over it.
+
+    One fan from the axis to all points of the rim would be of slivers, which are shaded unevenly.
+    """
+    per = len(rim) // gear.teeth
+    y, z = gear.centre
+    ring = len(points)
+    for k in range(gear.teeth):
+        (_, y0, z0), (_, y1, z1) = rim[k * per], rim[(k + 1) * per - 1]
+        at = math.atan2(z0 + z1 - 2.0 * z, y0 + y1 - 2.0 * y)
+        r = (1.0 - FACE) * gear.root / 2.0
+        points.append((x, y + r * math.cos(at), z + r * math.sin(at)))
+    for k in range(gear.teeth):
+        a, n = first + k * per, (k + 1) % gear.teeth
+        faces += [(ring + k, a + j, a + j + 1) for j in range(per - 1)]
+        faces += [(ring + k, a + per - 1, first + n * per), (ring + k, first + n * per, ring + n)]
+    disc, triangles = _disc(gear.centre, (1.0 - FACE / 2.0) * gear.root / 2.0, x)
+    faces += [(a + len(points), b + len(points), c + len(points)) for a, b, c in triangles]
+    points += disc
+
+
+def _disc(centre: tuple[float, float], radius: float, x: float) -> Mesh:
+    """A round plate across x."""
+    turns = [2.0 * math.pi * k / ROUND for k in range(ROUND)]
+    points = [
+        (x, centre[0] + radius * math.cos(t), centre[1] + radius * math.sin(t)) for t in turns
+    ]
+    return [*points, (x, *centre)], [(k, (k + 1) % ROUND, ROUND) for k in range(ROUND)]
+
+
+def rod(
+    centre: tuple[float, float], radius: float, start: float, end: float, bore: float = 0.0
+) -> Mesh:
+    """A cylinder along x, with a bore of a radius through it or none [mm]."""
+    turns = [2.0 * math.pi * k / ROUND for k in range(ROUND)]
+    y, z = centre
+    rings = ((start, bore), (start, radius), (end, radius), (end, bore))
+    points = [(x, y + r * math.cos(t), z + r * math.sin(t)) for x, r in rings for t in turns]
+    return points, _skin(ROUND, len(rings))
+
+
+def upright(mesh: Mesh) -> Mesh:
+    """A body along x, turned so that it stands along z: (x, y, z) becomes (y, z, x)."""
+    points, faces = mesh
+    return [(y, z, x) for x, y, z in points], faces
+
+
+def block(low: Point, high: Point) -> Mesh:
+    """A box between two corners."""
+    points = [
+        (x, y, z) for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])
+    ]
+    sides = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
+    return points, [t for a, b, c, d in sides for t in ((a, b, c), (a, c, d))]
+
+
+def mesh_trace(mesh: Mesh, name: str, colour: str, group: str, **more: Any) -> dict[str, Any]:
+    """A mesh as plotly draws it, its numbers packed; shown and hidden with its group."""
+    points, faces = mesh
+    axes = {axis: _packed("f", [p[k] for p in points]) for k, axis in enumerate("xyz")}
+    corners = {corner: _packed("I", [f[k] for f in faces]) for k, corner in enumerate("ijk")}
+    look = {
+        "type": "mesh3d",
+        "name": group,
+        "color": colour,
+        "legendgroup": group,
+        "flatshading": True,
+        "lighting": LIGHT,
+        "lightposition": {"x": 5000.0, "y": -6000.0, "z": 8000.0},
+        "hovertemplate": f"{name}<extra></extra>",
+    }
+    return look | axes | corners | more
+
+
+def line_trace(
+    points: list[Point | None], name: str, colour: str, width: float, **more: Any
+) -> dict[str, Any]:
+    """Lines in space; None lifts the pen."""
+    axes = {axis: [None if p is None else p[k] for p in points] for k, axis in enumerate("xyz")}
+    look = {
+        "type": "scatter3d",
+        "mode": "lines",
+        "name": name,
+        "legendgroup": name,
+        "line": {"color": colour, "width": width},
+        "hoverinfo": "skip",
+    }
+    return look | axes | more
+
+
+def edges(low: Point, high: Point) -> list[Point | None]:
+    """The twelve edges of a box as lines."""
+    (x0, y0, z0), (x1, y1, z1) = low, high
+    found: list[Point | None] = []
+    for x in (x0, x1):
+        found += [(x, y0, z0), (x, y1, z0), (x, y1, z1), (x, y0, z1), (x, y0, z0), None]
+    for y in (y0, y1):
+        for z in (z0, z1):
+            found += [(x0, y, z), (x1, y, z), None]
+    return found
+
+
+def space(low: Point, high: Point, height: int = 640) -> dict[str, Any]:
+    """The layout of a plot in three dimensions, in the page's look, one scale on all axes.
+
+    low, high: corners of all that is drawn, seen whole at first. Plotly measures where the eye is
+    in the cube root of their volume.
+    """
+    size = [b - a for a, b in zip(low, high, strict=True)]
+    away = AWAY * math.hypot(*size) / math.prod(size) ** (1 / 3)
+    eye = {axis: away * share for axis, share in zip("xyz", EYE, strict=True)}
+    ax = {
+        "showbackground": False,
+        "gridcolor": "--grid",
+        "linecolor": "--axis",
+        "zerolinecolor": "--grid",
+        "tickfont": {"size": 11, "color": "--soft"},
+        "showspikes": False,
+    }
+    names = {f"{a}axis": ax | {"title": {"text": f"{a} [mm]", "font": {"size": 12}}} for a in "xyz"}
+    camera = {"eye": eye, "center": {"x": 0.0, "y": 0.0, "z": -0.1}}  # room for the axes below
+    return {
+        "height": height,
+        "margin": {"l": 0, "r": 0, "t": 0, "b": 0},
+        "paper_bgcolor": "--card",
+        "font": {"family": "--font", "size": 13, "color": "--ink"},
+        "hoverlabel": {"bgcolor": "--card", "bordercolor": "--axis", "font": {"color": "--ink"}},
+        "legend": {"orientation": "h", "x": 0, "y": 1.0, "yanchor": "bottom"},
+        "scene": names
+        | {
+            "aspectmode": "data",
+            "camera": camera,
+            "dragmode": "orbit",
+        },
+        "uirevision": "kept",  # the reader's view survives a change from light to dark
+    }
+
+
+def _packed(kind: str, values: list[Any]) -> dict[str, str]:
+    """Numbers as plotly reads them from base64: f = 32-bit floats, I = unsigned integers."""
+    data = array(kind, values)
+    if kind == "I" and max(values, default=0) < 2**16:
+        data = array("H", values)
+    if sys.byteorder == "big":
+        data.byteswap()
+    word = {"f": "f4", "I": "u4", "H": "u2"}[data.typecode]
+    return {"dtype": word, "bdata": b64encode(data.tobytes()).decode("ascii")}

@@ -1,0 +1,83 @@
+"""Width against height of the boxes of a front, with lines of equal area."""
+
+import math
+from typing import Any
+
+from gearopt.optimise.result import Result
+from gearopt.report.pages.frame import Figure, axis, layout
+from gearopt.report.pages.section import Section
+from gearopt.report.words import number
+
+LINES = 6  # of equal area
+
+
+def section(result: Result) -> Section | None:
+    """The front of a run that looked for one; None without it."""
+    front = result.report.get("front") or []
+    if not front:
+        return None
+    points = sorted((p["width_mm"], p["height_mm"], p["volume_mm3"]) for p in front)
+    widths, heights, volumes = zip(*points, strict=True)
+    x0, x1 = _ends(widths)
+    y0, y1 = _ends(heights)
+    low, high = x0 * y0, x1 * y1
+    areas = [low * (high / low) ** ((k + 0.5) / LINES) for k in range(LINES)]
+    traces = [_equal(area, (x0, x1), (y0, y1)) for area in areas]
+    traces.append(
+        {
+            "type": "scatter",
+            "mode": "markers",
+            "name": "boxes",
+            "x": widths,
+            "y": heights,
+            "text": [f"{number(v)} mm³" for v in volumes],
+            "hovertemplate": "%{x:.2f} x %{y:.2f} mm, %{text}<extra></extra>",
+            "marker": {"color": "--series-1", "size": 8},
+            "showlegend": False,
+        }
+    )
+    best = min(points, key=lambda p: p[2])
+    traces.append(
+        {
+            "type": "scatter",
+            "mode": "markers",
+            "name": "least volume",
+            "x": [best[0]],
+            "y": [best[1]],
+            "hovertemplate": f"least volume: {number(best[2])} mm³<extra></extra>",
+            "marker": {"color": "--series-2", "size": 13, "symbol": "star"},
+        }
+    )
+    across, up = axis("width [mm]", range=[x0, x1]), axis("height [mm]", range=[y0, y1])
+    words = (
+        f"Boxes of which none is better in both width and height ({len(points)}). "
+        "Thin lines: equal area of the face."
+    )
+    return Section(
+        "Width against height", figures=(Figure(traces, layout(across, up, 420), words),)
+    )
+
+
+def _ends(values: tuple[float, ...]) -> tuple[float, float]:
+    room = 0.08 * (max(values) - min(values)) or 0.05 * max(values)
+    return max(min(values) - room, 0.5 * min(values)), max(values) + room
+
+
+def _equal(area: float, across: tuple[float, float], up: tuple[float, float]) -> dict[str, Any]:
+    """A line of equal area through the plot, named at its upper end."""
+    start, end = max(across[0], area / up[1]), min(across[1], area / up[0])
+    x = [start * (end / start) ** (k / 40) for k in range(41)]
+    middle = 20
+    name = f"{area / 100.0:,.{0 if area > 1e4 else 1}f} cm²"
+    return {
+        "type": "scatter",
+        "mode": "lines+text",
+        "x": x,
+        "y": [area / v for v in x],
+        "text": [name if k == middle and math.isfinite(area) else "" for k in range(41)],
+        "textposition": "top right",
+        "textfont": {"size": 11, "color": "--soft"},
+        "line": {"color": "--axis", "width": 1, "dash": "dot"},
+        "hoverinfo": "skip",
+        "showlegend": False,
+    }

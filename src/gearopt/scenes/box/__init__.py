@@ -1,0 +1,1 @@
+"""A drive's box: its gears laid out, described, and what to change where that is impossible."""

@@ -1,0 +1,126 @@
+"""The box of a drive whose gears are sized: data checks, then the layout by any method."""
+
+from dataclasses import replace
+from typing import Any
+
+from gearopt.errors import SolveError
+from gearopt.formulations import layout
+from gearopt.formulations.layout.exact import GAP
+from gearopt.formulations.layout.gearbox import Gearbox
+from gearopt.formulations.layout.placed import placed, read
+from gearopt.formulations.layout.slabs import Arrangement, arrangements
+from gearopt.formulations.train import Sizes
+from gearopt.optimise.comparing.trial import Model
+from gearopt.optimise.progress import following
+from gearopt.optimise.result import Result
+from gearopt.optimise.solve import run
+from gearopt.optimise.terms import Array
+from gearopt.scenes.box.describe import described, used
+from gearopt.scenes.reading.ask import Ask
+from gearopt.scenes.tables.drive import Scene
+
+SIZES = ("normal_module_mm", "pinion_teeth", "ratio", "face_width_mm")
+
+
+def sizes_of(sized: Result) -> Sizes:
+    """Modules, pinion teeth, ratios and face widths of a sized drive."""
+    stages = sized.design["stages"]
+    return tuple(tuple(s[key] for s in stages) for key in SIZES)
+
+
+def lay_out(scene: Scene, ask: Ask, sized: Result) -> Result:
+    """The layout of a sized drive; the sizing is kept as its part `gears`."""
+    box = scene.gearbox(sizes_of(sized))
+    orders = arrangements(box)
+    wrong = layout.faults(box)
+    parts = (replace(sized, name="gears"),)
+    if wrong:
+        return _impossible(scene, sized, ask, parts, wrong)
+    problem = layout.problem(box, ask.method)
+    watch, events = following(ask.watch)
+    asked = ask.budget.less(sized.seconds)
+    gap = ask.gap if ask.budget.gap else GAP
+    result, outcome = run(problem, ask.method, asked, ask.seed, watch, gap)
+    result = replace(
+        result,
+        name="drive",
+        objective=result.objective | {"unit": box.unit},
+        parts=parts,
+        evaluations=result.evaluations + sized.evaluations,
+        seconds=result.seconds + sized.seconds,
+    )
+    if result.status == "infeasible":
+        notes = ["No angles of the links keep all distances, places and sides."]
+        return _impossible(scene, sized, ask, parts, notes, result)
+    if result.value is None or outcome.x is None:
+        return result
+    last = {"seconds": result.seconds, "evaluations": result.evaluations}
+    progress = [*events, last | {"best": result.value, "bound": result.bound}]
+    report: dict[str, Any] = {"progress": progress, "notes": _notes(scene, sized)}
+    if outcome.others:
+        report["front"] = [_sides(box, orders, x) for x in (outcome.x, *outcome.others)]
+    angles, one = read(orders, outcome.x)
+    found = described(scene, box, one, angles, sized)
+    return replace(
+        result,
+        design=sized.design | {"layout": found},
+        limits=sized.limits | used(found) | _sides_used(result),
+        report=report,
+    )
+
+
+def _sides_used(result: Result) -> dict[str, float]:
+    return {n: v for n, v in result.limits.items() if n.startswith("largest_")}
+
+
+def posed(scene: Scene, method: str, sized: Result) -> Model:
+    """The layout problem that a method gets; SolveError where the gears cannot be laid out."""
+    if sized.value is None:
+        raise SolveError("there are no gears to lay out: gearopt explain says why")
+    box = scene.gearbox(sizes_of(sized))
+    if wrong := layout.faults(box):
+        raise SolveError(" ".join(wrong))
+    words = "Layout by four sides" if method in layout.GRADIENT else "Layout by link angles"
+    return Model(layout.problem(box, method), words, box.unit)
+
+
+def _impossible(
+    scene: Scene,
+    sized: Result,
+    ask: Ask,
+    parts: tuple[Result, ...],
+    notes: list[str],
+    result: Result | None = None,
+) -> Result:
+    from gearopt.scenes.box.ways import ways
+
+    if result is None:
+        proof = {"method": "closed form", "conflict": []}
+        objective = {"name": str(scene.layout and scene.layout.minimise), "value": None}
+        result = replace(sized, method="data check", objective=objective, bound=None, gap=None)
+        result = replace(result, status="infeasible", proof=proof, certificate={}, limits={})
+    found = ways(scene, sizes_of(sized), ask)
+    return replace(
+        result,
+        design={},
+        parts=parts,
+        message=" ".join(notes),
+        report={"notes": notes, "ways_out": found},
+    )
+
+
+def _notes(scene: Scene, sized: Result) -> list[str]:
+    notes = list(sized.report.get("notes", []))
+    if not scene.given:
+        notes.append(
+            "The gears were chosen first, for their own objective; with together = true in "
+            "[layout] they are chosen for the box."
+        )
+    return notes
+
+
+def _sides(box: Gearbox, orders: tuple[Arrangement, ...], x: Array) -> dict[str, float]:
+    angles, one = read(orders, x)
+    found = placed(box, one, angles)
+    volume = found.width * found.height * found.length
+    return {"width_mm": found.width, "height_mm": found.height, "volume_mm3": volume}

@@ -1,0 +1,68 @@
+"""kind = "packing": cylinders with parallel axes in the smallest container, in one or more layers.
+
+Places are searched by annealing and Ipopt; the bound is computed, and proves the packing where it
+is met.
+"""
+
+from dataclasses import replace
+
+from gearopt.errors import SolveError
+from gearopt.formulations import packing
+from gearopt.formulations.packing import points, text
+from gearopt.formulations.packing.bound import bound
+from gearopt.formulations.packing.design import describe
+from gearopt.formulations.packing.plan import Plan
+from gearopt.optimise.certificate import reconcile
+from gearopt.optimise.comparing.trial import Model
+from gearopt.optimise.explaining.explanation import Explanation
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.result import Result
+from gearopt.optimise.solve import run
+from gearopt.scenes.reading.ask import Ask
+from gearopt.scenes.tables.packing import EXAMPLE, Scene
+
+__all__ = ["COMPARED", "EXAMPLE", "Scene", "explain", "model", "solve"]
+COMPARED = ("hop", "sa", "multistart", "annealing", "nsga2")  # where a comparison names no methods
+SMOOTH = ("ipopt", "multistart")  # methods that need derivatives
+UNPROVEN = "Best known, not proven: a smaller packing may exist, but none below the bound."
+
+
+def solve(scene: Scene, ask: Ask) -> Result:
+    """Pack the cylinders; a method that brings no bound is held against the same one."""
+    plan = scene.plan()
+    problem = _problem(plan, ask.method)
+    result, outcome = run(problem, ask.method, ask.budget, ask.seed, ask.watch, ask.gap)
+    result = replace(result, objective=result.objective | {"unit": plan.unit()})
+    if result.value is None or outcome.x is None:
+        return result
+    if result.bound is None:
+        result = _bounded(plan, result, ask.gap)
+    notes = [] if result.status == "optimal" else [UNPROVEN]
+    found = points.places(plan, problem, outcome.x)
+    return replace(result, design=describe(plan, found), report={"notes": notes} if notes else {})
+
+
+def _bounded(plan: Plan, result: Result, gap: float) -> Result:
+    """A result with the computed bound of its plan."""
+    floor = bound(plan)
+    relaxation = replace(result, objective={"value": None}, bound=floor.value)
+    relaxation = replace(relaxation, status="feasible", proof=packing.proof(floor))
+    return reconcile(result, relaxation, gap)
+
+
+def explain(scene: Scene, ask: Ask) -> Explanation:
+    """A packing has no load limits to explain: SolveError says what to do instead."""
+    raise SolveError("explain is for drives; `gearopt solve` says how good a packing is proven")
+
+
+def model(scene: Scene, method: str) -> Model:
+    """The problem that a method solves for this packing, without a bound that proves nothing."""
+    plan = scene.plan()
+    words = "Places and layers" if plan.lifted else "Places"
+    return Model(_problem(plan, method, loose=False), words, plan.unit())
+
+
+def _problem(plan: Plan, method: str | None, loose: bool = True) -> Problem:
+    if method in SMOOTH:
+        return text.smooth(plan)
+    return packing.problem(plan, loose)

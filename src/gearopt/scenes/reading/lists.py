@@ -1,0 +1,108 @@
+"""Field types of problem files that hold several values: ranges, lists, named sets."""
+
+from fractions import Fraction
+from typing import Any
+
+from pydantic_core import PydanticCustomError
+
+from gearopt.scenes.reading.fields import Reads, refuse
+from gearopt.scenes.reading.spelling import near
+from gearopt.units import Quantity
+
+
+def _mended(item: Reads, values: list[Any]) -> tuple[list[Any], str]:
+    """The values with what to write for each wrong one (or None), and the first rule broken."""
+    right, first = [], ""
+    for value in values:
+        try:
+            item.reader(value, item.example)
+        except PydanticCustomError as wrong:
+            context = wrong.context or {}
+            first, value = first or context["rule"], context["write"]
+        right.append(value)
+    return right, first
+
+
+def span(item: Reads, example: Any, single: bool = False) -> Reads:
+    """A range [least, most] of items; single: one item is read too and means both ends."""
+
+    def order(value: Any) -> Any:
+        found = item.reader(value, item.example)
+        return found.value if isinstance(found, Quantity) else found
+
+    def read(value: Any, example: Any) -> tuple[Any, Any]:
+        if isinstance(value, tuple):
+            return value[0], value[1]
+        if single and not isinstance(value, list):
+            only = item.reader(value, item.example)
+            return only, only
+        ends = value if isinstance(value, list) else [value]
+        right, rule = _mended(item, ends[:2])
+        if len(ends) != 2:
+            pair = right * 2 if len(ends) == 1 and not rule else None
+            raise refuse("is not a range [least, most]", pair)
+        if rule:
+            known = None not in right
+            raise refuse(f"has an end that {rule}", sorted(right, key=order) if known else None)
+        if order(value[0]) > order(value[1]):
+            raise refuse("has its ends in the wrong order", value[::-1])
+        return item.reader(value[0], item.example), item.reader(value[1], item.example)
+
+    schema: dict[str, Any] = {"type": "array", "items": item.schema, "minItems": 2, "maxItems": 2}
+    return Reads(read, example, {"anyOf": [item.schema, schema]} if single else schema)
+
+
+def either(names: dict[str, Any], item: Reads) -> Reads:
+    """A named set, or a list of items, as a sorted tuple of exact inside-unit numbers."""
+
+    def read(value: Any, example: Any) -> tuple[Fraction, ...]:
+        if isinstance(value, tuple):
+            return value
+        if isinstance(value, str) and value in names:
+            return tuple(names[value])
+        if not isinstance(value, list) or not value:
+            known = ", ".join(f'"{n}"' for n in names)
+            close = near(value, names) if isinstance(value, str) else None
+            raise refuse(f"is neither one of {known} nor a list", close)
+        right, rule = _mended(item, value)
+        if rule:
+            write = [item.example if entry is None else entry for entry in right]
+            raise refuse(f"has an entry that {rule}", write)
+        return tuple(sorted({item.reader(entry, item.example).exact[0] for entry in value}))
+
+    items = {"type": "array", "items": item.schema, "minItems": 1}
+    return Reads(read, next(iter(names)), {"anyOf": [{"enum": list(names)}, items]})
+
+
+def several(item: Reads, example: Any) -> Reads:
+    """A list of items, as a tuple in the file's order."""
+
+    def read(value: Any, example: Any) -> tuple[Any, ...]:
+        if isinstance(value, tuple):
+            return value
+        if not isinstance(value, list) or not value:
+            raise refuse("is not a list")
+        right, rule = _mended(item, value)
+        if rule:
+            write = [item.example if entry is None else entry for entry in right]
+            raise refuse(f"has an entry that {rule}", write)
+        return tuple(item.reader(entry, item.example) for entry in value)
+
+    return Reads(read, example, {"type": "array", "items": item.schema, "minItems": 1})
+
+
+def pair(item: Reads) -> Reads:
+    """A place [x, y] of two items."""
+
+    def read(value: Any, example: Any) -> tuple[Any, Any]:
+        if isinstance(value, tuple):
+            return value[0], value[1]
+        if not isinstance(value, list) or len(value) != 2:
+            raise refuse("is not a place [x, y]")
+        right, rule = _mended(item, value)
+        if rule:
+            raise refuse(f"has a part that {rule}", None if None in right else right)
+        return item.reader(value[0], item.example), item.reader(value[1], item.example)
+
+    schema = {"type": "array", "items": item.schema, "minItems": 2, "maxItems": 2}
+    return Reads(read, [item.example] * 2, schema)

@@ -1,0 +1,234 @@
+"""A packing's file: cylinders, container, layers, objective, and how they fit together."""
+
+import math
+from itertools import combinations
+from typing import Annotated
+
+from pydantic import Field, model_validator
+
+from gearopt import units
+from gearopt.formulations.packing.plan import (
+    OBJECTIVES,
+    SHAPES,
+    Cylinder,
+    Plan,
+    least_layers,
+    overlap,
+)
+from gearopt.scenes.reading.fields import Table, choice, quantity, refuse, whole, words
+from gearopt.scenes.reading.lists import pair
+from gearopt.units import Quantity
+
+EXAMPLE = """\
+gearopt = 1
+kind = "packing"
+title = "Six cylinders"
+
+[[cylinder]]
+diameter = "20 mm"
+height = "10 mm"
+count = 3
+
+[[cylinder]]
+diameter = "10 mm"
+height = "10 mm"
+count = 3
+
+[container]
+shape = "rectangle"            # or square, circle; width = "20 mm" fixes one side of a rectangle
+gap = "0 mm"                   # least clearance between cylinders, sideways
+wall = "0 mm"                  # and to the container
+
+[layers]
+most = 2                       # or: exactly = 2
+
+[objective]
+minimise = "volume"            # or area, of the container's plan
+"""
+MOST = 100  # cylinders; half a second a hop
+LENGTH = quantity("length", "20 mm")
+CLEARANCE = quantity("length", "0 mm", zero=True)
+PLACE = pair(quantity("length", "10 mm", zero=True, signed=True))
+NONE = units.parse("0 mm", "length")
+DIGITS = 1e4  # a place that is proposed is rounded to 0.1 um, away from the overlap
+
+
+class CylinderTable(Table):
+    """One or more cylinders of a size, with upright axes."""
+
+    diameter: Annotated[Quantity, LENGTH] = Field(description="Diameter of the cylinder")
+    height: Annotated[Quantity, quantity("length", "10 mm")] = Field(
+        description="Height of the cylinder, along its axis"
+    )
+    count: Annotated[int, whole(1, 1, MOST)] = Field(1, description="How many of them")
+    name: Annotated[str, words()] = Field("", description="What the report calls it")
+    at: Annotated[tuple[Quantity, Quantity] | None, PLACE] = Field(
+        None, description="Fixed place [x, y] of the axis, from an origin of your choice"
+    )
+    layer: Annotated[int | None, whole(1, 1, MOST)] = Field(
+        None, description="Fixed layer, 1 is the lowest"
+    )
+
+
+class Container(Table):
+    """What holds them; it is as small as it can be."""
+
+    shape: Annotated[str, choice(*SHAPES)] = Field(
+        "rectangle", description="Plan of the container: rectangle, square or circle"
+    )
+    width: Annotated[Quantity | None, LENGTH] = Field(
+        None, description="Fixed width (x) of a rectangle; without it both sides are free"
+    )
+    gap: Annotated[Quantity, CLEARANCE] = Field(
+        NONE,
+        description="Least clearance between cylinders of a layer",
+        json_schema_extra={"default": "0 mm"},
+    )
+    wall: Annotated[Quantity, CLEARANCE] = Field(
+        NONE,
+        description="Least clearance to the container's side",
+        json_schema_extra={"default": "0 mm"},
+    )
+
+
+class Layers(Table):
+    """How many layers; one without this table. A layer is as high as its highest cylinder."""
+
+    most: Annotated[int | None, whole(2, 1, MOST)] = Field(
+        None, description="At most so many layers (or give exactly)"
+    )
+    exactly: Annotated[int | None, whole(2, 1, MOST)] = Field(
+        None, description="Just so many layers, each with a cylinder"
+    )
+
+    @model_validator(mode="after")
+    def _one(self) -> "Layers":
+        if self.most is not None and self.exactly is not None:
+            raise refuse("stands beside exactly, which sets it", at=("most",), action="remove")
+        if self.most is None and self.exactly is None:
+            raise refuse("is missing (or give exactly)", at=("most",))
+        return self
+
+
+class Aim(Table):
+    """What to minimise."""
+
+    minimise: Annotated[str, choice(*OBJECTIVES)] = Field(
+        "volume", description="volume of the container, or area of its plan"
+    )
+
+
+class Scene(Table):
+    """A packing."""
+
+    title: Annotated[str, words()] = Field("", description="A line for the report")
+    source: Annotated[str, words()] = Field(
+        "", description="Where the data and the expected value come from"
+    )
+    cylinder: tuple[CylinderTable, ...] = Field(description="Cylinders, one table a size or place")
+    container: Container = Field(default_factory=Container)
+    layers: Layers = Field(default_factory=lambda: Layers(most=1))
+    objective: Aim = Field(default_factory=Aim)
+
+    @model_validator(mode="after")
+    def _consistent(self) -> "Scene":
+        if not self.cylinder:
+            raise refuse("is missing: one table [[cylinder]] a size", at=("cylinder",))
+        for k, own in enumerate(self.cylinder):
+            if own.at is not None and own.count > 1:
+                rule = "stands beside at, which is the place of one cylinder"
+                raise refuse(rule, 1, ("cylinder", k, "count"))
+            if own.layer is not None and own.layer > self._most:
+                rule = f"is above the {self._most} of [layers]"
+                raise refuse(rule, self._most, ("cylinder", k, "layer"))
+        if all(own.at is not None for own in self.cylinder):
+            rule = "fixes the last free cylinder, so that nothing is left to place"
+            raise refuse(rule, at=("cylinder", len(self.cylinder) - 1, "at"), action="remove")
+        total = sum(own.count for own in self.cylinder)
+        if total > MOST:
+            most = max(range(len(self.cylinder)), key=lambda k: self.cylinder[k].count)
+            rule = f"makes {total} cylinders; at most {MOST} can be packed"
+            left = max(1, self.cylinder[most].count - (total - MOST))
+            raise refuse(rule, left, ("cylinder", most, "count"))
+        given = {own.layer for own in self.cylinder if own.layer is not None}
+        movable = sum(own.count for own in self.cylinder if own.layer is None)
+        if (self.layers.exactly or 0) > len(given) + movable:
+            rule = f"leaves a layer empty: {movable} cylinders have no layer of their own"
+            raise refuse(rule, len(given) + movable, ("layers", "exactly"))
+        self._check_container()
+        self._check_places()
+        return self
+
+    @property
+    def _most(self) -> int:
+        return self.layers.exactly or self.layers.most or 1
+
+    def _check_container(self) -> None:
+        """A given width holds the widest cylinder, and all that are fixed."""
+        width, wall = self.container.width, self.container.wall.value
+        if width is None:
+            return
+        if self.container.shape != "rectangle":
+            rule = f"is for a rectangle, not for a {self.container.shape}"
+            raise refuse(rule, at=("container", "width"), action="remove")
+        widest = max(own.diameter.value for own in self.cylinder)
+        fixed = [(own.at[0].value, own.diameter.value / 2) for own in self.cylinder if own.at]
+        span = max((x + r for x, r in fixed), default=0) - min((x - r for x, r in fixed), default=0)
+        for size, what in ((widest, "the widest cylinder"), (span, "the fixed cylinders")):
+            if width.value < (size + 2.0 * wall) * (1.0 - 1e-12):
+                need = math.ceil((size + 2.0 * wall) * DIGITS - 1e-6) / DIGITS
+                rule = f"is too narrow: {what} with the clearance to the sides needs {need:.10g} mm"
+                raise refuse(rule, f"{need:.10g} mm", ("container", "width"))
+
+    def _check_places(self) -> None:
+        """Fixed cylinders that must share a layer do not overlap."""
+        plan = self.plan()
+        where = [k for k, own in enumerate(self.cylinder) for _ in range(own.count)]
+        for i, j in combinations(plan.fixed, 2):
+            same = plan.most == 1 or plan.cylinders[i].layer == plan.cylinders[j].layer is not None
+            missing = overlap(plan, i, j)
+            if same and missing:
+                names = [plan.cylinders[k].name for k in (j, i)]
+                rule = f"is too near: {missing:.4g} mm are missing between {' and '.join(names)}"
+                raise refuse(rule, _away(plan, i, j), ("cylinder", where[j], "at"))
+        need = least_layers(plan)
+        if need > plan.most:
+            key = "most" if self.layers.exactly is None else "exactly"
+            rule = f"is too few: fixed cylinders lie over one another and need {need} layers"
+            raise refuse(rule, need, ("layers", key))
+
+    def plan(self) -> Plan:
+        """The packing as plain numbers."""
+        found: list[Cylinder] = []
+        for own in self.cylinder:
+            place = None if own.at is None else (own.at[0].value, own.at[1].value)
+            size = (own.diameter.value / 2.0, own.height.value, place, own.layer)
+            stem = own.name or f"d {own.diameter}"
+            for k in range(1, own.count + 1):
+                number = f" {k}" if own.count > 1 else ""
+                found.append(Cylinder(stem + number, *size))
+        width = self.container.width
+        return Plan(
+            cylinders=tuple(found),
+            shape=self.container.shape,
+            width=None if width is None else width.value,
+            gap=self.container.gap.value,
+            wall=self.container.wall.value,
+            least=self.layers.exactly or 1,
+            most=self._most,
+            objective=self.objective.minimise,
+        )
+
+
+def _away(plan: Plan, i: int, j: int) -> list[str]:
+    """The nearest place of cylinder j, on the line of both axes, that leaves i its clearance."""
+    (a, b), (c, d) = plan.cylinders[i].at or (0.0, 0.0), plan.cylinders[j].at or (0.0, 0.0)
+    far = math.hypot(c - a, d - b)
+    u, v = ((c - a) / far, (d - b) / far) if far > 0 else (1.0, 0.0)
+
+    def rounded(value: float, direction: float) -> str:
+        up = math.ceil if direction > 0 else math.floor
+        return f"{up(round(value * DIGITS, 4)) / DIGITS:.12g} mm"
+
+    need = plan.apart(i, j)
+    return [rounded(a + need * u, u), rounded(b + need * v, v)]

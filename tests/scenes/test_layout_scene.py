@@ -1,0 +1,251 @@
+"""A drive with a [layout] table: sized, laid out, or told in numbers why it cannot be."""
+
+import math
+import re
+from pathlib import Path
+
+import pytest
+from edits import scene_of
+
+import gearopt
+from gearopt.errors import SceneError, SolveError
+from gearopt.scenes.reading.load import read
+
+PROBLEMS = Path(__file__).parents[2] / "problems"
+TABLE4 = (PROBLEMS / "table4_process_one_layout.toml").read_text(encoding="utf-8")
+BOX = (PROBLEMS / "elevator_box.toml").read_text(encoding="utf-8")
+
+
+def scene(text):
+    return read(text.encode())[1]
+
+
+def with_layout(**keys):
+    """Table 4, process one, with other lines in [layout]."""
+    text = TABLE4
+    for key, value in keys.items():
+        line = f"{key} = {value}"
+        pattern = re.compile(rf"^{key} = .*$", re.M)
+        if pattern.search(text):
+            text = pattern.sub(line, text)
+        else:
+            text = text.replace("[layout]\n", f"[layout]\n{line}\n")
+    return text
+
+
+NONE = ("shaft_clearance", "wall_clearance", "axial_clearance")
+
+
+@pytest.fixture(scope="module")
+def table4():
+    return gearopt.solve(scene(TABLE4))
+
+
+def test_the_given_train_is_only_laid_out(table4):
+    """The digest's box, found there by another search: 411.98 x 873.29 x 209.9 mm."""
+    assert table4.status == "optimal" and table4.gap <= 1e-4
+    assert table4.value == pytest.approx(75_516_512, abs=0.6)
+    box = table4.design["layout"]["box"]
+    assert sorted((box["width_mm"], box["height_mm"])) == pytest.approx([411.98, 873.29], abs=5e-3)
+    assert box["length_mm"] == pytest.approx(209.9)
+    assert [p.name for p in table4.parts] == ["gears"]
+    assert table4.parts[0].value == pytest.approx(19_977_138, abs=1)
+    assert not any("together" in note for note in table4.report["notes"])
+
+
+def test_the_design_is_a_drawing(table4):
+    """Meshes are exact, gears lie within the box less the walls, gaps keep their needs."""
+    layout, stages = table4.design["layout"], table4.design["stages"]
+    axes = [(s["y_mm"], s["z_mm"]) for s in layout["shafts"]]
+    for stage, a, b in zip(stages, axes, axes[1:], strict=False):
+        assert math.dist(a, b) == pytest.approx(stage["centre_distance_mm"], rel=1e-12)
+    box, wall = layout["box"], layout["clearances"]["wall_mm"]
+    sides = {"left": [], "right": [], "bottom": [], "top": []}
+    for gear in layout["gears"]:
+        (y, z), r = axes[gear["shaft"] - 1], 0.5 * gear["tip_diameter_mm"]
+        sides["left"].append(y - r - wall - box["left_mm"])
+        sides["right"].append(box["left_mm"] + box["width_mm"] - y - r - wall)
+        sides["bottom"].append(z - r - wall - box["bottom_mm"])
+        sides["top"].append(box["bottom_mm"] + box["height_mm"] - z - r - wall)
+        assert gear["root_diameter_mm"] < gear["reference_diameter_mm"] < gear["tip_diameter_mm"]
+        assert 10 - 1e-9 <= gear["from_mm"] < gear["to_mm"] <= box["length_mm"] - 10 + 1e-9
+    assert all(min(s) == pytest.approx(0.0, abs=1e-6) for s in sides.values())
+    for gap in layout["gaps"]:
+        assert gap["gap_mm"] >= gap["needed_mm"] - 1e-6
+    assert table4.limits["wheel_1_to_shaft_3"] == pytest.approx((191.004 + 22.5 + 2) / 216.81, 1e-4)
+    steps = table4.report["progress"]
+    assert steps[-1]["best"] == table4.value and len(steps) > 2
+
+
+@pytest.mark.parametrize(
+    ("keys", "value"),
+    [
+        (
+            dict(shaft_clearance='"0 mm"', wall_clearance='"0 mm"', axial_clearance='"0 mm"'),
+            56826192,
+        ),
+        (dict(span='"partial"'), 55_654_946),
+    ],
+)
+def test_other_clearances_and_spans(keys, value):
+    result = gearopt.solve(scene(with_layout(**keys)))
+    assert result.status == "optimal" and result.value == pytest.approx(value, abs=0.6)
+
+
+TRAINS = {  # m, z1, z2, b of each stage; shafts; box (full, partial span)
+    "process two": (
+        [(1.25, 27, 237, 22.34), (3, 26, 109, 51.6), (4, 27, 80, 95.3)],
+        (66_689_036, 50_183_602),
+    ),
+    "optimum": (
+        [(1.5, 21, 162, 20.854), (3, 21, 89, 41.708), (4, 24, 80, 79.443)],
+        (47_483_118, 40_113_089),
+    ),
+    "elevator, process one": ([(2, 25, 124, 33.1), (3, 25, 109, 62.1)], (27_094_106, None)),
+    "elevator, optimum": ([(2, 21, 115, 27.805), (3, 23, 91, 57.1)], (18_406_834, None)),
+}
+
+
+def train_file(rows, span):
+    stages = "".join(
+        f'[[stage]]\nmodule = "{m} mm"\npinion_teeth = {z1}\nwheel_teeth = {z2}\n'
+        f'face_width = "{b} mm"\n'
+        for m, z1, z2, b in rows
+    )
+    head, rest = TABLE4.split("[[stage]]", 1)
+    text = head + stages + "[limits]" + rest.split("[limits]", 1)[1]
+    if len(rows) == 2:
+        duty = 'power = "7.5 kW"\ninput_speed = "1450 rpm"\noutput_speed = "66.5 rpm"\n'
+        text = re.sub(r'power = "8 kW"\n.*\n.*\n', duty, text)
+        text = re.sub(
+            r"shaft_diameters = .*", 'shaft_diameters = ["20 mm", "35 mm", "60 mm"]', text
+        )
+    return text.replace("[layout]\n", f'[layout]\nspan = "{span}"\n')
+
+
+@pytest.mark.parametrize("name", TRAINS)
+def test_published_trains(name):
+    """Boxes of the digest, by a grid and SLSQP there."""
+    rows, values = TRAINS[name]
+    for span, value in zip(("full", "partial"), values, strict=True):
+        if value is not None:
+            result = gearopt.solve(scene(train_file(rows, span)))
+            assert result.status == "optimal" and result.gap <= 1e-4
+            assert result.value == pytest.approx(value, abs=1.0)
+
+
+def test_stages_1_and_3_in_one_slab_are_43_mm_too_close():
+    text = with_layout(slabs="[[1, 3], [2]]", gear_clearance='"5 mm"')
+    result = gearopt.solve(scene(text))
+    assert result.status == "infeasible" and result.method == "data check"
+    assert "Wheel 1 and pinion 3 are 42.77 mm too close" in result.message
+    assert result.evaluations < 100  # before any search
+    (way,) = result.report["ways_out"]["remedies"]
+    assert list(way["changes"]) == [
+        {"key": "layout.slabs", "was": "[[1, 3], [2]]", "write": '"best"', "factor": 1.0}
+    ]
+
+
+def test_a_shaft_through_a_wheel_is_told_with_cures_that_work():
+    _, content = scene_of(with_layout(shaft_diameters='["16 mm", "30 mm", "52 mm", "70 mm"]'))
+    found = gearopt.explain(scene_of(with_layout())[0].model_validate(content))
+    assert found.result.status == "infeasible"
+    assert "Wheel 1 and shaft 3 are 2.19 mm too close" in found.result.message
+    thinner, partial = found.remedies
+    assert thinner.changes[0].key == "layout.shaft_diameters[3]"
+    assert float(thinner.changes[0].write.strip('"').split()[0]) == pytest.approx(
+        2 * (216.807 - 191.004 - 2), abs=0.02
+    )
+    assert partial.changes[0].write == '"partial"'
+    span = {**content, "layout": {**content["layout"], "span": "partial"}}
+    diameters = ["16 mm", "30 mm", thinner.changes[0].write.strip('"'), "70 mm"]
+    thin = {**content, "layout": {**content["layout"], "shaft_diameters": diameters}}
+    for right in (span, thin):
+        assert gearopt.solve(type(scene(TABLE4)).model_validate(right)).status == "optimal"
+
+
+def test_an_impossible_height_names_the_least_one():
+    """The lowest box is as high as the largest wheel with walls; nothing else helps."""
+    result = gearopt.solve(scene(with_layout(largest_height='"350 mm"')))
+    assert result.status == "infeasible" and result.proof["method"] == "exhausted"
+    best = next(r for r in result.report["ways_out"]["remedies"] if r["what"] == "largest_height")
+    needed = float(best["changes"][0]["write"].strip('"').split()[0])
+    assert needed == pytest.approx(391.98 + 20, abs=0.05)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("method", ["sa", "sa-polish", "sa-paper", "multistart", "nsga2", "ipopt"])
+def test_every_method_lays_out(method, table4):
+    result = gearopt.solve(
+        scene(TABLE4),
+        method,
+        budget=gearopt.Budget(evaluations=128_701 if method == "sa-paper" else 20_000),
+    )
+    assert result.value >= table4.bound
+    assert result.design["layout"]["box"]["volume_mm3"] == pytest.approx(result.value, rel=1e-6)
+    if method == "nsga2":
+        front = result.report["front"]
+        sides = sorted((f["width_mm"], -f["height_mm"]) for f in front)
+        assert len(front) > 20
+        assert all(a[1] <= b[1] + 1e-9 for a, b in zip(sides, sides[1:], strict=False))
+
+
+def test_a_method_that_only_sizes_says_so():
+    with pytest.raises(SolveError, match="gp"):
+        gearopt.solve(scene(TABLE4), "gp")
+
+
+@pytest.mark.slow
+def test_slopes_of_the_box():
+    """Length 209.9 = 169.9 + 4 axial gaps; the gears do not touch the walls' slope otherwise."""
+    found = gearopt.explain(scene(TABLE4))
+    slopes = {i.key: i.resolved for i in found.influences}
+    assert slopes["layout.axial_clearance"] == pytest.approx((40 / 209.9,) * 2, abs=1e-4)
+    wall = 10 * (2 / 411.98 + 2 / 873.29)
+    assert slopes["layout.wall_clearance"] == pytest.approx((wall,) * 2, abs=1e-4)
+    assert slopes["layout.shaft_diameters[1]"] == pytest.approx((0.0, 0.0), abs=1e-7)
+
+
+WRONG = {
+    "a shaft too few": (dict(shaft_diameters='["16 mm", "30 mm"]'), "layout.shaft_diameters"),
+    "no unit": (dict(wall_clearance="10"), "layout.wall_clearance"),
+    "a stage twice": (dict(slabs="[[1], [2], [2]]"), "layout.slabs"),
+    "stages on one shaft": (dict(slabs="[[1, 2], [3]]"), "layout.slabs"),
+    "an unknown objective": (dict(minimise='"boxvolume"'), "layout.minimise"),
+    "both ways to a shaft": (dict(shaft_stress='"40 MPa"'), "layout.shaft_stress"),
+    "one shaft on the split line": (dict(split_line="[1]"), "layout.split_line"),
+    "a shaft that is not there": (dict(split_line="[1, 5]"), "layout.split_line"),
+    "bearings without widths": (dict(bearing_diameters='["20 mm"]'), "layout.bearing_widths"),
+    "a span of another kind": (dict(span='"half"'), "layout.span"),
+    "a misspelt key": (dict(clearence='"1 mm"'), "layout.clearence"),
+}
+
+
+@pytest.mark.parametrize("keys", WRONG.values(), ids=WRONG)
+def test_wrong_tables_are_refused_with_what_to_write(keys):
+    changed, place = keys
+    with pytest.raises(SceneError) as wrong:
+        read(with_layout(**changed).encode(), "box.toml")
+    assert wrong.value.key.startswith(place) and wrong.value.remedy and wrong.value.fix
+
+
+def test_places_need_a_layout():
+    text = TABLE4.split("[layout]")[0] + '[[place]]\nshaft = 4\nz = "0 mm"\n'
+    with pytest.raises(SceneError, match=r"needs a table \[layout\]"):
+        read(text.encode())
+
+
+def test_a_place_below_the_input_is_kept():
+    text = TABLE4 + '\n[[place]]\nshaft = 4\nz = "-150 mm"\ntolerance = "0.5 mm"\n'
+    result = gearopt.solve(scene(text))
+    assert result.status == "optimal"
+    assert result.design["layout"]["shafts"][3]["z_mm"] == pytest.approx(-150, abs=0.5 + 1e-5)
+
+
+def test_keep_outs_and_the_motor_are_kept_clear():
+    layout = gearopt.solve(scene(BOX)).design["layout"]
+    named = [g["between"] for g in layout["gaps"]]
+    apart = {tuple(g["between"]): g["axes_mm"] for g in layout["gaps"]}
+    assert max(apart.values()) > 130 + 0.5 * layout["shafts"][2]["diameter_mm"] + 2
+    assert sum(b[1] in ("floor", "ceiling", "brake") for b in named) == 9
+    assert all(g["gap_mm"] >= g["needed_mm"] - 1e-6 for g in layout["gaps"])

@@ -1,0 +1,173 @@
+"""Wrong packing files: one SceneError each, with file, key, value, and what to write."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import gearopt
+from gearopt.errors import SceneError, SolveError
+from gearopt.scenes.packing import EXAMPLE
+from gearopt.scenes.reading.load import read
+
+PROBLEMS = Path(__file__).parents[2] / "problems"
+ROW = (PROBLEMS / "six_cylinders_row.toml").read_text(encoding="utf-8")
+
+
+def wrong(text):
+    with pytest.raises(SceneError) as found:
+        read(text.encode(), "packing.toml")
+    return found.value
+
+
+CHANGES = {  # change of the example: key, part of the rule, what to write
+    "typo": (("[container]", "[contaner]"), "contaner", "unknown", "Did you mean container?"),
+    "typo in a key": (("diameter =", "diametre ="), "cylinder[1].diametre", "unknown", "diameter"),
+    "no unit": (('"20 mm"\nheight', '"20"\nheight'), "cylinder[1].diameter", "no unit", '"20 mm"'),
+    "bare": (('= "20 mm"\nheight', "= 20\nheight"), "cylinder[1].diameter", "bare", '"20 mm"'),
+    "other unit": (('"0 mm"', '"0 kW"'), "container.gap", "kW", "gap"),
+    "negative gap": (('"0 mm"', '"-1 mm"'), "container.gap", "below zero", '"1 mm"'),
+    "zero diameter": (('"20 mm"\nhei', '"0 mm"\nhei'), "cylinder[1].diameter", "greater", "20 mm"),
+    "shape": (('"rectangle"', '"cirle"'), "container.shape", "is not one of", '"circle"'),
+    "no count": (("count = 3", "count = 0"), "cylinder[1].count", "whole number", "count = 1"),
+    "too many": (("count = 3", "count = 99"), "cylinder[1].count", "at most 100", "count = 97"),
+    "narrow": (("[layers]", 'width = "19 mm"\n[layers]'), "container.width", "20 mm", '"20 mm"'),
+    "both layers": (("most = 2", "most = 2\nexactly = 2"), "layers.most", "beside", "Remove it"),
+    "no layers": (("most = 2", ""), "layers.most", "missing", "most = 2"),
+    "too many layers": (("most = 2", "exactly = 7"), "layers.exactly", "empty", "exactly = 6"),
+    "objective": (('"volume"', '"mass"'), "objective.minimise", "is not one of", "volume"),
+    "layer": (("count = 3", "count = 3\nlayer = 3"), "cylinder[1].layer", "above the 2", "= 2"),
+    "at and count": (
+        ("count = 3", 'count = 3\nat = ["0 mm", "0 mm"]'),
+        "cylinder[1].count",
+        "one cylinder",
+        "count = 1",
+    ),
+    "one coordinate": (("count = 3", 'at = ["0 mm"]'), "cylinder[1].at", "place [x, y]", "at ="),
+    "bare place": (("count = 3", "at = [1, 2]"), "cylinder[1].at", "bare", '["1 mm", "2 mm"]'),
+    "nothing to pack": (("[[cylinder]]", "[[x-cylinder]]"), "cylinder", "missing", "[[cylinder]]"),
+}
+
+
+@pytest.mark.parametrize("case", CHANGES.values(), ids=CHANGES)
+def test_a_wrong_file_is_one_error_with_a_cure(case):
+    (old, new), key, rule, remedy = case
+    assert old in EXAMPLE
+    count = -1 if old == "[[cylinder]]" else 1
+    error = wrong(EXAMPLE.replace(old, new, count))
+    assert (error.file, error.key) == ("packing.toml", key)
+    assert rule in error.rule and remedy in error.remedy
+
+
+def test_fixed_cylinders_that_overlap_say_by_how_much_and_where_they_fit():
+    text = ROW.replace('["30 mm", "10 mm"]', '["28 mm", "10 mm"]')
+    error = wrong(text)
+    assert error.key == "cylinder[2].at" and error.value == '["28 mm", "10 mm"]'
+    assert "2 mm are missing between large 2 and large 1" in error.rule
+    assert error.fix.value == '["30 mm", "10 mm"]'
+    read(ROW.encode())
+
+
+def test_a_cure_is_rounded_away_from_the_overlap():
+    text = ROW.replace('["30 mm", "10 mm"]', '["20 mm", "22 mm"]')
+    cured = text.replace('["20 mm", "22 mm"]', wrong(text).fix.value)
+    assert cured != text
+    read(cured.encode())
+
+
+def test_fixed_cylinders_over_one_another_ask_for_layers():
+    text = ROW.replace('["30 mm", "10 mm"]', '["12 mm", "10 mm"]')
+    text = text.replace('["50 mm", "10 mm"]', '["14 mm", "10 mm"]')
+    error = wrong(text + "\n[layers]\nmost = 2\n")
+    assert error.key == "layers.most" and "need 3 layers" in error.rule
+    assert error.fix.value == "3"
+    read((text + "\n[layers]\nmost = 3\n").encode())
+
+
+def test_a_width_holds_what_is_fixed():
+    error = wrong(ROW + '\n[container]\nwidth = "50 mm"\nwall = "1 mm"\n')
+    assert error.key == "container.width" and error.fix.value == '"62 mm"'
+
+
+def test_a_width_is_for_a_rectangle():
+    error = wrong(ROW + '\n[container]\nwidth = "90 mm"\nshape = "circle"\n')
+    assert error.key == "container.width" and error.fix.action == "remove"
+
+
+def test_all_fixed_leaves_nothing_to_do():
+    error = wrong(ROW.replace("count = 3", 'at = ["99 mm", "-20 mm"]'))
+    assert error.key == "cylinder[4].at" and "nothing is left" in error.rule
+
+
+def test_units_and_signs_of_places():
+    text = ROW.replace('["50 mm", "10 mm"]', '["-1 in", "0 mm"]')
+    _, scene = read(text.encode())
+    assert scene.plan().cylinders[2].at == pytest.approx((-25.4, 0.0))
+
+
+def gear(*words):
+    return subprocess.run(
+        [sys.executable, "-m", "gearopt", *map(str, words)], capture_output=True, text=True
+    )
+
+
+def test_the_terminal_shows_the_packing_and_json_its_design():
+    path = PROBLEMS / "six_cylinders_two_layers.toml"
+    done = gear("solve", path)
+    assert done.returncode == 0 and done.stderr == ""
+    for words in (
+        "proven optimal",
+        "large 3",
+        "16,000",
+        "layer 2, from the floor [mm]",
+        "10 to 20",
+    ):
+        assert words in done.stdout, words
+    found = json.loads(gear("solve", path, "--json").stdout)
+    assert found["scene"] == "packing" and found["objective"]["unit"] == "mm3"
+    assert found["design"]["container"]["area_mm2"] == pytest.approx(800)
+
+
+def test_an_impossible_request_is_one_message_and_exit_2(tmp_path):
+    path = tmp_path / "packing.toml"
+    path.write_text(ROW.replace('["30 mm", "10 mm"]', '["28 mm", "10 mm"]'))
+    for command in ("solve", "check", "compare"):
+        done = gear(command, path)
+        assert done.returncode == 2 and done.stdout == ""
+        assert done.stderr.count("\n") == 1 and "2 mm are missing" in done.stderr
+
+
+def test_words_without_a_proof_say_so():
+    short = gearopt.Budget(evaluations=4_000)
+    result = gearopt.solve(PROBLEMS / "six_cylinders_one_layer.toml", budget=short)
+    assert result.report["notes"][0].startswith("Best known, not proven")
+
+
+@pytest.mark.parametrize("method", ["sa", "ipopt", "annealing", "nsga2"])
+def test_every_method_is_held_against_the_bound(method):
+    short = gearopt.Budget(evaluations=4_000)
+    result = gearopt.solve(PROBLEMS / "six_cylinders_one_layer.toml", method, budget=short)
+    assert result.value > result.bound > 15_109 and result.gap < 0.5
+    assert len(result.design["cylinders"]) == 6
+
+
+def test_gradient_methods_take_no_free_layers():
+    with pytest.raises(SolveError, match="layer"):
+        gearopt.solve(PROBLEMS / "six_cylinders.toml", "ipopt")
+
+
+def test_explain_is_for_drives():
+    with pytest.raises(SolveError, match="explain is for drives"):
+        gearopt.explain(PROBLEMS / "six_cylinders.toml")
+
+
+@pytest.mark.slow
+def test_compare_takes_a_packing():
+    found = gearopt.compare(
+        PROBLEMS / "six_cylinders.toml", seeds=2, evaluations=3_000, seconds=0.2
+    )
+    assert [r.method for r in found.groups[0].rows][:2] == ["hop", "sa"]
+    assert "free layers" in found.groups[0].rows[2].refused
+    assert not found.groups[0].proven and len(found.groups) == 1
