@@ -140,7 +140,7 @@ def no_unit(rng, text):
     return put(text, place, rng.choice([number, Decimal(number), int(Decimal(number))]))
 
 
-@mutation()
+@mutation(steps=2)  # a list of one wrong entry is also too short
 def wrong_type(rng, text):
     return put(text, rng.choice(keys(parse(text))), rng.choice(TYPES))
 
@@ -163,7 +163,8 @@ def missing_table(rng, text):
 
 @mutation()
 def misspelt_key(rng, text):
-    place = rng.choice([p for p in keys(parse(text)) if p[-1].isidentifier()])
+    words = [p for p in keys(parse(text)) if p[-1].isidentifier() and len(p[-1]) > 2]
+    place = rng.choice(words)
     return rename(text, place, typo(rng, place[-1]))
 
 
@@ -205,7 +206,7 @@ def key_in_the_wrong_table(rng, text):
     return put(drop(text, place).decode(), (place[-1],), value)
 
 
-@mutation()
+@mutation(steps=6)  # with the number of stages, lists of shafts and slabs change
 def table_for_list_of_tables(rng, text):
     content = parse(text)
     name = rng.choice([place[0] for place, _ in tables_of(content)])
@@ -260,7 +261,7 @@ def no_module_left(rng, text):
     return put(text, rng.choice(places), range_)
 
 
-@mutation()
+@mutation(steps=5)
 def too_many_stages(rng, text):
     content = parse(text)
     content.pop("stages", None)

@@ -102,12 +102,42 @@ unit_load = "7 ksi"
 pinion_teeth = [20, 40]
 """
 
+LAID_OUT = (
+    ELEVATOR.split("[x-expected]")[0]
+    + """
+[layout]
+minimise = "plan_area"
+shaft_diameters = ["20 mm", "1.5 in", "60 mm"]
+bearing_diameters = ["47 mm", "80 mm", "110 mm"]
+bearing_widths = ["14 mm", "18 mm", "22 mm"]
+span = "partial"
+slabs = [[2], [1]]
+wall_clearance = "0 mm"
+motor_diameter = "260 mm"
+split_line = [1, 2]
+largest_height = "900 mm"
+
+[[place]]
+shaft = 3
+y = ["-300 mm", "-100 mm"]
+z = "0.5 in"
+tolerance = "0.1 mm"
+
+[[keep_out]]
+name = "floor"
+y = ["-1 m", "1 m"]
+z = ["-500 mm", "-200 mm"]
+x = ["0 mm", "100 mm"]
+"""
+)
+
 BASES = {
     "elevator": ELEVATOR,
     "example": EXAMPLE,
     "by_count": BY_COUNT,
     "fixed": FIXED,
     "continuous": CONTINUOUS,
+    "laid_out": LAID_OUT,
 }
 
 

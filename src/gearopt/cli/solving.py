@@ -19,8 +19,8 @@ def solve(
     method: Annotated[
         str | None,
         typer.Option(
-            help="By default exact where the file has a \\[teeth] table, else ipopt; "
-            "docs/methods.md lists all."
+            help="By default, for a drive, exact where the file has a \\[teeth] table, else ipopt; "
+            "for a packing hop; docs/methods.md lists all."
         ),
     ] = None,
     top: Annotated[

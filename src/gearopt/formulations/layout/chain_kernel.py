@@ -6,13 +6,11 @@ angles in rad.
 
 import math
 
-import numpy as np
 from numba import njit
 
 FULL = 2.0 * math.pi
 MARGIN = 1e-12  # relative; far above the rounding of some ten sums and products of doubles
 ROUNDING = 1e-9  # mm; what exact positions may seem to lack
-ROUNDS = 6  # mixtures tried of a cell's box bounds; more cost more than they prune
 
 
 @njit(cache=True)
@@ -36,7 +34,7 @@ def measured(chain, m, y, z):
         r = chain.reach[i]
         left, right = min(left, y[i] - r), max(right, y[i] + r)
         bottom, top = min(bottom, z[i] - r), max(top, z[i] + r)
-        for j in range(i + 2, count):
+        for j in range(i + 1, count):
             need = chain.apart[m, i, j]
             dy, dz = y[i] - y[j], z[i] - z[j]
             there = dy * dy + dz * dz
@@ -55,6 +53,7 @@ def measured(chain, m, y, z):
         short += abs(z[chain.level[k]] - z[chain.level[0]])
     width, height = right - left, top - bottom
     short += max(0.0, width - chain.most[0]) + max(0.0, height - chain.most[1])
+    short += max(0.0, chain.length[m] - chain.most[2])
     return width, height, short
 
 
@@ -104,7 +103,11 @@ def excluded(chain, m, low, high, ly, hy, lz, hz):
     ly[i, j] to hy[i, j] holds y_j - y_i of the whole cell, lz, hz the same of z; j > i.
     """
     links = low.size
+    if chain.length[m] > chain.most[2] + ROUNDING:
+        return True
     for i in range(links):
+        if chain.apart[m, i, i + 1] > chain.link[i]:
+            return True
         c0, c1 = cosines(low[i], high[i])
         s0, s1 = cosines(low[i] - 0.5 * math.pi, high[i] - 0.5 * math.pi)
         ly[i, i + 1], hy[i, i + 1] = chain.link[i] * c0, chain.link[i] * c1
@@ -133,7 +136,7 @@ def misplaced(chain, m, ly, hy, lz, hz):
     """Whether every point of a cell misses a given place, level, keep-out or largest side."""
     count = chain.reach.size
     slack = MARGIN * (1.0 + hy[0, count - 1] - ly[0, count - 1] + chain.reach[0])
-    for i in range(1, count):
+    for i in range(count):
         if ly[0, i] > chain.place[i, 1] + slack or hy[0, i] < chain.place[i, 0] - slack:
             return True
         if lz[0, i] > chain.place[i, 3] + slack or hz[0, i] < chain.place[i, 2] - slack:
@@ -181,118 +184,3 @@ def widest(chain, y):
             last = i
     side = y[last] + chain.reach[last] - y[first] + chain.reach[first]
     return min(first, last), max(first, last), 1.0 if last >= first else -1.0, side
-
-
-@njit(cache=True)
-def mixed(chain, low, high, w0, w1, h0, h1, aim, work):
-    """A lower bound of log(W H) over a cell, tight to second order in its size.
-
-    log is above its chord on [w0, w1], and W is at least any mixture of the sides
-    R_i + R_j +- (y_j - y_i), each a sum over links of one cosine each: so a mixture of widths and
-    heights is a sum over links of one sinusoid each, whose least value on an interval is exact.
-    Mixtures are improved by the sides that the minimiser violates (Frank and Wolfe); any of them is
-    a valid bound, the best is returned, early if it exceeds `aim`. work: (6, N + 1) scratch.
-    """
-    links = low.size
-    pull_y, pull_z, theta = work[0], work[1], work[2]  # weights of cos and sin; the minimiser
-    y, z = work[3], work[4]
-    slope_w = (math.log(w1) - math.log(w0)) / (w1 - w0) if w1 - w0 > 1e-9 * w1 else 1.0 / w1
-    slope_h = (math.log(h1) - math.log(h0)) / (h1 - h0) if h1 - h0 > 1e-9 * h1 else 1.0 / h1
-    base = math.log(w0) - slope_w * w0 + math.log(h0) - slope_h * h0
-    offset_w = offset_h = 0.0
-    for k in range(links):
-        pull_y[k] = pull_z[k] = 0.0
-        theta[k] = 0.5 * (low[k] + high[k])
-    best = math.log(w0) + math.log(h0)
-    for turn in range(ROUNDS):
-        y[0] = z[0] = 0.0
-        for k in range(links):
-            y[k + 1] = y[k] + chain.link[k] * math.cos(theta[k])
-            z[k + 1] = z[k] + chain.link[k] * math.sin(theta[k])
-        step = 1.0 if turn == 0 else 1.0 / (turn + 1.0)
-        offset_w *= 1.0 - step
-        offset_h *= 1.0 - step
-        for k in range(links):
-            pull_y[k] *= 1.0 - step
-            pull_z[k] *= 1.0 - step
-        i, j, sign, _ = widest(chain, y)
-        offset_w += step * (chain.reach[i] + chain.reach[j])
-        for k in range(i, j):
-            pull_y[k] += step * sign
-        i, j, sign, _ = widest(chain, z)
-        offset_h += step * (chain.reach[i] + chain.reach[j])
-        for k in range(i, j):
-            pull_z[k] += step * sign
-        found = base + slope_w * offset_w + slope_h * offset_h
-        for k in range(links):
-            a = chain.link[k] * slope_w * pull_y[k]
-            b = chain.link[k] * slope_h * pull_z[k]
-            if a == 0.0 and b == 0.0:
-                theta[k] = 0.5 * (low[k] + high[k])
-                continue
-            theta[k], least = lowest(a, b, low[k], high[k])
-            found += least
-        best = max(best, found - 1e-13 * (1.0 + abs(base)))
-        if best > aim:
-            break
-    return best
-
-
-@njit(cache=True)
-def branch(chain, m, cells, bounds, count, best, floor, rel, limit, theta):
-    """Depth-first branch and bound on cells of link angles, for one slice of `limit` nodes.
-
-    cells (size, 2, N): low and high of the open cells, of which `count` are in use; bounds (size,):
-    theirs. A cell is dropped if nothing in it is feasible or all of it is above best (1 - rel).
-    Points at cell centres improve `best`, `theta` holds the best one. floor: least bound of the
-    cells dropped for being too good to matter. Returns count, best, floor, nodes.
-    """
-    links = theta.size
-    ly, hy = np.zeros((links + 1, links + 1)), np.zeros((links + 1, links + 1))
-    lz, hz = np.zeros((links + 1, links + 1)), np.zeros((links + 1, links + 1))
-    work = np.zeros((6, links + 1))
-    middle, low, high = np.empty(links), np.empty(links), np.empty(links)
-    y, z = np.zeros(links + 1), np.zeros(links + 1)
-    nodes = 0
-    while count > 0 and nodes < limit and count + 2 <= bounds.size:
-        count -= 1
-        nodes += 1
-        if bounds[count] >= best * (1.0 - rel):
-            floor = min(floor, bounds[count])
-            continue
-        low[:] = cells[count, 0]
-        high[:] = cells[count, 1]
-        if excluded(chain, m, low, high, ly, hy, lz, hz):
-            continue
-        w0, w1, h0, h1 = sides(chain, ly, hy, lz, hz)
-        if w0 > chain.most[0] * (1.0 + MARGIN) or h0 > chain.most[1] * (1.0 + MARGIN):
-            continue
-        bound = max(bounds[count], value(chain, m, w0, h0) * (1.0 - 4.0 * MARGIN))
-        if bound < best * (1.0 - rel) and not chain.longest and chain.power.min() > 0.0:
-            aim = math.log(best * (1.0 - rel) / chain.factor[m])
-            sharp = mixed(chain, low, high, w0, w1, h0, h1, aim, work)
-            bound = max(bound, chain.factor[m] * math.exp(sharp) * (1.0 - 4.0 * MARGIN))
-        if bound >= best * (1.0 - rel):
-            floor = min(floor, bound)
-            continue
-        for k in range(links):
-            middle[k] = 0.5 * (low[k] + high[k])
-        width, height, short = measure(chain, m, middle, y, z)
-        if short <= ROUNDING:
-            found = value(chain, m, width, height)
-            if found < best:
-                best = found
-                theta[:] = middle
-        longest = 0
-        for k in range(1, links):
-            if chain.link[k] * (high[k] - low[k]) > chain.link[longest] * (
-                high[longest] - low[longest]
-            ):
-                longest = k
-        for half in range(2):
-            cells[count, 0] = low
-            cells[count, 1] = high
-            cells[count, 1 - half, longest] = middle[longest]
-            bounds[count] = bound
-            count += 1
-    return count, best, floor, nodes

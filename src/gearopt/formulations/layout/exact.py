@@ -1,7 +1,7 @@
 """The exact method: interval branch and bound on the link angles, from a good first layout.
 
 Cells of angles are halved until each is either empty (no point in it keeps the distances) or
-bounded above the best layout by the gap asked for: `chain_kernel.branch`. The gap is narrowed in
+bounded above the best layout by the gap asked for: `branch_kernel.branch`. The gap is narrowed in
 steps, so that a search which is stopped has the bound of its last full step.
 """
 
@@ -21,12 +21,13 @@ from gearopt.optimise.terms import Array
 
 RANDOM = False
 COUNTS = "layout measured or cell bounded"
-GAPS = (0.1, 0.03, 0.01, 1e-3, 1e-4, 1e-5, 1e-6)  # each is proven before the next is tried
-GAP = 1e-4  # the last one where the budget asks for none
+GAPS = (0.1, 0.01, 1e-3, 1e-4, 1e-5)  # each is proven before the next is tried
+GAP = 1e-6  # the last one where the budget asks for none
+INSIDE = 1e-6  # a gap is proven smaller by this part of it, so that rounding leaves it there
 STARTS, STEPS = 8, 20_000  # annealing runs for the first layout, and their steps
 SETTINGS = {"first layout": f"{STARTS} annealing runs of {STEPS}, the best three polished"}
-NODES = 50_000  # of a slice: below 0.1 s
-DEEP = 4_000  # open cells of a depth-first search: two a halving, some 60 halvings an angle
+NODES = 5_000  # of a slice: below 0.1 s
+DEEP = 4_000  # open cells: a depth-first search leaves one a halving, some 60 halvings an angle
 
 
 Polish = Callable[[Array], tuple[Array, float]]
@@ -37,6 +38,7 @@ class Search:
     """A search as it runs; its state is what a stopped one still knows.
 
     best, x: the best layout. bound: proven. nodes: cells looked at. evaluations: layouts measured.
+    empty: no layout is feasible.
     """
 
     budget: Budget
@@ -47,7 +49,14 @@ class Search:
     nodes: int = 0
     evaluations: int = 0
     stopped: bool = False
+    empty: bool = False
     clock: float = field(default_factory=time.perf_counter)
+
+    def left(self, most: int) -> int:
+        """How much of `most` the budget's evaluations allow."""
+        if self.budget.evaluations is None:
+            return most
+        return max(0, min(most, self.budget.evaluations - self.nodes - self.evaluations))
 
     def goes_on(self) -> bool:
         """Whether budget and watcher let it go on."""
@@ -68,30 +77,37 @@ def method(chain: Chain, turns: tuple[float, float], polish: Polish) -> Any:
     """
 
     def run(problem: Any, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
+        _compile(chain)
         search = Search(budget, watch)
         _first(search, chain, seed, polish)
-        wanted = budget.gap or GAP
+        wanted, proven = budget.gap or GAP, None
         for rel in [g for g in GAPS if g > wanted] + [wanted]:
-            bound = _prove(search, chain, turns, rel, polish)
+            bound = None
+            if not search.stopped:
+                bound = _prove(search, chain, turns, rel * (1.0 - INSIDE), polish)
             if bound is None:
                 break
+            proven = rel
             search.bound = max(search.bound, min(bound, search.best))
             if math.isinf(search.best):
+                search.empty = math.isinf(bound)
                 break
-        return _outcome(search, rel)
+        if proven == wanted:
+            search.stopped = False
+        return _outcome(search, proven)
 
     return run
 
 
-def _outcome(search: Search, rel: float) -> Outcome:
+def _outcome(search: Search, proven: float | None) -> Outcome:
     proof = {
         "method": "branch and bound, stopped early" if search.stopped else "exhausted",
         "arithmetic": "intervals in double, widened by 1e-12",
         "nodes": search.nodes,
-        "pruning_margin": rel,
+        "pruning_margin": proven,
     }
     spent = search.nodes + search.evaluations
-    if math.isinf(search.best) and not search.stopped:
+    if search.empty:
         return Outcome(None, infeasible=True, proof=proof, evaluations=spent)
     return Outcome(
         search.x,
@@ -99,8 +115,16 @@ def _outcome(search: Search, rel: float) -> Outcome:
         bound=search.bound or None,
         proof=proof,
         evaluations=spent,
-        message="" if search.x is not None else "stopped before a layout was found",
+        message="" if search.x is not None else "no layout was found",
     )
+
+
+def _compile(chain: Chain) -> None:
+    """Have the kernel compiled, on its first use on a machine, before the clock is started."""
+    links = chain.link.size
+    kernels = kernel("gearopt.formulations.layout.branch_kernel")
+    cells, bounds, theta = np.zeros((2, 2, links)), np.zeros(2), np.zeros(links)
+    kernels.branch(chain, 0, cells, bounds, 0, math.inf, math.inf, GAP, NODES, theta)
 
 
 def _first(search: Search, chain: Chain, seed: int, polish: Polish) -> None:
@@ -113,7 +137,7 @@ def _first(search: Search, chain: Chain, seed: int, polish: Polish) -> None:
             search.evaluations = spent + steps
             return search.goes_on()
 
-        found, _ = anneal(chain, STARTS * seed + k, STEPS, goes)
+        found, _ = anneal(chain, STARTS * seed + k, search.left(STEPS), goes)
         if np.isfinite(found[0]):
             layouts.append(found)
             if found[0] < search.best:
@@ -140,7 +164,7 @@ def _prove(
     polish: Polish,
 ) -> float | None:
     """A bound within `rel` of the best layout, which may improve; None if stopped before."""
-    kernels = kernel("gearopt.formulations.layout.chain_kernel")
+    kernels = kernel("gearopt.formulations.layout.branch_kernel")
     links, floor = chain.link.size, math.inf
     theta = np.zeros(links)
     cells, bounds = np.zeros((DEEP, 2, links)), np.zeros(DEEP)
@@ -151,13 +175,13 @@ def _prove(
         while count:
             start = search.best
             count, best, floor, nodes = kernels.branch(
-                chain, m, cells, bounds, count, start, floor, rel, NODES, theta
+                chain, m, cells, bounds, count, start, floor, rel, search.left(NODES), theta
             )
             search.nodes += nodes
             if best < start:
                 x = np.append(theta, m) if chain.factor.size > 1 else theta.copy()
                 _take(search, x, best)
                 _take(search, *polish(x))
-            if not search.goes_on():
+            if not search.goes_on() and (count or m + 1 < chain.factor.size):
                 return None
     return floor

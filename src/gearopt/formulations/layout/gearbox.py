@@ -96,10 +96,19 @@ class Gearbox:
             raise ValueError("a gearbox of N stages has N + 1 shafts")
         if self.objective not in OBJECTIVES:
             raise ValueError(f"no objective {self.objective!r}; {', '.join(OBJECTIVES)}")
-        if self.slabs is not None and sorted(s for slab in self.slabs for s in slab) != list(
-            range(len(self.pairs))
-        ):
-            raise ValueError("slabs must name every stage once")
+        if self.slabs is not None:
+            if sorted(s for slab in self.slabs for s in slab) != list(range(len(self.pairs))):
+                raise ValueError("slabs must name every stage once")
+            if any(s + 1 in slab for slab in self.slabs for s in slab):
+                raise ValueError("stages that follow each other cannot share a slab")
+        if any(not 1 <= p.shaft < len(self.shafts) for p in self.places):
+            raise ValueError("a place is that of a shaft after the input shaft")
+        if any(not 0 <= k < len(self.shafts) for k in self.level):
+            raise ValueError("the split line names a shaft that there is not")
+        ranges = [r for p in self.places for r in (p.y, p.z)]
+        ranges += [r for k in self.keep_outs for r in (k.y, k.z, k.x)]
+        if any(not low <= high for low, high in ranges):
+            raise ValueError("the range of a place or keep-out ends before it starts")
 
     @property
     def unit(self) -> str:

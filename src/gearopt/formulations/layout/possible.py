@@ -33,16 +33,16 @@ def possible(box: Gearbox, seconds: float, watch: Watch | None = None) -> bool |
 
     if any(np.isfinite(anneal(shape, k, STEPS, goes)[0][0]) for k in range(STARTS)):
         return True
-    kernels: Any = kernel("gearopt.formulations.layout.chain_kernel")
+    kernels: Any = kernel("gearopt.formulations.layout.branch_kernel")
     links = shape.link.size
     cells, bounds, theta = np.zeros((DEEP, 2, links)), np.zeros(DEEP), np.zeros(links)
     for m in range(len(orders)):
         cells[0, 0], cells[0, 1] = -math.pi, math.pi
         cells[0, :, 0] = turns(box)
-        count, nodes = 1, 0
+        bounds[0], count, nodes, floor = 0.0, 1, 0, math.inf
         while count:
-            state = (count, math.inf, math.inf)
-            count, best, _, fresh = kernels.branch(
+            state = (count, math.inf, floor)
+            count, best, floor, fresh = kernels.branch(
                 shape, m, cells, bounds, *state, 0.5, NODES, theta
             )
             nodes += fresh
@@ -52,4 +52,6 @@ def possible(box: Gearbox, seconds: float, watch: Watch | None = None) -> bool |
             told = watch is None or watch(Event(spent, nodes)) is not False
             if spent > seconds or not told:
                 return None
+        if math.isfinite(floor):  # a cell was left undecided
+            return None
     return False

@@ -65,14 +65,17 @@ class Clash:
 
 @lru_cache(maxsize=64)
 def arrangements(box: Gearbox) -> tuple[Arrangement, ...]:
-    """Arrangements worth trying, the shortest first: the given one, or all that none betters."""
+    """Arrangements worth trying, the shortest first: the given one, or all that none betters.
+
+    Where none is possible, the stages in order stand for all: no layout of them is feasible.
+    """
     if box.slabs is not None:
         return (arrange(box, box.slabs),)
     kept: list[Arrangement] = []
     for slabs in sorted(_orders(len(box.pairs)), key=lambda s: (-len(s), s)):
         one = arrange(box, slabs)
-        fits = not clashes(box, one) and one.length <= box.largest[2] * (1.0 + TOUCH)
-        if fits and not any(_dominates(k, one) for k in kept):
+        possible = one.length <= box.largest[2] + TOUCH and not clashes(box, one)
+        if possible and not any(_dominates(k, one) for k in kept):
             kept = [k for k in kept if not _dominates(one, k)] + [one]
     return tuple(sorted(kept, key=lambda a: a.length)) or (arrange(box, in_order(box)),)
 
@@ -89,21 +92,26 @@ def clashes(box: Gearbox, one: Arrangement) -> tuple[Clash, ...]:
     """
     links = [p.centre_distance for p in box.pairs]
     found = [Clash(pair, need, sum(links[pair[0] : pair[1]])) for pair, need in one.needs.items()]
-    return tuple(sorted((c for c in found if c.short > 0.0), key=lambda c: -c.short))
+    return tuple(sorted((c for c in found if c.short > TOUCH), key=lambda c: -c.short))
 
 
 def _dominates(a: Arrangement, b: Arrangement) -> bool:
-    """Whether a is no worse than b in every respect."""
+    """Whether a, which no data forbid, is no worse than b in every respect."""
+    free = np.triu_indices(len(a.apart), 2)  # neighbours are where their gears mesh
     return bool(
         a.length <= b.length + TOUCH
-        and (a.apart <= b.apart + TOUCH).all()
+        and (a.apart[free] <= b.apart[free] + TOUCH).all()
         and (a.keep_apart <= b.keep_apart + TOUCH).all()
     )
 
 
 @cache
 def _orders(stages: int) -> tuple[Slabs, ...]:
-    """Orders of slabs in which no neighbours share one; of two mirror images, the first."""
+    """Orders of slabs in which no neighbours share one.
+
+    Mirror images are both there: gears of unlike widths in a slab start together, and a keep-out
+    has one place along the shafts; where they are alike, one dominates the other.
+    """
 
     def splits(left: frozenset[int]) -> Iterator[Slabs]:
         if not left:
@@ -112,7 +120,7 @@ def _orders(stages: int) -> tuple[Slabs, ...]:
             for rest in splits(left - set(slab)):
                 yield (slab, *rest)
 
-    return tuple(s for s in splits(frozenset(range(stages))) if s <= s[::-1])
+    return tuple(splits(frozenset(range(stages))))
 
 
 def _subsets(stages: frozenset[int]) -> Iterator[tuple[int, ...]]:

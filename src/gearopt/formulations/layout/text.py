@@ -43,7 +43,9 @@ def direct(
         if front:
             objective |= {"width": width, "height": height}
         limits, equal = _rows(shape, m, (y, z))
-        return Terms(objective, limits | _largest(shape, width, height), equal=equal)
+        return Terms(
+            objective, limits | _largest(shape, width, height, _of(shape.length, m)), equal=equal
+        )
 
     return Problem("layout", tuple(variables), (), evaluate, methods=methods)
 
@@ -77,7 +79,7 @@ def smooth(box: Gearbox, order: Arrangement) -> Problem:
         else:
             objective = _value(shape, 0, x.width, x.height)
         limits, equal = _rows(shape, 0, (y, z))
-        limits |= _largest(shape, x.width, x.height)
+        limits |= _largest(shape, x.width, x.height, float(shape.length[0]))
         return Terms({box.objective: objective}, limits, rows, equal)
 
     return Problem("layout", variables, (), evaluate)
@@ -118,10 +120,12 @@ def _of(values: Array, m: Any) -> Any:
     return float(values[m]) if isinstance(m, int) else values[m]
 
 
-def _largest(shape: Chain, width: Any, height: Any) -> dict[str, Any]:
-    found = {"largest_width": (width, 0), "largest_height": (height, 1)}
+def _largest(shape: Chain, width: Any, height: Any, length: Any) -> dict[str, Any]:
+    found = dict(zip(("width", "height", "length"), (width, height, length), strict=True))
     return {
-        n: v / float(shape.most[k]) for n, (v, k) in found.items() if math.isfinite(shape.most[k])
+        f"largest_{name}": value / float(most)
+        for (name, value), most in zip(found.items(), shape.most, strict=True)
+        if math.isfinite(most)
     }
 
 
@@ -131,25 +135,35 @@ def _rows(shape: Chain, m: Any, point: Point) -> tuple[dict[str, Any], dict[str,
     limits: dict[str, Any] = {}
     equal: dict[str, Any] = {}
     for i in range(len(y)):
-        for j in range(i + 2, len(y)):
+        for j in range(i + 1, len(y)):
             if (need := shape.apart[:, i, j]).any():
                 there = (y[i] - y[j]) ** 2 + (z[i] - z[j]) ** 2
                 name = f"shafts_apart[{i + 1},{j + 1}]"
                 limits[name] = 1.0 + (_of(need, m) ** 2 - there) / float(need.max()) ** 2
         for k, (left, right, bottom, top) in enumerate(shape.keep):
             if (need := shape.keep_apart[:, k, i]).any():
-                dy = np.maximum(np.maximum(left - y[i], y[i] - right), 0.0)
-                dz = np.maximum(np.maximum(bottom - z[i], z[i] - top), 0.0)
+                dy, dz = _outside(y[i], left, right), _outside(z[i], bottom, top)
                 name = f"clear_of_keep_out[{k + 1},{i + 1}]"
                 limits[name] = 1.0 + (_of(need, m) ** 2 - dy**2 - dz**2) / float(need.max()) ** 2
         for axis, c, (low, high) in (("y", y, shape.place[i, :2]), ("z", z, shape.place[i, 2:])):
             name, scale = f"place_{axis}[{i + 1}]", float(shape.link.max())
             if low == high:
                 equal[name] = 1.0 + (c[i] - low) / scale
-            elif math.isfinite(high - low):
+                continue
+            if math.isfinite(low):
                 limits[f"{name}_low"] = 1.0 + (low - c[i]) / scale
+            if math.isfinite(high):
                 limits[f"{name}_high"] = 1.0 + (c[i] - high) / scale
     for k in range(1, len(shape.level)):
         i, j = shape.level[0], shape.level[k]
         equal[f"split_line[{j + 1}]"] = 1.0 + (z[j] - z[i]) / float(shape.link.max())
     return limits, equal
+
+
+def _outside(c: Any, low: float, high: float) -> Any:
+    """How far a coordinate is outside a range, either end of which may be infinite."""
+    far = 0.0 * c
+    for past, end in ((low - c, low), (c - high, high)):
+        if math.isfinite(end):
+            far = np.maximum(far, past)
+    return far

@@ -1,6 +1,6 @@
 """`hop`: many short annealing runs, each polished by Ipopt; the best packing so far is never lost.
 
-A hop starts from a random scatter in a random number of layers or, every other time, from the best
+A hop starts from a random scatter in a random number of layers or, now and then, from the best
 packing with a cylinder thrown elsewhere; the kernel anneals it, its layers are kept, and Ipopt
 solves the smooth text for the places. The search ends after so many hops without a better packing.
 """
@@ -20,10 +20,11 @@ from gearopt.optimise.solvers import ipopt
 from gearopt.optimise.terms import Array
 
 PATIENCE = 300  # hops without a better packing end the search
-MOVES = 600  # of an annealing run, for each cylinder
+MOVES = 1500  # of an annealing run, for each cylinder
 HOT, COLD = 0.1, 1e-4  # temperatures, in units of the objective's logarithm
-WARM = 0.02  # where a hop starts from the best packing
-FROM_BEST = 0.5  # share of such hops
+WARM = 0.05  # where a hop starts from the best packing
+FROM_BEST = 0.3  # share of such hops
+HOPEFUL = 1.05  # times the best: what annealing leaves above is not polished, which costs more
 BETTER = 1e-10  # relative; a smaller improvement is rounding and counts as none
 FEASIBLE = 1e-9  # largest violation of all rows together
 PROVEN = 1e-8  # relative gap to the bound that ends the search; the bound is 1e-9 loose itself
@@ -35,6 +36,7 @@ SETTINGS = {
     "moves of a hop, each cylinder": MOVES,
     "temperatures": (HOT, COLD),
     "hops from the best packing": FROM_BEST,
+    "polished": f"below {HOPEFUL} times the best",
     "local method": "ipopt",
 }
 
@@ -56,7 +58,9 @@ def method(plan: Plan, floor: Floor, finish: Finish) -> Any:
                 most = max(most, int(begin.layer.max()))
             moves = min(MOVES * len(plan.radius), spent.left())
             last, _, _ = anneal(plan, begin, most, moves, (hot, COLD), rng, spent)
-            value, found = polished(plan, problem, last, spent)
+            value, found = math.inf, best
+            if float(problem.batch(points.point(plan, last)[None]).F[0, 0]) < HOPEFUL * spent.best:
+                value, found = polished(plan, problem, last, spent)
             idle = 0 if value < spent.best * (1.0 - BETTER) else idle + 1
             if value < spent.best:
                 spent.best, best = value, found

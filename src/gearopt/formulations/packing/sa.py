@@ -28,7 +28,8 @@ def method(plan: Plan, floor: Floor, finish: Finish) -> Any:
         spent = Spent(budget, watch, least.value)
         best = points.point(plan, row(plan))
         spent.best = float(problem.batch(best[None]).F[0, 0])
-        moves = budget.evaluations or MOVES * len(plan.radius)
+        most = budget.evaluations
+        moves = MOVES * len(plan.radius) if most is None else most
         begin = scattered(plan, plan.most, rng)
         _, found, value = anneal(plan, begin, plan.most, moves, (HOT, COLD), rng, spent)
         if found is not None and value < spent.best:

@@ -4,6 +4,7 @@ import math
 from typing import Annotated, Any
 
 from pydantic import Field, model_validator
+from pydantic_core import PydanticCustomError
 
 from gearopt import units
 from gearopt.formulations.layout.gearbox import (
@@ -35,11 +36,13 @@ from gearopt.units import Quantity
 
 CLEARANCE = quantity("length", "5 mm", zero=True)
 PLACE = quantity("length", "0 mm", zero=True, signed=True)
-SHAFT = whole(2, 1, 7)
-STAGES = several(several(whole(1, 1, 6), [1, 3]), [[1], [2], [3]])
+SHAFT = whole(3, 1, 7)
+STAGES = several(several(whole(1, 1, 6), [1]), [[1], [2]])
 
 Length = Annotated[Quantity | None, quantity("length", "500 mm")]
-Lengths = Annotated[tuple[Quantity, ...] | None, several(quantity("length", "30 mm"), ["20 mm"])]
+Lengths = Annotated[
+    tuple[Quantity, ...] | None, several(quantity("length", "30 mm"), ["20 mm", "35 mm", "60 mm"])
+]
 Clearance = Annotated[Quantity, CLEARANCE]
 Side = Annotated[tuple[Quantity, Quantity], span(PLACE, ["-300 mm", "-150 mm"])]
 Where = Annotated[tuple[Quantity, Quantity] | None, span(PLACE, "0 mm", single=True)]
@@ -54,17 +57,21 @@ def _clear(text: str, description: str) -> Any:
     )
 
 
-def _slabs() -> Reads:
-    """The word best, or lists of stages."""
+def _whole_lists(reads: Reads, word: str | None = None) -> Reads:
+    """A list that is mended as a whole, because half a mended one means nothing; word: for None."""
 
     def read(value: Any, example: Any) -> Any:
-        if value == "best":
+        if word is not None and value == word:
             return None
-        if isinstance(value, str):
-            raise refuse('is neither "best" nor a list of lists of stages', "best")
-        return STAGES.reader(value, STAGES.example)
+        try:
+            return reads.reader(value, reads.example)
+        except PydanticCustomError as wrong:
+            rule = (wrong.context or {})["rule"]
+            close = word if isinstance(value, str) else None
+            raise refuse(rule if word is None else f'{rule}, nor "{word}"', close) from None
 
-    return Reads(read, [[1], [2], [3]], {"anyOf": [{"const": "best"}, STAGES.schema]})
+    known: list[Any] = [] if word is None else [{"const": word}]
+    return Reads(read, reads.example, {"anyOf": [*known, reads.schema]})
 
 
 class Layout(Table):
@@ -96,7 +103,7 @@ class Layout(Table):
         "full",
         description="full: every shaft runs from wall to wall; partial: it ends beside its gears",
     )
-    slabs: Annotated[Any, _slabs()] = Field(
+    slabs: Annotated[Any, _whole_lists(STAGES, "best")] = Field(
         None,
         description='Stages of each slab along the shafts, such as [[1, 3], [2]], or "best"',
         json_schema_extra={"default": "best"},
@@ -112,7 +119,7 @@ class Layout(Table):
         description="A motor on the input shaft, outside the face where the output shaft leaves: "
         "the output shaft must pass it",
     )
-    split_line: Annotated[tuple[int, ...] | None, several(SHAFT, [1, 3])] = Field(
+    split_line: Annotated[tuple[int, ...] | None, _whole_lists(several(SHAFT, [1, 3]))] = Field(
         None, description="Shafts that lie on the level split line of the housing"
     )
     width: Length = Field(None, description="The box is made this wide, whatever it could be")

@@ -1,0 +1,117 @@
+"""Kernel of the exact search: depth-first branch and bound on cells of link angles."""
+
+import math
+
+import numpy as np
+from numba import njit
+
+from gearopt.formulations.layout.bound_kernel import scratch, sharp
+from gearopt.formulations.layout.chain_kernel import (
+    MARGIN,
+    ROUNDING,
+    excluded,
+    measure,
+    sides,
+    value,
+    widest,
+)
+
+
+@njit(cache=True)
+def branch(chain, m, cells, bounds, count, best, floor, rel, limit, theta):
+    """Depth-first branch and bound on cells of link angles, for one slice of `limit` nodes.
+
+    cells (size, 2, N): low and high of the open cells, of which `count` are in use; bounds (size,):
+    theirs. A cell is dropped if nothing in it is feasible or all of it is above best (1 - rel).
+    Points of cells improve `best`, `theta` holds the best one. floor: least bound of the cells
+    dropped for being too good to matter, or because they cannot be halved or there is no room.
+    Returns count, best, floor, nodes.
+    """
+    links = theta.size
+    spans = (
+        np.zeros((links + 1, links + 1)),
+        np.zeros((links + 1, links + 1)),
+        np.zeros((links + 1, links + 1)),
+        np.zeros((links + 1, links + 1)),
+    )
+    room, pull, point = scratch(links), np.zeros((2, links)), np.zeros(links)
+    low, high = np.empty(links), np.empty(links)
+    y, z = np.zeros(links + 1), np.zeros(links + 1)
+    nodes = 0
+    while count > 0 and nodes < limit:
+        count -= 1
+        nodes += 1
+        aim, bound = best * (1.0 - rel), bounds[count]
+        if bound >= aim:
+            floor = min(floor, bound)
+            continue
+        for i in range(links):
+            low[i], high[i] = cells[count, 0, i], cells[count, 1, i]
+        if excluded(chain, m, low, high, *spans):
+            continue
+        box = sides(chain, *spans)
+        if box[0] > chain.most[0] * (1.0 + MARGIN) or box[2] > chain.most[1] * (1.0 + MARGIN):
+            continue
+        bound = max(bound, value(chain, m, box[0], box[2]) * (1.0 - 4.0 * MARGIN))
+        if bound < aim:
+            bound = max(bound, sharp(chain, m, low, high, spans, box, aim, room, pull, point))
+        if bound >= aim:
+            floor = min(floor, bound)
+            continue
+        k = halved(chain, m, low, high, box, pull, point, y, z)
+        for turn in range(2):
+            if turn == 1:
+                for i in range(links):
+                    point[i] = 0.5 * (low[i] + high[i])
+            width, height, short = measure(chain, m, point, y, z)
+            found = value(chain, m, width, height)
+            if short <= ROUNDING and found < best:
+                best = found
+                for i in range(links):
+                    theta[i] = point[i]
+        middle = point[k]
+        if count + 2 > bounds.size or not low[k] < middle < high[k]:
+            floor = min(floor, bound)
+            continue
+        for half in range(2):
+            for i in range(links):
+                cells[count, 0, i], cells[count, 1, i] = low[i], high[i]
+            cells[count, 1 - half, k] = middle
+            bounds[count] = bound
+            count += 1
+    return count, best, floor, nodes
+
+
+@njit(cache=True)
+def halved(chain, m, low, high, box, pull, point, y, z):
+    """The angle whose halving promises most: by its weight in the bound, or where that is wrong.
+
+    Where the linear program is least, sides may be longer than it takes them to be, and axes too
+    close; the links between these shafts count by the size of that error.
+    """
+    links, scale = low.size, 0.5 * min(box[1], box[3])
+    unit = scale if chain.longest else 1.0  # else weights are those of logarithms
+    wrong = np.zeros(links)
+    width, height, _ = measure(chain, m, point, y, z)
+    for i in range(links + 1):
+        for j in range(i + 2, links + 1):
+            lack = chain.apart[m, i, j] - math.hypot(y[i] - y[j], z[i] - z[j])
+            for k in range(i, j):
+                wrong[k] = max(wrong[k], lack / scale)
+    i, j, _, _ = widest(chain, y)
+    for k in range(i, j):
+        wrong[k] = max(wrong[k], (width - box[0]) / width)
+    i, j, _, _ = widest(chain, z)
+    for k in range(i, j):
+        wrong[k] = max(wrong[k], (height - box[2]) / height)
+    best, most, longest, length = -1, 0.0, 0, 0.0
+    for k in range(links):
+        size = high[k] - low[k]
+        score = size * (
+            math.hypot(pull[0, k], pull[1, k]) / unit + wrong[k] * chain.link[k] / scale
+        )
+        if score > most:
+            best, most = k, score
+        if size * chain.link[k] > length:
+            longest, length = k, size * chain.link[k]
+    return longest if best < 0 else best
