@@ -46,8 +46,9 @@ def method(plan: Plan, floor: Floor, finish: Finish) -> Any:
 
     def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
         """Hop until the bound is reached, nothing better is found, or the budget is spent."""
-        least, rng, idle = floor(problem), np.random.default_rng(seed), 0
-        spent = Spent(budget, watch, least.value)
+        spent, rng, idle = Spent(budget, watch), np.random.default_rng(seed), 0
+        least = floor(problem)
+        spent.bound = least.value
         best = points.point(plan, row(plan))
         spent.best = float(problem.batch(best[None]).F[0, 0])
         while idle < PATIENCE and spent.goes_on() and not spent.close(PROVEN):
