@@ -133,7 +133,7 @@ def check_drawing(plan, design):
 
 
 def best(plan, **kind):
-    return solve(packing.problem(plan), "hop", Budget(10.0), **kind)
+    return solve(packing.problem(plan), "hop", **kind)
 
 
 def test_layers_of_six_cylinders_are_proven():
@@ -255,7 +255,7 @@ def test_a_loose_bound_is_not_claimed_in_comparisons():
     assert solve(packing.problem(Plan(SIX)), "sa", short).bound > 15_000
     assert solve(packing.problem(Plan(SIX), loose=False), "sa", short).bound is None
     two = packing.problem(Plan(SIX, least=2, most=2), loose=False)
-    assert solve(two, "hop", Budget(10.0)).status == "optimal"
+    assert solve(two, "hop").status == "optimal"
 
 
 def test_methods_say_what_a_comparison_must_know():

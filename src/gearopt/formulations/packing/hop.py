@@ -19,7 +19,7 @@ from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.solvers import ipopt
 from gearopt.optimise.terms import Array
 
-PATIENCE = 300  # hops without a better packing end the search
+PATIENCE = 200  # hops without a better packing end the search
 MOVES = 1500  # of an annealing run, for each cylinder
 HOT, COLD = 0.1, 1e-4  # temperatures, in units of the objective's logarithm
 WARM = 0.05  # where a hop starts from the best packing
