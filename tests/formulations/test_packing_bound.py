@@ -113,6 +113,13 @@ def test_a_triple_needs_what_brute_force_finds(seed):
     assert found >= float(_pair(a, c, np.array([w]))[0])
 
 
+def test_a_root_of_nothing_is_nothing():
+    """Discs of 0.1 and 0.2 side by side: across they are 0.3 less a rounding apart, along 0."""
+    for a, b in ((0.1, 0.2), (0.7, 0.1), (1.1, 2.2), (10.0, 1 / 3)):
+        assert float(_pair(a, b, np.array([2 * (a + b)]))[0]) == 0.0
+        assert float(_pair(a, b, np.array([a + a + b + b]))[0]) == 0.0
+
+
 def test_depth_falls_with_width():
     w = np.linspace(8.0, 60.0, 4001)
     found = depth([4.0, 4.0, 2.0, 2.0, 1.0], w)

@@ -18,6 +18,8 @@ import numpy as np
 from gearopt.optimise.terms import Array
 
 ORDERS = 300  # of the kinds of discs along the depth; beyond it the bound by order is left out
+SLIPS = 4e-15  # relative; more than the roundings of a distance across
+LARGEST = 8  # discs whose pairs count where the order is left out; small ones add nothing
 HALVINGS = 40  # of the one-dimensional search of a triple: to 1e-12 of a width
 
 
@@ -29,7 +31,7 @@ def depth(radii: Sequence[float], w: Array) -> Array:
         found = np.maximum(found, _oler(2.0 * least, int((rho >= least).sum()), w))
     if orders_of(rho) <= ORDERS:
         return np.asarray(np.maximum(found, _by_order(rho, w)))
-    for a, b in _kinds_of_pairs(rho):
+    for a, b in _kinds_of_pairs(rho[:LARGEST]):
         found = np.maximum(found, a + b + _pair(a, b, w))
     return np.asarray(found)
 
@@ -53,8 +55,12 @@ def _oler(apart: float, count: int, w: Array) -> Array:
 
 
 def _along(apart: float, across: Array) -> Array:
-    """Distance along of two axes `apart` from each other and `across` apart across."""
-    return np.asarray(np.sqrt(np.maximum(apart**2 - across**2, 0.0)))
+    """Distance along of two axes `apart` from each other and `across` apart across; rounded down.
+
+    The root is steep where the two are equal: an error of 1e-16 there would be 1e-8 along.
+    """
+    least = apart - across - SLIPS * (apart + across)
+    return np.asarray(np.sqrt(np.maximum(least * (apart + across), 0.0)))
 
 
 def _pair(a: float, b: float, w: Array) -> Array:

@@ -19,7 +19,7 @@ from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.solvers import ipopt
 from gearopt.optimise.terms import Array
 
-PATIENCE = 300  # hops without a better packing end the search
+PATIENCE = 200  # hops without a better packing end the search
 MOVES = 1500  # of an annealing run, for each cylinder
 HOT, COLD = 0.1, 1e-4  # temperatures, in units of the objective's logarithm
 WARM = 0.05  # where a hop starts from the best packing
@@ -46,8 +46,9 @@ def method(plan: Plan, floor: Floor, finish: Finish) -> Any:
 
     def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
         """Hop until the bound is reached, nothing better is found, or the budget is spent."""
-        least, rng, idle = floor(problem), np.random.default_rng(seed), 0
-        spent = Spent(budget, watch, least.value)
+        spent, rng, idle = Spent(budget, watch), np.random.default_rng(seed), 0
+        least = floor(problem)
+        spent.bound = least.value
         best = points.point(plan, row(plan))
         spent.best = float(problem.batch(best[None]).F[0, 0])
         while idle < PATIENCE and spent.goes_on() and not spent.close(PROVEN):

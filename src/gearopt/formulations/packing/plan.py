@@ -95,9 +95,10 @@ class Plan:
 
     @cached_property
     def reach(self) -> float:
-        """Length of a row of all cylinders [mm]; no sensible container is longer."""
+        """A little over the length of a row of all cylinders [mm]; no container need be longer."""
         n = len(self.cylinders)
-        return float(2.0 * self.radius.sum() + (n - 1) * self.gap + 2.0 * self.wall)
+        row = float(2.0 * self.radius.sum() + (n - 1) * self.gap + 2.0 * self.wall)
+        return 1.001 * row
 
     @cached_property
     def held_box(self) -> tuple[float, float, float, float]:

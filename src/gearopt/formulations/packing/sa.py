@@ -24,8 +24,9 @@ def method(plan: Plan, floor: Floor, finish: Finish) -> Any:
 
     def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
         """Anneal once; the best state that meets all limits, or else the row of all, is kept."""
-        least, rng = floor(problem), np.random.default_rng(seed)
-        spent = Spent(budget, watch, least.value)
+        spent, rng = Spent(budget, watch), np.random.default_rng(seed)
+        least = floor(problem)
+        spent.bound = least.value
         best = points.point(plan, row(plan))
         spent.best = float(problem.batch(best[None]).F[0, 0])
         most = budget.evaluations

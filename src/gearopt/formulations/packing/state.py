@@ -24,12 +24,12 @@ CODES = {"rectangle": 0, "square": 1, "circle": 2}
 class Spent:
     """What a search has spent and found; it has state because it is filled as the search goes.
 
-    bound: nothing lies below it. best: the least objective found.
+    bound: nothing lies below it (-inf before it is known). best: the least objective found.
     """
 
     budget: Budget
     watch: Watch | None
-    bound: float
+    bound: float = -math.inf
     clock: float = field(default_factory=time.perf_counter)
     evaluations: int = 0
     best: float = math.inf
