@@ -4,6 +4,7 @@ Centre distances are given, so a layout is one angle a link and the order of the
 shafts; distances are never penalised, because links are exact.
 """
 
+import math
 from functools import cache
 from typing import Any
 
@@ -53,7 +54,7 @@ def _methods(box: Gearbox, orders: tuple[Arrangement, ...]) -> dict[str, Any]:
     plain = direct(box, orders, {})
 
     def polished(x: Array) -> tuple[Array, float]:
-        """A point no worse than x, by Ipopt from there, and its value."""
+        """A point no worse than x, by Ipopt from there, and its value (inf: not feasible)."""
         m = round(x[-1]) if len(orders) > 1 else 0
         return _polish(plain, texts(m), shape, x)
 
@@ -66,13 +67,14 @@ def _methods(box: Gearbox, orders: tuple[Arrangement, ...]) -> dict[str, Any]:
 
 
 def _polish(plain: Problem, text: Problem, shape: Chain, x: Array) -> tuple[Array, float]:
-    """X or a better point that Ipopt reaches from it."""
+    """X or a better point that Ipopt reaches from it; the value is inf where x is not feasible."""
     links = shape.link.size
-    value = float(violation(plain, x[None])[0][0])
+    value, lack = (float(v[0]) for v in violation(plain, x[None]))
     box = sides(shape, *positions(shape, tuple(x[:links])))
     start = np.concatenate([x[:links], [box[n] for n in ("left", "bottom", "width", "height")]])
     if shape.longest:
         start = np.append(start, value)
+    value = value if lack <= CLOSE else math.inf
     end = ipopt.run(text, Budget(), 0, None, start=start).x
     if end is None:
         return x, value

@@ -30,6 +30,10 @@ def placed(chain, theta, y, z):
             sine = min(1.0, max(-1.0, height / a))
             y[k + 1] = y[k] + side * a * math.sqrt(1.0 - sine * sine)
             z[k + 1] = z[k] + a * sine
+        elif chain.close[k] == 4:
+            cosine = min(1.0, max(-1.0, (chain.goal[k, 1] - y[k]) / a))
+            y[k + 1] = y[k] + a * cosine
+            z[k + 1] = z[k] + side * a * math.sqrt(1.0 - cosine * cosine)
         elif chain.close[k] == 2:
             b = chain.link[k + 1]
             dy, dz = chain.goal[k, 1] - y[k], chain.goal[k, 2] - z[k]

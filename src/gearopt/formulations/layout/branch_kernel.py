@@ -25,7 +25,8 @@ def branch(chain, m, cells, bounds, count, best, floor, rel, limit, theta):
     theirs. A cell is dropped if nothing in it is feasible or all of it is above best (1 - rel).
     Points of cells improve `best`, `theta` holds the best one. floor: least bound of the cells
     dropped for being too good to matter, or because they cannot be halved or there is no room.
-    Returns count, best, floor, nodes.
+    Where `best` is not improved, theta holds the point that lacks least of those that promise to,
+    and near is that lack [mm]. Returns count, best, floor, nodes, near.
     """
     links = theta.size
     spans = (
@@ -37,7 +38,7 @@ def branch(chain, m, cells, bounds, count, best, floor, rel, limit, theta):
     room, pull, point = scratch(links), np.zeros((2, links)), np.zeros(links)
     low, high = np.empty(links), np.empty(links)
     y, z = np.zeros(links + 1), np.zeros(links + 1)
-    nodes = 0
+    nodes, near, start = 0, math.inf, best
     while count > 0 and nodes < limit:
         count -= 1
         nodes += 1
@@ -69,6 +70,10 @@ def branch(chain, m, cells, bounds, count, best, floor, rel, limit, theta):
                 best = found
                 for i in range(links):
                     theta[i] = point[i]
+            elif best == start and short < near and found < aim:
+                near = short
+                for i in range(links):
+                    theta[i] = point[i]
         middle = point[k]
         if count + 2 > bounds.size or not low[k] < middle < high[k]:
             floor = min(floor, bound)
@@ -79,7 +84,7 @@ def branch(chain, m, cells, bounds, count, best, floor, rel, limit, theta):
             cells[count, 1 - half, k] = middle
             bounds[count] = bound
             count += 1
-    return count, best, floor, nodes
+    return count, best, floor, nodes, near
 
 
 @njit(cache=True)

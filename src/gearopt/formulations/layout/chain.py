@@ -19,10 +19,11 @@ class Chain(NamedTuple):
     (K, 4): left, right, bottom, top of keep-outs; keep_apart (M, K, N+1): least distance of each
     axis from them. place (N+1, 4): range of y, then of z, of each axis. level: shafts of equal z
     (empty: none). close (N,): 0 for a free link, 1 for one that ends at a given height, 2 and 3 for
-    two that end at a given place; goal (N, 3): shaft that a height is measured from, y, z. most
-    (3,): largest width, height, length. power (2,): exponents of width and height in the objective,
-    factor (M,) times it (its lengths and constants). longest: the objective is the longest side
-    instead, and factor the third side. length (M,): of the box. The first axis is the origin.
+    two that end at a given place, 4 for one that ends at a given y; goal (N, 3): shaft that a
+    height is measured from, y, z. most (3,): largest width, height, length. power (2,): exponents
+    of width and height in the objective, factor (M,) times it (its lengths and constants). longest:
+    the objective is the longest side instead, and factor the third side. length (M,): of the box.
+    The first axis is the origin.
     """
 
     link: Array
@@ -102,6 +103,8 @@ def _closings(box: Gearbox, link: Array, place: Array) -> tuple[NDArray[np.int64
             close[k - 1 : k + 1], goal[k - 1 : k + 1] = (2, 3), (0.0, *centre)
         elif at_z and not close[k]:
             close[k], goal[k] = 1, (0.0, 0.0, 0.5 * (bottom + top))
+        elif at_y and not close[k]:
+            close[k], goal[k] = 4, (0.0, 0.5 * (left + right), 0.0)
     level = sorted(set(box.level))
     for before, after in zip(level, level[1:], strict=False):
         if not close[after - 1]:

@@ -25,10 +25,10 @@ GAPS = (0.1, 0.01, 1e-3, 1e-4, 1e-5)  # each is proven before the next is tried
 GAP = 1e-6  # the last one where the budget asks for none
 INSIDE = 1e-6  # a gap is proven smaller by this part of it, so that rounding leaves it there
 STARTS, STEPS = 8, 20_000  # annealing runs for the first layout, and their steps
-SETTINGS = {"first layout": f"{STARTS} annealing runs of {STEPS}, the best three polished"}
+SETTINGS = {"first layout": f"{STARTS} annealing runs of {STEPS}, the best polished"}
 NODES = 5_000  # of a slice: below 0.1 s
 DEEP = 4_000  # open cells: a depth-first search leaves one a halving, some 60 halvings an angle
-
+NEAR = 1.0  # mm; a layout that lacks no more may be mended by polishing
 
 Polish = Callable[[Array], tuple[Array, float]]
 
@@ -73,7 +73,8 @@ class Search:
 def method(chain: Chain, turns: tuple[float, float], polish: Polish) -> Any:
     """A run(problem, budget, seed, watch) for the best layout with a proven bound.
 
-    turns: range of the first angle. polish(point) -> a point no worse, and its value.
+    turns: range of the first angle. polish(point) -> a point no worse, and its value (inf where
+    neither is feasible).
     """
 
     def run(problem: Any, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
@@ -129,7 +130,6 @@ def _compile(chain: Chain) -> None:
 
 def _first(search: Search, chain: Chain, seed: int, polish: Polish) -> None:
     """A good layout: the best of some annealing runs, polished."""
-    layouts: list[Array] = []
     for k in range(STARTS):
         spent = search.evaluations
 
@@ -138,17 +138,12 @@ def _first(search: Search, chain: Chain, seed: int, polish: Polish) -> None:
             return search.goes_on()
 
         found, _ = anneal(chain, STARTS * seed + k, search.left(STEPS), goes)
-        if np.isfinite(found[0]):
-            layouts.append(found)
-            if found[0] < search.best:
-                search.best, search.x = float(found[0]), point(chain, found)
+        if found[0] < search.best:
+            search.best, search.x = float(found[0]), point(chain, found)
         if search.stopped:
             return
-    near = sorted(layouts, key=lambda f: float(f[0]))
-    for found in near[:3]:
-        x = point(chain, found)
-        if x is not None:
-            _take(search, *polish(x))
+    if search.x is not None:
+        _take(search, *polish(search.x))
 
 
 def _take(search: Search, x: Array, value: float) -> None:
@@ -174,13 +169,14 @@ def _prove(
         bounds[0], count = 0.0, 1
         while count:
             start = search.best
-            count, best, floor, nodes = kernels.branch(
+            count, best, floor, nodes, near = kernels.branch(
                 chain, m, cells, bounds, count, start, floor, rel, search.left(NODES), theta
             )
             search.nodes += nodes
+            x = np.append(theta, m) if chain.factor.size > 1 else theta.copy()
             if best < start:
-                x = np.append(theta, m) if chain.factor.size > 1 else theta.copy()
                 _take(search, x, best)
+            if best < start or near < NEAR:
                 _take(search, *polish(x))
             if not search.goes_on() and (count or m + 1 < chain.factor.size):
                 return None

@@ -42,7 +42,7 @@ def possible(box: Gearbox, seconds: float, watch: Watch | None = None) -> bool |
         bounds[0], count, nodes, floor = 0.0, 1, 0, math.inf
         while count:
             state = (count, math.inf, floor)
-            count, best, floor, fresh = kernels.branch(
+            count, best, floor, fresh, _ = kernels.branch(
                 shape, m, cells, bounds, *state, 0.5, NODES, theta
             )
             nodes += fresh

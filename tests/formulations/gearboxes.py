@@ -1,0 +1,87 @@
+"""Gearboxes for the layout tests: published trains, random ones, and the plain law of a layout."""
+
+import math
+
+import numpy as np
+
+from gearopt.formulations.layout.gearbox import Clearances, Gearbox, Pair, Shaft
+from gearopt.formulations.layout.slabs import arrangements, clashes
+
+COSINE = math.cos(math.radians(25.0))
+MODULES = (1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 16.0, 20.0)
+THREE, TWO = (8.0, 15.0, 22.5, 35.0), (10.0, 17.5, 30.0)  # shaft radii
+TRAINS = {  # module, teeth, face width; shaft radii
+    "table4_p1": (((1.5, 27, 229, 26.8), (3, 26, 105, 47.8), (4, 27, 87, 95.3)), THREE),
+    "table4_p2": (((1.25, 27, 237, 22.34), (3, 26, 109, 51.6), (4, 27, 80, 95.3)), THREE),
+    "discrete": (((1.5, 21, 162, 20.854), (3, 21, 89, 41.708), (4, 24, 80, 79.443)), THREE),
+    "elevator_p1": (((2, 25, 124, 33.1), (3, 25, 109, 62.1)), TWO),
+    "elevator": (((2, 21, 115, 27.805), (3, 23, 91, 57.1)), TWO),
+}
+
+
+def helical(module, z1, z2, width, cosine=COSINE):
+    """A pair with tip radii d/2 + m."""
+    d1, d2 = module * z1 / cosine, module * z2 / cosine
+    return Pair(0.5 * (d1 + d2), 0.5 * d1 + module, 0.5 * d2 + module, width)
+
+
+def gearbox(name, clearances=Clearances(), **given):  # noqa: B008 -- frozen
+    rows, radii = TRAINS[name]
+    return Gearbox(
+        tuple(helical(*row) for row in rows), tuple(Shaft(r) for r in radii), clearances, **given
+    )
+
+
+def some_box(seed, stages=None, **given):
+    """A random train as one would build it, its stages in order; every other one partial."""
+    rng = np.random.default_rng(seed)
+    stages = int(rng.integers(2, 6)) if stages is None else stages
+    given = {"partial": bool(rng.integers(2)), "slabs": tuple((k,) for k in range(stages))} | given
+    while True:
+        size, torque = int(rng.integers(0, 4)), rng.uniform(5.0, 50.0)
+        pairs, shafts = [], [Shaft(2.0 * torque ** (1 / 3))]
+        for _ in range(stages):
+            module, z1 = MODULES[min(size, len(MODULES) - 1)], int(rng.integers(18, 41))
+            u = rng.uniform(2.0, 8.0 if stages < 4 else 5.0)
+            cosine = math.cos(math.radians(rng.choice([0.0, 15.0, 25.0])))
+            width = rng.uniform(0.5, 1.0) * module * z1 / cosine
+            pairs.append(helical(module, z1, round(u * z1), width, cosine))
+            torque *= u
+            shafts.append(Shaft(2.0 * torque ** (1 / 3)))
+            size += int(rng.integers(1, 4))
+        free = Clearances(*(rng.uniform(0.0, most) for most in (10.0, 5.0, 20.0, 15.0)))
+        box = Gearbox(tuple(pairs), tuple(shafts), free, **given)
+        if not clashes(box, arrangements(box)[0]):
+            return box
+
+
+def places(chain, theta):
+    """Y and z (P, N + 1) of the shafts for angles (P, N)."""
+    steps = np.stack([chain.link * np.cos(theta), chain.link * np.sin(theta)])
+    at = np.concatenate([np.zeros((2, len(theta), 1)), np.cumsum(steps, axis=2)], axis=2)
+    return at[0], at[1]
+
+
+def law(chain, m, y, z):
+    """Objective and what is missing (P,) of shafts at y, z (P, N + 1), from the definitions."""
+    width = (y + chain.reach).max(1) - (y - chain.reach).min(1)
+    height = (z + chain.reach).max(1) - (z - chain.reach).min(1)
+    short = np.zeros(len(y)) + max(0.0, chain.length[m] - chain.most[2])
+    count = y.shape[1]
+    for i in range(count):
+        for j in range(i + 1, count):
+            there = np.hypot(y[:, i] - y[:, j], z[:, i] - z[:, j])
+            short += np.maximum(chain.apart[m, i, j] - there, 0.0)
+        for c, ends in ((y[:, i], chain.place[i, :2]), (z[:, i], chain.place[i, 2:])):
+            short += np.maximum(ends[0] - c, 0.0) + np.maximum(c - ends[1], 0.0)
+        for k, (left, right, bottom, top) in enumerate(chain.keep):
+            past = np.hypot(
+                y[:, i] - y[:, i].clip(left, right), z[:, i] - z[:, i].clip(bottom, top)
+            )
+            short += np.maximum(chain.keep_apart[m, k, i] - past, 0.0)
+    for k in chain.level[1:]:
+        short += np.abs(z[:, k] - z[:, chain.level[0]])
+    short += np.maximum(width - chain.most[0], 0.0) + np.maximum(height - chain.most[1], 0.0)
+    if chain.longest:
+        return np.maximum(np.maximum(width, height), chain.factor[m]), short
+    return chain.factor[m] * width ** chain.power[0] * height ** chain.power[1], short
