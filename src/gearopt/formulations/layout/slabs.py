@@ -68,7 +68,7 @@ def arrangements(box: Gearbox) -> tuple[Arrangement, ...]:
     if box.slabs is not None:
         return (arrange(box, box.slabs),)
     kept: list[Arrangement] = []
-    for slabs in sorted(_orders(len(box.pairs)), key=lambda s: (-len(s), s)):
+    for slabs in sorted(orders(len(box.pairs)), key=lambda s: (-len(s), s)):
         one = arrange(box, slabs)
         if not clashes(box, one) and not any(_dominates(k, one) for k in kept):
             kept = [k for k in kept if not _dominates(one, k)] + [one]
@@ -100,7 +100,7 @@ def _dominates(a: Arrangement, b: Arrangement) -> bool:
 
 
 @cache
-def _orders(stages: int) -> tuple[Slabs, ...]:
+def orders(stages: int) -> tuple[Slabs, ...]:
     """Orders of slabs in which no neighbours share one; of two mirror images, the first."""
 
     def splits(left: frozenset[int]) -> Iterator[Slabs]:

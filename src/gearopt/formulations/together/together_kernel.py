@@ -1,0 +1,140 @@
+"""Kernels of the search: choices for one more stage, and a look for a layout of what is chosen."""
+
+import math
+
+import numpy as np
+from numba import njit
+
+from gearopt.formulations.layout.chain_kernel import branch
+from gearopt.formulations.together.node_kernel import (
+    ALLOWANCE,
+    EDGE,
+    apart,
+    bound,
+    grows,
+    loaded,
+    module,
+    put,
+    quick,
+    width,
+)
+
+
+@njit(cache=True)
+def expand(d, rest, j, parents, start, stop, cut, limit, children, bounds):
+    """Children of nodes by a choice for stage j; one slice of about `limit` choices.
+
+    parents (n, N, 2): pair and module of each chosen stage. start (2,): parent and pair to go on
+    with, moved on. stop: of the parents. Returns the number of children, and of choices looked at.
+    """
+    stages, shafts = parents.shape[1], parents.shape[1] + 1
+    node, body = np.zeros((stages, 3)), np.zeros((shafts, 4))
+    need = np.zeros((shafts, shafts))
+    lengths, radius = np.empty(d.slabs.size), np.empty(d.slabs.size)
+    choice, kept = np.zeros((stages, 2), np.int64), np.zeros(stages)
+    count = looked = 0
+    while start[0] < stop and looked < limit and count + d.modules.shape[1] <= bounds.size:
+        choice[:] = parents[start[0]]
+        left_low, left_high, ratio = d.log_low, d.log_high, 1.0
+        for i in range(j + 1, stages):
+            put(d, i, choice[i, 0], choice[i, 1], node, body)
+            left_low -= node[i, 2]
+            left_high -= node[i, 2]
+            ratio *= d.z2[choice[i, 0]] / d.z1[choice[i, 0]]
+        own = d.log_ratio[d.start[j] : d.start[j + 1]]
+        end = d.start[j] + np.searchsorted(own, left_high + EDGE)
+        if start[1] < 0:
+            first = np.searchsorted(own, left_low - EDGE) if j == 0 else 0
+            start[1] = d.start[j] + first
+        if j < stages - 1:
+            loaded(d, j + 1, choice, node)
+        kept[:] = node[:, 1]
+        while start[1] < end and looked < limit and count + d.modules.shape[1] <= bounds.size:
+            p = start[1]
+            start[1] += 1
+            looked += 1
+            choice[j, 0] = p
+            torque = d.torque
+            if j > 0:
+                torque *= d.low_ratio / ratio * (d.z1[p] / d.z2[p]) * (1.0 - ALLOWANCE)
+            for k in range(module(d, j, p, torque), d.last[p] + 1):
+                b = width(d, j, p, k, torque)
+                if b == math.inf:
+                    continue
+                choice[j, 1] = k
+                put(d, j, p, k, node, body)
+                node[:, 1] = kept
+                node[j, 1] = b
+                value, single = quick(d, j, node, body)
+                if value >= cut:
+                    if grows(d, j) and single >= cut:
+                        break
+                    continue
+                if j == 0 and not loaded(d, 0, choice, node):
+                    continue
+                value = bound(d, rest, j, node, body, need, cut, lengths, radius)
+                if value < cut:
+                    children[count] = choice
+                    bounds[count] = value
+                    count += 1
+        if start[1] >= end:
+            start[0] += 1
+            start[1] = -1
+    return count, looked
+
+
+@njit(cache=True)
+def sift(d, rest, chain, turns, first, nodes, start, stop, cut, most, limit, alive, found):
+    """Look for a layout below `cut` of the discs of each node, for a slice of about `limit` cells.
+
+    alive (n,): 0 if there is none, 1 if one was found, 2 if `most` cells of an arrangement did not
+    tell. found (n, 2 + links): its value, arrangement and angles. Returns where it stopped, cells.
+    """
+    shafts = nodes.shape[1] + 1
+    links = shafts - 1 - first
+    node, body = np.zeros((shafts - 1, 3)), np.zeros((shafts, 4))
+    need = np.zeros((shafts, shafts))
+    lengths, radius = np.empty(d.slabs.size), np.empty(d.slabs.size)
+    cells, bounds, theta = np.zeros((200 * links, 2, links)), np.zeros(200 * links), np.zeros(links)
+    spent = 0
+    while start < stop and spent < limit:
+        for i in range(first, shafts - 1):
+            put(d, i, nodes[start, i, 0], nodes[start, i, 1], node, body)
+        loaded(d, first, nodes[start], node)
+        bound(d, rest, first, node, body, need, cut, lengths, radius)
+        alive[start] = 0
+        for m in range(d.slabs.size):
+            if lengths[m] == math.inf or not apart(d, m, first, node, body, need):
+                continue
+            for x in range(links + 1):
+                chain.reach[x] = body[first + x].max() + d.gap[2]
+                for y in range(links + 1):
+                    near = abs(x - y) < 2
+                    chain.apart[0, x, y] = 0.0 if near else need[first + x, first + y]
+            chain.reach[0] = max(chain.reach[0], radius[m])
+            chain.link[:] = node[first:, 0]
+            chain.factor[0] = d.factor[0] + d.factor[1] * lengths[m]
+            if d.longest:
+                chain.factor[0] = max(d.factor[0], lengths[m])
+            cells[0, 0], cells[0, 1] = -math.pi, math.pi
+            cells[0, 0, 0], cells[0, 1, 0] = turns[0], turns[1]
+            bounds[0], count, used, least = 0.0, 1, 0, cut
+            while count > 0 and used < most and least == cut:
+                count, least, _, looked = branch(
+                    chain, 0, cells, bounds, count, least, math.inf, 0.0, 32, theta
+                )
+                used += looked
+                if looked == 0:  # no room for more cells
+                    break
+            spent += used + 1
+            if least < cut:
+                if alive[start] != 1 or least < found[start, 0]:
+                    found[start, 0], found[start, 1] = least, m
+                    found[start, 2:] = theta
+                alive[start] = 1
+                if first > 0:
+                    break
+            elif count > 0 and alive[start] == 0:
+                alive[start] = 2
+        start += 1
+    return start, spent
