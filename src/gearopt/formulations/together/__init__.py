@@ -20,7 +20,7 @@ __all__ = ["problem", "pairs", "sizes"]
 
 GAP = 1e-3  # proven where the budget asks for none
 FIRST = 40  # best sizings that are laid out before the search
-MATCH = 1e-9  # relative: what a gearbox may differ from the sizes it is made for
+SLACK = 1e-6  # relative: margins are this much below the gap asked for, for rounding
 
 RANDOM = False
 COUNTS = "tooth pair or cell of angles bounded"
@@ -41,7 +41,7 @@ def problem(train: Train, make: Make) -> Problem:
         """Depth-first passes with narrowing margins; the seed is that of first layouts."""
         search = Search(train, make, budget, watch, seed)
         possible = _first(search)
-        wanted = (budget.gap or GAP) * (1.0 - MATCH)
+        wanted = (budget.gap or GAP) * (1.0 - SLACK)
         margins = [m for m in MARGINS if m > wanted] + [wanted]
         while possible and margins and not search.stopped:
             work = prepare(search, drive, box, wanted)
@@ -71,12 +71,12 @@ def _first(search: Search) -> bool:
 
 
 def _outcome(search: Search, known: tuple[Any, ...], possible: bool) -> Outcome:
-    stopped = search.stopped
+    stopped, stages = search.stopped, len(search.train.stages)
     proof = {
         "method": "branch and bound, stopped early" if stopped else "exhausted",
         "arithmetic": "ratios, teeth and steps rational; boxes double, bounds with an allowance",
-        "nodes": {f"{k + 1}": n for k, n in sorted(search.made.items())},
-        "nodes_with_a_layout": {f"{k + 1}": n for k, n in sorted(search.left.items())},
+        "nodes": {f"{stages - k}": n for k, n in sorted(search.made.items())},
+        "nodes_with_a_layout": {f"{stages - k}": n for k, n in sorted(search.left.items())},
         "trains_laid_out": search.trains,
     }
     if search.best is None:

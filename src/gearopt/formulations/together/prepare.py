@@ -28,7 +28,8 @@ def useful(drive: Drive, cut: float) -> Drive:
         names = ("z1", "z2", "log_ratio", "need", "first", "last")
         fewer = {n: getattr(drive, n)[keep] for n in names}
         if drive.least_steps.shape[1] == keep.size:
-            fewer |= {n: getattr(drive, n)[:, keep] for n in ("least_steps", "most_steps")}
+            steps = {n: getattr(drive, n)[:, keep] for n in ("least_steps", "most_steps")}
+            fewer |= {n: np.ascontiguousarray(v) for n, v in steps.items()}
         widths = np.where(np.isfinite(widths), widths, 0.0)
         others = _others(drive, widths)
         drive = drive._replace(start=kept, widths=widths, others=others, **fewer)

@@ -98,6 +98,14 @@ class Search:
         return Budget(gap=gap), watch
 
 
+def cuts(value: float, margin: float) -> tuple[float, float]:
+    """What is not below the first is dropped; what is below the second is looked for.
+
+    Between the two a search may do either: equal, it would resolve their level without end.
+    """
+    return value * (1.0 - margin), value * (1.0 - 0.8 * margin)
+
+
 def sized(train: Train, drive: Drive, node: Nodes) -> Sizes:
     """Modules, pinion teeth, ratios and face widths of a whole node."""
     kernels = kernel(NODE)
@@ -120,7 +128,7 @@ def lay(search: Search, sizes: Sizes, margin: float) -> None:
     box = search.make(sizes)
     search.trains += 1
     for order in orders_of(box):
-        if not _below(search, box, order, search.value * (1.0 - margin)):
+        if not _below(search, box, order, margin):
             continue
         one = replace(box, slabs=order.slabs)
         budget, watch = search.watched(min(margin, CLOSE))
@@ -138,24 +146,25 @@ def keep(search: Search, sizes: Sizes, order: Arrangement, angles: Array) -> Non
         search.best = Design(value, sizes, teeth, order.slabs, angles)
 
 
-def _below(search: Search, box: Gearbox, order: Arrangement, cut: float) -> bool:
-    """Whether the layouts of an order may have one below a value."""
-    if math.isinf(cut):
+def _below(search: Search, box: Gearbox, order: Arrangement, margin: float) -> bool:
+    """Whether an order may have a layout that betters the best value by a margin."""
+    if search.best is None:
         return True
+    cut, aim = cuts(search.value, margin)
     kernels = kernel("gearopt.formulations.layout.chain_kernel")
     shape, links = chain(box, (order,)), len(box.pairs)
     cells, bounds, theta = np.zeros((4000, 2, links)), np.zeros(4000), np.zeros(links)
     cells[0, 0], cells[0, 1] = -math.pi, math.pi
     cells[0, :, 0] = turns(box)
-    count, best = 1, cut
-    while count and best == cut and search.goes_on():
+    count, best = 1, aim
+    while count and best == aim and search.goes_on():
         count, best, _, nodes = kernels.branch(
-            shape, 0, cells, bounds, count, best, math.inf, 0.0, 20_000, theta
+            shape, 0, cells, bounds, count, best, math.inf, 1.0 - cut / aim, 20_000, theta
         )
         search.looked += nodes
         if nodes == 0:
             return True
-    return count > 0 or best < cut
+    return count > 0 or best < aim
 
 
 @dataclass(frozen=True)
@@ -190,12 +199,12 @@ def prove(search: Search, work: Work, margin: float) -> bool:
     ]
     while stack:
         stage, parents, bounds, place = stack.pop()
-        cut = search.value * (1.0 - margin)
+        cut, aim = cuts(search.value, margin)
         of_use = int(np.searchsorted(bounds, cut))
         if place[0] >= of_use:
             continue
         stop = min(of_use, (int(place[0]) // PARENTS + 1) * PARENTS)
-        nodes, own = _children(search, work, stage, parents, place, stop, cut)
+        nodes, own = _children(search, work, stage, parents, place, stop, (cut, aim))
         stack.append((stage, parents, bounds, place))
         if stage > 0:
             stack.append((stage - 1, nodes, own, np.array([0, -1])))
@@ -217,14 +226,20 @@ def _last_looks(search: Search, drive: Drive, nodes: Nodes, bounds: Array, margi
 
 
 def _children(
-    search: Search, work: Work, stage: int, parents: Nodes, place: Any, stop: int, cut: float
+    search: Search,
+    work: Work,
+    stage: int,
+    parents: Nodes,
+    place: Any,
+    stop: int,
+    levels: tuple[float, float],
 ) -> tuple[Nodes, Array]:
     """Children of some nodes that may lead below a cut, the best first."""
     kernels = kernel(SEARCH)
     count = work.drive.kind.size
     nodes, bounds = np.zeros((CHILDREN, count, 2), np.int64), np.zeros(CHILDREN)
     made, looked = kernels.expand(
-        work.drive, work.rest, stage, parents, place, stop, cut, CHOICES, nodes, bounds
+        work.drive, work.rest, stage, parents, place, stop, levels[0], CHOICES, nodes, bounds
     )
     search.looked += looked
     search.made[stage] = search.made.get(stage, 0) + made
@@ -242,10 +257,8 @@ def _children(
             stage,
             nodes,
             start,
-            made,
-            cut,
-            most,
-            CELLS,
+            levels,
+            (most, CELLS),
             alive,
             found,
         )

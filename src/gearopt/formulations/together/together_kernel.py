@@ -84,10 +84,13 @@ def expand(d, rest, j, parents, start, stop, cut, limit, children, bounds):
 
 
 @njit(cache=True)
-def sift(d, rest, chain, turns, first, nodes, start, stop, cut, most, limit, alive, found):
-    """Look for a layout below `cut` of the discs of each node, for a slice of about `limit` cells.
+def sift(d, rest, chain, turns, first, nodes, start, levels, limits, alive, found):
+    """Look for a layout below `aim` of the discs of each node, for one slice.
 
-    alive (n,): 0 if there is none, 1 if one was found, 2 if `most` cells of an arrangement did not
+    levels: cut and aim; what is not below the cut is dropped, cut <= aim. limits: most cells for an
+    arrangement of a node, and for the slice.
+
+    alive (n,): 0 if there is none, 1 if one was found, 2 if the cells of an arrangement did not
     tell. found (n, 2 + links): its value, arrangement and angles. Returns where it stopped, cells.
     """
     shafts = nodes.shape[1] + 1
@@ -96,8 +99,11 @@ def sift(d, rest, chain, turns, first, nodes, start, stop, cut, most, limit, ali
     need = np.zeros((shafts, shafts))
     lengths, radius = np.empty(d.slabs.size), np.empty(d.slabs.size)
     cells, bounds, theta = np.zeros((200 * links, 2, links)), np.zeros(200 * links), np.zeros(links)
+    cut, aim = levels
+    most, limit = limits
+    margin = 1.0 - cut / aim if aim < math.inf else 0.0
     spent = 0
-    while start < stop and spent < limit:
+    while start < alive.size and spent < limit:
         for i in range(first, shafts - 1):
             put(d, i, nodes[start, i, 0], nodes[start, i, 1], node, body)
         loaded(d, first, nodes[start], node)
@@ -118,16 +124,16 @@ def sift(d, rest, chain, turns, first, nodes, start, stop, cut, most, limit, ali
                 chain.factor[0] = max(d.factor[0], lengths[m])
             cells[0, 0], cells[0, 1] = -math.pi, math.pi
             cells[0, 0, 0], cells[0, 1, 0] = turns[0], turns[1]
-            bounds[0], count, used, least = 0.0, 1, 0, cut
-            while count > 0 and used < most and least == cut:
+            bounds[0], count, used, least = 0.0, 1, 0, aim
+            while count > 0 and used < most and least == aim:
                 count, least, _, looked = branch(
-                    chain, 0, cells, bounds, count, least, math.inf, 0.0, 32, theta
+                    chain, 0, cells, bounds, count, least, math.inf, margin, 32, theta
                 )
                 used += looked
                 if looked == 0:  # no room for more cells
                     break
             spent += used + 1
-            if least < cut:
+            if least < aim:
                 if alive[start] != 1 or least < found[start, 0]:
                     found[start, 0], found[start, 1] = least, m
                     found[start, 2:] = theta
