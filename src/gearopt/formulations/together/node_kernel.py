@@ -18,7 +18,7 @@ EDGE = 1e-9  # cells and ratio windows overlap by this much in log ratio
 SAFE = 1.0 - 1e-11  # a lower bound times this is one in spite of rounding
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def module(d, j, p, torque):
     """Least module (index) with which a pair may carry a torque; beyond d.last[p] if none does."""
     k = d.first[p]
@@ -29,7 +29,7 @@ def module(d, j, p, torque):
     return k
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def width(d, j, p, k, torque):
     """Least face width for a torque, with a module that carries it; inf if no step does."""
     m = d.modules[j, k]
@@ -60,19 +60,23 @@ def least_area(r0, r1, a):
 
 
 @njit(cache=True)
-def worth(d, length, area, big):
-    """Least objective of boxes of a length, W H >= area and W, H >= big."""
-    if big > d.most[0] or big > d.most[1] or length > d.most[2]:
+def worth(aim, length, area, big):
+    """Least objective of boxes of a length, W H >= area and W, H >= big.
+
+    aim (8,): most width, height and length; constant and factor of the length; exponents; 1 for the
+    longest side. It is `Drive.aim`: few arguments keep the innermost loop fast.
+    """
+    if big > aim[0] or big > aim[1] or length > aim[2]:
         return math.inf
-    if d.longest:
-        return max(big, math.sqrt(area), length, d.factor[0]) * SAFE
-    found = (d.factor[0] + d.factor[1] * length) * SAFE
-    if d.power[0] > 0.0 and d.power[1] > 0.0:
+    if aim[7] > 0.0:
+        return max(big, math.sqrt(area), length, aim[3]) * SAFE
+    found = (aim[3] + aim[4] * length) * SAFE
+    if aim[5] > 0.0 and aim[6] > 0.0:
         return found * area
-    return found * big if d.power[0] > 0.0 or d.power[1] > 0.0 else found
+    return found * big if aim[5] > 0.0 or aim[6] > 0.0 else found
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def put(d, j, p, k, node, body):
     """Set a stage of a node: node[j] = centre distance, tip radii, width (unset), log ratio."""
     half = 0.5 * d.modules[j, k] / d.cosine
@@ -191,7 +195,7 @@ def bound(d, rest, first, node, body, need, cut, lengths, radius):
             for y in range(first + 1, shafts):
                 a = node[first, 0] if y == first + 1 else need[first, y]
                 wide = max(wide, least_area(r, body[y].max() + d.gap[2], a))
-            value = worth(d, base + more, wide, max(big, 2.0 * r))
+            value = worth(d.aim, base + more, wide, max(big, 2.0 * r))
             best = min(best, value)
             if value < cut:
                 if lengths[m] == math.inf:
@@ -201,21 +205,19 @@ def bound(d, rest, first, node, body, need, cut, lengths, radius):
     return best
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def grows(d, j):
     """Whether a larger module only makes the wheel and the width larger."""
     return d.kind[j] == 0 or d.kind[j] == 2
 
 
 @njit(cache=True)
-def quick(d, j, node, body):
-    """Bounds by the new wheel with its neighbours and by itself, at the least length."""
-    wall = d.gap[2]
-    least = math.inf
-    for m in range(d.slabs.size):
-        least = min(least, length(d, m, j, node) + d.others[m, j])
-    r = max(body[j + 1, 0], body[j + 1, 1] if j + 1 < node.shape[0] else 0.0) + wall
-    area = least_area(body[j, 1] + wall, r, node[j, 0])
-    if j + 1 < node.shape[0]:
-        area = max(area, least_area(r, body[j + 2, 0] + wall, node[j + 1, 0]))
-    return worth(d, least, area, 2.0 * r), worth(d, least, 4.0 * r * r, 2.0 * r)
+def bases(d, j, node, base, shared):
+    """Least length without stage j, and what its slab is wide anyhow, in each arrangement (M,)."""
+    for m in range(base.size):
+        node[j, 1] = 0.0
+        base[m] = length(d, m, j, node) + d.others[m, j]
+        shared[m] = 0.0
+        for i in range(j + 1, node.shape[0]):
+            if d.slab_of[m, i] == d.slab_of[m, j]:
+                shared[m] = max(shared[m], node[i, 1])

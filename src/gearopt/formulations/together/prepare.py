@@ -96,10 +96,10 @@ def chains(drive: Drive, box: Gearbox) -> list[Chain]:
                 np.array(level, np.int64),
                 np.zeros(shafts - 1, np.int64),
                 np.zeros((shafts - 1, 3)),
-                drive.most[:2].copy(),
-                drive.power,
+                drive.aim[:2].copy(),
+                drive.aim[5:7].copy(),
                 np.zeros(1),
-                drive.longest,
+                bool(drive.aim[7]),
             )
         )
     return found

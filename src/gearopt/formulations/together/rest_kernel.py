@@ -42,10 +42,10 @@ def useful(d, j, cut, keep):
                 least = min(least, length(d, m, 0, node))
             r = body[j + 1, 0] + wall
             area = least_area(body[j, 1] + wall, r, node[j, 0])
-            if worth(d, least, area, 2.0 * r) < cut:
+            if worth(d.aim, least, area, 2.0 * r) < cut:
                 keep[p] = True
                 found = min(found, node[j, 1])
-            elif grows(d, j) and worth(d, least, 4.0 * r * r, 2.0 * r) >= cut:
+            elif grows(d, j) and worth(d.aim, least, 4.0 * r * r, 2.0 * r) >= cut:
                 break
     return found
 

@@ -34,7 +34,8 @@ class Drive(NamedTuple):
     shaft, bearing (N+1, cells): least radius by log ratio reached. gap: between gears, from shafts,
     to the wall, along the axis. faces (M, N+1, 4, N+1, 4): whether bodies of two shafts face each
     other: wheel, pinion, shaft, bearing. widths: least of each stage, others (M, N): least length
-    that the stages before one add. factor: constant of the objective and its factor of the length.
+    that the stages before one add. aim (8,): most width, height and length; constant of the
+    objective and its factor of the length; exponents of width and height; 1 for the longest side.
     """
 
     torque: float
@@ -71,10 +72,7 @@ class Drive(NamedTuple):
     slab_of: Index
     widths: Array
     others: Array
-    most: Array
-    power: Array
-    factor: Array
-    longest: bool
+    aim: Array
 
 
 class Rest(NamedTuple):
@@ -137,10 +135,7 @@ def numbers(train: Train, make: Make) -> tuple[Drive, Gearbox]:
         np.array([[_slab(s, k) for k in range(len(stages))] for s in slabs]),
         np.zeros(len(stages)),
         np.zeros((len(slabs), len(stages))),
-        np.array(most),
-        np.array(power),
-        np.array(factor),
-        box.objective == "longest_side",
+        np.array([*most, *factor, *power, float(box.objective == "longest_side")]),
     )
     return Drive(*columns), box
 

@@ -10,13 +10,15 @@ from gearopt.formulations.together.node_kernel import (
     ALLOWANCE,
     EDGE,
     apart,
+    bases,
     bound,
     grows,
+    least_area,
     loaded,
     module,
     put,
-    quick,
     width,
+    worth,
 )
 
 
@@ -32,6 +34,8 @@ def expand(d, rest, j, parents, start, stop, cut, limit, children, bounds):
     need = np.zeros((shafts, shafts))
     lengths, radius = np.empty(d.slabs.size), np.empty(d.slabs.size)
     choice, kept = np.zeros((stages, 2), np.int64), np.zeros(stages)
+    base, shared = np.empty(d.slabs.size), np.empty(d.slabs.size)
+    aim, wall, larger = d.aim, d.gap[2], grows(d, j)
     count = looked = 0
     while start[0] < stop and looked < limit and count + d.modules.shape[1] <= bounds.size:
         choice[:] = parents[start[0]]
@@ -48,7 +52,9 @@ def expand(d, rest, j, parents, start, stop, cut, limit, children, bounds):
             start[1] = d.start[j] + first
         if j < stages - 1:
             loaded(d, j + 1, choice, node)
+        bases(d, j, node, base, shared)
         kept[:] = node[:, 1]
+        pinion = body[j + 1, 1] if j + 1 < stages else 0.0
         while start[1] < end and looked < limit and count + d.modules.shape[1] <= bounds.size:
             p = start[1]
             start[1] += 1
@@ -65,9 +71,15 @@ def expand(d, rest, j, parents, start, stop, cut, limit, children, bounds):
                 put(d, j, p, k, node, body)
                 node[:, 1] = kept
                 node[j, 1] = b
-                value, single = quick(d, j, node, body)
-                if value >= cut:
-                    if grows(d, j) and single >= cut:
+                least = math.inf
+                for m in range(base.size):
+                    least = min(least, base[m] + max(b - shared[m], 0.0))
+                r = max(body[j + 1, 0], pinion) + wall
+                area = least_area(body[j, 1] + wall, r, node[j, 0])
+                if j + 1 < stages:
+                    area = max(area, least_area(r, body[j + 2, 0] + wall, node[j + 1, 0]))
+                if worth(aim, least, area, 2.0 * r) >= cut:
+                    if larger and worth(aim, least, 4.0 * r * r, 2.0 * r) >= cut:
                         break
                     continue
                 if j == 0 and not loaded(d, 0, choice, node):
@@ -85,11 +97,10 @@ def expand(d, rest, j, parents, start, stop, cut, limit, children, bounds):
 
 @njit(cache=True)
 def sift(d, rest, chain, turns, first, nodes, start, levels, limits, alive, found):
-    """Look for a layout below `aim` of the discs of each node, for one slice.
+    """Look for a layout below a value of the discs of each node, for one slice.
 
-    levels: cut and aim; what is not below the cut is dropped, cut <= aim. limits: most cells for an
-    arrangement of a node, and for the slice.
-
+    levels: what is not below the first is dropped, what is below the second is looked for.
+    limits: most cells for an arrangement of a node, and for the slice.
     alive (n,): 0 if there is none, 1 if one was found, 2 if the cells of an arrangement did not
     tell. found (n, 2 + links): its value, arrangement and angles. Returns where it stopped, cells.
     """
@@ -99,9 +110,10 @@ def sift(d, rest, chain, turns, first, nodes, start, levels, limits, alive, foun
     need = np.zeros((shafts, shafts))
     lengths, radius = np.empty(d.slabs.size), np.empty(d.slabs.size)
     cells, bounds, theta = np.zeros((200 * links, 2, links)), np.zeros(200 * links), np.zeros(links)
-    cut, aim = levels
+    cut, better = levels
+    aim = d.aim
     most, limit = limits
-    margin = 1.0 - cut / aim if aim < math.inf else 0.0
+    margin = 1.0 - cut / better if better < math.inf else 0.0
     spent = 0
     while start < alive.size and spent < limit:
         for i in range(first, shafts - 1):
@@ -119,13 +131,13 @@ def sift(d, rest, chain, turns, first, nodes, start, levels, limits, alive, foun
                     chain.apart[0, x, y] = 0.0 if near else need[first + x, first + y]
             chain.reach[0] = max(chain.reach[0], radius[m])
             chain.link[:] = node[first:, 0]
-            chain.factor[0] = d.factor[0] + d.factor[1] * lengths[m]
-            if d.longest:
-                chain.factor[0] = max(d.factor[0], lengths[m])
+            chain.factor[0] = aim[3] + aim[4] * lengths[m]
+            if aim[7] > 0.0:
+                chain.factor[0] = max(aim[3], lengths[m])
             cells[0, 0], cells[0, 1] = -math.pi, math.pi
             cells[0, 0, 0], cells[0, 1, 0] = turns[0], turns[1]
-            bounds[0], count, used, least = 0.0, 1, 0, aim
-            while count > 0 and used < most and least == aim:
+            bounds[0], count, used, least = 0.0, 1, 0, better
+            while count > 0 and used < most and least == better:
                 count, least, _, looked = branch(
                     chain, 0, cells, bounds, count, least, math.inf, margin, 32, theta
                 )
@@ -133,7 +145,7 @@ def sift(d, rest, chain, turns, first, nodes, start, levels, limits, alive, foun
                 if looked == 0:  # no room for more cells
                     break
             spent += used + 1
-            if least < aim:
+            if least < better:
                 if alive[start] != 1 or least < found[start, 0]:
                     found[start, 0], found[start, 1] = least, m
                     found[start, 2:] = theta
