@@ -88,6 +88,24 @@ def put(d, j, p, k, node, body):
 
 
 @njit(cache=True)
+def place(sorted_values, start, stop, value):
+    """First index from start to stop whose value is not below a value; stop if there is none."""
+    while start < stop:
+        middle = (start + stop) // 2
+        if sorted_values[middle] < value:
+            start = middle + 1
+        else:
+            stop = middle
+    return start
+
+
+@njit(cache=True)
+def widest(body, x):
+    """Radius of the largest body on a shaft."""
+    return max(max(body[x, 0], body[x, 1]), max(body[x, 2], body[x, 3]))
+
+
+@njit(cache=True)
 def onto(d, first, node, body):
     """Shafts and bearings of a node by the least torque they carry."""
     log_ratio = d.log_low
@@ -152,11 +170,11 @@ def length(d, m, first, node):
     """Length of the box with the stages of a node; others add nothing but their slabs' gaps."""
     found = d.ends + d.gap[3] * (d.slabs[m] - 1)
     for s in range(d.slabs[m]):
-        widest = 0.0
+        own = 0.0
         for j in range(first, node.shape[0]):
             if d.slab_of[m, j] == s:
-                widest = max(widest, node[j, 1])
-        found += widest
+                own = max(own, node[j, 1])
+        found += own
     return found
 
 
@@ -177,12 +195,12 @@ def bound(d, rest, first, node, body, need, cut, lengths, radius):
             continue
         area = big = 0.0
         for x in range(first + 1, shafts):
-            r = body[x].max() + d.gap[2]
+            r = widest(body, x) + d.gap[2]
             big = max(big, 2.0 * r)
             for y in range(x + 1, shafts):
                 a = node[x, 0] if y == x + 1 else need[x, y]
-                area = max(area, least_area(r, body[y].max() + d.gap[2], a))
-        own = body[first].max()
+                area = max(area, least_area(r, widest(body, y) + d.gap[2], a))
+        own = widest(body, first)
         base = length(d, m, first, node)
         bins = 1 if first == 0 else rest.edge.shape[1]
         for i in range(bins):
@@ -194,7 +212,7 @@ def bound(d, rest, first, node, body, need, cut, lengths, radius):
             wide = area
             for y in range(first + 1, shafts):
                 a = node[first, 0] if y == first + 1 else need[first, y]
-                wide = max(wide, least_area(r, body[y].max() + d.gap[2], a))
+                wide = max(wide, least_area(r, widest(body, y) + d.gap[2], a))
             value = worth(d.aim, base + more, wide, max(big, 2.0 * r))
             best = min(best, value)
             if value < cut:

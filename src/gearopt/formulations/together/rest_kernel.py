@@ -12,6 +12,7 @@ from gearopt.formulations.together.node_kernel import (
     least_area,
     length,
     module,
+    place,
     put,
     width,
     worth,
@@ -23,7 +24,8 @@ def useful(d, j, cut, keep):
     """Mark the pairs of a stage that alone stay below `cut`; the least width of those for all."""
     node, body = np.zeros((d.kind.size, 3)), np.zeros((d.kind.size + 1, 4))
     found, wall = math.inf, d.gap[2]
-    node[:, 1] = d.widths
+    for i in range(d.kind.size):
+        node[i, 1] = d.widths[i]
     for p in range(d.start[j], d.start[j + 1]):
         torque = d.torque
         if j > 0:
@@ -58,24 +60,27 @@ def fill(d, k, start, stop, rest):
     the stages add in slabs of their own, for wheels k - 1 of tip radius in a bin.
     """
     j, many, begin = k - 1, d.slabs.size, d.start[k - 1]
-    own = d.log_ratio[begin : d.start[k]]
+    end = d.start[k]
     span = d.log_high - d.log_low + d.delta + 2.0 * EDGE
     widths, more = np.zeros(k), np.zeros(many)
     alone = np.zeros((many, k), np.int64)  # 1 + slab of a stage, 0 where it shares with later ones
     for m in range(many):
         for i in range(k):
-            if not (d.slab_of[m, k:] == d.slab_of[m, i]).any():
-                alone[m, i] = 1 + d.slab_of[m, i]
-    place = np.zeros((own.size, d.modules.shape[1]), np.int64)
-    for p in range(own.size):
+            alone[m, i] = 1 + d.slab_of[m, i]
+            for o in range(k, d.kind.size):
+                if d.slab_of[m, o] == d.slab_of[m, i]:
+                    alone[m, i] = 0
+    bins = np.zeros((end - begin, d.modules.shape[1]), np.int64)
+    for p in range(end - begin):
         for q in range(d.first[begin + p], d.last[begin + p] + 1):
             radius = d.modules[j, q] * (0.5 * d.z2[begin + p] / d.cosine + 1.0)
-            place[p, q] = max(np.searchsorted(rest.edge[k], radius, side="right") - 1, 0)
+            above = place(rest.edge[k], 0, rest.edge.shape[1], radius)
+            bins[p, q] = max(above - 1, 0)  # not above the radius
     for cell in range(start, stop):
         low = cell * d.delta - EDGE
         through = d.torque * math.exp(low) * (1.0 - ALLOWANCE)
-        first = np.searchsorted(own, low) if k == 1 else 0
-        for p in range(begin + first, begin + np.searchsorted(own, low + span)):
+        first = place(d.log_ratio, begin, end, low) if k == 1 else begin
+        for p in range(first, place(d.log_ratio, begin, end, low + span)):
             torque, there = d.torque, True
             if k > 1:
                 torque = max(torque, through * (d.z1[p] / d.z2[p]))
@@ -91,8 +96,8 @@ def fill(d, k, start, stop, rest):
                     rest.least[k, i, cell] = min(rest.least[k, i, cell], widths[i])
                 added(d, alone, widths, more)
                 for m in range(many):
-                    if more[m] < rest.front[k, m, cell, place[p - begin, q]]:
-                        rest.front[k, m, cell, place[p - begin, q]] = more[m]
+                    if more[m] < rest.front[k, m, cell, bins[p - begin, q]]:
+                        rest.front[k, m, cell, bins[p - begin, q]] = more[m]
                 if grows(d, j):
                     break
 

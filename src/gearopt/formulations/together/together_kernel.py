@@ -16,7 +16,9 @@ from gearopt.formulations.together.node_kernel import (
     least_area,
     loaded,
     module,
+    place,
     put,
+    widest,
     width,
     worth,
 )
@@ -38,22 +40,24 @@ def expand(d, rest, j, parents, start, stop, cut, limit, children, bounds):
     aim, wall, larger = d.aim, d.gap[2], grows(d, j)
     count = looked = 0
     while start[0] < stop and looked < limit and count + d.modules.shape[1] <= bounds.size:
-        choice[:] = parents[start[0]]
+        for i in range(j + 1, stages):
+            choice[i, 0], choice[i, 1] = parents[start[0], i, 0], parents[start[0], i, 1]
         left_low, left_high, ratio = d.log_low, d.log_high, 1.0
         for i in range(j + 1, stages):
             put(d, i, choice[i, 0], choice[i, 1], node, body)
             left_low -= node[i, 2]
             left_high -= node[i, 2]
             ratio *= d.z2[choice[i, 0]] / d.z1[choice[i, 0]]
-        own = d.log_ratio[d.start[j] : d.start[j + 1]]
-        end = d.start[j] + np.searchsorted(own, left_high + EDGE)
+        end = place(d.log_ratio, d.start[j], d.start[j + 1], left_high + EDGE)
         if start[1] < 0:
-            first = np.searchsorted(own, left_low - EDGE) if j == 0 else 0
-            start[1] = d.start[j] + first
+            start[1] = d.start[j]
+            if j == 0:
+                start[1] = place(d.log_ratio, d.start[j], end, left_low - EDGE)
         if j < stages - 1:
             loaded(d, j + 1, choice, node)
         bases(d, j, node, base, shared)
-        kept[:] = node[:, 1]
+        for i in range(stages):
+            kept[i] = node[i, 1]
         pinion = body[j + 1, 1] if j + 1 < stages else 0.0
         while start[1] < end and looked < limit and count + d.modules.shape[1] <= bounds.size:
             p = start[1]
@@ -69,7 +73,8 @@ def expand(d, rest, j, parents, start, stop, cut, limit, children, bounds):
                     continue
                 choice[j, 1] = k
                 put(d, j, p, k, node, body)
-                node[:, 1] = kept
+                for i in range(j + 1, stages):
+                    node[i, 1] = kept[i]
                 node[j, 1] = b
                 least = math.inf
                 for m in range(base.size):
@@ -86,7 +91,9 @@ def expand(d, rest, j, parents, start, stop, cut, limit, children, bounds):
                     continue
                 value = bound(d, rest, j, node, body, need, cut, lengths, radius)
                 if value < cut:
-                    children[count] = choice
+                    for i in range(j, stages):
+                        children[count, i, 0] = choice[i, 0]
+                        children[count, i, 1] = choice[i, 1]
                     bounds[count] = value
                     count += 1
         if start[1] >= end:
@@ -125,16 +132,17 @@ def sift(d, rest, chain, turns, first, nodes, start, levels, limits, alive, foun
             if lengths[m] == math.inf or not apart(d, m, first, node, body, need):
                 continue
             for x in range(links + 1):
-                chain.reach[x] = body[first + x].max() + d.gap[2]
+                chain.reach[x] = widest(body, first + x) + d.gap[2]
                 for y in range(links + 1):
                     near = abs(x - y) < 2
                     chain.apart[0, x, y] = 0.0 if near else need[first + x, first + y]
             chain.reach[0] = max(chain.reach[0], radius[m])
-            chain.link[:] = node[first:, 0]
+            for x in range(links):
+                chain.link[x] = node[first + x, 0]
+                cells[0, 0, x], cells[0, 1, x] = -math.pi, math.pi
             chain.factor[0] = aim[3] + aim[4] * lengths[m]
             if aim[7] > 0.0:
                 chain.factor[0] = max(aim[3], lengths[m])
-            cells[0, 0], cells[0, 1] = -math.pi, math.pi
             cells[0, 0, 0], cells[0, 1, 0] = turns[0], turns[1]
             bounds[0], count, used, least = 0.0, 1, 0, better
             while count > 0 and used < most and least == better:
@@ -148,7 +156,8 @@ def sift(d, rest, chain, turns, first, nodes, start, levels, limits, alive, foun
             if least < better:
                 if alive[start] != 1 or least < found[start, 0]:
                     found[start, 0], found[start, 1] = least, m
-                    found[start, 2:] = theta
+                    for x in range(links):
+                        found[start, 2 + x] = theta[x]
                 alive[start] = 1
                 if first > 0:
                     break
