@@ -72,7 +72,7 @@ def arrangements(box: Gearbox) -> tuple[Arrangement, ...]:
     if box.slabs is not None:
         return (arrange(box, box.slabs),)
     kept: list[Arrangement] = []
-    for slabs in sorted(_orders(len(box.pairs)), key=lambda s: (-len(s), s)):
+    for slabs in sorted(orders(len(box.pairs)), key=lambda s: (-len(s), s)):
         one = arrange(box, slabs)
         possible = one.length <= box.largest[2] + TOUCH and not clashes(box, one)
         if possible and not any(_dominates(k, one) for k in kept):
@@ -106,7 +106,7 @@ def _dominates(a: Arrangement, b: Arrangement) -> bool:
 
 
 @cache
-def _orders(stages: int) -> tuple[Slabs, ...]:
+def orders(stages: int) -> tuple[Slabs, ...]:
     """Orders of slabs in which no neighbours share one.
 
     Mirror images are both there: gears of unlike widths in a slab start together, and a keep-out

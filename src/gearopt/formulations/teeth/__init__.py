@@ -157,7 +157,7 @@ def _outcome(
         progress.nodes += more.nodes
         if more.stopped:
             found = found[:1]
-    points = [_point(train, teeth) for teeth in found]
+    points = [best_point(train, teeth) for teeth in found]
     proof = {
         "method": "exhausted",
         "arithmetic": "ratios, teeth, diameters and width steps rational; loads and volumes double",
@@ -211,7 +211,7 @@ def _in_order(progress: Progress) -> list[Teeth]:
     return [t for _, ties in groups for t in sorted(ties, key=lambda t: (sum(map(sum, t)), t))]
 
 
-def _point(train: Train, teeth: Teeth) -> Array:
+def best_point(train: Train, teeth: Teeth) -> Array:
     """The point of a train: best module and width of every stage for its teeth."""
     columns: dict[str, list[float]] = {name: [] for name in VARIABLES}
     torque = train.torque

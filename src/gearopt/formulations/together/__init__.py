@@ -1,0 +1,99 @@
+"""Sizes and layout at once: teeth, modules, face widths and link angles of the smallest gearbox.
+
+The same limits as `teeth` and `layout` together, and a proven bound: no train, in no layout, has a
+box that is smaller than the answer by more than its gap.
+"""
+
+import math
+from typing import Any
+
+from gearopt.formulations import teeth
+from gearopt.formulations.teeth.search import search as sizing
+from gearopt.formulations.together.search import MARGINS, Search, lay, prepare, prove
+from gearopt.formulations.together.tables import Make, numbers, pairs
+from gearopt.formulations.together.text import point, sizes, slabs_of, text
+from gearopt.formulations.train import Train
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.result import Budget, Event, Outcome, Watch
+
+__all__ = ["problem", "pairs", "sizes"]
+
+GAP = 1e-3  # proven where the budget asks for none
+FIRST = 40  # best sizings that are laid out before the search
+SLACK = 1e-6  # relative: margins are this much below the gap asked for, for rounding
+
+RANDOM = False
+COUNTS = "tooth pair or cell of angles bounded"
+SETTINGS = {"margins": MARGINS, "sizings laid out first": FIRST}
+
+
+def problem(train: Train, make: Make) -> Problem:
+    """The problem of a drive and its gearbox; `exact` finds the smallest box with its bound.
+
+    make(sizes) -> Gearbox: its pairs are `pairs(train, sizes)`; shaft k may grow with the torque
+    T1 u_1 ... u_k that it carries, and nothing else depends on the sizes. The objective is the
+    gearbox's. Variables are those of `text.text`.
+    """
+    drive, box = numbers(train, make)
+    known = slabs_of(box)
+
+    def exact(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
+        """Depth-first passes with narrowing margins; the seed is that of first layouts."""
+        search = Search(train, make, budget, watch, seed)
+        possible = _first(search)
+        wanted = (budget.gap or GAP) * (1.0 - SLACK)
+        margins = [m for m in MARGINS if m > wanted] + [wanted]
+        while possible and margins and not search.stopped:
+            work = prepare(search, drive, box, wanted)
+            while work is not None and margins and prove(search, work, margins[0]):
+                search.bound = max(search.bound, search.value * (1.0 - margins.pop(0)))
+                possible = search.best is not None
+                if not possible:
+                    break
+        return _outcome(search, known, possible)
+
+    return text(train, make, box, {"exact": exact})
+
+
+def _first(search: Search) -> bool:
+    """Lay out the best sizings; False if there is no train at all."""
+
+    def watch(event: Event) -> bool:
+        search.looked = event.evaluations
+        return search.goes_on()
+
+    progress = sizing(search.train, FIRST, Budget(), watch)
+    for _, one in progress.found[:FIRST]:
+        if search.stopped:
+            break
+        lay(search, teeth.sizes(search.train, teeth.best_point(search.train, one)), MARGINS[3])
+    return bool(progress.found) or progress.stopped
+
+
+def _outcome(search: Search, known: tuple[Any, ...], possible: bool) -> Outcome:
+    stopped, stages = search.stopped, len(search.train.stages)
+    proof = {
+        "method": "branch and bound, stopped early" if stopped else "exhausted",
+        "arithmetic": "ratios, teeth and steps rational; boxes double, bounds with an allowance",
+        "nodes": {f"{stages - k}": n for k, n in sorted(search.made.items())},
+        "nodes_with_a_layout": {f"{stages - k}": n for k, n in sorted(search.left.items())},
+        "trains_laid_out": search.trains,
+    }
+    if search.best is None:
+        return Outcome(
+            None,
+            not stopped,
+            infeasible=not stopped and not possible,
+            proof=proof,
+            evaluations=search.looked,
+            message="stopped before a layout was found" if stopped else "",
+        )
+    best = search.best
+    x = point(search.train, best.sizes, known.index(best.slabs), len(known) > 1, best.angles)
+    return Outcome(
+        x,
+        not stopped,
+        bound=search.bound if 0.0 < search.bound < math.inf else None,
+        proof=proof,
+        evaluations=search.looked,
+    )

@@ -1,0 +1,271 @@
+"""The search over whole trains and their layouts: incumbents, depth-first passes, last looks.
+
+A pass drops whatever cannot be below the best value by more than a margin; margins narrow from pass
+to pass, so that a search which is stopped has the bound of its last full pass.
+"""
+
+import math
+import time
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearopt.formulations import layout
+from gearopt.formulations.layout.chain import Chain, chain, turns
+from gearopt.formulations.layout.gearbox import Gearbox
+from gearopt.formulations.layout.slabs import Arrangement, arrangements, clashes
+from gearopt.formulations.teeth.search import within
+from gearopt.formulations.together.prepare import chains, rest, useful
+from gearopt.formulations.together.tables import Drive, Make, Rest
+from gearopt.formulations.train import Sizes, Train
+from gearopt.optimise.kernels import kernel
+from gearopt.optimise.result import Budget, Event, Watch
+from gearopt.optimise.terms import Array
+
+NODE = "gearopt.formulations.together.node_kernel"
+SEARCH = "gearopt.formulations.together.together_kernel"
+MARGINS = (0.3, 0.1, 0.03, 0.01, 3e-3, 1e-3, 3e-4, 1e-4)  # of the passes
+CHOICES = 200_000  # pairs looked at in a slice of an expansion
+CELLS = 100_000  # cells of angles in a slice of a sift
+CHILDREN = 4096  # nodes that an expansion makes at once
+PARENTS = 256  # nodes expanded together
+STALE = 0.9  # tables are made anew for a best value this much better
+CLOSE = 1e-3  # relative gap to which a train is laid out, or the margin where it is smaller
+LOOKS = (400, 20_000)  # cells spent on a node's layout, on a whole train's
+
+Nodes = NDArray[np.int64]  # (n, N, 2): pair and module of each stage
+
+
+@dataclass(frozen=True)
+class Design:
+    """A train with its layout: teeth, sizes, slabs, link angles [rad]; its objective."""
+
+    value: float
+    sizes: Sizes
+    teeth: tuple[tuple[int, int], ...]
+    slabs: tuple[tuple[int, ...], ...]
+    angles: Array
+
+
+@dataclass
+class Search:
+    """A search as it runs; its state is what a stopped one still knows.
+
+    best: the best design. bound: proven. looked: choices and cells looked at; nodes: by number of
+    stages chosen: made, and left after a look at their layout. trains: laid out to the end.
+    """
+
+    train: Train
+    make: Make
+    budget: Budget
+    watch: Watch | None
+    seed: int
+    best: Design | None = None
+    bound: float = 0.0
+    looked: int = 0
+    trains: int = 0
+    made: dict[int, int] = field(default_factory=dict)
+    left: dict[int, int] = field(default_factory=dict)
+    stopped: bool = False
+    clock: float = field(default_factory=time.perf_counter)
+
+    @property
+    def value(self) -> float:
+        """The best value, inf without a design."""
+        return math.inf if self.best is None else self.best.value
+
+    def goes_on(self) -> bool:
+        """Whether budget and watcher let it go on."""
+        seconds = time.perf_counter() - self.clock
+        late = self.budget.seconds is not None and seconds > self.budget.seconds
+        full = self.budget.evaluations is not None and self.looked >= self.budget.evaluations
+        best = None if self.best is None else self.best.value
+        event = Event(seconds, self.looked, best, self.bound or None)
+        told = self.watch is None or self.watch(event) is not False
+        self.stopped = self.stopped or late or full or not told
+        return not self.stopped
+
+    def watched(self, gap: float) -> tuple[Budget, Watch]:
+        """Budget and watch for a layout within this search."""
+        spent = self.looked
+
+        def watch(event: Event) -> bool:
+            self.looked = spent + event.evaluations
+            return self.goes_on()
+
+        return Budget(gap=gap), watch
+
+
+def cuts(value: float, margin: float) -> tuple[float, float]:
+    """What is not below the first is dropped; what is below the second is looked for.
+
+    Between the two a search may do either: equal, it would resolve their level without end.
+    """
+    return value * (1.0 - margin), value * (1.0 - 0.8 * margin)
+
+
+def sized(train: Train, drive: Drive, node: Nodes) -> Sizes:
+    """Modules, pinion teeth, ratios and face widths of a whole node."""
+    kernels = kernel(NODE)
+    torque, found = train.torque, []
+    for j, (p, k) in enumerate(node):
+        z1, z2 = float(drive.z1[p]), float(drive.z2[p])
+        width = kernels.width(drive, j, p, k, torque)
+        found.append((float(drive.modules[j, k]), z1, z2 / z1, float(width)))
+        torque *= z2 / z1
+    return tuple(zip(*found, strict=True))
+
+
+def orders_of(box: Gearbox) -> list[Arrangement]:
+    """Arrangements in which no shafts clash and the box is not too long."""
+    return [a for a in arrangements(box) if not clashes(box, a) and a.length <= box.largest[2]]
+
+
+def lay(search: Search, sizes: Sizes, margin: float) -> None:
+    """Keep the best layout of a train if it betters the best value by more than a margin."""
+    box = search.make(sizes)
+    search.trains += 1
+    for order in orders_of(box):
+        if not _below(search, box, order, margin):
+            continue
+        one = replace(box, slabs=order.slabs)
+        budget, watch = search.watched(min(margin, CLOSE))
+        outcome = layout.problem(one).methods["exact"](None, budget, search.seed, watch)
+        if outcome.x is not None:
+            keep(search, sizes, order, outcome.x)
+
+
+def keep(search: Search, sizes: Sizes, order: Arrangement, angles: Array) -> None:
+    """Keep a layout if it is the best so far."""
+    text = layout.problem(replace(search.make(sizes), slabs=order.slabs))
+    value = float(text.batch(angles[None]).F[0, 0])
+    if value < search.value:
+        teeth = tuple((round(z), round(z * u)) for z, u in zip(sizes[1], sizes[2], strict=True))
+        search.best = Design(value, sizes, teeth, order.slabs, angles)
+
+
+def _below(search: Search, box: Gearbox, order: Arrangement, margin: float) -> bool:
+    """Whether an order may have a layout that betters the best value by a margin."""
+    if search.best is None:
+        return True
+    cut, aim = cuts(search.value, margin)
+    kernels = kernel("gearopt.formulations.layout.chain_kernel")
+    shape, links = chain(box, (order,)), len(box.pairs)
+    cells, bounds, theta = np.zeros((4000, 2, links)), np.zeros(4000), np.zeros(links)
+    cells[0, 0], cells[0, 1] = -math.pi, math.pi
+    cells[0, :, 0] = turns(box)
+    count, best = 1, aim
+    while count and best == aim and search.goes_on():
+        count, best, _, nodes = kernels.branch(
+            shape, 0, cells, bounds, count, best, math.inf, 1.0 - cut / aim, 20_000, theta
+        )
+        search.looked += nodes
+        if nodes == 0:
+            return True
+    return count > 0 or best < aim
+
+
+@dataclass(frozen=True)
+class Work:
+    """What passes work with: pairs of use and tables, made for a best value."""
+
+    value: float
+    drive: Drive
+    rest: Rest
+    chains: list[Chain]
+    turns: tuple[float, float]
+
+
+def prepare(search: Search, drive: Drive, box: Gearbox, margin: float) -> Work | None:
+    """The tables for all cuts down to a margin; None if stopped. box: one of any sizes."""
+    fewer = useful(drive, search.value * (1.0 - margin))
+    tables = rest(fewer, search.goes_on)
+    bare = replace(box, places=(), keep_outs=(), level=())
+    made = chains(fewer, box)
+    return None if tables is None else Work(search.value, fewer, tables, made, turns(bare))
+
+
+def prove(search: Search, work: Work, margin: float) -> bool:
+    """Drop all that is not below the best value by more than a margin; False if not finished.
+
+    It is not where it was stopped, nor where the best value has become so good that tables made for
+    it are worth their making.
+    """
+    last = work.drive.kind.size - 1
+    stack: list[tuple[int, Nodes, Array, Any]] = [
+        (last, np.zeros((1, last + 1, 2), np.int64), np.zeros(1), np.array([0, -1]))
+    ]
+    while stack:
+        stage, parents, bounds, place = stack.pop()
+        cut, aim = cuts(search.value, margin)
+        of_use = int(np.searchsorted(bounds, cut))
+        if place[0] >= of_use:
+            continue
+        stop = min(of_use, (int(place[0]) // PARENTS + 1) * PARENTS)
+        nodes, own = _children(search, work, stage, parents, place, stop, (cut, aim))
+        stack.append((stage, parents, bounds, place))
+        if stage > 0:
+            stack.append((stage - 1, nodes, own, np.array([0, -1])))
+        else:
+            _last_looks(search, work.drive, nodes, own, margin)
+        if not search.goes_on() or search.value < STALE * work.value:
+            return False
+    return True
+
+
+def _last_looks(search: Search, drive: Drive, nodes: Nodes, bounds: Array, margin: float) -> None:
+    """Lay out whole trains that may be below the cut."""
+    for node, value in zip(nodes, bounds, strict=True):
+        teeth = tuple((round(drive.z1[p]), round(drive.z2[p])) for p, _ in node)
+        if value < search.value * (1.0 - margin) and within(search.train, teeth):
+            lay(search, sized(search.train, drive, node), margin)
+        if search.stopped:
+            return
+
+
+def _children(
+    search: Search,
+    work: Work,
+    stage: int,
+    parents: Nodes,
+    place: Any,
+    stop: int,
+    levels: tuple[float, float],
+) -> tuple[Nodes, Array]:
+    """Children of some nodes that may lead below a cut, the best first."""
+    kernels = kernel(SEARCH)
+    count = work.drive.kind.size
+    nodes, bounds = np.zeros((CHILDREN, count, 2), np.int64), np.zeros(CHILDREN)
+    made, looked = kernels.expand(
+        work.drive, work.rest, stage, parents, place, stop, levels[0], CHOICES, nodes, bounds
+    )
+    search.looked += looked
+    search.made[stage] = search.made.get(stage, 0) + made
+    order = np.argsort(bounds[:made], kind="stable")
+    nodes, bounds = nodes[order], bounds[order]
+    alive, found = np.zeros(made, np.int64), np.zeros((made, 2 + count - stage))
+    start, most = 0, LOOKS[0] if stage > 0 else LOOKS[1]
+    shape = work.chains[stage]
+    while start < made:
+        start, cells = kernels.sift(
+            work.drive,
+            work.rest,
+            shape,
+            work.turns,
+            stage,
+            nodes,
+            start,
+            levels,
+            (most, CELLS),
+            alive,
+            found,
+        )
+        search.looked += cells
+        if not search.goes_on():
+            break
+    alive[start:] = 2
+    use = np.nonzero(alive)[0]
+    search.left[stage] = search.left.get(stage, 0) + len(use)
+    return nodes[use], bounds[use]

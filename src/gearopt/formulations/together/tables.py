@@ -1,0 +1,258 @@
+"""A drive and its gearbox as the arrays that the kernels search, and what the rest at least costs.
+
+Gears follow from the teeth (`pairs`); shafts may depend on the torque they carry, and count with
+the least radius in a cell of it. Facing bodies follow from the order of the slabs alone, but for
+short bearings beside gears: those are left to the last look at a train.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearopt.errors import SolveError
+from gearopt.formulations.layout.gearbox import ANYWHERE, Gearbox, Pair, Shaft
+from gearopt.formulations.layout.slabs import TOUCH, Slabs, arrange, orders
+from gearopt.formulations.teeth.stage import Table, table
+from gearopt.formulations.train import Sizes, Train
+from gearopt.optimise.terms import Array
+from gearopt.physics.geometry import centre_distance, reference_diameter
+
+Make = Callable[[Sizes], Gearbox]
+Index = NDArray[np.int64]
+DELTA = 0.01  # cells of log ratio: a third of it in sizes, below the usual ratio tolerance
+BINS = 48  # of wheel radii, for what a larger wheel saves in width
+
+
+class Drive(NamedTuple):
+    """N stages with their pairs one after the other (start), M arrangements of the slabs.
+
+    kind: of face widths, 0 tied, 1 free, 2 given, 3 on steps (given: the width or the step).
+    shaft, bearing (N+1, cells): least radius by log ratio reached. gap: between gears, from shafts,
+    to the wall, along the axis. faces (M, N+1, 4, N+1, 4): whether bodies of two shafts face each
+    other: wheel, pinion, shaft, bearing. widths: least of each stage, others (M, N): least length
+    that the stages before one add. aim (8,): most width, height and length; constant of the
+    objective and its factor of the length; exponents of width and height; 1 for the longest side.
+    """
+
+    torque: float
+    low_ratio: float
+    log_low: float
+    log_high: float
+    cosine: float
+    delta: float
+    start: Index
+    z1: Array
+    z2: Array
+    log_ratio: Array
+    need: Array
+    first: Index
+    last: Index
+    least_steps: Array
+    most_steps: Array
+    modules: Array
+    exponent: Array
+    kind: Index
+    low: Array
+    high: Array
+    given: Array
+    k_factor: Array
+    unit_load: Array
+    least_before: Array
+    shaft: Array
+    bearing: Array
+    gap: Array
+    ends: float
+    motor: float
+    faces: NDArray[np.uint8]
+    slabs: Index
+    slab_of: Index
+    widths: Array
+    others: Array
+    aim: Array
+
+
+class Rest(NamedTuple):
+    """What stages 0..k-1 at least cost, by cell of their log ratio; filled in by the kernel.
+
+    least (N, N, cells): width of each stage. edge (N, bins): tip radii of wheel k - 1. front
+    (N, M, cells, bins): length that is added in slabs of their own.
+    """
+
+    least: Array
+    edge: Array
+    front: Array
+
+
+def pairs(train: Train, sizes: Sizes) -> tuple[Pair, ...]:
+    """The gear pairs of a train: centre distance, tip radii d/2 + m, face width [mm]."""
+    found = []
+    for m, z, u, b in zip(*sizes, strict=True):
+        d = float(reference_diameter(m, z, train.helix_angle))
+        wheel = 0.5 * d * u + m
+        found.append(Pair(float(centre_distance(d, u)), 0.5 * d + m, float(wheel), float(b)))
+    return tuple(found)
+
+
+def numbers(train: Train, make: Make) -> tuple[Drive, Gearbox]:
+    """The arrays of a drive, and a gearbox with its constants.
+
+    SolveError where face widths decide which bodies face each other.
+    """
+    stages = train.stages
+    tables = [table(train, k, train.highest_ratio) for k in range(len(stages))]
+    cells = int(math.log(train.highest_ratio) / DELTA) + 2
+    boxes = [make(_loaded_like(train, math.exp(c * DELTA))) for c in range(cells)]
+    box = boxes[0]
+    _refuse(train, box)
+    slabs, faces = _facing(box)
+    wide = max(s.bearing_width for s in box.shafts)
+    gap = box.clearances
+    end = max(gap.axial, wide) if box.partial else gap.axial + wide
+    power, factor = _objective(box)
+    most = (min(box.largest[0], box.width or math.inf), *box.largest[1:])
+    before = [math.prod(float(s.ratio[0]) for s in stages[:k]) for k in range(len(stages))]
+    columns: tuple[Any, ...] = (
+        train.torque,
+        float(train.lowest_ratio),
+        math.log(train.lowest_ratio),
+        math.log(train.highest_ratio),
+        math.cos(train.helix_angle),
+        DELTA,
+        *_pairs(tables),
+        *_stages(train, tables),
+        np.array(before),
+        np.array([[b.shafts[x].radius for b in boxes] for x in range(len(box.shafts))]),
+        np.array([[_bearing(b.shafts[x]) for b in boxes] for x in range(len(box.shafts))]),
+        np.array([gap.gears, gap.shafts, gap.wall, gap.axial]),
+        2.0 * end,
+        box.motor,
+        faces,
+        np.array([len(s) for s in slabs]),
+        np.array([[_slab(s, k) for k in range(len(stages))] for s in slabs]),
+        np.zeros(len(stages)),
+        np.zeros((len(slabs), len(stages))),
+        np.array([*most, *factor, *power, float(box.objective == "longest_side")]),
+    )
+    return Drive(*columns), box
+
+
+def _loaded_like(train: Train, ratio: float) -> Sizes:
+    """Sizes whose shafts all carry the torque behind a ratio."""
+    modules = tuple(float(s.modules[0]) for s in train.stages)
+    teeth = tuple(float(s.pinion_teeth[0]) for s in train.stages)
+    ones = (1.0,) * (len(modules) - 1)
+    return modules, teeth, (ratio, *ones), (1.0,) * len(modules)
+
+
+def _bearing(shaft: Shaft) -> float:
+    return shaft.bearing_radius if shaft.bearing_width > 0 else 0.0
+
+
+def _slab(slabs: Slabs, stage: int) -> int:
+    return next(k for k, own in enumerate(slabs) if stage in own)
+
+
+def _refuse(train: Train, box: Gearbox) -> None:
+    choice = any(not s.face_width.tied and s.face_width.fixed is None for s in train.stages)
+    shared = box.slabs is None or any(len(s) > 1 for s in box.slabs)
+    bearings = box.partial and shared and any(s.bearing_width > 0 for s in box.shafts)
+    along = any(k.x != ANYWHERE for k in box.keep_outs)
+    if choice and (along or (bearings and len(box.pairs) > 2)):
+        what = "keep-outs with a range of x" if along else "bearings beside gears"
+        raise SolveError(f"together with {what}, face widths must be tied to d1 or given")
+
+
+def _objective(box: Gearbox) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Exponents of width and height; constant and factor of the length."""
+    if box.objective == "longest_side":
+        return (1.0, 1.0), (box.width or 0.0, 0.0)
+    wide = box.objective in ("box_volume", "plan_area", "face_area")
+    high = box.objective in ("box_volume", "face_area", "height")
+    size = box.width if box.width is not None and wide else 1.0
+    factor = (0.0, size) if box.objective in ("box_volume", "plan_area") else (size, 0.0)
+    return (float(wide and box.width is None), float(high)), factor
+
+
+def _facing(box: Gearbox) -> tuple[list[Slabs], NDArray[np.uint8]]:
+    """Orders of slabs that none betters whatever the sizes, and which bodies face each other."""
+    shafts = tuple(Shaft(1.0, 1.0, 0.0 if box.partial else s.bearing_width) for s in box.shafts)
+    alike = replace(box, pairs=tuple(Pair(2.0, 1.0, 1.0, 1.0) for _ in box.pairs), shafts=shafts)
+    found: list[tuple[Slabs, NDArray[np.uint8]]] = []
+    for slabs in (box.slabs,) if box.slabs is not None else orders(len(box.pairs)):
+        new = (slabs, _faces(alike, slabs))
+        if not any(_no_worse(old, new) for old in found):
+            found = [old for old in found if not _no_worse(new, old)] + [new]
+    return [slabs for slabs, _ in found], np.stack([faces for _, faces in found])
+
+
+def _no_worse(a: tuple[Slabs, NDArray[np.uint8]], b: tuple[Slabs, NDArray[np.uint8]]) -> bool:
+    """Whether the same stages share slabs, and a's bodies face each other only where b's do."""
+    return sorted(a[0]) == sorted(b[0]) and bool((a[1] <= b[1]).all())
+
+
+def _faces(box: Gearbox, slabs: Slabs) -> NDArray[np.uint8]:
+    """(N+1, 4, N+1, 4): 1 where two bodies stand side by side and do not mesh."""
+    bodies = arrange(box, slabs).bodies
+    found = np.zeros((len(bodies), 4, len(bodies), 4), np.uint8)
+    for x, own in enumerate(bodies):
+        for y, other in enumerate(bodies):
+            for p in own:
+                for q in other:
+                    side = min(p.x[1], q.x[1]) - max(p.x[0], q.x[0]) > TOUCH
+                    mesh = p.gear and q.gear and p.stage == q.stage
+                    if x != y and side and not mesh:
+                        found[x, _kind(p.name), y, _kind(q.name)] = 1
+    return found
+
+
+def _kind(name: str) -> int:
+    return ("wheel", "pinion", "shaft", "bearing").index(name.split()[0])
+
+
+def _pairs(tables: list[Table]) -> tuple[Any, ...]:
+    """Start of each stage's pairs, and their numbers one after the other."""
+    start = np.concatenate([[0], np.cumsum([len(t.z1) for t in tables])])
+    columns = [
+        np.concatenate([np.asarray(getattr(t, name), kind) for t in tables])
+        for name, kind in (
+            ("z1", float),
+            ("z2", float),
+            ("log_ratio", float),
+            ("need", float),
+            ("first", np.int64),
+            ("last", np.int64),
+        )
+    ]
+    most = max(len(t.modules) for t in tables)
+    stepped = any(t.steps is not None for t in tables)
+    steps = [np.zeros((most if stepped else 1, int(start[-1]) if stepped else 1)) for _ in range(2)]
+    for k, t in enumerate(tables):
+        if t.steps is not None:
+            for own, values in zip(steps, t.steps, strict=True):
+                own[: len(t.modules), start[k] : start[k + 1]] = values
+    return start, *columns, *steps
+
+
+def _stages(train: Train, tables: list[Table]) -> tuple[Array, ...]:
+    """What belongs to a stage as a whole, from modules to its load limits."""
+    faces = [s.face_width for s in train.stages]
+    modules = np.full((len(tables), max(len(t.modules) for t in tables)), np.inf)
+    for k, t in enumerate(tables):
+        modules[k, : len(t.modules)] = t.modules
+    kinds = [
+        3 if f.step is not None else 2 if f.fixed is not None else 0 if f.tied else 1 for f in faces
+    ]
+    return (
+        modules,
+        np.array([t.exponent for t in tables]),
+        np.array(kinds),
+        np.array([float(f.low) for f in faces]),
+        np.array([math.inf if f.high is None else float(f.high) for f in faces]),
+        np.array([float(f.step or f.fixed or 0) for f in faces]),
+        np.array([s.k_factor for s in train.stages]),
+        np.array([s.unit_load for s in train.stages]),
+    )

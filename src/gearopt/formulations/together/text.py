@@ -1,0 +1,150 @@
+"""A train and its layout as one problem: the limits of `teeth`, then those of the layout.
+
+The gearbox depends on the sizes, so the text builds it for one design at a time; every design has
+the same rows, with a need of zero where nothing faces.
+"""
+
+import math
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+
+from gearopt.formulations import teeth
+from gearopt.formulations.layout.chain import chain
+from gearopt.formulations.layout.gearbox import Gearbox
+from gearopt.formulations.layout.slabs import Arrangement, Slabs, arrange, orders
+from gearopt.formulations.layout.text import positions, sides
+from gearopt.formulations.together.tables import Make
+from gearopt.formulations.train import Sizes, Train
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.terms import Array, Terms, Var, each
+
+
+def slabs_of(box: Gearbox) -> tuple[Slabs, ...]:
+    """The orders of slabs that a gearbox leaves open, as the variable `arrangement` counts them."""
+    return (box.slabs,) if box.slabs is not None else orders(len(box.pairs))
+
+
+def text(
+    train: Train, make: Make, box: Gearbox, methods: Mapping[str, Callable[..., Any]]
+) -> Problem:
+    """Variables: those of `teeth`, angle [rad] of each link, arrangement where several are open.
+
+    box: what `make` gives for any sizes.
+    """
+    sized, known, links = teeth.problem(train), slabs_of(box), len(train.stages)
+    own = [Var("angle", "rad", -math.pi, math.pi, 0.1, links)]
+    if len(known) > 1:
+        own.append(Var("arrangement", "", 0, len(known) - 1, 0, integer=True))
+    variables = (*sized.variables, *own)
+    count = sum(v.size for v in sized.variables)
+
+    def one(point: Array) -> tuple[dict[str, float], dict[str, float], dict[str, float]]:
+        sizes = teeth.sizes(train, point[:count])
+        slabs = known[round(point[-1]) if len(known) > 1 else 0]
+        there = make(sizes)
+        return _terms(there, arrange(there, slabs), point[count : count + links])
+
+    def evaluate(x: Any, p: Any) -> Terms:
+        found = sized.evaluate(x, p)
+        columns = [v for var in variables for v in each(getattr(x, var.name))]
+        points = np.atleast_2d(np.array(np.broadcast_arrays(*columns), float).T)
+        rows = [one(point) for point in points]
+        many = np.ndim(columns[0]) > 0
+
+        def block(k: int) -> dict[str, Any]:
+            names = rows[0][k]
+            return {n: np.array([r[k][n] for r in rows]) if many else names[n] for n in names}
+
+        return Terms(
+            block(0),
+            {**found.limits, **block(1)},
+            equal={**found.equal, **block(2)},
+            report=dict(found.minimise),
+        )
+
+    return Problem("together", variables, (), evaluate, methods=methods)
+
+
+def _terms(
+    box: Gearbox, order: Arrangement, angles: Array
+) -> tuple[dict[str, float], dict[str, float], dict[str, float]]:
+    """Objective, limits and equalities of a layout."""
+    shape = chain(box, (order,))
+    y, z = positions(shape, tuple(float(a) for a in angles))
+    side = sides(shape, y, z)
+    width, height = side["width"], side["height"]
+    factor = float(shape.factor[0])
+    if shape.longest:
+        value = max(width, height, factor)
+    else:
+        value = factor * width ** float(shape.power[0]) * height ** float(shape.power[1])
+    limits: dict[str, float] = {}
+    for i in range(len(y)):
+        for j in range(i + 1, len(y)):
+            limits[f"shafts_apart[{i + 1},{j + 1}]"] = _clear(
+                order.apart[i, j], y[i] - y[j], z[i] - z[j]
+            )
+        for k, (left, right, bottom, top) in enumerate(shape.keep):
+            dy, dz = max(left - y[i], y[i] - right, 0.0), max(bottom - z[i], z[i] - top, 0.0)
+            limits[f"clear_of_keep_out[{k + 1},{i + 1}]"] = _clear(order.keep_apart[k, i], dy, dz)
+    for name, there, most in (
+        ("width", width, shape.most[0]),
+        ("height", height, shape.most[1]),
+        ("length", order.length, box.largest[2]),
+    ):
+        if math.isfinite(most):
+            limits[f"largest_{name}"] = there / float(most)
+    return {box.objective: value}, limits | _placed(box, y, z)[0], _placed(box, y, z)[1]
+
+
+def _clear(need: float, dy: float, dz: float) -> float:
+    """Utilisation of a least distance: at most 1 where it is kept."""
+    there = dy**2 + dz**2
+    return 1.0 + (need**2 - there) / max(need**2, there, 1.0)
+
+
+def _placed(box: Gearbox, y: list[Any], z: list[Any]) -> tuple[dict[str, float], dict[str, float]]:
+    """Limits and equalities of given places and of the split line."""
+    limits: dict[str, float] = {}
+    equal: dict[str, float] = {}
+    scale = max(p.centre_distance for p in box.pairs)
+    for p in box.places:
+        for axis, c, (low, high) in (("y", y, p.y), ("z", z, p.z)):
+            name = f"place_{axis}[{p.shaft + 1}]"
+            if low == high:
+                equal[name] = 1.0 + (c[p.shaft] - low) / scale
+            elif math.isfinite(high - low):
+                limits[f"{name}_low"] = 1.0 + (low - c[p.shaft]) / scale
+                limits[f"{name}_high"] = 1.0 + (c[p.shaft] - high) / scale
+    first, *others = sorted(box.level) or [0]
+    for k in others:
+        equal[f"split_line[{k + 1}]"] = 1.0 + (z[k] - z[first]) / scale
+    return limits, equal
+
+
+def point(train: Train, sizes: Sizes, slabs: int, several: bool, angles: Array) -> Array:
+    """The point of a train with its layout."""
+    module, z1, ratio, width = sizes
+    faces = [s.face_width for s in train.stages]
+    free = [not f.tied and f.step is None and f.fixed is None for f in faces]
+    columns = {
+        "module": module,
+        "pinion_teeth": z1,
+        "wheel_teeth": [round(z * u) for z, u in zip(z1, ratio, strict=True)],
+        "face_width": [
+            b if own else float(f.fixed or 1) for b, own, f in zip(width, free, faces, strict=True)
+        ],
+        "width_steps": [
+            round(b / float(f.step)) if f.step else 1 for b, f in zip(width, faces, strict=True)
+        ],
+    }
+    found = [float(v) for var in teeth.problem(train).variables for v in columns[var.name]]
+    return np.array([*found, *angles, *([float(slabs)] if several else [])])
+
+
+def sizes(train: Train, x: Array) -> Sizes:
+    """Modules, pinion teeth, ratios and face widths of a point of `text`."""
+    count = sum(v.size for v in teeth.problem(train).variables)
+    return teeth.sizes(train, x[:count])
