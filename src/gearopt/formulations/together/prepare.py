@@ -96,10 +96,11 @@ def chains(drive: Drive, box: Gearbox) -> list[Chain]:
                 np.array(level, np.int64),
                 np.zeros(shafts - 1, np.int64),
                 np.zeros((shafts - 1, 3)),
-                drive.aim[:2].copy(),
+                np.array([*drive.aim[:2], np.inf]),
                 drive.aim[5:7].copy(),
                 np.zeros(1),
                 bool(drive.aim[7]),
+                np.zeros(1),
             )
         )
     return found

@@ -151,20 +151,18 @@ def _below(search: Search, box: Gearbox, order: Arrangement, margin: float) -> b
     if search.best is None:
         return True
     cut, aim = cuts(search.value, margin)
-    kernels = kernel("gearopt.formulations.layout.chain_kernel")
+    kernels = kernel("gearopt.formulations.layout.branch_kernel")
     shape, links = chain(box, (order,)), len(box.pairs)
     cells, bounds, theta = np.zeros((4000, 2, links)), np.zeros(4000), np.zeros(links)
     cells[0, 0], cells[0, 1] = -math.pi, math.pi
     cells[0, :, 0] = turns(box)
-    count, best = 1, aim
+    count, best, floor = 1, aim, math.inf
     while count and best == aim and search.goes_on():
-        count, best, _, nodes = kernels.branch(
-            shape, 0, cells, bounds, count, best, math.inf, 1.0 - cut / aim, 20_000, theta
+        count, best, floor, nodes, _ = kernels.branch(
+            shape, 0, cells, bounds, count, best, floor, 1.0 - cut / aim, 20_000, theta
         )
         search.looked += nodes
-        if nodes == 0:
-            return True
-    return count > 0 or best < aim
+    return count > 0 or best < aim or floor < cut
 
 
 @dataclass(frozen=True)

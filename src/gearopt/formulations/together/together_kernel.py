@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numba import njit
 
-from gearopt.formulations.layout.chain_kernel import branch
+from gearopt.formulations.layout.branch_kernel import branch
 from gearopt.formulations.together.node_kernel import (
     ALLOWANCE,
     EDGE,
@@ -144,14 +144,12 @@ def sift(d, rest, chain, turns, first, nodes, start, levels, limits, alive, foun
             if aim[7] > 0.0:
                 chain.factor[0] = max(aim[3], lengths[m])
             cells[0, 0, 0], cells[0, 1, 0] = turns[0], turns[1]
-            bounds[0], count, used, least = 0.0, 1, 0, better
+            bounds[0], count, used, least, floor = 0.0, 1, 0, better, math.inf
             while count > 0 and used < most and least == better:
-                count, least, _, looked = branch(
-                    chain, 0, cells, bounds, count, least, math.inf, margin, 32, theta
+                count, least, floor, looked, _ = branch(
+                    chain, 0, cells, bounds, count, least, floor, margin, 64, theta
                 )
                 used += looked
-                if looked == 0:  # no room for more cells
-                    break
             spent += used + 1
             if least < better:
                 if alive[start] != 1 or least < found[start, 0]:
@@ -161,7 +159,7 @@ def sift(d, rest, chain, turns, first, nodes, start, levels, limits, alive, foun
                 alive[start] = 1
                 if first > 0:
                     break
-            elif count > 0 and alive[start] == 0:
+            elif (count > 0 or floor < cut) and alive[start] == 0:
                 alive[start] = 2
         start += 1
     return start, spent
