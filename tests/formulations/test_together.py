@@ -11,7 +11,7 @@ from gearopt.errors import SolveError
 from gearopt.formulations import layout, teeth, together
 from gearopt.formulations.layout.chain import chain, turns
 from gearopt.formulations.layout.gearbox import Clearances, Gearbox, KeepOut, Shaft
-from gearopt.formulations.layout.slabs import arrangements, clashes
+from gearopt.formulations.layout.slabs import arrangements, clashes, orders
 from gearopt.formulations.together.tables import numbers
 from gearopt.formulations.train import FaceWidth, Stage, Train
 from gearopt.optimise.kernels import kernel
@@ -216,13 +216,7 @@ def test_anchor_with_a_shared_slab():
     result = certified(train, frame(train, (8.0, 15.0, 22.5, 35.0)), 1e-2)
     assert result.status == "optimal"
     assert result.value <= 38_165_872.4
-    assert result.design["arrangement"] == teeth_order()
-
-
-def teeth_order():
-    from gearopt.formulations.layout.slabs import orders
-
-    return orders(3).index(((0, 2), (1,)))
+    assert orders(3)[result.design["arrangement"]] == ((0, 2), (1,))
 
 
 @pytest.mark.slow
@@ -247,8 +241,7 @@ def test_never_worse_than_sizing_first(seed):
         assert result.status == "infeasible"
         return
     box = make(teeth.sizes(train, outcome.x))
-    orders = [a for a in arrangements(box) if not clashes(box, a)]
-    for order in orders:
+    for order in (a for a in arrangements(box) if not clashes(box, a)):
         laid = run(layout.problem(replace(box, slabs=order.slabs)), "exact", Budget(gap=1e-4))[0]
         if laid.value is not None:
             assert result.value <= laid.value * (1 + 1e-9)
@@ -283,6 +276,13 @@ def test_what_face_widths_decide_is_refused():
     keep = KeepOut("tank", (50.0, 80.0), (0.0, 10.0), (0.0, 30.0))
     with pytest.raises(SolveError, match="keep-outs with a range of x"):
         together.problem(train, frame(train, (10.0, 17.5, 30.0), keep_outs=(keep,)))
+
+
+def test_pairs_of_other_sizes_are_refused():
+    train = elevator()
+    make = frame(train, (10.0, 17.5, 30.0))
+    with pytest.raises(SolveError, match="takes its pairs from"):
+        together.problem(train, lambda sizes: make((*sizes[:3], (50.0, 50.0))))
 
 
 def test_the_text_measures_a_layout_as_layout_does():

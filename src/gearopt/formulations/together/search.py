@@ -27,7 +27,7 @@ from gearopt.optimise.terms import Array
 NODE = "gearopt.formulations.together.node_kernel"
 SEARCH = "gearopt.formulations.together.together_kernel"
 MARGINS = (0.3, 0.1, 0.03, 0.01, 3e-3, 1e-3, 3e-4, 1e-4)  # of the passes
-CHOICES = 200_000  # pairs looked at in a slice of an expansion
+CHOICES = 50_000  # pairs looked at in a slice of an expansion
 CELLS = 100_000  # cells of angles in a slice of a sift
 CHILDREN = 4096  # nodes that an expansion makes at once
 PARENTS = 256  # nodes expanded together

@@ -100,13 +100,16 @@ def pairs(train: Train, sizes: Sizes) -> tuple[Pair, ...]:
 def numbers(train: Train, make: Make) -> tuple[Drive, Gearbox]:
     """The arrays of a drive, and a gearbox with its constants.
 
-    SolveError where face widths decide which bodies face each other.
+    SolveError where its pairs are not those of its sizes, or where face widths decide which bodies
+    face each other.
     """
     stages = train.stages
     tables = [table(train, k, train.highest_ratio) for k in range(len(stages))]
     cells = int(math.log(train.highest_ratio) / DELTA) + 2
     boxes = [make(_loaded_like(train, math.exp(c * DELTA))) for c in range(cells)]
     box = boxes[0]
+    if box.pairs != pairs(train, _loaded_like(train, 1.0)):
+        raise SolveError("the gearbox of sizes takes its pairs from together.pairs(train, sizes)")
     _refuse(train, box)
     slabs, faces = _facing(box)
     wide = max(s.bearing_width for s in box.shafts)
