@@ -249,3 +249,28 @@ def test_keep_outs_and_the_motor_are_kept_clear():
     assert max(apart.values()) > 130 + 0.5 * layout["shafts"][2]["diameter_mm"] + 2
     assert sum(b[1] in ("floor", "ceiling", "brake") for b in named) == 9
     assert all(g["gap_mm"] >= g["needed_mm"] - 1e-6 for g in layout["gaps"])
+
+
+@pytest.mark.slow
+def test_gears_and_box_at_once():
+    """Below the box of a scan near the least gear volume (44,506,647), with its bound."""
+    text = (PROBLEMS / "three_stage_together.toml").read_text(encoding="utf-8")
+    result = gearopt.solve(scene(text), gap=0.01)
+    assert result.status == "optimal" and result.value <= 44_506_647
+    assert result.bound >= 0.99 * result.value
+    (apart,) = result.parts
+    assert apart.name == "apart" and apart.value == pytest.approx(47_483_050, abs=1)
+    stages = result.design["stages"]
+    assert [(s["normal_module_mm"], s["pinion_teeth"], s["wheel_teeth"]) for s in stages] == [
+        (1.5, 21, 157),
+        (3.0, 21, 74),
+        (4.0, 22, 91),
+    ]
+    assert result.design["gear_volume_mm3"] == pytest.approx(13_014_531, abs=1)
+    assert result.limits["shaft_2_to_wheel_3"] <= 1.0 + 1e-9
+
+
+def test_together_is_for_exact_alone():
+    text = (PROBLEMS / "three_stage_together.toml").read_text(encoding="utf-8")
+    with pytest.raises(SolveError, match="together"):
+        gearopt.solve(scene(text), "sa")

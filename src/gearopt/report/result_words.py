@@ -87,19 +87,29 @@ def proof(result: Result) -> list[str]:
         )
     lines += _method(result)
     for part in result.parts:
-        if part.objective["name"] != result.objective["name"]:
-            continue
-        if part.value is not None and result.value is not None and result.status == "optimal":
-            lines.append(
-                f"With real-valued teeth and modules: {number(part.value)} {unit} "
-                f"(whole teeth and standard modules cost "
-                f"{100 * (result.value / part.value - 1):.2f} %)."
-            )
+        if part.objective["name"] == result.objective["name"] and result.status == "optimal":
+            lines += _beside(result, part, unit)
     lines += result.report.get("notes", []) if result.status != "infeasible" else []
     if result.message and result.status != "infeasible":
         lines.append(result.message[0].upper() + result.message[1:] + ".")
     lines.append(f"{result.method}, {result.evaluations:,} evaluations, {result.seconds:.3g} s.")
     return lines
+
+
+def _beside(result: Result, part: Result, unit: str) -> list[str]:
+    """What another way to the same objective gives: real-valued sizes, or gears chosen first."""
+    if part.value is None or result.value is None:
+        return []
+    more = 100 * (result.value / part.value - 1)
+    if part.name == "apart":
+        value = f"{number(part.value)} {unit}"
+        return [
+            f"Gears chosen first and then laid out: {value} (at once is {-more:.2f} % smaller)."
+        ]
+    return [
+        f"With real-valued teeth and modules: {number(part.value)} {unit} "
+        f"(whole teeth and standard modules cost {more:.2f} %)."
+    ]
 
 
 def _method(result: Result) -> list[str]:
@@ -118,6 +128,12 @@ def _method(result: Result) -> list[str]:
         )
     elif "ways_to_share_out" in proof:
         lines.append(_shared_out(proof))
+    elif "trains_laid_out" in proof:
+        count = sum(proof["nodes"].values())
+        lines.append(
+            f"Proof: {count:,} trains and parts of trains bounded, {proof['trains_laid_out']:,} "
+            f"laid out in full ({proof['method']})."
+        )
     elif "pruning_margin" in proof and "nodes" in proof:
         lines.append(
             f"Proof: {proof['nodes']:,} cells of link angles, each bounded by intervals "

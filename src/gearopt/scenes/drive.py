@@ -33,10 +33,12 @@ def solve(scene: Scene, ask: Ask) -> Result:
     cost, and a second, independent bound.
     """
     if scene.layout is not None:
-        from gearopt.scenes.box.lay_out import lay_out
+        from gearopt.scenes.box.lay_out import lay_out, lay_out_together
 
         sized = solve(bare(scene), replace(ask, method=None))
-        return sized if sized.value is None else lay_out(scene, ask, sized)
+        if sized.value is None:
+            return sized
+        return (lay_out_together if scene.layout.together else lay_out)(scene, ask, sized)
     result = _answer(scene, ask)
     if result.status != "infeasible":
         return result

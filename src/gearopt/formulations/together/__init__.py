@@ -11,12 +11,12 @@ from gearopt.formulations import teeth
 from gearopt.formulations.teeth.search import search as sizing
 from gearopt.formulations.together.search import MARGINS, Search, lay, prepare, prove
 from gearopt.formulations.together.tables import Make, numbers, pairs
-from gearopt.formulations.together.text import point, sizes, slabs_of, text
+from gearopt.formulations.together.text import laid_out, point, sizes, slabs_of, text
 from gearopt.formulations.train import Train
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Event, Outcome, Watch
 
-__all__ = ["problem", "pairs", "sizes"]
+__all__ = ["GAP", "laid_out", "pairs", "problem", "sizes"]
 
 GAP = 1e-3  # proven where the budget asks for none
 FIRST = 40  # best sizings that are laid out before the search

@@ -148,3 +148,12 @@ def sizes(train: Train, x: Array) -> Sizes:
     """Modules, pinion teeth, ratios and face widths of a point of `text`."""
     count = sum(v.size for v in teeth.problem(train).variables)
     return teeth.sizes(train, x[:count])
+
+
+def laid_out(train: Train, make: Make, x: Array) -> tuple[Gearbox, tuple[float, ...], Arrangement]:
+    """The gearbox of a point of `text`, its link angles [rad] and its arrangement of slabs."""
+    box = make(sizes(train, x))
+    known, links = slabs_of(box), len(train.stages)
+    start = sum(v.size for v in teeth.problem(train).variables)
+    order = arrange(box, known[round(float(x[-1])) if len(known) > 1 else 0])
+    return box, tuple(float(t) for t in x[start : start + links]), order

@@ -4,7 +4,8 @@ from dataclasses import replace
 from typing import Any
 
 from gearopt.errors import SolveError
-from gearopt.formulations import layout
+from gearopt.formulations import layout, teeth
+from gearopt.formulations.design import describe
 from gearopt.formulations.layout.exact import GAP
 from gearopt.formulations.layout.gearbox import Gearbox
 from gearopt.formulations.layout.placed import placed, read
@@ -13,7 +14,7 @@ from gearopt.formulations.train import Sizes
 from gearopt.optimise.comparing.trial import Model
 from gearopt.optimise.progress import following
 from gearopt.optimise.result import Result
-from gearopt.optimise.solve import run
+from gearopt.optimise.solve import limits, run
 from gearopt.optimise.terms import Array
 from gearopt.scenes.box.describe import described, used
 from gearopt.scenes.reading.ask import Ask
@@ -41,31 +42,67 @@ def lay_out(scene: Scene, ask: Ask, sized: Result) -> Result:
     asked = ask.budget.less(sized.seconds)
     gap = ask.gap if ask.budget.gap else GAP
     result, outcome = run(problem, ask.method, asked, ask.seed, watch, gap)
-    result = replace(
-        result,
-        name="drive",
-        objective=result.objective | {"unit": box.unit},
-        parts=parts,
-        evaluations=result.evaluations + sized.evaluations,
-        seconds=result.seconds + sized.seconds,
-    )
+    result = replace(result, objective=result.objective | {"unit": box.unit}, parts=parts)
     if result.status == "infeasible":
         notes = ["No angles of the links keep all distances, places and sides."]
         return _impossible(scene, sized, ask, parts, notes, result)
     if result.value is None or outcome.x is None:
-        return result
-    last = {"seconds": result.seconds, "evaluations": result.evaluations}
-    progress = [*events, last | {"best": result.value, "bound": result.bound}]
-    report: dict[str, Any] = {"progress": progress, "notes": _notes(scene, sized)}
+        return replace(result, name="drive")
+    found = _told(scene, result, events, sized, box, *read(orders, outcome.x))
     if outcome.others:
-        report["front"] = [_sides(box, orders, x) for x in (outcome.x, *outcome.others)]
-    angles, one = read(orders, outcome.x)
-    found = described(scene, box, one, angles, sized)
+        front = [_sides(box, orders, x) for x in (outcome.x, *outcome.others)]
+        found = replace(found, report=found.report | {"front": front})
+    return found
+
+
+def lay_out_together(scene: Scene, ask: Ask, sized: Result) -> Result:
+    """Gears and layout at once; what comes of gears chosen first is kept as its part `apart`."""
+    from gearopt.formulations import together
+
+    if ask.method not in (None, "exact"):
+        raise SolveError(f"together = true is solved by exact, not by {ask.method}")
+    train = scene.train()
+    problem = together.problem(train, scene.gearbox)
+    apart = lay_out(scene, replace(ask, watch=None), sized)
+    watch, events = following(ask.watch)
+    asked = ask.budget.less(apart.seconds)
+    gap = ask.gap if ask.budget.gap else together.GAP
+    result, outcome = run(problem, "exact", asked, ask.seed, watch, gap)
+    unit = {"unit": scene.gearbox(sizes_of(sized)).unit}
+    parts = (replace(apart, name="apart", report={}),)
+    result = replace(result, objective=result.objective | unit, parts=parts)
+    if result.value is None or outcome.x is None:
+        return replace(result, name="drive")
+    sizes = together.sizes(train, outcome.x)
+    own = teeth.problem(train)
+    point = outcome.x[: sum(v.size for v in own.variables)]
+    gears = replace(sized, design=describe(train, sizes), limits=limits(own, point), report={})
+    box, angles, order = together.laid_out(train, scene.gearbox, outcome.x)
+    return _told(scene, result, events, gears, box, angles, order)
+
+
+def _told(
+    scene: Scene,
+    result: Result,
+    events: list[dict[str, Any]],
+    sized: Result,
+    box: Gearbox,
+    angles: tuple[float, ...],
+    order: Arrangement,
+) -> Result:
+    """A result with its gears and layout in the words of a drawing."""
+    found = described(scene, box, order, angles, sized)
+    seconds = result.seconds + sum(p.seconds for p in result.parts)
+    spent = result.evaluations + sum(p.evaluations for p in result.parts)
+    last = {"seconds": seconds, "evaluations": spent, "best": result.value, "bound": result.bound}
     return replace(
         result,
+        name="drive",
         design=sized.design | {"layout": found},
         limits=sized.limits | used(found) | _sides_used(result),
-        report=report,
+        report={"progress": [*events, last], "notes": _notes(scene, sized)},
+        evaluations=spent,
+        seconds=seconds,
     )
 
 
@@ -111,7 +148,7 @@ def _impossible(
 
 def _notes(scene: Scene, sized: Result) -> list[str]:
     notes = list(sized.report.get("notes", []))
-    if not scene.given:
+    if not scene.given and not (scene.layout and scene.layout.together):
         notes.append(
             "The gears were chosen first, for their own objective; with together = true in "
             "[layout] they are chosen for the box."
