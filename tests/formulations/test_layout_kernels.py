@@ -7,10 +7,13 @@ import numpy as np
 import pytest
 from gearboxes import gearbox, law, places, some_box
 
-from gearopt.formulations.layout.chain import chain, turns
+from gearopt.formulations.layout import problem
+from gearopt.formulations.layout.chain import chain
 from gearopt.formulations.layout.gearbox import Clearances, KeepOut, Place
 from gearopt.formulations.layout.slabs import arrangements
 from gearopt.optimise.kernels import kernel
+from gearopt.optimise.result import Budget
+from gearopt.optimise.solve import solve
 
 K = kernel("gearopt.formulations.layout.chain_kernel")
 BOUND = kernel("gearopt.formulations.layout.bound_kernel")
@@ -166,7 +169,9 @@ def test_bounds_converge_with_the_square_of_the_cell(given):
     """Of cells around the best layout; a tenth of the side has a hundredth of the error."""
     box = gearbox("discrete", Clearances(0.0, 0.0, 10.0, 0.0), **given)
     shape = chain(box, arrangements(box)[:1])
-    theta = best_of(shape, turns(box))
+    best = solve(problem(box), budget=Budget(gap=1e-8), gap=1e-8)
+    assert best.status == "optimal"
+    theta = np.array(best.design["angle_rad"])
     y, z = places(shape, theta[None])
     value = float(law(shape, 0, y, z)[0][0])
     errors = []
@@ -176,18 +181,6 @@ def test_bounds_converge_with_the_square_of_the_cell(given):
     slope = math.log10(errors[0] / errors[1])
     assert errors[1] > 0.0
     assert slope > 1.8
-
-
-def best_of(shape, first):
-    """The best layout, by branch and bound to 1e-8."""
-    branch = kernel("gearopt.formulations.layout.branch_kernel").branch
-    links = shape.link.size
-    cells, bounds, theta = np.zeros((4000, 2, links)), np.zeros(4000), np.zeros(links)
-    cells[0, 0], cells[0, 1] = -math.pi, math.pi
-    cells[0, :, 0] = first
-    count, best, *_ = branch(shape, 0, cells, bounds, 1, math.inf, math.inf, 1e-8, 10**6, theta)
-    assert count == 0 and math.isfinite(best)
-    return theta
 
 
 def test_closings_reach_what_they_close_on():

@@ -16,6 +16,8 @@ from gearopt.formulations.layout.chain_kernel import (
     widest,
 )
 
+ALIKE = 1e-6  # an angle this much narrower than another is not halved again: it is not the cause
+
 
 @njit(cache=True)
 def branch(chain, m, cells, bounds, count, best, floor, rel, limit, theta):
@@ -92,13 +94,21 @@ def halved(chain, m, low, high, box, pull, point, y, z):
     """The angle whose halving promises most: by its weight in the bound, or where that is wrong.
 
     Where the linear program is least, sides may be longer than it takes them to be, and axes too
-    close; the links between these shafts count by the size of that error.
+    close to each other or not in their place; the links between these count by that error.
     """
     links, scale = low.size, 0.5 * min(box[1], box[3])
     unit = scale if chain.longest else 1.0  # else weights are those of logarithms
     wrong = np.zeros(links)
     width, height, _ = measure(chain, m, point, y, z)
     for i in range(links + 1):
+        lack = max(chain.place[i, 0] - y[i], y[i] - chain.place[i, 1], 0.0)
+        lack = max(lack, chain.place[i, 2] - z[i], z[i] - chain.place[i, 3])
+        for k in range(chain.keep.shape[0]):
+            past_y = max(chain.keep[k, 0] - y[i], y[i] - chain.keep[k, 1], 0.0)
+            past_z = max(chain.keep[k, 2] - z[i], z[i] - chain.keep[k, 3], 0.0)
+            lack = max(lack, chain.keep_apart[m, k, i] - math.hypot(past_y, past_z))
+        for k in range(i):
+            wrong[k] = max(wrong[k], lack / scale)
         for j in range(i + 2, links + 1):
             lack = chain.apart[m, i, j] - math.hypot(y[i] - y[j], z[i] - z[j])
             for k in range(i, j):
@@ -119,4 +129,6 @@ def halved(chain, m, low, high, box, pull, point, y, z):
             best, most = k, score
         if size * chain.link[k] > length:
             longest, length = k, size * chain.link[k]
-    return longest if best < 0 else best
+    if best < 0 or (high[best] - low[best]) * chain.link[best] < ALIKE * length:
+        return longest
+    return best
