@@ -114,6 +114,11 @@ def posed(scene: Scene, method: str, sized: Result) -> Model:
     """The layout problem that a method gets; SolveError where the gears cannot be laid out."""
     if sized.value is None:
         raise SolveError("there are no gears to lay out: gearopt explain says why")
+    if scene.layout is not None and scene.layout.together:
+        raise SolveError(
+            "gears and box at once is for exact alone; without together = true the "
+            "layout of given gears can be compared"
+        )
     box = scene.gearbox(sizes_of(sized))
     if wrong := layout.faults(box):
         raise SolveError(" ".join(wrong))
