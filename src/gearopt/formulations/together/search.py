@@ -173,16 +173,18 @@ class Work:
     drive: Drive
     rest: Rest
     chains: list[Chain]
-    turns: tuple[float, float]
+    turns: list[tuple[float, float]]
 
 
 def prepare(search: Search, drive: Drive, box: Gearbox, margin: float) -> Work | None:
     """The tables for all cuts down to a margin; None if stopped. box: one of any sizes."""
     fewer = useful(drive, search.value * (1.0 - margin))
     tables = rest(fewer, search.goes_on)
-    bare = replace(box, places=(), keep_outs=(), level=())
+    # Before all shafts are there, nothing but the sides of the box tells the directions apart.
+    bare = turns(replace(box, places=(), keep_outs=(), level=()))
+    ranges = [turns(box)] + [bare] * (drive.kind.size - 1)
     made = chains(fewer, box)
-    return None if tables is None else Work(search.value, fewer, tables, made, turns(bare))
+    return None if tables is None else Work(search.value, fewer, tables, made, ranges)
 
 
 def prove(search: Search, work: Work, margin: float) -> bool:
@@ -251,7 +253,7 @@ def _children(
             work.drive,
             work.rest,
             shape,
-            work.turns,
+            work.turns[stage],
             stage,
             nodes,
             start,
