@@ -10,8 +10,9 @@ from numba import njit
 
 from gearopt.formulations.layout.chain_kernel import ROUNDING, measured, value
 
-HOT, COLD = 0.08, 3e-5  # temperatures, relative to the objective at the start
+HOT, COLD = 0.03, 3e-5  # temperatures, relative to the objective at the start
 WIDE, NARROW = 1.0, 1e-3  # steps of an angle [rad], shrinking with the root of the temperature
+FREE = 8.0  # times as hot where positions are free: meshes must come apart first
 PENALTY = 2.0  # energy of a violation as long as the root of the start's face area
 MESH = 6.0  # the same, of a centre distance, where positions are free
 OTHER = 0.05  # share of moves that try another arrangement of the slabs
@@ -120,7 +121,7 @@ def anneal_positions(chain, seed, start, stop, total, y, z, state, found):
         state[2], state[3] = value(chain, 0, width, height), math.sqrt(width * height)
         state[1] = math.inf
     for step in range(start, stop):
-        temperature = 3.0 * HOT * (COLD / HOT) ** (step / total)
+        temperature = FREE * HOT * (COLD / HOT) ** (step / total)
         size = max(0.2 * state[3] * math.sqrt(temperature / HOT), 0.01)
         i = np.random.randint(1, links + 1)
         oldy, oldz = y[i], z[i]

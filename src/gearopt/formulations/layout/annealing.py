@@ -14,7 +14,7 @@ from gearopt.optimise.terms import Array
 RANDOM = True
 PACED = True  # the cooling is stretched over the evaluations it is given
 COUNTS = "layout measured"
-SETTINGS = {"moves": "one angle, normal", "temperatures": (0.08, 3e-5), "penalty": 2.0}
+SETTINGS = {"moves": "one angle, normal", "temperatures": (0.03, 3e-5), "penalty": 2.0}
 STEPS = 128_701  # where the budget names no evaluations: what the paper reports
 SLICE = 20_000  # steps between two looks at clock and watcher: some milliseconds
 
