@@ -258,7 +258,8 @@ def test_gears_and_box_at_once():
     result = gearopt.solve(scene(text), gap=0.01)
     assert result.status == "optimal" and result.value <= 44_506_647
     assert result.bound >= 0.99 * result.value
-    (apart,) = result.parts
+    apart, real = result.parts
+    assert real.status == "stationary" and 0.97 * result.value < real.value < result.value
     assert apart.name == "apart" and apart.value == pytest.approx(47_483_050, abs=1)
     stages = result.design["stages"]
     assert [(s["normal_module_mm"], s["pinion_teeth"], s["wheel_teeth"]) for s in stages] == [
@@ -270,7 +271,19 @@ def test_gears_and_box_at_once():
     assert result.limits["shaft_2_to_wheel_3"] <= 1.0 + 1e-9
 
 
-def test_together_is_for_exact_alone():
+@pytest.mark.slow
+def test_real_valued_gears_and_box_at_once():
+    """Below whole teeth; every limit of the text is kept, and the drawing's box is the value."""
+    text = (PROBLEMS / "three_stage_together.toml").read_text(encoding="utf-8")
+    result = gearopt.solve(scene(text), "ipopt")
+    assert result.status == "stationary"
+    assert 0.9 * 44_383_628 < result.value < 47_483_050  # from the gears chosen first
+    box = result.design["layout"]["box"]
+    assert box["volume_mm3"] == pytest.approx(result.value, rel=1e-6)
+    assert max(result.limits.values()) <= 1.0 + 1e-7
+
+
+def test_together_is_for_exact_and_ipopt():
     text = (PROBLEMS / "three_stage_together.toml").read_text(encoding="utf-8")
     with pytest.raises(SolveError, match="together"):
         gearopt.solve(scene(text), "sa")

@@ -52,7 +52,7 @@ def problem(train: Train) -> Problem:
     )
 
     def evaluate(x: Any, p: Any) -> Terms:
-        return terms(train, p, *_sizes(train, x, p.helix_cosine, each(p.width_high)))
+        return terms(train, p, *text_sizes(train, x, p.helix_cosine, each(p.width_high)))
 
     return Problem("sizing", _variables(train), parameters, evaluate)
 
@@ -69,10 +69,11 @@ def _role(train: Train, name: str) -> str | tuple[str, ...]:
 def sizes(train: Train, point: Array) -> Sizes:
     """Modules, pinion teeth, ratios and face widths, a tuple each, of a point of `problem`."""
     x = namespace(_variables(train), [float(v) for v in point])
-    return _sizes(train, x, math.cos(train.helix_angle), each(train.numbers()["width_high"]))
+    return text_sizes(train, x, math.cos(train.helix_angle), each(train.numbers()["width_high"]))
 
 
-def _sizes(train: Train, x: Any, cosine: Any, proportion: Any) -> Sizes:
+def text_sizes(train: Train, x: Any, cosine: Any, proportion: Any) -> Sizes:
+    """Sizes from the variables x of the text; proportion: b/d1 where the width is tied."""
     module, teeth = each(x.module), each(x.pinion_teeth)
     width = tuple(
         proportion[k] * reference_diameter(module[k] / cosine, teeth[k])

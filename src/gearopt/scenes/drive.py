@@ -33,12 +33,13 @@ def solve(scene: Scene, ask: Ask) -> Result:
     cost, and a second, independent bound.
     """
     if scene.layout is not None:
-        from gearopt.scenes.box.lay_out import lay_out, lay_out_together
+        from gearopt.scenes.box.at_once import at_once
+        from gearopt.scenes.box.lay_out import lay_out
 
         sized = solve(bare(scene), replace(ask, method=None))
         if sized.value is None:
             return sized
-        return (lay_out_together if scene.layout.together else lay_out)(scene, ask, sized)
+        return (at_once if scene.layout.together else lay_out)(scene, ask, sized)
     result = _answer(scene, ask)
     if result.status != "infeasible":
         return result
@@ -127,9 +128,14 @@ def model(scene: Scene, method: str) -> Model:
     With a [layout] that is the layout of the gears that are best without it.
     """
     if scene.layout is not None:
-        from gearopt.scenes.box.lay_out import posed
+        from gearopt.scenes.box import at_once, lay_out
 
-        return posed(scene, method, solve(bare(scene), Ask()))
+        sized = solve(bare(scene), Ask())
+        if not scene.layout.together:
+            return lay_out.posed(scene, method, sized)
+        if sized.value is None:
+            raise SolveError("there are no gears to lay out: gearopt explain says why")
+        return at_once.posed(scene, method, lay_out.lay_out(scene, Ask(), sized))
     train = scene.train()
     if _continuous(scene, method):
         return Model(sizing.problem(train), "Real-valued teeth and modules", train.unit)

@@ -87,10 +87,15 @@ def smooth(box: Gearbox, order: Arrangement) -> Problem:
 
 def positions(shape: Chain, angle: tuple[Any, ...]) -> Point:
     """Y and z of every shaft [mm] for link angles [rad]."""
+    return placed_by([float(a) for a in shape.link], angle)
+
+
+def placed_by(links: list[Any], angle: tuple[Any, ...]) -> Point:
+    """Y and z of every shaft for lengths and angles of the links between them."""
     y, z = [0.0 * angle[0]], [0.0 * angle[0]]
-    for a, t in zip(shape.link, angle, strict=True):
-        y.append(y[-1] + float(a) * np.cos(t))
-        z.append(z[-1] + float(a) * np.sin(t))
+    for a, t in zip(links, angle, strict=True):
+        y.append(y[-1] + a * np.cos(t))
+        z.append(z[-1] + a * np.sin(t))
     return y, z
 
 
@@ -133,7 +138,6 @@ def _rows(shape: Chain, m: Any, point: Point) -> tuple[dict[str, Any], dict[str,
     """Limits and equalities of a point: distances (squared), keep-outs, places, split line."""
     y, z = point
     limits: dict[str, Any] = {}
-    equal: dict[str, Any] = {}
     for i in range(len(y)):
         for j in range(i + 1, len(y)):
             if (need := shape.apart[:, i, j]).any():
@@ -142,25 +146,35 @@ def _rows(shape: Chain, m: Any, point: Point) -> tuple[dict[str, Any], dict[str,
                 limits[name] = 1.0 + (_of(need, m) ** 2 - there) / float(need.max()) ** 2
         for k, (left, right, bottom, top) in enumerate(shape.keep):
             if (need := shape.keep_apart[:, k, i]).any():
-                dy, dz = _outside(y[i], left, right), _outside(z[i], bottom, top)
+                dy, dz = outside(y[i], left, right), outside(z[i], bottom, top)
                 name = f"clear_of_keep_out[{k + 1},{i + 1}]"
                 limits[name] = 1.0 + (_of(need, m) ** 2 - dy**2 - dz**2) / float(need.max()) ** 2
-        for axis, c, (low, high) in (("y", y, shape.place[i, :2]), ("z", z, shape.place[i, 2:])):
-            name, scale = f"place_{axis}[{i + 1}]", float(shape.link.max())
+    there, same = given_places(shape, y, z)
+    return limits | there, same
+
+
+def given_places(shape: Chain, y: list[Any], z: list[Any]) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Limits and equalities of given places and of the split line."""
+    limits: dict[str, Any] = {}
+    equal: dict[str, Any] = {}
+    scale = float(shape.link.max())
+    for i, ends in enumerate(shape.place):
+        for axis, c, (low, high) in (("y", y[i], ends[:2]), ("z", z[i], ends[2:])):
+            name = f"place_{axis}[{i + 1}]"
             if low == high:
-                equal[name] = 1.0 + (c[i] - low) / scale
+                equal[name] = 1.0 + (c - low) / scale
                 continue
             if math.isfinite(low):
-                limits[f"{name}_low"] = 1.0 + (low - c[i]) / scale
+                limits[f"{name}_low"] = 1.0 + (low - c) / scale
             if math.isfinite(high):
-                limits[f"{name}_high"] = 1.0 + (c[i] - high) / scale
+                limits[f"{name}_high"] = 1.0 + (c - high) / scale
     for k in range(1, len(shape.level)):
         i, j = shape.level[0], shape.level[k]
-        equal[f"split_line[{j + 1}]"] = 1.0 + (z[j] - z[i]) / float(shape.link.max())
+        equal[f"split_line[{j + 1}]"] = 1.0 + (z[j] - z[i]) / scale
     return limits, equal
 
 
-def _outside(c: Any, low: float, high: float) -> Any:
+def outside(c: Any, low: float, high: float) -> Any:
     """How far a coordinate is outside a range, either end of which may be infinite."""
     far = 0.0 * c
     for past, end in ((low - c, low), (c - high, high)):

@@ -14,7 +14,7 @@ from gearopt.formulations import teeth
 from gearopt.formulations.layout.chain import chain
 from gearopt.formulations.layout.gearbox import Gearbox
 from gearopt.formulations.layout.slabs import Arrangement, Slabs, arrange, orders
-from gearopt.formulations.layout.text import positions, sides
+from gearopt.formulations.layout.text import given_places, positions, sides
 from gearopt.formulations.together.tables import Make
 from gearopt.formulations.train import Sizes, Train
 from gearopt.optimise.problem import Problem
@@ -96,32 +96,14 @@ def _terms(
     ):
         if math.isfinite(most):
             limits[f"largest_{name}"] = there / float(most)
-    return {box.objective: value}, limits | _placed(box, y, z)[0], _placed(box, y, z)[1]
+    given, equal = given_places(shape, y, z)
+    return {box.objective: value}, limits | given, equal
 
 
 def _clear(need: float, dy: float, dz: float) -> float:
     """Utilisation of a least distance: at most 1 where it is kept."""
     there = dy**2 + dz**2
     return 1.0 + (need**2 - there) / max(need**2, there, 1.0)
-
-
-def _placed(box: Gearbox, y: list[Any], z: list[Any]) -> tuple[dict[str, float], dict[str, float]]:
-    """Limits and equalities of given places and of the split line."""
-    limits: dict[str, float] = {}
-    equal: dict[str, float] = {}
-    scale = max(p.centre_distance for p in box.pairs)
-    for p in box.places:
-        for axis, c, (low, high) in (("y", y, p.y), ("z", z, p.z)):
-            name = f"place_{axis}[{p.shaft + 1}]"
-            if low == high:
-                equal[name] = 1.0 + (c[p.shaft] - low) / scale
-            elif math.isfinite(high - low):
-                limits[f"{name}_low"] = 1.0 + (low - c[p.shaft]) / scale
-                limits[f"{name}_high"] = 1.0 + (c[p.shaft] - high) / scale
-    first, *others = sorted(box.level) or [0]
-    for k in others:
-        equal[f"split_line[{k + 1}]"] = 1.0 + (z[k] - z[first]) / scale
-    return limits, equal
 
 
 def point(train: Train, sizes: Sizes, slabs: int, several: bool, angles: Array) -> Array:

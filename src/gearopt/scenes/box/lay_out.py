@@ -4,8 +4,7 @@ from dataclasses import replace
 from typing import Any
 
 from gearopt.errors import SolveError
-from gearopt.formulations import layout, teeth
-from gearopt.formulations.design import describe
+from gearopt.formulations import layout
 from gearopt.formulations.layout.exact import GAP
 from gearopt.formulations.layout.gearbox import Gearbox
 from gearopt.formulations.layout.placed import placed, read
@@ -14,7 +13,7 @@ from gearopt.formulations.train import Sizes
 from gearopt.optimise.comparing.trial import Model
 from gearopt.optimise.progress import following
 from gearopt.optimise.result import Result
-from gearopt.optimise.solve import limits, run
+from gearopt.optimise.solve import run
 from gearopt.optimise.terms import Array
 from gearopt.scenes.box.describe import described, used
 from gearopt.scenes.reading.ask import Ask
@@ -48,40 +47,14 @@ def lay_out(scene: Scene, ask: Ask, sized: Result) -> Result:
         return _impossible(scene, sized, ask, parts, notes, result)
     if result.value is None or outcome.x is None:
         return replace(result, name="drive")
-    found = _told(scene, result, events, sized, box, *read(orders, outcome.x))
+    found = told(scene, result, events, sized, box, *read(orders, outcome.x))
     if outcome.others:
         front = [_sides(box, orders, x) for x in (outcome.x, *outcome.others)]
         found = replace(found, report=found.report | {"front": front})
     return found
 
 
-def lay_out_together(scene: Scene, ask: Ask, sized: Result) -> Result:
-    """Gears and layout at once; what comes of gears chosen first is kept as its part `apart`."""
-    from gearopt.formulations import together
-
-    if ask.method not in (None, "exact"):
-        raise SolveError(f"together = true is solved by exact, not by {ask.method}")
-    train = scene.train()
-    problem = together.problem(train, scene.gearbox)
-    apart = lay_out(scene, replace(ask, watch=None), sized)
-    watch, events = following(ask.watch)
-    asked = ask.budget.less(apart.seconds)
-    gap = ask.gap if ask.budget.gap else together.GAP
-    result, outcome = run(problem, "exact", asked, ask.seed, watch, gap)
-    unit = {"unit": scene.gearbox(sizes_of(sized)).unit}
-    parts = (replace(apart, name="apart", report={}),)
-    result = replace(result, objective=result.objective | unit, parts=parts)
-    if result.value is None or outcome.x is None:
-        return replace(result, name="drive")
-    sizes = together.sizes(train, outcome.x)
-    own = teeth.problem(train)
-    point = outcome.x[: sum(v.size for v in own.variables)]
-    gears = replace(sized, design=describe(train, sizes), limits=limits(own, point), report={})
-    box, angles, order = together.laid_out(train, scene.gearbox, outcome.x)
-    return _told(scene, result, events, gears, box, angles, order)
-
-
-def _told(
+def told(
     scene: Scene,
     result: Result,
     events: list[dict[str, Any]],
@@ -114,11 +87,6 @@ def posed(scene: Scene, method: str, sized: Result) -> Model:
     """The layout problem that a method gets; SolveError where the gears cannot be laid out."""
     if sized.value is None:
         raise SolveError("there are no gears to lay out: gearopt explain says why")
-    if scene.layout is not None and scene.layout.together:
-        raise SolveError(
-            "gears and box at once is for exact alone; without together = true the "
-            "layout of given gears can be compared"
-        )
     box = scene.gearbox(sizes_of(sized))
     if wrong := layout.faults(box):
         raise SolveError(" ".join(wrong))

@@ -1,0 +1,179 @@
+"""Sizes and layout at once with real-valued teeth, modules and widths: a smooth problem for Ipopt.
+
+One order of slabs, and a start: gears with their layout. What whole teeth and standard modules cost
+is the difference to `exact`; being nonconvex it has local optima and no bound.
+"""
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from gearopt.errors import SolveError
+from gearopt.formulations import sizing
+from gearopt.formulations.layout.chain import chain
+from gearopt.formulations.layout.gearbox import ANYWHERE, Gearbox
+from gearopt.formulations.layout.slabs import Body, Slabs, arrange, faces
+from gearopt.formulations.layout.text import given_places, outside, placed_by, sides
+from gearopt.formulations.together.tables import Make
+from gearopt.formulations.train import Sizes, Train
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.terms import Array, Terms, Var, each
+
+FAR = 2.0  # times the sum of the start's sides: within this they are searched
+NEAR = 0.6  # rad from the start's angles; else the interior point is pushed into worse basins
+
+Facing = list[tuple[int, int, Body, Body]]
+
+
+def continuous(
+    train: Train, make: Make, slabs: Slabs, start: tuple[Sizes, tuple[float, ...]]
+) -> Problem:
+    """Variables: those of `sizing`, angle [rad], left, bottom, width, height and the slabs' widths.
+
+    start: sizes and link angles. SolveError for keep-outs with a range along the shafts.
+    """
+    box = make(start[0])
+    if any(k.x != ANYWHERE for k in box.keep_outs):
+        raise SolveError("a keep-out with a range x along the shafts is for exact alone")
+    order = arrange(box, slabs)
+    shape = chain(box, (order,))
+    shafts = range(len(order.bodies))
+    facing: Facing = [
+        (i, j, p, q)
+        for i in shafts
+        for j in shafts[i + 1 :]
+        for p in order.bodies[i]
+        for q in order.bodies[j]
+        if faces(p, q)
+    ]
+    sized = sizing.problem(train)
+    round_it = sides(shape, *placed_by([p.centre_distance for p in box.pairs], start[1]))
+    variables = _variables(sized, box, slabs, start, round_it)
+
+    def evaluate(x: Any, p: Any) -> Terms:
+        found = sized.evaluate(x, p)
+        there = make(sizing.text_sizes(train, x, p.helix_cosine, each(p.width_high)))
+        y, z = placed_by([pair.centre_distance for pair in there.pairs], each(x.angle))
+        rows = _walls(there, order.bodies, (y, z), x)
+        rows |= {
+            f"slab[{n + 1}][{s + 1}]": there.pairs[s].face_width / each(x.slab)[n]
+            for n, slab in enumerate(slabs)
+            for s in slab
+        }
+        ends = order.length - sum(max(box.pairs[s].face_width for s in slab) for slab in slabs)
+        length = ends + sum(each(x.slab))
+        edges = {"width": x.width, "height": x.height, "length": length}
+        limits, equal = given_places(shape, y, z)
+        limits |= _apart(there, facing, (y, z)) | _clear(there, order.bodies, (y, z))
+        for (name, side), most in zip(edges.items(), there.largest, strict=True):
+            if math.isfinite(most):
+                limits[f"largest_{name}"] = side / most
+        if there.width is not None:
+            limits["given_width"] = x.width / there.width
+        if there.objective == "longest_side":
+            rows |= {f"{n}_below": v / x.longest for n, v in edges.items()}
+        return Terms(
+            {there.objective: _objective(there, edges, x)},
+            {**found.limits, **limits},
+            rows,
+            {**found.equal, **equal},
+        )
+
+    return Problem("together", variables, sized.parameters, evaluate)
+
+
+def _variables(
+    sized: Problem, box: Gearbox, slabs: Slabs, start: tuple[Sizes, Any], sides: dict[str, float]
+) -> tuple[Var, ...]:
+    """The variables with the start, and the box around it, as their guess."""
+    values = dict(zip(("module", "pinion_teeth", "ratio", "face_width"), start[0], strict=True))
+    own = tuple(
+        replace(v, guess=tuple(np.clip(values[v.name], v.lower, v.upper))) for v in sized.variables
+    )
+    links = [p.centre_distance for p in box.pairs]
+    widths = tuple(max(box.pairs[s].face_width for s in slab) for slab in slabs)
+    far = FAR * (sides["width"] + sides["height"] + sum(widths))
+    near = (tuple(t - NEAR for t in start[1]), tuple(t + NEAR for t in start[1]))
+    made = [Var("angle", "rad", *near, start[1], len(links), search=True)]
+    made += [Var(n, "mm", -far, 0.0, sides[n], search=True) for n in ("left", "bottom")]
+    made += [
+        Var(n, "mm", 1e-3 * far, far, sides[n], log=True, search=True) for n in ("width", "height")
+    ]
+    slab = Var("slab", "mm", 1e-4 * far, far, widths, len(slabs), log=True, search=True)
+    longest = Var("longest", "mm", 1e-3 * far, far, 0.5 * far, log=True, search=True)
+    return (*own, *made, slab, *([longest] if box.objective == "longest_side" else []))
+
+
+def _radius(box: Gearbox, body: Body, k: int) -> Any:
+    """The radius of a body of shaft k in a gearbox of other sizes."""
+    if body.gear:
+        pair = box.pairs[body.stage]
+        return pair.pinion_radius if body.name.startswith("pinion") else pair.wheel_radius
+    shaft = box.shafts[k]
+    return shaft.bearing_radius if body.name.startswith("bearing") else shaft.radius
+
+
+def _walls(box: Gearbox, bodies: Any, point: Any, x: Any) -> dict[str, Any]:
+    """Every body within the four sides."""
+    rows: dict[str, Any] = {}
+    for k, own in enumerate(bodies):
+        for n, body in enumerate(own):
+            r = _radius(box, body, k) + box.clearances.wall
+            for axis, start, side in ((0, x.left, x.width), (1, x.bottom, x.height)):
+                c, word = point[axis][k], "yz"[axis]
+                rows[f"low_{word}[{k + 1}][{n + 1}]"] = 1.0 + (start - (c - r)) / side
+                rows[f"high_{word}[{k + 1}][{n + 1}]"] = 1.0 + (c + r - start - side) / side
+    return rows
+
+
+def _apart(box: Gearbox, facing: Facing, point: Any) -> dict[str, Any]:
+    """Every two bodies that face each other keep their clearance, and the motor's is kept."""
+    y, z = point
+    rows: dict[str, Any] = {}
+
+    def apart(name: str, i: int, j: int, need: Any) -> None:
+        there = (y[i] - y[j]) ** 2 + (z[i] - z[j]) ** 2
+        rows[name] = 2.0 - there / need**2
+
+    for i, j, p, q in facing:
+        gap = box.clearances.gears if p.gear and q.gear else box.clearances.shafts
+        name = f"{p.name}_to_{q.name}".replace(" ", "_")
+        apart(name, i, j, _radius(box, p, i) + _radius(box, q, j) + gap)
+    if box.motor > 0:
+        need = box.motor + box.shafts[-1].radius + box.clearances.shafts
+        apart("motor_to_output", 0, len(box.shafts) - 1, need)
+    return rows
+
+
+def _clear(box: Gearbox, bodies: Any, point: Any) -> dict[str, Any]:
+    """Every body keeps clear of every keep-out."""
+    y, z = point
+    rows: dict[str, Any] = {}
+    for n, keep in enumerate(box.keep_outs):
+        for k, own in enumerate(bodies):
+            dy, dz = outside(y[k], *keep.y), outside(z[k], *keep.z)
+            for b, body in enumerate(own):
+                need = _radius(box, body, k) + box.clearances.shafts
+                name = f"clear_of_keep_out[{n + 1}][{k + 1}][{b + 1}]"
+                rows[name] = 2.0 - (dy**2 + dz**2) / need**2
+    return rows
+
+
+def _objective(box: Gearbox, sides: dict[str, Any], x: Any) -> Any:
+    width = sides["width"] if box.width is None else box.width
+    if box.objective == "longest_side":
+        return x.longest
+    return {
+        "box_volume": width * sides["height"] * sides["length"],
+        "plan_area": width * sides["length"],
+        "face_area": width * sides["height"],
+        "height": sides["height"],
+    }[box.objective]
+
+
+def angles_of(problem: Problem, x: Array) -> tuple[float, ...]:
+    """Link angles [rad] of a point of `continuous`."""
+    names = [variable.name for variable, _ in problem.columns]
+    return tuple(float(v) for v, name in zip(x, names, strict=True) if name == "angle")
