@@ -93,11 +93,14 @@ def weak_orders(stages):
             yield tuple(tuple(s for s in range(stages) if rank[s] == r) for r in used)
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(6))
 @pytest.mark.parametrize("stages", [2, 3, 4])
 def test_arrangements_against_all_weak_orders(stages, seed):
     keep = KeepOut("post", (-100.0, 100.0), (150.0, 200.0), (0.0, 60.0))
-    box = some_box(seed, stages, slabs=None, keep_outs=(keep,) * (seed % 2))
+    box = some_box(seed, stages, partial=seed > 1, slabs=None, keep_outs=(keep,) * (seed % 2))
+    if seed > 2:  # bearings that reach into the slab beside theirs
+        wide = box.clearances.axial + 8.0
+        box = replace(box, shafts=tuple(Shaft(s.radius, s.radius + 6, wide) for s in box.shafts))
     free = np.triu_indices(stages + 1, 2)
     every = [arrange(box, slabs) for slabs in weak_orders(stages)]
     assert len(every) == {2: 2, 3: 8, 4: 44}[stages]

@@ -6,7 +6,7 @@ from functools import cache, lru_cache
 
 import numpy as np
 
-from gearopt.formulations.layout.gearbox import Gearbox, Range
+from gearopt.formulations.layout.gearbox import ANYWHERE, Gearbox, Range
 from gearopt.optimise.terms import Array
 
 Slabs = tuple[tuple[int, ...], ...]
@@ -72,7 +72,7 @@ def arrangements(box: Gearbox) -> tuple[Arrangement, ...]:
     if box.slabs is not None:
         return (arrange(box, box.slabs),)
     kept: list[Arrangement] = []
-    for slabs in sorted(orders(len(box.pairs)), key=lambda s: (-len(s), s)):
+    for slabs in sorted(orders(box), key=lambda s: (-len(s), s)):
         one = arrange(box, slabs)
         possible = one.length <= box.largest[2] + TOUCH and not clashes(box, one)
         if possible and not any(_dominates(k, one) for k in kept):
@@ -105,13 +105,23 @@ def _dominates(a: Arrangement, b: Arrangement) -> bool:
     )
 
 
-@cache
-def orders(stages: int) -> tuple[Slabs, ...]:
-    """Orders of slabs in which no neighbours share one.
+def orders(box: Gearbox) -> tuple[Slabs, ...]:
+    """Orders of slabs in which no neighbours share one; of two mirror images that are alike, one.
 
-    Mirror images are both there: gears of unlike widths in a slab start together, and a keep-out
-    has one place along the shafts; where they are alike, one dominates the other.
+    They are not alike to a keep-out at one end of the box, nor for bearings beside gears of a
+    shared slab: these gears start together, so that only at the other end bearings may be apart.
     """
+    ended = any(keep.x != ANYWHERE for keep in box.keep_outs)
+    beside = box.partial and any(s.bearing_width > 0.0 for s in box.shafts)
+
+    def alike(slabs: Slabs) -> bool:
+        return not ended and not (beside and len(slabs) < len(box.pairs))
+
+    return tuple(s for s in _orders(len(box.pairs)) if s <= s[::-1] or not alike(s))
+
+
+@cache
+def _orders(stages: int) -> tuple[Slabs, ...]:
 
     def splits(left: frozenset[int]) -> Iterator[Slabs]:
         if not left:

@@ -185,7 +185,7 @@ def _facing(box: Gearbox) -> tuple[list[Slabs], NDArray[np.uint8]]:
     shafts = tuple(Shaft(1.0, 1.0, 0.0 if box.partial else s.bearing_width) for s in box.shafts)
     alike = replace(box, pairs=tuple(Pair(2.0, 1.0, 1.0, 1.0) for _ in box.pairs), shafts=shafts)
     found: list[tuple[Slabs, NDArray[np.uint8]]] = []
-    for slabs in (box.slabs,) if box.slabs is not None else orders(len(box.pairs)):
+    for slabs in (box.slabs,) if box.slabs is not None else orders(box):
         new = (slabs, _faces(alike, slabs))
         if not any(_no_worse(old, new) for old in found):
             found = [old for old in found if not _no_worse(new, old)] + [new]

@@ -23,7 +23,7 @@ from gearopt.optimise.terms import Array, Terms, Var, each
 
 def slabs_of(box: Gearbox) -> tuple[Slabs, ...]:
     """The orders of slabs that a gearbox leaves open, as the variable `arrangement` counts them."""
-    return (box.slabs,) if box.slabs is not None else orders(len(box.pairs))
+    return (box.slabs,) if box.slabs is not None else orders(box)
 
 
 def text(
