@@ -16,9 +16,10 @@ def content_of(path):
 
 
 def case(path):
-    """A packing without a proof searches for seconds."""
+    """A packing without a proof searches for seconds, as do gears and box at once."""
     content = content_of(path)
     long = content["kind"] == "packing" and content["x-expected"]["status"] == "feasible"
+    long = long or content.get("layout", {}).get("together", False)
     return pytest.param(path, id=path.stem, marks=[pytest.mark.slow] * long)
 
 
