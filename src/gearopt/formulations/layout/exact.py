@@ -88,6 +88,9 @@ def method(chain: Chain, turns: tuple[float, float], polish: Polish) -> Any:
                 bound = _prove(search, chain, turns, rel * (1.0 - INSIDE), polish)
             if bound is None:
                 break
+            if bound < search.best * (1.0 - rel):  # cells that could not be halved are left
+                search.bound, search.stopped = max(search.bound, bound), True
+                break
             proven = rel
             search.bound = max(search.bound, min(bound, search.best))
             if math.isinf(search.best):

@@ -94,6 +94,8 @@ class Gearbox:
     def __post_init__(self) -> None:
         if len(self.shafts) != len(self.pairs) + 1 or not self.pairs:
             raise ValueError("a gearbox of N stages has N + 1 shafts")
+        if self.width is not None and self.width > self.largest[0]:
+            raise ValueError("the given width is above the largest width")
         if self.objective not in OBJECTIVES:
             raise ValueError(f"no objective {self.objective!r}; {', '.join(OBJECTIVES)}")
         if self.slabs is not None:

@@ -177,9 +177,10 @@ def _rectangle(need: Need, across: float, along: float, spare: float, enough: fl
     low, high = edge[:-1], edge[1:]
     proven = math.inf
     while len(low):
-        values = deep(high)
+        deepest = np.maximum(need(high), along)  # these fall as w grows, w itself rises
+        values = np.maximum(deepest, high) + spare
         least = min(least, float(((high + spare) * values).min()))
-        floor = (low + spare) * values
+        floor = (low + spare) * (np.maximum(deepest, low) + spare)
         open_ = floor < min(enough, least * (1.0 - TIGHT))
         proven = min(proven, float(floor[~open_].min(initial=math.inf)))
         low, high, floor = low[open_], high[open_], floor[open_]

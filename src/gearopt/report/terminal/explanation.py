@@ -47,7 +47,8 @@ def remedies(found: Mapping[str, Any]) -> list[RenderableType]:
     blocks.append(table)
     sure = all(way["verified"].get("with_less", "infeasible") == "infeasible" for way in ways)
     words = "Each was tried: a design exists with it"
-    words += ", and none with 0.1 % (or one tooth) less. " if sure else ". "
+    less = sure and any(way["kind"] != "choice" for way in ways)
+    words += ", and none with 0.1 % (or one tooth) less. " if less else ". "
     if conflict:
         words += "Proven least: no smaller factor does, even with real-valued teeth and modules."
     words += f" {late[0].upper()}{late[1:]}." if late else ""

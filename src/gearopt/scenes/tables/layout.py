@@ -138,6 +138,16 @@ class Layout(Table):
         for name, other in (("widths", "diameters"), ("diameters", "widths")):
             if getattr(self, f"bearing_{name}") and not getattr(self, f"bearing_{other}"):
                 raise refuse(f"is missing beside bearing_{name}", at=(f"bearing_{other}",))
+        if self.width and self.largest_width and self.width.value > self.largest_width.value:
+            raise refuse("is above largest_width", str(self.largest_width), ("width",))
+        for k, (shaft, outer) in enumerate(
+            zip(self.shaft_diameters or (), self.bearing_diameters or (), strict=False)
+        ):
+            if outer.value < shaft.value:
+                wider = [str(q) for q in self.bearing_diameters or ()]
+                wider[k] = str(shaft)
+                rule = f"has a bearing narrower than shaft {k + 1} ({shaft})"
+                raise refuse(rule, wider, ("bearing_diameters",))
         if self.split_line is not None and len(set(self.split_line)) < 2:
             raise refuse("names fewer than two shafts", [1, 2], ("split_line",), "sample")
         return self
