@@ -15,7 +15,7 @@ from gearopt.optimise.comparing.trial import Model
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.explaining.explanation import Explanation
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.result import Budget, Result, Watch
+from gearopt.optimise.result import Budget, Result, Watch, plain
 from gearopt.optimise.solve import GAP
 from gearopt.optimise.solve import solve as solve_problem
 from gearopt.scenes.reading.ask import Ask
@@ -116,7 +116,7 @@ def compare(
         found = compare_methods(named, lambda method: own, plan, watch, bound_from)
         return replace(found, title=what.name)
     scene, module, names = _opened(what)
-    named = module.COMPARED if methods is None else methods
+    named = module.compared(scene) if methods is None else methods
     found = compare_methods(named, lambda m: module.model(scene, m), plan, watch, bound_from)
     return replace(found, title=getattr(scene, "title", "") or names["scene"], **names)
 
@@ -136,4 +136,4 @@ def _opened(what: str | Path | BaseModel) -> tuple[BaseModel, Any, dict[str, Any
 
 
 def _named(result: Result, **names: Any) -> Result:
-    return replace(result, **names)
+    return replace(result, design=plain(result.design), report=plain(result.report), **names)

@@ -136,3 +136,18 @@ def test_many_discs_are_bounded_by_area_and_olers_inequality():
 
 def test_orders_are_all_different_ones():
     assert sorted(orders([1, 1, 2])) == sorted(set(permutations([1, 1, 2])))
+
+
+@pytest.mark.parametrize(
+    ("radii", "wall", "gap"),
+    [((2, 2, 2, 3), 0.0, 0.0), ((4, 4, 4, 5), 0.5, 1.0), ((3, 3, 3, 5), 2.0, 0.0)],
+)
+def test_no_bound_is_above_the_least_of_its_own_function(radii, wall, gap):
+    """Where the best rectangle is nearly square, width and depth rise together."""
+    discs = plan(*(2.0 * r for r in radii), wall=wall, gap=gap)
+    rho, spare = np.array(radii) + 0.5 * gap, 2.0 * wall - gap
+    w = np.linspace(2.0 * rho.max(), 4.0 * rho.max(), 20_001)
+    least = ((w + spare) * (np.maximum(depth(tuple(rho), w), w) + spare)).min()
+    value = bound(discs).value
+    assert value <= least * (1.0 + 1e-9)
+    assert value >= least * (1.0 - 1e-3)

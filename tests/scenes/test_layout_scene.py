@@ -287,3 +287,104 @@ def test_together_is_for_exact_and_ipopt():
     text = (PROBLEMS / "three_stage_together.toml").read_text(encoding="utf-8")
     with pytest.raises(SolveError, match="together"):
         gearopt.solve(scene(text), "sa")
+
+
+STATIC = {  # what is added to the file, and a part of what is said
+    "out of reach": ('[[place]]\nshaft = 4\nz = "700 mm"\n', "reach 680.23 mm"),
+    "too near": ('[[place]]\nshaft = 2\ny = "0 mm"\nz = "100 mm"\n', "keep them 211.85 mm apart"),
+    "two places": (
+        '[[place]]\nshaft = 4\nz = "180 mm"\n[[place]]\nshaft = 4\nz = "100 mm"\n',
+        "Two places of shaft 4 are 79.98 mm apart",
+    ),
+    "on the input": (
+        '[[keep_out]]\nname = "post"\ny = ["-5 mm", "5 mm"]\nz = ["-5 mm", "5 mm"]\n',
+        "input shaft is 25.84 mm too close to post",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", STATIC)
+def test_what_no_search_can_mend_is_told_in_numbers(name):
+    added, said = STATIC[name]
+    result = gearopt.solve(scene(TABLE4.split("[x-expected]")[0] + added))
+    assert result.status == "infeasible" and result.method == "data check"
+    assert said in result.message
+    removed = [r["changes"][0] for r in result.report["ways_out"]["remedies"]]
+    assert any(c["write"] == "" or "tolerance" in c["key"] for c in removed)
+
+
+def test_a_motor_within_a_keep_out_is_told():
+    result = gearopt.solve(scene(BOX.replace('"-140 mm"]', '"-100 mm"]', 1)))
+    assert result.message == "The motor reaches 30.00 mm into floor."
+
+
+def test_a_box_wider_than_allowed_is_refused():
+    with pytest.raises(SceneError, match="above largest_width"):
+        read(with_layout(width='"400 mm"', largest_width='"300 mm"').encode())
+
+
+def test_a_box_that_is_too_long_names_the_shortest_order():
+    """In order the box is 209.9 mm long; in partial span no other order is shorter."""
+    result = gearopt.solve(scene(with_layout(largest_length='"200 mm"')))
+    assert "at least 209.90 mm long, and may be 200 mm" in result.message
+
+
+TOGETHER = (
+    TABLE4.split("[[stage]]")[0]
+    + """
+[[stage]]
+face_width_over_diameter = 0.6
+[[stage]]
+face_width_over_diameter = 0.75
+[limits]
+k_factor = "2.07 MPa"
+unit_load = "48 MPa"
+pinion_teeth = [20, 24]
+[teeth]
+modules = "ISO 54 I"
+[layout]
+together = true
+shaft_diameters = ["20 mm", "35 mm", "60 mm"]
+"""
+)
+
+
+@pytest.fixture(scope="module")
+def small():
+    text = TOGETHER.replace('output_speed = "32 rpm"', 'output_speed = "160 rpm"')
+    return scene(text)
+
+
+def test_together_stopped_at_once_gives_the_gears_chosen_first(small):
+    from gearopt.scenes.box.at_once import at_once
+    from gearopt.scenes.drive import bare, solve
+    from gearopt.scenes.reading.ask import Ask
+
+    sized = solve(bare(small), Ask())
+    result = at_once(small, Ask(budget=gearopt.Budget(seconds=0.0)), sized)
+    whole = gearopt.solve(small)
+    assert result.status == "limit" and result.value is not None
+    assert whole.status == "optimal" and whole.value <= result.value
+    assert whole.bound <= whole.value <= whole.parts[0].value
+
+
+def test_every_answer_makes_a_page(small, tmp_path):
+    """Also of gears and box at once, and of what is impossible; numbers of numpy never reach it."""
+    from gearopt.report.pages.result import page
+    from gearopt.scenes.drive import solve
+    from gearopt.scenes.reading.ask import Ask
+
+    html = page(solve(small, Ask()), "At once", "gearopt solve")
+    assert "Front view" in html and "link angles" in html
+
+
+def test_impossible_at_once_is_explained(small):
+    low = small.layout.model_copy(
+        update={
+            "largest_height": scene(with_layout(largest_height='"80 mm"')).layout.largest_height
+        }
+    )
+    found = gearopt.explain(small.model_copy(update={"layout": low}))
+    assert found.result.status == "infeasible"
+    assert "No gears within the limits can be laid out" in found.result.message
+    assert found.remedies[0].what == "largest_height"

@@ -1,5 +1,6 @@
 """Following long work: progress on the terminal, and Ctrl-C that keeps the best found so far."""
 
+import logging
 import signal
 import time
 from collections.abc import Callable, Iterator
@@ -37,6 +38,11 @@ def following(words: Callable[[Any], str], quiet: bool) -> Iterator[Callable[[An
     screen = Console(stderr=True, highlight=False)
     status = screen.status("") if screen.is_terminal and not quiet else None
     started, shown = time.perf_counter(), 0.0
+    news = _News(screen)
+    if not quiet:
+        logger = logging.getLogger("gearopt.kernels")
+        logger.addHandler(news)
+        logger.setLevel(logging.INFO)
 
     def watch(progress: Any) -> bool:
         nonlocal shown
@@ -50,9 +56,24 @@ def following(words: Callable[[Any], str], quiet: bool) -> Iterator[Callable[[An
     try:
         yield watch
     finally:
+        logging.getLogger("gearopt.kernels").removeHandler(news)
         if status is not None:
             status.stop()
         signal.signal(signal.SIGINT, before)
+
+
+class _News(logging.Handler):
+    """Prints what a run has to say, each sentence once; a third-party interface."""
+
+    def __init__(self, screen: Console) -> None:
+        super().__init__()
+        self.screen, self.said = screen, set[str]()
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Print a record."""
+        if (words := record.getMessage()) not in self.said:
+            self.said.add(words)
+            self.screen.print(words[0].upper() + words[1:] + ".", style="dim")
 
 
 def _progress(event: Event, left: float) -> str:

@@ -1,6 +1,7 @@
 """Compiled kernels: numba modules `*_kernel.py`, whose machine code is kept between runs."""
 
 import hashlib
+import logging
 import os
 from functools import cache
 from importlib import import_module
@@ -8,6 +9,7 @@ from importlib.metadata import version
 from pathlib import Path
 from types import ModuleType
 
+logger = logging.getLogger("gearopt.kernels")
 _SOURCES = Path(__file__).parents[1]
 
 
@@ -21,7 +23,10 @@ def kernel(module: str) -> ModuleType:
     """
     import numba
 
-    numba.config.CACHE_DIR = str(_folder() / _key())
+    folder = _folder() / _key()
+    numba.config.CACHE_DIR = str(folder)
+    if not any(folder.rglob(f"{module.rsplit('.', 1)[-1]}.*.nbi")):
+        logger.info("compiling kernels, once on this machine: this may take a minute")
     return import_module(module)
 
 

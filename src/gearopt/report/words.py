@@ -1,5 +1,6 @@
 """Names, numbers and plain tables, as every report writes them."""
 
+from collections.abc import Mapping
 from typing import Any
 
 from rich.table import Table
@@ -38,6 +39,12 @@ def limit_words(name: str) -> str:
     stem, _, index = name.rstrip("]").partition("[")
     words = stem.replace("_", " ").replace("k factor", "K-factor")
     return f"{words} of stage {index}" if index else words
+
+
+def edit(change: Mapping[str, Any]) -> str:
+    """A change of a file as one would write it."""
+    key, write = change["key"], change["write"]
+    return f"{key} = {write}" if write else f"remove {key}"
 
 
 def heading(key: str) -> str:

@@ -21,8 +21,7 @@ from gearopt.optimise.solve import run
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.tables.drive import EXAMPLE, Scene
 
-__all__ = ["COMPARED", "EXAMPLE", "Scene", "explain", "model", "solve"]
-COMPARED = ("exact", "ipopt", "annealing", "nsga2")  # where a comparison names no methods
+__all__ = ["EXAMPLE", "Scene", "compared", "explain", "model", "solve"]
 CONTINUOUS = ("ipopt", "gp", "multistart")  # methods that take no whole teeth
 
 
@@ -95,7 +94,8 @@ def _box_explained(scene: Scene, ask: Ask) -> Explanation:
 
     result = solve(scene, ask)
     if result.status == "infeasible":
-        ways = result.report["ways_out"]
+        none: dict[str, Any] = {"conflict": [], "remedies": [], "message": ""}
+        ways = result.report.get("ways_out", none)
         found = tuple(
             Remedy(**{**r, "changes": tuple(Change(**c) for c in r["changes"])})
             for r in ways["remedies"]
@@ -120,6 +120,15 @@ def _answer(scene: Scene, ask: Ask) -> Result:
     floor = -math.inf if ideal.bound is None else ideal.bound
     found = _sized(scene, train, ask, teeth.problem(train, ask.top, floor))
     return reconcile(replace(found, parts=(replace(ideal, name="sizing"),)), ideal, ask.gap)
+
+
+def compared(scene: Scene) -> tuple[str, ...]:
+    """The methods of a comparison that names none."""
+    if scene.layout is None:
+        return ("exact", "ipopt", "annealing", "nsga2")
+    if scene.layout.together:
+        return ("exact", "ipopt")
+    return ("exact", "sa", "sa-polish", "multistart", "nsga2")
 
 
 def model(scene: Scene, method: str) -> Model:

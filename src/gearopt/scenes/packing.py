@@ -21,8 +21,7 @@ from gearopt.optimise.solve import run
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.tables.packing import EXAMPLE, Scene
 
-__all__ = ["COMPARED", "EXAMPLE", "Scene", "explain", "model", "solve"]
-COMPARED = ("hop", "sa", "multistart", "annealing", "nsga2")  # where a comparison names no methods
+__all__ = ["EXAMPLE", "Scene", "compared", "explain", "model", "solve"]
 SMOOTH = ("ipopt", "multistart")  # methods that need derivatives
 UNPROVEN = "Best known, not proven: a smaller packing may exist, but none below the bound."
 
@@ -53,6 +52,11 @@ def _bounded(plan: Plan, result: Result, gap: float) -> Result:
 def explain(scene: Scene, ask: Ask) -> Explanation:
     """A packing has no load limits to explain: SolveError says what to do instead."""
     raise SolveError("explain is for drives; `gearopt solve` says how good a packing is proven")
+
+
+def compared(scene: Scene) -> tuple[str, ...]:
+    """The methods of a comparison that names none."""
+    return ("hop", "sa", "multistart", "annealing", "nsga2")
 
 
 def model(scene: Scene, method: str) -> Model:

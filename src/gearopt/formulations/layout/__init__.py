@@ -14,7 +14,7 @@ from gearopt.errors import SolveError
 from gearopt.formulations.layout import annealing, exact
 from gearopt.formulations.layout.chain import Chain, chain, turns
 from gearopt.formulations.layout.faults import faults
-from gearopt.formulations.layout.gearbox import Gearbox
+from gearopt.formulations.layout.gearbox import Gearbox, Pair, Shaft
 from gearopt.formulations.layout.slabs import Arrangement, arrangements
 from gearopt.formulations.layout.text import direct, positions, sides, smooth
 from gearopt.optimise.box import violation
@@ -23,7 +23,7 @@ from gearopt.optimise.result import Budget
 from gearopt.optimise.solvers import ipopt
 from gearopt.optimise.terms import Array
 
-__all__ = ["GRADIENT", "faults", "problem"]
+__all__ = ["GRADIENT", "faults", "problem", "ready"]
 
 GRADIENT = ("ipopt", "multistart")  # methods that take the smooth text
 CLOSE = 1e-9  # what a polished layout may violate
@@ -42,6 +42,16 @@ def problem(box: Gearbox, method: str | None = None) -> Problem:
     if method in GRADIENT:
         return smooth(box, orders[0])
     return direct(box, orders, _methods(box, orders), front=method == "nsga2")
+
+
+@cache
+def ready() -> None:
+    """Have the kernels compiled, once on a machine, before a clock runs: by a tiny gearbox."""
+    pair, shaft = Pair(10.0, 4.0, 8.0, 5.0), Shaft(1.0)
+    tiny = Gearbox((pair, pair), (shaft, shaft, shaft))
+    found = problem(tiny)
+    for name in ("sa", "exact"):
+        found.methods[name](found, Budget(evaluations=10), 0, None)
 
 
 def _counted(one: Arrangement) -> tuple[tuple[int, ...], ...]:

@@ -11,17 +11,20 @@ from typing import Any
 
 from gearopt.formulations import teeth
 from gearopt.formulations.layout.gearbox import Gearbox, Shaft
+from gearopt.formulations.layout.slabs import Arrangement
 from gearopt.formulations.teeth.search import search as sizing
 from gearopt.formulations.together.continuous import angles_of, continuous
-from gearopt.formulations.together.search import MARGINS, Search, lay, prepare, prove
+from gearopt.formulations.together.search import MARGINS, Search, keep, lay, prepare, prove
 from gearopt.formulations.together.tables import Make, numbers, pairs
 from gearopt.formulations.together.text import laid_out, point, sizes, slabs_of, text
 from gearopt.formulations.train import FaceWidth, Sizes, Stage, Train
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Event, Outcome, Watch
+from gearopt.optimise.terms import Array
 
-__all__ = ["GAP", "angles_of", "continuous", "laid_out", "pairs", "problem", "sizes"]
+__all__ = ["GAP", "angles_of", "continuous", "laid_out", "pairs", "problem", "ready", "sizes"]
 
+Start = tuple[Sizes, Arrangement, Array]
 GAP = 1e-3  # proven where the budget asks for none
 FIRST = 40  # best sizings that are laid out before the search
 SLACK = 1e-6  # relative: margins are this much below the gap asked for, for rounding
@@ -31,25 +34,26 @@ COUNTS = "tooth pair or cell of angles bounded"
 SETTINGS = {"margins": MARGINS, "sizings laid out first": FIRST}
 
 
-def problem(train: Train, make: Make) -> Problem:
+def problem(train: Train, make: Make, start: Start | None = None) -> Problem:
     """The problem of a drive and its gearbox; `exact` finds the smallest box with its bound.
 
     make(sizes) -> Gearbox: its pairs are `pairs(train, sizes)`; shaft k may grow with the torque
     T1 u_1 ... u_k that it carries, and nothing else depends on the sizes. The objective is the
-    gearbox's. Variables are those of `text.text`.
+    gearbox's. Variables are those of `text.text`. start: a layout known before, which is kept
+    unless a better one is found: sizes, its arrangement and link angles.
     """
     box = numbers(train, make)[1]
 
     def exact(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
         """Depth-first passes with narrowing margins; the seed is that of first layouts."""
-        _compiled()
-        return _searched(train, make, budget, seed, watch)
+        ready()
+        return _searched(Search(train, make, budget, watch, seed), start)
 
     return text(train, make, box, {"exact": exact})
 
 
 @cache
-def _compiled() -> None:
+def ready() -> None:
     """Have every kernel compiled, once on a machine, before a clock runs: by a tiny drive."""
     stage = Stage(
         2.0, 48.0, FaceWidth(Fraction(1), Fraction(1)), (Fraction(2), Fraction(3)), (20, 22)
@@ -59,14 +63,15 @@ def _compiled() -> None:
     def make(sizes: Sizes) -> Gearbox:
         return Gearbox(pairs(train, sizes), (Shaft(5.0), Shaft(8.0), Shaft(12.0)))
 
-    _searched(train, make, Budget(gap=0.01), 0, None)
+    _searched(Search(train, make, Budget(gap=0.01), None, 0), None)
 
 
-def _searched(train: Train, make: Make, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
-    drive, box = numbers(train, make)
-    search = Search(train, make, budget, watch, seed)
+def _searched(search: Search, start: Start | None) -> Outcome:
+    drive, box = numbers(search.train, search.make)
+    if start is not None:
+        keep(search, *start)
     possible = _first(search)
-    wanted = (budget.gap or GAP) * (1.0 - SLACK)
+    wanted = (search.budget.gap or GAP) * (1.0 - SLACK)
     margins = [m for m in MARGINS if m > wanted] + [wanted]
     while possible and margins and not search.stopped:
         work = prepare(search, drive, box, wanted)

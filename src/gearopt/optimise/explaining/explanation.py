@@ -11,7 +11,7 @@ FORMAT = 1
 
 @dataclass(frozen=True)
 class Change:
-    """One edit: at `key`, where `was` stands (or is inherited), write `write`.
+    """One edit: at `key`, where `was` stands (or is inherited), write `write` ("": remove it).
 
     factor: how far the limit moves, >= 1.
     """

@@ -6,7 +6,7 @@ from typing import Any
 from gearopt.optimise.result import Result
 from gearopt.report.pages.section import Section, Table
 from gearopt.report.result_words import limit_rows, objective, proof, verdict
-from gearopt.report.words import number
+from gearopt.report.words import edit, number
 
 
 def summary(result: Result) -> Section:
@@ -39,7 +39,7 @@ def ways_out(result: Result) -> Section | None:
     ways: Mapping[str, Any] = result.report.get("ways_out") or {}
     rows = [
         (
-            " and ".join(f"{change['key']} = {change['write']}" for change in way["changes"]),
+            " and ".join(edit(change) for change in way["changes"]),
             " and ".join(change["was"].strip('"') for change in way["changes"]),
         )
         for way in ways.get("remedies", ())

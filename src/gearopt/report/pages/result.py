@@ -32,6 +32,7 @@ SECTIONS = (
 
 def page(result: Result, title: str, command: str) -> str:
     """One self-contained HTML page; command: what makes it again."""
+    result = Result.from_dict(result.to_dict())  # plain numbers, as a file of it has them
     sections = [made for section in SECTIONS if (made := section(result)) is not None]
     return render(
         "result.html",

@@ -8,7 +8,7 @@ from rich.console import Console, RenderableType
 from rich.text import Text
 
 from gearopt.optimise.explaining.explanation import Explanation
-from gearopt.report.words import UNITS, VERDICTS, columns, limit_words, number
+from gearopt.report.words import UNITS, VERDICTS, columns, edit, limit_words, number
 
 KINDS = {"least": "least change", "less": "or ask for less", "choice": "or choose"}
 
@@ -39,7 +39,7 @@ def remedies(found: Mapping[str, Any]) -> list[RenderableType]:
             first = k == 0 and way["kind"] != "choice"
             table.add_row(
                 Text(label if k == 0 else "  and"),
-                Text(f"{change['key']} = {change['write']}"),
+                Text(edit(change)),
                 Text(change["was"].strip('"')),
                 _factor(change["factor"]) if way["kind"] != "choice" else "",
                 f"{product}{way['bound']:.4f}" if first and way["bound"] is not None else "",

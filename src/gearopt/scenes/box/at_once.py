@@ -25,6 +25,7 @@ Start = tuple[Slabs, Sizes, tuple[float, ...]]
 
 def at_once(scene: Scene, ask: Ask, sized: Result) -> Result:
     """The smallest box over gears and places; parts: gears chosen first, and real-valued sizes."""
+    together.ready()
     apart = replace(lay_out(scene, replace(ask, method=None, watch=None), sized), name="apart")
     real = ask.method in REAL
     model = posed(scene, ask.method or "exact", apart)
@@ -35,7 +36,8 @@ def at_once(scene: Scene, ask: Ask, sized: Result) -> Result:
     parts = (replace(apart, report={}),)
     result = replace(result, objective=result.objective | {"unit": model.unit}, parts=parts)
     if result.value is None or outcome.x is None:
-        return replace(result, name="drive")
+        spent = sum(p.seconds for p in parts)
+        return replace(result, name="drive", seconds=result.seconds + spent, **_why(result, apart))
     if isinstance(model.problem, Problem) and real:
         return _real(scene, result, outcome, sized, model.problem, _start(apart)[0], events)
     box, angles, order = together.laid_out(scene.train(), scene.gearbox, outcome.x)
@@ -47,20 +49,37 @@ def at_once(scene: Scene, ask: Ask, sized: Result) -> Result:
     return replace(found, parts=(*found.parts, *smooth))
 
 
+def _why(result: Result, apart: Result) -> dict[str, Any]:
+    """What to say where nothing was found: what the gears chosen first lack, and its cures."""
+    if result.status != "infeasible":
+        return {}
+    message = apart.message or "no gears within the limits can be laid out"
+    ways = apart.report.get("ways_out") or {"conflict": [], "remedies": [], "message": ""}
+    words = f"No gears within the limits can be laid out. Of those of least volume: {message}"
+    return {"message": words, "report": {"notes": [words], "ways_out": ways}}
+
+
 def posed(scene: Scene, method: str, apart: Result) -> Model:
     """The problem that a method gets; apart: the layout of gears chosen first, a start."""
     assert scene.layout is not None
     train = scene.train()
     unit = scene.gearbox(sizes_of(apart.parts[0])).unit
     if method == "exact":
-        return Model(together.problem(train, scene.gearbox), "Gears and box at once", unit)
+        import numpy as np
+
+        known = None
+        if apart.value is not None:
+            slabs, sizes, angles = _start(apart)
+            known = (sizes, arrange(scene.gearbox(sizes), slabs), np.array(angles))
+        problem = together.problem(train, scene.gearbox, known)
+        return Model(problem, "Gears and box at once", unit)
     if method not in REAL:
         raise SolveError(f"together = true is for exact and {' and '.join(REAL)}, not for {method}")
     if apart.value is None:
         raise SolveError(f"{method} needs a start: {apart.message}")
     slabs, sizes, angles = _start(apart)
-    problem = together.continuous(train, scene.gearbox, slabs, (sizes, angles))
-    return Model(problem, "Gears and box at once, real-valued teeth", unit)
+    smooth = together.continuous(train, scene.gearbox, slabs, (sizes, angles))
+    return Model(smooth, "Gears and box at once, real-valued teeth", unit)
 
 
 def _start(apart: Result) -> Start:

@@ -37,6 +37,7 @@ def lay_out(scene: Scene, ask: Ask, sized: Result) -> Result:
     if wrong:
         return _impossible(scene, sized, ask, parts, wrong)
     problem = layout.problem(box, ask.method)
+    layout.ready()
     watch, events = following(ask.watch)
     asked = ask.budget.less(sized.seconds)
     gap = ask.gap if ask.budget.gap else GAP

@@ -74,6 +74,11 @@ def _moved(scene: Scene, number: Number, tried: Possible) -> Remedy | None:
     return Remedy("least", named, (change,), high, low, verified)
 
 
+def _called(table: Any) -> str:
+    """A place or keep-out in a word or two."""
+    return f"that of shaft {table.shaft}" if hasattr(table, "shaft") else table.name or "it"
+
+
 def _choices(scene: Scene, tried: Possible) -> Iterator[Remedy]:
     """Switches of the layout that suffice alone."""
     table = scene.layout
@@ -83,6 +88,12 @@ def _choices(scene: Scene, tried: Possible) -> Iterator[Remedy]:
         switches.append(("slabs", str([list(s) for s in table.slabs]), '"best"', None))
     if table.span == "full":
         switches.append(("span", '"full"', '"partial"', "partial"))
+    for field in ("place", "keep_out"):
+        tables = getattr(scene, field)
+        for k, one in enumerate(tables):
+            if tried(scene.model_copy(update={field: tables[:k] + tables[k + 1 :]})):
+                change = Change(f"{field}[{k + 1}]", _called(one), "", 1.0)
+                yield Remedy("choice", field, (change,), 1.0, None, {"with": "feasible"})
     for field, was, write, value in switches:
         other = scene.model_copy(update={"layout": table.model_copy(update={field: value})})
         if tried(other):
