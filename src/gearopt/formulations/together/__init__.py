@@ -11,11 +11,12 @@ from typing import Any
 
 from gearopt.formulations import teeth
 from gearopt.formulations.layout.gearbox import Gearbox, Shaft
+from gearopt.formulations.layout.pairs import pairs
 from gearopt.formulations.layout.slabs import Arrangement
 from gearopt.formulations.teeth.search import search as sizing
 from gearopt.formulations.together.continuous import angles_of, continuous
 from gearopt.formulations.together.search import MARGINS, Search, keep, lay, prepare, prove
-from gearopt.formulations.together.tables import Make, numbers, pairs
+from gearopt.formulations.together.tables import Make, numbers
 from gearopt.formulations.together.text import laid_out, point, sizes, slabs_of, text
 from gearopt.formulations.train import FaceWidth, Sizes, Stage, Train
 from gearopt.optimise.problem import Problem

@@ -15,11 +15,11 @@ from numpy.typing import NDArray
 
 from gearopt.errors import SolveError
 from gearopt.formulations.layout.gearbox import ANYWHERE, Gearbox, Pair, Shaft
+from gearopt.formulations.layout.pairs import pairs
 from gearopt.formulations.layout.slabs import TOUCH, Slabs, arrange, orders
 from gearopt.formulations.teeth.stage import Table, table
 from gearopt.formulations.train import Sizes, Train
 from gearopt.optimise.terms import Array
-from gearopt.physics.geometry import centre_distance, reference_diameter
 
 Make = Callable[[Sizes], Gearbox]
 Index = NDArray[np.int64]
@@ -85,16 +85,6 @@ class Rest(NamedTuple):
     least: Array
     edge: Array
     front: Array
-
-
-def pairs(train: Train, sizes: Sizes) -> tuple[Pair, ...]:
-    """The gear pairs of a train: centre distance, tip radii d/2 + m, face width [mm]."""
-    found = []
-    for m, z, u, b in zip(*sizes, strict=True):
-        d = float(reference_diameter(m, z, train.helix_angle))
-        wheel = 0.5 * d * u + m
-        found.append(Pair(float(centre_distance(d, u)), 0.5 * d + m, float(wheel), float(b)))
-    return tuple(found)
 
 
 def numbers(train: Train, make: Make) -> tuple[Drive, Gearbox]:

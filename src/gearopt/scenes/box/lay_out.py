@@ -74,7 +74,10 @@ def told(
         name="drive",
         design=sized.design | {"layout": found},
         limits=sized.limits | used(found) | _sides_used(result),
-        report={"progress": [*events, last], "notes": _notes(scene, sized)},
+        report={
+            "progress": [*events, last],
+            "notes": [*_notes(scene, sized), *_reached(box, found)],
+        },
         evaluations=spent,
         seconds=seconds,
     )
@@ -118,6 +121,23 @@ def _impossible(
         message=" ".join(notes),
         report={"notes": notes, "ways_out": found},
     )
+
+
+def _reached(box: Gearbox, found: dict[str, Any]) -> list[str]:
+    """Keep-outs that the box itself reaches into: only what is on the shafts is kept out."""
+    side = found["box"]
+    left, bottom = side["left_mm"], side["bottom_mm"]
+    right, top = left + side["width_mm"], bottom + side["height_mm"]
+    deep = {
+        k.name: min(right - k.y[0], k.y[1] - left, top - k.z[0], k.z[1] - bottom)
+        for k in box.keep_outs
+    }
+    return [
+        f"The box itself reaches {d:.1f} mm into {name}: gears, shafts and bearings are kept out "
+        "of it, walls are not (a larger shaft_clearance keeps them out too)."
+        for name, d in deep.items()
+        if d > 0.05
+    ]
 
 
 def _notes(scene: Scene, sized: Result) -> list[str]:

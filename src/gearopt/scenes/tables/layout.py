@@ -13,13 +13,12 @@ from gearopt.formulations.layout.gearbox import (
     Clearances,
     Gearbox,
     KeepOut,
-    Pair,
     Place,
     Range,
     Shaft,
 )
+from gearopt.formulations.layout.pairs import pairs
 from gearopt.formulations.train import Sizes, Train
-from gearopt.physics.geometry import centre_distance, reference_diameter
 from gearopt.physics.loads import torsion_diameter
 from gearopt.scenes.reading.fields import (
     Reads,
@@ -42,6 +41,10 @@ STAGES = several(several(whole(1, 1, 6), [1]), [[1], [2]])
 Length = Annotated[Quantity | None, quantity("length", "500 mm")]
 Lengths = Annotated[
     tuple[Quantity, ...] | None, several(quantity("length", "30 mm"), ["20 mm", "35 mm", "60 mm"])
+]
+Bearings = Annotated[
+    tuple[Quantity, ...] | None,
+    several(quantity("length", "62 mm"), ["62 mm", "80 mm", "120 mm"]),
 ]
 Clearance = Annotated[Quantity, CLEARANCE]
 Side = Annotated[tuple[Quantity, Quantity], span(PLACE, ["-300 mm", "-150 mm"])]
@@ -95,7 +98,7 @@ class Layout(Table):
     shaft_stress: Annotated[Quantity | None, quantity("stress", "40 MPa")] = Field(
         None, description="Torsional stress that gives each shaft its diameter instead"
     )
-    bearing_diameters: Lengths = Field(
+    bearing_diameters: Bearings = Field(
         None, description="Outer diameters of the bearings, one a shaft; with bearing_widths"
     )
     bearing_widths: Lengths = Field(None, description="Widths of the bearings, one a shaft")
@@ -231,19 +234,16 @@ def gearbox(
     train: Train,
     sizes: Sizes,
 ) -> Gearbox:
-    """A drive of given sizes as a layout sees it. Tip radii are d/2 + m_n (ISO 21771, no shift)."""
-    pairs, torques = [], [train.torque]
-    for m, z, u, b in zip(*sizes, strict=True):
-        d = reference_diameter(m, z, train.helix_angle)
-        tips = 0.5 * d + m, 0.5 * d * u + m
-        pairs.append(Pair(centre_distance(d, u), *tips, b))
+    """A drive of given sizes as a layout sees it."""
+    torques = [train.torque]
+    for u in sizes[2]:
         torques.append(torques[-1] * u)
     wide, high, long = (
         q.value if q else math.inf
         for q in (table.largest_width, table.largest_height, table.largest_length)
     )
     return Gearbox(
-        tuple(pairs),
+        pairs(train, sizes),
         _shafts(table, torques),
         Clearances(
             table.gear_clearance.value,
