@@ -155,7 +155,7 @@ def every(train):
 
 def least_box(train, make, rel):
     """The least objective of all trains in all arrangements, within rel; inf if none fits."""
-    branch = kernel("gearopt.formulations.layout.chain_kernel").branch
+    branch = kernel("gearopt.formulations.layout.branch_kernel").branch
     best, links = math.inf, len(train.stages)
     theta, cells, bounds = np.zeros(links), np.zeros((4000, 2, links)), np.zeros(4000)
     for sizes in every(train):
@@ -166,7 +166,7 @@ def least_box(train, make, rel):
             shape, count, bounds[0] = chain(box, (order,)), 1, 0.0
             cells[0, 0], cells[0, 1], cells[0, :, 0] = -math.pi, math.pi, turns(box)
             while count:
-                count, best, _, nodes = branch(
+                count, best, _, nodes, _ = branch(
                     shape, 0, cells, bounds, count, best, math.inf, rel, 100_000, theta
                 )
                 assert nodes
