@@ -41,6 +41,14 @@ def test_expected_packing(path):
     assert result.file == str(path) and len(result.file_sha256) == 64
 
 
+@pytest.mark.parametrize("path", of_kind("compound"))
+def test_expected_compound_train(path):
+    expected = content_of(path)["x-expected"]
+    result = gearopt.solve(path)
+    assert result.status == expected["status"] and result.gap < 1e-8
+    assert result.value == pytest.approx(expected["objective"], rel=1e-9)
+
+
 @pytest.mark.parametrize("path", of_kind("drive"))
 def test_expected_value(path):
     content = content_of(path)

@@ -126,6 +126,11 @@ def _method(result: Result) -> list[str]:
             f"Proof: {proof['trains_compared']:,} trains compared, all others excluded by "
             f"lower bounds (nodes opened: {proof['nodes']:,})."
         )
+    elif "pairs_matched" in proof:
+        lines.append(
+            f"Proof: {proof['pairs_matched']:,} ratios of a pair, each with the two that miss "
+            "least with it, in rational arithmetic."
+        )
     elif "ways_to_share_out" in proof:
         lines.append(_shared_out(proof))
     elif "trains_laid_out" in proof:

@@ -46,7 +46,7 @@ def _answer(result: Result) -> list[RenderableType]:
     blocks = [_design(result.design)]
     if "layout" in result.design:
         blocks.append(layout(result.design["layout"]))
-    return [*blocks, _limits(result.limits)]
+    return [*blocks, _limits(result.limits)] if result.limits else blocks
 
 
 def _design(design: Mapping[str, Any]) -> RenderableType:
@@ -60,7 +60,8 @@ def _design(design: Mapping[str, Any]) -> RenderableType:
         parts += [table, ""]
     totals = Table.grid(padding=(0, 2))
     for key, value in design.items():
-        if not isinstance(value, list | Mapping):
+        records = isinstance(value, list) and any(isinstance(v, Mapping | list) for v in value)
+        if not isinstance(value, Mapping) and not records:
             totals.add_row(Text(heading(key)), number(value))
     return Group(*parts, totals)
 
