@@ -44,6 +44,15 @@ def scene_module(kind: str) -> Any:
     return import_module(f"gearopt.scenes.{kind}")
 
 
+def _likely(content: dict[str, Any]) -> str:
+    """The kind that knows most of a file's tables."""
+
+    def known(kind: str) -> int:
+        return len(content.keys() & scene_module(kind).Scene.model_fields.keys())
+
+    return max(kinds(), key=known)
+
+
 def load(path: str | Path) -> Loaded:
     """Read a problem file; SceneError says where it is wrong and what to write instead."""
     file = str(path)
@@ -88,7 +97,7 @@ def read(data: bytes, file: str = "<text>") -> tuple[str, BaseModel]:
         meant = near(kind, kinds()) if isinstance(kind, str) else None
         known = f"is not a known kind (known: {', '.join(kinds())})"
         rule = "is missing" if kind is None else known
-        raise wrong_value(file, "kind", kind, rule, meant or kinds()[0])
+        raise wrong_value(file, "kind", kind, rule, meant or _likely(content))
     own = [key for key in content if key.startswith("x-")]  # the user's tables
     for key in own:
         del content[key]
