@@ -37,24 +37,28 @@ def solve(
     watch: Watch | None = None,
     gap: float | None = None,
     top: int = 1,
+    prices: bool = False,
 ) -> Result:
     """The certified answer to a problem file, to a loaded scene, or to a problem of your own.
 
     method: by default the scene's or problem's own. budget: seconds and evaluations. watch(event)
     is told of progress; returning False stops the run. gap: relative gap to our bound that is
     enough, so that a search may end there; None: none is, and 1e-6 is called optimal. top: so many
-    next best answers too (scenes with an exact method). SceneError for a wrong file, SolveError
+    next best answers too (scenes with an exact method). prices: report["prices"] says what every
+    number of a drive's file costs, as `explain` does. SceneError for a wrong file, SolveError
     where the method does not fit, ValueError for gap < 0 or top < 1. Not thread-safe.
     """
     if (gap is not None and gap < 0.0) or top < 1:
         raise ValueError(f"needs gap >= 0 and top >= 1, not gap = {gap}, top = {top}")
     budget = replace(budget or Budget(), gap=gap or 0.0)
+    asked = {"method": method, "seconds": budget.seconds, "evaluations": budget.evaluations}
+    asked |= {"gap": gap, "seed": seed, "top": top, "prices": prices}
     gap = GAP if gap is None else gap
     if isinstance(what, Problem | Conic):
         return solve_problem(what, method, budget, seed, watch, gap)
-    ask = Ask(method, budget, seed, watch, gap, top)
+    ask = Ask(method, budget, seed, watch, gap, top, prices)
     scene, module, names = _opened(what)
-    return _named(module.solve(scene, ask), **names)
+    return _named(module.solve(scene, ask), options=asked, **names)
 
 
 def explain(
@@ -118,6 +122,7 @@ def compare(
     scene, module, names = _opened(what)
     named = module.compared(scene) if methods is None else methods
     found = compare_methods(named, lambda m: module.model(scene, m), plan, watch, bound_from)
+    del names["asked"]
     return replace(found, title=getattr(scene, "title", "") or names["scene"], **names)
 
 
@@ -125,12 +130,14 @@ def _opened(what: str | Path | BaseModel) -> tuple[BaseModel, Any, dict[str, Any
     """The scene of a file (or the scene itself), the module of its kind, and what it is called."""
     if isinstance(what, BaseModel):
         kind = type(what).__module__.rsplit(".", 1)[-1]
-        return what, scene_module(kind), {"scene": kind}
+        title = {"title": getattr(what, "title", "")}
+        return what, scene_module(kind), {"scene": kind, "asked": title}
     loaded = load_file(what)
     names: dict[str, Any] = {
         "scene": loaded.kind,
         "file": loaded.file,
         "file_sha256": loaded.sha256,
+        "asked": loaded.asked,
     }
     return loaded.scene, scene_module(loaded.kind), names
 

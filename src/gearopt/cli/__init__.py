@@ -9,7 +9,7 @@ from gearopt.cli import solving  # noqa: F401
 from gearopt.cli import explaining  # noqa: F401
 
 # isort: split
-from gearopt.cli import comparing, files, machine  # noqa: F401
+from gearopt.cli import comparing, files, machine, reporting  # noqa: F401
 from gearopt.cli.app import app
 from gearopt.errors import GearoptError
 

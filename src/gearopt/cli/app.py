@@ -21,6 +21,12 @@ EXIT = {"optimal": 0, "stationary": 0, "feasible": 0, "infeasible": 3, "failed":
 
 File = Annotated[Path, typer.Argument(help="A problem file (TOML).", show_default=False)]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")]
+Units = Annotated[
+    str, typer.Option(help="Units to show: metric, or inch (in, psi, lb, diametral pitch).")
+]
+Csv = Annotated[
+    Path | None, typer.Option("--csv", help="Write every table as a CSV file into this folder.")
+]
 Html = Annotated[
     Path | None,
     typer.Option("--html", help="Write a page that any browser shows, without a network."),
@@ -68,14 +74,6 @@ def write_html(path: Path, page: str) -> None:
         path.write_text(page, encoding="utf-8")
     except OSError as refused:
         raise GearoptError(f"--html {path}: {refused.strerror}") from refused
-
-
-def title(file: Path) -> str:
-    """Title of a problem file."""
-    from gearopt.api import load
-
-    words: str = getattr(load(file), "title", "") or file.name
-    return words
 
 
 def console() -> Console:

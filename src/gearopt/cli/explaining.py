@@ -4,7 +4,7 @@ from typing import Annotated
 
 import typer
 
-from gearopt.cli.app import File, Json, app, console, exit_code, title
+from gearopt.cli.app import File, Json, app, console, exit_code
 from gearopt.cli.watching import watching
 from gearopt.optimise.result import Budget
 
@@ -35,11 +35,10 @@ def explain(
                 report=found.result.report
                 | ({"ways_out": ways} if found.result.status == "infeasible" else {}),
             ),
-            title(file),
             console(),
         )
     else:
         from gearopt.report.terminal.explanation import show
 
-        show(found, title(file), console())
+        show(found, console())
     raise typer.Exit(exit_code(found.result))

@@ -4,7 +4,7 @@ import json
 import math
 import platform
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, dataclass, field, fields, replace
+from dataclasses import MISSING, asdict, dataclass, field, fields, replace
 from functools import cache
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
@@ -89,6 +89,8 @@ class Result:
     feasible, infeasible (proven), limit (stopped early), failed. objective: {name, value, unit}.
     bound: nothing feasible is better; gap: (objective - bound)/|objective|. proof: {method, ...}.
     certificate: {feasibility, stationarity, complementarity}. limits: utilisations by name.
+    asked: the tables of the problem file; options: what was asked for beside it (method, seconds,
+    gap, seed, top, prices).
     """
 
     name: str
@@ -110,6 +112,8 @@ class Result:
     scene: str | None = None
     file: str | None = None
     file_sha256: str | None = None
+    asked: dict[str, Any] = field(default_factory=dict)
+    options: dict[str, Any] = field(default_factory=dict)
     versions: dict[str, str] = field(default_factory=dict)
     result: int = FORMAT
     gearopt: str = field(default_factory=lambda: _version("gearopt"))
@@ -131,12 +135,19 @@ class Result:
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> "Result":
-        """The inverse of `to_dict`; ValueError for another format version or unknown keys."""
-        if data.get("result") != FORMAT:
-            raise ValueError(f"result format {data.get('result')!r}: this gearopt reads {FORMAT}")
+        """The inverse of `to_dict`; ValueError for what is none, or of another format version."""
+        if not isinstance(data, Mapping) or "result" not in data:
+            raise ValueError("is not a result of `gearopt solve --json`: it has no key `result`")
+        if data["result"] != FORMAT:
+            raise ValueError(
+                f"has the result format {data['result']!r}; this gearopt reads {FORMAT}"
+            )
         known = {f.name for f in fields(cls)}
         if unknown := sorted(set(data) - known):
-            raise ValueError(f"unknown keys in a result: {', '.join(unknown)}")
+            raise ValueError(f"has keys that no result has: {', '.join(unknown)}")
+        needed = {f.name for f in fields(cls) if f.default is f.default_factory is MISSING}
+        if missing := sorted(needed - set(data)):
+            raise ValueError(f"lacks the keys {', '.join(missing)} of a result")
         return cls(**{**data, "parts": tuple(cls.from_dict(p) for p in data.get("parts", ()))})
 
     @classmethod

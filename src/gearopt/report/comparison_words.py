@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from gearopt.optimise.comparing.comparison import CLOSE, TIGHT, Comparison, Group, Row, Sample
-from gearopt.report.words import UNITS, number
+from gearopt.report.words import amount
 
 NOTHING = 1e-12  # a gap below it is rounding
 COLUMNS = (  # of a table: heading, unit, what it says
@@ -55,11 +55,6 @@ def kinds(found: Comparison) -> tuple[tuple[str, str, str], ...]:
     )
 
 
-def quantity(value: float, unit: str) -> str:
-    """A value with its unit."""
-    return f"{number(value)} {UNITS.get(unit, unit)}".rstrip()
-
-
 def reference(group: Group) -> str:
     """What the gaps of a group are measured from."""
     name = group.objective.replace("_", " ")
@@ -68,7 +63,7 @@ def reference(group: Group) -> str:
         return f"No design meets all limits, proven ({', '.join(proving)}): there are no gaps."
     if group.reference is None:
         return "No method found a feasible point, and nothing is proven: there are no gaps."
-    value = quantity(group.reference, group.unit)
+    value = amount(group.reference, group.unit)
     if not group.proven:
         return (
             f"Nothing is proven here: gaps are to the best {name} known, {value}, which may "

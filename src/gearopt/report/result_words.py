@@ -5,23 +5,24 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from gearopt.optimise.result import Result
-from gearopt.report.words import UNITS, VERDICTS, limit_words, number
+from gearopt.report.measures import INCH, METRIC, Measures, diametral_pitch
+from gearopt.report.words import VERDICTS, amount, limit_words
 
 EXACT = 1e-6  # a gap below it is called optimal, one above it is named
 
-ROWS = {  # of the stage table: what it is called, and the factor to its unit
-    "normal_module_mm": ("module m_n [mm]", 1),
-    "pinion_teeth": ("teeth z1", 1),
-    "wheel_teeth": ("teeth z2", 1),
-    "ratio": ("ratio u", 1),
-    "face_width_mm": ("face width b [mm]", 1),
-    "pinion_diameter_mm": ("diameter d1 [mm]", 1),
-    "wheel_diameter_mm": ("diameter d2 [mm]", 1),
-    "centre_distance_mm": ("centres a [mm]", 1),
-    "pinion_torque_Nm": ("torque T1 [N m]", 1),
-    "k_factor_MPa": ("K-factor [MPa]", 1),
-    "unit_load_MPa": ("unit load [MPa]", 1),
-    "gear_volume_mm3": ("volume [cm³]", 1e-3),
+ROWS = {  # of the stage table: what it is called, and its unit (modules are metric in any system)
+    "normal_module_mm": ("module m_n [mm]", ""),
+    "pinion_teeth": ("teeth z1", ""),
+    "wheel_teeth": ("teeth z2", ""),
+    "ratio": ("ratio u", ""),
+    "face_width_mm": ("face width b", "mm"),
+    "pinion_diameter_mm": ("diameter d1", "mm"),
+    "wheel_diameter_mm": ("diameter d2", "mm"),
+    "centre_distance_mm": ("centres a", "mm"),
+    "pinion_torque_Nm": ("torque T1", "Nm"),
+    "k_factor_MPa": ("K-factor", "MPa"),
+    "unit_load_MPa": ("unit load", "MPa"),
+    "gear_volume_mm3": ("volume", "cm3"),
 }
 
 
@@ -33,34 +34,56 @@ def verdict(result: Result) -> tuple[str, str]:
     return words, colour
 
 
+def title(result: Result) -> str:
+    """What a result is called: the title of its file, or the file's name."""
+    return str(result.asked.get("title") or result.file or result.scene or result.name)
+
+
 def objective(result: Result) -> tuple[str, str]:
-    """Name of the objective in words, and its unit."""
-    unit = result.objective.get("unit", "")
-    return str(result.objective["name"]).replace("_", " "), UNITS.get(unit, unit)
+    """Name of the objective in words, and its unit as a key has it."""
+    return str(result.objective["name"]).replace("_", " "), str(result.objective.get("unit", ""))
 
 
-def stage_rows(stages: Sequence[Mapping[str, Any]]) -> list[tuple[str, list[str]]]:
+def stage_rows(
+    stages: Sequence[Mapping[str, Any]],
+    measures: Measures = METRIC,
+    rows: Mapping[str, tuple[str, str]] = ROWS,
+) -> list[tuple[str, list[float]]]:
     """Rows of the stage table: what is called so, and its value in every stage."""
-    return [
-        (label, [number(s[key] if factor == 1 else factor * s[key]) for s in stages])
-        for key, (label, factor) in ROWS.items()
-    ]
+    found = []
+    for key, (words, unit) in rows.items():
+        if not all(key in s for s in stages):
+            continue
+        label = f"{words} [{measures.unit(unit)}]" if unit else words
+        found.append((label, [measures.of(s[key], unit) for s in stages]))
+        if key == "normal_module_mm" and measures is INCH:
+            pitches = [diametral_pitch(s[key]) for s in stages]
+            found.append(("diametral pitch P_nd [1/in]", pitches))
+    return found
 
 
 def train_rows(
-    trains: Sequence[Mapping[str, Any]], result: Result
-) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
+    trains: Sequence[Mapping[str, Any]], result: Result, measures: Measures = METRIC
+) -> tuple[tuple[str, ...], list[tuple[Any, ...]]]:
     """Heads (a second line is the unit) and rows of the table of next best trains."""
     name, unit = objective(result)
-    heads = ("", f"{name}\n{unit}", "ratio", "m_n, z1/z2", "centre distances\nmm")
-    rows: list[tuple[str, ...]] = []
+    length = measures.unit("mm")
+    heads = (
+        "",
+        f"{name}\n{measures.unit(unit)}",
+        "ratio",
+        "m_n, z1/z2",
+        f"centre distances\n{length}",
+    )
+    rows: list[tuple[Any, ...]] = []
     for k, train in enumerate(trains, 1):
         teeth = "  ".join(
             f"{s['normal_module_mm']:g}, {s['pinion_teeth']}/{s['wheel_teeth']}"
             for s in train["stages"]
         )
-        distances = "  ".join(f"{s['centre_distance_mm']:.2f}" for s in train["stages"])
-        rows.append((str(k), number(train["objective"]), f"{train['ratio']:.4f}", teeth, distances))
+        distances = "  ".join(measures.length(s["centre_distance_mm"]) for s in train["stages"])
+        value = measures.of(train["objective"], unit)
+        rows.append((k, value, train["ratio"], teeth, distances))
     return heads, rows
 
 
@@ -76,19 +99,19 @@ def limit_rows(limits: Mapping[str, float]) -> tuple[int, list[tuple[str, list[f
     return stages, [(limit_words(stem), [r.get(k) for k in order]) for stem, r in rows.items()]
 
 
-def proof(result: Result) -> list[str]:
+def proof(result: Result, measures: Measures = METRIC) -> list[str]:
     """What is certain, in sentences."""
     lines: list[str] = []
     name, unit = objective(result)
     if result.bound is not None and result.gap is not None:
         lines.append(
-            f"Bound: no {name} below {number(result.bound)} {unit} is possible; "
+            f"Bound: no {name} below {amount(result.bound, unit, measures)} is possible; "
             f"gap {100 * result.gap:.3g} %."
         )
     lines += _method(result)
     for part in result.parts:
         if part.objective["name"] == result.objective["name"] and result.status == "optimal":
-            lines += _beside(result, part, unit)
+            lines += _beside(result, part, measures)
     lines += result.report.get("notes", []) if result.status != "infeasible" else []
     if result.message and result.status != "infeasible":
         lines.append(result.message[0].upper() + result.message[1:] + ".")
@@ -96,18 +119,18 @@ def proof(result: Result) -> list[str]:
     return lines
 
 
-def _beside(result: Result, part: Result, unit: str) -> list[str]:
+def _beside(result: Result, part: Result, measures: Measures) -> list[str]:
     """What another way to the same objective gives: real-valued sizes, or gears chosen first."""
     if part.value is None or result.value is None:
         return []
     more = 100 * (result.value / part.value - 1)
+    value = amount(part.value, objective(result)[1], measures)
     if part.name == "apart":
-        value = f"{number(part.value)} {unit}"
         return [
             f"Gears chosen first and then laid out: {value} (at once is {-more:.2f} % smaller)."
         ]
     return [
-        f"With real-valued teeth and modules: {number(part.value)} {unit} "
+        f"With real-valued teeth and modules: {value} "
         f"(whole teeth and standard modules cost {more:.2f} %)."
     ]
 

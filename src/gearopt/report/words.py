@@ -5,17 +5,8 @@ from typing import Any
 
 from rich.table import Table
 
-UNITS = {
-    "mm": "mm",
-    "mm2": "mm²",
-    "mm3": "mm³",
-    "MPa": "MPa",
-    "Nm": "N m",
-    "kg": "kg",
-    "percent": "%",
-    "deg": "°",
-    "ms": "ms",
-}
+from gearopt.report.measures import METRIC, Measures
+
 VERDICTS = {
     "optimal": ("proven optimal", "green"),
     "stationary": ("locally optimal (no bound)", "yellow"),
@@ -47,12 +38,22 @@ def edit(change: Mapping[str, Any]) -> str:
     return f"{key} = {write}" if write else f"remove {key}"
 
 
-def heading(key: str) -> str:
+def heading(key: str, measures: Measures = METRIC) -> str:
     """`face_width_mm` as "face width [mm]"."""
+    stem, suffix = parted(key, measures)
+    words = stem.replace("_", " ")
+    return f"{words} [{measures.unit(suffix)}]" if suffix else words
+
+
+def parted(key: str, measures: Measures = METRIC) -> tuple[str, str]:
+    """Name and unit of a key: `face_width_mm` is ("face_width", "mm")."""
     stem, _, last = key.rpartition("_")
-    if last in UNITS and stem:
-        return f"{stem.replace('_', ' ')} [{UNITS[last]}]"
-    return key.replace("_", " ")
+    return (stem, last) if last in measures.units and stem else (key, "")
+
+
+def amount(value: Any, unit: str, measures: Measures = METRIC) -> str:
+    """A number of a result with its unit, for reading."""
+    return f"{number(measures.of(value, unit))} {measures.unit(unit)}".rstrip()
 
 
 def number(value: Any) -> str:

@@ -15,6 +15,7 @@ from gearopt.formulations.train import Train
 from gearopt.optimise.certificate import reconcile
 from gearopt.optimise.comparing.trial import Model
 from gearopt.optimise.explaining.explanation import Change, Explanation, Remedy
+from gearopt.optimise.explaining.repair import Clock
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run
@@ -31,18 +32,27 @@ def solve(scene: Scene, ask: Ask) -> Result:
     The exact answer carries the continuous one as a part: what whole teeth and standard modules
     cost, and a second, independent bound.
     """
+    result = _solved(scene, ask)
+    if not ask.prices or result.value is None:
+        return result
+    clock = Clock(ask.budget.less(result.seconds), ask.watch)
+    found = _explained(scene, ask, result, clock)
+    prices = {"influences": [asdict(i) for i in found.influences], "message": found.message}
+    return replace(result, report=result.report | {"prices": prices})
+
+
+def _solved(scene: Scene, ask: Ask) -> Result:
     if scene.layout is not None:
         from gearopt.scenes.box.at_once import at_once
         from gearopt.scenes.box.lay_out import lay_out
 
-        sized = solve(bare(scene), replace(ask, method=None))
+        sized = _solved(bare(scene), replace(ask, method=None))
         if sized.value is None:
             return sized
         return (at_once if scene.layout.together else lay_out)(scene, ask, sized)
     result = _answer(scene, ask)
     if result.status != "infeasible":
         return result
-    from gearopt.optimise.explaining.repair import Clock
     from gearopt.scenes.explaining.remedies import remedies
 
     ways = asdict(remedies(scene, Clock(ask.budget.less(result.seconds), ask.watch)))
@@ -51,57 +61,45 @@ def solve(scene: Scene, ask: Ask) -> Result:
 
 def explain(scene: Scene, ask: Ask) -> Explanation:
     """Why the drive is as it is, or what would make it possible, in the numbers of its file."""
-    from gearopt.optimise.explaining.explain import binding
-    from gearopt.optimise.explaining.repair import CERTAIN, Clock
-    from gearopt.scenes.explaining.influences import influences
-    from gearopt.scenes.explaining.numbers import numbers
-    from gearopt.scenes.explaining.remedies import remedies
-
     if scene.layout is not None:
-        return _box_explained(scene, ask)
+        result = _solved(scene, ask)
+        if result.status == "infeasible":
+            return _ways_out(result)
+        return _explained(scene, ask, result, Clock(ask.budget.less(result.seconds), ask.watch))
     clock = Clock(ask.budget, ask.watch)
     half = replace(ask.budget, seconds=ask.budget.seconds and 0.5 * ask.budget.seconds)
     result = _answer(scene, replace(ask, budget=half))
     if result.status == "infeasible":
-        ways = remedies(scene, clock)
-        return Explanation(result, **vars(ways), seconds=clock.seconds)
+        from gearopt.scenes.explaining.remedies import remedies
+
+        return Explanation(result, **vars(remedies(scene, clock)), seconds=clock.seconds)
     if result.value is None:
         return Explanation(result, message="no design was found in time", seconds=clock.seconds)
+    return _explained(scene, ask, result, clock)
 
-    def price(other: Scene) -> float | None:
-        if result.status not in CERTAIN:  # a difference to what is not the best means nothing
-            return None
-        found = _answer(other, replace(ask, budget=clock.left, top=1))
-        return found.value if found.status in CERTAIN else None
 
-    ideal = run(sizing.problem(scene.train()), "ipopt", clock.left, watch=ask.watch)
-    point = ideal[1].x if ideal[0].status == "optimal" else None
-    found = tuple(influences(scene, result, point, clock, price))
-    late = f"stopped after {len(found)} of {len(numbers(scene))} numbers" if clock.over else ""
-    if result.status not in CERTAIN:
-        late = late or "easing a limit is not priced, because the answer is not proven"
-    return Explanation(
-        result,
-        binding=tuple(n for n in binding(result) if not n.startswith("common_divisor")),
-        influences=found,
-        message=late,
-        seconds=clock.seconds,
+def _explained(scene: Scene, ask: Ask, result: Result, clock: Clock) -> Explanation:
+    """What every number of the file does to a design that was found."""
+    if scene.layout is not None:
+        from gearopt.scenes.box.explain import explained as box_explained
+
+        return box_explained(scene, result, clock)
+    from gearopt.scenes.explaining.explained import explained
+
+    return explained(
+        scene, result, clock, lambda s: _answer(s, replace(ask, budget=clock.left, top=1))
     )
 
 
-def _box_explained(scene: Scene, ask: Ask) -> Explanation:
-    from gearopt.scenes.box.explain import explained
-
-    result = solve(scene, ask)
-    if result.status == "infeasible":
-        none: dict[str, Any] = {"conflict": [], "remedies": [], "message": ""}
-        ways = result.report.get("ways_out", none)
-        found = tuple(
-            Remedy(**{**r, "changes": tuple(Change(**c) for c in r["changes"])})
-            for r in ways["remedies"]
-        )
-        return Explanation(result, tuple(ways["conflict"]), found, message=ways["message"])
-    return explained(scene, ask, result)
+def _ways_out(result: Result) -> Explanation:
+    """The ways out that an impossible layout brings along."""
+    none: dict[str, Any] = {"conflict": [], "remedies": [], "message": ""}
+    ways = result.report.get("ways_out", none)
+    found = tuple(
+        Remedy(**{**r, "changes": tuple(Change(**c) for c in r["changes"])})
+        for r in ways["remedies"]
+    )
+    return Explanation(result, tuple(ways["conflict"]), found, message=ways["message"])
 
 
 def bare(scene: Scene) -> Scene:

@@ -3,16 +3,19 @@
 from typing import Any
 
 from gearopt.optimise.result import Result
+from gearopt.report.measures import Measures
 from gearopt.report.pages.frame import Figure, axis, layout
 from gearopt.report.pages.section import Section
-from gearopt.report.words import UNITS, number
+from gearopt.report.result_words import objective
+from gearopt.report.words import number
 
 LEAST = 1e-4  # s; the logarithmic axis begins here at the earliest
 
 
-def section(result: Result) -> Section | None:
+def section(result: Result, measures: Measures) -> Section | None:
     """The progress of the run; None where it was not recorded."""
-    steps = result.report.get("progress") or []
+    name, unit = objective(result)
+    steps = [_converted(s, unit, measures) for s in result.report.get("progress") or []]
     best = [s for s in steps if s.get("best") is not None]
     if not best:
         return None
@@ -20,18 +23,23 @@ def section(result: Result) -> Section | None:
     end = max(result.seconds, steps[-1]["seconds"])
     times = [max(LEAST, s["seconds"]) for s in steps]
     wide = max(times) > 30.0 * min(times)
-    name = str(result.objective["name"]).replace("_", " ")
-    unit = UNITS.get(result.objective.get("unit", ""), result.objective.get("unit", ""))
-    traces = [_line("best", best, "best", "--series-1", unit, end)]
+    sign = measures.unit(unit)
+    traces = [_line("best", best, "best", "--series-1", sign, end)]
     if bound:
-        traces.append(_line("bound", bound, "bound", "--series-2", unit, end))
+        traces.append(_line("bound", bound, "bound", "--series-2", sign, end))
     plot = layout(
         axis("wall time [s]", type="log" if wide else "linear"),
-        axis(f"{name} [{unit}]" if unit else name, tickformat="," if _large(best) else ""),
+        axis(f"{name} [{sign}]" if sign else name, tickformat="," if _large(best) else ""),
         340,
     )
     words = "Best value found so far" + (" and the bound below it" if bound else "")
     return Section("Progress", figures=(Figure(traces, plot, f"{words}, against wall time."),))
+
+
+def _converted(step: dict[str, Any], unit: str, measures: Measures) -> dict[str, Any]:
+    """A step with its best value and bound in the unit that is shown."""
+    values = {k: measures.of(step[k], unit) for k in ("best", "bound") if step.get(k) is not None}
+    return step | values
 
 
 def _line(

@@ -4,12 +4,14 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from gearopt.optimise.result import Result
-from gearopt.report.pages.section import Section, Table
+from gearopt.report.measures import Measures
+from gearopt.report.pages.section import Section
+from gearopt.report.pages.table import Cell, Table, percent
 from gearopt.report.result_words import stage_rows, train_rows
-from gearopt.report.words import heading, number
+from gearopt.report.words import heading, parted
 
 
-def section(result: Result) -> Section | None:
+def section(result: Result, measures: Measures) -> Section | None:
     """All tables of the design; None without a design."""
     design = dict(result.design)
     if not design:
@@ -17,55 +19,77 @@ def section(result: Result) -> Section | None:
     tables = []
     if stages := design.pop("stages", []):
         heads = ["", *(f"stage {k}" for k in range(1, len(stages) + 1))]
-        tables.append(Table(heads, [[label, *cells] for label, cells in stage_rows(stages)]))
-    return Section("Design", tables=[*tables, *_tables("", design)])
+        rows = [[label, *values] for label, values in stage_rows(stages, measures)]
+        tables.append(Table("stages", heads, rows))
+        tables += _shares(stages, measures)
+    return Section("Design", tables=[*tables, *_tables("", design, measures)])
 
 
-def trains(result: Result) -> Section | None:
+def _shares(stages: Sequence[Mapping[str, Any]], measures: Measures) -> list[Table]:
+    """Volume and mass by stage; nothing to share out for one stage."""
+    if len(stages) < 2:
+        return []
+    volumes = [s["gear_volume_mm3"] for s in stages]
+    heads = ["", f"volume [{measures.unit('cm3')}]", "share, %"]
+    columns = [
+        [measures.of(v, "cm3") for v in volumes],
+        [percent(v / sum(volumes)) for v in volumes],
+    ]
+    if all("mass_kg" in s for s in stages):
+        heads.append(f"mass [{measures.unit('kg')}]")
+        columns.append([measures.of(s["mass_kg"], "kg") for s in stages])
+    rows = [[f"stage {k}", *cells] for k, cells in enumerate(zip(*columns, strict=True), 1)]
+    return [Table("volume and mass", heads, rows)]
+
+
+def trains(result: Result, measures: Measures) -> Section | None:
     """The best distinct trains in proven order; None where only one was asked for."""
     found = result.report.get("trains") or []
     if not found:
         return None
-    heads, rows = train_rows(found, result)
-    return Section(
-        "Best trains", tables=(Table([head.replace("\n", " ") for head in heads], rows),)
+    heads, rows = train_rows(found, result, measures)
+    heads = (*heads[:2], "more, %", *heads[2:])
+    least = found[0]["objective"]
+    more = [100.0 * (train["objective"] / least - 1.0) for train in found]
+    cells = [
+        (rank, value, Cell(extra, f"{extra:.2f}"), Cell(ratio, f"{ratio:.4f}"), *rest)
+        for (rank, value, ratio, *rest), extra in zip(rows, more, strict=True)
+    ]
+    table = Table("best trains", [head.replace("\n", " ") for head in heads], cells)
+    words = (
+        "Distinct choices of teeth, each with its best modules and widths: nothing better than the "
+        "last one is left out."
     )
+    words = words if result.status == "optimal" else "The best of the trains that were found."
+    return Section("Next best trains", words=(words,), tables=(table,))
 
 
-def _tables(name: str, group: Mapping[str, Any]) -> list[Table]:
+def _tables(name: str, group: Mapping[str, Any], measures: Measures) -> list[Table]:
     """A table of the single values, then one for every list of records and every group."""
     found, single = [], []
     for key, value in group.items():
         if isinstance(value, Mapping):
-            found += _tables(heading(key), value)
+            found += _tables(heading(key, measures), value, measures)
         elif _records(value):
-            found.append(_list(heading(key), value))
+            found.append(_list(heading(key, measures), value, measures))
         elif value is not None and value != []:
-            single.append((heading(key), _cell(value)))
-    return ([Table(("", ""), single, name)] if single else []) + found
+            single.append((heading(key, measures), _converted(key, value, measures)))
+    return ([Table(name or "totals", ("", ""), single, name)] if single else []) + found
 
 
 def _records(value: Any) -> bool:
     return isinstance(value, Sequence) and bool(value) and isinstance(value[0], Mapping)
 
 
-def _list(name: str, rows: Sequence[Mapping[str, Any]]) -> Table:
+def _list(name: str, rows: Sequence[Mapping[str, Any]], measures: Measures) -> Table:
     keys = list(dict.fromkeys(key for row in rows for key in row))
-    return Table(
-        [heading(key) for key in keys],
-        [[_cell(row.get(key)) for key in keys] for row in rows],
-        name,
-    )
+    cells = [[_converted(key, row.get(key), measures) for key in keys] for row in rows]
+    return Table(name, [heading(key, measures) for key in keys], cells, name)
 
 
-def _cell(value: Any) -> str:
-    """A value as it is read; the items of a list with commas between."""
-    if value is None:
-        return ""
-    if isinstance(value, bool):
-        return "yes" if value else "no"
-    if isinstance(value, list):
-        return ", ".join(_cell(v) for v in value)
-    if isinstance(value, float):
-        return number(round(value, 6) + 0.0)  # no minus before a zero
-    return number(value)
+def _converted(key: str, value: Any, measures: Measures) -> Any:
+    """A value of a design in the unit that is shown."""
+    unit = parted(key, measures)[1]
+    if unit and isinstance(value, list):
+        return [measures.of(v, unit) for v in value]
+    return measures.of(value, unit) if unit and value is not None else value

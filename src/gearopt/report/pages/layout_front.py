@@ -4,6 +4,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import replace
 
+from gearopt.report.measures import Measures
 from gearopt.report.pages.bodies import Disc, Layout, disc, keep_outs, motor, nearest
 from gearopt.report.pages.labels import SIZE, Place, around
 from gearopt.report.pages.layout_marks import (
@@ -16,7 +17,7 @@ from gearopt.report.pages.section import meaning, series
 from gearopt.report.pages.sheet import Drawing, Sheet, Window
 
 
-def front_view(found: Layout, window: Window, scale: float) -> Drawing:
+def front_view(found: Layout, window: Window, scale: float, measures: Measures) -> Drawing:
     """Along the shafts, y to the right and z up."""
     sheet = Sheet(window, scale)
     box_lines(sheet, found, "y", "z")
@@ -28,29 +29,29 @@ def front_view(found: Layout, window: Window, scale: float) -> Drawing:
     gears = sorted(found["gears"], key=lambda g: (g["from_mm"], -g["tip_diameter_mm"]))
     for gear in gears:
         y, z = places[gear["shaft"]]
-        sheet.circle(
-            y, z, 0.5 * gear["tip_diameter_mm"], "tip", series(gear["stage"]), meaning(gear)
-        )
-        sheet.circle(y, z, 0.5 * gear["reference_diameter_mm"], "reference", series(gear["stage"]))
+        colour, title = series(gear["stage"]), meaning(gear, measures)
+        sheet.circle(y, z, 0.5 * gear["tip_diameter_mm"], "tip", colour, title)
+        sheet.circle(y, z, 0.5 * gear["reference_diameter_mm"], "reference", colour)
     for shaft in found["shafts"]:
         y, z = places[shaft["shaft"]]
-        title = f"shaft {shaft['shaft']}: diameter {shaft['diameter_mm']:.2f} mm"
+        size = f"{measures.length(shaft['diameter_mm'])} {measures.unit('mm')}"
+        title = f"shaft {shaft['shaft']}: diameter {size}"
         sheet.circle(y, z, 0.5 * shaft["diameter_mm"], "shaft", title=title)
         sheet.cross(y, z, 0.5 * shaft["diameter_mm"])
     _split(sheet, found, places)
-    across_dimension(sheet, found, "y", "z")
+    across_dimension(sheet, found, "y", "z", measures)
     left, (bottom, top) = walls(found, "y")[0], walls(found, "z")
     away = sheet.at(left, 0.0)[0] - 20.0
-    sheet.dimension((left, bottom), (left, top), away, f"{top - bottom:.2f}")
-    _centre_distances(sheet, found, places)
-    _narrowest(sheet, found)
+    sheet.dimension((left, bottom), (left, top), away, measures.length(top - bottom))
+    _centre_distances(sheet, found, places, measures)
+    _narrowest(sheet, found, measures)
     for number, (y, z) in places.items():
         sheet.balloon(str(number), around(sheet.at(y, z), (26.0, 36.0, 50.0), 0.0))
     for gear in sorted(found["gears"], key=lambda g: -g["tip_diameter_mm"]):
         _name(sheet, found, gear)
     caption = (
         f"Front view along the shafts, y to the right and z up, from the end x = "
-        f"{found['box']['length_mm']:.1f}: each gear is drawn over those behind it."
+        f"{measures.length(found['box']['length_mm'], 1)}: each gear is drawn over those behind it."
     )
     return sheet.drawing("front view", caption)
 
@@ -71,14 +72,17 @@ def _split(sheet: Sheet, found: Layout, places: Mapping[int, tuple[float, float]
 
 
 def _centre_distances(
-    sheet: Sheet, found: Layout, places: Mapping[int, tuple[float, float]]
+    sheet: Sheet,
+    found: Layout,
+    places: Mapping[int, tuple[float, float]],
+    measures: Measures,
 ) -> None:
     """Between the shafts of every stage, along the line of centres."""
     for a, b, stage in _meshes(found):
         (y0, z0), (y1, z1) = places[a], places[b]
         sheet.line((y0, z0), (y1, z1), "centres")
         start, end = sheet.at(y0, z0), sheet.at(y1, z1)
-        text = f"a{stage} = {math.dist(places[a], places[b]):.2f}"
+        text = f"a{stage} = {measures.length(math.dist(places[a], places[b]))}"
         angle = math.degrees(math.atan2(end[1] - start[1], end[0] - start[0]))
         angle = (angle + 90.0) % 180.0 - 90.0  # never upside down
         nx, ny = -math.sin(math.radians(angle)), math.cos(math.radians(angle))
@@ -102,7 +106,7 @@ def _meshes(found: Layout) -> list[tuple[int, int, int]]:
     ]
 
 
-def _narrowest(sheet: Sheet, found: Layout) -> None:
+def _narrowest(sheet: Sheet, found: Layout, measures: Measures) -> None:
     """The narrowest gap between two bodies, with its value."""
     if not found["gaps"]:
         return
@@ -113,7 +117,7 @@ def _narrowest(sheet: Sheet, found: Layout) -> None:
     start, end = sheet.at(*ends[0][1:]), sheet.at(*ends[1][1:])
     sheet.arrows(start, end, "gap")
     middle = ((start[0] + end[0]) / 2, (start[1] + end[1]) / 2)
-    text = f"gap {gap['gap_mm']:.2f}"
+    text = f"gap {measures.length(gap['gap_mm'])}"
     sheet.label(text, around(middle, (44.0, 60.0, 80.0), 4.0), "gap")
 
 

@@ -1,5 +1,6 @@
 """What all views of a layout share: where its walls are, the box, a dimension across, keep-outs."""
 
+from gearopt.report.measures import Measures
 from gearopt.report.pages.bodies import ENDS, Layout, along, box_corners
 from gearopt.report.pages.labels import SIZE, Place
 from gearopt.report.pages.sheet import Sheet
@@ -19,11 +20,13 @@ def box_lines(sheet: Sheet, found: Layout, across: str, upright: str) -> None:
         sheet.rectangle((left + wall, bottom + wall), (right - wall, top - wall), "wall")
 
 
-def across_dimension(sheet: Sheet, found: Layout, across: str, upright: str) -> None:
+def across_dimension(
+    sheet: Sheet, found: Layout, across: str, upright: str, measures: Measures
+) -> None:
     """The box's dimension across, below all that is drawn."""
     (left, right), bottom = walls(found, across), walls(found, upright)[0]
     away = sheet.height - 18.0 - sheet.at(left, bottom)[1]
-    sheet.dimension((left, bottom), (right, bottom), away, f"{right - left:.2f}")
+    sheet.dimension((left, bottom), (right, bottom), away, measures.length(right - left))
 
 
 def keep_out(sheet: Sheet, it: Layout, across: str, upright: str, hatched: bool = True) -> None:

@@ -1,5 +1,6 @@
 """A layout seen across its shafts: gears as rectangles, bearings, motor, face widths."""
 
+from gearopt.report.measures import Measures
 from gearopt.report.pages.bodies import ENDS, Layout, keep_outs, motor
 from gearopt.report.pages.labels import SIZE, Place
 from gearopt.report.pages.layout_marks import (
@@ -14,7 +15,9 @@ from gearopt.report.pages.sheet import Drawing, Sheet, Window
 LEVEL = 32.0  # px from the upper edge: where face widths stand
 
 
-def side_view(found: Layout, window: Window, scale: float, axis: str) -> Drawing:
+def side_view(
+    found: Layout, window: Window, scale: float, axis: str, measures: Measures
+) -> Drawing:
     """Along x to the right and z (from the side) or y (from above) up."""
     sheet = Sheet(window, scale)
     box_lines(sheet, found, "x", axis)
@@ -26,14 +29,14 @@ def side_view(found: Layout, window: Window, scale: float, axis: str) -> Drawing
             )
         )
         keep_out(sheet, it, "x", axis, hatched=aside)
-    _motor(sheet, found)
+    _motor(sheet, found, measures)
     depth = "y_mm" if axis == "z" else "z_mm"
     shafts = sorted(found["shafts"], key=lambda s: s[depth], reverse=axis == "z")
     for shaft in shafts:  # the farthest first
-        _shaft(sheet, found, shaft, axis)
+        _shaft(sheet, found, shaft, axis, measures)
     heights = {s["shaft"]: s[f"{axis}_mm"] for s in shafts}
-    across_dimension(sheet, found, "x", axis)
-    _widths(sheet, found, axis)
+    across_dimension(sheet, found, "x", axis, measures)
+    _widths(sheet, found, axis, measures)
     right = sheet.at(walls(found, "x")[1], 0.0)[0]
     for shaft in found["shafts"]:
         x = sheet.at(shaft["to_mm"], 0.0)[0]
@@ -51,7 +54,7 @@ def side_view(found: Layout, window: Window, scale: float, axis: str) -> Drawing
     return sheet.drawing("top view", "Top view, x to the right and y up.")
 
 
-def _shaft(sheet: Sheet, found: Layout, shaft: Layout, axis: str) -> None:
+def _shaft(sheet: Sheet, found: Layout, shaft: Layout, axis: str, measures: Measures) -> None:
     """A shaft with what sits on it, as rectangles."""
     height, r = shaft[f"{axis}_mm"], 0.5 * shaft["diameter_mm"]
     start, end = shaft["from_mm"], shaft["to_mm"]
@@ -67,7 +70,7 @@ def _shaft(sheet: Sheet, found: Layout, shaft: Layout, axis: str) -> None:
         if gear["shaft"] == shaft["shaft"]:
             half = 0.5 * gear["tip_diameter_mm"]
             a, b = (gear["from_mm"], height - half), (gear["to_mm"], height + half)
-            sheet.rectangle(a, b, "tip", series(gear["stage"]), meaning(gear))
+            sheet.rectangle(a, b, "tip", series(gear["stage"]), meaning(gear, measures))
             for z in (-0.5, 0.5):
                 level = height + z * gear["reference_diameter_mm"]
                 sheet.line((a[0], level), (b[0], level), "reference", series(gear["stage"]))
@@ -75,19 +78,19 @@ def _shaft(sheet: Sheet, found: Layout, shaft: Layout, axis: str) -> None:
     sheet.line((start - past, height), (end + past, height), "axis")
 
 
-def _motor(sheet: Sheet, found: Layout) -> None:
+def _motor(sheet: Sheet, found: Layout, measures: Measures) -> None:
     if (told := motor(found)) is None:
         return
     r, start, end = told
     sheet.rectangle((start, -r), (end, r), "motor", title="motor", round_=6.0)
     sheet.line((start, 0.0), (end, 0.0), "axis")
     x, y = sheet.at((start + end) / 2, 0.0)
-    given = f" x {end - start:g}" if "length_mm" in found["motor"] else ""
-    text = f"motor ⌀ {2 * r:g}{given}"
+    wide, long = (f"{measures.of(v, 'mm'):.4g}" for v in (2 * r, end - start))
+    text = f"motor ⌀ {wide}" + (f" x {long}" if "length_mm" in found["motor"] else "")
     sheet.label(text, [Place(x, y - 12.0), Place(x, y + 12.0)], "obstacle")
 
 
-def _widths(sheet: Sheet, found: Layout, axis: str) -> None:
+def _widths(sheet: Sheet, found: Layout, axis: str, measures: Measures) -> None:
     """Face widths above all that is drawn, slab after slab."""
     top = walls(found, axis)[1]
     wheels = {g["stage"]: g for g in found["gears"] if g["member"] == "wheel"}
@@ -100,7 +103,8 @@ def _widths(sheet: Sheet, found: Layout, axis: str) -> None:
             for x in (x0, x1):
                 sheet.tick((x, wall), (x, LEVEL - 4.0))
             sheet.arrows((x0, LEVEL), (x1, LEVEL))
-            text = f"b{stage} {wheels[stage]['to_mm'] - wheels[stage]['from_mm']:.1f}"
+            wide = wheels[stage]["to_mm"] - wheels[stage]["from_mm"]
+            text = f"b{stage} {measures.length(wide, 1)}"
             levels = [Place((x0 + x1) / 2, LEVEL - up, 0.0, up / 10) for up in (9.0, 24.0)]
             sheet.label(text, levels, "size")
 

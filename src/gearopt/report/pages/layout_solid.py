@@ -6,6 +6,7 @@ from html import escape
 from typing import Any
 
 from gearopt.optimise.result import Result
+from gearopt.report.measures import Measures
 from gearopt.report.pages.bodies import (
     Layout,
     box_corners,
@@ -39,25 +40,25 @@ CAPTION = (
 )
 
 
-def section(result: Result) -> Section | None:
+def section(result: Result, measures: Measures) -> Section | None:
     """The gearbox to turn; None where there is no layout."""
     found = result.design.get("layout")
     if not found:
         return None
+    view = space(*drawn_corners(found), measures)
     return Section(
-        "In three dimensions",
-        figures=(Figure(_traces(found), space(*drawn_corners(found)), CAPTION),),
+        "In three dimensions", figures=(Figure(_traces(found, measures), view, CAPTION),)
     )
 
 
-def _traces(found: Layout) -> list[dict[str, Any]]:
+def _traces(found: Layout, measures: Measures) -> list[dict[str, Any]]:
     places = {s["shaft"]: (s["y_mm"], s["z_mm"]) for s in found["shafts"]}
-    traces = _gears(found, places)
+    traces, unit = _gears(found, places, measures), measures.unit("mm")
     for k, shaft in enumerate(found["shafts"]):
         past = FLUSH * found["box"]["length_mm"]
         span = shaft["from_mm"] - past, shaft["to_mm"] + past
         mesh = rod(places[shaft["shaft"]], shaft["diameter_mm"] / 2, *span)
-        words = f"shaft {shaft['shaft']}: diameter {shaft['diameter_mm']:.2f} mm"
+        words = f"shaft {shaft['shaft']}: diameter {measures.length(shaft['diameter_mm'])} {unit}"
         traces.append(mesh_trace(mesh, words, "--metal", "shafts", showlegend=k == 0))
     for k, it in enumerate(found["bearings"]):
         bore = next(s["diameter_mm"] for s in found["shafts"] if s["shaft"] == it["shaft"]) / 2
@@ -65,11 +66,13 @@ def _traces(found: Layout) -> list[dict[str, Any]]:
         mesh = rod(places[it["shaft"]], it["diameter_mm"] / 2, *ends, bore)
         words = f"bearing of shaft {it['shaft']}"
         traces.append(mesh_trace(mesh, words, "--soft", "bearings", showlegend=k == 0))
-    traces += _housing(found)
+    traces += _housing(found, measures)
     return traces + _clearances(found, places)
 
 
-def _gears(found: Layout, places: Mapping[int, tuple[float, float]]) -> list[dict[str, Any]]:
+def _gears(
+    found: Layout, places: Mapping[int, tuple[float, float]], measures: Measures
+) -> list[dict[str, Any]]:
     solids = [(gear, _toothed(found, gear, places)) for gear in found["gears"]]
     for flank, step in DETAIL:
         meshes = [gear_mesh(solid, flank, step) for _, solid in solids]
@@ -81,7 +84,7 @@ def _gears(found: Layout, places: Mapping[int, tuple[float, float]]) -> list[dic
         stage = gear["stage"]
         first, colour = stage not in seen, series(stage)
         seen.add(stage)
-        words = escape(meaning(gear))
+        words = escape(meaning(gear, measures))
         traces.append(mesh_trace(mesh, words, colour, f"stage {stage}", showlegend=first))
     return traces
 
@@ -114,12 +117,12 @@ def _toothed(found: Layout, gear: Layout, places: Mapping[int, tuple[float, floa
     )
 
 
-def _housing(found: Layout) -> list[dict[str, Any]]:
+def _housing(found: Layout, measures: Measures) -> list[dict[str, Any]]:
     """Walls as lines, the motor, keep-outs."""
     box = found["box"]
     low, high = box_corners(found)
-    size = " x ".join(f"{box[k]:.2f}" for k in ("width_mm", "height_mm", "length_mm"))
-    traces = [line_trace(edges(low, high), f"box {size} mm", "--ink", 3.0)]
+    size = " x ".join(measures.length(box[k]) for k in ("width_mm", "height_mm", "length_mm"))
+    traces = [line_trace(edges(low, high), f"box {size} {measures.unit('mm')}", "--ink", 3.0)]
     if told := motor(found):
         mesh = rod((0.0, 0.0), *told)
         traces.append(mesh_trace(mesh, "motor", "--axis", "motor", opacity=0.6, showlegend=True))

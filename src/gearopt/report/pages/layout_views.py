@@ -1,6 +1,7 @@
 """A gearbox layout as a technical drawing: along the shafts, from the side, from above."""
 
 from gearopt.optimise.result import Result
+from gearopt.report.measures import Measures
 from gearopt.report.pages.bodies import Layout, along, drawn_corners
 from gearopt.report.pages.layout_front import front_view
 from gearopt.report.pages.layout_side import side_view
@@ -10,7 +11,7 @@ from gearopt.report.pages.sheet import Window
 WIDE, HIGH = 640.0, 780.0  # largest drawing [px]: two side by side, or one on a printed page
 
 
-def section(result: Result) -> Section | None:
+def section(result: Result, measures: Measures) -> Section | None:
     """The views of a layout, all at one scale; None where there is no layout."""
     found = result.design.get("layout")
     if not found:
@@ -18,21 +19,21 @@ def section(result: Result) -> Section | None:
     windows = [_window(found, axis) for axis in ("", "z", "y")]
     scale = min(window.scale(WIDE, HIGH) for window in windows)
     words = [
-        f"Drawn to one scale; dimensions in mm. The axis of shaft 1, the input, is y = z = 0; "
-        f"shaft {len(found['shafts'])} is the output. Dash-dotted circles are reference circles, "
-        "solid ones tip circles; numbers in circles are shafts. The thin dashed line is as far "
-        "from the wall as every gear has to stay."
+        f"Drawn to one scale; dimensions in {measures.unit('mm')}. The axis of shaft 1, the input, "
+        f"is y = z = 0; shaft {len(found['shafts'])} is the output. Dash-dotted circles are "
+        "reference circles, solid ones tip circles; numbers in circles are shafts. The thin dashed "
+        "line is as far from the wall as every gear has to stay."
     ]
     if found["obstacles"]:
         words.append("Hatched boxes must stay free; those that reach far out are cut off.")
     if found["motor"] and "length_mm" not in found["motor"]:
         words.append("No length of the motor was given: it is drawn as long as it is wide.")
     views = (
-        front_view(found, windows[0], scale),
-        side_view(found, windows[1], scale, "z"),
-        side_view(found, windows[2], scale, "y"),
+        front_view(found, windows[0], scale, measures),
+        side_view(found, windows[1], scale, "z", measures),
+        side_view(found, windows[2], scale, "y", measures),
     )
-    return Section("Layout", words, views)
+    return Section("Layout", words=words, drawings=views)
 
 
 def _window(found: Layout, axis: str) -> Window:

@@ -1,40 +1,57 @@
-"""What was found and how sure it is: status, objective, bound, proof, limits, ways out."""
+"""What was found at a glance, how much of each limit it uses, and ways out of the impossible."""
 
 from collections.abc import Mapping
 from typing import Any
 
 from gearopt.optimise.result import Result
-from gearopt.report.pages.section import Section, Table
+from gearopt.report.measures import Measures
+from gearopt.report.pages.section import Section, Tile
+from gearopt.report.pages.table import Table, percent
 from gearopt.report.result_words import limit_rows, objective, proof, verdict
-from gearopt.report.words import edit, number
+from gearopt.report.words import amount, edit, number
 
 
-def summary(result: Result) -> Section:
-    """Status, objective, bound and gap in a table; the proof and the notes in sentences."""
+def summary(result: Result, measures: Measures) -> Section:
+    """Key figures, and in words what is certain."""
+    return Section("Result", _tiles(result, measures), proof(result, measures))
+
+
+def _tiles(result: Result, measures: Measures) -> list[Tile]:
     name, unit = objective(result)
-    rows = [("status", verdict(result)[0])]
+    tiles = []
     if result.value is not None:
-        rows.append((name, f"{number(result.value)} {unit}".strip()))
+        tiles.append(Tile(name, amount(result.value, unit, measures), verdict(result)[0]))
     if result.bound is not None:
-        rows.append(("bound", f"{number(result.bound)} {unit}".strip()))
-    if result.gap is not None:
-        rows.append(("gap", f"{100 * result.gap:.3g} %"))
-    rows.append(("method", result.method))
-    table = Table(("", ""), rows)
-    return Section("Result", proof(result), tables=(table,))
+        gap = "" if result.gap is None else f"gap {100 * result.gap:.3g} %"
+        tiles.append(Tile("proven bound", amount(result.bound, unit, measures), gap))
+    design = result.design
+    if "ratio" in design:
+        error = design.get("ratio_error_percent")
+        off = "" if error is None else f"{error:+.3f} % off"
+        tiles.append(Tile("total ratio", number(design["ratio"]), off))
+    if "output_torque_Nm" in design:
+        tiles.append(Tile("output torque", amount(design["output_torque_Nm"], "Nm", measures)))
+    if "mass_kg" in design and name != "mass":
+        tiles.append(Tile("mass of the gears", amount(design["mass_kg"], "kg", measures)))
+    if box := design.get("layout", {}).get("box"):
+        sides = (measures.length(box[f"{side}_mm"], 1) for side in ("width", "height", "length"))
+        size = f"{' x '.join(sides)} {measures.unit('mm')}"
+        tiles.append(Tile("box", size, "width, height, length"))
+    return tiles
 
 
-def limits(result: Result) -> Section | None:
+def limits(result: Result, measures: Measures) -> Section | None:
     """Utilisation of every limit; None without limits."""
     if not result.limits or result.value is None:
         return None
     stages, rows = limit_rows(result.limits)
     heads = ["limit used, %", *(f"stage {k}" for k in range(1, stages + 1)), "whole"]
-    cells = [[words, *map(_percent, values)] for words, values in rows]
-    return Section("Limits", ("At 100 a limit is reached.",), tables=(Table(heads, cells),))
+    cells = [[words, *map(percent, values)] for words, values in rows]
+    table = Table("limits", heads, cells)
+    return Section("Limits", words=("At 100 a limit is reached.",), tables=(table,), half=True)
 
 
-def ways_out(result: Result) -> Section | None:
+def ways_out(result: Result, measures: Measures) -> Section | None:
     """What to write instead, where nothing meets the limits; None elsewhere."""
     ways: Mapping[str, Any] = result.report.get("ways_out") or {}
     rows = [
@@ -46,10 +63,6 @@ def ways_out(result: Result) -> Section | None:
     ]
     if not rows:
         return None
-    heads = ("write in the file", "instead of")
+    table = Table("ways out", ("write in the file", "instead of"), rows, words=True)
     words = "Changes of the file that make a design possible; one is enough."
-    return Section("Ways out", (words,), tables=(Table(heads, rows, words=True),))
-
-
-def _percent(value: float | None) -> str:
-    return "" if value is None else f"{100 * value:.1f}"
+    return Section("Ways out", words=(words,), tables=(table,))

@@ -6,6 +6,7 @@ from html import escape
 from typing import Any
 
 from gearopt.optimise.result import Result
+from gearopt.report.measures import Measures
 from gearopt.report.pages.frame import Figure
 from gearopt.report.pages.packing_views import sizes, span, words
 from gearopt.report.pages.section import Section
@@ -14,7 +15,7 @@ from gearopt.report.pages.solid import Point, edges, line_trace, mesh_trace, rod
 CAPTION = "Drag to turn, scroll to come nearer, click a name to hide or show it."
 
 
-def section(result: Result) -> Section | None:
+def section(result: Result, measures: Measures) -> Section | None:
     """The packing to turn; None where there is none."""
     design = result.design
     if not design.get("cylinders"):
@@ -26,10 +27,13 @@ def section(result: Result) -> Section | None:
     for it in sorted(design["cylinders"], key=lambda c: -c["diameter_mm"]):
         d = it["diameter_mm"]
         mesh = upright(rod((it["x_mm"], it["y_mm"]), d / 2, it["from_mm"], it["to_mm"]))
-        group, first = f"diameter {d:g} mm", d not in seen
+        group = f"diameter {measures.of(d, 'mm'):.4g} {measures.unit('mm')}"
+        first = d not in seen
         seen.add(d)
-        traces.append(mesh_trace(mesh, escape(words(it)), colours[d], group, showlegend=first))
-    return Section("In three dimensions", figures=(Figure(traces, space(*corners, 520), CAPTION),))
+        name = escape(words(it, measures))
+        traces.append(mesh_trace(mesh, name, colours[d], group, showlegend=first))
+    view = space(*corners, measures, 520)
+    return Section("In three dimensions", figures=(Figure(traces, view, CAPTION),))
 
 
 def _container(container: Mapping[str, Any]) -> list[Point | None]:

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from gearopt.optimise.result import Result
+from gearopt.report.measures import Measures
 from gearopt.report.pages.labels import Place, around
 from gearopt.report.pages.section import Section, series
 from gearopt.report.pages.sheet import Drawing, Sheet, Window
@@ -11,7 +12,7 @@ from gearopt.report.pages.sheet import Drawing, Sheet, Window
 WIDE, HIGH = 640.0, 560.0  # largest drawing [px]
 
 
-def section(result: Result) -> Section | None:
+def section(result: Result, measures: Measures) -> Section | None:
     """A plan of every layer, all at one scale; None where there is no packing."""
     design = result.design
     if not design.get("cylinders"):
@@ -19,11 +20,12 @@ def section(result: Result) -> Section | None:
     window = _window(design["container"])
     scale = window.scale(WIDE, HIGH)
     colours = sizes(design["cylinders"])
-    plans = [_plan(design, layer, window, scale, colours) for layer in design["layers"]]
-    words = "Seen from above, drawn to one scale; dimensions in mm."
+    layers = design["layers"]
+    plans = [_plan(design, layer, window, scale, colours, measures) for layer in layers]
+    words = f"Seen from above, drawn to one scale; dimensions in {measures.unit('mm')}."
     if any(c["fixed"] for c in design["cylinders"]):
         words += " Cylinders whose place the file gives have a heavy outline."
-    return Section("Packing", (words,), plans)
+    return Section("Packing", words=(words,), drawings=plans)
 
 
 def sizes(cylinders: list[dict[str, Any]]) -> dict[float, str]:
@@ -42,11 +44,14 @@ def span(container: Mapping[str, Any]) -> tuple[float, float, float, float]:
     return left, left + width, front, front + depth
 
 
-def words(cylinder: Mapping[str, Any]) -> str:
+def words(cylinder: Mapping[str, Any], measures: Measures) -> str:
     """A cylinder in a line."""
+    diameter, height = (measures.of(cylinder[k], "mm") for k in ("diameter_mm", "height_mm"))
+    x, y = (measures.length(cylinder[k], 3) for k in ("x_mm", "y_mm"))
+    unit = measures.unit("mm")
     return (
-        f"{cylinder['name']}: diameter {cylinder['diameter_mm']:g} mm, height "
-        f"{cylinder['height_mm']:g} mm, x {cylinder['x_mm']:.3f}, y {cylinder['y_mm']:.3f}"
+        f"{cylinder['name']}: diameter {diameter:.4g} {unit}, height {height:.4g} {unit}, "
+        f"x {x}, y {y}"
     )
 
 
@@ -60,6 +65,7 @@ def _plan(
     window: Window,
     scale: float,
     colours: Mapping[float, str],
+    measures: Measures,
 ) -> Drawing:
     sheet, container = Sheet(window, scale), design["container"]
     left, right, front, back = span(container)
@@ -73,20 +79,21 @@ def _plan(
     for it in on:
         style = "cylinder fixed" if it["fixed"] else "cylinder"
         place, colour = (it["x_mm"], it["y_mm"]), colours[it["diameter_mm"]]
-        sheet.circle(*place, 0.5 * it["diameter_mm"], style, colour, words(it))
+        sheet.circle(*place, 0.5 * it["diameter_mm"], style, colour, words(it, measures))
         sheet.cross(*place, -0.5 * it["diameter_mm"] + 2.0 / scale)
     floor = sheet.at(0.0, front)[1]
     sign = "⌀ " if container["shape"] == "circle" else ""
     away = sheet.height - 18.0 - floor
     level = middle[1] if sign else front
     away += floor - sheet.at(0.0, level)[1]
-    sheet.dimension((left, level), (right, level), away, f"{sign}{right - left:.2f}")
+    sheet.dimension((left, level), (right, level), away, f"{sign}{measures.length(right - left)}")
     if not sign:
         away = sheet.at(left, 0.0)[0] - 20.0
-        sheet.dimension((left, front), (left, back), away, f"{back - front:.2f}")
+        sheet.dimension((left, front), (left, back), away, measures.length(back - front))
     for it in sorted(on, key=lambda c: -c["diameter_mm"]):
         _name(sheet, it, colours[it["diameter_mm"]])
-    ends = f"{layer['from_mm']:g} to {layer['to_mm']:g} mm"
+    start, end = (f"{measures.of(layer[k], 'mm'):.4g}" for k in ("from_mm", "to_mm"))
+    ends = f"{start} to {end} {measures.unit('mm')}"
     caption = f"Layer {layer['layer']}, from {ends}, x to the right and y up."
     return sheet.drawing(f"layer {layer['layer']}", caption)
 

@@ -1,19 +1,24 @@
 """The page of a result: drawings, a solid to turn, progress, numbers, and how sure they are."""
 
 from gearopt.optimise.result import Result
+from gearopt.report.measures import METRIC, Measures
 from gearopt.report.pages import (
     anytime,
+    asked,
+    assurance,
     design_tables,
     layout_solid,
     layout_views,
     outcome,
     packing_solid,
     packing_views,
+    prices,
     trade_off,
 )
 from gearopt.report.pages.frame import render
-from gearopt.report.result_words import objective, verdict
-from gearopt.report.words import number
+from gearopt.report.pages.section import Section
+from gearopt.report.result_words import objective, title, verdict
+from gearopt.report.words import amount
 
 SECTIONS = (
     outcome.summary,
@@ -22,31 +27,50 @@ SECTIONS = (
     layout_solid.section,
     packing_views.section,
     packing_solid.section,
-    anytime.section,
-    trade_off.section,
-    outcome.limits,
     design_tables.section,
+    asked.section,
+    outcome.limits,
+    prices.section,
     design_tables.trains,
+    trade_off.section,
+    anytime.section,
+    assurance.proven,
+    assurance.assumptions,
 )
 
 
-def page(result: Result, title: str, command: str) -> str:
-    """One self-contained HTML page; command: what makes it again."""
+def sections(result: Result, measures: Measures = METRIC) -> list[Section]:
+    """What a result has to show, in the order of its page."""
     result = Result.from_dict(result.to_dict())  # plain numbers, as a file of it has them
-    sections = [made for section in SECTIONS if (made := section(result)) is not None]
+    return [made for section in SECTIONS if (made := section(result, measures)) is not None]
+
+
+def page(result: Result, command: str, measures: Measures = METRIC) -> str:
+    """One self-contained HTML page; command: what makes it again."""
+    found = sections(result, measures)
     return render(
         "result.html",
-        title,
-        _subtitle(result),
+        title(result),
+        _subtitle(result, measures),
         {"gearopt": result.gearopt, **result.versions},
         command,
-        plots=any(section.figures for section in sections),
-        sections=sections,
+        plots=any(section.figures for section in found),
+        sections=found,
         source=result.file and f"File {result.file}, SHA-256 {(result.file_sha256 or '')[:16]}…",
     )
 
 
-def _subtitle(result: Result) -> str:
+def tables(result: Result, measures: Measures = METRIC) -> dict[str, str]:
+    """The CSV of every table by the name of its file, such as `stages.csv`."""
+    found: dict[str, str] = {}
+    for section in sections(result, measures):
+        for table in section.tables:
+            names = (f"{table.stem}{k}.csv" for k in ("", *range(2, 1000)))
+            found[next(name for name in names if name not in found)] = table.csv()
+    return found
+
+
+def _subtitle(result: Result, measures: Measures) -> str:
     name, unit = objective(result)
-    value = "" if result.value is None else f"{name} {number(result.value)} {unit}, "
+    value = "" if result.value is None else f"{name} {amount(result.value, unit, measures)}, "
     return f"{value}{verdict(result)[0]}"

@@ -1,11 +1,13 @@
-"""What a page is made of: sections of drawings, plots, tables and sentences."""
+"""What a page is made of: sections of key figures, sentences, drawings, plots and tables."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from gearopt.report.measures import Measures
 from gearopt.report.pages.frame import Figure
 from gearopt.report.pages.sheet import Drawing
+from gearopt.report.pages.table import Table
 
 SHEET = 660.0  # px across an A4 sheet inside its margins
 GUTTER = 18.0  # px between drawings, as in drawing.css
@@ -14,27 +16,28 @@ COLOURS = 8  # --series-1 ... in frame.css, told apart by the colour-blind
 
 
 @dataclass(frozen=True)
-class Table:
-    """Heads, rows of cells as they are shown, and what it is called.
+class Tile:
+    """A key figure: what it is called, its value with the unit, a remark."""
 
-    words: sentences, not numbers, that may break over lines.
-    """
-
-    heads: Sequence[str]
-    rows: Sequence[Sequence[str]]
-    caption: str = ""
-    words: bool = False
+    name: str
+    value: str
+    remark: str = ""
 
 
 @dataclass(frozen=True)
 class Section:
-    """A heading, then sentences, drawings side by side at one scale, plots, tables."""
+    """A heading, then key figures, sentences, drawings at one scale, plots, tables.
+
+    half: two such sections stand side by side where the page is wide.
+    """
 
     heading: str
+    tiles: Sequence[Tile] = ()
     words: Sequence[str] = ()
     drawings: Sequence[Drawing] = ()
     figures: Sequence[Figure] = ()
     tables: Sequence[Table] = ()
+    half: bool = False
 
     @property
     def widest(self) -> float:
@@ -57,10 +60,12 @@ def series(k: int) -> str:
     return f"--series-{(k - 1) % COLOURS + 1}"
 
 
-def meaning(gear: dict[str, Any]) -> str:
+def meaning(gear: Mapping[str, Any], measures: Measures) -> str:
     """A gear in a line, as drawings tell it where the pointer rests."""
+    unit = measures.unit("mm")
     return (
         f"{gear['name']}: z {gear['teeth']}, m_n {gear['normal_module_mm']:g} mm, "
-        f"d {gear['reference_diameter_mm']:.2f} mm, d_a {gear['tip_diameter_mm']:.2f} mm, "
-        f"b {gear['to_mm'] - gear['from_mm']:.2f} mm"
+        f"d {measures.length(gear['reference_diameter_mm'])} {unit}, "
+        f"d_a {measures.length(gear['tip_diameter_mm'])} {unit}, "
+        f"b {measures.length(gear['to_mm'] - gear['from_mm'])} {unit}"
     )

@@ -11,6 +11,8 @@ from base64 import b64encode
 from dataclasses import dataclass
 from typing import Any
 
+from gearopt.report.measures import Measures
+
 Point = tuple[float, float, float]
 Face = tuple[int, int, int]
 Mesh = tuple[list[Point], list[Face]]
@@ -18,6 +20,7 @@ Mesh = tuple[list[Point], list[Face]]
 PRESSURE_ANGLE = math.radians(20.0)  # normal; of the basic rack that nearly all gears have
 BACKLASH = 0.03  # of a pitch, so that flanks in mesh are seen apart
 ROUND = 48  # sides of a cylinder
+TICKS = 5  # of an axis, about
 EYE = (0.55, -0.75, 0.37)  # direction of the first view: from the output end, the left, above
 AWAY = 1.28  # diagonals between the eye and the middle, so that all is inside the picture
 LIGHT = {
@@ -181,7 +184,7 @@ def edges(low: Point, high: Point) -> list[Point | None]:
     return found
 
 
-def space(low: Point, high: Point, height: int = 640) -> dict[str, Any]:
+def space(low: Point, high: Point, measures: Measures, height: int = 640) -> dict[str, Any]:
     """The layout of a plot in three dimensions, in the page's look, one scale on all axes.
 
     low, high: corners of all that is drawn, seen whole at first. Plotly measures where the eye is
@@ -198,7 +201,10 @@ def space(low: Point, high: Point, height: int = 640) -> dict[str, Any]:
         "tickfont": {"size": 11, "color": "--soft"},
         "showspikes": False,
     }
-    names = {f"{a}axis": ax | {"title": {"text": f"{a} [mm]", "font": {"size": 12}}} for a in "xyz"}
+    names = {}
+    for a, start, end in zip("xyz", low, high, strict=True):
+        title = {"text": f"{a} [{measures.unit('mm')}]", "font": {"size": 12}}
+        names[f"{a}axis"] = ax | {"title": title} | _ticks(start, end, measures)
     camera = {"eye": eye, "center": {"x": 0.0, "y": 0.0, "z": -0.1}}  # room for the axes below
     return {
         "height": height,
@@ -215,6 +221,19 @@ def space(low: Point, high: Point, height: int = 640) -> dict[str, Any]:
         },
         "uirevision": "kept",  # the reader's view survives a change from light to dark
     }
+
+
+def _ticks(start: float, end: float, measures: Measures) -> dict[str, Any]:
+    """Where an axis in mm has its ticks so that they are round in another unit."""
+    unit = measures.of(1.0, "mm")
+    if unit == 1.0:
+        return {}
+    rough = unit * (end - start) / TICKS
+    size = 10.0 ** math.floor(math.log10(rough))
+    step = min((k * size for k in (1.0, 2.0, 5.0, 10.0)), key=lambda s: abs(s - rough))
+    first, last = math.ceil(unit * start / step), math.floor(unit * end / step)
+    values = [k * step for k in range(first, last + 1)]
+    return {"tickvals": [v / unit for v in values], "ticktext": [f"{v:.6g}" for v in values]}
 
 
 def _packed(kind: str, values: list[Any]) -> dict[str, str]:

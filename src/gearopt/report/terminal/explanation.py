@@ -2,13 +2,17 @@
 
 import math
 from collections.abc import Mapping
+from dataclasses import asdict
 from typing import Any
 
 from rich.console import Console, RenderableType
 from rich.text import Text
 
 from gearopt.optimise.explaining.explanation import Explanation
-from gearopt.report.words import UNITS, VERDICTS, columns, edit, limit_words, number
+from gearopt.optimise.result import Result
+from gearopt.report.influence_words import influence_rows, influence_words
+from gearopt.report.result_words import objective, title
+from gearopt.report.words import VERDICTS, amount, columns, edit, limit_words
 
 KINDS = {"least": "least change", "less": "or ask for less", "choice": "or choose"}
 
@@ -61,53 +65,32 @@ def _factor(factor: float | None) -> str:
     return "" if factor is None or math.isinf(factor) else f"{factor:.4f}"
 
 
-def show(explanation: Explanation, title: str, console: Console) -> None:
+def show(explanation: Explanation, console: Console) -> None:
     """Print the explanation of a possible request (an impossible one is shown by its result)."""
     result = explanation.result
-    unit = UNITS.get(result.objective.get("unit", ""), result.objective.get("unit", ""))
-    name = str(result.objective["name"]).replace("_", " ")
+    name, unit = objective(result)
     words, colour = VERDICTS[result.status]
+    value = amount(result.value, unit)
     console.print(
-        Text.assemble(
-            (title, "bold"),
-            f": {name} {number(result.value)} {unit}, ",
-            (words, f"bold {colour}"),
-        )
+        Text.assemble((title(result), "bold"), f": {name} {value}, ", (words, f"bold {colour}"))
     )
-    if explanation.message:
-        console.print(Text(f"{explanation.message[0].upper()}{explanation.message[1:]}."))
     full = ", ".join(limit_words(n) for n in explanation.binding)
     console.print(Text(f"Used to the full: {full}." if full else "No limit is used to the full."))
-    console.print()
+    prices = {
+        "influences": [asdict(i) for i in explanation.influences],
+        "message": explanation.message,
+    }
+    for block in influences(prices, result):
+        console.print()
+        console.print(block)
+
+
+def influences(found: Mapping[str, Any], result: Result) -> list[RenderableType]:
+    """What every number of the file does to the objective, as a table, and what that means."""
     heads = ["now", "+1 % brings", "re-solved", "eased by", "brings"]
     table = columns("number in the file", heads)
     table.columns[0].no_wrap = True
-    for i in explanation.influences:
-        price = "" if i.price is None else ("none" if abs(i.price) < 1e-9 else f"{i.price:+.3%}")
-        table.add_row(i.key, i.value, _percent(i.sensitivity), _sides(i.resolved), i.step, price)
-    console.print(table)
-    console.print()
-    slope = f"What +1 % brings: slope of the {name} (d ln objective / d ln number)"
-    words = ", by solving again."
-    if any(i.sensitivity is not None for i in explanation.influences):
-        words = (
-            " with real-valued teeth and modules, by multipliers and, to check, by solving again. "
-            "What easing a limit brings: the drive itself solved again."
-        )
-    console.print(Text(slope + words))
-
-
-def _percent(slope: float | None) -> str:
-    if slope is None:
-        return ""
-    return "0" if abs(slope) < 1e-9 else f"{slope:+.4f} %"
-
-
-def _sides(resolved: tuple[float | None, float | None]) -> str:
-    """One number where both sides agree, both where a limit is about to bind."""
-    below, above = resolved
-    if below is None or above is None:
-        return _percent(above if below is None else below)
-    if abs(above - below) < 0.02:
-        return _percent(0.5 * (below + above))
-    return f"{_percent(below)} | {_percent(above)}"
+    for key, now, slope, both, step, price in influence_rows(found["influences"]):
+        table.add_row(key, now, slope, both, step, price)
+    blocks: list[RenderableType] = [table] if found["influences"] else []
+    return [*blocks, Text("\n".join(influence_words(found, result)))]

@@ -9,60 +9,72 @@ from rich.table import Table
 from rich.text import Text
 
 from gearopt.optimise.result import Result
-from gearopt.report.result_words import limit_rows, proof, stage_rows, train_rows, verdict
+from gearopt.report.measures import METRIC, Measures
+from gearopt.report.result_words import (
+    limit_rows,
+    proof,
+    stage_rows,
+    title,
+    train_rows,
+    verdict,
+)
 from gearopt.report.terminal import packing
-from gearopt.report.terminal.explanation import remedies
+from gearopt.report.terminal.explanation import influences, remedies
 from gearopt.report.terminal.layout import layout
-from gearopt.report.words import columns, heading, number
+from gearopt.report.words import columns, heading, number, parted
 
 
-def show(result: Result, title: str, console: Console) -> None:
+def show(result: Result, console: Console, measures: Measures = METRIC) -> None:
     """Print a result."""
     words, colour = verdict(result)
-    console.print(Text.assemble((title, "bold"), ": ", (words, f"bold {colour}")))
-    for block in _blocks(result):
+    console.print(Text.assemble((title(result), "bold"), ": ", (words, f"bold {colour}")))
+    for block in _blocks(result, measures):
         console.print()
         console.print(block)
 
 
-def _blocks(result: Result) -> list[RenderableType]:
+def _blocks(result: Result, measures: Measures) -> list[RenderableType]:
     blocks: list[RenderableType] = []
     if result.value is not None:
-        blocks += _answer(result)
+        blocks += _answer(result, measures)
         if trains := result.report.get("trains"):
-            blocks.append(_trains(trains, result))
+            blocks.append(_trains(trains, result, measures))
+        if prices := result.report.get("prices"):
+            blocks += influences(prices, result)
     if "ways_out" in result.report:
         if not result.report["ways_out"]["conflict"] and result.message:
             blocks.append(Text(result.message))
         blocks += remedies(result.report["ways_out"])
-    blocks.append(Text("\n".join(proof(result))))
+    blocks.append(Text("\n".join(proof(result, measures))))
     return blocks
 
 
-def _answer(result: Result) -> list[RenderableType]:
+def _answer(result: Result, measures: Measures) -> list[RenderableType]:
     """The design, in the words of its kind."""
     if result.scene == "packing":
-        return [packing.design(result.design)]
-    blocks = [_design(result.design)]
+        return [packing.design(result.design, measures)]
+    blocks = [_design(result.design, measures)]
     if "layout" in result.design:
-        blocks.append(layout(result.design["layout"]))
+        blocks.append(layout(result.design["layout"], measures))
     return [*blocks, _limits(result.limits)] if result.limits else blocks
 
 
-def _design(design: Mapping[str, Any]) -> RenderableType:
+def _design(design: Mapping[str, Any], measures: Measures) -> RenderableType:
     """Stages side by side, then the totals."""
     parts: list[RenderableType] = []
     stages = design.get("stages", [])
     if stages:
         table = columns("", [f"stage {k}" for k in range(1, len(stages) + 1)])
-        for label, cells in stage_rows(stages):
-            table.add_row(Text(label), *cells)
+        for label, values in stage_rows(stages, measures):
+            table.add_row(Text(label), *map(number, values))
         parts += [table, ""]
     totals = Table.grid(padding=(0, 2))
     for key, value in design.items():
         records = isinstance(value, list) and any(isinstance(v, Mapping | list) for v in value)
         if not isinstance(value, Mapping) and not records:
-            totals.add_row(Text(heading(key)), number(value))
+            unit = parted(key, measures)[1]
+            shown = measures.of(value, unit) if unit else value
+            totals.add_row(Text(heading(key, measures)), number(shown))
     return Group(*parts, totals)
 
 
@@ -83,11 +95,11 @@ def _percent(value: float | None) -> Text:
     return Text(text, style="bold" if value > 0.9995 else "")
 
 
-def _trains(trains: list[Mapping[str, Any]], result: Result) -> RenderableType:
-    heads, rows = train_rows(trains, result)
+def _trains(trains: list[Mapping[str, Any]], result: Result, measures: Measures) -> RenderableType:
+    heads, rows = train_rows(trains, result, measures)
     table = Table(*heads, box=None, header_style="bold", pad_edge=False)
-    for row in rows:
-        table.add_row(*row)
+    for rank, value, ratio, teeth, distances in rows:
+        table.add_row(str(rank), number(value), f"{ratio:.4f}", teeth, distances)
     return table
 
 

@@ -12,7 +12,6 @@ from gearopt.optimise.result import Result
 from gearopt.optimise.solve import solve
 from gearopt.scenes.box.lay_out import sizes_of
 from gearopt.scenes.explaining.numbers import Number, numbers, put, times
-from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.tables.drive import Scene
 from gearopt.units import Quantity
 
@@ -20,9 +19,8 @@ COARSE = 0.01  # gap of the proof behind a slope: the polished layout is far bet
 SAME = 1e-7  # relative, of boxes that are equal
 
 
-def explained(scene: Scene, ask: Ask, result: Result) -> Explanation:
+def explained(scene: Scene, result: Result, clock: Clock) -> Explanation:
     """The answer of a layout with the slope of the box over every number of its tables."""
-    clock = Clock(ask.budget.less(result.seconds), ask.watch)
     if result.status not in CERTAIN or result.value is None:
         return Explanation(result, message="slopes need a proven layout", seconds=clock.seconds)
     gears = next((p for p in result.parts if p.name == "gears"), result)

@@ -8,7 +8,10 @@ from gearopt.optimise.solve import GAP
 
 @dataclass(frozen=True)
 class Ask:
-    """method: None for the scene's own choice. top: answers in proven order. gap: see `solve`."""
+    """method: None for the scene's own choice. top: answers in proven order. gap: see `solve`.
+
+    prices: also tell what every number of the file costs, where the kind knows.
+    """
 
     method: str | None = None
     budget: Budget = field(default_factory=Budget)
@@ -16,3 +19,4 @@ class Ask:
     watch: Watch | None = None
     gap: float = GAP
     top: int = 1
+    prices: bool = False

@@ -20,18 +20,20 @@ from gearopt.scenes.reading.spelling import near
 from gearopt.scenes.reading.toml import cut, dotted
 
 FORMAT = 1
+HEAD = ("gearopt", "kind")  # keys of every file
 LARGEST_FILE = 1_000_000  # bytes
 DEEPEST_KEY = r"(?:[\w-]\s*\.\s*){6000}"  # tomllib's time grows with the square: 1 s at 5000
 
 
 @dataclass(frozen=True)
 class Loaded:
-    """A scene with the file it came from and the hash of its bytes."""
+    """A scene with the file it came from, the hash of its bytes and its tables as written."""
 
     scene: BaseModel
     kind: str
     file: str
     sha256: str
+    asked: dict[str, Any]
 
 
 def kinds() -> tuple[str, ...]:
@@ -67,7 +69,21 @@ def load(path: str | Path) -> Loaded:
         remedy = "Check the name and the permissions"
         raise SceneError(file, "", "", f"cannot be read ({text})", remedy) from None
     kind, scene = read(data, file)
-    return Loaded(scene, kind, file, hashlib.sha256(data).hexdigest())
+    return Loaded(scene, kind, file, hashlib.sha256(data).hexdigest(), _asked(data, file))
+
+
+def _asked(data: bytes, file: str) -> dict[str, Any]:
+    """What a file asks for, as JSON holds it: without its head and the user's own tables."""
+    content = _parse(data, file)
+    return {k: _bare(v) for k, v in content.items() if k not in HEAD and not k.startswith("x-")}
+
+
+def _bare(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _bare(v) for key, v in value.items()}
+    if isinstance(value, list):
+        return [_bare(v) for v in value]
+    return float(value) if isinstance(value, Decimal) else value
 
 
 def _name_a_file(path: str | Path) -> str:

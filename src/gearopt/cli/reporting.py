@@ -1,0 +1,113 @@
+"""`report`: a result that was kept as JSON, shown again; and how every result is written out."""
+
+import json
+import shlex
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from gearopt.cli.app import Csv, Html, Units, app, check_html, console, exit_code, write_html
+from gearopt.errors import GearoptError
+from gearopt.optimise.result import Result
+from gearopt.report.measures import SYSTEMS, Measures
+
+SECONDS = 60.0  # that a run may take by default
+TOP_ON_PAGE = 10  # trains that a page lists unless told otherwise
+DEFAULTS = {"seconds": SECONDS, "seed": 0, "top": TOP_ON_PAGE}
+
+
+@dataclass(frozen=True)
+class Files:
+    """Where the page and the CSV files of a result go, and in what units."""
+
+    html: Path | None
+    csv: Path | None
+    measures: Measures
+
+
+@app.command()
+def report(
+    file: Annotated[
+        Path,
+        typer.Argument(help="A result, as `gearopt solve --json` prints it.", show_default=False),
+    ],
+    html: Html = None,
+    csv: Csv = None,
+    units: Units = "metric",
+) -> None:
+    """Show a kept result again: on the terminal, as a page, as CSV, in other units."""
+    files = checked(html, csv, units)
+    result = _read(file)
+    from gearopt.report.terminal.result import show
+
+    show(result, console(), files.measures)
+    for line in written(result, files):
+        print(line)
+    raise typer.Exit(exit_code(result))
+
+
+def checked(html: Path | None, csv: Path | None, units: str) -> Files:
+    """Where to write; GearoptError for what cannot be, said before long work, not after it."""
+    check_html(html)
+    if csv is not None and csv.exists() and not csv.is_dir():
+        raise GearoptError(f"--csv {csv}: is a file; name a folder for the tables")
+    if units not in SYSTEMS:
+        raise GearoptError(f"--units {units}: is not known; write {' or '.join(SYSTEMS)}")
+    return Files(html, csv, SYSTEMS[units])
+
+
+def written(result: Result, files: Files) -> list[str]:
+    """Write the page and the tables; a line for each to tell the user."""
+    lines = []
+    if files.html is not None:
+        from gearopt.report.pages.result import page
+
+        write_html(files.html, page(result, again(result, files), files.measures))
+        lines.append(f"\nPage: {files.html}")
+    if files.csv is not None:
+        lines.append(f"\nTables: {_write_tables(result, files.csv, files.measures)}")
+    return lines
+
+
+def again(result: Result, files: Files) -> str:
+    """The command that makes a page again; options that are the defaults are left out."""
+    words = ["gearopt", "solve", str(result.file)]
+    for name in ("method", "seconds", "gap", "seed", "top"):
+        value = result.options.get(name)
+        if value is not None and value != DEFAULTS.get(name):
+            words += [f"--{name}", f"{value:.12g}" if isinstance(value, float) else str(value)]
+    if files.measures.name != "metric":
+        words += ["--units", files.measures.name]
+    return shlex.join([*words, "--html", str(files.html)])
+
+
+def _write_tables(result: Result, folder: Path, measures: Measures) -> str:
+    from gearopt.report.pages.result import tables
+
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        found = tables(result, measures)
+        for name, text in found.items():
+            (folder / name).write_text(text, encoding="utf-8", newline="")
+    except OSError as refused:
+        raise GearoptError(f"--csv {folder}: {refused.strerror}") from refused
+    return ", ".join(str(folder / name) for name in found)
+
+
+def _read(file: Path) -> Result:
+    """A result from its file; GearoptError says what else the file is."""
+    how = "write one with `gearopt solve FILE --json > result.json`"
+    try:
+        return Result.from_json(file.read_text(encoding="utf-8"))
+    except OSError as refused:
+        raise GearoptError(f"{file}: cannot be read ({refused.strerror}); {how}") from refused
+    except UnicodeDecodeError:
+        raise GearoptError(f"{file}: is not UTF-8 text; {how}") from None
+    except json.JSONDecodeError as wrong:
+        raise GearoptError(
+            f"{file}: is not JSON (line {wrong.lineno}: {wrong.msg}); {how}"
+        ) from None
+    except ValueError as wrong:
+        raise GearoptError(f"{file}: {wrong}; {how}") from None

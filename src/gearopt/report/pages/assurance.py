@@ -1,0 +1,76 @@
+"""How sure a result is: what was computed to prove it, and what it takes for granted."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from gearopt.optimise.result import Result
+from gearopt.report.measures import Measures
+from gearopt.report.pages.section import Section
+from gearopt.report.pages.table import Cell, Table
+from gearopt.report.result_words import objective, verdict
+from gearopt.report.words import amount
+
+MEANING = {
+    "optimal": "No design that meets the limits is better by more than the gap: the bound was "
+    "computed by gearopt itself, not taken from a solver.",
+    "stationary": "No small change improves the design; a better one elsewhere is not excluded.",
+    "feasible": "The design meets all limits; a better one may exist, but none below the bound.",
+    "infeasible": "Proven: no design meets all limits.",
+    "limit": "The run ended early; the design meets all limits, the bound is what was proven by "
+    "then.",
+    "failed": "The method found no design that holds.",
+}
+ROWS = ("status", "objective", "value", "bound", "gap, %", "method", "proof", "seconds")
+CHECKS = {  # of a certificate: what each number is
+    "feasibility": "largest excess over a limit",
+    "stationarity": "largest slope left over",
+    "complementarity": "largest multiplier times room",
+}
+
+
+def proven(result: Result, measures: Measures) -> Section:
+    """What the status means, and the numbers of the proof, of every part too."""
+    parts = (result, *result.parts)
+    heads = ("", *(part.name.replace("_", " ") for part in parts))
+    rows = [list(row) for row in zip(*(_column(part, measures) for part in parts), strict=True)]
+    tables = [Table("proof", heads, [[n, *row] for n, row in zip(ROWS, rows, strict=True)])]
+    if checks := _checks(result):
+        tables.append(Table("checks", ("", ""), checks))
+    words = [MEANING[result.status]]
+    if arithmetic := result.proof.get("arithmetic"):
+        words.append(f"Arithmetic: {arithmetic}.")
+    return Section("What is proven, and how", words=words, tables=tables, half=True)
+
+
+def _column(part: Result, measures: Measures) -> list[Any]:
+    """Of a result or one of its parts, what ROWS names."""
+    name, unit = objective(part)
+    return [
+        verdict(part)[0],
+        name,
+        "" if part.value is None else amount(part.value, unit, measures),
+        "" if part.bound is None else amount(part.bound, unit, measures),
+        "" if part.gap is None else Cell(100.0 * part.gap, f"{100.0 * part.gap:.3g}"),
+        part.method,
+        str(part.proof.get("method", "")),
+        Cell(part.seconds, f"{part.seconds:.3g}"),
+    ]
+
+
+def _checks(result: Result) -> list[tuple[str, Any]]:
+    """The certificate, then what else the proof says."""
+    found: list[tuple[str, Any]] = [
+        (f"{name}: {CHECKS.get(name, '')}", Cell(value, "" if value is None else f"{value:.2g}"))
+        for name, value in result.certificate.items()
+    ]
+    for key, value in result.proof.items():
+        if key not in ("method", "arithmetic") and not isinstance(value, Mapping | list):
+            shown = Cell(value, f"{value:.3g}") if isinstance(value, float) else value
+            found.append((key.replace("_", " "), shown))
+    return found
+
+
+def assumptions(result: Result, measures: Measures) -> Section | None:
+    """What the numbers rest on beside the file; None where the kind tells nothing."""
+    told = result.report.get("assumptions") or []
+    return Section("Assumptions and unverified data", words=told, half=True) if told else None
