@@ -23,6 +23,27 @@ ROWS = {  # of the stage table: what it is called, and the factor to its unit
     "unit_load_MPa": ("unit load [MPa]", 1),
     "gear_volume_mm3": ("volume [cm³]", 1e-3),
 }
+_MORE = {  # rows that a page has room for, and after which row they stand
+    "wheel_diameter_mm": {
+        "pinion_tip_diameter_mm": ("tip diameter d_a1 [mm]", 1),
+        "wheel_tip_diameter_mm": ("tip diameter d_a2 [mm]", 1),
+        "pinion_root_diameter_mm": ("root diameter d_f1 [mm]", 1),
+        "wheel_root_diameter_mm": ("root diameter d_f2 [mm]", 1),
+    },
+    "centre_distance_mm": {
+        "transverse_contact_ratio": ("transverse contact ratio ε_α", 1),
+        "overlap_ratio": ("overlap ratio ε_β", 1),
+    },
+    "pinion_torque_Nm": {"pitch_line_velocity_m_per_s": ("pitch-line velocity v [m/s]", 1)},
+    "gear_volume_mm3": {
+        "pinion_mass_kg": ("pinion mass [kg]", 1),
+        "wheel_mass_kg": ("wheel mass [kg]", 1),
+        "mass_kg": ("mass of both [kg]", 1),
+    },
+}
+PAGE_ROWS = {
+    key: row for last in ROWS for key, row in ({last: ROWS[last]} | _MORE.get(last, {})).items()
+}
 
 
 def verdict(result: Result) -> tuple[str, str]:

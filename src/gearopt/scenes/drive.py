@@ -10,7 +10,7 @@ from typing import Any
 
 from gearopt.errors import SolveError
 from gearopt.formulations import sizing, teeth
-from gearopt.formulations.design import describe
+from gearopt.formulations.design import STEEL_DENSITY
 from gearopt.formulations.train import Train
 from gearopt.optimise.certificate import reconcile
 from gearopt.optimise.comparing.trial import Model
@@ -18,10 +18,19 @@ from gearopt.optimise.explaining.explanation import Change, Explanation, Remedy
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run
+from gearopt.physics.geometry import ADDENDUM, DEDENDUM, teeth_without_undercut
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.tables.drive import EXAMPLE, Scene
+from gearopt.scenes.tables.layout import Layout
+from gearopt.scenes.tables.limits import ORIGINS
 
 __all__ = ["EXAMPLE", "Scene", "compared", "explain", "model", "solve"]
+CLEARANCES = {
+    "gear_clearance": "between gears that do not mesh",
+    "shaft_clearance": "between a shaft and what is not on it",
+    "wall_clearance": "to the walls across the shafts",
+    "axial_clearance": "along the shafts",
+}
 CONTINUOUS = ("ipopt", "gp", "multistart")  # methods that take no whole teeth
 
 
@@ -29,8 +38,16 @@ def solve(scene: Scene, ask: Ask) -> Result:
     """Size the drive: exactly where [teeth] is given, else continuously.
 
     The exact answer carries the continuous one as a part: what whole teeth and standard modules
-    cost, and a second, independent bound.
+    cost, and a second, independent bound. What the design takes for granted is in its report.
     """
+    result = _solved(scene, ask)
+    if result.value is None:
+        return result
+    return replace(result, report=result.report | {"assumptions": assumptions(scene)})
+
+
+def _solved(scene: Scene, ask: Ask) -> Result:
+    """The drive, laid out where the file asks for it; else ways out where there is none."""
     if scene.layout is not None:
         from gearopt.scenes.box.at_once import at_once
         from gearopt.scenes.box.lay_out import lay_out
@@ -166,14 +183,14 @@ def _sized(scene: Scene, train: Train, ask: Ask, problem: Problem) -> Result:
     result = replace(result, objective=result.objective | {"unit": train.unit})
     if result.value is None or outcome.x is None:
         return result
-    designs = [describe(train, formulation.sizes(train, x)) for x in (outcome.x, *outcome.others)]
+    designs = [scene.design(formulation.sizes(train, x)) for x in (outcome.x, *outcome.others)]
     values = [float(problem.batch(x[None]).F[0, 0]) for x in (outcome.x, *outcome.others)]
     trains = [
         {"objective": value, "ratio": design["ratio"], "stages": design["stages"]}
         for value, design in zip(values, designs, strict=True)
     ]
     report: dict[str, Any] = {"trains": trains} if exact and ask.top > 1 else {}
-    if notes := _notes(scene, exact):
+    if notes := [*_notes(scene, exact), *_undercut(scene, designs[0])]:
         report["notes"] = notes
     return replace(result, name="drive", design=designs[0], report=report)
 
@@ -190,3 +207,63 @@ def _notes(scene: Scene, exact: bool) -> list[str]:
     if not any(getattr(table, name) for table in (limits, *stages) for name in names):
         notes.append("No limit on wheel teeth, stage ratio or wheel diameter was set.")
     return notes
+
+
+def _undercut(scene: Scene, design: dict[str, Any]) -> list[str]:
+    """Pinions that a rack undercuts: their contact ratio holds for a whole flank only."""
+    least = teeth_without_undercut(scene.gears.pressure_angle.value, scene.gears.helix_angle.value)
+    return [
+        f"The pinion of stage {k} is undercut: without profile shift a rack cuts {least:.1f} teeth "
+        "and more cleanly. Its contact ratio is less than the one given, its root is weaker."
+        for k, stage in enumerate(design["stages"], 1)
+        if stage["pinion_teeth"] < least
+    ]
+
+
+def assumptions(scene: Scene) -> list[str]:
+    """What a design takes for granted, in sentences."""
+    angle, density = scene.gears.pressure_angle, scene.objective.density
+    mass = (
+        f"the density of the file, {density}"
+        if density
+        else f"steel of {1e9 * STEEL_DENSITY:g} kg/dm^3, because the file gives no density"
+    )
+    found = [
+        "External cylindrical gears without profile shift; no losses in mesh and bearings.",
+        f"Tip and root circles by the basic rack ISO 53 profile A: addendum {ADDENDUM:g} m_n, "
+        f"dedendum {DEDENDUM:g} m_n; nominal sizes, without backlash.",
+        "Loads are limited by K-factor and unit load alone: index values, not a rating by ISO 6336 "
+        "or AGMA 2101. Application, dynamic and load distribution factors are not in them.",
+        f"The normal pressure angle of {angle} enters the contact ratio alone; K-factor and unit "
+        "load do not depend on it.",
+        f"Volumes and masses are those of solid reference cylinders; masses with {mass}.",
+    ]
+    if scene.limits.preset is not None:
+        name = scene.limits.preset
+        found.insert(3, f"The load limits are those of preset {name}: {ORIGINS[name]}.")
+    return found if scene.layout is None else [*found, *_layout_assumptions(scene.layout)]
+
+
+def _layout_assumptions(layout: Layout) -> list[str]:
+    """Of a layout: clearances, shafts, bearings, walls."""
+    clear = [
+        f"{words} {getattr(layout, name)}{'' if name in layout.model_fields_set else ' (default)'}"
+        for name, words in CLEARANCES.items()
+    ]
+    shafts = (
+        "Shaft diameters are those of the file; they are not checked."
+        if layout.shaft_stress is None
+        else f"Shaft diameters follow from torsion alone at {layout.shaft_stress}: no bending, no "
+        "keyways or other notches."
+    )
+    bearings = (
+        "Bearings are those of the file; their life is not checked."
+        if layout.bearing_diameters
+        else "The file gives no bearings: there is no room for them in the box."
+    )
+    ends = "run from wall to wall" if layout.span == "full" else "end beside their gears"
+    return [
+        f"Clearances of the layout: {', '.join(clear)}.",
+        f"{shafts} Shafts {ends}.",
+        f"{bearings} The box is measured inside its walls.",
+    ]
