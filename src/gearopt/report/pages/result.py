@@ -10,6 +10,7 @@ from gearopt.report.pages import (
     packing_solid,
     packing_views,
     trade_off,
+    train_views,
 )
 from gearopt.report.pages.frame import render
 from gearopt.report.result_words import objective, verdict
@@ -24,6 +25,7 @@ SECTIONS = (
     packing_solid.section,
     anytime.section,
     trade_off.section,
+    train_views.section,
     outcome.limits,
     design_tables.section,
     design_tables.trains,

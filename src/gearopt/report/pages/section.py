@@ -60,7 +60,7 @@ def series(k: int) -> str:
 def meaning(gear: dict[str, Any]) -> str:
     """A gear in a line, as drawings tell it where the pointer rests."""
     return (
-        f"{gear['name']}: z {gear['teeth']}, m_n {gear['normal_module_mm']:g} mm, "
+        f"{gear['name']}: z {gear['teeth']:.6g}, m_n {gear['normal_module_mm']:g} mm, "
         f"d {gear['reference_diameter_mm']:.2f} mm, d_a {gear['tip_diameter_mm']:.2f} mm, "
         f"b {gear['to_mm'] - gear['from_mm']:.2f} mm"
     )
