@@ -4,50 +4,85 @@ import math
 from typing import Any
 
 from gearopt.formulations.train import Sizes, Train
-from gearopt.physics.geometry import centre_distance, gear_volume, reference_diameter
-from gearopt.physics.loads import k_factor, unit_load
+from gearopt.physics.geometry import (
+    centre_distance,
+    cylinder_volume,
+    gear_volume,
+    overlap_ratio,
+    reference_diameter,
+    root_diameter,
+    standard_contact_ratio,
+    tip_diameter,
+)
+from gearopt.physics.loads import k_factor, pitch_line_velocity, unit_load
+
+STEEL_DENSITY = 7.85e-9  # t/mm3: EN 1991-1-1 table A.4 (to 78.5 kN/m3), Steel for Life Blue Book
 
 
-def describe(train: Train, sizes: Sizes) -> dict[str, Any]:
-    """Stages and totals; every quantity with its unit in the key."""
+def describe(
+    train: Train, sizes: Sizes, pressure_angle: float, input_speed: float
+) -> dict[str, Any]:
+    """Stages and totals; every quantity with its unit in the key.
+
+    pressure_angle [rad], the normal one; input_speed [rad/s]. Masses are those of solid reference
+    cylinders, of steel where the train has no density.
+    """
     stages: list[dict[str, Any]] = []
-    torque = train.torque
+    torque, speed = train.torque, input_speed
+    density = train.density or STEEL_DENSITY
     for m, z, u, b in zip(*sizes, strict=True):
         d = reference_diameter(m, z, train.helix_angle)
-        wheel = z * u
+        masses = [1000.0 * density * cylinder_volume(x, b) for x in (d, d * u)]
         stages.append(
             {
                 "normal_module_mm": m,
                 "pinion_teeth": _whole(z),
-                "wheel_teeth": _whole(wheel),
+                "wheel_teeth": _whole(z * u),
                 "ratio": u,
                 "face_width_mm": b,
                 "pinion_diameter_mm": d,
                 "wheel_diameter_mm": d * u,
+                "pinion_tip_diameter_mm": tip_diameter(d, m),
+                "wheel_tip_diameter_mm": tip_diameter(d * u, m),
+                "pinion_root_diameter_mm": root_diameter(d, m),
+                "wheel_root_diameter_mm": root_diameter(d * u, m),
                 "centre_distance_mm": centre_distance(d, u),
+                "transverse_contact_ratio": standard_contact_ratio(
+                    m, z, u, pressure_angle, train.helix_angle
+                ),
+                "overlap_ratio": overlap_ratio(b, m, train.helix_angle),
                 "pinion_torque_Nm": 1e-3 * torque,
+                "pitch_line_velocity_m_per_s": 1e-3 * pitch_line_velocity(speed, d),
                 "k_factor_MPa": k_factor(torque, d, b, u),
                 "unit_load_MPa": unit_load(torque, d, b, m),
                 "gear_volume_mm3": gear_volume(d, b, u),
+                "pinion_mass_kg": masses[0],
+                "wheel_mass_kg": masses[1],
+                "mass_kg": sum(masses),
             }
         )
-        torque *= u
-    total = math.prod(sizes[2])
+        torque, speed = torque * u, speed / u
+    plain: dict[str, Any] = _floats({"stages": stages} | _totals(train, stages, torque, density))
+    return plain
+
+
+def _totals(
+    train: Train, stages: list[dict[str, Any]], torque: Any, density: float
+) -> dict[str, Any]:
+    """Of the whole drive; torque [N mm] is that of its output, density in t/mm3."""
+    ratio = math.prod(s["ratio"] for s in stages)
     volume = sum(s["gear_volume_mm3"] for s in stages)
-    found = {
-        "stages": stages,
-        "ratio": total,
-        "ratio_error_percent": round(100.0 * (total / float(train.ratio) - 1.0), 9),
+    centres = sum(s["centre_distance_mm"] for s in stages)
+    ends = stages[0]["pinion_diameter_mm"] + stages[-1]["wheel_diameter_mm"]
+    return {
+        "ratio": ratio,
+        "ratio_error_percent": round(100.0 * (ratio / float(train.ratio) - 1.0), 9),
         "output_torque_Nm": 1e-3 * torque,
         "gear_volume_mm3": volume,
-        "sum_of_centre_distances_mm": sum(s["centre_distance_mm"] for s in stages),
-        "total_length_mm": 0.5 * (stages[0]["pinion_diameter_mm"] + stages[-1]["wheel_diameter_mm"])
-        + sum(s["centre_distance_mm"] for s in stages),
+        "sum_of_centre_distances_mm": centres,
+        "total_length_mm": 0.5 * ends + centres,
+        "mass_kg": 1000.0 * density * volume,
     }
-    if train.density is not None:
-        found["mass_kg"] = 1000.0 * train.density * volume
-    plain: dict[str, Any] = _floats(found)
-    return plain
 
 
 def _whole(teeth: float) -> float | int:

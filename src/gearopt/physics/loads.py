@@ -33,6 +33,14 @@ def unit_load(pinion_torque: Any, pinion_diameter: Any, face_width: Any, normal_
     return 2.0 * pinion_torque / (pinion_diameter * face_width * normal_module)
 
 
+def pitch_line_velocity(angular_speed: Any, diameter: Any) -> Any:
+    """Speed v = omega d/2 of the reference circles in mesh [mm/s].
+
+    angular_speed omega [rad/s] and reference diameter d [mm] of one of the two gears, both > 0.
+    """
+    return 0.5 * angular_speed * diameter
+
+
 def torsion_diameter(torque: Any, shear_stress: Any) -> Any:
     """Diameter d = (16 T/(pi tau))^(1/3) [mm] of a solid shaft twisted to a shear stress.
 

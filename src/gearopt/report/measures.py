@@ -51,6 +51,7 @@ METRIC = Measures(
         "cm3": ("cm³", 1e-3),  # of mm3
         "MPa": ("MPa", 1.0),
         "Nm": ("N m", 1.0),
+        "m_per_s": ("m/s", 1.0),
         "kg": ("kg", 1.0),
     },
 )
@@ -63,6 +64,7 @@ INCH = Measures(
         "mm3": ("in³", 1.0 / _INCH**3),
         "cm3": ("in³", 1.0 / _INCH**3),  # of mm3
         "MPa": ("psi", 1.0 / _PSI),
+        "m_per_s": ("ft/min", 60_000.0 / (12.0 * _INCH)),
         "Nm": ("lbf in", 1000.0 / (_POUND_FORCE * _INCH)),
         "kg": ("lb", 1.0 / _POUND),
     },

@@ -24,6 +24,27 @@ ROWS = {  # of the stage table: what it is called, and its unit (modules are met
     "unit_load_MPa": ("unit load", "MPa"),
     "gear_volume_mm3": ("volume", "cm3"),
 }
+_MORE = {  # rows that a page has room for, and after which row they stand
+    "wheel_diameter_mm": {
+        "pinion_tip_diameter_mm": ("tip diameter d_a1", "mm"),
+        "wheel_tip_diameter_mm": ("tip diameter d_a2", "mm"),
+        "pinion_root_diameter_mm": ("root diameter d_f1", "mm"),
+        "wheel_root_diameter_mm": ("root diameter d_f2", "mm"),
+    },
+    "centre_distance_mm": {
+        "transverse_contact_ratio": ("transverse contact ratio ε_α", ""),
+        "overlap_ratio": ("overlap ratio ε_β", ""),
+    },
+    "pinion_torque_Nm": {"pitch_line_velocity_m_per_s": ("pitch-line velocity v", "m_per_s")},
+    "gear_volume_mm3": {
+        "pinion_mass_kg": ("pinion mass", "kg"),
+        "wheel_mass_kg": ("wheel mass", "kg"),
+        "mass_kg": ("mass of both", "kg"),
+    },
+}
+PAGE_ROWS = {
+    key: row for last in ROWS for key, row in ({last: ROWS[last]} | _MORE.get(last, {})).items()
+}
 
 
 def verdict(result: Result) -> tuple[str, str]:

@@ -47,8 +47,9 @@ def heading(key: str, measures: Measures = METRIC) -> str:
 
 def parted(key: str, measures: Measures = METRIC) -> tuple[str, str]:
     """Name and unit of a key: `face_width_mm` is ("face_width", "mm")."""
-    stem, _, last = key.rpartition("_")
-    return (stem, last) if last in measures.units and stem else (key, "")
+    units = [unit for unit in measures.units if key.endswith(f"_{unit}")]
+    unit = max(units, key=len, default="")
+    return (key.removesuffix(f"_{unit}"), unit) if unit else (key, "")
 
 
 def amount(value: Any, unit: str, measures: Measures = METRIC) -> str:

@@ -10,7 +10,6 @@ from typing import Any
 
 from gearopt.errors import SolveError
 from gearopt.formulations import sizing, teeth
-from gearopt.formulations.design import describe
 from gearopt.formulations.train import Train
 from gearopt.optimise.certificate import reconcile
 from gearopt.optimise.comparing.trial import Model
@@ -19,6 +18,7 @@ from gearopt.optimise.explaining.repair import Clock
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run
+from gearopt.scenes.explaining.assumptions import assumptions, notes, undercut
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.tables.drive import EXAMPLE, Scene
 
@@ -30,18 +30,22 @@ def solve(scene: Scene, ask: Ask) -> Result:
     """Size the drive: exactly where [teeth] is given, else continuously.
 
     The exact answer carries the continuous one as a part: what whole teeth and standard modules
-    cost, and a second, independent bound.
+    cost, and a second, independent bound. What the design takes for granted is in its report.
     """
     result = _solved(scene, ask)
-    if not ask.prices or result.value is None:
+    if result.value is None:
         return result
-    clock = Clock(ask.budget.less(result.seconds), ask.watch)
-    found = _explained(scene, ask, result, clock)
-    prices = {"influences": [asdict(i) for i in found.influences], "message": found.message}
-    return replace(result, report=result.report | {"prices": prices})
+    told: dict[str, Any] = {"assumptions": assumptions(scene)}
+    if ask.prices:
+        clock = Clock(ask.budget.less(result.seconds), ask.watch)
+        found = _explained(scene, ask, result, clock)
+        influences = [asdict(i) for i in found.influences]
+        told["prices"] = {"influences": influences, "message": found.message}
+    return replace(result, report=result.report | told)
 
 
 def _solved(scene: Scene, ask: Ask) -> Result:
+    """The drive, laid out where the file asks for it; else ways out where there is none."""
     if scene.layout is not None:
         from gearopt.scenes.box.at_once import at_once
         from gearopt.scenes.box.lay_out import lay_out
@@ -164,27 +168,13 @@ def _sized(scene: Scene, train: Train, ask: Ask, problem: Problem) -> Result:
     result = replace(result, objective=result.objective | {"unit": train.unit})
     if result.value is None or outcome.x is None:
         return result
-    designs = [describe(train, formulation.sizes(train, x)) for x in (outcome.x, *outcome.others)]
+    designs = [scene.design(formulation.sizes(train, x)) for x in (outcome.x, *outcome.others)]
     values = [float(problem.batch(x[None]).F[0, 0]) for x in (outcome.x, *outcome.others)]
     trains = [
         {"objective": value, "ratio": design["ratio"], "stages": design["stages"]}
         for value, design in zip(values, designs, strict=True)
     ]
     report: dict[str, Any] = {"trains": trains} if exact and ask.top > 1 else {}
-    if notes := _notes(scene, exact):
-        report["notes"] = notes
+    if told := [*notes(scene, exact), *undercut(scene, designs[0])]:
+        report["notes"] = told
     return replace(result, name="drive", design=designs[0], report=report)
-
-
-def _notes(scene: Scene, exact: bool) -> list[str]:
-    """What a reader of the result should know beside the numbers."""
-    notes = []
-    limits, stages = scene.limits, scene.stage
-    if limits.preset is not None:
-        notes.append(f"The load limits are those of preset {limits.preset}, not of a standard.")
-    if scene.teeth is not None and not exact:
-        notes.append("Teeth and modules are real numbers here; the table [teeth] was left aside.")
-    names = ("wheel_teeth", "stage_ratio", "wheel_diameter")
-    if not any(getattr(table, name) for table in (limits, *stages) for name in names):
-        notes.append("No limit on wheel teeth, stage ratio or wheel diameter was set.")
-    return notes

@@ -7,7 +7,7 @@ from gearopt.optimise.result import Result
 from gearopt.report.measures import Measures
 from gearopt.report.pages.section import Section
 from gearopt.report.pages.table import Cell, Table, percent
-from gearopt.report.result_words import stage_rows, train_rows
+from gearopt.report.result_words import PAGE_ROWS, stage_rows, train_rows
 from gearopt.report.words import heading, parted
 
 
@@ -19,7 +19,7 @@ def section(result: Result, measures: Measures) -> Section | None:
     tables = []
     if stages := design.pop("stages", []):
         heads = ["", *(f"stage {k}" for k in range(1, len(stages) + 1))]
-        rows = [[label, *values] for label, values in stage_rows(stages, measures)]
+        rows = [[label, *values] for label, values in stage_rows(stages, measures, PAGE_ROWS)]
         tables.append(Table("stages", heads, rows))
         tables += _shares(stages, measures)
     return Section("Design", tables=[*tables, *_tables("", design, measures)])

@@ -26,12 +26,7 @@ def front_view(found: Layout, window: Window, scale: float, measures: Measures) 
     for it in keep_outs(found):
         keep_out(sheet, it, "y", "z")
     places = {s["shaft"]: (s["y_mm"], s["z_mm"]) for s in found["shafts"]}
-    gears = sorted(found["gears"], key=lambda g: (g["from_mm"], -g["tip_diameter_mm"]))
-    for gear in gears:
-        y, z = places[gear["shaft"]]
-        colour, title = series(gear["stage"]), meaning(gear, measures)
-        sheet.circle(y, z, 0.5 * gear["tip_diameter_mm"], "tip", colour, title)
-        sheet.circle(y, z, 0.5 * gear["reference_diameter_mm"], "reference", colour)
+    gear_circles(sheet, found, places, measures)
     for shaft in found["shafts"]:
         y, z = places[shaft["shaft"]]
         size = f"{measures.length(shaft['diameter_mm'])} {measures.unit('mm')}"
@@ -47,13 +42,33 @@ def front_view(found: Layout, window: Window, scale: float, measures: Measures) 
     _narrowest(sheet, found, measures)
     for number, (y, z) in places.items():
         sheet.balloon(str(number), around(sheet.at(y, z), (26.0, 36.0, 50.0), 0.0))
-    for gear in sorted(found["gears"], key=lambda g: -g["tip_diameter_mm"]):
-        _name(sheet, found, gear)
+    gear_names(sheet, found)
     caption = (
         f"Front view along the shafts, y to the right and z up, from the end x = "
         f"{measures.length(found['box']['length_mm'], 1)}: each gear is drawn over those behind it."
     )
     return sheet.drawing("front view", caption)
+
+
+def gear_circles(
+    sheet: Sheet,
+    found: Layout,
+    places: Mapping[int, tuple[float, float]],
+    measures: Measures,
+) -> None:
+    """Tip and reference circle of every gear, those behind first; places: (y, z) of the shafts."""
+    gears = sorted(found["gears"], key=lambda g: (g["from_mm"], -g["tip_diameter_mm"]))
+    for gear in gears:
+        y, z = places[gear["shaft"]]
+        colour, title = series(gear["stage"]), meaning(gear, measures)
+        sheet.circle(y, z, 0.5 * gear["tip_diameter_mm"], "tip", colour, title)
+        sheet.circle(y, z, 0.5 * gear["reference_diameter_mm"], "reference", colour)
+
+
+def gear_names(sheet: Sheet, found: Layout) -> None:
+    """The name of every gear, the largest first."""
+    for gear in sorted(found["gears"], key=lambda g: -g["tip_diameter_mm"]):
+        _name(sheet, found, gear)
 
 
 def _split(sheet: Sheet, found: Layout, places: Mapping[int, tuple[float, float]]) -> None:
@@ -133,6 +148,7 @@ def _name(sheet: Sheet, found: Layout, gear: Layout) -> None:
     shared = [sum(_within(sheet, p, one) for one in discs.values() if one) for p in inside]
     alone = [replace(p, cost=p.cost + 8.0 * n) for p, n in zip(inside, shared, strict=True)]
     outside = around(centre, (r + half + 6, r + half + 20, r + half + 40), r, 20.0)
+    outside = [p for p in outside if abs(p.x - centre[0]) > 1.0]  # no leader on a centre line
     sheet.label(gear["name"], alone + outside, "name", series(gear["stage"]))
 
 

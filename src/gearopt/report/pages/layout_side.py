@@ -1,5 +1,7 @@
 """A layout seen across its shafts: gears as rectangles, bearings, motor, face widths."""
 
+from collections.abc import Mapping
+
 from gearopt.report.measures import Measures
 from gearopt.report.pages.bodies import ENDS, Layout, keep_outs, motor
 from gearopt.report.pages.labels import SIZE, Place
@@ -36,7 +38,8 @@ def side_view(
         _shaft(sheet, found, shaft, axis, measures)
     heights = {s["shaft"]: s[f"{axis}_mm"] for s in shafts}
     across_dimension(sheet, found, "x", axis, measures)
-    _widths(sheet, found, axis, measures)
+    top = walls(found, axis)[1]
+    face_widths(sheet, found, {gear["stage"]: top for gear in found["gears"]}, measures)
     right = sheet.at(walls(found, "x")[1], 0.0)[0]
     for shaft in found["shafts"]:
         x = sheet.at(shaft["to_mm"], 0.0)[0]
@@ -48,7 +51,7 @@ def side_view(
         ]
         sheet.balloon(str(shaft["shaft"]), spots)
     for gear in sorted(found["gears"], key=lambda g: -g["tip_diameter_mm"]):
-        _side_name(sheet, gear, heights[gear["shaft"]])
+        side_name(sheet, gear, heights[gear["shaft"]], gear["name"])
     if axis == "z":
         return sheet.drawing("side view", "Side view, x to the right and z up.")
     return sheet.drawing("top view", "Top view, x to the right and y up.")
@@ -66,6 +69,11 @@ def _shaft(sheet: Sheet, found: Layout, shaft: Layout, axis: str, measures: Meas
             sheet.rectangle(a, b, "bearing", title=f"bearing of shaft {shaft['shaft']}")
             sheet.line(a, b, "bearing")
             sheet.line((a[0], b[1]), (b[0], a[1]), "bearing")
+    gears_on(sheet, found, shaft, height, measures)
+
+
+def gears_on(sheet: Sheet, found: Layout, shaft: Layout, height: float, measures: Measures) -> None:
+    """The gears of a shaft as rectangles, and its centre line."""
     for gear in found["gears"]:
         if gear["shaft"] == shaft["shaft"]:
             half = 0.5 * gear["tip_diameter_mm"]
@@ -75,7 +83,7 @@ def _shaft(sheet: Sheet, found: Layout, shaft: Layout, axis: str, measures: Meas
                 level = height + z * gear["reference_diameter_mm"]
                 sheet.line((a[0], level), (b[0], level), "reference", series(gear["stage"]))
     past = 6.0 / sheet.scale
-    sheet.line((start - past, height), (end + past, height), "axis")
+    sheet.line((shaft["from_mm"] - past, height), (shaft["to_mm"] + past, height), "axis")
 
 
 def _motor(sheet: Sheet, found: Layout, measures: Measures) -> None:
@@ -90,15 +98,14 @@ def _motor(sheet: Sheet, found: Layout, measures: Measures) -> None:
     sheet.label(text, [Place(x, y - 12.0), Place(x, y + 12.0)], "obstacle")
 
 
-def _widths(sheet: Sheet, found: Layout, axis: str, measures: Measures) -> None:
-    """Face widths above all that is drawn, slab after slab."""
-    top = walls(found, axis)[1]
+def face_widths(sheet: Sheet, found: Layout, tops: Mapping[int, float], measures: Measures) -> None:
+    """Face widths above all that is drawn; tops: where the lines to them begin, by stage [mm]."""
     wheels = {g["stage"]: g for g in found["gears"] if g["member"] == "wheel"}
     for slab in found["slabs"]:
         for stage in slab:
             if stage not in wheels:
                 continue
-            a, b = ((wheels[stage][key], top) for key in ("from_mm", "to_mm"))
+            a, b = ((wheels[stage][key], tops[stage]) for key in ("from_mm", "to_mm"))
             (x0, wall), (x1, _) = sheet.at(*a), sheet.at(*b)
             for x in (x0, x1):
                 sheet.tick((x, wall), (x, LEVEL - 4.0))
@@ -109,12 +116,12 @@ def _widths(sheet: Sheet, found: Layout, axis: str, measures: Measures) -> None:
             sheet.label(text, levels, "size")
 
 
-def _side_name(sheet: Sheet, gear: Layout, height: float) -> None:
-    """The name in its rectangle, level or upright, else beside it."""
+def side_name(sheet: Sheet, gear: Layout, height: float, text: str) -> None:
+    """What a gear is called in its rectangle, level or upright, else beside it."""
     r = 0.5 * gear["tip_diameter_mm"] * sheet.scale
     wide = (gear["to_mm"] - gear["from_mm"]) * sheet.scale
     x, y = sheet.at(0.5 * (gear["from_mm"] + gear["to_mm"]), height)
-    half = Place(0, 0).half_width(gear["name"])
+    half = Place(0, 0).half_width(text)
     shares = (0.0, 0.25, -0.25, 0.5, -0.5, 0.75, -0.75)
     places = []
     if wide > 2.0 * half:
@@ -124,6 +131,6 @@ def _side_name(sheet: Sheet, gear: Layout, height: float) -> None:
     for side in (-1, 1):
         for dy in (0.0, -16.0, 16.0, -32.0, 32.0, -r - 14.0, r + 14.0):
             u = x + side * (wide / 2 + half + 8.0)
-            edge = (x + side * wide / 2, y + max(-r, min(r, dy)))
+            edge = (x + side * wide / 2, y + max(-0.7 * r, min(0.7 * r, dy)))
             places.append(Place(u, y + dy, 0.0, 20.0 + abs(dy) / 8, edge))
-    sheet.label(gear["name"], places, "name", series(gear["stage"]))
+    sheet.label(text, places, "name", series(gear["stage"]))

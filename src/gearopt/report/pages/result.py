@@ -14,6 +14,7 @@ from gearopt.report.pages import (
     packing_views,
     prices,
     trade_off,
+    train_views,
 )
 from gearopt.report.pages.frame import render
 from gearopt.report.pages.section import Section
@@ -27,6 +28,7 @@ SECTIONS = (
     layout_solid.section,
     packing_views.section,
     packing_solid.section,
+    train_views.section,
     design_tables.section,
     asked.section,
     outcome.limits,

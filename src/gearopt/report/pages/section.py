@@ -64,7 +64,7 @@ def meaning(gear: Mapping[str, Any], measures: Measures) -> str:
     """A gear in a line, as drawings tell it where the pointer rests."""
     unit = measures.unit("mm")
     return (
-        f"{gear['name']}: z {gear['teeth']}, m_n {gear['normal_module_mm']:g} mm, "
+        f"{gear['name']}: z {gear['teeth']:.6g}, m_n {gear['normal_module_mm']:g} mm, "
         f"d {measures.length(gear['reference_diameter_mm'])} {unit}, "
         f"d_a {measures.length(gear['tip_diameter_mm'])} {unit}, "
         f"b {measures.length(gear['to_mm'] - gear['from_mm'])} {unit}"

@@ -6,7 +6,6 @@ from typing import Any
 
 from gearopt.errors import SolveError
 from gearopt.formulations import sizing, teeth, together
-from gearopt.formulations.design import describe
 from gearopt.formulations.layout.slabs import Slabs, arrange
 from gearopt.formulations.train import Sizes
 from gearopt.optimise.comparing.trial import Model
@@ -43,7 +42,7 @@ def at_once(scene: Scene, ask: Ask, sized: Result) -> Result:
     box, angles, order = together.laid_out(scene.train(), scene.gearbox, outcome.x)
     own, sizes = teeth.problem(scene.train()), together.sizes(scene.train(), outcome.x)
     point = outcome.x[: sum(v.size for v in own.variables)]
-    gears = replace(sized, design=describe(scene.train(), sizes), limits=limits(own, point))
+    gears = replace(sized, design=scene.design(sizes), limits=limits(own, point))
     found = told(scene, result, events, replace(gears, report={}), box, angles, order)
     smooth = _from(scene, (order.slabs, sizes, angles), ask)
     return replace(found, parts=(*found.parts, *smooth))
@@ -115,7 +114,7 @@ def _real(
     own = sizing.problem(train)
     point = outcome.x[: sum(v.size for v in own.variables)]
     sizes = sizing.sizes(train, point)
-    gears = replace(sized, design=describe(train, sizes), limits=limits(own, point), report={})
+    gears = replace(sized, design=scene.design(sizes), limits=limits(own, point), report={})
     box = scene.gearbox(sizes)
     angles = together.angles_of(problem, outcome.x)
     return told(scene, result, events, gears, box, angles, arrange(box, slabs))

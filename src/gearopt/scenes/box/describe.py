@@ -9,8 +9,6 @@ from gearopt.formulations.layout.slabs import Arrangement
 from gearopt.optimise.result import Result
 from gearopt.scenes.tables.drive import Scene
 
-DEDENDUM = 1.25  # of the module, from the reference to the root circle (ISO 53, profile A)
-
 
 def described(
     scene: Scene, box: Gearbox, one: Arrangement, angles: tuple[float, ...], sized: Result
@@ -78,7 +76,6 @@ def _gears(scene: Scene, one: Arrangement, sized: Result) -> list[dict[str, Any]
         for body in (b for b in own if b.gear):
             member = body.name.split()[0]
             stage = stages[body.stage]
-            module, diameter = stage["normal_module_mm"], stage[f"{member}_diameter_mm"]
             gears.append(
                 {
                     "name": body.name,
@@ -86,10 +83,10 @@ def _gears(scene: Scene, one: Arrangement, sized: Result) -> list[dict[str, Any]
                     "member": member,
                     "shaft": k,
                     "teeth": stage[f"{member}_teeth"],
-                    "normal_module_mm": module,
-                    "reference_diameter_mm": diameter,
-                    "tip_diameter_mm": 2 * body.radius,
-                    "root_diameter_mm": diameter - 2 * DEDENDUM * module,
+                    "normal_module_mm": stage["normal_module_mm"],
+                    "reference_diameter_mm": stage[f"{member}_diameter_mm"],
+                    "tip_diameter_mm": stage[f"{member}_tip_diameter_mm"],
+                    "root_diameter_mm": stage[f"{member}_root_diameter_mm"],
                     "helix_angle_deg": math.degrees(scene.gears.helix_angle.value),
                     "from_mm": body.x[0],
                     "to_mm": body.x[1],

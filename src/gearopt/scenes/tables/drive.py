@@ -6,6 +6,7 @@ from typing import Annotated, Any
 
 from pydantic import Field, model_validator
 
+from gearopt.formulations.design import describe
 from gearopt.formulations.layout.gearbox import Gearbox
 from gearopt.formulations.train import FaceWidth, Sizes, Stage, Train
 from gearopt.physics.loads import torque
@@ -183,6 +184,11 @@ class Scene(Table):
             objective=self.objective.minimise,
             density=density.value if density else None,
         )
+
+    def design(self, sizes: Sizes) -> dict[str, Any]:
+        """The drive of given sizes in the words of its drawing."""
+        angle, speed = self.gears.pressure_angle.value, self.duty.input_speed.value
+        return describe(self.train(), sizes, angle, speed)
 
     def gearbox(self, sizes: Sizes) -> Gearbox:
         """The drive of given sizes, to be laid out; it needs the table [layout]."""

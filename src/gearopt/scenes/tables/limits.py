@@ -27,6 +27,10 @@ from gearopt.units import Quantity
 
 # Load limits a source states for its own drive (Chong and Lee print 2.07 MPa and 48 MPa).
 PRESETS = {"chong-lee-elevator": {"k_factor": "300 psi", "unit_load": "7000 psi"}}
+ORIGINS = {
+    "chong-lee-elevator": "300 psi (2.07 MPa) and 7000 psi (48 MPa), as Chong and Lee state them "
+    "for their elevator drive"
+}
 
 
 class Limits(Table):

@@ -47,7 +47,8 @@ class Gears(Table):
     )
     pressure_angle: Annotated[Quantity, quantity("angle", "20 deg", "45 deg")] = Field(
         default_factory=lambda: units.parse("20 deg", "angle"),
-        description="Normal pressure angle; K-factor and unit load do not depend on it",
+        description="Normal pressure angle: it gives the contact ratio; "
+        "K-factor and unit load do not depend on it",
         json_schema_extra={"default": "20 deg"},
     )
     face_width_over_diameter: Proportion = Field(None, description=PROPORTION_IS)

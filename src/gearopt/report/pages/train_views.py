@@ -1,0 +1,183 @@
+"""A train without a layout, drawn to scale with all its shafts in one line."""
+
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
+from typing import Any
+
+from gearopt.optimise.result import Result
+from gearopt.report.measures import Measures
+from gearopt.report.pages.bodies import Layout
+from gearopt.report.pages.labels import Place
+from gearopt.report.pages.layout_front import gear_circles, gear_names
+from gearopt.report.pages.layout_side import LEVEL, face_widths, gears_on, side_name
+from gearopt.report.pages.section import Section
+from gearopt.report.pages.sheet import Drawing, Sheet, Window
+from gearopt.report.words import number
+
+WIDE = 640.0  # widest drawing [px], as those of a layout
+EDGE = 20.0  # px kept free left and right of the front view
+PITCH = 76.0  # px from stage to stage along the shafts, at least: its face width and module fit
+GAP = 16.0  # px between the gears of two stages, at least
+ROWS, ROW = 3, 15.0  # of centre distances that do not fit above their line; px between them
+LOW, NAMES = 100.0, 46.0  # px: circles of radii below the one leave names the other above, below
+CHAIN = 30.0  # px from the lowest circle to the dimensions of the centre distances
+SIDE = (24.0, 44.0, 24.0, 60.0)  # px kept free around the side view
+
+
+def section(result: Result, measures: Measures) -> Section | None:
+    """Both views of the gears, at one scale; None without gears or where they are laid out."""
+    stages = result.design.get("stages")
+    if not stages or result.design.get("layout"):
+        return None
+    found, scale = in_one_line(stages)
+    words = (
+        "All shafts are drawn in one line: their places are not optimised, and the gaps between "
+        "the stages are only as wide as the labels need. A [layout] table in the file places the "
+        "gears in the smallest box.",
+        f"Drawn to one scale; dimensions in {measures.unit('mm')}: centre distances, length over "
+        "tip circles, face widths b; modules m_n in mm; teeth z. Solid lines are tip circles, "
+        "dash-dotted ones reference circles; numbers in circles are shafts, whose diameters are "
+        "not known.",
+    )
+    views = (_front(found, scale, measures), _side(found, scale, measures))
+    return Section("Gears in one line", words=words, drawings=views)
+
+
+def in_one_line(stages: Sequence[Mapping[str, Any]]) -> tuple[dict[str, Any], float]:
+    """Shafts and gears as a layout holds them, with every shaft at z = 0; and the scale [px/mm].
+
+    Diameters of shafts are 0: they are not known.
+    """
+    axes = [0.0]
+    for stage in stages:
+        axes.append(axes[-1] + stage["centre_distance_mm"])
+    gears = [
+        {
+            "name": f"{member} {k}",
+            "stage": k,
+            "member": member,
+            "shaft": shaft,
+            "teeth": stage[f"{member}_teeth"],
+            "normal_module_mm": stage["normal_module_mm"],
+            "reference_diameter_mm": stage[f"{member}_diameter_mm"],
+            "tip_diameter_mm": stage[f"{member}_tip_diameter_mm"],
+        }
+        for k, stage in enumerate(stages, 1)
+        for member, shaft in (("pinion", k), ("wheel", k + 1))
+    ]
+    found = {"gears": gears, "shafts": [{"shaft": k, "y_mm": y} for k, y in enumerate(axes, 1)]}
+    left, right = _ends(found)
+    scale = (WIDE - 2.0 * EDGE) / (right - left)  # no wheel is higher than the row is long
+    scale, starts = _along([s["face_width_mm"] for s in stages], scale)
+    for gear in gears:
+        start = starts[gear["stage"] - 1]
+        gear |= {"from_mm": start, "to_mm": start + stages[gear["stage"] - 1]["face_width_mm"]}
+    for shaft in found["shafts"]:
+        on = [g for g in gears if g["shaft"] == shaft["shaft"]]
+        shaft |= {
+            "z_mm": 0.0,
+            "diameter_mm": 0.0,
+            "from_mm": min(g["from_mm"] for g in on),
+            "to_mm": max(g["to_mm"] for g in on),
+        }
+    slabs = [[k] for k in range(1, len(stages) + 1)]
+    return found | {"slabs": slabs, "bearings": []}, scale
+
+
+def _along(widths: Sequence[float], scale: float) -> tuple[float, list[float]]:
+    """Where the gears of every stage begin along the shafts [mm], and a scale at which all fit."""
+    while True:
+        rooms = [max(PITCH, scale * b + GAP) for b in widths]
+        if sum(rooms) <= WIDE - SIDE[0] - SIDE[1]:
+            break
+        scale *= 0.98
+    ends = [sum(rooms[:k]) for k in range(len(rooms))]
+    middles = [(end + 0.5 * room) / scale for end, room in zip(ends, rooms, strict=True)]
+    return scale, [middle - 0.5 * b for middle, b in zip(middles, widths, strict=True)]
+
+
+def _ends(found: Layout) -> tuple[float, float]:
+    """Of the row of gears, over tip circles [mm]."""
+    places = {s["shaft"]: s["y_mm"] for s in found["shafts"]}
+    rims = [(places[g["shaft"]], 0.5 * g["tip_diameter_mm"]) for g in found["gears"]]
+    return min(y - r for y, r in rims), max(y + r for y, r in rims)
+
+
+def _front(found: Layout, scale: float, measures: Measures) -> Drawing:
+    """Along the shafts: circles in a row, centre distances and the length below them."""
+    left, right = _ends(found)
+    high = max(0.5 * g["tip_diameter_mm"] for g in found["gears"])
+    if scale * high < LOW:
+        high += NAMES / scale
+    axes = [s["y_mm"] for s in found["shafts"]]
+    texts = [measures.length(b - a) for a, b in pairwise(axes)]
+    narrow = sum(
+        scale * (b - a) < _room(text) for (a, b), text in zip(pairwise(axes), texts, strict=True)
+    )
+    below = CHAIN + min(narrow, ROWS) * ROW + 46.0
+    sheet = Sheet(Window(left, right, -high, high, (EDGE, EDGE, below, 44.0)), scale)
+    places = {s["shaft"]: (s["y_mm"], 0.0) for s in found["shafts"]}
+    gear_circles(sheet, found, places, measures)
+    level = sheet.at(0.0, -high)[1] + CHAIN
+    for shaft in found["shafts"]:
+        x = sheet.at(shaft["y_mm"], 0.0)[0]
+        sheet.line((shaft["y_mm"], high + 16.0 / scale), (shaft["y_mm"], -high), "axis")
+        sheet.tick((x, level - CHAIN), (x, level + 5.0))
+        spots = [Place(x + dx, 16.0, 0.0, abs(dx), (x, 28.0)) for dx in (0.0, -12.0, 12.0)]
+        sheet.balloon(str(shaft["shaft"]), spots)
+    sheet.line((left - 6.0 / scale, 0.0), (right + 6.0 / scale, 0.0), "axis")
+    away = sheet.height - 18.0 - sheet.at(0.0, -high)[1]
+    sheet.dimension((left, -high), (right, -high), away, measures.length(right - left))
+    for (a, b), text in reversed(list(zip(pairwise(axes), texts, strict=True))):
+        _distance(sheet, sheet.at(a, 0.0)[0], sheet.at(b, 0.0)[0], level, text)
+    gear_names(sheet, found)
+    return sheet.drawing("front view", "Front view, along the shafts.")
+
+
+def _distance(sheet: Sheet, start: float, end: float, level: float, text: str) -> None:
+    """A centre distance between two px; its text above the line, else in a row below it."""
+    sheet.arrows((start, level), (end, level))
+    middle = 0.5 * (start + end)
+    if _room(text) <= end - start:
+        sheet.label(text, [Place(middle, level - 9.0)], "size")
+        return
+    rows = [
+        Place(middle + dx, level + 14.0 + row * ROW, 0.0, 3.0 * row + abs(dx) / 4, (middle, level))
+        for row in range(ROWS)
+        for dx in (0.0, -10.0, 10.0, -20.0, 20.0, -30.0, 30.0)
+    ]
+    sheet.label(text, rows, "size")
+
+
+def _room(text: str) -> float:
+    """Length of a dimension line [px] that a text fits above."""
+    return 2.0 * Place(0, 0).half_width(text) + 4.0
+
+
+def _side(found: Layout, scale: float, measures: Measures) -> Drawing:
+    """Across the shafts: gears as rectangles, stage after stage, with face width and module."""
+    (left, right), shafts = _ends(found), found["shafts"]
+    places = {s["shaft"]: s["y_mm"] for s in shafts}
+    long = sum(max(PITCH, scale * b + GAP) for b in _widths(found)) / scale
+    sheet = Sheet(Window(0.0, long, left, right, SIDE), scale)
+    tops: dict[int, float] = {}
+    for shaft in shafts:
+        gears_on(sheet, found, shaft, shaft["y_mm"], measures)
+    for gear in found["gears"]:
+        top = places[gear["shaft"]] + 0.5 * gear["tip_diameter_mm"]
+        tops[gear["stage"]] = max(top, tops.get(gear["stage"], top))
+    for gear in (g for g in found["gears"] if g["member"] == "wheel"):
+        x = sheet.at(0.5 * (gear["from_mm"] + gear["to_mm"]), 0.0)[0]
+        sheet.label(f"m_n {number(gear['normal_module_mm'])}", [Place(x, LEVEL - 24.0)], "size")
+    face_widths(sheet, found, tops, measures)
+    for shaft in shafts:
+        x, y = sheet.at(shaft["to_mm"], shaft["y_mm"])
+        spots = [Place(x + 20.0, y + dy, 0.0, abs(dy), (x, y)) for dy in (0.0, -14.0, 14.0)]
+        sheet.balloon(str(shaft["shaft"]), spots)
+    for gear in sorted(found["gears"], key=lambda g: -g["tip_diameter_mm"]):
+        side_name(sheet, gear, places[gear["shaft"]], f"z {number(gear['teeth'])}")
+    return sheet.drawing("side view", "View across the shafts.")
+
+
+def _widths(found: Layout) -> list[float]:
+    return [g["to_mm"] - g["from_mm"] for g in found["gears"] if g["member"] == "wheel"]

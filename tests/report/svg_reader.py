@@ -1,0 +1,37 @@
+"""Drawings of a page as trees: their marks, and the room that their texts fill."""
+
+import re
+import xml.etree.ElementTree as ET
+
+import numpy as np
+
+from gearopt.report.pages.labels import LETTER, SIZE
+
+
+def drawings(html):
+    """Every SVG of a page as a tree."""
+    return [ET.fromstring(text) for text in re.findall(r"<svg .*?</svg>", ours(html), re.S)]
+
+
+def ours(html):
+    """A page without its scripts."""
+    return re.sub(r"<script.*?</script>", "", html, flags=re.S)
+
+
+def marks(svg, tag, style):
+    return [e for e in svg.iter(tag) if style in e.get("class", "").split()]
+
+
+def numbers(element, *names):
+    return [float(element.get(name)) for name in names]
+
+
+def extents(svg):
+    """Rectangles that the upright or level texts of a drawing fill: x, y, half sizes."""
+    for text in svg.iter("text"):
+        x, y = numbers(text, "x", "y")
+        half = 0.5 * LETTER * SIZE * len(text.text), 0.4 * SIZE
+        turn = text.get("transform", "rotate(0 ")
+        angle = float(re.match(r"rotate\(([-\d.]+) ", turn)[1])
+        if angle in (0.0, -90.0):
+            yield text.text, np.array([x, y]), np.array(half if angle == 0.0 else half[::-1])

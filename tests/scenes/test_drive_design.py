@@ -1,0 +1,140 @@
+"""The numbers of a drive that a drawing needs, and what they take for granted."""
+
+import math
+
+import pytest
+
+import gearopt
+from gearopt.report.result_words import PAGE_ROWS, ROWS
+from gearopt.scenes.tables.limits import ORIGINS, PRESETS
+
+FILE = """
+gearopt = 1
+kind = "drive"
+[duty]
+power = "7.5 kW"
+input_speed = "1450 rpm"
+ratio = 21.8
+[gears]
+helix_angle = "25 deg"
+[[stage]]
+module = "2 mm"
+pinion_teeth = 21
+wheel_teeth = 115
+face_width = "28 mm"
+[[stage]]
+module = "3 mm"
+pinion_teeth = 23
+wheel_teeth = 91
+face_width = "58 mm"
+[limits]
+preset = "chong-lee-elevator"
+pinion_teeth = [20, 40]
+[teeth]
+"""
+
+
+def solved(tmp_path, text):
+    path = tmp_path / "drive.toml"
+    path.write_text(text)
+    return gearopt.solve(path)
+
+
+@pytest.fixture(scope="module")
+def result(tmp_path_factory):
+    return solved(tmp_path_factory.mktemp("drive"), FILE)
+
+
+def test_numbers_of_a_drawing(result):
+    """Teeth and widths are given, so every number has a closed form."""
+    cosine, tangent = math.cos(math.radians(25)), math.tan(math.radians(20))
+    alpha = math.atan(tangent / cosine)
+    speed = 1450 * math.pi / 30
+    for stage, (m, z1, z2, b) in zip(
+        result.design["stages"], ((2, 21, 115, 28), (3, 23, 91, 58)), strict=True
+    ):
+        assert stage["pinion_tip_diameter_mm"] == pytest.approx(m * (z1 / cosine + 2))
+        assert stage["wheel_tip_diameter_mm"] == pytest.approx(m * (z2 / cosine + 2))
+        assert stage["pinion_root_diameter_mm"] == pytest.approx(m * (z1 / cosine - 2.5))
+        assert stage["wheel_root_diameter_mm"] == pytest.approx(m * (z2 / cosine - 2.5))
+        turns = [math.acos(z * math.cos(alpha) / (z + 2 * cosine)) for z in (z1, z2)]
+        contact = sum(
+            z * (math.tan(t) - math.tan(alpha)) for z, t in zip((z1, z2), turns, strict=True)
+        ) / (2 * math.pi)  # the same path by pressure angles at the tips
+        assert stage["transverse_contact_ratio"] == pytest.approx(contact, rel=1e-12)
+        sine = math.sin(math.radians(25))
+        assert stage["overlap_ratio"] == pytest.approx(b * sine / (math.pi * m))
+        velocity = stage["pitch_line_velocity_m_per_s"]
+        assert velocity == pytest.approx(speed * m * z1 / cosine / 2000)
+        tangential = 2e3 * stage["pinion_torque_Nm"] / stage["pinion_diameter_mm"]
+        assert tangential * velocity == pytest.approx(7500, rel=1e-12)  # the power, in W
+        volumes = [math.pi / 4 * b * (m * z / cosine) ** 2 for z in (z1, z2)]
+        assert stage["pinion_mass_kg"] == pytest.approx(7.85e-6 * volumes[0])
+        assert stage["wheel_mass_kg"] == pytest.approx(7.85e-6 * volumes[1])
+        assert stage["mass_kg"] == pytest.approx(7.85e-6 * sum(volumes))
+        speed *= z1 / z2
+    assert result.design["mass_kg"] == pytest.approx(7.85e-6 * result.design["gear_volume_mm3"])
+
+
+def test_a_density_of_the_file_counts(tmp_path, result):
+    text = FILE + '[objective]\ndensity = "7.2 kg/dm^3"\n'
+    found = solved(tmp_path, text)
+    assert found.design["mass_kg"] == pytest.approx(result.design["mass_kg"] * 7.2 / 7.85)
+    assert any("density of the file, 7.2 kg/dm^3" in s for s in found.report["assumptions"])
+    assert any("steel of 7.85 kg/dm^3" in s for s in result.report["assumptions"])
+
+
+def test_the_pressure_angle_changes_the_contact_ratio_alone(tmp_path, result):
+    text = FILE.replace('"25 deg"', '"25 deg"\npressure_angle = "25 deg"')
+    found = solved(tmp_path, text)
+    one, other = (
+        {k: v for k, v in r.design["stages"][0].items() if k != "transverse_contact_ratio"}
+        for r in (result, found)
+    )
+    assert one == other and result.limits == found.limits
+    was, now = (r.design["stages"][0]["transverse_contact_ratio"] for r in (result, found))
+    assert now < 0.9 * was
+    assert any("pressure angle of 25 deg" in s for s in found.report["assumptions"])
+
+
+def test_assumptions_name_preset_rating_and_rack(result):
+    words = " ".join(result.report["assumptions"])
+    for word in ("ISO 53 profile A", "ISO 6336", "AGMA 2101", "profile shift", "Chong and Lee"):
+        assert word in words
+    assert "learances" not in words and set(ORIGINS) == set(PRESETS)
+
+
+def test_assumptions_of_a_layout_tell_defaults_from_what_the_file_gives(tmp_path):
+    table = '[layout]\nshaft_stress = "40 MPa"\nwall_clearance = "8 mm"\n'
+    found = solved(tmp_path, FILE + table)
+    words = " ".join(found.report["assumptions"])
+    assert "to the walls across the shafts 8 mm," in words
+    assert "between gears that do not mesh 5 mm (default)" in words
+    assert "torsion alone at 40 MPa" in words and "no bearings" in words
+    gears = {g["name"]: g for g in found.design["layout"]["gears"]}
+    for k, stage in enumerate(found.design["stages"], 1):
+        for member in ("pinion", "wheel"):
+            for size in ("tip", "root"):
+                told = stage[f"{member}_{size}_diameter_mm"]
+                assert gears[f"{member} {k}"][f"{size}_diameter_mm"] == told
+
+
+def test_an_undercut_pinion_is_named(tmp_path, result):
+    """At 0 degrees 17.1 teeth are the least; at 25 degrees 13.05."""
+    assert not any("undercut" in note for note in result.report["notes"])
+    text = FILE.replace('"25 deg"', '"0 deg"').replace("[20, 40]", "[12, 40]")
+    text = text.replace("pinion_teeth = 21\nwheel_teeth = 115", "pinion_teeth = 15\n")
+    text = text.replace("wheel_teeth = 91", "").replace(
+        'face_width = "28 mm"', 'face_width = "80 mm"'
+    )
+    text = text.replace('module = "2 mm"', 'module = "4 mm"').replace('"3 mm"', '"5 mm"')
+    found = solved(tmp_path, text.replace('"58 mm"', '"120 mm"'))
+    assert found.value is not None
+    notes = [n for n in found.report["notes"] if "undercut" in n]
+    assert len(notes) == 1 and "stage 1" in notes[0] and "17.1 teeth" in notes[0]
+
+
+def test_rows_of_a_page_are_those_of_a_terminal_and_every_other_key(result):
+    assert set(PAGE_ROWS) == set(result.design["stages"][0])
+    assert [key for key in PAGE_ROWS if key in ROWS] == list(ROWS)
+    assert {key: PAGE_ROWS[key] for key in ROWS} == ROWS
