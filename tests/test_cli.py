@@ -59,6 +59,46 @@ def test_html_writes_a_page_beside_the_report_or_the_json(tmp_path):
     assert json.loads(done.stdout)["status"] == "optimal" and path.exists()
 
 
+def test_report_shows_a_kept_result_again(tmp_path):
+    kept, pages = tmp_path / "result.json", [tmp_path / name for name in ("a.html", "b.html")]
+    done = gear("solve", ELEVATOR, "--top", 10, "--prices", "--json", "--html", pages[0])
+    kept.write_text(done.stdout, encoding="utf-8")
+    again = gear("report", kept, "--html", pages[1], "--csv", tmp_path / "tables")
+    assert again.returncode == 0 and again.stderr == ""
+    assert "5,782,370.7" in again.stdout and "limits.k_factor" in again.stdout
+    first, second = (page.read_text(encoding="utf-8") for page in pages)
+    assert first.replace("a.html", "b.html") == second
+    stages = (tmp_path / "tables" / "stages.csv").read_text(encoding="utf-8")
+    assert stages.startswith(",stage 1,stage 2\n") and "teeth z2,115,91\n" in stages
+    inch = gear("report", kept, "--units", "inch").stdout
+    assert "352.86 in³" in inch and "mm³" not in inch and "diametral pitch" in inch
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("report", "no.json"), "cannot be read"),
+        (("report", ROOT / "problems"), "cannot be read"),
+        (("report", ELEVATOR), "is not JSON"),
+        (("report", "list.json"), "is not a result"),
+        (("report", "other.json"), "result format 7"),
+        (("report", "part.json"), "lacks the keys method"),
+        (("report", "more.json"), "extra"),
+        (("solve", ELEVATOR, "--units", "furlong"), "write metric or inch"),
+        (("solve", ELEVATOR, "--csv", ELEVATOR), "is a file"),
+    ],
+)
+def test_what_cannot_be_shown_is_one_message(words, said, tmp_path):
+    part = {"result": 1, "name": "x", "status": "optimal", "objective": {}}
+    files = {"list.json": [1], "other.json": {"result": 7}, "part.json": part}
+    files["more.json"] = part | {"method": "exact", "extra": 1}
+    for name, content in files.items():
+        (tmp_path / name).write_text(json.dumps(content), encoding="utf-8")
+    done = gear(*words, cwd=tmp_path)
+    assert done.returncode == 2 and done.stdout == ""
+    assert done.stderr.count("\n") == 1 and said in done.stderr
+
+
 @pytest.mark.parametrize("page", ["", "/no/such/folder/page.html"])
 def test_a_page_that_cannot_be_written_is_told_before_solving(page, tmp_path):
     done = gear("solve", ELEVATOR, "--html", page or tmp_path)

@@ -14,7 +14,7 @@ INSIDE = {
     "optimise": {"optimise", "errors"},
     "formulations": {"physics", "optimise", "formulations", "errors"},
     "scenes": {"formulations", "physics", "optimise", "scenes", "units", "errors"},
-    "report": {"physics", "formulations", "optimise", "scenes", "report"},
+    "report": {"physics", "formulations", "optimise", "scenes", "report", "units"},
     "bench": {"physics", "formulations", "optimise", "scenes", "bench"},
 }
 OUTSIDE = {  # at module level; what is imported inside functions is free

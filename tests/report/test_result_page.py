@@ -34,7 +34,7 @@ def figures(html):
 @pytest.fixture(scope="module", params=LAYOUTS)
 def layout(request):
     result = LAYOUTS[request.param]()
-    return result.design["layout"], page(result, "Gearbox", "gearopt solve x.toml")
+    return result.design["layout"], page(result, "gearopt solve x.toml")
 
 
 def scales(found, svgs):
@@ -116,7 +116,7 @@ def test_keep_outs_are_cut_off_near_the_box():
     lowest = min(bottom, -50.0)  # the motor's underside is lower than the box
     assert math.isclose(near["floor"]["bottom_mm"], lowest - 0.12 * (bottom + height - lowest))
     assert near["floor"]["top_mm"] == -60.0 and near["step"]["left_mm"] == 300.0
-    html = page(result, "Gearbox", "x")
+    html = page(result, "x")
     words = text(html)
     assert "cut off" in words and "as long as it is wide" in words and "far wall" in words
     front, side, _ = drawings(html)
@@ -146,13 +146,13 @@ def test_labels_are_inside_and_do_not_cover_each_other(layout):
 
 
 def test_dimensions_and_names():
-    svgs = drawings(page(cases.three_stage(), "Gearbox", "x"))
+    svgs = drawings(page(cases.three_stage(), "x"))
     front, side, top = ({t.text for t in svg.iter("text")} for svg in svgs)
     assert {"411.98", "873.29", "gap 3.31", "a1 = 211.85", "a2 = 216.81", "a3 = 251.57"} <= front
     assert {"209.90", "b1 26.8", "b2 47.8", "b3 95.3"} <= side & top
     names = {f"{member} {k}" for member in ("pinion", "wheel") for k in (1, 2, 3)}
     assert names | {"1", "2", "3", "4"} <= front & side & top
-    front = {t.text for t in drawings(page(cases.elevator(), "", ""))[0].iter("text")}
+    front = {t.text for t in drawings(page(cases.elevator(), ""))[0].iter("text")}
     assert {"split", "rope sheave"} <= front
 
 
@@ -268,7 +268,7 @@ def test_bodies_are_closed_and_turned_outwards():
 
 
 def test_clearances_are_hidden_at_first_and_the_narrowest_gap_is_right():
-    traces = figures(page(cases.three_stage(), "Gearbox", "x"))[0]["data"]
+    traces = figures(page(cases.three_stage(), "x"))[0]["data"]
     hidden = [t for t in traces if t.get("visible") == "legendonly"]
     assert {t["legendgroup"] for t in hidden} == {"clearances"} and len(hidden) == 8
     line = hidden[-1]
@@ -279,7 +279,7 @@ def test_clearances_are_hidden_at_first_and_the_narrowest_gap_is_right():
 @pytest.mark.parametrize("case", PACKINGS)
 def test_packing_plans_are_to_scale(case):
     result = PACKINGS[case]()
-    html = page(result, "Packing", "x")
+    html = page(result, "x")
     svgs, design = drawings(html), result.design
     assert len(svgs) == len(design["layers"])
     scale = set()
@@ -300,31 +300,31 @@ def test_packing_plans_are_to_scale(case):
 
 
 def test_progress_tells_best_bound_and_gap():
-    plot = figures(page(cases.three_stage(), "Gearbox", "x"))[1]
+    plot = figures(page(cases.three_stage(), "x"))[1]
     best, bound = plot["data"]
     assert best["y"] == [98.3e6, 76.0e6, 75516512.0, 75516512.0] and plot["layout"]["xaxis"]
     assert bound["y"] == [41.2e6, 55.1e6, 70.2e6, 75508960.0, 75508960.0]
     assert "gap 43.9 %" in best["text"][0] and "40 evaluations" in best["text"][0]
     assert plot["layout"]["xaxis"]["type"] == "log"
     unbounded = [step | {"bound": None} for step in cases.PROGRESS]
-    plot = figures(page(cases.three_stage(report={"progress": unbounded}), "Gearbox", "x"))[1]
+    plot = figures(page(cases.three_stage(report={"progress": unbounded}), "x"))[1]
     assert [t["name"] for t in plot["data"]] == ["best"]
     assert "gap" not in " ".join(plot["data"][0]["text"])
     for none in ([], [cases.PROGRESS[0]]):
-        assert len(figures(page(cases.three_stage(report={"progress": none}), "", ""))) == 1
+        assert len(figures(page(cases.three_stage(report={"progress": none}), ""))) == 1
 
 
 def test_a_front_is_drawn_with_lines_of_equal_area():
     sizes = [(412.0, 873.0), (430.0, 700.0), (500.0, 640.0)]
     front = [{"width_mm": w, "height_mm": h, "volume_mm3": w * h * 200.0} for w, h in sizes]
-    plot = figures(page(cases.three_stage(report={"front": front}), "Gearbox", "x"))[1]
+    plot = figures(page(cases.three_stage(report={"front": front}), "x"))[1]
     *lines, boxes, best = plot["data"]
     assert list(zip(boxes["x"], boxes["y"], strict=True)) == sizes
     assert (best["x"], best["y"]) == ([430.0], [700.0])
     areas = [np.multiply(line["x"], line["y"]) for line in lines]
     assert len(areas) == 6 and all(np.ptp(area) < 1e-9 * area[0] for area in areas)
     assert len({round(area[0]) for area in areas}) == 6
-    one = figures(page(cases.three_stage(report={"front": front[:1]}), "Gearbox", "x"))
+    one = figures(page(cases.three_stage(report={"front": front[:1]}), "x"))
     assert len(one) == 2
 
 
@@ -333,14 +333,15 @@ EVERY = LAYOUTS | PACKINGS
 
 @pytest.mark.parametrize("case", EVERY)
 def test_nothing_is_loaded_from_anywhere(case):
-    html = page(EVERY[case](), "Gearbox", "x")
+    html = page(EVERY[case](), "x")
     loads = [
         value
         for _, attributes in Reader(html).tags
         for name, value in attributes.items()
         if name in ("src", "href", "xlink:href", "data", "action", "srcset", "poster")
     ]
-    assert loads == ["data:,"]
+    assert loads[0] == "data:,"
+    assert all(address.startswith("data:text/csv;charset=utf-8,") for address in loads[1:])
     assert not re.search(r"https?:|//[a-z]|@import|url\(", ours(html))
 
 
@@ -351,7 +352,9 @@ def test_words_of_the_user_are_escaped(case):
     for body in (*design.get("layout", {}).get("obstacles", ()), *design.get("cylinders", ())):
         body["name"] += ATTACK
     report = result.report | {"notes": [ATTACK]}
-    html = page(replace(result, design=design, report=report, message=ATTACK), ATTACK, ATTACK)
+    asked = {"title": ATTACK, "source": ATTACK, "duty": {ATTACK: ATTACK}}
+    result = replace(result, design=design, report=report, message=ATTACK, asked=asked)
+    html = page(result, ATTACK)
     read = Reader(html)
     assert {tag for tag, _ in read.tags}.isdisjoint({"b"})
     assert [kind for kind, _ in read.scripts].count("") == 2
@@ -364,14 +367,14 @@ def test_words_of_the_user_are_escaped(case):
 def test_the_page_needs_nothing_but_the_json(case):
     result = EVERY[case]()
     again = gearopt.Result.from_json(result.to_json())
-    assert page(again, "Gearbox", "x") == page(result, "Gearbox", "x")
+    assert page(again, "x") == page(result, "x")
 
 
 def test_colours_are_those_of_the_page():
     style = (ROOM / "frame.css").read_text(encoding="utf-8")
     known = set(re.findall(r"(--[\w-]+):", style))
     for make in EVERY.values():
-        for figure in figures(page(make(), "Gearbox", "x")):
+        for figure in figures(page(make(), "x")):
             used = set(re.findall(r'"(--[\w-]+)(?:/[\d.]+)?"', json.dumps(figure)))
             assert used and used <= known
     drawing = (ROOM / "drawing.css").read_text(encoding="utf-8")
@@ -385,7 +388,7 @@ def text(html):
 
 def test_a_plain_drive_gives_a_light_page_without_plots():
     result = gearopt.solve("problems/elevator.toml", top=3)
-    html = page(result, "Two-stage elevator drive", "gearopt solve x.toml")
+    html = page(result, "gearopt solve x.toml")
     assert len(html) < 40_000 and len(drawings(html)) == 2 and figures(html) == []
     shown = text(html)
     for words in ("proven optimal", "5,782,370.7 mm³", "trains compared", "150.06", "5,789,181.7"):
@@ -394,7 +397,7 @@ def test_a_plain_drive_gives_a_light_page_without_plots():
 
 def test_an_impossible_request_says_what_to_write():
     result = gearopt.solve("problems/elevator_small_wheels.toml")
-    shown = text(page(result, "Elevator", "x"))
+    shown = text(page(result, "x"))
     assert "impossible, proven" in shown and "Ways out" in shown
     for way in result.report["ways_out"]["remedies"]:
         assert f"{way['changes'][0]['key']} = {way['changes'][0]['write']}" in shown
@@ -403,7 +406,7 @@ def test_an_impossible_request_says_what_to_write():
 @pytest.mark.slow
 def test_the_page_takes_what_the_solver_gives():
     result = gearopt.solve("problems/table4_process_one_layout.toml")
-    front, side, _ = drawings(page(result, "Gearbox", "x"))
+    front, side, _ = drawings(page(result, "x"))
     words = {t.text for t in front.iter("text")}
     assert {"411.98", "873.29", "a1 = 211.85"} <= words and any(w[:4] == "gap " for w in words)
     assert "209.90" in {t.text for t in side.iter("text")}
@@ -415,7 +418,7 @@ def test_the_page_takes_what_the_solver_gives():
 
 
 def test_numbers_of_the_layout_are_in_its_tables():
-    shown = text(page(cases.three_stage(), "Gearbox", "x"))
+    shown = text(page(cases.three_stage(), "x"))
     for words in (
         "75,516,511.6 mm³",
         "proven within 0.01 %",

@@ -56,7 +56,7 @@ def result(rows):
 @cache
 def case(name):
     found = result(TRAINS[name])
-    return found.design["stages"], drawings(page(found, "Train", "gearopt solve x.toml"))
+    return found.design["stages"], drawings(page(found, "gearopt solve x.toml"))
 
 
 def gears(stages):
@@ -155,7 +155,7 @@ def test_labels_are_inside_and_do_not_cover_each_other(name):
 
 
 def test_words_say_that_nothing_is_optimised_and_how_it_would_be():
-    html = page(result(TRAINS["two stages"]), "Train", "x")
+    html = page(result(TRAINS["two stages"]), "x")
     shown = "".join(Reader(html).text)
     assert "shafts are drawn in one line: their places are not optimised" in shown
     assert "A [layout] table" in shown and "Gears in one line" in shown
@@ -163,7 +163,7 @@ def test_words_say_that_nothing_is_optimised_and_how_it_would_be():
 
 def test_a_laid_out_or_missing_design_is_not_drawn_so():
     found = result(TRAINS["two stages"])
-    assert drawings(page(replace(found, design={}), "", "")) == []
+    assert drawings(page(replace(found, design={}), "")) == []
     laid_out = found.design | cases.elevator().design
-    html = page(replace(found, design=laid_out), "", "")
+    html = page(replace(found, design=laid_out), "")
     assert len(drawings(html)) == 3 and "in one line" not in "".join(Reader(html).text)

@@ -1,0 +1,136 @@
+"""Tables of a page and their CSV files; the same in inches."""
+
+import csv
+import io
+import math
+import re
+from urllib.parse import unquote
+
+import layout_cases as cases
+import pint
+import pytest
+from html_reader import Reader
+
+import gearopt
+from gearopt.report.measures import INCH, METRIC, SYSTEMS
+from gearopt.report.pages.result import page, sections, tables
+from gearopt.report.pages.table import Table, percent, shown
+from gearopt.report.words import heading, parted
+
+UNITS = {"m_per_s": "m/s", "Nm": "N*m", "mm2": "mm^2", "mm3": "mm^3", "cm3": "mm^3"}
+INCHES = {"in³": "in^3", "in²": "in^2", "lbf in": "lbf*in", "ft/min": "ft/min"}
+
+
+@pytest.fixture(scope="module")
+def elevator():
+    return gearopt.solve("problems/elevator.toml", top=5, prices=True)
+
+
+def rows(text):
+    return list(csv.reader(io.StringIO(text)))
+
+
+def test_inch_factors_are_those_of_pint():
+    ureg = pint.UnitRegistry()
+    for suffix, (sign, factor) in INCH.units.items():
+        if suffix in ("percent", "deg", "ms"):
+            continue
+        told = ureg.Quantity(1.0, UNITS.get(suffix, suffix)).to(INCHES.get(sign, sign)).magnitude
+        assert math.isclose(factor, told, rel_tol=1e-12), suffix
+
+
+def test_both_systems_know_the_same_units():
+    assert set(METRIC.units) == set(INCH.units) and set(SYSTEMS) == {"metric", "inch"}
+
+
+@pytest.mark.parametrize(
+    ("key", "metric", "inch"),
+    [
+        ("face_width_mm", "face width [mm]", "face width [in]"),
+        (
+            "pitch_line_velocity_m_per_s",
+            "pitch line velocity [m/s]",
+            "pitch line velocity [ft/min]",
+        ),
+        ("pinion_teeth", "pinion teeth", "pinion teeth"),
+        ("mm", "mm", "mm"),
+    ],
+)
+def test_keys_are_read_with_their_units(key, metric, inch):
+    assert (heading(key), heading(key, INCH)) == (metric, inch)
+    assert parted("gear_volume_mm3") == ("gear_volume", "mm3")
+
+
+def test_csv_holds_the_numbers_in_full(elevator):
+    found = tables(elevator)
+    stages = {row[0]: row[1:] for row in rows(found["stages.csv"])}
+    design = elevator.design["stages"]
+    assert stages[""] == ["stage 1", "stage 2"]
+    assert [float(v) for v in stages["face width b [mm]"]] == [s["face_width_mm"] for s in design]
+    used = {row[0]: row[1:] for row in rows(found["limits.csv"])}
+    assert float(used["K-factor"][1]) == 100.0 * elevator.limits["k_factor[2]"]
+    trains = rows(found["best-trains.csv"])
+    assert [float(row[1]) for row in trains[1:]] == [
+        t["objective"] for t in elevator.report["trains"]
+    ]
+    shares = rows(found["volume-and-mass.csv"])
+    assert math.isclose(sum(float(row[2]) for row in shares[1:]), 100.0)
+
+
+def test_csv_of_odd_words_reads_back():
+    odd = ['a "quoted", one', "two\nlines", "=1+1", "ä³"]
+    table = Table("odd, name [mm]", ("x", "y"), [(word, 0.1) for word in odd])
+    assert rows(table.csv())[1:] == [[word, "0.1"] for word in odd]
+    assert table.stem == "odd-name-mm"
+    assert unquote(table.link).endswith(table.csv())
+
+
+def test_every_table_has_its_csv_and_names_do_not_meet(elevator):
+    for result in (elevator, cases.three_stage(), cases.packing()):
+        made = [table for section in sections(result) for table in section.tables]
+        assert len(tables(result)) == len(made) >= 4
+        links = [a for t, a in Reader(page(result, "x")).tags if t == "a"]
+        assert len(links) == len(made)
+        for link, table in zip(links, made, strict=True):
+            assert link["download"] == f"{table.stem}.csv"
+            assert unquote(link["href"].partition(",")[2]).lstrip("\ufeff") == table.csv()
+
+
+def test_inch_tables_are_the_metric_ones_converted(elevator):
+    metric, inch = tables(elevator), tables(elevator, INCH)
+    assert set(metric) == set(inch)
+    mm = {row[0]: row[1:] for row in rows(metric["stages.csv"])}
+    inches = {row[0]: row[1:] for row in rows(inch["stages.csv"])}
+    for name in ("face width b", "diameter d1", "tip diameter d_a2", "centres a"):
+        for a, b in zip(mm[f"{name} [mm]"], inches[f"{name} [in]"], strict=True):
+            assert math.isclose(float(a), 25.4 * float(b), rel_tol=1e-14)
+    assert inches["module m_n [mm]"] == ["2.0", "3.0"]
+    pitches = [float(v) for v in inches["diametral pitch P_nd [1/in]"]]
+    assert pitches == [12.7, 25.4 / 3.0]
+    assert math.isclose(float(inches["K-factor [psi]"][0]), 283.755, rel_tol=1e-5)
+
+
+def test_an_inch_page_names_no_millimetre_but_those_of_modules():
+    """What the user wrote, and modules, stay as they are; nothing else is in mm."""
+    asked = {"title": "Gearbox", "duty": {"power": "7.5 kW"}}
+    for make in (cases.three_stage, cases.boxed_in, cases.packing):
+        html = page(gearopt.Result(**vars(make()) | {"asked": asked}), "x", INCH)
+        words = " ".join(Reader(re.sub(r"<script.*?</script>", "", html, flags=re.S)).text)
+        left = re.findall(r".{30}\bmm[²³]?\b.{10}", words.replace("\n", " "))
+        assert all("m_n" in near or "module" in near for near in left), left
+        for figure in re.findall(r'<script type="application/json">(.*?)</script>', html, re.S):
+            assert not re.search(r"\bmm\b", re.sub(r"m_n [\d.]+ mm", "", figure))
+
+
+def test_drawn_lengths_in_inches():
+    shown_ = page(cases.three_stage(), "x", INCH)
+    for words in (">16.220<", ">34.381<", ">a1 = 8.340<", ">b1 1.06<"):
+        assert words in shown_, words
+
+
+def test_cells():
+    assert shown(True).text == "yes" and shown([1, 2.5]).text == "1, 2.5" and shown(None).text == ""
+    assert shown(-1e-9).text == "0"
+    used = percent(1.25)
+    assert (used.value, used.text, used.share) == (125.0, "125.0", 1.0)
+    assert percent(None).text == ""
