@@ -47,11 +47,7 @@ def test_both_systems_know_the_same_units():
     ("key", "metric", "inch"),
     [
         ("face_width_mm", "face width [mm]", "face width [in]"),
-        (
-            "pitch_line_velocity_m_per_s",
-            "pitch line velocity [m/s]",
-            "pitch line velocity [ft/min]",
-        ),
+        ("velocity_m_per_s", "velocity [m/s]", "velocity [ft/min]"),
         ("pinion_teeth", "pinion teeth", "pinion teeth"),
         ("mm", "mm", "mm"),
     ],
