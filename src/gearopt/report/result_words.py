@@ -7,6 +7,7 @@ from typing import Any
 from gearopt.optimise.result import Result
 from gearopt.report.words import UNITS, VERDICTS, limit_words, number
 
+RULED = ("process one", "process two")  # parts that are designs by rules
 EXACT = 1e-6  # a gap below it is called optimal, one above it is named
 
 ROWS = {  # of the stage table: what it is called, and the factor to its unit
@@ -87,7 +88,12 @@ def proof(result: Result) -> list[str]:
         )
     lines += _method(result)
     for part in result.parts:
-        if part.objective["name"] == result.objective["name"] and result.status == "optimal":
+        beside = part.name in ("sizing", "apart")
+        if (
+            beside
+            and part.objective["name"] == result.objective["name"]
+            and result.status == "optimal"
+        ):
             lines += _beside(result, part, unit)
     lines += result.report.get("notes", []) if result.status != "infeasible" else []
     if result.message and result.status != "infeasible":
