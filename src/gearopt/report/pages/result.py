@@ -9,6 +9,7 @@ from gearopt.report.pages import (
     outcome,
     packing_solid,
     packing_views,
+    side_by_side,
     trade_off,
 )
 from gearopt.report.pages.frame import render
@@ -24,6 +25,7 @@ SECTIONS = (
     packing_solid.section,
     anytime.section,
     trade_off.section,
+    side_by_side.section,
     outcome.limits,
     design_tables.section,
     design_tables.trains,

@@ -10,6 +10,7 @@ from rich.text import Text
 
 from gearopt.optimise.result import Result
 from gearopt.report.result_words import limit_rows, proof, stage_rows, train_rows, verdict
+from gearopt.report.side_by_side_words import side_by_side
 from gearopt.report.terminal import packing
 from gearopt.report.terminal.explanation import remedies
 from gearopt.report.terminal.layout import layout
@@ -31,6 +32,7 @@ def _blocks(result: Result) -> list[RenderableType]:
         blocks += _answer(result)
         if trains := result.report.get("trains"):
             blocks.append(_trains(trains, result))
+        blocks += _processes(result)
     if "ways_out" in result.report:
         if not result.report["ways_out"]["conflict"] and result.message:
             blocks.append(Text(result.message))
@@ -89,6 +91,17 @@ def _trains(trains: list[Mapping[str, Any]], result: Result) -> RenderableType:
     for row in rows:
         table.add_row(*row)
     return table
+
+
+def _processes(result: Result) -> list[RenderableType]:
+    """The designs by rules beside the best one; nothing where the file asks for none."""
+    heads, rows, missing = side_by_side(result)
+    if not rows:
+        return []
+    table = columns(heads[0], heads[1:])
+    for label, *cells in rows:
+        table.add_row(Text(label), *cells)
+    return [table, *map(Text, missing)]
 
 
 def rows_table(rows: list[dict[str, Any]]) -> RenderableType:

@@ -54,8 +54,8 @@ minimise = "gear_volume"       # or mass, sum_of_centre_distances, total_length
 # shaft_stress = "40 MPa"      # torsion; or: shaft_diameters = ["20 mm", "35 mm", "60 mm"]
 # span = "full"                # shafts from wall to wall; or partial
 
-# [process_one]                # without the # shown beside the best: design by rules,
-# stage_ratios = [4.96, 4.36]  # by K-factor and unit load
+# [process_one]                # designs by the rules of a paper, beside the best one:
+# stage_ratios = [4.96, 4.36]  # by K-factor and unit load,
 # [process_two]                # and after Niemann
 # first_centre_distance = "150 mm"
 # modules = ["2 mm", "3 mm"]   # or: pinion_teeth = [23, 25]
