@@ -91,7 +91,7 @@ def _check_lists(table: Table, stages: int, name: str) -> None:
         found = getattr(table, key)
         if found is not None and len(found) != stages:
             fit = [_written(v) for v in (*found, *found[-1:] * stages)[:stages]]
-            rule = f"has {len(found)} entries; a drive of {stages} stages needs {stages}"
+            rule = f"does not have one entry for each of the {stages} stages"
             raise refuse(rule, fit, (name, key), "sample")
 
 
