@@ -136,11 +136,10 @@ PROCESSES = (
     + """
 [process_one]
 stage_ratios = [4.96, 4.36]
-modules = ["2 mm", "3 mm"]
 
 [process_two]
 first_centre_distance = "150 mm"
-pinion_teeth = [23, 25]
+modules = ["2 mm", "3 mm"]
 """
 )
 
