@@ -62,14 +62,28 @@ def test_expected_value(path):
         assert result.bound <= result.value * (1 + 1e-12)
         assert result.gap <= expected.get("gap", 1e-9)
     if "sizing" in expected:
-        (part,) = result.parts
-        assert part.status == "optimal" and part.gap < 1e-9
+        part = result.parts[0]
+        assert part.name == "sizing" and part.status == "optimal" and part.gap < 1e-9
         assert part.value == pytest.approx(expected["sizing"], abs=DIGIT["sizing"])
+    ruled = {p.name.replace(" ", "_"): p for p in result.parts if p.name != "sizing"}
+    assert ruled.keys() == expected.keys() & {"process_one", "process_two"} or "layout" in content
+    for name in ruled.keys() & expected.keys():
+        check_process(ruled[name], expected[name], result)
     if "least_factor" in expected:
         least = result.report["ways_out"]["remedies"][0]
         assert least["kind"] == "least" and result.report["ways_out"]["conflict"]
         assert least["bound"] == pytest.approx(expected["least_factor"], rel=1e-5)
     assert result.file == str(path) and len(result.file_sha256) == 64
+
+
+def check_process(part, expected, best):
+    """The gears that a process makes, and its excess over the best."""
+    stages = part.design["stages"]
+    keys = ("normal_module_mm", "pinion_teeth", "wheel_teeth")
+    assert [[s[key] for key in keys] for s in stages] == expected["gears"]
+    assert part.status == "feasible" and part.bound == best.bound
+    assert part.value == pytest.approx(expected["volume"], abs=DIGIT["objective"])
+    assert part.gap == pytest.approx(1 - best.bound / part.value, rel=1e-12)
 
 
 def test_there_are_files():

@@ -145,7 +145,7 @@ def wrong_type(rng, text):
     return put(text, rng.choice(keys(parse(text))), rng.choice(TYPES))
 
 
-@mutation(steps=5)
+@mutation(steps=7)  # three entries that are no [[stage]], then four lists that go with their number
 def wrong_type_of_table(rng, text):
     places = [place[:1] for place, _ in tables_of(parse(text))]
     return put(text, rng.choice(places), rng.choice(TYPES))

@@ -131,6 +131,18 @@ x = ["0 mm", "100 mm"]
 """
 )
 
+PROCESSES = (
+    ELEVATOR.split("[x-expected]")[0]
+    + """
+[process_one]
+stage_ratios = [4.96, 4.36]
+
+[process_two]
+first_centre_distance = "150 mm"
+modules = ["2 mm", "3 mm"]
+"""
+)
+
 BASES = {
     "elevator": ELEVATOR,
     "example": EXAMPLE,
@@ -138,6 +150,7 @@ BASES = {
     "fixed": FIXED,
     "continuous": CONTINUOUS,
     "laid_out": LAID_OUT,
+    "processes": PROCESSES,
 }
 
 

@@ -34,8 +34,8 @@ def test_the_example_fits_and_shows_every_table(kind):
     VALIDATORS[kind].validate(content)
     fields = scene_module(kind).Scene.model_fields
     tables = {name for name, info in fields.items() if table_of(info.annotation)}
-    apart = {"layout", "place", "keep_out"} & tables  # as a comment: with it a drive is laid out
-    assert ("# [layout]" in example) == bool(apart)
+    apart = {"layout", "place", "keep_out", "process_one", "process_two"} & tables
+    assert all(f"# [{name}]" in example for name in apart - {"place", "keep_out"})  # as a comment
     assert tables and all(content[name] for name in tables - apart)
 
 

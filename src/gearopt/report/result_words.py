@@ -8,6 +8,7 @@ from gearopt.optimise.result import Result
 from gearopt.report.measures import INCH, METRIC, Measures, diametral_pitch
 from gearopt.report.words import VERDICTS, amount, limit_words
 
+RULED = ("process one", "process two")  # parts that are designs by rules
 EXACT = 1e-6  # a gap below it is called optimal, one above it is named
 
 ROWS = {  # of the stage table: what it is called, and its unit (modules are metric in any system)
@@ -131,7 +132,8 @@ def proof(result: Result, measures: Measures = METRIC) -> list[str]:
         )
     lines += _method(result)
     for part in result.parts:
-        if part.objective["name"] == result.objective["name"] and result.status == "optimal":
+        alike = part.objective["name"] == result.objective["name"]
+        if part.name in ("sizing", "apart") and alike and result.status == "optimal":
             lines += _beside(result, part, measures)
     lines += result.report.get("notes", []) if result.status != "infeasible" else []
     if result.message and result.status != "infeasible":

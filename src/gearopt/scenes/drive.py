@@ -23,6 +23,7 @@ from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.tables.drive import EXAMPLE, Scene
 
 __all__ = ["EXAMPLE", "Scene", "compared", "explain", "model", "solve"]
+PROCESSES = ("process_one", "process_two")  # tables; as methods with a hyphen
 CONTINUOUS = ("ipopt", "gp", "multistart")  # methods that take no whole teeth
 
 
@@ -30,7 +31,8 @@ def solve(scene: Scene, ask: Ask) -> Result:
     """Size the drive: exactly where [teeth] is given, else continuously.
 
     The exact answer carries the continuous one as a part: what whole teeth and standard modules
-    cost, and a second, independent bound. What the design takes for granted is in its report.
+    cost, and a second, independent bound. With [process_one] or [process_two] the designs by those
+    rules are parts as well. What the design takes for granted is in its report.
     """
     result = _solved(scene, ask)
     if result.value is None:
@@ -38,7 +40,7 @@ def solve(scene: Scene, ask: Ask) -> Result:
     told: dict[str, Any] = {"assumptions": assumptions(scene)}
     if ask.prices:
         clock = Clock(ask.budget.less(result.seconds), ask.watch)
-        found = _explained(scene, ask, result, clock)
+        found = _explained(_unruled(scene), ask, result, clock)
         influences = [asdict(i) for i in found.influences]
         told["prices"] = {"influences": influences, "message": found.message}
     return replace(result, report=result.report | told)
@@ -53,18 +55,19 @@ def _solved(scene: Scene, ask: Ask) -> Result:
         sized = _solved(bare(scene), replace(ask, method=None))
         if sized.value is None:
             return sized
-        return (at_once if scene.layout.together else lay_out)(scene, ask, sized)
+        return (at_once if scene.layout.together else lay_out)(_unruled(scene), ask, sized)
     result = _answer(scene, ask)
     if result.status != "infeasible":
-        return result
+        return _with_processes(scene, ask, result)
     from gearopt.scenes.explaining.remedies import remedies
 
-    ways = asdict(remedies(scene, Clock(ask.budget.less(result.seconds), ask.watch)))
+    ways = asdict(remedies(_unruled(scene), Clock(ask.budget.less(result.seconds), ask.watch)))
     return replace(result, report=result.report | {"ways_out": ways})
 
 
 def explain(scene: Scene, ask: Ask) -> Explanation:
     """Why the drive is as it is, or what would make it possible, in the numbers of its file."""
+    scene = _unruled(scene)
     if scene.layout is not None:
         result = _solved(scene, ask)
         if result.status == "infeasible":
@@ -111,6 +114,11 @@ def bare(scene: Scene) -> Scene:
     return scene.model_copy(update={"layout": None, "place": (), "keep_out": ()})
 
 
+def _unruled(scene: Scene) -> Scene:
+    """The drive without its design processes, which change nothing of what is best."""
+    return scene.model_copy(update=dict.fromkeys(PROCESSES))
+
+
 def _answer(scene: Scene, ask: Ask) -> Result:
     train = scene.train()
     if _continuous(scene, ask.method):
@@ -120,14 +128,40 @@ def _answer(scene: Scene, ask: Ask) -> Result:
         return replace(ideal, name="drive")
     ask = replace(ask, budget=ask.budget.less(ideal.seconds))
     floor = -math.inf if ideal.bound is None else ideal.bound
-    found = _sized(scene, train, ask, teeth.problem(train, ask.top, floor))
+    found = _sized(scene, train, ask, _discrete(scene, train, ask.top, floor))
     return reconcile(replace(found, parts=(replace(ideal, name="sizing"),)), ideal, ask.gap)
+
+
+def _discrete(scene: Scene, train: Train, top: int = 1, floor: float = -math.inf) -> Problem:
+    """The problem of whole teeth, with all methods that a drive has for it."""
+    problem = teeth.problem(train, top, floor)
+    return replace(problem, methods={**problem.methods, **scene.processes()})
+
+
+def _with_processes(scene: Scene, ask: Ask, best: Result) -> Result:
+    """The exact answer with what the processes of the file design as parts, under its bound."""
+    asked = [name for name in PROCESSES if getattr(scene, name) is not None]
+    if not asked or ask.method not in (None, "exact"):
+        return best
+    train = scene.train()
+    problem = _discrete(scene, train)
+    parts, told = [], list(best.report.get("notes", []))
+    for name in asked:
+        words, method = name.replace("_", " "), name.replace("_", "-")
+        try:
+            part = _sized(scene, train, replace(ask, method=method, top=1), problem)
+        except SolveError as reason:
+            told.append(f"There is no design by {words}: {reason}.")
+            continue
+        parts.append(reconcile(replace(part, name=words, report={}), best, ask.gap))
+    return replace(best, parts=(*best.parts, *parts), report=best.report | {"notes": told})
 
 
 def compared(scene: Scene) -> tuple[str, ...]:
     """The methods of a comparison that names none."""
     if scene.layout is None:
-        return ("exact", "ipopt", "annealing", "nsga2")
+        asked = (name.replace("_", "-") for name in PROCESSES if getattr(scene, name) is not None)
+        return ("exact", *asked, "ipopt", "annealing", "nsga2")
     if scene.layout.together:
         return ("exact", "ipopt")
     return ("exact", "sa", "sa-polish", "multistart", "nsga2")
@@ -150,13 +184,13 @@ def model(scene: Scene, method: str) -> Model:
     train = scene.train()
     if _continuous(scene, method):
         return Model(sizing.problem(train), "Real-valued teeth and modules", train.unit)
-    return Model(teeth.problem(train), "Whole teeth and standard modules", train.unit)
+    return Model(_discrete(scene, train), "Whole teeth and standard modules", train.unit)
 
 
 def _continuous(scene: Scene, method: str | None) -> bool:
     """Whether a method gets real-valued teeth."""
-    if scene.teeth is None and method == "exact":
-        raise SolveError("the method exact needs a [teeth] table in the file")
+    if scene.teeth is None and method in ("exact", *(n.replace("_", "-") for n in PROCESSES)):
+        raise SolveError(f"the method {method} needs a [teeth] table in the file")
     return scene.teeth is None or method in CONTINUOUS
 
 

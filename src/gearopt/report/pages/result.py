@@ -13,6 +13,7 @@ from gearopt.report.pages import (
     packing_solid,
     packing_views,
     prices,
+    side_by_side,
     trade_off,
     train_views,
 )
@@ -29,6 +30,7 @@ SECTIONS = (
     packing_views.section,
     packing_solid.section,
     train_views.section,
+    side_by_side.section,
     design_tables.section,
     asked.section,
     outcome.limits,

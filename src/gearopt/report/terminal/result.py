@@ -18,6 +18,7 @@ from gearopt.report.result_words import (
     train_rows,
     verdict,
 )
+from gearopt.report.side_by_side_words import side_by_side
 from gearopt.report.terminal import packing
 from gearopt.report.terminal.explanation import influences, remedies
 from gearopt.report.terminal.layout import layout
@@ -39,6 +40,7 @@ def _blocks(result: Result, measures: Measures) -> list[RenderableType]:
         blocks += _answer(result, measures)
         if trains := result.report.get("trains"):
             blocks.append(_trains(trains, result, measures))
+        blocks += _processes(result, measures)
         if prices := result.report.get("prices"):
             blocks += influences(prices, result)
     if "ways_out" in result.report:
@@ -101,6 +103,17 @@ def _trains(trains: list[Mapping[str, Any]], result: Result, measures: Measures)
     for rank, value, ratio, teeth, distances in rows:
         table.add_row(str(rank), number(value), f"{ratio:.4f}", teeth, distances)
     return table
+
+
+def _processes(result: Result, measures: Measures) -> list[RenderableType]:
+    """The designs by rules beside the best one; nothing where the file asks for none."""
+    heads, rows, missing = side_by_side(result, measures)
+    if not rows:
+        return []
+    table = columns(heads[0], heads[1:])
+    for label, *cells in rows:
+        table.add_row(Text(label), *map(number, cells))
+    return [table, *map(Text, missing)]
 
 
 def rows_table(rows: list[dict[str, Any]]) -> RenderableType:

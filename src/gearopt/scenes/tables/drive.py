@@ -1,5 +1,6 @@
 """A drive's file as a whole: its tables, how they fit together, and the drive they describe."""
 
+from collections.abc import Callable
 from decimal import Decimal
 from fractions import Fraction
 from typing import Annotated, Any
@@ -8,12 +9,15 @@ from pydantic import Field, model_validator
 
 from gearopt.formulations.design import describe
 from gearopt.formulations.layout.gearbox import Gearbox
+from gearopt.formulations.process import methods
 from gearopt.formulations.train import FaceWidth, Sizes, Stage, Train
+from gearopt.optimise.result import Outcome
 from gearopt.physics.loads import torque
 from gearopt.scenes.reading.fields import Table, refuse, whole, words
 from gearopt.scenes.tables.duty import Duty
 from gearopt.scenes.tables.layout import KeepOutTable, Layout, PlaceTable, gearbox
 from gearopt.scenes.tables.limits import Limits, Objective, Teeth
+from gearopt.scenes.tables.process import ProcessOneTable, ProcessTwoTable
 from gearopt.scenes.tables.stages import Gears, StageTable
 
 EXAMPLE = """\
@@ -50,6 +54,12 @@ minimise = "gear_volume"       # or mass, sum_of_centre_distances, total_length
 # [layout]                     # without the # the gears are laid out in the smallest box
 # shaft_stress = "40 MPa"      # torsion; or: shaft_diameters = ["20 mm", "35 mm", "60 mm"]
 # span = "full"                # shafts from wall to wall; or partial
+
+# [process_one]                # designs by the rules of a paper, beside the best one:
+# stage_ratios = [4.96, 4.36]  # by K-factor and unit load,
+# [process_two]                # and after Niemann
+# first_centre_distance = "150 mm"
+# modules = ["2 mm", "3 mm"]   # or: pinion_teeth = [23, 25]
 """
 
 
@@ -72,6 +82,8 @@ class Scene(Table):
     layout: Layout | None = None
     place: tuple[PlaceTable, ...] = Field((), description="One table a place")
     keep_out: tuple[KeepOutTable, ...] = Field((), description="One table a keep-out")
+    process_one: ProcessOneTable | None = None
+    process_two: ProcessTwoTable | None = None
 
     @model_validator(mode="after")
     def _consistent(self) -> "Scene":
@@ -92,6 +104,11 @@ class Scene(Table):
                 place = ("stage", k, "module") if own.module else ("limits", "module")
                 raise refuse("holds no module that [teeth] allows", self._around(own), place)
         self._check_layout(len(self.stage) or int(self.stages or 0))
+        for name, table in (("process_one", self.process_one), ("process_two", self.process_two)):
+            if table is not None and self.teeth is None:
+                raise refuse("needs a table [teeth]", at=(name,), action="remove")
+            if table is not None:
+                table.check(len(self.stage) or int(self.stages or 0), name)
         return self
 
     def _check_layout(self, stages: int) -> None:
@@ -189,6 +206,11 @@ class Scene(Table):
         """The drive of given sizes in the words of its drawing."""
         angle, speed = self.gears.pressure_angle.value, self.duty.input_speed.value
         return describe(self.train(), sizes, angle, speed)
+
+    def processes(self) -> dict[str, Callable[..., Outcome]]:
+        """The two design processes, with what the file tells them, as methods for whole teeth."""
+        one, two = self.process_one, self.process_two
+        return methods(self.train(), one.inputs() if one else None, two.inputs() if two else None)
 
     def gearbox(self, sizes: Sizes) -> Gearbox:
         """The drive of given sizes, to be laid out; it needs the table [layout]."""

@@ -1,0 +1,197 @@
+"""The two design processes of Chong and Lee as methods of the problem `teeth`.
+
+Each makes one train by rules, without a search; what their rules leave open is an input here. Face
+widths are b = m_a d1. The train is judged as any other: a limit it misses is named, never repaired.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+from math import ceil, cos
+
+import numpy as np
+
+from gearopt.errors import SolveError
+from gearopt.formulations.process.rules import (
+    ROUNDING,
+    balanced_pinion,
+    needed_module,
+    next_centre_distance,
+    next_module,
+    niemann_ratios,
+    pinion_diameter,
+    wheel_teeth,
+)
+from gearopt.formulations.train import Stage, Train
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.result import Budget, Outcome, Watch
+from gearopt.physics.geometry import reference_diameter
+
+RANDOM = False
+COUNTS = "train made by the rules"
+
+Ratios = tuple[Fraction, ...]
+Gears = tuple[float, int, int]  # of a stage: module [mm], pinion teeth, wheel teeth
+
+
+@dataclass(frozen=True)
+class ProcessOne:
+    """What process one is told: one entry a stage.
+
+    ratios: the rule behind them is not known (docs/multi_stage.md). pinion_teeth: None for those
+    balanced between both load limits. modules [mm]: None for the least that carries the load.
+    """
+
+    ratios: Ratios
+    pinion_teeth: tuple[int, ...] | None = None
+    modules: tuple[Fraction, ...] | None = None
+
+
+@dataclass(frozen=True)
+class ProcessTwo:
+    """What process two (after Niemann) is told: one entry a stage, and the first centre distance.
+
+    first_centre_distance [mm]. ratios: None for Niemann's. pinion_teeth or modules [mm], or both:
+    the designer's last step; what is not given is rounded up from the centre distance.
+    """
+
+    first_centre_distance: float
+    ratios: Ratios | None = None
+    pinion_teeth: tuple[int, ...] | None = None
+    modules: tuple[Fraction, ...] | None = None
+
+    def __post_init__(self) -> None:
+        if self.pinion_teeth is None and self.modules is None:
+            raise ValueError("process two needs pinion teeth or modules")
+
+
+def methods(
+    train: Train, one: ProcessOne | None = None, two: ProcessTwo | None = None
+) -> dict[str, Callable[..., Outcome]]:
+    """The methods process-one and process-two for the problem `teeth` of a drive.
+
+    SolveError when run: without inputs, with other numbers of entries than stages, or where a face
+    width is not tied to d1.
+    """
+
+    def process_one(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
+        """Ratios given; teeth balanced between K-factor and unit load; modules from the loads."""
+        if one is None:
+            raise _missing("one", "stage_ratios")
+        _check("one", train, one)
+        return _outcome(problem, *_first(train, one))
+
+    def process_two(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
+        """Ratios after Niemann; sizes from the first centre distance."""
+        if two is None:
+            raise _missing("two", "first_centre_distance, and modules or pinion_teeth")
+        _check("two", train, two)
+        return _outcome(problem, *_second(train, two))
+
+    return {"process-one": process_one, "process-two": process_two}
+
+
+def _missing(which: str, keys: str) -> SolveError:
+    return SolveError(
+        f"the method process-{which} needs a table [process_{which}] in the file, with {keys}"
+    )
+
+
+def _check(which: str, train: Train, inputs: ProcessOne | ProcessTwo) -> None:
+    """SolveError where the inputs do not fit the drive."""
+    if not all(stage.face_width.tied for stage in train.stages):
+        raise SolveError(
+            f"the method process-{which} makes face widths b = m_a d1: write "
+            "face_width_over_diameter as one number for every stage"
+        )
+    for given in (inputs.ratios, inputs.pinion_teeth, inputs.modules):
+        if given is not None and len(given) != len(train.stages):
+            raise SolveError(f"process {which} has {len(given)} entries, not one for each stage")
+
+
+def _first(train: Train, inputs: ProcessOne) -> tuple[list[Gears], str]:
+    """The gears of process one; none, and why, where no module carries the load."""
+    gears: list[Gears] = []
+    torque, angle = train.torque, train.helix_angle
+    for k, (stage, u) in enumerate(zip(train.stages, inputs.ratios, strict=True)):
+        if inputs.pinion_teeth is not None:
+            z1 = inputs.pinion_teeth[k]
+        else:
+            z1 = balanced_pinion(stage, float(u), angle)
+        z2 = wheel_teeth(z1, u)
+        if inputs.modules is not None:
+            module: Fraction | None = inputs.modules[k]
+        else:
+            least = needed_module(stage, torque, z1, z2 / z1, angle)
+            module = next_module(stage, least)
+            if module is None:
+                return [], _no_module(k, least, stage)
+        assert module is not None
+        gears.append((float(module), z1, z2))
+        torque *= z2 / z1
+    return gears, ""
+
+
+def _second(train: Train, inputs: ProcessTwo) -> tuple[list[Gears], str]:
+    """The gears of process two; none, and why, where no module is large enough.
+
+    A given pinion that is smaller than its centre distance asks for is told.
+    """
+    limits = [stage.k_factor for stage in train.stages]
+    ratios = inputs.ratios or niemann_ratios(float(train.ratio), limits)
+    gears: list[Gears] = []
+    small = []
+    diameters = _diameters(train, inputs.first_centre_distance, [float(u) for u in ratios])
+    for k, (stage, d1) in enumerate(zip(train.stages, diameters, strict=True)):
+        across = d1 * cos(train.helix_angle)  # m z1
+        z1 = None if inputs.pinion_teeth is None else inputs.pinion_teeth[k]
+        if inputs.modules is not None:
+            module: Fraction | None = inputs.modules[k]
+        else:
+            assert z1 is not None
+            module = next_module(stage, across / z1)
+            if module is None:
+                return [], _no_module(k, across / z1, stage)
+        assert module is not None
+        z1 = z1 or ceil(across / float(module) * (1.0 - ROUNDING))
+        made = reference_diameter(float(module), z1, train.helix_angle)
+        if made < d1 * (1.0 - ROUNDING):
+            small.append(f"pinion {k + 1} is given {made:.2f} mm, its centres ask for {d1:.2f} mm")
+        gears.append((float(module), z1, wheel_teeth(z1, ratios[k])))
+    return gears, "; ".join(small)
+
+
+def _diameters(train: Train, centre_distance: float, u: list[float]) -> list[float]:
+    """Pinion diameters [mm] of all stages, before any rounding of teeth or modules.
+
+    Of the chains that Table 4 could come from, only this one rounds up to it in every stage.
+    """
+    found = [pinion_diameter(centre_distance, u[0])]
+    for k in range(1, len(u)):
+        one, two = train.stages[k - 1 : k + 1]
+        centre_distance = next_centre_distance(
+            centre_distance,
+            (u[k - 1], u[k]),
+            (float(one.face_width.high or 0), float(two.face_width.high or 0)),
+            (one.k_factor, two.k_factor),
+        )
+        found.append(pinion_diameter(centre_distance, u[k]))
+    return found
+
+
+def _no_module(position: int, least: float, stage: Stage) -> str:
+    return (
+        f"stage {position + 1} needs a module of {least:.4g} mm or more; the largest allowed is "
+        f"{float(stage.modules[-1]):g} mm"
+    )
+
+
+def _outcome(problem: Problem, gears: list[Gears], message: str) -> Outcome:
+    """The point of the problem `teeth` that has these gears."""
+    if not gears:
+        return Outcome(None, evaluations=1, message=message)
+    columns = dict(
+        zip(("module", "pinion_teeth", "wheel_teeth"), zip(*gears, strict=True), strict=True)
+    )
+    x = np.array([float(v) for variable in problem.variables for v in columns[variable.name]])
+    return Outcome(x, evaluations=1, message=message)

@@ -1,0 +1,67 @@
+"""The best design and those made by rules, side by side: rows that terminal and page both show."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from gearopt.optimise.result import Result
+from gearopt.report.measures import METRIC, Measures
+from gearopt.report.result_words import RULED, objective
+from gearopt.report.words import heading, limit_words, number, parted
+
+OF_STAGE = {"ratio": "ratio u", "centre_distance_mm": "a", "face_width_mm": "b"}
+OF_DRIVE = ("ratio", "ratio_error_percent", "gear_volume_mm3")
+
+
+def side_by_side(
+    result: Result, measures: Measures = METRIC
+) -> tuple[list[str], list[list[Any]], list[str]]:
+    """Heads, rows (a label, then a value a design) and sentences; no rows without such parts.
+
+    The first column is the result itself, or the gears that its layout is of.
+    """
+    best = next((part for part in result.parts if part.name == "gears"), result)
+    ruled = [part for part in best.parts if part.name in RULED]
+    missing = [_missing(part) for part in ruled if part.value is None]
+    designs = [best, *(part for part in ruled if part.value is not None)]
+    if best.value is None or not ruled:
+        return [], [], []
+    heads = ["", best.method, *(part.name for part in designs[1:])]
+    return heads, [*_stages(designs, measures), *_totals(designs, best.bound, measures)], missing
+
+
+def _stages(designs: Sequence[Result], measures: Measures) -> list[list[Any]]:
+    rows: list[list[Any]] = []
+    for k in range(len(designs[0].design["stages"])):
+        stages = [one.design["stages"][k] for one in designs]
+        teeth = [
+            f"{number(s['normal_module_mm'])}, {s['pinion_teeth']}/{s['wheel_teeth']}"
+            for s in stages
+        ]
+        rows.append([f"stage {k + 1}: m_n, z1/z2", *teeth])
+        for key, label in OF_STAGE.items():
+            unit = parted(key)[1]
+            sign = f" [{measures.unit(unit)}]" if unit else ""
+            values = (measures.of(s[key], unit) for s in stages)
+            rows.append([f"stage {k + 1}: {label}{sign}", *values])
+    return rows
+
+
+def _totals(designs: Sequence[Result], bound: float | None, measures: Measures) -> list[list[Any]]:
+    rows: list[list[Any]] = []
+    for key in OF_DRIVE:
+        values = (measures.of(one.design[key], parted(key)[1]) for one in designs)
+        rows.append([heading(key, measures), *values])
+    name, unit = objective(designs[0])
+    if name != "gear volume":
+        values = (measures.of(one.value or 0.0, unit) for one in designs)
+        rows.append([f"{name} [{measures.unit(unit)}]", *values])
+    if bound is not None and bound > 0.0:
+        over = (100.0 * ((one.value or 0.0) / bound - 1.0) for one in designs)
+        rows.append(["over the bound [%]", *(max(x, 0.0) for x in over)])
+    return rows
+
+
+def _missing(part: Result) -> str:
+    """Why there is no design by a process, with the violated limit in words."""
+    first, _, rest = part.message.partition(" ")
+    return f"No design by {part.name}: {limit_words(first)} {rest}".rstrip(". ") + "."
