@@ -8,6 +8,11 @@ import pytest
 import gearopt
 
 PROBLEMS = sorted((Path(__file__).parents[1] / "problems").glob("*.toml"))
+KEYS = {  # of [x-expected], as the tests below read them
+    "drive": {"status", "objective", "sizing", "least_factor", "gap"},
+    "packing": {"status", "objective", "tolerance", "bound"},
+    "compound": {"status", "objective"},
+}
 DIGIT = {"objective": 0.06, "sizing": 0.006}  # the values are printed to tenths and hundredths
 
 
@@ -23,7 +28,11 @@ def case(path):
     return pytest.param(path, id=path.stem, marks=[pytest.mark.slow] * long)
 
 
+HELD = set()  # kinds whose files a test below solves
+
+
 def of_kind(kind):
+    HELD.add(kind)
     return [case(p) for p in PROBLEMS if content_of(p)["kind"] == kind]
 
 
@@ -70,6 +79,17 @@ def test_expected_value(path):
         assert least["kind"] == "least" and result.report["ways_out"]["conflict"]
         assert least["bound"] == pytest.approx(expected["least_factor"], rel=1e-5)
     assert result.file == str(path) and len(result.file_sha256) == 64
+
+
+@pytest.mark.parametrize("path", PROBLEMS, ids=lambda p: p.stem)
+def test_every_file_says_what_it_is_held_to(path):
+    """A kind that no test above solves, or a key that none reads, would hold a file to nothing."""
+    content = content_of(path)
+    expected = content["x-expected"]
+    assert content["kind"] in HELD and content["title"] and content["source"]
+    assert expected.keys() <= KEYS[content["kind"]]
+    needed = "least_factor" if expected["status"] == "infeasible" else "objective"
+    assert needed in expected
 
 
 def test_there_are_files():
