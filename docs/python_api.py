@@ -13,7 +13,7 @@ HEAD = """\
 
 What `import gearopt` offers. The rest of the package is its inside, and may change. A file is
 solved in three lines ([How to start](start.md#from-python)); a problem of your own takes
-[20 lines](own_problem.md); the words are explained in [The contract](contract.md).
+[a page](own_problem.md); the words are explained in [The contract](contract.md).
 """
 GROUPS = {  # heading: names, in reading order
     "From a file to an answer": ("solve", "explain", "compare", "load"),

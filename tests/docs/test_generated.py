@@ -12,7 +12,10 @@ from typer.testing import CliRunner
 
 import gearopt
 from gearopt.cli import app
+from gearopt.cli.app import EXIT
 from gearopt.cli.reference import EXIT_CODES, reference
+from gearopt.scenes.reading.load import kinds, scene_module
+from gearopt.scenes.reading.schema import reference as tables
 
 ROOT = Path(__file__).parents[2]
 FAST = ("elevator", "elevator_box", "three_stages_ratio_cap", "sandgren_train")
@@ -54,9 +57,21 @@ def same(a, b):
     return a == b or float(a) == float(b)
 
 
-def test_every_exit_code_of_the_start_page_is_among_those_of_the_commands():
-    codes = re.findall(r"(?m)^\| (\d+) \|", page("start.md"))
-    assert len(codes) >= 4 and {int(code) for code in codes} <= set(EXIT_CODES)
+def test_every_exit_code_is_told():
+    assert {*EXIT.values(), 0, 2, 3, 4} <= set(EXIT_CODES)
+    assert all(f"| {code} | " in page("commands.md") for code in EXIT_CODES)
+
+
+@pytest.mark.parametrize("kind", kinds())
+def test_tables_of_keys_are_written_where_they_belong(kind, tmp_path, monkeypatch):
+    """A page as a contributor begins it becomes one that holds all of its kind."""
+    begun = f"# A page\n\n```toml\ngearopt = 1\n```\n\n### top of the file\n\n## More\n\n{kind}\n"
+    (tmp_path / f"{kind}.md").write_text(begun, encoding="utf-8")
+    assert generate.page_of(kind) == page(f"{kind}.md")
+    monkeypatch.setattr(generate, "DOCS", tmp_path)
+    made = generate.page_of(kind)
+    assert scene_module(kind).EXAMPLE in made and tables(kind) in made
+    assert made.startswith("# A page\n") and made.endswith(f"\n## More\n\n{kind}\n")
 
 
 def test_a_problem_file_without_a_line_in_the_gallery_is_named(tmp_path, monkeypatch):
