@@ -4,7 +4,7 @@ from importlib import metadata
 
 project = "gearopt"
 author = "The gearopt authors"
-copyright = author  # noqa: A001, the name that Sphinx asks for
+project_copyright = author
 release = metadata.version("gearopt")
 
 highlight_language = "none"  # blocks without a language are commands and what they print
