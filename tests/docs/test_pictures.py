@@ -33,7 +33,8 @@ def test_the_stored_result_is_of_the_file_as_it_is_and_what_it_expects(name):
         "run: python docs/generate.py --solve"
     )
     assert result.file == f"problems/{name}.toml" and result.status == expected["status"]
-    assert result.value == pytest.approx(expected["objective"], rel=1e-8)
+    digits = expected.get("tolerance", 1e-8)  # some packings are printed with fewer
+    assert result.value == pytest.approx(expected["objective"], rel=digits)
 
 
 @pytest.mark.parametrize("name", pictures.PICTURES)
