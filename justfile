@@ -17,6 +17,14 @@ test:
 test-all:
     pytest -m ""
 
+# The site in build/docs; a warning is an error.
+docs:
+    sphinx-build -W --keep-going -b html docs build/docs
+
+# Write the generated pages and pictures of the docs again.
+pages:
+    python docs/generate.py
+
 # Speed beside error of the main job.
 bench:
     gearopt bench drive

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+import gearopt
 from gearopt import api, cli
 from gearopt.formulations import sizing, teeth
 from gearopt.optimise.solve import back_ends
@@ -106,6 +107,53 @@ def test_python_of_the_conic_section_runs():
     assert done.returncode == 0, done.stderr
     best = (3**0.5 + 2.0 + 3**0.5) ** 2 / 0.2  # (sum sqrt(a s))^2 / E
     assert done.stdout == f"optimal {round(best, 6)}\n"
+
+
+def test_the_walk_of_the_start_page(tmp_path):
+    """Copied, changed, misspelt, mended, laid out: every answer printed there is the program's."""
+    page, path = text("docs/start.md"), tmp_path / "my.toml"
+    right = text("problems/elevator.toml")
+    duty = re.search(r"\[duty\]\n.*?(?=\n```)", page, re.S)[0]
+    assert duty in right
+    wrong = {right.replace("input_speed", "input_sped"), right.replace("7.5 kW", "7,5 kW")}
+    told = set()
+    for content in wrong:
+        path.write_text(content, encoding="utf-8")
+        with pytest.raises(gearopt.SceneError) as error:
+            gearopt.load(path)
+        told.add(f"gearopt: {error.value}".replace(str(path), "my.toml"))
+    assert told == set(re.findall(r"(?m)^gearopt: my.toml: .*$", page))
+    path.write_text(stronger := right.replace('"7.5 kW"', '"11 kW"'), encoding="utf-8")
+    assert f"needs {gearopt.solve(path).value:,.1f} mm³" in page
+    path.write_text(
+        stronger + re.search(r"\[layout\]\n.*?(?=```)", page, re.S)[0], encoding="utf-8"
+    )
+    assert f"has {gearopt.solve(path).value:,.0f} mm³" in page
+
+
+def test_readme_shows_what_the_command_prints():
+    """Every line of the shortened output, in order; and README's two commands, that CI reads."""
+    page = text("README.md")
+    command, shown = re.findall(r"(?ms)^```\n(.*?)^```$", page)[:2]
+    assert re.findall(r"(?m)^python3 -m venv.*$", page)[0] == command.strip()
+    assert len(re.findall(r"(?m)^python3 -m venv", page)) == 2
+    done = subprocess.run(
+        [sys.executable, "-m", "gearopt", "solve", "problems/elevator.toml"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    printed = iter([line.rstrip() for line in done.stdout.splitlines()])
+    assert all(line in printed for line in shown.splitlines() if line != "...")
+
+
+def test_paths_of_the_contributors_page_exist():
+    page = text("docs/contributing.md")
+    paths = set(re.findall(r"`((?:src|docs|tests|problems|\.ci)[\w/.]*)`", page))
+    assert len(paths) >= 10
+    for path in paths:
+        assert "NAME" in path or "FILE" in path or (ROOT / path).exists(), path
 
 
 def test_readme_table_is_what_the_files_give():

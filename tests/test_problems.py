@@ -8,6 +8,14 @@ import pytest
 import gearopt
 
 PROBLEMS = sorted((Path(__file__).parents[1] / "problems").glob("*.toml"))
+KEYS = {  # of [x-expected], as the tests below read them
+    "drive": {
+        *("status", "objective", "sizing", "least_factor", "gap"),
+        *("process_one", "process_two"),
+    },
+    "packing": {"status", "objective", "tolerance", "bound"},
+    "compound": {"status", "objective"},
+}
 DIGIT = {"objective": 0.06, "sizing": 0.006}  # the values are printed to tenths and hundredths
 
 
@@ -23,7 +31,11 @@ def case(path):
     return pytest.param(path, id=path.stem, marks=[pytest.mark.slow] * long)
 
 
+HELD = set()  # kinds whose files a test below solves
+
+
 def of_kind(kind):
+    HELD.add(kind)
     return [case(p) for p in PROBLEMS if content_of(p)["kind"] == kind]
 
 
@@ -84,6 +96,17 @@ def check_process(part, expected, best):
     assert part.status == "feasible" and part.bound == best.bound
     assert part.value == pytest.approx(expected["volume"], abs=DIGIT["objective"])
     assert part.gap == pytest.approx(1 - best.bound / part.value, rel=1e-12)
+
+
+@pytest.mark.parametrize("path", PROBLEMS, ids=lambda p: p.stem)
+def test_every_file_says_what_it_is_held_to(path):
+    """A kind that no test above solves, or a key that none reads, would hold a file to nothing."""
+    content = content_of(path)
+    expected = content["x-expected"]
+    assert content["kind"] in HELD and content["title"] and content["source"]
+    assert expected.keys() <= KEYS[content["kind"]]
+    needed = "least_factor" if expected["status"] == "infeasible" else "objective"
+    assert needed in expected
 
 
 def test_there_are_files():

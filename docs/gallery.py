@@ -1,0 +1,156 @@
+"""The gallery: every file of problems/ with what it shows and the answer the tests hold it to.
+
+A new file needs a line in GROUPS; title, source, kind and answer come from the file itself.
+"""
+
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from pictures import PICTURES, ROOM
+
+from gearopt.report.words import VERDICTS, number
+
+PROBLEMS = Path(__file__).parents[1] / "problems"
+HEAD = """\
+# Gallery
+
+Every file of `problems/`, with the answer that the tests hold it to. Each is a start for a file of
+your own: copy it, change its numbers, solve it. With `--html page.html` the answer comes as a page;
+of a gearbox or a packing it holds drawings like those below.
+"""
+GROUPS = {  # heading: {file: what it shows, in a line}
+    "Sizing a drive": {
+        "elevator": "Teeth, modules and face widths of least gear volume, proven.",
+        "three_stage": "One stage more.",
+        "elevator_both_series": "Modules of both series of ISO 54, not of the first alone.",
+        "three_stage_both_series": "Here the second series brings nothing.",
+        "elevator_coprime": "Hunting teeth, `coprime = true`: the best train has them already.",
+        "three_stage_coprime": "Here hunting teeth cost a little volume.",
+    },
+    "The paper's processes": {
+        "elevator_processes": "The rules of a paper beside the optimum, `[process_one]` and "
+        "`[process_two]`.",
+        "three_stage_processes": "The same for three stages, with the widths of the paper's table.",
+    },
+    "Ratio and widths": {
+        "elevator_fine_ratio": "A tolerance of the ratio ten times finer.",
+        "elevator_fine_ratio_coprime": "The same with hunting teeth.",
+        "three_stage_fine_ratio": "With three stages a fine ratio costs less.",
+        "three_stage_fine_ratio_coprime": "The same with hunting teeth.",
+        "elevator_exact_ratio": "Real-valued sizes (no `[teeth]`), the ratio met exactly.",
+        "three_stage_exact_ratio": "The same for three stages.",
+        "elevator_free_width": "`face_width_over_diameter` as a range: widths are chosen too.",
+        "three_stage_free_width": "The same for three stages.",
+        "three_stages_ratio_cap": "A limit on the ratio of every stage, `stage_ratio`.",
+    },
+    "Long trains": {
+        "four_stages": "300:1, proven like the short ones.",
+        "five_stages": "1000:1.",
+        "six_stages": "3000:1, the most stages a drive may have.",
+        "five_stages_continuous": "1000:1 with real-valued sizes and an exact ratio.",
+    },
+    "Impossible requests": {
+        "elevator_small_wheels": "Wheels are too small for the load: what to write instead.",
+        "three_stage_small_wheels": "Modules too large for the wheels allowed.",
+        "thousand_in_two_stages": "1000:1 does not go into two stages of at most 10.",
+    },
+    "The box around a drive": {
+        "elevator_box": "Shafts placed past a motor, a floor, a ceiling and a brake.",
+        "table4_process_one_layout": "Gears all given, only laid out; beside the box of a paper.",
+        "four_stage_box": "A slab for each stage, and an output shaft level with the input.",
+    },
+    "Gears and box at once": {
+        "three_stage_together": "Teeth, modules and places together make a smaller box.",
+    },
+    "Packing of cylinders": {
+        "six_cylinders": "Three large and three small ones; the number of layers is chosen too.",
+        "six_cylinders_one_layer": "In one layer, which is the best known of all.",
+        "six_cylinders_two_layers": "In just two layers, proven.",
+        "six_cylinders_three_layers": "In just three layers, proven.",
+        "six_cylinders_row": "Some cylinders fixed by `at`: the large ones in a row.",
+        "six_cylinders_triangle": "The large ones fixed in a triangle.",
+        "six_cylinders_row_two_layers": "The row, and a second layer above it.",
+        "seven_points": "Equal circles in a square: points as far apart as they can be.",
+    },
+    "A compound train": {
+        "sandgren_train": "Four tooth numbers nearest to a ratio, proven in rational arithmetic.",
+    },
+}
+KINDS = {  # of a file: the page about it, and what is minimised
+    "drive": ("drive.md", lambda file: _of_drive(file)),
+    "packing": ("packing.md", lambda file: file.get("objective", {}).get("minimise", "volume")),
+    "compound": ("compound.md", lambda file: "squared_error"),
+}
+UNITS = {
+    "gear_volume": "mm³",
+    "box_volume": "mm³",
+    "volume": "mm³",
+    "area": "mm²",
+    "squared_error": "",
+}
+
+
+def page() -> str:
+    """The page; ValueError names a file without a line in GROUPS, and a line without a file."""
+    named = [name for files in GROUPS.values() for name in files]
+    there = sorted(path.stem for path in PROBLEMS.glob("*.toml"))
+    if sorted(named) != there:
+        odd = sorted(set(named) ^ set(there)) or "a file is named twice"
+        raise ValueError(f"GROUPS of docs/gallery.py and problems/ differ: {odd}")
+    parts = [HEAD]
+    for heading, files in GROUPS.items():
+        parts.append(f"## {heading}\n")
+        parts += [_entry(name, words) for name, words in files.items()]
+    return "\n".join(parts)
+
+
+def objective(file: Mapping[str, Any]) -> tuple[str, str]:
+    """What a file minimises, as results name it, and the unit."""
+    if file["kind"] not in KINDS:
+        raise ValueError(f"KINDS of docs/gallery.py does not know the kind {file['kind']}")
+    name = KINDS[file["kind"]][1](file)
+    return name, UNITS[name]
+
+
+def _of_drive(file: Mapping[str, Any]) -> str:
+    found: str = file.get("objective", {}).get("minimise", "gear_volume")
+    if "layout" in file:
+        found = file["layout"].get("minimise", "box_volume")
+    return found
+
+
+def _entry(name: str, words: str) -> str:
+    file = tomllib.loads((PROBLEMS / f"{name}.toml").read_text(encoding="utf-8"))
+    lines = [f"### {file['title']}\n"]
+    if name in PICTURES:
+        views = "views" if len(PICTURES[name].drawings) > 1 else "view"
+        lines.append(f"![{file['title']}: {views} to scale]({ROOM.name}/{name}.svg)\n")
+    lines += [
+        f"{words}\n",
+        f"```\ngearopt solve problems/{name}.toml\n```\n",
+        f"- Answer: {_answer(file)}",
+        f"- File: [{name}.toml](../problems/{name}.toml), kind "
+        f"[{file['kind']}]({KINDS[file['kind']][0]})",
+        f"- Source: {file['source']}\n",
+    ]
+    return "\n".join(lines)
+
+
+def _answer(file: Mapping[str, Any]) -> str:
+    """The file's own [x-expected] in words."""
+    expected = file["x-expected"]
+    parts = [f"**{VERDICTS[expected['status']][0]}**"]
+    if "objective" in expected:
+        name, unit = objective(file)
+        parts.append(f"{name.replace('_', ' ')} {number(expected['objective'])} {unit}".rstrip())
+    if "gap" in expected:
+        parts.append(f"gap at most {100 * expected['gap']:g} %")
+    if "sizing" in expected:
+        parts.append(f"with real-valued teeth and modules {number(expected['sizing'])}")
+    if expected["status"] == "feasible":
+        parts.append(f"nothing below {number(expected['bound'])} is possible")
+    if "least_factor" in expected:
+        parts.append(f"limits must move by a factor of {expected['least_factor']:g} at the least")
+    return ", ".join(parts)

@@ -1,0 +1,46 @@
+"""Write the generated pages and pictures of the docs: `python docs/generate.py`.
+
+In the page of a kind of problem file the example and the tables of keys are written. With --solve
+the problem files whose pictures are shown are solved again first. Tests hold every file to this.
+"""
+
+import re
+import sys
+from pathlib import Path
+
+import gallery
+import pictures
+import python_api
+
+from gearopt.cli.reference import reference
+from gearopt.scenes.reading.load import kinds, scene_module
+from gearopt.scenes.reading.schema import reference as tables
+
+DOCS = Path(__file__).parent
+PAGES = {"commands.md": reference, "gallery.md": gallery.page, "python.md": python_api.page}
+
+
+def page_of(kind: str) -> str:
+    """The page of a kind with its example and its tables of keys as they are now."""
+    page = (DOCS / f"{kind}.md").read_text(encoding="utf-8")
+    example = f"```toml\n{scene_module(kind).EXAMPLE}```"
+    page = re.sub(r"```toml\ngearopt = 1\n.*?```", lambda _: example, page, count=1, flags=re.S)
+    keys = r"### top of the file\n.*?(?=\n## |\Z)"
+    return re.sub(keys, lambda _: tables(kind), page, count=1, flags=re.S)
+
+
+def main() -> None:
+    """Write all of them."""
+    if "--solve" in sys.argv:
+        for name in pictures.PICTURES:
+            (pictures.ROOM / f"{name}.json").write_text(pictures.solve(name), encoding="utf-8")
+    for name in pictures.PICTURES:
+        (pictures.ROOM / f"{name}.svg").write_text(pictures.draw(name), encoding="utf-8")
+    for name, page in PAGES.items():
+        (DOCS / name).write_text(page(), encoding="utf-8")
+    for kind in kinds():
+        (DOCS / f"{kind}.md").write_text(page_of(kind), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,99 @@
+"""The pictures of the docs: drawings that the program makes of stored results, as SVG files.
+
+`python docs/generate.py --solve` solves the files below again and stores what they give beside the
+pictures. A picture is drawn from its stored result, because a layout or a packing often has several
+designs of equal value, and which of them a search meets first may differ between machines.
+"""
+
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from html import escape
+from pathlib import Path
+
+import gearopt
+from gearopt.optimise.result import Result
+from gearopt.report.measures import METRIC, Measures
+from gearopt.report.pages import layout_views, packing_views, sheet, train_views
+from gearopt.report.pages.section import Section
+from gearopt.report.pages.sheet import Drawing
+
+ROOT = Path(__file__).parents[1]
+ROOM = ROOT / "docs" / "pictures"
+FREE = 16.0  # px around and between drawings
+HIGH = 520.0  # px that a picture is shown high at the most
+
+
+@dataclass(frozen=True)
+class Picture:
+    """Which drawings of a section of the page to show, of the result with a seed.
+
+    down: one below the other, not side by side.
+    """
+
+    section: Callable[[Result, Measures], Section | None]
+    drawings: Sequence[int] = (0,)
+    seed: int = 0
+    down: bool = False
+
+
+PICTURES = {  # by the name of the problem file
+    "elevator": Picture(train_views.section, (0, 1)),
+    "three_stage": Picture(train_views.section),
+    "elevator_box": Picture(layout_views.section, seed=1),
+    "table4_process_one_layout": Picture(layout_views.section, (0, 1), seed=1),
+    "four_stage_box": Picture(layout_views.section, (0, 1)),
+    "six_cylinders": Picture(packing_views.section),
+    "six_cylinders_two_layers": Picture(packing_views.section, (0, 1), down=True),
+    "seven_points": Picture(packing_views.section),
+}
+
+
+def solve(name: str) -> str:
+    """The result of a problem file as it is stored: what drawings need, and what is certain."""
+    file = f"problems/{name}.toml"
+    result = gearopt.solve(ROOT / file, seed=PICTURES[name].seed)
+    return replace(result, file=file, parts=(), report={}, versions={}).to_json() + "\n"
+
+
+def stored(name: str) -> Result:
+    """The stored result of a problem file."""
+    return Result.from_json((ROOM / f"{name}.json").read_text(encoding="utf-8"))
+
+
+def draw(name: str) -> str:
+    """The SVG of a stored result."""
+    picture = PICTURES[name]
+    section = picture.section(stored(name), METRIC)
+    if section is None:
+        raise ValueError(f"{name}: its result has no drawing of that kind")
+    return _file(section.heading, [section.drawings[k] for k in picture.drawings], picture.down)
+
+
+def _file(heading: str, drawings: Sequence[Drawing], down: bool) -> str:
+    """Drawings in a row on a card of their own, so that they are legible on every page."""
+    parts, x, y, right, bottom = [], FREE, FREE, 0.0, 0.0
+    for it in drawings:
+        place = f'x="{x:.2f}" y="{y:.2f}" width="{it.width:.2f}" height="{it.height:.2f}"'
+        parts.append(re.sub("<title>.*?</title>", "", it.svg).replace("<svg ", f"<svg {place} ", 1))
+        right, bottom = max(right, x + it.width + FREE), max(bottom, y + it.height + FREE)
+        x, y = (x, bottom) if down else (right, y)
+    share = min(1.0, HIGH / bottom)
+    size = f'width="{share * right:.0f}" height="{share * bottom:.0f}"'
+    inner = "\n".join(parts)
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" class="views" {size} '
+        f'viewBox="0 0 {right:.2f} {bottom:.2f}" role="img">\n'
+        f"<title>{escape(heading)}</title>\n<style>\n{_style()}</style>\n"
+        f'<rect class="paper" width="100%" height="100%" rx="10"/>\n{inner}\n</svg>\n'
+    )
+
+
+def _style() -> str:
+    """The colours of frame.css, light and dark, and the rules of drawing.css that colour marks."""
+    room = Path(sheet.__file__).parent
+    frame = (room / "frame.css").read_text(encoding="utf-8")
+    colours = frame[: frame.index("* { box-sizing")]
+    marks = re.findall(r"\.views svg[^{}]*\{[^{}]*\}", (room / "drawing.css").read_text("utf-8"))
+    rules = [rule for rule in marks if "display:" not in rule]
+    return colours + "\n".join([*rules, ".paper { fill: var(--card); stroke: var(--line); }", ""])

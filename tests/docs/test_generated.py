@@ -1,0 +1,99 @@
+"""Pages that are written by docs/generate.py say what the program and problems/ say now."""
+
+import re
+import tomllib
+from pathlib import Path
+
+import gallery
+import generate
+import pytest
+import python_api
+from typer.testing import CliRunner
+
+import gearopt
+from gearopt.cli import app
+from gearopt.cli.app import EXIT
+from gearopt.cli.reference import EXIT_CODES, reference
+from gearopt.scenes.reading.load import kinds, scene_module
+from gearopt.scenes.reading.schema import reference as tables
+
+ROOT = Path(__file__).parents[2]
+FAST = ("elevator", "elevator_box", "three_stages_ratio_cap", "sandgren_train")
+
+
+def page(name):
+    return (ROOT / "docs" / name).read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("name", generate.PAGES)
+def test_the_page_is_what_is_written_now(name):
+    assert page(name) == generate.PAGES[name](), "run: python docs/generate.py"
+
+
+def section(name):
+    return reference().split(f"\n## gearopt {name}\n")[1].split("\n## ")[0]
+
+
+@pytest.mark.parametrize("command", app.registered_commands, ids=lambda c: c.callback.__name__)
+def test_the_reference_has_what_help_prints(command):
+    """Options, defaults and first words of each help, against typer's own reading."""
+    name = command.name or command.callback.__name__
+    done = CliRunner().invoke(app, [name, "--help"], env={"COLUMNS": "300", "TERM": "dumb"})
+    assert done.exit_code == 0
+    printed = [line for line in done.output.splitlines() if re.search(r"^\W*--", line)]
+    helped = {re.search(r"--[\w-]+", line)[0] for line in printed} - {"--help"}
+    rows = dict(re.findall(r"(?m)^\| `(--[\w-]+)[^`]*` \| (.*) \|$", section(name)))
+    assert rows.keys() == helped
+    words = " ".join(done.output.replace("│", " ").split())
+    for option, row in rows.items():
+        default, meaning = row.split(" | ", 1) if " | " in row else ("", row)
+        assert meaning.split(".")[0].split("[")[0].strip(" |") in words, option
+        if default.strip(" `"):
+            near = words.split(f"{option} ")[1]
+            assert same(re.search(r"\[default: (.*?)\]", near)[1], default.strip("`"))
+
+
+def same(a, b):
+    return a == b or float(a) == float(b)
+
+
+def test_every_exit_code_is_told():
+    assert {*EXIT.values(), 0, 2, 3, 4} <= set(EXIT_CODES)
+    assert all(f"| {code} | " in page("commands.md") for code in EXIT_CODES)
+
+
+@pytest.mark.parametrize("kind", kinds())
+def test_tables_of_keys_are_written_where_they_belong(kind, tmp_path, monkeypatch):
+    """A page as a contributor begins it becomes one that holds all of its kind."""
+    begun = f"# A page\n\n```toml\ngearopt = 1\n```\n\n### top of the file\n\n## More\n\n{kind}\n"
+    (tmp_path / f"{kind}.md").write_text(begun, encoding="utf-8")
+    assert generate.page_of(kind) == page(f"{kind}.md")
+    monkeypatch.setattr(generate, "DOCS", tmp_path)
+    made = generate.page_of(kind)
+    assert scene_module(kind).EXAMPLE in made and tables(kind) in made
+    assert made.startswith("# A page\n") and made.endswith(f"\n## More\n\n{kind}\n")
+
+
+def test_a_problem_file_without_a_line_in_the_gallery_is_named(tmp_path, monkeypatch):
+    for path in gallery.PROBLEMS.glob("*.toml"):
+        (tmp_path / path.name).write_bytes(path.read_bytes())
+    monkeypatch.setattr(gallery, "PROBLEMS", tmp_path)
+    assert gallery.page() == page("gallery.md")
+    (tmp_path / "another.toml").write_text('gearopt = 1\nkind = "drive"\n')
+    with pytest.raises(ValueError, match="another"):
+        gallery.page()
+
+
+@pytest.mark.parametrize("name", FAST)
+def test_the_gallery_names_objectives_as_the_program_does(name):
+    path = gallery.PROBLEMS / f"{name}.toml"
+    found = gearopt.solve(path).objective
+    name, unit = gallery.objective(tomllib.loads(path.read_text(encoding="utf-8")))
+    assert (name, unit.replace("³", "3").replace("²", "2")) == (found["name"], found["unit"])
+
+
+def test_the_python_page_names_all_that_is_public(monkeypatch):
+    assert all(f"### {name}\n" in page("python.md") for name in gearopt.__all__)
+    monkeypatch.setattr(gearopt, "__all__", [*gearopt.__all__, "novelty"])
+    with pytest.raises(ValueError, match="novelty"):
+        python_api.page()
