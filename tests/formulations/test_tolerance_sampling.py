@@ -62,6 +62,8 @@ def test_the_baseline_of_the_paper():
     assert found.quantile_high - found.quantile_low < 8e-4
     exact = [below(base.components, BASE, x) for x in (found.quantile_low, found.quantile_high)]
     assert exact[0] < found.probability < exact[1]
+    digit = [below(base.components, BASE, x) for x in (0.08715, 0.08725)]
+    assert digit[0] < found.probability < digit[1]  # 0.0872 is the exact quantile, as printed
     share = below(base.components, BASE, 0.0925)
     assert found.yield_low < share < found.yield_high and share > 0.9999
     assert found.limit == 0.0925 and found.seed == 0
@@ -83,6 +85,8 @@ def test_the_statistical_optimum_holds_its_budget():
     found = drawn(best, t, E_WC)
     assert found.quantile == pytest.approx(0.1062, abs=3e-4)
     assert found.quantile_low < 0.1062 < found.quantile_high < E_WC
+    digit = [below(best.components, t, x) for x in (0.10615, 0.10625)]
+    assert digit[0] < found.probability < digit[1]  # 0.1062 is the exact quantile, as printed
     assert found.yield_low > found.probability
     assert found.worst_case == pytest.approx(0.1443, abs=5e-5)
 
