@@ -127,6 +127,9 @@ def test_gp_refuses_what_is_no_geometric_program():
     )
     with pytest.raises(SolveError, match="no geometric program"):
         solve(signomial, "gp")
+    logarithm = Problem("l", signomial.variables, (), lambda x, p: Terms({"f": 1.0 - np.log(x.a)}))
+    with pytest.raises(SolveError, match="l is no geometric program: its text calls a numpy"):
+        solve(logarithm, "gp")
 
 
 def test_scip_finds_what_exhaustion_proves_but_is_not_believed():

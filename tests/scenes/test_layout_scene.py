@@ -374,7 +374,7 @@ def test_every_answer_makes_a_page(small, tmp_path):
     from gearopt.scenes.drive import solve
     from gearopt.scenes.reading.ask import Ask
 
-    html = page(solve(small, Ask()), "At once", "gearopt solve")
+    html = page(solve(small, Ask()), "gearopt solve")
     assert "Front view" in html and "link angles" in html
 
 

@@ -152,7 +152,7 @@ def _apply(operation: int, terms: list[_Term]) -> _Term:
         return _Term(max(MONOMIAL, first.kind)) if last.kind <= MONOMIAL else _UNKNOWN
     if operation == ca.OP_INV:
         return _Term(MONOMIAL) if first.kind <= MONOMIAL else _UNKNOWN
-    if operation in (ca.OP_SQ, ca.OP_SQRT, ca.OP_TWICE, ca.OP_ASSIGN):
+    if operation in (ca.OP_SQ, ca.OP_SQRT, ca.OP_TWICE, ca.OP_ASSIGN, ca.OP_FABS):
         return _Term(max(MONOMIAL, first.kind))
     return _UNKNOWN
 
@@ -189,6 +189,7 @@ def _folds() -> dict[int, Any]:
         ca.OP_TWICE: lambda a: a + a,
         ca.OP_INV: np.reciprocal,
         ca.OP_SQRT: np.sqrt,
+        ca.OP_FABS: np.abs,
         ca.OP_EXP: np.exp,
         ca.OP_LOG: np.log,
         ca.OP_SIN: np.sin,

@@ -106,9 +106,14 @@ def _build(problem: Problem) -> _Model:
             ends += [variables[-1] >= low] if low > 0 else []
             ends += [variables[-1] <= high] if np.isfinite(high) else []
     parameters = [cp.Parameter(pos=True) for q in problem.parameters for _ in range(q.size)]
-    terms = problem.evaluate(
-        namespace(problem.variables, variables), namespace(problem.parameters, parameters)
-    )
+    try:
+        terms = problem.evaluate(
+            namespace(problem.variables, variables), namespace(problem.parameters, parameters)
+        )
+    except RuntimeError as numpy_function:  # cvxpy refuses np.log and its like
+        raise SolveError(
+            f"{problem.name} is no geometric program: its text calls a numpy function"
+        ) from numpy_function
     if len(terms.minimise) != 1:
         raise SolveError(f"gp takes one objective; {problem.name} has {len(terms.minimise)}")
     (objective,) = terms.minimise.values()
