@@ -84,6 +84,12 @@ def stage_rows(
     return found
 
 
+def ranked(result: Result) -> Result | None:
+    """The answer whose next best trains are known: itself, or the gears that were laid out."""
+    gears = (part for part in result.parts if part.name == "gears")
+    return next((one for one in (result, *gears) if len(one.report.get("trains", ())) > 1), None)
+
+
 def train_rows(
     trains: Sequence[Mapping[str, Any]], result: Result, measures: Measures = METRIC
 ) -> tuple[tuple[str, ...], list[tuple[Any, ...]]]:

@@ -7,7 +7,7 @@ from gearopt.optimise.result import Result
 from gearopt.report.measures import Measures
 from gearopt.report.pages.section import Section
 from gearopt.report.pages.table import Cell, Table, percent
-from gearopt.report.result_words import PAGE_ROWS, stage_rows, train_rows
+from gearopt.report.result_words import PAGE_ROWS, ranked, stage_rows, train_rows
 from gearopt.report.words import heading, parted
 
 
@@ -44,10 +44,10 @@ def _shares(stages: Sequence[Mapping[str, Any]], measures: Measures) -> list[Tab
 
 def trains(result: Result, measures: Measures) -> Section | None:
     """The best distinct trains in proven order; None where only one was asked for."""
-    found = result.report.get("trains") or []
-    if not found:
+    if (best := ranked(result)) is None:
         return None
-    heads, rows = train_rows(found, result, measures)
+    found = best.report["trains"]
+    heads, rows = train_rows(found, best, measures)
     heads = (*heads[:2], "more, %", *heads[2:])
     least = found[0]["objective"]
     more = [100.0 * (train["objective"] / least - 1.0) for train in found]
@@ -60,7 +60,7 @@ def trains(result: Result, measures: Measures) -> Section | None:
         "Distinct choices of teeth, each with its best modules and widths: nothing better than the "
         "last one is left out."
     )
-    words = words if result.status == "optimal" else "The best of the trains that were found."
+    words = words if best.status == "optimal" else "The best of the trains that were found."
     return Section("Next best trains", words=(words,), tables=(table,))
 
 

@@ -13,6 +13,7 @@ from gearopt.report.measures import METRIC, Measures
 from gearopt.report.result_words import (
     limit_rows,
     proof,
+    ranked,
     stage_rows,
     title,
     train_rows,
@@ -38,8 +39,8 @@ def _blocks(result: Result, measures: Measures) -> list[RenderableType]:
     blocks: list[RenderableType] = []
     if result.value is not None:
         blocks += _answer(result, measures)
-        if trains := result.report.get("trains"):
-            blocks.append(_trains(trains, result, measures))
+        if (best := ranked(result)) is not None:
+            blocks.append(_trains(best.report["trains"], best, measures))
         blocks += _processes(result, measures)
         if prices := result.report.get("prices"):
             blocks += influences(prices, result)
