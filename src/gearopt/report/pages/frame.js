@@ -30,8 +30,18 @@
     }
   }
 
-  dark.addEventListener("change", draw);
-  window.addEventListener("beforeprint", () => { root.classList.add("paper"); draw(); });
+  // Words and tables are seen before the plotting library, which is large, is even read.
+  function begin() {
+    if (window.Plotly) return;
+    const library = document.createElement("script");
+    library.textContent = document.getElementById("plotly").textContent;
+    document.head.append(library);
+    draw();
+  }
+
+  dark.addEventListener("change", () => { if (window.Plotly) draw(); });
+  window.addEventListener("beforeprint", () => { root.classList.add("paper"); begin(); draw(); });
   window.addEventListener("afterprint", () => { root.classList.remove("paper"); draw(); });
-  draw();
+  new PerformanceObserver(begin).observe({ type: "paint", buffered: true });
+  setTimeout(begin, 1500);  // where a browser tells of no paint
 })();
