@@ -43,5 +43,5 @@
   window.addEventListener("beforeprint", () => { root.classList.add("paper"); begin(); draw(); });
   window.addEventListener("afterprint", () => { root.classList.remove("paper"); draw(); });
   new PerformanceObserver(begin).observe({ type: "paint", buffered: true });
-  setTimeout(begin, 1500);  // where a browser tells of no paint
+  setTimeout(begin, 3000);  // where a browser tells of no paint
 })();
