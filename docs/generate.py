@@ -29,6 +29,17 @@ def page_of(kind: str) -> str:
     return re.sub(keys, lambda _: tables(kind), page, count=1, flags=re.S)
 
 
+def with_code() -> str:
+    """The page of the compound train with the code of its two files as it is now."""
+    page = (DOCS / "compound.md").read_text(encoding="utf-8")
+    head, *blocks = page.split("```python\n")
+    files = ("formulations/compound.py", "scenes/compound.py")
+    for file, block in zip(files, blocks, strict=True):
+        code = (DOCS.parent / "src" / "gearopt" / file).read_text(encoding="utf-8")
+        head += f"```python\n{code}" + block[block.index("```\n") :]
+    return head
+
+
 def main() -> None:
     """Write all of them."""
     if "--solve" in sys.argv:
@@ -38,6 +49,7 @@ def main() -> None:
         (pictures.ROOM / f"{name}.svg").write_text(pictures.draw(name), encoding="utf-8")
     for name, page in PAGES.items():
         (DOCS / name).write_text(page(), encoding="utf-8")
+    (DOCS / "compound.md").write_text(with_code(), encoding="utf-8")
     for kind in kinds():
         (DOCS / f"{kind}.md").write_text(page_of(kind), encoding="utf-8")
 

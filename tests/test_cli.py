@@ -68,7 +68,7 @@ def test_report_shows_a_kept_result_again(tmp_path):
     assert "5,782,370.7" in again.stdout and "limits.k_factor" in again.stdout
     first, second = (page.read_text(encoding="utf-8") for page in pages)
     assert first.replace("a.html", "b.html") == second
-    stages = (tmp_path / "tables" / "stages.csv").read_text(encoding="utf-8")
+    stages = (tmp_path / "tables" / "stages.csv").read_text(encoding="utf-8-sig")
     assert stages.startswith(",stage 1,stage 2\n") and "teeth z2,115,91\n" in stages
     inch = gear("report", kept, "--units", "inch").stdout
     assert "352.86 in³" in inch and "mm³" not in inch and "diametral pitch" in inch
@@ -84,14 +84,26 @@ def test_report_shows_a_kept_result_again(tmp_path):
         (("report", "other.json"), "result format 7"),
         (("report", "part.json"), "lacks the keys method"),
         (("report", "more.json"), "extra"),
+        (("report", "status.json"), "status 'great'"),
+        (("report", "parts.json"), "another sort of parts"),
+        (("report", "value.json"), "value is no number"),
+        (("report", "stages.json"), "no result holds"),
+        (("report", "why.json"), "is an explanation"),
         (("solve", ELEVATOR, "--units", "furlong"), "write metric or inch"),
         (("solve", ELEVATOR, "--csv", ELEVATOR), "is a file"),
+        (("solve", ELEVATOR, "--csv", ELEVATOR / "x"), "is a file"),
     ],
 )
 def test_what_cannot_be_shown_is_one_message(words, said, tmp_path):
     part = {"result": 1, "name": "x", "status": "optimal", "objective": {}}
     files = {"list.json": [1], "other.json": {"result": 7}, "part.json": part}
     files["more.json"] = part | {"method": "exact", "extra": 1}
+    whole = part | {"method": "exact", "objective": {"name": "mass", "value": 1.0}}
+    files["status.json"] = whole | {"status": "great"}
+    files["parts.json"] = whole | {"parts": None}
+    files["value.json"] = whole | {"objective": {"name": "mass", "value": "abc"}}
+    files["stages.json"] = whole | {"design": {"stages": [{"ratio": None}]}, "scene": "packing"}
+    files["why.json"] = {"explanation": 1, "result": whole}
     for name, content in files.items():
         (tmp_path / name).write_text(json.dumps(content), encoding="utf-8")
     done = gear(*words, cwd=tmp_path)

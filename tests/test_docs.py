@@ -175,3 +175,12 @@ def test_every_method_has_its_row():
     own = ("exact", "process-one", "process-two", "hop", "sa", "sa-polish", "sa-paper")
     for name in (*own, *back_ends()):
         assert f"| `{name}` |" in page, name
+
+
+@pytest.mark.parametrize("page", sorted(p.name for p in DOCS.glob("*.md")) + ["../README.md"])
+def test_no_sentence_breaks_into_a_list(page):
+    """A line of a paragraph that starts with a sign or a number and a point becomes a bullet."""
+    lines = re.sub(r"```.*?```", "", text(f"docs/{page}"), flags=re.S).splitlines()
+    for before, line in zip(lines, lines[1:], strict=False):
+        if re.match(r"[+*] |\d+[.)] ", line):
+            assert not before.strip() or re.match(r"\s*([-+*]|\d+[.)]) |  ", before), line

@@ -97,3 +97,8 @@ def test_the_python_page_names_all_that_is_public(monkeypatch):
     monkeypatch.setattr(gearopt, "__all__", [*gearopt.__all__, "novelty"])
     with pytest.raises(ValueError, match="novelty"):
         python_api.page()
+
+
+def test_the_compound_page_shows_the_code_as_it_is():
+    assert page("compound.md") == generate.with_code(), "run: python docs/generate.py"
+    assert page("compound.md").count("def exact(") == 1

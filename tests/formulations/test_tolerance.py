@@ -1,4 +1,4 @@
-"""Tolerance allocation: the paper's digest, identities, and four solvers against each other."""
+"""Tolerance allocation: the paper's numbers, identities, and four solvers against each other."""
 
 import math
 from dataclasses import replace
@@ -78,7 +78,7 @@ def test_other_budgets_by_four_solvers(given, budgets, cost):
 
 
 def test_mean_and_three_standard_deviations():
-    """The digest's 7.504136 is Clarabel's at its default tolerances, 4.5e-9 deg over the budget.
+    """7.504136, found before, is Clarabel's at its default tolerances, 4.5e-9 deg over the budget.
 
     At 1e-12 it gives 7.504136982; so do the four solvers here, and the bound proves it.
     """

@@ -1,4 +1,4 @@
-"""Grades: the digest's numbers, dynamic programming against enumeration and two MILP solvers."""
+"""Grades: numbers found before, dynamic programming against enumeration and two MILP solvers."""
 
 import math
 from fractions import Fraction as F

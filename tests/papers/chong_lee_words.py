@@ -62,7 +62,8 @@ def rule_rows():
         "| | z2 = u z1 with u = 4.96, 4.36 | 124.00, 109.00 | 124, 109 | |",
         f"| process two, Table 2 | z1 = d1 cos(beta)/m, a1 = 150 mm | {d1 * cosine / 2:.2f}, "
         f"{d2 * cosine / 3:.2f} | 23, 25 | up |",
-        f"| process two, Table 4 | m = d1 cos(beta)/z1, a1 = 160 mm, nothing rounded before | "
+        "| process two, Table 4 | m = d1 cos(beta)/z1, a1 = 160 mm, nothing rounded before, "
+        "b3 = 0.75 d1 (Table 3) | "
         f"{', '.join(f'{m:.3f}' for m in small)} mm | 1.25, 3, 4 "
         "| next module up would be 1.25, 2.5, 4: 2.5 mm is skipped |",
         f"| | the same, a1 after the module of stage 1 | {enlarged[1]:.3f}, {enlarged[2]:.3f} mm "

@@ -1,6 +1,6 @@
 """Impossible drives and their remedies, possible ones and the influence of every number.
 
-Factors: digest of Chong and Lee, section 5 (elastic form with Clarabel and Ipopt, done apart).
+Factors: the drives of Chong and Lee (elastic form with Clarabel and Ipopt, done apart).
 """
 
 import random
@@ -63,7 +63,7 @@ def spelt(names):
 
 @pytest.mark.parametrize("exact", [False, True], ids=["1 %", "exact"])
 @pytest.mark.parametrize("case", CASES)
-def test_least_repair_of_the_digest(case, exact):
+def test_least_repair_known_before(case, exact):
     text, percent, precise, where, conflict = CASES[case]
     text = without_teeth(text).replace(*EXACT) if exact else without_teeth(text)
     scene, content = scene_of(text)
@@ -77,7 +77,7 @@ def test_least_repair_of_the_digest(case, exact):
     assert verify(content, least)
 
 
-def test_even_repair_of_the_digest():
+def test_even_repair_known_before():
     """The same factor on both wheels: 1.12132 at the exact ratio."""
     scene, content = scene_of(without_teeth(SMALL_WHEELS).replace(*EXACT))
     ways = explain(scene).remedies

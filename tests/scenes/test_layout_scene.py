@@ -42,7 +42,7 @@ def table4():
 
 
 def test_the_given_train_is_only_laid_out(table4):
-    """The digest's box, found there by another search: 411.98 x 873.29 x 209.9 mm."""
+    """A box found by another search: 411.98 x 873.29 x 209.9 mm."""
     assert table4.status == "optimal" and table4.gap <= 1e-4
     assert table4.value == pytest.approx(75_516_512, abs=0.6)
     box = table4.design["layout"]["box"]
@@ -125,7 +125,7 @@ def train_file(rows, span):
 
 @pytest.mark.parametrize("name", TRAINS)
 def test_published_trains(name):
-    """Boxes of the digest, by a grid and SLSQP there."""
+    """Boxes found before by a grid and SLSQP."""
     rows, values = TRAINS[name]
     for span, value in zip(("full", "partial"), values, strict=True):
         if value is not None:

@@ -1,6 +1,6 @@
 """Layouts of published trains: time to a proven box beside its error, and annealing beside both.
 
-Known boxes: the digest of Chong and Lee's configuration design, found there by a grid, SLSQP and
+Known boxes: those of the trains of Chong and Lee, found before by a grid, SLSQP and
 another branch and bound; face widths to 0.001 mm, shafts and clearances as assumed there.
 """
 

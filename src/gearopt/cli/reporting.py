@@ -1,6 +1,7 @@
 """`report`: a result that was kept as JSON, shown again; and how every result is written out."""
 
 import json
+import os
 import shlex
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,6 +15,7 @@ from gearopt.optimise.result import Result
 from gearopt.report.measures import SYSTEMS, Measures
 
 SECONDS = 60.0  # that a run may take by default
+HOW = "write one with `gearopt solve FILE --json > result.json`"
 TOP_ON_PAGE = 10  # trains that a page lists unless told otherwise
 DEFAULTS = {"seconds": SECONDS, "seed": 0, "top": TOP_ON_PAGE}
 
@@ -42,8 +44,13 @@ def report(
     result = _read(file)
     from gearopt.report.terminal.result import show
 
-    show(result, console(), files.measures)
-    for line in written(result, files):
+    try:
+        show(result, console(), files.measures)
+        lines = written(result, files)
+    except (AttributeError, IndexError, KeyError, TypeError, ValueError) as odd:
+        what = f"{type(odd).__name__}: {odd}"
+        raise GearoptError(f"{file}: holds what no result holds ({what}); {HOW}") from odd
+    for line in lines:
         print(line)
     raise typer.Exit(exit_code(result))
 
@@ -51,8 +58,12 @@ def report(
 def checked(html: Path | None, csv: Path | None, units: str) -> Files:
     """Where to write; GearoptError for what cannot be, said before long work, not after it."""
     check_html(html)
-    if csv is not None and csv.exists() and not csv.is_dir():
-        raise GearoptError(f"--csv {csv}: is a file; name a folder for the tables")
+    if csv is not None:
+        there = next(path for path in (csv.resolve(), *csv.resolve().parents) if path.exists())
+        if not there.is_dir():
+            raise GearoptError(f"--csv {csv}: {there} is a file; name a folder for the tables")
+        if not os.access(there, os.W_OK):
+            raise GearoptError(f"--csv {csv}: nothing may be written into {there}")
     if units not in SYSTEMS:
         raise GearoptError(f"--units {units}: is not known; write {' or '.join(SYSTEMS)}")
     return Files(html, csv, SYSTEMS[units])
@@ -72,8 +83,15 @@ def written(result: Result, files: Files) -> list[str]:
 
 
 def again(result: Result, files: Files) -> str:
-    """The command that makes a page again; options that are the defaults are left out."""
-    words = ["gearopt", "solve", str(result.file)]
+    """The command that makes a page again, without options that are the defaults; "" if none.
+
+    A run from Python without a limit of time had more of it than any command.
+    """
+    if result.file is None:
+        return ""
+    words = ["gearopt", "solve", result.file]
+    if result.options and result.options.get("seconds") is None:
+        words += ["--seconds", "1e9"]
     for name in ("method", "seconds", "gap", "seed", "top"):
         value = result.options.get(name)
         if value is not None and value != DEFAULTS.get(name):
@@ -90,7 +108,7 @@ def _write_tables(result: Result, folder: Path, measures: Measures) -> str:
         folder.mkdir(parents=True, exist_ok=True)
         found = tables(result, measures)
         for name, text in found.items():
-            (folder / name).write_text(text, encoding="utf-8", newline="")
+            (folder / name).write_text(text, encoding="utf-8-sig", newline="")  # for spreadsheets
     except OSError as refused:
         raise GearoptError(f"--csv {folder}: {refused.strerror}") from refused
     return ", ".join(str(folder / name) for name in found)
@@ -98,16 +116,15 @@ def _write_tables(result: Result, folder: Path, measures: Measures) -> str:
 
 def _read(file: Path) -> Result:
     """A result from its file; GearoptError says what else the file is."""
-    how = "write one with `gearopt solve FILE --json > result.json`"
     try:
         return Result.from_json(file.read_text(encoding="utf-8"))
     except OSError as refused:
-        raise GearoptError(f"{file}: cannot be read ({refused.strerror}); {how}") from refused
+        raise GearoptError(f"{file}: cannot be read ({refused.strerror}); {HOW}") from refused
     except UnicodeDecodeError:
-        raise GearoptError(f"{file}: is not UTF-8 text; {how}") from None
+        raise GearoptError(f"{file}: is not UTF-8 text; {HOW}") from None
     except json.JSONDecodeError as wrong:
         raise GearoptError(
-            f"{file}: is not JSON (line {wrong.lineno}: {wrong.msg}); {how}"
+            f"{file}: is not JSON (line {wrong.lineno}: {wrong.msg}); {HOW}"
         ) from None
     except ValueError as wrong:
-        raise GearoptError(f"{file}: {wrong}; {how}") from None
+        raise GearoptError(f"{file}: {wrong}; {HOW}") from None

@@ -26,7 +26,10 @@ def kernel(module: str) -> ModuleType:
     folder = _folder() / _key()
     numba.config.CACHE_DIR = str(folder)
     if not any(folder.rglob(f"{module.rsplit('.', 1)[-1]}.*.nbi")):
-        logger.info("compiling kernels, once on this machine: this may take a minute")
+        told = "compiling kernels, once on this machine: this may take a minute"
+        logger.info("%s (Ctrl-C twice gives up)", told)
+            "compiling kernels, once on this machine: this may take a minute (Ctrl-C twice gives up)"
+        )
     return import_module(module)
 
 

@@ -138,6 +138,8 @@ class Result:
         """The inverse of `to_dict`; ValueError for what is none, or of another format version."""
         if not isinstance(data, Mapping) or "result" not in data:
             raise ValueError("is not a result of `gearopt solve --json`: it has no key `result`")
+        if isinstance(data["result"], Mapping):
+            raise ValueError("is an explanation, or holds a result inside, but is none itself")
         if data["result"] != FORMAT:
             raise ValueError(
                 f"has the result format {data['result']!r}; this gearopt reads {FORMAT}"
@@ -148,12 +150,36 @@ class Result:
         needed = {f.name for f in fields(cls) if f.default is f.default_factory is MISSING}
         if missing := sorted(needed - set(data)):
             raise ValueError(f"lacks the keys {', '.join(missing)} of a result")
+        _check_sorts(data)
         return cls(**{**data, "parts": tuple(cls.from_dict(p) for p in data.get("parts", ()))})
 
     @classmethod
     def from_json(cls, text: str) -> "Result":
         """The inverse of `to_json`."""
         return cls.from_dict(json.loads(text))
+
+
+_SORTS: dict[str, Any] = {  # of what a result's keys hold
+    **dict.fromkeys(("objective", "proof", "certificate", "design", "limits"), Mapping),
+    **dict.fromkeys(("report", "versions", "asked", "options"), Mapping),
+    "parts": list | tuple,
+    "bound": int | float | None,
+    "gap": int | float | None,
+    "seconds": int | float,
+    "evaluations": int,
+}
+
+
+def _check_sorts(data: Mapping[str, Any]) -> None:
+    """ValueError where a key of a result holds another sort of value than it can."""
+    if data["status"] not in STATUSES:
+        raise ValueError(f"has the status {str(data['status'])[:40]!r}, which no result has")
+    for key, sort in _SORTS.items():
+        if key in data and not isinstance(data[key], sort):
+            raise ValueError(f"has another sort of {key} than a result has")
+    value = data["objective"].get("value")
+    if "name" not in data["objective"] or not isinstance(value, int | float | None):
+        raise ValueError("has an objective without a name, or whose value is no number")
 
 
 def versions(*packages: str) -> dict[str, str]:

@@ -38,12 +38,22 @@ def influence_words(found: Mapping[str, Any], result: Result) -> list[str]:
     words = f"What +1 % brings: slope of the {name} (d ln objective / d ln number)"
     if any(i["sensitivity"] is not None for i in found["influences"]):
         words += (
-            " with real-valued teeth and modules, by multipliers and, to check, by solving again. "
+            " with real-valued teeth and modules, by multipliers, checked by solving again. "
             "What easing a limit brings: the drive itself solved again."
         )
     else:
         words += ", by solving again."
     return [*lines, words]
+
+
+def clean(change: float) -> float:
+    """A change without the noise of solvers."""
+    return 0.0 if abs(change) < NOTHING else change
+
+
+def alike(below: float, above: float) -> bool:
+    """Whether slopes from both sides are shown as one."""
+    return abs(above - below) < ALIKE
 
 
 def price(change: float | None) -> str:
@@ -64,6 +74,6 @@ def _sides(resolved: Sequence[float | None]) -> str:
     below, above = resolved
     if below is None or above is None:
         return _percent(above if below is None else below)
-    if abs(above - below) < ALIKE:
+    if alike(below, above):
         return _percent(0.5 * (below + above))
     return f"{_percent(below)} | {_percent(above)}"

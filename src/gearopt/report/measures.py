@@ -30,6 +30,11 @@ class Measures:
         """The sign of a unit, `mm³` for mm3; an unknown suffix as it is."""
         return self.units.get(suffix, (suffix, 1.0))[0]
 
+    @property
+    def lengths(self) -> str:
+        """What a drawing's dimensions are in, as a word."""
+        return "inches" if self.unit("mm") == "in" else self.unit("mm")
+
     def of(self, value: float, suffix: str) -> float:
         """A value of the result in the unit that is shown."""
         factor = self.units.get(suffix, ("", 1.0))[1]

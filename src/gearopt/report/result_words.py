@@ -1,4 +1,4 @@
-"""A result in words and cells, as the terminal and its page both show it."""
+"""A result in cells, as the terminal and its page both show it."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -6,7 +6,7 @@ from typing import Any
 
 from gearopt.optimise.result import Result
 from gearopt.report.measures import INCH, METRIC, Measures, diametral_pitch
-from gearopt.report.words import VERDICTS, amount, limit_words
+from gearopt.report.words import VERDICTS, limit_words
 
 RULED = ("process one", "process two")  # parts that are designs by rules
 EXACT = 1e-6  # a gap below it is called optimal, one above it is named
@@ -125,99 +125,3 @@ def limit_rows(limits: Mapping[str, float]) -> tuple[int, list[tuple[str, list[f
     stages = max((i for r in rows.values() for i in r), default=0)
     order = (*range(1, stages + 1), 0)
     return stages, [(limit_words(stem), [r.get(k) for k in order]) for stem, r in rows.items()]
-
-
-def proof(result: Result, measures: Measures = METRIC) -> list[str]:
-    """What is certain, in sentences."""
-    lines: list[str] = []
-    name, unit = objective(result)
-    if result.bound is not None and result.gap is not None:
-        lines.append(
-            f"Bound: no {name} below {amount(result.bound, unit, measures)} is possible; "
-            f"gap {100 * result.gap:.3g} %."
-        )
-    lines += _method(result)
-    for part in result.parts:
-        alike = part.objective["name"] == result.objective["name"]
-        if part.name in ("sizing", "apart") and alike and result.status == "optimal":
-            lines += _beside(result, part, measures)
-    lines += result.report.get("notes", []) if result.status != "infeasible" else []
-    if result.message and result.status != "infeasible":
-        lines.append(result.message[0].upper() + result.message[1:] + ".")
-    lines.append(f"{result.method}, {result.evaluations:,} evaluations, {result.seconds:.3g} s.")
-    return lines
-
-
-def _beside(result: Result, part: Result, measures: Measures) -> list[str]:
-    """What another way to the same objective gives: real-valued sizes, or gears chosen first."""
-    if part.value is None or result.value is None:
-        return []
-    more = 100 * (result.value / part.value - 1)
-    value = amount(part.value, objective(result)[1], measures)
-    if part.name == "apart":
-        return [
-            f"Gears chosen first and then laid out: {value} (at once is {-more:.2f} % smaller)."
-        ]
-    return [
-        f"With real-valued teeth and modules: {value} "
-        f"(whole teeth and standard modules cost {more:.2f} %)."
-    ]
-
-
-def _method(result: Result) -> list[str]:
-    """How it was proven: whole teeth exhausted, cells of angles bounded, or a dual bound."""
-    proof, lines = result.proof, []
-    exhausted = proof.get("method") == "exhausted"
-    if "trains_compared" in proof and exhausted and result.status == "infeasible":
-        lines.append(
-            "Proof: every choice of teeth and modules was compared or excluded; none "
-            "meets all limits."
-        )
-    elif "trains_compared" in proof and exhausted:
-        lines.append(
-            f"Proof: {proof['trains_compared']:,} trains compared, all others excluded by "
-            f"lower bounds (nodes opened: {proof['nodes']:,})."
-        )
-    elif "pairs_matched" in proof:
-        lines.append(
-            f"Proof: {proof['pairs_matched']:,} ratios of a pair, each with the two that miss "
-            "least with it, in rational arithmetic."
-        )
-    elif "ways_to_share_out" in proof:
-        lines.append(_shared_out(proof))
-    elif "trains_laid_out" in proof:
-        count = sum(proof["nodes"].values())
-        lines.append(
-            f"Proof: {count:,} trains and parts of trains bounded, {proof['trains_laid_out']:,} "
-            f"laid out in full ({proof['method']})."
-        )
-    elif "pruning_margin" in proof and "nodes" in proof:
-        lines.append(
-            f"Proof: {proof['nodes']:,} cells of link angles, each bounded by intervals "
-            f"({proof['method']})."
-        )
-    elif proof.get("method") == "dual" and result.bound is not None:
-        lines.append(
-            "Proof: the problem is convex in logarithms; the bound is a dual one, computed "
-            "from our own derivatives."
-        )
-    if result.status == "infeasible" and proof.get("conflict"):
-        names = ", ".join(limit_words(n) for n in proof["conflict"])
-        least = 100 * proof["least_violation"]
-        lines.append(
-            f"Proof: whatever the sizes, even with real-valued teeth and modules, one of these "
-            f"limits is missed by at least {least:.2g} %: {names}."
-        )
-    return lines
-
-
-def _shared_out(found: Mapping[str, Any]) -> str:
-    """How the bound is known, in a sentence."""
-    if found["method"] == "volume":
-        return "Bound: the volume of the cylinders, and the widest with the highest of them."
-    ways = found["ways_to_share_out"]
-    shared = f"{ways:,} ways to share the cylinders out among layers" if ways > 1 else "one layer"
-    return (
-        f"Bound: {shared}; for each the least plan that discs, pairs and triples in any order "
-        "need, by subdivision of the width."
-    )

@@ -22,7 +22,7 @@ def side_by_side(
     best = next((part for part in result.parts if part.name == "gears"), result)
     ruled = [part for part in best.parts if part.name in RULED]
     missing = [_missing(part) for part in ruled if part.value is None]
-    designs = [best, *(part for part in ruled if part.value is not None)]
+    designs = [best, *(part for part in ruled if part.design)]
     if best.value is None or not ruled:
         return [], [], []
     heads = ["", best.method, *(part.name for part in designs[1:])]
@@ -53,15 +53,20 @@ def _totals(designs: Sequence[Result], bound: float | None, measures: Measures) 
         rows.append([heading(key, measures), *values])
     name, unit = objective(designs[0])
     if name != "gear volume":
-        values = (measures.of(one.value or 0.0, unit) for one in designs)
-        rows.append([f"{name} [{measures.unit(unit)}]", *values])
+        shown = (None if one.value is None else measures.of(one.value, unit) for one in designs)
+        rows.append([f"{name} [{measures.unit(unit)}]", *shown])
     if bound is not None and bound > 0.0:
-        over = (100.0 * ((one.value or 0.0) / bound - 1.0) for one in designs)
-        rows.append(["over the bound [%]", *(max(x, 0.0) for x in over)])
+        rows.append(["over the bound [%]", *(_over(one, bound) for one in designs)])
     return rows
 
 
+def _over(one: Result, bound: float) -> float | None:
+    """By how much a design is above the bound [%]; None where it meets not all limits."""
+    return None if one.value is None else max(100.0 * (one.value / bound - 1.0), 0.0)
+
+
 def _missing(part: Result) -> str:
-    """Why there is no design by a process, with the violated limit in words."""
+    """Why a process has no design that counts, with the violated limit in words."""
     first, _, rest = part.message.partition(" ")
-    return f"No design by {part.name}: {limit_words(first)} {rest}".rstrip(". ") + "."
+    shown = "The design" if part.design else "No design"
+    return f"{shown} by {part.name}: {limit_words(first)} {rest}".rstrip(". ") + "."

@@ -1,5 +1,6 @@
 """Names, numbers and plain tables, as every report writes them."""
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -7,6 +8,8 @@ from rich.table import Table
 
 from gearopt.report.measures import METRIC, Measures
 
+REACHED = 1e-6  # below a limit by less than that, it is used to the full
+MODULE = "normal_module_mm"
 VERDICTS = {
     "optimal": ("proven optimal", "green"),
     "stationary": ("locally optimal (no bound)", "yellow"),
@@ -47,6 +50,8 @@ def heading(key: str, measures: Measures = METRIC) -> str:
 
 def parted(key: str, measures: Measures = METRIC) -> tuple[str, str]:
     """Name and unit of a key: `face_width_mm` is ("face_width", "mm")."""
+    if key == MODULE:  # of a metric series, in any system
+        return "normal_module [mm]", ""
     units = [unit for unit in measures.units if key.endswith(f"_{unit}")]
     unit = max(units, key=len, default="")
     return (key.removesuffix(f"_{unit}"), unit) if unit else (key, "")
@@ -55,6 +60,13 @@ def parted(key: str, measures: Measures = METRIC) -> tuple[str, str]:
 def amount(value: Any, unit: str, measures: Measures = METRIC) -> str:
     """A number of a result with its unit, for reading."""
     return f"{number(measures.of(value, unit))} {measures.unit(unit)}".rstrip()
+
+
+def share(used: float) -> str:
+    """A part of a whole in per cent; 100.0 only where it is reached."""
+    text = f"{100.0 * used:.1f}"
+    below = text == "100.0" and used < 1.0 - REACHED
+    return f"{math.floor(1e4 * used) / 100.0:.2f}" if below else text
 
 
 def number(value: Any) -> str:
@@ -69,4 +81,4 @@ def number(value: Any) -> str:
         return f"{value:,.0f}" if abs(value) >= 1e8 else f"{value:,.1f}"
     if abs(value) >= 100:
         return f"{value:,.2f}"
-    return f"{value:.5g}"
+    return f"{value:.5g}" if abs(value) >= 1e-6 or value == 0.0 else f"{value:.8g}"

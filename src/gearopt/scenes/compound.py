@@ -17,6 +17,7 @@ from gearopt.scenes.reading.fields import Table, number, whole, words
 from gearopt.scenes.reading.lists import span
 
 __all__ = ["EXAMPLE", "Scene", "compared", "explain", "model", "solve"]
+ASSUMED = "Tooth numbers alone: modules, centre distances and loads are not looked at."
 EXAMPLE = """\
 gearopt = 1
 kind = "compound"
@@ -65,7 +66,7 @@ def solve(scene: Scene, ask: Ask) -> Result:
         "ratio": float(ratio),
         "ratio_error_percent": 100.0 * float(ratio / scene.train.ratio - 1),
     }
-    return replace(result, design=design)
+    return replace(result, design=design, report={"assumptions": [ASSUMED]})
 
 
 def explain(scene: Scene, ask: Ask) -> Explanation:

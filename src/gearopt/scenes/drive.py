@@ -17,7 +17,7 @@ from gearopt.optimise.explaining.explanation import Change, Explanation, Remedy
 from gearopt.optimise.explaining.repair import Clock
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result
-from gearopt.optimise.solve import run
+from gearopt.optimise.solve import GAP, run
 from gearopt.scenes.explaining.assumptions import assumptions, notes, undercut
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.tables.drive import EXAMPLE, Scene
@@ -35,10 +35,8 @@ def solve(scene: Scene, ask: Ask) -> Result:
     rules are parts as well. What the design takes for granted is in its report.
     """
     result = _solved(scene, ask)
-    if result.value is None:
-        return result
     told: dict[str, Any] = {"assumptions": assumptions(scene)}
-    if ask.prices:
+    if ask.prices and result.value is not None:
         clock = Clock(ask.budget.less(result.seconds), ask.watch)
         found = _explained(_unruled(scene), ask, result, clock)
         influences = [asdict(i) for i in found.influences]
@@ -93,9 +91,12 @@ def _explained(scene: Scene, ask: Ask, result: Result, clock: Clock) -> Explanat
         return box_explained(scene, result, clock)
     from gearopt.scenes.explaining.explained import explained
 
-    return explained(
-        scene, result, clock, lambda s: _answer(s, replace(ask, budget=clock.left, top=1))
-    )
+    return explained(scene, result, clock, lambda other: _answer(other, _exactly(ask, clock)))
+
+
+def _exactly(ask: Ask, clock: Clock) -> Ask:
+    """What is asked of a drive that is compared with another: one train, to the end."""
+    return replace(ask, budget=replace(clock.left, gap=0.0), gap=GAP, top=1)
 
 
 def _ways_out(result: Result) -> Explanation:
@@ -149,11 +150,13 @@ def _with_processes(scene: Scene, ask: Ask, best: Result) -> Result:
     for name in asked:
         words, method = name.replace("_", " "), name.replace("_", "-")
         try:
-            part = _sized(scene, train, replace(ask, method=method, top=1), problem)
+            part, outcome = run(problem, method, ask.budget, ask.seed, ask.watch, ask.gap)
         except SolveError as reason:
             told.append(f"There is no design by {words}: {reason}.")
             continue
-        parts.append(reconcile(replace(part, name=words, report={}), best, ask.gap))
+        made = {} if outcome.x is None else scene.design(teeth.sizes(train, outcome.x))
+        part = replace(part, objective=part.objective | {"unit": train.unit}, design=made)
+        parts.append(reconcile(replace(part, name=words), best, ask.gap))
     return replace(best, parts=(*best.parts, *parts), report=best.report | {"notes": told})
 
 

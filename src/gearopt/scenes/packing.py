@@ -23,6 +23,9 @@ from gearopt.scenes.tables.packing import EXAMPLE, Scene
 
 __all__ = ["EXAMPLE", "Scene", "compared", "explain", "model", "solve"]
 SMOOTH = ("ipopt", "multistart")  # methods that need derivatives
+ASSUMED = (
+    "Cylinders are rigid, upright and of their nominal size; they may touch each other and walls."
+)
 UNPROVEN = "Best known, not proven: a smaller packing may exist, but none below the bound."
 
 
@@ -36,9 +39,11 @@ def solve(scene: Scene, ask: Ask) -> Result:
         return result
     if result.bound is None:
         result = _bounded(plan, result, ask.gap)
-    notes = [] if result.status == "optimal" else [UNPROVEN]
+    report = {"assumptions": [ASSUMED]}
+    if result.status != "optimal":
+        report["notes"] = [UNPROVEN]
     found = points.places(plan, problem, outcome.x)
-    return replace(result, design=describe(plan, found), report={"notes": notes} if notes else {})
+    return replace(result, design=describe(plan, found), report=report)
 
 
 def _bounded(plan: Plan, result: Result, gap: float) -> Result:

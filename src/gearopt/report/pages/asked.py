@@ -6,7 +6,7 @@ from typing import Any
 from gearopt.optimise.result import Result
 from gearopt.report.measures import Measures
 from gearopt.report.pages.section import Section
-from gearopt.report.pages.table import Cell, Table, shown
+from gearopt.report.pages.table import Cell, Table
 
 WORDS = ("title", "source")  # keys of a file that are sentences
 
@@ -42,5 +42,8 @@ def _table(key: str, value: Any) -> Table:
 
 
 def _ends(value: Any) -> Any:
-    """A range or list as the file writes it."""
-    return Cell(value, f"[{shown(value).text}]") if isinstance(value, list) else value
+    """A value as the file writes it."""
+    if isinstance(value, list):
+        return Cell(value, f"[{', '.join(str(v) for v in value)}]")
+    number = isinstance(value, int | float) and not isinstance(value, bool)
+    return Cell(value, f"{value:.15g}") if number else value

@@ -7,18 +7,14 @@ from gearopt.optimise.result import Result
 from gearopt.report.measures import Measures
 from gearopt.report.pages.section import Section
 from gearopt.report.pages.table import Cell, Table
-from gearopt.report.result_words import objective, verdict
+from gearopt.report.proof_words import scope
+from gearopt.report.result_words import RULED, objective, verdict
 from gearopt.report.words import amount
 
-MEANING = {
-    "optimal": "No design that meets the limits is better by more than the gap: the bound was "
-    "computed by gearopt itself, not taken from a solver.",
-    "stationary": "No small change improves the design; a better one elsewhere is not excluded.",
-    "feasible": "The design meets all limits; a better one may exist, but none below the bound.",
-    "infeasible": "Proven: no design meets all limits.",
-    "limit": "The run ended early; the design meets all limits, the bound is what was proven by "
-    "then.",
-    "failed": "The method found no design that holds.",
+PARTS = {  # of a result: what their names mean
+    "sizing": "real-valued sizes",
+    "apart": "gears first, then the box",
+    "real-valued": "real-valued teeth",
 }
 ROWS = ("status", "objective", "value", "bound", "gap, %", "method", "proof", "seconds")
 CHECKS = {  # of a certificate: what each number is
@@ -28,18 +24,37 @@ CHECKS = {  # of a certificate: what each number is
 }
 
 
+def meaning(result: Result) -> str:
+    """What the status of a result says, and what it does not say."""
+    known, status = result.bound is not None, result.status
+    if status == "optimal":
+        return (
+            f"No design{scope(result)} that meets the limits is better by more than the gap: the "
+            "bound was computed by gearopt itself, not taken from a solver."
+        )
+    if status == "infeasible":
+        return "Proven: no design meets all limits."
+    if status == "stationary":
+        return "No small change improves the design; a better one elsewhere is not excluded."
+    if result.value is None:
+        return "No design was found; that is no proof that there is none."
+    early = "The run ended early. " if status == "limit" else ""
+    below = f", but none{scope(result)} is below the bound" if known else ""
+    return f"{early}The design meets all limits; a better one may exist{below}."
+
+
 def proven(result: Result, measures: Measures) -> Section:
     """What the status means, and the numbers of the proof, of every part too."""
     parts = (result, *result.parts)
-    heads = ("", *(part.name.replace("_", " ") for part in parts))
+    heads = ("", *(PARTS.get(part.name, part.name.replace("_", " ")) for part in parts))
     rows = [list(row) for row in zip(*(_column(part, measures) for part in parts), strict=True)]
     tables = [Table("proof", heads, [[n, *row] for n, row in zip(ROWS, rows, strict=True)])]
     if checks := _checks(result):
         tables.append(Table("checks", ("", ""), checks))
-    words = [MEANING[result.status]]
+    words = [meaning(result)]
     if arithmetic := result.proof.get("arithmetic"):
         words.append(f"Arithmetic: {arithmetic}.")
-    return Section("What is proven, and how", words=words, tables=tables, half=True)
+    return Section("What is proven, and how", words=words, tables=tables, half=len(parts) < 3)
 
 
 def _column(part: Result, measures: Measures) -> list[Any]:
@@ -47,14 +62,21 @@ def _column(part: Result, measures: Measures) -> list[Any]:
     name, unit = objective(part)
     return [
         verdict(part)[0],
-        name,
-        "" if part.value is None else amount(part.value, unit, measures),
-        "" if part.bound is None else amount(part.bound, unit, measures),
+        f"{name} [{measures.unit(unit)}]" if unit else name,
+        _amount(part.value, unit, measures),
+        _amount(part.bound, unit, measures),
         "" if part.gap is None else Cell(100.0 * part.gap, f"{100.0 * part.gap:.3g}"),
         part.method,
-        str(part.proof.get("method", "")),
+        "by rules" if part.name in RULED else str(part.proof.get("method", "")),
         Cell(part.seconds, f"{part.seconds:.3g}"),
     ]
+
+
+def _amount(value: float | None, unit: str, measures: Measures) -> Cell:
+    """A value in the unit that is shown, which its text names."""
+    if value is None:
+        return Cell(None, "")
+    return Cell(measures.of(value, unit), amount(value, unit, measures))
 
 
 def _checks(result: Result) -> list[tuple[str, Any]]:

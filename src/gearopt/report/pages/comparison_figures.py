@@ -131,7 +131,10 @@ def final(
     categories = {"categoryorder": "array", "categoryarray": list(samples), "ticks": ""}
     kind = {"type": "category", "range": [-0.5, len(samples) - 0.5]} | categories
     plot = layout(axis("", **kind), _gaps(least, most), 320, annotations=notes)
-    caption = f"Final gap of every seed; box, median and quartiles. {_marked(least)}"
+    caption = (
+        "Final gap of every seed that has a point; box, their median and quartiles. "
+        f"{_marked(least)}"
+    )
     return Figure(data, plot, caption)
 
 

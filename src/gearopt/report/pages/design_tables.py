@@ -7,7 +7,7 @@ from gearopt.optimise.result import Result
 from gearopt.report.measures import Measures
 from gearopt.report.pages.section import Section
 from gearopt.report.pages.table import Cell, Table, percent
-from gearopt.report.result_words import PAGE_ROWS, ranked, stage_rows, train_rows
+from gearopt.report.result_words import EXACT, PAGE_ROWS, ranked, stage_rows, train_rows
 from gearopt.report.words import heading, parted
 
 
@@ -52,15 +52,23 @@ def trains(result: Result, measures: Measures) -> Section | None:
     least = found[0]["objective"]
     more = [100.0 * (train["objective"] / least - 1.0) for train in found]
     cells = [
-        (rank, value, Cell(extra, f"{extra:.2f}"), Cell(ratio, f"{ratio:.4f}"), *rest)
-        for (rank, value, ratio, *rest), extra in zip(rows, more, strict=True)
+        (
+            rank,
+            value,
+            Cell(extra, f"{extra:.2f}"),
+            Cell(ratio, f"{ratio:.4f}"),
+            teeth,
+            Cell([measures.of(s["centre_distance_mm"], "mm") for s in one["stages"]], centres),
+        )
+        for (rank, value, ratio, teeth, centres), extra, one in zip(rows, more, found, strict=True)
     ]
     table = Table("best trains", [head.replace("\n", " ") for head in heads], cells)
     words = (
         "Distinct choices of teeth, each with its best modules and widths: nothing better than the "
         "last one is left out."
     )
-    words = words if best.status == "optimal" else "The best of the trains that were found."
+    whole = best.proof.get("method") == "exhausted" and (best.gap or 0.0) <= EXACT
+    words = words if whole else "The best of the trains that were found; others may be better."
     return Section("Next best trains", words=(words,), tables=(table,))
 
 

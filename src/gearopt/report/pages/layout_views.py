@@ -19,7 +19,7 @@ def section(result: Result, measures: Measures) -> Section | None:
     windows = [_window(found, axis) for axis in ("", "z", "y")]
     scale = min(window.scale(WIDE, HIGH) for window in windows)
     words = [
-        f"Drawn to one scale; dimensions in {measures.unit('mm')}. The axis of shaft 1, the input, "
+        f"Drawn to one scale; dimensions in {measures.lengths}. The axis of shaft 1, the input, "
         f"is y = z = 0; shaft {len(found['shafts'])} is the output. Dash-dotted circles are "
         "reference circles, solid ones tip circles; numbers in circles are shafts. The thin dashed "
         "line is as far from the wall as every gear has to stay."

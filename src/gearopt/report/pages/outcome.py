@@ -7,8 +7,10 @@ from gearopt.optimise.result import Result
 from gearopt.report.measures import Measures
 from gearopt.report.pages.section import Section, Tile
 from gearopt.report.pages.table import Table, percent
-from gearopt.report.result_words import limit_rows, objective, proof, verdict
-from gearopt.report.words import amount, edit, number
+from gearopt.report.proof_words import proof, scope
+from gearopt.report.remedy_words import REMEDY_HEADS, remedy_words
+from gearopt.report.result_words import limit_rows, objective, verdict
+from gearopt.report.words import amount, number
 
 
 def summary(result: Result, measures: Measures) -> Section:
@@ -23,7 +25,9 @@ def _tiles(result: Result, measures: Measures) -> list[Tile]:
         tiles.append(Tile(name, amount(result.value, unit, measures), verdict(result)[0]))
     if result.bound is not None:
         gap = "" if result.gap is None else f"gap {100 * result.gap:.3g} %"
-        tiles.append(Tile("proven bound", amount(result.bound, unit, measures), gap))
+        tiles.append(
+            Tile(f"proven bound{scope(result)}", amount(result.bound, unit, measures), gap)
+        )
     design = result.design
     if "ratio" in design:
         error = design.get("ratio_error_percent")
@@ -52,17 +56,12 @@ def limits(result: Result, measures: Measures) -> Section | None:
 
 
 def ways_out(result: Result, measures: Measures) -> Section | None:
-    """What to write instead, where nothing meets the limits; None elsewhere."""
-    ways: Mapping[str, Any] = result.report.get("ways_out") or {}
-    rows = [
-        (
-            " and ".join(edit(change) for change in way["changes"]),
-            " and ".join(change["was"].strip('"') for change in way["changes"]),
-        )
-        for way in ways.get("remedies", ())
-    ]
-    if not rows:
+    """Why nothing meets the limits, and what to write instead; None elsewhere."""
+    found: Mapping[str, Any] = result.report.get("ways_out") or {}
+    if not found:
         return None
-    table = Table("ways out", ("write in the file", "instead of"), rows, words=True)
-    words = "Changes of the file that make a design possible; one is enough."
-    return Section("Ways out", words=(words,), tables=(table,))
+    why, rows, tried = remedy_words(found)
+    if result.message and not found["conflict"]:
+        why.insert(0, result.message)
+    tables = [Table("ways out", REMEDY_HEADS, rows, words=True)] if rows else []
+    return Section("Ways out", words=[*why, *tried], tables=tables)

@@ -22,7 +22,7 @@ def section(result: Result, measures: Measures) -> Section | None:
     colours = sizes(design["cylinders"])
     layers = design["layers"]
     plans = [_plan(design, layer, window, scale, colours, measures) for layer in layers]
-    words = f"Seen from above, drawn to one scale; dimensions in {measures.unit('mm')}."
+    words = f"Seen from above, drawn to one scale; dimensions in {measures.lengths}."
     if any(c["fixed"] for c in design["cylinders"]):
         words += " Cylinders whose place the file gives have a heavy outline."
     return Section("Packing", words=(words,), drawings=plans)

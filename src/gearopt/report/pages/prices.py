@@ -4,12 +4,12 @@ from collections.abc import Mapping
 from typing import Any
 
 from gearopt.optimise.result import Result
-from gearopt.report.influence_words import influence_rows, influence_words
+from gearopt.report.influence_words import alike, clean, influence_rows, influence_words
 from gearopt.report.measures import Measures
 from gearopt.report.pages.section import Section
 from gearopt.report.pages.table import Cell, Table
 
-HEADS = ("number in the file", "now", "eased by", "brings", "+1 % brings")
+HEADS = ("number in the file", "now", "eased by", "brings, %", "+1 % brings, %")
 
 
 def section(result: Result, measures: Measures) -> Section | None:
@@ -30,10 +30,15 @@ def section(result: Result, measures: Measures) -> Section | None:
 
 
 def _percent(change: float | None) -> float | None:
-    return None if change is None else 100.0 * change
+    return None if change is None else 100.0 * clean(change)
 
 
 def _slope(influence: Mapping[str, Any]) -> Any:
-    """By multipliers; without them by solving again, from below and above."""
+    """By multipliers; without them by solving again, from below and above where they differ."""
     slope = influence["sensitivity"]
-    return influence["resolved"] if slope is None else slope
+    if slope is not None:
+        return clean(slope)
+    below, above = influence["resolved"]
+    if below is None or above is None:
+        return above if below is None else below
+    return clean(0.5 * (below + above)) if alike(below, above) else [below, above]

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 from urllib.parse import quote
 
-from gearopt.report.words import number
+from gearopt.report.words import number, share
 
 LONG = 24  # rows; a longer table may break between rows when it is printed
 
@@ -84,7 +84,7 @@ def percent(used: float | None) -> Cell:
     """A part of a whole in per cent, with its bar."""
     if used is None:
         return Cell(None, "")
-    return Cell(100.0 * used, f"{100.0 * used:.1f}", min(1.0, max(0.0, used)))
+    return Cell(100.0 * used, share(used), min(1.0, max(0.0, used)))
 
 
 def _plain(value: Any) -> Any:

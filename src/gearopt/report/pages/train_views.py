@@ -14,6 +14,7 @@ from gearopt.report.pages.section import Section
 from gearopt.report.pages.sheet import Drawing, Sheet, Window
 from gearopt.report.words import number
 
+DRAWN = {f"{member}_tip_diameter_mm" for member in ("pinion", "wheel")}  # not in old results
 WIDE = 640.0  # widest drawing [px], as those of a layout
 EDGE = 20.0  # px kept free left and right of the front view
 PITCH = 76.0  # px from stage to stage along the shafts, at least: its face width and module fit
@@ -27,14 +28,14 @@ SIDE = (24.0, 44.0, 24.0, 60.0)  # px kept free around the side view
 def section(result: Result, measures: Measures) -> Section | None:
     """Both views of the gears, at one scale; None without gears or where they are laid out."""
     stages = result.design.get("stages")
-    if not stages or result.design.get("layout"):
+    if not stages or result.design.get("layout") or not all(DRAWN <= set(s) for s in stages):
         return None
     found, scale = in_one_line(stages)
     words = (
         "All shafts are drawn in one line: their places are not optimised, and the gaps between "
         "the stages are only as wide as the labels need. A [layout] table in the file places the "
         "gears in the smallest box.",
-        f"Drawn to one scale; dimensions in {measures.unit('mm')}: centre distances, length over "
+        f"Drawn to one scale; dimensions in {measures.lengths}: centre distances, length over "
         "tip circles, face widths b; modules m_n in mm; teeth z. Solid lines are tip circles, "
         "dash-dotted ones reference circles; numbers in circles are shafts, whose diameters are "
         "not known.",

@@ -10,9 +10,9 @@ from rich.text import Text
 
 from gearopt.optimise.result import Result
 from gearopt.report.measures import METRIC, Measures
+from gearopt.report.proof_words import proof
 from gearopt.report.result_words import (
     limit_rows,
-    proof,
     ranked,
     stage_rows,
     title,
@@ -23,7 +23,7 @@ from gearopt.report.side_by_side_words import side_by_side
 from gearopt.report.terminal import packing
 from gearopt.report.terminal.explanation import influences, remedies
 from gearopt.report.terminal.layout import layout
-from gearopt.report.words import columns, heading, number, parted
+from gearopt.report.words import REACHED, columns, heading, number, parted, share
 
 
 def show(result: Result, console: Console, measures: Measures = METRIC) -> None:
@@ -94,8 +94,7 @@ def _limits(limits: Mapping[str, float]) -> RenderableType:
 def _percent(value: float | None) -> Text:
     if value is None:
         return Text("")
-    text = f"{100 * value:.1f}"
-    return Text(text, style="bold" if value > 0.9995 else "")
+    return Text(share(value), style="bold" if value > 1.0 - REACHED else "")
 
 
 def _trains(trains: list[Mapping[str, Any]], result: Result, measures: Measures) -> RenderableType:
@@ -113,7 +112,7 @@ def _processes(result: Result, measures: Measures) -> list[RenderableType]:
         return []
     table = columns(heads[0], heads[1:])
     for label, *cells in rows:
-        table.add_row(Text(label), *map(number, cells))
+        table.add_row(Text(label), *("" if v is None else number(v) for v in cells))
     return [table, *map(Text, missing)]
 
 

@@ -46,6 +46,7 @@ def undercut(scene: Scene, design: dict[str, Any]) -> list[str]:
 def assumptions(scene: Scene) -> list[str]:
     """What a design takes for granted, in sentences."""
     angle, density = scene.gears.pressure_angle, scene.objective.density
+    assumed = "" if "pressure_angle" in scene.gears.model_fields_set else " (default)"
     mass = (
         f"the density of the file, {density}"
         if density
@@ -57,8 +58,8 @@ def assumptions(scene: Scene) -> list[str]:
         f"dedendum {DEDENDUM:g} m_n; nominal sizes, without backlash.",
         "Loads are limited by K-factor and unit load alone: index values, not a rating by ISO 6336 "
         "or AGMA 2101. Application, dynamic and load distribution factors are not in them.",
-        f"The normal pressure angle of {angle} enters the contact ratio alone; K-factor and unit "
-        "load do not depend on it.",
+        f"The normal pressure angle of {angle}{assumed} enters contact ratio and undercut alone; "
+        "K-factor and unit load do not depend on it.",
         f"Volumes and masses are those of solid reference cylinders; masses with {mass}.",
     ]
     if scene.limits.preset is not None:

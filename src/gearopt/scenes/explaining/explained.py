@@ -12,14 +12,17 @@ from gearopt.scenes.explaining.influences import influences
 from gearopt.scenes.explaining.numbers import numbers
 from gearopt.scenes.tables.drive import Scene
 
+SAME = 1e-6  # gap of an answer that may be compared with another
+
 
 def explained(
     scene: Scene, result: Result, clock: Clock, answer: Callable[[Scene], Result]
 ) -> Explanation:
     """The result with the influence of every number; answer(scene) solves a changed drive."""
+    whole = result.status in CERTAIN and (result.gap or 0.0) <= SAME
 
     def price(other: Scene) -> float | None:
-        if result.status not in CERTAIN:  # a difference to what is not the best means nothing
+        if not whole:  # a difference to what is not the best means nothing
             return None
         found = answer(other)
         return found.value if found.status in CERTAIN else None
@@ -28,8 +31,8 @@ def explained(
     point = ideal[1].x if ideal[0].status == "optimal" else None
     found = tuple(influences(scene, result, point, clock, price))
     late = f"stopped after {len(found)} of {len(numbers(scene))} numbers" if clock.over else ""
-    if result.status not in CERTAIN:
-        late = late or "easing a limit is not priced, because the answer is not proven"
+    if not whole:
+        late = late or "easing a limit is not priced, because the answer is not proven to the end"
     return Explanation(
         result,
         binding=tuple(n for n in binding(result) if not n.startswith("common_divisor")),

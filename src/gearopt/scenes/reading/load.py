@@ -9,7 +9,7 @@ from difflib import get_close_matches
 from importlib import import_module
 from pathlib import Path
 from pkgutil import iter_modules
-from typing import Any
+from typing import Any, get_origin
 
 from pydantic import BaseModel, ValidationError
 
@@ -158,6 +158,7 @@ def _parse(data: bytes, file: str) -> dict[str, Any]:
         raise _too_deep(file) from None
     except tomllib.TOMLDecodeError as wrong:
         rule, remedy = _syntax(str(wrong))
+        remedy = _several(text, str(wrong)) or remedy
         raise SceneError(file, "", "", rule, remedy) from None
     except ValueError:  # the limit of Python itself; no position is known
         rule = "has a whole number of thousands of digits"
@@ -170,6 +171,23 @@ def _decimal(text: str) -> Decimal:
         return Decimal(text)
     except InvalidOperation:
         return Decimal("inf")
+
+
+def _several(text: str, message: str) -> str:
+    """The remedy where the line of the message has [name], which other tables are called too."""
+    at = re.search(r"\(at line (\d+)", message)
+    lines = text.splitlines()
+    if at is None or not (found := re.match(r"\s*\[([\w-]+)\]", lines[int(at[1]) - 1])):
+        return ""
+    name = found[1]
+    if len(re.findall(rf"(?m)^\s*\[+{re.escape(name)}\]", text)) < 2:
+        return ""
+    double = any(
+        get_origin(scene_module(kind).Scene.model_fields[name].annotation) is tuple
+        for kind in kinds()
+        if name in scene_module(kind).Scene.model_fields
+    )
+    return f"Each of several tables [[{name}]] has double brackets" if double else ""
 
 
 _SYNTAX = {  # part of the parser's message -> remedy

@@ -1,0 +1,117 @@
+"""What is certain of a result, in sentences, as the terminal and its page both show it."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from gearopt.optimise.result import Result
+from gearopt.report.measures import METRIC, Measures
+from gearopt.report.result_words import objective
+from gearopt.report.words import amount, limit_words
+
+
+def proof(result: Result, measures: Measures = METRIC) -> list[str]:
+    """What is certain: the bound, how it is known, what other ways give, what to keep in mind."""
+    lines: list[str] = []
+    name, unit = objective(result)
+    if result.bound is not None and result.gap is not None:
+        lines.append(
+            f"Bound: no {name} below {amount(result.bound, unit, measures)} is possible"
+            f"{scope(result)}; gap {100 * result.gap:.3g} %."
+        )
+    lines += _method(result)
+    for part in result.parts:
+        alike = part.objective["name"] == result.objective["name"]
+        if part.name in ("sizing", "apart") and alike and result.status == "optimal":
+            lines += _beside(result, part, measures)
+    lines += result.report.get("notes", []) if result.status != "infeasible" else []
+    if result.message and result.status != "infeasible":
+        lines.append(result.message[0].upper() + result.message[1:] + ".")
+    lines.append(f"{result.method}, {result.evaluations:,} evaluations, {result.seconds:.3g} s.")
+    return lines
+
+
+def scope(result: Result) -> str:
+    """Of what a bound is true: of all designs, or of the gears that were laid out."""
+    return " with these gears" if any(part.name == "gears" for part in result.parts) else ""
+
+
+def _beside(result: Result, part: Result, measures: Measures) -> list[str]:
+    """What another way to the same objective gives: real-valued sizes, or gears chosen first."""
+    if part.value is None or result.value is None:
+        return []
+    more = 100 * (result.value / part.value - 1)
+    value = amount(part.value, objective(result)[1], measures)
+    if part.name == "apart":
+        less = f"{-more:.2f}".replace("-0.00", "0.00")
+        return [f"Gears chosen first and then laid out: {value} (at once is {less} % smaller)."]
+    cost = f"{more:.2f}".replace("-0.00", "0.00")
+    return [
+        f"With real-valued teeth and modules: {value} "
+        f"(whole teeth and standard modules cost {cost} %)."
+    ]
+
+
+def _method(result: Result) -> list[str]:
+    """How it was proven: whole teeth exhausted, cells of angles bounded, or a dual bound."""
+    proof, lines = result.proof, []
+    if "trains_compared" in proof:
+        lines.append(_compared(result))
+    elif "pairs_matched" in proof:
+        lines.append(
+            f"Proof: {proof['pairs_matched']:,} ratios of a pair, each with the two that miss "
+            "least with it, in rational arithmetic."
+        )
+    elif "ways_to_share_out" in proof:
+        lines.append(_shared_out(proof))
+    elif "trains_laid_out" in proof:
+        count = sum(proof["nodes"].values())
+        lines.append(
+            f"Proof: {count:,} trains and parts of trains bounded, {proof['trains_laid_out']:,} "
+            f"laid out in full ({proof['method']})."
+        )
+    elif "pruning_margin" in proof and "nodes" in proof:
+        lines.append(
+            f"Proof: {proof['nodes']:,} cells of link angles, each bounded by intervals "
+            f"({proof['method']})."
+        )
+    elif proof.get("method") == "dual" and result.bound is not None:
+        lines.append(
+            "Proof: the problem is convex in logarithms; the bound is a dual one, computed "
+            "from our own derivatives."
+        )
+    if result.status == "infeasible" and proof.get("conflict"):
+        names = ", ".join(limit_words(n) for n in proof["conflict"])
+        least = 100 * proof["least_violation"]
+        missed = f"{least:.2g}" if least < 100 else f"{least:,.0f}"
+        lines.append(
+            f"Proof: whatever the sizes, even with real-valued teeth and modules, one of these "
+            f"limits is missed by at least {missed} %: {names}."
+        )
+    return lines
+
+
+def _compared(result: Result) -> str:
+    """Of a search over whole teeth."""
+    proof, infeasible = result.proof, result.status == "infeasible"
+    if proof["method"] == "exhausted" and infeasible:
+        return (
+            "Proof: every choice of teeth and modules was compared or excluded; none meets all "
+            "limits."
+        )
+    count = f"Proof: {proof['trains_compared']:,} trains compared,"
+    opened = f"(nodes opened: {proof['nodes']:,})."
+    if proof["method"] == "exhausted":
+        return f"{count} all others excluded by lower bounds {opened}"
+    return f"{count} those not looked at are bounded from below {opened}"
+
+
+def _shared_out(found: Mapping[str, Any]) -> str:
+    """How the bound is known, in a sentence."""
+    if found["method"] == "volume":
+        return "Bound: the volume of the cylinders, and the widest with the highest of them."
+    ways = found["ways_to_share_out"]
+    shared = f"{ways:,} ways to share the cylinders out among layers" if ways > 1 else "one layer"
+    return (
+        f"Bound: {shared}; for each the least plan that discs, pairs and triples in any order "
+        "need, by subdivision of the width."
+    )

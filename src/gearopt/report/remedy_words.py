@@ -1,0 +1,65 @@
+"""Ways out of an impossible request, in words and cells, as terminal and page both show them."""
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from gearopt.report.words import edit, limit_words
+
+KINDS = {"least": "least change", "less": "or ask for less", "choice": "or choose"}
+REMEDY_HEADS = (
+    "ways out, one is enough",
+    "write in the file",
+    "instead of",
+    "factor",
+    "proven least",
+)
+
+
+def remedy_words(
+    found: Mapping[str, Any],
+) -> tuple[list[str], list[tuple[str, ...]], list[str]]:
+    """Why it is impossible, rows of edits below REMEDY_HEADS, and how sure these are.
+
+    found: conflict, remedies and message, as `explain` and `solve` have them.
+    """
+    why = []
+    conflict, ways, late = found["conflict"], found["remedies"], found["message"]
+    if conflict:
+        names = ", ".join(limit_words(n) for n in conflict)
+        why.append(f"These cannot hold together, and none of them is to spare: {names}.")
+    late = f"{late[0].upper()}{late[1:]}." if late else ""
+    if not ways:
+        return [*why, late or "No way out was found by moving limits."], [], []
+    rows = [row for way in ways for row in _rows(way)]
+    sure = all(way["verified"].get("with_less", "infeasible") == "infeasible" for way in ways)
+    less = sure and any(way["kind"] != "choice" for way in ways)
+    words = "Each was tried: a design exists with it"
+    words += ", and none with 0.1 % (or one tooth) less." if less else "."
+    if conflict:
+        words += " Proven least: no smaller factor does, even with real-valued teeth and modules."
+    return why, rows, [f"{words} {late}".rstrip()]
+
+
+def _rows(way: Mapping[str, Any]) -> list[tuple[str, ...]]:
+    """A row for every edit of a way out."""
+    label = KINDS.get(way["kind"], f"{way['what'].replace('_', ' ')}, all alike")
+    product = "product " if len(way["changes"]) > 1 and way["kind"] == "least" else ""
+    rows: list[tuple[str, ...]] = []
+    for k, change in enumerate(way["changes"]):
+        proven = k == 0 and way["kind"] != "choice" and way["bound"] is not None
+        rows.append(
+            (
+                label if k == 0 else "  and",
+                edit(change),
+                change["was"].strip('"'),
+                _factor(change["factor"]) if way["kind"] != "choice" else "",
+                f"{product}{way['bound']:.4f}" if proven else "",
+            )
+        )
+    return rows
+
+
+def _factor(factor: float | None) -> str:
+    """A factor; nothing where a number moves away from zero."""
+    return "" if factor is None or math.isinf(factor) else f"{factor:.4f}"
