@@ -28,8 +28,6 @@ def kernel(module: str) -> ModuleType:
     if not any(folder.rglob(f"{module.rsplit('.', 1)[-1]}.*.nbi")):
         told = "compiling kernels, once on this machine: this may take a minute"
         logger.info("%s (Ctrl-C twice gives up)", told)
-            "compiling kernels, once on this machine: this may take a minute (Ctrl-C twice gives up)"
-        )
     return import_module(module)
 
 
