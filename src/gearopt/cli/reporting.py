@@ -44,12 +44,15 @@ def report(
     result = _read(file)
     from gearopt.report.terminal.result import show
 
+    screen = console()
     try:
-        show(result, console(), files.measures)
+        with screen.capture() as text:
+            show(result, screen, files.measures)
         lines = written(result, files)
     except (AttributeError, IndexError, KeyError, TypeError, ValueError) as odd:
         what = f"{type(odd).__name__}: {odd}"
         raise GearoptError(f"{file}: holds what no result holds ({what}); {HOW}") from odd
+    print(text.get(), end="")
     for line in lines:
         print(line)
     raise typer.Exit(exit_code(result))
