@@ -1,0 +1,125 @@
+"""Hard cases of the servo train, each with its right answer."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from gearopt.formulations.ratio import Drive, acceleration, best_ratio, move, swing
+from gearopt.optimise.solve import solve
+from gearopt.physics.servo_drive import load_acceleration
+from gearopt.physics.stiffness import output_compliance, shaft_compliance
+
+J_L, J_M = 19.8, 8.6e-3  # t mm2
+F_L = 4.3 * 98.0665  # N mm
+BARE = Drive(J_L, J_M, torque=50.0)
+
+
+def test_without_friction_the_best_ratio_is_exact_and_its_acceleration_flat():
+    ratio, value = best_ratio(BARE)
+    assert ratio == pytest.approx(math.sqrt(J_L / J_M), rel=2e-16)
+    assert load_acceleration(58.65, J_L, J_M, 50.0) / value == pytest.approx(0.98, abs=5e-4)
+    assert load_acceleration(ratio * (1.0 + 1e-8), J_L, J_M, 50.0) == pytest.approx(
+        value, rel=1e-15
+    )
+
+
+def test_no_motor_inertia_is_unbounded_and_said_so():
+    massless = replace(BARE, motor_inertia=0.0)
+    exact = solve(acceleration(massless))
+    assert exact.status == "failed" and exact.value is None and exact.bound is None
+    assert exact.message.startswith("unbounded")
+    assert solve(move(massless, 1.0)).message.startswith("unbounded")
+    assert solve(swing(massless, 1.0, 1.0)).message.startswith("unbounded")
+
+
+@pytest.mark.slow
+def test_ipopt_runs_away_without_motor_inertia_and_is_not_believed():
+    ipopt = solve(acceleration(replace(BARE, motor_inertia=0.0)), "ipopt")
+    assert ipopt.status == "failed" and ipopt.bound is None
+    assert "nothing holds" in ipopt.message
+
+
+def test_no_motor_inertia_with_a_speed_limit_is_best_at_the_limit():
+    massless = replace(BARE, motor_inertia=0.0, speed_limit=800.0)
+    for method in ("exact", "ipopt"):
+        result = solve(acceleration(massless, 10.0), method)
+        assert result.status == "optimal"
+        assert result.design["ratio"] == pytest.approx(80.0, rel=1e-12)
+    limited = solve(move(massless, 6.0 * math.pi), "exact")
+    assert limited.status == "optimal"
+    assert limited.value == pytest.approx(solve(move(massless, 6.0 * math.pi), "ipopt").value)
+
+
+@pytest.mark.parametrize("inertia", [0.0, 1e-17, 1e-30])
+def test_cancellation_of_the_root_at_a_vanishing_motor_inertia(inertia):
+    """T/(2b) = 75.2; the naive root c + sqrt(c^2 + q) gives 76 at 1e-20 kg m2."""
+    drive = Drive(J_L, inertia, 50.0, F_L, 3.0, no_load_speed=800.0)
+    assert best_ratio(drive, 5.0)[0] == pytest.approx(75.2, rel=1e-12)
+    for method in ("exact", "ipopt"):
+        result = solve(acceleration(drive, 5.0), method)
+        assert result.status == "optimal"
+        assert result.design["ratio"] == pytest.approx(75.2, rel=1e-6)
+
+
+def test_no_load_inertia():
+    """2 F_L/T with load friction, else the lower bound."""
+    drive = Drive(0.0, J_M, 50.0, F_L, 3.0)
+    assert best_ratio(drive)[0] == pytest.approx(17.9441, abs=6e-5)
+    assert solve(acceleration(drive), "ipopt").design["ratio"] == pytest.approx(17.9441, abs=6e-5)
+    free = solve(acceleration(Drive(0.0, J_M, 50.0, ratio=(1.5, 9.0))))
+    assert free.status == "optimal" and free.design["ratio"] == 1.5
+
+
+def test_torque_below_friction_is_infeasible_with_its_reason():
+    """Eta T^2 < 4 b F_L: the formula's acceleration is -47.2 rad/s2."""
+    drive = Drive(J_L, J_M, 50.0, 1000.0, no_load_speed=5.0)  # b = 10 N mm at 1 rad/s
+    assert best_ratio(drive, 1.0)[1] == pytest.approx(-47.2, abs=0.05)
+    exact, ipopt = (solve(acceleration(drive, 1.0), m) for m in ("exact", "ipopt"))
+    assert exact.status == ipopt.status == "infeasible"
+    assert "never exceeds the load's friction" in exact.message
+    assert ipopt.proof["conflict"] == ["motor_torque"]
+
+
+def test_torque_equal_to_friction_only_holds_the_load():
+    drive = Drive(J_L, J_M, 50.0, 62.5, no_load_speed=5.0)
+    assert best_ratio(drive, 1.0) == pytest.approx((2.5, 0.0), abs=1e-15)
+    result = solve(acceleration(drive, 1.0))
+    assert result.status == "infeasible" and "2.5, the acceleration is 0" in result.message
+
+
+def test_inertias_that_differ_by_1e18():
+    drive = Drive(1e3, 1e-15, 1e3)  # 1 kg m2, 1e-18 kg m2, 1 N m
+    assert best_ratio(drive) == pytest.approx((1e9, 5e8), rel=1e-15)
+    for method in ("exact", "ipopt"):
+        result = solve(acceleration(drive), method)
+        assert result.status == "optimal" and 1.0 / result.value == pytest.approx(5e8, rel=1e-10)
+
+
+@pytest.mark.parametrize("beside", [1.0 - 1e-9, 1.0, 1.0 + 1e-9])
+def test_a_speed_limit_at_the_change_of_regime(beside):
+    """The peak speed of the best ratio is just admissible: both regimes meet there."""
+    ratio, value = best_ratio(BARE)
+    turn = beside * (800.0 / ratio) ** 2 / value
+    exact, ipopt = (
+        solve(move(replace(BARE, speed_limit=800.0), turn), m) for m in ("exact", "ipopt")
+    )
+    assert exact.status == ipopt.status == "optimal"
+    assert exact.value == pytest.approx(2.0 * math.sqrt(turn / value), rel=1e-12)
+    assert ipopt.value == pytest.approx(exact.value, rel=1e-11)
+
+
+def test_rigid_parts_drop_out_and_a_thin_shaft_is_all():
+    assert shaft_compliance(8e4, 10.0, 0.0) == 0.0
+    assert shaft_compliance(8e4, math.inf, 50.0) == 0.0
+    soft = 1e-6
+    assert output_compliance((0.0, soft, 0.0), (1.0, 6.0, 48.0)) == soft / 36.0
+    spread = output_compliance((1e-18, 1e-6, 1e-18), (1.0, 1.0, 8.0))
+    assert spread == pytest.approx(1e-6, rel=1.1e-12)
+
+
+def test_the_direction_of_referral_is_the_square_of_the_ratio_squared():
+    right, wrong = (output_compliance((1.0,), (n,)) for n in (6.0, 1.0 / 6.0))
+    assert wrong / right == pytest.approx(1296.0, rel=1e-14)
+    assert np.isfinite(output_compliance((0.0, 0.0), (1.0, 8.0)))
