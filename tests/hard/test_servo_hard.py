@@ -2,14 +2,23 @@
 
 import math
 from dataclasses import replace
+from fractions import Fraction
 
 import numpy as np
 import pytest
+from servo_trains import PAPER, STIFF
 
 from gearopt.formulations.ratio import Drive, acceleration, best_ratio, move, swing
+from gearopt.formulations.split import problem, relaxation, stiff
+from gearopt.optimise.certificate import certify
+from gearopt.optimise.result import Outcome
 from gearopt.optimise.solve import solve
 from gearopt.physics.servo_drive import load_acceleration
-from gearopt.physics.stiffness import output_compliance, shaft_compliance
+from gearopt.physics.stiffness import (
+    output_compliance,
+    shaft_compliance,
+    stiffness_of_frequency,
+)
 
 J_L, J_M = 19.8, 8.6e-3  # t mm2
 F_L = 4.3 * 98.0665  # N mm
@@ -123,3 +132,63 @@ def test_the_direction_of_referral_is_the_square_of_the_ratio_squared():
     right, wrong = (output_compliance((1.0,), (n,)) for n in (6.0, 1.0 / 6.0))
     assert wrong / right == pytest.approx(1296.0, rel=1e-14)
     assert np.isfinite(output_compliance((0.0, 0.0), (1.0, 8.0)))
+
+
+LOOSE = replace(  # nothing but the ratio binds
+    PAPER,
+    modules=(Fraction(1),),
+    pinion_teeth=(16, 40),
+    most_wheel_teeth=208,
+    bore=Fraction(1),
+    wheel_tips=(Fraction(1000), Fraction(1000)),
+    error=1.0,
+    bending=1e9,
+    tolerance=Fraction(0),
+)
+
+
+@pytest.mark.parametrize(
+    ("ratio", "error"), [(math.sqrt(J_L / J_M), 5.4e-5), (math.exp(4.0), 5.1e-5)]
+)
+def test_a_ratio_that_no_teeth_give(ratio, error):
+    """Exact equality is infeasible; the nearest trains miss by 5.4e-5 and 5.1e-5."""
+    asked = replace(LOOSE, ratio=Fraction(round(ratio * 10**8), 10**8))
+    assert solve(problem(asked)).status == "infeasible"
+    for miss, status in ((error - 1e-6, "infeasible"), (error + 1e-6, "optimal")):
+        allowed = replace(asked, tolerance=Fraction(round(miss / ratio * 10**12), 10**12))
+        assert solve(problem(allowed)).status == status
+
+
+@pytest.mark.parametrize("ratio", [47, 48, 53])
+def test_a_ratio_that_teeth_give_is_met_exactly(ratio):
+    result = solve(problem(replace(LOOSE, ratio=Fraction(ratio))))
+    (z1, z3), (z2, z4) = result.design["pinion_teeth"], result.design["wheel_teeth"]
+    assert result.status == "optimal" and z2 * z4 == ratio * z1 * z3
+
+
+def test_a_design_on_its_limit_is_not_lost_to_floats():
+    """0.4 (263 + 2) = 106 exactly; in floats 0.4 * 265 may exceed it."""
+    result = solve(problem(PAPER))
+    assert result.design["wheel_teeth"][1] == 263
+    assert Fraction(4, 10) * 265 == PAPER.wheel_tips[1]
+    shaved = replace(PAPER, wheel_tips=(PAPER.wheel_tips[0], Fraction(106) - Fraction(1, 10**6)))
+    assert solve(problem(shaved)).value > result.value
+
+
+def test_the_upper_limit_of_the_ratio_is_needed_where_the_objective_rewards_it():
+    text = relaxation(PAPER)
+    result = solve(text)
+    assert math.prod(result.design["ratio"]) == pytest.approx(48.48, rel=1e-9)
+    assert solve(text.at(ratio_high=60.0)).value < result.value * (1.0 - 1e-2)
+
+
+def test_a_bound_relaxed_in_metres_is_refused():
+    """Ipopt's default buys 1e-8 m of a least width of 2e-3 m: the mass comes out 5e-6 too good."""
+    text = stiff(replace(STIFF, stiffness=stiffness_of_frequency(150.0, J_L)))
+    honest = solve(text)
+    assert 1e3 * honest.value == pytest.approx(70.596267, abs=6e-7)
+    x = np.array([value for block in honest.design.values() for value in np.atleast_1d(block)])
+    x[4:6] *= 1.0 - 5e-6
+    verdict = certify(text, Outcome(x), 1e-6)
+    assert verdict.status == "failed" and verdict.objective is None
+    assert "violated" in verdict.message

@@ -1,7 +1,6 @@
 """The ratio at which a motor accelerates its load most, at standstill or at a load speed."""
 
 import math
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -38,8 +37,13 @@ def acceleration(drive: Drive, load_speed: float = 0.0) -> Problem:
     scales = (*ratio_scales(drive), quotient(1.0, line), quotient(1.0, capped))
     ratio = drive.ratio_variable(scales, free)
     variables = (ratio, acceleration_variable(drive, float(np.max(ratio.upper))))
-    methods = {"exact": partial(_exact, drive, load_speed)}
-    return Problem("ratio", variables, (*drive.parameters(), *own), evaluate, methods=methods)
+
+    def exact(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
+        """The closed form; budget and seed change nothing."""
+        return _exact(drive, load_speed)
+
+    parameters, methods = (*drive.parameters(), *own), {"exact": exact}
+    return Problem("ratio", variables, parameters, evaluate, methods=methods)
 
 
 def ratio_scales(drive: Drive) -> tuple[float, float]:
@@ -102,14 +106,7 @@ def _law(drive: Drive, load_speed: float, ratio: float) -> float:
     return found
 
 
-def _exact(
-    drive: Drive,
-    load_speed: float,
-    problem: Problem,
-    budget: Budget,
-    seed: int,
-    watch: Watch | None,
-) -> Outcome:
+def _exact(drive: Drive, load_speed: float) -> Outcome:
     """The closed form; its bound follows from convexity alone."""
     low, high = drive.ratios(load_speed)
     if low > high:

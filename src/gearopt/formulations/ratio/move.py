@@ -1,7 +1,6 @@
 """The ratio at which a load makes a move from rest to rest in the least time."""
 
 import math
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -22,6 +21,8 @@ from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.terms import Param, Terms, Var
 from gearopt.physics.servo_drive import load_acceleration, move_time, shortest_move_time
 
+RANDOM = False
+COUNTS = "ratio evaluated"
 HALVINGS = 200  # of a bracket of ratios: to the last place
 
 
@@ -49,9 +50,13 @@ def move(drive: Drive, angle: float) -> Problem:
     ratio = drive.ratio_variable(scales, free)
     ramp = acceleration_variable(drive, float(np.max(ratio.upper)))
     variables = (ratio, ramp, _peak(ramp, angle))
-    methods = {"exact": partial(_exact, drive, angle)}
+
+    def exact(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
+        """The closed form, or root; budget and seed change nothing."""
+        return _exact(drive, angle)
+
     parameters = (*drive.parameters(), Param("angle", "rad", angle, role="given"))
-    return Problem("ratio", variables, parameters, evaluate, methods=methods)
+    return Problem("ratio", variables, parameters, evaluate, methods={"exact": exact})
 
 
 def _peak(ramp: Var, angle: float) -> Var:
@@ -103,9 +108,7 @@ def _ramp(drive: Drive, ratio: float) -> float:
     return found
 
 
-def _exact(
-    drive: Drive, angle: float, problem: Problem, budget: Budget, seed: int, watch: Watch | None
-) -> Outcome:
+def _exact(drive: Drive, angle: float) -> Outcome:
     """The best of the two regimes; the bound follows from convexity alone."""
     low, high = drive.ratio
     ratio, best = best_ratio(drive)

@@ -1,7 +1,6 @@
 """The ratio at which a load swings as A sin(w t) with the least rms torque of the motor."""
 
 import math
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -14,6 +13,8 @@ from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.terms import Param, Terms
 from gearopt.physics.servo_drive import rms_torque
 
+RANDOM = False
+COUNTS = "ratio evaluated"
 HALVINGS = 200  # of a bracket of ratios: to the last place
 
 
@@ -42,8 +43,13 @@ def swing(drive: Drive, amplitude: float, angular_frequency: float) -> Problem:
     most = drive.ratios(speed)[1]
     variable = drive.ratio_variable((ratio, most), math.isinf(ratio) and math.isinf(most))
     own = (Param("peak_acceleration", "rad/s2", peak), Param("peak_speed", "rad/s", speed))
-    methods = {"exact": partial(_exact, drive, peak, speed)}
-    return Problem("ratio", (variable,), (*drive.parameters(), *own), evaluate, methods=methods)
+
+    def exact(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
+        """The root; budget and seed change nothing."""
+        return _exact(drive, peak, speed)
+
+    parameters, methods = (*drive.parameters(), *own), {"exact": exact}
+    return Problem("ratio", (variable,), parameters, evaluate, methods=methods)
 
 
 def _stationary(drive: Drive, peak: float) -> float:
@@ -65,15 +71,7 @@ def _stationary(drive: Drive, peak: float) -> float:
     return high
 
 
-def _exact(
-    drive: Drive,
-    peak: float,
-    speed: float,
-    problem: Problem,
-    budget: Budget,
-    seed: int,
-    watch: Watch | None,
-) -> Outcome:
+def _exact(drive: Drive, peak: float, speed: float) -> Outcome:
     low, high = drive.ratios(speed)
     if low > high:
         return impossible(f"the motor's speed limit allows a ratio of {high:.6g} at the most")
