@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 from servo_trains import PAPER, STIFF
 
+from gearopt.formulations import servo_box
 from gearopt.formulations.ratio import Drive, acceleration, best_ratio, move, swing
+from gearopt.formulations.servo_box import ServoBox, first_that_fits
 from gearopt.formulations.split import problem, relaxation, stiff
 from gearopt.optimise.certificate import certify
 from gearopt.optimise.result import Outcome
@@ -192,3 +194,24 @@ def test_a_bound_relaxed_in_metres_is_refused():
     verdict = certify(text, Outcome(x), 1e-6)
     assert verdict.status == "failed" and verdict.objective is None
     assert "violated" in verdict.message
+
+
+def test_a_full_last_wheel_is_larger_than_the_box():
+    full = ServoBox((4.5, 24.5, 52.5), (28.0, 58.5), 8.0, math.pi, (80.0, 130.0))
+    assert first_that_fits([full]) is None
+    assert solve(servo_box.problem(full)).bound > 1.3
+
+
+def test_a_motor_over_the_output_shaft_needs_room_there():
+    """Equal links may fold back upon the output shaft; the hub's distance is a limit of its own."""
+    folded = ServoBox((12.0, 24.5, 30.0), (40.0, 40.0), 8.0, math.pi, (80.0, 130.0))
+    text = servo_box.problem(folded)
+    on_top = text.batch(np.array([[math.pi, 0.0]]))
+    assert on_top.G[0, 0] > 1.0
+    result = solve(text)
+    motor, output = result.design["motor_angle_rad"], result.design["output_angle_rad"]
+    apart = 2.0 * 40.0 * abs(math.cos(0.5 * (motor - output)))
+    assert result.status == "optimal" and apart >= 20.0 - 1e-6
+    far = replace(folded, links=(5.0, 6.0))
+    stuck = solve(servo_box.problem(far))
+    assert stuck.status == "infeasible" and "hub" in stuck.message
