@@ -17,8 +17,26 @@ from gearopt.report.pages.result import page, sections, tables
 from gearopt.report.pages.table import Table, percent, shown
 from gearopt.report.words import heading, parted
 
-UNITS = {"m_per_s": "m/s", "Nm": "N*m", "mm2": "mm^2", "mm3": "mm^3", "cm3": "mm^3"}
-INCHES = {"in³": "in^3", "in²": "in^2", "lbf in": "lbf*in", "ft/min": "ft/min"}
+UNITS = {
+    "m_per_s": "m/s",
+    "Nm": "N*m",
+    "mm2": "mm^2",
+    "mm3": "mm^3",
+    "cm3": "mm^3",
+    "um": "mm",
+    "kg_m2": "kg*m^2",
+    "Nm_per_rad": "N*m/rad",
+    "deg_per_mm": "deg/mm",
+}
+INCHES = {
+    "in³": "in^3",
+    "in²": "in^2",
+    "lbf in": "lbf*in",
+    "mil": "thou",
+    "oz in²": "oz*in^2",
+    "lbf in/rad": "lbf*in/rad",
+    "°/in": "deg/in",
+}
 
 
 @pytest.fixture(scope="module")
@@ -33,7 +51,7 @@ def rows(text):
 def test_inch_factors_are_those_of_pint():
     ureg = pint.UnitRegistry()
     for suffix, (sign, factor) in INCH.units.items():
-        if suffix in ("percent", "deg", "ms"):
+        if suffix in ("percent", "deg", "ms", "Hz"):
             continue
         told = ureg.Quantity(1.0, UNITS.get(suffix, suffix)).to(INCHES.get(sign, sign)).magnitude
         assert math.isclose(factor, told, rel_tol=1e-12), suffix

@@ -37,6 +37,7 @@ _MORE = {  # rows that a page has room for, and after which row they stand
         "overlap_ratio": ("overlap ratio ε_β", ""),
     },
     "pinion_torque_Nm": {"pitch_line_velocity_m_per_s": ("pitch-line velocity v", "m_per_s")},
+    "unit_load_MPa": {"bending_stress_MPa": ("bending stress", "MPa")},
     "gear_volume_mm3": {
         "pinion_mass_kg": ("pinion mass", "kg"),
         "wheel_mass_kg": ("wheel mass", "kg"),
@@ -172,6 +173,12 @@ def _method(result: Result) -> list[str]:
             f"Proof: {proof['trains_compared']:,} trains compared, all others excluded by "
             f"lower bounds (nodes opened: {proof['nodes']:,})."
         )
+    elif "trains_looked_at" in proof and exhausted:
+        rest = "meets all limits" if result.status == "infeasible" else "can be better"
+        lines.append(
+            f"Proof: {proof['trains_looked_at']:,} choices of teeth and modules looked at; no "
+            f"other {rest}."
+        )
     elif "pairs_matched" in proof:
         lines.append(
             f"Proof: {proof['pairs_matched']:,} ratios of a pair, each with the two that miss "
@@ -195,7 +202,13 @@ def _method(result: Result) -> list[str]:
             "Proof: the problem is convex in logarithms; the bound is a dual one, computed "
             "from our own derivatives."
         )
-    if result.status == "infeasible" and proof.get("conflict"):
+    elif proof.get("method") == "closed form" and result.bound is not None:
+        lines.append("Proof: a closed form, and a bound that follows from convexity alone.")
+    if result.status == "infeasible" and proof.get("conflict") and "least_violation" not in proof:
+        lines.append(f"Proof: {result.message}.")
+    elif result.status == "infeasible" and proof.get("reason"):
+        lines.append(f"Proof: {proof['reason']}.")
+    elif result.status == "infeasible" and proof.get("conflict"):
         names = ", ".join(limit_words(n) for n in proof["conflict"])
         least = 100 * proof["least_violation"]
         lines.append(

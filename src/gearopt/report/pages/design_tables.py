@@ -12,9 +12,9 @@ from gearopt.report.words import heading, parted
 
 
 def section(result: Result, measures: Measures) -> Section | None:
-    """All tables of the design; None without a design."""
+    """All tables of the design; None without one, and for kinds whose sections tell its numbers."""
     design = dict(result.design)
-    if not design:
+    if not design or result.scene == "servo":
         return None
     tables = []
     if stages := design.pop("stages", []):
@@ -45,7 +45,7 @@ def _shares(stages: Sequence[Mapping[str, Any]], measures: Measures) -> list[Tab
 def trains(result: Result, measures: Measures) -> Section | None:
     """The best distinct trains in proven order; None where only one was asked for."""
     found = result.report.get("trains") or []
-    if not found:
+    if not found or result.scene == "servo":
         return None
     heads, rows = train_rows(found, result, measures)
     heads = (*heads[:2], "more, %", *heads[2:])

@@ -6,6 +6,7 @@ from typing import Any
 from gearopt.optimise.result import Result
 from gearopt.report.measures import Measures
 from gearopt.report.pages.section import Section, Tile
+from gearopt.report.pages.servo.tiles import tiles as servo_tiles
 from gearopt.report.pages.table import Table, percent
 from gearopt.report.result_words import limit_rows, objective, proof, verdict
 from gearopt.report.words import amount, edit, number
@@ -25,6 +26,8 @@ def _tiles(result: Result, measures: Measures) -> list[Tile]:
         gap = "" if result.gap is None else f"gap {100 * result.gap:.3g} %"
         tiles.append(Tile("proven bound", amount(result.bound, unit, measures), gap))
     design = result.design
+    if result.scene == "servo":
+        return tiles + servo_tiles(design, name, measures)
     if "ratio" in design:
         error = design.get("ratio_error_percent")
         off = "" if error is None else f"{error:+.3f} % off"

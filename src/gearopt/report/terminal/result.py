@@ -19,7 +19,7 @@ from gearopt.report.result_words import (
     verdict,
 )
 from gearopt.report.side_by_side_words import side_by_side
-from gearopt.report.terminal import packing
+from gearopt.report.terminal import packing, servo
 from gearopt.report.terminal.explanation import influences, remedies
 from gearopt.report.terminal.layout import layout
 from gearopt.report.words import columns, heading, number, parted
@@ -38,7 +38,7 @@ def _blocks(result: Result, measures: Measures) -> list[RenderableType]:
     blocks: list[RenderableType] = []
     if result.value is not None:
         blocks += _answer(result, measures)
-        if trains := result.report.get("trains"):
+        if (trains := result.report.get("trains")) and result.scene != "servo":
             blocks.append(_trains(trains, result, measures))
         blocks += _processes(result, measures)
         if prices := result.report.get("prices"):
@@ -55,6 +55,9 @@ def _answer(result: Result, measures: Measures) -> list[RenderableType]:
     """The design, in the words of its kind."""
     if result.scene == "packing":
         return [packing.design(result.design, measures)]
+    if result.scene == "servo":
+        limits = [_limits(result.limits, "whole")] if result.limits else []
+        return [*servo.design(result, measures), *limits]
     blocks = [_design(result.design, measures)]
     if "layout" in result.design:
         blocks.append(layout(result.design["layout"], measures))
@@ -80,11 +83,11 @@ def _design(design: Mapping[str, Any], measures: Measures) -> RenderableType:
     return Group(*parts, totals)
 
 
-def _limits(limits: Mapping[str, float]) -> RenderableType:
+def _limits(limits: Mapping[str, float], whole: str = "drive") -> RenderableType:
     """Utilisation of every limit in percent, stages side by side."""
     count, rows = limit_rows(limits)
     stages = [f"stage {k}" for k in range(1, count + 1)]
-    table = columns("limit used, %", [*stages, "drive"])
+    table = columns("limit used, %", [*stages, whole])
     for words, values in rows:
         table.add_row(words, *map(_percent, values))
     return table
