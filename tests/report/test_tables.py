@@ -4,17 +4,20 @@ import csv
 import io
 import math
 import re
+from dataclasses import replace
 from urllib.parse import unquote
 
 import layout_cases as cases
 import pint
 import pytest
 from html_reader import Reader
+from rich.console import Console
 
 import gearopt
 from gearopt.report.measures import INCH, METRIC, SYSTEMS
 from gearopt.report.pages.result import page, sections, tables
 from gearopt.report.pages.table import Table, percent, shown
+from gearopt.report.terminal.result import show
 from gearopt.report.words import heading, parted
 
 UNITS = {
@@ -134,6 +137,12 @@ def test_an_inch_page_names_no_millimetre_but_those_of_modules():
         assert all("m_n" in near or "module" in near for near in left), left
         for figure in re.findall(r'<script type="application/json">(.*?)</script>', html, re.S):
             assert not re.search(r"\bmm\b", re.sub(r"m_n [\d.]+ mm", "", figure))
+
+
+def test_units_in_heads_are_no_markup_on_the_terminal():
+    console = Console(width=99, record=True, file=io.StringIO())
+    show(replace(cases.packing(), scene="packing"), console)
+    assert "x [mm]" in console.export_text()
 
 
 def test_drawn_lengths_in_inches():

@@ -37,7 +37,6 @@ _MORE = {  # rows that a page has room for, and after which row they stand
         "overlap_ratio": ("overlap ratio ε_β", ""),
     },
     "pinion_torque_Nm": {"pitch_line_velocity_m_per_s": ("pitch-line velocity v", "m_per_s")},
-    "unit_load_MPa": {"bending_stress_MPa": ("bending stress", "MPa")},
     "gear_volume_mm3": {
         "pinion_mass_kg": ("pinion mass", "kg"),
         "wheel_mass_kg": ("wheel mass", "kg"),

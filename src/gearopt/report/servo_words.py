@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from gearopt.report.measures import METRIC, Measures
+from gearopt.report.result_words import PAGE_ROWS
 from gearopt.report.words import amount, number
 
 GEARS = ("backlash", "pitch")  # kinds that the error allowed to a train is of
@@ -15,6 +16,7 @@ RULES = {
     "rss": "root sum of squares",
     "mean_plus_sd": "mean + {kappa} sd",
 }
+STAGE_ROWS = PAGE_ROWS | {"bending_stress_MPa": ("bending stress", "MPa")}
 ARCMIN = 60.0  # a degree
 
 

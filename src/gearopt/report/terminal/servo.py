@@ -9,9 +9,10 @@ from rich.text import Text
 
 from gearopt.optimise.result import Result
 from gearopt.report.measures import METRIC, Measures
-from gearopt.report.result_words import PAGE_ROWS, stage_rows
+from gearopt.report.result_words import stage_rows
 from gearopt.report.servo_words import (
     ARCMIN,
+    STAGE_ROWS,
     box_words,
     cost_words,
     degrees,
@@ -56,7 +57,7 @@ def _train(train: Found, measures: Measures) -> RenderableType:
     """Stages side by side, then the totals."""
     stages = train["stages"]
     table = columns("train", [f"stage {k}" for k in range(1, len(stages) + 1)])
-    for label, values in stage_rows(stages, measures, PAGE_ROWS):
+    for label, values in stage_rows(stages, measures, STAGE_ROWS):
         table.add_row(Text(label), *map(number, values))
     totals = Table.grid(padding=(0, 2))
     for key, value in train.items():

@@ -50,7 +50,6 @@ def section(result: Result, measures: Measures) -> Section | None:
     plot = layout(
         across, up, round(REST + ROW * len(order)), barmode="overlay", bargap=0.25, shapes=shapes
     )
-    plot["legend"]["xref"] = "container"  # names of bars leave little room beside them
     caption = "Each bar begins where the last one ends: the worst case, all at once."
     words = (*error_words(found, limit), *_by_kind(found, total))
     return Section(

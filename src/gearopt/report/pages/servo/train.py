@@ -5,8 +5,8 @@ from gearopt.report.measures import Measures
 from gearopt.report.pages import train_views
 from gearopt.report.pages.section import Section
 from gearopt.report.pages.table import Table
-from gearopt.report.result_words import PAGE_ROWS, stage_rows
-from gearopt.report.servo_words import arc_minutes, degrees
+from gearopt.report.result_words import stage_rows
+from gearopt.report.servo_words import STAGE_ROWS, arc_minutes, degrees
 from gearopt.report.words import heading, parted
 
 
@@ -17,7 +17,7 @@ def section(result: Result, measures: Measures) -> Section | None:
         return None
     stages = found["stages"]
     heads = ["", *(f"stage {k}" for k in range(1, len(stages) + 1))]
-    rows = [[label, *values] for label, values in stage_rows(stages, measures, PAGE_ROWS)]
+    rows = [[label, *values] for label, values in stage_rows(stages, measures, STAGE_ROWS)]
     totals = []
     for key, value in found.items():
         if key == "stages" or value is None:
