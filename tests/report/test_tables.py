@@ -4,21 +4,42 @@ import csv
 import io
 import math
 import re
+from dataclasses import replace
 from urllib.parse import unquote
 
 import layout_cases as cases
 import pint
 import pytest
 from html_reader import Reader
+from rich.console import Console
 
 import gearopt
 from gearopt.report.measures import INCH, METRIC, SYSTEMS
 from gearopt.report.pages.result import page, sections, tables
 from gearopt.report.pages.table import Table, percent, shown
+from gearopt.report.terminal.result import show
 from gearopt.report.words import heading, parted
 
-UNITS = {"m_per_s": "m/s", "Nm": "N*m", "mm2": "mm^2", "mm3": "mm^3", "cm3": "mm^3"}
-INCHES = {"in³": "in^3", "in²": "in^2", "lbf in": "lbf*in", "ft/min": "ft/min"}
+UNITS = {
+    "m_per_s": "m/s",
+    "Nm": "N*m",
+    "mm2": "mm^2",
+    "mm3": "mm^3",
+    "cm3": "mm^3",
+    "um": "mm",
+    "kg_m2": "kg*m^2",
+    "Nm_per_rad": "N*m/rad",
+    "deg_per_mm": "deg/mm",
+}
+INCHES = {
+    "in³": "in^3",
+    "in²": "in^2",
+    "lbf in": "lbf*in",
+    "mil": "thou",
+    "oz in²": "oz*in^2",
+    "lbf in/rad": "lbf*in/rad",
+    "°/in": "deg/in",
+}
 
 
 @pytest.fixture(scope="module")
@@ -33,7 +54,7 @@ def rows(text):
 def test_inch_factors_are_those_of_pint():
     ureg = pint.UnitRegistry()
     for suffix, (sign, factor) in INCH.units.items():
-        if suffix in ("percent", "deg", "ms"):
+        if suffix in ("percent", "deg", "ms", "Hz"):
             continue
         told = ureg.Quantity(1.0, UNITS.get(suffix, suffix)).to(INCHES.get(sign, sign)).magnitude
         assert math.isclose(factor, told, rel_tol=1e-12), suffix
@@ -116,6 +137,12 @@ def test_an_inch_page_names_no_millimetre_but_those_of_modules():
         assert all("m_n" in near or "module" in near for near in left), left
         for figure in re.findall(r'<script type="application/json">(.*?)</script>', html, re.S):
             assert not re.search(r"\bmm\b", re.sub(r"m_n [\d.]+ mm", "", figure))
+
+
+def test_units_in_heads_are_no_markup_on_the_terminal():
+    console = Console(width=99, record=True, file=io.StringIO())
+    show(replace(cases.packing(), scene="packing"), console)
+    assert "x [mm]" in console.export_text()
 
 
 def test_drawn_lengths_in_inches():

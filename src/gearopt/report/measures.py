@@ -45,7 +45,7 @@ class Measures:
         return f"{self.of(value, 'mm'):.{digits + self.digits}f}".replace("-0.00", "0.00")
 
 
-_SAME = {"percent": ("%", 1.0), "deg": ("°", 1.0), "ms": ("ms", 1.0)}
+_SAME = {"percent": ("%", 1.0), "deg": ("°", 1.0), "ms": ("ms", 1.0), "Hz": ("Hz", 1.0)}
 METRIC = Measures(
     "metric",
     _SAME
@@ -58,6 +58,10 @@ METRIC = Measures(
         "Nm": ("N m", 1.0),
         "m_per_s": ("m/s", 1.0),
         "kg": ("kg", 1.0),
+        "um": ("µm", 1e3),  # of mm
+        "kg_m2": ("g cm²", 1e7),
+        "Nm_per_rad": ("N m/rad", 1.0),
+        "deg_per_mm": ("°/mm", 1.0),
     },
 )
 INCH = Measures(
@@ -72,6 +76,10 @@ INCH = Measures(
         "m_per_s": ("ft/min", 60_000.0 / (12.0 * _INCH)),
         "Nm": ("lbf in", 1000.0 / (_POUND_FORCE * _INCH)),
         "kg": ("lb", 1.0 / _POUND),
+        "um": ("mil", 1000.0 / _INCH),  # of mm
+        "kg_m2": ("oz in²", 16e6 / (_POUND * _INCH**2)),
+        "Nm_per_rad": ("lbf in/rad", 1000.0 / (_POUND_FORCE * _INCH)),
+        "deg_per_mm": ("°/in", _INCH),
     },
     digits=1,
 )

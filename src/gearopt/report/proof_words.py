@@ -56,6 +56,12 @@ def _method(result: Result) -> list[str]:
     proof, lines = result.proof, []
     if "trains_compared" in proof:
         lines.append(_compared(result))
+    elif "trains_looked_at" in proof and proof["method"] == "exhausted":
+        rest = "meets all limits" if result.status == "infeasible" else "can be better"
+        lines.append(
+            f"Proof: {proof['trains_looked_at']:,} choices of teeth and modules looked at; no "
+            f"other {rest}."
+        )
     elif "pairs_matched" in proof:
         lines.append(
             f"Proof: {proof['pairs_matched']:,} ratios of a pair, each with the two that miss "
@@ -79,15 +85,27 @@ def _method(result: Result) -> list[str]:
             "Proof: the problem is convex in logarithms; the bound is a dual one, computed "
             "from our own derivatives."
         )
-    if result.status == "infeasible" and proof.get("conflict"):
+    elif proof.get("method") == "closed form" and result.bound is not None:
+        lines.append("Proof: a closed form, and a bound that follows from convexity alone.")
+    return lines + _impossible(result)
+
+
+def _impossible(result: Result) -> list[str]:
+    """Why nothing meets the limits, of what is proven to be impossible."""
+    proof = result.proof
+    if result.status != "infeasible":
+        return []
+    if proof.get("conflict") and "least_violation" in proof:
         names = ", ".join(limit_words(n) for n in proof["conflict"])
         least = 100 * proof["least_violation"]
         missed = f"{least:.2g}" if least < 100 else f"{least:,.0f}"
-        lines.append(
-            f"Proof: whatever the sizes, even with real-valued teeth and modules, one of these "
+        return [
+            "Proof: whatever the sizes, even with real-valued teeth and modules, one of these "
             f"limits is missed by at least {missed} %: {names}."
-        )
-    return lines
+        ]
+    if proof.get("conflict"):
+        return [f"Proof: {result.message}."]
+    return [f"Proof: {proof['reason']}."] if proof.get("reason") else []
 
 
 def _compared(result: Result) -> str:

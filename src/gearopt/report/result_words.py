@@ -87,7 +87,11 @@ def stage_rows(
 def ranked(result: Result) -> Result | None:
     """The answer whose next best trains are known: itself, or the gears that were laid out."""
     gears = (part for part in result.parts if part.name == "gears")
-    return next((one for one in (result, *gears) if len(one.report.get("trains", ())) > 1), None)
+    for one in (result, *gears):
+        found = one.report.get("trains", ())
+        if len(found) > 1 and "objective" in found[0]:  # those of a servo axis have three
+            return one
+    return None
 
 
 def train_rows(

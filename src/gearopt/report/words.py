@@ -4,6 +4,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+from rich.markup import escape
 from rich.table import Table
 
 from gearopt.report.measures import METRIC, Measures
@@ -22,7 +23,7 @@ VERDICTS = {
 
 def columns(first: str, heads: list[str]) -> Table:
     """A plain table of right-aligned columns beside a column of names."""
-    table = Table(first, *heads, box=None, header_style="bold", pad_edge=False)
+    table = Table(*map(escape, (first, *heads)), box=None, header_style="bold", pad_edge=False)
     for column in table.columns[1:]:
         column.justify, column.no_wrap = "right", True
     return table

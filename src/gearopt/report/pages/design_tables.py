@@ -12,9 +12,9 @@ from gearopt.report.words import heading, parted
 
 
 def section(result: Result, measures: Measures) -> Section | None:
-    """All tables of the design; None without a design."""
+    """All tables of the design; None without one, and for kinds whose sections tell its numbers."""
     design = dict(result.design)
-    if not design:
+    if not design or result.scene == "servo":
         return None
     tables = []
     if stages := design.pop("stages", []):

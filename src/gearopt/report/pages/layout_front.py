@@ -14,7 +14,7 @@ from gearopt.report.pages.layout_marks import (
     walls,
 )
 from gearopt.report.pages.section import meaning, series
-from gearopt.report.pages.sheet import Drawing, Sheet, Window
+from gearopt.report.pages.sheet import Drawing, Point, Sheet, Window
 
 
 def front_view(found: Layout, window: Window, scale: float, measures: Measures) -> Drawing:
@@ -94,20 +94,24 @@ def _centre_distances(
 ) -> None:
     """Between the shafts of every stage, along the line of centres."""
     for a, b, stage in _meshes(found):
-        (y0, z0), (y1, z1) = places[a], places[b]
-        sheet.line((y0, z0), (y1, z1), "centres")
-        start, end = sheet.at(y0, z0), sheet.at(y1, z1)
         text = f"a{stage} = {measures.length(math.dist(places[a], places[b]))}"
-        angle = math.degrees(math.atan2(end[1] - start[1], end[0] - start[0]))
-        angle = (angle + 90.0) % 180.0 - 90.0  # never upside down
-        nx, ny = -math.sin(math.radians(angle)), math.cos(math.radians(angle))
-        spots = []
-        for k, share in enumerate((0.5, 0.42, 0.58, 0.35, 0.65, 0.28, 0.72)):
-            x, y = (s + share * (e - s) for s, e in zip(start, end, strict=True))
-            spots += [
-                Place(x + side * 9.0 * nx, y + side * 9.0 * ny, angle, 2.0 * k) for side in (-1, 1)
-            ]
-        sheet.label(text, spots, "size")
+        centre_distance(sheet, places[a], places[b], text)
+
+
+def centre_distance(sheet: Sheet, a: Point, b: Point, text: str) -> None:
+    """A line of centres between two axes [mm], with its text along it."""
+    sheet.line(a, b, "centres")
+    start, end = sheet.at(*a), sheet.at(*b)
+    angle = math.degrees(math.atan2(end[1] - start[1], end[0] - start[0]))
+    angle = (angle + 90.0) % 180.0 - 90.0  # never upside down
+    nx, ny = -math.sin(math.radians(angle)), math.cos(math.radians(angle))
+    spots = []
+    for k, share in enumerate((0.5, 0.42, 0.58, 0.35, 0.65, 0.28, 0.72)):
+        x, y = (s + share * (e - s) for s, e in zip(start, end, strict=True))
+        spots += [
+            Place(x + side * 9.0 * nx, y + side * 9.0 * ny, angle, 2.0 * k) for side in (-1, 1)
+        ]
+    sheet.label(text, spots, "size")
 
 
 def _meshes(found: Layout) -> list[tuple[int, int, int]]:

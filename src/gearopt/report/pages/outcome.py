@@ -6,6 +6,7 @@ from typing import Any
 from gearopt.optimise.result import Result
 from gearopt.report.measures import Measures
 from gearopt.report.pages.section import Section, Tile
+from gearopt.report.pages.servo.tiles import tiles as servo_tiles
 from gearopt.report.pages.table import Table, percent
 from gearopt.report.proof_words import proof, scope
 from gearopt.report.remedy_words import REMEDY_HEADS, remedy_words
@@ -29,6 +30,8 @@ def _tiles(result: Result, measures: Measures) -> list[Tile]:
             Tile(f"proven bound{scope(result)}", amount(result.bound, unit, measures), gap)
         )
     design = result.design
+    if result.scene == "servo":
+        return tiles + servo_tiles(design, name, measures)
     if "ratio" in design:
         error = design.get("ratio_error_percent")
         off = "" if error is None else f"{error:+.3f} % off"

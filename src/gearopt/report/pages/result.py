@@ -19,6 +19,16 @@ from gearopt.report.pages import (
 )
 from gearopt.report.pages.frame import render
 from gearopt.report.pages.section import Section
+from gearopt.report.pages.servo import (
+    box,
+    drawn,
+    errors,
+    ratio,
+    stiffness,
+    tolerances,
+    train,
+    trains,
+)
 from gearopt.report.result_words import objective, title, verdict
 from gearopt.report.words import amount
 
@@ -31,6 +41,15 @@ SECTIONS = (
     packing_solid.section,
     train_views.section,
     side_by_side.section,
+    ratio.section,
+    train.section,
+    box.section,
+    trains.by_inertia,
+    trains.by_mass,
+    errors.section,
+    tolerances.section,
+    drawn.section,
+    stiffness.section,
     design_tables.section,
     asked.section,
     outcome.limits,

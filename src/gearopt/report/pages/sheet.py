@@ -83,6 +83,36 @@ class Sheet:
         for start, end in zip(ends, ends[1:], strict=False):
             self._ink.add(_along(start, end))
 
+    def slice(
+        self,
+        at: Point,
+        r: float,
+        ends: Point,
+        style: str,
+        colour: str = "",
+        title: str = "",
+        rim: bool = False,
+    ) -> None:
+        """A slice of a disc about a point [mm], from one angle to a larger one [rad].
+
+        rim: only its arc.
+        """
+        start, end = ends
+        if end - start >= 2.0 * math.pi - 1e-9:
+            self.circle(*at, r, style, colour, title)
+            return
+        (cx, cy), size = self.at(*at), self.scale * r
+        count = max(8, int(size * (end - start) / 4.0))
+        turns = (start + (end - start) * k / count for k in range(count + 1))
+        arc = [(cx + size * math.cos(t), cy - size * math.sin(t)) for t in turns]
+        (x0, y0), (x1, y1) = arc[0], arc[-1]
+        first = f"M {x0:.2f} {y0:.2f}" if rim else f"M {cx:.2f} {cy:.2f} L {x0:.2f} {y0:.2f}"
+        path = f"{first} A {size:.2f} {size:.2f} 0 {int(end - start > math.pi)} 0 {x1:.2f} {y1:.2f}"
+        self._add("path", f'd="{path}{"" if rim else " Z"}"', style, colour, title)
+        self._ink.add(arc)
+        for corner in () if rim else (arc[0], arc[-1]):
+            self._ink.add(_along((cx, cy), corner))
+
     def line(self, a: Point, b: Point, style: str, colour: str = "") -> None:
         """A line [mm]."""
         self._stroke(self.at(*a), self.at(*b), style, colour)

@@ -30,7 +30,6 @@ def section(result: Result, measures: Measures) -> Section | None:
     stages = result.design.get("stages")
     if not stages or result.design.get("layout") or not all(DRAWN <= set(s) for s in stages):
         return None
-    found, scale = in_one_line(stages)
     words = (
         "All shafts are drawn in one line: their places are not optimised, and the gaps between "
         "the stages are only as wide as the labels need. A [layout] table in the file places the "
@@ -40,8 +39,13 @@ def section(result: Result, measures: Measures) -> Section | None:
         "dash-dotted ones reference circles; numbers in circles are shafts, whose diameters are "
         "not known.",
     )
-    views = (_front(found, scale, measures), _side(found, scale, measures))
-    return Section("Gears in one line", words=words, drawings=views)
+    return Section("Gears in one line", words=words, drawings=views(stages, measures))
+
+
+def views(stages: Sequence[Mapping[str, Any]], measures: Measures) -> tuple[Drawing, Drawing]:
+    """Both views of a train: along its shafts and across them."""
+    found, scale = in_one_line(stages)
+    return _front(found, scale, measures), _side(found, scale, measures)
 
 
 def in_one_line(stages: Sequence[Mapping[str, Any]]) -> tuple[dict[str, Any], float]:

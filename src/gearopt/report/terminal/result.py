@@ -20,7 +20,7 @@ from gearopt.report.result_words import (
     verdict,
 )
 from gearopt.report.side_by_side_words import side_by_side
-from gearopt.report.terminal import packing
+from gearopt.report.terminal import packing, servo
 from gearopt.report.terminal.explanation import influences, remedies
 from gearopt.report.terminal.layout import layout
 from gearopt.report.words import REACHED, columns, heading, number, parted, share
@@ -56,6 +56,9 @@ def _answer(result: Result, measures: Measures) -> list[RenderableType]:
     """The design, in the words of its kind."""
     if result.scene == "packing":
         return [packing.design(result.design, measures)]
+    if result.scene == "servo":
+        limits = [_limits(result.limits, "whole")] if result.limits else []
+        return [*servo.design(result, measures), *limits]
     blocks = [_design(result.design, measures)]
     if "layout" in result.design:
         blocks.append(layout(result.design["layout"], measures))
@@ -81,11 +84,11 @@ def _design(design: Mapping[str, Any], measures: Measures) -> RenderableType:
     return Group(*parts, totals)
 
 
-def _limits(limits: Mapping[str, float]) -> RenderableType:
+def _limits(limits: Mapping[str, float], whole: str = "drive") -> RenderableType:
     """Utilisation of every limit in percent, stages side by side."""
     count, rows = limit_rows(limits)
     stages = [f"stage {k}" for k in range(1, count + 1)]
-    table = columns("limit used, %", [*stages, "drive"])
+    table = columns("limit used, %", [*stages, whole])
     for words, values in rows:
         table.add_row(words, *map(_percent, values))
     return table

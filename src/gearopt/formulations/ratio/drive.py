@@ -1,0 +1,131 @@
+"""What is given of a motor, its gears and its load, and the rows that all duties share."""
+
+import math
+from dataclasses import dataclass, fields
+from typing import Any
+
+from gearopt.optimise.terms import Param, Var
+
+BEYOND = 1e6  # factor between natural scales and the ends of the search: they never bind
+FAINT = 1e-30  # of the largest acceleration: what is slower counts as not moving
+
+_UNITS = {"inertia": "t mm2", "torque": "N mm", "friction": "N mm", "limit": "rad/s"}
+_ROLES = {"torque": "limit", "speed_limit": "limit", "load_inertia": "given"}
+
+
+@dataclass(frozen=True)
+class Drive:
+    """A motor, a gear train and a load; inertias [t mm2], torques [N mm], speeds [rad/s].
+
+    gear_inertia: of the train, seen at the motor. torque: of the motor at standstill, falling to 0
+    at no_load_speed. Frictions are Coulomb torques, each at its own shaft. efficiency: of the train
+    while the motor drives. ratio: least and most (inf: none) total ratio, motor over load speed.
+    """
+
+    load_inertia: float
+    motor_inertia: float
+    torque: float = 0.0
+    load_friction: float = 0.0
+    motor_friction: float = 0.0
+    gear_inertia: float = 0.0
+    efficiency: float = 1.0
+    no_load_speed: float = math.inf
+    speed_limit: float = math.inf
+    ratio: tuple[float, float] = (1.0, math.inf)
+
+    def __post_init__(self) -> None:
+        numbers = [getattr(self, f.name) for f in fields(self) if f.name != "ratio"]
+        if not all(value >= 0.0 for value in numbers):
+            raise ValueError("a drive has no negative inertia, torque, friction or speed")
+        if not 0.0 < self.efficiency <= 1.0:
+            raise ValueError(f"efficiency {self.efficiency!r} is not above 0 and at most 1")
+        if self.load_inertia + self.inertia == 0.0:
+            raise ValueError("a drive without any inertia has no finite acceleration")
+        if not 0.0 < self.ratio[0] <= self.ratio[1] or self.ratio[0] == math.inf:
+            raise ValueError(f"ratio {self.ratio!r}: needs 0 < least <= most, the least finite")
+
+    @property
+    def inertia(self) -> float:
+        """Inertia of motor and gears [t mm2] at the motor."""
+        return self.motor_inertia + self.gear_inertia
+
+    @property
+    def net_torque(self) -> float:
+        """Torque [N mm] at standstill that the motor's friction leaves."""
+        return self.torque - self.motor_friction
+
+    def ratios(self, load_speed: float = 0.0) -> tuple[float, float]:
+        """Least and most ratio, the motor's speed limit at a load speed [rad/s] included."""
+        return self.ratio[0], min(self.ratio[1], quotient(self.speed_limit, load_speed))
+
+    def parameters(self) -> tuple[Param, ...]:
+        """The drive's positive, finite numbers; what is 0 or infinite has no place in a text."""
+        names = [f.name for f in fields(self) if f.name not in ("ratio", "no_load_speed")]
+        values = {n: getattr(self, n) for n in names if 0.0 < getattr(self, n) < math.inf}
+        values["ratio_low"] = self.ratio[0]
+        if self.ratio[1] < math.inf:
+            values["ratio_high"] = self.ratio[1]
+        return tuple(
+            Param(n, _UNITS.get(n.split("_")[-1], ""), v, role=_role(n)) for n, v in values.items()
+        )
+
+    def ratio_variable(self, scales: tuple[float, ...], free: bool) -> Var:
+        """The variable of the total ratio; free: nothing holds it from above.
+
+        scales: ratios at which something of the duty changes, infinite and zero ones not counted.
+        """
+        known = [float(s) for s in (*scales, *self.ratio) if 0.0 < s < math.inf]
+        high = math.inf if free else BEYOND * max(known)
+        guess = max(self.ratio[0], min(self.ratio[1], math.prod(known) ** (1.0 / len(known))))
+        return Var("ratio", "", min(known) / BEYOND, high, guess, log=True, search=True)
+
+    def torque_needed(self, p: Any, ratio: Any, acceleration: Any) -> Any:
+        """Text of the motor's torque while it accelerates the load, without a falling line."""
+        return friction_torque(self, p, ratio) + acceleration * (
+            _load(self, p, ratio) + _motor(self, p, ratio)
+        )
+
+    def ratio_limits(self, p: Any, ratio: Any) -> dict[str, Any]:
+        """Text of the user's limits of the ratio."""
+        found = {"ratio_low": p.ratio_low / ratio}
+        if self.ratio[1] < math.inf:
+            found["ratio_high"] = ratio / p.ratio_high
+        return found
+
+
+def friction_torque(drive: Drive, p: Any, ratio: Any) -> Any:
+    """Text of the motor's torque that friction takes at a ratio."""
+    found = 0.0
+    if drive.motor_friction:
+        found = found + p.motor_friction
+    if drive.load_friction:
+        found = found + p.load_friction / (p.efficiency * ratio)
+    return found
+
+
+def inertia_at_motor(drive: Drive, p: Any, ratio: Any) -> Any:
+    """Text of torque per acceleration of the load, without losses: J_L/N + N J [t mm2]."""
+    found = p.load_inertia / ratio if drive.load_inertia else 0.0
+    return found + _motor(drive, p, ratio)
+
+
+def _load(drive: Drive, p: Any, ratio: Any) -> Any:
+    return p.load_inertia / (p.efficiency * ratio) if drive.load_inertia else 0.0
+
+
+def _motor(drive: Drive, p: Any, ratio: Any) -> Any:
+    found = 0.0
+    if drive.motor_inertia:
+        found = found + p.motor_inertia * ratio
+    if drive.gear_inertia:
+        found = found + p.gear_inertia * ratio
+    return found
+
+
+def quotient(a: float, b: float) -> float:
+    """Quotient a/b of numbers >= 0; infinite where b is 0."""
+    return a / b if b > 0.0 else math.inf
+
+
+def _role(name: str) -> str:
+    return "limit" if name.startswith("ratio") else _ROLES.get(name, "data")

@@ -1,0 +1,87 @@
+"""The ratio at which a load swings as A sin(w t) with the least rms torque of the motor."""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from gearopt.formulations.ratio.acceleration import impossible, proof, unbounded
+from gearopt.formulations.ratio.bound import convex_bound
+from gearopt.formulations.ratio.drive import Drive, friction_torque, inertia_at_motor
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.result import Budget, Outcome, Watch
+from gearopt.optimise.terms import Param, Terms
+from gearopt.physics.servo_drive import rms_torque
+
+RANDOM = False
+COUNTS = "ratio evaluated"
+HALVINGS = 200  # of a bracket of ratios: to the last place
+
+
+def swing(drive: Drive, amplitude: float, angular_frequency: float) -> Problem:
+    """Minimise the motor's rms torque [N mm] for A sin(w t) at the load; Coulomb friction.
+
+    amplitude A [rad], angular_frequency w [rad/s] > 0. Variable: ratio. ValueError for a train with
+    losses: then power flows both ways and the friction model of `rms_torque` does not hold. `exact`
+    is the root of a quartic. Source: derived from Youn, eq. (1).
+    """
+    if drive.efficiency != 1.0:
+        raise ValueError("the rms torque is that of a train without losses: efficiency 1")
+    peak, speed = amplitude * angular_frequency**2, amplitude * angular_frequency
+
+    def evaluate(x: Any, p: Any) -> Terms:
+        inertia = p.peak_acceleration * inertia_at_motor(drive, p, x.ratio)
+        square = inertia**2 / 2.0
+        if drive.load_friction or drive.motor_friction:
+            square = square + friction_torque(drive, p, x.ratio) ** 2
+        limits = drive.ratio_limits(p, x.ratio)
+        if drive.speed_limit < math.inf:
+            limits["motor_speed"] = x.ratio * p.peak_speed / p.speed_limit
+        return Terms({"rms_torque": square**0.5}, limits)
+
+    ratio = _stationary(drive, peak)
+    most = drive.ratios(speed)[1]
+    variable = drive.ratio_variable((ratio, most), math.isinf(ratio) and math.isinf(most))
+    own = (Param("peak_acceleration", "rad/s2", peak), Param("peak_speed", "rad/s", speed))
+
+    def exact(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
+        """The root; budget and seed change nothing."""
+        return _exact(drive, peak, speed)
+
+    parameters, methods = (*drive.parameters(), *own), {"exact": exact}
+    return Problem("ratio", (variable,), parameters, evaluate, methods=methods)
+
+
+def _stationary(drive: Drive, peak: float) -> float:
+    """The positive root of P^2 J^2 N^4 - 2 F_L F_M N - (P^2 J_L^2 + 2 F_L^2) = 0, P = A w^2.
+
+    It is the only one; for F_M = 0 it is ((J_L/J)^2 + 2 F_L^2/(J P)^2)^(1/4).
+    """
+    inertia, load, friction = drive.inertia, drive.load_inertia, drive.load_friction
+    if inertia == 0.0:
+        return math.inf
+    offset = math.hypot(load / inertia, math.sqrt(2.0) * friction / (inertia * peak))
+    mixed = 2.0 * friction * drive.motor_friction / (inertia * peak) ** 2
+    low = math.sqrt(offset)
+    high = low + float(mixed ** (1.0 / 3.0))  # there N^4 > offset^2 + mixed N
+    for _ in range(HALVINGS if mixed else 0):
+        middle = 0.5 * (low + high)
+        above = middle * (middle**3 - mixed) > offset**2
+        low, high = (low, middle) if above else (middle, high)
+    return high
+
+
+def _exact(drive: Drive, peak: float, speed: float) -> Outcome:
+    low, high = drive.ratios(speed)
+    if low > high:
+        return impossible(f"the motor's speed limit allows a ratio of {high:.6g} at the most")
+    ratio = min(max(_stationary(drive, peak), low), high)
+    if math.isinf(ratio):
+        return unbounded("rms torque", "a motor inertia, a largest ratio or a speed limit")
+
+    def law(n: float) -> float:
+        numbers = drive.load_inertia, drive.inertia, peak
+        return float(rms_torque(n, *numbers, drive.load_friction, drive.motor_friction))
+
+    bound = convex_bound(law, ratio, low, high)
+    return Outcome(np.array([ratio]), bound=bound, proof=proof(), evaluations=6)

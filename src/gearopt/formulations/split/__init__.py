@@ -1,0 +1,32 @@
+"""How a servo train's ratio is split: stages, whole teeth, modules, widths and the middle shaft.
+
+`core`: number of stages and ratios alone. `problem`: whole teeth and modules of two stages, proven
+by enumeration; `relaxation`: its bound as a geometric program. `stiff`: real sizes of least mass
+under a frequency or stiffness.
+"""
+
+from gearopt.formulations.split.core import (
+    core,
+    first_ratio,
+    lightest_stage_ratio,
+    stage_counts,
+)
+from gearopt.formulations.split.exact import trains
+from gearopt.formulations.split.relaxation import relaxation
+from gearopt.formulations.split.stiff import StiffTrain, stiff
+from gearopt.formulations.split.teeth import problem
+from gearopt.formulations.split.train import OBJECTIVES, ServoTrain
+
+__all__ = [
+    "OBJECTIVES",
+    "ServoTrain",
+    "StiffTrain",
+    "core",
+    "first_ratio",
+    "lightest_stage_ratio",
+    "problem",
+    "relaxation",
+    "stage_counts",
+    "stiff",
+    "trains",
+]

@@ -1,0 +1,90 @@
+"""How many stages, and how a total ratio is split among them: the bare inertia and mass.
+
+All pinions alike, all gears solid discs of one width: no limits but the ratio. It shows what
+the integer problem is up against: inertia wants ratios that rise towards the load and many stages,
+mass wants them equal.
+"""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.result import Budget, Outcome, Result, Watch
+from gearopt.optimise.solve import solve
+from gearopt.optimise.terms import Param, Terms, Var, each
+
+RANDOM = False
+COUNTS = "split evaluated"
+NEWTON = 100  # steps at most: from above the root of a convex function they fall to it
+
+
+def core(ratio: float, stages: int, goal: str = "inertia") -> Problem:
+    """Least train inertia or mass in units of one pinion's, over the stage ratios.
+
+    inertia: sum_i (1 + n_i^2)/prod_{j<i} n_j^2, seen at the motor. mass: sum_i (1 + n_i^2).
+    Variable: ratio, one a stage, each at least 1. ratio: the total one, > 1. `exact` is a closed
+    form, for mass and for up to two stages.
+    """
+    if goal not in ("inertia", "mass"):
+        raise ValueError(f"no goal {goal!r}; inertia or mass")
+    if not ratio > 1.0 or stages < 1:
+        raise ValueError("a split needs a ratio above 1 and a stage at least")
+
+    def evaluate(x: Any, p: Any) -> Terms:
+        total, through = 0.0, 1.0
+        for n in each(x.ratio):
+            total = total + (1.0 + n**2) / (through**2 if goal == "inertia" else 1.0)
+            through = through * n
+        return Terms({goal: total}, equal={"ratio": through / p.total})
+
+    def exact(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
+        """Equal ratios for mass; for inertia of two stages the root of a cubic."""
+        x = np.full(stages, ratio ** (1.0 / stages))
+        if goal == "inertia" and stages == 2:
+            first = first_ratio(ratio)
+            x = np.array([first, ratio / first])
+        value = float(problem.batch(x[None]).F[0, 0])
+        proof = {"method": "closed form", "arithmetic": "double"}
+        return Outcome(x, bound=value * (1.0 - 1e-14), proof=proof, evaluations=1)
+
+    closed = goal == "mass" or stages <= 2
+    even = ratio ** (1.0 / stages)
+    variable = Var("ratio", "", 1.0, ratio, even, stages, log=True)
+    total = Param("total", "", ratio, role="given")
+    methods = {"exact": exact} if closed else {}
+    return Problem("split core", (variable,), (total,), evaluate, methods=methods)
+
+
+def stage_counts(ratio: float, most: int = 4, goal: str = "inertia") -> tuple[Result, ...]:
+    """The best split into 1, 2 ... `most` stages, each certified; `min` by value is the best."""
+    return tuple(solve(core(ratio, k, goal)) for k in range(1, most + 1))
+
+
+def first_ratio(ratio: float, scale: float = 1.0) -> float:
+    """Ratio n_1 of the first of two stages of least inertia.
+
+    x^3 - rho x - 2 rho N^2 = 0 with x = n_1^2; ratio N > 1; scale rho > 0: inertia of the second
+    pinion, and scale of its wheel, in terms of the first. About (sqrt(2 rho) N)^(1/3).
+    """
+    if not ratio > 1.0 or not scale > 0.0:
+        raise ValueError("a split needs a ratio above 1 and a positive scale")
+    x = (2.0 * scale * ratio**2) ** (1.0 / 3.0) + scale**0.5  # above the root
+    for _ in range(NEWTON):
+        step = (x**3 - scale * x - 2.0 * scale * ratio**2) / (3.0 * x**2 - scale)
+        if not step > 1e-16 * x:
+            break
+        x -= step
+    return min(max(math.sqrt(x), 1.0), ratio)
+
+
+def lightest_stage_ratio() -> float:
+    """Stage ratio n of least mass where the number of stages is free: n^2 ln n^2 = n^2 + 1."""
+    x = 4.0
+    for _ in range(NEWTON):
+        step = (x * math.log(x) - x - 1.0) / math.log(x)
+        if not abs(step) > 1e-16 * x:
+            break
+        x -= step
+    return math.sqrt(x)

@@ -1,0 +1,95 @@
+"""The exact methods: every train looked at, or only those that can be the best."""
+
+import math
+import time
+from typing import Any
+
+import numpy as np
+
+from gearopt.formulations.split.numbers import Numbers, numbers
+from gearopt.formulations.split.train import OBJECTIVES, ServoTrain
+from gearopt.optimise.kernels import kernel
+from gearopt.optimise.result import Budget, Event, Outcome, Watch
+from gearopt.optimise.terms import Array
+
+RANDOM = False
+COUNTS = "choice of teeth and modules"
+SLICE = 0.05  # s between two looks at the budget
+ROUNDING = 1e-12  # of an objective, between the kernel's text and the problem's
+KERNEL = "gearopt.formulations.split.teeth_kernel"
+
+
+def method(train: ServoTrain, goal: str, whole: bool) -> Any:
+    """A run(problem, budget, seed, watch) for the best train; whole: every train is looked at."""
+
+    def run(problem: Any, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
+        """All first stages in turn, by the kernel; the seed changes nothing."""
+        given = numbers(train)
+        look = getattr(kernel(KERNEL), "every" if whole else "useful")
+        aim = list(OBJECTIVES).index(goal)
+        found = np.zeros(6, np.int64)
+        look(given, aim, 0, 0, math.inf, found)  # compiled before the clock starts
+        clock, best, looked, feasible = time.perf_counter(), math.inf, 0, 0
+        first, count = 0, len(given.module) * (train.pinion_teeth[1] - train.pinion_teeth[0] + 1)
+        step = 1
+        while first < count:
+            begun = time.perf_counter()
+            last = min(first + step, count)
+            best, more, good = look(given, aim, first, last, best, found)
+            looked, feasible, first = looked + more, feasible + good, last
+            spent = time.perf_counter() - begun
+            step = 2 * step if spent < 0.25 * SLICE else step
+            if first < count and not _goes_on(clock, looked, best, budget, watch):
+                break
+        proof = _proof(looked, feasible if whole else None, first == count)
+        return _outcome(given, found, best, looked, proof, first == count)
+
+    return run
+
+
+def _goes_on(clock: float, looked: int, best: float, budget: Budget, watch: Watch | None) -> bool:
+    seconds = time.perf_counter() - clock
+    late = budget.seconds is not None and seconds > budget.seconds
+    full = budget.evaluations is not None and looked >= budget.evaluations
+    event = Event(seconds, looked, best if math.isfinite(best) else None)
+    return not (late or full) and (watch is None or watch(event) is not False)
+
+
+def _proof(looked: int, feasible: int | None, done: bool) -> dict[str, Any]:
+    found: dict[str, Any] = {
+        "method": "exhausted" if done else "enumeration, stopped early",
+        "arithmetic": "ratios, tips and bore in whole numbers; error and stress in double",
+        "trains_looked_at": looked,
+    }
+    return found if feasible is None else {**found, "feasible_trains": feasible}
+
+
+def _outcome(
+    given: Numbers, found: Any, best: float, looked: int, proof: dict[str, Any], done: bool
+) -> Outcome:
+    x = point(given, found) if math.isfinite(best) else None
+    if not done:
+        return Outcome(x, finished=False, evaluations=looked, message="stopped before the end")
+    if x is None:
+        text = "no teeth and modules meet all limits"
+        return Outcome(None, infeasible=True, proof=proof, evaluations=looked, message=text)
+    return Outcome(x, bound=best * (1.0 - ROUNDING), proof=proof, evaluations=looked)
+
+
+def point(given: Numbers, row: Any) -> Array:
+    """The point of a kernel's row: pinion teeth, wheel teeth, modules, of both stages."""
+    z1, z2, z3, z4, i, j = (int(v) for v in row)
+    return np.array([z1, z3, z2, z4, given.module[i], given.module[j]], float)
+
+
+def trains(train: ServoTrain, error: float) -> list[Array]:
+    """All feasible trains with an error [rad] of at most `error`, the least error first."""
+    given, code = numbers(train), kernel(KERNEL)
+    count, _ = code.listed(given, error, 0)
+    _, rows = code.listed(given, error, count)
+    points = [point(given, row) for row in rows]
+    errors = [
+        code.worth(given, 2, m1, int(z1), int(z2), m2, int(z3), int(z4))
+        for z1, z3, z2, z4, m1, m2 in points
+    ]
+    return [points[k] for k in np.argsort(errors, kind="stable")]

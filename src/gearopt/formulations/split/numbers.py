@@ -1,0 +1,77 @@
+"""A servo train as its kernels read it: limits as whole numbers of teeth."""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from gearopt.formulations.split.train import ServoTrain
+from gearopt.optimise.terms import Array
+from gearopt.physics.inertia import disc_inertia, disc_mass
+from gearopt.physics.stiffness import lewis_form_factor
+
+
+class Numbers(NamedTuple):
+    """Limits as whole numbers of teeth, the rest as plain numbers.
+
+    least, most (P + 1,): z2 z4 is between least[z1 z3] and most[z1 z3]. wheel: most teeth of a
+    wheel. wheel_1, wheel_2, bored (K,), for each module: most teeth of wheel 1 and 2 by their tips,
+    least of gear 3 by the bore. low, high: total ratio. bore; tip: largest pitch diameter of gear 4
+    [mm]. load: 2 T/(b sigma) [mm2]. lewis: form factors by teeth. disc_mass [kg/mm2] and
+    disc_inertia [t/mm2]: per d^2 and per d^4.
+    """
+
+    least: Any
+    most: Any
+    pinion: Any
+    wheel: int
+    wheel_1: Any
+    wheel_2: Any
+    bored: Any
+    module: Array
+    lewis: Array
+    lost: Array
+    error: float
+    load: float
+    low: float
+    high: float
+    bore: float
+    tip: float
+    disc_mass: float
+    disc_inertia: float
+    shaft_inertia: float
+    sector: float
+
+
+def numbers(train: ServoTrain) -> Numbers:
+    """The numbers of a train; every tie is decided here, in fractions."""
+    low, high = train.ratios
+    most = train.pinion_teeth[1]
+    tips = [[math.floor(tip / m) - 2 for m in train.modules] for tip in train.wheel_tips]
+    wheel = train.most_wheel_teeth or max(map(max, tips))
+    products = range(most**2 + 1)
+    teeth = np.arange(most + 1, dtype=float)
+    return Numbers(
+        least=np.array([math.ceil(low * p) for p in products], np.int64),
+        most=np.array([math.floor(high * p) for p in products], np.int64),
+        pinion=np.array(train.pinion_teeth, np.int64),
+        wheel=wheel,
+        wheel_1=np.minimum(tips[0], wheel),
+        wheel_2=np.minimum(tips[1], wheel),
+        bored=np.array(
+            [max(math.ceil(train.bore / m), train.pinion_teeth[0]) for m in train.modules]
+        ),
+        module=np.array([float(m) for m in train.modules]),
+        lewis=np.array(lewis_form_factor(np.maximum(teeth, train.pinion_teeth[0]))),
+        lost=np.array(train.lost_motion),
+        error=float(train.error),
+        load=2.0 * train.output_torque / (train.face_width * train.bending),
+        low=float(low),
+        high=float(high) * (1.0 + 1e-15),
+        bore=float(train.bore),
+        tip=float(train.wheel_tips[1]),
+        disc_mass=1000.0 * float(disc_mass(train.density, train.face_width, 1.0)),
+        disc_inertia=float(disc_inertia(train.density, train.face_width, 1.0)),
+        shaft_inertia=float(disc_inertia(train.density, train.shaft[1], train.shaft[0])),
+        sector=float(train.sector),
+    )

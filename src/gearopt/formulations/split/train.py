@@ -1,0 +1,129 @@
+"""What is given of a two-stage servo train, and what its sizes make of it.
+
+Stage 1 is at the motor, stage 2 at the load; gears 2 and 3 share a shaft. All gears are solid
+discs, the last one may be a sector. Numbers at which a tie may occur are exact fractions.
+"""
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from gearopt.physics.backlash import output_error
+from gearopt.physics.inertia import disc_inertia, disc_mass
+
+OBJECTIVES = {"inertia": "t mm2", "mass": "kg", "error": "rad"}
+
+
+@dataclass(frozen=True)
+class ServoTrain:
+    """A two-stage train from a motor to a load; lengths in mm, the rest in N, rad, MPa, t.
+
+    ratio: total, within a relative tolerance. modules: those to choose from. pinion_teeth: least
+    and most. most_wheel_teeth: None for no limit. face_width: of all gears. sector: part of a full
+    disc that the last wheel is. output_torque: peak at the load [N mm]. bending: allowable Lewis
+    stress [MPa]. bore: least pitch diameter of gear 3. wheel_tips: largest tip diameters of gears 2
+    and 4. shaft: diameter and length of the middle one. lost_motion: 2 j_t + 2 delta_p of each
+    stage [mm], so that its error at the wheel is that over the wheel's diameter. error: largest at
+    the output [rad].
+    """
+
+    ratio: Fraction
+    tolerance: Fraction
+    modules: tuple[Fraction, ...]
+    pinion_teeth: tuple[int, int]
+    most_wheel_teeth: int | None
+    face_width: float
+    density: float
+    output_torque: float
+    bending: float
+    bore: Fraction
+    wheel_tips: tuple[Fraction, Fraction]
+    shaft: tuple[float, float]
+    lost_motion: tuple[float, float]
+    error: float
+    sector: float = 1.0
+
+    def __post_init__(self) -> None:
+        if not self.ratio > 0 or not 0 <= self.tolerance < 1:
+            raise ValueError("a train needs a ratio > 0 and a tolerance from 0 to below 1")
+        if not self.modules or min(self.modules) <= 0:
+            raise ValueError("a train needs modules > 0 to choose from")
+        if not 12 <= self.pinion_teeth[0] <= self.pinion_teeth[1]:
+            raise ValueError("pinion_teeth: needs 12 (for the Lewis factor) <= least <= most")
+        positive = (self.face_width, self.density, self.output_torque, self.bending, self.error)
+        lengths = (*self.lost_motion, *self.shaft, *self.wheel_tips, self.bore)
+        if not all(value > 0 for value in (*positive, *lengths)):
+            raise ValueError("widths, loads, allowances and limits of a train are positive")
+        if not 0.0 < self.sector <= 1.0:
+            raise ValueError("the sector is a part of a disc: above 0 and at most 1")
+
+    @property
+    def ratios(self) -> tuple[Fraction, Fraction]:
+        """Least and most total ratio."""
+        return self.ratio * (1 - self.tolerance), self.ratio * (1 + self.tolerance)
+
+
+Four = tuple[Any, Any, Any, Any]
+Two = tuple[Any, Any]
+
+
+def train_inertia(
+    density: Any, diameters: Four, widths: Two, ratios: Two, shaft: Two, sector: Any
+) -> Any:
+    """Inertia of gears and shaft [t mm2] seen at the motor.
+
+    J_1 + (J_2 + J_3 + J_s)/n_1^2 + kappa J_4/(n_1 n_2)^2; diameters of gears 1 to 4, widths of the
+    stages and shaft (diameter, length) [mm], ratios n, sector kappa, density [t/mm3].
+    """
+    d1, d2, d3, d4 = diameters
+    (b1, b2), (n1, n2), (thick, long) = widths, ratios, shaft
+    middle = disc_inertia(density, b1, d2) + disc_inertia(density, b2, d3)
+    middle = middle + disc_inertia(density, long, thick)
+    last = sector * disc_inertia(density, b2, d4)
+    return disc_inertia(density, b1, d1) + middle / n1**2 + last / (n1 * n2) ** 2
+
+
+def gear_mass(density: Any, diameters: Four, widths: Two, sector: Any) -> Any:
+    """Mass [kg] of the four gears as discs, the last one as a sector of one.
+
+    density [t/mm3], diameters and widths [mm] as in `train_inertia`.
+    """
+    d1, d2, d3, d4 = diameters
+    b1, b2 = widths
+    first = disc_mass(density, b1, d1) + disc_mass(density, b1, d2)
+    second = disc_mass(density, b2, d3) + sector * disc_mass(density, b2, d4)
+    return 1000.0 * (first + second)
+
+
+def train_error(lost_motion: Two, wheel_1: Any, wheel_2: Any, ratio_2: Any) -> Any:
+    """Error [rad] at the output: lost motion over wheel diameter, that of stage 1 over n_2.
+
+    lost_motion 2 j_t + 2 delta_p of each stage and wheel diameters [mm].
+    """
+    angles = lost_motion[0] / wheel_1, lost_motion[1] / wheel_2
+    return output_error(angles, (ratio_2, 1.0))
+
+
+def objectives(
+    train: ServoTrain, names: tuple[str, ...], diameters: Four, ratios: Two
+) -> dict[str, Any]:
+    """The named objectives of a train of one face width; ValueError for an unknown name."""
+    if unknown := set(names) - set(OBJECTIVES):
+        raise ValueError(f"no objective {unknown.pop()!r}; known: {', '.join(OBJECTIVES)}")
+    widths = (train.face_width, train.face_width)
+    numbers = train.density, diameters, widths
+    found = {
+        "inertia": train_inertia(*numbers, ratios, train.shaft, train.sector),
+        "mass": gear_mass(*numbers, train.sector),
+        "error": train_error(train.lost_motion, diameters[1], diameters[3], ratios[1]),
+    }
+    return {name: found[name] for name in names}
+
+
+def lewis_stress(torque: Any, diameter: Any, face_width: Any, module: Any, form_factor: Any) -> Any:
+    """Lewis stress 2 T/(d b m Y) [MPa] at the root of a gear.
+
+    torque T [N mm] on the gear of pitch diameter d, face_width b, module m [mm]; form_factor Y on
+    the module. No dynamic nor stress concentration factor.
+    """
+    return 2.0 * torque / (diameter * face_width * module * form_factor)

@@ -1,0 +1,46 @@
+"""The chosen train: its stages side by side, and what they add up to."""
+
+from gearopt.optimise.result import Result
+from gearopt.report.measures import Measures
+from gearopt.report.pages import train_views
+from gearopt.report.pages.section import Section
+from gearopt.report.pages.table import Table
+from gearopt.report.result_words import stage_rows
+from gearopt.report.servo_words import STAGE_ROWS, arc_minutes, degrees
+from gearopt.report.words import heading, parted
+
+
+def section(result: Result, measures: Measures) -> Section | None:
+    """Tables of the train, drawn in one line where no box is asked for; None without a train."""
+    found = result.design.get("train")
+    if result.scene != "servo" or not found:
+        return None
+    stages = found["stages"]
+    heads = ["", *(f"stage {k}" for k in range(1, len(stages) + 1))]
+    rows = [[label, *values] for label, values in stage_rows(stages, measures, STAGE_ROWS)]
+    totals = []
+    for key, value in found.items():
+        if key == "stages" or value is None:
+            continue
+        unit = parted(key)[1]
+        totals.append([heading(key, measures), measures.of(value, unit) if unit else value])
+    words = [_sector(found["sector"])] if found.get("sector", 1.0) < 1.0 else []
+    words.append(
+        f"The error of {degrees(found['error_deg'])} ({arc_minutes(found['error_deg'])}) is the "
+        "worst case of backlash and pitch at the output, inertia is seen at the motor."
+    )
+    drawn = () if "box" in result.design else train_views.views(stages, measures)
+    if drawn:
+        words.append(
+            "All shafts are drawn in one line, wheels as full discs; reference circles are "
+            f"dash-dotted. Dimensions in {measures.unit('mm')}."
+        )
+    tables = (Table("stages", heads, rows), Table("train", ("", ""), totals))
+    return Section("Train", words=words, drawings=drawn, tables=tables, half=not drawn)
+
+
+def _sector(share: float) -> str:
+    return (
+        f"The last wheel is a sector of {360.0 * share:.4g}°, {100.0 * share:.4g} % of a full one; "
+        "its mass and inertia are counted so."
+    )
