@@ -54,8 +54,8 @@ def equations():
         3: f"Delta_r = 0.0512, 0.0649 degrees | mm | the sums of Table 2 in mm: "
         f"{youn.RADIAL_SUMS[0]:.4f}, {youn.RADIAL_SUMS[1]:.4f}",
         4: "angles of section 3.1 | those of Table 4 | 48, 104 mm and 8 give "
-        f"{mine:.4f} degrees at the output, the printed 0.091 is {100 * (0.091 / mine - 1):.0f} %; "
-        f"50, 122 mm and 122/13 give {other['both at the output']:.4f}",
+        f"{mine:.4f} degrees at the output, the printed 0.091 is {100 * (1 - 0.091 / mine):.0f} % "
+        f"less; 50, 122 mm and 122/13 give {other['both at the output']:.4f}",
         5: f"backlash of stage 12: 0.086 degrees | {other['backlash of stage 12']:.4f} with 50 mm "
         f"| no D2 gives 0.086 ({w[0][0]:.2f} to {w[0][1]:.2f} mm) and 0.066 ({w[1][0]:.2f} to "
         f"{w[1][1]:.2f} mm); probably a rounding on the way",

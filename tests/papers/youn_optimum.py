@@ -8,6 +8,7 @@ from dataclasses import replace
 from functools import cache
 
 import numpy as np
+import pytest
 import youn
 from servo_tolerances import BASE, E_RSS, E_WC, components, stack
 from servo_trains import PAPER, STIFF
@@ -121,6 +122,10 @@ def design_rows():
         (z1, z3), (z2, z4) = result.design["pinion_teeth"], result.design["wheel_teeth"]
         m = result.design["module_mm"]
         made = values(np.array([z1, z3, z2, z4, *m], float))
+        if "(and least mass)" in name:
+            lightest = best(split.problem, with_error(error), "mass")
+            assert lightest.design["wheel_teeth"] == [z2, z4]
+            assert 1e3 * lightest.value == pytest.approx(made[1], rel=1e-12)
         bound = best(split.relaxation, with_error(error), goal).bound
         least = {
             "inertia": f"J {1e4 * bound:.3f}",

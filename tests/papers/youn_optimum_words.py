@@ -52,7 +52,7 @@ def about_ratio():
     inertia = 1e-4 * values(np.array([*OWN[0], *OWN[1]]))[0]
     n, a = best_ratio(replace(BARE, gear_inertia=inertia))
     return [
-        f"{1e4 * inertia:.3f}e-7 kg m² at the motor, N* is {n:.3f} and the acceleration "
+        f"{1e4 * inertia:.3f}e-7 kg m² at the motor, the best N is {n:.3f} and the acceleration "
         f"{100 * (1 - a / best_ratio(BARE)[1]):.1f} % less",
         "T_M = 50 N mm at standstill, F_M = 3 N mm and F_L = 4.3 kgf cm",
     ]
@@ -70,6 +70,7 @@ def about_split():
         f"stages of {n:.4f} would be lightest, {math.log(48.0) / math.log(n):.2f} of them",
         f"{100 * (1 - lighter[0] / own[0]):.0f} % less inertia and "
         f"{100 * (1 - lighter[1] / own[1]):.0f} % less mass",
+        "with modules of 0.4 mm",
     ]
 
 
@@ -77,8 +78,8 @@ def about_box():
     assert short_side(63.0) <= 80.0 < short_side(63.1)
     small = best(servo_box.problem, in_box(17, 91, 23, 207, 0.3, 0.5)).report
     return [
-        "fits up to 63.0 degrees to either side and not at 63.1: a travel of 45 degrees leaves a "
-        f"sector of {2 * (63.0 - 45.0):.0f} degrees",
+        "fits up to 63.0 degrees to either side and not at 63.1: a travel of 45 degrees to "
+        f"either side leaves a sector of {2 * (63.0 - 45.0):.0f} degrees",
         f"of least J within 0.12 degrees fits, in {small['width']:.1f} x {small['height']:.1f} mm",
     ]
 
