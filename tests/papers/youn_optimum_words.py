@@ -136,6 +136,9 @@ def assumptions():
         f"D1 of {STIFF.module * STIFF.pinion_teeth[0]:g} mm at the least",
         "D3 at least {:g} mm and {:g} mm above shaft 2".format(*STIFF.bore),
         f"widths of {STIFF.face_width:g} and shaft of {STIFF.shaft_diameter:g} mm at the least",
+        "N of {:g} to {:g}, Lewis factors of {} and {} teeth".format(
+            *STIFF.ratio, *STIFF.pinion_teeth
+        ),
         "in the face of {:g} x {:g} mm".format(*box.box),
         f"motor of radius {box.radii[0]:g}, hub of {box.hub:g} mm",
         "in {:g} x {:g} |".format(*box.box),
