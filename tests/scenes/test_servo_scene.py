@@ -244,6 +244,7 @@ def test_neighbours_are_not_beaten_in_all_three():
     for k, own in enumerate(worth):
         others = np.delete(worth, k, axis=0)
         assert not ((others <= own).all(1) & (others < own).any(1)).any()
+    assert len(rows) == 298 and len({r["best_of"] for r in rows}) == 4
     named = {r["best_of"]: r for r in rows if r["best_of"]}
     assert named["mass"]["mass_kg"] == result.value
     error = named["error"]["error_deg"]

@@ -7,6 +7,7 @@ from typing import Any
 from gearopt.formulations import servo_box, split
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run, solve
+from gearopt.optimise.terms import Array
 from gearopt.scenes.axis.choice import FRONT, SHOWN, box_of, front, posed
 from gearopt.scenes.axis.gears import KG_M2, Gears, described, given_gears, of_point
 from gearopt.scenes.axis.ratio import scaled
@@ -30,32 +31,35 @@ def train_part(scene: Scene, ask: Ask) -> tuple[Result, Gears | None]:
 
 
 def neighbours(scene: Scene) -> list[dict[str, Any]]:
-    """The trains that no other is better than in inertia, mass and error; thinned if many."""
+    """The trains that no other is better than in inertia, mass and error; thinned if many.
+
+    One that is the best by two goals stands there twice, each time named by one of them.
+    """
     import numpy as np
 
     found = front(scene)
     if found is None:
         return []
     points, worth = found
-    best = {int(k): name for name, k in zip(SHOWN, worth.argmin(0), strict=True)}
-    many = np.linspace(0, len(points) - 1, FRONT).round().astype(int)
-    shown = sorted({*best, *(many.tolist() if len(points) > FRONT else range(len(points)))})
-    rows = []
-    for k in shown:
-        gears = of_point(points[k])
-        rows.append(
-            {
-                "inertia_kg_m2": KG_M2 * float(worth[k, 0]),
-                "mass_kg": float(worth[k, 1]),
-                "error_deg": math.degrees(worth[k, 2]),
-                "stages": [
-                    {"normal_module_mm": m, "pinion_teeth": z, "wheel_teeth": w}
-                    for m, z, w in zip(gears.modules, gears.pinions, gears.wheels, strict=True)
-                ],
-                "best_of": best.get(k, ""),
-            }
-        )
-    return rows
+    best = worth.argmin(0).tolist()
+    many = np.linspace(0, len(points) - 1, min(FRONT, len(points))).round().astype(int)
+    shown = [(k, "") for k in many.tolist() if k not in best]
+    shown += [(k, name) for k, name in zip(best, SHOWN, strict=True)]
+    return [_neighbour(of_point(points[k]), worth[k], name) for k, name in sorted(shown)]
+
+
+def _neighbour(gears: Gears, worth: Array, best_of: str) -> dict[str, Any]:
+    inertia, mass, error = (float(v) for v in worth)
+    return {
+        "inertia_kg_m2": KG_M2 * inertia,
+        "mass_kg": mass,
+        "error_deg": math.degrees(error),
+        "stages": [
+            {"normal_module_mm": m, "pinion_teeth": z, "wheel_teeth": w}
+            for m, z, w in zip(gears.modules, gears.pinions, gears.wheels, strict=True)
+        ],
+        "best_of": best_of,
+    }
 
 
 def beside(scene: Scene) -> dict[str, Any]:
