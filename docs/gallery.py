@@ -74,6 +74,19 @@ GROUPS = {  # heading: {file: what it shows, in a line}
         "six_cylinders_row_two_layers": "The row, and a second layer above it.",
         "seven_points": "Equal circles in a square: points as far apart as they can be.",
     },
+    "A servo axis": {
+        "servo_gimbal": "Ratio, teeth, stiffness, box and tolerances of a paper's gimbal drive.",
+        "servo_axis": "A turntable on a motor of a data sheet, every table in use.",
+        "servo_gimbal_ratio": "The best ratio with friction, and how little 48 loses.",
+        "servo_gimbal_move": "A move from rest to rest, at the motor's speed limit.",
+        "servo_gimbal_swing": "A sine with the least rms torque.",
+        "servo_gimbal_light": "The least mass instead of the least inertia.",
+        "servo_gimbal_fine": "Only trains that fit the box are chosen.",
+        "servo_gimbal_stiff": "Stiff enough for 200 Hz; real-valued sizes beside whole teeth.",
+        "servo_gimbal_tolerances": "Given gears: the same error for 29 % less cost.",
+        "servo_gimbal_grades": "The same by choice among nine grades.",
+        "servo_gimbal_impossible": "No train is so accurate: what to write instead.",
+    },
     "A compound train": {
         "sandgren_train": "Four tooth numbers nearest to a ratio, proven in rational arithmetic.",
     },
@@ -82,6 +95,7 @@ KINDS = {  # of a file: the page about it, and what is minimised
     "drive": ("drive.md", lambda file: _of_drive(file)),
     "packing": ("packing.md", lambda file: file.get("objective", {}).get("minimise", "volume")),
     "compound": ("compound.md", lambda file: "squared_error"),
+    "servo": ("servo.md", lambda file: _of_servo(file)),
 }
 UNITS = {
     "gear_volume": "mm³",
@@ -89,6 +103,13 @@ UNITS = {
     "volume": "mm³",
     "area": "mm²",
     "squared_error": "",
+    "inertia": "kg m²",
+    "mass": "kg",
+    "error": "deg",
+    "inverse_acceleration": "s²/rad",
+    "move_time": "s",
+    "rms_torque": "N m",
+    "cost": "",
 }
 
 
@@ -119,6 +140,16 @@ def _of_drive(file: Mapping[str, Any]) -> str:
     if "layout" in file:
         found = file["layout"].get("minimise", "box_volume")
     return found
+
+
+def _of_servo(file: Mapping[str, Any]) -> str:
+    if "train" in file:
+        found: str = file["train"].get("minimise", "inertia")
+        return found
+    if "duty" not in file:
+        return "cost"
+    names = {"move": "move_time", "swing": "rms_torque"}
+    return names.get(file["duty"].get("motion", "acceleration"), "inverse_acceleration")
 
 
 def _entry(name: str, words: str) -> str:

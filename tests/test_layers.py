@@ -89,16 +89,20 @@ def test_files_are_one_idea_long():
 
 
 HEAVY = ("pint", "numba", "cvxpy", "pymoo", "scipy", "plotly", "jinja2", "matplotlib")
+SERVO = tuple(
+    f"gearopt.{name}"
+    for name in ("scenes.servo", "scenes.axis", "formulations.split", "formulations.tolerance")
+)
 
 
 def test_sizing_path_stays_light():
-    """`gearopt solve` imports none of the heavy libraries."""
+    """`gearopt solve` of a drive imports none of the heavy libraries, and nothing of servo axes."""
     problem = SRC.parents[1] / "problems" / "elevator.toml"
     code = (
         "import sys; sys.argv = ['gearopt', 'solve', sys.argv[1], '--json']\n"
         "from gearopt.__main__ import main\n"
         "try:\n    main()\nexcept SystemExit as end:\n    assert not end.code, end.code\n"
-        f"print([m for m in {HEAVY!r} if m in sys.modules], file=sys.stderr)"
+        f"print([m for m in {(*HEAVY, *SERVO)!r} if m in sys.modules], file=sys.stderr)"
     )
     done = subprocess.run(
         [sys.executable, "-c", code, str(problem)], capture_output=True, text=True, check=True

@@ -1,6 +1,7 @@
 """Every file in problems/ gives the answer it names in its own [x-expected] table."""
 
 import tomllib
+from decimal import Decimal
 from pathlib import Path
 
 import pytest
@@ -15,6 +16,10 @@ KEYS = {  # of [x-expected], as the tests below read them
     },
     "packing": {"status", "objective", "tolerance", "bound"},
     "compound": {"status", "objective"},
+    "servo": {
+        *("status", "objective", "ratio", "given", "stiff", "real_valued_bound"),
+        "least_factor",
+    },
 }
 DIGIT = {"objective": 0.06, "sizing": 0.006}  # the values are printed to tenths and hundredths
 
@@ -59,6 +64,34 @@ def test_expected_compound_train(path):
     result = gearopt.solve(path)
     assert result.status == expected["status"] and result.gap < 1e-8
     assert result.value == pytest.approx(expected["objective"], rel=1e-9)
+
+
+@pytest.mark.parametrize("path", of_kind("servo"))
+def test_expected_servo_axis(path):
+    """Values are held to half a unit of the last digit that their source prints."""
+    content = tomllib.loads(path.read_text(encoding="utf-8"), parse_float=str)
+    expected = content["x-expected"]
+    result = gearopt.solve(path)
+    assert result.status == expected["status"]
+    parts = {part.name: part for part in (result, *result.parts)}
+    told = {
+        "objective": lambda: result.value,
+        "ratio": lambda: result.report["best_total_ratio"],
+        "given": lambda: result.design["ratio"]["given"]["value"],
+        "stiff": lambda: parts["stiff"].value,
+        "real_valued_bound": lambda: next(
+            v for k, v in result.report.items() if k.startswith("real_valued_bound")
+        ),
+        "least_factor": lambda: result.report["ways_out"]["remedies"][0]["bound"],
+    }
+    for name in expected.keys() - {"status"}:
+        last = Decimal(expected[name]).as_tuple().exponent
+        assert told[name]() == pytest.approx(float(expected[name]), abs=0.55 * 10.0**last), name
+    assert all(part.status == "optimal" for part in result.parts)
+    if result.value is not None:
+        assert result.bound <= result.value * (1 + 1e-12) and result.gap < 1e-9
+    for remedy in result.report.get("ways_out", {"remedies": ()})["remedies"]:
+        assert remedy["verified"] == {"with": "optimal", "with_less": "infeasible"}
 
 
 @pytest.mark.parametrize("path", of_kind("drive"))

@@ -16,6 +16,9 @@ INSIDE = {  # dimension -> what one is inside
     "stress": "megapascal",
     "angle": "radian",
     "density": "metric_ton / millimeter**3",
+    "inertia": "metric_ton * millimeter**2",
+    "torque": "newton * millimeter",
+    "frequency": "1 / second",
     "fraction": "dimensionless",
 }
 NAMES = {  # where pint's name is another; a speed of 1/min or 1/s counts revolutions
@@ -25,22 +28,40 @@ NAMES = {  # where pint's name is another; a speed of 1/min or 1/s counts revolu
     "1/min": "revolution / minute",
     "1/s": "revolution / second",
     "Hz": "revolution / second",
+    ("frequency", "Hz"): "1 / second",
+    ("frequency", "kHz"): "1000 / second",
     "deg/s": "degree / second",
     "rad/s": "radian / second",
     "in": "inch",
     "um": "micrometer",
     "deg": "degree",
+    "mrad": "milliradian",
+    "arcmin": "arcminute",
+    "arcsec": "arcsecond",
     "%": "percent",
     "lb/in^3": "pound / inch**3",
     "ksi": "kilopound_force_per_square_inch",
     "psi": "pound_force_per_square_inch",
+    "lb in^2": "pound * inch**2",
+    "oz in^2": "ounce * inch**2",
+    "lbf in s^2": "pound_force * inch * second**2",
+    "ozf in s^2": "ounce_force * inch * second**2",
+    "mN m": "millinewton * meter",
+    "mNm": "millinewton * meter",
+    "Nm": "newton * meter",
+    "kgf cm": "kilogram_force * centimeter",
+    "gf cm": "0.001 * kilogram_force * centimeter",
+    "lbf in": "pound_force * inch",
+    "lbf ft": "pound_force * foot",
+    "ozf in": "ounce_force * inch",
 }
 ALL = [(dimension, unit) for dimension, units in UNITS.items() for unit in units]
 
 
 @pytest.mark.parametrize(("dimension", "unit"), ALL, ids=[f"{d} {u}" for d, u in ALL])
 def test_every_unit_agrees_with_pint(dimension, unit):
-    theirs = PINT.Quantity(7.25, NAMES.get(unit, unit)).to(INSIDE[dimension]).magnitude
+    name = NAMES.get((dimension, unit), NAMES.get(unit, unit))
+    theirs = (7.25 * PINT.parse_expression(name)).to(INSIDE[dimension]).magnitude
     assert parse(f"7.25 {unit}", dimension).value == pytest.approx(theirs, rel=1e-12)
 
 

@@ -3,7 +3,8 @@
 A factor is exact: a rational number times a power of pi, so that the quotient of two speeds in
 rpm is a rational number and a ratio limit can be decided without rounding. Definitions: inch,
 pound, standard gravity, horsepower (550 ft lbf/s) and metric horsepower (75 kgf m/s) as fixed by
-international agreement (NIST SP 811, appendix B); checked against pint in the tests.
+international agreement (NIST SP 811, appendix B), an ounce is a pound/16; checked against pint in
+the tests.
 """
 
 import math
@@ -45,7 +46,13 @@ UNITS: dict[str, dict[str, tuple[Fraction, int]]] = {
         "psi": (_POUND_FORCE / _INCH**2, 0),
         "ksi": (1000 * _POUND_FORCE / _INCH**2, 0),
     },
-    "angle": {"deg": (Fraction(1, 180), 1), "rad": (Fraction(1), 0)},
+    "angle": {
+        "deg": (Fraction(1, 180), 1),
+        "rad": (Fraction(1), 0),
+        "mrad": (Fraction(1, 1000), 0),
+        "arcmin": (Fraction(1, 180 * 60), 1),
+        "arcsec": (Fraction(1, 180 * 3600), 1),
+    },
     "density": {  # t/mm3
         "kg/m^3": (Fraction(1, 10**12), 0),
         "kg/dm^3": (Fraction(1, 10**9), 0),
@@ -53,10 +60,27 @@ UNITS: dict[str, dict[str, tuple[Fraction, int]]] = {
         "t/m^3": (Fraction(1, 10**9), 0),
         "lb/in^3": (_POUND / 1000 / _INCH**3, 0),
     },
+    "inertia": {  # t mm2
+        **_table(
+            **{"kg m^2": Fraction(1000), "kg cm^2": Fraction(1, 10), "kg mm^2": Fraction(1, 1000)}
+        ),
+        **_table(**{"g cm^2": Fraction(1, 10**4), "g mm^2": Fraction(1, 10**6)}),
+        **_table(**{"lb in^2": _POUND / 1000 * _INCH**2, "oz in^2": _POUND / 16000 * _INCH**2}),
+        **_table(**{"lbf in s^2": _POUND_FORCE * _INCH, "ozf in s^2": _POUND_FORCE / 16 * _INCH}),
+    },
+    "torque": {  # N mm
+        **_table(**{"N m": 1000, "Nm": 1000, "N mm": 1, "mN m": 1, "mNm": 1, "kN m": 10**6}),
+        **_table(**{"kgf cm": 10 * _GRAVITY, "gf cm": _GRAVITY / 100}),
+        **_table(**{"lbf in": _POUND_FORCE * _INCH, "lbf ft": 12 * _POUND_FORCE * _INCH}),
+        **_table(**{"ozf in": _POUND_FORCE / 16 * _INCH}),
+    },
+    "frequency": _table(Hz=1, kHz=1000),  # 1/s
     "fraction": {"%": (Fraction(1, 100), 0)},
 }
 
-_PATTERN = re.compile(r"([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,4})?)\s*(\S+)?")
+_NUMBER = r"([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,4})?)"
+_UNIT = r"((?![eE][+-]?[0-9])[^\s\d.,].*?|1/\S+)?"  # it may hold spaces: N m
+_PATTERN = re.compile(rf"{_NUMBER}\s*{_UNIT}")
 _LONGEST = 80  # characters of a quantity
 
 

@@ -11,7 +11,8 @@ from gearopt.formulations.split.core import (
     lightest_stage_ratio,
     stage_counts,
 )
-from gearopt.formulations.split.exact import trains
+from gearopt.formulations.split.exact import feasible, trains
+from gearopt.formulations.split.front import unbeaten
 from gearopt.formulations.split.relaxation import relaxation
 from gearopt.formulations.split.stiff import StiffTrain, stiff
 from gearopt.formulations.split.teeth import problem
@@ -22,6 +23,7 @@ __all__ = [
     "ServoTrain",
     "StiffTrain",
     "core",
+    "feasible",
     "first_ratio",
     "lightest_stage_ratio",
     "problem",
@@ -29,4 +31,5 @@ __all__ = [
     "stage_counts",
     "stiff",
     "trains",
+    "unbeaten",
 ]

@@ -82,6 +82,17 @@ def point(given: Numbers, row: Any) -> Array:
     return np.array([z1, z3, z2, z4, given.module[i], given.module[j]], float)
 
 
+def feasible(train: ServoTrain, most: int = 3_000_000) -> Array | None:
+    """All feasible trains as points of `split.problem`, (trains, 6); None for more than `most`."""
+    given, listed = numbers(train), kernel(KERNEL).listed
+    count, _ = listed(given, math.inf, 0)
+    if count > most:
+        return None
+    _, rows = listed(given, math.inf, count)
+    z1, z2, z3, z4, i, j = rows.T
+    return np.column_stack([z1, z3, z2, z4, given.module[i], given.module[j]]).astype(float)
+
+
 def trains(train: ServoTrain, error: float) -> list[Array]:
     """All feasible trains with an error [rad] of at most `error`, the least error first."""
     given, code = numbers(train), kernel(KERNEL)

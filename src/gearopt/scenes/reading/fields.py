@@ -119,7 +119,7 @@ def quantity(
             raise refuse(rule, usable(value.strip().removeprefix("-")))
         return found
 
-    alternatives = "|".join(re.escape(unit) for unit in units.UNITS[dimension])
+    alternatives = "|".join(re.escape(u).replace("\\ ", " ") for u in units.UNITS[dimension])
     sign = "[+-]?" if signed else r"\+?"
     number = sign + r"([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?"
     schema = {"type": "string", "pattern": rf"^\s*{number}\s*({alternatives})\s*$"}

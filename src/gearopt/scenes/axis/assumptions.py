@@ -1,0 +1,88 @@
+"""What the answer for a servo axis takes for granted, in sentences."""
+
+from typing import Any
+
+from gearopt.optimise.result import Result
+from gearopt.physics.geometry import teeth_without_undercut
+from gearopt.scenes.tables.servo import Scene
+
+FRICTION = {
+    "acceleration": "The motor speeds the load up; friction is Coulomb's and opposes the motion.",
+    "move": "Ramps up and down are alike, though friction helps to brake; the motor's torque is "
+    "the same up to its speed limit.",
+    "swing": "Coulomb friction is in phase with the speed, inertia with the acceleration; no "
+    "losses in the train.",
+}
+
+
+def assumptions(scene: Scene) -> list[str]:
+    """All that holds for this file."""
+    found = []
+    if scene.duty is not None:
+        found.append(FRICTION[scene.duty.motion])
+        found.append("The best ratio counts the motor's inertia alone, not that of the train.")
+    if scene.train is not None:
+        found += _of_train(scene)
+    if scene.mesh:
+        found.append(
+            "Error: lost motion between both flanks at the output, by small angles; every "
+            "deviation is one-sided and at its worst at once."
+        )
+    if any(mesh.grade is not None for mesh in scene.mesh):
+        found.append(
+            "Pitch deviations by grade are F_pT of ISO 1328-1:2013, not rounded, of both gears."
+        )
+    if scene.tolerances is not None:
+        found.append(
+            "Cost: each tolerance costs 1 as it is, (old/new)^exponent otherwise. Drawn errors: "
+            "run-outs t cos(phi), phi uniform; all else uniform from 0 to t."
+        )
+    return found
+
+
+def _of_train(scene: Scene) -> list[str]:
+    assert scene.train is not None
+    found = [
+        "External spur gears without profile shift, solid discs of one face width; addendum 1 m.",
+        f"The last wheel is {100.0 * float(scene.train.sector):g} % of a disc.",
+        "Bending stress after Lewis at the tip of one tooth, form factor pi (0.154 - 0.912/z): no "
+        "dynamic, load distribution or notch factor, and no contact stress. It is no rating by "
+        "ISO 6336 or AGMA 2101.",
+    ]
+    if scene.stiffness is not None:
+        found.append(
+            "Stiffness: one pair of teeth in mesh, the shaft between the stages twisted over its "
+            "length; bearings, housing, motor and output shaft are rigid; motor locked."
+        )
+        if scene.stiffness.line_stiffness is None:
+            found.append("Line stiffness of a mesh after Buckingham and Lewis: unverified.")
+    if scene.space is not None:
+        found.append(
+            "The box is that of gears, motor and hub seen along the shafts, without clearances; "
+            "its depth is not checked."
+        )
+    return found
+
+
+def notes(scene: Scene, design: dict[str, Any], results: tuple[Result, ...]) -> list[str]:
+    """What a reader should know beside the numbers."""
+    found = []
+    if not design.get("box", {}).get("fits", True):
+        found.append("The best train does not fit the box of [space].")
+    clean = teeth_without_undercut(scene.accuracy.pressure_angle.value, 0.0)
+    found += [
+        f"The pinion of stage {k} is undercut: without profile shift a rack cuts {clean:.1f} teeth "
+        "and more cleanly."
+        for k, stage in enumerate(design.get("train", {}).get("stages", []), 1)
+        if stage["pinion_teeth"] < clean
+    ]
+    if scene.lightest is not None:
+        found.append(
+            "The lightest train has real-valued sizes: it is a floor for gears with whole teeth."
+        )
+    found += [
+        f"There is no answer for the part {part.name}: {part.message or part.status}."
+        for part in results[1:]
+        if part.value is None
+    ]
+    return found

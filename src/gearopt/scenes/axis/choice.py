@@ -1,0 +1,138 @@
+"""The whole teeth and modules of a servo train: the formulation, held to stiffness and box too."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Any
+
+from gearopt.errors import SolveError
+from gearopt.formulations import servo_box, split
+from gearopt.formulations.split import OBJECTIVES
+from gearopt.optimise.explaining.repair import Clock
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.result import Budget, Event, Outcome, Watch
+from gearopt.optimise.terms import Array, Terms
+from gearopt.scenes.axis.gears import KG_M2
+from gearopt.scenes.axis.springs import output_stiffness
+from gearopt.scenes.tables.servo import Scene
+
+ROUNDING = 1e-12  # of an objective
+SHOWN = {  # objective: factor to the unit that is shown, the unit
+    "inertia": (KG_M2, "kg_m2"),
+    "mass": (1.0, "kg"),
+    "error": (180.0 / math.pi, "deg"),
+}
+FRONT = 400  # trains that are shown
+
+
+def posed(scene: Scene, boxed: bool = True) -> Problem:
+    """The problem of a file's train in the units of `SHOWN`.
+
+    boxed: its exact method keeps to a required box too, which is no row of the problem.
+    """
+    assert scene.train is not None
+    goal = scene.train.minimise
+    base, factor = split.problem(scene.servo_train(), goal), SHOWN[goal][0]
+    boxed = boxed and scene.space is not None and scene.space.required
+    least = scene.least_stiffness
+    held = boxed or least is not None
+
+    def evaluate(x: Any, p: Any) -> Terms:
+        found = base.evaluate(x, p)
+        limits = dict(found.limits)
+        if least is not None:
+            (z1, z3), (z2, z4), (m1, m2) = x.pinion_teeth, x.wheel_teeth, x.module
+            limits["stiffness"] = least / output_stiffness(scene, (z1, z3, z2, z4, m1, m2))
+        return replace(found, minimise={goal: factor * found.minimise[goal]}, limits=limits)
+
+    def exact(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
+        """The best train; where it breaks a limit, all trains in order until one keeps it."""
+        found: Outcome = base.methods["exact"](base, budget, seed, watch)
+        if held and found.x is not None and not _keeps(scene, found.x, boxed):
+            clock = Clock(budget, watch)
+            try:
+                found = _in_order(scene, base, boxed, clock)
+            except TimeoutError as early:
+                found = Outcome(None, finished=False, message=str(early))
+        return found if found.bound is None else replace(found, bound=factor * found.bound)
+
+    return Problem("train", base.variables, (), evaluate, methods={"exact": exact})
+
+
+def box_of(scene: Scene, point: Array) -> servo_box.ServoBox:
+    """The box of a train, as its layout sees it."""
+    space = scene.space
+    assert space is not None
+    return servo_box.of_train(
+        point,
+        0.5 * space.motor_diameter.value,
+        0.5 * space.hub_diameter.value,
+        min(0.5 * space.swept_angle.value, math.pi),
+        (space.width.value, space.height.value),
+    )
+
+
+def _keeps(scene: Scene, point: Array, boxed: bool) -> bool:
+    least = scene.least_stiffness
+    if least is not None and least > output_stiffness(scene, point):
+        return False
+    return not boxed or servo_box.first_that_fits([box_of(scene, point)]) is not None
+
+
+def _in_order(scene: Scene, base: Problem, boxed: bool, clock: Clock) -> Outcome:
+    """All feasible trains, the best first, until one is stiff and fits; TimeoutError if late."""
+    points = split.feasible(scene.servo_train())
+    if points is None:
+        raise SolveError(
+            "there are too many feasible trains to hold them to stiffness or box one by one: "
+            "narrow pinion_teeth, modules or error in the file"
+        )
+    values = base.batch(points).F[:, 0]
+    order = values.argsort(kind="stable")
+    least = scene.least_stiffness
+    if least is not None:
+        order = order[output_stiffness(scene, points[order].T) >= least]
+    stiff, place = len(order), 0
+
+    def boxes() -> Iterator[servo_box.ServoBox]:
+        for count, k in enumerate(order):
+            event = Event(clock.seconds, count)
+            if clock.over or (clock.watch is not None and clock.watch(event) is False):
+                raise TimeoutError(f"stopped after {count:,} of {stiff:,} trains did not fit")
+            yield box_of(scene, points[k])
+
+    if boxed:
+        found = servo_box.first_that_fits(boxes())
+        place = stiff if found is None else found[0]
+    proof: dict[str, Any] = {
+        "method": "exhausted",
+        "arithmetic": "ratios, tips and bore in whole numbers; the rest in double",
+        "trains_looked_at": len(points),
+    }
+    if least is not None:
+        proof["trains_stiff_enough"] = stiff
+    if place >= stiff:
+        what = "the box" if stiff else "the stiffness that is asked for"
+        text = f"none of the {len(points):,} trains that keep all other limits keeps {what}"
+        return Outcome(None, infeasible=True, proof=proof, evaluations=len(points), message=text)
+    value = float(values[order[place]])
+    bound = value * (1.0 - ROUNDING)
+    return Outcome(points[order[place]], bound=bound, proof=proof, evaluations=len(points))
+
+
+def front(scene: Scene) -> tuple[Array, Array] | None:
+    """Points and (inertia, mass, error) of all trains that no other is better than in all three.
+
+    Stiffness is kept, a box not looked at; None where the feasible trains are too many.
+    """
+    train = scene.servo_train()
+    points = split.feasible(train)
+    if points is None or len(points) == 0:
+        return None
+    if (least := scene.least_stiffness) is not None:
+        points = points[output_stiffness(scene, points.T) >= least]
+    if len(points) == 0:
+        return None
+    worth = split.problem(train, *OBJECTIVES).batch(points).F
+    kept = split.unbeaten(worth)
+    return points[kept], worth[kept]

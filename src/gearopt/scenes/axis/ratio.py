@@ -1,0 +1,161 @@
+"""The total ratio of a servo axis: the best one, how flat its optimum is, a given one beside it."""
+
+import math
+from dataclasses import replace
+from typing import Any
+
+from gearopt.formulations.ratio import acceleration, move, swing
+from gearopt.formulations.ratio.drive import Drive
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.result import Result
+from gearopt.optimise.solve import run
+from gearopt.physics.servo_drive import (
+    largest_acceleration,
+    load_acceleration,
+    rms_torque,
+    shortest_move_time,
+    torque_slope,
+)
+from gearopt.scenes.reading.ask import Ask
+from gearopt.scenes.tables.servo import Scene
+from gearopt.scenes.tables.servo_motion import Duty, drive
+
+NAMES = {  # of the value that a duty is judged by, its unit, and as a key
+    "acceleration": ("load acceleration", "rad/s²", "load_acceleration_rad_per_s2"),
+    "move": ("move time", "s", "move_time_s"),
+    "swing": ("rms torque", "N m", "rms_torque_Nm"),
+}
+POINTS = 200  # of the curve
+REACH = 5.0  # of the curve, to either side of the best ratio
+
+
+def problem(duty: Duty, axis: Drive) -> Problem:
+    """The problem of a duty."""
+    if duty.motion == "move":
+        assert duty.angle is not None
+        return move(axis, duty.angle.value)
+    if duty.motion == "swing":
+        assert duty.amplitude is not None
+        return swing(axis, duty.amplitude.value, _angular(duty))
+    return acceleration(axis, duty.load_speed.value if duty.load_speed else 0.0)
+
+
+def _angular(duty: Duty) -> float:
+    assert duty.frequency is not None
+    return 2.0 * math.pi * duty.frequency.value
+
+
+def value(duty: Duty, axis: Drive, ratio: Any) -> Any:
+    """What a duty is judged by, at ratios: rad/s2, s or N m; NaN where the load does not move."""
+    import numpy as np
+
+    n = np.asarray(ratio, float)
+    if duty.motion == "swing":
+        assert duty.amplitude is not None
+        peak = duty.amplitude.value * _angular(duty) ** 2
+        own = axis.load_inertia, axis.inertia, peak, axis.load_friction, axis.motor_friction
+        return 1e-3 * rms_torque(n, *own)
+    speed = duty.load_speed.value if duty.load_speed else 0.0
+    slope = torque_slope(axis.torque, speed, axis.no_load_speed)
+    own = axis.load_inertia, axis.inertia, axis.net_torque, axis.load_friction, axis.efficiency
+    found = load_acceleration(n, *own, slope)
+    found = np.where(found > 0.0, found, np.nan)
+    if duty.motion == "acceleration":
+        return found
+    assert duty.angle is not None
+    return shortest_move_time(duty.angle.value, axis.speed_limit / n, found)
+
+
+def ratio_part(scene: Scene, ask: Ask) -> tuple[Result, dict[str, Any], dict[str, Any]]:
+    """The certified best ratio, its part of the design, and its part of the report."""
+    duty, motor, load = scene.duty, scene.motor, scene.load
+    assert duty is not None and motor is not None and load is not None
+    axis = drive(motor, load)
+    result, outcome = run(problem(duty, axis), ask.method, ask.budget, ask.seed, ask.watch, ask.gap)
+    result = converted(result, duty)
+    if result.value is None or outcome.x is None:
+        return result, {}, {}
+    best = float(outcome.x[0])
+    name, unit, key = NAMES[duty.motion]
+    reached = float(value(duty, axis, best))
+    design = {
+        "duty": duty.motion,
+        "total_ratio": best,
+        "value": reached,
+        "name": name,
+        "unit": unit,
+        "given": _given(scene, axis, reached),
+        "curve": _curve(duty, axis, best),
+    }
+    report: dict[str, Any] = {"best_total_ratio": best, f"best_{key}": reached}
+    if load.inertia.value > 0.0:
+        matched = math.sqrt(axis.load_inertia / axis.motor_inertia)
+        report["matched_inertia_ratio"] = matched
+        if motor.torque is not None:
+            numbers = axis.load_inertia, axis.motor_inertia, axis.torque
+            report["frictionless_load_acceleration_rad_per_s2"] = largest_acceleration(*numbers)
+            net = axis.load_inertia, axis.motor_inertia, axis.net_torque
+            report["load_acceleration_without_load_friction_rad_per_s2"] = largest_acceleration(
+                *net
+            )
+    if (given := design["given"]) is not None:
+        report[f"given_{key}"] = given["value"]  # type: ignore[index]
+    return replace(result, design={"ratio": design}), design, report
+
+
+def with_train(scene: Scene, gear_inertia: float) -> dict[str, Any]:
+    """The best ratio where the train's own inertia [t mm2] at the motor is counted too."""
+    duty, motor, load = scene.duty, scene.motor, scene.load
+    assert duty is not None and motor is not None and load is not None
+    axis = drive(motor, load, gear_inertia)
+    result, outcome = run(problem(duty, axis))
+    if result.value is None or outcome.x is None:
+        return {}
+    best = float(outcome.x[0])
+    key = NAMES[duty.motion][2]
+    return {
+        "best_total_ratio_with_train": best,
+        f"best_{key}_with_train": float(value(duty, axis, best)),
+    }
+
+
+def converted(result: Result, duty: Duty) -> Result:
+    """The result of a duty in plain units: 1/a in s2/rad, time in s, torque in N m."""
+    if duty.motion == "swing":
+        return scaled(result, 1e-3, "Nm")
+    return scaled(result, 1.0, "s" if duty.motion == "move" else "s2/rad")
+
+
+def scaled(result: Result, factor: float, unit: str) -> Result:
+    """A result whose objective and bound are shown in another unit."""
+    found = None if result.value is None else factor * result.value
+    bound = None if result.bound is None else factor * result.bound
+    return replace(result, objective=result.objective | {"value": found, "unit": unit}, bound=bound)
+
+
+def _given(scene: Scene, axis: Drive, best: float) -> dict[str, Any] | None:
+    """The ratio of the file beside the best one; None where it gives none, or nothing moves."""
+    assert scene.duty is not None
+    asked = scene.duty.ratio
+    if asked is None and scene.train is not None:
+        asked = scene.train.ratios[0]
+    if asked is None:
+        return None
+    there = float(value(scene.duty, axis, float(asked)))
+    if not math.isfinite(there):
+        return None
+    more = scene.duty.motion == "acceleration"
+    loss = 100.0 * (1.0 - there / best if more else there / best - 1.0)
+    return {"total_ratio": float(asked), "value": there, "loss_percent": loss}
+
+
+def _curve(duty: Duty, axis: Drive, best: float) -> dict[str, list[float]]:
+    """The value about the best ratio, where the load moves and the motor's speed allows it."""
+    import numpy as np
+
+    low, high = axis.ratios(duty.load_speed.value if duty.load_speed else 0.0)
+    ratios = np.geomspace(max(best / REACH, low), min(best * REACH, high), POINTS)
+    ratios = np.unique(np.append(ratios, best))
+    values = value(duty, axis, ratios)
+    moves = np.isfinite(values)
+    return {"total_ratio": ratios[moves].tolist(), "value": values[moves].tolist()}

@@ -1,0 +1,148 @@
+"""What to write instead where no train is accurate enough: found by solving, and solved again."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
+
+from gearopt import units
+from gearopt.formulations import split
+from gearopt.optimise.explaining.explanation import Change, Remedy
+from gearopt.optimise.result import Budget, Result
+from gearopt.optimise.solve import solve
+from gearopt.scenes.axis.choice import posed
+from gearopt.scenes.axis.gears import errors, of_point
+from gearopt.scenes.tables.servo import Scene
+from gearopt.scenes.tables.servo_mesh import WORDS, Mesh
+from gearopt.units import Quantity
+
+DIGITS = 5  # of a number that is proposed; rounded to the easy side
+ROOM = 1e-9  # by which a proposal is easier, to be feasible in doubles
+BACK = 1e-3  # a remedy that much smaller must be impossible
+LOOSE = "90 deg"  # an error that no train misses
+NAMED = 3  # sources of error that the message names
+
+
+def ways_out(scene: Scene, budget: Budget) -> tuple[tuple[str, ...], tuple[Remedy, ...], str]:
+    """Limits in conflict, remedies and a message for a train that is impossible."""
+    asked = scene.accuracy.error
+    assert asked is not None and scene.train is not None
+    free = with_error(scene, units.parse(LOOSE, "angle"))
+    assert free.train is not None
+    aim = free.train.model_copy(update={"minimise": "error"})
+    least = solve(posed(free.model_copy(update={"train": aim})), budget=budget)
+    if least.value is None:
+        return (), (), f"it is not for the accuracy: {least.message or least.status}"
+    if least.status != "optimal":
+        return (), (), "time ran out before the least possible error was proven"
+    best = units.parse(f"{least.value!r} deg", "angle")
+    conflict, floor = _conflict(scene)
+    bound = (floor or best.value) / asked.value
+    found = (_wider(scene, best, bound, budget), *_finer(scene, best, bound, budget))
+    return conflict, found, _message(free, least)
+
+
+def _conflict(scene: Scene) -> tuple[tuple[str, ...], float | None]:
+    """Limits that real-valued teeth and modules do not keep either, and their least error [rad].
+
+    Nothing where they keep all of them.
+    """
+    train = scene.servo_train()
+    relaxed = solve(split.relaxation(train, "error"))
+    if relaxed.status != "infeasible":
+        return (), None
+    free = solve(split.relaxation(replace(train, error=math.pi), "error"))
+    return tuple(relaxed.proof.get("conflict", ())), free.bound
+
+
+def with_error(scene: Scene, error: Quantity) -> Scene:
+    """The scene with another largest error."""
+    accuracy = scene.accuracy.model_copy(update={"error": error})
+    return scene.model_copy(update={"accuracy": accuracy})
+
+
+def _message(scene: Scene, least: Result) -> str:
+    import numpy as np
+
+    point = np.array(
+        [
+            *least.design["pinion_teeth"],
+            *least.design["wheel_teeth"],
+            *least.design["module_mm"],
+        ],
+        float,
+    )
+    rows = sorted(errors(scene, of_point(point)), key=lambda row: -row["error_deg"])
+    largest = ", ".join(f"{row['source']} {row['error_deg']:.4f} deg" for row in rows[:NAMED])
+    return (
+        f"the most accurate train has an error of {least.value:.5f} deg; of it the largest parts "
+        f"are {largest}"
+    )
+
+
+def _rounded(value: float, up: bool) -> str:
+    context = Context(prec=DIGITS, rounding=ROUND_CEILING if up else ROUND_FLOOR)
+    return f"{context.create_decimal(Decimal(value)).normalize():f}"
+
+
+def _wider(scene: Scene, best: Quantity, bound: float, budget: Budget) -> Remedy:
+    """The least error that can be asked for."""
+    asked = scene.accuracy.error
+    assert asked is not None
+    scale = asked.value / float(asked.number)
+    write = f"{_rounded(best.value / scale * (1.0 + ROOM), True)} {asked.unit}"
+    less = units.parse(f"{best.value / scale * (1.0 - BACK)!r} {asked.unit}", "angle")
+    new = units.parse(write, "angle")
+    factor = new.value / asked.value
+    return Remedy(
+        "least",
+        "accuracy.error",
+        (Change("accuracy.error", f'"{asked}"', f'"{write}"', factor),),
+        factor,
+        bound,
+        {
+            "with": _status(with_error(scene, new), budget),
+            "with_less": _status(with_error(scene, less), budget),
+        },
+    )
+
+
+def _finer(scene: Scene, best: Quantity, bound: float, budget: Budget) -> Sequence[Remedy]:
+    """All deviations smaller by one factor: the error of every train is in proportion to them."""
+    asked = scene.accuracy.error
+    assert asked is not None
+    if any(mesh.grade is not None for mesh in scene.mesh):
+        return ()
+    part = asked.value / best.value * (1.0 - ROOM)
+    changes = [
+        Change(f"mesh[{k}].{name}", f'"{was}"', f'"{_times(was, part)}"', 1.0 / part)
+        for k, mesh in enumerate(scene.mesh, 1)
+        for name in WORDS
+        if (was := getattr(mesh, name)) is not None and was.number > 0
+    ]
+    verified = {
+        "with": _status(_scaled(scene, part), budget),
+        "with_less": _status(_scaled(scene, part * (1.0 + BACK), exact=True), budget),
+    }
+    return (Remedy("even", "all deviations", tuple(changes), 1.0 / part, bound, verified),)
+
+
+def _times(was: Quantity, part: float) -> str:
+    return f"{_rounded(float(was.number) * part, False)} {was.unit}"
+
+
+def _scaled(scene: Scene, part: float, exact: bool = False) -> Scene:
+    def scaled(mesh: Mesh) -> Mesh:
+        update = {}
+        for name in WORDS:
+            was = getattr(mesh, name)
+            if was is not None and was.number > 0:
+                text = f"{float(was.number) * part!r} {was.unit}" if exact else _times(was, part)
+                update[name] = units.parse(text, "length")
+        return mesh.model_copy(update=update)
+
+    return scene.model_copy(update={"mesh": tuple(scaled(mesh) for mesh in scene.mesh)})
+
+
+def _status(scene: Scene, budget: Budget) -> str:
+    return solve(posed(scene), budget=budget).status

@@ -1,0 +1,161 @@
+"""kind = "servo": a motor, a two-stage gear train and a load that must be moved and placed.
+
+Tables switch parts on: the best total ratio, the teeth and modules of the train, its stiffness and
+box, the tolerances that its accuracy asks for. Each is a certified result; the first that a file
+asks for of train, ratio and tolerances is the answer, the others are its parts.
+"""
+
+from dataclasses import asdict, dataclass, field, replace
+from typing import Any
+
+from gearopt.optimise.comparing.trial import Model
+from gearopt.optimise.explaining.explain import binding
+from gearopt.optimise.explaining.explanation import Change, Explanation, Remedy
+from gearopt.optimise.explaining.repair import Clock
+from gearopt.optimise.result import Result
+from gearopt.scenes.axis.assumptions import assumptions, notes
+from gearopt.scenes.axis.choice import SHOWN, posed
+from gearopt.scenes.axis.gears import KG_M2, Gears, described, errors, given_gears
+from gearopt.scenes.axis.ratio import problem as ratio_problem
+from gearopt.scenes.axis.ratio import ratio_part, with_train
+from gearopt.scenes.axis.springs import stiffness_of
+from gearopt.scenes.axis.tolerances import problem as tolerance_problem
+from gearopt.scenes.axis.tolerances import tolerance_part
+from gearopt.scenes.axis.train import beside, box_part, lightest_part, neighbours, train_part
+from gearopt.scenes.axis.ways_out import ways_out
+from gearopt.scenes.reading.ask import Ask
+from gearopt.scenes.tables.servo import EXAMPLE, Scene
+from gearopt.scenes.tables.servo_motion import drive
+
+__all__ = ["EXAMPLE", "Scene", "compared", "explain", "model", "solve"]
+
+
+@dataclass(frozen=True)
+class _Found:
+    """Some results with their parts of the answer's design and report."""
+
+    results: tuple[Result, ...] = ()
+    design: dict[str, Any] = field(default_factory=dict)
+    report: dict[str, Any] = field(default_factory=dict)
+
+    def __add__(self, other: "_Found") -> "_Found":
+        return _Found(
+            self.results + other.results, self.design | other.design, self.report | other.report
+        )
+
+
+def solve(scene: Scene, ask: Ask) -> Result:
+    """Every part that the file asks for; the answer is the train, else the ratio, else tolerances.
+
+    A method that is asked for is that of the answer; parts are solved by their own.
+    """
+    clock = Clock(ask.budget, ask.watch)
+    gears, found = given_gears(scene), _Found()
+    if scene.train is not None:
+        gears, found = _trained(scene, ask)
+    if scene.duty is not None:
+        found += _moved(scene, _part(ask, clock, found), gears)
+    if gears is not None:
+        found += _geared(scene, _part(ask, clock, found), gears)
+    if scene.lightest is not None:
+        found += _Found((lightest_part(scene, _part(ask, clock, found)),))
+    answer, *parts = found.results
+    told: dict[str, Any] = {"assumptions": assumptions(scene)}
+    if said := notes(scene, found.design, found.results):
+        told["notes"] = said
+    if answer.status == "infeasible" and scene.train is not None:
+        conflict, remedies, message = ways_out(scene, clock.left)
+        told["ways_out"] = {
+            "conflict": list(conflict),
+            "remedies": [asdict(r) for r in remedies],
+            "message": message,
+        }
+    return replace(
+        answer,
+        design=found.design,
+        report=found.report | told,
+        parts=tuple(parts),
+        seconds=clock.seconds,
+    )
+
+
+def _part(ask: Ask, clock: Clock, found: _Found) -> Ask:
+    """What is asked of the next part: the method, if nothing was solved yet, and the time left."""
+    method = None if found.results else ask.method
+    return replace(ask, method=method, budget=clock.left)
+
+
+def _trained(scene: Scene, ask: Ask) -> tuple[Gears | None, _Found]:
+    """The train, what is known beside it, and its neighbours."""
+    result, gears = train_part(scene, ask)
+    if gears is None:
+        return None, _Found((result,), report=beside(scene))
+    report = beside(scene) | {"trains": neighbours(scene)}
+    return gears, _Found((result,), result.design, report)
+
+
+def _moved(scene: Scene, ask: Ask, gears: Gears | None) -> _Found:
+    """The best total ratio, and what the train's own inertia does to it."""
+    result, design, report = ratio_part(scene, ask)
+    if scene.train is not None and gears is not None:
+        inertia = described(scene, gears)["inertia_kg_m2"] / KG_M2
+        report = report | with_train(scene, inertia)
+    return _Found((result,), {"ratio": design} if design else {}, report)
+
+
+def _geared(scene: Scene, ask: Ask, gears: Gears) -> _Found:
+    """What follows from the gears, chosen or given: errors, stiffness, box, tolerances."""
+    rows = errors(scene, gears)
+    sums = {
+        f"{kind}_deg": sum(row["error_deg"] for row in rows if row["kind"] == kind)
+        for kind in ("backlash", "pitch")
+    }
+    found = _Found((), {"train": described(scene, gears), "errors": rows}, sums)
+    if scene.stiffness is not None:
+        found += _Found((), {"stiffness": stiffness_of(scene, gears)})
+    if scene.space is not None:
+        result, design = box_part(scene, gears, ask)
+        found += _Found((result,), {"box": design} if design else {})
+    if scene.tolerances is not None:
+        result, design, report = tolerance_part(scene, gears, ask)
+        found += _Found((result,), design, report)
+    return found
+
+
+def explain(scene: Scene, ask: Ask) -> Explanation:
+    """What would make an impossible train possible; of a possible answer the limits that bind."""
+    result = solve(scene, ask)
+    ways = result.report.get("ways_out")
+    if ways is None:
+        bind = binding(result) if result.value is not None else ()
+        return Explanation(result, (), (), bind, (), result.message, result.seconds)
+    found = tuple(
+        Remedy(**{**r, "changes": tuple(Change(**c) for c in r["changes"])})
+        for r in ways["remedies"]
+    )
+    told = ways["message"]
+    return Explanation(result, tuple(ways["conflict"]), found, message=told, seconds=result.seconds)
+
+
+def compared(scene: Scene) -> tuple[str, ...]:
+    """The methods of a comparison that names none."""
+    if scene.train is not None:
+        return ("exact", "annealing", "nsga2")
+    if scene.duty is None and scene.tolerances is not None and scene.tolerances.grades is not None:
+        return ("exact", "annealing", "nsga2")
+    return ("exact", "ipopt", "gp")
+
+
+def model(scene: Scene, method: str) -> Model:
+    """The problem of the answer; that of a train without its box, which is no row of it."""
+    if scene.train is not None:
+        unit = SHOWN[scene.train.minimise][1]
+        return Model(posed(scene, boxed=False), "Whole teeth and modules, without a box", unit)
+    if scene.duty is not None:
+        assert scene.motor is not None and scene.load is not None
+        units = {"acceleration": "s2/rad", "move": "s", "swing": "N mm"}
+        axis = drive(scene.motor, scene.load)
+        return Model(ratio_problem(scene.duty, axis), "Total ratio", units[scene.duty.motion])
+    gears = given_gears(scene)
+    assert gears is not None
+    return Model(tolerance_problem(scene, gears), "Tolerances of given gears", "")

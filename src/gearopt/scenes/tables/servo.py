@@ -1,0 +1,274 @@
+"""A servo axis's file as a whole: its tables, how they fit together, and what they describe."""
+
+from typing import Annotated, Any
+
+from pydantic import Field, model_validator
+
+from gearopt.formulations.split import ServoTrain, StiffTrain
+from gearopt.physics.stiffness import stiffness_of_frequency
+from gearopt.scenes.reading.fields import Table, refuse, words
+from gearopt.scenes.tables.servo_mesh import Accuracy, Mesh, Source
+from gearopt.scenes.tables.servo_motion import Duty, Load, Motor
+from gearopt.scenes.tables.servo_tolerance import BudgetTable, Tolerances
+from gearopt.scenes.tables.servo_train import Lightest, Shaft, Space, Stiffness, Train
+
+EXAMPLE = """\
+gearopt = 1
+kind = "servo"
+title = "A servo axis"
+
+[motor]
+inertia = "8.6e-6 kg m^2"
+torque = "0.05 N m"
+friction = "0.003 N m"
+
+[load]
+inertia = "1.98e-2 kg m^2"
+friction = "4.3 kgf cm"
+
+[duty]                         # motor, load and duty: the best total ratio
+motion = "acceleration"        # or: move, with angle; swing, with amplitude and frequency
+
+[train]                        # two stages: teeth and modules, proven
+ratio = 48
+modules = ["0.3 mm", "0.4 mm", "0.5 mm", "0.6 mm", "0.8 mm", "1 mm"]
+pinion_teeth = [16, 60]
+wheel_teeth = 300
+face_width = "6 mm"
+density = "7.75 g/cm^3"
+sector = "25 %"                # the last wheel is no full disc
+second_pinion_diameter = "11.5 mm"
+wheel_tip_diameters = ["80 mm", "106 mm"]
+output_torque = "2.4 N m"
+bending_stress = "150 MPa"
+minimise = "inertia"           # or mass, error
+
+[shaft]                        # between the stages
+diameter = "8 mm"
+length = "50 mm"
+
+[[mesh]]                       # deviations of stage 1, at the motor
+pinion_reading = "0.018 mm"
+wheel_reading = "0.024 mm"
+centre_distance = "0.0042 mm"
+wheel_bearing_clearance = "0.0025 mm"
+wheel_bearing_run_out = "0.0025 mm"
+pitch = "0.029 mm"
+
+[[mesh]]                       # of stage 2, at the load
+pinion_reading = "0.02 mm"
+wheel_reading = "0.027 mm"
+centre_distance = "0.0054 mm"
+pinion_bearing_clearance = "0.0025 mm"
+wheel_bearing_clearance = "0.003 mm"
+pinion_bearing_run_out = "0.003 mm"
+wheel_bearing_run_out = "0.004 mm"
+pitch = "0.033 mm"
+
+[accuracy]
+error = "0.12 deg"             # of the output, all deviations at their worst
+
+[tolerances]                   # the same deviations made anew, at least cost
+exponent = 1
+
+[[budget]]
+rule = "worst_case"            # or rss, mean_plus_sd
+
+[stiffness]
+shear_modulus = "86.1 GPa"
+line_stiffness = "10300 MPa"
+frequency = "200 Hz"
+load_torque = "4.3 kgf cm"
+
+[lightest]                     # real-valued sizes of least mass, stiff enough
+face_width = "2 mm"
+shaft_diameter = "3 mm"
+shaft_wall = "3.5 mm"
+inertia = "8e-7 kg m^2"
+
+[space]                        # seen along the shafts
+width = "80 mm"
+height = "130 mm"
+motor_diameter = "24 mm"
+hub_diameter = "16 mm"
+swept_angle = "180 deg"
+"""
+
+
+class Scene(Table):
+    """A servo axis: motor, two-stage spur gear train, load. Tables switch its parts on."""
+
+    title: Annotated[str, words()] = Field("", description="A line for the report")
+    source: Annotated[str, words()] = Field(
+        "", description="Where the data and the expected value come from"
+    )
+    motor: Motor | None = None
+    load: Load | None = None
+    duty: Duty | None = None
+    train: Train | None = None
+    shaft: Shaft | None = None
+    mesh: tuple[Mesh, ...] = Field((), description="One table a stage, from the motor on")
+    accuracy: Accuracy = Field(default_factory=Accuracy)
+    tolerances: Tolerances | None = None
+    budget: tuple[BudgetTable, ...] = Field((), description="One table a budget")
+    stiffness: Stiffness | None = None
+    lightest: Lightest | None = None
+    space: Space | None = None
+
+    @model_validator(mode="after")
+    def _consistent(self) -> "Scene":
+        if not (self.motor or self.load or self.duty or self.train or self.mesh):
+            rule = "is missing, as are [train] and [[mesh]]: nothing is asked for"
+            raise refuse(rule, at=("duty",))
+        self._check_motion()
+        self._check_meshes()
+        self._check_train()
+        self._check_tolerances()
+        return self
+
+    def _check_motion(self) -> None:
+        if self.motor is None and self.duty is None and (self.stiffness or self.load is None):
+            return
+        for name in ("motor", "load", "duty"):
+            if getattr(self, name) is None:
+                rule = "is missing: [motor], [load] and [duty] belong together"
+                raise refuse(rule, at=(name,))
+        assert self.duty and self.motor and self.load
+        self.duty.check(self.motor, self.load)
+
+    def _check_meshes(self) -> None:
+        if len(self.mesh) > 2:
+            raise refuse("is one more than the two stages", at=("mesh", 2), action="remove")
+        if len(self.mesh) == 1:
+            raise refuse("is missing: one table [[mesh]] for each of the two stages", at=("mesh",))
+        if not self.mesh:
+            for name in ("train", "tolerances"):
+                if getattr(self, name):
+                    raise refuse(f"is missing: [{name}] needs one a stage", at=("mesh",))
+        if not self.mesh and "accuracy" in self.model_fields_set:
+            raise refuse("needs tables [[mesh]]", at=("accuracy",), action="remove")
+        given = [mesh.given for mesh in self.mesh]
+        if any(given) and not all(given):
+            rule = "is missing: the gears of the other [[mesh]] are given"
+            raise refuse(rule, at=("mesh", given.index(False), "module"))
+        if self.mesh and self.train is None:
+            if self.tolerances is None:
+                raise refuse("is missing: [[mesh]] needs it, or [tolerances]", at=("train",))
+            if not any(given):
+                rule = "is missing: without [train] tolerances are for given gears"
+                raise refuse(rule, at=("mesh", 0, "module"))
+
+    def _check_train(self) -> None:
+        if self.train is None:
+            for name in ("shaft", "stiffness", "lightest", "space"):
+                if getattr(self, name) is not None:
+                    raise refuse("needs a table [train]", at=(name,), action="remove")
+            return
+        if self.shaft is None:
+            raise refuse("is missing: [train] needs it", at=("shaft",))
+        if self.accuracy.error is None:
+            raise refuse("is missing: [train] needs it", at=("accuracy", "error"))
+        stiff = self.stiffness
+        if stiff is not None and stiff.frequency is not None and self.load is None:
+            raise refuse("needs a table [load]", at=("stiffness", "frequency"), action="remove")
+        if self.lightest is None:
+            return
+        if stiff is None:
+            raise refuse("needs a table [stiffness]", at=("lightest",), action="remove")
+        if stiff.line_stiffness is None:
+            rule = "is missing: [lightest] does not know the teeth that youngs_modulus asks for"
+            raise refuse(rule, "10300 MPa", ("stiffness", "line_stiffness"), "sample")
+        if stiff.frequency is None and stiff.windup is None:
+            rule = "is missing (or give windup): [lightest] needs it"
+            raise refuse(rule, at=("stiffness", "frequency"))
+
+    def _check_tolerances(self) -> None:
+        if self.tolerances is None:
+            if self.budget:
+                raise refuse("needs a table [tolerances]", at=("budget",), action="remove")
+            return
+        rules = [b.rule for b in self.budget]
+        for k, rule in enumerate(rules):
+            if rule in rules[:k]:
+                text = "repeats a rule: one budget for each"
+                raise refuse(text, at=("budget", k), action="remove")
+        if self.tolerances.grades is not None:
+            if len(rules) > 1:
+                rule = "is one too many: grades are chosen within one budget"
+                raise refuse(rule, at=("budget", 1), action="remove")
+            if rules == ["mean_plus_sd"]:
+                rule = "is not for grades, which add up"
+                raise refuse(rule, "worst_case", ("budget", 0, "rule"))
+
+    @property
+    def sources(self) -> tuple[Source, ...]:
+        """All deviations above zero, stage by stage."""
+        angle = self.accuracy.pressure_angle.value
+        found = [mesh.sources(k, angle) for k, mesh in enumerate(self.mesh, 1)]
+        return tuple(source for stage in found for source in stage)
+
+    def servo_train(self) -> ServoTrain:
+        """The train to be chosen, in plain numbers."""
+        table, shaft, error = self.train, self.shaft, self.accuracy.error
+        assert table is not None and shaft is not None and error is not None
+        ratio, tolerance = table.ratios
+        lost = [sum(s.per_mm * s.tolerance for s in self.sources if s.stage == k) for k in (1, 2)]
+        first, second = (q.exact[0] for q in table.wheel_tip_diameters)
+        return ServoTrain(
+            ratio=ratio,
+            tolerance=tolerance,
+            modules=table.modules,
+            pinion_teeth=table.pinion_teeth,
+            most_wheel_teeth=table.wheel_teeth,
+            face_width=table.face_width.value,
+            density=table.density.value,
+            output_torque=table.output_torque.value,
+            bending=table.bending_stress.value,
+            bore=table.second_pinion_diameter.exact[0],
+            wheel_tips=(first, second),
+            shaft=(shaft.diameter.value, shaft.length.value),
+            lost_motion=(lost[0], lost[1]),
+            error=error.value,
+            sector=float(table.sector),
+        )
+
+    @property
+    def least_stiffness(self) -> float | None:
+        """Stiffness that the output must have [N mm/rad]; None where none is asked for."""
+        table, found = self.stiffness, []
+        if table is not None and table.frequency is not None and self.load is not None:
+            found.append(
+                float(stiffness_of_frequency(table.frequency.value, self.load.inertia.value))
+            )
+        if table is not None and table.windup is not None and table.load_torque is not None:
+            found.append(table.load_torque.value / table.windup.value)
+        return max(found, default=None)
+
+    def stiff_train(self) -> StiffTrain:
+        """The lightest train to be sized, in plain numbers."""
+        own, table, least = self.servo_train(), self.lightest, self.least_stiffness
+        spring = self.stiffness
+        assert table is not None and spring is not None and least is not None
+        assert spring.line_stiffness is not None
+        module = float(own.modules[0])
+        teeth = own.pinion_teeth[0]
+        second = max(teeth, -(-own.bore // own.modules[0]))
+        numbers: dict[str, Any] = {
+            name: getattr(own, name)
+            for name in ("density", "output_torque", "bending", "lost_motion", "error", "sector")
+        }
+        return StiffTrain(
+            stiffness=least,
+            line_stiffness=spring.line_stiffness.value,
+            shear_modulus=spring.shear_modulus.value,
+            ratio=(float(own.ratios[0]), float(own.ratios[1])),
+            module=module,
+            pinion_teeth=(teeth, int(second)),
+            bore=(float(own.bore), table.shaft_wall.value),
+            wheels=(float(own.wheel_tips[0]) - 2 * module, float(own.wheel_tips[1]) - 2 * module),
+            face_width=table.face_width.value,
+            shaft_diameter=table.shaft_diameter.value,
+            shaft_length=own.shaft[1],
+            inertia=table.inertia.value,
+            **numbers,
+        )

@@ -1,0 +1,63 @@
+"""[tolerances] and [[budget]]: deviations of the meshes made anew, at least cost."""
+
+from fractions import Fraction
+from typing import Annotated, get_args
+
+from pydantic import Field, model_validator
+
+from gearopt.formulations.tolerance.stack import Rule
+from gearopt.scenes.reading.fields import Table, choice, number, quantity, refuse, whole
+from gearopt.units import Quantity
+
+MOST = Fraction(1000)
+
+
+class Tolerances(Table):
+    """Every deviation of [[mesh]] as a tolerance, at least total cost; each costs 1 as it is."""
+
+    exponent: Annotated[Fraction, number(1, 0, 4)] = Field(
+        default_factory=lambda: Fraction(1),
+        description="Cost (old/new)^exponent of a tolerance",
+        json_schema_extra={"default": 1},
+    )
+    least_factor: Annotated[Fraction | None, number(0.25, 0, 1)] = Field(
+        None, description="No tolerance below so many times its old value"
+    )
+    largest_factor: Annotated[Fraction | None, number(4, 1, MOST)] = Field(
+        None, description="No tolerance above so many times its old value"
+    )
+    grades: Annotated[int | None, whole(4, 1, 8)] = Field(
+        None,
+        description="Choose among grades, each sqrt(2) times the finer one: so many to either side "
+        "of the old value",
+    )
+    seed: Annotated[int, whole(0, 0, 10**9)] = Field(
+        0, description="Seed of the drawn errors that show what the tolerances give"
+    )
+
+    @model_validator(mode="after")
+    def _one(self) -> "Tolerances":
+        for name in ("least_factor", "largest_factor"):
+            if self.grades is not None and getattr(self, name) is not None:
+                raise refuse("stands beside grades, which sets it", at=(name,), action="remove")
+        return self
+
+
+class BudgetTable(Table):
+    """The error that the tolerances may make together; all budgets hold at once."""
+
+    rule: Annotated[str, choice(*get_args(Rule))] = Field(
+        "worst_case",
+        description="worst_case: all at their limits; rss: root of the sum of squares; "
+        "mean_plus_sd: mean and kappa standard deviations",
+    )
+    limit: Annotated[Quantity | None, quantity("angle", "0.1082 deg", most="90 deg")] = Field(
+        None,
+        description="Largest error by this rule; by default that of [accuracy], without it what "
+        "the old tolerances use",
+    )
+    kappa: Annotated[Fraction, number(3, 0, 10, zero=True)] = Field(
+        default_factory=lambda: Fraction(3),
+        description="Standard deviations counted by mean_plus_sd",
+        json_schema_extra={"default": 3},
+    )

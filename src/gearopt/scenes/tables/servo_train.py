@@ -1,0 +1,176 @@
+"""[train], [shaft], [stiffness], [lightest] and [space]: a two-stage servo train and its limits."""
+
+from fractions import Fraction
+from typing import Annotated
+
+from pydantic import Field, model_validator
+
+from gearopt import units
+from gearopt.formulations.split import OBJECTIVES
+from gearopt.physics.modules import MODULES
+from gearopt.scenes.reading.fields import (
+    Table,
+    choice,
+    number,
+    quantity,
+    refuse,
+    truth,
+    whole,
+)
+from gearopt.scenes.reading.lists import either, several, span
+from gearopt.units import Quantity
+
+LENGTH = quantity("length", "6 mm")
+
+
+class Train(Table):
+    """Two stages of spur gears whose teeth and modules are chosen; needs [shaft] and [accuracy]."""
+
+    ratio: Annotated[tuple[Fraction, Fraction], span(number(48, 1, 10**6), 48, single=True)] = (
+        Field(description="Total ratio, motor over load speed; a range [least, most] too")
+    )
+    ratio_tolerance: Annotated[
+        Fraction | None, number("1 %", 0, Fraction(1, 2), percent=True, zero=True)
+    ] = Field(
+        None,
+        description="Allowed relative deviation of a single ratio",
+        json_schema_extra={"default": "1 %"},
+    )
+    modules: Annotated[
+        tuple[Fraction, ...], either(MODULES, quantity("length", "0.5 mm", most="50 mm"))
+    ] = Field(description="Modules to choose from: a series or a list")
+    pinion_teeth: Annotated[tuple[int, int], span(whole(16, 12, 200), [16, 60])] = Field(
+        description="Least and most teeth of both pinions"
+    )
+    wheel_teeth: Annotated[int | None, whole(300, 12, 1000)] = Field(
+        None, description="Most teeth of a wheel"
+    )
+    face_width: Annotated[Quantity, LENGTH] = Field(description="Face width of all gears")
+    density: Annotated[Quantity, quantity("density", "7.75 g/cm^3")] = Field(
+        description="Density of gears and shaft"
+    )
+    sector: Annotated[Fraction, number("25 %", 0, 1, percent=True)] = Field(
+        default_factory=lambda: Fraction(1),
+        description="Part of a full disc that the last wheel is",
+        json_schema_extra={"default": "100 %"},
+    )
+    second_pinion_diameter: Annotated[Quantity, quantity("length", "11.5 mm")] = Field(
+        description="Least pitch diameter of the second pinion, around its shaft"
+    )
+    wheel_tip_diameters: Annotated[
+        tuple[Quantity, ...], several(quantity("length", "80 mm"), ["80 mm", "106 mm"])
+    ] = Field(description="Largest tip diameters of the wheels of stage 1 and 2")
+    output_torque: Annotated[Quantity, quantity("torque", "2.4 N m")] = Field(
+        description="Peak torque at the output"
+    )
+    bending_stress: Annotated[Quantity, quantity("stress", "150 MPa")] = Field(
+        description="Allowed bending stress after Lewis, without any factor"
+    )
+    minimise: Annotated[str, choice(*OBJECTIVES)] = Field(
+        "inertia", description="inertia (of the train at the motor), mass or error"
+    )
+
+    @model_validator(mode="after")
+    def _complete(self) -> "Train":
+        low, high = self.ratio
+        if low != high and self.ratio_tolerance is not None:
+            rule = "stands beside a range of ratios"
+            raise refuse(rule, at=("ratio_tolerance",), action="remove")
+        if len(self.wheel_tip_diameters) != 2:
+            texts = [str(q) for q in (*self.wheel_tip_diameters, *self.wheel_tip_diameters)]
+            rule = "does not name both wheels, of stage 1 and of stage 2"
+            raise refuse(rule, texts[:2], ("wheel_tip_diameters",), "sample")
+        return self
+
+    @property
+    def ratios(self) -> tuple[Fraction, Fraction]:
+        """Middle of the allowed total ratios, and relative tolerance about it."""
+        low, high = self.ratio
+        if low == high:
+            tolerance = self.ratio_tolerance
+            return low, Fraction(1, 100) if tolerance is None else tolerance
+        return (low + high) / 2, (high - low) / (high + low)
+
+
+class Shaft(Table):
+    """The shaft between the stages, solid and round; needs [train]."""
+
+    diameter: Annotated[Quantity, quantity("length", "8 mm")] = Field(description="Diameter")
+    length: Annotated[Quantity, quantity("length", "50 mm")] = Field(
+        description="Length between the gears, which is twisted; it is all that is weighed"
+    )
+
+
+class Stiffness(Table):
+    """Stiffness of meshes and shaft, seen at the output, motor locked; needs [train]."""
+
+    shear_modulus: Annotated[Quantity, quantity("stress", "79 GPa")] = Field(
+        description="Shear modulus of the shaft"
+    )
+    line_stiffness: Annotated[Quantity | None, quantity("stress", "10300 MPa")] = Field(
+        None, description="Stiffness of a mesh per face width (or give youngs_modulus)"
+    )
+    youngs_modulus: Annotated[Quantity | None, quantity("stress", "206 GPa")] = Field(
+        None, description="Young's modulus of the gears: a mesh's stiffness then follows from teeth"
+    )
+    frequency: Annotated[Quantity | None, quantity("frequency", "200 Hz")] = Field(
+        None, description="Least natural frequency of the load, motor locked; needs [load]"
+    )
+    load_torque: Annotated[Quantity | None, quantity("torque", "4.3 kgf cm")] = Field(
+        None, description="Torque at the output under which the train winds up"
+    )
+    windup: Annotated[Quantity | None, quantity("angle", "0.001 deg", most="90 deg")] = Field(
+        None, description="Largest angle by which it does; with load_torque"
+    )
+
+    @model_validator(mode="after")
+    def _complete(self) -> "Stiffness":
+        if self.line_stiffness is None and self.youngs_modulus is None:
+            rule = "is missing (or give youngs_modulus)"
+            raise refuse(rule, "10300 MPa", ("line_stiffness",), "sample")
+        if self.line_stiffness is not None and self.youngs_modulus is not None:
+            raise refuse("stands beside line_stiffness", at=("youngs_modulus",), action="remove")
+        if self.windup is not None and self.load_torque is None:
+            raise refuse("is missing beside windup", at=("load_torque",))
+        return self
+
+
+class Lightest(Table):
+    """The lightest train of real-valued sizes that is stiff enough; needs [stiffness].
+
+    Modules are the first one of [train]; face widths and the shaft's diameter are free.
+    """
+
+    face_width: Annotated[Quantity, quantity("length", "2 mm")] = Field(
+        description="Least face width of either stage"
+    )
+    shaft_diameter: Annotated[Quantity, quantity("length", "3 mm")] = Field(
+        description="Least diameter of the shaft between the stages"
+    )
+    shaft_wall: Annotated[Quantity, quantity("length", "3.5 mm", zero=True)] = Field(
+        description="By how much the second pinion's pitch diameter exceeds the shaft's"
+    )
+    inertia: Annotated[Quantity, quantity("inertia", "8e-7 kg m^2")] = Field(
+        description="Largest inertia of the train at the motor"
+    )
+
+
+class Space(Table):
+    """A box that the train lies in, seen along its shafts; needs [train]."""
+
+    width: Annotated[Quantity, quantity("length", "80 mm")] = Field(description="Inner width")
+    height: Annotated[Quantity, quantity("length", "130 mm")] = Field(description="Inner height")
+    motor_diameter: Annotated[Quantity, quantity("length", "24 mm")] = Field(
+        description="Diameter of the motor"
+    )
+    hub_diameter: Annotated[Quantity, quantity("length", "16 mm", zero=True)] = Field(
+        description="Diameter around the output shaft that the motor keeps out of"
+    )
+    swept_angle: Annotated[Quantity, quantity("angle", "180 deg", most="360 deg")] = Field(
+        default_factory=lambda: units.parse("360 deg", "angle"),
+        description="Angle that the last wheel sweeps, its own sector and its travel together",
+        json_schema_extra={"default": "360 deg"},
+    )
+    required: Annotated[bool, truth()] = Field(
+        True, description="Only trains that fit are chosen; false: told whether the best one does"
+    )

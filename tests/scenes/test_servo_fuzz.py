@@ -1,0 +1,73 @@
+"""Wrong files of a servo axis: each loads, or is refused in one line that mends it."""
+
+from collections import Counter
+from random import Random
+
+import pytest
+from mutations import MUTATIONS
+from scene_files import dump, mended, parse
+
+from gearopt.errors import SceneError
+from gearopt.scenes.reading.load import read
+from gearopt.scenes.servo import EXAMPLE
+
+OF_DRIVES = (  # mutations that look for tables of a drive
+    *("speeds_swapped", "two_that_exclude_each_other", "no_module_left", "too_many_stages"),
+)
+KINDS = [k for k in MUTATIONS if k not in OF_DRIVES]
+STEPS = 12  # a table that comes back brings those that it needs, each with its keys
+GEARS = 'module = "0.5 mm"\npinion_teeth = 20\nwheel_teeth = 120'
+GIVEN = EXAMPLE.replace("[[mesh]]", f"[[mesh]]\n{GEARS}")
+ALONE = ("gearopt", "kind", "title", "mesh", "accuracy", "tolerances", "budget")
+LONE = dump({k: v for k, v in parse(GIVEN).items() if k in ALONE})
+MOVE = EXAMPLE.replace('"acceleration"', '"move"\nangle = "90 deg"')
+BASES = {"example": EXAMPLE, "given": GIVEN, "lone": LONE, "move": MOVE}
+
+
+def fate(kind, base, seed):
+    """What became of a file: loaded, mended or, without a remedy for machines, refused."""
+    data, steps = MUTATIONS[kind].make(Random(f"{kind} {base} {seed}"), BASES[base]), 0
+    while True:
+        try:
+            _, scene = read(data, "my.toml")
+        except SceneError as wrong:
+            message = str(wrong)
+            assert message.startswith("my.toml: ") and len(message) < 900, message
+            assert message.isprintable() and wrong.rule and wrong.remedy, message
+            if wrong.fix is None or wrong.fix.action == "replace":
+                return "refused"
+            steps += 1
+            assert steps <= STEPS, message
+            data = mended(data.decode("utf-8-sig"), wrong.fix).encode()
+            continue
+        if type(scene).__module__.endswith(".servo"):  # it may have become another kind
+            plain_numbers(scene)
+        return "mended" if steps else "loaded"
+
+
+def plain_numbers(scene):
+    """What a file that loads is asked for at least."""
+    assert scene.sources is not None
+    if scene.train is not None:
+        assert scene.servo_train().error > 0.0
+    if scene.lightest is not None:
+        assert scene.stiff_train().stiffness > 0.0
+
+
+@pytest.mark.parametrize("base", BASES)
+def test_the_bases_load(base):
+    plain_numbers(read(BASES[base].encode())[1])
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_mutation_of_every_base(kind):
+    assert {fate(kind, base, seed) for base in BASES for seed in range(4)}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("block", range(4))
+def test_two_thousand_files(block):
+    found = Counter()
+    for seed in range(block * 500, (block + 1) * 500):
+        found[fate(KINDS[seed % len(KINDS)], list(BASES)[seed % len(BASES)], seed)] += 1
+    assert found["mended"] > 250, found
