@@ -362,7 +362,7 @@ def test_words_of_the_user_are_escaped(result):
     read = Reader(html)
     assert {tag for tag, _ in read.tags}.isdisjoint({"b"})
     assert [kind for kind, _ in read.scripts].count("") == 1
-    for kind, script in read.scripts:
+    for kind, script in (s for s in read.scripts if "json" in s[0]):
         if kind:
             assert "<" not in json.dumps(json.loads(script)["data"]).replace("<br>", "").replace(
                 "<extra></extra>", ""
