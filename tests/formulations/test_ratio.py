@@ -167,9 +167,39 @@ def test_the_best_ratio_moves_the_right_way(change, sign):
 
 
 def test_a_problem_is_solved_again_with_other_numbers():
-    problem = acceleration(REAL)
-    again = solve(problem.at(torque=60.0), "ipopt")
-    assert 1.0 / again.value == pytest.approx(best_ratio(replace(REAL, torque=60.0))[1], rel=1e-10)
+    """The closed form reads the problem's present numbers, as the text does."""
+    drive = replace(REAL, no_load_speed=800.0, speed_limit=500.0)
+    changed = {"torque": 60.0, "load_friction": 300.0, "no_load_speed": 600.0}
+    expected = best_ratio(replace(drive, **changed), 4.0)[1]
+    text = acceleration(drive, 5.0).at(**changed, load_speed=4.0)
+    for method in ("exact", "ipopt"):
+        assert 1.0 / solve(text, method).value == pytest.approx(expected, rel=1e-10)
+    turn = move(replace(REAL, speed_limit=800.0), 20.0).at(angle=30.0, speed_limit=600.0)
+    sine = swing(BARE, 0.3, 10.0).at(amplitude=0.4, load_inertia=30.0, ratio_low=2.0)
+    for other in (turn, sine):
+        exact, ipopt = (solve(other, m) for m in ("exact", "ipopt"))
+        assert exact.status == ipopt.status == "optimal"
+        assert exact.value == pytest.approx(ipopt.value, rel=1e-11)
+
+
+def test_no_parameter_is_without_effect():
+    """Each number of a text changes its objective or a limit."""
+    drive = replace(REAL, gear_inertia=1e-3, no_load_speed=800.0, speed_limit=700.0)
+    drive = replace(drive, ratio=(2.0, 90.0))
+    still = replace(drive, no_load_speed=math.inf)
+    for text in (
+        acceleration(drive, 5.0),
+        acceleration(drive),
+        move(still, 9.0),
+        swing(drive, 1, 2),
+    ):
+        x = text.bounds()[2][None]
+        before = text.batch(x)
+        for q in text.parameters:
+            after = text.at(**{q.name: 1.01 * q.value}).batch(x)
+            assert not np.array_equal(
+                np.r_[before.F[0], before.G[0]], np.r_[after.F[0], after.G[0]]
+            )
 
 
 def test_impossible_drives_are_proven_and_named():
@@ -198,6 +228,17 @@ def test_impossible_drives_are_proven_and_named():
 def test_what_is_no_drive_is_refused(wrong):
     with pytest.raises(ValueError):
         replace(BARE, **wrong)
+
+
+def test_what_is_no_duty_is_refused():
+    for wrong in (
+        lambda: acceleration(replace(BARE, torque=0.0)),
+        lambda: acceleration(BARE, -2.0),
+        lambda: move(BARE, 0.0),
+        lambda: swing(BARE, 1.0, math.inf),
+    ):
+        with pytest.raises(ValueError, match="positive"):
+            wrong()
 
 
 def test_duties_that_the_laws_do_not_cover_are_refused():

@@ -68,6 +68,12 @@ def test_splits_of_the_digest():
     assert values == sorted(values, reverse=True)
 
 
+def test_a_core_is_solved_again_with_another_ratio():
+    text = core(48.0, 2).at(total=1000.0)
+    for method in ("exact", "ipopt"):
+        assert solve(text, method).value == pytest.approx(189.996, abs=6e-4)
+
+
 def test_stage_ratio_of_least_mass():
     n = lightest_stage_ratio()
     assert n == pytest.approx(1.895025455, abs=6e-10)

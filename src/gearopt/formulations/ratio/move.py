@@ -15,7 +15,7 @@ from gearopt.formulations.ratio.acceleration import (
     unbounded,
 )
 from gearopt.formulations.ratio.bound import DOUBT, convex_bound
-from gearopt.formulations.ratio.drive import BEYOND, FAINT, Drive
+from gearopt.formulations.ratio.drive import BEYOND, FAINT, Drive, present
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.terms import Param, Terms, Var
@@ -35,6 +35,7 @@ def move(drive: Drive, angle: float) -> Problem:
     mirrored ramp needs less torque. The torque is the same up to the speed limit: ValueError for a
     drive with a no-load speed. `exact` is a closed form, or a root of a quartic with load friction.
     """
+    drive.needs(torque=drive.torque, angle=angle)
     if math.isfinite(drive.no_load_speed):
         raise ValueError("a move takes the torque at the top speed, without a no_load_speed")
 
@@ -53,7 +54,8 @@ def move(drive: Drive, angle: float) -> Problem:
 
     def exact(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
         """The closed form, or root; budget and seed change nothing."""
-        return _exact(drive, angle)
+        values = present(problem)
+        return _exact(drive.of(values), values["angle"])
 
     parameters = (*drive.parameters(), Param("angle", "rad", angle, role="given"))
     return Problem("ratio", variables, parameters, evaluate, methods={"exact": exact})

@@ -17,6 +17,7 @@ from gearopt.optimise.terms import Param, Terms, Var, each
 
 RANDOM = False
 COUNTS = "split evaluated"
+BEYOND = 1e3  # factor between a total ratio and the upper end of the search for a stage's
 NEWTON = 100  # steps at most: from above the root of a convex function they fall to it
 
 
@@ -41,17 +42,18 @@ def core(ratio: float, stages: int, goal: str = "inertia") -> Problem:
 
     def exact(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
         """Equal ratios for mass; for inertia of two stages the root of a cubic."""
-        x = np.full(stages, ratio ** (1.0 / stages))
+        total = float(problem.parameter_values()[0])
+        x = np.full(stages, total ** (1.0 / stages))
         if goal == "inertia" and stages == 2:
-            first = first_ratio(ratio)
-            x = np.array([first, ratio / first])
+            first = first_ratio(total)
+            x = np.array([first, total / first])
         value = float(problem.batch(x[None]).F[0, 0])
         proof = {"method": "closed form", "arithmetic": "double"}
         return Outcome(x, bound=value * (1.0 - 1e-14), proof=proof, evaluations=1)
 
     closed = goal == "mass" or stages <= 2
     even = ratio ** (1.0 / stages)
-    variable = Var("ratio", "", 1.0, ratio, even, stages, log=True)
+    variable = Var("ratio", "", 1.0, BEYOND * ratio, even, stages, log=True)
     total = Param("total", "", ratio, role="given")
     methods = {"exact": exact} if closed else {}
     return Problem("split core", (variable,), (total,), evaluate, methods=methods)

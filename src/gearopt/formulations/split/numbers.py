@@ -48,7 +48,7 @@ def numbers(train: ServoTrain) -> Numbers:
     low, high = train.ratios
     most = train.pinion_teeth[1]
     tips = [[math.floor(tip / m) - 2 for m in train.modules] for tip in train.wheel_tips]
-    wheel = train.most_wheel_teeth or max(map(max, tips))
+    wheel = train.wheel_teeth
     products = range(most**2 + 1)
     teeth = np.arange(most + 1, dtype=float)
     return Numbers(

@@ -58,6 +58,12 @@ class ServoTrain:
             raise ValueError("the sector is a part of a disc: above 0 and at most 1")
 
     @property
+    def wheel_teeth(self) -> int:
+        """Most teeth of a wheel: what is given, or what the tips leave."""
+        left = max(self.wheel_tips) // min(self.modules) - 2
+        return max(int(left), 1) if self.most_wheel_teeth is None else self.most_wheel_teeth
+
+    @property
     def ratios(self) -> tuple[Fraction, Fraction]:
         """Least and most total ratio."""
         return self.ratio * (1 - self.tolerance), self.ratio * (1 + self.tolerance)
