@@ -213,6 +213,46 @@ def test_impossible_drives_are_proven_and_named():
     assert "own friction" in solve(stuck).message
 
 
+def some_drive(rng):
+    """A drive with numbers over seven decades, some of them 0 or infinite."""
+
+    def some(share, spread):
+        return 0.0 if rng.random() < share else float(np.exp(rng.uniform(-spread, spread)))
+
+    return Drive(
+        some(0.1, 8.0),
+        some(0.1, 8.0) or 1e-3,
+        float(np.exp(rng.uniform(-5.0, 8.0))),
+        some(0.3, 8.0),
+        some(0.5, 4.0),
+        some(0.6, 8.0),
+        float(rng.uniform(0.3, 1.0)),
+        some(0.5, 8.0) or math.inf,
+        some(0.4, 8.0) or math.inf,
+        (float(np.exp(rng.uniform(-2.0, 2.0))), 200.0 * some(0.5, 3.0) or math.inf),
+    )
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(10))
+def test_closed_form_and_ipopt_agree_on_any_drive(seed):
+    rng, seen = np.random.default_rng(seed), set()
+    for _ in range(15):
+        drive = some_drive(rng)
+        turn, speed = np.exp(rng.uniform(-3.0, 5.0, 2))
+        for text in (
+            acceleration(drive, speed),
+            move(replace(drive, no_load_speed=math.inf), turn),
+            swing(replace(drive, efficiency=1.0), turn, speed),
+        ):
+            exact, ipopt = (solve(text, m) for m in ("exact", "ipopt"))
+            assert exact.status == ipopt.status
+            seen.add(exact.status)
+            if exact.value is not None:
+                assert exact.value == pytest.approx(ipopt.value, rel=1e-9)
+    assert seen == {"optimal", "infeasible"}
+
+
 @pytest.mark.parametrize(
     "wrong",
     [

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from gearopt.formulations.ratio.bound import DOUBT, convex_bound
+from gearopt.formulations.ratio.bound import convex_bound
 from gearopt.formulations.ratio.drive import BEYOND, FAINT, Drive, present, quotient
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch
@@ -61,7 +61,7 @@ def _speeds(drive: Drive) -> tuple[float, float]:
 def ratio_scales(drive: Drive) -> tuple[float, float]:
     """Ratios of equal inertias, and at which the torque just overcomes the load's friction."""
     match = math.sqrt(quotient(drive.load_inertia, drive.inertia))
-    return match, drive.load_friction / (drive.efficiency * max(drive.net_torque, 1e-300))
+    return match, quotient(drive.load_friction, drive.efficiency * drive.net_torque)
 
 
 def acceleration_variable(drive: Drive, largest_ratio: float) -> Var:
@@ -133,8 +133,7 @@ def _exact(drive: Drive, load_speed: float) -> Outcome:
         found = _law(drive, load_speed, n)
         return 1.0 / found if found > 0.0 else math.inf
 
-    doubt = DOUBT * (1.0 + _drive_part(drive, ratio) / best)
-    bound = convex_bound(inverse, ratio, low, high, doubt)
+    bound = convex_bound(inverse, ratio, low, high, min(1.0, best / unopposed(drive, ratio)))
     return Outcome(np.array([ratio, best]), bound=bound, proof=proof(), evaluations=6)
 
 
@@ -142,7 +141,7 @@ def standstill(drive: Drive, load_speed: float, ratio: float, best: float) -> st
     """Why the load does not move at its best ratio; empty where it does."""
     if drive.net_torque <= 0.0:
         return "the motor's own friction takes all its torque"
-    if best > STANDING * _drive_part(drive, ratio):
+    if best > STANDING * unopposed(drive, ratio):
         return ""
     slope = torque_slope(drive.torque, load_speed, drive.no_load_speed)
     torque, friction = drive.efficiency * drive.net_torque**2, 4.0 * slope * drive.load_friction
@@ -152,8 +151,8 @@ def standstill(drive: Drive, load_speed: float, ratio: float, best: float) -> st
     return why
 
 
-def _drive_part(drive: Drive, ratio: float) -> float:
-    """Acceleration [rad/s2] that the torque would give without load friction and line."""
+def unopposed(drive: Drive, ratio: float) -> float:
+    """Acceleration [rad/s2] that the torque would give at a ratio without friction and line."""
     found: float = load_acceleration(
         ratio, drive.load_inertia, drive.inertia, drive.net_torque, 0.0, drive.efficiency
     )

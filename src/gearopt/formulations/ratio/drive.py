@@ -94,7 +94,8 @@ class Drive:
         """
         known = [float(s) for s in (*scales, *self.ratio) if 0.0 < s < math.inf]
         high = math.inf if free else BEYOND * max(known)
-        guess = max(self.ratio[0], min(self.ratio[1], math.prod(known) ** (1.0 / len(known))))
+        middle = math.exp(sum(map(math.log, known)) / len(known))
+        guess = max(self.ratio[0], min(self.ratio[1], middle))
         return Var("ratio", "", min(known) / BEYOND, high, guess, log=True, search=True)
 
     def torque_needed(self, p: Any, ratio: Any, acceleration: Any) -> Any:

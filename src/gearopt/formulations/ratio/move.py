@@ -13,9 +13,10 @@ from gearopt.formulations.ratio.acceleration import (
     ratio_scales,
     standstill,
     unbounded,
+    unopposed,
 )
-from gearopt.formulations.ratio.bound import DOUBT, convex_bound
-from gearopt.formulations.ratio.drive import BEYOND, FAINT, Drive, present
+from gearopt.formulations.ratio.bound import convex_bound
+from gearopt.formulations.ratio.drive import BEYOND, FAINT, Drive, present, quotient
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.terms import Param, Terms, Var
@@ -70,8 +71,8 @@ def _peak(ramp: Var, angle: float) -> Var:
 
 def _cubic(drive: Drive, angle: float) -> float:
     """Ratio (2 w^2 J_L/(eta Theta T))^(1/3) of a move whose speed is limited, without friction."""
-    torque = drive.efficiency * max(drive.net_torque, 1e-300) * angle
-    return float((2.0 * drive.speed_limit**2 * drive.load_inertia / torque) ** (1.0 / 3.0))
+    work = drive.efficiency * drive.net_torque * angle
+    return float(quotient(2.0 * drive.speed_limit**2 * drive.load_inertia, work) ** (1.0 / 3.0))
 
 
 def _limited(drive: Drive, angle: float) -> float:
@@ -131,5 +132,6 @@ def _exact(drive: Drive, angle: float) -> Outcome:
 
     ramp = _ramp(drive, ratio)
     peak = min(math.sqrt(ramp * angle), drive.speed_limit / ratio)
-    bound = convex_bound(time, ratio, low, high, DOUBT * (1.0 + drive.net_torque * ratio / ramp))
+    room = min(1.0, ramp / unopposed(drive, ratio))
+    bound = convex_bound(time, ratio, low, high, room, peak / ramp / time(ratio))
     return Outcome(np.array([ratio, ramp, peak]), bound=bound, proof=proof(), evaluations=6)
