@@ -52,8 +52,8 @@ def numbers(train: ServoTrain) -> Numbers:
     products = range(most**2 + 1)
     teeth = np.arange(most + 1, dtype=float)
     return Numbers(
-        least=np.array([math.ceil(low * p) for p in products], np.int64),
-        most=np.array([math.floor(high * p) for p in products], np.int64),
+        least=np.array([-(-low.numerator * p // low.denominator) for p in products], np.int64),
+        most=np.array([high.numerator * p // high.denominator for p in products], np.int64),
         pinion=np.array(train.pinion_teeth, np.int64),
         wheel=wheel,
         wheel_1=np.minimum(tips[0], wheel),
