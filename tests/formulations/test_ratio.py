@@ -6,8 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from gearopt.formulations.ratio import Drive, acceleration, best_ratio, move, swing
+from gearopt.formulations.ratio import Drive, acceleration, best_ratio, move, staged, swing
 from gearopt.formulations.ratio.bound import convex_bound
+from gearopt.formulations.split import core
 from gearopt.optimise import tape
 from gearopt.optimise.solve import solve
 from gearopt.physics.servo_drive import load_acceleration, rms_torque, shortest_move_time
@@ -211,6 +212,32 @@ def test_impossible_drives_are_proven_and_named():
     stuck = acceleration(replace(BARE, motor_friction=60.0))
     assert [solve(stuck, m).status for m in ("exact", "ipopt")] == ["infeasible"] * 2
     assert "own friction" in solve(stuck).message
+
+
+@pytest.mark.parametrize("stages", [1, 2, 3])
+def test_ratio_and_split_at_once_are_the_best_of_all_ratios(stages):
+    """Nested: the least gear inertia by `core` for every total ratio, the best ratio by Brent."""
+    from scipy.optimize import minimize_scalar
+
+    pinion = 2e-4
+    text = staged(REAL, pinion, stages)
+    assert tape.kinds(text).log_convex
+    result = solve(text)
+    assert result.status == "optimal" and result.gap < 1e-9
+    assert solve(text, "gp").value == pytest.approx(result.value, rel=1e-7)
+
+    def inverse(log_ratio):
+        n = math.exp(log_ratio)
+        least = core(n, stages)
+        gears = pinion * solve(least, None if least.methods else "ipopt").value
+        return 1.0 / load_acceleration(n, J_L, J_M + gears, 47.0, F_L)
+
+    found = minimize_scalar(inverse, bounds=(2.5, 5.0), method="bounded", options={"xatol": 1e-7})
+    assert result.value == pytest.approx(found.fun, rel=1e-11)
+    ratios = np.atleast_1d(result.design["stage_ratio"])
+    assert math.prod(ratios) == pytest.approx(math.exp(found.x), rel=1e-5)
+    light = solve(staged(REAL, 1e-12, stages))
+    assert 1.0 / light.value == pytest.approx(best_ratio(REAL)[1], rel=1e-6)
 
 
 def some_drive(rng):
