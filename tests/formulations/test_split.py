@@ -26,7 +26,7 @@ from gearopt.optimise import tape
 from gearopt.optimise.certificate import certify
 from gearopt.optimise.kernels import kernel
 from gearopt.optimise.result import Budget
-from gearopt.optimise.solve import run, solve
+from gearopt.optimise.solve import limits, run, solve
 from gearopt.optimise.solvers import ipopt
 from gearopt.physics.stiffness import lewis_form_factor, stiffness_of_frequency
 
@@ -358,9 +358,9 @@ def test_least_mass_under_stiffness(frequency, grams, sizes):
 
 
 def test_the_papers_point_of_the_stiff_train():
-    batch = stiff(STIFF).batch(np.array([[8.0, 13.0, 6.0, 8.0, 6.0, 6.0, 8.0]]))
-    assert 1e3 * batch.F[0, 0] == pytest.approx(210.88, abs=6e-3)
-    stiffness = 1.0 / batch.G[0, 0]
+    text, point = stiff(STIFF), np.array([8.0, 13.0, 6.0, 8.0, 6.0, 6.0, 8.0])
+    assert 1e3 * text.batch(point[None]).F[0, 0] == pytest.approx(210.88, abs=6e-3)
+    stiffness = 1.0 / limits(text, point)["stiffness"]
     assert math.sqrt(stiffness / 19.8) / (2 * math.pi) == pytest.approx(210.1, abs=0.06)
 
 
@@ -387,3 +387,18 @@ def test_a_stiffness_out_of_reach_is_proven_and_named():
     result = solve(text)
     assert result.status == "infeasible"
     assert {"stiffness", "inertia"} <= set(result.proof["conflict"])
+
+
+def test_an_exact_ratio_is_an_equality_and_not_two_limits():
+    """Two limits leave no interior: multipliers, and so the bound, would be worthless."""
+    whole = replace(PAPER, tolerance=F(0), error=math.radians(0.115))
+    bound = solve(relaxation(whole))
+    assert bound.status == "optimal" and bound.gap < 1e-9
+    best = solve(problem(whole))
+    assert best.status == "optimal" and bound.bound <= best.value
+    (z1, z3), (z2, z4) = best.design["pinion_teeth"], best.design["wheel_teeth"]
+    assert z2 * z4 == 48 * z1 * z3
+    text = stiff(replace(STIFF, ratio=(48.0, 48.0)))
+    tied = solve(text.at(stiffness=stiffness_of_frequency(250.0, 19.8)))
+    assert tied.status == "optimal" and tied.gap < 1e-9
+    assert 1e3 * tied.value == pytest.approx(128.159074, abs=6e-7)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
+from gearopt.optimise.terms import Param
 from gearopt.physics.backlash import output_error
 from gearopt.physics.inertia import disc_inertia, disc_mass
 
@@ -124,6 +125,21 @@ def objectives(
         "error": train_error(train.lost_motion, diameters[1], diameters[3], ratios[1]),
     }
     return {name: found[name] for name in names}
+
+
+def ratio_parameters(low: float, high: float) -> tuple[Param, ...]:
+    """The ends of the total ratio, one where they are equal."""
+    if low == high:
+        return (Param("ratio", "", low, role="given"),)
+    ends = (("ratio_low", low), ("ratio_high", high))
+    return tuple(Param(name, "", value, role="given") for name, value in ends)
+
+
+def ratio_rows(p: Any, tied: bool, ratio: Any) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Rows of the total ratio: limits, or an equality (tied), for which no two limits can stand."""
+    if tied:
+        return {}, {"ratio": ratio / p.ratio}
+    return {"ratio_low": p.ratio_low / ratio, "ratio_high": ratio / p.ratio_high}, {}
 
 
 def lewis_stress(torque: Any, diameter: Any, face_width: Any, module: Any, form_factor: Any) -> Any:
