@@ -127,6 +127,24 @@ def test_swinging_duty_of_the_digest():
     assert exact.value <= grid.min() and exact.value == pytest.approx(grid.min(), rel=1e-6)
 
 
+def test_a_given_ratio_is_an_equality():
+    given = replace(REAL, ratio=(48.0, 48.0))
+    for text in (
+        acceleration(given),
+        move(replace(given, speed_limit=800.0), 3.0),
+        swing(given, 0.3, 10.0),
+        staged(given, 1e-4, 2),
+    ):
+        result = solve(text, "ipopt")
+        assert result.status == "optimal" and result.gap < 1e-10
+        if text.methods:
+            assert result.value == pytest.approx(solve(text).value, rel=1e-11)
+            assert solve(text).status == "optimal"
+    assert 1.0 / solve(acceleration(given)).value == pytest.approx(46.304224, abs=6e-7)
+    other = solve(acceleration(given).at(ratio=50.0))
+    assert other.design["ratio"] == 50.0
+
+
 def test_gear_inertia_moves_the_optimum():
     drive = replace(BARE, gear_inertia=7.578e-4)  # 7.578e-7 kg m2
     ratio, value = best_ratio(drive)

@@ -34,8 +34,8 @@ def acceleration(drive: Drive, load_speed: float = 0.0) -> Problem:
         limits = {"motor_torque": needed}
         if capped:
             limits["motor_speed"] = x.ratio * p.load_speed / p.speed_limit
-        limits |= drive.ratio_limits(p, x.ratio)
-        return Terms({"inverse_acceleration": 1.0 / x.acceleration}, limits)
+        ends, equal = drive.ratio_rows(p, x.ratio)
+        return Terms({"inverse_acceleration": 1.0 / x.acceleration}, limits | ends, equal=equal)
 
     free = math.isinf(_stationary(drive, load_speed)) and math.isinf(drive.ratios(load_speed)[1])
     scales = (*ratio_scales(drive), *(quotient(s, load_speed) for s in _speeds(drive)))

@@ -74,18 +74,20 @@ class Drive:
         """
         names = [f.name for f in fields(self) if f.name not in ("ratio", *unused)]
         values = {n: getattr(self, n) for n in names if 0.0 < getattr(self, n) < math.inf}
-        values["ratio_low"] = self.ratio[0]
-        if self.ratio[1] < math.inf:
-            values["ratio_high"] = self.ratio[1]
+        low, high = self.ratio
+        values["ratio" if low == high else "ratio_low"] = low
+        if low < high < math.inf:
+            values["ratio_high"] = high
         return tuple(
             Param(n, _UNITS.get(n.split("_")[-1], ""), v, role=_role(n)) for n, v in values.items()
         )
 
     def of(self, values: dict[str, float]) -> "Drive":
         """The drive with other values of its `parameters`."""
-        own = {f.name: values[f.name] for f in fields(self) if f.name in values}
-        ends = values["ratio_low"], values.get("ratio_high", math.inf)
-        return replace(self, **own, ratio=ends)
+        given = values.get("ratio")
+        low, high = values.get("ratio_low", given), values.get("ratio_high", given or math.inf)
+        own: dict[str, Any] = {f.name: values[f.name] for f in fields(self) if f.name in values}
+        return replace(self, **own | {"ratio": (low, high)})
 
     def ratio_variable(self, scales: tuple[float, ...], free: bool) -> Var:
         """The variable of the total ratio; free: nothing holds it from above.
@@ -103,12 +105,14 @@ class Drive:
         inertia = inertia_at_motor(self, p, ratio, p.efficiency)
         return friction_torque(self, p, ratio, p.efficiency) + acceleration * inertia
 
-    def ratio_limits(self, p: Any, ratio: Any) -> dict[str, Any]:
-        """Text of the user's limits of the ratio."""
-        found = {"ratio_low": p.ratio_low / ratio}
+    def ratio_rows(self, p: Any, ratio: Any) -> tuple[dict[str, Any], dict[str, Any]]:
+        """Text of the user's ratios: limits, or an equality where there is only one."""
+        if self.ratio[0] == self.ratio[1]:
+            return {}, {"ratio": ratio / p.ratio}
+        limits = {"ratio_low": p.ratio_low / ratio}
         if self.ratio[1] < math.inf:
-            found["ratio_high"] = ratio / p.ratio_high
-        return found
+            limits["ratio_high"] = ratio / p.ratio_high
+        return limits, {}
 
 
 def friction_torque(drive: Drive, p: Any, ratio: Any, efficiency: Any) -> Any:

@@ -44,8 +44,9 @@ def move(drive: Drive, angle: float) -> Problem:
         limits = {"motor_torque": drive.torque_needed(p, x.ratio, x.acceleration) / p.torque}
         if drive.speed_limit < math.inf:
             limits["motor_speed"] = x.ratio * x.peak_speed / p.speed_limit
-        limits |= drive.ratio_limits(p, x.ratio)
-        return Terms({"move_time": move_time(p.angle, x.peak_speed, x.acceleration)}, limits)
+        ends, equal = drive.ratio_rows(p, x.ratio)
+        time = move_time(p.angle, x.peak_speed, x.acceleration)
+        return Terms({"move_time": time}, limits | ends, equal=equal)
 
     free = drive.inertia == 0.0 and math.isinf(min(drive.ratio[1], drive.speed_limit))
     scales = (*ratio_scales(drive), _cubic(drive, angle))

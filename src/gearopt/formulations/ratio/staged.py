@@ -32,7 +32,8 @@ def staged(drive: Drive, pinion_inertia: float, stages: int, load_speed: float =
         found = plain.evaluate(SimpleNamespace(ratio=total, acceleration=x.acceleration), p)
         gears = p.pinion_inertia * inertia_index(ratios) * total * x.acceleration / p.torque
         limits = dict(found.limits) | {"motor_torque": found.limits["motor_torque"] + gears}
-        return Terms(found.minimise, limits | {"stage_ratio_low": tuple(1.0 / n for n in ratios)})
+        limits["stage_ratio_low"] = tuple(1.0 / n for n in ratios)
+        return Terms(found.minimise, limits, equal=found.equal)
 
     guess = max(1.0, float(np.max(ratio.guess)) ** (1.0 / stages))
     each_ratio = Var(

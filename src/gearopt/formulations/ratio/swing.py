@@ -35,10 +35,10 @@ def swing(drive: Drive, amplitude: float, angular_frequency: float) -> Problem:
         square = inertia**2 / 2.0
         if drive.load_friction or drive.motor_friction:
             square = square + friction_torque(drive, p, x.ratio, 1.0) ** 2
-        limits = drive.ratio_limits(p, x.ratio)
+        limits, equal = drive.ratio_rows(p, x.ratio)
         if drive.speed_limit < math.inf:
             limits["motor_speed"] = x.ratio * speed / p.speed_limit
-        return Terms({"rms_torque": square**0.5}, limits)
+        return Terms({"rms_torque": square**0.5}, limits, equal=equal)
 
     ratio = _stationary(drive, amplitude * angular_frequency**2)
     most = drive.ratios(amplitude * angular_frequency)[1]
