@@ -6,8 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from gearopt.formulations.ratio import Drive, acceleration, best_ratio, move, swing
+from gearopt.formulations.ratio import Drive, acceleration, best_ratio, move, staged, swing
 from gearopt.formulations.ratio.bound import convex_bound
+from gearopt.formulations.split import core
 from gearopt.optimise import tape
 from gearopt.optimise.solve import solve
 from gearopt.physics.servo_drive import load_acceleration, rms_torque, shortest_move_time
@@ -126,6 +127,24 @@ def test_swinging_duty_of_the_digest():
     assert exact.value <= grid.min() and exact.value == pytest.approx(grid.min(), rel=1e-6)
 
 
+def test_a_given_ratio_is_an_equality():
+    given = replace(REAL, ratio=(48.0, 48.0))
+    for text in (
+        acceleration(given),
+        move(replace(given, speed_limit=800.0), 3.0),
+        swing(given, 0.3, 10.0),
+        staged(given, 1e-4, 2),
+    ):
+        result = solve(text, "ipopt")
+        assert result.status == "optimal" and result.gap < 1e-10
+        if text.methods:
+            assert result.value == pytest.approx(solve(text).value, rel=1e-11)
+            assert solve(text).status == "optimal"
+    assert 1.0 / solve(acceleration(given)).value == pytest.approx(46.304224, abs=6e-7)
+    other = solve(acceleration(given).at(ratio=50.0))
+    assert other.design["ratio"] == 50.0
+
+
 def test_gear_inertia_moves_the_optimum():
     drive = replace(BARE, gear_inertia=7.578e-4)  # 7.578e-7 kg m2
     ratio, value = best_ratio(drive)
@@ -167,9 +186,39 @@ def test_the_best_ratio_moves_the_right_way(change, sign):
 
 
 def test_a_problem_is_solved_again_with_other_numbers():
-    problem = acceleration(REAL)
-    again = solve(problem.at(torque=60.0), "ipopt")
-    assert 1.0 / again.value == pytest.approx(best_ratio(replace(REAL, torque=60.0))[1], rel=1e-10)
+    """The closed form reads the problem's present numbers, as the text does."""
+    drive = replace(REAL, no_load_speed=800.0, speed_limit=500.0)
+    changed = {"torque": 60.0, "load_friction": 300.0, "no_load_speed": 600.0}
+    expected = best_ratio(replace(drive, **changed), 4.0)[1]
+    text = acceleration(drive, 5.0).at(**changed, load_speed=4.0)
+    for method in ("exact", "ipopt"):
+        assert 1.0 / solve(text, method).value == pytest.approx(expected, rel=1e-10)
+    turn = move(replace(REAL, speed_limit=800.0), 20.0).at(angle=30.0, speed_limit=600.0)
+    sine = swing(BARE, 0.3, 10.0).at(amplitude=0.4, load_inertia=30.0, ratio_low=2.0)
+    for other in (turn, sine):
+        exact, ipopt = (solve(other, m) for m in ("exact", "ipopt"))
+        assert exact.status == ipopt.status == "optimal"
+        assert exact.value == pytest.approx(ipopt.value, rel=1e-11)
+
+
+def test_no_parameter_is_without_effect():
+    """Each number of a text changes its objective or a limit."""
+    drive = replace(REAL, gear_inertia=1e-3, no_load_speed=800.0, speed_limit=700.0)
+    drive = replace(drive, ratio=(2.0, 90.0))
+    still = replace(drive, no_load_speed=math.inf)
+    for text in (
+        acceleration(drive, 5.0),
+        acceleration(drive),
+        move(still, 9.0),
+        swing(drive, 1, 2),
+    ):
+        x = text.bounds()[2][None]
+        before = text.batch(x)
+        for q in text.parameters:
+            after = text.at(**{q.name: 1.01 * q.value}).batch(x)
+            assert not np.array_equal(
+                np.r_[before.F[0], before.G[0]], np.r_[after.F[0], after.G[0]]
+            )
 
 
 def test_impossible_drives_are_proven_and_named():
@@ -181,6 +230,72 @@ def test_impossible_drives_are_proven_and_named():
     stuck = acceleration(replace(BARE, motor_friction=60.0))
     assert [solve(stuck, m).status for m in ("exact", "ipopt")] == ["infeasible"] * 2
     assert "own friction" in solve(stuck).message
+
+
+@pytest.mark.parametrize("stages", [1, 2, 3])
+def test_ratio_and_split_at_once_are_the_best_of_all_ratios(stages):
+    """Nested: the least gear inertia by `core` for every total ratio, the best ratio by Brent."""
+    from scipy.optimize import minimize_scalar
+
+    pinion = 2e-4
+    text = staged(REAL, pinion, stages)
+    assert tape.kinds(text).log_convex
+    result = solve(text)
+    assert result.status == "optimal" and result.gap < 1e-9
+    assert solve(text, "gp").value == pytest.approx(result.value, rel=1e-7)
+
+    def inverse(log_ratio):
+        n = math.exp(log_ratio)
+        least = core(n, stages)
+        gears = pinion * solve(least, None if least.methods else "ipopt").value
+        return 1.0 / load_acceleration(n, J_L, J_M + gears, 47.0, F_L)
+
+    found = minimize_scalar(inverse, bounds=(2.5, 5.0), method="bounded", options={"xatol": 1e-7})
+    assert result.value == pytest.approx(found.fun, rel=1e-11)
+    ratios = np.atleast_1d(result.design["stage_ratio"])
+    assert math.prod(ratios) == pytest.approx(math.exp(found.x), rel=1e-5)
+    light = solve(staged(REAL, 1e-12, stages))
+    assert 1.0 / light.value == pytest.approx(best_ratio(REAL)[1], rel=1e-6)
+
+
+def some_drive(rng):
+    """A drive with numbers over seven decades, some of them 0 or infinite."""
+
+    def some(share, spread):
+        return 0.0 if rng.random() < share else float(np.exp(rng.uniform(-spread, spread)))
+
+    return Drive(
+        some(0.1, 8.0),
+        some(0.1, 8.0) or 1e-3,
+        float(np.exp(rng.uniform(-5.0, 8.0))),
+        some(0.3, 8.0),
+        some(0.5, 4.0),
+        some(0.6, 8.0),
+        float(rng.uniform(0.3, 1.0)),
+        some(0.5, 8.0) or math.inf,
+        some(0.4, 8.0) or math.inf,
+        (float(np.exp(rng.uniform(-2.0, 2.0))), 200.0 * some(0.5, 3.0) or math.inf),
+    )
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(10))
+def test_closed_form_and_ipopt_agree_on_any_drive(seed):
+    rng, seen = np.random.default_rng(seed), set()
+    for _ in range(15):
+        drive = some_drive(rng)
+        turn, speed = np.exp(rng.uniform(-3.0, 5.0, 2))
+        for text in (
+            acceleration(drive, speed),
+            move(replace(drive, no_load_speed=math.inf), turn),
+            swing(replace(drive, efficiency=1.0), turn, speed),
+        ):
+            exact, ipopt = (solve(text, m) for m in ("exact", "ipopt"))
+            assert exact.status == ipopt.status
+            seen.add(exact.status)
+            if exact.value is not None:
+                assert exact.value == pytest.approx(ipopt.value, rel=1e-9)
+    assert seen == {"optimal", "infeasible"}
 
 
 @pytest.mark.parametrize(
@@ -198,6 +313,17 @@ def test_impossible_drives_are_proven_and_named():
 def test_what_is_no_drive_is_refused(wrong):
     with pytest.raises(ValueError):
         replace(BARE, **wrong)
+
+
+def test_what_is_no_duty_is_refused():
+    for wrong in (
+        lambda: acceleration(replace(BARE, torque=0.0)),
+        lambda: acceleration(BARE, -2.0),
+        lambda: move(BARE, 0.0),
+        lambda: swing(BARE, 1.0, math.inf),
+    ):
+        with pytest.raises(ValueError, match="positive"):
+            wrong()
 
 
 def test_duties_that_the_laws_do_not_cover_are_refused():

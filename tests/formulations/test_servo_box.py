@@ -9,6 +9,7 @@ from servo_trains import PAPER
 
 from gearopt.formulations import servo_box, split
 from gearopt.formulations.servo_box import ServoBox, extents, first_that_fits, of_train
+from gearopt.optimise.kernels import kernel
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import solve
 
@@ -135,3 +136,22 @@ def test_a_stopped_search_says_so():
 def test_what_is_no_box_is_refused(wrong):
     with pytest.raises(ValueError):
         replace(GEOMETRY, **wrong)
+
+
+def test_the_kernel_and_the_text_are_one_law():
+    """At an angle of the output link: its motor angle gives the scale, none is less."""
+    code = kernel(servo_box.KERNEL)
+    rng = np.random.default_rng(11)
+    fine = np.linspace(-math.pi, math.pi, 20_001)
+    for half_sweep in (0.3, 1.2, math.pi / 2, 2.5, math.pi):
+        box = replace(GEOMETRY, half_sweep=half_sweep)
+        given, text = servo_box.numbers(box), servo_box.problem(box)
+        for output in rng.uniform(-math.pi, math.pi, 8):
+            scale, motor = code.smallest(given, output, 10.0)
+            here = text.batch(np.array([[motor, output]]))
+            assert here.G[0, 0] <= 1.0 + 1e-12
+            assert here.F[0, 0] == pytest.approx(scale, rel=1e-12)
+            batch = text.batch(np.column_stack([fine, np.full(fine.size, output)]))
+            allowed = batch.F[batch.G[:, 0] <= 1.0, 0]
+            assert scale <= allowed.min() * (1.0 + 1e-12)
+            assert scale >= allowed.min() - 60.0 * (fine[1] - fine[0]) / 80.0

@@ -21,11 +21,13 @@ from gearopt.formulations.split import (
 )
 from gearopt.formulations.split.exact import KERNEL
 from gearopt.formulations.split.numbers import numbers
-from gearopt.formulations.split.train import OBJECTIVES
+from gearopt.formulations.split.train import OBJECTIVES, train_error
 from gearopt.optimise import tape
+from gearopt.optimise.certificate import certify
 from gearopt.optimise.kernels import kernel
 from gearopt.optimise.result import Budget
-from gearopt.optimise.solve import run, solve
+from gearopt.optimise.solve import limits, run, solve
+from gearopt.optimise.solvers import ipopt
 from gearopt.physics.stiffness import lewis_form_factor, stiffness_of_frequency
 
 INERTIA = [2305.0, 26.02106, 9.10183, 6.66977, 6.05842, 5.88511]
@@ -66,6 +68,12 @@ def test_splits_of_the_digest():
     assert first_ratio(1000.0) == pytest.approx((2.0**0.5 * 1000.0) ** (1 / 3), rel=1e-3)
     values = [r.value for r in stage_counts(48.0)]
     assert values == sorted(values, reverse=True)
+
+
+def test_a_core_is_solved_again_with_another_ratio():
+    text = core(48.0, 2).at(total=1000.0)
+    for method in ("exact", "ipopt"):
+        assert solve(text, method).value == pytest.approx(189.996, abs=6e-4)
 
 
 def test_stage_ratio_of_least_mass():
@@ -350,10 +358,28 @@ def test_least_mass_under_stiffness(frequency, grams, sizes):
 
 
 def test_the_papers_point_of_the_stiff_train():
-    batch = stiff(STIFF).batch(np.array([[8.0, 13.0, 6.0, 8.0, 6.0, 6.0, 8.0]]))
-    assert 1e3 * batch.F[0, 0] == pytest.approx(210.88, abs=6e-3)
-    stiffness = 1.0 / batch.G[0, 0]
+    text, point = stiff(STIFF), np.array([8.0, 13.0, 6.0, 8.0, 6.0, 6.0, 8.0])
+    assert 1e3 * text.batch(point[None]).F[0, 0] == pytest.approx(210.88, abs=6e-3)
+    stiffness = 1.0 / limits(text, point)["stiffness"]
     assert math.sqrt(stiffness / 19.8) / (2 * math.pi) == pytest.approx(210.1, abs=0.06)
+
+
+def test_ten_random_starts_end_at_one_optimum():
+    text = stiff(replace(STIFF, stiffness=stiffness_of_frequency(250.0, 19.8)))
+    rng, guess = np.random.default_rng(0), text.bounds()[2]
+    for _ in range(10):
+        start = guess * np.exp(rng.uniform(-0.5, 0.5, guess.size))
+        verdict = certify(text, ipopt.run(text, Budget(), 0, None, start=start), 1e-6)
+        assert verdict.status == "optimal"
+        assert 1e3 * verdict.objective == pytest.approx(128.159074, abs=6e-7)
+
+
+def test_the_first_stages_share_of_the_error_does_not_depend_on_the_split():
+    """D_2 n_2 = D_1 N: an angle of stage 1 counts by its pinion and the total ratio alone."""
+    shares = [
+        train_error((PAPER.lost_motion[0], 0.0), 8.0 * n_1, 1.0, 48.0 / n_1) for n_1 in (3, 6, 12)
+    ]
+    assert shares == pytest.approx([PAPER.lost_motion[0] / (8.0 * 48.0)] * 3, rel=1e-14)
 
 
 def test_a_stiffness_out_of_reach_is_proven_and_named():
@@ -361,3 +387,18 @@ def test_a_stiffness_out_of_reach_is_proven_and_named():
     result = solve(text)
     assert result.status == "infeasible"
     assert {"stiffness", "inertia"} <= set(result.proof["conflict"])
+
+
+def test_an_exact_ratio_is_an_equality_and_not_two_limits():
+    """Two limits leave no interior: multipliers, and so the bound, would be worthless."""
+    whole = replace(PAPER, tolerance=F(0), error=math.radians(0.115))
+    bound = solve(relaxation(whole))
+    assert bound.status == "optimal" and bound.gap < 1e-9
+    best = solve(problem(whole))
+    assert best.status == "optimal" and bound.bound <= best.value
+    (z1, z3), (z2, z4) = best.design["pinion_teeth"], best.design["wheel_teeth"]
+    assert z2 * z4 == 48 * z1 * z3
+    text = stiff(replace(STIFF, ratio=(48.0, 48.0)))
+    tied = solve(text.at(stiffness=stiffness_of_frequency(250.0, 19.8)))
+    assert tied.status == "optimal" and tied.gap < 1e-9
+    assert 1e3 * tied.value == pytest.approx(128.159074, abs=6e-7)

@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from gearopt.formulations.ratio.bound import DOUBT, convex_bound
-from gearopt.formulations.ratio.drive import BEYOND, FAINT, Drive, quotient
+from gearopt.formulations.ratio.bound import convex_bound
+from gearopt.formulations.ratio.drive import BEYOND, FAINT, Drive, present, quotient
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.terms import Param, Terms, Var
@@ -22,34 +22,46 @@ def acceleration(drive: Drive, load_speed: float = 0.0) -> Problem:
 
     Variables: ratio, acceleration. `exact` is the closed form. Source: Youn, eqs. (3) to (6).
     """
-    line, capped = load_speed / drive.no_load_speed, load_speed * quotient(1.0, drive.speed_limit)
-    own = [Param(n, "", v) for n, v in (("line", line), ("speed", capped)) if v > 0.0]
+    drive.needs(torque=drive.torque)
+    if not 0.0 <= load_speed < math.inf:
+        raise ValueError(f"load_speed = {load_speed!r}: needs a number >= 0, or positive")
+    line, capped = (load_speed > 0.0 and math.isfinite(s) for s in _speeds(drive))
 
     def evaluate(x: Any, p: Any) -> Terms:
         needed = drive.torque_needed(p, x.ratio, x.acceleration) / p.torque
-        limits = {"motor_torque": needed + x.ratio * p.line if line else needed}
+        if line:
+            needed = needed + x.ratio * p.load_speed / p.no_load_speed
+        limits = {"motor_torque": needed}
         if capped:
-            limits["motor_speed"] = x.ratio * p.speed
-        limits |= drive.ratio_limits(p, x.ratio)
-        return Terms({"inverse_acceleration": 1.0 / x.acceleration}, limits)
+            limits["motor_speed"] = x.ratio * p.load_speed / p.speed_limit
+        ends, equal = drive.ratio_rows(p, x.ratio)
+        return Terms({"inverse_acceleration": 1.0 / x.acceleration}, limits | ends, equal=equal)
 
     free = math.isinf(_stationary(drive, load_speed)) and math.isinf(drive.ratios(load_speed)[1])
-    scales = (*ratio_scales(drive), quotient(1.0, line), quotient(1.0, capped))
+    scales = (*ratio_scales(drive), *(quotient(s, load_speed) for s in _speeds(drive)))
     ratio = drive.ratio_variable(scales, free)
     variables = (ratio, acceleration_variable(drive, float(np.max(ratio.upper))))
 
     def exact(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
         """The closed form; budget and seed change nothing."""
-        return _exact(drive, load_speed)
+        values = present(problem)
+        return _exact(drive.of(values), values.get("load_speed", 0.0))
 
-    parameters, methods = (*drive.parameters(), *own), {"exact": exact}
-    return Problem("ratio", variables, parameters, evaluate, methods=methods)
+    if line or capped:
+        own = (Param("load_speed", "rad/s", load_speed, role="given"), *drive.parameters())
+    else:
+        own = drive.parameters("no_load_speed", "speed_limit")
+    return Problem("ratio", variables, own, evaluate, methods={"exact": exact})
+
+
+def _speeds(drive: Drive) -> tuple[float, float]:
+    return drive.no_load_speed, drive.speed_limit
 
 
 def ratio_scales(drive: Drive) -> tuple[float, float]:
     """Ratios of equal inertias, and at which the torque just overcomes the load's friction."""
     match = math.sqrt(quotient(drive.load_inertia, drive.inertia))
-    return match, drive.load_friction / (drive.efficiency * max(drive.net_torque, 1e-300))
+    return match, quotient(drive.load_friction, drive.efficiency * drive.net_torque)
 
 
 def acceleration_variable(drive: Drive, largest_ratio: float) -> Var:
@@ -121,8 +133,7 @@ def _exact(drive: Drive, load_speed: float) -> Outcome:
         found = _law(drive, load_speed, n)
         return 1.0 / found if found > 0.0 else math.inf
 
-    doubt = DOUBT * (1.0 + _drive_part(drive, ratio) / best)
-    bound = convex_bound(inverse, ratio, low, high, doubt)
+    bound = convex_bound(inverse, ratio, low, high, min(1.0, best / unopposed(drive, ratio)))
     return Outcome(np.array([ratio, best]), bound=bound, proof=proof(), evaluations=6)
 
 
@@ -130,7 +141,7 @@ def standstill(drive: Drive, load_speed: float, ratio: float, best: float) -> st
     """Why the load does not move at its best ratio; empty where it does."""
     if drive.net_torque <= 0.0:
         return "the motor's own friction takes all its torque"
-    if best > STANDING * _drive_part(drive, ratio):
+    if best > STANDING * unopposed(drive, ratio):
         return ""
     slope = torque_slope(drive.torque, load_speed, drive.no_load_speed)
     torque, friction = drive.efficiency * drive.net_torque**2, 4.0 * slope * drive.load_friction
@@ -140,8 +151,8 @@ def standstill(drive: Drive, load_speed: float, ratio: float, best: float) -> st
     return why
 
 
-def _drive_part(drive: Drive, ratio: float) -> float:
-    """Acceleration [rad/s2] that the torque would give without load friction and line."""
+def unopposed(drive: Drive, ratio: float) -> float:
+    """Acceleration [rad/s2] that the torque would give at a ratio without friction and line."""
     found: float = load_acceleration(
         ratio, drive.load_inertia, drive.inertia, drive.net_torque, 0.0, drive.efficiency
     )

@@ -12,35 +12,38 @@ DOUBT = 1e-14  # relative rounding of a law
 
 
 def convex_bound(
-    law: Callable[[float], float], at: float, low: float, high: float, doubt: float = DOUBT
+    law: Callable[[float], float],
+    at: float,
+    low: float,
+    high: float,
+    room: float = 1.0,
+    share: float = 1.0,
 ) -> float | None:
     """Lower bound of law > 0 on [low, high], or None where the point is no minimum.
 
-    law: convex in log-log on its domain, infinite or NaN outside; at: the point; doubt: relative
-    rounding of the law there.
+    law: convex in log-log on its domain, infinite or NaN outside; at: the point. room: its relative
+    distance from the end of the domain, at most 1, which makes steps as much shorter; what vanishes
+    there, and is rounded as much more, has a share in the law.
     """
-    left = _side(law, at, -1.0, at / low)
-    right = _side(law, at, 1.0, high / at)
-    least = min(left, right)
-    if not math.isfinite(least) and least != math.inf:
+
+    def rise(steps: float) -> float:
+        """log(law/value) some steps beside the point; infinite outside the domain."""
+        there = law(at * math.exp(steps * STEP * room))
+        return math.log(there / value) if 0.0 < there < math.inf else math.inf
+
+    def side(sign: float, width: float) -> float:
+        """Least rise on one side that reaches to a factor `width`; -inf: not known."""
+        if width <= 1.0:
+            return math.inf
+        back, one, two = (rise(sign * k) for k in (-1.0, 1.0, 2.0))
+        if one < 0.0 and math.log(width) > STEP * room:
+            return -math.inf
+        return max((s for s in (-back, 2.0 * one - two) if math.isfinite(s)), default=-math.inf)
+
+    value = law(at)
+    if not 0.0 < value < math.inf:
         return None
-    value = law(at)
-    return value * math.exp(min(least, 0.0) - 4.0 * doubt) if math.isfinite(value) else None
-
-
-def _side(law: Callable[[float], float], at: float, sign: float, width: float) -> float:
-    """Least of log(law/law(at)) on one side that reaches to a factor `width`; -inf: not known."""
-    if width <= 1.0:
-        return math.inf
-    value = law(at)
-    back, one, two = (_log(law, at, sign * k, value) for k in (-1.0, 1.0, 2.0))
-    if one < 0.0 and math.log(width) > STEP:
-        return -math.inf
-    inside = [-back, 2.0 * one - two]
-    return max((s for s in inside if math.isfinite(s)), default=-math.inf)
-
-
-def _log(law: Callable[[float], float], at: float, steps: float, value: float) -> float:
-    """log(law/value) some steps beside a point; infinite outside the domain."""
-    there = law(at * math.exp(steps * STEP))
-    return math.log(there / value) if 0.0 < there < math.inf else math.inf
+    least = min(side(-1.0, at / low), side(1.0, high / at))
+    if least == -math.inf:
+        return None
+    return value * math.exp(min(least, 0.0) - 4.0 * DOUBT * (1.0 + share / room))

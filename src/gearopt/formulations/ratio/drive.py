@@ -1,15 +1,18 @@
 """What is given of a motor, its gears and its load, and the rows that all duties share."""
 
 import math
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
+from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Param, Var
 
 BEYOND = 1e6  # factor between natural scales and the ends of the search: they never bind
 FAINT = 1e-30  # of the largest acceleration: what is slower counts as not moving
 
-_UNITS = {"inertia": "t mm2", "torque": "N mm", "friction": "N mm", "limit": "rad/s"}
+_UNITS = {"inertia": "t mm2", "torque": "N mm", "friction": "N mm"} | dict.fromkeys(
+    ("limit", "speed"), "rad/s"
+)
 _ROLES = {"torque": "limit", "speed_limit": "limit", "load_inertia": "given"}
 
 
@@ -54,20 +57,37 @@ class Drive:
         """Torque [N mm] at standstill that the motor's friction leaves."""
         return self.torque - self.motor_friction
 
+    def needs(self, **numbers: float) -> None:
+        """ValueError where a number that a duty needs is not positive and finite."""
+        for name, value in numbers.items():
+            if not 0.0 < value < math.inf:
+                raise ValueError(f"{name} = {value!r}: this duty needs a positive number")
+
     def ratios(self, load_speed: float = 0.0) -> tuple[float, float]:
         """Least and most ratio, the motor's speed limit at a load speed [rad/s] included."""
         return self.ratio[0], min(self.ratio[1], quotient(self.speed_limit, load_speed))
 
-    def parameters(self) -> tuple[Param, ...]:
-        """The drive's positive, finite numbers; what is 0 or infinite has no place in a text."""
-        names = [f.name for f in fields(self) if f.name not in ("ratio", "no_load_speed")]
+    def parameters(self, *unused: str) -> tuple[Param, ...]:
+        """The drive's positive, finite numbers, without those that a duty has no use for.
+
+        What is 0 or infinite has no place in a text.
+        """
+        names = [f.name for f in fields(self) if f.name not in ("ratio", *unused)]
         values = {n: getattr(self, n) for n in names if 0.0 < getattr(self, n) < math.inf}
-        values["ratio_low"] = self.ratio[0]
-        if self.ratio[1] < math.inf:
-            values["ratio_high"] = self.ratio[1]
+        low, high = self.ratio
+        values["ratio" if low == high else "ratio_low"] = low
+        if low < high < math.inf:
+            values["ratio_high"] = high
         return tuple(
             Param(n, _UNITS.get(n.split("_")[-1], ""), v, role=_role(n)) for n, v in values.items()
         )
+
+    def of(self, values: dict[str, float]) -> "Drive":
+        """The drive with other values of its `parameters`."""
+        given = values.get("ratio")
+        low, high = values.get("ratio_low", given), values.get("ratio_high", given or math.inf)
+        own: dict[str, Any] = {f.name: values[f.name] for f in fields(self) if f.name in values}
+        return replace(self, **own | {"ratio": (low, high)})
 
     def ratio_variable(self, scales: tuple[float, ...], free: bool) -> Var:
         """The variable of the total ratio; free: nothing holds it from above.
@@ -76,50 +96,46 @@ class Drive:
         """
         known = [float(s) for s in (*scales, *self.ratio) if 0.0 < s < math.inf]
         high = math.inf if free else BEYOND * max(known)
-        guess = max(self.ratio[0], min(self.ratio[1], math.prod(known) ** (1.0 / len(known))))
+        middle = math.exp(sum(map(math.log, known)) / len(known))
+        guess = max(self.ratio[0], min(self.ratio[1], middle))
         return Var("ratio", "", min(known) / BEYOND, high, guess, log=True, search=True)
 
     def torque_needed(self, p: Any, ratio: Any, acceleration: Any) -> Any:
         """Text of the motor's torque while it accelerates the load, without a falling line."""
-        return friction_torque(self, p, ratio) + acceleration * (
-            _load(self, p, ratio) + _motor(self, p, ratio)
-        )
+        inertia = inertia_at_motor(self, p, ratio, p.efficiency)
+        return friction_torque(self, p, ratio, p.efficiency) + acceleration * inertia
 
-    def ratio_limits(self, p: Any, ratio: Any) -> dict[str, Any]:
-        """Text of the user's limits of the ratio."""
-        found = {"ratio_low": p.ratio_low / ratio}
+    def ratio_rows(self, p: Any, ratio: Any) -> tuple[dict[str, Any], dict[str, Any]]:
+        """Text of the user's ratios: limits, or an equality where there is only one."""
+        if self.ratio[0] == self.ratio[1]:
+            return {}, {"ratio": ratio / p.ratio}
+        limits = {"ratio_low": p.ratio_low / ratio}
         if self.ratio[1] < math.inf:
-            found["ratio_high"] = ratio / p.ratio_high
-        return found
+            limits["ratio_high"] = ratio / p.ratio_high
+        return limits, {}
 
 
-def friction_torque(drive: Drive, p: Any, ratio: Any) -> Any:
-    """Text of the motor's torque that friction takes at a ratio."""
-    found = 0.0
-    if drive.motor_friction:
-        found = found + p.motor_friction
+def friction_torque(drive: Drive, p: Any, ratio: Any, efficiency: Any) -> Any:
+    """Text of the motor's torque that friction takes at a ratio: F_M + F_L/(eta N) [N mm]."""
+    found = p.motor_friction if drive.motor_friction else 0.0
     if drive.load_friction:
-        found = found + p.load_friction / (p.efficiency * ratio)
+        found = found + p.load_friction / (efficiency * ratio)
     return found
 
 
-def inertia_at_motor(drive: Drive, p: Any, ratio: Any) -> Any:
-    """Text of torque per acceleration of the load, without losses: J_L/N + N J [t mm2]."""
-    found = p.load_inertia / ratio if drive.load_inertia else 0.0
-    return found + _motor(drive, p, ratio)
-
-
-def _load(drive: Drive, p: Any, ratio: Any) -> Any:
-    return p.load_inertia / (p.efficiency * ratio) if drive.load_inertia else 0.0
-
-
-def _motor(drive: Drive, p: Any, ratio: Any) -> Any:
-    found = 0.0
-    if drive.motor_inertia:
-        found = found + p.motor_inertia * ratio
-    if drive.gear_inertia:
-        found = found + p.gear_inertia * ratio
+def inertia_at_motor(drive: Drive, p: Any, ratio: Any, efficiency: Any) -> Any:
+    """Text of the motor's torque per acceleration of the load: J_L/(eta N) + N J [t mm2]."""
+    found = p.load_inertia / (efficiency * ratio) if drive.load_inertia else 0.0
+    for name in ("motor_inertia", "gear_inertia"):
+        if getattr(drive, name):
+            found = found + getattr(p, name) * ratio
     return found
+
+
+def present(problem: Problem) -> dict[str, float]:
+    """The present values of a problem's parameters, all of size 1."""
+    names = [q.name for q in problem.parameters]
+    return dict(zip(names, map(float, problem.parameter_values()), strict=True))
 
 
 def quotient(a: float, b: float) -> float:

@@ -13,9 +13,10 @@ from gearopt.formulations.ratio.acceleration import (
     ratio_scales,
     standstill,
     unbounded,
+    unopposed,
 )
-from gearopt.formulations.ratio.bound import DOUBT, convex_bound
-from gearopt.formulations.ratio.drive import BEYOND, FAINT, Drive
+from gearopt.formulations.ratio.bound import convex_bound
+from gearopt.formulations.ratio.drive import BEYOND, FAINT, Drive, present, quotient
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.terms import Param, Terms, Var
@@ -35,6 +36,7 @@ def move(drive: Drive, angle: float) -> Problem:
     mirrored ramp needs less torque. The torque is the same up to the speed limit: ValueError for a
     drive with a no-load speed. `exact` is a closed form, or a root of a quartic with load friction.
     """
+    drive.needs(torque=drive.torque, angle=angle)
     if math.isfinite(drive.no_load_speed):
         raise ValueError("a move takes the torque at the top speed, without a no_load_speed")
 
@@ -42,8 +44,9 @@ def move(drive: Drive, angle: float) -> Problem:
         limits = {"motor_torque": drive.torque_needed(p, x.ratio, x.acceleration) / p.torque}
         if drive.speed_limit < math.inf:
             limits["motor_speed"] = x.ratio * x.peak_speed / p.speed_limit
-        limits |= drive.ratio_limits(p, x.ratio)
-        return Terms({"move_time": move_time(p.angle, x.peak_speed, x.acceleration)}, limits)
+        ends, equal = drive.ratio_rows(p, x.ratio)
+        time = move_time(p.angle, x.peak_speed, x.acceleration)
+        return Terms({"move_time": time}, limits | ends, equal=equal)
 
     free = drive.inertia == 0.0 and math.isinf(min(drive.ratio[1], drive.speed_limit))
     scales = (*ratio_scales(drive), _cubic(drive, angle))
@@ -53,7 +56,8 @@ def move(drive: Drive, angle: float) -> Problem:
 
     def exact(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
         """The closed form, or root; budget and seed change nothing."""
-        return _exact(drive, angle)
+        values = present(problem)
+        return _exact(drive.of(values), values["angle"])
 
     parameters = (*drive.parameters(), Param("angle", "rad", angle, role="given"))
     return Problem("ratio", variables, parameters, evaluate, methods={"exact": exact})
@@ -68,8 +72,8 @@ def _peak(ramp: Var, angle: float) -> Var:
 
 def _cubic(drive: Drive, angle: float) -> float:
     """Ratio (2 w^2 J_L/(eta Theta T))^(1/3) of a move whose speed is limited, without friction."""
-    torque = drive.efficiency * max(drive.net_torque, 1e-300) * angle
-    return float((2.0 * drive.speed_limit**2 * drive.load_inertia / torque) ** (1.0 / 3.0))
+    work = drive.efficiency * drive.net_torque * angle
+    return float(quotient(2.0 * drive.speed_limit**2 * drive.load_inertia, work) ** (1.0 / 3.0))
 
 
 def _limited(drive: Drive, angle: float) -> float:
@@ -129,5 +133,6 @@ def _exact(drive: Drive, angle: float) -> Outcome:
 
     ramp = _ramp(drive, ratio)
     peak = min(math.sqrt(ramp * angle), drive.speed_limit / ratio)
-    bound = convex_bound(time, ratio, low, high, DOUBT * (1.0 + drive.net_torque * ratio / ramp))
+    room = min(1.0, ramp / unopposed(drive, ratio))
+    bound = convex_bound(time, ratio, low, high, room, peak / ramp / time(ratio))
     return Outcome(np.array([ratio, ramp, peak]), bound=bound, proof=proof(), evaluations=6)

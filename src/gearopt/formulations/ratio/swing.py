@@ -7,7 +7,7 @@ import numpy as np
 
 from gearopt.formulations.ratio.acceleration import impossible, proof, unbounded
 from gearopt.formulations.ratio.bound import convex_bound
-from gearopt.formulations.ratio.drive import Drive, friction_torque, inertia_at_motor
+from gearopt.formulations.ratio.drive import Drive, friction_torque, inertia_at_motor, present
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.terms import Param, Terms
@@ -25,31 +25,36 @@ def swing(drive: Drive, amplitude: float, angular_frequency: float) -> Problem:
     losses: then power flows both ways and the friction model of `rms_torque` does not hold. `exact`
     is the root of a quartic. Source: derived from Youn, eq. (1).
     """
+    drive.needs(amplitude=amplitude, angular_frequency=angular_frequency)
     if drive.efficiency != 1.0:
         raise ValueError("the rms torque is that of a train without losses: efficiency 1")
-    peak, speed = amplitude * angular_frequency**2, amplitude * angular_frequency
 
     def evaluate(x: Any, p: Any) -> Terms:
-        inertia = p.peak_acceleration * inertia_at_motor(drive, p, x.ratio)
+        speed = p.amplitude * p.angular_frequency
+        inertia = speed * p.angular_frequency * inertia_at_motor(drive, p, x.ratio, 1.0)
         square = inertia**2 / 2.0
         if drive.load_friction or drive.motor_friction:
-            square = square + friction_torque(drive, p, x.ratio) ** 2
-        limits = drive.ratio_limits(p, x.ratio)
+            square = square + friction_torque(drive, p, x.ratio, 1.0) ** 2
+        limits, equal = drive.ratio_rows(p, x.ratio)
         if drive.speed_limit < math.inf:
-            limits["motor_speed"] = x.ratio * p.peak_speed / p.speed_limit
-        return Terms({"rms_torque": square**0.5}, limits)
+            limits["motor_speed"] = x.ratio * speed / p.speed_limit
+        return Terms({"rms_torque": square**0.5}, limits, equal=equal)
 
-    ratio = _stationary(drive, peak)
-    most = drive.ratios(speed)[1]
+    ratio = _stationary(drive, amplitude * angular_frequency**2)
+    most = drive.ratios(amplitude * angular_frequency)[1]
     variable = drive.ratio_variable((ratio, most), math.isinf(ratio) and math.isinf(most))
-    own = (Param("peak_acceleration", "rad/s2", peak), Param("peak_speed", "rad/s", speed))
+    own = (
+        Param("amplitude", "rad", amplitude, role="given"),
+        Param("angular_frequency", "rad/s", angular_frequency, role="given"),
+    )
 
     def exact(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
         """The root; budget and seed change nothing."""
-        return _exact(drive, peak, speed)
+        values = present(problem)
+        return _exact(drive.of(values), values["amplitude"], values["angular_frequency"])
 
-    parameters, methods = (*drive.parameters(), *own), {"exact": exact}
-    return Problem("ratio", (variable,), parameters, evaluate, methods=methods)
+    parameters = (*drive.parameters("torque", "no_load_speed", "efficiency"), *own)
+    return Problem("ratio", (variable,), parameters, evaluate, methods={"exact": exact})
 
 
 def _stationary(drive: Drive, peak: float) -> float:
@@ -71,8 +76,9 @@ def _stationary(drive: Drive, peak: float) -> float:
     return high
 
 
-def _exact(drive: Drive, peak: float, speed: float) -> Outcome:
-    low, high = drive.ratios(speed)
+def _exact(drive: Drive, amplitude: float, angular_frequency: float) -> Outcome:
+    peak = amplitude * angular_frequency**2
+    low, high = drive.ratios(amplitude * angular_frequency)
     if low > high:
         return impossible(f"the motor's speed limit allows a ratio of {high:.6g} at the most")
     ratio = min(max(_stationary(drive, peak), low), high)

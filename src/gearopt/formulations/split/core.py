@@ -17,6 +17,7 @@ from gearopt.optimise.terms import Param, Terms, Var, each
 
 RANDOM = False
 COUNTS = "split evaluated"
+BEYOND = 1e3  # factor between a total ratio and the upper end of the search for a stage's
 NEWTON = 100  # steps at most: from above the root of a convex function they fall to it
 
 
@@ -33,28 +34,37 @@ def core(ratio: float, stages: int, goal: str = "inertia") -> Problem:
         raise ValueError("a split needs a ratio above 1 and a stage at least")
 
     def evaluate(x: Any, p: Any) -> Terms:
-        total, through = 0.0, 1.0
-        for n in each(x.ratio):
-            total = total + (1.0 + n**2) / (through**2 if goal == "inertia" else 1.0)
-            through = through * n
-        return Terms({goal: total}, equal={"ratio": through / p.total})
+        ratios = each(x.ratio)
+        mass = sum(1.0 + n**2 for n in ratios)
+        index = inertia_index(ratios) if goal == "inertia" else mass
+        return Terms({goal: index}, equal={"ratio": math.prod(ratios) / p.total})
 
     def exact(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
         """Equal ratios for mass; for inertia of two stages the root of a cubic."""
-        x = np.full(stages, ratio ** (1.0 / stages))
+        total = float(problem.parameter_values()[0])
+        x = np.full(stages, total ** (1.0 / stages))
         if goal == "inertia" and stages == 2:
-            first = first_ratio(ratio)
-            x = np.array([first, ratio / first])
+            first = first_ratio(total)
+            x = np.array([first, total / first])
         value = float(problem.batch(x[None]).F[0, 0])
         proof = {"method": "closed form", "arithmetic": "double"}
         return Outcome(x, bound=value * (1.0 - 1e-14), proof=proof, evaluations=1)
 
     closed = goal == "mass" or stages <= 2
     even = ratio ** (1.0 / stages)
-    variable = Var("ratio", "", 1.0, ratio, even, stages, log=True)
+    variable = Var("ratio", "", 1.0, BEYOND * ratio, even, stages, log=True)
     total = Param("total", "", ratio, role="given")
     methods = {"exact": exact} if closed else {}
     return Problem("split core", (variable,), (total,), evaluate, methods=methods)
+
+
+def inertia_index(ratios: tuple[Any, ...]) -> Any:
+    """Inertia sum_i (1 + n_i^2)/prod_{j<i} n_j^2 of a train at the motor, a pinion's being 1."""
+    found, through = 0.0, 1.0
+    for n in ratios:
+        found = found + (1.0 + n**2) / through**2
+        through = through * n
+    return found
 
 
 def stage_counts(ratio: float, most: int = 4, goal: str = "inertia") -> tuple[Result, ...]:

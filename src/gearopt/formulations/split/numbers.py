@@ -48,12 +48,12 @@ def numbers(train: ServoTrain) -> Numbers:
     low, high = train.ratios
     most = train.pinion_teeth[1]
     tips = [[math.floor(tip / m) - 2 for m in train.modules] for tip in train.wheel_tips]
-    wheel = train.most_wheel_teeth or max(map(max, tips))
+    wheel = train.wheel_teeth
     products = range(most**2 + 1)
     teeth = np.arange(most + 1, dtype=float)
     return Numbers(
-        least=np.array([math.ceil(low * p) for p in products], np.int64),
-        most=np.array([math.floor(high * p) for p in products], np.int64),
+        least=np.array([-(-low.numerator * p // low.denominator) for p in products], np.int64),
+        most=np.array([high.numerator * p // high.denominator for p in products], np.int64),
         pinion=np.array(train.pinion_teeth, np.int64),
         wheel=wheel,
         wheel_1=np.minimum(tips[0], wheel),

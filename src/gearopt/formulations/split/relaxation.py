@@ -2,7 +2,13 @@
 
 from typing import Any
 
-from gearopt.formulations.split.train import ServoTrain, lewis_stress, objectives
+from gearopt.formulations.split.train import (
+    ServoTrain,
+    lewis_stress,
+    objectives,
+    ratio_parameters,
+    ratio_rows,
+)
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Param, Terms, Var
 from gearopt.physics.stiffness import lewis_form_factor
@@ -17,51 +23,56 @@ def relaxation(train: ServoTrain, goal: str = "inertia") -> Problem:
     pinion is that of the most teeth, which no pinion exceeds.
     """
     low, high = (float(r) for r in train.ratios)
-    ends = [float(m) for m in (min(train.modules), max(train.modules))]
-    most = lewis_form_factor(float(train.pinion_teeth[1]))
 
     def evaluate(x: Any, p: Any) -> Terms:
-        (d1, d3), (n1, n2), modules = x.pinion_diameter, x.ratio, x.module
-        d2, d4 = d1 * n1, d3 * n2
-        found = objectives(train, (goal, "error"), (d1, d2, d3, d4), (n1, n2))
-        pairs = tuple(zip((d1, d3), (d2, d4), modules, strict=True))
-        torques = (train.output_torque / n2, train.output_torque)
-        limits = {
-            "error": found["error"] / p.error,
-            "ratio_low": p.ratio_low / (n1 * n2),
-            "ratio_high": n1 * n2 / p.ratio_high,
-            "stage_ratio_low": (1.0 / n1, 1.0 / n2),
-            "bending_stress": tuple(
-                lewis_stress(t, d, train.face_width, m, most) / p.bending
-                for t, (_, d, m) in zip(torques, pairs, strict=True)
-            ),
-            "bore": p.bore / d3,
-            "wheel_tip": tuple(
-                (d + 2.0 * m) / t for (_, d, m), t in zip(pairs, p.wheel_tip, strict=True)
-            ),
-            "pinion_teeth_low": tuple(train.pinion_teeth[0] * m / d for d, _, m in pairs),
-            "pinion_teeth_high": tuple(d / (train.pinion_teeth[1] * m) for d, _, m in pairs),
-            "module_low": tuple(ends[0] / m for m in modules),
-            "module_high": tuple(m / ends[1] for m in modules),
-        }
-        if train.most_wheel_teeth is not None:
-            limits["wheel_teeth_high"] = tuple(
-                d / (train.most_wheel_teeth * m) for _, d, m in pairs
-            )
-        return Terms({goal: found[goal]}, limits)
+        return _terms(train, goal, x, p)
 
     parameters = (
         Param("error", "rad", train.error, role="limit"),
         Param("bending", "MPa", train.bending, role="limit"),
-        Param("ratio_low", "", low, role="given"),
-        Param("ratio_high", "", high, role="given"),
+        *ratio_parameters(low, high),
         Param("bore", "mm", float(train.bore), role="limit"),
         Param("wheel_tip", "mm", tuple(float(t) for t in train.wheel_tips), 2, role="limit"),
     )
-    return Problem("split relaxation", _variables(train, ends), parameters, evaluate)
+    return Problem("split relaxation", _variables(train), parameters, evaluate)
 
 
-def _variables(train: ServoTrain, ends: list[float]) -> tuple[Var, ...]:
+def _terms(train: ServoTrain, goal: str, x: Any, p: Any) -> Terms:
+    most = lewis_form_factor(float(train.pinion_teeth[1]))
+    ends = _modules(train)
+    (d1, d3), (n1, n2), modules = x.pinion_diameter, x.ratio, x.module
+    d2, d4 = d1 * n1, d3 * n2
+    found = objectives(train, (goal, "error"), (d1, d2, d3, d4), (n1, n2))
+    pairs = tuple(zip((d1, d3), (d2, d4), modules, strict=True))
+    torques = (train.output_torque / n2, train.output_torque)
+    ratio, equal = ratio_rows(p, train.tolerance == 0, n1 * n2)
+    limits = ratio | {
+        "error": found["error"] / p.error,
+        "stage_ratio_low": (1.0 / n1, 1.0 / n2),
+        "bending_stress": tuple(
+            lewis_stress(t, d, train.face_width, m, most) / p.bending
+            for t, (_, d, m) in zip(torques, pairs, strict=True)
+        ),
+        "bore": p.bore / d3,
+        "wheel_tip": tuple(
+            (d + 2.0 * m) / t for (_, d, m), t in zip(pairs, p.wheel_tip, strict=True)
+        ),
+        "pinion_teeth_low": tuple(train.pinion_teeth[0] * m / d for d, _, m in pairs),
+        "pinion_teeth_high": tuple(d / (train.pinion_teeth[1] * m) for d, _, m in pairs),
+        "module_low": tuple(ends[0] / m for m in modules),
+        "module_high": tuple(m / ends[1] for m in modules),
+    }
+    if train.most_wheel_teeth is not None:
+        limits["wheel_teeth_high"] = tuple(d / (train.most_wheel_teeth * m) for _, d, m in pairs)
+    return Terms({goal: found[goal]}, limits, equal=equal)
+
+
+def _modules(train: ServoTrain) -> tuple[float, float]:
+    return float(min(train.modules)), float(max(train.modules))
+
+
+def _variables(train: ServoTrain) -> tuple[Var, ...]:
+    ends = _modules(train)
     size = train.pinion_teeth[0] * ends[0], float(max(train.wheel_tips))
     least, most = min(size) / BEYOND, max(size) * BEYOND
     even = float(train.ratio) ** 0.5

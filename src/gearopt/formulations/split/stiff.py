@@ -7,6 +7,8 @@ from typing import Any
 from gearopt.formulations.split.train import (
     gear_mass,
     lewis_stress,
+    ratio_parameters,
+    ratio_rows,
     train_error,
     train_inertia,
 )
@@ -63,51 +65,54 @@ def stiff(train: StiffTrain) -> Problem:
     """
 
     def evaluate(x: Any, p: Any) -> Terms:
-        (d1, d3), (n1, n2), widths = x.pinion_diameter, x.ratio, x.face_width
-        d2, d4 = d1 * n1, d3 * n2
-        diameters, shaft = (d1, d2, d3, d4), (x.shaft_diameter, train.shaft_length)
-        gears = gear_mass(train.density, diameters, widths, train.sector)
-        long = disc_mass(train.density, train.shaft_length, x.shaft_diameter)
-        inertia = train_inertia(train.density, diameters, widths, (n1, n2), shaft, train.sector)
-        springs = (
-            mesh_compliance(train.line_stiffness, widths[1], d4),
-            shaft_compliance(train.shear_modulus, x.shaft_diameter, train.shaft_length),
-            mesh_compliance(train.line_stiffness, widths[0], d2),
-        )
-        factors = [lewis_form_factor(float(z)) for z in train.pinion_teeth]
-        loads = ((train.output_torque / n2, d2), (train.output_torque, d4))
-        limits = {
-            "stiffness": p.stiffness * output_compliance(springs, (1.0, n2, n2)),
-            "inertia": inertia / p.inertia,
-            "error": train_error(train.lost_motion, d2, d4, n2) / p.error,
-            "ratio_low": p.ratio_low / (n1 * n2),
-            "ratio_high": n1 * n2 / p.ratio_high,
-            "stage_ratio_low": (1.0 / n1, 1.0 / n2),
-            "bending_stress": tuple(
-                lewis_stress(torque, d, b, train.module, y) / p.bending
-                for (torque, d), b, y in zip(loads, widths, factors, strict=True)
-            ),
-            "pinion_teeth_low": tuple(
-                z * train.module / d for z, d in zip(train.pinion_teeth, (d1, d3), strict=True)
-            ),
-            "bore": train.bore[0] / d3,
-            "bore_wall": (x.shaft_diameter + train.bore[1]) / d3,
-            "wheel_diameter": tuple(d / w for d, w in zip((d2, d4), p.wheel_diameter, strict=True)),
-            "face_width_low": tuple(train.face_width / b for b in widths),
-            "shaft_diameter_low": train.shaft_diameter / x.shaft_diameter,
-        }
-        return Terms({"mass": gears + 1000.0 * long}, limits)
+        return _terms(train, x, p)
 
     parameters = (
         Param("stiffness", "N mm/rad", train.stiffness, role="limit"),
         Param("inertia", "t mm2", train.inertia, role="limit"),
         Param("error", "rad", train.error, role="limit"),
         Param("bending", "MPa", train.bending, role="limit"),
-        Param("ratio_low", "", train.ratio[0], role="given"),
-        Param("ratio_high", "", train.ratio[1], role="given"),
+        *ratio_parameters(*train.ratio),
         Param("wheel_diameter", "mm", train.wheels, 2, role="limit"),
     )
     return Problem("split stiff", _variables(train), parameters, evaluate)
+
+
+def _terms(train: StiffTrain, x: Any, p: Any) -> Terms:
+    (d1, d3), (n1, n2), widths = x.pinion_diameter, x.ratio, x.face_width
+    d2, d4 = d1 * n1, d3 * n2
+    diameters, shaft = (d1, d2, d3, d4), (x.shaft_diameter, train.shaft_length)
+    gears = gear_mass(train.density, diameters, widths, train.sector)
+    long = disc_mass(train.density, train.shaft_length, x.shaft_diameter)
+    inertia = train_inertia(train.density, diameters, widths, (n1, n2), shaft, train.sector)
+    springs = (
+        mesh_compliance(train.line_stiffness, widths[1], d4),
+        shaft_compliance(train.shear_modulus, x.shaft_diameter, train.shaft_length),
+        mesh_compliance(train.line_stiffness, widths[0], d2),
+    )
+    factors = [lewis_form_factor(float(z)) for z in train.pinion_teeth]
+    loads = ((train.output_torque / n2, d2), (train.output_torque, d4))
+    tied = train.ratio[0] == train.ratio[1]
+    ratio, equal = ratio_rows(p, tied, n1 * n2)
+    limits = ratio | {
+        "stiffness": p.stiffness * output_compliance(springs, (1.0, n2, n2)),
+        "inertia": inertia / p.inertia,
+        "error": train_error(train.lost_motion, d2, d4, n2) / p.error,
+        "stage_ratio_low": (1.0 / n1, 1.0 / n2),
+        "bending_stress": tuple(
+            lewis_stress(torque, d, b, train.module, y) / p.bending
+            for (torque, d), b, y in zip(loads, widths, factors, strict=True)
+        ),
+        "pinion_teeth_low": tuple(
+            z * train.module / d for z, d in zip(train.pinion_teeth, (d1, d3), strict=True)
+        ),
+        "bore": train.bore[0] / d3,
+        "bore_wall": (x.shaft_diameter + train.bore[1]) / d3,
+        "wheel_diameter": tuple(d / w for d, w in zip((d2, d4), p.wheel_diameter, strict=True)),
+        "face_width_low": tuple(train.face_width / b for b in widths),
+        "shaft_diameter_low": train.shaft_diameter / x.shaft_diameter,
+    }
+    return Terms({"mass": gears + 1000.0 * long}, limits, equal=equal)
 
 
 def _variables(train: StiffTrain) -> tuple[Var, ...]:

@@ -9,8 +9,6 @@ from gearopt.optimise.terms import Terms, Var
 from gearopt.physics.geometry import reference_diameter
 from gearopt.physics.stiffness import lewis_form_factor
 
-MOST = 1000  # teeth of a wheel where no limit is given: beyond any tip diameter worth making
-
 
 def problem(train: ServoTrain, *goals: str) -> Problem:
     """Least inertia [t mm2] at the motor, mass [kg] or error [rad] of a train; see `ServoTrain`.
@@ -58,7 +56,7 @@ def problem(train: ServoTrain, *goals: str) -> Problem:
 
 def _variables(train: ServoTrain) -> tuple[Var, ...]:
     low, high = train.pinion_teeth
-    wheel = train.most_wheel_teeth or MOST
+    wheel = max(train.wheel_teeth, low)
     modules = tuple(sorted(float(m) for m in train.modules))
     return (
         Var("pinion_teeth", "", low, high, low, 2, integer=True),

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
+from gearopt.optimise.terms import Param
 from gearopt.physics.backlash import output_error
 from gearopt.physics.inertia import disc_inertia, disc_mass
 
@@ -56,6 +57,12 @@ class ServoTrain:
             raise ValueError("widths, loads, allowances and limits of a train are positive")
         if not 0.0 < self.sector <= 1.0:
             raise ValueError("the sector is a part of a disc: above 0 and at most 1")
+
+    @property
+    def wheel_teeth(self) -> int:
+        """Most teeth of a wheel: what is given, or what the tips leave."""
+        left = max(self.wheel_tips) // min(self.modules) - 2
+        return max(int(left), 1) if self.most_wheel_teeth is None else self.most_wheel_teeth
 
     @property
     def ratios(self) -> tuple[Fraction, Fraction]:
@@ -118,6 +125,21 @@ def objectives(
         "error": train_error(train.lost_motion, diameters[1], diameters[3], ratios[1]),
     }
     return {name: found[name] for name in names}
+
+
+def ratio_parameters(low: float, high: float) -> tuple[Param, ...]:
+    """The ends of the total ratio, one where they are equal."""
+    if low == high:
+        return (Param("ratio", "", low, role="given"),)
+    ends = (("ratio_low", low), ("ratio_high", high))
+    return tuple(Param(name, "", value, role="given") for name, value in ends)
+
+
+def ratio_rows(p: Any, tied: bool, ratio: Any) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Rows of the total ratio: limits, or an equality (tied), for which no two limits can stand."""
+    if tied:
+        return {}, {"ratio": ratio / p.ratio}
+    return {"ratio_low": p.ratio_low / ratio, "ratio_high": ratio / p.ratio_high}, {}
 
 
 def lewis_stress(torque: Any, diameter: Any, face_width: Any, module: Any, form_factor: Any) -> Any:
