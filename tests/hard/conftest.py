@@ -1,6 +1,0 @@
-"""Hard cases share the data modules of the formulations' tests."""
-
-import sys
-from pathlib import Path
-
-sys.path.append(str(Path(__file__).parents[1] / "formulations"))
