@@ -19,6 +19,7 @@ from gearopt.report.pages.bodies import keep_outs, nearest
 from gearopt.report.pages.labels import SIZE
 from gearopt.report.pages.layout_solid import MOST
 from gearopt.report.pages.result import page
+from gearopt.report.pages.section import SHEET
 from gearopt.report.pages.solid import Toothed, block, gear_mesh, rod, upright
 
 ROOM = Path(frame.__file__).parent
@@ -427,3 +428,9 @@ def test_numbers_of_the_layout_are_in_its_tables():
         "3.3086",
     ):
         assert words in shown, words
+
+
+def test_plots_are_as_wide_as_a_printed_page():
+    """Browsers lay a page out for paper only after the script could ask how wide it is."""
+    script = (ROOM / "frame.js").read_text(encoding="utf-8")
+    assert f"const sheet = {SHEET:g};" in script and "layout.width = sheet" in script

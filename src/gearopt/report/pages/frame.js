@@ -4,6 +4,7 @@
   const dark = window.matchMedia("(prefers-color-scheme: dark)");
   const options = { displaylogo: false, displayModeBar: false, responsive: true };
   const narrow = 560;
+  const sheet = 660;  // px across a printed page, as in section.py: it is laid out after beforeprint
 
   function colour(style, word) {
     const [, name, opacity] = word.match(/^(--[\w-]+)(?:\/([\d.]+))?$/);
@@ -26,6 +27,7 @@
       const spec = JSON.parse(place.parentElement.querySelector("script").textContent);
       const { data, layout } = resolved(style, spec);
       if (place.clientWidth < narrow) layout.font.size = 11;
+      if (root.classList.contains("paper")) layout.width = sheet;
       Plotly.react(place, data, layout, options);
     }
   }
