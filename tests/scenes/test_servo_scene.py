@@ -150,6 +150,37 @@ def test_the_worst_case_gives_the_printed_tolerances():
     assert total == pytest.approx(result.design["train"]["error_deg"], rel=1e-14)
 
 
+def test_dear_pitch_deviations_become_wider():
+    """The closed form of the digest with a_i = 4 for pitch: t ~ sqrt(a t_0/s), C = (sum)^2/E."""
+    result = solved(TOLERANCES, (("tolerances", "pitch_cost"), 4))
+    rows = result.design["tolerances"]
+    cost = [4.0 if r["kind"] == "pitch" else 1.0 for r in rows]
+    parts = [a * r["old_mm"] * r["sensitivity_deg_per_mm"] for a, r in zip(cost, rows, strict=True)]
+    limit = result.design["allocation"]["budgets"][0]["limit_deg"]
+    assert result.value == pytest.approx(sum(np.sqrt(parts)) ** 2 / limit, rel=1e-12)
+    assert result.design["allocation"]["old_cost"] == 20.0
+    same = gearopt.solve(PROBLEMS / "servo_gimbal_tolerances.toml").design["tolerances"]
+    for new, old in zip(rows, same, strict=True):
+        assert (new["new_mm"] > old["new_mm"]) == (new["kind"] == "pitch")
+    choice = solved(text("gimbal_grades"), (("tolerances", "pitch_cost"), 4))
+    assert choice.status == "optimal" and result.value < choice.value < 20.0
+
+
+@pytest.mark.parametrize(
+    ("wrong", "write"),
+    [
+        ("8.6e-6 kgm2", "8.6e-6 kg m^2"),
+        ("86 gcm\u00b2", "86 g cm^2"),
+        ("86 g\u00b7cm\u00b2", "86 g cm^2"),
+        ("0,09 kg cm^2", "0.09 kg cm^2"),
+    ],
+)
+def test_inertias_as_data_sheets_write_them_are_mended(wrong, write):
+    with pytest.raises(SceneError) as caught:
+        changed(EXAMPLE, (("motor", "inertia"), wrong))
+    assert caught.value.fix.value == f'"{write}"'
+
+
 def test_grades_by_rss_of_the_digest():
     result = solved(text("gimbal_grades"), (("budget",), [{"rule": "rss"}]))
     assert result.value == pytest.approx(7.328427125, abs=6e-10)

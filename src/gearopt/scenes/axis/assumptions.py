@@ -35,7 +35,7 @@ def assumptions(scene: Scene) -> list[str]:
         )
     if scene.tolerances is not None:
         found.append(
-            "Cost: each tolerance costs 1 as it is, (old/new)^exponent otherwise. Drawn errors: "
+            "Cost of a tolerance: that of the old one times (old/new)^exponent. Drawn errors: "
             "run-outs t cos(phi), phi uniform; all else uniform from 0 to t."
         )
     return found
