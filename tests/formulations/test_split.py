@@ -11,6 +11,7 @@ from servo_trains import PAPER, STIFF
 
 from gearopt.formulations.split import (
     core,
+    feasible,
     first_ratio,
     lightest_stage_ratio,
     problem,
@@ -18,6 +19,7 @@ from gearopt.formulations.split import (
     stage_counts,
     stiff,
     trains,
+    unbeaten,
 )
 from gearopt.formulations.split.exact import KERNEL
 from gearopt.formulations.split.numbers import numbers
@@ -257,6 +259,24 @@ def test_a_list_of_trains_is_in_order_and_complete():
     assert (batch.G <= 1.0 + 1e-12).all()
     assert batch.F[-1, 0] <= math.radians(0.0985)
     assert batch.F[0, 0] == solve(text).value
+
+
+def test_all_feasible_trains_keep_all_limits():
+    points = feasible(PAPER)
+    assert points.shape == (62054, 6)  # the digest's count
+    batch = problem(PAPER).batch(points)
+    assert (batch.G <= 1.0 + 1e-12).all()
+    assert batch.F.min() == solve(problem(PAPER)).value
+    assert feasible(PAPER, most=62053) is None
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_unbeaten_rows_are_those_of_a_look_at_all_pairs(seed):
+    worth = np.random.default_rng(seed).integers(0, 12, (200, 3)).astype(float)
+    unique = np.unique(worth, axis=0)
+    best = [row for row in unique if not ((unique <= row).all(1) & (unique < row).any(1)).any()]
+    found = worth[unbeaten(worth)]
+    assert np.array_equal(found[np.lexsort(found.T[::-1])], np.array(best))
 
 
 def test_a_run_stops_when_told():

@@ -150,6 +150,37 @@ def test_the_worst_case_gives_the_printed_tolerances():
     assert total == pytest.approx(result.design["train"]["error_deg"], rel=1e-14)
 
 
+def test_dear_pitch_deviations_become_wider():
+    """The closed form of the digest with a_i = 4 for pitch: t ~ sqrt(a t_0/s), C = (sum)^2/E."""
+    result = solved(TOLERANCES, (("tolerances", "pitch_cost"), 4))
+    rows = result.design["tolerances"]
+    cost = [4.0 if r["kind"] == "pitch" else 1.0 for r in rows]
+    parts = [a * r["old_mm"] * r["sensitivity_deg_per_mm"] for a, r in zip(cost, rows, strict=True)]
+    limit = result.design["allocation"]["budgets"][0]["limit_deg"]
+    assert result.value == pytest.approx(sum(np.sqrt(parts)) ** 2 / limit, rel=1e-12)
+    assert result.design["allocation"]["old_cost"] == 20.0
+    same = gearopt.solve(PROBLEMS / "servo_gimbal_tolerances.toml").design["tolerances"]
+    for new, old in zip(rows, same, strict=True):
+        assert (new["new_mm"] > old["new_mm"]) == (new["kind"] == "pitch")
+    choice = solved(text("gimbal_grades"), (("tolerances", "pitch_cost"), 4))
+    assert choice.status == "optimal" and result.value < choice.value < 20.0
+
+
+@pytest.mark.parametrize(
+    ("wrong", "write"),
+    [
+        ("8.6e-6 kgm2", "8.6e-6 kg m^2"),
+        ("86 gcm\u00b2", "86 g cm^2"),
+        ("86 g\u00b7cm\u00b2", "86 g cm^2"),
+        ("0,09 kg cm^2", "0.09 kg cm^2"),
+    ],
+)
+def test_inertias_as_data_sheets_write_them_are_mended(wrong, write):
+    with pytest.raises(SceneError) as caught:
+        changed(EXAMPLE, (("motor", "inertia"), wrong))
+    assert caught.value.fix.value == f'"{write}"'
+
+
 def test_grades_by_rss_of_the_digest():
     result = solved(text("gimbal_grades"), (("budget",), [{"rule": "rss"}]))
     assert result.value == pytest.approx(7.328427125, abs=6e-10)
@@ -261,6 +292,28 @@ def test_given_gears_stand_beside_the_best():
     assert report["real_valued_bound_inertia_kg_m2"] == pytest.approx(4.884e-7, abs=6e-11)
     mass = [row["mass_in_pinions"] for row in report["stage_counts"]]
     assert mass == pytest.approx([2305.0, 98.0, 42.623, 31.713, 28.522, 27.805], abs=6e-4)
+
+
+def test_stiffness_by_youngs_modulus_is_near_the_digest():
+    """There the teeth's form factors are those of a table; the fit here differs by 3 % or less."""
+    content = parse(text("gimbal"))
+    del content["stiffness"]["line_stiffness"]
+    content["stiffness"]["youngs_modulus"] = "193.2 GPa"
+    report = gearopt.solve(read(dump(content).encode())[1]).report
+    stiffness = report["given_stiffness"]
+    assert stiffness["output_Nm_per_rad"] == pytest.approx(3.466e4, rel=0.005)
+    assert stiffness["frequency_Hz"] == pytest.approx(210.6, rel=0.003)
+    assert stiffness["windup_deg"] == pytest.approx(0.000697, rel=0.005)
+    shares = [s["compliance_share"] for s in stiffness["springs"]]
+    assert shares == pytest.approx([0.203, 0.782, 0.015], abs=0.004)
+
+
+def test_tolerances_beyond_the_error_of_the_file_are_named():
+    """Three standard deviations within the limit, the worst case above it."""
+    edits = ((("budget", 0), {"rule": "mean_plus_sd"}),)
+    result = solved(EXAMPLE, *edits, drop=[("space",), ("lightest",)])
+    assert result.design["drawn"]["worst_case_deg"] > 0.12
+    assert any("at their worst" in note for note in result.report["notes"])
 
 
 def test_the_wider_error_that_is_proposed_is_the_least():

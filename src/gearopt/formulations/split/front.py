@@ -1,7 +1,7 @@
 """Which of many trains no other is better than in every respect."""
 
 import math
-from bisect import bisect_right, insort
+from bisect import bisect_left, bisect_right
 
 import numpy as np
 
@@ -21,7 +21,8 @@ def unbeaten(worth: Array) -> list[int]:
         if at and stairs[at - 1][1] <= step[1]:
             continue
         kept.append(int(k))
+        at = bisect_left(stairs, step)
         while at < len(stairs) and stairs[at][1] >= step[1]:
             del stairs[at]
-        insort(stairs, step)
+        stairs.insert(at, step)
     return kept

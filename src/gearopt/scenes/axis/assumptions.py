@@ -1,5 +1,6 @@
 """What the answer for a servo axis takes for granted, in sentences."""
 
+import math
 from typing import Any
 
 from gearopt.optimise.result import Result
@@ -34,7 +35,7 @@ def assumptions(scene: Scene) -> list[str]:
         )
     if scene.tolerances is not None:
         found.append(
-            "Cost: each tolerance costs 1 as it is, (old/new)^exponent otherwise. Drawn errors: "
+            "Cost of a tolerance: that of the old one times (old/new)^exponent. Drawn errors: "
             "run-outs t cos(phi), phi uniform; all else uniform from 0 to t."
         )
     return found
@@ -45,9 +46,9 @@ def _of_train(scene: Scene) -> list[str]:
     found = [
         "External spur gears without profile shift, solid discs of one face width; addendum 1 m.",
         f"The last wheel is {100.0 * float(scene.train.sector):g} % of a disc.",
-        "Bending stress after Lewis at the tip of one tooth, form factor pi (0.154 - 0.912/z): no "
-        "dynamic, load distribution or notch factor, and no contact stress. It is no rating by "
-        "ISO 6336 or AGMA 2101.",
+        "Bending stress after Lewis at the tip of one tooth, form factor pi (0.154 - 0.912/z) of "
+        "full-depth teeth of 20 degrees: no dynamic, load distribution or notch factor, and no "
+        "contact stress. It is no rating by ISO 6336 or AGMA 2101.",
     ]
     if scene.stiffness is not None:
         found.append(
@@ -69,6 +70,15 @@ def notes(scene: Scene, design: dict[str, Any], results: tuple[Result, ...]) -> 
     found = []
     if not design.get("box", {}).get("fits", True):
         found.append("The best train does not fit the box of [space].")
+    asked, drawn = scene.accuracy.error, design.get("drawn")
+    if asked is not None and drawn is not None:
+        limit = math.degrees(asked.value)
+        worst = drawn["worst_case_deg"]
+        if worst > limit * (1.0 + 1e-9):
+            found.append(
+                f"The new tolerances at their worst make {worst:.5g} degrees, above the "
+                f"{limit:.5g} of [accuracy]: their budget counts otherwise."
+            )
     clean = teeth_without_undercut(scene.accuracy.pressure_angle.value, 0.0)
     found += [
         f"The pinion of stage {k} is undercut: without profile shift a rack cuts {clean:.1f} teeth "

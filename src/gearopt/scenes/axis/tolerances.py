@@ -35,7 +35,7 @@ def stack(scene: Scene, gears: Gears) -> Stack:
         Component(
             name=s.name,
             sensitivity=math.degrees(gears.sensitivity(s)),
-            cost=s.tolerance**k,
+            cost=table.cost(s) * s.tolerance**k,
             exponent=k,
             least=low * s.tolerance,
             most=high * s.tolerance,
@@ -79,8 +79,12 @@ def problem(scene: Scene, gears: Gears) -> Problem:
     steps = [2.0 ** (0.5 * j) for j in range(-table.grades, table.grades + 1)]
     k = float(table.exponent)
     parts = tuple(
-        graded.Graded(c.name, c.sensitivity, tuple((t * f, f**-k) for f in steps))
-        for c, t in zip(own.components, old(scene).tolist(), strict=True)
+        graded.Graded(
+            c.name,
+            c.sensitivity,
+            tuple((s.tolerance * f, table.cost(s) * f**-k) for f in steps),
+        )
+        for c, s in zip(own.components, scene.sources, strict=True)
     )
     (budget,) = own.budgets
     rule: Any = budget.rule
@@ -105,7 +109,7 @@ def tolerance_part(
         t = old(scene) * 2.0 ** (0.5 * (t - 1.0 - scene.tolerances.grades))
     design = {
         "tolerances": _rows(scene, own, t),
-        "allocation": _allocation(own, t, result),
+        "allocation": _allocation(own, t, result, scene),
         "drawn": _drawn(own, t, scene.tolerances.seed if scene.tolerances else 0),
     }
     return replace(result, design=design), design, report
@@ -130,25 +134,26 @@ def _rows(scene: Scene, own: Stack, t: Array) -> list[dict[str, Any]]:
                 "lower_mm": low,
                 "upper_mm": high if math.isfinite(high) else None,
                 "sensitivity_deg_per_mm": part.sensitivity,
-                "old_cost": 1.0,
-                "new_cost": (before / new) ** k,
+                "old_cost": table.cost(source),
+                "new_cost": table.cost(source) * (before / new) ** k,
             }
         )
     return rows
 
 
-def _allocation(own: Stack, t: Array, result: Result) -> dict[str, Any]:
+def _allocation(own: Stack, t: Array, result: Result, scene: Scene) -> dict[str, Any]:
     budgets = []
     for budget, used in zip(own.budgets, own.used(t), strict=True):
         row: dict[str, Any] = {"rule": budget.rule}
         if budget.rule == "mean_plus_sd":
             row["kappa"] = budget.kappa
         budgets.append(row | {"limit_deg": budget.error, "used_deg": float(used) * budget.error})
-    count = float(len(own.components))
+    table = scene.tolerances
+    assert table is not None
     return {
         "budgets": budgets,
         "cost": result.value,
-        "old_cost": count,
+        "old_cost": sum(table.cost(s) for s in scene.sources),
         "method": str(result.proof.get("method", result.method)),
     }
 

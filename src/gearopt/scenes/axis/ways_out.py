@@ -31,8 +31,8 @@ def ways_out(scene: Scene, budget: Budget) -> tuple[tuple[str, ...], tuple[Remed
     assert free.train is not None
     aim = free.train.model_copy(update={"minimise": "error"})
     least = solve(posed(free.model_copy(update={"train": aim})), budget=budget)
-    if least.value is None:
-        return (), (), f"it is not for the accuracy: {least.message or least.status}"
+    if least.status == "infeasible":
+        return (), (), f"it is not for the accuracy: {least.message}"
     if least.status != "optimal":
         return (), (), "time ran out before the least possible error was proven"
     best = units.parse(f"{least.value!r} deg", "angle")

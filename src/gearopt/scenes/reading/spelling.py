@@ -16,7 +16,8 @@ def near(word: str, names: Iterable[str]) -> str | None:
 
 
 # A comma before three digits may separate thousands, so it is not taken for a decimal one.
-_SLIP = re.compile(r"\s*(\+?[0-9]*(?:\.|,(?![0-9]{3}(?![0-9])))?[0-9]+)\s*([^\s\d.,].*?|1/\S+)?\s*")
+_NUMBER = r"(\+?[0-9]*(?:\.|,(?![0-9]{3}(?![0-9])))?[0-9]+(?:[eE][+-]?[0-9]{1,3})?)"
+_SLIP = re.compile(rf"\s*{_NUMBER}\s*((?![eE][+-]?[0-9])[^\s\d.,].*?|1/\S+)?\s*")
 
 
 def meant(text: str, dimension: str, usual: str) -> str:

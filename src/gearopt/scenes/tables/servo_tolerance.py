@@ -7,17 +7,23 @@ from pydantic import Field, model_validator
 
 from gearopt.formulations.tolerance.stack import Rule
 from gearopt.scenes.reading.fields import Table, choice, number, quantity, refuse, whole
+from gearopt.scenes.tables.servo_mesh import Source
 from gearopt.units import Quantity
 
 MOST = Fraction(1000)
 
 
 class Tolerances(Table):
-    """Every deviation of [[mesh]] as a tolerance, at least total cost; each costs 1 as it is."""
+    """Every deviation of [[mesh]] as a tolerance, at least total cost."""
 
     exponent: Annotated[Fraction, number(1, 0, 4)] = Field(
         default_factory=lambda: Fraction(1),
         description="Cost (old/new)^exponent of a tolerance",
+        json_schema_extra={"default": 1},
+    )
+    pitch_cost: Annotated[Fraction, number(2, 0, MOST)] = Field(
+        default_factory=lambda: Fraction(1),
+        description="Cost of a pitch deviation as it is, where every other deviation costs 1",
         json_schema_extra={"default": 1},
     )
     least_factor: Annotated[Fraction | None, number(0.25, 0, 1)] = Field(
@@ -34,6 +40,10 @@ class Tolerances(Table):
     seed: Annotated[int, whole(0, 0, 10**9)] = Field(
         0, description="Seed of the drawn errors that show what the tolerances give"
     )
+
+    def cost(self, source: Source) -> float:
+        """Cost of a deviation as it is."""
+        return float(self.pitch_cost) if source.kind == "pitch" else 1.0
 
     @model_validator(mode="after")
     def _one(self) -> "Tolerances":
