@@ -43,9 +43,9 @@ def _train(train: Mapping[str, Any], goal: str, measures: Measures) -> list[Tile
     if goal != "error":
         angle = train["error_deg"]
         made.append(Tile("error at the output", degrees(angle), arc_minutes(angle)))
-    if goal != "inertia":
+    if goal != "inertia" and "inertia_kg_m2" in train:
         inertia = amount(train["inertia_kg_m2"], "kg_m2", measures)
         made.append(Tile("inertia at the motor", inertia))
-    if goal != "mass":
+    if goal != "mass" and "mass_kg" in train:
         made.append(Tile("mass of the gears", amount(train["mass_kg"], "kg", measures)))
     return made

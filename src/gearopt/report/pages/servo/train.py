@@ -29,11 +29,12 @@ def section(result: Result, measures: Measures) -> Section | None:
         f"The error of {degrees(found['error_deg'])} ({arc_minutes(found['error_deg'])}) is the "
         "worst case of backlash and pitch at the output, inertia is seen at the motor."
     )
-    drawn = () if "box" in result.design else train_views.views(stages, measures)
+    known = all("face_width_mm" in stage for stage in stages)
+    drawn = train_views.views(stages, measures) if known and "box" not in result.design else ()
     if drawn:
         words.append(
             "All shafts are drawn in one line, wheels as full discs; reference circles are "
-            f"dash-dotted. Dimensions in {measures.unit('mm')}."
+            f"dash-dotted. Dimensions in {measures.lengths}."
         )
     tables = (Table("stages", heads, rows), Table("train", ("", ""), totals))
     return Section("Train", words=words, drawings=drawn, tables=tables, half=not drawn)
