@@ -42,7 +42,7 @@ def section(result: Result, measures: Measures) -> Section | None:
         return None
     words = [
         box_words(box, measures),
-        f"Drawn to scale, dimensions in {measures.unit('mm')}. Heavy: the box inside; thin dashed: "
+        f"Drawn to scale, dimensions in {measures.lengths}. Heavy: the box inside; thin dashed: "
         "the room that the train needs, which may be anywhere in it. Numbers in circles are "
         "shafts: 1 motor, 2 middle, 3 output.",
     ]
