@@ -22,6 +22,7 @@ from gearopt.optimise.terms import Array, Terms, Var
 
 RANDOM = False
 COUNTS = "interval of angles judged"
+TIE = 1e-9  # of the box's sides: layouts that meet it exactly are many, and fit
 GAP = 1e-6  # where the budget asks for none
 NODES = 20_000  # of a slice
 DEEP = 4_000  # open intervals; each halving leaves one
@@ -158,12 +159,13 @@ def _searched(box: ServoBox, budget: Budget, watch: Watch | None) -> Outcome:
 def first_that_fits(boxes: Iterable[ServoBox], limit: int = 10_000) -> tuple[int, Array] | None:
     """Place of the first box of scale 1 that has a layout, and its angles; None if none has.
 
-    Every box before it is proven to have none. RuntimeError where `limit` intervals do not decide:
-    then a layout fits or fails by less than rounding.
+    A layout that meets the box exactly fits: the box is TIE larger than it is. Every box before the
+    found one is proven to have none. RuntimeError where `limit` intervals do not decide.
     """
     code, cells, angles = kernel(KERNEL), np.zeros((DEEP, 2)), np.zeros(2)
     for k, box in enumerate(boxes):
-        answer = code.fits(numbers(box), cells, angles, limit)
+        given = numbers(box)
+        answer = code.fits(given._replace(box=(1.0 + TIE) * given.box), cells, angles, limit)
         if answer < 0:
             raise RuntimeError(f"box {k} is not decided within {limit} intervals")
         if answer:

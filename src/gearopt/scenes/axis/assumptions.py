@@ -38,6 +38,11 @@ def assumptions(scene: Scene) -> list[str]:
             "Cost of a tolerance: that of the old one times (old/new)^exponent. Drawn errors: "
             "run-outs t cos(phi), phi uniform; all else uniform from 0 to t."
         )
+    if any(budget.rule == "rss" for budget in scene.budget):
+        found.append(
+            "The root of the sum of squares leaves aside that one-sided deviations have a mean "
+            "above zero: the yield that is drawn counts it."
+        )
     return found
 
 
@@ -47,8 +52,11 @@ def _of_train(scene: Scene) -> list[str]:
         "External spur gears without profile shift, solid discs of one face width; addendum 1 m.",
         f"The last wheel is {100.0 * float(scene.train.sector):g} % of a disc.",
         "Bending stress after Lewis at the tip of one tooth, form factor pi (0.154 - 0.912/z) of "
-        "full-depth teeth of 20 degrees: no dynamic, load distribution or notch factor, and no "
-        "contact stress. It is no rating by ISO 6336 or AGMA 2101.",
+        "full-depth teeth of 20 degrees (up to 8 % above tables, so that stresses may be that much "
+        "higher): no dynamic, load distribution or notch factor, and no contact stress. It is no "
+        "rating by ISO 6336 or AGMA 2101.",
+        "The mass of a train is that of its gears; its inertia has the shaft between the stages in "
+        "it, and so has the mass of [lightest].",
     ]
     if scene.stiffness is not None:
         found.append(
@@ -60,7 +68,7 @@ def _of_train(scene: Scene) -> list[str]:
     if scene.space is not None:
         found.append(
             "The box is that of gears, motor and hub seen along the shafts, without clearances; "
-            "its depth is not checked."
+            "its depth is not checked. Lists and plots of other trains leave the box aside."
         )
     return found
 

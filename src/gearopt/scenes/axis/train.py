@@ -121,7 +121,7 @@ def box_part(scene: Scene, gears: Gears, ask: Ask) -> tuple[Result, dict[str, An
         "inner_height_mm": box.box[1],
         "needed_width_mm": width,
         "needed_height_mm": height,
-        "fits": result.value <= 1.0,
+        "fits": result.value <= 1.0 + servo_box.TIE,
         "motor_angle_deg": math.degrees(outcome.x[0]),
         "output_angle_deg": math.degrees(outcome.x[1]),
         "radii_mm": list(box.radii),

@@ -47,7 +47,7 @@ class Train(Table):
     )
     face_width: Annotated[Quantity, LENGTH] = Field(description="Face width of all gears")
     density: Annotated[Quantity, quantity("density", "7.75 g/cm^3")] = Field(
-        description="Density of gears and shaft"
+        description="Density of gears and shaft (the mass of a train is that of its gears)"
     )
     sector: Annotated[Fraction, number("25 %", 0, 1, percent=True)] = Field(
         default_factory=lambda: Fraction(1),
@@ -97,7 +97,7 @@ class Shaft(Table):
 
     diameter: Annotated[Quantity, quantity("length", "8 mm")] = Field(description="Diameter")
     length: Annotated[Quantity, quantity("length", "50 mm")] = Field(
-        description="Length between the gears, which is twisted; it is all that is weighed"
+        description="Length between the gears, which is twisted and whose inertia counts"
     )
 
 
