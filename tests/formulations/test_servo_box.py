@@ -155,3 +155,14 @@ def test_the_kernel_and_the_text_are_one_law():
             allowed = batch.F[batch.G[:, 0] <= 1.0, 0]
             assert scale <= allowed.min() * (1.0 + 1e-12)
             assert scale >= allowed.min() - 60.0 * (fine[1] - fine[0]) / 80.0
+
+
+def test_a_layout_that_meets_the_box_exactly_fits():
+    """A full wheel as wide as the box: intervals alone decide no layout of equal width."""
+    wheel = ServoBox((6.0, 9.0, 30.0), (12.0, 34.0), 4.0, math.pi, (60.0, 130.0))
+    found = first_that_fits([wheel])
+    assert found is not None and found[0] == 0
+    motor, output = found[1]
+    assert extents(wheel, motor, output)[0] == pytest.approx(60.0, rel=1e-9)
+    narrow = replace(wheel, box=(60.0 * (1.0 - 1e-7), 130.0))
+    assert first_that_fits([narrow]) is None
