@@ -13,6 +13,7 @@ import gearopt
 from gearopt.errors import SceneError
 from gearopt.formulations import servo_box
 from gearopt.optimise.result import Budget
+from gearopt.report.servo_words import ratio_words
 from gearopt.scenes.axis.choice import box_of, front, posed
 from gearopt.scenes.axis.gears import of_point
 from gearopt.scenes.reading.load import read
@@ -80,6 +81,47 @@ def test_moves_of_the_digest(angle, ratio, time):
     result = solved(text("gimbal_move"), (("duty", "angle"), angle))
     assert result.report["best_total_ratio"] == pytest.approx(ratio, abs=6e-5)
     assert result.value == pytest.approx(time, abs=6e-7)
+
+
+def test_a_given_ratio_that_the_motor_cannot_run_at_has_no_value():
+    """At 48 the motor would turn at 48 * 20 = 960 rad/s."""
+    fast = (("duty", "load_speed"), "20 rad/s"), (("motor", "speed_limit"), "400 rad/s")
+    result = solved(RATIO, *fast)
+    assert result.design["ratio"]["total_ratio"] == pytest.approx(20.0)
+    assert result.design["ratio"]["given"] is None and "given_load" not in str(result.report)
+    (said,) = result.report["notes"]
+    assert "48" in said and "960 rad/s, above its limit of 400 rad/s" in said
+    assert solved(RATIO, fast[0]).design["ratio"]["given"]["value"] == pytest.approx(46.304224)
+    swing = solved(text("gimbal_swing"), (("motor", "speed_limit"), "50 rad/s"))
+    assert swing.design["ratio"]["given"] is None and "given_rms" not in str(swing.report)
+    top = 50.0 / (math.radians(20.0) * 4.0 * math.pi)
+    assert swing.design["ratio"]["curve"]["total_ratio"][-1] == pytest.approx(top)
+    assert "above its limit of 50 rad/s" in swing.report["notes"][0]
+    slow = (("duty", "load_speed"), "20 rad/s"), (("motor", "no_load_speed"), "800 rad/s")
+    assert "does not move" in solved(RATIO, *slow).report["notes"][0]
+
+
+def test_a_ratio_below_those_that_are_searched_may_be_better_and_is_said_so():
+    """Equal inertias are at 0.5, the search begins at 1."""
+    light = (("load", "inertia"), "2.15e-6 kg m^2"), (("load", "friction"), "0 N m")
+    found = solved(RATIO, *light, (("duty", "ratio"), Decimal("0.5"))).design["ratio"]
+    assert found["total_ratio"] == pytest.approx(1.0) and found["given"]["loss_percent"] < 0.0
+    assert ratio_words(found)[1].endswith("% more.")
+
+
+def test_landmarks_of_a_ratio_count_the_losses_of_the_train():
+    """At its best ratio without load friction, a train of efficiency 0.9, by the law itself."""
+    lossy = (("load", "efficiency"), Decimal("0.9")), (("load", "friction"), "0 N m")
+    report = solved(RATIO, *lossy).report
+    assert report["matched_inertia_ratio"] == pytest.approx(report["best_total_ratio"])
+    best = report["best_load_acceleration_rad_per_s2"]
+    key = "load_acceleration_without_load_friction_rad_per_s2"
+    assert report[key] == pytest.approx(best, rel=1e-12)
+    assert report[key] == pytest.approx(math.sqrt(0.9) * 56.948992, abs=1e-6)
+    assert key not in solved(RATIO, (("duty", "load_speed"), "5 rad/s")).report
+    swing = solved(text("gimbal_swing"), (("motor", "torque"), "0.05 N m")).report
+    assert key not in swing and "frictionless" not in str(swing)
+    assert swing["matched_inertia_ratio"] == pytest.approx(47.982555, abs=1e-6)
 
 
 TOLERANCES = text("gimbal_tolerances")

@@ -5,6 +5,7 @@ from typing import Any
 
 from gearopt.optimise.result import Result
 from gearopt.physics.geometry import teeth_without_undercut
+from gearopt.scenes.axis.ratio import no_given
 from gearopt.scenes.tables.servo import Scene
 
 FRICTION = {
@@ -67,7 +68,7 @@ def _of_train(scene: Scene) -> list[str]:
 
 def notes(scene: Scene, design: dict[str, Any], results: tuple[Result, ...]) -> list[str]:
     """What a reader should know beside the numbers."""
-    found = []
+    found = [said] if "ratio" in design and (said := no_given(scene)) else []
     if not design.get("box", {}).get("fits", True):
         found.append("The best train does not fit the box of [space].")
     asked, drawn = scene.accuracy.error, design.get("drawn")
