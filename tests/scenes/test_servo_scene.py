@@ -2,6 +2,7 @@
 
 import math
 import tomllib
+from dataclasses import replace
 from decimal import Decimal
 from pathlib import Path
 
@@ -12,10 +13,14 @@ from scene_files import dump, mended, parse, walk
 import gearopt
 from gearopt.errors import SceneError
 from gearopt.formulations import servo_box
+from gearopt.optimise.explaining.repair import Clock
 from gearopt.optimise.result import Budget
+from gearopt.report.proof_words import proof
 from gearopt.report.servo_words import ratio_words
+from gearopt.scenes.axis.assumptions import notes
 from gearopt.scenes.axis.choice import box_of, front, posed
 from gearopt.scenes.axis.gears import of_point
+from gearopt.scenes.axis.ways_out import ways_out
 from gearopt.scenes.reading.load import read
 from gearopt.scenes.servo import EXAMPLE
 
@@ -273,6 +278,7 @@ def test_the_whole_toothed_train_is_as_stiff_as_asked():
     assert none.status == "infeasible" and "stiffness" in none.message
 
 
+GIVEN_GEARS = {"module": "1 mm", "pinion_teeth": 20, "wheel_teeth": 100, "grade": 7}
 NARROW = (
     (("accuracy", "error"), "0.15 deg"),
     (("space", "width"), "74 mm"),
@@ -384,8 +390,10 @@ def test_comparing_takes_the_train_without_its_box():
 
 def test_a_run_out_of_time_says_so():
     result = gearopt.solve(changed(EXAMPLE), budget=Budget(seconds=0.0))
-    assert result.status in ("limit", "stationary", "optimal", "feasible")
-    result.to_json()
+    assert result.status == "limit" and result.value is None and result.bound is None
+    assert result.message == "stopped before the end" and "ways_out" not in result.report
+    assert {p.name: p.status for p in result.parts} == {"ratio": "optimal", "stiff": "limit"}
+    assert gearopt.Result.from_json(result.to_json()).status == "limit"
 
 
 REFUSED = [  # edits, dropped, key, words
@@ -450,6 +458,94 @@ def test_a_file_that_does_not_fit_together_is_refused_and_mended(edits, drop, ke
         except SceneError as next_one:
             wrong.value.fix = next_one.fix
     raise AssertionError(data)
+
+
+TRUED = [(("budget",), [{"rule": "mean_plus_sd", "kappa": 0}])]
+
+
+def test_a_mean_alone_needs_an_upper_end_for_run_outs():
+    with pytest.raises(SceneError, match="no budget counts the run-outs") as wrong:
+        changed(TOLERANCES, *TRUED)
+    assert wrong.value.key == "tolerances.largest_factor"
+    held = solved(TOLERANCES, *TRUED, (("tolerances", "largest_factor"), 4))
+    assert held.status == "optimal"
+    rows = held.design["tolerances"]
+    outs = [r["new_mm"] / r["old_mm"] for r in rows if "run-out" in r["name"]]
+    assert outs == pytest.approx([4.0] * 3)
+    both = [{"rule": "worst_case"}, {"rule": "mean_plus_sd", "kappa": 0}]
+    assert solved(TOLERANCES, (("budget",), both)).status == "optimal"
+
+
+def test_the_mean_of_run_outs_alone_is_no_budget():
+    meshes = [
+        {
+            "module": "0.5 mm",
+            "pinion_teeth": 16,
+            "wheel_teeth": 96,
+            "pinion_bearing_run_out": "3 um",
+        }
+    ] * 2
+    with pytest.raises(SceneError, match="the mean of run-outs is 0") as wrong:
+        changed(TOLERANCES, *TRUED, (("mesh",), meshes), (("tolerances", "largest_factor"), 4))
+    assert wrong.value.key == "budget[1].kappa"
+
+
+def test_grades_beside_a_train_are_refused():
+    given = [(("mesh", k, n), v) for k in (0, 1) for n, v in GIVEN_GEARS.items()]
+    with pytest.raises(SceneError, match="chooses the diameters") as wrong:
+        changed(EXAMPLE, *given, drop=[("mesh", k, "pitch") for k in (0, 1)])
+    assert wrong.value.key == "mesh[1].grade" and wrong.value.fix.action == "remove"
+
+
+def test_a_train_of_ratio_one_has_no_other_numbers_of_stages():
+    light = (("train", "ratio"), 1), (("train", "pinion_teeth"), [60, 62])
+    result = solved(text("gimbal_light"), *light, (("accuracy", "error"), "1 deg"))
+    assert result.design["train"]["ratio"] == pytest.approx(1.0, rel=0.01)
+    assert result.report["stage_counts"] == []
+
+
+def test_wheels_may_have_more_than_a_thousand_teeth():
+    edits = {"modules": ["0.1 mm"], "wheel_tip_diameters": ["200 mm", "200 mm"], "ratio": 6000}
+    edits |= {"minimise": "error", "bending_stress": "1.5 GPa", "pinion_teeth": [20, 24]}
+    edits |= {"second_pinion_diameter": "2 mm"}
+    scene = changed(
+        text("gimbal_light"),
+        *((("train", k), v) for k, v in edits.items()),
+        (("accuracy", "error"), "1 deg"),
+        drop=[("train", "wheel_teeth")],
+    )
+    result = gearopt.solve(scene)
+    assert result.status == "optimal"
+    assert max(s["wheel_teeth"] for s in result.design["train"]["stages"]) == 1998
+
+
+def test_time_that_ran_out_is_no_reason_of_its_own():
+    scene = changed(text("gimbal_impossible"))
+    for clock in (Clock(Budget(seconds=0.0)), Clock(Budget(), lambda event: False)):
+        conflict, remedies, message = ways_out(scene, clock)
+        assert (conflict, remedies) == ((), ()) and message.startswith("time ran out")
+
+
+def test_a_stop_ends_the_look_for_ways_out():
+    """The least error is found; from then on the user wants no more."""
+    seen = []
+
+    def watch(event):
+        seen.append(event)
+        return len(seen) < 8
+
+    clock = Clock(Budget(), watch)
+    found = ways_out(changed(text("gimbal_impossible")), clock)
+    assert clock.stopped and all(r.verified["with"] == "optimal" for r in found[1])
+    assert len(found[1]) < 2
+
+
+def test_a_message_with_a_stop_gets_no_second_one():
+    result = gearopt.solve(changed(RATIO))
+    late = replace(result, status="limit", message="Bound of ratio is violated by 1.01.")
+    assert "Bound of ratio is violated by 1.01." in proof(late)
+    note = notes(changed(RATIO), {}, (result, replace(late, objective={"name": "ratio"})))
+    assert note == ["There is no answer for the part ratio: Bound of ratio is violated by 1.01."]
 
 
 def test_tolerances_alone_need_given_gears():

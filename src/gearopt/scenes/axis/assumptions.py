@@ -92,7 +92,7 @@ def notes(scene: Scene, design: dict[str, Any], results: tuple[Result, ...]) -> 
             "The lightest train has real-valued sizes: it is a floor for gears with whole teeth."
         )
     found += [
-        f"There is no answer for the part {part.name}: {part.message or part.status}."
+        f"There is no answer for the part {part.name}: {(part.message or part.status).rstrip('.')}."
         for part in results[1:]
         if part.value is None
     ]

@@ -1,14 +1,14 @@
 """What to write instead where no train is accurate enough: found by solving, and solved again."""
 
 import math
-from collections.abc import Sequence
 from dataclasses import replace
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 
 from gearopt import units
 from gearopt.formulations import split
 from gearopt.optimise.explaining.explanation import Change, Remedy
-from gearopt.optimise.result import Budget, Result
+from gearopt.optimise.explaining.repair import Clock
+from gearopt.optimise.result import Result
 from gearopt.optimise.solve import solve
 from gearopt.scenes.axis.choice import posed
 from gearopt.scenes.axis.gears import errors, of_point
@@ -23,14 +23,14 @@ LOOSE = "90 deg"  # an error that no train misses
 NAMED = 3  # sources of error that the message names
 
 
-def ways_out(scene: Scene, budget: Budget) -> tuple[tuple[str, ...], tuple[Remedy, ...], str]:
+def ways_out(scene: Scene, clock: Clock) -> tuple[tuple[str, ...], tuple[Remedy, ...], str]:
     """Limits in conflict, remedies and a message for a train that is impossible."""
     asked = scene.accuracy.error
     assert asked is not None and scene.train is not None
     free = with_error(scene, units.parse(LOOSE, "angle"))
     assert free.train is not None
     aim = free.train.model_copy(update={"minimise": "error"})
-    least = solve(posed(free.model_copy(update={"train": aim})), budget=budget)
+    least = _solved(free.model_copy(update={"train": aim}), clock)
     if least.status == "infeasible":
         return (), (), f"it is not for the accuracy: {least.message}"
     if least.status != "optimal":
@@ -38,8 +38,16 @@ def ways_out(scene: Scene, budget: Budget) -> tuple[tuple[str, ...], tuple[Remed
     best = units.parse(f"{least.value!r} deg", "angle")
     conflict, floor = _conflict(scene)
     bound = (floor or best.value) / asked.value
-    found = (_wider(scene, best, bound, budget), *_finer(scene, best, bound, budget))
-    return conflict, found, _message(free, least)
+    found = [ways(scene, best, bound, clock) for ways in (_wider, _finer)]
+    proven = tuple(r for r in found if r.verified["with"] == "optimal")
+    return conflict, proven, _message(free, least)
+
+
+def _solved(scene: Scene, clock: Clock) -> Result:
+    """The train of a scene within what is left; a run that the user stops ends the rest too."""
+    result = solve(posed(scene), budget=clock.left, watch=clock.watch)
+    clock.stopped = clock.stopped or result.status == "limit"
+    return result
 
 
 def _conflict(scene: Scene) -> tuple[tuple[str, ...], float | None]:
@@ -85,7 +93,7 @@ def _rounded(value: float, up: bool) -> str:
     return f"{context.create_decimal(Decimal(value)).normalize():f}"
 
 
-def _wider(scene: Scene, best: Quantity, bound: float, budget: Budget) -> Remedy:
+def _wider(scene: Scene, best: Quantity, bound: float, clock: Clock) -> Remedy:
     """The least error that can be asked for."""
     asked = scene.accuracy.error
     assert asked is not None
@@ -101,18 +109,16 @@ def _wider(scene: Scene, best: Quantity, bound: float, budget: Budget) -> Remedy
         factor,
         bound,
         {
-            "with": _status(with_error(scene, new), budget),
-            "with_less": _status(with_error(scene, less), budget),
+            "with": _status(with_error(scene, new), clock),
+            "with_less": _status(with_error(scene, less), clock),
         },
     )
 
 
-def _finer(scene: Scene, best: Quantity, bound: float, budget: Budget) -> Sequence[Remedy]:
+def _finer(scene: Scene, best: Quantity, bound: float, clock: Clock) -> Remedy:
     """All deviations smaller by one factor: the error of every train is in proportion to them."""
     asked = scene.accuracy.error
     assert asked is not None
-    if any(mesh.grade is not None for mesh in scene.mesh):
-        return ()
     part = asked.value / best.value * (1.0 - ROOM)
     changes = [
         Change(f"mesh[{k}].{name}", f'"{was}"', f'"{_times(was, part)}"', 1.0 / part)
@@ -121,10 +127,10 @@ def _finer(scene: Scene, best: Quantity, bound: float, budget: Budget) -> Sequen
         if (was := getattr(mesh, name)) is not None and was.number > 0
     ]
     verified = {
-        "with": _status(_scaled(scene, part), budget),
-        "with_less": _status(_scaled(scene, part * (1.0 + BACK), exact=True), budget),
+        "with": _status(_scaled(scene, part), clock),
+        "with_less": _status(_scaled(scene, part * (1.0 + BACK), exact=True), clock),
     }
-    return (Remedy("even", "all deviations", tuple(changes), 1.0 / part, bound, verified),)
+    return Remedy("even", "all deviations", tuple(changes), 1.0 / part, bound, verified)
 
 
 def _times(was: Quantity, part: float) -> str:
@@ -144,5 +150,5 @@ def _scaled(scene: Scene, part: float, exact: bool = False) -> Scene:
     return scene.model_copy(update={"mesh": tuple(scaled(mesh) for mesh in scene.mesh)})
 
 
-def _status(scene: Scene, budget: Budget) -> str:
-    return solve(posed(scene), budget=budget).status
+def _status(scene: Scene, clock: Clock) -> str:
+    return "limit" if clock.over else _solved(scene, clock).status
