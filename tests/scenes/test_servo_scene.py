@@ -102,6 +102,9 @@ def test_a_given_ratio_that_the_motor_cannot_run_at_has_no_value():
     top = 50.0 / (math.radians(20.0) * 4.0 * math.pi)
     assert swing.design["ratio"]["curve"]["total_ratio"][-1] == pytest.approx(top)
     assert "above its limit of 50 rad/s" in swing.report["notes"][0]
+    weak = solved(text("gimbal_swing"), (("motor", "torque"), "0.03256564 N m"))
+    assert weak.status == "optimal" and weak.design["ratio"]["given"] is None
+    assert "above its 0.0325656 N m" in weak.report["notes"][0]
     slow = (("duty", "load_speed"), "20 rad/s"), (("motor", "no_load_speed"), "800 rad/s")
     assert "does not move" in solved(RATIO, *slow).report["notes"][0]
 
@@ -112,6 +115,18 @@ def test_a_ratio_below_those_that_are_searched_may_be_better_and_is_said_so():
     found = solved(RATIO, *light, (("duty", "ratio"), Decimal("0.5"))).design["ratio"]
     assert found["total_ratio"] == pytest.approx(1.0) and found["given"]["loss_percent"] < 0.0
     assert ratio_words(found)[1].endswith("% more.")
+
+
+def test_a_swing_keeps_to_the_torque_of_the_motor():
+    """The least rms torque is 0.0325656 N m."""
+    swing = text("gimbal_swing")
+    weak, strong = (solved(swing, (("motor", "torque"), f"{t} N m")) for t in (0.0325, 0.0326))
+    assert weak.status == "infeasible" and weak.value is None
+    assert "the rms torque is 0.0325656 N m, above the motor's 0.0325 N m" in weak.message
+    assert strong.value == pytest.approx(0.0325656, abs=6e-8)
+    assert strong.limits["motor_torque"] == pytest.approx(0.0325656 / 0.0326, abs=2e-6)
+    with pytest.raises(SceneError, match='beside motion = "swing"'):
+        changed(swing, (("motor", "no_load_speed"), "800 rad/s"))
 
 
 def test_landmarks_of_a_ratio_count_the_losses_of_the_train():
