@@ -9,8 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from scene_files import dump, mended, parse, walk
+from typer.testing import CliRunner
 
 import gearopt
+from gearopt.cli import app
 from gearopt.errors import SceneError
 from gearopt.formulations import servo_box
 from gearopt.optimise.explaining.repair import Clock
@@ -387,11 +389,54 @@ def test_the_wider_error_that_is_proposed_is_the_least():
     assert len(even.changes) == 14 and "pitch of stage 2" in explained.message
 
 
-def test_what_is_impossible_for_another_reason_is_said():
-    scene = changed(text("gimbal_light"), (("train", "bending_stress"), "1 MPa"))
-    explained = gearopt.explain(scene)
+@pytest.mark.parametrize(
+    ("edits", "blamed", "words"),
+    [
+        ([(("train", "bending_stress"), "1 MPa")], {"bending", "wheel_tip[2]"}, "real-valued"),
+        ([(("train", "output_torque"), "2400 N m")], {"bending", "wheel_tip[2]"}, "real-valued"),
+        ([(("train", "ratio"), 5000)], {"ratio_low", "wheel_tip[2]", "bore"}, "real-valued"),
+        (
+            [(("train", "ratio"), Decimal("47.98255")), (("train", "ratio_tolerance"), 0)],
+            set(),
+            "no whole teeth make the ratio within 0 %; within 0.0001 % some do",
+        ),
+    ],
+)
+def test_what_is_impossible_for_another_reason_is_said(edits, blamed, words):
+    explained = gearopt.explain(changed(text("gimbal_light"), *edits))
     assert explained.result.status == "infeasible" and explained.remedies == ()
-    assert "not for the accuracy" in explained.message
+    assert "not for the accuracy" in explained.message and words in explained.message
+    assert blamed <= set(explained.conflict) and "error" not in explained.conflict
+    assert bool(blamed) == bool(explained.conflict)
+
+
+@pytest.mark.parametrize(
+    ("edit", "words"),
+    [
+        ((("space", "width"), "40 mm"), "keeps the box"),
+        ((("stiffness", "frequency"), "5 kHz"), "keeps the stiffness"),
+    ],
+)
+def test_a_box_or_stiffness_that_no_train_keeps_is_named(edit, words):
+    few = ("modules", ["0.5 mm"]), ("pinion_teeth", [16, 24])
+    loose = (("accuracy", "error"), "0.3 deg")
+    drop = [("lightest",), ("tolerances",), ("budget",)]
+    drop += [("space",)] if edit[0][0] == "stiffness" else [("stiffness",)]
+    edits = [(("train", name), value) for name, value in few]
+    explained = gearopt.explain(changed(EXAMPLE, edit, *edits, loose, drop=drop))
+    assert explained.result.status == "infeasible" and explained.conflict == ()
+    assert words in explained.message
+
+
+def test_the_reason_of_an_impossible_duty_is_told_once(tmp_path):
+    """Eta T^2 < 4 b F_L."""
+    content = parse(RATIO)
+    content["motor"]["no_load_speed"], content["load"]["friction"] = "5 rad/s", "1 N m"
+    content["duty"] = {"motion": "acceleration", "load_speed": "1 rad/s"}
+    file = tmp_path / "duty.toml"
+    file.write_text(dump(content), encoding="utf-8")
+    shown = CliRunner().invoke(app, ["explain", str(file)])
+    assert " ".join(shown.output.split()).count("never exceeds the load's friction") == 1
 
 
 def test_comparing_takes_the_train_without_its_box():

@@ -3,11 +3,14 @@
 import math
 from dataclasses import replace
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
+from fractions import Fraction
 
 from gearopt import units
 from gearopt.formulations import split
+from gearopt.formulations.split.exact import NO_TEETH
 from gearopt.optimise.explaining.explanation import Change, Remedy
-from gearopt.optimise.explaining.repair import Clock
+from gearopt.optimise.explaining.handles import handles
+from gearopt.optimise.explaining.repair import Clock, conflict
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import solve
 from gearopt.scenes.axis.choice import posed
@@ -20,6 +23,7 @@ DIGITS = 5  # of a number that is proposed; rounded to the easy side
 ROOM = 1e-9  # by which a proposal is easier, to be feasible in doubles
 BACK = 1e-3  # a remedy that much smaller must be impossible
 LOOSE = "90 deg"  # an error that no train misses
+WIDER = tuple(Fraction(1, 10**k) for k in range(6, 0, -1))  # ratio tolerances that are tried
 NAMED = 3  # sources of error that the message names
 
 
@@ -32,15 +36,16 @@ def ways_out(scene: Scene, clock: Clock) -> tuple[tuple[str, ...], tuple[Remedy,
     aim = free.train.model_copy(update={"minimise": "error"})
     least = _solved(free.model_copy(update={"train": aim}), clock)
     if least.status == "infeasible":
-        return (), (), f"it is not for the accuracy: {least.message}"
+        names, message = _other(free, least, clock)
+        return names, (), f"it is not for the accuracy: {message}"
     if least.status != "optimal":
         return (), (), "time ran out before the least possible error was proven"
     best = units.parse(f"{least.value!r} deg", "angle")
-    conflict, floor = _conflict(scene)
+    names, floor = _conflict(scene, clock)
     bound = (floor or best.value) / asked.value
     found = [ways(scene, best, bound, clock) for ways in (_wider, _finer)]
     proven = tuple(r for r in found if r.verified["with"] == "optimal")
-    return conflict, proven, _message(free, least)
+    return names, proven, _message(free, least)
 
 
 def _solved(scene: Scene, clock: Clock) -> Result:
@@ -50,17 +55,46 @@ def _solved(scene: Scene, clock: Clock) -> Result:
     return result
 
 
-def _conflict(scene: Scene) -> tuple[tuple[str, ...], float | None]:
+def _conflict(scene: Scene, clock: Clock) -> tuple[tuple[str, ...], float | None]:
     """Limits that real-valued teeth and modules do not keep either, and their least error [rad].
 
     Nothing where they keep all of them.
     """
     train = scene.servo_train()
-    relaxed = solve(split.relaxation(train, "error"))
-    if relaxed.status != "infeasible":
+    names = _blamed(train, clock)
+    if not names:
         return (), None
-    free = solve(split.relaxation(replace(train, error=math.pi), "error"))
-    return tuple(relaxed.proof.get("conflict", ())), free.bound
+    return names, clock.solve(split.relaxation(replace(train, error=math.pi), "error")).bound
+
+
+def _blamed(train: split.ServoTrain, clock: Clock) -> tuple[str, ...]:
+    """Limits that no real-valued teeth and modules keep together, none of them to spare."""
+    relaxed = split.relaxation(train, "error")
+    if clock.solve(relaxed).status != "infeasible":
+        return ()
+    return tuple(handle.name for handle in conflict(relaxed, handles(relaxed), clock))
+
+
+def _other(scene: Scene, least: Result, clock: Clock) -> tuple[tuple[str, ...], str]:
+    """What makes a train impossible whatever its error: limits in conflict, and a sentence."""
+    train = scene.servo_train()
+    if names := _blamed(train, clock):
+        return names, "real-valued teeth and modules do not keep all other limits either"
+    if least.message != NO_TEETH:  # it names the box, or the stiffness
+        return (), least.message
+    own = train.tolerance
+    for wider in WIDER:
+        if wider <= own:
+            continue
+        problem = split.problem(replace(train, tolerance=wider), "error")
+        if clock.over or solve(problem, budget=clock.left, watch=clock.watch).status != "optimal":
+            continue
+        ends = [f"{100.0 * float(part):g} %" for part in (own, wider)]
+        return (), f"no whole teeth make the ratio within {ends[0]}; within {ends[1]} some do"
+    return (), (
+        "real-valued teeth and modules keep all other limits, whole teeth and the modules of the "
+        "list do not"
+    )
 
 
 def with_error(scene: Scene, error: Quantity) -> Scene:
