@@ -392,8 +392,16 @@ def test_the_wider_error_that_is_proposed_is_the_least():
 @pytest.mark.parametrize(
     ("edits", "blamed", "words"),
     [
-        ([(("train", "bending_stress"), "1 MPa")], {"bending", "wheel_tip[2]"}, "real-valued"),
-        ([(("train", "output_torque"), "2400 N m")], {"bending", "wheel_tip[2]"}, "real-valued"),
+        (
+            [(("train", "bending_stress"), "1 MPa")],
+            {"bending_stress", "wheel_tip[2]"},
+            "real-valued",
+        ),
+        (
+            [(("train", "output_torque"), "2400 N m")],
+            {"bending_stress", "wheel_tip[2]"},
+            "real-valued",
+        ),
         ([(("train", "ratio"), 5000)], {"ratio_low", "wheel_tip[2]", "bore"}, "real-valued"),
         (
             [(("train", "ratio"), Decimal("47.98255")), (("train", "ratio_tolerance"), 0)],
