@@ -18,7 +18,7 @@ KEYS = {  # of [x-expected], as the tests below read them
     "compound": {"status", "objective"},
     "servo": {
         *("status", "objective", "ratio", "given", "stiff", "real_valued_bound"),
-        "least_factor",
+        *("least_factor", "move_time"),
     },
 }
 DIGIT = {"objective": 0.06, "sizing": 0.006}  # the values are printed to tenths and hundredths
@@ -77,6 +77,7 @@ def test_expected_servo_axis(path):
     told = {
         "objective": lambda: result.value,
         "ratio": lambda: result.report["best_total_ratio"],
+        "move_time": lambda: result.report["best_move_time_s"],
         "given": lambda: result.design["ratio"]["given"]["value"],
         "stiff": lambda: parts["stiff"].value,
         "real_valued_bound": lambda: next(

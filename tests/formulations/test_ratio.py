@@ -127,6 +127,15 @@ def test_swinging_duty_of_the_digest():
     assert exact.value <= grid.min() and exact.value == pytest.approx(grid.min(), rel=1e-6)
 
 
+def test_a_swing_is_held_to_the_torque_of_the_motor():
+    """The least rms torque of the digest is 32.5656 N mm."""
+    drive = Drive(J_L, J_M, load_friction=100.0, motor_friction=3.0)
+    for torque, status in ((32.56, "infeasible"), (32.57, "optimal")):
+        text = swing(replace(drive, torque=torque), math.radians(20.0), 4.0 * math.pi)
+        assert {solve(text, m).status for m in ("exact", "ipopt")} == {status}
+    assert solve(text).limits["motor_torque"] == pytest.approx(32.5656 / 32.57, abs=2e-6)
+
+
 def test_a_given_ratio_is_an_equality():
     given = replace(REAL, ratio=(48.0, 48.0))
     for text in (

@@ -7,7 +7,8 @@ import pytest
 
 from gearopt.formulations.tolerance import problem
 from gearopt.formulations.tolerance.conic import continuous
-from gearopt.formulations.tolerance.distributions import NORMAL
+from gearopt.formulations.tolerance.distributions import NORMAL, RUN_OUT
+from gearopt.formulations.tolerance.sampling import THREE_SD, drawn, order_interval
 from gearopt.formulations.tolerance.stack import Component, ErrorBudget, Stack
 from gearopt.optimise.solve import solve
 
@@ -240,6 +241,39 @@ def test_just_impossible_and_just_possible(rule):
         ever = solve(posed(share))
         assert ever.status == "optimal" and ever.gap < 1e-9
         assert ever.value == pytest.approx(cost, rel=1e-9)
+
+
+def test_the_tail_of_drawn_errors_rests_on_few_of_them():
+    """Of 4e5 draws 540 are beyond the 99.865 % quantile: its interval is that of their ranks."""
+    count, tail = 400_000, 1.0 - THREE_SD
+    first, last = order_interval(count, THREE_SD, 0.99)
+    assert count * tail == pytest.approx(540.0, abs=1e-6)
+    half = 2.5758 * math.sqrt(count * THREE_SD * tail)  # normal law for the binomial one
+    assert count - first == pytest.approx(540.0 + half, abs=2.0)
+    assert count - last == pytest.approx(540.0 - half, abs=2.0)
+    uniform = stack([1.0], [1.0])
+    found = drawn(uniform, np.ones(1), 1.0)
+    assert found.quantile_low < THREE_SD < found.quantile_high
+    assert found.quantile_high - found.quantile_low == pytest.approx(2.0 * half / count, rel=0.3)
+
+
+def test_a_run_out_is_arcsine_and_never_beyond_its_tolerance():
+    """P(cos phi > c) = acos(c)/pi; a normal error of its variance would reach 3/sqrt(2)."""
+    one = stack([1.0], [1.0], rules=("mean_plus_sd",), distribution=RUN_OUT)
+    found = drawn(one, np.ones(1), 1.0)
+    assert found.quantile == pytest.approx(math.cos(math.pi * (1.0 - THREE_SD)), abs=2e-6)
+    assert found.largest <= 1.0 and found.yield_share == 1.0
+    assert one.used(np.ones(1))[0] == pytest.approx(3.0 / math.sqrt(2.0), rel=1e-12)
+
+
+def test_a_centred_root_sum_of_squares_is_wrong_for_backlash():
+    """Sixteen one-sided deviations: rss 4, mean 8, sd sqrt(16/12); hardly any train is below 4."""
+    parts = stack([1.0] * 16, [1.0] * 16, rules=("rss", "mean_plus_sd"))
+    rss, honest = parts.used(np.ones(16))
+    assert rss == 4.0 and honest == pytest.approx(8.0 + 3.0 * math.sqrt(16.0 / 12.0))
+    found = drawn(parts, np.ones(16), rss)
+    assert found.mean == pytest.approx(8.0, abs=0.01) and found.yield_high < 1e-3
+    assert drawn(parts, np.ones(16), honest).yield_low > 0.998
 
 
 def test_nothing_left_for_a_tolerance_is_impossible():

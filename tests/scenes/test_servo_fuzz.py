@@ -7,7 +7,9 @@ import pytest
 from mutations import MUTATIONS
 from scene_files import dump, mended, parse
 
+import gearopt
 from gearopt.errors import SceneError
+from gearopt.optimise.result import Budget
 from gearopt.scenes.reading.load import read
 from gearopt.scenes.servo import EXAMPLE
 
@@ -62,6 +64,35 @@ def test_the_bases_load(base):
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_mutation_of_every_base(kind):
     assert {fate(kind, base, seed) for base in BASES for seed in range(4)}
+
+
+def answer(kind, base, seed):
+    """Status of a file's answer after its mutation and remedies; empty where it does not load."""
+    data = MUTATIONS[kind].make(Random(f"{kind} {base} {seed}"), BASES[base])
+    for _ in range(STEPS):
+        try:
+            _, scene = read(data, "my.toml")
+        except SceneError as wrong:
+            if wrong.fix is None or wrong.fix.action == "replace":
+                return ""
+            data = mended(data.decode("utf-8-sig"), wrong.fix).encode()
+            continue
+        if not type(scene).__module__.endswith(".servo"):
+            return ""
+        return gearopt.solve(scene, budget=Budget(seconds=0.2)).status
+    return ""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("block", range(4))
+def test_what_loads_is_solved(block):
+    """Within little time, and without another error than one that names the file's limits."""
+    found = Counter()
+    for seed in range(block * 25, (block + 1) * 25):
+        kind, base = KINDS[seed % len(KINDS)], list(BASES)[seed % len(BASES)]
+        found[answer(kind, base, seed)] += 1
+    assert found.keys() <= {"", "optimal", "feasible", "infeasible", "limit"}, found
+    assert found["optimal"] > 2
 
 
 @pytest.mark.slow

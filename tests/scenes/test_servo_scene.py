@@ -2,19 +2,27 @@
 
 import math
 import tomllib
+from dataclasses import replace
 from decimal import Decimal
 from pathlib import Path
 
 import numpy as np
 import pytest
 from scene_files import dump, mended, parse, walk
+from typer.testing import CliRunner
 
 import gearopt
+from gearopt.cli import app
 from gearopt.errors import SceneError
 from gearopt.formulations import servo_box
+from gearopt.optimise.explaining.repair import Clock
 from gearopt.optimise.result import Budget
+from gearopt.report.proof_words import proof
+from gearopt.report.servo_words import ratio_words
+from gearopt.scenes.axis.assumptions import notes
 from gearopt.scenes.axis.choice import box_of, front, posed
 from gearopt.scenes.axis.gears import of_point
+from gearopt.scenes.axis.ways_out import ways_out
 from gearopt.scenes.reading.load import read
 from gearopt.scenes.servo import EXAMPLE
 
@@ -80,6 +88,62 @@ def test_moves_of_the_digest(angle, ratio, time):
     result = solved(text("gimbal_move"), (("duty", "angle"), angle))
     assert result.report["best_total_ratio"] == pytest.approx(ratio, abs=6e-5)
     assert result.value == pytest.approx(time, abs=6e-7)
+
+
+def test_a_given_ratio_that_the_motor_cannot_run_at_has_no_value():
+    """At 48 the motor would turn at 48 * 20 = 960 rad/s."""
+    fast = (("duty", "load_speed"), "20 rad/s"), (("motor", "speed_limit"), "400 rad/s")
+    result = solved(RATIO, *fast)
+    assert result.design["ratio"]["total_ratio"] == pytest.approx(20.0)
+    assert result.design["ratio"]["given"] is None and "given_load" not in str(result.report)
+    (said,) = result.report["notes"]
+    assert "48" in said and "960 rad/s, above its limit of 400 rad/s" in said
+    assert solved(RATIO, fast[0]).design["ratio"]["given"]["value"] == pytest.approx(46.304224)
+    swing = solved(text("gimbal_swing"), (("motor", "speed_limit"), "50 rad/s"))
+    assert swing.design["ratio"]["given"] is None and "given_rms" not in str(swing.report)
+    top = 50.0 / (math.radians(20.0) * 4.0 * math.pi)
+    assert swing.design["ratio"]["curve"]["total_ratio"][-1] == pytest.approx(top)
+    assert "above its limit of 50 rad/s" in swing.report["notes"][0]
+    weak = solved(text("gimbal_swing"), (("motor", "torque"), "0.03256564 N m"))
+    assert weak.status == "optimal" and weak.design["ratio"]["given"] is None
+    assert "above its 0.0325656 N m" in weak.report["notes"][0]
+    slow = (("duty", "load_speed"), "20 rad/s"), (("motor", "no_load_speed"), "800 rad/s")
+    assert "does not move" in solved(RATIO, *slow).report["notes"][0]
+
+
+def test_a_ratio_below_those_that_are_searched_may_be_better_and_is_said_so():
+    """Equal inertias are at 0.5, the search begins at 1."""
+    light = (("load", "inertia"), "2.15e-6 kg m^2"), (("load", "friction"), "0 N m")
+    found = solved(RATIO, *light, (("duty", "ratio"), Decimal("0.5"))).design["ratio"]
+    assert found["total_ratio"] == pytest.approx(1.0) and found["given"]["loss_percent"] < 0.0
+    assert ratio_words(found)[1].endswith("% more.")
+
+
+def test_a_swing_keeps_to_the_torque_of_the_motor():
+    """The least rms torque is 0.0325656 N m."""
+    swing = text("gimbal_swing")
+    weak, strong = (solved(swing, (("motor", "torque"), f"{t} N m")) for t in (0.0325, 0.0326))
+    assert weak.status == "infeasible" and weak.value is None
+    assert "the rms torque is 0.0325656 N m, above the motor's 0.0325 N m" in weak.message
+    assert strong.value == pytest.approx(0.0325656, abs=6e-8)
+    assert strong.limits["motor_torque"] == pytest.approx(0.0325656 / 0.0326, abs=2e-6)
+    with pytest.raises(SceneError, match='beside motion = "swing"'):
+        changed(swing, (("motor", "no_load_speed"), "800 rad/s"))
+
+
+def test_landmarks_of_a_ratio_count_the_losses_of_the_train():
+    """At its best ratio without load friction, a train of efficiency 0.9, by the law itself."""
+    lossy = (("load", "efficiency"), Decimal("0.9")), (("load", "friction"), "0 N m")
+    report = solved(RATIO, *lossy).report
+    assert report["matched_inertia_ratio"] == pytest.approx(report["best_total_ratio"])
+    best = report["best_load_acceleration_rad_per_s2"]
+    key = "load_acceleration_without_load_friction_rad_per_s2"
+    assert report[key] == pytest.approx(best, rel=1e-12)
+    assert report[key] == pytest.approx(math.sqrt(0.9) * 56.948992, abs=1e-6)
+    assert key not in solved(RATIO, (("duty", "load_speed"), "5 rad/s")).report
+    swing = solved(text("gimbal_swing"), (("motor", "torque"), "0.05 N m")).report
+    assert key not in swing and "frictionless" not in str(swing)
+    assert swing["matched_inertia_ratio"] == pytest.approx(47.982555, abs=1e-6)
 
 
 TOLERANCES = text("gimbal_tolerances")
@@ -231,6 +295,7 @@ def test_the_whole_toothed_train_is_as_stiff_as_asked():
     assert none.status == "infeasible" and "stiffness" in none.message
 
 
+GIVEN_GEARS = {"module": "1 mm", "pinion_teeth": 20, "wheel_teeth": 100, "grade": 7}
 NARROW = (
     (("accuracy", "error"), "0.15 deg"),
     (("space", "width"), "74 mm"),
@@ -324,11 +389,62 @@ def test_the_wider_error_that_is_proposed_is_the_least():
     assert len(even.changes) == 14 and "pitch of stage 2" in explained.message
 
 
-def test_what_is_impossible_for_another_reason_is_said():
-    scene = changed(text("gimbal_light"), (("train", "bending_stress"), "1 MPa"))
-    explained = gearopt.explain(scene)
+@pytest.mark.parametrize(
+    ("edits", "blamed", "words"),
+    [
+        (
+            [(("train", "bending_stress"), "1 MPa")],
+            {"bending_stress", "wheel_tip[2]"},
+            "real-valued",
+        ),
+        (
+            [(("train", "output_torque"), "2400 N m")],
+            {"bending_stress", "wheel_tip[2]"},
+            "real-valued",
+        ),
+        ([(("train", "ratio"), 5000)], {"ratio_low", "wheel_tip[2]", "bore"}, "real-valued"),
+        (
+            [(("train", "ratio"), Decimal("47.98255")), (("train", "ratio_tolerance"), 0)],
+            set(),
+            "no whole teeth make the ratio within 0 %; within 0.0001 % some do",
+        ),
+    ],
+)
+def test_what_is_impossible_for_another_reason_is_said(edits, blamed, words):
+    explained = gearopt.explain(changed(text("gimbal_light"), *edits))
     assert explained.result.status == "infeasible" and explained.remedies == ()
-    assert "not for the accuracy" in explained.message
+    assert "not for the accuracy" in explained.message and words in explained.message
+    assert blamed <= set(explained.conflict) and "error" not in explained.conflict
+    assert bool(blamed) == bool(explained.conflict)
+
+
+@pytest.mark.parametrize(
+    ("edit", "words"),
+    [
+        ((("space", "width"), "40 mm"), "keeps the box"),
+        ((("stiffness", "frequency"), "5 kHz"), "keeps the stiffness"),
+    ],
+)
+def test_a_box_or_stiffness_that_no_train_keeps_is_named(edit, words):
+    few = ("modules", ["0.5 mm"]), ("pinion_teeth", [16, 24])
+    loose = (("accuracy", "error"), "0.3 deg")
+    drop = [("lightest",), ("tolerances",), ("budget",)]
+    drop += [("space",)] if edit[0][0] == "stiffness" else [("stiffness",)]
+    edits = [(("train", name), value) for name, value in few]
+    explained = gearopt.explain(changed(EXAMPLE, edit, *edits, loose, drop=drop))
+    assert explained.result.status == "infeasible" and explained.conflict == ()
+    assert words in explained.message
+
+
+def test_the_reason_of_an_impossible_duty_is_told_once(tmp_path):
+    """Eta T^2 < 4 b F_L."""
+    content = parse(RATIO)
+    content["motor"]["no_load_speed"], content["load"]["friction"] = "5 rad/s", "1 N m"
+    content["duty"] = {"motion": "acceleration", "load_speed": "1 rad/s"}
+    file = tmp_path / "duty.toml"
+    file.write_text(dump(content), encoding="utf-8")
+    shown = CliRunner().invoke(app, ["explain", str(file)])
+    assert " ".join(shown.output.split()).count("never exceeds the load's friction") == 1
 
 
 def test_comparing_takes_the_train_without_its_box():
@@ -342,8 +458,10 @@ def test_comparing_takes_the_train_without_its_box():
 
 def test_a_run_out_of_time_says_so():
     result = gearopt.solve(changed(EXAMPLE), budget=Budget(seconds=0.0))
-    assert result.status in ("limit", "stationary", "optimal", "feasible")
-    result.to_json()
+    assert result.status == "limit" and result.value is None and result.bound is None
+    assert result.message == "stopped before the end" and "ways_out" not in result.report
+    assert {p.name: p.status for p in result.parts} == {"ratio": "optimal", "stiff": "limit"}
+    assert gearopt.Result.from_json(result.to_json()).status == "limit"
 
 
 REFUSED = [  # edits, dropped, key, words
@@ -408,6 +526,94 @@ def test_a_file_that_does_not_fit_together_is_refused_and_mended(edits, drop, ke
         except SceneError as next_one:
             wrong.value.fix = next_one.fix
     raise AssertionError(data)
+
+
+TRUED = [(("budget",), [{"rule": "mean_plus_sd", "kappa": 0}])]
+
+
+def test_a_mean_alone_needs_an_upper_end_for_run_outs():
+    with pytest.raises(SceneError, match="no budget counts the run-outs") as wrong:
+        changed(TOLERANCES, *TRUED)
+    assert wrong.value.key == "tolerances.largest_factor"
+    held = solved(TOLERANCES, *TRUED, (("tolerances", "largest_factor"), 4))
+    assert held.status == "optimal"
+    rows = held.design["tolerances"]
+    outs = [r["new_mm"] / r["old_mm"] for r in rows if "run-out" in r["name"]]
+    assert outs == pytest.approx([4.0] * 3)
+    both = [{"rule": "worst_case"}, {"rule": "mean_plus_sd", "kappa": 0}]
+    assert solved(TOLERANCES, (("budget",), both)).status == "optimal"
+
+
+def test_the_mean_of_run_outs_alone_is_no_budget():
+    meshes = [
+        {
+            "module": "0.5 mm",
+            "pinion_teeth": 16,
+            "wheel_teeth": 96,
+            "pinion_bearing_run_out": "3 um",
+        }
+    ] * 2
+    with pytest.raises(SceneError, match="the mean of run-outs is 0") as wrong:
+        changed(TOLERANCES, *TRUED, (("mesh",), meshes), (("tolerances", "largest_factor"), 4))
+    assert wrong.value.key == "budget[1].kappa"
+
+
+def test_grades_beside_a_train_are_refused():
+    given = [(("mesh", k, n), v) for k in (0, 1) for n, v in GIVEN_GEARS.items()]
+    with pytest.raises(SceneError, match="chooses the diameters") as wrong:
+        changed(EXAMPLE, *given, drop=[("mesh", k, "pitch") for k in (0, 1)])
+    assert wrong.value.key == "mesh[1].grade" and wrong.value.fix.action == "remove"
+
+
+def test_a_train_of_ratio_one_has_no_other_numbers_of_stages():
+    light = (("train", "ratio"), 1), (("train", "pinion_teeth"), [60, 62])
+    result = solved(text("gimbal_light"), *light, (("accuracy", "error"), "1 deg"))
+    assert result.design["train"]["ratio"] == pytest.approx(1.0, rel=0.01)
+    assert result.report["stage_counts"] == []
+
+
+def test_wheels_may_have_more_than_a_thousand_teeth():
+    edits = {"modules": ["0.1 mm"], "wheel_tip_diameters": ["200 mm", "200 mm"], "ratio": 6000}
+    edits |= {"minimise": "error", "bending_stress": "1.5 GPa", "pinion_teeth": [20, 24]}
+    edits |= {"second_pinion_diameter": "2 mm"}
+    scene = changed(
+        text("gimbal_light"),
+        *((("train", k), v) for k, v in edits.items()),
+        (("accuracy", "error"), "1 deg"),
+        drop=[("train", "wheel_teeth")],
+    )
+    result = gearopt.solve(scene)
+    assert result.status == "optimal"
+    assert max(s["wheel_teeth"] for s in result.design["train"]["stages"]) == 1998
+
+
+def test_time_that_ran_out_is_no_reason_of_its_own():
+    scene = changed(text("gimbal_impossible"))
+    for clock in (Clock(Budget(seconds=0.0)), Clock(Budget(), lambda event: False)):
+        conflict, remedies, message = ways_out(scene, clock)
+        assert (conflict, remedies) == ((), ()) and message.startswith("time ran out")
+
+
+def test_a_stop_ends_the_look_for_ways_out():
+    """The least error is found; from then on the user wants no more."""
+    seen = []
+
+    def watch(event):
+        seen.append(event)
+        return len(seen) < 8
+
+    clock = Clock(Budget(), watch)
+    found = ways_out(changed(text("gimbal_impossible")), clock)
+    assert clock.stopped and all(r.verified["with"] == "optimal" for r in found[1])
+    assert len(found[1]) < 2
+
+
+def test_a_message_with_a_stop_gets_no_second_one():
+    result = gearopt.solve(changed(RATIO))
+    late = replace(result, status="limit", message="Bound of ratio is violated by 1.01.")
+    assert "Bound of ratio is violated by 1.01." in proof(late)
+    note = notes(changed(RATIO), {}, (result, replace(late, objective={"name": "ratio"})))
+    assert note == ["There is no answer for the part ratio: Bound of ratio is violated by 1.01."]
 
 
 def test_tolerances_alone_need_given_gears():

@@ -29,14 +29,11 @@ def explain(
 
         ways = {k: getattr(found, k) for k in ("conflict", "message")}
         ways |= {"remedies": [asdict(r) for r in found.remedies]}
-        show_result(
-            replace(
-                found.result,
-                report=found.result.report
-                | ({"ways_out": ways} if found.result.status == "infeasible" else {}),
-            ),
-            console(),
-        )
+        told = found.conflict or found.remedies or found.message != found.result.message
+        if found.result.status != "infeasible" or not told:  # the proof says why, once
+            ways = {}
+        report = found.result.report | ({"ways_out": ways} if ways else {})
+        show_result(replace(found.result, report=report), console())
     else:
         from gearopt.report.terminal.explanation import show
 

@@ -25,7 +25,7 @@ def proof(result: Result, measures: Measures = METRIC) -> list[str]:
             lines += _beside(result, part, measures)
     lines += result.report.get("notes", []) if result.status != "infeasible" else []
     if result.message and result.status != "infeasible":
-        lines.append(result.message[0].upper() + result.message[1:] + ".")
+        lines.append(result.message[0].upper() + result.message[1:].rstrip(".") + ".")
     lines.append(f"{result.method}, {result.evaluations:,} evaluations, {result.seconds:.3g} s.")
     return lines
 

@@ -56,7 +56,7 @@ def ratio_words(found: Mapping[str, Any], measures: Measures = METRIC) -> list[s
     ]
     if given := found.get("given"):
         lost = f"{abs(given['loss_percent']):.3g} %"
-        less = "less" if best == "Largest" else "more"
+        less = "less" if (best == "Largest") == (given["loss_percent"] >= 0.0) else "more"
         words.append(
             f"At the given ratio of {number(float(given['total_ratio']))} it is "
             f"{amount(given['value'], unit, measures)}, {lost} {less}."

@@ -22,8 +22,9 @@ def swing(drive: Drive, amplitude: float, angular_frequency: float) -> Problem:
     """Minimise the motor's rms torque [N mm] for A sin(w t) at the load; Coulomb friction.
 
     amplitude A [rad], angular_frequency w [rad/s] > 0. Variable: ratio. ValueError for a train with
-    losses: then power flows both ways and the friction model of `rms_torque` does not hold. `exact`
-    is the root of a quartic. Source: derived from Youn, eq. (1).
+    losses: then power flows both ways and the friction model of `rms_torque` does not hold. A drive
+    with a torque gives no larger rms torque. `exact` is the root of a quartic. Source: derived from
+    Youn, eq. (1).
     """
     drive.needs(amplitude=amplitude, angular_frequency=angular_frequency)
     if drive.efficiency != 1.0:
@@ -38,6 +39,8 @@ def swing(drive: Drive, amplitude: float, angular_frequency: float) -> Problem:
         limits, equal = drive.ratio_rows(p, x.ratio)
         if drive.speed_limit < math.inf:
             limits["motor_speed"] = x.ratio * speed / p.speed_limit
+        if drive.torque:
+            limits["motor_torque"] = square**0.5 / p.torque
         return Terms({"rms_torque": square**0.5}, limits, equal=equal)
 
     ratio = _stationary(drive, amplitude * angular_frequency**2)
@@ -53,7 +56,7 @@ def swing(drive: Drive, amplitude: float, angular_frequency: float) -> Problem:
         values = present(problem)
         return _exact(drive.of(values), values["amplitude"], values["angular_frequency"])
 
-    parameters = (*drive.parameters("torque", "no_load_speed", "efficiency"), *own)
+    parameters = (*drive.parameters("no_load_speed", "efficiency"), *own)
     return Problem("ratio", (variable,), parameters, evaluate, methods={"exact": exact})
 
 
@@ -90,4 +93,9 @@ def _exact(drive: Drive, amplitude: float, angular_frequency: float) -> Outcome:
         return float(rms_torque(n, *numbers, drive.load_friction, drive.motor_friction))
 
     bound = convex_bound(law, ratio, low, high)
+    if bound is not None and 0.0 < drive.torque < bound:
+        return impossible(
+            f"at the best ratio, {ratio:.6g}, the rms torque is {1e-3 * law(ratio):.6g} N m, above "
+            f"the motor's {1e-3 * drive.torque:.6g} N m"
+        )
     return Outcome(np.array([ratio]), bound=bound, proof=proof(), evaluations=6)

@@ -16,6 +16,7 @@ RANDOM = False
 COUNTS = "choice of teeth and modules"
 SLICE = 0.05  # s between two looks at the budget
 ROUNDING = 1e-12  # of an objective, between the kernel's text and the problem's
+NO_TEETH = "no teeth and modules meet all limits"
 KERNEL = "gearopt.formulations.split.teeth_kernel"
 
 
@@ -71,8 +72,7 @@ def _outcome(
     if not done:
         return Outcome(x, finished=False, evaluations=looked, message="stopped before the end")
     if x is None:
-        text = "no teeth and modules meet all limits"
-        return Outcome(None, infeasible=True, proof=proof, evaluations=looked, message=text)
+        return Outcome(None, infeasible=True, proof=proof, evaluations=looked, message=NO_TEETH)
     return Outcome(x, bound=best * (1.0 - ROUNDING), proof=proof, evaluations=looked)
 
 

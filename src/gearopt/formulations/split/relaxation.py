@@ -29,7 +29,7 @@ def relaxation(train: ServoTrain, goal: str = "inertia") -> Problem:
 
     parameters = (
         Param("error", "rad", train.error, role="limit"),
-        Param("bending", "MPa", train.bending, role="limit"),
+        Param("bending_stress", "MPa", train.bending, role="limit"),
         *ratio_parameters(low, high),
         Param("bore", "mm", float(train.bore), role="limit"),
         Param("wheel_tip", "mm", tuple(float(t) for t in train.wheel_tips), 2, role="limit"),
@@ -50,7 +50,7 @@ def _terms(train: ServoTrain, goal: str, x: Any, p: Any) -> Terms:
         "error": found["error"] / p.error,
         "stage_ratio_low": (1.0 / n1, 1.0 / n2),
         "bending_stress": tuple(
-            lewis_stress(t, d, train.face_width, m, most) / p.bending
+            lewis_stress(t, d, train.face_width, m, most) / p.bending_stress
             for t, (_, d, m) in zip(torques, pairs, strict=True)
         ),
         "bore": p.bore / d3,

@@ -5,6 +5,7 @@ from typing import Any
 
 from gearopt.optimise.result import Result
 from gearopt.physics.geometry import teeth_without_undercut
+from gearopt.scenes.axis.ratio import no_given
 from gearopt.scenes.tables.servo import Scene
 
 FRICTION = {
@@ -12,7 +13,7 @@ FRICTION = {
     "move": "Ramps up and down are alike, though friction helps to brake; the motor's torque is "
     "the same up to its speed limit.",
     "swing": "Coulomb friction is in phase with the speed, inertia with the acceleration; no "
-    "losses in the train.",
+    "losses in the train. Where [motor] has a torque, it is the largest rms torque.",
 }
 
 
@@ -75,7 +76,7 @@ def _of_train(scene: Scene) -> list[str]:
 
 def notes(scene: Scene, design: dict[str, Any], results: tuple[Result, ...]) -> list[str]:
     """What a reader should know beside the numbers."""
-    found = []
+    found = [said] if "ratio" in design and (said := no_given(scene)) else []
     if not design.get("box", {}).get("fits", True):
         found.append("The best train does not fit the box of [space].")
     asked, drawn = scene.accuracy.error, design.get("drawn")
@@ -99,7 +100,7 @@ def notes(scene: Scene, design: dict[str, Any], results: tuple[Result, ...]) -> 
             "The lightest train has real-valued sizes: it is a floor for gears with whole teeth."
         )
     found += [
-        f"There is no answer for the part {part.name}: {part.message or part.status}."
+        f"There is no answer for the part {part.name}: {(part.message or part.status).rstrip('.')}."
         for part in results[1:]
         if part.value is None
     ]

@@ -45,6 +45,14 @@ def _angular(duty: Duty) -> float:
     return 2.0 * math.pi * duty.frequency.value
 
 
+def speed(duty: Duty) -> float:
+    """Speed of the load [rad/s] at which the motor must keep to its limit."""
+    if duty.motion == "swing":
+        assert duty.amplitude is not None
+        return duty.amplitude.value * _angular(duty)
+    return duty.load_speed.value if duty.load_speed else 0.0
+
+
 def value(duty: Duty, axis: Drive, ratio: Any) -> Any:
     """What a duty is judged by, at ratios: rad/s2, s or N m; NaN where the load does not move."""
     import numpy as np
@@ -55,8 +63,7 @@ def value(duty: Duty, axis: Drive, ratio: Any) -> Any:
         peak = duty.amplitude.value * _angular(duty) ** 2
         own = axis.load_inertia, axis.inertia, peak, axis.load_friction, axis.motor_friction
         return 1e-3 * rms_torque(n, *own)
-    speed = duty.load_speed.value if duty.load_speed else 0.0
-    slope = torque_slope(axis.torque, speed, axis.no_load_speed)
+    slope = torque_slope(axis.torque, speed(duty), axis.no_load_speed)
     own = axis.load_inertia, axis.inertia, axis.net_torque, axis.load_friction, axis.efficiency
     found = load_acceleration(n, *own, slope)
     found = np.where(found > 0.0, found, np.nan)
@@ -87,20 +94,32 @@ def ratio_part(scene: Scene, ask: Ask) -> tuple[Result, dict[str, Any], dict[str
         "given": _given(scene, axis, reached),
         "curve": _curve(duty, axis, best),
     }
-    report: dict[str, Any] = {"best_total_ratio": best, f"best_{key}": reached}
-    if load.inertia.value > 0.0:
-        matched = math.sqrt(axis.load_inertia / axis.motor_inertia)
-        report["matched_inertia_ratio"] = matched
-        if motor.torque is not None:
-            numbers = axis.load_inertia, axis.motor_inertia, axis.torque
-            report["frictionless_load_acceleration_rad_per_s2"] = largest_acceleration(*numbers)
-            net = axis.load_inertia, axis.motor_inertia, axis.net_torque
-            report["load_acceleration_without_load_friction_rad_per_s2"] = largest_acceleration(
-                *net
-            )
+    report = {"best_total_ratio": best, f"best_{key}": reached} | _landmarks(scene, axis)
     if (given := design["given"]) is not None:
         report[f"given_{key}"] = given["value"]  # type: ignore[index]
     return replace(result, design={"ratio": design}), design, report
+
+
+def _landmarks(scene: Scene, axis: Drive) -> dict[str, float]:
+    """The ratio of equal inertias, and what less friction would give at standstill.
+
+    Losses of the train count: J_L/eta in the place of J_L, as a = T/(2 sqrt(J_L J_M/eta)) at
+    N = sqrt(J_L/(eta J_M)).
+    """
+    duty, load = scene.duty, axis.load_inertia / axis.efficiency
+    assert duty is not None
+    if load == 0.0:
+        return {}
+    found = {"matched_inertia_ratio": math.sqrt(load / axis.motor_inertia)}
+    if duty.motion == "swing" or duty.load_speed is not None:
+        return found
+    inertias = load, axis.motor_inertia
+    return found | {
+        "frictionless_load_acceleration_rad_per_s2": largest_acceleration(*inertias, axis.torque),
+        "load_acceleration_without_load_friction_rad_per_s2": largest_acceleration(
+            *inertias, axis.net_torque
+        ),
+    }
 
 
 def with_train(scene: Scene, gear_inertia: float) -> dict[str, Any]:
@@ -133,27 +152,54 @@ def scaled(result: Result, factor: float, unit: str) -> Result:
     return replace(result, objective=result.objective | {"value": found, "unit": unit}, bound=bound)
 
 
-def _given(scene: Scene, axis: Drive, best: float) -> dict[str, Any] | None:
-    """The ratio of the file beside the best one; None where it gives none, or nothing moves."""
+def _asked(scene: Scene) -> float | None:
+    """The total ratio that the file gives."""
     assert scene.duty is not None
-    asked = scene.duty.ratio
-    if asked is None and scene.train is not None:
-        asked = scene.train.ratios[0]
-    if asked is None:
-        return None
-    there = float(value(scene.duty, axis, float(asked)))
+    if scene.duty.ratio is not None:
+        return float(scene.duty.ratio)
+    return None if scene.train is None else float(scene.train.ratios[0])
+
+
+def no_given(scene: Scene) -> str:
+    """Why the ratio of the file has no value; empty where it has one, or is not given."""
+    duty, motor, load = scene.duty, scene.motor, scene.load
+    if duty is None or (asked := _asked(scene)) is None:
+        return ""
+    assert motor is not None and load is not None
+    axis = drive(motor, load)
+    if asked > axis.ratios(speed(duty))[1]:
+        return (
+            f"At the given ratio of {asked:g} the motor would turn at {asked * speed(duty):.6g} "
+            f"rad/s, above its limit of {axis.speed_limit:.6g} rad/s."
+        )
+    there = float(value(duty, axis, asked))
     if not math.isfinite(there):
+        return f"At the given ratio of {asked:g} the load does not move."
+    if duty.motion == "swing" and 0.0 < axis.torque < 1e3 * there:
+        return (
+            f"At the given ratio of {asked:g} the motor would need an rms torque of {there:.6g} "
+            f"N m, above its {1e-3 * axis.torque:.6g} N m."
+        )
+    return ""
+
+
+def _given(scene: Scene, axis: Drive, best: float) -> dict[str, Any] | None:
+    """The ratio of the file beside the best one; None where it gives none that can be."""
+    duty, asked = scene.duty, _asked(scene)
+    assert duty is not None
+    if asked is None or no_given(scene):
         return None
-    more = scene.duty.motion == "acceleration"
+    there = float(value(duty, axis, asked))
+    more = duty.motion == "acceleration"
     loss = 100.0 * (1.0 - there / best if more else there / best - 1.0)
-    return {"total_ratio": float(asked), "value": there, "loss_percent": loss}
+    return {"total_ratio": asked, "value": there, "loss_percent": loss}
 
 
 def _curve(duty: Duty, axis: Drive, best: float) -> dict[str, list[float]]:
     """The value about the best ratio, where the load moves and the motor's speed allows it."""
     import numpy as np
 
-    low, high = axis.ratios(duty.load_speed.value if duty.load_speed else 0.0)
+    low, high = axis.ratios(speed(duty))
     ratios = np.geomspace(max(best / REACH, low), min(best * REACH, high), POINTS)
     ratios = np.unique(np.append(ratios, best))
     values = value(duty, axis, ratios)

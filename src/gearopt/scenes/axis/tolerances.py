@@ -65,7 +65,8 @@ def _budget(
     if table.limit is not None:
         limit = math.degrees(table.limit.value)
     elif limit is None:
-        limit = float(Stack(parts, (ErrorBudget(rule, 1.0, kappa),)).used(t)[0])
+        beside = ErrorBudget("worst_case", 1.0, name="all")  # no part is without influence on it
+        limit = float(Stack(parts, (ErrorBudget(rule, 1.0, kappa), beside)).used(t)[0])
     return ErrorBudget(rule, limit, kappa)
 
 

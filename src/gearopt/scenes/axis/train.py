@@ -71,7 +71,7 @@ def beside(scene: Scene) -> dict[str, Any]:
     relaxed = solve(split.relaxation(train, goal))
     if relaxed.bound is not None:
         report[f"real_valued_bound_{goal}_{unit}"] = factor * relaxed.bound
-    report["stage_counts"] = _counts(float(train.ratio))
+    report["stage_counts"] = _counts(float(train.ratio)) if train.ratio > 1 else []
     report["stage_ratio_of_least_mass"] = split.lightest_stage_ratio()
     if (given := given_gears(scene)) is not None:
         own = described(scene, given)

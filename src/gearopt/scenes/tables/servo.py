@@ -151,6 +151,10 @@ class Scene(Table):
         if any(given) and not all(given):
             rule = "is missing: the gears of the other [[mesh]] are given"
             raise refuse(rule, at=("mesh", given.index(False), "module"))
+        for k, mesh in enumerate(self.mesh):
+            if mesh.grade is not None and self.train is not None:
+                rule = "stands beside [train], which chooses the diameters that it depends on"
+                raise refuse(rule, at=("mesh", k, "grade"), action="remove")
         if self.mesh and self.train is None:
             if self.tolerances is None:
                 raise refuse("is missing: [[mesh]] needs it, or [tolerances]", at=("train",))
@@ -199,6 +203,21 @@ class Scene(Table):
             if rules == ["mean_plus_sd"]:
                 rule = "is not for grades, which add up"
                 raise refuse(rule, "worst_case", ("budget", 0, "rule"))
+        self._check_weights()
+
+    def _check_weights(self) -> None:
+        """Every deviation counts in a budget, or an upper end: kappa = 0 leaves run-outs out."""
+        assert self.tolerances is not None
+        unheard = {s.name for s in self.sources if s.law.mean == 0.0}
+        blind = [b.rule == "mean_plus_sd" and b.kappa == 0 for b in self.budget]
+        if not unheard or not any(blind):
+            return
+        if len(unheard) == len(self.sources):
+            rule = "leaves nothing to count: the mean of run-outs is 0"
+            raise refuse(rule, 3, ("budget", blind.index(True), "kappa"))
+        if all(blind) and self.tolerances.largest_factor is None:
+            rule = "is missing: with kappa = 0 no budget counts the run-outs, whose mean is 0"
+            raise refuse(rule, 4, ("tolerances", "largest_factor"), "sample")
 
     @property
     def sources(self) -> tuple[Source, ...]:

@@ -92,7 +92,9 @@ class Mesh(Table):
     pinion_pitch: Deviation = _deviation("Cumulative pitch deviation of the pinion")
     wheel_pitch: Deviation = _deviation("Cumulative pitch deviation of the wheel")
     grade: Annotated[Fraction | None, number(7, 1, 11)] = Field(
-        None, description="Grade of ISO 1328-1 of both given gears, instead of pitch deviations"
+        None,
+        description="Grade of ISO 1328-1 of both given gears, instead of pitch deviations; not "
+        "beside [train]",
     )
 
     @model_validator(mode="after")

@@ -24,7 +24,9 @@ class Motor(Table):
         description="Rotor inertia, with all that turns with the motor's shaft"
     )
     torque: Annotated[Quantity | None, quantity("torque", "0.05 N m")] = Field(
-        None, description="Torque at standstill; the same up to speed_limit without no_load_speed"
+        None,
+        description="Torque at standstill; the same up to speed_limit without no_load_speed; of a "
+        "swing the largest rms torque",
     )
     friction: Annotated[Quantity, FRICTION] = Field(
         NONE, description="Coulomb friction torque", json_schema_extra={"default": "0 N m"}
@@ -94,11 +96,12 @@ class Duty(Table):
             if load.efficiency != 1:
                 rule = "is below 1: a swing is computed for a train without losses"
                 raise refuse(rule, 1, ("load", "efficiency"))
-            return
-        if motor.torque is None:
+        elif motor.torque is None:
             raise refuse(f'is missing: motion = "{self.motion}" needs it', at=("motor", "torque"))
-        if self.motion == "move" and motor.no_load_speed is not None:
-            rule = 'stands beside motion = "move", which takes the torque up to speed_limit'
+        if self.motion != "acceleration" and motor.no_load_speed is not None:
+            rule = (
+                f'stands beside motion = "{self.motion}", which takes the torque up to speed_limit'
+            )
             raise refuse(rule, at=("motor", "no_load_speed"), action="remove")
 
 
