@@ -18,6 +18,7 @@ from gearopt.scenes.tables.servo import Scene
 from gearopt.scenes.tables.servo_tolerance import BudgetTable
 
 BINS = 60
+QUANTILE = ("quantile", "quantile_low", "quantile_high")
 ANGLES = (  # of what is drawn
     *("mean", "sd", "quantile", "quantile_low", "quantile_high"),
     *("limit", "largest", "worst_case"),
@@ -100,18 +101,22 @@ def tolerance_part(
     posed, own = problem(scene, gears), stack(scene, gears)
     result, outcome = run(posed, ask.method, ask.budget, ask.seed, ask.watch, ask.gap)
     result = replace(result, name="tolerances", objective=result.objective | {"unit": ""})
-    report = _given(own, old(scene))
+    report = by_every_rule(own.components, old(scene), "old")
     if result.value is None or outcome.x is None:
         proof = {k: v for k, v in result.proof.items() if k != "conflict"}
         return replace(result, proof=proof), {}, report
     t = np.array(outcome.x, float)
     if scene.tolerances is not None and scene.tolerances.grades is not None:
         t = old(scene) * 2.0 ** (0.5 * (t - 1.0 - scene.tolerances.grades))
-    design = {
+    design: dict[str, Any] = {
         "tolerances": _rows(scene, own, t),
         "allocation": _allocation(own, t, result, scene),
         "drawn": _drawn(own, t, scene.tolerances.seed if scene.tolerances else 0),
     }
+    report |= by_every_rule(own.components, t, "new")
+    report |= {f"new_{end}_deg": design["drawn"][f"{end}_deg"] for end in QUANTILE}
+    report["tolerance_cost"] = design["allocation"]["cost"]
+    report["old_tolerance_cost"] = design["allocation"]["old_cost"]
     return replace(result, design=design), design, report
 
 
@@ -169,8 +174,8 @@ def _drawn(own: Stack, t: Array, seed: int) -> dict[str, Any]:
     return found | {"histogram": {"edges_deg": edges.tolist(), "counts": counts.tolist()}}
 
 
-def _given(own: Stack, t: Array) -> dict[str, float]:
-    """What the tolerances of the file give, by every rule [deg]."""
+def by_every_rule(parts: tuple[Component, ...], t: Array, whose: str) -> dict[str, float]:
+    """What tolerances t give by every rule [deg], named after whose they are."""
     kinds: tuple[tuple[str, Any, float], ...] = (
         ("worst_case", "worst_case", 0.0),
         ("rss", "rss", 0.0),
@@ -178,7 +183,18 @@ def _given(own: Stack, t: Array) -> dict[str, float]:
         ("mean_plus_3_sd", "mean_plus_sd", 3.0),
     )
     budgets = tuple(ErrorBudget(rule, 1.0, kappa, name) for name, rule, kappa in kinds)
-    used = Stack(own.components, budgets).used(t).tolist()
-    found = {f"old_{name}_deg": v for (name, _, _), v in zip(kinds, used, strict=True)}
-    found["old_sd_deg"] = (found["old_mean_plus_3_sd_deg"] - found["old_mean_deg"]) / 3.0
+    used = Stack(parts, budgets).used(t).tolist()
+    found = {f"{whose}_{name}_deg": v for (name, _, _), v in zip(kinds, used, strict=True)}
+    found[f"{whose}_sd_deg"] = (
+        found[f"{whose}_mean_plus_3_sd_deg"] - found[f"{whose}_mean_deg"]
+    ) / 3.0
     return found
+
+
+def of_given(scene: Scene, gears: Gears) -> dict[str, float]:
+    """What the tolerances of the file give on given gears, by every rule [deg]."""
+    parts = tuple(
+        Component(s.name, math.degrees(gears.sensitivity(s)), 1.0, 1.0, 0.0, math.inf, s.law)
+        for s in scene.sources
+    )
+    return by_every_rule(parts, old(scene), "given")
