@@ -20,6 +20,7 @@ from gearopt.report.pages import (
 from gearopt.report.pages.frame import render
 from gearopt.report.pages.section import Section
 from gearopt.report.pages.servo import (
+    beside,
     box,
     drawn,
     errors,
@@ -44,6 +45,8 @@ SECTIONS = (
     ratio.section,
     train.section,
     box.section,
+    beside.section,
+    beside.stage_counts,
     trains.by_inertia,
     trains.by_mass,
     errors.section,

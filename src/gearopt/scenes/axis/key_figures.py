@@ -61,6 +61,7 @@ def _given(scene: Scene, gears: Gears) -> dict[str, Any]:
     if scene.stiffness is not None:
         springs = stiffness_of(scene, gears)
     found = _train("given", train, springs) | of_given(scene, gears)
+    found["given_train"] = train
     if springs is not None:
         found["given_stiffness"] = springs
     if scene.lightest is not None:
