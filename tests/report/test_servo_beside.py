@@ -10,6 +10,7 @@ from rich.console import Console
 
 import gearopt
 from gearopt.report.pages.result import page, sections, tables
+from gearopt.report.proof_words import proof
 from gearopt.report.terminal.result import show
 
 FILE = Path(__file__).parents[2] / "problems" / "servo_gimbal.toml"
@@ -96,3 +97,16 @@ def test_without_given_gears_there_is_no_such_section(result):
     bare = {k: v for k, v in result.report.items() if not k.startswith(("given", "stage_c"))}
     headings = {s.heading for s in sections(replace(result, report=bare))}
     assert not headings & {"The given train", "Number of stages"}
+
+
+def test_an_acceleration_is_told_as_one():
+    """47.287 rad/s2 is the most; its inverse is what is minimised."""
+    result = gearopt.solve(FILE.with_name("servo_gimbal_ratio.toml"))
+    assert result.objective["name"] == "inverse_acceleration"
+    assert proof(result)[0].startswith("Bound: no acceleration above 47.287 rad/s² is possible")
+    tiles = {t.name: t.value for t in sections(result)[0].tiles}
+    assert tiles["acceleration"] == tiles["proven bound"] == "47.287 rad/s²"
+    assert "acceleration 47.287 rad/s², proven optimal" in page(result, "x")
+    assert "no move time below 1.1965 s" in " ".join(
+        proof(gearopt.solve(FILE.with_name("servo_gimbal_move.toml")))
+    )

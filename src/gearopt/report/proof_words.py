@@ -5,17 +5,17 @@ from typing import Any
 
 from gearopt.optimise.result import Result
 from gearopt.report.measures import METRIC, Measures
-from gearopt.report.result_words import objective
+from gearopt.report.result_words import goal, objective
 from gearopt.report.words import amount, limit_words
 
 
 def proof(result: Result, measures: Measures = METRIC) -> list[str]:
     """What is certain: the bound, how it is known, what other ways give, what to keep in mind."""
     lines: list[str] = []
-    name, unit = objective(result)
-    if result.bound is not None and result.gap is not None:
+    name, unit, _, bound, side = goal(result)
+    if bound is not None and result.gap is not None:
         lines.append(
-            f"Bound: no {name} below {amount(result.bound, unit, measures)} is possible"
+            f"Bound: no {name} {side} {amount(bound, unit, measures)} is possible"
             f"{scope(result)}; gap {100 * result.gap:.3g} %."
         )
     lines += _method(result)

@@ -33,4 +33,5 @@ def stage_counts(result: Result, measures: Measures) -> Section | None:
     if result.scene != "servo" or not rows:
         return None
     table = Table("stage counts", COUNTS, rows)
-    return Section("Number of stages", words=[BARE], tables=(table,), half=True)
+    half = bool(beside_rows(result.report))
+    return Section("Number of stages", words=[BARE], tables=(table,), half=half)
