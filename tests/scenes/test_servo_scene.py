@@ -236,7 +236,7 @@ NARROW = (
     (("space", "width"), "74 mm"),
     (("train", "modules"), ["0.5 mm"]),
 )
-BARE = [("stiffness",), ("lightest",), ("tolerances",), ("budget",)]
+BARE = [("stiffness",), ("lightest",), ("tolerances",), ("cost",), ("budget",)]
 
 
 def test_a_box_that_is_required_changes_the_train():

@@ -29,20 +29,19 @@ def stack(scene: Scene, gears: Gears) -> Stack:
     """The deviations of a file as a tolerance stack of given gears; errors in degrees."""
     table = scene.tolerances
     assert table is not None
-    k = float(table.exponent)
     low = 0.0 if table.least_factor is None else float(table.least_factor)
     high = math.inf if table.largest_factor is None else float(table.largest_factor)
     parts = tuple(
         Component(
             name=s.name,
             sensitivity=math.degrees(gears.sensitivity(s)),
-            cost=table.cost(s) * s.tolerance**k,
-            exponent=k,
+            cost=price.cost * s.tolerance**price.exponent,
+            exponent=price.exponent,
             least=low * s.tolerance,
             most=high * s.tolerance,
             distribution=s.law,
         )
-        for s in scene.sources
+        for s, price in zip(scene.sources, scene.prices, strict=True)
     )
     asked = scene.accuracy.error
     limit = None if asked is None else math.degrees(asked.value)
@@ -78,14 +77,13 @@ def problem(scene: Scene, gears: Gears) -> Problem:
     if table.grades is None:
         return continuous(own)
     steps = [2.0 ** (0.5 * j) for j in range(-table.grades, table.grades + 1)]
-    k = float(table.exponent)
     parts = tuple(
         graded.Graded(
             c.name,
             c.sensitivity,
-            tuple((s.tolerance * f, table.cost(s) * f**-k) for f in steps),
+            tuple((s.tolerance * f, price.cost * f**-price.exponent) for f in steps),
         )
-        for c, s in zip(own.components, scene.sources, strict=True)
+        for c, s, price in zip(own.components, scene.sources, scene.prices, strict=True)
     )
     (budget,) = own.budgets
     rule: Any = budget.rule
@@ -123,10 +121,10 @@ def tolerance_part(
 def _rows(scene: Scene, own: Stack, t: Array) -> list[dict[str, Any]]:
     table = scene.tolerances
     assert table is not None
-    k = float(table.exponent)
     ends = 2.0 ** (0.5 * table.grades) if table.grades is not None else None
     rows = []
-    for source, part, new in zip(scene.sources, own.components, t.tolist(), strict=True):
+    named = zip(scene.sources, scene.prices, own.components, t.tolist(), strict=True)
+    for source, price, part, new in named:
         before = source.tolerance
         low, high = (part.least, part.most) if ends is None else (before / ends, before * ends)
         rows.append(
@@ -139,8 +137,8 @@ def _rows(scene: Scene, own: Stack, t: Array) -> list[dict[str, Any]]:
                 "lower_mm": low,
                 "upper_mm": high if math.isfinite(high) else None,
                 "sensitivity_deg_per_mm": part.sensitivity,
-                "old_cost": table.cost(source),
-                "new_cost": table.cost(source) * (before / new) ** k,
+                "old_cost": price.cost,
+                "new_cost": price.cost * (before / new) ** price.exponent,
             }
         )
     return rows
@@ -153,12 +151,10 @@ def _allocation(own: Stack, t: Array, result: Result, scene: Scene) -> dict[str,
         if budget.rule == "mean_plus_sd":
             row["kappa"] = budget.kappa
         budgets.append(row | {"limit_deg": budget.error, "used_deg": float(used) * budget.error})
-    table = scene.tolerances
-    assert table is not None
     return {
         "budgets": budgets,
         "cost": result.value,
-        "old_cost": sum(table.cost(s) for s in scene.sources),
+        "old_cost": sum(price.cost for price in scene.prices),
         "method": str(result.proof.get("method", result.method)),
     }
 
