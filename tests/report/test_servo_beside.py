@@ -110,3 +110,10 @@ def test_an_acceleration_is_told_as_one():
     assert "no move time below 1.1965 s" in " ".join(
         proof(gearopt.solve(FILE.with_name("servo_gimbal_move.toml")))
     )
+
+
+def test_on_paper_tiles_stay_with_what_follows(result):
+    """Stiffness was cut between its tiles and its chart."""
+    paper = page(result, "x").split("@media print")
+    rules = [part for part in paper if ".tiles { break-after: avoid; }" in part]
+    assert rules and ".tiles { break-inside: avoid; }" in rules[0]

@@ -1,4 +1,4 @@
-"""A servo axis's file: what it refuses, and the digest's other numbers by changing one key."""
+"""A servo axis's file: what it refuses, and other known numbers by changing one key."""
 
 import math
 import tomllib
@@ -58,7 +58,7 @@ RATIO = text("gimbal_ratio")
         ),
     ],
 )
-def test_accelerations_of_the_digest(edits, ratio, acceleration, at_48):
+def test_accelerations_known_independently(edits, ratio, acceleration, at_48):
     result = solved(RATIO, *edits)
     assert result.status == "optimal" and result.name == "ratio"
     design = result.design["ratio"]
@@ -76,7 +76,7 @@ def test_accelerations_of_the_digest(edits, ratio, acceleration, at_48):
     ("angle", "ratio", "time"),
     [("90 deg", 47.982555, 0.322041), ("10800 deg", 13.9060, 5.052376)],
 )
-def test_moves_of_the_digest(angle, ratio, time):
+def test_moves_known_independently(angle, ratio, time):
     result = solved(text("gimbal_move"), (("duty", "angle"), angle))
     assert result.report["best_total_ratio"] == pytest.approx(ratio, abs=6e-5)
     assert result.value == pytest.approx(time, abs=6e-7)
@@ -95,7 +95,7 @@ TOLERANCES = text("gimbal_tolerances")
         ("rss", 2, 5.292125686),
     ],
 )
-def test_costs_of_the_digest(rule, exponent, cost):
+def test_costs_known_independently(rule, exponent, cost):
     """Within what the given tolerances use, by the same rule."""
     edits = ((("budget", 0, "rule"), rule), (("tolerances", "exponent"), exponent))
     result = solved(TOLERANCES, *edits)
@@ -106,7 +106,7 @@ def test_costs_of_the_digest(rule, exponent, cost):
     assert budget["used_deg"] == pytest.approx(budget["limit_deg"], rel=1e-9)
 
 
-def test_mean_and_three_deviations_of_the_digest():
+def test_mean_and_three_deviations_known_independently():
     edits = (
         (("budget", 0), {"rule": "mean_plus_sd", "limit": "0.10819163246984825 deg"}),
         (("tolerances", "least_factor"), Decimal("0.25")),
@@ -124,7 +124,7 @@ def test_mean_and_three_deviations_of_the_digest():
     assert len(drawn["histogram"]["edges_deg"]) == 61
 
 
-def test_two_budgets_of_the_digest():
+def test_two_budgets_known_independently():
     rss = f"{0.7 * 0.04703039201954477!r} deg"
     edits = ((("budget",), [{"rule": "worst_case"}, {"rule": "rss", "limit": rss}]),)
     assert solved(TOLERANCES, *edits).value == pytest.approx(9.969507852, abs=6e-10)
@@ -151,7 +151,7 @@ def test_the_worst_case_gives_the_printed_tolerances():
 
 
 def test_dear_pitch_deviations_become_wider():
-    """The closed form of the digest with a_i = 4 for pitch: t ~ sqrt(a t_0/s), C = (sum)^2/E."""
+    """The closed form with a_i = 4 for pitch: t ~ sqrt(a t_0/s), C = (sum)^2/E."""
     result = solved(TOLERANCES, (("tolerances", "pitch_cost"), 4))
     rows = result.design["tolerances"]
     cost = [4.0 if r["kind"] == "pitch" else 1.0 for r in rows]
@@ -181,7 +181,7 @@ def test_inertias_as_data_sheets_write_them_are_mended(wrong, write):
     assert caught.value.fix.value == f'"{write}"'
 
 
-def test_grades_by_rss_of_the_digest():
+def test_grades_by_rss_known_independently():
     result = solved(text("gimbal_grades"), (("budget",), [{"rule": "rss"}]))
     assert result.value == pytest.approx(7.328427125, abs=6e-10)
 
@@ -191,7 +191,7 @@ def test_grades_by_rss_of_the_digest():
     [(5, 0.0448, 0.0263), (6, 0.0634, 0.0372), (7, 0.0897, 0.0526), (8, 0.1268, 0.0744)],
 )
 def test_pitch_errors_of_both_gears_by_grade(grade, worst, rss):
-    """The digest's section 5, for gears of 8, 48, 13 and 104 mm."""
+    """An independent computation, for gears of 8, 48, 13 and 104 mm."""
     edits = [(("mesh", k, "grade"), grade) for k in (0, 1)]
     scene = changed(TOLERANCES, *edits, drop=[("mesh", k, "pitch") for k in (0, 1)])
     result = gearopt.solve(scene)
@@ -207,7 +207,7 @@ STIFF = text("gimbal_stiff")
 @pytest.mark.parametrize(
     ("frequency", "grams"), [("150 Hz", 70.59627), ("250 Hz", 128.15908), ("300 Hz", 181.12544)]
 )
-def test_lightest_trains_of_the_digest(frequency, grams):
+def test_lightest_trains_known_independently(frequency, grams):
     result = solved(STIFF, (("stiffness", "frequency"), frequency))
     stiff = next(part for part in result.parts if part.name == "stiff")
     assert stiff.status == "optimal" and 1e3 * stiff.value == pytest.approx(grams, abs=6e-6)
@@ -294,7 +294,7 @@ def test_given_gears_stand_beside_the_best():
     assert mass == pytest.approx([2305.0, 98.0, 42.623, 31.713, 28.522, 27.805], abs=6e-4)
 
 
-def test_stiffness_by_youngs_modulus_is_near_the_digest():
+def test_stiffness_by_youngs_modulus_is_near_the_known_one():
     """There the teeth's form factors are those of a table; the fit here differs by 3 % or less."""
     content = parse(text("gimbal"))
     del content["stiffness"]["line_stiffness"]
