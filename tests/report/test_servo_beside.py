@@ -117,3 +117,4 @@ def test_on_paper_tiles_stay_with_what_follows(result):
     paper = page(result, "x").split("@media print")
     rules = [part for part in paper if ".tiles { break-after: avoid; }" in part]
     assert rules and ".tiles { break-inside: avoid; }" in rules[0]
+    assert ".card > figure { zoom: 0.8; }" in rules[0]  # two plots on a sheet
