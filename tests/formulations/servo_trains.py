@@ -1,4 +1,4 @@
-"""The servo train of the digest's examples, and its designs, in mm, N, rad, MPa, t."""
+"""The servo train of the examples, and its known designs, in mm, N, rad, MPa, t."""
 
 import math
 from fractions import Fraction as F

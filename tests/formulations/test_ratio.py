@@ -1,4 +1,4 @@
-"""The total ratio of a servo train: closed form, Ipopt and Clarabel against the digest."""
+"""The total ratio of a servo train: closed form, Ipopt and Clarabel against known numbers."""
 
 import math
 from dataclasses import replace
@@ -30,7 +30,7 @@ REAL = replace(BARE, load_friction=F_L, motor_friction=3.0)
         (replace(REAL, no_load_speed=800.0), 5.0, 42.063097, 28.626103),
     ],
 )
-def test_accelerations_of_the_digest_by_three_methods(drive, load_speed, ratio, value):
+def test_accelerations_known_independently_by_three_methods(drive, load_speed, ratio, value):
     problem = acceleration(drive, load_speed)
     assert tape.kinds(problem).log_convex
     exact, ipopt, gp = (solve(problem, m) for m in METHODS)
@@ -80,7 +80,7 @@ def test_the_root_is_the_maximum_of_a_fine_grid():
         (60 * math.pi, 13.9060, 5.052376),
     ],
 )
-def test_moves_of_the_digest_by_three_methods(turn, ratio, seconds):
+def test_moves_known_independently_by_three_methods(turn, ratio, seconds):
     problem = move(replace(BARE, speed_limit=800.0), turn)
     exact, ipopt, gp = (solve(problem, m) for m in METHODS)
     assert exact.status == ipopt.status == "optimal"
@@ -110,7 +110,7 @@ def test_a_move_with_load_friction_is_that_of_brent(turn):
     assert ipopt.value == pytest.approx(exact.value, rel=1e-11)
 
 
-def test_swinging_duty_of_the_digest():
+def test_swinging_duty_known_independently():
     drive = Drive(J_L, J_M, load_friction=100.0, motor_friction=3.0)
     problem = swing(drive, math.radians(20.0), 4.0 * math.pi)
     exact, ipopt, gp = (solve(problem, m) for m in METHODS)

@@ -1,4 +1,4 @@
-"""The box of a servo train: against grids of angles, the digest's sides, and its own proof."""
+"""The box of a servo train: against grids of angles, known sides, and its own proof."""
 
 import math
 from dataclasses import replace
@@ -37,7 +37,7 @@ def on_a_grid(box, degrees):
     ("half_sweep", "short", "proven"),
     [(45, 67.1, 67.08), (60, 78.4, 78.11), (65, 81.2, 81.13), (90, 90.4, 90.32)],
 )
-def test_short_sides_of_the_digest(half_sweep, short, proven):
+def test_short_sides_known_independently(half_sweep, short, proven):
     """The print is the best of a grid of 2 degrees; between its angles there is a little less."""
     box = replace(GEOMETRY, half_sweep=math.radians(half_sweep))
     assert on_a_grid(box, 2.0)[1] == pytest.approx(short, abs=0.06)
@@ -90,7 +90,7 @@ def test_the_reach_of_a_sector_is_that_of_its_points():
         assert height == pytest.approx(np.ptp(points.imag), abs=4e-3)
 
 
-def test_the_design_of_the_digest_fits():
+def test_the_design_known_independently_fits():
     """79.1 x 104.2 mm there on a grid; 78.8 x 103.9 mm is the best."""
     result = solve(servo_box.problem(in_box(17, 91, 23, 207, 0.3, 0.5)))
     assert result.value == pytest.approx(78.77 / 80.0, abs=1e-4)

@@ -1,4 +1,4 @@
-"""The split of a servo train: stage count, whole teeth, relaxation and stiffness of the digest."""
+"""The split of a servo train: stage count, whole teeth, relaxation and stiffness."""
 
 import math
 from dataclasses import replace
@@ -53,7 +53,7 @@ def test_inertia_and_mass_by_number_of_stages(stages):
         assert solve(text, "gp").value == pytest.approx(results[0].value, rel=1e-7)
 
 
-def test_splits_of_the_digest():
+def test_splits_known_independently():
     two, three = stage_counts(48.0, 3)[1:]
     assert two.design["ratio"] == pytest.approx([4.08175, 11.75966], abs=6e-6)
     assert two.value == pytest.approx(26.0211, abs=6e-5)
@@ -110,7 +110,7 @@ def values(train, teeth, modules):
 
 
 @pytest.mark.parametrize(("error", "goal", "teeth", "modules", "J", "mass", "E"), DESIGNS)
-def test_designs_of_the_digest(error, goal, teeth, modules, J, mass, E):
+def test_designs_known_independently(error, goal, teeth, modules, J, mass, E):
     text = problem(with_error(error), goal)
     for method in ("exact", "enumeration"):
         result = solve(text, method)
@@ -263,7 +263,7 @@ def test_a_list_of_trains_is_in_order_and_complete():
 
 def test_all_feasible_trains_keep_all_limits():
     points = feasible(PAPER)
-    assert points.shape == (62054, 6)  # the digest's count
+    assert points.shape == (62054, 6)  # as counted independently
     batch = problem(PAPER).batch(points)
     assert (batch.G <= 1.0 + 1e-12).all()
     assert batch.F.min() == solve(problem(PAPER)).value

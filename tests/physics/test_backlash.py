@@ -1,4 +1,4 @@
-"""Backlash, pitch error, tolerances and transmission error against the digest and identities."""
+"""Backlash, pitch error, tolerances and transmission error against known numbers and identities."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Servo drive laws against the digest's numbers, the time domain, and the laws' own limits."""
+"""Servo drive laws against known numbers, the time domain, and the laws' own limits."""
 
 import math
 
@@ -36,7 +36,7 @@ FRICTION = 4.3 * 98.0665  # N mm: 4.3 kgf cm
         ),
     ],
 )
-def test_accelerations_of_the_digest(case, accelerations):
+def test_accelerations_known_independently(case, accelerations):
     """At the printed best ratio, and at 48."""
     best = {
         (False, False): 47.982555,
@@ -76,7 +76,7 @@ def test_friction_of_the_motor_only_scales():
     assert np.allclose(with_friction / load_acceleration(ratios, J_L, J_M, 50.0), 0.94, rtol=1e-14)
 
 
-def test_move_times_of_the_digest():
+def test_move_times_known_independently():
     for angle, ratio, seconds in (
         (math.pi / 2, 47.982555, 0.322041),
         (6 * math.pi, 29.959500, 1.196456),

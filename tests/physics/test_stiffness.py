@@ -1,4 +1,4 @@
-"""The stiffness chain against the digest's numbers and limit cases."""
+"""The stiffness chain against known numbers and limit cases."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""ISO 1328-1:2013 tolerances and transmission errors: digest numbers, rounding, identities."""
+"""ISO 1328-1:2013 tolerances and transmission errors: known numbers, rounding, identities."""
 
 import math
 

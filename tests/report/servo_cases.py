@@ -30,7 +30,7 @@ GIVEN = 48.0
 
 @cache
 def ratio_part():
-    """Section 3a of the digest: N* = 57.786211, a* = 47.287374, a(48) = 46.304224 rad/s2."""
+    """An independent computation: N* = 57.786211, a* = 47.287374, a(48) = 46.304224 rad/s2."""
     drive = Drive(LOAD, ROTOR, TORQUE, LOAD_FRICTION, MOTOR_FRICTION)
     best, most = best_ratio(drive)
 

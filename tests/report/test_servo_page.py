@@ -56,7 +56,7 @@ def text(html):
     return re.sub(r"\s+", " ", "".join(Reader(html).text))
 
 
-def test_the_cases_are_those_of_the_digest(result):
+def test_the_cases_are_those_known_independently(result):
     design = result.design
     assert design["ratio"]["total_ratio"] == pytest.approx(57.786211, abs=1e-6)
     assert design["ratio"]["value"] == pytest.approx(47.287374, abs=1e-6)

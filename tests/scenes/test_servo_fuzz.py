@@ -20,7 +20,7 @@ KINDS = [k for k in MUTATIONS if k not in OF_DRIVES]
 STEPS = 12  # a table that comes back brings those that it needs, each with its keys
 GEARS = 'module = "0.5 mm"\npinion_teeth = 20\nwheel_teeth = 120'
 GIVEN = EXAMPLE.replace("[[mesh]]", f"[[mesh]]\n{GEARS}")
-ALONE = ("gearopt", "kind", "title", "mesh", "accuracy", "tolerances", "budget")
+ALONE = ("gearopt", "kind", "title", "mesh", "accuracy", "tolerances", "cost", "budget")
 LONE = dump({k: v for k, v in parse(GIVEN).items() if k in ALONE})
 MOVE = EXAMPLE.replace('"acceleration"', '"move"\nangle = "90 deg"')
 BASES = {"example": EXAMPLE, "given": GIVEN, "lone": LONE, "move": MOVE}
@@ -52,6 +52,8 @@ def plain_numbers(scene):
     assert scene.sources is not None
     if scene.train is not None:
         assert scene.servo_train().error > 0.0
+    if scene.tolerances is not None:
+        assert all(price.cost > 0.0 and price.exponent > 0.0 for price in scene.prices)
     if scene.lightest is not None:
         assert scene.stiff_train().stiffness > 0.0
 

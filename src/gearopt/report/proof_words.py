@@ -5,17 +5,17 @@ from typing import Any
 
 from gearopt.optimise.result import Result
 from gearopt.report.measures import METRIC, Measures
-from gearopt.report.result_words import objective
+from gearopt.report.result_words import goal, objective
 from gearopt.report.words import amount, limit_words
 
 
 def proof(result: Result, measures: Measures = METRIC) -> list[str]:
     """What is certain: the bound, how it is known, what other ways give, what to keep in mind."""
     lines: list[str] = []
-    name, unit = objective(result)
-    if result.bound is not None and result.gap is not None:
+    name, unit, _, bound, side = goal(result)
+    if bound is not None and result.gap is not None:
         lines.append(
-            f"Bound: no {name} below {amount(result.bound, unit, measures)} is possible"
+            f"Bound: no {name} {side} {amount(bound, unit, measures)} is possible"
             f"{scope(result)}; gap {100 * result.gap:.3g} %."
         )
     lines += _method(result)
@@ -59,8 +59,8 @@ def _method(result: Result) -> list[str]:
     elif "trains_looked_at" in proof and proof["method"] == "exhausted":
         rest = "meets all limits" if result.status == "infeasible" else "can be better"
         lines.append(
-            f"Proof: {proof['trains_looked_at']:,} choices of teeth and modules looked at; no "
-            f"other {rest}."
+            f"Proof: {proof['trains_looked_at']:,} choices of teeth and modules looked at"
+            f"{_feasible(proof)}; no other {rest}."
         )
     elif "pairs_matched" in proof:
         lines.append(
@@ -88,6 +88,15 @@ def _method(result: Result) -> list[str]:
     elif proof.get("method") == "closed form" and result.bound is not None:
         lines.append("Proof: a closed form, and a bound that follows from convexity alone.")
     return lines + _impossible(result)
+
+
+def _feasible(proof: Mapping[str, Any]) -> str:
+    """How many trains meet the limits, where all were counted."""
+    if "feasible_trains" not in proof:
+        return ""
+    apart = " and ".join(proof.get("not_counted", ()))
+    but = f" but {apart}" if apart else ""
+    return f", {proof['feasible_trains']:,} meet all limits{but}"
 
 
 def _impossible(result: Result) -> list[str]:

@@ -11,6 +11,8 @@ from gearopt.report.words import VERDICTS, limit_words
 RULED = ("process one", "process two")  # parts that are designs by rules
 EXACT = 1e-6  # a gap below it is called optimal, one above it is named
 
+INVERSE = {"inverse acceleration": ("acceleration", "rad/s²")}  # name and unit of the inverse
+
 ROWS = {  # of the stage table: what it is called, and its unit (modules are metric in any system)
     "normal_module_mm": ("module m_n [mm]", ""),
     "pinion_teeth": ("teeth z1", ""),
@@ -64,6 +66,18 @@ def title(result: Result) -> str:
 def objective(result: Result) -> tuple[str, str]:
     """Name of the objective in words, and its unit as a key has it."""
     return str(result.objective["name"]).replace("_", " "), str(result.objective.get("unit", ""))
+
+
+def goal(result: Result) -> tuple[str, str, float | None, float | None, str]:
+    """The objective as a reader asks for it: name, unit, value, bound, on which side none is.
+
+    An inverse that is made least is told as what is made largest by it.
+    """
+    name, unit = objective(result)
+    if name not in INVERSE:
+        return name, unit, result.value, result.bound, "below"
+    value, bound = (None if not v else 1.0 / v for v in (result.value, result.bound))
+    return *INVERSE[name], value, bound, "above"
 
 
 def stage_rows(

@@ -16,6 +16,7 @@ from gearopt.optimise.result import Result
 from gearopt.scenes.axis.assumptions import assumptions, notes
 from gearopt.scenes.axis.choice import SHOWN, posed
 from gearopt.scenes.axis.gears import KG_M2, Gears, described, errors, given_gears
+from gearopt.scenes.axis.key_figures import key_figures
 from gearopt.scenes.axis.ratio import problem as ratio_problem
 from gearopt.scenes.axis.ratio import ratio_part, with_train
 from gearopt.scenes.axis.springs import stiffness_of
@@ -59,6 +60,7 @@ def solve(scene: Scene, ask: Ask) -> Result:
         found += _geared(scene, _part(ask, clock, found), gears)
     if scene.lightest is not None:
         found += _Found((lightest_part(scene, _part(ask, clock, found)),))
+    figures = key_figures(scene, found.results, found.design, found.report)
     answer, *parts = found.results
     told: dict[str, Any] = {"assumptions": assumptions(scene)}
     if said := notes(scene, found.design, found.results):
@@ -73,7 +75,7 @@ def solve(scene: Scene, ask: Ask) -> Result:
     return replace(
         answer,
         design=found.design,
-        report=found.report | told,
+        report=found.report | figures | told,
         parts=tuple(parts),
         seconds=clock.seconds,
     )

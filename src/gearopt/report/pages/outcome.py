@@ -10,7 +10,7 @@ from gearopt.report.pages.servo.tiles import tiles as servo_tiles
 from gearopt.report.pages.table import Table, percent
 from gearopt.report.proof_words import proof, scope
 from gearopt.report.remedy_words import REMEDY_HEADS, remedy_words
-from gearopt.report.result_words import limit_rows, objective, verdict
+from gearopt.report.result_words import goal, limit_rows, verdict
 from gearopt.report.words import amount, number
 
 
@@ -20,15 +20,13 @@ def summary(result: Result, measures: Measures) -> Section:
 
 
 def _tiles(result: Result, measures: Measures) -> list[Tile]:
-    name, unit = objective(result)
+    name, unit, value, bound, _ = goal(result)
     tiles = []
-    if result.value is not None:
-        tiles.append(Tile(name, amount(result.value, unit, measures), verdict(result)[0]))
-    if result.bound is not None:
+    if value is not None:
+        tiles.append(Tile(name, amount(value, unit, measures), verdict(result)[0]))
+    if bound is not None:
         gap = "" if result.gap is None else f"gap {100 * result.gap:.3g} %"
-        tiles.append(
-            Tile(f"proven bound{scope(result)}", amount(result.bound, unit, measures), gap)
-        )
+        tiles.append(Tile(f"proven bound{scope(result)}", amount(bound, unit, measures), gap))
     design = result.design
     if result.scene == "servo":
         return tiles + servo_tiles(design, name, measures)

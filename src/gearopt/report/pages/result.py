@@ -20,6 +20,7 @@ from gearopt.report.pages import (
 from gearopt.report.pages.frame import render
 from gearopt.report.pages.section import Section
 from gearopt.report.pages.servo import (
+    beside,
     box,
     drawn,
     errors,
@@ -29,7 +30,7 @@ from gearopt.report.pages.servo import (
     train,
     trains,
 )
-from gearopt.report.result_words import objective, title, verdict
+from gearopt.report.result_words import goal, title, verdict
 from gearopt.report.words import amount
 
 SECTIONS = (
@@ -44,6 +45,8 @@ SECTIONS = (
     ratio.section,
     train.section,
     box.section,
+    beside.section,
+    beside.stage_counts,
     trains.by_inertia,
     trains.by_mass,
     errors.section,
@@ -94,6 +97,6 @@ def tables(result: Result, measures: Measures = METRIC) -> dict[str, str]:
 
 
 def _subtitle(result: Result, measures: Measures) -> str:
-    name, unit = objective(result)
-    value = "" if result.value is None else f"{name} {amount(result.value, unit, measures)}, "
-    return f"{value}{verdict(result)[0]}"
+    name, unit, value, _, _ = goal(result)
+    words = "" if value is None else f"{name} {amount(value, unit, measures)}, "
+    return f"{words}{verdict(result)[0]}"

@@ -26,7 +26,8 @@ class Cell:
 class Table:
     """Rows of values or cells below heads, what it is called and what its CSV file is called.
 
-    words: sentences, not numbers, that may break over lines.
+    words: sentences, not numbers, that may break over lines. folded: a plot shows its values, so
+    that the page holds its CSV only.
     """
 
     name: str
@@ -34,6 +35,7 @@ class Table:
     rows: Sequence[Sequence[Any]]
     caption: str = ""
     words: bool = False
+    folded: bool = False
 
     @property
     def long(self) -> bool:

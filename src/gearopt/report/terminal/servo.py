@@ -10,6 +10,15 @@ from rich.text import Text
 from gearopt.optimise.result import Result
 from gearopt.report.measures import METRIC, Measures
 from gearopt.report.result_words import stage_rows
+from gearopt.report.servo_beside import (
+    BARE,
+    COUNTS,
+    WHOSE,
+    beside_rows,
+    count_rows,
+    given_teeth,
+    with_train_words,
+)
 from gearopt.report.servo_words import (
     ARCMIN,
     STAGE_ROWS,
@@ -35,11 +44,13 @@ def design(result: Result, measures: Measures = METRIC) -> list[RenderableType]:
     found = result.design
     blocks: list[RenderableType] = []
     if ratio := found.get("ratio"):
-        blocks.append(Text("\n".join(ratio_words(ratio, measures))))
+        words = ratio_words(ratio, measures) + with_train_words(result.report, ratio, measures)
+        blocks.append(Text("\n".join(words)))
     if train := found.get("train"):
         blocks.append(_train(train, measures))
     if best := [t for t in result.report.get("trains") or [] if t["best_of"]]:
         blocks.append(_best(best, measures))
+    blocks += _beside(result.report, measures)
     if errors := found.get("errors"):
         blocks.append(_errors(errors, error_limit(found, result.limits), measures))
     if rows := found.get("tolerances"):
@@ -76,6 +87,23 @@ def _best(trains: list[Found], measures: Measures) -> RenderableType:
         values = [number(float(measures.of(train[key], unit))) for key, unit in goals.items()]
         table.add_row(Text(train["best_of"]), teeth_words(train["stages"]), *values)
     return table
+
+
+def _beside(report: Found, measures: Measures) -> list[RenderableType]:
+    """The given gears beside the chosen ones, and other numbers of stages."""
+    blocks: list[RenderableType] = []
+    if rows := beside_rows(report, measures):
+        table = columns("train", list(WHOSE.values()))
+        for name, *values in rows:
+            table.add_row(Text(name), *("" if v is None else number(v) for v in values))
+        blocks.append(Group(table, "", Text(given_teeth(report))))
+    if counts := count_rows(report):
+        first, *heads = COUNTS
+        table = columns(first, heads)
+        for row in counts:
+            table.add_row(*map(number, row))
+        blocks.append(Group(table, "", Text(BARE)))
+    return blocks
 
 
 def _errors(errors: list[Found], limit: float | None, measures: Measures) -> RenderableType:

@@ -1,7 +1,7 @@
 """The whole teeth and modules of a servo train: the formulation, held to stiffness and box too."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -28,14 +28,14 @@ FRONT = 400  # trains that are shown
 def posed(scene: Scene, boxed: bool = True) -> Problem:
     """The problem of a file's train in the units of `SHOWN`.
 
-    boxed: its exact method keeps to a required box too, which is no row of the problem.
+    boxed: its own methods keep to a required box too, which is no row of the problem.
     """
     assert scene.train is not None
     goal = scene.train.minimise
     base, factor = split.problem(scene.servo_train(), goal), SHOWN[goal][0]
     boxed = boxed and scene.space is not None and scene.space.required
     least = scene.least_stiffness
-    held = boxed or least is not None
+    apart = ("stiffness",) * (least is not None) + ("box",) * boxed
 
     def evaluate(x: Any, p: Any) -> Terms:
         found = base.evaluate(x, p)
@@ -45,18 +45,24 @@ def posed(scene: Scene, boxed: bool = True) -> Problem:
             limits["stiffness"] = least / output_stiffness(scene, (z1, z3, z2, z4, m1, m2))
         return replace(found, minimise={goal: factor * found.minimise[goal]}, limits=limits)
 
-    def exact(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
-        """The best train; where it breaks a limit, all trains in order until one keeps it."""
-        found: Outcome = base.methods["exact"](base, budget, seed, watch)
-        if held and found.x is not None and not _keeps(scene, found.x, boxed):
-            clock = Clock(budget, watch)
-            try:
-                found = _in_order(scene, base, boxed, clock)
-            except TimeoutError as early:
-                found = Outcome(None, finished=False, message=str(early))
-        return found if found.bound is None else replace(found, bound=factor * found.bound)
+    def method(name: str) -> Callable[..., Outcome]:
+        def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
+            """The best train; where it breaks a limit, all trains in order until one keeps it."""
+            found: Outcome = base.methods[name](base, budget, seed, watch)
+            found = _counted(found, found.proof, apart)
+            if apart and found.x is not None and not _keeps(scene, found.x, boxed):
+                clock = Clock(budget, watch)
+                try:
+                    counts, found = found.proof, _in_order(scene, base, boxed, clock)
+                    found = _counted(found, counts, apart)
+                except TimeoutError as early:
+                    found = Outcome(None, finished=False, message=str(early))
+            return found if found.bound is None else replace(found, bound=factor * found.bound)
 
-    return Problem("train", base.variables, (), evaluate, methods={"exact": exact})
+        return run
+
+    methods = {name: method(name) for name in ("exact", "enumeration")}
+    return Problem("train", base.variables, (), evaluate, methods=methods)
 
 
 def box_of(scene: Scene, point: Array) -> servo_box.ServoBox:
@@ -77,6 +83,14 @@ def _keeps(scene: Scene, point: Array, boxed: bool) -> bool:
     if least is not None and least > output_stiffness(scene, point):
         return False
     return not boxed or servo_box.first_that_fits([box_of(scene, point)]) is not None
+
+
+def _counted(found: Outcome, proof: Mapping[str, Any] | None, apart: tuple[str, ...]) -> Outcome:
+    """An outcome with the counts of an enumeration; apart: limits that these do not look at."""
+    if proof is None or "feasible_trains" not in proof:
+        return found
+    counts = {k: proof[k] for k in ("trains_looked_at", "feasible_trains")}
+    return replace(found, proof={**(found.proof or {}), **counts, "not_counted": list(apart)})
 
 
 def _in_order(scene: Scene, base: Problem, boxed: bool, clock: Clock) -> Outcome:

@@ -18,6 +18,7 @@ from gearopt.scenes.tables.servo import Scene
 from gearopt.scenes.tables.servo_tolerance import BudgetTable
 
 BINS = 60
+QUANTILE = ("quantile", "quantile_low", "quantile_high")
 ANGLES = (  # of what is drawn
     *("mean", "sd", "quantile", "quantile_low", "quantile_high"),
     *("limit", "largest", "worst_case"),
@@ -28,20 +29,19 @@ def stack(scene: Scene, gears: Gears) -> Stack:
     """The deviations of a file as a tolerance stack of given gears; errors in degrees."""
     table = scene.tolerances
     assert table is not None
-    k = float(table.exponent)
     low = 0.0 if table.least_factor is None else float(table.least_factor)
     high = math.inf if table.largest_factor is None else float(table.largest_factor)
     parts = tuple(
         Component(
             name=s.name,
             sensitivity=math.degrees(gears.sensitivity(s)),
-            cost=table.cost(s) * s.tolerance**k,
-            exponent=k,
+            cost=price.cost * s.tolerance**price.exponent,
+            exponent=price.exponent,
             least=low * s.tolerance,
             most=high * s.tolerance,
             distribution=s.law,
         )
-        for s in scene.sources
+        for s, price in zip(scene.sources, scene.prices, strict=True)
     )
     asked = scene.accuracy.error
     limit = None if asked is None else math.degrees(asked.value)
@@ -78,14 +78,13 @@ def problem(scene: Scene, gears: Gears) -> Problem:
     if table.grades is None:
         return continuous(own)
     steps = [2.0 ** (0.5 * j) for j in range(-table.grades, table.grades + 1)]
-    k = float(table.exponent)
     parts = tuple(
         graded.Graded(
             c.name,
             c.sensitivity,
-            tuple((s.tolerance * f, table.cost(s) * f**-k) for f in steps),
+            tuple((s.tolerance * f, price.cost * f**-price.exponent) for f in steps),
         )
-        for c, s in zip(own.components, scene.sources, strict=True)
+        for c, s, price in zip(own.components, scene.sources, scene.prices, strict=True)
     )
     (budget,) = own.budgets
     rule: Any = budget.rule
@@ -101,28 +100,32 @@ def tolerance_part(
     posed, own = problem(scene, gears), stack(scene, gears)
     result, outcome = run(posed, ask.method, ask.budget, ask.seed, ask.watch, ask.gap)
     result = replace(result, name="tolerances", objective=result.objective | {"unit": ""})
-    report = _given(own, old(scene))
+    report = by_every_rule(own.components, old(scene), "old")
     if result.value is None or outcome.x is None:
         proof = {k: v for k, v in result.proof.items() if k != "conflict"}
         return replace(result, proof=proof), {}, report
     t = np.array(outcome.x, float)
     if scene.tolerances is not None and scene.tolerances.grades is not None:
         t = old(scene) * 2.0 ** (0.5 * (t - 1.0 - scene.tolerances.grades))
-    design = {
+    design: dict[str, Any] = {
         "tolerances": _rows(scene, own, t),
         "allocation": _allocation(own, t, result, scene),
         "drawn": _drawn(own, t, scene.tolerances.seed if scene.tolerances else 0),
     }
+    report |= by_every_rule(own.components, t, "new")
+    report |= {f"new_{end}_deg": design["drawn"][f"{end}_deg"] for end in QUANTILE}
+    report["tolerance_cost"] = design["allocation"]["cost"]
+    report["old_tolerance_cost"] = design["allocation"]["old_cost"]
     return replace(result, design=design), design, report
 
 
 def _rows(scene: Scene, own: Stack, t: Array) -> list[dict[str, Any]]:
     table = scene.tolerances
     assert table is not None
-    k = float(table.exponent)
     ends = 2.0 ** (0.5 * table.grades) if table.grades is not None else None
     rows = []
-    for source, part, new in zip(scene.sources, own.components, t.tolist(), strict=True):
+    named = zip(scene.sources, scene.prices, own.components, t.tolist(), strict=True)
+    for source, price, part, new in named:
         before = source.tolerance
         low, high = (part.least, part.most) if ends is None else (before / ends, before * ends)
         rows.append(
@@ -135,8 +138,8 @@ def _rows(scene: Scene, own: Stack, t: Array) -> list[dict[str, Any]]:
                 "lower_mm": low,
                 "upper_mm": high if math.isfinite(high) else None,
                 "sensitivity_deg_per_mm": part.sensitivity,
-                "old_cost": table.cost(source),
-                "new_cost": table.cost(source) * (before / new) ** k,
+                "old_cost": price.cost,
+                "new_cost": price.cost * (before / new) ** price.exponent,
             }
         )
     return rows
@@ -149,12 +152,10 @@ def _allocation(own: Stack, t: Array, result: Result, scene: Scene) -> dict[str,
         if budget.rule == "mean_plus_sd":
             row["kappa"] = budget.kappa
         budgets.append(row | {"limit_deg": budget.error, "used_deg": float(used) * budget.error})
-    table = scene.tolerances
-    assert table is not None
     return {
         "budgets": budgets,
         "cost": result.value,
-        "old_cost": sum(table.cost(s) for s in scene.sources),
+        "old_cost": sum(price.cost for price in scene.prices),
         "method": str(result.proof.get("method", result.method)),
     }
 
@@ -170,8 +171,8 @@ def _drawn(own: Stack, t: Array, seed: int) -> dict[str, Any]:
     return found | {"histogram": {"edges_deg": edges.tolist(), "counts": counts.tolist()}}
 
 
-def _given(own: Stack, t: Array) -> dict[str, float]:
-    """What the tolerances of the file give, by every rule [deg]."""
+def by_every_rule(parts: tuple[Component, ...], t: Array, whose: str) -> dict[str, float]:
+    """What tolerances t give by every rule [deg], named after whose they are."""
     kinds: tuple[tuple[str, Any, float], ...] = (
         ("worst_case", "worst_case", 0.0),
         ("rss", "rss", 0.0),
@@ -179,7 +180,18 @@ def _given(own: Stack, t: Array) -> dict[str, float]:
         ("mean_plus_3_sd", "mean_plus_sd", 3.0),
     )
     budgets = tuple(ErrorBudget(rule, 1.0, kappa, name) for name, rule, kappa in kinds)
-    used = Stack(own.components, budgets).used(t).tolist()
-    found = {f"old_{name}_deg": v for (name, _, _), v in zip(kinds, used, strict=True)}
-    found["old_sd_deg"] = (found["old_mean_plus_3_sd_deg"] - found["old_mean_deg"]) / 3.0
+    used = Stack(parts, budgets).used(t).tolist()
+    found = {f"{whose}_{name}_deg": v for (name, _, _), v in zip(kinds, used, strict=True)}
+    found[f"{whose}_sd_deg"] = (
+        found[f"{whose}_mean_plus_3_sd_deg"] - found[f"{whose}_mean_deg"]
+    ) / 3.0
     return found
+
+
+def of_given(scene: Scene, gears: Gears) -> dict[str, float]:
+    """What the tolerances of the file give on given gears, by every rule [deg]."""
+    parts = tuple(
+        Component(s.name, math.degrees(gears.sensitivity(s)), 1.0, 1.0, 0.0, math.inf, s.law)
+        for s in scene.sources
+    )
+    return by_every_rule(parts, old(scene), "given")

@@ -9,9 +9,8 @@ from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run, solve
 from gearopt.optimise.terms import Array
 from gearopt.scenes.axis.choice import FRONT, SHOWN, box_of, front, posed
-from gearopt.scenes.axis.gears import KG_M2, Gears, described, given_gears, of_point
+from gearopt.scenes.axis.gears import KG_M2, Gears, described, of_point
 from gearopt.scenes.axis.ratio import scaled
-from gearopt.scenes.axis.springs import stiffness_of
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.tables.servo import Scene
 
@@ -63,23 +62,16 @@ def _neighbour(gears: Gears, worth: Array, best_of: str) -> dict[str, Any]:
 
 
 def beside(scene: Scene) -> dict[str, Any]:
-    """What else is known of a train: its real-valued bound, the given gears, numbers of stages."""
+    """What else is known of a train: real-valued bounds, the given gears, numbers of stages."""
     assert scene.train is not None
-    train, goal = scene.servo_train(), scene.train.minimise
-    factor, unit = SHOWN[goal]
+    train = scene.servo_train()
     report: dict[str, Any] = {}
-    relaxed = solve(split.relaxation(train, goal))
-    if relaxed.bound is not None:
-        report[f"real_valued_bound_{goal}_{unit}"] = factor * relaxed.bound
+    for goal, (factor, unit) in SHOWN.items():
+        relaxed = solve(split.relaxation(train, goal))
+        if relaxed.bound is not None:
+            report[f"real_valued_bound_{goal}_{unit}"] = factor * relaxed.bound
     report["stage_counts"] = _counts(float(train.ratio)) if train.ratio > 1 else []
     report["stage_ratio_of_least_mass"] = split.lightest_stage_ratio()
-    if (given := given_gears(scene)) is not None:
-        own = described(scene, given)
-        names = ("ratio", "inertia_kg_m2", "mass_kg", "error_deg")
-        report |= {f"given_{name}": own[name] for name in names}
-        if scene.stiffness is not None:
-            springs = stiffness_of(scene, given)
-            report["given_stiffness"] = springs
     return report
 
 

@@ -9,7 +9,14 @@ from gearopt.physics.stiffness import stiffness_of_frequency
 from gearopt.scenes.reading.fields import Table, refuse, words
 from gearopt.scenes.tables.servo_mesh import Accuracy, Mesh, Source
 from gearopt.scenes.tables.servo_motion import Duty, Load, Motor
-from gearopt.scenes.tables.servo_tolerance import BudgetTable, Tolerances
+from gearopt.scenes.tables.servo_tolerance import (
+    BudgetTable,
+    CostTable,
+    Price,
+    Tolerances,
+    check_costs,
+    price,
+)
 from gearopt.scenes.tables.servo_train import Lightest, Shaft, Space, Stiffness, Train
 
 EXAMPLE = """\
@@ -71,6 +78,11 @@ error = "0.12 deg"             # of the output, all deviations at their worst
 [tolerances]                   # the same deviations made anew, at least cost
 exponent = 1
 
+[[cost]]                       # of one deviation, where it is another
+deviation = "pitch"
+stage = 2
+cost = 2
+
 [[budget]]
 rule = "worst_case"            # or rss, mean_plus_sd
 
@@ -110,6 +122,7 @@ class Scene(Table):
     mesh: tuple[Mesh, ...] = Field((), description="One table a stage, from the motor on")
     accuracy: Accuracy = Field(default_factory=Accuracy)
     tolerances: Tolerances | None = None
+    cost: tuple[CostTable, ...] = Field((), description="One table a deviation")
     budget: tuple[BudgetTable, ...] = Field((), description="One table a budget")
     stiffness: Stiffness | None = None
     lightest: Lightest | None = None
@@ -188,9 +201,11 @@ class Scene(Table):
 
     def _check_tolerances(self) -> None:
         if self.tolerances is None:
-            if self.budget:
-                raise refuse("needs a table [tolerances]", at=("budget",), action="remove")
+            for name in ("budget", "cost"):
+                if getattr(self, name):
+                    raise refuse("needs a table [tolerances]", at=(name,), action="remove")
             return
+        check_costs(self.cost, self.sources)
         rules = [b.rule for b in self.budget]
         for k, rule in enumerate(rules):
             if rule in rules[:k]:
@@ -218,6 +233,12 @@ class Scene(Table):
         if all(blind) and self.tolerances.largest_factor is None:
             rule = "is missing: with kappa = 0 no budget counts the run-outs, whose mean is 0"
             raise refuse(rule, 4, ("tolerances", "largest_factor"), "sample")
+
+    @property
+    def prices(self) -> tuple[Price, ...]:
+        """What every one of `sources` costs."""
+        assert self.tolerances is not None
+        return tuple(price(source, self.tolerances, self.cost) for source in self.sources)
 
     @property
     def sources(self) -> tuple[Source, ...]:

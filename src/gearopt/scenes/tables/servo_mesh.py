@@ -8,7 +8,12 @@ from pydantic import Field, model_validator
 
 from gearopt import units
 from gearopt.formulations.tolerance.distributions import RUN_OUT, UNIFORM, Distribution
-from gearopt.physics.backlash import backlash_angle, pitch_error_angle, radial_backlash
+from gearopt.physics.backlash import (
+    backlash_angle,
+    pitch_error_angle,
+    radial_backlash,
+    thickness_backlash,
+)
 from gearopt.physics.tolerances import SCOPE, total_pitch_tolerance
 from gearopt.scenes.reading.fields import Table, number, quantity, refuse, whole
 from gearopt.units import Quantity
@@ -47,10 +52,12 @@ def _deviation(description: str) -> Quantity | None:
 class Source:
     """One deviation of a mesh.
 
-    per_mm: angle [rad] at a wheel of diameter 1 mm and 1 mm of deviation. kind: backlash or pitch.
+    key: of its [[mesh]]. per_mm: angle [rad] at a wheel of diameter 1 mm and 1 mm of deviation.
+    kind: backlash or pitch.
     """
 
     name: str
+    key: str
     kind: str
     stage: int
     tolerance: float
@@ -149,16 +156,22 @@ class Mesh(Table):
 
     def sources(self, stage: int, pressure_angle: float) -> tuple[Source, ...]:
         """The deviations above zero of a stage (from 1); pressure_angle [rad]."""
-        radial = backlash_angle(radial_backlash(1.0, pressure_angle), 1.0)
+        laws = {
+            **dict.fromkeys(RADIAL, backlash_angle(radial_backlash(1.0, pressure_angle), 1.0)),
+            **dict.fromkeys(
+                THICKNESS, backlash_angle(thickness_backlash(-1.0, 0.0, 0.0, pressure_angle), 1.0)
+            ),
+            **dict.fromkeys(PITCH, pitch_error_angle(1.0, 1.0)),
+        }
         found = []
         for name, words in WORDS.items():
             tolerance = self._tolerance(name)
             if tolerance <= 0.0:
                 continue
-            per_mm = radial if name in RADIAL else pitch_error_angle(1.0, 1.0)
             kind = "pitch" if name in PITCH else "backlash"
             law = RUN_OUT if name.endswith("run_out") else UNIFORM
-            found.append(Source(f"{words} {stage}", kind, stage, tolerance, float(per_mm), law))
+            own = f"{words} {stage}", name, kind, stage, tolerance, float(laws[name]), law
+            found.append(Source(*own))
         return tuple(found)
 
     def _tolerance(self, name: str) -> float:

@@ -8,6 +8,7 @@ from gearopt.optimise.result import Result
 from gearopt.report.measures import Measures
 from gearopt.report.pages.frame import Figure, axis, layout
 from gearopt.report.pages.section import Section
+from gearopt.report.pages.table import Table
 from gearopt.report.servo_words import degrees, drawn_words
 
 
@@ -34,8 +35,16 @@ def section(result: Result, measures: Measures) -> Section | None:
         "Drawn errors",
         words=words,
         figures=(Figure(traces, plot, caption),),
+        tables=(_table(found["histogram"]),),
         half="stiffness" in result.design,
     )
+
+
+def _table(histogram: Mapping[str, Any]) -> Table:
+    """The bars: between which errors, and how many trains were drawn there."""
+    ends = pairwise(histogram["edges_deg"])
+    rows = [[a, b, n] for (a, b), n in zip(ends, histogram["counts"], strict=True)]
+    return Table("drawn errors", ["from [°]", "to [°]", "drawn trains"], rows, folded=True)
 
 
 def _bars(histogram: Mapping[str, Any], count: int) -> dict[str, Any]:

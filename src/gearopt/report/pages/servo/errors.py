@@ -8,6 +8,7 @@ from gearopt.optimise.result import Result
 from gearopt.report.measures import Measures
 from gearopt.report.pages.frame import Figure, axis, layout
 from gearopt.report.pages.section import Section, series
+from gearopt.report.pages.table import Table
 from gearopt.report.servo_words import (
     arc_minutes,
     degrees,
@@ -53,8 +54,29 @@ def section(result: Result, measures: Measures) -> Section | None:
     caption = "Each bar begins where the last one ends: the worst case, all at once."
     words = (*error_words(found, limit), *_by_kind(found, total))
     return Section(
-        "Where the error comes from", words=words, figures=(Figure(traces, plot, caption),)
+        "Where the error comes from",
+        words=words,
+        figures=(Figure(traces, plot, caption),),
+        tables=(_table(found, total, measures),),
     )
+
+
+def _table(found: Any, total: float, measures: Measures) -> Table:
+    """Every source, as the bars show it."""
+    heads = ["source", "kind", "stage", f"tolerance [{measures.unit('um')}]"]
+    heads += ["error at the output [°]", "of the sum, %"]
+    rows = [
+        [
+            e["source"],
+            kind_words(e["kind"]),
+            e["stage"],
+            None if e.get("tolerance_mm") is None else measures.of(e["tolerance_mm"], "um"),
+            e["error_deg"],
+            100.0 * e["error_deg"] / total if total else None,
+        ]
+        for e in found
+    ]
+    return Table("errors", heads, rows, folded=True)
 
 
 def _names(sources: list[str]) -> list[str]:

@@ -6,6 +6,8 @@ from gearopt.optimise.result import Result
 from gearopt.report.measures import Measures
 from gearopt.report.pages.frame import Figure, axis, layout
 from gearopt.report.pages.section import Section
+from gearopt.report.pages.table import Table
+from gearopt.report.servo_beside import with_train_words
 from gearopt.report.servo_words import DUTIES, ratio_words
 from gearopt.report.words import number
 
@@ -41,7 +43,11 @@ def section(result: Result, measures: Measures) -> Section | None:
     caption = f"{found['name'].capitalize()} over the total ratio, motor over load speed."
     words = ratio_words(found, measures)
     words.append(_flat(found))
-    return Section("Total ratio", words=words, figures=(Figure(traces, plot, caption),))
+    words += with_train_words(result.report, found, measures)
+    heads = ["total ratio", f"{found['name']} [{unit}]"]
+    table = Table("ratio curve", heads, list(zip(ratios, values, strict=True)), folded=True)
+    figures = (Figure(traces, plot, caption),)
+    return Section("Total ratio", words=words, figures=figures, tables=(table,))
 
 
 def _mark(

@@ -7,6 +7,7 @@ from gearopt.optimise.result import Result
 from gearopt.report.measures import Measures
 from gearopt.report.pages.frame import Figure, axis, layout
 from gearopt.report.pages.section import Section
+from gearopt.report.pages.table import Table
 from gearopt.report.servo_words import degrees, error_limit, teeth_words
 from gearopt.report.words import amount, number
 
@@ -15,6 +16,7 @@ GOALS = {  # of a train: its key and unit, what it is called
     "mass": ("mass_kg", "kg", "mass of the gears"),
     "error": ("error_deg", "deg", "error at the output"),
 }
+STAGE = ("normal_module_mm", "pinion_teeth", "wheel_teeth")
 BEST = {  # symbol and colour of the best by a goal
     "inertia": ("diamond", "--series-4"),
     "mass": ("square", "--series-3"),
@@ -46,8 +48,11 @@ def _section(result: Result, measures: Measures, goal: str) -> Section | None:
             traces.append(_points(f"least {best}", few, goal, measures, 12, symbol, colour))
     if chosen := result.design.get("train"):
         traces.append(_points("chosen", [chosen], goal, measures, 20, "circle-open", "--series-2"))
+    given = result.report.get("given_train") or {}
+    if key in given:
+        traces.append(_points("given", [given], goal, measures, 12, "x", "--series-8"))
     limit = error_limit({"train": chosen} if chosen else {}, result.limits)
-    values = [measures.of(t[key], unit) for t in (*found, *([chosen] if chosen else []))]
+    values = [measures.of(t[key], unit) for t in (*found, *(t for t in (chosen, given) if t))]
     wide = max(values) > 10.0 * min(values)
     across = axis(f"{name} [{measures.unit(unit)}]", type="log" if wide else "linear")
     if wide:
@@ -55,7 +60,23 @@ def _section(result: Result, measures: Measures, goal: str) -> Section | None:
     up = axis("error at the output [°]")
     shapes = [] if limit is None else [_level(limit)]
     figure = Figure(traces, layout(across, up, 400, shapes=shapes), _caption(found))
-    return Section(f"Error and {goal}", figures=(figure,), half=True)
+    tables = (_table(found, measures),) if goal == "inertia" else ()
+    return Section(f"Error and {goal}", figures=(figure,), tables=tables, half=True)
+
+
+def _table(trains: list[Mapping[str, Any]], measures: Measures) -> Table:
+    """All points with their teeth and modules."""
+    heads = [f"{name} [{measures.unit(unit)}]" for _, unit, name in GOALS.values()]
+    heads += [f"{what} of stage {k}" for k in (1, 2) for what in ("module [mm]", "z1", "z2")]
+    rows = [
+        [
+            *(measures.of(t[key], unit) for key, unit, _ in GOALS.values()),
+            *(s[k] for s in t["stages"] for k in STAGE),
+            t["best_of"],
+        ]
+        for t in trains
+    ]
+    return Table("trains", [*heads, "least"], rows, folded=True)
 
 
 def _caption(trains: list[Mapping[str, Any]]) -> str:

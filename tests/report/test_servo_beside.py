@@ -1,0 +1,120 @@
+"""The given train beside the chosen one, stages and tables, of problems/servo_gimbal.toml."""
+
+import csv
+import io
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from rich.console import Console
+
+import gearopt
+from gearopt.report.pages.result import page, sections, tables
+from gearopt.report.proof_words import proof
+from gearopt.report.terminal.result import show
+
+FILE = Path(__file__).parents[2] / "problems" / "servo_gimbal.toml"
+
+
+@pytest.fixture(scope="module")
+def result():
+    return gearopt.Result.from_json(gearopt.solve(FILE).to_json())
+
+
+@pytest.fixture(scope="module")
+def found(result):
+    return {s.heading: s for s in sections(result)}
+
+
+def read(text):
+    return list(csv.reader(io.StringIO(text)))
+
+
+def test_given_gears_stand_beside_the_chosen_and_the_bound(found):
+    """7.578e-7 kg m2, 191.4 g, 0.10819 degrees, 210.1 Hz against 5.142e-7, 167.7, 0.10813."""
+    section = found["The given train"]
+    rows = {row[0]: row[1:] for row in section.tables[0].rows}
+    assert rows["inertia [g cm²]"] == pytest.approx([5.142, 7.578, 4.884], abs=6e-4)
+    assert rows["mass [kg]"] == pytest.approx([0.1677, 0.1914, 0.16577], abs=6e-5)
+    assert rows["error [°]"][:2] == pytest.approx([0.10813, 0.10819], abs=6e-6)
+    assert rows["frequency [Hz]"][1] == pytest.approx(210.1, abs=0.06)
+    assert rows["frequency [Hz]"][2] is None
+    assert section.words[0] == "Given: 16/96, m_n 0.5 mm; 26/208, m_n 0.5 mm."
+
+
+def test_numbers_of_stages(found):
+    """J/J_p of 48:1 by k stages, with the ratios of two."""
+    rows = found["Number of stages"].tables[0].rows
+    inertia = [26.0211, 9.1018, 6.6698, 6.0584, 5.8851]
+    assert [row[1] for row in rows][1:] == pytest.approx(inertia, abs=6e-5)
+    assert rows[1][2] == "4.082 x 11.760"
+
+
+def test_the_best_ratio_with_the_train_is_a_sentence(found):
+    words = " ".join(found["Total ratio"].words)
+    assert "With the train's own inertia of 5.1419 g cm² at the motor" in words
+    assert "the best total ratio is 56.437, with 45.686 rad/s²." in words
+
+
+@pytest.mark.parametrize(
+    ("heading", "x"), [("Error and inertia", 7.5775), ("Error and mass", 0.19141)]
+)
+def test_the_given_train_is_a_marker(found, heading, x):
+    drawn = {t["name"]: t for t in found[heading].figures[0].data}
+    assert drawn["given"]["x"] == [pytest.approx(x, rel=1e-4)]
+    assert drawn["given"]["y"] == [pytest.approx(0.10819, abs=6e-6)]
+    assert "16/96" in drawn["given"]["text"][0]
+
+
+def test_every_plot_has_its_csv(result):
+    texts = tables(result)
+    errors, trains, curve, bars = (
+        read(texts[f"{name}.csv"]) for name in ("errors", "trains", "ratio-curve", "drawn-errors")
+    )
+    assert len(errors) == 15
+    assert sum(float(row[4]) for row in errors[1:]) == pytest.approx(0.10813, abs=6e-6)
+    assert len(trains) == 1 + len(result.report["trains"])
+    assert all(len(row) == len(trains[0]) for row in trains)
+    assert max(float(row[1]) for row in curve[1:]) == pytest.approx(47.287374, abs=1e-6)
+    assert sum(int(row[2]) for row in bars[1:]) == 400_000
+
+
+def test_a_table_behind_a_plot_is_a_link_only(result):
+    html = page(result, "x")
+    assert 'download="errors.csv"' in html and ">of the sum, %</th>" not in html
+
+
+def test_the_terminal_tells_them_too(result):
+    console = Console(width=99, record=True, file=io.StringIO())
+    show(result, console)
+    shown = console.export_text()
+    for phrase in ("real-valued bound", "Given: 16/96", "4.082 x 11.760", "ratio is 56.437"):
+        assert phrase in shown, phrase
+    assert max(map(len, shown.splitlines())) <= 99
+
+
+def test_without_given_gears_there_is_no_such_section(result):
+    bare = {k: v for k, v in result.report.items() if not k.startswith(("given", "stage_c"))}
+    headings = {s.heading for s in sections(replace(result, report=bare))}
+    assert not headings & {"The given train", "Number of stages"}
+
+
+def test_an_acceleration_is_told_as_one():
+    """47.287 rad/s2 is the most; its inverse is what is minimised."""
+    result = gearopt.solve(FILE.with_name("servo_gimbal_ratio.toml"))
+    assert result.objective["name"] == "inverse_acceleration"
+    assert proof(result)[0].startswith("Bound: no acceleration above 47.287 rad/s² is possible")
+    tiles = {t.name: t.value for t in sections(result)[0].tiles}
+    assert tiles["acceleration"] == tiles["proven bound"] == "47.287 rad/s²"
+    assert "acceleration 47.287 rad/s², proven optimal" in page(result, "x")
+    assert "no move time below 1.1965 s" in " ".join(
+        proof(gearopt.solve(FILE.with_name("servo_gimbal_move.toml")))
+    )
+
+
+def test_on_paper_tiles_stay_with_what_follows(result):
+    """Stiffness was cut between its tiles and its chart."""
+    paper = page(result, "x").split("@media print")
+    rules = [part for part in paper if ".tiles { break-after: avoid; }" in part]
+    assert rules and ".tiles { break-inside: avoid; }" in rules[0]
+    assert ".card > figure { zoom: 0.8; }" in rules[0]  # two plots on a sheet
