@@ -621,3 +621,16 @@ def test_tolerances_alone_need_given_gears():
                  if k in ("gearopt", "kind", "mesh", "tolerances")})  # fmt: skip
     with pytest.raises(SceneError, match="without .train. tolerances are for given gears"):
         read(lone.encode())
+
+
+def test_limits_and_conflicts_of_tolerances_are_named():
+    """One row a deviation; tolerances that use up the budget alone are said."""
+    tight = (("tolerances", "least_factor"), Decimal("0.9"))
+    result = gearopt.solve(changed(text("gimbal_tolerances"), tight))
+    assert result.limits["least of pitch of stage 2"] == pytest.approx(1.0, abs=1e-6)
+    assert not any("[" in name for name in result.limits)
+    none = gearopt.solve(
+        changed(text("gimbal_tolerances"), tight, (("budget", 0, "limit"), "0.05 deg"))
+    )
+    assert none.status == "infeasible"
+    assert "pitch of stage 2" in proof(none)[0] and "alone use up the budget" in proof(none)[0]

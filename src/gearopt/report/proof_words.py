@@ -112,7 +112,7 @@ def _impossible(result: Result) -> list[str]:
             "Proof: whatever the sizes, even with real-valued teeth and modules, one of these "
             f"limits is missed by at least {missed} %: {names}."
         ]
-    if proof.get("conflict"):
+    if proof.get("conflict") or proof.get("components"):
         return [f"Proof: {result.message}."]
     return [f"Proof: {proof['reason']}."] if proof.get("reason") else []
 

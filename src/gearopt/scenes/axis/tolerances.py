@@ -116,7 +116,14 @@ def tolerance_part(
     report |= {f"new_{end}_deg": design["drawn"][f"{end}_deg"] for end in QUANTILE}
     report["tolerance_cost"] = design["allocation"]["cost"]
     report["old_tolerance_cost"] = design["allocation"]["old_cost"]
-    return replace(result, design=design), design, report
+    limits = {_named(name, own): used for name, used in result.limits.items()}
+    return replace(result, design=design, limits=limits), design, report
+
+
+def _named(limit: str, own: Stack) -> str:
+    """`least[3]` as "least of centre distance of stage 1"."""
+    stem, _, index = limit.rstrip("]").partition("[")
+    return f"{stem} of {own.components[int(index) - 1].name}" if index else limit
 
 
 def _rows(scene: Scene, own: Stack, t: Array) -> list[dict[str, Any]]:
