@@ -25,8 +25,7 @@ from gearopt.scenes.axis.tolerances import tolerance_part
 from gearopt.scenes.axis.train import beside, box_part, lightest_part, neighbours, train_part
 from gearopt.scenes.axis.ways_out import ways_out
 from gearopt.scenes.reading.ask import Ask
-from gearopt.scenes.tables.servo import Scene
-from gearopt.scenes.tables.servo_example import EXAMPLE
+from gearopt.scenes.tables.servo import EXAMPLE, Scene
 from gearopt.scenes.tables.servo_motion import drive
 
 __all__ = ["EXAMPLE", "Scene", "compared", "explain", "model", "solve"]

@@ -7,6 +7,7 @@ from pydantic import Field, model_validator
 from gearopt.formulations.split import ServoTrain, StiffTrain
 from gearopt.physics.stiffness import stiffness_of_frequency
 from gearopt.scenes.reading.fields import Table, refuse, words
+from gearopt.scenes.tables.servo_example import EXAMPLE
 from gearopt.scenes.tables.servo_mesh import Accuracy, Mesh, Source
 from gearopt.scenes.tables.servo_motion import Duty, Load, Motor
 from gearopt.scenes.tables.servo_tolerance import (
@@ -18,6 +19,8 @@ from gearopt.scenes.tables.servo_tolerance import (
     price,
 )
 from gearopt.scenes.tables.servo_train import Lightest, Shaft, Space, Stiffness, Train
+
+__all__ = ["EXAMPLE", "Scene"]  # messages show tables of the example
 
 
 class Scene(Table):
