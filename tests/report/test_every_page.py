@@ -15,7 +15,7 @@ PROBLEMS = sorted((Path(__file__).parents[2] / "problems").glob("*.toml"))
 @pytest.mark.slow
 @pytest.mark.parametrize("path", PROBLEMS, ids=lambda p: p.stem)
 def test_a_problem_file_makes_a_page(path):
-    result = gearopt.solve(path, top=3, budget=gearopt.Budget(5.0))
+    result = gearopt.solve(path, top=3, budget=gearopt.Budget(1.0))
     again = gearopt.Result.from_json(result.to_json())
     html = page(again, "gearopt solve x.toml")
     words = "".join(Reader(html).text)
