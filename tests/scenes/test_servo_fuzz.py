@@ -60,7 +60,9 @@ def plain_numbers(scene):
 
 @pytest.mark.parametrize("base", BASES)
 def test_the_bases_load(base):
-    plain_numbers(read(BASES[base].encode())[1])
+    kind, scene = read(BASES[base].encode())
+    plain_numbers(scene)
+    assert kind == "servo"
 
 
 @pytest.mark.parametrize("kind", KINDS)

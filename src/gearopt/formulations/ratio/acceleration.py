@@ -87,7 +87,7 @@ def best_ratio(drive: Drive, load_speed: float = 0.0) -> tuple[float, float]:
     """
     low, high = drive.ratios(load_speed)
     ratio = min(max(_stationary(drive, load_speed), low), high)
-    return ratio, _law(drive, load_speed, ratio) if ratio < math.inf else math.inf
+    return ratio, law_of(drive, load_speed, ratio) if ratio < math.inf else math.inf
 
 
 def _stationary(drive: Drive, load_speed: float) -> float:
@@ -104,7 +104,8 @@ def _stationary(drive: Drive, load_speed: float) -> float:
     return quotient(linear + size, inertia)
 
 
-def _law(drive: Drive, load_speed: float, ratio: float) -> float:
+def law_of(drive: Drive, load_speed: float, ratio: float) -> float:
+    """Acceleration [rad/s2] of the drive's load at a load speed [rad/s] and a ratio."""
     slope = torque_slope(drive.torque, load_speed, drive.no_load_speed)
     found: float = load_acceleration(
         ratio,
@@ -130,7 +131,7 @@ def _exact(drive: Drive, load_speed: float) -> Outcome:
         return impossible(reason)
 
     def inverse(n: float) -> float:
-        found = _law(drive, load_speed, n)
+        found = law_of(drive, load_speed, n)
         return 1.0 / found if found > 0.0 else math.inf
 
     bound = convex_bound(inverse, ratio, low, high, min(1.0, best / unopposed(drive, ratio)))

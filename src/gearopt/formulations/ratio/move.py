@@ -9,6 +9,7 @@ from gearopt.formulations.ratio.acceleration import (
     acceleration_variable,
     best_ratio,
     impossible,
+    law_of,
     proof,
     ratio_scales,
     standstill,
@@ -20,7 +21,7 @@ from gearopt.formulations.ratio.drive import BEYOND, FAINT, Drive, present, quot
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.terms import Param, Terms, Var
-from gearopt.physics.servo_drive import load_acceleration, move_time, shortest_move_time
+from gearopt.physics.servo_drive import move_time, shortest_move_time
 
 RANDOM = False
 COUNTS = "ratio evaluated"
@@ -100,18 +101,6 @@ def _limited(drive: Drive, angle: float) -> float:
     return high
 
 
-def _ramp(drive: Drive, ratio: float) -> float:
-    found: float = load_acceleration(
-        ratio,
-        drive.load_inertia,
-        drive.inertia,
-        drive.net_torque,
-        drive.load_friction,
-        drive.efficiency,
-    )
-    return found
-
-
 def _exact(drive: Drive, angle: float) -> Outcome:
     """The best of the two regimes; the bound follows from convexity alone."""
     low, high = drive.ratio
@@ -122,16 +111,16 @@ def _exact(drive: Drive, angle: float) -> Outcome:
         return impossible(reason)
     if math.isinf(ratio) or best * angle > (drive.speed_limit / ratio) ** 2:
         ratio = min(max(_limited(drive, angle), low), high)
-        if reason := standstill(drive, 0.0, ratio, _ramp(drive, ratio)):
+        if reason := standstill(drive, 0.0, ratio, law_of(drive, 0.0, ratio)):
             return impossible(reason)
 
     def time(n: float) -> float:
-        ramp = _ramp(drive, n)
+        ramp = law_of(drive, 0.0, n)
         if not ramp > 0.0:
             return math.inf
         return float(shortest_move_time(angle, drive.speed_limit / n, ramp))
 
-    ramp = _ramp(drive, ratio)
+    ramp = law_of(drive, 0.0, ratio)
     peak = min(math.sqrt(ramp * angle), drive.speed_limit / ratio)
     room = min(1.0, ramp / unopposed(drive, ratio))
     bound = convex_bound(time, ratio, low, high, room, peak / ramp / time(ratio))
