@@ -23,7 +23,10 @@ def edited(content, remedy, back=()):
     for change in remedy.changes:
         place, name = _place(content, change.key)
         less = change in back
-        place[name] = _value(_less(change.was, change.write) if less else change.write)
+        if change.write:
+            place[name] = _value(_less(change.was, change.write) if less else change.write)
+        else:
+            del place[name]
     return Scene.model_validate(content)
 
 
@@ -36,6 +39,9 @@ def _copy(value):
 def _place(content, key):
     *tables, name = key.split(".")
     here = content
+    if name.endswith("]"):  # an item of a list
+        name, _, index = name.rstrip("]").partition("[")
+        return _place(content, ".".join([*tables, name, index]))[0], int(index) - 1
     for table in tables:
         stem, _, index = table.rstrip("]").partition("[")
         if stem == "stage" and "stage" not in content:
@@ -62,6 +68,6 @@ def _less(was, write, back=1e-3):
             return after
         if after.isdigit() and before.isdigit():
             return str(int(after) + (1 if a > b else -1))
-        return f"{float(b) * (1 - back if b > a else 1 + back):.12g}"
+        return f"{float(b) + (-1 if b > a else 1) * back * abs(float(b)):.12g}"
 
     return NUMBER.sub(nearer, write)

@@ -6,7 +6,12 @@ from typing import Any
 
 from gearopt.report.words import edit, limit_words
 
-KINDS = {"least": "least change", "less": "or ask for less", "choice": "or choose"}
+KINDS = {
+    "least": "least change",
+    "pair": "two together",
+    "less": "or ask for less",
+    "choice": "or choose",
+}
 REMEDY_HEADS = (
     "ways out, one is enough",
     "write in the file",
@@ -61,5 +66,5 @@ def _rows(way: Mapping[str, Any]) -> list[tuple[str, ...]]:
 
 
 def _factor(factor: float | None) -> str:
-    """A factor; nothing where a number moves away from zero."""
-    return "" if factor is None or math.isinf(factor) else f"{factor:.4f}"
+    """A factor; nothing where a number is shifted, or a switch is set."""
+    return "" if factor is None or factor == 1.0 or math.isinf(factor) else f"{factor:.4f}"

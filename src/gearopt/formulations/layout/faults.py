@@ -14,56 +14,85 @@ from gearopt.formulations.layout.slabs import (
 )
 
 TOUCH = 1e-6  # mm; by which a place may be out of reach
+INPUT = Place(0, (0.0, 0.0), (0.0, 0.0))  # the origin
 
 
 def faults(box: Gearbox) -> list[str]:
     """Sentences about what is too close, too long, or out of reach; empty if nothing is."""
-    found = [*_fixed(box), *_reach(box)]
-    one = arrangements(box)[0]
-    if clashes(box, one) or one.length > box.largest[2] * (1.0 + 1e-9):
-        found += _axial(box)
-    return found
+    return [*_axial(box), *_blocked(box), *_reach(box), *_level(box), *_sides(box)]
 
 
-def _axial(box: Gearbox) -> list[str]:
+def _axial(box: Gearbox) -> Iterator[str]:
     """What every order of slabs lacks: that of the order which lacks least."""
-    every = [arrange(box, s) for s in ([box.slabs] if box.slabs is not None else orders(box))]
-    clear = [one for one in every if not clashes(box, one)]
-    if clear:
-        shortest, most = min(one.length for one in clear), f"{box.largest[2]:.7g} mm"
-        return [f"The box is at least {shortest:.2f} mm long, and may be {most} at most."]
-
-    def worst(one: Arrangement) -> float:
-        return clashes(box, one)[0].short
-
-    return [_sentence(clash) for clash in clashes(box, min(every, key=worst))]
-
-
-def _fixed(box: Gearbox) -> Iterator[str]:
-    """What stands on the input shaft against keep-outs: both are where they are."""
     one = arrangements(box)[0]
+    longest = box.largest[2] * (1.0 + 1e-9)
+    if not clashes(box, one) and one.length <= longest:
+        return
+    every = _every(box)
+    clear = [one for one in every if not clashes(box, one)]
+    if not clear:
+        worst = min(every, key=lambda one: clashes(box, one)[0].short)
+        yield from map(_sentence, clashes(box, worst))
+    shortest = min(one.length for one in clear or every)
+    if shortest > longest:
+        yield (
+            f"The box is at least {shortest:.2f} mm long, and may be {box.largest[2]:.7g} mm "
+            "at most."
+        )
+
+
+def _every(box: Gearbox) -> list[Arrangement]:
+    """All orders of slabs, whatever they lack."""
+    return [arrange(box, s) for s in ([box.slabs] if box.slabs is not None else orders(box))]
+
+
+def _blocked(box: Gearbox) -> Iterator[str]:
+    """What stands on the input shaft, or on one at a given place, against keep-outs."""
+    tried = arrangements(box)
+    if clashes(box, tried[0]):  # it stands for all orders
+        tried = tuple(_every(box)) if box.keep_outs else tried
     for k, keep in enumerate(box.keep_outs):
-        there, need = _distance(keep), float(one.keep_apart[k, 0])
-        if need - there > TOUCH:
-            yield (
-                f"What stands on the input shaft is {need - there:.2f} mm too close to "
-                f"{keep.name}: its axis is {there:.2f} mm from it and needs {need:.2f} mm."
-            )
+        for given in (INPUT, *box.places):
+            there = max(_distance(keep, y, z) for y in given.y for z in given.z)
+            need = min(float(one.keep_apart[k, given.shaft]) for one in tried)
+            if need - there > TOUCH:
+                most = "" if given is INPUT else "at most "
+                who = "the input shaft" if given is INPUT else f"shaft {given.shaft + 1}"
+                yield (
+                    f"What stands on {who} is {need - there:.2f} mm too close to {keep.name}: its "
+                    f"axis is {most}{there:.2f} mm from it and needs {need:.2f} mm."
+                )
+        there = _distance(keep, 0.0, 0.0)
         if keep.x == ANYWHERE and box.motor - there > TOUCH:
             yield f"The motor reaches {box.motor - there:.2f} mm into {keep.name}."
 
 
-def _distance(keep: KeepOut) -> float:
-    """From the axis of the input shaft."""
+def _sides(box: Gearbox) -> Iterator[str]:
+    """Bodies that are wider with their walls than the box may be, wide or high."""
+    bodies = [body for own in arrangements(box)[0].bodies for body in own]
+    largest = max(bodies, key=lambda body: body.radius)
+    need = 2.0 * (largest.radius + box.clearances.wall)
+    wide = min(box.largest[0], math.inf if box.width is None else box.width)
+    for side, most in (("wide", wide), ("high", box.largest[1])):
+        if need > most + TOUCH:
+            yield (
+                f"The box is at least {need:.2f} mm {side} ({2.0 * largest.radius:.2f} for "
+                f"{largest.name}, twice {box.clearances.wall:g} to the walls), and may be "
+                f"{most:.7g} mm."
+            )
+
+
+def _distance(keep: KeepOut, y: float, z: float) -> float:
+    """Of a point from a keep-out."""
     return math.hypot(
-        max(keep.y[0], -keep.y[1], 0.0),
-        max(keep.z[0], -keep.z[1], 0.0),
+        max(keep.y[0] - y, y - keep.y[1], 0.0),
+        max(keep.z[0] - z, z - keep.z[1], 0.0),
     )
 
 
 def _reach(box: Gearbox) -> Iterator[str]:
     """Places that the links between two shafts cannot span, or that exclude each other."""
-    given = [Place(0, (0.0, 0.0), (0.0, 0.0)), *box.places]
+    given = [INPUT, *box.places]
     for n, b in enumerate(given):
         for a in given[:n]:
             first, last = sorted((a.shaft, b.shaft))
@@ -84,6 +113,20 @@ def _reach(box: Gearbox) -> Iterator[str]:
                     f"{who} are at most {far:.2f} mm apart; the centre distances between them "
                     f"keep them {least:.2f} mm apart."
                 )
+
+
+def _level(box: Gearbox) -> Iterator[str]:
+    """Places of shafts on the split line that cannot be of one height."""
+    given = [p for p in (INPUT, *box.places) if p.shaft in box.level]
+    above = max(given, key=lambda p: p.z[0], default=INPUT)
+    below = min(given, key=lambda p: p.z[1], default=INPUT)
+    if above.z[0] - below.z[1] > TOUCH and above.shaft != below.shaft:
+        first, last = sorted((above.shaft + 1, below.shaft + 1))
+        yield (
+            f"Shafts {first} and {last} are on the split line, but shaft "
+            f"{above.shaft + 1} is at a height z of {above.z[0]:.2f} mm at least and shaft "
+            f"{below.shaft + 1} of {below.z[1]:.2f} mm at most."
+        )
 
 
 def _between(a: Place, b: Place) -> tuple[float, float]:

@@ -11,6 +11,7 @@ from gearopt.optimise.explaining.repair import CERTAIN, Clock
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import solve
 from gearopt.scenes.box.lay_out import sizes_of
+from gearopt.scenes.box.ways import gearbox_of
 from gearopt.scenes.explaining.numbers import Number, numbers, put, times
 from gearopt.scenes.tables.drive import Scene
 from gearopt.units import Quantity
@@ -45,8 +46,8 @@ def _influences(scene: Scene, sizes: Sizes, value: float, clock: Clock) -> Itera
             continue
 
         def resolved(factor: float, number: Number = number) -> float | None:
-            box = put(scene, number.path, times(number.value, factor)).gearbox(sizes)
-            if layout.faults(box):
+            box = gearbox_of(put(scene, number.path, times(number.value, factor)), sizes)
+            if box is None or layout.faults(box):
                 return None
             left = replace(clock.left, gap=COARSE)
             return solve(layout.problem(box), None, left, watch=clock.watch, gap=COARSE).value

@@ -75,7 +75,8 @@ def put(scene: Any, path: Path, value: Any) -> Any:
     if isinstance(step, int):
         return scene[:step] + (put(scene[step], rest, value),) + scene[step + 1 :]
     here = getattr(scene, step)
-    pair = not rest and isinstance(here, tuple) and not isinstance(value, tuple)
+    one = value is not None and not isinstance(value, tuple)
+    pair = not rest and isinstance(here, tuple) and one
     return scene.model_copy(update={step: put(here, rest, (value, value) if pair else value)})
 
 
