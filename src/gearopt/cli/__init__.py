@@ -11,16 +11,21 @@ from gearopt.cli import explaining  # noqa: F401
 # isort: split
 from gearopt.cli import comparing, files, machine, reporting  # noqa: F401
 from gearopt.cli.app import app
+from gearopt.cli.streams import patient
 from gearopt.errors import GearoptError
 
 
 def run() -> None:
-    """Run a command; errors on purpose become one message and exit code 2."""
+    """Run a command; errors on purpose become one message and exit code 2.
+
+    A reader that leaves (`gearopt ... | head`) changes neither what is done nor the exit code.
+    """
+    sys.stdout, sys.stderr = patient(sys.stdout), patient(sys.stderr)
     try:
-        app()
+        try:
+            app()
+        finally:
+            print(end="", flush=True)  # a full disk is told here, not at the end of Python
     except GearoptError as wrong:
         print(f"gearopt: {wrong}", file=sys.stderr)
         sys.exit(2)
-    except BrokenPipeError:  # `gearopt ... | head`
-        sys.stderr.close()
-        sys.exit(0)

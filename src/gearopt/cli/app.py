@@ -7,7 +7,6 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from gearopt.errors import GearoptError
 from gearopt.optimise.result import Result
 
 app = typer.Typer(
@@ -56,24 +55,6 @@ def exit_code(result: Result) -> int:
     if result.status == "limit":
         return 4 if result.value is None else 0
     return EXIT[result.status]
-
-
-def check_html(path: Path | None) -> None:
-    """GearoptError where a page cannot be written there: said before long work, not after it."""
-    if path is None:
-        return
-    if path.is_dir():
-        raise GearoptError(f"--html {path}: is a folder; name a file, such as {path / 'page.html'}")
-    if not path.resolve().parent.is_dir():
-        raise GearoptError(f"--html {path}: there is no folder {path.resolve().parent}")
-
-
-def write_html(path: Path, page: str) -> None:
-    """Write a page; GearoptError where the system refuses."""
-    try:
-        path.write_text(page, encoding="utf-8")
-    except OSError as refused:
-        raise GearoptError(f"--html {path}: {refused.strerror}") from refused
 
 
 def console() -> Console:

@@ -6,9 +6,11 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from gearopt.cli.app import File, Html, Json, app, check_html, console, write_html
+from gearopt.cli.app import File, Html, Json, app, console
 from gearopt.cli.watching import following
+from gearopt.cli.writing import check_html, write
 from gearopt.optimise.comparing.compare import EVALUATIONS, SECONDS, SEEDS, Progress
+from gearopt.optimise.comparing.comparison import Comparison
 
 
 @app.command()
@@ -38,7 +40,7 @@ def compare(
     """Compare methods by their gap to what is proven. Ctrl-C reports the runs that are finished."""
     from gearopt.api import compare as compare_file
 
-    check_html(html)
+    check_html(html, file)
     named = None
     if methods is not None:
         named = [name.strip() for name in methods.split(",") if name.strip()]
@@ -52,18 +54,24 @@ def compare(
             bound_from=bound_from,
             watch=watch if as_json else _announced(watch),
         )
-    if html is not None:
-        from gearopt.report.pages.comparison import page
+    try:
+        if html is not None:
+            from gearopt.report.pages.comparison import page
 
-        write_html(html, page(found))
+            write("--html", html, page(found))
+    finally:  # what took long to find is shown even where no page can be written
+        _show(found, as_json)
+    if html is not None and not as_json:
+        print(f"\nPage: {html}")
+
+
+def _show(found: Comparison, as_json: bool) -> None:
     if as_json:
         print(found.to_json())
         return
     from gearopt.report.terminal.comparison import show
 
     show(found, console())
-    if html is not None:
-        print(f"\nPage: {html}")
 
 
 def _announced(watch: Callable[[Progress], bool]) -> Callable[[Progress], bool]:

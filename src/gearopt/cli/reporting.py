@@ -1,7 +1,6 @@
 """`report`: a result that was kept as JSON, shown again; and how every result is written out."""
 
 import json
-import os
 import shlex
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,7 +8,8 @@ from typing import Annotated
 
 import typer
 
-from gearopt.cli.app import Csv, Html, Units, app, check_html, console, exit_code, write_html
+from gearopt.cli.app import Csv, Html, Units, app, console, exit_code
+from gearopt.cli.writing import check_csv, check_html, write
 from gearopt.errors import GearoptError
 from gearopt.optimise.result import Result
 from gearopt.report.measures import SYSTEMS, Measures
@@ -40,7 +40,7 @@ def report(
     units: Units = "metric",
 ) -> None:
     """Show a kept result again: on the terminal, as a page, as CSV, in other units."""
-    files = checked(html, csv, units)
+    files = checked(html, csv, units, file)
     result = _read(file)
     from gearopt.report.terminal.result import show
 
@@ -58,30 +58,30 @@ def report(
     raise typer.Exit(exit_code(result))
 
 
-def checked(html: Path | None, csv: Path | None, units: str) -> Files:
-    """Where to write; GearoptError for what cannot be, said before long work, not after it."""
-    check_html(html)
-    if csv is not None:
-        there = next(path for path in (csv.resolve(), *csv.resolve().parents) if path.exists())
-        if not there.is_dir():
-            raise GearoptError(f"--csv {csv}: {there} is a file; name a folder for the tables")
-        if not os.access(there, os.W_OK):
-            raise GearoptError(f"--csv {csv}: nothing may be written into {there}")
+def checked(html: Path | None, csv: Path | None, units: str, *given: Path) -> Files:
+    """Where to write; GearoptError for what cannot be, said before long work, not after it.
+
+    given: the files that the run reads, which it never writes.
+    """
+    check_html(html, *given)
+    check_csv(csv, html, *given)
     if units not in SYSTEMS:
         raise GearoptError(f"--units {units}: is not known; write {' or '.join(SYSTEMS)}")
     return Files(html, csv, SYSTEMS[units])
 
 
 def written(result: Result, files: Files) -> list[str]:
-    """Write the page and the tables; a line for each to tell the user."""
+    """Write the page and the tables, once all are made; a line for each to tell the user."""
+    page, found = _page(result, files), _tables(result, files)
     lines = []
     if files.html is not None:
-        from gearopt.report.pages.result import page
-
-        write_html(files.html, page(result, again(result, files), files.measures))
+        write("--html", files.html, page)
         lines.append(f"\nPage: {files.html}")
     if files.csv is not None:
-        lines.append(f"\nTables: {_write_tables(result, files.csv, files.measures)}")
+        _make(files.csv)
+        for path, text in found.items():
+            write("--csv", path, text, "utf-8-sig")  # for spreadsheets
+        lines.append(f"\nTables: {', '.join(map(str, found))}")
     return lines
 
 
@@ -104,17 +104,27 @@ def again(result: Result, files: Files) -> str:
     return shlex.join([*words, "--html", str(files.html)])
 
 
-def _write_tables(result: Result, folder: Path, measures: Measures) -> str:
+def _page(result: Result, files: Files) -> str:
+    if files.html is None:
+        return ""
+    from gearopt.report.pages.result import page
+
+    return page(result, again(result, files), files.measures)
+
+
+def _tables(result: Result, files: Files) -> dict[Path, str]:
+    if files.csv is None:
+        return {}
     from gearopt.report.pages.result import tables
 
+    return {files.csv / name: text for name, text in tables(result, files.measures).items()}
+
+
+def _make(folder: Path) -> None:
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        found = tables(result, measures)
-        for name, text in found.items():
-            (folder / name).write_text(text, encoding="utf-8-sig", newline="")  # for spreadsheets
     except OSError as refused:
         raise GearoptError(f"--csv {folder}: {refused.strerror}") from refused
-    return ", ".join(str(folder / name) for name in found)
 
 
 def _read(file: Path) -> Result:

@@ -5,9 +5,9 @@ from typing import Annotated
 import typer
 
 from gearopt.cli.app import Csv, File, Html, Json, Units, app, console, exit_code
-from gearopt.cli.reporting import SECONDS, TOP_ON_PAGE, checked, written
+from gearopt.cli.reporting import SECONDS, TOP_ON_PAGE, Files, checked, written
 from gearopt.cli.watching import watching
-from gearopt.optimise.result import Budget
+from gearopt.optimise.result import Budget, Result
 
 
 @app.command()
@@ -47,7 +47,7 @@ def solve(
     """Find the best design and prove how good it is. Ctrl-C keeps the best found so far."""
     from gearopt.api import solve as solve_file
 
-    files = checked(html, csv, units)
+    files = checked(html, csv, units, file)
     full = html is not None or csv is not None
     with watching(seconds, quiet=as_json) as watch:
         result = solve_file(
@@ -60,13 +60,20 @@ def solve(
             top=top or (TOP_ON_PAGE if full else 1),
             prices=prices or full,
         )
+    lines: list[str] = []
+    try:
+        lines = written(result, files)
+    finally:  # what took long to find is shown even where no file can be written
+        _show(result, files, lines, as_json)
+    raise typer.Exit(exit_code(result))
+
+
+def _show(result: Result, files: Files, lines: list[str], as_json: bool) -> None:
     if as_json:
         print(result.to_json())
-    else:
-        from gearopt.report.terminal.result import show
+        return
+    from gearopt.report.terminal.result import show
 
-        show(result, console(), files.measures)
-    for line in written(result, files):
-        if not as_json:
-            print(line)
-    raise typer.Exit(exit_code(result))
+    show(result, console(), files.measures)
+    for line in lines:
+        print(line)

@@ -1,0 +1,114 @@
+"""Where files may be written, and writing them whole or not at all."""
+
+import os
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+from secrets import token_hex
+
+from gearopt.errors import GearoptError
+
+PROBLEM, TABLE = ".toml", ".csv"  # endings: of files that are never written, and of tables
+
+
+def check_html(path: Path | None, *given: Path) -> None:
+    """GearoptError where a page cannot be written there: said before long work, not after it.
+
+    given: the files that the run reads. A link counts as the file that it leads to.
+    """
+    if path is None:
+        return
+    if path.is_dir():
+        raise GearoptError(f"--html {path}: is a folder; name a file, such as {path / 'page.html'}")
+    folder = _place(path).parent
+    if not folder.is_dir():
+        raise GearoptError(f"--html {path}: there is no folder {folder}")
+    plain = path.with_name(f"{path.stem}-page.html")
+    _spare(f"--html {path}", path, given, f"name another file, such as {plain}")
+    if _ordinary(path) and not (os.access(folder, os.W_OK) and _writable(path)):
+        raise GearoptError(f"--html {path}: nothing may be written there")
+
+
+def check_csv(folder: Path | None, html: Path | None, *given: Path) -> None:
+    """GearoptError where tables cannot be written, or would replace what the run reads or writes.
+
+    The names of the tables are not known before: any file of the folder that ends in .csv counts.
+    """
+    if folder is None:
+        return
+    whole = _place(folder)
+    there = next(path for path in (whole, *whole.parents) if path.exists())
+    if not there.is_dir():
+        raise GearoptError(f"--csv {folder}: {there} is a file; name a folder for the tables")
+    if not os.access(there, os.W_OK):
+        raise GearoptError(f"--csv {folder}: nothing may be written into {there}")
+    for table in _tables(whole):
+        _spare(f"--csv {folder}", table, given, "name another folder")
+        if not _writable(table):
+            raise GearoptError(f"--csv {folder}: {table} may not be written")
+    if html is not None and _is_table(_place(html)) and _place(html).parent == whole:
+        raise GearoptError(f"--html {html}: --csv writes its tables there; name a .html file")
+
+
+def write(option: str, path: Path, text: str, encoding: str = "utf-8") -> None:
+    """Write a file that an option names; GearoptError where the system refuses."""
+    try:
+        _write(path, text, encoding)
+    except OSError as refused:
+        raise GearoptError(f"{option} {path}: {refused.strerror}") from refused
+
+
+def _write(path: Path, text: str, encoding: str) -> None:
+    """Write a file whole or not at all: beside its place first, then in it.
+
+    What a link leads to is replaced, not the link; a pipe or a terminal is written to as it is.
+    """
+    if not _ordinary(path):
+        path.write_text(text, encoding=encoding)
+        return
+    place = _place(path)
+    beside = place.with_name(f".gearopt-{os.getpid()}-{token_hex(4)}")
+    try:
+        with beside.open("x", encoding=encoding, newline="") as file:
+            file.write(text)
+        if place.exists():
+            shutil.copymode(place, beside)
+        beside.replace(place)
+    finally:
+        beside.unlink(missing_ok=True)
+
+
+def _spare(what: str, target: Path, given: tuple[Path, ...], instead: str) -> None:
+    """GearoptError where a target is a file that the run reads, or a problem file."""
+    if (read := next((g for g in given if _same(target, g)), None)) is not None:
+        raise GearoptError(f"{what}: would replace {read}, which is read; {instead}")
+    if PROBLEM in (target.suffix.lower(), _place(target).suffix.lower()):
+        raise GearoptError(f"{what}: a file that ends in .toml is a problem file; {instead}")
+
+
+def _same(one: Path, other: Path) -> bool:
+    """Whether two paths are one file, in whatever spelling, by links of either sort."""
+    if one.exists() and other.exists():
+        return one.samefile(other)
+    return _place(one) == _place(other)
+
+
+def _place(path: Path) -> Path:
+    """Where a path leads to; a loop of links is left as it is."""
+    return Path(os.path.realpath(path))
+
+
+def _tables(folder: Path) -> Iterator[Path]:
+    return (path for path in folder.iterdir() if _is_table(path)) if folder.is_dir() else iter(())
+
+
+def _is_table(path: Path) -> bool:
+    return path.suffix.lower() == TABLE
+
+
+def _ordinary(path: Path) -> bool:
+    return path.is_file() or not path.exists()
+
+
+def _writable(path: Path) -> bool:
+    return not path.exists() or os.access(path, os.W_OK)
