@@ -15,6 +15,7 @@ from gearopt.optimise.comparing.trial import Model
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.explaining.explanation import Explanation
 from gearopt.optimise.problem import Problem
+from gearopt.optimise.progress import whole
 from gearopt.optimise.result import Budget, Result, Watch, plain
 from gearopt.optimise.solve import GAP
 from gearopt.optimise.solve import solve as solve_problem
@@ -50,7 +51,7 @@ def solve(
     """
     if (gap is not None and gap < 0.0) or top < 1:
         raise ValueError(f"needs gap >= 0 and top >= 1, not gap = {gap}, top = {top}")
-    budget = replace(budget or Budget(), gap=gap or 0.0)
+    budget, watch = replace(budget or Budget(), gap=gap or 0.0), whole(watch)
     asked = {"method": method, "seconds": budget.seconds, "evaluations": budget.evaluations}
     asked |= {"gap": gap, "seed": seed, "top": top, "prices": prices}
     gap = GAP if gap is None else gap
@@ -75,7 +76,7 @@ def explain(
     """
     from gearopt.optimise.explaining.explain import explain as explain_problem
 
-    budget = budget or Budget()
+    budget, watch = budget or Budget(), whole(watch)
     if isinstance(what, Conic):
         raise SolveError(
             f"explain takes a Problem; {what.name} is a Conic, whose conflict `solve` names already"

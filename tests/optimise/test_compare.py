@@ -301,6 +301,22 @@ def test_progress_counts_the_runs_and_the_time_left():
         (k, 6, seed) for k, seed in enumerate((0, 0, 1, 1, 2, 2))
     ]
     assert all(p.left >= 0.0 for p in seen) and len(seen) == 12
+    events = [p.event for p in seen if p.event is not None]
+    assert {(e.part, e.objective, e.unit) for e in events} == {("box", "inverse", "")}
+
+
+def test_events_of_a_file_name_its_unit():
+    seen = []
+    gearopt.compare(
+        PROBLEMS / "elevator.toml",
+        ("ipopt",),
+        seeds=1,
+        bound_from="ipopt",
+        watch=lambda p: seen.append(p.event) is None,
+        **SMALL,
+    )
+    told = {(e.part, e.objective, e.unit) for e in seen if e is not None}
+    assert told == {("sizing", "gear_volume", "mm3")}
 
 
 def test_a_run_that_breaks_is_a_run_without_a_point():

@@ -155,6 +155,27 @@ def test_verdicts():
 
 
 @pytest.mark.parametrize(
+    ("size", "finished", "said"),
+    [
+        (0.9, True, "37.2 % above the proven optimum, in the one run it needs"),
+        (0.9, False, "37.2 % above the proven optimum, where the time ended its one run"),
+        (1.1, True, "no feasible point"),
+        (1.1, False, "no feasible point before the time ended its one run"),
+    ],
+)
+def test_a_run_that_the_time_ended_is_not_all_that_its_method_needs(size, finished, said):
+    def best(problem, budget, seed, watch):
+        return Outcome(np.ones(3))
+
+    def once(problem, budget, seed, watch):
+        return Outcome(np.full(3, size), finished=finished)
+
+    both = replace(problem(), methods={"best": best, "once": once})
+    (group,) = gearopt.compare(both, ("best", "once"), seeds=1, seconds=0.01).groups
+    assert words.verdict(group, replace(group.rows[1], random=False)) == said
+
+
+@pytest.mark.parametrize(
     ("gap", "text"),
     [
         (None, "none"),

@@ -7,7 +7,7 @@ import typer
 from rich.console import Console
 
 from gearopt.cli.app import File, Html, Json, app, console
-from gearopt.cli.watching import following
+from gearopt.cli.watching import following, reached
 from gearopt.cli.writing import check_html, write
 from gearopt.optimise.comparing.compare import EVALUATIONS, SECONDS, SEEDS, Progress
 from gearopt.optimise.comparing.comparison import Comparison
@@ -93,8 +93,7 @@ def _words(now: Progress) -> str:
     if not now.total:
         return f"a bound from {now.method}"
     parts = [f"run {now.done + 1} of {now.total}: {now.method}, seed {now.seed}"]
-    if now.event is not None and now.event.best is not None:
-        parts.append(f"best {now.event.best:,.6g}")
+    parts += [] if now.event is None else reached(now.event)
     return ", ".join([*parts, f"about {_time(now.left)} left"])
 
 

@@ -18,7 +18,7 @@ def watching(seconds: float, quiet: bool) -> Iterator[Watch]:
     started = time.perf_counter()
 
     def words(event: Event) -> str:
-        return _progress(event, seconds - (time.perf_counter() - started))
+        return progress(event, seconds - (time.perf_counter() - started))
 
     with following(words, quiet) as watch:
         yield watch
@@ -76,10 +76,20 @@ class _News(logging.Handler):
             self.screen.print(words[0].upper() + words[1:] + ".", style="dim")
 
 
-def _progress(event: Event, left: float) -> str:
-    parts = [f"{event.evaluations:,} evaluations"]
-    if event.best is not None:
-        parts.append(f"best {event.best:,.6g}")
-        if event.bound is not None:
-            parts.append(f"gap {100 * (1 - event.bound / event.best):.2g} %")
-    return ", ".join([*parts, f"{max(left, 0.0):.0f} s left"])
+def progress(event: Event, left: float) -> str:
+    """Part, evaluations, best value and gap of a run, and the seconds it has left."""
+    words = [f"{event.evaluations:,} evaluations", *reached(event), f"{max(left, 0.0):.0f} s left"]
+    return ": ".join(filter(None, (event.part, ", ".join(words))))
+
+
+def reached(event: Event) -> list[str]:
+    """The best value and the bound of an event in words."""
+    from gearopt.report.words import amount
+
+    unit, best, bound = event.unit, event.best, event.bound
+    words = [] if best is None else [f"best {amount(best, unit)}"]
+    if bound is not None and best:
+        words.append(f"gap {100.0 * (best - bound) / abs(best):.2g} %")
+    elif bound is not None:
+        words.append(f"bound {amount(bound, unit)}")
+    return words

@@ -45,12 +45,21 @@ class Budget:
 
 @dataclass(frozen=True)
 class Event:
-    """Progress of a running method, given to `watch(event)`; returning False stops the run."""
+    """Progress of a run, given to `watch(event)`; returning False stops the run.
+
+    seconds: since the run began. evaluations: of all its parts so far, as their methods count.
+    best, bound: reached so far in the part; None where nothing is. part: what is solved now, such
+    as "sizing" or "layout"; "other numbers" where `explain` and prices solve changed problems,
+    whose values are not told. objective, unit: of best and bound; unit "" for a plain number.
+    """
 
     seconds: float
     evaluations: int
     best: float | None = None
     bound: float | None = None
+    part: str = ""
+    objective: str = ""
+    unit: str = ""
 
 
 Watch = Callable[[Event], bool]

@@ -14,6 +14,7 @@ from gearopt.optimise import solvers
 from gearopt.optimise.certificate import Verdict, certify
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.problem import Problem
+from gearopt.optimise.progress import of_problem
 from gearopt.optimise.result import Budget, Outcome, Result, Watch, versions
 from gearopt.optimise.terms import Array
 
@@ -50,7 +51,8 @@ def run(
     """Like `solve`, with the method's raw outcome beside the result."""
     name = method or next(iter(problem.methods), _default(problem))
     start = time.perf_counter()
-    outcome = method_of(problem, name)(problem, budget or Budget(), seed, watch)
+    told = of_problem(watch, problem)
+    outcome = method_of(problem, name)(problem, budget or Budget(), seed, told)
     verdict = judge(problem, name, outcome, gap)
     return _result(problem, name, outcome, verdict, time.perf_counter() - start, seed), outcome
 

@@ -101,13 +101,17 @@ def verdict(group: Group, row: Row) -> str:
     s = sample.summary
     if _impossible(row):
         return "proves that no design meets the limits"
+    ended = any(run.status == "limit" for run in sample.runs)
+    if s.without == s.seeds and not row.random:
+        return "no feasible point" + (" before the time ended its one run" if ended else "")
     if s.without == s.seeds:
-        return f"no feasible point in any of {s.seeds} seeds" if row.random else "no feasible point"
+        return f"no feasible point in any of {s.seeds} seeds"
     than = "proven optimum" if _closed(group) else "bound" if group.proven else "best known"
     if not row.random:
+        once = "where the time ended its one run" if ended else "in the one run it needs"
         if s.median_gap is not None and s.median_gap <= TIGHT:
-            return f"reaches the {than} in {s.seconds:.2g} s, in the one run it needs"
-        return f"{percent(s.median_gap)} % above the {than}, in the one run it needs"
+            return f"reaches the {than} in {s.seconds:.2g} s, {once}"
+        return f"{percent(s.median_gap)} % above the {than}, {once}"
     missed = f", {s.without} without a feasible point" if s.without else ""
     close = f"{round(s.close * s.seeds)} of {s.seeds} seeds within 0.1 %{missed}"
     if s.median_gap is None:

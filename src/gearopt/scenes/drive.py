@@ -16,6 +16,7 @@ from gearopt.optimise.comparing.trial import Model
 from gearopt.optimise.explaining.explanation import Change, Explanation, Remedy
 from gearopt.optimise.explaining.repair import Clock
 from gearopt.optimise.problem import Problem
+from gearopt.optimise.progress import in_part
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import GAP, run
 from gearopt.scenes.explaining.assumptions import assumptions, notes, undercut
@@ -96,7 +97,7 @@ def _explained(scene: Scene, ask: Ask, result: Result, clock: Clock) -> Explanat
 
 def _exactly(ask: Ask, clock: Clock) -> Ask:
     """What is asked of a drive that is compared with another: one train, to the end."""
-    return replace(ask, budget=replace(clock.left, gap=0.0), gap=GAP, top=1)
+    return replace(ask, budget=replace(clock.left, gap=0.0), watch=clock.watch, gap=GAP, top=1)
 
 
 def _ways_out(result: Result) -> Explanation:
@@ -124,7 +125,7 @@ def _answer(scene: Scene, ask: Ask) -> Result:
     train = scene.train()
     if _continuous(scene, ask.method):
         return _sized(scene, train, ask, sizing.problem(train))
-    ideal = _sized(scene, train, Ask(budget=ask.budget), sizing.problem(train))
+    ideal = _sized(scene, train, Ask(budget=ask.budget, watch=ask.watch), sizing.problem(train))
     if ideal.status == "infeasible":  # then no whole teeth do either
         return replace(ideal, name="drive")
     ask = replace(ask, budget=ask.budget.less(ideal.seconds))
@@ -150,7 +151,8 @@ def _with_processes(scene: Scene, ask: Ask, best: Result) -> Result:
     for name in asked:
         words, method = name.replace("_", " "), name.replace("_", "-")
         try:
-            part, outcome = run(problem, method, ask.budget, ask.seed, ask.watch, ask.gap)
+            watch = in_part(ask.watch, train.unit, words)
+            part, outcome = run(problem, method, ask.budget, ask.seed, watch, ask.gap)
         except SolveError as reason:
             told.append(f"There is no design by {words}: {reason}.")
             continue
@@ -201,7 +203,8 @@ def _sized(scene: Scene, train: Train, ask: Ask, problem: Problem) -> Result:
     """Solve one formulation of the drive and put its answer in a drawing's words."""
     exact = problem.name == "teeth"
     formulation = teeth if exact else sizing
-    result, outcome = run(problem, ask.method, ask.budget, ask.seed, ask.watch, ask.gap)
+    watch = in_part(ask.watch, train.unit)
+    result, outcome = run(problem, ask.method, ask.budget, ask.seed, watch, ask.gap)
     result = replace(result, objective=result.objective | {"unit": train.unit})
     if result.value is None or outcome.x is None:
         return result

@@ -16,6 +16,7 @@ from gearopt.optimise.certificate import reconcile
 from gearopt.optimise.comparing.trial import Model
 from gearopt.optimise.explaining.explanation import Explanation
 from gearopt.optimise.problem import Problem
+from gearopt.optimise.progress import in_part
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run
 from gearopt.scenes.reading.ask import Ask
@@ -33,7 +34,8 @@ def solve(scene: Scene, ask: Ask) -> Result:
     """Pack the cylinders; a method that brings no bound is held against the same one."""
     plan = scene.plan()
     problem = _problem(plan, ask.method)
-    result, outcome = run(problem, ask.method, ask.budget, ask.seed, ask.watch, ask.gap)
+    watch = in_part(ask.watch, plan.unit())
+    result, outcome = run(problem, ask.method, ask.budget, ask.seed, watch, ask.gap)
     result = replace(result, objective=result.objective | {"unit": plan.unit()})
     if result.value is None or outcome.x is None:
         return result

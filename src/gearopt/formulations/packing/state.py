@@ -43,7 +43,8 @@ class Spent:
         over = (most_s is not None and seconds > most_s) or (most_n is not None and spent >= most_n)
         if not over and self.watch is not None:
             best = self.best if math.isfinite(self.best) else None
-            over = self.watch(Event(seconds, spent, best, self.bound)) is False
+            bound = self.bound if math.isfinite(self.bound) else None
+            over = self.watch(Event(seconds, spent, best, bound)) is False
         self.stopped = self.stopped or over
         return not self.stopped
 

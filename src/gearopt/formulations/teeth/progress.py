@@ -74,8 +74,9 @@ class Progress:
         )
         if not over and self.watch is not None:
             best = self.found[0][0] if self.found else None
-            lower = self.bound if math.isfinite(self.bound) else None
-            over = self.watch(Event(seconds, self.looked, best, lower)) is False
+            lower = min(self.bound, math.inf if best is None else best)  # of all, not of the rest
+            known = lower if math.isfinite(lower) else None
+            over = self.watch(Event(seconds, self.looked, best, known)) is False
         self.stopped = self.stopped or over
         if self.budget.gap > 0.0 and self.wanted == 1 and self.found:
             value = self.found[0][0]

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from gearopt.errors import SolveError
 from gearopt.optimise.comparing.comparison import Comparison, Group, Row, Run, sample
 from gearopt.optimise.comparing.trial import Entry, Model, attempt, enter
+from gearopt.optimise.progress import in_part, of_problem
 from gearopt.optimise.result import Budget, Event
 from gearopt.optimise.solve import GAP, judge, method_of
 
@@ -108,12 +109,14 @@ def _bound(
     method: str, model: Callable[[str], Model], watch: Follow | None
 ) -> tuple[str, str, float] | None:
     """Name of the model, the method, and the bound that one long run of a method proves for it."""
-    problem = replace(model(method).problem)
+    posed = model(method)
+    problem = replace(posed.problem)
 
     def told(event: Event) -> bool:
         return watch is None or watch(Progress(0, 0, method, 0, 0.0, event)) is not False
 
-    outcome = method_of(problem, method)(problem, Budget(BOUND_SECONDS), 0, told)
+    follow = of_problem(in_part(told, posed.unit), problem)
+    outcome = method_of(problem, method)(problem, Budget(BOUND_SECONDS), 0, follow)
     bound = judge(problem, method, outcome, GAP).bound
     return None if bound is None else (problem.name, method, bound)
 

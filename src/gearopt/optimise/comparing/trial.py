@@ -16,7 +16,7 @@ from gearopt.optimise.certificate import Verdict
 from gearopt.optimise.comparing.comparison import Run
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.progress import following
+from gearopt.optimise.progress import following, in_part, of_problem
 from gearopt.optimise.result import Budget, Event, Outcome
 from gearopt.optimise.solve import GAP, judge, method_of
 
@@ -102,7 +102,9 @@ def attempt(entry: Entry, seed: int, budget: Budget, told: Callable[[Event], boo
         stopped = stopped or not told(event)
         return not stopped
 
-    watch, events = following(goes_on)
+    followed, events = following(goes_on)
+    unit = "" if entry.model is None else entry.model.unit
+    watch = of_problem(in_part(followed, unit), problem)
     try:
         outcome = method_of(problem, method)(problem, budget, seed, watch)
         seconds = time.perf_counter() - clock

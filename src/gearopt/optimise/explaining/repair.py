@@ -14,6 +14,7 @@ import numpy as np
 from gearopt.optimise.explaining.elastic import elastic
 from gearopt.optimise.explaining.handles import REACH, Handle
 from gearopt.optimise.problem import Problem
+from gearopt.optimise.progress import of_others
 from gearopt.optimise.result import Budget, Result, Watch
 from gearopt.optimise.solve import solve
 from gearopt.optimise.terms import Array
@@ -38,10 +39,13 @@ class Repair:
 
 
 class Clock:
-    """What is left of a budget shared by many solves; it has state because time passes."""
+    """What is left of a budget shared by many solves of changed problems, told of as such.
+
+    It has state because time passes.
+    """
 
     def __init__(self, budget: Budget, watch: Watch | None = None) -> None:
-        self._budget, self.watch, self._start = budget, watch, time.perf_counter()
+        self._budget, self.watch, self._start = budget, of_others(watch), time.perf_counter()
         self.stopped = False
 
     @property

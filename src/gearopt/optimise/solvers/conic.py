@@ -29,8 +29,8 @@ def run(problem: Conic, budget: Budget, seed: int, watch: Watch | None) -> Outco
 
     def goes_on(spent: int, best: float, bound: float) -> bool:
         nonlocal stopped
-        known = [float(v) if np.isfinite(v) else None for v in (best, bound)]
-        event = Event(time.perf_counter() - clock, spent, *known)
+        least, most = (float(v) if np.isfinite(v) else None for v in (best, bound))
+        event = Event(time.perf_counter() - clock, spent, least, most)
         late = time.perf_counter() > deadline
         stopped = stopped or late or (watch is not None and watch(event) is False)
         return not stopped

@@ -7,6 +7,7 @@ from typing import Any
 from gearopt.formulations.ratio import acceleration, move, swing
 from gearopt.formulations.ratio.drive import Drive
 from gearopt.optimise.problem import Problem
+from gearopt.optimise.progress import in_part
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run
 from gearopt.physics.servo_drive import (
@@ -25,6 +26,7 @@ NAMES = {  # of the value that a duty is judged by, its unit, and as a key
     "move": ("move time", "s", "move_time_s"),
     "swing": ("rms torque", "N m", "rms_torque_Nm"),
 }
+UNITS = {"acceleration": (1.0, "s2/rad"), "move": (1.0, "s"), "swing": (1e-3, "Nm")}
 POINTS = 200  # of the curve
 REACH = 5.0  # of the curve, to either side of the best ratio
 
@@ -78,7 +80,9 @@ def ratio_part(scene: Scene, ask: Ask) -> tuple[Result, dict[str, Any], dict[str
     duty, motor, load = scene.duty, scene.motor, scene.load
     assert duty is not None and motor is not None and load is not None
     axis = drive(motor, load)
-    result, outcome = run(problem(duty, axis), ask.method, ask.budget, ask.seed, ask.watch, ask.gap)
+    factor, unit = UNITS[duty.motion]
+    watch = in_part(ask.watch, unit, factor=factor)
+    result, outcome = run(problem(duty, axis), ask.method, ask.budget, ask.seed, watch, ask.gap)
     result = converted(result, duty)
     if result.value is None or outcome.x is None:
         return result, {}, {}
@@ -140,9 +144,7 @@ def with_train(scene: Scene, gear_inertia: float) -> dict[str, Any]:
 
 def converted(result: Result, duty: Duty) -> Result:
     """The result of a duty in plain units: 1/a in s2/rad, time in s, torque in N m."""
-    if duty.motion == "swing":
-        return scaled(result, 1e-3, "Nm")
-    return scaled(result, 1.0, "s" if duty.motion == "move" else "s2/rad")
+    return scaled(result, *UNITS[duty.motion])
 
 
 def scaled(result: Result, factor: float, unit: str) -> Result:

@@ -9,6 +9,7 @@ from gearopt.formulations.tolerance import problem as continuous
 from gearopt.formulations.tolerance.sampling import drawn, errors
 from gearopt.formulations.tolerance.stack import Component, ErrorBudget, Stack
 from gearopt.optimise.problem import Problem
+from gearopt.optimise.progress import in_part
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run
 from gearopt.optimise.terms import Array
@@ -98,7 +99,8 @@ def tolerance_part(
     import numpy as np
 
     posed, own = problem(scene, gears), stack(scene, gears)
-    result, outcome = run(posed, ask.method, ask.budget, ask.seed, ask.watch, ask.gap)
+    watch = in_part(ask.watch, part="tolerances")
+    result, outcome = run(posed, ask.method, ask.budget, ask.seed, watch, ask.gap)
     result = replace(result, name="tolerances", objective=result.objective | {"unit": ""})
     report = by_every_rule(own.components, old(scene), "old")
     if result.value is None or outcome.x is None:

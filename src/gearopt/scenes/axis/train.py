@@ -5,6 +5,7 @@ from dataclasses import replace
 from typing import Any
 
 from gearopt.formulations import servo_box, split
+from gearopt.optimise.progress import in_part
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run, solve
 from gearopt.optimise.terms import Array
@@ -20,8 +21,9 @@ STAGES = 6  # that a ratio is split into, at the most, for comparison
 def train_part(scene: Scene, ask: Ask) -> tuple[Result, Gears | None]:
     """The certified best train."""
     assert scene.train is not None
-    result, outcome = run(posed(scene), ask.method, ask.budget, ask.seed, ask.watch, ask.gap)
     unit = SHOWN[scene.train.minimise][1]
+    watch = in_part(ask.watch, unit)
+    result, outcome = run(posed(scene), ask.method, ask.budget, ask.seed, watch, ask.gap)
     result = replace(result, objective=result.objective | {"unit": unit})
     if result.value is None or outcome.x is None:
         return result, None
@@ -94,15 +96,17 @@ def _counts(ratio: float) -> list[dict[str, Any]]:
 
 def lightest_part(scene: Scene, ask: Ask) -> Result:
     """The lightest real-valued train that is stiff enough, in plain units."""
-    result = solve(split.stiff(scene.stiff_train()), None, ask.budget, ask.seed, ask.watch, ask.gap)
+    watch = in_part(ask.watch, "kg", "stiff")
+    result = solve(split.stiff(scene.stiff_train()), None, ask.budget, ask.seed, watch, ask.gap)
     return replace(scaled(result, 1.0, "kg"), name="stiff")
 
 
 def box_part(scene: Scene, gears: Gears, ask: Ask) -> tuple[Result, dict[str, Any]]:
     """The smallest box of the train's proportions, and its part of the design."""
     box = box_of(scene, gears.point)
+    watch = in_part(ask.watch, part="box")
     result, outcome = run(
-        servo_box.problem(box), None, ask.budget, ask.seed, ask.watch, max(ask.gap, servo_box.GAP)
+        servo_box.problem(box), None, ask.budget, ask.seed, watch, max(ask.gap, servo_box.GAP)
     )
     result = replace(result, name="box", objective=result.objective | {"unit": ""})
     if outcome.x is None or result.value is None:

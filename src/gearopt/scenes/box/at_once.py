@@ -10,13 +10,14 @@ from gearopt.formulations.layout.slabs import Slabs, arrange
 from gearopt.formulations.train import Sizes
 from gearopt.optimise.comparing.trial import Model
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.progress import following
+from gearopt.optimise.progress import following, in_part
 from gearopt.optimise.result import Outcome, Result
 from gearopt.optimise.solve import limits, run
 from gearopt.scenes.box.lay_out import lay_out, sizes_of, told
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.tables.drive import Scene
 
+REAL_VALUED = "real-valued"  # the part with real-valued sizes
 REAL = ("ipopt", "multistart")  # methods that take real-valued teeth
 
 Start = tuple[Slabs, Sizes, tuple[float, ...]]
@@ -25,10 +26,10 @@ Start = tuple[Slabs, Sizes, tuple[float, ...]]
 def at_once(scene: Scene, ask: Ask, sized: Result) -> Result:
     """The smallest box over gears and places; parts: gears chosen first, and real-valued sizes."""
     together.ready()
-    apart = replace(lay_out(scene, replace(ask, method=None, watch=None), sized), name="apart")
+    apart = replace(lay_out(scene, replace(ask, method=None), sized), name="apart")
     real = ask.method in REAL
     model = posed(scene, ask.method or "exact", apart)
-    watch, events = following(ask.watch)
+    watch, events = following(in_part(ask.watch, model.unit))
     asked = ask.budget.less(apart.seconds)
     gap = ask.gap if ask.budget.gap or real else together.GAP
     result, outcome = run(model.problem, ask.method, asked, ask.seed, watch, gap)
@@ -92,11 +93,12 @@ def _from(scene: Scene, start: Start, ask: Ask) -> tuple[Result, ...]:
     """The part with real-valued sizes from an exact answer; none where Ipopt finds no better."""
     slabs, sizes, angles = start
     problem = together.continuous(scene.train(), scene.gearbox, slabs, (sizes, angles))
-    result, _ = run(problem, "ipopt", ask.budget, watch=ask.watch)
-    unit = {"unit": scene.gearbox(sizes).unit}
+    unit = scene.gearbox(sizes).unit
+    watch = in_part(ask.watch, unit, REAL_VALUED)
+    result, _ = run(problem, "ipopt", ask.budget, watch=watch)
     if result.value is None:
         return ()
-    return (replace(result, name="real-valued", objective=result.objective | unit),)
+    return (replace(result, name=REAL_VALUED, objective=result.objective | {"unit": unit}),)
 
 
 def _real(

@@ -11,7 +11,7 @@ from gearopt.formulations.layout.placed import placed, read
 from gearopt.formulations.layout.slabs import Arrangement, arrangements
 from gearopt.formulations.train import Sizes
 from gearopt.optimise.comparing.trial import Model
-from gearopt.optimise.progress import following
+from gearopt.optimise.progress import following, in_part
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run
 from gearopt.optimise.terms import Array
@@ -38,7 +38,7 @@ def lay_out(scene: Scene, ask: Ask, sized: Result) -> Result:
         return _impossible(scene, sized, ask, parts, wrong)
     problem = layout.problem(box, ask.method)
     layout.ready()
-    watch, events = following(ask.watch)
+    watch, events = following(in_part(ask.watch, box.unit))
     asked = ask.budget.less(sized.seconds)
     gap = ask.gap if ask.budget.gap else GAP
     result, outcome = run(problem, ask.method, asked, ask.seed, watch, gap)
@@ -66,16 +66,20 @@ def told(
 ) -> Result:
     """A result with its gears and layout in the words of a drawing."""
     found = described(scene, box, order, angles, sized)
-    seconds = result.seconds + sum(p.seconds for p in result.parts)
-    spent = result.evaluations + sum(p.evaluations for p in result.parts)
+    before = sum(p.seconds for p in result.parts), sum(p.evaluations for p in result.parts)
+    seconds, spent = before[0] + result.seconds, before[1] + result.evaluations
     last = {"seconds": seconds, "evaluations": spent, "best": result.value, "bound": result.bound}
+    steps = [
+        e | {"seconds": before[0] + e["seconds"], "evaluations": before[1] + e["evaluations"]}
+        for e in events
+    ]
     return replace(
         result,
         name="drive",
         design=sized.design | {"layout": found},
         limits=sized.limits | used(found) | _sides_used(result),
         report={
-            "progress": [*events, last],
+            "progress": [*steps, last],
             "notes": [*_notes(scene, sized), *_reached(box, found)],
         },
         evaluations=spent,

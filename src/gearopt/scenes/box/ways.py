@@ -35,7 +35,7 @@ def ways(scene: Scene, sizes: Sizes, ask: Ask) -> dict[str, Any]:
         box = gearbox_of(other, sizes)
         if box is None or layout.faults(box):
             return False
-        return possible(box, SECONDS if left is None else min(SECONDS, left), ask.watch)
+        return possible(box, SECONDS if left is None else min(SECONDS, left), clock.watch)
 
     single, choices = moves(scene, sizes), switches(scene)
     found = [r for m in single if (r := _moved(scene, m, tried)) is not None]
