@@ -1,13 +1,17 @@
 """The numbers of a drive that a drawing needs, and what they take for granted."""
 
 import math
+from pathlib import Path
 
 import pytest
 
 import gearopt
 from gearopt.report.result_words import PAGE_ROWS, ROWS
+from gearopt.scenes.axis.assumptions import notes as servo_notes
+from gearopt.scenes.explaining.undercut import undercut
 from gearopt.scenes.tables.limits import ORIGINS, PRESETS
 
+PROBLEMS = Path(__file__).parents[2] / "problems"
 FILE = """
 gearopt = 1
 kind = "drive"
@@ -119,11 +123,12 @@ def test_assumptions_of_a_layout_tell_defaults_from_what_the_file_gives(tmp_path
                 assert gears[f"{member} {k}"][f"{size}_diameter_mm"] == told
 
 
-def test_an_undercut_pinion_is_named(tmp_path, result):
-    """At 0 degrees 17.1 teeth are the least; at 25 degrees 13.05."""
+@pytest.mark.parametrize("teeth", [15, 16, 17, 18])
+def test_an_undercut_pinion_is_named(tmp_path, result, teeth):
+    """At 0 degrees 17 teeth are the least (17.1 in theory); at 25 degrees 13 (13.05)."""
     assert not any("undercut" in note for note in result.report["notes"])
     text = FILE.replace('"25 deg"', '"0 deg"').replace("[20, 40]", "[12, 40]")
-    text = text.replace("pinion_teeth = 21\nwheel_teeth = 115", "pinion_teeth = 15\n")
+    text = text.replace("pinion_teeth = 21\nwheel_teeth = 115", f"pinion_teeth = {teeth}\n")
     text = text.replace("wheel_teeth = 91", "").replace(
         'face_width = "28 mm"', 'face_width = "80 mm"'
     )
@@ -131,7 +136,36 @@ def test_an_undercut_pinion_is_named(tmp_path, result):
     found = solved(tmp_path, text.replace('"58 mm"', '"120 mm"'))
     assert found.value is not None
     notes = [n for n in found.report["notes"] if "undercut" in n]
-    assert len(notes) == 1 and "stage 1" in notes[0] and "17.1 teeth" in notes[0]
+    assert len(notes) == (teeth < 17)
+    if notes:
+        assert "stage 1" in notes[0] and f"with {teeth} teeth" in notes[0]
+        assert "a rack cuts 17 teeth and more cleanly (in theory 17.1)" in notes[0]
+
+
+@pytest.mark.parametrize(
+    ("pressure", "helix", "least"),
+    [(20, 0, 17), (14.5, 0, 32), (25, 0, 12), (20, 25, 13), (20, 45, 7)],
+)
+def test_the_least_teeth_that_are_not_named_are_those_of_tables(pressure, helix, least):
+    angles = math.radians(pressure), math.radians(helix)
+    stages = [{"pinion_teeth": z} for z in (least - 1, least, least + 1, 5)]
+    notes = list(undercut(stages, *angles))
+    assert [n[: n.index(" is undercut")] for n in notes] == [
+        "The pinion of stage 1",
+        "The pinion of stage 4",
+    ]
+    assert all(f"a rack cuts {least} teeth and more cleanly" in n for n in notes)
+    transverse = math.atan(math.tan(angles[0]) / math.cos(angles[1]))
+    for z, named in ((least - 1, True), (least, False)):  # how far the rack reaches too deep
+        deep = 1.0 - 0.5 * z / math.cos(angles[1]) * math.sin(transverse) ** 2
+        assert (deep > 0.01) is named
+
+
+def test_a_servo_train_names_the_same_pinions():
+    scene = gearopt.load(PROBLEMS / "servo_gimbal_light.toml")
+    stages = [{"pinion_teeth": 16}, {"pinion_teeth": 17}]
+    said = [n for n in servo_notes(scene, {"train": {"stages": stages}}, ()) if "undercut" in n]
+    assert len(said) == 1 and "stage 1 is undercut, with 16 teeth" in said[0]
 
 
 def test_rows_of_a_page_are_those_of_a_terminal_and_every_other_key(result):

@@ -12,6 +12,7 @@ import numpy as np
 # diameters of its KISSsoft report (NREL 5 MW gearbox, stage 3) follow.
 ADDENDUM = 1.0
 DEDENDUM = 1.25
+NEGLIGIBLE = 0.01  # modules that a rack may reach too deep: 17 teeth of 20 degrees need 0.006
 
 
 def reference_diameter(module: Any, teeth: Any, helix_angle: float = 0.0) -> Any:
@@ -56,7 +57,9 @@ def teeth_without_undercut(pressure_angle: Any, helix_angle: float) -> Any:
 
     pressure_angle alpha_n, helix_angle beta [rad]; for gears without profile shift.
     Source: the rack's tip line passes through the tangent point of the base circle, h = (d/2)
-    sin(alpha_t)^2; 17.1 for spur gears of 20 degrees.
+    sin(alpha_t)^2; 17.1 for spur gears of 20 degrees. With z teeth the line lies 1 - z/limit
+    modules too deep, up to NEGLIGIBLE of which gears are made as they are: 17 teeth of 20 degrees
+    (0.006), 32 of 14.5, 12 of 25, as tables of least teeth have them.
     """
     transverse = transverse_pressure_angle(pressure_angle, helix_angle)
     return 2.0 * ADDENDUM * np.cos(helix_angle) / np.sin(transverse) ** 2

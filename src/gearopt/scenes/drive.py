@@ -19,12 +19,14 @@ from gearopt.optimise.problem import Problem
 from gearopt.optimise.progress import in_part
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import GAP, run
-from gearopt.scenes.explaining.assumptions import assumptions, notes, undercut
+from gearopt.scenes.explaining.assumptions import assumptions, notes
+from gearopt.scenes.explaining.undercut import undercut
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.tables.drive import EXAMPLE, Scene
 
 __all__ = ["EXAMPLE", "Scene", "compared", "explain", "model", "solve"]
 PROCESSES = ("process_one", "process_two")  # tables; as methods with a hyphen
+WEAKER = " Its contact ratio is less than the one given, its root is weaker."
 CONTINUOUS = ("ipopt", "gp", "multistart")  # methods that take no whole teeth
 
 
@@ -215,6 +217,7 @@ def _sized(scene: Scene, train: Train, ask: Ask, problem: Problem) -> Result:
         for value, design in zip(values, designs, strict=True)
     ]
     report: dict[str, Any] = {"trains": trains} if exact and ask.top > 1 else {}
-    if told := [*notes(scene, exact), *undercut(scene, designs[0])]:
+    angles = scene.gears.pressure_angle.value, scene.gears.helix_angle.value
+    if told := [*notes(scene, exact), *undercut(designs[0]["stages"], *angles, WEAKER)]:
         report["notes"] = told
     return replace(result, name="drive", design=designs[0], report=report)

@@ -4,8 +4,8 @@ import math
 from typing import Any
 
 from gearopt.optimise.result import Result
-from gearopt.physics.geometry import teeth_without_undercut
 from gearopt.scenes.axis.ratio import no_given
+from gearopt.scenes.explaining.undercut import undercut
 from gearopt.scenes.tables.servo import Scene
 
 FRICTION = {
@@ -88,13 +88,8 @@ def notes(scene: Scene, design: dict[str, Any], results: tuple[Result, ...]) -> 
                 f"The new tolerances at their worst make {worst:.5g} degrees, above the "
                 f"{limit:.5g} of [accuracy]: their budget counts otherwise."
             )
-    clean = teeth_without_undercut(scene.accuracy.pressure_angle.value, 0.0)
-    found += [
-        f"The pinion of stage {k} is undercut: without profile shift a rack cuts {clean:.1f} teeth "
-        "and more cleanly."
-        for k, stage in enumerate(design.get("train", {}).get("stages", []), 1)
-        if stage["pinion_teeth"] < clean
-    ]
+    stages = design.get("train", {}).get("stages", [])
+    found += undercut(stages, scene.accuracy.pressure_angle.value, 0.0)
     if scene.lightest is not None:
         found.append(
             "The lightest train has real-valued sizes: it is a floor for gears with whole teeth."

@@ -1,9 +1,8 @@
 """What a drive takes for granted, and what a reader of its result should know."""
 
-from typing import Any
 
 from gearopt.formulations.design import STEEL_DENSITY
-from gearopt.physics.geometry import ADDENDUM, DEDENDUM, teeth_without_undercut
+from gearopt.physics.geometry import ADDENDUM, DEDENDUM
 from gearopt.scenes.tables.drive import Scene
 from gearopt.scenes.tables.layout import Layout
 from gearopt.scenes.tables.limits import ORIGINS
@@ -30,17 +29,6 @@ def notes(scene: Scene, exact: bool) -> list[str]:
     if scene.objective.density is None:
         found.append(f"Masses are those of steel, {1e9 * STEEL_DENSITY:g} kg/dm³ (assumed).")
     return found
-
-
-def undercut(scene: Scene, design: dict[str, Any]) -> list[str]:
-    """Pinions that a rack undercuts: their contact ratio holds for a whole flank only."""
-    least = teeth_without_undercut(scene.gears.pressure_angle.value, scene.gears.helix_angle.value)
-    return [
-        f"The pinion of stage {k} is undercut: without profile shift a rack cuts {least:.1f} teeth "
-        "and more cleanly. Its contact ratio is less than the one given, its root is weaker."
-        for k, stage in enumerate(design["stages"], 1)
-        if stage["pinion_teeth"] < least
-    ]
 
 
 def assumptions(scene: Scene) -> list[str]:
