@@ -1,19 +1,33 @@
-"""The compound train: against full enumeration, and Sandgren's published optimum."""
+"""The compound train: against full enumeration in fractions, and Sandgren's published optimum."""
 
+import math
 from fractions import Fraction
+from itertools import combinations_with_replacement as multisets
 from itertools import product
 
 import numpy as np
 import pytest
 
-from gearopt.formulations.compound import Compound, nearest, problem
+from gearopt.formulations.compound import Compound, nearest, problem, wider
+from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import solve
+
+
+def enumerated(ratio, low, high):
+    """The least miss and the teeth that tie goes to: fewest, then smallest; all in fractions."""
+    pairs = list(multisets(range(low, high + 1), 2))
+    return min(
+        (abs(1 / ratio - Fraction(a * b, c * d)), a + b + c + d, (a, b, c, d))
+        for (a, b), (c, d) in product(pairs, pairs)
+    )
 
 
 def test_sandgrens_optimum():
     result = solve(problem(Compound(Fraction(6931, 1000), (12, 60))))
-    assert result.status == "optimal" and result.gap < 1e-8
-    assert result.value == pytest.approx(2.7008571488865134e-12, rel=1e-9)
+    assert result.status == "optimal" and result.gap < 1e-15
+    exact = (Fraction(1000, 6931) - Fraction(16 * 19, 43 * 49)) ** 2
+    assert result.value == pytest.approx(float(exact), rel=1e-15)
+    assert result.value == pytest.approx(2.7008571e-12, rel=1e-8)  # as published
     assert result.design["teeth"] == [16, 19, 43, 49]
 
 
@@ -24,12 +38,93 @@ def test_it_is_what_full_enumeration_finds(seed):
     high = low + int(rng.integers(0, 9))
     ratio = Fraction(int(rng.integers(1, 10_000)), int(rng.integers(1, 5_000)))
     error, teeth, _, done = nearest(Compound(ratio, (low, high)))
+    least, _, best = enumerated(ratio, low, high)
+    assert done and (error, teeth) == (least, best)
+
+
+@pytest.mark.parametrize(("high", "seed"), [*product((8, 11, 14), range(4))])
+def test_ties_on_both_sides_are_decided_exactly(high, seed):
+    """1/u just between two products: above and below miss by the same, or by 1e-30 more."""
+    rng, low = np.random.default_rng(seed), 5
     z = range(low, high + 1)
-    least = min(abs(1 / ratio - Fraction(a * b, c * d)) for a, b, c, d in product(z, repeat=4))
-    assert done and error == least
-    assert abs(1 / ratio - Fraction(teeth[0] * teeth[1], teeth[2] * teeth[3])) == least
+    products = sorted({Fraction(a * b, c * d) for a, b, c, d in product(z, repeat=4)})
+    k = int(rng.integers(0, len(products) - 1))
+    for shift in (Fraction(0), Fraction(1, 10**30), -Fraction(1, 10**30)):
+        ratio = 1 / ((products[k] + products[k + 1]) / 2 + shift)
+        error, teeth, _, _ = nearest(Compound(ratio, (low, high)))
+        least, _, best = enumerated(ratio, low, high)
+        assert (error, teeth) == (least, best)
+        if shift:
+            a, b, c, d = teeth
+            assert Fraction(a * b, c * d) == products[k + (shift > 0)]
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_the_text_loses_no_digit(seed):
+    """Where the products nearly cancel, and of ratios of up to forty digits."""
+    rng = np.random.default_rng(seed)
+    train = Compound(Fraction(1), (5, 400))
+    a, b, c, d = teeth = tuple(int(z) for z in rng.integers(5, 401, 4))
+    near = Fraction(c * d, a * b) * (1 + Fraction(1, 10 ** int(rng.integers(2, 40))))
+    for ratio in (near, Fraction(c * d, a * b), Fraction(int(rng.integers(1, 10**9)), 1000)):
+        train = Compound(ratio, (5, 400))
+        found = problem(train).batch(np.array([teeth], float)).F[0, 0]
+        exact = float(train.miss(teeth) ** 2)
+        assert found == pytest.approx(exact, rel=2e-14, abs=0.0)
+
+
+@pytest.mark.parametrize("digits", [4, 9, 15, 20])
+def test_a_ratio_of_many_digits_is_proven(digits):
+    ratio = Fraction(
+        math.floor(Fraction(3141592653589793238462643, 10**24) * 10**digits), 10**digits
+    )
+    train = Compound(ratio, (12, 60))
+    result = solve(problem(train))
+    assert result.status == "optimal" and result.gap < 1e-14
+    miss = train.miss(tuple(result.design["teeth"]))
+    assert result.value == pytest.approx(float(miss**2), rel=1e-14, abs=0.0)
+
+
+@pytest.mark.parametrize("power", [6, 9, 12, 20, 30])
+def test_a_ratio_that_is_nearly_met_is_proven(power):
+    """The miss is far below the rounding of the two quotients."""
+    ratio = Fraction(31 * 47, 13 * 17) * (1 + Fraction(1, 10**power))
+    train = Compound(ratio, (12, 60))
+    result = solve(problem(train))
+    assert result.status == "optimal" and result.gap < 1e-13 and result.value > 0.0
+    assert result.value == pytest.approx(float(train.miss((13, 17, 31, 47)) ** 2), rel=1e-13, abs=0)
 
 
 def test_a_ratio_that_can_be_met_is_met_exactly():
     result = solve(problem(Compound(Fraction(6), (12, 60))))
     assert result.status == "optimal" and result.value == 0.0 and result.bound == 0.0
+
+
+@pytest.mark.parametrize("budget", [Budget(evaluations=100), Budget(seconds=0.0)])
+def test_a_budget_ends_it(budget):
+    result = solve(problem(Compound(Fraction(7), (5, 100))), budget=budget)
+    assert result.status == "limit" and result.bound is None and result.value >= 0.0
+    assert result.evaluations <= 500
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_wider_range_is_the_smallest_that_reaches(seed):
+    """Each end moved on its own, counted up and down until the ratio is within."""
+    rng = np.random.default_rng(seed)
+    low = int(rng.integers(5, 40))
+    high = int(rng.integers(low, 100))
+    ratio = Fraction(int(rng.integers(1, 9000)), int(rng.choice([1, 7, 100])))
+    ratio = 1 / ratio if seed % 2 else ratio
+    train = Compound(ratio, (low, high))
+
+    def reaches(a, b):
+        least, most = Compound(ratio, (a, b)).reach
+        return least <= ratio <= most
+
+    if reaches(low, high):
+        return
+    more = next(((low, h) for h in range(high, 401) if reaches(low, h)), None)
+    fewer = next(((k, high) for k in range(low, 4, -1) if reaches(k, high)), None)
+    both = next(((5, h) for h in range(high, 401) if reaches(5, h)), None)
+    expected = [r for r in (more, fewer) if r] or [r for r in (both,) if r]
+    assert wider(train, 5, 400) == expected

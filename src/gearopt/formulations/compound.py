@@ -4,6 +4,7 @@ Minimise (1/u - z1 z2/(z3 z4))^2 over teeth in a range. Posed by Sandgren (J. Me
 with u = 6.931 and 12 to 60 teeth, where it is a standard case of discrete optimisation.
 """
 
+import math
 import time
 from bisect import bisect_left
 from dataclasses import dataclass
@@ -18,7 +19,8 @@ from gearopt.optimise.terms import Terms, Var
 
 RANDOM = False
 COUNTS = "pair of tooth numbers matched"
-LOOK = 500  # pairs between two looks at the watcher: some 10 ms
+LOOK = 500  # pairs between two looks at clock and watcher: some 10 ms
+BASE = 2**24  # a digit of the ratio times two tooth numbers is a whole number that doubles hold
 
 
 @dataclass(frozen=True)
@@ -28,19 +30,38 @@ class Compound:
     ratio: Fraction
     teeth: tuple[int, int]
 
+    @property
+    def reach(self) -> tuple[Fraction, Fraction]:
+        """The least and the largest ratio that its teeth make."""
+        low, high = self.teeth
+        return Fraction(low, high) ** 2, Fraction(high, low) ** 2
+
+    def miss(self, teeth: tuple[int, ...]) -> Fraction:
+        """|1/u - z1 z2/(z3 z4)|, exactly."""
+        z1, z2, z3, z4 = teeth
+        return abs(1 / self.ratio - Fraction(z1 * z2, z3 * z4))
+
 
 def problem(train: Compound) -> Problem:
-    """Variables: teeth of the drivers z1, z2 and of the driven z3, z4; `exact` proves the best."""
-    low, high = train.teeth
-    target = float(1 / train.ratio)
+    """Variables: teeth of the drivers z1, z2 and of the driven z3, z4; `exact` proves the best.
 
-    def evaluate(x: Any, p: Any) -> Terms:
+    With u = p/q the text is ((q z3 z4 - p z1 z2)/(p z3 z4))^2, its whole numerator summed by the
+    digits of p and q, the highest first: no digit is lost where the two products nearly cancel.
+    """
+    low, high = train.teeth
+    p, q = train.ratio.numerator, train.ratio.denominator
+    digits = list(zip(*_digits(q, p), strict=True))
+
+    def evaluate(x: Any, _: Any) -> Terms:
         z1, z2, z3, z4 = x.teeth
-        return Terms({"squared_error": (target - z1 * z2 / (z3 * z4)) ** 2})
+        drivers, driven, rest = z1 * z2, z3 * z4, 0.0
+        for for_driven, for_drivers in digits:
+            rest = rest * BASE + (for_driven * driven - for_drivers * drivers)
+        return Terms({"squared_error": (rest / (float(p) * driven)) ** 2})
 
     def exact(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
         """Every pair with the two that miss least with it; no other can be nearer."""
-        error, best, looked, done = nearest(train, watch)
+        error, best, looked, done = nearest(train, budget, watch)
         x = np.array(best, float)
         if not done:
             return Outcome(x, finished=False, evaluations=looked, message="stopped early")
@@ -51,31 +72,74 @@ def problem(train: Compound) -> Problem:
     return Problem("compound", (teeth,), (), evaluate, methods={"exact": exact})
 
 
+def _digits(*numbers: int) -> list[list[float]]:
+    """The digits of whole numbers in BASE, the highest first, as many of each."""
+    count = max(1, *(-(-n.bit_length() // 24) for n in numbers))
+    return [[float(n >> 24 * k & BASE - 1) for k in reversed(range(count))] for n in numbers]
+
+
 def nearest(
-    train: Compound, watch: Watch | None = None
+    train: Compound, budget: Budget | None = None, watch: Watch | None = None
 ) -> tuple[Fraction, tuple[int, ...], int, bool]:
     """Least |1/u - z1 z2/(z3 z4)|, exactly, its teeth, the pairs looked at, and whether all were.
 
     The ratios of one pair are sorted once; of the other pair's, only the neighbours of what is
     missing count. Ties go to the fewest teeth, then to the smallest numbers.
     """
+    clock, (seconds, most) = time.perf_counter(), _limits(budget)
+    pairs, whole = _pairs(train, clock + seconds)
+    ratios, target = sorted(pairs), 1 / train.ratio
+    best: tuple[Fraction, int, tuple[int, ...]] = (target + train.teeth[1] ** 2, 0, ())
+    for looked, first in enumerate(ratios, 1):
+        place = bisect_left(ratios, target / first)
+        for second in ratios[max(0, place - 1) : place + 1]:
+            miss = abs(target - first * second)
+            if miss <= best[0]:
+                (a, c), (b, d) = pairs[first], pairs[second]
+                teeth = (*sorted((a, b)), *sorted((c, d)))
+                best = min(best, (miss, sum(teeth), teeth))
+        if looked % LOOK == 0 or looked == most:
+            spent = time.perf_counter() - clock
+            late = spent > seconds or looked == most
+            event = Event(spent, looked, float(best[0] ** 2))
+            if late or (watch is not None and watch(event) is False):
+                break
+    return best[0], best[2], looked, whole and looked == len(ratios)
+
+
+def _limits(budget: Budget | None) -> tuple[float, int | None]:
+    if budget is None:
+        return math.inf, None
+    return math.inf if budget.seconds is None else budget.seconds, budget.evaluations
+
+
+def _pairs(train: Compound, end: float) -> tuple[dict[Fraction, tuple[int, int]], bool]:
+    """The ratios of one pair with their smallest teeth; False: the clock reached `end` before."""
     low, high = train.teeth
     pairs: dict[Fraction, tuple[int, int]] = {}
     for a in range(low, high + 1):
         for b in range(low, high + 1):
             pairs.setdefault(Fraction(a, b), (a, b))
-    ratios, target, clock = sorted(pairs), 1 / train.ratio, time.perf_counter()
-    found: list[tuple[Fraction, int, tuple[int, ...]]] = []
-    for looked, first in enumerate(ratios, 1):
-        place = bisect_left(ratios, target / first)
-        for second in ratios[max(0, place - 1) : place + 1]:
-            (a, c), (b, d) = pairs[first], pairs[second]
-            drivers, driven = sorted((a, b)), sorted((c, d))
-            teeth = (*drivers, *driven)
-            found.append((abs(target - first * second), sum(teeth), teeth))
-        if watch is not None and looked % LOOK == 0:
-            seconds = time.perf_counter() - clock
-            if watch(Event(seconds, looked, float(min(found)[0] ** 2))) is False:
-                break
-    error, _, best = min(found)
-    return error, best, looked, looked == len(ratios)
+        if time.perf_counter() > end and a < high:
+            return pairs, False
+    return pairs, True
+
+
+def wider(train: Compound, least: int, most: int) -> list[tuple[int, int]]:
+    """Ranges of teeth within least and most that reach the ratio, each by the smallest change.
+
+    More teeth or fewer, and both only where neither alone suffices; none where nothing does.
+    """
+    low, high = train.teeth
+    ratio = max(train.ratio, 1 / train.ratio)
+    more = low, _root(ratio * low**2)
+    fewer = math.isqrt(math.floor(high**2 / ratio)), high
+    both = least, _root(ratio * least**2)
+    alone = [r for r in (more, fewer) if least <= r[0] and r[1] <= most]
+    return alone or [r for r in (both,) if r[1] <= most]
+
+
+def _root(square: Fraction) -> int:
+    """The least whole number whose square is at least so much."""
+    root = math.isqrt(math.floor(square))
+    return root if root**2 >= square else root + 1

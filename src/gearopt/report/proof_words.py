@@ -5,7 +5,7 @@ from typing import Any
 
 from gearopt.optimise.result import Result
 from gearopt.report.measures import METRIC, Measures
-from gearopt.report.result_words import goal, objective
+from gearopt.report.result_words import goal, leading, objective
 from gearopt.report.words import amount, limit_words
 
 
@@ -24,7 +24,7 @@ def proof(result: Result, measures: Measures = METRIC) -> list[str]:
         if part.name in ("sizing", "apart") and alike and result.status == "optimal":
             lines += _beside(result, part, measures)
     lines += result.report.get("notes", []) if result.status != "infeasible" else []
-    if result.message and result.status != "infeasible":
+    if result.message and result.status != "infeasible" and not leading(result):
         lines.append(result.message[0].upper() + result.message[1:].rstrip(".") + ".")
     lines.append(f"{result.method}, {result.evaluations:,} evaluations, {result.seconds:.3g} s.")
     return lines

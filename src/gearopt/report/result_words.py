@@ -50,12 +50,27 @@ PAGE_ROWS = {
 }
 
 
-def verdict(result: Result) -> tuple[str, str]:
+def certainty(result: Result) -> tuple[str, str]:
     """The status in words, and its colour."""
     words, colour = VERDICTS[result.status]
     if result.status == "optimal" and (result.gap or 0.0) > EXACT:
         words = f"proven within {100 * (result.gap or 0.0):.2g} % of the optimum"
+    if "achieved" in result.report:  # something is come near to
+        words = words.replace("optimal", "nearest")
     return words, colour
+
+
+def verdict(result: Result) -> tuple[str, str]:
+    """What a reader must know first, and its colour: what is achieved, and how sure that is."""
+    words, colour = certainty(result)
+    achieved = result.report.get("achieved")
+    return (f"{achieved}; {words}" if achieved else words), "yellow" if leading(result) else colour
+
+
+def leading(result: Result) -> list[str]:
+    """What must be read before the numbers: how far the wanted is out of reach; else nothing."""
+    reach = result.report.get("reach")
+    return [result.message] if reach and not reach["within"] and result.message else []
 
 
 def title(result: Result) -> str:

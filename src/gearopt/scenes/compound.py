@@ -2,12 +2,13 @@
 
 from dataclasses import replace
 from fractions import Fraction
-from typing import Annotated
+from typing import Annotated, Any
 
 from pydantic import Field
 
 from gearopt.errors import SolveError
 from gearopt.formulations import compound
+from gearopt.formulations.compound import wider
 from gearopt.optimise.comparing.trial import Model
 from gearopt.optimise.explaining.explanation import Explanation
 from gearopt.optimise.result import Result
@@ -17,6 +18,7 @@ from gearopt.scenes.reading.fields import Table, number, whole, words
 from gearopt.scenes.reading.lists import span
 
 __all__ = ["EXAMPLE", "Scene", "compared", "explain", "model", "solve"]
+LEAST, MOST = 5, 400  # teeth of a gear that a file may ask for
 ASSUMED = "Tooth numbers alone: modules, centre distances and loads are not looked at."
 EXAMPLE = """\
 gearopt = 1
@@ -35,7 +37,7 @@ class Train(Table):
     ratio: Annotated[Fraction, number(6.931, 0, 10**6)] = Field(
         description="Ratio to come near to, input over output speed"
     )
-    teeth: Annotated[tuple[int, int], span(whole(12, 5, 400), [12, 60])] = Field(
+    teeth: Annotated[tuple[int, int], span(whole(12, LEAST, MOST), [12, 60])] = Field(
         description="Least and most teeth of any gear"
     )
 
@@ -51,22 +53,69 @@ class Scene(Table):
 
 
 def solve(scene: Scene, ask: Ask) -> Result:
-    """The teeth whose ratio is nearest."""
+    """The teeth whose ratio is nearest; what is achieved is said first, in `report` and message."""
     result, outcome = run(
         model(scene, "").problem, ask.method, ask.budget, ask.seed, ask.watch, ask.gap
     )
     result = replace(result, objective=result.objective | {"unit": ""})
     if result.value is None or outcome.x is None:
         return result
-    z1, z2, z3, z4 = (round(float(z)) for z in outcome.x)
+    train, teeth = _train(scene), tuple(round(float(z)) for z in outcome.x)
+    z1, z2, z3, z4 = teeth
     ratio = Fraction(z3 * z4, z1 * z2)
     design = {
         "driver_teeth": [z1, z2],
         "driven_teeth": [z3, z4],
         "ratio": float(ratio),
-        "ratio_error_percent": 100.0 * float(ratio / scene.train.ratio - 1),
+        "ratio_error_percent": 100.0 * float(ratio / train.ratio - 1),
     }
-    return replace(result, design=design, report={"assumptions": [ASSUMED]})
+    value = float(train.miss(teeth) ** 2)  # rational until here
+    least, most = train.reach
+    reach = {
+        "least_ratio": float(least),
+        "most_ratio": float(most),
+        "within": least <= train.ratio <= most,
+        "wider_teeth": [] if least <= train.ratio <= most else wider(train, LEAST, MOST),
+    }
+    return replace(
+        result,
+        objective=result.objective | {"value": value},
+        gap=0.0 if result.bound == value else result.gap,
+        design=design,
+        message=" ".join(filter(None, (_out_of_reach(train, reach), result.message))),
+        report={"assumptions": [ASSUMED], "achieved": _achieved(train, ratio), "reach": reach},
+    )
+
+
+def _achieved(train: compound.Compound, ratio: Fraction) -> str:
+    """The ratio that the best teeth make, beside the one that is asked for."""
+    if ratio == train.ratio:
+        return f"ratio {float(ratio):.10g} exactly"
+    off = 100.0 * float(ratio / train.ratio - 1)
+    percent = f"{off:+,.0f} %" if abs(off) >= 100.0 else f"{off:+.3g} %"
+    told = f"ratio {float(ratio):.10g} instead of {float(train.ratio):.10g} ({percent})"
+    least, most = train.reach
+    within = least <= train.ratio <= most
+    return told if within else "{}, out of reach of {} to {} teeth".format(told, *train.teeth)
+
+
+def _out_of_reach(train: compound.Compound, reach: dict[str, Any]) -> str:
+    """What the teeth can make, and which would do; "" where the ratio is within."""
+    if reach["within"]:
+        return ""
+    made = "{} to {} teeth make ratios of {:.6g} to {:.6g} in two pairs".format(
+        *train.teeth, reach["least_ratio"], reach["most_ratio"]
+    )
+    end, words = (0, "down to") if train.ratio < 1 else (1, "up to")
+    ways = [
+        f"teeth = {list(teeth)} ({words} {float(replace(train, teeth=teeth).reach[end]):.6g})"
+        for teeth in reach["wider_teeth"]
+    ]
+    if ways:
+        return f"{made}. Write {' or '.join(ways)}."
+    return (
+        f'{made}. No two pairs of {LEAST} to {MOST} teeth make it: kind = "drive" has more stages.'
+    )
 
 
 def explain(scene: Scene, ask: Ask) -> Explanation:
@@ -81,5 +130,8 @@ def compared(scene: Scene) -> tuple[str, ...]:
 
 def model(scene: Scene, method: str) -> Model:
     """The problem of every method."""
-    train = compound.Compound(scene.train.ratio, scene.train.teeth)
-    return Model(compound.problem(train), "Four whole tooth numbers")
+    return Model(compound.problem(_train(scene)), "Four whole tooth numbers")
+
+
+def _train(scene: Scene) -> compound.Compound:
+    return compound.Compound(scene.train.ratio, scene.train.teeth)

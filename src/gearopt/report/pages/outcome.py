@@ -10,20 +10,21 @@ from gearopt.report.pages.servo.tiles import tiles as servo_tiles
 from gearopt.report.pages.table import Table, percent
 from gearopt.report.proof_words import proof, scope
 from gearopt.report.remedy_words import REMEDY_HEADS, remedy_words
-from gearopt.report.result_words import goal, limit_rows, verdict
+from gearopt.report.result_words import certainty, goal, leading, limit_rows
 from gearopt.report.words import amount, number
 
 
 def summary(result: Result, measures: Measures) -> Section:
     """Key figures, and in words what is certain."""
-    return Section("Result", _tiles(result, measures), proof(result, measures))
+    words = [*leading(result), *proof(result, measures)]
+    return Section("Result", _tiles(result, measures), words)
 
 
 def _tiles(result: Result, measures: Measures) -> list[Tile]:
     name, unit, value, bound, _ = goal(result)
     tiles = []
     if value is not None:
-        tiles.append(Tile(name, amount(value, unit, measures), verdict(result)[0]))
+        tiles.append(Tile(name, amount(value, unit, measures), certainty(result)[0]))
     if bound is not None:
         gap = "" if result.gap is None else f"gap {100 * result.gap:.3g} %"
         tiles.append(Tile(f"proven bound{scope(result)}", amount(bound, unit, measures), gap))

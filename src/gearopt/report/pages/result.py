@@ -98,5 +98,6 @@ def tables(result: Result, measures: Measures = METRIC) -> dict[str, str]:
 
 def _subtitle(result: Result, measures: Measures) -> str:
     name, unit, value, _, _ = goal(result)
-    words = "" if value is None else f"{name} {amount(value, unit, measures)}, "
-    return f"{words}{verdict(result)[0]}"
+    if value is None or "achieved" in result.report:
+        return verdict(result)[0]
+    return f"{name} {amount(value, unit, measures)}, {verdict(result)[0]}"

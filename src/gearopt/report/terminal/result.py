@@ -12,6 +12,7 @@ from gearopt.optimise.result import Result
 from gearopt.report.measures import METRIC, Measures
 from gearopt.report.proof_words import proof
 from gearopt.report.result_words import (
+    leading,
     limit_rows,
     ranked,
     stage_rows,
@@ -30,7 +31,7 @@ def show(result: Result, console: Console, measures: Measures = METRIC) -> None:
     """Print a result."""
     words, colour = verdict(result)
     console.print(Text.assemble((title(result), "bold"), ": ", (words, f"bold {colour}")))
-    for block in _blocks(result, measures):
+    for block in [*map(Text, leading(result)), *_blocks(result, measures)]:
         console.print()
         console.print(block)
 

@@ -1,6 +1,5 @@
 """What a drive takes for granted, and what a reader of its result should know."""
 
-
 from gearopt.formulations.design import STEEL_DENSITY
 from gearopt.physics.geometry import ADDENDUM, DEDENDUM
 from gearopt.scenes.tables.drive import Scene

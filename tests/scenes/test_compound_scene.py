@@ -1,0 +1,113 @@
+"""A compound train's answer: what it achieves is said first, most of all where that is little."""
+
+from fractions import Fraction
+from io import StringIO
+
+import pytest
+from rich.console import Console
+
+import gearopt
+from gearopt.report.pages.result import page
+from gearopt.report.terminal.result import show
+from gearopt.scenes.reading.load import read
+
+
+def solved(ratio, teeth=(12, 60), **kind):
+    text = f'gearopt = 1\nkind = "compound"\ntitle = "Two pairs"\n[train]\nratio = {ratio}\n'
+    return gearopt.solve(read(f"{text}teeth = {list(teeth)}\n".encode())[1], **kind)
+
+
+def printed(result):
+    screen = Console(file=StringIO(), width=110)
+    show(result, screen)
+    return screen.file.getvalue().split("\n\n")
+
+
+@pytest.mark.parametrize(
+    ("ratio", "teeth", "first", "then"),
+    [
+        (
+            1000,
+            (12, 60),
+            "ratio 25 instead of 1000 (-97.5 %), out of reach of 12 to 60 teeth; proven nearest",
+            "12 to 60 teeth make ratios of 0.04 to 25 in two pairs. "
+            "Write teeth = [12, 380] (up to 1002.78).",
+        ),
+        (
+            0.001,
+            (12, 60),
+            "ratio 0.04 instead of 0.001 (+3,900 %), out of reach of 12 to 60 teeth; proven "
+            "nearest",
+            "12 to 60 teeth make ratios of 0.04 to 25 in two pairs. "
+            "Write teeth = [12, 380] (down to 0.00099723).",
+        ),
+        (
+            60,
+            (12, 60),
+            "ratio 25 instead of 60 (-58.3 %), out of reach of 12 to 60 teeth; proven nearest",
+            "12 to 60 teeth make ratios of 0.04 to 25 in two pairs. "
+            "Write teeth = [12, 93] (up to 60.0625) or teeth = [7, 60] (up to 73.4694).",
+        ),
+        (
+            5000,
+            (12, 60),
+            "ratio 25 instead of 5000 (-99.5 %), out of reach of 12 to 60 teeth; proven nearest",
+            "12 to 60 teeth make ratios of 0.04 to 25 in two pairs. "
+            "Write teeth = [5, 354] (up to 5012.64).",
+        ),
+        (
+            10000,
+            (12, 60),
+            "ratio 25 instead of 10000 (-99.8 %), out of reach of 12 to 60 teeth; proven nearest",
+            "12 to 60 teeth make ratios of 0.04 to 25 in two pairs. No two pairs of 5 to 400 "
+            'teeth make it: kind = "drive" has more stages.',
+        ),
+    ],
+)
+def test_a_ratio_out_of_reach_is_said_first(ratio, teeth, first, then):
+    result = solved(ratio, teeth)
+    assert result.status == "optimal" and result.message == then
+    assert not result.report["reach"]["within"]
+    told = printed(result)
+    assert told[0] == f"Two pairs: {first}" and " ".join(told[1].split()) == then
+    html = page(result, "")
+    assert html.index(first) < html.index("driver teeth") and "Ways" not in html
+    said = then.replace('"', "&#34;")
+    assert html.count(said) == 1 and html.index(said) < html.index("driver teeth")
+
+
+@pytest.mark.parametrize(
+    ("ratio", "first"),
+    [
+        (6.931, "ratio 6.930921053 instead of 6.931 (-0.00114 %); proven nearest"),
+        (6, "ratio 6 exactly; proven nearest"),
+        (25, "ratio 25 exactly; proven nearest"),
+        (25.0000001, "ratio 25 instead of 25.0000001 (-4e-07 %), out of reach"),
+    ],
+)
+def test_what_is_achieved_stands_in_the_title(ratio, first):
+    result = solved(ratio)
+    assert printed(result)[0].startswith(f"Two pairs: {first}")
+    assert result.report["reach"]["within"] == (ratio <= 25)
+    assert bool(result.message) == (ratio > 25)
+
+
+def test_the_range_that_is_proposed_is_within_reach():
+    for ratio in (26, 60, 399, 1000, 6400):
+        for teeth in solved(ratio).report["reach"]["wider_teeth"]:
+            assert solved(ratio, tuple(teeth)).report["reach"]["within"]
+
+
+def test_other_methods_say_the_same_first_and_no_more_than_they_prove():
+    result = solved(1000, method="annealing", budget=gearopt.Budget(evaluations=640))
+    told = printed(result)[0]
+    assert "out of reach of 12 to 60 teeth" in told and "proven nearest" not in told
+    teeth = (*result.design["driver_teeth"], *result.design["driven_teeth"])
+    miss = Fraction(1, 1000) - Fraction(teeth[0] * teeth[1], teeth[2] * teeth[3])
+    assert result.value == float(miss**2)
+
+
+def test_the_value_is_that_of_fractions():
+    result = solved("6.931")
+    assert result.value == float((Fraction(1000, 6931) - Fraction(16 * 19, 43 * 49)) ** 2)
+    assert result.value == result.bound and result.gap == 0.0
