@@ -2,19 +2,23 @@
 
 import json
 import shlex
+import warnings
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
 import typer
+from rich.console import Console
 
 from gearopt.cli.app import Csv, Html, Units, app, console, exit_code
 from gearopt.cli.writing import check_csv, check_html, write
 from gearopt.errors import GearoptError
-from gearopt.optimise.result import Result
+from gearopt.optimise.comparing.comparison import Comparison
+from gearopt.optimise.result import Result, loads
 from gearopt.report.measures import SYSTEMS, Measures
 
 SECONDS = 60.0  # that a run may take by default
+LONGEST = 200  # characters that are told of what is wrong with a file
 HOW = "write one with `gearopt solve FILE --json > result.json`"
 TOP_ON_PAGE = 10  # trains that a page lists unless told otherwise
 DEFAULTS = {"seconds": SECONDS, "seed": 0, "top": TOP_ON_PAGE}
@@ -33,29 +37,51 @@ class Files:
 def report(
     file: Annotated[
         Path,
-        typer.Argument(help="A result, as `gearopt solve --json` prints it.", show_default=False),
+        typer.Argument(
+            help="What `gearopt solve --json` or `gearopt compare --json` printed.",
+            show_default=False,
+        ),
     ],
     html: Html = None,
     csv: Csv = None,
     units: Units = "metric",
 ) -> None:
-    """Show a kept result again: on the terminal, as a page, as CSV, in other units."""
+    """Show a kept result or comparison again: on the terminal, as a page; a result as CSV too."""
     files = checked(html, csv, units, file)
-    result = _read(file)
-    from gearopt.report.terminal.result import show
-
+    kept = _read(file)
     screen = console()
     try:
-        with screen.capture() as text:
-            show(result, screen, files.measures)
-        lines = written(result, files)
-    except (AttributeError, IndexError, KeyError, TypeError, ValueError) as odd:
-        what = f"{type(odd).__name__}: {odd}"
+        with screen.capture() as text, warnings.catch_warnings():
+            warnings.simplefilter("error", RuntimeWarning)
+            lines = _again(kept, screen, files)
+    except GearoptError:
+        raise
+    except Exception as odd:  # whatever an edited file holds: its reader gets one message
+        what = " ".join(f"{type(odd).__name__}: {odd}".split())[:LONGEST]
         raise GearoptError(f"{file}: holds what no result holds ({what}); {HOW}") from odd
     print(text.get(), end="")
     for line in lines:
         print(line)
-    raise typer.Exit(exit_code(result))
+    raise typer.Exit(exit_code(kept) if isinstance(kept, Result) else 0)
+
+
+def _again(kept: Result | Comparison, screen: Console, files: Files) -> list[str]:
+    """Show what was kept, and write its files; lines about these."""
+    if isinstance(kept, Result):
+        from gearopt.report.terminal.result import show
+
+        show(kept, screen, files.measures)
+        return written(kept, files)
+    if files.csv is not None or files.measures.name != "metric":
+        raise GearoptError("--csv and --units are for results; this file holds a comparison")
+    from gearopt.report.pages.comparison import page
+    from gearopt.report.terminal.comparison import show as show_comparison
+
+    show_comparison(kept, screen)
+    if files.html is None:
+        return []
+    write("--html", files.html, page(kept))
+    return [f"\nPage: {files.html}"]
 
 
 def checked(html: Path | None, csv: Path | None, units: str, *given: Path) -> Files:
@@ -127,10 +153,13 @@ def _make(folder: Path) -> None:
         raise GearoptError(f"--csv {folder}: {refused.strerror}") from refused
 
 
-def _read(file: Path) -> Result:
-    """A result from its file; GearoptError says what else the file is."""
+def _read(file: Path) -> Result | Comparison:
+    """A result or a comparison from its file; GearoptError says what else the file is."""
     try:
-        return Result.from_json(file.read_text(encoding="utf-8"))
+        data = loads(file.read_text(encoding="utf-8"))
+        if isinstance(data, dict) and "comparison" in data:
+            return Comparison.from_dict(data)
+        return Result.from_dict(data)
     except OSError as refused:
         raise GearoptError(f"{file}: cannot be read ({refused.strerror}); {HOW}") from refused
     except UnicodeDecodeError:

@@ -165,10 +165,25 @@ class Result:
     @classmethod
     def from_json(cls, text: str) -> "Result":
         """The inverse of `to_json`."""
-        return cls.from_dict(json.loads(text))
+        return cls.from_dict(loads(text))
+
+
+def loads(text: str) -> Any:
+    """Plain data from JSON text; ValueError for NaN, for infinities, and for endless depth."""
+
+    def none(word: str) -> None:
+        raise ValueError(f"holds {word}, which is no number of JSON")
+
+    try:
+        return json.loads(text, parse_constant=none)
+    except RecursionError:
+        raise ValueError("is nested too deeply") from None
 
 
 _SORTS: dict[str, Any] = {  # of what a result's keys hold
+    **dict.fromkeys(("name", "status", "method", "message", "gearopt"), str),
+    **dict.fromkeys(("scene", "file", "file_sha256"), str | None),
+    "seed": int,
     **dict.fromkeys(("objective", "proof", "certificate", "design", "limits"), Mapping),
     **dict.fromkeys(("report", "versions", "asked", "options"), Mapping),
     "parts": list | tuple,
@@ -187,8 +202,11 @@ def _check_sorts(data: Mapping[str, Any]) -> None:
         if key in data and not isinstance(data[key], sort):
             raise ValueError(f"has another sort of {key} than a result has")
     value = data["objective"].get("value")
-    if "name" not in data["objective"] or not isinstance(value, int | float | None):
-        raise ValueError("has an objective without a name, or whose value is no number")
+    if not isinstance(value, int | float | None):
+        raise ValueError("has an objective whose value is no number")
+    words = [data["objective"].get("name"), data["objective"].get("unit", "")]
+    if not all(isinstance(word, str) for word in words):
+        raise ValueError("has an objective without a name, or whose unit is no text")
 
 
 def versions(*packages: str) -> dict[str, str]:

@@ -16,7 +16,8 @@ from datetime import date
 from typing import Any
 
 from gearopt.errors import CertificateError
-from gearopt.optimise.result import plain, versions
+from gearopt.optimise.result import loads, plain, versions
+from gearopt.optimise.typed import typed
 
 FORMAT = 1
 CLOSE, TIGHT = 1e-3, 1e-6  # gaps that count as success: a catalogue's accuracy, a proof's
@@ -153,31 +154,35 @@ class Comparison:
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> "Comparison":
-        """The inverse of `to_dict`; ValueError for another format version."""
-        if data.get("comparison") != FORMAT:
-            raise ValueError(f"comparison format {data.get('comparison')!r}: this reads {FORMAT}")
-        groups = tuple(
-            Group(**{**g, "rows": tuple(_row(r) for r in g["rows"])}) for g in data["groups"]
-        )
-        return cls(**{**data, "groups": groups, "seeds": tuple(data["seeds"])})
+        """The inverse of `to_dict`; ValueError for what is none, or of another format version."""
+        if not isinstance(data, Mapping) or "comparison" not in data:
+            raise ValueError("is no comparison: it has no key `comparison`")
+        if data["comparison"] != FORMAT:
+            raise ValueError(f"comparison format {data['comparison']!r}: this reads {FORMAT}")
+        found: Comparison = typed(cls, data)
+        _check(found)
+        return found
 
     @classmethod
     def from_json(cls, text: str) -> "Comparison":
         """The inverse of `to_json`."""
-        return cls.from_dict(json.loads(text))
+        return cls.from_dict(loads(text))
 
 
-def _row(data: Mapping[str, Any]) -> Row:
-    kinds = ("equal_evaluations", "equal_time")
-    return Row(**{**data, **{k: _sample(data[k]) for k in kinds}})
-
-
-def _sample(data: Mapping[str, Any] | None) -> Sample | None:
-    if data is None:
-        return None
-    runs = tuple(Run(**{**r, "steps": tuple(map(tuple, r["steps"]))}) for r in data["runs"])
-    curve = Curve(**{k: tuple(v) for k, v in data["curve"].items()})
-    return Sample(runs, Summary(**data["summary"]), curve)
+def _check(found: Comparison) -> None:
+    """ValueError where the parts of a comparison do not go together."""
+    needed = {"evaluations", "seconds", "patience_seconds"}
+    if missing := sorted(needed - set(found.budget)):
+        raise ValueError(f"lacks in budget: {', '.join(missing)}")
+    for row in (row for group in found.groups for row in group.rows):
+        if not row.refused and not isinstance(found.settings.get(row.method), Mapping):
+            raise ValueError(f"has no settings of the method {row.method!r}")
+        for sample in filter(None, (row.equal_evaluations, row.equal_time)):
+            curve, runs, seeds = sample.curve, len(sample.runs), sample.summary.seeds
+            if len({len(values) for values in vars(curve).values()}) > 1:
+                raise ValueError(f"has a curve of {row.method!r} whose lists differ in length")
+            if not runs == seeds > 0:
+                raise ValueError(f"has {runs} runs of {row.method!r} and a summary of {seeds}")
 
 
 def machine() -> dict[str, Any]:

@@ -21,6 +21,7 @@ from gearopt.report.pages.solid import (
     Mesh,
     Toothed,
     block,
+    drawn_teeth,
     edges,
     gear_mesh,
     line_trace,
@@ -39,6 +40,8 @@ CAPTION = (
     "limit within the walls, and the narrowest gap."
 )
 
+ROUNDED = "Teeth are real numbers here: of each gear the nearest whole number is drawn."
+
 
 def section(result: Result, measures: Measures) -> Section | None:
     """The gearbox to turn; None where there is no layout."""
@@ -46,9 +49,9 @@ def section(result: Result, measures: Measures) -> Section | None:
     if not found:
         return None
     view = space(*drawn_corners(found), measures)
-    return Section(
-        "In three dimensions", figures=(Figure(_traces(found, measures), view, CAPTION),)
-    )
+    whole = all(gear["teeth"] == drawn_teeth(gear["teeth"]) for gear in found["gears"])
+    words = CAPTION if whole else f"{CAPTION} {ROUNDED}"
+    return Section("In three dimensions", figures=(Figure(_traces(found, measures), view, words),))
 
 
 def _traces(found: Layout, measures: Measures) -> list[dict[str, Any]]:
@@ -112,7 +115,7 @@ def _toothed(found: Layout, gear: Layout, places: Mapping[int, tuple[float, floa
         gear["to_mm"],
         here,
         hand * math.radians(abs(gear["helix_angle_deg"])),
-        phase + (math.pi / gear["teeth"] if wheel else 0.0),
+        phase + (math.pi / drawn_teeth(gear["teeth"]) if wheel else 0.0),
         middle,
     )
 

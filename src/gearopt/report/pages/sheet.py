@@ -13,6 +13,7 @@ from gearopt.report.pages.labels import SIZE, Ink, Place, best
 
 ARROW = (9.0, 2.6)  # length and half width of an arrow head, px
 HATCH = 9.0  # between the lines of a hatch, px
+MOST = 1_000_000  # points or lines of one mark: more than any drawing has room for
 Point = tuple[float, float]
 
 
@@ -67,7 +68,7 @@ class Sheet:
         cx, cy = self.at(x, y)
         size = self.scale * r
         self._add("circle", f'cx="{cx:.2f}" cy="{cy:.2f}" r="{size:.2f}"', style, colour, title)
-        count = max(8, int(size))
+        count = _count(size, 8)
         turns = (2.0 * math.pi * k / count for k in range(count))
         self._ink.add((cx + size * math.cos(t), cy + size * math.sin(t)) for t in turns)
 
@@ -102,7 +103,7 @@ class Sheet:
             self.circle(*at, r, style, colour, title)
             return
         (cx, cy), size = self.at(*at), self.scale * r
-        count = max(8, int(size * (end - start) / 4.0))
+        count = _count(size * (end - start) / 4.0, 8)
         turns = (start + (end - start) * k / count for k in range(count + 1))
         arc = [(cx + size * math.cos(t), cy - size * math.sin(t)) for t in turns]
         (x0, y0), (x1, y1) = arc[0], arc[-1]
@@ -128,7 +129,7 @@ class Sheet:
         (x0, y0), (x1, y1) = self.at(*a), self.at(*b)
         left, right, top, bottom = min(x0, x1), max(x0, x1), min(y0, y1), max(y0, y1)
         start = left + top + HATCH / 2
-        for k in range(math.ceil((right + bottom - start) / HATCH)):
+        for k in range(_count(math.ceil((right + bottom - start) / HATCH), 0)):
             total = start + k * HATCH  # x + y along a line
             from_x, to_x = max(left, total - bottom), min(right, total - top)
             self._stroke((from_x, total - from_x), (to_x, total - to_x), "hatch")
@@ -225,8 +226,15 @@ def _colour(name: str) -> str:
     return f' style="--c: var({name})"' if name else ""
 
 
+def _count(wanted: float, least: int) -> int:
+    """A number of points or lines; ValueError where a drawing has no room for so many."""
+    if not wanted <= MOST:
+        raise ValueError(f"a drawing of {wanted:.0e} points: a size is far from the others")
+    return max(least, int(wanted))
+
+
 def _along(start: Point, end: Point) -> Iterable[Point]:
-    count = max(1, int(math.dist(start, end) / 4.0))
+    count = _count(math.dist(start, end) / 4.0, 1)
     for k in range(count + 1):
         share = k / count
         yield (

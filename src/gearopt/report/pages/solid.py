@@ -19,6 +19,7 @@ Mesh = tuple[list[Point], list[Face]]
 
 PRESSURE_ANGLE = math.radians(20.0)  # normal; of the basic rack that nearly all gears have
 BACKLASH = 0.03  # of a pitch, so that flanks in mesh are seen apart
+MOST_TEETH, MOST_POINTS = 10_000, 2_000_000  # of a gear that is drawn
 ROUND = 48  # sides of a cylinder
 TICKS = 5  # of an axis, about
 EYE = (0.55, -0.75, 0.37)  # direction of the first view: from the output end, the left, above
@@ -41,7 +42,7 @@ class Toothed:
     centre: (y, z) of its axis. phase: direction of the middle of a tooth at x = middle [rad].
     """
 
-    teeth: int
+    teeth: float
     reference: float
     tip: float
     root: float
@@ -62,6 +63,8 @@ def gear_mesh(gear: Toothed, flank: int, step: float) -> Mesh:
     outline = _outline(gear, flank)
     rate = 2.0 * math.tan(gear.helix) / gear.reference  # twist per mm
     sections = 1 + max(1, math.ceil(abs(rate) * (gear.end - gear.start) / step))
+    if sections * len(outline) > MOST_POINTS:
+        raise ValueError(f"a gear of {gear.teeth:g} teeth that is drawn in {sections:.0e} sections")
     points: list[Point] = []
     for k in range(sections):
         x = gear.start + (gear.end - gear.start) * k / (sections - 1)
@@ -83,7 +86,8 @@ def _outline(gear: Toothed, flank: int) -> list[tuple[float, float]]:
     """(angle, radius) once round the gear, a tooth in the middle of angle 0."""
     transverse = math.atan(math.tan(PRESSURE_ANGLE) / math.cos(gear.helix))
     base = gear.reference / 2.0 * math.cos(transverse)
-    half = math.pi / (2.0 * gear.teeth) * (1.0 - 2.0 * BACKLASH)
+    teeth = drawn_teeth(gear.teeth)
+    half = math.pi / (2.0 * teeth) * (1.0 - 2.0 * BACKLASH)
     low, high = gear.root / 2.0, gear.tip / 2.0
     side = []
     for k in range(flank):
@@ -91,10 +95,17 @@ def _outline(gear: Toothed, flank: int) -> list[tuple[float, float]]:
         angle = math.acos(min(1.0, base / max(at, base)))
         thick = half + _involute(transverse) - _involute(angle)
         side.append((max(thick, 0.1 * half), at))
-    side[0] = (min(side[0][0], math.pi / gear.teeth * 0.9), side[0][1])
+    side[0] = (min(side[0][0], math.pi / teeth * 0.9), side[0][1])
     tooth = [(-angle, at) for angle, at in side] + side[::-1]
-    pitch = 2.0 * math.pi / gear.teeth
-    return [(k * pitch + angle, at) for k in range(gear.teeth) for angle, at in tooth]
+    pitch = 2.0 * math.pi / teeth
+    return [(k * pitch + angle, at) for k in range(teeth) for angle, at in tooth]
+
+
+def drawn_teeth(teeth: float) -> int:
+    """How many teeth are drawn of a real number of them: the nearest whole; ValueError for odd."""
+    if not 1 <= round(teeth) <= MOST_TEETH:
+        raise ValueError(f"a gear of {teeth:g} teeth")
+    return round(teeth)
 
 
 def _involute(angle: float) -> float:

@@ -93,7 +93,7 @@ def _along(widths: Sequence[float], scale: float) -> tuple[float, list[float]]:
     """Where the gears of every stage begin along the shafts [mm], and a scale at which all fit."""
     while True:
         rooms = [max(PITCH, scale * b + GAP) for b in widths]
-        if sum(rooms) <= WIDE - SIDE[0] - SIDE[1]:
+        if sum(rooms) <= WIDE - SIDE[0] - SIDE[1] or max(rooms) <= PITCH:  # no room to save
             break
         scale *= 0.98
     ends = [sum(rooms[:k]) for k in range(len(rooms))]

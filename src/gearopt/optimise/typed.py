@@ -1,0 +1,64 @@
+"""Dataclasses from plain JSON data, each value held to the type that its field declares."""
+
+from collections.abc import Mapping
+from dataclasses import MISSING, fields, is_dataclass
+from types import NoneType, UnionType
+from typing import Any, get_args, get_origin, get_type_hints
+
+NUMBERS: dict[Any, tuple[type, ...]] = {
+    float: (int, float),
+    int: (int,),
+    str: (str,),
+    bool: (bool,),
+}
+
+
+def typed(kind: Any, data: Any, where: str = "") -> Any:
+    """A value of a type from plain data; ValueError names the place that holds something else.
+
+    kind: a dataclass, a tuple, a mapping, a plain type, any of them or None.
+    """
+    origin, inner = get_origin(kind), get_args(kind)
+    if kind is Any:
+        return data
+    if origin is UnionType:
+        if data is None and NoneType in inner:
+            return None
+        return typed(next(k for k in inner if k is not NoneType), data, where)
+    if is_dataclass(kind):
+        return _filled(kind, data, where)
+    if origin is tuple:
+        held = _list(data, where)
+        each = (inner[0],) * len(held) if inner[-1] is Ellipsis else inner
+        if len(each) != len(held):
+            raise ValueError(f"holds {len(held)} values in {where}, not {len(each)}")
+        return tuple(typed(each[n], v, f"{where}[{n + 1}]") for n, v in enumerate(held))
+    if origin is not None and issubclass(origin, Mapping):
+        return {k: typed(inner[1], v, f"{where}.{k}") for k, v in _mapping(data, where).items()}
+    if not isinstance(data, NUMBERS[kind]) or (isinstance(data, bool) and kind is not bool):
+        raise ValueError(f"has another sort of value in {where} than a {kind.__name__}")
+    return data
+
+
+def _filled(kind: Any, data: Any, where: str) -> Any:
+    """A dataclass with all its fields and no other."""
+    hints, held = get_type_hints(kind), _mapping(data, where)
+    needed = {f.name for f in fields(kind) if f.default is f.default_factory is MISSING}
+    if unknown := sorted(set(held) - set(hints)):
+        raise ValueError(f"has unknown keys in {where or 'it'}: {', '.join(unknown)}")
+    if missing := sorted(needed - set(held)):
+        raise ValueError(f"lacks keys in {where or 'it'}: {', '.join(missing)}")
+    head = f"{where}." if where else ""
+    return kind(**{k: typed(hints[k], v, f"{head}{k}") for k, v in held.items()})
+
+
+def _mapping(data: Any, where: str) -> Mapping[str, Any]:
+    if not isinstance(data, Mapping):
+        raise ValueError(f"has another sort of value in {where or 'it'} than keys with values")
+    return data
+
+
+def _list(data: Any, where: str) -> list[Any] | tuple[Any, ...]:
+    if not isinstance(data, list | tuple):
+        raise ValueError(f"has another sort of value in {where} than a list")
+    return data

@@ -1,0 +1,167 @@
+"""`report` of kept files that were edited: shown, or refused in one line; never a traceback."""
+
+import json
+import random
+from pathlib import Path
+
+import pytest
+import typer
+
+import gearopt
+from gearopt.cli.reporting import report
+from gearopt.errors import GearoptError
+
+ROOT = Path(__file__).parents[2]
+PICTURES = ROOT / "docs" / "pictures"  # kept results of drives, layouts and packings
+ODD = (
+    *(None, True, -1, 0, 1, 3.7, 1e300, -1e300, 1e-300, 10**9, 10**30, 10**400),
+    *("", "x", "\ud800", "<b>", [], [1], {}, {"a": 1}, [[1]], [{"a": 1}]),
+)
+KINDS = ("drive", "layout", "packing", "servo", "compound", "impossible", "comparison")
+
+
+@pytest.fixture(scope="module")
+def kept():
+    """One file of every kind as plain data."""
+    small = {"seeds": 2, "seconds": 0.01, "evaluations": 64}
+    compared = gearopt.compare(ROOT / "problems" / "elevator.toml", "ipopt,annealing", **small)
+    pictures = {"drive": "elevator", "layout": "elevator_box", "packing": "six_cylinders"}
+    solved = {"servo": "servo_gimbal_swing", "compound": "sandgren_train"}
+    found = {k: json.loads((PICTURES / f"{n}.json").read_text()) for k, n in pictures.items()}
+    for kind, name in solved.items():
+        found[kind] = gearopt.solve(ROOT / "problems" / f"{name}.toml").to_dict()
+    impossible = gearopt.solve(
+        ROOT / "problems" / "elevator_small_wheels.toml", budget=gearopt.Budget(0.5)
+    )
+    return found | {"impossible": impossible.to_dict(), "comparison": compared.to_dict()}
+
+
+def places(data, way=()):
+    """Every place of plain data; of a list the first four."""
+    if way:
+        yield way
+    pairs = data.items() if isinstance(data, dict) else ()
+    for key, value in enumerate(data[:4]) if isinstance(data, list) else pairs:
+        yield from places(value, (*way, key))
+
+
+def edited(data, rng):
+    """The data with one value set to something odd, taken away, or doubled."""
+    data = json.loads(json.dumps(data))
+    *way, last = rng.choice(list(places(data)))
+    at = data
+    for key in way:
+        at = at[key]
+    act = rng.choice(("set", "set", "set", "del", "double"))
+    if act == "set":
+        at[last] = rng.choice(ODD)
+    elif act == "del":
+        del at[last]
+    elif isinstance(at, list):
+        at.append(at[last])
+    else:
+        at[f"{last}x"] = at[last]
+    return data
+
+
+def held(data, folder, capsys):
+    """What `report` says of data: its standard output, or the one message."""
+    path, page = folder / "kept.json", folder / "page.html"
+    path.write_text(json.dumps(data), encoding="utf-8")
+    tables = None if "comparison" in data else folder / "tables"
+    page.unlink(missing_ok=True)
+    try:
+        report(path, html=page, csv=tables, units="metric")
+    except typer.Exit:
+        said = capsys.readouterr()
+        assert page.exists() and said.out and said.err == ""
+        return said.out
+    except GearoptError as wrong:
+        said = capsys.readouterr()
+        assert said.out == "" and said.err == "" and not page.exists()
+        assert str(wrong).startswith(f"{path}: ") and "\n" not in str(wrong)
+        return str(wrong)
+    raise AssertionError("neither shown nor refused")
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_kept_file_is_shown_or_refused_in_one_line(kind, kept, tmp_path, capsys):
+    assert "Page: " in held(kept[kind], tmp_path, capsys)
+    rng = random.Random(1)
+    for _ in range(2):
+        held(edited(kept[kind], rng), tmp_path, capsys)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("kind", KINDS)
+def test_many_edits_of_kept_files(kind, seed, kept, tmp_path, capsys):
+    rng = random.Random(100 + seed)
+    for _ in range(25):
+        held(edited(kept[kind], rng), tmp_path, capsys)
+
+
+SET = [
+    ("layout", ("design", "layout", "gears", 0, "reference_diameter_mm"), 10**9, "far from"),
+    ("layout", ("design", "layout", "gears", 0, "teeth"), 10**9, "teeth"),
+    ("layout", ("design", "layout", "gears", 0, "to_mm"), 10**12, "far from"),
+    ("layout", ("design", "layout", "gears", 0, "helix_angle_deg"), 89.9999999, "drawn in"),
+    ("layout", ("design", "layout", "gears", 0, "teeth"), {"a": 1}, "TypeError"),
+    ("drive", ("asked", "title"), "\ud800", "UnicodeEncodeError"),
+    ("drive", ("objective", "name"), {"a": 1}, "an objective without a name"),
+    ("drive", ("objective", "unit"), ["mm3"], "whose unit is no text"),
+    ("drive", ("file",), {"a": 1}, "another sort of file"),
+    ("drive", ("status",), {"a": 1}, "which no result has"),
+    ("comparison", ("groups", 0, "rows", 0, "method"), {"a": 1}, "groups[1].rows[1].method"),
+    ("comparison", ("groups", 0, "rows", 0, "method"), "other", "no settings of the method"),
+    ("comparison", ("groups", 0, "unit"), {"a": 1}, "another sort of value in groups[1].unit"),
+    ("comparison", ("budget",), {}, "lacks in budget: evaluations"),
+    ("comparison", ("comparison",), 7, "comparison format 7"),
+    ("comparison", ("seeds",), 7, "than a list"),
+    ("comparison", ("extra",), 7, "unknown keys in it: extra"),
+]
+
+
+@pytest.mark.parametrize(("kind", "place", "value", "said"), SET)
+def test_what_is_odd_is_named(kind, place, value, said, kept, tmp_path, capsys):
+    data = json.loads(json.dumps(kept[kind]))
+    *way, last = place
+    at = data
+    for key in way:
+        at = at[key]
+    at[last] = value
+    assert said in held(data, tmp_path, capsys)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ('{"result": NaN}', "holds NaN"),
+        ('{"comparison": 1, "groups": -Infinity}', "holds -Infinity"),
+        ("[" * 100_000, "nested too deeply"),
+        ('{"comparison": 1}', "lacks keys in it: budget, groups"),
+    ],
+)
+def test_text_that_is_no_plain_data_is_refused(text, said, tmp_path):
+    path = tmp_path / "kept.json"
+    path.write_text(text)
+    with pytest.raises(GearoptError, match="kept.json") as wrong:
+        report(path)
+    assert said in str(wrong.value) and "\n" not in str(wrong.value)
+
+
+def test_a_comparison_has_no_tables_and_one_system(kept, tmp_path):
+    path = tmp_path / "kept.json"
+    path.write_text(json.dumps(kept["comparison"]))
+    for options in ({"csv": tmp_path / "tables"}, {"units": "inch"}):
+        with pytest.raises(GearoptError, match="this file holds a comparison"):
+            report(path, **options)
+
+
+def test_an_old_page_stays_where_the_new_one_cannot_be_made(kept, tmp_path):
+    path, page = tmp_path / "kept.json", tmp_path / "page.html"
+    page.write_text("old")
+    path.write_text(json.dumps(kept["drive"] | {"asked": {"title": "\ud800"}}))
+    with pytest.raises(GearoptError):
+        report(path, html=page)
+    assert page.read_text() == "old"
