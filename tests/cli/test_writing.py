@@ -63,6 +63,14 @@ def test_a_page_never_replaces_what_is_read(room, given, place, said):
     assert before == {path: path.read_bytes() for path in room.rglob("*") if path.is_file()}
 
 
+def test_a_page_never_replaces_what_a_kept_result_was_made_of(room):
+    (room / "kept.json").write_text(solve("plain").to_json(), encoding="utf-8")
+    for place in ("plain", "hard.html"):
+        with pytest.raises(GearoptError, match="would replace plain, which is read"):
+            report(Path("kept.json"), html=Path(place))
+    assert (room / "plain").read_bytes() == ELEVATOR.read_bytes()
+
+
 @pytest.mark.parametrize("folder", ["tables", "tables/../tables", "{here}/tables"])
 def test_tables_never_replace_what_is_read(room, folder):
     folder = Path(folder.format(here=room))

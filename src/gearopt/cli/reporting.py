@@ -66,7 +66,9 @@ def report(
 
 
 def _again(kept: Result | Comparison, screen: Console, files: Files) -> list[str]:
-    """Show what was kept, and write its files; lines about these."""
+    """Show what was kept, write its files (never over what it was made of); lines about these."""
+    if kept.file is not None:
+        checked(files.html, files.csv, files.measures.name, Path(kept.file))
     if isinstance(kept, Result):
         from gearopt.report.terminal.result import show
 
