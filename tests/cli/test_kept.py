@@ -93,7 +93,7 @@ def test_a_kept_file_is_shown_or_refused_in_one_line(kind, kept, tmp_path, capsy
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 @pytest.mark.parametrize("kind", KINDS)
 def test_many_edits_of_kept_files(kind, seed, kept, tmp_path, capsys):
     rng = random.Random(100 + seed)
