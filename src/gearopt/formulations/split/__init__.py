@@ -2,7 +2,7 @@
 
 `core`: number of stages and ratios alone. `problem`: whole teeth and modules of two stages, proven
 by enumeration; `relaxation`: its bound as a geometric program. `stiff`: real sizes of least mass
-under a frequency or stiffness.
+under a frequency or stiffness. `staged`: total ratio and its split at once, of real-valued gears.
 """
 
 from gearopt.formulations.split.core import (
@@ -14,6 +14,7 @@ from gearopt.formulations.split.core import (
 from gearopt.formulations.split.exact import feasible, trains
 from gearopt.formulations.split.front import unbeaten
 from gearopt.formulations.split.relaxation import relaxation
+from gearopt.formulations.split.staged import staged
 from gearopt.formulations.split.stiff import StiffTrain, stiff
 from gearopt.formulations.split.teeth import problem
 from gearopt.formulations.split.train import OBJECTIVES, ServoTrain
@@ -29,6 +30,7 @@ __all__ = [
     "problem",
     "relaxation",
     "stage_counts",
+    "staged",
     "stiff",
     "trains",
     "unbeaten",

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from gearopt.formulations.ratio.duty import UNITS
 from gearopt.formulations.split.numbers import Numbers, numbers
 from gearopt.formulations.split.train import OBJECTIVES, ServoTrain
 from gearopt.optimise.kernels import kernel
@@ -16,8 +17,10 @@ RANDOM = False
 COUNTS = "choice of teeth and modules"
 SLICE = 0.05  # s between two looks at the budget
 ROUNDING = 1e-12  # of an objective, between the kernel's text and the problem's
+FLAT = 1e-11  # of a duty's: along a row of wheel teeth rounding may hide a better train
 NO_TEETH = "no teeth and modules meet all limits"
 KERNEL = "gearopt.formulations.split.teeth_kernel"
+DUTY = "gearopt.formulations.split.duty_kernel"
 
 
 def method(train: ServoTrain, goal: str, whole: bool) -> Any:
@@ -25,9 +28,9 @@ def method(train: ServoTrain, goal: str, whole: bool) -> Any:
 
     def run(problem: Any, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
         """All first stages in turn, by the kernel; the seed changes nothing."""
-        given = numbers(train)
-        look = getattr(kernel(KERNEL), "every" if whole else "useful")
-        aim = list(OBJECTIVES).index(goal)
+        given, aim = numbers(train, goal in UNITS), list(OBJECTIVES).index(goal)
+        code = kernel(DUTY if goal in UNITS and not whole else KERNEL)
+        look = code.every if whole else code.useful
         found = np.zeros(6, np.int64)
         look(given, aim, 0, 0, math.inf, found)  # compiled before the clock starts
         clock, best, looked, feasible = time.perf_counter(), math.inf, 0, 0
@@ -43,7 +46,10 @@ def method(train: ServoTrain, goal: str, whole: bool) -> Any:
             if first < count and not _goes_on(clock, looked, best, budget, watch):
                 break
         proof = _proof(looked, feasible if whole else None, first == count)
-        return _outcome(given, found, best, looked, proof, first == count)
+        if goal in UNITS and best > given.duty[-1] * (1.0 + ROUNDING):  # of a swing, rms torque
+            best = math.inf
+        slack = FLAT if goal in UNITS else ROUNDING
+        return _outcome(given, found, best, looked, proof, first == count, slack)
 
     return run
 
@@ -66,14 +72,20 @@ def _proof(looked: int, feasible: int | None, done: bool) -> dict[str, Any]:
 
 
 def _outcome(
-    given: Numbers, found: Any, best: float, looked: int, proof: dict[str, Any], done: bool
+    given: Numbers,
+    found: Any,
+    best: float,
+    looked: int,
+    proof: dict[str, Any],
+    done: bool,
+    slack: float,
 ) -> Outcome:
     x = point(given, found) if math.isfinite(best) else None
     if not done:
         return Outcome(x, finished=False, evaluations=looked, message="stopped before the end")
     if x is None:
         return Outcome(None, infeasible=True, proof=proof, evaluations=looked, message=NO_TEETH)
-    return Outcome(x, bound=best * (1.0 - ROUNDING), proof=proof, evaluations=looked)
+    return Outcome(x, bound=best * (1.0 - slack), proof=proof, evaluations=looked)
 
 
 def point(given: Numbers, row: Any) -> Array:

@@ -51,9 +51,9 @@ class StiffTrain:
     density: float
     output_torque: float
     bending: float
-    lost_motion: tuple[float, float]
-    error: float
     inertia: float
+    lost_motion: tuple[float, float] | None = None
+    error: float = math.inf
     sector: float = 1.0
 
 
@@ -70,7 +70,7 @@ def stiff(train: StiffTrain) -> Problem:
     parameters = (
         Param("stiffness", "N mm/rad", train.stiffness, role="limit"),
         Param("inertia", "t mm2", train.inertia, role="limit"),
-        Param("error", "rad", train.error, role="limit"),
+        *((Param("error", "rad", train.error, role="limit"),) if _bounded(train) else ()),
         Param("bending", "MPa", train.bending, role="limit"),
         *ratio_parameters(*train.ratio),
         Param("wheel_diameter", "mm", train.wheels, 2, role="limit"),
@@ -97,7 +97,6 @@ def _terms(train: StiffTrain, x: Any, p: Any) -> Terms:
     limits = ratio | {
         "stiffness": p.stiffness * output_compliance(springs, (1.0, n2, n2)),
         "inertia": inertia / p.inertia,
-        "error": train_error(train.lost_motion, d2, d4, n2) / p.error,
         "stage_ratio_low": (1.0 / n1, 1.0 / n2),
         "bending_stress": tuple(
             lewis_stress(torque, d, b, train.module, y) / p.bending
@@ -112,7 +111,13 @@ def _terms(train: StiffTrain, x: Any, p: Any) -> Terms:
         "face_width_low": tuple(train.face_width / b for b in widths),
         "shaft_diameter_low": train.shaft_diameter / x.shaft_diameter,
     }
+    if train.lost_motion is not None and _bounded(train):
+        limits["error"] = train_error(train.lost_motion, d2, d4, n2) / p.error
     return Terms({"mass": gears + 1000.0 * long}, limits, equal=equal)
+
+
+def _bounded(train: StiffTrain) -> bool:
+    return math.isfinite(train.error)
 
 
 def _variables(train: StiffTrain) -> tuple[Var, ...]:

@@ -1,5 +1,6 @@
 """The integer problem: whole teeth and modules of a two-stage servo train."""
 
+import math
 from typing import Any
 
 from gearopt.formulations.split import exact
@@ -11,9 +12,10 @@ from gearopt.physics.stiffness import lewis_form_factor
 
 
 def problem(train: ServoTrain, *goals: str) -> Problem:
-    """Least inertia [t mm2] at the motor, mass [kg] or error [rad] of a train; see `ServoTrain`.
+    """Least inertia [t mm2] at the motor, mass [kg] or error [rad] of a train, or that of its duty.
 
-    goals: of OBJECTIVES, by default inertia; several for a front (`nsga2`). Variables, of both
+    goals: of `ServoTrain.goals`, by default inertia; several for a front (`nsga2`). The limits of
+    the duty stand where its goal does: the motor then moves the load. Variables, of both
     stages: pinion_teeth, wheel_teeth, module [mm]. With one goal, `exact` looks at every train that
     can be the best, `enumeration` at all of them and counts the feasible ones.
     """
@@ -25,7 +27,8 @@ def problem(train: ServoTrain, *goals: str) -> Problem:
         ratios = (z2 / z1, z4 / z3)
         teeth = ((modules[0], z1), (modules[0], z2), (modules[1], z3), (modules[1], z4))
         d1, d2, d3, d4 = (reference_diameter(m, z) for m, z in teeth)
-        found = objectives(train, (*goals, "error"), (d1, d2, d3, d4), ratios)
+        bounded = () if math.isinf(train.error) else ("error",)
+        found = objectives(train, (*goals, *bounded), (d1, d2, d3, d4), ratios)
         stress = [
             lewis_stress(torque, d, train.face_width, m, lewis_form_factor(z))
             for torque, d, m, z in (
@@ -34,8 +37,7 @@ def problem(train: ServoTrain, *goals: str) -> Problem:
             )
         ]
         tips = [d + 2.0 * m for d, m in zip((d2, d4), modules, strict=True)]
-        limits = {
-            "error": found["error"] / train.error,
+        limits = {name: found[name] / train.error for name in bounded} | {
             "ratio_low": low / (ratios[0] * ratios[1]),
             "ratio_high": ratios[0] * ratios[1] / high,
             "stage_ratio_low": tuple(1.0 / n for n in ratios),
@@ -43,6 +45,8 @@ def problem(train: ServoTrain, *goals: str) -> Problem:
             "bore": float(train.bore) / d3,
             "wheel_tip": tuple(t / float(w) for t, w in zip(tips, train.wheel_tips, strict=True)),
         }
+        if train.duty is not None and (goal := train.duty.goal) in goals:
+            limits |= train.duty.limits(ratios[0] * ratios[1], found[goal])
         return Terms({g: found[g] for g in goals}, limits)
 
     methods = {}

@@ -2,7 +2,7 @@
 
 Ratios, tip diameters and the bore are decided in whole numbers (`numbers`); error and stress, which
 no tie can meet as they hold irrational numbers, in double with ALLOWANCE. In goal: 0 inertia,
-1 mass, 2 error.
+1 mass, 2 error, above that what a duty makes least.
 """
 
 import math
@@ -24,7 +24,27 @@ def worth(s, goal, m1, z1, z2, m2, z3, z4):
     middle = s.disc_inertia * (d2**4 + d3**4) + s.shaft_inertia
     n1 = z2 / z1
     n = n1 * z4 / z3
-    return s.disc_inertia * d1**4 + middle / n1**2 + s.sector * s.disc_inertia * d4**4 / n**2
+    gears = s.disc_inertia * d1**4 + middle / n1**2 + s.sector * s.disc_inertia * d4**4 / n**2
+    return moved(s.duty, n, gears) if goal > 2 else gears
+
+
+@njit(cache=True)
+def moved(duty, ratio, gears):
+    """What a duty (`duty_numbers`) makes least, with gears [t mm2]; inf where nothing moves."""
+    load, motor, torque, friction, efficiency, slope = duty[1:7]
+    angle, limit, own, peak, _ = duty[7:12]
+    inertia = motor + gears
+    if duty[0] == 2:
+        swung = peak * (load / ratio + ratio * inertia)
+        return math.sqrt(0.5 * swung**2 + (friction / ratio + own) ** 2)
+    left = efficiency * ratio * (torque - slope * ratio) - friction
+    if left <= 0.0:
+        return math.inf
+    inverse = (load + efficiency * ratio**2 * inertia) / left
+    if duty[0] == 0:
+        return inverse
+    top = min(math.sqrt(angle / inverse), limit / ratio)
+    return angle / top + top * inverse
 
 
 @njit(cache=True)
@@ -60,8 +80,10 @@ def every(s, goal, first, last, best, found):
                             continue
                         if not sound(s, s.module[i], z1, z2, s.module[j], z3, z4):
                             continue
-                        feasible += 1
                         value = worth(s, goal, s.module[i], z1, z2, s.module[j], z3, z4)
+                        if goal > 2 and not value <= s.duty[11] * ALLOWANCE:
+                            continue
+                        feasible += 1
                         if value < best:
                             best = value
                             found[0], found[1], found[2], found[3] = z1, z2, z3, z4

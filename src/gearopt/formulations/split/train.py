@@ -4,15 +4,17 @@ Stage 1 is at the motor, stage 2 at the load; gears 2 and 3 share a shaft. All g
 discs, the last one may be a sector. Numbers at which a tie may occur are exact fractions.
 """
 
+import math
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
+from gearopt.formulations.ratio.duty import UNITS, ServoDuty
 from gearopt.optimise.terms import Param
 from gearopt.physics.backlash import output_error
 from gearopt.physics.inertia import disc_inertia, disc_mass
 
-OBJECTIVES = {"inertia": "t mm2", "mass": "kg", "error": "rad"}
+OBJECTIVES = {"inertia": "t mm2", "mass": "kg", "error": "rad"} | UNITS
 
 
 @dataclass(frozen=True)
@@ -23,9 +25,10 @@ class ServoTrain:
     and most. most_wheel_teeth: None for no limit. face_width: of all gears. sector: part of a full
     disc that the last wheel is. output_torque: peak at the load [N mm]. bending: allowable Lewis
     stress [MPa]. bore: least pitch diameter of gear 3. wheel_tips: largest tip diameters of gears 2
-    and 4. shaft: diameter and length of the middle one. lost_motion: 2 j_t + 2 delta_p of each
-    stage [mm], so that its error at the wheel is that over the wheel's diameter. error: largest at
-    the output [rad].
+    and 4. shaft: diameter and length of the middle one; None: its inertia is not counted.
+    lost_motion: 2 j_t + 2 delta_p of each stage [mm], so that its error at the wheel is that over
+    the wheel's diameter; None: the error is not looked at. error: largest at the output [rad].
+    duty: what the train's inertia and ratio are judged by, if its goal is asked for.
     """
 
     ratio: Fraction
@@ -39,10 +42,11 @@ class ServoTrain:
     bending: float
     bore: Fraction
     wheel_tips: tuple[Fraction, Fraction]
-    shaft: tuple[float, float]
-    lost_motion: tuple[float, float]
-    error: float
+    shaft: tuple[float, float] | None = None
+    lost_motion: tuple[float, float] | None = None
+    error: float = math.inf
     sector: float = 1.0
+    duty: ServoDuty | None = None
 
     def __post_init__(self) -> None:
         if not self.ratio > 0 or not 0 <= self.tolerance < 1:
@@ -52,11 +56,19 @@ class ServoTrain:
         if not 12 <= self.pinion_teeth[0] <= self.pinion_teeth[1]:
             raise ValueError("pinion_teeth: needs 12 (for the Lewis factor) <= least <= most")
         positive = (self.face_width, self.density, self.output_torque, self.bending, self.error)
-        lengths = (*self.lost_motion, *self.shaft, *self.wheel_tips, self.bore)
+        lengths = (*(self.lost_motion or ()), *(self.shaft or ()), *self.wheel_tips, self.bore)
         if not all(value > 0 for value in (*positive, *lengths)):
             raise ValueError("widths, loads, allowances and limits of a train are positive")
         if not 0.0 < self.sector <= 1.0:
             raise ValueError("the sector is a part of a disc: above 0 and at most 1")
+        if self.lost_motion is None and self.error < math.inf:
+            raise ValueError("a largest error needs lost_motion")
+
+    @property
+    def goals(self) -> tuple[str, ...]:
+        """The objectives that are known of it."""
+        error = ("error",) if self.lost_motion is not None else ()
+        return ("inertia", "mass", *error, *((self.duty.goal,) if self.duty else ()))
 
     @property
     def wheel_teeth(self) -> int:
@@ -75,17 +87,20 @@ Two = tuple[Any, Any]
 
 
 def train_inertia(
-    density: Any, diameters: Four, widths: Two, ratios: Two, shaft: Two, sector: Any
+    density: Any, diameters: Four, widths: Two, ratios: Two, shaft: Two | None, sector: Any
 ) -> Any:
     """Inertia of gears and shaft [t mm2] seen at the motor.
 
     J_1 + (J_2 + J_3 + J_s)/n_1^2 + kappa J_4/(n_1 n_2)^2; diameters of gears 1 to 4, widths of the
-    stages and shaft (diameter, length) [mm], ratios n, sector kappa, density [t/mm3].
+    stages and shaft (diameter, length) [mm], ratios n, sector kappa, density [t/mm3]. Without a
+    shaft J_s is left out.
     """
     d1, d2, d3, d4 = diameters
-    (b1, b2), (n1, n2), (thick, long) = widths, ratios, shaft
+    (b1, b2), (n1, n2) = widths, ratios
     middle = disc_inertia(density, b1, d2) + disc_inertia(density, b2, d3)
-    middle = middle + disc_inertia(density, long, thick)
+    if shaft is not None:
+        thick, long = shaft
+        middle = middle + disc_inertia(density, long, thick)
     last = sector * disc_inertia(density, b2, d4)
     return disc_inertia(density, b1, d1) + middle / n1**2 + last / (n1 * n2) ** 2
 
@@ -114,16 +129,17 @@ def train_error(lost_motion: Two, wheel_1: Any, wheel_2: Any, ratio_2: Any) -> A
 def objectives(
     train: ServoTrain, names: tuple[str, ...], diameters: Four, ratios: Two
 ) -> dict[str, Any]:
-    """The named objectives of a train of one face width; ValueError for an unknown name."""
-    if unknown := set(names) - set(OBJECTIVES):
-        raise ValueError(f"no objective {unknown.pop()!r}; known: {', '.join(OBJECTIVES)}")
+    """The named objectives of a train of one face width; ValueError for one it has not."""
+    if unknown := set(names) - set(train.goals):
+        raise ValueError(f"no objective {unknown.pop()!r}; known: {', '.join(train.goals)}")
     widths = (train.face_width, train.face_width)
     numbers = train.density, diameters, widths
-    found = {
-        "inertia": train_inertia(*numbers, ratios, train.shaft, train.sector),
-        "mass": gear_mass(*numbers, train.sector),
-        "error": train_error(train.lost_motion, diameters[1], diameters[3], ratios[1]),
-    }
+    inertia = train_inertia(*numbers, ratios, train.shaft, train.sector)
+    found = {"inertia": inertia, "mass": gear_mass(*numbers, train.sector)}
+    if train.lost_motion is not None:
+        found["error"] = train_error(train.lost_motion, diameters[1], diameters[3], ratios[1])
+    if train.duty is not None and train.duty.goal in names:
+        found[train.duty.goal] = train.duty.value(ratios[0] * ratios[1], inertia)
     return {name: found[name] for name in names}
 
 
