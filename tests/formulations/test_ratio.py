@@ -6,9 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from gearopt.formulations.ratio import Drive, acceleration, best_ratio, move, staged, swing
+from gearopt.formulations.ratio import Drive, acceleration, best_ratio, move, swing
 from gearopt.formulations.ratio.bound import convex_bound
-from gearopt.formulations.split import core
+from gearopt.formulations.split import core, staged
 from gearopt.optimise import tape
 from gearopt.optimise.solve import solve
 from gearopt.physics.servo_drive import load_acceleration, rms_torque, shortest_move_time

@@ -18,7 +18,7 @@ from gearopt.formulations import servo_box
 from gearopt.optimise.explaining.repair import Clock
 from gearopt.optimise.result import Budget
 from gearopt.report.proof_words import proof
-from gearopt.report.servo_words import ratio_words
+from gearopt.report.servo_achieved import best_words
 from gearopt.scenes.axis.assumptions import notes
 from gearopt.scenes.axis.choice import box_of, front, posed
 from gearopt.scenes.axis.gears import of_point
@@ -116,7 +116,7 @@ def test_a_ratio_below_those_that_are_searched_may_be_better_and_is_said_so():
     light = (("load", "inertia"), "2.15e-6 kg m^2"), (("load", "friction"), "0 N m")
     found = solved(RATIO, *light, (("duty", "ratio"), Decimal("0.5"))).design["ratio"]
     assert found["total_ratio"] == pytest.approx(1.0) and found["given"]["loss_percent"] < 0.0
-    assert ratio_words(found)[1].endswith("% more.")
+    assert best_words(found)[1].endswith("% more.")
 
 
 def test_a_swing_keeps_to_the_torque_of_the_motor():
@@ -464,6 +464,7 @@ def test_a_run_out_of_time_says_so():
     assert gearopt.Result.from_json(result.to_json()).status == "limit"
 
 
+NO_GRADE = {k: v for k, v in GIVEN_GEARS.items() if k != "grade"}
 REFUSED = [  # edits, dropped, key, words
     ([], [("motor",)], "motor", "belong together"),
     ([], [("duty",)], "duty", "belong together"),
@@ -473,8 +474,45 @@ REFUSED = [  # edits, dropped, key, words
     ([(("duty", "angle"), "90 deg")], [], "duty.angle", 'for motion = "move"'),
     ([], [("mesh", 1)], "mesh", "each of the two stages"),
     ([], [("mesh",)], "mesh", "needs one a stage"),
-    ([], [("shaft",)], "shaft", "needs it"),
-    ([], [("accuracy", "error")], "accuracy.error", "needs it"),
+    ([], [("shaft",)], "shaft", "twists"),
+    ([(("train", "minimise"), "move_time")], [], "duty.motion", 'needs motion = "move"'),
+    ([(("train", "maximise"), "acceleration")], [], "train.minimise", "beside maximise"),
+    (
+        [(("train", "minimise"), "rms_torque")],
+        [("motor",), ("load",), ("duty",), ("stiffness", "frequency"), ("lightest",)],
+        "duty",
+        'minimise = "rms_torque" needs it',
+    ),
+    (
+        [(("mesh", 0), NO_GRADE), (("mesh", 1), NO_GRADE | {"pitch": "9 um"})],
+        [],
+        "mesh[1].pitch",
+        "the other [[mesh]] has one",
+    ),
+    (
+        [(("mesh", k), NO_GRADE) for k in (0, 1)],
+        [],
+        "mesh[1].pitch",
+        "[tolerances] are made of them",
+    ),
+    (
+        [(("mesh", k), NO_GRADE) for k in (0, 1)],
+        [("tolerances",), ("cost",), ("budget",)],
+        "mesh[1].pitch",
+        "[accuracy] holds their error",
+    ),
+    (
+        [(("mesh", k), NO_GRADE) for k in (0, 1)] + [(("train", "minimise"), "error")],
+        [("tolerances",), ("cost",), ("budget",), ("accuracy",)],
+        "mesh[1].pitch",
+        'minimise = "error" needs one',
+    ),
+    (
+        [(("train", "minimise"), "error")],
+        [("mesh",), ("tolerances",), ("cost",), ("budget",), ("accuracy",)],
+        "mesh",
+        'minimise = "error" needs one a stage',
+    ),
     ([], [("stiffness",)], "lightest", "needs a table"),
     ([], [("tolerances",)], "budget", "needs a table"),
     ([(("mesh", 0, "module"), "0.5 mm")], [], "mesh[1].pinion_teeth", "given by module"),

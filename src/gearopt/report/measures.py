@@ -45,7 +45,10 @@ class Measures:
         return f"{self.of(value, 'mm'):.{digits + self.digits}f}".replace("-0.00", "0.00")
 
 
-_SAME = {"percent": ("%", 1.0), "deg": ("°", 1.0), "ms": ("ms", 1.0), "Hz": ("Hz", 1.0)}
+_SAME = {
+    **{"percent": ("%", 1.0), "deg": ("°", 1.0), "ms": ("ms", 1.0), "Hz": ("Hz", 1.0)},
+    **{"s": ("s", 1.0), "rpm": ("rpm", 1.0), "rad_per_s2": ("rad/s²", 1.0)},
+}
 METRIC = Measures(
     "metric",
     _SAME

@@ -5,11 +5,13 @@ from typing import Any
 
 from gearopt.report.measures import METRIC, Measures
 from gearopt.report.servo_words import teeth_words
-from gearopt.report.words import amount, heading, number
+from gearopt.report.words import heading
 
+DUTY = ("load_acceleration_rad_per_s2", "move_time_s", "rms_torque_Nm")
 ROWS = (  # of the report, after chosen_, given_ or real_valued_bound_
     *("ratio", "inertia_kg_m2", "mass_kg", "error_deg"),
     *("output_stiffness_Nm_per_rad", "frequency_Hz", "windup_deg"),
+    *DUTY,
 )
 WHOSE = {"chosen": "chosen", "given": "given", "real_valued_bound": "real-valued bound"}
 COUNTS = ("stages", "least inertia", "at ratios", "least mass")
@@ -25,6 +27,9 @@ UNITS = {
     "output_stiffness_Nm_per_rad": "Nm_per_rad",
     "frequency_Hz": "Hz",
     "windup_deg": "deg",
+    "load_acceleration_rad_per_s2": "rad_per_s2",
+    "move_time_s": "s",
+    "rms_torque_Nm": "Nm",
 }
 
 
@@ -34,7 +39,10 @@ def beside_rows(report: Mapping[str, Any], measures: Measures = METRIC) -> list[
         return []
     rows = []
     for key in ROWS:
-        values = [report.get(f"{whose}_{key}") for whose in WHOSE]
+        train = "_train" if key in DUTY else ""  # given_ alone is at a given ratio, without gears
+        values = [
+            report.get(f"{whose}{train if whose == 'given' else ''}_{key}") for whose in WHOSE
+        ]
         if all(value is None for value in values[:2]):
             continue
         unit = UNITS.get(key, "")
@@ -58,22 +66,4 @@ def count_rows(report: Mapping[str, Any]) -> list[list[Any]]:
             row["mass_in_pinions"],
         ]
         for row in report.get("stage_counts") or ()
-    ]
-
-
-def with_train_words(
-    report: Mapping[str, Any], found: Mapping[str, Any], measures: Measures = METRIC
-) -> list[str]:
-    """The ratio that is best with the inertia of the chosen train; found: `design.ratio`."""
-    ratio = report.get("best_total_ratio_with_train")
-    if ratio is None:
-        return []
-    (value,) = (
-        v for k, v in report.items() if k.endswith("_with_train") and "total_ratio" not in k
-    )
-    own = report.get("chosen_inertia_kg_m2")
-    inertia = "" if own is None else f" of {amount(own, 'kg_m2', measures)}"
-    return [
-        f"With the train's own inertia{inertia} at the motor the best total ratio is "
-        f"{number(float(ratio))}, with {amount(value, found['unit'], measures)}."
     ]

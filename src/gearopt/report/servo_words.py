@@ -10,13 +10,20 @@ from gearopt.report.words import amount, number
 
 GEARS = ("backlash", "pitch")  # kinds that the error allowed to a train is of
 KINDS = {"backlash": "backlash", "pitch": "pitch", "windup": "wind-up", "sensor": "sensor"}
-DUTIES = {"acceleration": "Largest", "move": "Least", "swing": "Least"}
 RULES = {
     "worst_case": "worst case",
     "rss": "root sum of squares",
     "mean_plus_sd": "mean + {kappa} sd",
 }
 STAGE_ROWS = PAGE_ROWS | {"bending_stress_MPa": ("bending stress", "MPa")}
+WORTH = {  # keys of a train by which trains are compared, with their units
+    "load_acceleration_rad_per_s2": "rad_per_s2",
+    "move_time_s": "s",
+    "rms_torque_Nm": "Nm",
+    "inertia_kg_m2": "kg_m2",
+    "mass_kg": "kg",
+    "error_deg": "deg",
+}
 ARCMIN = 60.0  # a degree
 
 
@@ -44,24 +51,6 @@ def rule_words(budget: Mapping[str, Any]) -> str:
     """The rule of a budget of errors."""
     words = RULES.get(budget["rule"], str(budget["rule"]).replace("_", " "))
     return words.format(kappa=number(budget.get("kappa", 3.0)))
-
-
-def ratio_words(found: Mapping[str, Any], measures: Measures = METRIC) -> list[str]:
-    """The best total ratio, and what the given one loses."""
-    unit, ratio = found["unit"], number(float(found["total_ratio"]))
-    best = DUTIES.get(found["duty"], "Best")
-    words = [
-        f"{best} {found['name']}: {amount(found['value'], unit, measures)} at a total ratio "
-        f"of {ratio}."
-    ]
-    if given := found.get("given"):
-        lost = f"{abs(given['loss_percent']):.3g} %"
-        less = "less" if (best == "Largest") == (given["loss_percent"] >= 0.0) else "more"
-        words.append(
-            f"At the given ratio of {number(float(given['total_ratio']))} it is "
-            f"{amount(given['value'], unit, measures)}, {lost} {less}."
-        )
-    return words
 
 
 def error_words(errors: Sequence[Mapping[str, Any]], limit: float | None) -> list[str]:

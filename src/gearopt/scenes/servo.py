@@ -8,6 +8,7 @@ asks for of train, ratio and tolerances is the answer, the others are its parts.
 from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
+from gearopt.formulations.ratio.duty import UNITS
 from gearopt.optimise.comparing.trial import Model
 from gearopt.optimise.explaining.explain import binding
 from gearopt.optimise.explaining.explanation import Change, Explanation, Remedy
@@ -15,10 +16,9 @@ from gearopt.optimise.explaining.repair import Clock
 from gearopt.optimise.result import Result
 from gearopt.scenes.axis.assumptions import assumptions, notes
 from gearopt.scenes.axis.choice import SHOWN, posed
-from gearopt.scenes.axis.gears import KG_M2, Gears, described, errors, given_gears
+from gearopt.scenes.axis.gears import Gears, described, errors, given_gears
 from gearopt.scenes.axis.key_figures import key_figures
-from gearopt.scenes.axis.ratio import problem as ratio_problem
-from gearopt.scenes.axis.ratio import ratio_part, with_train
+from gearopt.scenes.axis.ratio import ratio_part
 from gearopt.scenes.axis.springs import stiffness_of
 from gearopt.scenes.axis.tolerances import problem as tolerance_problem
 from gearopt.scenes.axis.tolerances import tolerance_part
@@ -26,7 +26,6 @@ from gearopt.scenes.axis.train import beside, box_part, lightest_part, neighbour
 from gearopt.scenes.axis.ways_out import ways_out
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.tables.servo import EXAMPLE, Scene
-from gearopt.scenes.tables.servo_motion import drive
 
 __all__ = ["EXAMPLE", "Scene", "compared", "explain", "model", "solve"]
 
@@ -55,7 +54,7 @@ def solve(scene: Scene, ask: Ask) -> Result:
     if scene.train is not None:
         gears, found = _trained(scene, ask)
     if scene.duty is not None:
-        found += _moved(scene, _part(ask, clock, found), gears)
+        found += _moved(scene, _part(ask, clock, found), found.design.get("train"))
     if gears is not None:
         found += _geared(scene, _part(ask, clock, found), gears)
     if scene.lightest is not None:
@@ -90,29 +89,28 @@ def _part(ask: Ask, clock: Clock, found: _Found) -> Ask:
 def _trained(scene: Scene, ask: Ask) -> tuple[Gears | None, _Found]:
     """The train, what is known beside it, and its neighbours."""
     result, gears = train_part(scene, ask)
+    report = beside(scene, gears)
     if gears is None:
-        return None, _Found((result,), report=beside(scene))
-    report = beside(scene) | {"trains": neighbours(scene)}
+        return None, _Found((result,), report=report)
+    report |= {"trains": neighbours(scene)}
     return gears, _Found((result,), result.design, report)
 
 
-def _moved(scene: Scene, ask: Ask, gears: Gears | None) -> _Found:
-    """The best total ratio, and what the train's own inertia does to it."""
-    result, design, report = ratio_part(scene, ask)
-    if scene.train is not None and gears is not None:
-        inertia = described(scene, gears)["inertia_kg_m2"] / KG_M2
-        report = report | with_train(scene, inertia)
+def _moved(scene: Scene, ask: Ask, train: dict[str, Any] | None) -> _Found:
+    """The best total ratio, and what the axis achieves with its train."""
+    result, design, report = ratio_part(scene, train, ask)
     return _Found((result,), {"ratio": design} if design else {}, report)
 
 
 def _geared(scene: Scene, ask: Ask, gears: Gears) -> _Found:
     """What follows from the gears, chosen or given: errors, stiffness, box, tolerances."""
-    rows = errors(scene, gears)
-    sums = {
-        f"{kind}_deg": sum(row["error_deg"] for row in rows if row["kind"] == kind)
-        for kind in ("backlash", "pitch")
-    }
-    found = _Found((), {"train": described(scene, gears), "errors": rows}, sums)
+    found = _Found((), {"train": described(scene, gears)})
+    if rows := errors(scene, gears):
+        sums = {
+            f"{kind}_deg": sum(row["error_deg"] for row in rows if row["kind"] == kind)
+            for kind in ("backlash", "pitch")
+        }
+        found += _Found((), {"errors": rows}, sums)
     if scene.stiffness is not None:
         found += _Found((), {"stiffness": stiffness_of(scene, gears)})
     if scene.space is not None:
@@ -151,13 +149,10 @@ def compared(scene: Scene) -> tuple[str, ...]:
 def model(scene: Scene, method: str) -> Model:
     """The problem of the answer; that of a train without its box, which is no row of it."""
     if scene.train is not None:
-        unit = SHOWN[scene.train.minimise][1]
+        unit = SHOWN[scene.train.goal][1]
         return Model(posed(scene, boxed=False), "Whole teeth and modules, without a box", unit)
-    if scene.duty is not None:
-        assert scene.motor is not None and scene.load is not None
-        units = {"acceleration": "s2/rad", "move": "s", "swing": "N mm"}
-        axis = drive(scene.motor, scene.load)
-        return Model(ratio_problem(scene.duty, axis), "Total ratio", units[scene.duty.motion])
+    if (duty := scene.servo_duty()) is not None:
+        return Model(duty.problem(), "Total ratio", UNITS[duty.goal])
     gears = given_gears(scene)
     assert gears is not None
     return Model(tolerance_problem(scene, gears), "Tolerances of given gears", "")

@@ -7,7 +7,6 @@ the total ratio where the inertia is replaced by a + b N^2.
 
 import math
 
-import numpy as np
 from numba import njit
 
 from gearopt.formulations.split.teeth_kernel import moved, sound, worth

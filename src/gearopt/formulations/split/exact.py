@@ -28,7 +28,7 @@ def method(train: ServoTrain, goal: str, whole: bool) -> Any:
 
     def run(problem: Any, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
         """All first stages in turn, by the kernel; the seed changes nothing."""
-        given, aim = numbers(train, goal in UNITS), list(OBJECTIVES).index(goal)
+        given, aim = numbers(train, goal in UNITS), (*OBJECTIVES, *UNITS).index(goal)
         code = kernel(DUTY if goal in UNITS and not whole else KERNEL)
         look = code.every if whole else code.useful
         found = np.zeros(6, np.int64)
@@ -94,9 +94,12 @@ def point(given: Numbers, row: Any) -> Array:
     return np.array([z1, z3, z2, z4, given.module[i], given.module[j]], float)
 
 
-def feasible(train: ServoTrain, most: int = 3_000_000) -> Array | None:
-    """All feasible trains as points of `split.problem`, (trains, 6); None for more than `most`."""
-    given, listed = numbers(train), kernel(KERNEL).listed
+def feasible(train: ServoTrain, moved: bool = False, most: int = 3_000_000) -> Array | None:
+    """All feasible trains as points of `split.problem`, (trains, 6); None for more than `most`.
+
+    moved: they keep the speed limit of the duty's motor too.
+    """
+    given, listed = numbers(train, moved), kernel(KERNEL).listed
     count, _ = listed(given, math.inf, 0)
     if count > most:
         return None

@@ -9,10 +9,12 @@ from gearopt.optimise.terms import Array
 
 
 def unbeaten(worth: Array) -> list[int]:
-    """Rows of worth (N, 3) that no other row is as good as in all three columns; less is better.
+    """Rows of worth (N, 2 or 3) that no other row is as good as in all columns; less is better.
 
     In the order of the first column; of equal rows the first one counts.
     """
+    if worth.shape[1] == 2:
+        worth = np.column_stack([worth, np.zeros(len(worth))])
     kept: list[int] = []
     stairs: list[tuple[float, float]] = []  # of columns 2 and 3: one rising, the other falling
     for k in np.lexsort(worth.T[::-1]):

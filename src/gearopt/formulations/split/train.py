@@ -9,12 +9,12 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-from gearopt.formulations.ratio.duty import UNITS, ServoDuty
+from gearopt.formulations.ratio.duty import ServoDuty
 from gearopt.optimise.terms import Param
 from gearopt.physics.backlash import output_error
 from gearopt.physics.inertia import disc_inertia, disc_mass
 
-OBJECTIVES = {"inertia": "t mm2", "mass": "kg", "error": "rad"} | UNITS
+OBJECTIVES = {"inertia": "t mm2", "mass": "kg", "error": "rad"}  # beside that of a duty
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ from rich.text import Text
 from gearopt.optimise.result import Result
 from gearopt.report.measures import METRIC, Measures
 from gearopt.report.result_words import stage_rows
+from gearopt.report.servo_achieved import achieved_table, best_words, note, train_words
 from gearopt.report.servo_beside import (
     BARE,
     COUNTS,
@@ -17,11 +18,11 @@ from gearopt.report.servo_beside import (
     beside_rows,
     count_rows,
     given_teeth,
-    with_train_words,
 )
 from gearopt.report.servo_words import (
     ARCMIN,
     STAGE_ROWS,
+    WORTH,
     box_words,
     cost_words,
     degrees,
@@ -29,7 +30,6 @@ from gearopt.report.servo_words import (
     error_limit,
     error_words,
     kind_words,
-    ratio_words,
     stage_of,
     stiffness_words,
     teeth_words,
@@ -44,8 +44,7 @@ def design(result: Result, measures: Measures = METRIC) -> list[RenderableType]:
     found = result.design
     blocks: list[RenderableType] = []
     if ratio := found.get("ratio"):
-        words = ratio_words(ratio, measures) + with_train_words(result.report, ratio, measures)
-        blocks.append(Text("\n".join(words)))
+        blocks += _ratio(ratio, result.report, measures)
     if train := found.get("train"):
         blocks.append(_train(train, measures))
     if best := [t for t in result.report.get("trains") or [] if t["best_of"]]:
@@ -62,6 +61,27 @@ def design(result: Result, measures: Measures = METRIC) -> list[RenderableType]:
     if box := found.get("box"):
         blocks.append(_box(box, measures))
     return blocks
+
+
+def _ratio(ratio: Found, report: Found, measures: Measures) -> list[RenderableType]:
+    """The best ratio and what the trains achieve, in words and side by side."""
+    words = best_words(ratio, measures) + train_words(report, ratio, measures)
+    blocks: list[RenderableType] = [Text("\n".join(words))]
+    heads, rows = achieved_table(ratio, measures)
+    if rows:
+        table = columns("\nmotor and load", heads[1:])
+        for name, *values in rows:
+            table.add_row(Text(name), *map(_share if name.endswith("[%]") else _number, values))
+        blocks.append(Group(table, "", Text(note(ratio))))
+    return blocks
+
+
+def _share(value: Any) -> str:
+    return "" if value is None else f"{value:.3g}"
+
+
+def _number(value: Any) -> str:
+    return "" if value is None else number(float(value))
 
 
 def _train(train: Found, measures: Measures) -> RenderableType:
@@ -81,11 +101,12 @@ def _train(train: Found, measures: Measures) -> RenderableType:
 
 def _best(trains: list[Found], measures: Measures) -> RenderableType:
     """The best train by every goal."""
-    goals = {"inertia_kg_m2": "kg_m2", "mass_kg": "kg", "error_deg": "deg"}
-    table = columns("least", ["teeth", *(heading(key, measures) for key in goals)])
+    goals = {key: unit for key, unit in WORTH.items() if key in trains[0]}
+    table = columns("best", ["teeth", *(heading(key, measures) for key in goals)])
     for train in trains:
         values = [number(float(measures.of(train[key], unit))) for key, unit in goals.items()]
-        table.add_row(Text(train["best_of"]), teeth_words(train["stages"]), *values)
+        name = train["best_of"].replace("_", " ")
+        table.add_row(Text(name), teeth_words(train["stages"]), *values)
     return table
 
 

@@ -4,10 +4,11 @@ import math
 from typing import Any
 
 from gearopt.optimise.result import Result
-from gearopt.scenes.axis.ratio import no_given
+from gearopt.scenes.axis.achieved import candidates, why_not
 from gearopt.scenes.explaining.undercut import undercut
 from gearopt.scenes.tables.servo import Scene
 
+SLOWEST = "acceleration"  # what nobody wants least
 FRICTION = {
     "acceleration": "The motor speeds the load up; friction is Coulomb's and opposes the motion.",
     "move": "Ramps up and down are alike, though friction helps to brake; the motor's torque is "
@@ -22,7 +23,7 @@ def assumptions(scene: Scene) -> list[str]:
     found = []
     if scene.duty is not None:
         found.append(FRICTION[scene.duty.motion])
-        found.append("The best ratio counts the motor's inertia alone, not that of the train.")
+        found.append("The best ratio counts the motor's inertia alone, not that of a train.")
     if scene.train is not None:
         found += _of_train(scene)
     if scene.mesh:
@@ -56,8 +57,7 @@ def _of_train(scene: Scene) -> list[str]:
         "full-depth teeth of 20 degrees (up to 8 % above tables, so that stresses may be that much "
         "higher): no dynamic, load distribution or notch factor, and no contact stress. It is no "
         "rating by ISO 6336 or AGMA 2101.",
-        "The mass of a train is that of its gears; its inertia has the shaft between the stages in "
-        "it, and so has the mass of [lightest].",
+        _counted(scene),
     ]
     if scene.stiffness is not None:
         found.append(
@@ -74,9 +74,27 @@ def _of_train(scene: Scene) -> list[str]:
     return found
 
 
+def _counted(scene: Scene) -> str:
+    """What mass and inertia hold."""
+    if scene.shaft is None:
+        return "Mass and inertia of a train are those of its gears; no shaft is counted."
+    lightest = ", and so has the mass of [lightest]" if scene.lightest is not None else ""
+    return (
+        "The mass of a train is that of its gears; its inertia has the shaft between the stages in "
+        f"it{lightest}."
+    )
+
+
 def notes(scene: Scene, design: dict[str, Any], results: tuple[Result, ...]) -> list[str]:
     """What a reader should know beside the numbers."""
-    found = [said] if "ratio" in design and (said := no_given(scene)) else []
+    duty, found = scene.servo_duty(), []
+    if duty is not None and "ratio" in design:
+        judged = candidates(scene, design.get("train")).values()
+        found = [said for one in judged if (said := why_not(duty, one))]
+    if scene.train is not None and scene.train.maximise is None and scene.train.aim == SLOWEST:
+        found.append(
+            f'minimise = "{SLOWEST}" was read as maximise: the largest one was looked for.'
+        )
     if not design.get("box", {}).get("fits", True):
         found.append("The best train does not fit the box of [space].")
     asked, drawn = scene.accuracy.error, design.get("drawn")

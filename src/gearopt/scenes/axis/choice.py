@@ -7,7 +7,7 @@ from typing import Any
 
 from gearopt.errors import SolveError
 from gearopt.formulations import servo_box, split
-from gearopt.formulations.split import OBJECTIVES
+from gearopt.formulations.ratio.duty import UNITS
 from gearopt.optimise.explaining.repair import Clock
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.progress import in_part, of_others
@@ -22,6 +22,9 @@ SHOWN = {  # objective: factor to the unit that is shown, the unit
     "inertia": (KG_M2, "kg_m2"),
     "mass": (1.0, "kg"),
     "error": (180.0 / math.pi, "deg"),
+    "inverse_acceleration": (1.0, "s2/rad"),
+    "move_time": (1.0, "s"),
+    "rms_torque": (1e-3, "Nm"),
 }
 FRONT = 400  # trains that are shown
 
@@ -32,7 +35,7 @@ def posed(scene: Scene, boxed: bool = True) -> Problem:
     boxed: its own methods keep to a required box too, which is no row of the problem.
     """
     assert scene.train is not None
-    goal = scene.train.minimise
+    goal = scene.train.goal
     base, factor = split.problem(scene.servo_train(), goal), SHOWN[goal][0]
     boxed = boxed and scene.space is not None and scene.space.required
     least = scene.least_stiffness
@@ -100,7 +103,7 @@ def _in_order(
     scene: Scene, base: Problem, boxed: bool, clock: Clock, watch: Watch | None
 ) -> Outcome:
     """All feasible trains, the best first, until one is stiff and fits; TimeoutError if late."""
-    points = split.feasible(scene.servo_train())
+    points = _feasible(scene, base)
     if points is None:
         raise SolveError(
             "there are too many feasible trains to hold them to stiffness or box one by one: "
@@ -139,19 +142,36 @@ def _in_order(
     return Outcome(points[order[place]], bound=bound, proof=proof, evaluations=len(points))
 
 
+def _feasible(scene: Scene, posed: Problem) -> Array | None:
+    """All trains that keep every limit but stiffness and box; None where they are too many."""
+    assert scene.train is not None
+    moved = scene.train.goal in UNITS
+    points = split.feasible(scene.servo_train(), moved)
+    if points is None or not moved or len(points) == 0:
+        return points
+    return points[(posed.batch(points).G <= 1.0 + ROUNDING).all(1)]
+
+
+def weighed(scene: Scene) -> tuple[str, ...]:
+    """What trains are held against each other by: inertia, or what the duty makes least, first."""
+    assert scene.train is not None
+    first = scene.train.goal if scene.train.goal in UNITS else "inertia"
+    return (first, "mass", *(("error",) if scene.sources else ()))
+
+
 def front(scene: Scene) -> tuple[Array, Array] | None:
-    """Points and (inertia, mass, error) of all trains that no other is better than in all three.
+    """Points and worth (by `weighed`) of all trains that no other is better than in all of it.
 
     Stiffness is kept, a box not looked at; None where the feasible trains are too many.
     """
-    train = scene.servo_train()
-    points = split.feasible(train)
+    posed = split.problem(scene.servo_train(), *weighed(scene))
+    points = _feasible(scene, posed)
     if points is None or len(points) == 0:
         return None
     if (least := scene.least_stiffness) is not None:
         points = points[output_stiffness(scene, points.T) >= least]
     if len(points) == 0:
         return None
-    worth = split.problem(train, *OBJECTIVES).batch(points).F
+    worth = posed.batch(points).F
     kept = split.unbeaten(worth)
     return points[kept], worth[kept]

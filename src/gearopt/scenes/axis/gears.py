@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from gearopt.formulations.split.train import OBJECTIVES, ServoTrain, lewis_stress, objectives
+from gearopt.formulations.split.train import ServoTrain, lewis_stress, objectives
 from gearopt.optimise.terms import Array
 from gearopt.physics.geometry import ADDENDUM
 from gearopt.physics.stiffness import lewis_form_factor
@@ -106,19 +106,20 @@ def stages(gears: Gears, train: ServoTrain | None = None) -> list[dict[str, Any]
 
 
 def described(scene: Scene, gears: Gears) -> dict[str, Any]:
-    """The train of a result: stages, ratio, and with [train] inertia, mass and error."""
-    n = gears.ratios[0] * gears.ratios[1]
-    if scene.train is None:
+    """The train of a result: stages, ratio, with [train] inertia and mass; its error, if known.
+
+    Off a single ratio that is asked for it is by ratio_error_percent.
+    """
+    n, table = gears.ratios[0] * gears.ratios[1], scene.train
+    found: dict[str, Any] = {"stages": stages(gears), "ratio": n}
+    if table is not None:
+        train = scene.servo_train()
+        worth = objectives(train, ("inertia", "mass"), gears.diameters, gears.ratios)
+        found["stages"] = stages(gears, train)
+        if table.ratio[0] == table.ratio[1]:
+            found["ratio_error_percent"] = 100.0 * (n / float(train.ratio) - 1.0)
+        found |= {"inertia_kg_m2": KG_M2 * worth["inertia"], "mass_kg": worth["mass"]}
+    if scene.sources:
         error = sum(s.tolerance * gears.sensitivity(s) for s in scene.sources)
-        return {"stages": stages(gears), "ratio": n, "error_deg": math.degrees(error)}
-    train = scene.servo_train()
-    worth = objectives(train, tuple(OBJECTIVES), gears.diameters, gears.ratios)
-    return {
-        "stages": stages(gears, train),
-        "ratio": n,
-        "ratio_error_percent": 100.0 * (n / float(train.ratio) - 1.0),
-        "inertia_kg_m2": KG_M2 * worth["inertia"],
-        "mass_kg": worth["mass"],
-        "error_deg": math.degrees(worth["error"]),
-        "sector": train.sector,
-    }
+        found["error_deg"] = math.degrees(error)
+    return found if table is None else found | {"sector": float(table.sector)}

@@ -30,7 +30,7 @@ def key_figures(
     if (gears := given_gears(scene)) is not None:
         found |= _given(scene, gears)
     for train in report.get("trains") or ():
-        if goal := train["best_of"]:
+        if (goal := train["best_of"]) in GOALS:
             found[f"least_{GOALS[goal]}"] = train[GOALS[goal]]
     return found | {key: design["box"][key] for key in BOX if "box" in design}
 
@@ -60,12 +60,16 @@ def _given(scene: Scene, gears: Gears) -> dict[str, Any]:
     train, springs = described(scene, gears), None
     if scene.stiffness is not None:
         springs = stiffness_of(scene, gears)
-    found = _train("given", train, springs) | of_given(scene, gears)
+    found = _train("given", train, springs)
+    if scene.sources:
+        found |= of_given(scene, gears)
     found["given_train"] = train
     if springs is not None:
         found["given_stiffness"] = springs
     if scene.lightest is not None:
-        thick, long, density = (*scene.servo_train().shaft, scene.servo_train().density)
+        assert scene.shaft is not None
+        thick, long = scene.shaft.diameter.value, scene.shaft.length.value
+        density = scene.servo_train().density
         shaft = 1000.0 * float(disc_mass(density, long, thick))
         found["given_mass_with_shaft_kg"] = train["mass_kg"] + shaft
     return found

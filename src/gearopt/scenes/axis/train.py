@@ -5,23 +5,30 @@ from dataclasses import replace
 from typing import Any
 
 from gearopt.formulations import servo_box, split
+from gearopt.formulations.ratio import ServoDuty
 from gearopt.optimise.progress import in_part
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run, solve
-from gearopt.optimise.terms import Array
-from gearopt.scenes.axis.choice import FRONT, SHOWN, box_of, front, posed
-from gearopt.scenes.axis.gears import KG_M2, Gears, described, of_point
+from gearopt.scenes.axis.achieved import NAMES
+from gearopt.scenes.axis.choice import FRONT, SHOWN, box_of, front, posed, weighed
+from gearopt.scenes.axis.gears import Gears, described, of_point
+from gearopt.scenes.axis.key_figures import GOALS
 from gearopt.scenes.axis.ratio import scaled
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.tables.servo import Scene
 
+WORDS = {  # objectives as a list of trains calls them
+    "inverse_acceleration": "acceleration",
+    "move_time": "move time",
+    "rms_torque": "rms torque",
+}
 STAGES = 6  # that a ratio is split into, at the most, for comparison
 
 
 def train_part(scene: Scene, ask: Ask) -> tuple[Result, Gears | None]:
     """The certified best train."""
     assert scene.train is not None
-    unit = SHOWN[scene.train.minimise][1]
+    unit = SHOWN[scene.train.goal][1]
     watch = in_part(ask.watch, unit)
     result, outcome = run(posed(scene), ask.method, ask.budget, ask.seed, watch, ask.gap)
     result = replace(result, objective=result.objective | {"unit": unit})
@@ -32,7 +39,7 @@ def train_part(scene: Scene, ask: Ask) -> tuple[Result, Gears | None]:
 
 
 def neighbours(scene: Scene) -> list[dict[str, Any]]:
-    """The trains that no other is better than in inertia, mass and error; thinned if many.
+    """The trains that no other is better than in all that is weighed; thinned if many.
 
     One that is the best by two goals stands there twice, each time named by one of them.
     """
@@ -45,36 +52,55 @@ def neighbours(scene: Scene) -> list[dict[str, Any]]:
     best = worth.argmin(0).tolist()
     many = np.linspace(0, len(points) - 1, min(FRONT, len(points))).round().astype(int)
     shown = [(k, "") for k in many.tolist() if k not in best]
-    shown += [(k, name) for k, name in zip(best, SHOWN, strict=True)]
-    return [_neighbour(of_point(points[k]), worth[k], name) for k, name in sorted(shown)]
+    shown += [(k, name) for k, name in zip(best, weighed(scene), strict=True)]
+    return [
+        _neighbour(scene, of_point(points[k]), float(worth[k, 0]), name)
+        for k, name in sorted(shown)
+    ]
 
 
-def _neighbour(gears: Gears, worth: Array, best_of: str) -> dict[str, Any]:
-    inertia, mass, error = (float(v) for v in worth)
-    return {
-        "inertia_kg_m2": KG_M2 * inertia,
-        "mass_kg": mass,
-        "error_deg": math.degrees(error),
+def _neighbour(scene: Scene, gears: Gears, first: float, best_of: str) -> dict[str, Any]:
+    """A train as the list shows it; first: what it is weighed by first."""
+    train, duty = described(scene, gears), scene.servo_duty()
+    found = {key: train[key] for key in (*GOALS.values(), "ratio") if key in train}
+    if duty is not None and weighed(scene)[0] == duty.goal:
+        value = SHOWN[duty.goal][0] * first
+        found[NAMES[duty.motion][2]] = 1.0 / value if duty.motion == "acceleration" else value
+    return found | {
         "stages": [
             {"normal_module_mm": m, "pinion_teeth": z, "wheel_teeth": w}
             for m, z, w in zip(gears.modules, gears.pinions, gears.wheels, strict=True)
         ],
-        "best_of": best_of,
+        "best_of": WORDS.get(best_of, best_of),
     }
 
 
-def beside(scene: Scene) -> dict[str, Any]:
-    """What else is known of a train: real-valued bounds, the given gears, numbers of stages."""
+def beside(scene: Scene, chosen: Gears | None) -> dict[str, Any]:
+    """What else is known of a train: real-valued bounds, and other numbers of stages.
+
+    These are of the ratio that is asked for, or of the chosen train where a range is.
+    """
     assert scene.train is not None
     train = scene.servo_train()
     report: dict[str, Any] = {}
-    for goal, (factor, unit) in SHOWN.items():
-        relaxed = solve(split.relaxation(train, goal))
-        if relaxed.bound is not None:
-            report[f"real_valued_bound_{goal}_{unit}"] = factor * relaxed.bound
-    report["stage_counts"] = _counts(float(train.ratio)) if train.ratio > 1 else []
+    for goal in dict.fromkeys(("inertia", *weighed(scene))):
+        if (bound := solve(split.relaxation(train, goal)).bound) is not None:
+            report |= _bound(goal, bound, train.duty)
+    low, high = scene.train.ratio
+    ratio = float(low) if low == high else 1.0 if chosen is None else math.prod(chosen.ratios)
+    report["stage_counts"] = _counts(ratio) if ratio > 1.0 else []
     report["stage_ratio_of_least_mass"] = split.lightest_stage_ratio()
     return report
+
+
+def _bound(goal: str, bound: float, duty: ServoDuty | None) -> dict[str, float]:
+    """What no train is better than, by the name of what it bounds."""
+    factor, unit = SHOWN[goal]
+    name, value = f"{goal}_{unit}", factor * bound
+    if duty is not None and goal == duty.goal:
+        name = NAMES[duty.motion][2]
+        value = 1.0 / value if duty.motion == "acceleration" else value
+    return {f"real_valued_bound_{name}": value}
 
 
 def _counts(ratio: float) -> list[dict[str, Any]]:

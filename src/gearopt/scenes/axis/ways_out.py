@@ -7,6 +7,7 @@ from fractions import Fraction
 
 from gearopt import units
 from gearopt.formulations import split
+from gearopt.formulations.ratio.duty import UNITS
 from gearopt.formulations.split.exact import NO_TEETH
 from gearopt.optimise.explaining.explanation import Change, Remedy
 from gearopt.optimise.explaining.handles import handles
@@ -30,11 +31,20 @@ NAMED = 3  # sources of error that the message names
 def ways_out(scene: Scene, clock: Clock) -> tuple[tuple[str, ...], tuple[Remedy, ...], str]:
     """Limits in conflict, remedies and a message for a train that is impossible."""
     asked = scene.accuracy.error
-    assert asked is not None and scene.train is not None
+    assert scene.train is not None
+    if scene.train.goal in UNITS or asked is None:
+        still = _solved(_aiming(scene, "inertia"), clock)
+        if still.status == "optimal":
+            names, message = _of_duty(scene, clock)
+            return names, (), message
+        if still.status == "infeasible" and asked is None:
+            names, message = _other(scene, still, clock)
+            return names, (), message
+        if still.status != "infeasible":
+            return (), (), "time ran out before it was known why"
+    assert asked is not None
     free = with_error(scene, units.parse(LOOSE, "angle"))
-    assert free.train is not None
-    aim = free.train.model_copy(update={"minimise": "error"})
-    least = _solved(free.model_copy(update={"train": aim}), clock)
+    least = _solved(_aiming(free, "error"), clock)
     if least.status == "infeasible":
         names, message = _other(free, least, clock)
         return names, (), f"it is not for the accuracy: {message}"
@@ -46,6 +56,13 @@ def ways_out(scene: Scene, clock: Clock) -> tuple[tuple[str, ...], tuple[Remedy,
     found = [ways(scene, best, bound, clock) for ways in (_wider, _finer)]
     proven = tuple(r for r in found if r.verified["with"] == "optimal")
     return names, proven, _message(free, least)
+
+
+def _aiming(scene: Scene, aim: str) -> Scene:
+    """The scene with another objective; those of the train alone leave the duty aside."""
+    assert scene.train is not None
+    train = scene.train.model_copy(update={"minimise": aim, "maximise": None})
+    return scene.model_copy(update={"train": train})
 
 
 def _solved(scene: Scene, clock: Clock) -> Result:
@@ -67,9 +84,10 @@ def _conflict(scene: Scene, clock: Clock) -> tuple[tuple[str, ...], float | None
     return names, clock.solve(split.relaxation(replace(train, error=math.pi), "error")).bound
 
 
-def _blamed(train: split.ServoTrain, clock: Clock) -> tuple[str, ...]:
+def _blamed(train: split.ServoTrain, clock: Clock, goal: str = "") -> tuple[str, ...]:
     """Limits that no real-valued teeth and modules keep together, none of them to spare."""
-    relaxed = split.relaxation(train, "error")
+    known = "error" if train.lost_motion is not None else "inertia"
+    relaxed = split.relaxation(train, goal or known)
     if clock.solve(relaxed).status != "infeasible":
         return ()
     return tuple(handle.name for handle in conflict(relaxed, handles(relaxed), clock))
@@ -82,18 +100,45 @@ def _other(scene: Scene, least: Result, clock: Clock) -> tuple[tuple[str, ...], 
         return names, "real-valued teeth and modules do not keep all other limits either"
     if least.message != NO_TEETH:  # it names the box, or the stiffness
         return (), least.message
-    own = train.tolerance
     for wider in WIDER:
-        if wider <= own:
+        if wider <= train.tolerance:
             continue
-        problem = split.problem(replace(train, tolerance=wider), "error")
+        other = replace(train, tolerance=wider)
+        problem = split.problem(other, "inertia")
         if clock.over or solve(problem, budget=clock.left, watch=clock.watch).status != "optimal":
             continue
-        ends = [f"{100.0 * float(part):g} %" for part in (own, wider)]
-        return (), f"no whole teeth make the ratio within {ends[0]}; within {ends[1]} some do"
+        own, ends = (_span(scene, one) for one in (train, other))
+        return (), f"no whole teeth make the ratio {own}; {ends} some do"
     return (), (
         "real-valued teeth and modules keep all other limits, whole teeth and the modules of the "
         "list do not"
+    )
+
+
+def _span(scene: Scene, train: split.ServoTrain) -> str:
+    """The ratios of a train as its file gives them: about a number, or from one to another."""
+    assert scene.train is not None
+    if scene.train.ratio[0] == scene.train.ratio[1]:
+        return f"within {100.0 * float(train.tolerance):g} %"
+    low, high = (f"{float(end):.6g}" for end in train.ratios)
+    return f"between {low} and {high}"
+
+
+def _of_duty(scene: Scene, clock: Clock) -> tuple[tuple[str, ...], str]:
+    """What of the duty no train keeps, where some keep all else: limits, and a sentence."""
+    train = scene.servo_train()
+    duty = train.duty
+    assert duty is not None
+    names = _blamed(train, clock, duty.goal)
+    if duty.most_ratio is not None and duty.most_ratio < train.ratios[0]:
+        why = f"the motor's speed limit allows a total ratio of {float(duty.most_ratio):.6g}"
+        return names, f"it is for the duty: {why} at the most"
+    alone = solve(duty.problem())
+    if alone.status == "infeasible":
+        return names, f"it is for the duty, whatever the train: {alone.message}"
+    return names, (
+        "it is for the duty: trains keep all other limits, but the motor does not do what [duty] "
+        "asks with any of them"
     )
 
 

@@ -1,15 +1,17 @@
 """A servo axis's file as a whole: its tables, how they fit together, and what they describe."""
 
+import math
 from typing import Annotated, Any
 
 from pydantic import Field, model_validator
 
+from gearopt.formulations.ratio import ServoDuty
 from gearopt.formulations.split import ServoTrain, StiffTrain
 from gearopt.physics.stiffness import stiffness_of_frequency
 from gearopt.scenes.reading.fields import Table, refuse, words
 from gearopt.scenes.tables.servo_example import EXAMPLE
 from gearopt.scenes.tables.servo_mesh import Accuracy, Mesh, Source
-from gearopt.scenes.tables.servo_motion import Duty, Load, Motor
+from gearopt.scenes.tables.servo_motion import Duty, Load, Motor, servo_duty
 from gearopt.scenes.tables.servo_tolerance import (
     BudgetTable,
     CostTable,
@@ -18,7 +20,14 @@ from gearopt.scenes.tables.servo_tolerance import (
     check_costs,
     price,
 )
-from gearopt.scenes.tables.servo_train import Lightest, Shaft, Space, Stiffness, Train
+from gearopt.scenes.tables.servo_train import (
+    MADE_LEAST,
+    Lightest,
+    Shaft,
+    Space,
+    Stiffness,
+    Train,
+)
 
 __all__ = ["EXAMPLE", "Scene"]  # messages show tables of the example
 
@@ -70,16 +79,15 @@ class Scene(Table):
             raise refuse("is one more than the two stages", at=("mesh", 2), action="remove")
         if len(self.mesh) == 1:
             raise refuse("is missing: one table [[mesh]] for each of the two stages", at=("mesh",))
-        if not self.mesh:
-            for name in ("train", "tolerances"):
-                if getattr(self, name):
-                    raise refuse(f"is missing: [{name}] needs one a stage", at=("mesh",))
+        if not self.mesh and self.tolerances:
+            raise refuse("is missing: [tolerances] needs one a stage", at=("mesh",))
         if not self.mesh and "accuracy" in self.model_fields_set:
             raise refuse("needs tables [[mesh]]", at=("accuracy",), action="remove")
         given = [mesh.given for mesh in self.mesh]
         if any(given) and not all(given):
             rule = "is missing: the gears of the other [[mesh]] are given"
             raise refuse(rule, at=("mesh", given.index(False), "module"))
+        self._check_deviations()
         for k, mesh in enumerate(self.mesh):
             if mesh.grade is not None and self.train is not None:
                 rule = "stands beside [train], which chooses the diameters that it depends on"
@@ -91,17 +99,48 @@ class Scene(Table):
                 rule = "is missing: without [train] tolerances are for given gears"
                 raise refuse(rule, at=("mesh", 0, "module"))
 
+    def _check_deviations(self) -> None:
+        """Both meshes have deviations, or neither has; what counts errors needs them."""
+        told = [mesh.deviates for mesh in self.mesh]
+        if not self.mesh or all(told):
+            return
+        needs = {
+            "the other [[mesh]] has one": any(told),
+            "[tolerances] are made of them": self.tolerances is not None,
+            "[accuracy] holds their error": self.accuracy.error is not None,
+        }
+        for why, needed in needs.items():
+            if needed:
+                rule = f"is missing, as is any deviation: {why}"
+                raise refuse(rule, at=("mesh", told.index(False), "pitch"))
+
+    def _check_aim(self, train: Train) -> None:
+        """What the train is chosen for is known: an error of deviations, a motion of [duty]."""
+        key = "minimise" if train.maximise is None else "maximise"
+        needs = f'{key} = "{train.aim}" needs'
+        if train.goal == "error" and not self.sources:
+            if not self.mesh:
+                raise refuse(f"is missing: {needs} one a stage", at=("mesh",))
+            raise refuse(f"is missing, as is any deviation: {needs} one", at=("mesh", 0, "pitch"))
+        motion = MADE_LEAST[train.aim][1]
+        if motion is None:
+            return
+        if self.duty is None:
+            raise refuse(f"is missing: {needs} it", at=("duty",))
+        if self.duty.motion != motion:
+            rule = f'is "{self.duty.motion}": {needs} motion = "{motion}"'
+            raise refuse(rule, motion, ("duty", "motion"))
+
     def _check_train(self) -> None:
         if self.train is None:
             for name in ("shaft", "stiffness", "lightest", "space"):
                 if getattr(self, name) is not None:
                     raise refuse("needs a table [train]", at=(name,), action="remove")
             return
-        if self.shaft is None:
-            raise refuse("is missing: [train] needs it", at=("shaft",))
-        if self.accuracy.error is None:
-            raise refuse("is missing: [train] needs it", at=("accuracy", "error"))
+        self._check_aim(self.train)
         stiff = self.stiffness
+        if stiff is not None and self.shaft is None:
+            raise refuse("is missing: [stiffness] counts how it twists", at=("shaft",))
         if stiff is not None and stiff.frequency is not None and self.load is None:
             raise refuse("needs a table [load]", at=("stiffness", "frequency"), action="remove")
         if self.lightest is None:
@@ -163,10 +202,16 @@ class Scene(Table):
         found = [mesh.sources(k, angle) for k, mesh in enumerate(self.mesh, 1)]
         return tuple(source for stage in found for source in stage)
 
+    def servo_duty(self) -> ServoDuty | None:
+        """What the load does and what drives it, in plain numbers; None where nothing is said."""
+        if self.duty is None or self.motor is None or self.load is None:
+            return None
+        return servo_duty(self.duty, self.motor, self.load)
+
     def servo_train(self) -> ServoTrain:
         """The train to be chosen, in plain numbers."""
         table, shaft, error = self.train, self.shaft, self.accuracy.error
-        assert table is not None and shaft is not None and error is not None
+        assert table is not None
         ratio, tolerance = table.ratios
         lost = [sum(s.per_mm * s.tolerance for s in self.sources if s.stage == k) for k in (1, 2)]
         first, second = (q.exact[0] for q in table.wheel_tip_diameters)
@@ -182,10 +227,11 @@ class Scene(Table):
             bending=table.bending_stress.value,
             bore=table.second_pinion_diameter.exact[0],
             wheel_tips=(first, second),
-            shaft=(shaft.diameter.value, shaft.length.value),
-            lost_motion=(lost[0], lost[1]),
-            error=error.value,
+            shaft=None if shaft is None else (shaft.diameter.value, shaft.length.value),
+            lost_motion=(lost[0], lost[1]) if self.sources else None,
+            error=math.inf if error is None else error.value,
             sector=float(table.sector),
+            duty=self.servo_duty(),
         )
 
     @property
@@ -205,6 +251,7 @@ class Scene(Table):
         own, table, least = self.servo_train(), self.lightest, self.least_stiffness
         spring = self.stiffness
         assert table is not None and spring is not None and least is not None
+        assert own.shaft is not None
         assert spring.line_stiffness is not None
         module = float(own.modules[0])
         teeth = own.pinion_teeth[0]

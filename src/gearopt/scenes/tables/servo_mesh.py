@@ -120,7 +120,7 @@ class Mesh(Table):
         for name in ("pinion_pitch", "wheel_pitch"):
             if self.pitch is not None and getattr(self, name) is not None:
                 raise refuse("stands beside pitch", at=(name,), action="remove")
-        if self.grade is None and not any(self._length(name) for name in WORDS):
+        if not (self.given or self.deviates):
             raise refuse("is missing, as is any deviation", at=("pitch",))
         return self
 
@@ -141,6 +141,11 @@ class Mesh(Table):
     def _length(self, name: str) -> float:
         found = getattr(self, name)
         return 0.0 if found is None else float(found.value)
+
+    @property
+    def deviates(self) -> bool:
+        """Whether any deviation is told."""
+        return self.grade is not None or any(self._length(name) for name in WORDS)
 
     @property
     def given(self) -> bool:
@@ -187,7 +192,7 @@ class Accuracy(Table):
     """How far the output may be off, whatever deviations within tolerance come together."""
 
     error: Annotated[Quantity | None, quantity("angle", "0.1082 deg", most="90 deg")] = Field(
-        None, description="Largest error of the output, both flanks; [train] needs it"
+        None, description="Largest error of the output, both flanks; told but not held without it"
     )
     pressure_angle: Annotated[Quantity, quantity("angle", "20 deg", most="45 deg")] = Field(
         default_factory=lambda: units.parse("20 deg", "angle"),

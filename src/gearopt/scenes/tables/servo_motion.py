@@ -7,7 +7,7 @@ from typing import Annotated
 from pydantic import Field, model_validator
 
 from gearopt import units
-from gearopt.formulations.ratio.drive import Drive
+from gearopt.formulations.ratio import Drive, ServoDuty
 from gearopt.scenes.reading.fields import Table, choice, number, quantity, refuse
 from gearopt.units import Quantity
 
@@ -76,7 +76,7 @@ class Duty(Table):
         None, description="Frequency of a swing"
     )
     ratio: Annotated[Fraction | None, number(48, 0, 10**6)] = Field(
-        None, description="A total ratio to compare with the best one; by default that of [train]"
+        None, description="A total ratio to compare with the best one, without any gears"
     )
 
     @model_validator(mode="after")
@@ -105,17 +105,38 @@ class Duty(Table):
             raise refuse(rule, at=("motor", "no_load_speed"), action="remove")
 
 
-def drive(motor: Motor, load: Load, gear_inertia: float = 0.0) -> Drive:
-    """Motor, train and load as plain numbers; gear_inertia [t mm2] of the train at the motor."""
+def servo_duty(duty: Duty, motor: Motor, load: Load) -> ServoDuty:
+    """Motion, motor and load as plain numbers; without gears."""
     free, limit = motor.no_load_speed, motor.speed_limit
-    return Drive(
+    own = Drive(
         load_inertia=load.inertia.value,
         motor_inertia=motor.inertia.value,
         torque=motor.torque.value if motor.torque else 0.0,
         load_friction=load.friction.value,
         motor_friction=motor.friction.value,
-        gear_inertia=gear_inertia,
         efficiency=float(load.efficiency),
         no_load_speed=free.value if free else math.inf,
         speed_limit=limit.value if limit else math.inf,
     )
+    numbers = {
+        name: found.value
+        for name in ("load_speed", "angle", "amplitude")
+        if (found := getattr(duty, name)) is not None
+    }
+    turns = 2.0 * math.pi * duty.frequency.value if duty.frequency else 0.0
+    most = _most_ratio(duty, motor)
+    return ServoDuty(own, duty.motion, **numbers, angular_frequency=turns, most_ratio=most)
+
+
+def _most_ratio(duty: Duty, motor: Motor) -> Fraction | None:
+    """Ratio at which the motor turns at its limit; exact where pi cancels."""
+    if motor.speed_limit is None:
+        return None
+    if duty.load_speed is not None:
+        return units.quotient(motor.speed_limit, duty.load_speed)
+    if duty.amplitude is None or duty.frequency is None:
+        return None
+    (angle, power), (limit, other) = duty.amplitude.exact, motor.speed_limit.exact
+    rational = limit / (2 * angle * duty.frequency.exact[0])
+    power = other - power - 1  # the speed is 2 pi times amplitude and frequency
+    return rational if power == 0 else Fraction(float(rational) * math.pi**power)

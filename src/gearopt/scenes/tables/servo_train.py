@@ -6,7 +6,6 @@ from typing import Annotated
 from pydantic import Field, model_validator
 
 from gearopt import units
-from gearopt.formulations.split import OBJECTIVES
 from gearopt.physics.modules import MODULES
 from gearopt.scenes.reading.fields import (
     Table,
@@ -21,10 +20,18 @@ from gearopt.scenes.reading.lists import either, several, span
 from gearopt.units import Quantity
 
 LENGTH = quantity("length", "6 mm")
+MADE_LEAST = {  # by the word of a file: the objective, and the motion of [duty] that it needs
+    "inertia": ("inertia", None),
+    "mass": ("mass", None),
+    "error": ("error", None),
+    "acceleration": ("inverse_acceleration", "acceleration"),
+    "move_time": ("move_time", "move"),
+    "rms_torque": ("rms_torque", "swing"),
+}
 
 
 class Train(Table):
-    """Two stages of spur gears whose teeth and modules are chosen; needs [shaft] and [accuracy]."""
+    """Two stages of spur gears whose teeth and modules are chosen."""
 
     ratio: Annotated[tuple[Fraction, Fraction], span(number(48, 1, 10**6), 48, single=True)] = (
         Field(description="Total ratio, motor over load speed; a range [least, most] too")
@@ -66,12 +73,21 @@ class Train(Table):
     bending_stress: Annotated[Quantity, quantity("stress", "150 MPa")] = Field(
         description="Allowed bending stress after Lewis, without any factor"
     )
-    minimise: Annotated[str, choice(*OBJECTIVES)] = Field(
-        "inertia", description="inertia (of the train at the motor), mass or error"
+    minimise: Annotated[str, choice(*MADE_LEAST)] = Field(
+        "inertia",
+        description="inertia (of the train at the motor), mass or error; move_time or rms_torque "
+        "of [duty], with ratio and train chosen together",
+    )
+    maximise: Annotated[str | None, choice("acceleration")] = Field(
+        None,
+        description="Instead of minimise: acceleration of [duty], with ratio and train chosen "
+        "together",
     )
 
     @model_validator(mode="after")
     def _complete(self) -> "Train":
+        if self.maximise is not None and "minimise" in self.model_fields_set:
+            raise refuse("stands beside maximise", at=("minimise",), action="remove")
         low, high = self.ratio
         if low != high and self.ratio_tolerance is not None:
             rule = "stands beside a range of ratios"
@@ -81,6 +97,16 @@ class Train(Table):
             rule = "does not name both wheels, of stage 1 and of stage 2"
             raise refuse(rule, texts[:2], ("wheel_tip_diameters",), "sample")
         return self
+
+    @property
+    def aim(self) -> str:
+        """What is asked for, as the file calls it."""
+        return self.maximise or self.minimise
+
+    @property
+    def goal(self) -> str:
+        """What is made least: an objective of a `ServoTrain`."""
+        return MADE_LEAST[self.aim][0]
 
     @property
     def ratios(self) -> tuple[Fraction, Fraction]:
@@ -102,7 +128,7 @@ class Shaft(Table):
 
 
 class Stiffness(Table):
-    """Stiffness of meshes and shaft, seen at the output, motor locked; needs [train]."""
+    """Stiffness of meshes and shaft at the output, motor locked; needs [train] and [shaft]."""
 
     shear_modulus: Annotated[Quantity, quantity("stress", "79 GPa")] = Field(
         description="Shear modulus of the shaft"

@@ -6,48 +6,86 @@ from gearopt.optimise.result import Result
 from gearopt.report.measures import Measures
 from gearopt.report.pages.frame import Figure, axis, layout
 from gearopt.report.pages.section import Section
-from gearopt.report.pages.table import Table
-from gearopt.report.servo_beside import with_train_words
-from gearopt.report.servo_words import DUTIES, ratio_words
+from gearopt.report.pages.table import Cell, Table
+from gearopt.report.servo_achieved import (
+    DUTIES,
+    LINE,
+    achieved_table,
+    best_words,
+    note,
+    train_words,
+)
 from gearopt.report.words import number
 
 TICKS = (1.0, 2.0, 5.0)  # of a decade
+MARKS = (  # of what is judged beside the best ratio: colour and symbol
+    ("chosen", "--series-3", "diamond"),
+    ("given_train", "--series-8", "x"),
+    ("given", "--series-4", "circle"),
+)
 
 
 def section(result: Result, measures: Measures) -> Section | None:
-    """The curve of a duty; None where the file has none."""
+    """The curve of a duty, and what trains achieve; None where the file has none."""
     found = result.design.get("ratio")
     if result.scene != "servo" or not found:
         return None
     unit = measures.unit(found["unit"])
     ratios = found["curve"]["total_ratio"]
     values = [measures.of(v, found["unit"]) for v in found["curve"]["value"]]
-    curve = {
-        "type": "scatter",
-        "mode": "lines",
-        "name": found["name"],
-        "x": ratios,
-        "y": values,
-        "hovertemplate": f"ratio %{{x:.5g}}: %{{y:.5g}} {unit}<extra></extra>",
-        "line": {"color": "--series-1", "width": 2.2, "simplify": False},
-        "showlegend": False,
-    }
-    traces = [curve, _mark("best", found, found, measures, "--series-2", "star", 14)]
-    if given := found.get("given"):
-        traces.append(_mark("given", given, found, measures, "--series-4", "circle", 10))
+    traces = [_line(found["name"], ratios, values, unit, "solid", "--series-1")]
+    if with_train := found["curve"].get("value_with_train"):
+        less = [None if v is None else measures.of(v, found["unit"]) for v in with_train]
+        name = "with the chosen train's inertia"
+        traces.append(_line(name, ratios, less, unit, "dash", "--series-3"))
+    traces.append(_mark("best", found, found, measures, "--series-2", "star", 14))
+    for who, colour, symbol in MARKS:
+        if one := found.get(who):
+            name = who.replace("_", " ")
+            traces.append(_mark(name, one, found, measures, colour, symbol, 10))
     plot = layout(
         axis("total ratio", type="log", tickvals=_ticks(ratios), tickformat="~g"),
         axis(f"{found['name']} [{unit}]"),
         360,
     )
     caption = f"{found['name'].capitalize()} over the total ratio, motor over load speed."
-    words = ratio_words(found, measures)
+    words = best_words(found, measures)
     words.append(_flat(found))
-    words += with_train_words(result.report, found, measures)
+    words += train_words(result.report, found, measures)
     heads = ["total ratio", f"{found['name']} [{unit}]"]
     table = Table("ratio curve", heads, list(zip(ratios, values, strict=True)), folded=True)
+    tables = [*_achieved(found, measures), table]
     figures = (Figure(traces, plot, caption),)
-    return Section("Total ratio", words=words, figures=figures, tables=(table,))
+    if len(tables) > 1:
+        words.append(note(found))
+    return Section("Total ratio", words=words, figures=figures, tables=tables)
+
+
+def _achieved(found: Any, measures: Measures) -> list[Table]:
+    """What the trains and ratios give, and what they ask of the motor; of older results none."""
+    heads, rows = achieved_table(found, measures)
+    if not rows:
+        return []
+    cells = [
+        [name, *(Cell(v, f"{v:.3g}") if v is not None else None for v in values)]
+        if name.endswith("[%]")
+        else [name, *values]
+        for name, *values in rows
+    ]
+    return [Table("motor and load", [head.replace(LINE, " ") for head in heads], cells)]
+
+
+def _line(name: str, ratios: Any, values: Any, unit: str, dash: str, colour: str) -> dict[str, Any]:
+    return {
+        "type": "scatter",
+        "mode": "lines",
+        "name": name,
+        "x": ratios,
+        "y": values,
+        "hovertemplate": f"ratio %{{x:.5g}}: %{{y:.5g}} {unit}<extra></extra>",
+        "line": {"color": colour, "width": 2.2, "simplify": False, "dash": dash},
+        "showlegend": dash != "solid",
+    }
 
 
 def _mark(

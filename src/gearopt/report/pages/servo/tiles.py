@@ -13,9 +13,7 @@ def tiles(design: Mapping[str, Any], goal: str, measures: Measures) -> list[Tile
     """What a glance shall tell; goal: the objective, which has a tile already."""
     found = []
     if ratio := design.get("ratio"):
-        value = amount(ratio["value"], ratio["unit"], measures)
-        best = number(float(ratio["total_ratio"]))
-        found.append(Tile("best total ratio", best, f"{ratio['name']} {value}"))
+        found += _ratio(ratio, goal, measures)
     if train := design.get("train"):
         found += _train(train, goal, measures)
     if chain := design.get("stiffness"):
@@ -35,12 +33,24 @@ def tiles(design: Mapping[str, Any], goal: str, measures: Measures) -> list[Tile
     return found
 
 
+def _ratio(ratio: Mapping[str, Any], goal: str, measures: Measures) -> list[Tile]:
+    """What the chosen train gives, unless that is the objective; the best ratio without gears."""
+    made = []
+    if (chosen := ratio.get("chosen")) and not ratio["name"].endswith(goal):
+        worse = f"{chosen['loss_percent']:.3g} % worse than the best ratio, no gears"
+        value = amount(chosen["value"], ratio["unit"], measures)
+        made.append(Tile(f"{ratio['name']} of the train", value, worse))
+    value = amount(ratio["value"], ratio["unit"], measures)
+    best = number(float(ratio["total_ratio"]))
+    return [*made, Tile("best total ratio", best, f"{ratio['name']} {value}")]
+
+
 def _train(train: Mapping[str, Any], goal: str, measures: Measures) -> list[Tile]:
     error = train.get("ratio_error_percent")
     off = "" if error is None else f", {error:+.3f} %"
     teeth = ", ".join(f"{s['pinion_teeth']}/{s['wheel_teeth']}" for s in train["stages"])
     made = [Tile("ratio of the train", number(float(train["ratio"])), f"{teeth}{off}")]
-    if goal != "error":
+    if goal != "error" and "error_deg" in train:
         angle = train["error_deg"]
         made.append(Tile("error at the output", degrees(angle), arc_minutes(angle)))
     if goal != "inertia" and "inertia_kg_m2" in train:

@@ -25,10 +25,13 @@ def section(result: Result, measures: Measures) -> Section | None:
         unit = parted(key)[1]
         totals.append([heading(key, measures), measures.of(value, unit) if unit else value])
     words = [_sector(found["sector"])] if found.get("sector", 1.0) < 1.0 else []
-    words.append(
-        f"The error of {degrees(found['error_deg'])} ({arc_minutes(found['error_deg'])}) is the "
-        "worst case of backlash and pitch at the output, inertia is seen at the motor."
-    )
+    if "error_deg" in found:
+        words.append(
+            f"The error of {degrees(found['error_deg'])} ({arc_minutes(found['error_deg'])}) is "
+            "the worst case of backlash and pitch at the output."
+        )
+    if "inertia_kg_m2" in found:
+        words.append("Inertia is seen at the motor.")
     known = all("face_width_mm" in stage for stage in stages)
     drawn = train_views.views(stages, measures) if known and "box" not in result.design else ()
     if drawn:
