@@ -79,6 +79,9 @@ GROUPS = {  # heading: {file: what it shows, in a line}
         "servo_axis": "A turntable on a motor of a data sheet, every table in use.",
         "servo_gimbal_ratio": "The best ratio with friction, and how little 48 loses.",
         "servo_gimbal_move": "A move from rest to rest, at the motor's speed limit.",
+        "servo_gimbal_fast": "Ratio and train together for the largest acceleration; no errors "
+        "and no shaft asked for.",
+        "servo_gimbal_quick": "Ratio and train together for the quickest move, accurate enough.",
         "servo_gimbal_swing": "A sine with the least rms torque.",
         "servo_gimbal_light": "The least mass instead of the least inertia.",
         "servo_gimbal_fine": "Only trains that fit the box are chosen.",
@@ -145,8 +148,8 @@ def _of_drive(file: Mapping[str, Any]) -> str:
 
 def _of_servo(file: Mapping[str, Any]) -> str:
     if "train" in file:
-        found: str = file["train"].get("minimise", "inertia")
-        return found
+        train: dict[str, str] = file["train"]
+        return "inverse_acceleration" if "maximise" in train else train.get("minimise", "inertia")
     if "duty" not in file:
         return "cost"
     names = {"move": "move_time", "swing": "rms_torque"}

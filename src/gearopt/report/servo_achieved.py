@@ -42,7 +42,7 @@ def best_words(found: Mapping[str, Any], measures: Measures = METRIC) -> list[st
     """The best total ratio, and what the given one loses."""
     unit, ratio = found["unit"], number(float(found["total_ratio"]))
     best = DUTIES.get(found["duty"], "Best")
-    without = ", with gears of no inertia" if found.get("chosen") else ""
+    without = ", if gears had no inertia" if found.get("chosen") else ""
     words = [
         f"{best} {found['name']}: {amount(found['value'], unit, measures)} at a total ratio "
         f"of {ratio}{without}."

@@ -13,6 +13,7 @@ from gearopt.formulations.split.core import (
 )
 from gearopt.formulations.split.exact import feasible, trains
 from gearopt.formulations.split.front import unbeaten
+from gearopt.formulations.split.order import in_order
 from gearopt.formulations.split.relaxation import relaxation
 from gearopt.formulations.split.staged import staged
 from gearopt.formulations.split.stiff import StiffTrain, stiff
@@ -26,6 +27,7 @@ __all__ = [
     "core",
     "feasible",
     "first_ratio",
+    "in_order",
     "lightest_stage_ratio",
     "problem",
     "relaxation",

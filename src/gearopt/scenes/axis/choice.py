@@ -5,7 +5,6 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
-from gearopt.errors import SolveError
 from gearopt.formulations import servo_box, split
 from gearopt.formulations.ratio.duty import UNITS
 from gearopt.optimise.explaining.repair import Clock
@@ -59,7 +58,8 @@ def posed(scene: Scene, boxed: bool = True) -> Problem:
             if apart and found.x is not None and not _keeps(scene, found.x, boxed):
                 clock = Clock(budget)
                 try:
-                    counts, found = found.proof, _in_order(scene, base, boxed, clock, watch)
+                    best = float(base.batch(found.x[None]).F[0, 0])
+                    counts, found = found.proof, _in_order(scene, base, boxed, best, clock, watch)
                     found = _counted(found, counts, apart)
                 except TimeoutError as early:
                     found = Outcome(None, finished=False, message=str(early))
@@ -100,46 +100,52 @@ def _counted(found: Outcome, proof: Mapping[str, Any] | None, apart: tuple[str, 
 
 
 def _in_order(
-    scene: Scene, base: Problem, boxed: bool, clock: Clock, watch: Watch | None
+    scene: Scene, base: Problem, boxed: bool, best: float, clock: Clock, watch: Watch | None
 ) -> Outcome:
-    """All feasible trains, the best first, until one is stiff and fits; TimeoutError if late."""
-    points = _feasible(scene, base)
-    if points is None:
-        raise SolveError(
-            "there are too many feasible trains to hold them to stiffness or box one by one: "
-            "narrow pinion_teeth, modules or error in the file"
-        )
-    values = base.batch(points).F[:, 0]
-    order = values.argsort(kind="stable")
-    least = scene.least_stiffness
-    if least is not None:
-        order = order[output_stiffness(scene, points[order].T) >= least]
-    stiff, place = len(order), 0
+    """All feasible trains, the best first, until one is stiff and fits; TimeoutError if late.
 
-    def boxes() -> Iterator[servo_box.ServoBox]:
-        for count, k in enumerate(order):
-            event = Event(clock.seconds, count)
-            if clock.over or (watch is not None and watch(event) is False):
-                raise TimeoutError(f"stopped after {count:,} of {stiff:,} trains did not fit")
-            yield box_of(scene, points[k])
+    best: the objective of the best train, whether it is stiff and fits or not.
+    """
+    assert scene.train is not None
+    least, looked, stiff = scene.least_stiffness, 0, 0
+    asked = ("is stiff enough",) * (least is not None) + ("fits the box",) * boxed
 
-    if boxed:
-        found = servo_box.first_that_fits(boxes())
-        place = stiff if found is None else found[0]
-    proof: dict[str, Any] = {
+    def check(tried: int = 0) -> None:
+        count = looked + tried
+        event = Event(clock.seconds, count)
+        if clock.over or (watch is not None and watch(event) is False):
+            none = f"none of which {' and '.join(asked)}"
+            raise TimeoutError(f"stopped after {count:,} trains, {none}")
+
+    def boxes(points: Array) -> Iterator[servo_box.ServoBox]:
+        for tried, point in enumerate(points):
+            check(tried)
+            yield box_of(scene, point)
+
+    for lot in split.in_order(scene.servo_train(), scene.train.goal, best, check):
+        points = lot if least is None else lot[output_stiffness(scene, lot.T) >= least]
+        found = servo_box.first_that_fits(boxes(points)) if boxed else (0, None)
+        if found is not None and len(points):
+            point = points[found[0]]
+            bound = float(base.batch(point[None]).F[0, 0]) * (1.0 - ROUNDING)
+            count = looked + len(lot)
+            proof = _looked(count, None if least is None else stiff + len(points))
+            return Outcome(point, bound=bound, proof=proof, evaluations=count)
+        looked, stiff = looked + len(lot), stiff + len(points)
+    what = "the box" if stiff else "the stiffness that is asked for"
+    text = f"none of the {looked:,} trains that keep all other limits keeps {what}"
+    proof = _looked(looked, None if least is None else stiff)
+    return Outcome(None, infeasible=True, proof=proof, evaluations=looked, message=text)
+
+
+def _looked(count: int, stiff: int | None) -> dict[str, Any]:
+    """How an order of trains is proven; stiff: how many of them are, where that is asked for."""
+    found: dict[str, Any] = {
         "method": "exhausted",
         "arithmetic": "ratios, tips and bore in whole numbers; the rest in double",
-        "trains_looked_at": len(points),
+        "trains_looked_at": count,
     }
-    if least is not None:
-        proof["trains_stiff_enough"] = stiff
-    if place >= stiff:
-        what = "the box" if stiff else "the stiffness that is asked for"
-        text = f"none of the {len(points):,} trains that keep all other limits keeps {what}"
-        return Outcome(None, infeasible=True, proof=proof, evaluations=len(points), message=text)
-    value = float(values[order[place]])
-    bound = value * (1.0 - ROUNDING)
-    return Outcome(points[order[place]], bound=bound, proof=proof, evaluations=len(points))
+    return found if stiff is None else found | {"trains_stiff_enough": stiff}
 
 
 def _feasible(scene: Scene, posed: Problem) -> Array | None:

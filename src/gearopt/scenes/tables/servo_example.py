@@ -14,7 +14,7 @@ friction = "0.003 N m"
 inertia = "1.98e-2 kg m^2"
 friction = "4.3 kgf cm"
 
-[duty]                         # motor, load and duty: the best total ratio
+[duty]                         # motor, load, duty: the best total ratio, what the train achieves
 motion = "acceleration"        # or: move, with angle; swing, with amplitude and frequency
 
 [train]                        # two stages: teeth and modules, proven
@@ -29,9 +29,9 @@ second_pinion_diameter = "11.5 mm"
 wheel_tip_diameters = ["80 mm", "106 mm"]
 output_torque = "2.4 N m"
 bending_stress = "150 MPa"
-minimise = "inertia"           # or mass, error
+minimise = "inertia"           # or mass, error, move_time; or maximise = "acceleration"
 
-[shaft]                        # between the stages
+[shaft]                        # between the stages; optional, as all below
 diameter = "8 mm"
 length = "50 mm"
 

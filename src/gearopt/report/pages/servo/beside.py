@@ -21,7 +21,7 @@ def section(result: Result, measures: Measures) -> Section | None:
         return None
     words = [
         given_teeth(result.report),
-        "Real-valued bound: no train is below it, even with real-valued teeth and modules.",
+        "Real-valued bound: no train is better, even with real-valued teeth and modules.",
     ]
     table = Table("chosen and given", ["", *WHOSE.values()], rows)
     return Section("The given train", words=words, tables=(table,), half=True)

@@ -17,6 +17,7 @@ from gearopt.report.servo_achieved import (
 )
 from gearopt.report.words import number
 
+WITH_TRAIN = "with the chosen train's inertia"
 TICKS = (1.0, 2.0, 5.0)  # of a decade
 MARKS = (  # of what is judged beside the best ratio: colour and symbol
     ("chosen", "--series-3", "diamond"),
@@ -33,11 +34,15 @@ def section(result: Result, measures: Measures) -> Section | None:
     unit = measures.unit(found["unit"])
     ratios = found["curve"]["total_ratio"]
     values = [measures.of(v, found["unit"]) for v in found["curve"]["value"]]
+    heads, columns = ["total ratio", f"{found['name']} [{unit}]"], [ratios, values]
     traces = [_line(found["name"], ratios, values, unit, "solid", "--series-1")]
     if with_train := found["curve"].get("value_with_train"):
         less = [None if v is None else measures.of(v, found["unit"]) for v in with_train]
-        name = "with the chosen train's inertia"
-        traces.append(_line(name, ratios, less, unit, "dash", "--series-3"))
+        traces = [
+            _line("no gears", ratios, values, unit, "solid", "--series-1", True),
+            _line(WITH_TRAIN, ratios, less, unit, "dash", "--series-3", True),
+        ]
+        heads, columns = [*heads, f"{WITH_TRAIN} [{unit}]"], [*columns, less]
     traces.append(_mark("best", found, found, measures, "--series-2", "star", 14))
     for who, colour, symbol in MARKS:
         if one := found.get(who):
@@ -52,8 +57,7 @@ def section(result: Result, measures: Measures) -> Section | None:
     words = best_words(found, measures)
     words.append(_flat(found))
     words += train_words(result.report, found, measures)
-    heads = ["total ratio", f"{found['name']} [{unit}]"]
-    table = Table("ratio curve", heads, list(zip(ratios, values, strict=True)), folded=True)
+    table = Table("ratio curve", heads, list(zip(*columns, strict=True)), folded=True)
     tables = [*_achieved(found, measures), table]
     figures = (Figure(traces, plot, caption),)
     if len(tables) > 1:
@@ -75,7 +79,16 @@ def _achieved(found: Any, measures: Measures) -> list[Table]:
     return [Table("motor and load", [head.replace(LINE, " ") for head in heads], cells)]
 
 
-def _line(name: str, ratios: Any, values: Any, unit: str, dash: str, colour: str) -> dict[str, Any]:
+def _line(
+    name: str,
+    ratios: Any,
+    values: Any,
+    unit: str,
+    dash: str,
+    colour: str,
+    named: bool = False,
+) -> dict[str, Any]:
+    """A curve; named: in the legend too."""
     return {
         "type": "scatter",
         "mode": "lines",
@@ -84,7 +97,7 @@ def _line(name: str, ratios: Any, values: Any, unit: str, dash: str, colour: str
         "y": values,
         "hovertemplate": f"ratio %{{x:.5g}}: %{{y:.5g}} {unit}<extra></extra>",
         "line": {"color": colour, "width": 2.2, "simplify": False, "dash": dash},
-        "showlegend": dash != "solid",
+        "showlegend": named,
     }
 
 

@@ -42,7 +42,8 @@ def _ratio(ratio: Mapping[str, Any], goal: str, measures: Measures) -> list[Tile
         made.append(Tile(f"{ratio['name']} of the train", value, worse))
     value = amount(ratio["value"], ratio["unit"], measures)
     best = number(float(ratio["total_ratio"]))
-    return [*made, Tile("best total ratio", best, f"{ratio['name']} {value}")]
+    without = ", no gears" if ratio.get("chosen") else ""
+    return [*made, Tile("best total ratio", best, f"{ratio['name']} {value}{without}")]
 
 
 def _train(train: Mapping[str, Any], goal: str, measures: Measures) -> list[Tile]:
