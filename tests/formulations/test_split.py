@@ -22,6 +22,7 @@ from gearopt.formulations.split import (
     unbeaten,
 )
 from gearopt.formulations.split.exact import KERNEL
+from gearopt.formulations.split.front import _one_by_one
 from gearopt.formulations.split.numbers import numbers
 from gearopt.formulations.split.train import OBJECTIVES, train_error
 from gearopt.optimise import tape
@@ -277,6 +278,17 @@ def test_unbeaten_rows_are_those_of_a_look_at_all_pairs(seed):
     best = [row for row in unique if not ((unique <= row).all(1) & (unique < row).any(1)).any()]
     found = worth[unbeaten(worth)]
     assert np.array_equal(found[np.lexsort(found.T[::-1])], np.array(best))
+
+
+def test_many_rows_are_thinned_to_the_same_unbeaten_ones():
+    """A row is dropped early only where another beats it; of equal rows the first one stays."""
+    rng = np.random.default_rng(9)
+    worth = np.exp(rng.normal(size=(20_000, 3)))
+    worth[::3] = np.round(worth[::3])
+    worth[5000:6000] = worth[:1000]
+    assert unbeaten(worth) == _one_by_one(worth)
+    pairs = np.column_stack([worth[:, :2], np.zeros(len(worth))])
+    assert unbeaten(worth[:, :2]) == _one_by_one(pairs)
 
 
 def test_a_run_stops_when_told():

@@ -65,7 +65,7 @@ def _goes_on(clock: float, looked: int, best: float, budget: Budget, watch: Watc
 def _proof(looked: int, feasible: int | None, done: bool) -> dict[str, Any]:
     found: dict[str, Any] = {
         "method": "exhausted" if done else "enumeration, stopped early",
-        "arithmetic": "ratios, tips and bore in whole numbers; error and stress in double",
+        "arithmetic": "ratios, tips and bore in whole numbers; the rest in double",
         "trains_looked_at": looked,
     }
     return found if feasible is None else {**found, "feasible_trains": feasible}
@@ -94,7 +94,7 @@ def point(given: Numbers, row: Any) -> Array:
     return np.array([z1, z3, z2, z4, given.module[i], given.module[j]], float)
 
 
-def feasible(train: ServoTrain, moved: bool = False, most: int = 3_000_000) -> Array | None:
+def feasible(train: ServoTrain, moved: bool = False, most: int = 1_000_000) -> Array | None:
     """All feasible trains as points of `split.problem`, (trains, 6); None for more than `most`.
 
     moved: they keep the speed limit of the duty's motor too.

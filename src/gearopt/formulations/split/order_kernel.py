@@ -3,7 +3,7 @@
 from numba import njit
 
 from gearopt.formulations.split import duty_kernel
-from gearopt.formulations.split.teeth_kernel import ALLOWANCE, promise, sound, worth
+from gearopt.formulations.split.teeth_kernel import ALLOWANCE, possible, promise, sound, worth
 
 promise_of_duty = duty_kernel.promise
 
@@ -34,7 +34,7 @@ def between(s, goal, k, above, most, rows):
                     value = worth(s, goal, m1, z1, z2, m2, z3, z4)
                     if not above < value <= most:
                         continue
-                    if goal > 2 and not value <= s.duty[11] * ALLOWANCE:
+                    if goal > 2 and not possible(s.duty, value):
                         continue
                     if not sound(s, m1, z1, z2, m2, z3, z4):
                         continue

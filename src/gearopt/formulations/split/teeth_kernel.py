@@ -48,6 +48,12 @@ def moved(duty, ratio, gears):
 
 
 @njit(cache=True)
+def possible(duty, value):
+    """Whether the load moves at all, and within the rms torque of the motor."""
+    return math.isfinite(value) and value <= duty[11] * ALLOWANCE
+
+
+@njit(cache=True)
 def sound(s, m1, z1, z2, m2, z3, z4):
     """Whether a train keeps the limits of error and of both pinions' stress."""
     d2, d4 = m1 * z2, m2 * z4
@@ -81,7 +87,7 @@ def every(s, goal, first, last, best, found):
                         if not sound(s, s.module[i], z1, z2, s.module[j], z3, z4):
                             continue
                         value = worth(s, goal, s.module[i], z1, z2, s.module[j], z3, z4)
-                        if goal > 2 and not value <= s.duty[11] * ALLOWANCE:
+                        if goal > 2 and not possible(s.duty, value):
                             continue
                         feasible += 1
                         if value < best:

@@ -150,12 +150,17 @@ def _looked(count: int, stiff: int | None) -> dict[str, Any]:
 
 def _feasible(scene: Scene, posed: Problem) -> Array | None:
     """All trains that keep every limit but stiffness and box; None where they are too many."""
+    import numpy as np
+
     assert scene.train is not None
-    moved = scene.train.goal in UNITS
-    points = split.feasible(scene.servo_train(), moved)
-    if points is None or not moved or len(points) == 0:
+    moved, train = scene.train.goal in UNITS, scene.servo_train()
+    points = split.feasible(train, moved)
+    if points is None or not moved or train.duty is None:
         return points
-    return points[(posed.batch(points).G <= 1.0 + ROUNDING).all(1)]
+    z1, z3, z2, z4, *_ = points.T
+    used = train.duty.limits(z2 * z4 / (z1 * z3), posed.batch(points).F[:, 0])
+    kept = [np.broadcast_to(limit, len(points)) <= 1.0 + ROUNDING for limit in used.values()]
+    return points[np.all(kept, axis=0)] if kept else points
 
 
 def weighed(scene: Scene) -> tuple[str, ...]:
