@@ -22,7 +22,7 @@ GEARS = 'module = "0.5 mm"\npinion_teeth = 20\nwheel_teeth = 120'
 GIVEN = EXAMPLE.replace("[[mesh]]", f"[[mesh]]\n{GEARS}")
 ALONE = ("gearopt", "kind", "title", "mesh", "accuracy", "tolerances", "cost", "budget")
 LONE = dump({k: v for k, v in parse(GIVEN).items() if k in ALONE})
-MOVE = EXAMPLE.replace('"acceleration"', '"move"\nangle = "90 deg"')
+MOVE = EXAMPLE.replace('motion = "acceleration"', 'motion = "move"\nangle = "90 deg"')
 BASES = {"example": EXAMPLE, "given": GIVEN, "lone": LONE, "move": MOVE}
 
 

@@ -475,7 +475,12 @@ REFUSED = [  # edits, dropped, key, words
     ([], [("mesh", 1)], "mesh", "each of the two stages"),
     ([], [("mesh",)], "mesh", "needs one a stage"),
     ([], [("shaft",)], "shaft", "twists"),
-    ([(("train", "minimise"), "move_time")], [], "duty.motion", 'needs motion = "move"'),
+    (
+        [(("train", "minimise"), "move_time")],
+        [],
+        "duty.motion",
+        'does not suit minimise = "move_time" of [train]',
+    ),
     ([(("train", "maximise"), "acceleration")], [], "train.minimise", "beside maximise"),
     (
         [(("train", "minimise"), "rms_torque")],

@@ -7,6 +7,7 @@ from gearopt.optimise.result import Result
 from gearopt.scenes.axis.achieved import candidates, why_not
 from gearopt.scenes.explaining.undercut import undercut
 from gearopt.scenes.tables.servo import Scene
+from gearopt.scenes.tables.servo_train import Train
 
 SLOWEST = "acceleration"  # what nobody wants least
 FRICTION = {
@@ -52,7 +53,7 @@ def _of_train(scene: Scene) -> list[str]:
     assert scene.train is not None
     found = [
         "External spur gears without profile shift, solid discs of one face width; addendum 1 m.",
-        f"The last wheel is {100.0 * float(scene.train.sector):g} % of a disc.",
+        *_sector(scene.train),
         "Bending stress after Lewis at the tip of one tooth, form factor pi (0.154 - 0.912/z) of "
         "full-depth teeth of 20 degrees (up to 8 % above tables, so that stresses may be that much "
         "higher): no dynamic, load distribution or notch factor, and no contact stress. It is no "
@@ -72,6 +73,12 @@ def _of_train(scene: Scene) -> list[str]:
             "its depth is not checked. Lists and plots of other trains leave the box aside."
         )
     return found
+
+
+def _sector(train: Train) -> tuple[str, ...]:
+    """What part of a disc the last wheel is, where it is no whole one."""
+    share = 100.0 * float(train.sector)
+    return () if share == 100.0 else (f"The last wheel is {share:g} % of a disc.",)
 
 
 def _counted(scene: Scene) -> str:

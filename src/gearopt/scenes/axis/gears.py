@@ -122,4 +122,5 @@ def described(scene: Scene, gears: Gears) -> dict[str, Any]:
     if scene.sources:
         error = sum(s.tolerance * gears.sensitivity(s) for s in scene.sources)
         found["error_deg"] = math.degrees(error)
-    return found if table is None else found | {"sector": float(table.sector)}
+    part = {} if table is None or table.sector == 1 else {"sector": float(table.sector)}
+    return found | part

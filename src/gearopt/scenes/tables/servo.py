@@ -117,7 +117,8 @@ class Scene(Table):
     def _check_aim(self, train: Train) -> None:
         """What the train is chosen for is known: an error of deviations, a motion of [duty]."""
         key = "minimise" if train.maximise is None else "maximise"
-        needs = f'{key} = "{train.aim}" needs'
+        aim = f'{key} = "{train.aim}"'
+        needs = f"{aim} needs"
         if train.goal == "error" and not self.sources:
             if not self.mesh:
                 raise refuse(f"is missing: {needs} one a stage", at=("mesh",))
@@ -128,8 +129,7 @@ class Scene(Table):
         if self.duty is None:
             raise refuse(f"is missing: {needs} it", at=("duty",))
         if self.duty.motion != motion:
-            rule = f'is "{self.duty.motion}": {needs} motion = "{motion}"'
-            raise refuse(rule, motion, ("duty", "motion"))
+            raise refuse(f"does not suit {aim} of [train]", motion, ("duty", "motion"))
 
     def _check_train(self) -> None:
         if self.train is None:
