@@ -11,7 +11,7 @@ from gearopt.optimise.explaining.explanation import Explanation
 from gearopt.optimise.result import Result
 from gearopt.report.influence_words import influence_rows, influence_words
 from gearopt.report.remedy_words import REMEDY_HEADS, remedy_words
-from gearopt.report.result_words import objective, title
+from gearopt.report.result_words import goal, title
 from gearopt.report.words import VERDICTS, amount, columns, limit_words
 
 
@@ -34,9 +34,9 @@ def remedies(found: Mapping[str, Any]) -> list[RenderableType]:
 def show(explanation: Explanation, console: Console) -> None:
     """Print the explanation of a possible request (an impossible one is shown by its result)."""
     result = explanation.result
-    name, unit = objective(result)
+    name, unit, reached, _, _ = goal(result)
     words, colour = VERDICTS[result.status]
-    value = amount(result.value, unit)
+    value = amount(reached, unit)
     console.print(
         Text.assemble((title(result), "bold"), f": {name} {value}, ", (words, f"bold {colour}"))
     )
