@@ -305,3 +305,17 @@ def test_files_that_ask_for_what_they_do_not_say_are_refused(edits, key):
     with pytest.raises(SceneError) as wrong:
         scene(FAST, **edits)
     assert wrong.value.key == key
+
+
+def test_a_box_that_no_train_keeps_is_told_once():
+    narrow = {
+        "width": "25 mm",
+        "height": "130 mm",
+        "motor_diameter": "24 mm",
+        "hub_diameter": "8 mm",
+    }
+    few = {"maximise": None, "minimise": "mass", "ratio": 48, "modules": ["0.5 mm"]}
+    few |= {"pinion_teeth": [20, 24]}
+    result = gearopt.solve(scene(FAST, space=narrow, train=few))
+    assert result.status == "infeasible"
+    assert " ".join(shown(result).split()).count("that keep all other limits keeps the box") == 1

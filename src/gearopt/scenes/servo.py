@@ -65,7 +65,7 @@ def solve(scene: Scene, ask: Ask) -> Result:
     if said := notes(scene, found.design, found.results):
         told["notes"] = said
     if answer.status == "infeasible" and scene.train is not None:
-        conflict, remedies, message = ways_out(scene, clock)
+        conflict, remedies, message = ways_out(scene, clock, answer.message)
         told["ways_out"] = {
             "conflict": list(conflict),
             "remedies": [asdict(r) for r in remedies],

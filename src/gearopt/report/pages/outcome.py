@@ -63,7 +63,7 @@ def ways_out(result: Result, measures: Measures) -> Section | None:
     if not found:
         return None
     why, rows, tried = remedy_words(found)
-    if result.message and not found["conflict"]:
+    if not found["conflict"] and result.message not in ("", found["message"]):
         why.insert(0, result.message)
     tables = [Table("ways out", REMEDY_HEADS, rows, words=True)] if rows else []
     return Section("Ways out", words=[*why, *tried], tables=tables)

@@ -46,7 +46,8 @@ def _blocks(result: Result, measures: Measures) -> list[RenderableType]:
         if prices := result.report.get("prices"):
             blocks += influences(prices, result)
     if "ways_out" in result.report:
-        if not result.report["ways_out"]["conflict"] and result.message:
+        ways = result.report["ways_out"]
+        if not ways["conflict"] and result.message not in ("", ways["message"]):
             blocks.append(Text(result.message))
         blocks += remedies(result.report["ways_out"])
     blocks.append(Text("\n".join(proof(result, measures))))

@@ -28,25 +28,30 @@ WIDER = tuple(Fraction(1, 10**k) for k in range(6, 0, -1))  # ratio tolerances t
 NAMED = 3  # sources of error that the message names
 
 
-def ways_out(scene: Scene, clock: Clock) -> tuple[tuple[str, ...], tuple[Remedy, ...], str]:
-    """Limits in conflict, remedies and a message for a train that is impossible."""
+def ways_out(
+    scene: Scene, clock: Clock, told: str = NO_TEETH
+) -> tuple[tuple[str, ...], tuple[Remedy, ...], str]:
+    """Limits in conflict, remedies and a message for a train that is impossible.
+
+    told: what the search said of it.
+    """
     asked = scene.accuracy.error
     assert scene.train is not None
-    if scene.train.goal in UNITS or asked is None:
+    if scene.train.goal in UNITS:
         still = _solved(_aiming(scene, "inertia"), clock)
         if still.status == "optimal":
             names, message = _of_duty(scene, clock)
             return names, (), message
-        if still.status == "infeasible" and asked is None:
-            names, message = _other(scene, still, clock)
-            return names, (), message
         if still.status != "infeasible":
             return (), (), "time ran out before it was known why"
-    assert asked is not None
+        told = still.message
+    if asked is None:
+        names, message = _other(scene, told, clock)
+        return names, (), message
     free = with_error(scene, units.parse(LOOSE, "angle"))
     least = _solved(_aiming(free, "error"), clock)
     if least.status == "infeasible":
-        names, message = _other(free, least, clock)
+        names, message = _other(free, least.message, clock)
         return names, (), f"it is not for the accuracy: {message}"
     if least.status != "optimal":
         return (), (), "time ran out before the least possible error was proven"
@@ -93,13 +98,16 @@ def _blamed(train: split.ServoTrain, clock: Clock, goal: str = "") -> tuple[str,
     return tuple(handle.name for handle in conflict(relaxed, handles(relaxed), clock))
 
 
-def _other(scene: Scene, least: Result, clock: Clock) -> tuple[tuple[str, ...], str]:
-    """What makes a train impossible whatever its error: limits in conflict, and a sentence."""
+def _other(scene: Scene, told: str, clock: Clock) -> tuple[tuple[str, ...], str]:
+    """What makes a train impossible whatever its error: limits in conflict, and a sentence.
+
+    told: what the search said.
+    """
     train = scene.servo_train()
     if names := _blamed(train, clock):
         return names, "real-valued teeth and modules do not keep all other limits either"
-    if least.message != NO_TEETH:  # it names the box, or the stiffness
-        return (), least.message
+    if told != NO_TEETH:  # it names the box, or the stiffness
+        return (), told
     for wider in WIDER:
         if wider <= train.tolerance:
             continue
