@@ -1,17 +1,22 @@
 """Ipopt through CasADi, on the form of a problem (logarithms of variables and proven rows).
 
+Wide logarithms are split up first (`epigraph`); y is then followed by the u of their epigraphs.
+
 Claims infeasibility only with the multipliers of the least-violation problem, which `certify`
 turns into a proof where the form is convex.
 """
 
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
 
 from gearopt.errors import SolveError
+from gearopt.optimise import tape
+from gearopt.optimise.epigraph import WIDE, Split, split
 from gearopt.optimise.form import Form, form
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Event, Outcome, Watch
@@ -53,27 +58,37 @@ class _Point:
 class _Run:
     """One run as its monitor sees it; it has state because casadi reports it step by step.
 
-    rows: number of inequality and of equality rows. best: the best feasible iterate so far. raised:
-    what the watcher raised, which casadi would print and swallow.
+    rows: number of inequality and of equality rows. values(y) -> F, and G and H together. best: the
+    best feasible iterate so far. raised: what the watcher raised, which casadi would print and
+    swallow.
     """
 
-    def __init__(self, rows: tuple[int, int], budget: Budget, watch: Watch | None, unit: Any):
-        self.rows, self.budget, self.watch, self.unit = rows, budget, watch, unit
-        self.clock, self.evaluations, self.stopped = time.perf_counter(), 0, False
+    def __init__(
+        self,
+        rows: tuple[int, int],
+        values: Callable[[Array], tuple[float, Array]],
+        clock: float,
+        budget: Budget,
+        watch: Watch | None,
+        unit: Callable[[float], float],
+    ):
+        self.rows, self.values, self.unit = rows, values, unit
+        self.clock, self.budget, self.watch = clock, budget, watch
+        self.evaluations, self.stopped = 0, False
         self.best: Array | None = None
         self.least = np.inf
         self.raised: BaseException | None = None
 
-    def note(self, y: Array, value: float, rows: Array) -> bool:
+    def note(self, y: Array) -> bool:
         """Take an iterate; whether the run goes on."""
         self.evaluations += 1
-        self.keep(y, value, rows)
+        self.keep(y)
         self.stopped = not self.goes_on()
         return not self.stopped
 
-    def keep(self, y: Array, value: float, rows: Array) -> None:
+    def keep(self, y: Array) -> None:
         """Remember a point that is feasible and lower than those before."""
-        count = self.rows[0]
+        count, (value, rows) = self.rows[0], self.values(y)
         worst = max(rows[:count].max(initial=0), np.abs(rows[count:]).max(initial=0))
         if worst <= ACCEPTED and value < self.least:
             self.least, self.best = value, y
@@ -109,6 +124,7 @@ def run(
     none of them is lower. SolveError for discrete variables. Ipopt is deterministic: the seed
     changes nothing.
     """
+    clock = time.perf_counter()
     for variable, name in problem.columns:
         if variable.discrete:
             raise SolveError(f"ipopt takes continuous variables only; {name} is discrete")
@@ -116,10 +132,11 @@ def run(
     lower, upper, guess = problem.bounds()
     y0 = shape.to_y(np.clip(guess if start is None else start, lower, upper))
     low, high = shape.to_y(lower), shape.to_y(upper)
-    solver, monitor = _built(problem, shape)
-    following = monitor.begin(budget, watch, shape.objective)
-    following.keep(y0, *_values(problem, shape, y0))
-    point = _ipopt(problem, solver, y0, low, high, monitor.rows)
+    rows = (shape.derivatives.numel_out(1), shape.derivatives.numel_out(2))
+    values = partial(_values, problem, shape)
+    following = _Run(rows, values, clock, budget, watch, shape.objective)
+    following.keep(y0)
+    point = _ipopt(problem, shape, y0, low, high, following)
     if not following.stopped and _violation(problem, shape, point.y) > STUCK:
         point, least = _least_violation(problem, shape, point, low, high, following)
         if least > STUCK and not following.stopped and following.best is None:
@@ -131,7 +148,7 @@ def run(
                 evaluations=following.evaluations,
                 message=f"Ipopt: {point.status}; the least violation found is {least:.3g}",
             )
-        point = _ipopt(problem, solver, point.y, low, high, monitor.rows)
+        point = _ipopt(problem, shape, point.y, low, high, following)
     if following.raised is not None:
         raise following.raised
     lost = _lost(problem, shape, point, following)
@@ -147,43 +164,76 @@ def run(
     )
 
 
+def _split(problem: Problem, shape: Form) -> Split:
+    key = ("split", id(shape))
+    if key not in problem.memo:
+        problem.memo[key] = split(shape, tape.kinds(problem))
+    found: Split = problem.memo[key]
+    return found
+
+
 def _built(problem: Problem, shape: Form) -> tuple[Any, Any]:
     """The solver of a form and its monitor, built once."""
     import casadi as ca
 
     key = ("ipopt", id(shape))
     if key not in problem.memo:
-        y, p, f, g, h = shape.expressions
-        monitor = _monitor_class()(y.numel(), g.numel(), h.numel())
-        options = {f"ipopt.{k}": v for k, v in OPTIONS.items()}
-        options |= {
-            "print_time": False,
-            "iteration_callback": monitor,
-            "error_on_fail": False,
-            "show_eval_warnings": False,
-        }
-        nlp = {"x": y, "p": p, "f": f, "g": ca.vertcat(g, h)}
-        problem.memo[key] = ca.nlpsol("ipopt", "ipopt", nlp, options), monitor
+        parts, size = _split(problem, shape), shape.derivatives.numel_in(0)
+        rows = ca.vertcat(parts.inequalities, parts.equalities, parts.levels)
+        problem.memo[key] = _solver(parts.z, parts.p, parts.objective, rows, size)
     found: tuple[Any, Any] = problem.memo[key]
     return found
 
 
+def _solver(z: Any, p: Any, f: Any, g: Any, size: int) -> tuple[Any, Any]:
+    """Ipopt for a program in z, and its monitor, which is told the first `size` of z."""
+    import casadi as ca
+
+    monitor = _monitor_class()(z.numel(), g.numel(), size)
+    options = {f"ipopt.{k}": v for k, v in OPTIONS.items()}
+    options |= {
+        "print_time": False,
+        "iteration_callback": monitor,
+        "error_on_fail": False,
+        "show_eval_warnings": False,
+    }
+    if size > WIDE:
+        options |= _dense_hessian(z, p, f, g)
+    return ca.nlpsol("ipopt", "ipopt", {"x": z, "p": p, "f": f, "g": g}, options), monitor
+
+
+def _dense_hessian(z: Any, p: Any, f: Any, g: Any) -> dict[str, Any]:
+    """The option that spares casadi the colouring of a dense Hessian, which takes n^3 steps."""
+    import casadi as ca
+
+    given = [z, p, type(z).sym("lam_f"), type(z).sym("lam_g", g.numel())]
+    slope = ca.gradient(given[2] * f + ca.dot(given[3], g), z)
+    if ca.Function("slope", given, [slope]).jac_sparsity(0, 0).nnz() <= WIDE * z.numel():
+        return {}
+    names = ["x", "p", "lam_f", "lam_g"], ["triu_hess_gamma_x_x"]
+    return {"hess_lag": ca.Function("hessian", given, [ca.triu(ca.jacobian(slope, z))], *names)}
+
+
 def _ipopt(
-    problem: Problem, solver: Any, y0: Array, low: Array, high: Array, rows: tuple[int, int]
+    problem: Problem, shape: Form, y0: Array, low: Array, high: Array, following: _Run
 ) -> _Point:
-    m_g, m_h = rows
-    zero = np.zeros(m_h)
+    solver, monitor = _built(problem, shape)
+    monitor.follow = following.note
+    m_g, m_h = following.rows
+    levels = np.array(_split(problem, shape).start(y0, problem.parameter_values())).ravel()
+    free = np.full(len(levels), np.inf)
     found = solver(
-        x0=y0,
+        x0=np.concatenate([y0, levels]),
         p=problem.parameter_values(),
-        lbx=low,
-        ubx=high,
-        lbg=np.concatenate([np.full(m_g, -np.inf), zero]),
-        ubg=np.zeros(m_g + m_h),
+        lbx=np.concatenate([low, -free]),
+        ubx=np.concatenate([high, free]),
+        lbg=np.concatenate([np.full(m_g, -np.inf), np.zeros(m_h), -free]),
+        ubg=0.0,
     )
     lam = np.array(found["lam_g"]).ravel()
     status = str(solver.stats()["return_status"])
-    return _Point(np.array(found["x"]).ravel(), lam[:m_g], lam[m_g:], status)
+    point = np.array(found["x"]).ravel()[: len(y0)]
+    return _Point(point, lam[:m_g], lam[m_g : m_g + m_h], status)
 
 
 def _values(problem: Problem, shape: Form, y: Array) -> tuple[float, Array]:
@@ -225,56 +275,51 @@ def _least_violation(
     """
     import casadi as ca
 
-    key = ("ipopt least violation", id(shape))
-    y, p, _, g, h = shape.expressions
-    m_g, m_h = g.numel(), h.numel()
+    key, size = ("ipopt least violation", id(shape)), len(point.y)
+    parts = _split(problem, shape)
+    m_g, m_h = outer.rows
     if key not in problem.memo:
-        t = type(y).sym("t")
-        rows = ca.vertcat(g - t, h - t, -h - t)
-        options = {f"ipopt.{k}": v for k, v in OPTIONS.items()}
-        monitor = _monitor_class()(y.numel() + 1, rows.numel(), 0)
-        options |= {
-            "print_time": False,
-            "iteration_callback": monitor,
-            "error_on_fail": False,
-            "show_eval_warnings": False,
-        }
-        nlp = {"x": ca.vertcat(y, t), "p": p, "f": t, "g": rows}
-        problem.memo[key] = ca.nlpsol("least_violation", "ipopt", nlp, options), monitor
+        t, g, h = type(parts.z).sym("t"), parts.inequalities, parts.equalities
+        rows = ca.vertcat(g - t, h - t, -h - t, parts.levels)
+        problem.memo[key] = _solver(ca.vertcat(parts.z, t), parts.p, t, rows, size)
     solver, monitor = problem.memo[key]
-    inner = monitor.begin(Budget(), lambda event: outer.goes_on(), float)
+
+    def goes_on(_: Array) -> bool:
+        outer.stopped = outer.stopped or not outer.goes_on()
+        return not outer.stopped
+
+    monitor.follow = goes_on
     start = np.where(np.isfinite(point.y), point.y, 0.0)
+    levels = np.array(parts.start(start, problem.parameter_values())).ravel()
+    free = np.full(len(levels), np.inf)
     found = solver(
-        x0=np.append(start, 1.0),
+        x0=np.concatenate([start, levels, [1.0]]),
         p=problem.parameter_values(),
-        lbx=np.append(low, -1.0),
-        ubx=np.append(high, np.inf),
+        lbx=np.concatenate([low, -free, [-1.0]]),
+        ubx=np.concatenate([high, free, [np.inf]]),
         lbg=-np.inf,
         ubg=0.0,
     )
     z = np.array(found["x"]).ravel()
     lam = np.array(found["lam_g"]).ravel()
-    outer.stopped = outer.stopped or inner.stopped
-    lam_h = lam[m_g : m_g + m_h] - lam[m_g + m_h :]
-    return _Point(z[:-1], lam[:m_g], lam_h, point.status), float(z[-1])
+    lam_h = lam[m_g : m_g + m_h] - lam[m_g + m_h : m_g + 2 * m_h]
+    return _Point(z[:size], lam[:m_g], lam_h, point.status), float(z[-1])
 
 
 @cache
 def _monitor_class() -> Any:
-    """The class of casadi's iteration callback, around a `_Run` (casadi is imported late)."""
+    """The class of casadi's iteration callback (casadi is imported late)."""
     import casadi as ca
 
     class Monitor(ca.Callback):  # type: ignore[misc]
-        def __init__(self, n: int, m_g: int, m_h: int) -> None:
-            super().__init__()
-            self.sizes = {"f": 1, "x": n, "lam_x": n, "g": m_g + m_h, "lam_g": m_g + m_h}
-            self.rows = (m_g, m_h)
-            self.run = _Run(self.rows, Budget(), None, float)
-            self.construct("monitor", {})
+        """It has state because casadi calls it: follow(y) says whether the run goes on."""
 
-        def begin(self, budget: Budget, watch: Watch | None, unit: Any) -> _Run:
-            self.run = _Run(self.rows, budget, watch, unit)
-            return self.run
+        def __init__(self, n: int, m: int, size: int) -> None:
+            super().__init__()
+            self.sizes = {"f": 1, "x": n, "lam_x": n, "g": m, "lam_g": m}
+            self.size = size
+            self.follow: Callable[[Array], bool] = lambda y: True
+            self.construct("monitor", {})
 
         def get_n_in(self) -> int:
             return int(ca.nlpsol_n_out())
@@ -289,7 +334,7 @@ def _monitor_class() -> Any:
             return ca.Sparsity.dense(self.sizes.get(ca.nlpsol_out(i), 0), 1)
 
         def eval(self, arguments: Any) -> list[int]:
-            named = {ca.nlpsol_out(i): np.array(v).ravel() for i, v in enumerate(arguments)}
-            return [int(not self.run.note(named["x"], float(named["f"][0]), named["g"]))]
+            point = np.array(arguments[ca.nlpsol_out().index("x")]).ravel()
+            return [int(not self.follow(point[: self.size]))]
 
     return Monitor
