@@ -46,32 +46,27 @@ class _Pair(NamedTuple):
     exact: Any
 
 
-def split(shape: Form, found: Kinds) -> Split:
+def split(shape: Form, kinds: Kinds) -> Split:
     """The program of a form; without u where no logarithm is wide."""
     import casadi as ca
 
     y, p, f, g, h = shape.expressions
     read = ca.Function("read", [y, p], [f, g, h])
-    if not any(_widest(read.jac_sparsity(k, 0)) > WIDE for k in range(3)):
+    widths = [_widths(read.jac_sparsity(k, 0)) for k in range(3)]
+    if not any((found > WIDE).any() for found in widths):
         no = type(y)(0, 1)
         return Split(y, p, f, g, h, no, ca.Function("start", [y, p], [no]))
     y, p = ca.SX.sym("y", y.numel()), ca.SX.sym("p", p.numel())
     parts = read.expand().call([y, p])
     levels = _Levels(y)
     logs = (
-        [found.objective <= POSYNOMIAL],
-        [k <= POSYNOMIAL for k in found.inequalities],
-        [k <= MONOMIAL for k in found.equalities],
+        [kinds.objective <= POSYNOMIAL],
+        [k <= POSYNOMIAL for k in kinds.inequalities],
+        [k <= MONOMIAL for k in kinds.equalities],
     )
     objective, inequalities, equalities = (
-        ca.vertcat(
-            ca.SX(0, 1),
-            *(
-                levels.row(row) if log else row
-                for row, log in zip(ca.vertsplit(part) if part.numel() else [], which, strict=True)
-            ),
-        )
-        for part, which in zip(parts, logs, strict=True)
+        levels.rows_of(part, [log and n > WIDE for log, n in zip(which, wide, strict=True)])
+        for part, which, wide in zip(parts, logs, widths, strict=True)
     )
     return Split(
         ca.vertcat(y, *levels.symbols),
@@ -84,9 +79,9 @@ def split(shape: Form, found: Kinds) -> Split:
     )
 
 
-def _widest(sparsity: Any) -> int:
-    """The largest number of variables of a row."""
-    return int(np.bincount(sparsity.get_triplet()[0], minlength=1).max())
+def _widths(sparsity: Any) -> Any:
+    """Number of variables of every row."""
+    return np.bincount(np.array(sparsity.row(), int), minlength=sparsity.size1())
 
 
 class _Levels:
@@ -102,13 +97,18 @@ class _Levels:
         self.rows: list[Any] = []
         self.exact: list[Any] = []
         self._own = {s.element_hash() for s in ca.vertsplit(y)}
+        self._sums: dict[int, list[_Pair]] = {}  # split already, by node: other rows may share them
 
-    def row(self, row: Any) -> Any:
-        """A row of the form, split where it is the logarithm of something wide."""
+    def rows_of(self, part: Any, wide: list[bool]) -> Any:
+        """Rows of the form, those that are wide logarithms split."""
         import casadi as ca
 
-        wide = row.is_op(ca.OP_LOG) and self._width(row) > WIDE
-        return self._log(row.dep(0), 0).split if wide else row
+        rows = ca.vertsplit(part) if part.numel() else []
+        found = [
+            self._log(row.dep(0), 0).split if one and row.is_op(ca.OP_LOG) else row
+            for row, one in zip(rows, wide, strict=True)
+        ]
+        return ca.vertcat(ca.SX(0, 1), *found)
 
     def _width(self, expression: Any) -> int:
         """Number of variables of an expression."""
@@ -145,7 +145,10 @@ class _Levels:
         import casadi as ca
 
         terms, constant = [], ca.SX(0)
-        for term in _summands(expression):
+        for term in self._summands(expression):
+            if isinstance(term, _Pair):
+                terms.append(term)
+                continue
             width = self._width(term)
             if width > WIDE:
                 terms.append(self._above(self._log(term, depth + 1)))
@@ -157,26 +160,31 @@ class _Levels:
         while len(terms) > GROUP:
             groups = (terms[k : k + GROUP] for k in range(0, len(terms), GROUP))
             terms = [self._above(_log_of(group)) for group in groups]
+        self._sums[expression.element_hash()] = terms
         return _log_of(terms)
+
+    def _summands(self, expression: Any) -> list[Any]:
+        """The terms of a sum; of a sum inside it that is split already, its exp(u)."""
+        import casadi as ca
+
+        found, waiting = [], [expression]
+        while waiting:
+            one = waiting.pop()
+            if (node := one.element_hash()) in self._sums:
+                if len(self._sums[node]) > 1:
+                    self._sums[node] = [self._above(_log_of(self._sums[node]))]
+                found += self._sums[node]
+            elif one.is_op(ca.OP_ADD):
+                waiting += [one.dep(1), one.dep(0)]
+            else:
+                found.append(one)
+        return found
 
 
 def _log_of(terms: list[_Pair]) -> _Pair:
     import casadi as ca
 
     return _Pair(*(ca.log(ca.sum1(ca.vertcat(*column))) for column in zip(*terms, strict=True)))
-
-
-def _summands(expression: Any) -> list[Any]:
-    import casadi as ca
-
-    found, waiting = [], [expression]
-    while waiting:
-        one = waiting.pop()
-        if one.is_op(ca.OP_ADD):
-            waiting += [one.dep(1), one.dep(0)]
-        else:
-            found.append(one)
-    return found
 
 
 def _factors(expression: Any) -> list[tuple[Any, float]]:

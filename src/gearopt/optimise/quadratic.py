@@ -92,7 +92,8 @@ def _build(problem: Problem) -> Form:
     x = kind.sym("x", len(problem.columns))
     p = kind.sym("p", len(problem.parameter_values()))
     f, g, h = problem.traced().terms(x, p)
-    hessian = ca.Function("hessian", [x, p], [ca.hessian(f, x)[0]])(0, p)
+    full = ca.jacobian(ca.gradient(f, x), x)  # ca.hessian takes n^3 steps for a dense one
+    hessian = ca.Function("hessian", [x, p], [(full + full.T) / 2])(0, p)
     return assembled(
         (x, p, f, g - 1, h - 1),
         np.zeros(x.numel(), bool),
