@@ -4,6 +4,8 @@ Of the rows near their limit, those multipliers that leave the least gradient in
 are off their bounds; an active-set least squares with multipliers of inequalities >= 0.
 """
 
+from typing import Any
+
 import numpy as np
 
 from gearopt.optimise.form import Form
@@ -11,6 +13,9 @@ from gearopt.optimise.terms import Array
 
 NEAR = 1e-6  # a row this close to its limit, a variable this close to its bound, is active
 MOST = 2_000_000  # entries of the dense system; larger problems keep their method's multipliers
+SMALL = 100_000  # entries of the dense system, which takes milliseconds
+SPARSE = 0.05  # share of entries up to which a larger system is solved as a sparse one
+DAMPING, STEPS = 1e-11, 4  # of a sparse system; each step divides the damping's error by more
 
 
 def multipliers(
@@ -22,15 +27,15 @@ def multipliers(
         return None
     _, g, _, gradient, _ = (np.array(v).ravel() for v in shape.derivatives(y, p, no_g, no_h))
     active = np.flatnonzero(g >= -NEAR)
-    of_g, of_h = (np.array(j).reshape(-1, len(y)) for j in shape.jacobians(y, p))
-    rows = np.vstack([of_g[active], of_h])
+    rows = _rows(shape, y, p, active)
     free = (y > low + NEAR) & (y < high - NEAR)
+    columns = rows.T[free]
     count = len(active)
     keep = np.ones(count + len(no_h), bool)
     lam = np.zeros(len(keep))
     for _ in range(count + 1):
         lam[:] = 0.0
-        lam[keep] = np.linalg.lstsq(rows[keep][:, free].T, -gradient[free], rcond=None)[0]
+        lam[keep] = _least_squares(columns[:, keep], -gradient[free])
         wrong = keep[:count] & (lam[:count] < 0.0)
         if not wrong.any():
             break
@@ -38,3 +43,38 @@ def multipliers(
     lam_g = no_g.copy()
     lam_g[active] = np.maximum(lam[:count], 0.0)
     return lam_g, lam[count:]
+
+
+def _rows(shape: Form, y: Array, p: Array, active: Any) -> Any:
+    """Gradients of the active inequalities and of all equalities, a row each."""
+    of_g, of_h = shape.jacobians(y, p)
+    size = (len(active) + of_h.size1()) * len(y)
+    if size <= SMALL or of_g.nnz() + of_h.nnz() > SPARSE * size:
+        of_g, of_h = (np.array(j).reshape(-1, len(y)) for j in (of_g, of_h))
+        return np.vstack([of_g[active], of_h])
+    import scipy.sparse as sp
+
+    of_g, of_h = (j.sparse().reshape(-1, len(y)).tocsr() for j in (of_g, of_h))
+    return sp.vstack([of_g[active], of_h], format="csr")
+
+
+def _least_squares(columns: Any, target: Array) -> Array:
+    """The x of least |columns x - target|.
+
+    Sparse: of [[1, A], [A', -d]] (r, x) = (b, 0), which is regular whatever A is, with the damping
+    d taken out again step by step.
+    """
+    if isinstance(columns, np.ndarray):
+        found: Array = np.linalg.lstsq(columns, target, rcond=None)[0]
+        return found
+    import scipy.sparse as sp
+    from scipy.sparse.linalg import splu
+
+    size, count = columns.shape
+    damping = DAMPING * float(columns.multiply(columns).sum(axis=0).max() if count else 1.0)
+    corner = -max(damping, np.finfo(float).tiny) * sp.eye(count)
+    factors = splu(sp.bmat([[sp.eye(size), columns], [columns.T, corner]], format="csc"))
+    x = np.zeros(count)
+    for _ in range(STEPS):
+        x += factors.solve(np.concatenate([target - columns @ x, np.zeros(count)]))[size:]
+    return x
