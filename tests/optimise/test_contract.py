@@ -257,5 +257,5 @@ def test_an_undeclared_name_is_answered_with_the_declared_ones():
     problem = Problem(
         "typo", (Var("radius", "", 0.5, 2, 1.0),), (), lambda x, p: Terms({"f": x.radios})
     )
-    with pytest.raises(AttributeError, match="'radios' here; declared: radius"):
+    with pytest.raises(SolveError, match="'radios' here; declared: radius"):
         solve(problem)

@@ -65,8 +65,7 @@ def _least_squares(columns: Any, target: Array) -> Array:
     d taken out again step by step.
     """
     if isinstance(columns, np.ndarray):
-        found: Array = np.linalg.lstsq(columns, target, rcond=None)[0]
-        return found
+        return np.asarray(np.linalg.lstsq(columns, target, rcond=None)[0], float)
     import scipy.sparse as sp
     from scipy.sparse.linalg import splu
 

@@ -8,25 +8,22 @@ from collections import Counter
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from gearopt.errors import SolveError
+from gearopt.optimise.evaluation import at, terms_of
 from gearopt.optimise.terms import (
+    SECTIONS,
     Array,
-    Named,
     Number,
     Param,
     Repeat,
     Terms,
     Var,
-    checked,
     flat,
     flatten,
-    inequalities,
-    namespace,
     spread,
 )
 
@@ -68,7 +65,8 @@ class Problem:
 
     evaluate(x, p) -> Terms, in plain numpy text on scalars: x.name and p.name are scalars, or
     tuples of scalars for size > 1. methods: {name: run(problem, budget, seed, watch) -> Outcome},
-    the formulation's own exact algorithms.
+    the formulation's own exact algorithms. vectorised: the text also takes arrays (N,) of N points
+    for its scalars; where it does not say so, gearopt finds out whether it may (`evaluation`).
     """
 
     name: str
@@ -77,6 +75,7 @@ class Problem:
     evaluate: Callable[[Any, Any], Terms]
     repeats: tuple[Repeat, ...] = ()
     methods: Mapping[str, Callable[..., Any]] = field(default_factory=dict)
+    vectorised: bool = False
     memo: dict[Any, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
@@ -146,34 +145,32 @@ class Problem:
     def batch(self, points: Array) -> Batch:
         """Evaluate the text on points (N, n) with numpy."""
         points = np.asarray(points, float)
-        count = len(points)
-        p = namespace(self.parameters, list(self.parameter_values()))
-        shared = sum(v.size for v in self.variables)
-        x = namespace(self.variables, list(points[:, :shared].T))
-        terms = self.evaluate(x, p)
-        objectives = {name: np.broadcast_to(v, (count,)) for name, v in terms.minimise.items()}
-        blocks = [(flatten(terms), count, 1)]
-        report = {name: np.asarray(v) for name, v in flat(terms.report)}
-        start = shared
-        for r in self.repeats:
-            stop = start + r.count * r.width
-            own = points[:, start:stop].reshape(count, r.count, r.width)
-            both = namespace(self.variables, list(points[:, :shared].T[:, :, None]))
-            both.__dict__.update(vars(namespace(r.variables, list(np.moveaxis(own, 2, 0)))))
-            row = SimpleNamespace(**{k: np.asarray(v)[None, :] for k, v in r.data.items()})
-            found = r.evaluate(both, p, row)
+        if points.ndim != 2 or points.shape[1] != len(self.columns):
+            raise ValueError(
+                f"{self.name}: points are (N, {len(self.columns)}), not {points.shape}"
+            )
+        count, start = len(points), sum(v.size for v in self.variables)
+        shared, rows = points[:, :start], self.rows
+        objectives: dict[str, Array] = dict.fromkeys(rows.objectives, np.zeros(count))
+        blocks: list[Any] = []
+        report: dict[str, Array] = {}
+        for r in (None, *self.repeats):
+            width = r.count * r.width if r else 0
+            own = points[:, start : start + width].reshape(count, r.count if r else 1, -1)
+            found = terms_of(self, r, shared, own)
             for name, value in found.minimise.items():
-                total = np.broadcast_to(value, (count, r.count)).sum(axis=1)
-                objectives[name] = objectives.get(name, 0.0) + total
-            blocks.append((flatten(found), count, r.count))
-            report |= {f"{r.name}.{name}": np.asarray(v) for name, v in flat(found.report)}
-            start = stop
-        return Batch(
-            np.column_stack(list(objectives.values())),
-            np.concatenate([_matrix(b[0], n, m) for b, n, m in blocks], axis=1),
-            np.concatenate([_matrix(b[1], n, m) for b, n, m in blocks], axis=1),
-            report,
+                each = np.broadcast_to(value, (count, r.count) if r else (count,))
+                objectives[name] = objectives[name] + (each.sum(axis=1) if r else each)
+            blocks.append((flatten(found), count, r.count if r else 1))
+            prefix = f"{r.name}." if r else ""
+            report |= {f"{prefix}{name}": np.asarray(v) for name, v in flat(found.report)}
+            start += width
+        g, h = (
+            np.concatenate([_matrix(b[k], n, m) for b, n, m in blocks], axis=1) for k in range(2)
         )
+        if g.shape[1] != len(rows.inequalities) or h.shape[1] != len(rows.equalities):
+            raise SolveError(f"the text of {self.name} returns other rows at other parameters")
+        return Batch(np.column_stack(list(objectives.values())), g, h, report)
 
     @property
     def rows(self) -> Rows:
@@ -183,22 +180,35 @@ class Problem:
         found: Rows = self.memo["rows"]
         return found
 
+    def names(self, repeat: Repeat | None) -> dict[str, list[str]]:
+        """Names of all terms of a text, as it gives them at the guess."""
+        key = ("names", repeat and repeat.name)
+        if key not in self.memo:
+            own = _bounds(repeat.variables)[2] if repeat else np.empty(0)
+            terms = at(self, repeat, _bounds(self.variables)[2], own, 0)
+            self.memo[key] = {part: [n for n, _ in flat(getattr(terms, part))] for part in SECTIONS}
+        found: dict[str, list[str]] = self.memo[key]
+        return found
+
     def _read_rows(self) -> Rows:
-        p = namespace(self.parameters, list(self.parameter_values()))
-        x = namespace(self.variables, list(_bounds(self.variables)[2]))
-        terms = checked(self.evaluate(x, p), self.name)
-        objectives = dict(terms.minimise)
-        limits = [Row(name, kind) for name, _, kind in inequalities(terms)]
-        equal = [name for name, _ in flat(terms.equal)]
+        own = self.names(None)
+        objectives = list(own["minimise"])
+        limits = [Row(name, kind) for kind in ("limits", "defines") for name in own[kind]]
+        equal = list(own["equal"])
         for r in self.repeats:
-            both = Named(**vars(x))
-            both.__dict__.update(vars(namespace(r.variables, list(_bounds(r.variables)[2]))))
-            row = SimpleNamespace(**{k: float(v[0]) for k, v in r.data.items()})
-            found = checked(r.evaluate(both, p, row), f"{self.name}.{r.name}")
-            objectives |= found.minimise
+            own = self.names(r)
+            objectives += [name for name in own["minimise"] if name not in objectives]
             for k in range(1, r.count + 1):
-                limits += [Row(f"{r.name}.{n}[{k}]", kind) for n, _, kind in inequalities(found)]
-                equal += [f"{r.name}.{n}[{k}]" for n, _ in flat(found.equal)]
+                limits += [
+                    Row(f"{r.name}.{n}[{k}]", kind)
+                    for kind in ("limits", "defines")
+                    for n in own[kind]
+                ]
+                equal += [f"{r.name}.{n}[{k}]" for n in own["equal"]]
+        if not objectives:
+            raise SolveError(
+                f"problem {self.name} minimises nothing: Terms(minimise={{...}}) is empty"
+            )
         if twice := _twice([row.name for row in limits] + equal):
             raise SolveError(f"problem {self.name}: two rows are named {twice!r}")
         return Rows(tuple(objectives), tuple(limits), tuple(equal))

@@ -12,6 +12,7 @@ from gearopt.errors import SolveError
 
 Array = NDArray[np.float64]
 Number = float | tuple[float, ...]
+SECTIONS = ("minimise", "limits", "defines", "equal", "report")
 
 
 @dataclass(frozen=True)
@@ -162,20 +163,51 @@ def inequalities(terms: Terms) -> list[tuple[str, Any, str]]:
     ]
 
 
-def checked(terms: Any, where: str) -> Terms:
-    """The terms of a text at one point; SolveError says what a text must not return."""
+def checked(terms: Any, where: str, numbers: bool = False) -> Terms:
+    """The terms of a text with arrays as blocks; SolveError says what a text must not return.
+
+    numbers: the text was run on floats, so every term is a real number.
+    """
     if not isinstance(terms, Terms):
         raise SolveError(f"the text of {where} returns {type(terms).__name__}, not Terms(...)")
-    for block in ("minimise", "limits", "defines", "equal", "report"):
-        if not isinstance(getattr(terms, block), Mapping):
-            raise SolveError(f"{where}: {block} is not a dict of names and terms")
-        for name, value in flat(getattr(terms, block)):
-            if isinstance(value, bool | np.bool_):
-                raise SolveError(
-                    f"{where}: {block} {name} is a comparison; write a quotient that must not "
-                    "exceed 1, such as needed/allowed"
-                )
-    return terms
+    found: dict[str, dict[str, Any]] = {}
+    for part in SECTIONS:
+        block = getattr(terms, part)
+        if not isinstance(block, Mapping):
+            raise SolveError(f"{where}: {part} is not a dict of names and terms")
+        found[part] = {name: _block(value) for name, value in block.items()}
+        for name, value in flat(found[part]):
+            if not isinstance(name, str):
+                raise SolveError(f"{where}: {part} has the key {name!r}; write a name in quotes")
+            if wrong := _wrong(value, numbers):
+                raise SolveError(f"{where}: {part} {name} is {wrong}")
+    if blocks := [name for name, value in found["minimise"].items() if isinstance(value, tuple)]:
+        raise SolveError(f"{where}: the objective {blocks[0]} is a block; write one scalar")
+    return Terms(**found)
+
+
+def _block(value: Any) -> Any:
+    """A list or an array of one dimension as a tuple."""
+    if isinstance(value, np.ndarray) and value.ndim == 0:
+        return value[()]
+    return tuple(value) if isinstance(value, list) or np.ndim(_plain(value)) == 1 else value
+
+
+def _plain(value: Any) -> Any:
+    return value if isinstance(value, np.ndarray) else None
+
+
+def _wrong(value: Any, numbers: bool) -> str:
+    """What a term is that it must not be; "" for a scalar."""
+    if isinstance(value, bool | np.bool_):
+        return "a comparison; write a quotient that must not exceed 1, such as needed/allowed"
+    if isinstance(value, tuple | list | np.ndarray | Mapping | set):
+        return f"a {type(value).__name__} in a block or of several dimensions; write scalars"
+    if value is None or isinstance(value, str | complex | np.complexfloating):
+        return f"{value!r}, no real number"
+    if numbers and not isinstance(value, float | int | np.number):
+        return f"of type {type(value).__name__}; write a real number"
+    return ""
 
 
 def flatten(terms: Terms) -> tuple[list[Any], list[Any]]:

@@ -1,0 +1,176 @@
+"""What a text means: the numbers it gives on floats, one point at a time.
+
+Everything else must agree with that. A population is run through a text at once only where the text
+is proven elementwise: a `Scalar` passes through it, which knows operators and numpy's elementwise
+functions and refuses to be summed, sorted, asked by an `if` or made a number. Any other text is run
+point by point, which is as right and slower.
+"""
+
+import logging
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.lib.mixins import NDArrayOperatorsMixin
+
+from gearopt.errors import SolveError
+from gearopt.optimise.blame import blaming
+from gearopt.optimise.terms import SECTIONS, Array, Named, Repeat, Terms, checked, flat, namespace
+
+if TYPE_CHECKING:
+    from gearopt.optimise.problem import Problem
+
+logger = logging.getLogger("gearopt")
+ELEMENTWISE = (np.where, np.clip, np.round, np.select, np.zeros_like, np.ones_like, np.full_like)
+
+
+class Scalar(NDArrayOperatorsMixin):
+    """Stands for a scalar of a text; TypeError where it is used as anything but an element."""
+
+    def __array_ufunc__(self, function: Any, method: str, *inputs: Any, **more: Any) -> Any:
+        if method != "__call__" or more or function.signature is not None:
+            raise TypeError(f"{function.__name__}.{method} is not elementwise")
+        _need_scalars(inputs)
+        return Scalar() if function.nout == 1 else tuple(Scalar() for _ in range(function.nout))
+
+    def __array_function__(self, function: Any, types: Any, inputs: Any, more: Any) -> Any:
+        if function not in ELEMENTWISE:
+            raise TypeError(f"{function.__name__} is not known to be elementwise")
+        _need_scalars((*inputs, *more.values()))
+        return Scalar()
+
+    def __array__(self, *args: Any, **more: Any) -> Any:
+        raise TypeError("a scalar of the text in an array")
+
+    def __bool__(self) -> bool:
+        raise TypeError("an `if` on a scalar of the text")
+
+
+def _need_scalars(values: Any) -> None:
+    for value in values:
+        if isinstance(value, list):  # of np.select
+            _need_scalars(value)
+        elif not _is_scalar(value):
+            raise TypeError(f"a {type(value).__name__} among scalars of the text")
+
+
+def _is_scalar(value: Any) -> bool:
+    number = isinstance(value, Scalar | float | int | np.number | np.bool_)
+    return number or (isinstance(value, np.ndarray) and value.ndim == 0)
+
+
+def text_of(problem: "Problem", repeat: Repeat | None) -> tuple[Any, str]:
+    """The text of a problem or of one of its repeats, and what messages call it."""
+    if repeat is None:
+        return problem.evaluate, problem.name
+    return repeat.evaluate, f"{problem.name}.{repeat.name}"
+
+
+def called(
+    problem: "Problem",
+    repeat: Repeat | None,
+    shared: Any,
+    own: Any,
+    row: dict[str, Any],
+    parameters: Any = None,
+) -> Any:
+    """What a text returns for scalars of any kind: shared and own variables, data, parameters."""
+    x = namespace(problem.variables, list(shared))
+    given = problem.parameter_values() if parameters is None else parameters
+    p = namespace(problem.parameters, list(given))
+    if repeat is None:
+        return problem.evaluate(x, p)
+    x.__dict__.update(vars(namespace(repeat.variables, list(own))))
+    return repeat.evaluate(x, p, Named(**row))
+
+
+def at(problem: "Problem", repeat: Repeat | None, shared: Any, own: Any, row: int) -> Terms:
+    """The terms of a text on floats; SolveError says what is wrong with it."""
+    text, where = text_of(problem, repeat)
+    data = {k: np.float64(v[row]) for k, v in repeat.data.items()} if repeat else {}
+    with blaming(text, where, "evaluated"):
+        terms = called(problem, repeat, shared, own, data)
+    return checked(terms, where, numbers=True)
+
+
+def terms_of(problem: "Problem", repeat: Repeat | None, shared: Array, own: Array) -> Terms:
+    """The terms of N points: arrays (N,), those of a repeat (N, rows).
+
+    shared: (N, n); own: (N, rows, width), without entries where there is no repeat.
+    """
+    if not (problem.vectorised or elementwise(problem, repeat)):
+        return _one_by_one(problem, repeat, shared, own)
+    text, where = text_of(problem, repeat)
+    with blaming(text, where, "evaluated"):
+        if repeat is None:
+            found: Terms = called(problem, None, shared.T, (), {})
+        else:
+            data = {k: np.asarray(v)[None, :] for k, v in repeat.data.items()}
+            found = called(problem, repeat, shared.T[:, :, None], np.moveaxis(own, 2, 0), data)
+    return found
+
+
+def elementwise(problem: "Problem", repeat: Repeat | None) -> bool:
+    """Whether a text is proven to compute every point by itself, at the present parameters."""
+    key = ("elementwise", repeat and repeat.name, problem.parameter_values().tobytes())
+    if key not in problem.memo:
+        problem.memo[key] = reason = _obstacle(problem, repeat)
+        if reason and ("told", repeat and repeat.name) not in problem.memo:
+            problem.memo["told", repeat and repeat.name] = True
+            where = text_of(problem, repeat)[1]
+            logger.info("the text of %s is run point by point, which is slower: %s", where, reason)
+    return not problem.memo[key]
+
+
+def _obstacle(problem: "Problem", repeat: Repeat | None) -> str:
+    """What in a text is not elementwise; "" for nothing."""
+    shared, own = (
+        [Scalar() for v in variables for _ in range(v.size)]
+        for variables in (problem.variables, repeat.variables if repeat else ())
+    )
+    row = {k: Scalar() for k in repeat.data} if repeat else {}
+    try:
+        with np.errstate(all="ignore"):
+            terms = called(problem, repeat, shared, own, row)
+        values = [v for part in SECTIONS for _, v in flat(getattr(terms, part))]
+        return "" if all(map(_is_scalar, values)) else "it returns arrays"
+    except Exception as refused:
+        return str(refused) or type(refused).__name__
+
+
+def _one_by_one(problem: "Problem", repeat: Repeat | None, shared: Array, own: Array) -> Terms:
+    """The terms of N points, each computed by itself; NaN where the text raises on numbers."""
+    rows = range(repeat.count if repeat else 1)
+    names = problem.names(repeat)
+    values = np.array(
+        [
+            [_numbers(problem, repeat, x, y[k : k + 1], k, names) for k in rows]
+            for x, y in zip(shared, own, strict=True)
+        ]
+    )
+    values = values.reshape(len(shared), len(rows), -1)
+    columns = iter(np.moveaxis(values if repeat else values[:, 0], -1, 0))
+    return Terms(**{part: {name: next(columns) for name in names[part]} for part in SECTIONS})
+
+
+def _numbers(
+    problem: "Problem",
+    repeat: Repeat | None,
+    shared: Array,
+    own: Array,
+    row: int,
+    names: dict[str, list[str]],
+) -> list[float]:
+    """All values of a text at one point."""
+    try:
+        terms = at(problem, repeat, shared, own.ravel(), row)
+    except SolveError as refused:
+        if isinstance(refused.__cause__, ArithmeticError | ValueError):  # as math.log(-1.0)
+            return [np.nan] * sum(map(len, names.values()))
+        raise
+    found = {part: flat(getattr(terms, part)) for part in SECTIONS}
+    if {part: [n for n, _ in found[part]] for part in SECTIONS} != names:
+        raise SolveError(
+            f"the text of {text_of(problem, repeat)[1]} returns other names at other points; "
+            "every point needs the same terms"
+        )
+    return [float(v) for part in SECTIONS for _, v in found[part]]
