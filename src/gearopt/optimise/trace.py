@@ -1,19 +1,23 @@
 """A problem's text traced by casadi: one tape for the problem, one mapped tape a repeat."""
 
 import threading
-from collections.abc import Iterator
+import warnings
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 
 from gearopt.errors import SolveError
+from gearopt.optimise.blame import blaming, remedy
+from gearopt.optimise.evaluation import called, text_of
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.terms import Array, Repeat, Terms, flatten, namespace
+from gearopt.optimise.terms import SECTIONS, Array, Repeat, Terms, checked, flat, flatten
 
 _NUMPY_MODE = threading.Lock()
+POINTS = 4  # at which a tape is held against the text: the guess and random ones
+AGREEMENT = 1e-6  # of the largest value of a term; what casadi does otherwise than numpy is gross
 
 
 @dataclass(frozen=True)
@@ -51,9 +55,13 @@ def legacy_numpy() -> Iterator[None]:
 
 
 def trace(problem: Problem) -> Traced:
-    """Run the texts once on casadi scalars; SolveError names a text that casadi cannot run."""
+    """Run the texts once on casadi scalars; SolveError names a text that casadi cannot run.
+
+    The tapes are held against the text on floats: `math` functions, for one, make NaN of a symbol.
+    """
     import casadi as ca
 
+    rows = problem.rows
     with legacy_numpy():
         blocks = [_block(problem, None)] + [_block(problem, r) for r in problem.repeats]
     shared = sum(v.size for v in problem.variables)
@@ -63,7 +71,8 @@ def trace(problem: Problem) -> Traced:
     p = kind.sym("p", len(problem.parameter_values()))
     empty = kind(0, 1)
     f, g, h = blocks[0].function(x[:shared], empty, p, empty)
-    objective = dict(zip(blocks[0].objectives, ca.vertsplit(f) if f.numel() else [], strict=True))
+    objective = dict.fromkeys(rows.objectives, 0)
+    objective |= zip(blocks[0].objectives, ca.vertsplit(f) if f.numel() else [], strict=True)
     rows_g, rows_h = [g], [h]
     start = shared
     for r, block in zip(problem.repeats, blocks[1:], strict=True):
@@ -73,13 +82,35 @@ def trace(problem: Problem) -> Traced:
         mapped = block.function.map(f"{r.name}_rows", "serial", r.count, [0, 2], [])
         f, g, h = mapped(x[:shared], own, p, data)
         for name, value in zip(block.objectives, ca.vertsplit(ca.sum2(f)), strict=True):
-            objective[name] = objective.get(name, 0) + value
+            objective[name] = objective[name] + value
         rows_g.append(ca.vec(g))
         rows_h.append(ca.vec(h))
         start = stop
     outputs = [ca.vertcat(*objective.values()), ca.vertcat(*rows_g), ca.vertcat(*rows_h)]
     terms = ca.Function("terms", [x, p], outputs, ["x", "p"], ["f", "g", "h"])
+    _compare(problem, terms)
     return Traced(terms, tuple(blocks))
+
+
+def _compare(problem: Problem, terms: Any) -> None:
+    """SolveError names a term whose tape is not what the text gives on floats."""
+    points, p = problem.sample(POINTS), problem.parameter_values()
+    batch, rows = problem.batch(points), problem.rows
+    ours = np.hstack([batch.F, batch.G, batch.H])
+    tape = np.array([np.concatenate([np.array(v).ravel() for v in terms(x, p)]) for x in points])
+    known = np.isfinite(ours)
+    size = np.where(known, np.abs(ours), 0.0).max(axis=0)
+    with np.errstate(invalid="ignore"):
+        apart = known & ~(np.abs(tape - ours) <= AGREEMENT * size)
+    if not apart.any():
+        return
+    k = int(np.argmax(apart.any(axis=0)))
+    at = int(np.argmax(apart[:, k]))
+    names = [*rows.objectives, *(r.name for r in rows.inequalities), *rows.equalities]
+    raise SolveError(
+        f"the text of {problem.name} cannot be traced: {names[k]} is {ours[at, k]:.6g} on numbers, "
+        f"but {tape[at, k]:.6g} on symbols. {remedy(None)}"
+    )
 
 
 def _block(problem: Problem, repeat: Repeat | None) -> Block:
@@ -89,25 +120,40 @@ def _block(problem: Problem, repeat: Repeat | None) -> Block:
     p = ca.SX.sym("p", len(problem.parameter_values()))
     own = ca.SX.sym("own", repeat.width if repeat else 0)
     data = ca.SX.sym("data", len(repeat.data) if repeat else 0)
-    x = namespace(problem.variables, ca.vertsplit(shared) if shared.numel() else [])
-    values = namespace(problem.parameters, ca.vertsplit(p) if p.numel() else [])
-    where = f"{problem.name}.{repeat.name}" if repeat else problem.name
+    text, where = text_of(problem, repeat)
+    scalars = [ca.vertsplit(v) if v.numel() else [] for v in (shared, own, p, data)]
+    row = dict(zip(repeat.data, scalars[3], strict=True)) if repeat else {}
     try:
-        if repeat is None:
-            terms = problem.evaluate(x, values)
-        else:
-            x.__dict__.update(vars(namespace(repeat.variables, ca.vertsplit(own))))
-            row = dict(zip(repeat.data, ca.vertsplit(data), strict=True))
-            terms = repeat.evaluate(x, values, SimpleNamespace(**row))
-        f, g, h = _columns(terms)
-    except (TypeError, AttributeError, NotImplementedError, RuntimeError) as broken:
-        raise SolveError(
-            f"the text of {where} cannot be traced: {broken}. Use scalars, operators and the numpy "
-            "functions casadi knows; no `if` on a quantity"
-        ) from broken
+        with blaming(text, where, "traced"), warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            terms = called(problem, repeat, scalars[0], scalars[1], row, scalars[2])
+            terms = checked(_split(terms), where)
+            f, g, h = _columns(terms)
+    except SolveError as refused:
+        if refused.__cause__ is None:
+            raise
+        raise SolveError(f"{refused}. {remedy(refused.__cause__)}") from refused.__cause__
+    names = {part: [n for n, _ in flat(getattr(terms, part))] for part in SECTIONS}
+    if names != problem.names(repeat):
+        raise SolveError(f"the text of {where} cannot be traced: it returns other names on symbols")
     return Block(
         ca.Function("block", [shared, own, p, data], [f, g, h]), tuple(terms.minimise), repeat
     )
+
+
+def _split(terms: Any) -> Any:
+    """Columns of symbols, which are what arrays become, as tuples."""
+    import casadi as ca
+
+    def tuples(block: Any) -> Any:
+        if not isinstance(block, Mapping):
+            return block
+        wide = {n: v for n, v in block.items() if isinstance(v, ca.SX) and v.numel() > 1}
+        return {**block, **{n: tuple(ca.vertsplit(ca.vec(v))) for n, v in wide.items()}}
+
+    if not isinstance(terms, Terms):
+        return terms
+    return Terms(**{part: tuples(getattr(terms, part)) for part in SECTIONS})
 
 
 def _columns(terms: Terms) -> tuple[Any, Any, Any]:

@@ -47,7 +47,7 @@ def direct(
             objective, limits | _largest(shape, width, height, _of(shape.length, m)), equal=equal
         )
 
-    return Problem("layout", tuple(variables), (), evaluate, methods=methods)
+    return Problem("layout", tuple(variables), (), evaluate, methods=methods, vectorised=True)
 
 
 def smooth(box: Gearbox, order: Arrangement) -> Problem:

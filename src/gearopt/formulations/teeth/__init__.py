@@ -66,7 +66,8 @@ def problem(train: Train, count: int = 1, floor: float = -math.inf) -> Problem:
         """Branch and bound over the teeth; the seed changes nothing."""
         return _outcome(train, count, floor, budget, watch)
 
-    return Problem("teeth", _variables(train), (), evaluate, methods={"exact": exact})
+    methods = {"exact": exact}
+    return Problem("teeth", _variables(train), (), evaluate, methods=methods, vectorised=True)
 
 
 def _scalars(train: Train) -> dict[str, Any]:

@@ -64,7 +64,7 @@ def text(
             report=dict(found.minimise),
         )
 
-    return Problem("together", variables, (), evaluate, methods=methods)
+    return Problem("together", variables, (), evaluate, methods=methods, vectorised=True)
 
 
 def _terms(

@@ -96,7 +96,8 @@ def problem(choice: Choice) -> Problem:
 
     most = tuple(float(len(row)) for row in costs)
     grade = Var("grade", "", 1.0, most, 1.0, len(costs), integer=True)
-    return Problem("grades", (grade,), (), evaluate, methods={"exact": _exact(choice)})
+    methods = {"exact": _exact(choice)}
+    return Problem("grades", (grade,), (), evaluate, methods=methods, vectorised=True)
 
 
 def _position(grade: Any) -> Any:
