@@ -14,7 +14,7 @@ from gearopt.optimise.comparing.comparison import Comparison
 from gearopt.optimise.comparing.trial import Model
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.explaining.explanation import Explanation
-from gearopt.optimise.problem import Problem
+from gearopt.optimise.problem import Problem, one_objective
 from gearopt.optimise.progress import whole
 from gearopt.optimise.result import Budget, Result, Watch, plain
 from gearopt.optimise.solve import GAP
@@ -117,6 +117,7 @@ def compare(
     if isinstance(what, Problem | Conic):
         usual = ("conic",) if isinstance(what, Conic) else (*what.methods, *DEFAULT)
         named = usual if methods is None else methods
+        one_objective(what.name, what.rows.objectives)
         own = Model(what)
         found = compare_methods(named, lambda method: own, plan, watch, bound_from)
         return replace(found, title=what.name)

@@ -117,7 +117,7 @@ X = (Var("x", "", 0.5, 2.0, 1.0, size=2),)
     [
         (lambda x, p: Terms({"c": cp.sqrt(x.x[0])}), "minimise c is not convex"),
         (lambda x, p: Terms({"c": x.x}), "objective c is not a scalar"),
-        (lambda x, p: Terms({"c": x.x[0], "d": x.x[1]}), "one objective, not 2"),
+        (lambda x, p: Terms({"c": x.x[0], "d": x.x[1]}), r"2 objectives \(c, d\)"),
         (lambda x, p: Terms({"c": x.x[0]}, {"l": cp.log(x.x)}), "limits l is not convex"),
         (
             lambda x, p: Terms({"c": x.x[0]}, {"l": x.x <= 1}),

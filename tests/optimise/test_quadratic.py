@@ -150,7 +150,7 @@ def test_integers_and_several_objectives_are_refused():
     whole = Problem("w", (Var("n", "", 0, 9, 1, integer=True),), (), lambda x, p: Terms({"f": x.n}))
     with pytest.raises(SolveError, match="n is discrete"):
         solve(whole, "qp")
-    with pytest.raises(SolveError, match="one objective"):
+    with pytest.raises(SolveError, match="2 objectives"):
         qp.run(plane(lambda x, p: Terms({"f": x.x[0], "g": x.x[1]})), Budget(), 0, None)
 
 

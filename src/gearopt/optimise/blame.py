@@ -2,6 +2,7 @@
 
 import functools
 import traceback
+import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -40,6 +41,14 @@ def blaming(text: Callable[..., Any], where: str, doing: str) -> Iterator[None]:
         raise SolveError(
             f"the text of {where} cannot be {doing}{line}: {_told(broken)}"
         ) from broken
+
+
+@contextmanager
+def quiet() -> Iterator[None]:
+    """Keep what back ends warn of from the standard error: their errors are told as SolveError."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        yield
 
 
 def remedy(broken: BaseException | None) -> str:

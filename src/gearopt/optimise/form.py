@@ -12,9 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from gearopt.errors import SolveError
 from gearopt.optimise import tape
-from gearopt.optimise.problem import Problem
+from gearopt.optimise.problem import Problem, one_objective
 from gearopt.optimise.terms import Array
 
 
@@ -55,8 +54,7 @@ def form(problem: Problem) -> Form:
 
     SolveError where the problem has no single objective.
     """
-    if len(problem.rows.objectives) != 1:
-        raise SolveError(f"{problem.name} has {len(problem.rows.objectives)} objectives, not one")
+    one_objective(problem.name, problem.rows.objectives)
     found = tape.kinds(problem)
     key = ("form", found)
     if key not in problem.memo:

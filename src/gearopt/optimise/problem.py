@@ -22,6 +22,7 @@ from gearopt.optimise.terms import (
     Repeat,
     Terms,
     Var,
+    check_text,
     flat,
     flatten,
     spread,
@@ -79,6 +80,18 @@ class Problem:
     memo: dict[Any, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
+        check_text(f"problem {self.name}", self.variables, self.evaluate)
+        for word, items, kind in (
+            ("parameters", self.parameters, Param),
+            ("repeats", self.repeats, Repeat),
+        ):
+            if not isinstance(items, tuple) or not all(isinstance(q, kind) for q in items):
+                raise ValueError(
+                    f"problem {self.name}: {word} are a tuple of {kind.__name__}(...), such as "
+                    f"({kind.__name__}(...),)"
+                )
+        if twice := _twice([r.name for r in self.repeats]):
+            raise ValueError(f"problem {self.name}: repeat {twice!r} is declared twice")
         names = [v.name for v in self.variables]
         names += [v.name for r in self.repeats for v in r.variables]
         if twice := _twice(names):
@@ -247,6 +260,17 @@ class Problem:
         from gearopt.optimise.trace import Compiled
 
         return Compiled(self)
+
+
+def one_objective(name: str, objectives: tuple[str, ...]) -> None:
+    """SolveError where a problem has several objectives."""
+    if len(objectives) != 1:
+        first, second = objectives[:2]
+        raise SolveError(
+            f"{name} has {len(objectives)} objectives ({', '.join(objectives)}), and one is "
+            "minimised: weigh them in one term, or make one a limit, such as "
+            f"limits={{'{second}': {second} / p.most}} beside minimise={{'{first}': {first}}}"
+        )
 
 
 def _twice(names: list[str]) -> str | None:

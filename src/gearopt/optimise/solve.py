@@ -13,7 +13,7 @@ from gearopt.errors import SolveError
 from gearopt.optimise import solvers
 from gearopt.optimise.certificate import Verdict, certify
 from gearopt.optimise.conic.problem import Conic
-from gearopt.optimise.problem import Problem
+from gearopt.optimise.problem import Problem, one_objective
 from gearopt.optimise.progress import of_problem
 from gearopt.optimise.result import Budget, Outcome, Result, Watch, versions
 from gearopt.optimise.terms import Array
@@ -34,9 +34,10 @@ def solve(
 
     method: a name of `problem.methods` or of a back end in `optimise/solvers`; by default the
     problem's own exact algorithm, else ipopt for a Problem and conic for a Conic. gap: relative gap
-    to our bound that is called optimal. SolveError where the method does not fit the problem. Not
-    thread-safe.
+    to our bound that is called optimal. SolveError where the method does not fit the problem, or
+    the problem has several objectives. Not thread-safe.
     """
+    one_objective(problem.name, problem.rows.objectives)
     return run(problem, method, budget, seed, watch, gap)[0]
 
 
@@ -48,7 +49,10 @@ def run(
     watch: Watch | None = None,
     gap: float = GAP,
 ) -> tuple[Result, Outcome]:
-    """Like `solve`, with the method's raw outcome beside the result."""
+    """Like `solve`, with the method's raw outcome beside the result.
+
+    Of several objectives the first counts; the outcome's other points are those of the front.
+    """
     name = method or next(iter(problem.methods), _default(problem))
     start = time.perf_counter()
     told = of_problem(watch, problem)
@@ -84,6 +88,9 @@ def method_of(problem: Problem | Conic, name: str) -> Callable[..., Outcome]:
             takes = "a Conic (cvxpy text)" if name == "conic" else "a Problem (numpy text)"
             kind = type(problem).__name__
             raise SolveError(f"{name} takes {takes}; {problem.name} is a {kind}")
+        for (variable, one), low, high in zip(problem.columns, *problem.bounds()[:2], strict=True):
+            if not variable.allowed(low, high):
+                raise SolveError(f"{problem.name}: no value of {one} is within its bounds")
         run: Callable[..., Outcome] = import_module(f"gearopt.optimise.solvers.{name}").run
         return run
     conic_only = isinstance(problem, Conic)

@@ -33,6 +33,7 @@ class Param:
     role: str | tuple[str, ...] = "data"
 
     def __post_init__(self) -> None:
+        _check_numbers("parameter", self, ("value",))
         words = (self.role,) if isinstance(self.role, str) else self.role
         if unknown := set(words) - {"data", "limit", "given"}:
             raise ValueError(
@@ -62,13 +63,27 @@ class Var:
     search: bool = False
 
     def __post_init__(self) -> None:
+        _check_numbers("variable", self, ("lower", "upper", "guess"))
         lower, upper, guess = (spread(v, self.size) for v in (self.lower, self.upper, self.guess))
-        if not self.name.isidentifier():
-            raise ValueError(f"variable name {self.name!r} is not an identifier")
         if not np.all((lower <= guess) & (guess <= upper)):
             raise ValueError(f"variable {self.name}: needs lower <= guess <= upper")
+        if not np.isfinite(guess).all():
+            raise ValueError(f"variable {self.name}: the guess is infinite; write a finite one")
         if self.log and not np.all(lower > 0):
             raise ValueError(f"variable {self.name}: a log variable needs lower > 0")
+        if self.values is not None:
+            values = _numbers(self.values)
+            if values is None or values.ndim != 1 or not len(values) or np.isinf(values).any():
+                raise ValueError(
+                    f"variable {self.name}: values are finite numbers, such as values=(1.0, 1.25), "
+                    f"not {self.values!r}"
+                )
+
+    def allowed(self, lower: float, upper: float) -> bool:
+        """Whether a discrete variable may take any value between two bounds."""
+        if self.values is not None:
+            return any(lower <= v <= upper for v in self.values)
+        return not self.integer or bool(np.ceil(lower) <= np.floor(upper))
 
     @property
     def discrete(self) -> bool:
@@ -106,6 +121,21 @@ class Repeat:
     data: Mapping[str, Array]
     evaluate: Callable[[Any, Any, Any], Terms]
 
+    def __post_init__(self) -> None:
+        _check_name("repeat", self.name)
+        check_text(f"repeat {self.name}", self.variables, self.evaluate)
+        if not isinstance(self.data, Mapping) or not self.data:
+            raise ValueError(f"repeat {self.name}: data are columns of numbers, {{name: array}}")
+        sizes = set()
+        for name, column in self.data.items():
+            _check_name(f"repeat {self.name}: data", name)
+            values = _numbers(column)
+            if values is None or values.ndim != 1 or not len(values) or np.isnan(values).any():
+                raise ValueError(f"repeat {self.name}: data {name} are no row of numbers")
+            sizes.add(len(values))
+        if len(sizes) > 1:
+            raise ValueError(f"repeat {self.name}: its data differ in length: {sorted(sizes)}")
+
     @property
     def count(self) -> int:
         """Number of rows."""
@@ -115,6 +145,45 @@ class Repeat:
     def width(self) -> int:
         """Number of scalar variables of one row."""
         return sum(v.size for v in self.variables)
+
+
+def _numbers(value: Any) -> Array | None:
+    """A value as an array of floats, None where it is no real number or block of them."""
+    try:
+        found = np.asarray(value)
+    except ValueError:  # of unequal lengths
+        return None
+    return found.astype(float) if found.dtype.kind in "iuf" else None
+
+
+def _check_name(what: str, name: Any) -> None:
+    if not isinstance(name, str) or not name.isidentifier():
+        raise ValueError(f"{what} name {name!r} is not an identifier, such as face_width")
+
+
+def _check_numbers(what: str, item: Any, keys: tuple[str, ...]) -> None:
+    """ValueError where a declared name, size or number is none."""
+    _check_name(what, item.name)
+    size = item.size
+    if not isinstance(size, int | np.integer) or isinstance(size, bool) or size < 1:
+        raise ValueError(f"{what} {item.name}: size is a whole number of at least 1, not {size!r}")
+    for key in keys:
+        value = _numbers(getattr(item, key))
+        if value is None or np.isnan(value).any():
+            found = getattr(item, key)
+            raise ValueError(f"{what} {item.name}: {key} is {found!r}, no number or block of them")
+        if value.ndim > 1 or value.size not in (1, size):
+            raise ValueError(
+                f"{what} {item.name}: {key} has the shape {value.shape}; write one number or {size}"
+            )
+
+
+def check_text(what: str, variables: Any, evaluate: Any) -> None:
+    """ValueError where variables or text of a problem or repeat are none."""
+    if not isinstance(variables, tuple) or not all(isinstance(v, Var) for v in variables):
+        raise ValueError(f"{what}: variables are a tuple of Var(...), such as (Var(...),)")
+    if not callable(evaluate):
+        raise ValueError(f"{what}: evaluate is {type(evaluate).__name__}, not a function")
 
 
 def spread(value: Number, size: int) -> Array:

@@ -13,7 +13,8 @@ from typing import Any
 import numpy as np
 
 from gearopt.errors import SolveError
-from gearopt.optimise.problem import Batch, Problem, Row, Rows
+from gearopt.optimise.blame import blaming
+from gearopt.optimise.problem import Batch, Problem, Row, Rows, one_objective
 from gearopt.optimise.terms import Array, Named, Number, Param, Terms, Var, checked, flat, spread
 
 
@@ -155,9 +156,12 @@ def _build(problem: Conic, signs: tuple[str, ...]) -> Model:
     names = [q.name for q in problem.parameters]
     per = Named(**dict(zip(names, inverses, strict=True)))
     p = Named(**{"per": per, **dict(zip(names, parameters, strict=True))})
-    terms = checked(problem.evaluate(x, p), problem.name)
-    if len(terms.minimise) != 1:
-        raise SolveError(f"{problem.name}: conic takes one objective, not {len(terms.minimise)}")
+    with blaming(problem.evaluate, problem.name, "run on cvxpy variables"):
+        terms = problem.evaluate(x, p)
+    terms = checked(terms, problem.name)
+    if not terms.minimise:
+        raise SolveError(f"problem {problem.name} minimises nothing: Terms({{}}) is empty")
+    one_objective(problem.name, tuple(terms.minimise))
     name, objective = next(iter(terms.minimise.items()))
     objective = _expression(objective, problem.name, name)
     if objective.size != 1:

@@ -59,7 +59,7 @@ def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Out
     if not job["guess"]:  # one point is all there is; Bonmin would crash
         return _outcome(problem, columns, {"status": "SUCCESS", "x": []})
     if budget.seconds is not None:
-        job["deadline"] = time.time() + budget.seconds
+        job["deadline"] = time.time() + budget.seconds - (time.perf_counter() - clock)
     process = _started()
     text: str | None = json.dumps(job)
     try:

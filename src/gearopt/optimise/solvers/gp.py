@@ -6,16 +6,17 @@ takes logarithms, its own solver finds the point: nothing is shared with `form` 
 """
 
 import time
-import warnings
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from gearopt.errors import SolveError
-from gearopt.optimise.problem import Problem
+from gearopt.optimise.blame import blaming, quiet
+from gearopt.optimise.evaluation import called
+from gearopt.optimise.problem import Problem, one_objective
 from gearopt.optimise.result import Budget, Event, Outcome, Watch
-from gearopt.optimise.terms import Array, flatten, namespace
+from gearopt.optimise.terms import Array, checked, flatten
 
 # Clarabel's defaults give 1e-7 on our drives. Where it cannot reach the first it is asked for the
 # next; what it then reached is for the certificate to say.
@@ -46,15 +47,16 @@ def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Out
         return Outcome(None, finished=False, message="stopped before it began")
     model = _model(problem)
     _set(problem, model)
-    limit = {} if budget.seconds is None else {"time_limit": max(budget.seconds, 1e-3)}
+    limit: dict[str, float] = {}
     steps, most = 0, budget.evaluations
     for tolerance in TOLERANCES:
+        if budget.seconds is not None:
+            limit["time_limit"] = max(budget.seconds - (time.perf_counter() - clock), 1e-3)
         if most is not None:
             limit["max_iter"] = max(most - steps, 1)
         accuracy = {f"tol_{name}": tolerance for name in ("gap_abs", "gap_rel", "feas")}
         try:
-            with warnings.catch_warnings():  # "may be inaccurate": the certificate says how much
-                warnings.simplefilter("ignore", UserWarning)
+            with quiet():  # "may be inaccurate": the certificate says how much
                 model.problem.solve(gp=True, solver=cp.CLARABEL, **accuracy, **limit)
         except cp.error.SolverError as broken:
             raise SolveError(f"gp on {problem.name}: {broken}") from broken
@@ -106,18 +108,17 @@ def _build(problem: Problem) -> _Model:
             ends += [variables[-1] >= low] if low > 0 else []
             ends += [variables[-1] <= high] if np.isfinite(high) else []
     parameters = [cp.Parameter(pos=True) for q in problem.parameters for _ in range(q.size)]
-    try:
-        terms = problem.evaluate(
-            namespace(problem.variables, variables), namespace(problem.parameters, parameters)
-        )
-    except RuntimeError as numpy_function:  # cvxpy refuses np.log and its like
-        raise SolveError(
-            f"{problem.name} is no geometric program: its text calls a numpy function"
-        ) from numpy_function
-    if len(terms.minimise) != 1:
-        raise SolveError(f"gp takes one objective; {problem.name} has {len(terms.minimise)}")
-    (objective,) = terms.minimise.values()
-    inequal, equal = flatten(terms)
+    one_objective(problem.name, problem.rows.objectives)
+    with blaming(problem.evaluate, problem.name, "run on cvxpy variables"), quiet():
+        terms = called(problem, None, variables, (), {}, parameters)
+    terms = checked(terms, problem.name)
+    (objective,) = map(cp.Constant.cast_to_const, terms.minimise.values())
+    inequal, equal = ([cp.Constant.cast_to_const(v) for v in rows] for rows in flatten(terms))
+    names = (*(row.name for row in problem.rows.inequalities), *problem.rows.equalities)
+    labelled = zip((*problem.rows.objectives, *names), (objective, *inequal, *equal), strict=True)
+    for name, term in labelled:
+        if not (term.is_scalar() and term.is_dgp()):
+            raise SolveError(f"{problem.name} is no geometric program by cvxpy's rules: {name}")
     inequalities = tuple(row <= 1 for row in inequal)
     equalities = tuple(row == 1 for row in equal)
     model = cp.Problem(cp.Minimize(objective), [*inequalities, *equalities, *ends])
@@ -128,10 +129,14 @@ def _build(problem: Problem) -> _Model:
 
 def _set(problem: Problem, model: _Model) -> None:
     used = {id(p) for p in model.problem.parameters()}
+    names = [q.name for q in problem.parameters for _ in range(q.size)]
     values = problem.parameter_values()
-    for parameter, value in zip(model.parameters, values, strict=True):
-        if id(parameter) in used:
-            parameter.value = value
+    for name, parameter, value in zip(names, model.parameters, values, strict=True):
+        if id(parameter) not in used:
+            continue
+        if not 0.0 < value < np.inf:
+            raise SolveError(f"gp takes positive parameters only; {name} is {value:g}")
+        parameter.value = value
 
 
 def _point(problem: Problem, model: _Model) -> Array | None:
@@ -143,4 +148,5 @@ def _point(problem: Problem, model: _Model) -> Array | None:
 
 def _duals(rows: tuple[Any, ...]) -> Array:
     """Multipliers of the logarithms of the rows, as `form` states them."""
-    return np.array([np.nan_to_num(float(row.dual_value)) for row in rows], float)
+    values = (0.0 if row.dual_value is None else float(row.dual_value) for row in rows)
+    return np.array([np.nan_to_num(value) for value in values], float)

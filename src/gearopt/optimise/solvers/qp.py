@@ -14,7 +14,7 @@ import numpy as np
 
 from gearopt.errors import SolveError
 from gearopt.optimise.form import Form
-from gearopt.optimise.problem import Problem
+from gearopt.optimise.problem import Problem, one_objective
 from gearopt.optimise.quadratic import Curvature, curvature, hessian_of, misfit, natural
 from gearopt.optimise.result import Budget, Event, Outcome, Watch
 from gearopt.optimise.terms import Array
@@ -89,8 +89,7 @@ def _checked(problem: Problem) -> tuple[Form, Curvature]:
     for variable, name in problem.columns:
         if variable.discrete:
             raise SolveError(f"qp takes continuous variables only; {name} is discrete")
-    if len(problem.rows.objectives) != 1:
-        raise SolveError(f"qp takes one objective; {problem.name} has several")
+    one_objective(problem.name, problem.rows.objectives)
     shape = natural(problem)
     if shape is None:
         raise SolveError(f"{problem.name} is no quadratic program: " + misfit(problem))

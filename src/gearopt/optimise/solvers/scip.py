@@ -32,8 +32,13 @@ SETTINGS = {"limits/gap": GAP, "numerics/feastol": FEASIBILITY, "binaries up to"
 
 def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
     """Solve by SCIP; SolveError where the text is no posynomial or pyscipopt is not installed."""
-    scip, logs = _model(problem, posynomial.read(problem), budget, seed)
-    follower = _follow(scip, watch, _scale(problem))
+    clock = time.perf_counter()
+    model = posynomial.read(problem)
+    scip, logs = _model(problem, model, budget, seed)
+    if budget.seconds is not None:
+        left = budget.seconds - (time.perf_counter() - clock)
+        scip.setParam("limits/time", max(left, 0.0))
+    follower = _follow(scip, watch, _scale(problem), clock)
     scip.optimize()
     status, nodes = str(scip.getStatus()), int(scip.getNTotalNodes())
     if status == "infeasible":
@@ -79,8 +84,6 @@ def _model(
             "misc/catchctrlc": False,  # who watches decides
         }
     )
-    if budget.seconds is not None:
-        scip.setParam("limits/time", max(budget.seconds, 0.0))
     if budget.evaluations is not None:
         scip.setParam("limits/totalnodes", budget.evaluations)
     logs = [_logarithm(scip, problem, k) for k in range(len(problem.columns))]
@@ -153,7 +156,7 @@ def _point(problem: Problem, logs: Array) -> Array:
     return point
 
 
-def _follow(scip: Any, watch: Watch | None, scale: float) -> Any:
+def _follow(scip: Any, watch: Watch | None, scale: float, clock: float) -> Any:
     """An event handler that tells `watch` of progress and stops SCIP when it says so."""
     from pyscipopt import SCIP_EVENTTYPE, Eventhdlr
 
@@ -163,7 +166,6 @@ def _follow(scip: Any, watch: Watch | None, scale: float) -> Any:
         """It has state because SCIP calls it."""
 
         stopped = False
-        clock = time.perf_counter()
 
         def eventinit(self) -> None:
             for kind in kinds:
@@ -174,7 +176,7 @@ def _follow(scip: Any, watch: Watch | None, scale: float) -> Any:
                 self.model.dropEvent(kind, self)
 
         def eventexec(self, happened: Any) -> None:
-            seconds = time.perf_counter() - self.clock
+            seconds = time.perf_counter() - clock
             value = self.model.getPrimalbound()
             best = scale * value if value < self.model.infinity() else None
             event = Event(seconds, int(self.model.getNTotalNodes()), best)
