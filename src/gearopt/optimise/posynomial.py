@@ -45,6 +45,8 @@ def read(problem: Problem) -> Model:
     for name, term in zip(names, [*f, *g, *h], strict=True):
         if term is None or not (term.coefficients > 0).all() or not len(term.coefficients):
             raise SolveError(f"{problem.name}: {name} is no posynomial")
+        if not (np.isfinite(term.coefficients).all() and np.isfinite(term.exponents).all()):
+            raise SolveError(f"{problem.name}: {name} has an infinite coefficient or exponent")
     for name, term in zip(rows.equalities, h, strict=True):
         if len(term.coefficients) != 1:
             raise SolveError(f"{problem.name}: the equality {name} is no monomial")
@@ -115,7 +117,9 @@ def _sum(a: Posynomial, b: Posynomial) -> Posynomial | None:
 
 def _product(a: Posynomial, b: Posynomial) -> Posynomial | None:
     coefficients = np.outer(a.coefficients, b.coefficients).ravel()
-    exponents = (a.exponents[:, None, :] + b.exponents[None, :, :]).reshape(len(coefficients), -1)
+    exponents = (a.exponents[:, None, :] + b.exponents[None, :, :]).reshape(
+        len(coefficients), a.exponents.shape[1]
+    )
     return _collected(coefficients, exponents)
 
 

@@ -52,9 +52,10 @@ def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Out
         best, least = _kept(space, moved, new_value, new_excess, best, least)
         weight = PENALTY * 100.0**done
         energy = _energy(value, excess, weight, scale, positive)
-        with np.errstate(invalid="ignore"):  # two points without a value: no rise is known
+        with np.errstate(invalid="ignore", over="ignore"):
+            # two points without a value: no rise is known
             rise = _energy(new_value, new_excess, weight, scale, positive) - energy
-        chance = np.exp(-np.maximum(np.nan_to_num(rise, nan=np.inf), 0.0) / temperature)
+            chance = np.exp(-np.maximum(np.nan_to_num(rise, nan=np.inf), 0.0) / temperature)
         accept = rng.random(CHAINS) < chance
         unit[accept], value[accept] = moved[accept], new_value[accept]
         excess[accept] = new_excess[accept]

@@ -196,6 +196,7 @@ def _solver(z: Any, p: Any, f: Any, g: Any, size: int) -> tuple[Any, Any]:
         "iteration_callback": monitor,
         "error_on_fail": False,
         "show_eval_warnings": False,
+        "calc_lam_p": False,  # nobody asks for them, and casadi warns where they are no numbers
     }
     if size > WIDE:
         options |= _dense_hessian(z, p, f, g)

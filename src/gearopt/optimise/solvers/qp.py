@@ -109,12 +109,22 @@ def _program(problem: Problem, shape: Form) -> _Program:
     p, origin = problem.parameter_values(), np.zeros(len(problem.columns))
     no_g, no_h = (np.zeros(shape.derivatives.numel_out(k)) for k in (1, 2))
     _, g, h, linear, _ = (np.array(v).ravel() for v in shape.derivatives(origin, p, no_g, no_h))
-    rows = [np.array(j).reshape(-1, len(origin)) for j in shape.jacobians(origin, p)]
+    rows = np.vstack([np.array(j).reshape(-1, len(origin)) for j in shape.jacobians(origin, p)])
+    hessian = hessian_of(problem, shape)
+    names = [*(r.name for r in problem.rows.inequalities), *problem.rows.equalities]
+    known = np.isfinite(rows).all(axis=1) & np.isfinite(np.concatenate([g, h]))
+    if not (np.isfinite(hessian).all() and np.isfinite(linear).all()):
+        names, known = [problem.rows.objectives[0]], np.zeros(1, bool)
+    if not known.all():
+        raise SolveError(
+            f"{problem.name} is no quadratic program: {names[int(known.argmin())]} has a coefficient "
+            "that is infinite or no number"
+        )
     low, high, _ = problem.bounds()
     return _Program(
-        hessian_of(problem, shape),
+        hessian,
         linear,
-        np.vstack(rows),
+        rows,
         np.concatenate([np.full(len(g), -np.inf), -h]),
         np.concatenate([-g, -h]),
         low,

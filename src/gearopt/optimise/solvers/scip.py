@@ -63,7 +63,10 @@ def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Out
 
 def _scale(problem: Problem) -> float:
     """The objective at the guess, the unit of SCIP's objective."""
-    return float(problem.batch(problem.bounds()[2][None]).F[0, 0])
+    scale = float(problem.batch(problem.bounds()[2][None]).F[0, 0])
+    if not 0.0 < scale < math.inf:
+        raise SolveError(f"scip on {problem.name}: the objective is {scale:g} at the guess")
+    return scale
 
 
 def _model(
