@@ -61,8 +61,10 @@ def box(problem: Problem) -> Box:
     logarithmic, whole = np.zeros(count, bool), np.zeros(count, bool)
     sets: dict[int, Array] = {}
     for k, (variable, name) in enumerate(problem.columns):
-        if not (np.isfinite(lower[k]) and np.isfinite(upper[k])):
-            raise SolveError(f"a sampler needs finite bounds; {name} has none")
+        if not upper[k] / 2.0 - lower[k] / 2.0 < np.finfo(float).max / 2.0:
+            raise SolveError(
+                f"a sampler needs finite bounds; {name} has {lower[k]:g} and {upper[k]:g}"
+            )
         if variable.values is not None:
             allowed = [v for v in variable.values if lower[k] <= v <= upper[k]]
             sets[k] = np.array(allowed)

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from gearopt.errors import CertificateError
+from gearopt.errors import CertificateError, SolveError
 from gearopt.optimise.dual import TINY, farkas, kkt
 from gearopt.optimise.feasibility import runaway, violation
 from gearopt.optimise.form import Form, form
@@ -110,7 +110,12 @@ def _local(
 ) -> Verdict:
     """Judge a point with multipliers: KKT residuals, and a dual bound where the form is convex."""
     assert outcome.x is not None
-    shape = _shape(problem)
+    try:
+        shape = _shape(problem)
+    except SolveError as untraced:  # without derivatives no more than a feasible point is certain
+        message = f"{outcome.message} No bound, no optimality conditions: {untraced}".lstrip()
+        status = "feasible" if outcome.finished else "limit"
+        return Verdict(status, value, certificate=certificate, message=message)
     lower, upper, guess = problem.bounds()
     low, high, y = (shape.to_y(a) for a in (lower, upper, outcome.x))
     candidates = [multipliers(shape, y, problem.parameter_values(), low, high)]

@@ -7,6 +7,7 @@ point by point, which is as right and slower.
 """
 
 import logging
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,7 +15,17 @@ from numpy.lib.mixins import NDArrayOperatorsMixin
 
 from gearopt.errors import SolveError
 from gearopt.optimise.blame import blaming
-from gearopt.optimise.terms import SECTIONS, Array, Named, Repeat, Terms, checked, flat, namespace
+from gearopt.optimise.terms import (
+    SECTIONS,
+    Array,
+    Named,
+    Repeat,
+    Terms,
+    checked,
+    flat,
+    namespace,
+    spread,
+)
 
 if TYPE_CHECKING:
     from gearopt.optimise.problem import Problem
@@ -85,11 +96,10 @@ def called(
 
 def at(problem: "Problem", repeat: Repeat | None, shared: Any, own: Any, row: int) -> Terms:
     """The terms of a text on floats; SolveError says what is wrong with it."""
-    text, where = text_of(problem, repeat)
     data = {k: np.float64(v[row]) for k, v in repeat.data.items()} if repeat else {}
-    with blaming(text, where, "evaluated"):
+    with blaming(*text_of(problem, repeat), "evaluated"):
         terms = called(problem, repeat, shared, own, data)
-    return checked(terms, where, numbers=True)
+    return checked(terms, text_of(problem, repeat)[1], numbers=True)
 
 
 def terms_of(problem: "Problem", repeat: Repeat | None, shared: Array, own: Array) -> Terms:
@@ -99,8 +109,11 @@ def terms_of(problem: "Problem", repeat: Repeat | None, shared: Array, own: Arra
     """
     if not (problem.vectorised or elementwise(problem, repeat)):
         return _one_by_one(problem, repeat, shared, own)
-    text, where = text_of(problem, repeat)
-    with blaming(text, where, "evaluated"):
+    return _at_once(problem, repeat, shared, own)
+
+
+def _at_once(problem: "Problem", repeat: Repeat | None, shared: Array, own: Array) -> Terms:
+    with blaming(*text_of(problem, repeat), "evaluated"):
         if repeat is None:
             found: Terms = called(problem, None, shared.T, (), {})
         else:
@@ -113,7 +126,7 @@ def elementwise(problem: "Problem", repeat: Repeat | None) -> bool:
     """Whether a text is proven to compute every point by itself, at the present parameters."""
     key = ("elementwise", repeat and repeat.name, problem.parameter_values().tobytes())
     if key not in problem.memo:
-        problem.memo[key] = reason = _obstacle(problem, repeat)
+        problem.memo[key] = reason = _obstacle(problem, repeat) or _surprise(problem, repeat)
         if reason and ("told", repeat and repeat.name) not in problem.memo:
             problem.memo["told", repeat and repeat.name] = True
             where = text_of(problem, repeat)[1]
@@ -135,6 +148,25 @@ def _obstacle(problem: "Problem", repeat: Repeat | None) -> str:
         return "" if all(map(_is_scalar, values)) else "it returns arrays"
     except Exception as refused:
         return str(refused) or type(refused).__name__
+
+
+def _surprise(problem: "Problem", repeat: Repeat | None) -> str:
+    """How a text that asks for the types of its scalars betrays itself; "" where it does not."""
+    start = sum(v.size for v in problem.variables)
+    shared, own = problem.sample(2)[:, :start], np.empty((2, 1, 0))
+    if repeat is not None:
+        own = np.tile([one for v in repeat.variables for one in spread(v.guess, v.size)], (2, 1, 1))
+        repeat = replace(repeat, data={k: v[:1] for k, v in repeat.data.items()})
+    many = _at_once(problem, repeat, shared, own)
+    for k in range(2):
+        one = at(problem, repeat, shared[k], own[k].ravel(), 0)
+        for part in SECTIONS:
+            values = zip(flat(getattr(one, part)), flat(getattr(many, part)), strict=True)
+            for (name, alone), (_, column) in values:
+                among = np.broadcast_to(column, (2, 1) if repeat else (2,)).reshape(2)[k]
+                if not np.isclose(among, alone, 1e-9, 0.0, equal_nan=True):
+                    return f"{name} is {alone:g} on floats, but {among:g} on arrays"
+    return ""
 
 
 def _one_by_one(problem: "Problem", repeat: Repeat | None, shared: Array, own: Array) -> Terms:

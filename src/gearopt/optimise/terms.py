@@ -73,7 +73,12 @@ class Var:
             raise ValueError(f"variable {self.name}: a log variable needs lower > 0")
         if self.values is not None:
             values = _numbers(self.values)
-            if values is None or values.ndim != 1 or not len(values) or np.isinf(values).any():
+            if (
+                values is None
+                or values.ndim != 1
+                or not len(values)
+                or not np.isfinite(values).all()
+            ):
                 raise ValueError(
                     f"variable {self.name}: values are finite numbers, such as values=(1.0, 1.25), "
                     f"not {self.values!r}"

@@ -117,8 +117,8 @@ def _program(problem: Problem, shape: Form) -> _Program:
         names, known = [problem.rows.objectives[0]], np.zeros(1, bool)
     if not known.all():
         raise SolveError(
-            f"{problem.name} is no quadratic program: {names[int(known.argmin())]} has a coefficient "
-            "that is infinite or no number"
+            f"{problem.name} is no quadratic program: {names[int(known.argmin())]} has an infinite "
+            "coefficient, or one that is no number"
         )
     low, high, _ = problem.bounds()
     return _Program(
