@@ -7,7 +7,7 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from gearopt.optimise import epigraph, tape
+from gearopt.optimise import epigraph, nonlinear, tape
 from gearopt.optimise.form import form
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget
@@ -147,7 +147,7 @@ def test_the_dense_hessian_of_a_wide_plain_objective_is_not_coloured():
     problem = Problem("distance", (Var("w", "", 0.0, 9.0, 1.5, size=80),), (), text)
     shape = form(problem)
     y, p, f, g, h = shape.expressions
-    assert ipopt._dense_hessian(y, p, f, ca.vertcat(g, h))
+    assert nonlinear.dense_hessian(y, p, f, ca.vertcat(g, h))
     assert solve(problem).value == pytest.approx(1.0, rel=1e-9)
 
 

@@ -14,7 +14,11 @@ from gearopt.optimise.solvers import nsga2
 from gearopt.optimise.terms import Param, Repeat, Terms, Var
 
 METHODS = ("ipopt", "annealing", "nsga2", "multistart", "qp", "gp", "scip")
-SHORT = {"annealing": Budget(evaluations=96), "nsga2": Budget(evaluations=20)}
+SHORT = {
+    "multistart": Budget(seconds=0.1),
+    "annealing": Budget(evaluations=96),
+    "nsga2": Budget(evaluations=20),
+}
 
 
 def var(**more):

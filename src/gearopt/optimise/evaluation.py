@@ -153,7 +153,7 @@ def _obstacle(problem: "Problem", repeat: Repeat | None) -> str:
 def _surprise(problem: "Problem", repeat: Repeat | None) -> str:
     """How a text that asks for the types of its scalars betrays itself; "" where it does not."""
     start = sum(v.size for v in problem.variables)
-    shared, own = problem.sample(2)[:, :start], np.empty((2, 1, 0))
+    shared, own = sample(problem, 2)[:, :start], np.empty((2, 1, 0))
     if repeat is not None:
         own = np.tile([one for v in repeat.variables for one in spread(v.guess, v.size)], (2, 1, 1))
         repeat = replace(repeat, data={k: v[:1] for k, v in repeat.data.items()})
@@ -167,6 +167,27 @@ def _surprise(problem: "Problem", repeat: Repeat | None) -> str:
                 if not np.isclose(among, alone, 1e-9, 0.0, equal_nan=True):
                     return f"{name} is {alone:g} on floats, but {among:g} on arrays"
     return ""
+
+
+def sample(problem: "Problem", count: int) -> Array:
+    """The guess and random points between the bounds, (count, n); always the same ones."""
+    lower, upper, guess = problem.bounds()
+    reach = np.maximum(1.0, np.abs(guess))
+    low, high = (
+        np.where(np.isfinite(end), end, guess + sign * reach)
+        for end, sign in ((lower, -0.5), (upper, 0.5))
+    )
+    low = np.where(guess > 0.0, np.maximum(low, guess / 2.0), low)  # a wide box is mostly its
+    high = np.where(guess > 0.0, np.minimum(high, guess * 2.0), high)  # far end, where all is 0
+    points = low + (high - low) * np.random.default_rng(0).random((count, len(guess)))
+    points[0] = guess
+    for k, (variable, _) in enumerate(problem.columns):
+        if variable.values is not None:
+            allowed = np.array(variable.values)
+            points[:, k] = allowed[np.abs(allowed - points[:, k, None]).argmin(axis=1)]
+        elif variable.integer:
+            points[:, k] = np.rint(points[:, k])
+    return points
 
 
 def _one_by_one(problem: "Problem", repeat: Repeat | None, shared: Array, own: Array) -> Terms:

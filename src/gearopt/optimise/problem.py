@@ -151,26 +151,6 @@ class Problem:
         lower, upper, guess = (np.concatenate(c) for c in zip(*parts, strict=True))
         return lower, upper, guess
 
-    def sample(self, count: int) -> Array:
-        """The guess and random points between the bounds, (count, n); always the same ones."""
-        lower, upper, guess = self._bounds
-        reach = np.maximum(1.0, np.abs(guess))
-        low, high = (
-            np.where(np.isfinite(end), end, guess + sign * reach)
-            for end, sign in ((lower, -0.5), (upper, 0.5))
-        )
-        low = np.where(guess > 0.0, np.maximum(low, guess / 2.0), low)  # a wide box is mostly its
-        high = np.where(guess > 0.0, np.minimum(high, guess * 2.0), high)  # far end, where all is 0
-        points = low + (high - low) * np.random.default_rng(0).random((count, len(guess)))
-        points[0] = guess
-        for k, (variable, _) in enumerate(self.columns):
-            if variable.values is not None:
-                allowed = np.array(variable.values)
-                points[:, k] = allowed[np.abs(allowed - points[:, k, None]).argmin(axis=1)]
-            elif variable.integer:
-                points[:, k] = np.rint(points[:, k])
-        return points
-
     def parameter_values(self) -> Array:
         """All parameter values in order, (np,)."""
         return np.concatenate([spread(q.value, q.size) for q in self.parameters] or [np.empty(0)])

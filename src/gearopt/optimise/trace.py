@@ -10,7 +10,7 @@ import numpy as np
 
 from gearopt.errors import SolveError
 from gearopt.optimise.blame import blaming, quiet, remedy
-from gearopt.optimise.evaluation import called, text_of
+from gearopt.optimise.evaluation import called, sample, text_of
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import SECTIONS, Array, Repeat, Terms, checked, flat, flatten
 
@@ -93,7 +93,7 @@ def trace(problem: Problem) -> Traced:
 
 def _compare(problem: Problem, terms: Any) -> None:
     """SolveError names a term whose tape is not what the text gives on floats."""
-    points, p = problem.sample(POINTS), problem.parameter_values()
+    points, p = sample(problem, POINTS), problem.parameter_values()
     batch, rows = problem.batch(points), problem.rows
     ours = np.hstack([batch.F, batch.G, batch.H])
     tape = np.array([np.concatenate([np.array(v).ravel() for v in terms(x, p)]) for x in points])

@@ -9,15 +9,16 @@ turns into a proof where the form is convex.
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache, partial
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from gearopt.errors import SolveError
 from gearopt.optimise import tape
-from gearopt.optimise.epigraph import WIDE, Split, split
+from gearopt.optimise.epigraph import Split, split
 from gearopt.optimise.form import Form, form
+from gearopt.optimise.nonlinear import OPTIONS, program
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Event, Outcome, Watch
 from gearopt.optimise.terms import Array
@@ -26,19 +27,6 @@ ACCEPTED = 1e-9  # an iterate that violates no row by more is kept as the best s
 FEASIBLE = 1e-8  # that of a certificate
 ROUNDING = 1e-12  # of two values of the objective
 STUCK = 1e-6  # violation at which Ipopt's end point counts as not solved
-
-OPTIONS = {
-    "print_level": 0,
-    "sb": "yes",
-    "tol": 1e-12,  # the dual bound is as tight as the multipliers
-    "constr_viol_tol": 1e-12,
-    "compl_inf_tol": 1e-12,
-    "dual_inf_tol": 1e-9,
-    "acceptable_tol": 1e-10,
-    "acceptable_iter": 8,
-    "bound_relax_factor": 0.0,  # the default buys 1e-8 of every bound
-    "max_iter": 3000,
-}
 
 RANDOM = False
 COUNTS = "iteration"
@@ -180,39 +168,9 @@ def _built(problem: Problem, shape: Form) -> tuple[Any, Any]:
     if key not in problem.memo:
         parts, size = _split(problem, shape), shape.derivatives.numel_in(0)
         rows = ca.vertcat(parts.inequalities, parts.equalities, parts.levels)
-        problem.memo[key] = _solver(parts.z, parts.p, parts.objective, rows, size)
+        problem.memo[key] = program(parts.z, parts.p, parts.objective, rows, size)
     found: tuple[Any, Any] = problem.memo[key]
     return found
-
-
-def _solver(z: Any, p: Any, f: Any, g: Any, size: int) -> tuple[Any, Any]:
-    """Ipopt for a program in z, and its monitor, which is told the first `size` of z."""
-    import casadi as ca
-
-    monitor = _monitor_class()(z.numel(), g.numel(), size)
-    options = {f"ipopt.{k}": v for k, v in OPTIONS.items()}
-    options |= {
-        "print_time": False,
-        "iteration_callback": monitor,
-        "error_on_fail": False,
-        "show_eval_warnings": False,
-        "calc_lam_p": False,  # nobody asks for them, and casadi warns where they are no numbers
-    }
-    if size > WIDE:
-        options |= _dense_hessian(z, p, f, g)
-    return ca.nlpsol("ipopt", "ipopt", {"x": z, "p": p, "f": f, "g": g}, options), monitor
-
-
-def _dense_hessian(z: Any, p: Any, f: Any, g: Any) -> dict[str, Any]:
-    """The option that spares casadi the colouring of a dense Hessian, which takes n^3 steps."""
-    import casadi as ca
-
-    given = [z, p, type(z).sym("lam_f"), type(z).sym("lam_g", g.numel())]
-    slope = ca.gradient(given[2] * f + ca.dot(given[3], g), z)
-    if ca.Function("slope", given, [slope]).jac_sparsity(0, 0).nnz() <= WIDE * z.numel():
-        return {}
-    names = ["x", "p", "lam_f", "lam_g"], ["triu_hess_gamma_x_x"]
-    return {"hess_lag": ca.Function("hessian", given, [ca.triu(ca.jacobian(slope, z))], *names)}
 
 
 def _ipopt(
@@ -282,7 +240,7 @@ def _least_violation(
     if key not in problem.memo:
         t, g, h = type(parts.z).sym("t"), parts.inequalities, parts.equalities
         rows = ca.vertcat(g - t, h - t, -h - t, parts.levels)
-        problem.memo[key] = _solver(ca.vertcat(parts.z, t), parts.p, t, rows, size)
+        problem.memo[key] = program(ca.vertcat(parts.z, t), parts.p, t, rows, size)
     solver, monitor = problem.memo[key]
 
     def goes_on(_: Array) -> bool:
@@ -305,37 +263,3 @@ def _least_violation(
     lam = np.array(found["lam_g"]).ravel()
     lam_h = lam[m_g : m_g + m_h] - lam[m_g + m_h : m_g + 2 * m_h]
     return _Point(z[:size], lam[:m_g], lam_h, point.status), float(z[-1])
-
-
-@cache
-def _monitor_class() -> Any:
-    """The class of casadi's iteration callback (casadi is imported late)."""
-    import casadi as ca
-
-    class Monitor(ca.Callback):  # type: ignore[misc]
-        """It has state because casadi calls it: follow(y) says whether the run goes on."""
-
-        def __init__(self, n: int, m: int, size: int) -> None:
-            super().__init__()
-            self.sizes = {"f": 1, "x": n, "lam_x": n, "g": m, "lam_g": m}
-            self.size = size
-            self.follow: Callable[[Array], bool] = lambda y: True
-            self.construct("monitor", {})
-
-        def get_n_in(self) -> int:
-            return int(ca.nlpsol_n_out())
-
-        def get_n_out(self) -> int:
-            return 1
-
-        def get_name_in(self, i: int) -> Any:
-            return ca.nlpsol_out(i)
-
-        def get_sparsity_in(self, i: int) -> Any:
-            return ca.Sparsity.dense(self.sizes.get(ca.nlpsol_out(i), 0), 1)
-
-        def eval(self, arguments: Any) -> list[int]:
-            point = np.array(arguments[ca.nlpsol_out().index("x")]).ravel()
-            return [int(not self.follow(point[: self.size]))]
-
-    return Monitor
