@@ -89,6 +89,18 @@ def test_texts_of_elements_run_whole_populations_at_once():
     assert len(calls) == before + 1
 
 
+def test_a_block_may_hold_what_where_and_select_return():
+    def text(x, p):
+        high = tuple(np.where(v > 1.0, v, 1.0) / 4.0 for v in x.w)
+        return Terms({"f": np.select([x.w[0] > 1.0], [x.w[1]], x.w[2])}, {"high": high})
+
+    points = np.random.default_rng(4).uniform(0.5, 4.0, (6, 3))
+    found = problem(text).batch(points)
+    assert found.G == pytest.approx(np.maximum(points, 1.0) / 4.0)
+    assert found.F[:, 0] == pytest.approx(np.where(points[:, 0] > 1.0, points[:, 1], points[:, 2]))
+    assert solve(problem(text), "ipopt").value is not None
+
+
 def test_a_text_that_branches_on_a_parameter_is_proven_for_each_value():
     def text(x, p):
         return Terms({"f": np.sum(x.w) if p.mode > 0 else x.w[0] + x.w[1] + x.w[2]})

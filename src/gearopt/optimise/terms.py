@@ -261,14 +261,12 @@ def checked(terms: Any, where: str, numbers: bool = False) -> Terms:
 
 
 def _block(value: Any) -> Any:
-    """A list or an array of one dimension as a tuple."""
+    """A list or an array of one dimension as a tuple; arrays of none, as np.where's, as scalars."""
     if isinstance(value, np.ndarray) and value.ndim == 0:
         return value[()]
-    return tuple(value) if isinstance(value, list) or np.ndim(_plain(value)) == 1 else value
-
-
-def _plain(value: Any) -> Any:
-    return value if isinstance(value, np.ndarray) else None
+    if isinstance(value, tuple | list) or (isinstance(value, np.ndarray) and value.ndim == 1):
+        return tuple(v[()] if isinstance(v, np.ndarray) and v.ndim == 0 else v for v in value)
+    return value
 
 
 def _wrong(value: Any, numbers: bool) -> str:
