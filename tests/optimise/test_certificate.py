@@ -1,10 +1,12 @@
 """Certificates refuse what is not so, whoever claims it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from gearopt.errors import CertificateError
-from gearopt.optimise.certificate import certify, reconcile
+from gearopt.optimise.certificate import FARKAS, Verdict, bounded, certify, reconcile, told
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Result
 from gearopt.optimise.solve import run
@@ -240,3 +242,224 @@ def test_an_exception_of_the_watcher_reaches_the_caller():
     told = []
     assert ipopt.run(hill(), Budget(), 0, told.append).finished  # None is not False
     assert told
+
+
+def level(at=1e8):
+    """A problem whose objective is the variable, and a point of it: ties of gaps are exact."""
+    variable = Var("x", "", 0.0, 1e9, 1.0)
+    return Problem("level", (variable,), (), lambda x, p: Terms({"f": x.x})), np.array([at])
+
+
+def test_a_claimed_bound_may_lie_above_by_the_tolerance_of_rows():
+    problem, x = level()
+    for above, fine in ((1.0, True), (2.0, False)):
+        claim = Outcome(x, bound=1e8 + above, proof={"method": "own"})
+        if fine:  # by 1e-8 exactly
+            verdict = certify(problem, claim, 1e-6, exact=True)
+            assert (verdict.status, verdict.gap) == ("optimal", 0.0)
+        else:
+            with pytest.raises(CertificateError, match="claimed bound"):
+                certify(problem, claim, 1e-6, exact=True)
+
+
+@pytest.mark.parametrize(
+    ("gap", "status"), [(1e-6, "optimal"), (0.9e-6, "feasible"), (0.0, "feasible")]
+)
+def test_a_claimed_gap_of_the_tolerance_is_optimal(gap, status):
+    problem, x = level()
+    proof = {"method": "own"}
+    claim = Outcome(x, bound=1e8 - 100.0, proof=proof, message="Told.")
+    verdict = certify(problem, claim, gap, exact=True)
+    assert (verdict.status, verdict.gap, verdict.bound) == (status, 1e-6, 1e8 - 100.0)
+    assert (verdict.proof, verdict.message, verdict.objective) == (proof, "Told.", 1e8)
+    stopped = certify(problem, replace(claim, finished=False, proof=None), gap, exact=True)
+    assert stopped.status == ("optimal" if status == "optimal" else "limit") and stopped.proof == {}
+
+
+def ours(value_above, tolerance, excess=0.0, rounding=0.0, at=1e8):
+    problem, x = level(at)
+    before = Verdict("feasible", at, certificate={"feasibility": excess}, message="Ended.")
+    doubt = [rounding] if rounding else []
+    return bounded(problem, x, before, at - value_above, tolerance, "row", *doubt)
+
+
+def test_our_own_bound_decides_within_the_tolerance():
+    assert (ours(1.0, 0.0).status, ours(1.0, 0.0).gap) == ("optimal", 1e-8)  # never below 1e-8
+    assert ours(2.0, 0.0).status == "feasible" and ours(100.0, 1e-6).status == "optimal"
+    assert ours(-1.0, 0.0).status == "optimal" and ours(-1.0, 0.0).gap == 0.0
+    verdict = ours(101.0, 1e-6)
+    assert (verdict.status, verdict.message, verdict.bound) == ("feasible", "Ended.", 1e8 - 101.0)
+    assert "scale" not in verdict.certificate
+    assert ours(0.01, 1e-6, at=0.1).status == "feasible"
+    zero = ours(0.01, 1e-6, rounding=0.5, at=0.1)  # as far as it can be known
+    assert zero.status == "optimal" and zero.certificate["scale"] == pytest.approx(5.1e7)
+    assert zero.gap == pytest.approx(0.01 / 5.1e7)
+
+
+def test_a_value_below_our_bound_is_an_error_or_explained():
+    """An error where hardly a limit is exceeded; else the excess is named."""
+    with pytest.raises(CertificateError, match="below the dual bound"):
+        ours(-101.0, 0.0)
+    with pytest.raises(CertificateError, match="below the dual bound"):
+        ours(-101.0, 0.0, excess=0.99e-10)
+    assert ours(-100.0, 0.0).status == "feasible"  # by 1e-6 exactly
+    for excess in (1e-10, 5e-9):
+        verdict = ours(-101.0, 0.0, excess=excess)
+        assert verdict.status == "feasible" and verdict.gap == 0.0
+        words = f"row is violated by {excess:.3g}, which the objective gains from. Ended."
+        assert verdict.message == words
+
+
+def test_gaps_are_told_where_they_are_finite():
+    assert (told(0.5), told(-0.5), told(np.inf), told(-np.inf)) == (0.5, 0.0, None, None)
+
+
+def test_of_two_objectives_the_first_counts_and_nothing_is_proven():
+    variable = Var("x", "", 1.0, 2.0, 1.0, log=True)
+    problem = Problem("two", (variable,), (), lambda x, p: Terms({"f": x.x, "g": 1.0 / x.x}))
+    verdict = certify(problem, Outcome(np.array([1.0])), 1e-6)
+    assert (verdict.status, verdict.objective, verdict.bound) == ("feasible", 1.0, None)
+    stopped = certify(problem, Outcome(np.array([1.0]), finished=False), 1e-6)
+    assert stopped.status == "limit"
+
+
+def test_multipliers_of_one_kind_alone_are_not_used():
+    for lam in ({"lam_g": np.array([0.5])}, {"lam_h": np.empty(0)}):
+        assert certify(hill(), Outcome(np.array([0.4, 10.0]), **lam), 1e-6).status == "optimal"
+
+
+def test_a_claim_of_emptiness_needs_a_point_and_multipliers():
+    lam = {"lam_g": np.ones(1), "lam_h": np.empty(0)}
+    for claim in (
+        Outcome(None, infeasible=True, message="No way", **lam),
+        Outcome(np.ones(2), infeasible=True, message="No way"),
+    ):
+        verdict = certify(hill(), claim, 1e-6)
+        assert (verdict.status, verdict.message) == (
+            "failed",
+            "No way; impossibility is not proven",
+        )
+
+
+@pytest.mark.parametrize(("least", "status"), [(3.0, "infeasible"), (0.3, "failed")])
+def test_a_proof_of_emptiness_shows_a_violation_of_1e_9(least, status):
+    assert FARKAS == 1e-9
+    far = np.exp(2e-9 * least)
+    problem = Problem(
+        "near",
+        (Var("x", "", 0.1, 10, 1.0, log=True),),
+        (),
+        lambda x, p: Terms({"f": x.x}, {"large": far / x.x, "small": x.x, "idle": x.x / 9.0}),
+    )
+    lam = np.array([1.0, 1.0, 0.0])
+    claim = Outcome(np.ones(1), lam_g=lam, lam_h=np.empty(0), infeasible=True)
+    verdict = certify(problem, claim, 1e-6)
+    assert verdict.status == status
+    if status == "infeasible":
+        assert verdict.proof["conflict"] == ["large", "small"]
+        assert verdict.proof["least_violation"] == pytest.approx(3e-9, rel=1e-3)
+        assert verdict.message == "no design meets these together: large, small"
+        assert verdict.proof["method"] == "dual"
+
+
+def test_the_conflict_is_in_the_order_of_its_weights():
+    """x >= 3 against x <= 2 with little of y <= 1e-5 and nothing of y <= 1e-7."""
+
+    def evaluate(x, p):
+        rows = {"hardly": x.y / 9.0, "large": 3.0 / x.x, "idle": x.y / 8.0}
+        return Terms({"f": x.x * x.y}, rows, equal={"two": x.x / 2.0})
+
+    pair = tuple(Var(n, "", 0.1, 10, 1.0, log=True) for n in "xy")
+    lam_g = np.array([3e-6, 1.0, 1e-6])
+    claim = Outcome(np.ones(2), lam_g=lam_g, lam_h=np.array([1.001]), infeasible=True)
+    verdict = certify(Problem("order", pair, (), evaluate), claim, 1e-6)
+    assert verdict.proof["conflict"] == ["two", "large", "hardly"]
+
+
+def test_a_quadratic_program_without_a_point_is_judged_in_its_rows():
+    """x >= 3 and x <= 2 in natural variables: l (3 - x + 1 - 1) + l (x - 2) = 1/2 everywhere."""
+    problem = Problem(
+        "rows",
+        (Var("x", "", -10, 10, 1.0),),
+        (),
+        lambda x, p: Terms({"f": x.x**2}, {"large": 1.0 + 3.0 - x.x, "small": x.x - 1.0}),
+    )
+    claim = Outcome(np.ones(1), lam_g=np.ones(2), lam_h=np.empty(0), infeasible=True)
+    verdict = certify(problem, claim, 1e-6)
+    assert verdict.status == "infeasible"
+    assert verdict.proof["least_violation"] == pytest.approx(0.5, abs=1e-12)
+
+
+def test_an_excess_of_1e_8_is_feasible_and_a_little_more_is_not():
+    """Rows, of the point and of listed points; exactly 1e-8 is met."""
+    problem = Problem(
+        "tie", (Var("n", "", 0, 9, 1.0),), (), lambda x, p: Terms({"f": x.n}, {"row": x.n})
+    )
+    at = [1.0 + 1e-8, 1.0 + 1.1e-8]
+    bounds = [certify(problem, Outcome(np.array([x])), 1e-6) for x in (-1e-8, -1.01e-8)]
+    assert [v.objective for v in bounds] == [-1e-8, None]  # of a variable whose scale is 1
+    rows = [certify(problem, Outcome(np.array([x]), message="Ended."), 1e-6) for x in at]
+    assert rows[0].objective == at[0] and 0.9e-8 < rows[0].certificate["feasibility"] < 1e-8
+    assert rows[1].objective is None and rows[1].status == "failed"
+    assert rows[1].message == "row is violated by 1.1e-08. Ended."
+    early = certify(problem, Outcome(np.array([2.0]), finished=False), 1e-6)
+    assert early.status == "limit"
+    for x, fine in zip(at, (True, False), strict=True):
+        claim = Outcome(np.array([0.5]), others=(np.array([x]),))
+        if fine:
+            assert certify(problem, claim, 1e-6).objective == 0.5
+        else:
+            with pytest.raises(CertificateError, match="listed point"):
+                certify(problem, claim, 1e-6)
+
+
+def test_no_point_is_failed_or_limit():
+    for finished, status in ((True, "failed"), (False, "limit")):
+        verdict = certify(hill(), Outcome(None, finished), 1e-6)
+        assert (verdict.status, verdict.message) == (status, "no point found")
+    assert certify(hill(), Outcome(None, message="Gone."), 1e-6).message == "Gone."
+
+
+def test_the_better_multipliers_give_bound_and_residuals():
+    """Ours at the optimum, a method's poor ones beside them; and no bound of NaN."""
+    _, outcome = run(hill())
+    for lam in (outcome.lam_g, np.array([100.0]), np.array([np.nan])):
+        claim = replace(outcome, lam_g=lam)
+        verdict = certify(hill(), claim, 1e-9)
+        assert verdict.status == "optimal" and verdict.gap <= 1e-9
+        assert verdict.certificate["stationarity"] <= 1e-9
+        assert verdict.proof == {
+            "method": "dual",
+            "arithmetic": "double, with a rounding allowance",
+        }
+
+
+def test_without_finite_bounds_there_is_no_bound():
+    pair = tuple(Var(n, "", 0.1, np.inf, 1.0, log=True) for n in "xy")
+    problem = Problem("open", pair, (), lambda x, p: Terms({"f": x.x * x.y + 1.0 / (x.x * x.y)}))
+    verdict = certify(problem, Outcome(np.array([2.0 - 1e-7, 0.5]), message="Ended."), 1e-6)
+    assert (verdict.status, verdict.bound, verdict.proof) == ("stationary", None, {})
+    away = certify(problem, Outcome(np.array([2.0, 0.6])), 1e-6)
+    assert away.status == "feasible"
+    early = Outcome(np.array([2.0 - 1e-7, 0.5]), False)
+    assert certify(problem, early, 1e-6).status == "limit"
+
+
+def test_reconciled_results_keep_what_nobody_contradicts():
+    found = Result("a", "feasible", "exact", {"name": "f", "value": 10.0}, bound=8.0, gap=0.2)
+    for bound in (None, 7.0, 8.0):
+        other = Result("b", "optimal", "ipopt", {"name": "f", "value": 9.9}, bound=bound)
+        assert reconcile(found, other, 1e-6) is found
+    nothing = Result("a", "limit", "exact", {"name": "f", "value": None}, bound=1.0)
+    ideal = Result("b", "optimal", "ipopt", {"name": "f", "value": 9.9}, bound=9.9)
+    assert reconcile(nothing, ideal, 1e-6) is nothing
+    proven = Result("a", "infeasible", "exact", {"name": "f", "value": None}, message="own")
+    never = Result("b", "infeasible", "ipopt", {}, proof={"method": "dual"}, message="theirs")
+    assert reconcile(proven, never, 1e-6) is proven
+    assert reconcile(nothing, never, 1e-6).message == "theirs"
+    tie = replace(found, objective={"name": "f", "value": 1e8}, bound=None)
+    above = replace(ideal, bound=1e8 + 1.0)  # by 1e-8 exactly
+    assert reconcile(tie, above, 1e-6).status == "optimal"
+    assert reconcile(tie, replace(ideal, bound=1e8 - 100.0), 1e-6).status == "optimal"
+    with pytest.raises(CertificateError):
+        reconcile(tie, replace(ideal, bound=1e8 + 2.0), 1e-6)

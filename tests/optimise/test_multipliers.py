@@ -1,11 +1,15 @@
 """Multipliers from gradients alone, against closed forms."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
+from gearopt.optimise.certificate import certify
 from gearopt.optimise.form import form
-from gearopt.optimise.multipliers import multipliers
+from gearopt.optimise.multipliers import NEAR, multipliers
 from gearopt.optimise.problem import Problem
+from gearopt.optimise.result import Outcome
 from gearopt.optimise.terms import Terms, Var
 
 
@@ -55,3 +59,96 @@ def test_no_multiplier_is_negative():
     problem = pair(limits={"wrong": lambda x: x.x, "right": lambda x: 1.0 / x.y})
     lam_g, _ = at(problem, [1.0, 1.0])
     assert lam_g == pytest.approx([0.0, 2.0], abs=1e-12)
+
+
+def given(gradient, g=(), of_g=(), of_h=(), y=None, low=None, high=None):
+    """Multipliers of numbers as they are: slopes, rows, their derivatives, and where y lies."""
+    size = len(gradient)
+    rows = [np.array(r, float).reshape(-1, size) for r in (of_g, of_h)]
+    sizes = {1: len(rows[0]), 2: len(rows[1])}
+
+    def derivatives(y, p, lam_g, lam_h):
+        assert not lam_g.any() and not lam_h.any()
+        return 0.0, np.array(g, float), np.zeros(sizes[2]), np.array(gradient, float), None
+
+    derivatives.numel_out = sizes.get
+    shape = SimpleNamespace(derivatives=derivatives, jacobians=lambda y, p: rows)
+    y = np.zeros(size) if y is None else np.array(y, float)
+    ends = (
+        np.full(size, s * np.inf) if e is None else np.array(e) for s, e in ((-1, low), (1, high))
+    )
+    return multipliers(shape, y, np.empty(0), *ends)
+
+
+def test_rows_count_from_a_millionth_below_their_limit():
+    one = {"gradient": [-2.0], "of_g": [[1.0]]}
+    for g, lam in ((0.0, 2.0), (1e-9, 2.0), (-NEAR, 2.0), (-1.001 * NEAR, 0.0), (-1.0, 0.0)):
+        assert given(g=[g], **one)[0] == pytest.approx([lam])
+    assert NEAR == 1e-6
+
+
+def test_variables_on_their_bounds_do_not_count():
+    """Two slopes, one row that could level either; on a bound a slope may stay."""
+    two = {"gradient": [-2.0, -8.0], "g": [0.0], "of_g": [[1.0, 2.0]]}
+    both = given(**two)[0][0]
+    assert both == pytest.approx((2.0 + 16.0) / 5.0)
+    for ends, lam in (
+        ({"low": [-np.inf, 0.0]}, 2.0),
+        ({"low": [-np.inf, -NEAR]}, 2.0),
+        ({"low": [-np.inf, -1.001 * NEAR]}, both),
+        ({"high": [np.inf, 0.0]}, 2.0),
+        ({"high": [np.inf, NEAR]}, 2.0),
+        ({"high": [np.inf, 1.001 * NEAR]}, both),
+        ({"low": [0.0, -np.inf]}, 4.0),
+        ({"low": [0.0, -np.inf], "high": [np.inf, 0.0]}, 0.0),
+    ):
+        assert given(**two, **ends)[0] == pytest.approx([lam])
+
+
+def test_rows_that_pull_the_wrong_way_are_left_out_one_after_another():
+    """Without the first the second pulls the wrong way too; the equality may."""
+    lam_g, lam_h = given(
+        gradient=[-1.0, 2.0, 3.0],
+        g=[0.0, -1.0, 0.0, 0.0],
+        of_g=[[1.0, 0.0, 0.0], [5.0, 5.0, 5.0], [0.0, 1.0, 0.0], [0.0, 1.0, 0.5]],
+        of_h=[[0.0, 0.0, 1.0]],
+    )
+    assert lam_g == pytest.approx([1.0, 0.0, 0.0, 0.0], abs=1e-12)
+    assert lam_h == pytest.approx([-3.0])
+    twice = [[-2.0, -2.0], [-1.0, 2.0], [0.0, 1.0]]
+    lam_g, _ = given(gradient=[-1.0, -2.0], g=np.zeros(3), of_g=twice)
+    assert lam_g == pytest.approx([0.0, 0.0, 2.0], abs=1e-12)
+
+
+def test_against_all_choices_of_rows():
+    """The best of all subsets of rows with multipliers >= 0, of random cases."""
+    rng = np.random.default_rng(5)
+    for _ in range(60):
+        rows = rng.normal(size=(3, 3))
+        lam = np.maximum(rng.normal(size=3), 0.0)
+        gradient = -rows.T @ lam  # a KKT point
+        found, _ = given(gradient, g=np.zeros(3), of_g=rows)
+        assert found == pytest.approx(lam, abs=1e-9)
+
+
+def test_slopes_that_are_no_numbers_have_no_multipliers():
+    """Of free variables; a row that is off its limit and a variable on its bound do not matter."""
+    one = {"gradient": [-1.0, -2.0], "g": [0.0, -1.0], "of_g": [[np.nan, 1.0], [np.inf, np.inf]]}
+    assert given(**one) is None
+    assert given(**one, low=[0.0, -np.inf])[0] == pytest.approx([2.0, 0.0])
+    assert given([np.inf, -2.0], g=[0.0], of_g=[[1.0, 1.0]]) is None
+    root = Problem(
+        "root",
+        (Var("x", "", -2, 2, 1.0), Var("y", "", -2, 2, 1.0)),
+        (),
+        lambda x, p: Terms({"f": x.x}, {"far": 1.0 - np.sqrt(x.x**2 + x.y**2)}),
+    )
+    assert certify(root, Outcome(np.zeros(2)), 1e-6).status == "feasible"
+
+
+def test_systems_that_are_too_large_are_left_alone(monkeypatch):
+    monkeypatch.setattr("gearopt.optimise.multipliers.MOST", 6)
+    rows = {"g": [0.0], "of_g": [[1.0, 0.0]], "of_h": [[0.0, 1.0], [0.0, 1.0]]}
+    assert given([-1.0, 2.0], **rows) is not None
+    monkeypatch.setattr("gearopt.optimise.multipliers.MOST", 5)
+    assert given([-1.0, 2.0], **rows) is None

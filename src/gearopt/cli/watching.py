@@ -1,6 +1,7 @@
 """Following long work: progress on the terminal, and Ctrl-C that keeps the best found so far."""
 
 import logging
+import math
 import signal
 import time
 from collections.abc import Callable, Iterator
@@ -10,6 +11,7 @@ from typing import Any
 from rich.console import Console
 
 from gearopt.optimise.result import Event, Watch
+from gearopt.optimise.scale import gap
 
 
 @contextmanager
@@ -88,8 +90,8 @@ def reached(event: Event) -> list[str]:
 
     unit, best, bound = event.unit, event.best, event.bound
     words = [] if best is None else [f"best {amount(best, unit)}"]
-    if bound is not None and best:
-        words.append(f"gap {100.0 * (best - bound) / abs(best):.2g} %")
-    elif bound is not None:
-        words.append(f"bound {amount(bound, unit)}")
-    return words
+    if bound is None:
+        return words
+    away = math.inf if best is None else gap(best, bound)
+    shown = math.isfinite(away)
+    return [*words, f"gap {100.0 * away:.2g} %" if shown else f"bound {amount(bound, unit)}"]

@@ -1,7 +1,9 @@
 """Judges an outcome from the problem's own terms, never from what a method says.
 
-Tolerances: a row may exceed its limit by FEASIBLE (the unit of a row is 1); a KKT point has
-stationarity and complementarity below STATIONARY; the bounds carry a rounding allowance.
+Tolerances: a row may exceed its limit by FEASIBLE (the unit of a row is 1); a stationary point has
+stationarity and complementarity below STATIONARY and no direction along which the objective falls;
+the bounds carry a rounding allowance. Gaps are relative to |value|, of a value that is zero to the
+objective's own scale (see `scale`).
 """
 
 import math
@@ -12,16 +14,21 @@ from typing import Any
 import numpy as np
 
 from gearopt.errors import CertificateError, SolveError
-from gearopt.optimise.dual import TINY, farkas, kkt
+from gearopt.optimise.conic.problem import Conic
+from gearopt.optimise.dual import bound as dual_bound
+from gearopt.optimise.dual import farkas
 from gearopt.optimise.feasibility import runaway, violation
 from gearopt.optimise.form import Form, form
 from gearopt.optimise.multipliers import multipliers
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.quadratic import natural
 from gearopt.optimise.result import Outcome, Result
+from gearopt.optimise.scale import FEASIBLE, is_known, measured
+from gearopt.optimise.scale import gap as gap_of
+from gearopt.optimise.second_order import no_minimum
+from gearopt.optimise.stationarity import STATIONARY, Point, evaluated, residuals
+from gearopt.optimise.terms import Array
 
-FEASIBLE = 1e-8  # rows are dimensionless; a stress 1e-8 over its limit is below any data error
-STATIONARY = 1e-6  # of the objective's logarithm (or its largest derivative) per unit step
 FARKAS = 1e-9  # an infeasibility proof must show at least this violation
 
 
@@ -70,13 +77,14 @@ def certify(problem: Problem, outcome: Outcome, gap: float, exact: bool = False)
         )
         message = f"{problem.rows.objectives[0]} is not a number at {where}"[:300]
         return Verdict(unsolved, certificate=certificate, message=message)
+    status = "feasible" if outcome.finished else "limit"
+    before = Verdict(status, value, certificate=certificate, message=outcome.message)
     if outcome.bound is not None and math.isfinite(outcome.bound):
-        return _claimed(outcome, value, certificate, gap)
+        return _claimed(problem, outcome, before, gap)
     several = len(problem.rows.objectives) > 1  # then the first counts, and no multipliers do
     if several or any(v.discrete for v, _ in problem.columns):
-        status = "feasible" if outcome.finished else "limit"
-        return Verdict(status, value, certificate=certificate, message=outcome.message)
-    return _local(problem, outcome, value, certificate, gap)
+        return before
+    return _local(problem, outcome, before, gap, worst)
 
 
 def _shape(problem: Problem) -> Form:
@@ -86,62 +94,108 @@ def _shape(problem: Problem) -> Form:
     return plain if plain is not None and plain.convex else shape
 
 
-def _claimed(
-    outcome: Outcome, value: float, certificate: dict[str, float | None], tolerance: float
-) -> Verdict:
-    """Judge a point with the bound of an exact algorithm."""
-    bound = outcome.bound
-    assert bound is not None
-    gap = (value - bound) / max(abs(value), TINY)
-    if gap < -FEASIBLE:
+def _claimed(problem: Problem, outcome: Outcome, before: Verdict, tolerance: float) -> Verdict:
+    """Judge a point with the bound of an exact algorithm; before: the verdict without one."""
+    value, bound = before.objective, outcome.bound
+    assert outcome.x is not None and value is not None and bound is not None
+    found, scale = measured(problem, outcome.x, value, bound, tolerance)
+    if found < -FEASIBLE:
         raise CertificateError(f"a feasible value {value!r} lies below the claimed bound {bound!r}")
-    status = "optimal" if gap <= tolerance else ("feasible" if outcome.finished else "limit")
-    return Verdict(
-        status, value, bound, max(gap, 0.0), certificate, outcome.proof or {}, outcome.message
+    return replace(
+        before,
+        status="optimal" if found <= tolerance else before.status,
+        bound=bound,
+        gap=told(found),
+        certificate=dict(before.certificate) | scale,
+        proof=outcome.proof or {},
     )
 
 
-def _local(
-    problem: Problem,
-    outcome: Outcome,
-    value: float,
-    certificate: dict[str, float | None],
+def bounded(
+    problem: Problem | Conic,
+    x: Array,
+    before: Verdict,
+    bound: float,
     tolerance: float,
+    worst: str,
+    rounding: float = 0.0,
 ) -> Verdict:
-    """Judge a point with multipliers: KKT residuals, and a dual bound where the form is convex."""
+    """Judge a point by a bound that we computed ourselves; before: the verdict without one.
+
+    worst: the name of what has the largest violation. rounding: that was taken off the bound.
+    CertificateError where the value lies below the bound though hardly a limit is exceeded.
+    """
+    value, excess = before.objective, before.certificate["feasibility"]
+    assert value is not None and excess is not None
+    tolerance = max(tolerance, FEASIBLE)
+    found, scale = measured(problem, x, value, bound, tolerance, rounding)
+    if found < -100 * FEASIBLE and excess < FEASIBLE / 100:
+        raise CertificateError(f"a feasible value {value!r} lies below the dual bound {bound!r}")
+    status, message = before.status, before.message
+    if abs(found) <= tolerance:
+        status = "optimal"
+    elif found < 0.0:
+        message = f"{worst} is violated by {excess:.3g}, which the objective gains from. {message}"
+    return replace(
+        before,
+        status=status,
+        bound=bound,
+        gap=told(found),
+        certificate=dict(before.certificate) | scale,
+        message=message.strip(),
+    )
+
+
+def told(gap: float) -> float | None:
+    """A gap as results hold it: at least 0, and None where it is infinite."""
+    return max(gap, 0.0) if math.isfinite(gap) else None
+
+
+def _local(
+    problem: Problem, outcome: Outcome, before: Verdict, tolerance: float, worst: str
+) -> Verdict:
+    """Judge a point with multipliers: KKT residuals, and a dual bound where the form is convex.
+
+    before: the verdict without them.
+    """
     assert outcome.x is not None
     try:
         shape = _shape(problem)
     except SolveError as untraced:  # without derivatives no more than a feasible point is certain
-        message = f"{outcome.message} No bound, no optimality conditions: {untraced}".lstrip()
-        status = "feasible" if outcome.finished else "limit"
-        return Verdict(status, value, certificate=certificate, message=message)
+        message = f"{before.message} No bound, no optimality conditions: {untraced}".lstrip()
+        return replace(before, message=message)
+    points = _points(problem, shape, outcome)
+    if not points:
+        return before
+    judged = [(residuals(point), point) for point in points]
+    found, best = min(judged, key=lambda j: np.nan_to_num(np.max([*j[0].values()]), nan=np.inf))
+    before = replace(before, certificate=dict(before.certificate) | found)
     lower, upper, guess = problem.bounds()
-    low, high, y = (shape.to_y(a) for a in (lower, upper, outcome.x))
+    if loose := runaway(problem, outcome.x, lower, upper, guess):
+        return replace(before, status="failed", message=loose)
+    if outcome.finished and all(v <= STATIONARY for v in found.values()):
+        why = no_minimum(best)
+        message = f"{why}. {before.message}".strip() if why else before.message
+        before = replace(before, status="feasible" if why else "stationary", message=message)
+    bounds = [dual_bound(point) for point in points] if shape.convex else []
+    least, rounding = max((b for b in bounds if math.isfinite(b[0])), default=(-math.inf, 0.0))
+    if not math.isfinite(least):
+        return before
+    proof = {"method": "dual", "arithmetic": "double, with a rounding allowance"}
+    value = shape.objective(least)
+    return bounded(
+        problem, outcome.x, replace(before, proof=proof), value, tolerance, worst, rounding
+    )
+
+
+def _points(problem: Problem, shape: Form, outcome: Outcome) -> list[Point]:
+    """The point with our multipliers, and with those of its method where it brings any."""
+    assert outcome.x is not None
+    low, high, y = (shape.to_y(a) for a in (*problem.bounds()[:2], outcome.x))
     candidates = [multipliers(shape, y, problem.parameter_values(), low, high)]
     if outcome.lam_g is not None and outcome.lam_h is not None:
         candidates.append((np.maximum(outcome.lam_g, 0.0), outcome.lam_h))
-    judged = [kkt(problem, shape, y, low, high, *lam) for lam in candidates if lam is not None]
-    if not judged:
-        return Verdict("feasible" if outcome.finished else "limit", value, certificate=certificate)
-    residuals, _ = min(judged, key=lambda j: np.nan_to_num(max(j[0].values()), nan=np.inf))
-    certificate |= residuals
-    good = max(residuals.values()) <= STATIONARY
-    status = "stationary" if good else ("feasible" if outcome.finished else "limit")
-    loose = runaway(problem, outcome.x, lower, upper, guess)
-    if loose:
-        return Verdict("failed", value, certificate=certificate, message=loose)
-    least = max((least for _, least in judged if not math.isnan(least)), default=-math.inf)
-    if not shape.convex or not math.isfinite(least):
-        return Verdict(status, value, certificate=certificate, message=outcome.message)
-    bound = shape.objective(least)
-    gap = (value - bound) / max(abs(value), TINY)
-    if gap < -100 * FEASIBLE:
-        raise CertificateError(f"a feasible value {value!r} lies below the dual bound {bound!r}")
-    if abs(gap) <= max(tolerance, FEASIBLE):
-        status = "optimal"
-    proof = {"method": "dual", "arithmetic": "double, with a rounding allowance"}
-    return Verdict(status, value, bound, max(gap, 0.0), certificate, proof, outcome.message)
+    return [evaluated(problem, shape, y, low, high, *lam) for lam in candidates if lam is not None]
 
 
 def _infeasible(problem: Problem, outcome: Outcome) -> Verdict:
@@ -150,8 +204,7 @@ def _infeasible(problem: Problem, outcome: Outcome) -> Verdict:
         return Verdict("infeasible", proof=outcome.proof, message=outcome.message)
     shape = _shape(problem)
     low, high = (shape.to_y(a) for a in problem.bounds()[:2])
-    finite = np.isfinite(low).all() and np.isfinite(high).all()
-    if outcome.x is None or outcome.lam_g is None or not (shape.convex and finite):
+    if outcome.x is None or outcome.lam_g is None or not shape.convex:
         return Verdict("failed", message=f"{outcome.message}; impossibility is not proven".lstrip())
     least, lam_g, lam_h = farkas(problem, shape, outcome, low, high)
     if not least > FARKAS:  # NaN proves nothing
@@ -182,10 +235,21 @@ def reconcile(result: Result, relaxation: Result, tolerance: float) -> Result:
         )
     if value is None or bound is None:
         return result
-    if value < bound * (1.0 - FEASIBLE) if bound > 0 else value < bound - FEASIBLE:
+    scale = max(r.certificate.get("scale") or 0.0 for r in (result, relaxation))
+    gap = gap_of(value, bound, scale)
+    if gap < -FEASIBLE:
         raise CertificateError(f"the value {value!r} lies below the relaxation's bound {bound!r}")
     if result.bound is not None and bound <= result.bound:
         return result
-    gap = max(0.0, (value - bound) / max(abs(value), TINY))
     status = "optimal" if gap <= tolerance else result.status
-    return replace(result, bound=bound, gap=gap, status=status, proof=dict(relaxation.proof))
+    certificate = (
+        result.certificate if is_known(value, scale) else result.certificate | {"scale": scale}
+    )
+    return replace(
+        result,
+        bound=bound,
+        gap=told(gap),
+        status=status,
+        certificate=certificate,
+        proof=dict(relaxation.proof),
+    )

@@ -7,39 +7,42 @@ import numpy as np
 
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.problem import Batch, Problem
+from gearopt.optimise.scale import sizes
 from gearopt.optimise.terms import Array
 
 RUNAWAY = 1e9  # a variable without a bound that moves this factor from its guess is held by nothing
 
 
 def violation(problem: Problem | Conic, x: Array, batch: Batch) -> tuple[float, str]:
-    """Largest violation of rows, bounds and discreteness, and the name of what has it."""
+    """Largest violation of rows, bounds and discreteness, and the name of what has it.
+
+    That of a bound is relative to the variable's own scale, of a value to that or to 1.
+    """
     lower, upper, _ = problem.bounds()
-    logarithmic = np.array([v.log for v, _ in problem.columns])
-    span = np.where(upper > lower, upper - lower, np.inf)
-    width = np.where(logarithmic, np.abs(x), np.minimum(span, np.maximum(1.0, np.abs(x))))
+    size = sizes(problem, x)
     names = [r.name for r in problem.rows.inequalities] + list(problem.rows.equalities)
     names += [f"bound of {name}" for _, name in problem.columns]
     names += [f"set of values of {name}" for _, name in problem.columns]
-    discrete = [_distance(v, value) for (v, _), value in zip(problem.columns, x, strict=True)]
+    columns = zip(problem.columns, x, np.minimum(size, 1.0), strict=True)
+    discrete = [_distance(v, value, unit) for (v, _), value, unit in columns]
     amounts = np.concatenate(
         [
             batch.G[0] - 1.0,
             np.abs(batch.H[0] - 1.0),
-            np.maximum(lower - x, x - upper) / width,
+            np.maximum(lower - x, x - upper) / np.minimum(size, np.maximum(1.0, np.abs(x))),
             np.array(discrete),
         ]
     )
     if np.isnan(amounts).any():
         return math.nan, names[int(np.isnan(amounts).argmax())]
-    worst = int(amounts.argmax())
-    return max(0.0, float(amounts[worst])), names[worst]
+    worst = int(amounts.argmax())  # at least 0, that of a value that is met
+    return float(amounts[worst]), names[worst]
 
 
-def _distance(variable: Any, value: float) -> float:
-    """Distance of a discrete variable from its nearest allowed value."""
+def _distance(variable: Any, value: float, unit: float) -> float:
+    """Distance of a discrete variable from its nearest allowed value, in a unit of listed ones."""
     if variable.values is not None:
-        return float(min(abs(value - v) for v in variable.values))
+        return float(min(abs(value - v) for v in variable.values)) / unit
     return abs(value - round(value)) if variable.integer else 0.0
 
 

@@ -127,3 +127,19 @@ def _rows(values: Any, logarithmic: list[bool]) -> Any:
             for v, log in zip(ca.vertsplit(values), logarithmic, strict=True)
         ]
     )
+
+
+def values(problem: Problem, shape: Form, y: Array) -> tuple[float, Array]:
+    """F, and G and H together, at a point."""
+    no_g, no_h = (np.zeros(shape.derivatives.numel_out(k)) for k in (1, 2))
+    parts = shape.derivatives(y, problem.parameter_values(), no_g, no_h)
+    f, g, h = (np.array(part).ravel() for part in parts[:3])
+    return float(f[0]), np.concatenate([g, h])
+
+
+def violation(problem: Problem, shape: Form, y: Array) -> float:
+    """Largest violation of a row at a point; inf where one is not a number."""
+    count = shape.derivatives.numel_out(1)
+    rows = values(problem, shape, y)[1]
+    worst = np.concatenate([rows[:count], np.abs(rows[count:]), [0.0]])
+    return float(np.inf if np.isnan(worst).any() else worst.max())

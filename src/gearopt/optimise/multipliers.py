@@ -21,7 +21,10 @@ DAMPING, STEPS = 1e-11, 4  # of a sparse system; each step divides the damping's
 def multipliers(
     shape: Form, y: Array, p: Array, low: Array, high: Array
 ) -> tuple[Array, Array] | None:
-    """(lam_g, lam_h) of a feasible point, or None where the system is too large."""
+    """(lam_g, lam_h) of a feasible point, or None.
+
+    None where the system is too large, or a slope is no number.
+    """
     no_g, no_h = (np.zeros(shape.derivatives.numel_out(k)) for k in (1, 2))
     if (len(no_g) + len(no_h)) * len(y) > MOST:
         return None
@@ -30,18 +33,20 @@ def multipliers(
     rows = _rows(shape, y, p, active)
     free = (y > low + NEAR) & (y < high - NEAR)
     columns = rows.T[free]
+    slopes = columns if isinstance(columns, np.ndarray) else columns.data
+    if not (np.isfinite(slopes).all() and np.isfinite(gradient[free]).all()):
+        return None
     count = len(active)
     keep = np.ones(count + len(no_h), bool)
-    lam = np.zeros(len(keep))
-    for _ in range(count + 1):
-        lam[:] = 0.0
+    while True:
+        lam = np.zeros(len(keep))
         lam[keep] = _least_squares(columns[:, keep], -gradient[free])
         wrong = keep[:count] & (lam[:count] < 0.0)
         if not wrong.any():
             break
         keep[:count] &= ~wrong
     lam_g = no_g.copy()
-    lam_g[active] = np.maximum(lam[:count], 0.0)
+    lam_g[active] = lam[:count]
     return lam_g, lam[count:]
 
 

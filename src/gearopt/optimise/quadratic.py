@@ -7,6 +7,7 @@ semidefinite is our own eigenvalue, with a rounding allowance.
 """
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -64,11 +65,15 @@ def natural(problem: Problem) -> Form | None:
 
 
 def hessian_of(problem: Problem, shape: Form) -> Array:
-    """Q (n, n) at the present parameters; casadi's own way to a dense array is slow."""
-    found = shape.hessian(problem.parameter_values())
-    hessian = np.zeros(found.shape)
-    hessian[found.sparsity().get_triplet()] = found.nonzeros()
-    return hessian
+    """Q (n, n) at the present parameters."""
+    return dense(shape.hessian(problem.parameter_values()))
+
+
+def dense(matrix: Any) -> Array:
+    """A casadi matrix as a dense array; casadi's own way is slow."""
+    found = np.zeros(matrix.shape)
+    found[matrix.sparsity().get_triplet()] = matrix.nonzeros()
+    return found
 
 
 def misfit(problem: Problem) -> str:

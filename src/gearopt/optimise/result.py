@@ -94,10 +94,11 @@ class Outcome:
 class Result:
     """The answer to a problem, as `--json` prints it.
 
-    status: optimal (our bound within the stated gap), stationary (KKT certified, no bound),
+    status: optimal (our bound within the stated gap), stationary (a local minimum, no bound),
     feasible, infeasible (proven), limit (stopped early), failed. objective: {name, value, unit}.
-    bound: nothing feasible is better; gap: (objective - bound)/|objective|. proof: {method, ...}.
-    certificate: {feasibility, stationarity, complementarity}. limits: utilisations by name.
+    bound: nothing feasible is better; gap: (objective - bound)/|objective|, of an objective of zero
+    relative to certificate["scale"], its own scale. proof: {method, ...}. certificate:
+    {feasibility, stationarity, complementarity}. limits: utilisations by name.
     asked: the tables of the problem file; options: what was asked for beside it (method, seconds,
     gap, seed, top, prices).
     """

@@ -16,7 +16,7 @@ def proof(result: Result, measures: Measures = METRIC) -> list[str]:
     if bound is not None and result.gap is not None:
         lines.append(
             f"Bound: no {name} {side} {amount(bound, unit, measures)} is possible"
-            f"{scope(result)}; gap {100 * result.gap:.3g} %."
+            f"{scope(result)}; {gap_words(result)}."
         )
     lines += _method(result)
     for part in result.parts:
@@ -28,6 +28,14 @@ def proof(result: Result, measures: Measures = METRIC) -> list[str]:
         lines.append(result.message[0].upper() + result.message[1:].rstrip(".") + ".")
     lines.append(f"{result.method}, {result.evaluations:,} evaluations, {result.seconds:.3g} s.")
     return lines
+
+
+def gap_words(result: Result) -> str:
+    """The gap of a result, and what it is relative to where that is not the objective's value."""
+    if result.gap is None:
+        return ""
+    of = " of the objective's scale (its value is zero)" if "scale" in result.certificate else ""
+    return f"gap {100 * result.gap:.3g} %{of}"
 
 
 def scope(result: Result) -> str:

@@ -194,8 +194,8 @@ def _group(
     bounds = [(run.bound, method) for method, run in own if run.bound is not None]
     if bound is not None and bound[0] == name:
         bounds.append((bound[2], bound[1]))
-    values = [run.objective for _, run in own if run.objective is not None]
-    best = min(values, default=None)
+    values = [(run.objective, run.scale) for _, run in own if run.objective is not None]
+    best, scale = min(values, default=(None, 0.0))
     highest, source = max(bounds, default=(None, ""), key=lambda b: b[0])
     reference = best if highest is None else highest
     return Group(
@@ -207,11 +207,17 @@ def _group(
         highest is not None,
         source,
         best,
-        tuple(_row(e, runs, reference) for e in members),
+        tuple(_row(e, runs, reference, scale) for e in members),
+        scale,
     )
 
 
-def _row(entry: Entry, runs: Mapping[tuple[str, str], list[Run]], reference: float | None) -> Row:
+def _row(
+    entry: Entry,
+    runs: Mapping[tuple[str, str], list[Run]],
+    reference: float | None,
+    scale: float,
+) -> Row:
     by_count, by_time = (runs.get((entry.method, kind), []) for kind in KINDS)
     return Row(
         entry.method,
@@ -219,6 +225,6 @@ def _row(entry: Entry, runs: Mapping[tuple[str, str], list[Run]], reference: flo
         entry.counts,
         None if entry.refused else entry.start_up,
         entry.refused,
-        sample(by_count, reference, by_time=False),
-        sample(by_time, reference, by_time=True),
+        sample(by_count, reference, scale, by_time=False),
+        sample(by_time, reference, scale, by_time=True),
     )

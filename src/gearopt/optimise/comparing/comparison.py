@@ -1,9 +1,9 @@
 """What a comparison of methods found: runs, their statistics and curves; to JSON and back.
 
-A gap is (objective - reference)/|reference| (absolute where the reference is 0). The reference is
-the best bound that we proved in any run, or, where none is proven, the best feasible objective. A
-point that is not feasible by our own check has no objective and no gap, and counts as worse than
-any that is.
+A gap is (objective - reference)/|reference|; where the reference is zero, as far as that can be
+known, it is relative to the objective's own scale (see `scale`). The reference is the best bound
+that we proved in any run, or, where none is proven, the best feasible objective. A point that is
+not feasible by our own check has no objective and no gap, and counts as worse than any that is.
 """
 
 import json
@@ -17,6 +17,7 @@ from typing import Any
 
 from gearopt.errors import CertificateError
 from gearopt.optimise.result import loads, plain, versions
+from gearopt.optimise.scale import unit
 from gearopt.optimise.typed import typed
 
 FORMAT = 1
@@ -32,6 +33,7 @@ class Run:
     objective and gap: None without a feasible point. violation: of the point it returned, None
     where it returned none. seconds: of the method alone. steps: (seconds, evaluations, best so far)
     as the method told, no better than the objective it ended with; clipped: it told of better.
+    scale: the objective's own at the point, see `scale`.
     """
 
     seed: int
@@ -45,6 +47,7 @@ class Run:
     gap: float | None = None
     steps: tuple[tuple[float, int, float], ...] = ()
     clipped: bool = False
+    scale: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -105,7 +108,10 @@ class Row:
 
 @dataclass(frozen=True)
 class Group:
-    """The methods that solve one model; proven: the reference is a bound, else the best known."""
+    """The methods that solve one model; proven: the reference is a bound, else the best known.
+
+    scale: the objective's own at the best point.
+    """
 
     model: str
     words: str
@@ -116,6 +122,7 @@ class Group:
     bound_from: str
     best: float | None
     rows: tuple[Row, ...]
+    scale: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -190,29 +197,31 @@ def machine() -> dict[str, Any]:
     return {"cpus": os.cpu_count(), "platform": platform.platform()}
 
 
-def excess(value: float, reference: float) -> float:
-    """The gap of a value above a reference, at least 0.
+def excess(value: float, reference: float, scale: float = 0.0) -> float:
+    """The gap of a value above a reference, at least 0; absolute where no scale is known.
 
     CertificateError where it lies below by more than rounding: then the bound is wrong.
     """
-    gap = (value - reference) / (abs(reference) or 1.0)
+    gap = (value - reference) / (unit(reference, scale) or 1.0)
     if gap < -BELOW:
         raise CertificateError(f"a feasible value {value!r} lies below the bound {reference!r}")
     return max(gap, 0.0)
 
 
-def sample(runs: Sequence[Run], reference: float | None, by_time: bool) -> Sample | None:
+def sample(
+    runs: Sequence[Run], reference: float | None, scale: float, by_time: bool
+) -> Sample | None:
     """The runs of a method with their gaps, statistics and curve; None without a run."""
     if not runs:
         return None
-    judged = tuple(_judged(run, reference) for run in runs)
-    return Sample(judged, _summary(judged), _curve(judged, reference, by_time))
+    judged = tuple(_judged(run, reference, scale) for run in runs)
+    return Sample(judged, _summary(judged), _curve(judged, reference, scale, by_time))
 
 
-def _judged(run: Run, reference: float | None) -> Run:
+def _judged(run: Run, reference: float | None, scale: float) -> Run:
     if run.objective is None or reference is None:
         return run
-    return replace(run, gap=excess(run.objective, reference))
+    return replace(run, gap=excess(run.objective, reference, scale))
 
 
 def quantile(values: Sequence[float], share: float) -> float | None:
@@ -239,7 +248,7 @@ def _summary(runs: Sequence[Run]) -> Summary:
     )
 
 
-def _curve(runs: Sequence[Run], reference: float | None, by_time: bool) -> Curve:
+def _curve(runs: Sequence[Run], reference: float | None, scale: float, by_time: bool) -> Curve:
     """Quantiles of the gap so far wherever a run improved; a finished run keeps what it has."""
     if reference is None:
         return Curve((), (), (), ())
@@ -249,11 +258,13 @@ def _curve(runs: Sequence[Run], reference: float | None, by_time: bool) -> Curve
     if len(spent) > POINTS:
         first, last = max(spent[0], 1e-9), spent[-1]
         spent = [first * (last / first) ** (k / (POINTS - 1)) for k in range(POINTS)]
-    columns = [[_so_far(trace, at, reference) for trace in traces] for at in spent]
+    columns = [[_so_far(trace, at, reference, scale) for trace in traces] for at in spent]
     quarters = [tuple(quantile(c, q) for c in columns) for q in (0.25, 0.5, 0.75)]
     return Curve(tuple(spent), *quarters)
 
 
-def _so_far(trace: Sequence[tuple[float, float]], at: float, reference: float) -> float:
+def _so_far(
+    trace: Sequence[tuple[float, float]], at: float, reference: float, scale: float
+) -> float:
     reached = [value for spent, value in trace if spent <= at * (1.0 + 1e-12)]
-    return excess(reached[-1], reference) if reached else math.inf
+    return excess(reached[-1], reference, scale) if reached else math.inf

@@ -18,7 +18,9 @@ from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.progress import following, in_part, of_problem
 from gearopt.optimise.result import Budget, Event, Outcome
+from gearopt.optimise.scale import objective_scale
 from gearopt.optimise.solve import GAP, judge, method_of
+from gearopt.optimise.terms import Array
 
 WARM = Budget(seconds=1.0, evaluations=256)  # two generations, eight moves of every chain
 ROUNDING = 1e-9  # relative; a method's word that is better than the checked value by more is noted
@@ -115,6 +117,7 @@ def attempt(entry: Entry, seed: int, budget: Budget, told: Callable[[Event], boo
     if stopped:
         return None
     found = [e for e in events if e["best"] is not None]
+    x = None if verdict.objective is None else outcome.x
     return _clipped(
         Run(
             seed,
@@ -126,8 +129,14 @@ def attempt(entry: Entry, seed: int, budget: Budget, told: Callable[[Event], boo
             seconds,
             verdict.message,
             steps=tuple((e["seconds"], e["evaluations"], e["best"]) for e in found),
+            scale=0.0 if x is None else _scale(problem, x, verdict),
         )
     )
+
+
+def _scale(problem: Problem | Conic, x: Array, verdict: Verdict) -> float:
+    """The objective's own scale at a point, with the rounding of its bound where it has one."""
+    return verdict.certificate.get("scale") or objective_scale(problem, x)
 
 
 def _clipped(run: Run) -> Run:

@@ -26,6 +26,7 @@ from gearopt.optimise.conic.relaxation import (
 )
 from gearopt.optimise.conic.scaling import Scaled, scaled
 from gearopt.optimise.result import Budget, Outcome
+from gearopt.optimise.scale import gap, objective_scale
 from gearopt.optimise.terms import Array
 
 NODES = 20_000  # where the budget names no evaluations
@@ -37,7 +38,8 @@ SLACK = 1e-9  # feasibility asked of a design that is kept; the certificate bear
 class _Search:
     """What the search knows; it has state because nodes share the best design.
 
-    x, value: best design so far. leaves: closed nodes. spent: relaxations solved.
+    x, value: best design so far; scale: the cost's own there. leaves: closed nodes. spent:
+    relaxations solved.
     """
 
     problem: Conic
@@ -46,6 +48,7 @@ class _Search:
     deadline: float
     x: Array | None = None
     value: float = np.inf
+    scale: float = 0.0
     leaves: list[Leaf] = field(default_factory=list)
     spent: int = 0
 
@@ -66,7 +69,7 @@ def branch(
     finished = True
     while heap:
         least, _, leaf = heapq.heappop(heap)
-        done = least >= search.value - max(budget.gap, SLACK) * abs(search.value)
+        done = gap(search.value, least, search.scale) <= max(budget.gap, SLACK)
         halves = [] if done else _halves(data, leaf)
         if not halves:
             search.leaves.append(leaf)
@@ -171,7 +174,7 @@ def _take(search: _Search, z: Array) -> None:
     x = np.clip(z, search.data.lower, search.data.upper)[search.data.user]
     value, excess = judged(search.problem, x)
     if excess <= SLACK and value < search.value:
-        search.x, search.value = x, value
+        search.x, search.value, search.scale = x, value, objective_scale(search.problem, x)
 
 
 def _halves(data: Canonical, leaf: Leaf) -> list[tuple[Array, Array]]:

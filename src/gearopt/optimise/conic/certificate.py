@@ -10,15 +10,14 @@ from typing import Any
 
 import numpy as np
 
-from gearopt.errors import CertificateError
-from gearopt.optimise.certificate import FARKAS, FEASIBLE, Verdict
+from gearopt.optimise.certificate import FARKAS, Verdict, bounded
 from gearopt.optimise.conic.bound import Leaf, emptiness, lagrangian
 from gearopt.optimise.conic.canonical import Canonical, canonical
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.conic.propagate import cutoff, narrowed, propagate
-from gearopt.optimise.dual import TINY
 from gearopt.optimise.feasibility import runaway, violation
 from gearopt.optimise.result import Outcome
+from gearopt.optimise.scale import FEASIBLE
 from gearopt.optimise.terms import Array
 
 EXCLUDED = "the bounds of the variables exclude every point"
@@ -48,32 +47,24 @@ def certify(problem: Conic, outcome: Outcome, gap: float) -> Verdict:
     if loose := runaway(problem, outcome.x, lower, upper, guess):
         return Verdict("failed", value, certificate=certificate, message=loose)
     status = "feasible" if outcome.finished else "limit"
-    bound, residuals, loose = _bound(problem, outcome, value)
-    certificate |= residuals
+    bound, charge, slack, loose = _bound(problem, outcome, value)
     if not math.isfinite(bound):
         message = f"{loose} {outcome.message}".strip()
         return Verdict(status, value, certificate=certificate, message=message)
-    distance = (value - bound) / max(abs(value), TINY)
-    if distance < -100 * FEASIBLE and excess < FEASIBLE / 100:
-        raise CertificateError(f"a feasible value {value!r} lies below the dual bound {bound!r}")
-    message = outcome.message
-    if abs(distance) <= max(gap, FEASIBLE):
-        status = "optimal"
-    elif distance < 0.0:
-        message = f"{worst} is violated by {excess:.3g}, which the objective gains from. {message}"
     proof = {"method": "dual", "arithmetic": ARITHMETIC, "nodes": len(outcome.leaves)}
-    return Verdict(status, value, bound, max(distance, 0.0), certificate, proof, message.strip())
+    before = Verdict(status, value, certificate=certificate, proof=proof, message=outcome.message)
+    verdict = bounded(problem, outcome.x, before, bound, gap, worst)
+    unit = verdict.certificate.get("scale") or abs(value) or 1.0
+    residuals = {"stationarity": charge / unit, "complementarity": slack / unit}
+    return replace(verdict, certificate=dict(verdict.certificate) | residuals)
 
 
-def _bound(
-    problem: Conic, outcome: Outcome, value: float
-) -> tuple[float, dict[str, float | None], str]:
-    """The least cost over all leaves, residuals of the leaf that has it, and what nothing holds."""
+def _bound(problem: Conic, outcome: Outcome, value: float) -> tuple[float, float, float, str]:
+    """The least cost over all leaves, what it lost (see `Proof`), and what nothing holds."""
     data = canonical(problem)
     if not covers(data, outcome.leaves):
-        return -math.inf, {}, ""
-    least, loose, most = math.inf, "", cutoff(value)
-    residuals: dict[str, float | None] = {}
+        return -math.inf, 0.0, 0.0, ""
+    least, charge, slack, most = math.inf, 0.0, 0.0, cutoff(value)
     for leaf in outcome.leaves:
         box = propagate(data, leaf.lower, leaf.upper, most)
         if box is None:
@@ -87,17 +78,13 @@ def _bound(
         ]
         if unheld:
             loose = f"nothing holds {unheld[0]}: give it a bound or a limit, for a proof."
-        if unheld or leaf.y is None or leaf.ray:
-            return -math.inf, {}, loose
+            return -math.inf, 0.0, 0.0, loose
+        if leaf.y is None or leaf.ray:
+            return -math.inf, 0.0, 0.0, ""
         proof = lagrangian(data, *box, leaf.x, leaf.y)
         if proof.least < least:
-            least = proof.least
-            scale = max(abs(value), TINY)
-            residuals = {
-                "stationarity": proof.charge / scale,
-                "complementarity": proof.slack / scale,
-            }
-    return min(least, most), residuals, loose
+            least, charge, slack = proof.least, proof.charge, proof.slack
+    return min(least, most), charge, slack, ""
 
 
 def _infeasible(problem: Conic, outcome: Outcome) -> Verdict:

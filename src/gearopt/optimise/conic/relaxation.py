@@ -17,7 +17,7 @@ from gearopt.optimise.conic.interior import Point, interior, polished
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.conic.propagate import cutoff, propagate
 from gearopt.optimise.conic.scaling import Scale, Scaled, after, equal, scaled
-from gearopt.optimise.dual import TINY
+from gearopt.optimise.scale import gap
 from gearopt.optimise.terms import Array
 
 ROUNDS = 16
@@ -52,7 +52,7 @@ class Found:
     @property
     def gap(self) -> float:
         """Relative distance of value and bound."""
-        return (self.value - self.least) / max(abs(self.value), TINY)
+        return gap(self.value, self.least)
 
 
 def solved(problem: Conic, data: Canonical, deadline: float, goes_on: GoesOn) -> Found:

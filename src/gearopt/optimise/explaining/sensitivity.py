@@ -43,7 +43,9 @@ def sensitivities(problem: Problem, x: Array) -> Sensitivities:
     y = shape.to_y(x)
     lam = multipliers(shape, y, p, low, high)
     if lam is None:
-        raise SolveError(f"{problem.name} is too large for sensitivities")
+        raise SolveError(
+            f"{problem.name} has no sensitivities: too large, or slopes are no numbers"
+        )
     f, _, _, _, slope = (np.array(v).ravel() for v in shape.derivatives(y, p, *lam))
     unit = 1.0 if shape.log_objective else max(abs(float(f[0])), 1e-300)
     finite = np.where(np.isfinite(p), p, 0.0)

@@ -1,6 +1,9 @@
 """Ipopt through CasADi, on the form of a problem (logarithms of variables and proven rows).
 
 Wide logarithms are split up first (`epigraph`); y is then followed by the u of their epigraphs.
+Ipopt's tolerances are absolute, so it is given natural variables and objectives in units of their
+own scale. Where that of the objective is far smaller in the end than at first, it goes on from
+there in the units found there.
 
 Claims infeasibility only with the multipliers of the least-violation problem, which `certify`
 turns into a proof where the form is convex.
@@ -17,15 +20,18 @@ import numpy as np
 from gearopt.errors import SolveError
 from gearopt.optimise import tape
 from gearopt.optimise.epigraph import Split, split
-from gearopt.optimise.form import Form, form
+from gearopt.optimise.form import Form, form, values, violation
 from gearopt.optimise.nonlinear import OPTIONS, program
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Event, Outcome, Watch
+from gearopt.optimise.scaled_form import Unit, scaled, unit_at
 from gearopt.optimise.terms import Array
 
 ACCEPTED = 1e-9  # an iterate that violates no row by more is kept as the best so far
 FEASIBLE = 1e-8  # that of a certificate
 ROUNDING = 1e-12  # of two values of the objective
+SMALLER = 1e-2  # of the objective's scale at first: less, and Ipopt goes on from where it ended
+AGAIN = 6  # times at most
 STUCK = 1e-6  # violation at which Ipopt's end point counts as not solved
 
 RANDOM = False
@@ -65,12 +71,13 @@ class _Run:
         self.evaluations, self.stopped = 0, False
         self.best: Array | None = None
         self.least = np.inf
+        self.scale: Unit | None = None
         self.raised: BaseException | None = None
 
     def note(self, y: Array) -> bool:
-        """Take an iterate; whether the run goes on."""
+        """Take an iterate, in Ipopt's units; whether the run goes on."""
         self.evaluations += 1
-        self.keep(y)
+        self.keep(y if self.scale is None else y * self.scale.variables)
         self.stopped = not self.goes_on()
         return not self.stopped
 
@@ -121,11 +128,10 @@ def run(
     y0 = shape.to_y(np.clip(guess if start is None else start, lower, upper))
     low, high = shape.to_y(lower), shape.to_y(upper)
     rows = (shape.derivatives.numel_out(1), shape.derivatives.numel_out(2))
-    values = partial(_values, problem, shape)
-    following = _Run(rows, values, clock, budget, watch, shape.objective)
+    following = _Run(rows, partial(values, problem, shape), clock, budget, watch, shape.objective)
     following.keep(y0)
     point = _ipopt(problem, shape, y0, low, high, following)
-    if not following.stopped and _violation(problem, shape, point.y) > STUCK:
+    if not following.stopped and violation(problem, shape, point.y) > STUCK:
         point, least = _least_violation(problem, shape, point, low, high, following)
         if least > STUCK and not following.stopped and following.best is None:
             return Outcome(
@@ -136,6 +142,12 @@ def run(
                 evaluations=following.evaluations,
                 message=f"Ipopt: {point.status}; the least violation found is {least:.3g}",
             )
+        point = _ipopt(problem, shape, point.y, low, high, following)
+    for _ in range(AGAIN):
+        assert following.scale is not None
+        there = unit_at(problem, shape, point.y).objective
+        if following.stopped or there >= SMALLER * following.scale.objective:
+            break
         point = _ipopt(problem, shape, point.y, low, high, following)
     if following.raised is not None:
         raise following.raised
@@ -161,14 +173,17 @@ def _split(problem: Problem, shape: Form) -> Split:
 
 
 def _built(problem: Problem, shape: Form) -> tuple[Any, Any]:
-    """The solver of a form and its monitor, built once."""
+    """The solver of a form in units of its own scale, and its monitor, built once."""
     import casadi as ca
 
     key = ("ipopt", id(shape))
     if key not in problem.memo:
         parts, size = _split(problem, shape), shape.derivatives.numel_in(0)
-        rows = ca.vertcat(parts.inequalities, parts.equalities, parts.levels)
-        problem.memo[key] = program(parts.z, parts.p, parts.objective, rows, size)
+        units, unit = type(parts.z).sym("units", size), type(parts.z).sym("unit")
+        z, f, g, h, levels = scaled(shape, parts, units)
+        f = f if shape.log_objective else f / unit
+        p = ca.vertcat(parts.p, units, unit)
+        problem.memo[key] = program(z, p, f, ca.vertcat(g, h, levels), size)
     found: tuple[Any, Any] = problem.memo[key]
     return found
 
@@ -176,38 +191,25 @@ def _built(problem: Problem, shape: Form) -> tuple[Any, Any]:
 def _ipopt(
     problem: Problem, shape: Form, y0: Array, low: Array, high: Array, following: _Run
 ) -> _Point:
+    """Run Ipopt from a point, in the units that fit there."""
     solver, monitor = _built(problem, shape)
     monitor.follow = following.note
     m_g, m_h = following.rows
+    unit = following.scale = unit_at(problem, shape, y0)
     levels = np.array(_split(problem, shape).start(y0, problem.parameter_values())).ravel()
     free = np.full(len(levels), np.inf)
     found = solver(
-        x0=np.concatenate([y0, levels]),
-        p=problem.parameter_values(),
-        lbx=np.concatenate([low, -free]),
-        ubx=np.concatenate([high, free]),
+        x0=np.concatenate([y0 / unit.variables, levels]),
+        p=np.concatenate([problem.parameter_values(), unit.variables, [unit.objective]]),
+        lbx=np.concatenate([low / unit.variables, -free]),
+        ubx=np.concatenate([high / unit.variables, free]),
         lbg=np.concatenate([np.full(m_g, -np.inf), np.zeros(m_h), -free]),
         ubg=0.0,
     )
-    lam = np.array(found["lam_g"]).ravel()
+    lam = np.array(found["lam_g"]).ravel() * unit.objective
     status = str(solver.stats()["return_status"])
-    point = np.array(found["x"]).ravel()[: len(y0)]
+    point = np.array(found["x"]).ravel()[: len(y0)] * unit.variables
     return _Point(point, lam[:m_g], lam[m_g : m_g + m_h], status)
-
-
-def _values(problem: Problem, shape: Form, y: Array) -> tuple[float, Array]:
-    """F, and G and H together, at a point."""
-    no_g, no_h = (np.zeros(shape.derivatives.numel_out(k)) for k in (1, 2))
-    parts = shape.derivatives(y, problem.parameter_values(), no_g, no_h)
-    f, g, h = (np.array(part).ravel() for part in parts[:3])
-    return float(f[0]), np.concatenate([g, h])
-
-
-def _violation(problem: Problem, shape: Form, y: Array) -> float:
-    count = shape.derivatives.numel_out(1)
-    rows = _values(problem, shape, y)[1]
-    worst = np.concatenate([rows[:count], np.abs(rows[count:]), [0.0]])
-    return float(np.inf if np.isnan(worst).any() else worst.max())
 
 
 def _lost(problem: Problem, shape: Form, point: _Point, following: _Run) -> bool:
@@ -218,10 +220,10 @@ def _lost(problem: Problem, shape: Form, point: _Point, following: _Run) -> bool
     """
     if following.best is None or following.stopped:
         return False
-    value = _values(problem, shape, point.y)[0]
+    value = values(problem, shape, point.y)[0]
     prices = np.abs(np.concatenate([point.lam_g, point.lam_h]))
     bought = ACCEPTED * float(np.nan_to_num(prices).sum()) + ROUNDING * abs(value)
-    ended = _violation(problem, shape, point.y) <= FEASIBLE
+    ended = violation(problem, shape, point.y) <= FEASIBLE
     return not (ended and value <= following.least + bought)
 
 
@@ -238,9 +240,10 @@ def _least_violation(
     parts = _split(problem, shape)
     m_g, m_h = outer.rows
     if key not in problem.memo:
-        t, g, h = type(parts.z).sym("t"), parts.inequalities, parts.equalities
-        rows = ca.vertcat(g - t, h - t, -h - t, parts.levels)
-        problem.memo[key] = program(ca.vertcat(parts.z, t), parts.p, t, rows, size)
+        t, units = type(parts.z).sym("t"), type(parts.z).sym("units", size)
+        y, _, g, h, levels = scaled(shape, parts, units)
+        rows = ca.vertcat(g - t, h - t, -h - t, levels)
+        problem.memo[key] = program(ca.vertcat(y, t), ca.vertcat(parts.p, units), t, rows, size)
     solver, monitor = problem.memo[key]
 
     def goes_on(_: Array) -> bool:
@@ -249,17 +252,18 @@ def _least_violation(
 
     monitor.follow = goes_on
     start = np.where(np.isfinite(point.y), point.y, 0.0)
-    levels = np.array(parts.start(start, problem.parameter_values())).ravel()
-    free = np.full(len(levels), np.inf)
+    unit = unit_at(problem, shape, start).variables
+    start_levels = np.array(parts.start(start, problem.parameter_values())).ravel()
+    free = np.full(len(start_levels), np.inf)
     found = solver(
-        x0=np.concatenate([start, levels, [1.0]]),
-        p=problem.parameter_values(),
-        lbx=np.concatenate([low, -free, [-1.0]]),
-        ubx=np.concatenate([high, free, [np.inf]]),
+        x0=np.concatenate([start / unit, start_levels, [1.0]]),
+        p=np.concatenate([problem.parameter_values(), unit]),
+        lbx=np.concatenate([low / unit, -free, [-1.0]]),
+        ubx=np.concatenate([high / unit, free, [np.inf]]),
         lbg=-np.inf,
         ubg=0.0,
     )
     z = np.array(found["x"]).ravel()
     lam = np.array(found["lam_g"]).ravel()
     lam_h = lam[m_g : m_g + m_h] - lam[m_g + m_h : m_g + 2 * m_h]
-    return _Point(z[:size], lam[:m_g], lam_h, point.status), float(z[-1])
+    return _Point(z[:size] * unit, lam[:m_g], lam_h, point.status), float(z[-1])

@@ -17,6 +17,7 @@ from gearopt.optimise.form import Form
 from gearopt.optimise.problem import Problem, one_objective
 from gearopt.optimise.quadratic import Curvature, curvature, hessian_of, misfit, natural
 from gearopt.optimise.result import Budget, Event, Outcome, Watch
+from gearopt.optimise.scale import sizes
 from gearopt.optimise.terms import Array
 
 VIOLATED = 1e-9  # a row, whose unit is 1, is not met beyond it
@@ -35,7 +36,10 @@ SETTINGS = {"solvers": ", ".join(SOLVERS), **TOLERANCES}
 
 @dataclass(frozen=True)
 class _Program:
-    """1/2 x'Qx + c'x, least <= A x <= most, low <= x <= high; the first `count` rows are limits."""
+    """1/2 x'Qx + c'x, least <= A x <= most, low <= x <= high; the first `count` rows are limits.
+
+    own: scale of each variable.
+    """
 
     hessian: Array
     linear: Array
@@ -45,6 +49,7 @@ class _Program:
     low: Array
     high: Array
     count: int
+    own: Array
 
     def violation(self, x: Array) -> float:
         """Largest violation of a row."""
@@ -130,6 +135,7 @@ def _program(problem: Problem, shape: Form) -> _Program:
         low,
         high,
         len(g),
+        sizes(problem, problem.bounds()[2]),
     )
 
 
@@ -138,8 +144,9 @@ def _solved(
 ) -> tuple[Array, Array, str]:
     """Point, multipliers of the rows, and what the solver complains of ("" for nothing).
 
-    given: which rows the solver is given.
-    Variables are scaled to a Hessian of unit diagonal, which the solvers' tolerances expect.
+    given: which rows the solver is given. The solvers' tolerances are absolute: the objective is
+    divided by its largest term over the variables' own scale, variables are scaled to a Hessian of
+    unit diagonal, or where they have none in it by their own scale.
     """
     import casadi as ca
 
@@ -153,10 +160,12 @@ def _solved(
         shapes = {"h": ca.Sparsity.dense(size, size), "a": ca.Sparsity.dense(rows, size)}
         problem.memo[key] = ca.conic("qp", name, shapes, options)
     solver = problem.memo[key]
-    unit = 1.0 / np.sqrt(np.where(curved.diagonal > 0.0, curved.diagonal, 1.0))
+    own, bent = program.own, curved.diagonal > 0.0
+    cost = max(np.abs(program.linear * own).max(), (curved.diagonal * own**2).max()) or 1.0
+    unit = np.where(bent, np.sqrt(cost / np.where(bent, curved.diagonal, 1.0)), own)
     found = solver(
-        h=program.hessian * np.outer(unit, unit),
-        g=program.linear * unit,
+        h=program.hessian / cost * np.outer(unit, unit),
+        g=program.linear / cost * unit,
         a=program.rows[given] * unit,
         lba=program.least[given],
         uba=program.most[given],
@@ -167,7 +176,7 @@ def _solved(
     x = np.clip(np.array(found["x"]).ravel() * unit, program.low, program.high)
     status = "" if stats["success"] else str(stats["return_status"])
     lam = np.zeros(len(program.most))
-    lam[given] = np.array(found["lam_a"]).ravel()
+    lam[given] = np.array(found["lam_a"]).ravel() * cost
     return x, lam, status
 
 
@@ -199,6 +208,7 @@ def _nearest(problem: Problem, program: _Program, runs: int, words: str) -> Outc
         np.concatenate([program.low, -free]),
         np.concatenate([program.high, free]),
         program.count,
+        np.concatenate([program.own, np.ones(rows)]),
     )
     z, _, status = _solved(problem, "daqp", wide, curvature(wide.hessian), np.arange(rows))
     x, s = z[:size], z[size:]

@@ -3,6 +3,7 @@
 from typing import Any
 
 from gearopt.optimise.result import Result
+from gearopt.optimise.scale import gap
 from gearopt.report.measures import Measures
 from gearopt.report.pages.frame import Figure, axis, layout
 from gearopt.report.pages.section import Section
@@ -65,7 +66,7 @@ def _hover(step: dict[str, Any], key: str, unit: str) -> str:
     words += f", {step['evaluations']:,} evaluations"
     best, bound = step.get("best"), step.get("bound")
     if best and bound is not None:
-        words += f"; gap {100.0 * (best - bound) / abs(best):.3g} %"
+        words += f"; gap {100.0 * gap(best, bound):.3g} %"
     return words
 
 

@@ -21,6 +21,7 @@ CHECKS = {  # of a certificate: what each number is
     "feasibility": "largest excess over a limit",
     "stationarity": "largest slope left over",
     "complementarity": "largest multiplier times room",
+    "scale": "of the objective, which is zero: the gap is relative to it",
 }
 
 

@@ -8,7 +8,7 @@ from gearopt.report.measures import Measures
 from gearopt.report.pages.section import Section, Tile
 from gearopt.report.pages.servo.tiles import tiles as servo_tiles
 from gearopt.report.pages.table import Table, percent
-from gearopt.report.proof_words import proof, scope
+from gearopt.report.proof_words import gap_words, proof, scope
 from gearopt.report.remedy_words import REMEDY_HEADS, remedy_words
 from gearopt.report.result_words import certainty, goal, leading, limit_rows
 from gearopt.report.words import amount, number
@@ -26,8 +26,8 @@ def _tiles(result: Result, measures: Measures) -> list[Tile]:
     if value is not None:
         tiles.append(Tile(name, amount(value, unit, measures), certainty(result)[0]))
     if bound is not None:
-        gap = "" if result.gap is None else f"gap {100 * result.gap:.3g} %"
-        tiles.append(Tile(f"proven bound{scope(result)}", amount(bound, unit, measures), gap))
+        title = f"proven bound{scope(result)}"
+        tiles.append(Tile(title, amount(bound, unit, measures), gap_words(result)))
     design = result.design
     if result.scene == "servo":
         return tiles + servo_tiles(design, name, measures)

@@ -1,0 +1,165 @@
+"""Whether a stationary point is a local minimum: the second-order conditions, and a look further.
+
+The Lagrangian must not fall along any direction that the limits which hold leave free. Its Hessian
+is reduced to the directions along limits and bounds with a price; those that hold without a price
+block one side of a direction. Directions without curvature are followed for some steps.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from gearopt.optimise.multipliers import NEAR
+from gearopt.optimise.quadratic import dense
+from gearopt.optimise.stationarity import STATIONARY, WEAK, Point, acting, hessian, own_scales
+from gearopt.optimise.terms import Array
+
+FLAT = 1e-6  # of what acts on a direction: curvature below it is none
+RANK = 1e-9  # of the largest singular value: a row that depends on others
+ALONG = 1e-6  # of a direction's length: less does not leave a limit
+STEPS = (1e-3, 1e-2, 1e-1)  # of the variables' scale, by which flat directions are followed
+NOISE = 1e-12  # of all terms that are added up, in these steps
+MOST = 1000  # variables off their bounds; the reduced Hessian is dense
+ROUNDS = 20  # of making the entries of a matrix equal
+
+
+@dataclass(frozen=True)
+class _Cone:
+    """Directions d (k,) of the free variables, in units of `unit`, along what holds.
+
+    free (n,): which variables have no price on their bound. curved (k, k): Hessian. firm: rows of
+    limits with a price and of equalities, loose: of limits without one and of such bounds, d must
+    meet firm d = 0 and loose d <= 0.
+    """
+
+    free: Any
+    unit: Array
+    curved: Array
+    firm: Array
+    loose: Array
+
+
+def no_minimum(point: Point) -> str:
+    """Why a stationary point is not known to be a local minimum, in words; "" where it is."""
+    if point.shape.convex:
+        return ""
+    free = _free(point)
+    if free.sum() > MOST:
+        return f"its curvature is not looked at: {free.sum()} variables are off their bounds"
+    cone = _cone(point, free)
+    if not np.isfinite(cone.curved).all():
+        return "its curvature is not a number"
+    blocked = False
+    for value, direction in _eigen(cone.curved, cone.firm):
+        for d in (direction, -direction):
+            if not (cone.loose @ d <= ALONG).all():
+                blocked = blocked or value <= -FLAT
+            elif value <= -FLAT or _sinks(point, cone, d):
+                return _words(point, cone, d)
+    if not blocked:
+        return ""
+    for value, d in _eigen(cone.curved, np.vstack([cone.firm, cone.loose])):
+        if value <= -FLAT:
+            return _words(point, cone, d)
+    return "whether it is a minimum is open: limits hold that have no price"
+
+
+def _free(point: Point) -> Any:
+    """Variables that no bound with a price holds, (n,)."""
+    own, slope = own_scales(point), point.gradient
+    price = np.abs(slope) * own > STATIONARY * acting(point)
+    low, high = _ends(point)
+    return ~((low & high) | (low & price & (slope > 0.0)) | (high & price & (slope < 0.0)))
+
+
+def _ends(point: Point) -> tuple[Any, Any]:
+    """Which variables sit on their lower, and which on their upper bound."""
+    near = NEAR * own_scales(point)
+    return point.y - point.low <= near, point.high - point.y <= near
+
+
+def _cone(point: Point, free: Any) -> _Cone:
+    """The free directions, in units in which the Hessian has entries of up to 1."""
+    own = own_scales(point)
+    p = point.problem.parameter_values()
+    of_g, of_h = (dense(j) for j in point.shape.jacobians(point.y, p))
+    priced = point.lam_g[:, None] * np.abs(of_g) * own > STATIONARY * acting(point)
+    firm = priced.any(axis=1)
+    loose = (point.g >= -NEAR) & ~firm
+    low, high = (end[free] for end in _ends(point))
+    bounds = np.eye(int(free.sum()))
+    curved = dense(hessian(point))[np.ix_(free, free)] * np.outer(own[free], own[free])
+    size = _equal(curved) + (point.pull * own)[free]
+    size = size + WEAK * size.max(initial=0.0)
+    root = np.sqrt(np.where(size > 0.0, size, 1.0))
+    unit = own[free] / root
+    rows = [_normal(r[:, free] * unit) for r in (np.vstack([of_g[firm], of_h]), of_g[loose])]
+    held = np.vstack([rows[1], -bounds[low], bounds[high]])
+    return _Cone(free, unit, curved / np.outer(root, root), rows[0], held)
+
+
+def _normal(rows: Array) -> Array:
+    """Rows of length 1."""
+    length = np.linalg.norm(rows, axis=1, keepdims=True)
+    found: Array = rows / np.where(length > 0.0, length, 1.0)
+    return found
+
+
+def _equal(matrix: Array) -> Array:
+    """The s (k,) for which the largest entry of each row of M_ij/sqrt(s_i s_j) is 1, or 0."""
+    found = np.ones(len(matrix))
+    for _ in range(ROUNDS):
+        root = np.sqrt(found)
+        largest = (np.abs(matrix) / np.outer(root, root)).max(axis=1, initial=0.0)
+        found = found * np.where(np.isfinite(largest) & (largest > 0.0), largest, 1.0)
+    return np.where(np.abs(matrix).max(axis=1, initial=0.0) > 0.0, found, 0.0)
+
+
+def _eigen(curved: Array, rows: Array) -> list[tuple[float, Array]]:
+    """Curvatures below FLAT along rows d = 0, least first, with their directions of length 1."""
+    _, sizes, turned = np.linalg.svd(rows) if len(rows) else (0, np.empty(0), np.eye(len(curved)))
+    across = turned[int((sizes > RANK).sum()) :].T
+    values, vectors = np.linalg.eigh(across.T @ curved @ across)
+    found = zip(values, (across @ vectors).T, strict=True)
+    return [(float(value), d) for value, d in found if value < FLAT]
+
+
+def _sinks(point: Point, cone: _Cone, d: Array) -> bool:
+    """Whether the Lagrangian falls along d by more than its slope and curvature say, at all STEPS.
+
+    It need not be seen at the shortest steps; but nowhere may it rise.
+    """
+    step = np.zeros(len(point.y))
+    step[cone.free] = cone.unit * d
+    length = float((np.abs(step) / own_scales(point)).max(initial=0.0))
+    room = np.where(step > 0.0, point.high - point.y, point.y - point.low)
+    reach = min(1.0 / length, float((room / np.abs(step))[step != 0.0].min()) / STEPS[-1])
+    step = step * reach
+    slope, bent = point.gradient @ step, step @ dense(hessian(point)) @ step
+    here, size = _lagrangian(point, point.y)
+    fell = []
+    for t in STEPS:
+        there, more = _lagrangian(point, point.y + t * step)
+        further = there - here - t * slope - 0.5 * t**2 * bent
+        noise = NOISE * (size + more) + WEAK * t**2 * abs(bent)
+        fell.append(0 if not abs(further) > noise else np.sign(further))
+    return bool(max(fell) <= 0 and fell[-1] < 0 and fell[-2] < 0)
+
+
+def _lagrangian(point: Point, y: Array) -> tuple[float, float]:
+    """Value of the Lagrangian at y, and the sizes of what is added up in it."""
+    p = point.problem.parameter_values()
+    parts = point.shape.derivatives(y, p, point.lam_g, point.lam_h)[:3]
+    f, g, h = (np.array(part).ravel() for part in parts)
+    value = f[0] + point.lam_g @ g + point.lam_h @ h
+    sizes = abs(f[0]) + point.lam_g @ (1.0 + np.abs(g)) + np.abs(point.lam_h) @ (1.0 + np.abs(h))
+    return float(value), float(sizes)
+
+
+def _words(point: Point, cone: _Cone, d: Array) -> str:
+    """Along which variables the objective falls."""
+    names = [name for (_, name), at in zip(point.problem.columns, cone.free, strict=True) if at]
+    share = np.abs(cone.unit * d) / own_scales(point)[cone.free]
+    most = [names[k] for k in np.argsort(-share, kind="stable")[:3] if share[k] > 0.3 * share.max()]
+    return f"no minimum: slopes vanish there, but the objective falls along {', '.join(most)}"
