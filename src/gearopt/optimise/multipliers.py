@@ -53,7 +53,7 @@ def multipliers(
 def _rows(shape: Form, y: Array, p: Array, active: Any) -> Any:
     """Gradients of the active inequalities and of all equalities, a row each."""
     of_g, of_h = shape.jacobians(y, p)
-    size = (len(active) + of_h.size1()) * len(y)
+    size = (len(active) + of_h.shape[0]) * len(y)
     if size <= SMALL or of_g.nnz() + of_h.nnz() > SPARSE * size:
         of_g, of_h = (np.array(j).reshape(-1, len(y)) for j in (of_g, of_h))
         return np.vstack([of_g[active], of_h])

@@ -31,8 +31,8 @@ def scaled(shape: Form, parts: Split, units: Any) -> tuple[Any, Any, Any, Any, A
     if shape.logarithmic.all():
         return parts.z, *terms
     z, size = type(parts.z).sym("z", parts.z.numel()), len(shape.logarithmic)
-    there = ca.vertcat(z[:size] * units, z[size:])
-    return z, *ca.Function("terms", [parts.z, parts.p], terms)(there, parts.p)
+    units = ca.vertcat(units, type(z).ones(z.numel() - size))
+    return z, *ca.Function("terms", [parts.z, parts.p], terms)(z * units, parts.p)
 
 
 def unit_at(problem: Problem, shape: Form, y: Array) -> Unit:
