@@ -87,29 +87,28 @@ def test_rounding_of_slopes_is_charged_over_the_box():
     assert lagrangian - least - rounding == pytest.approx(ROUNDING * wide * 2e9, rel=1e-3)
 
 
-def test_the_bound_of_a_quadratic_program():
-    """At (1, 2), in a box and without one: the least of L over the box is known exactly."""
-    low_g, equal = 0.5, 3.0
-    for low, high in ((-10.0, 10.0), (-INF, INF)):
-        problem = program(low, high)
-        point = at(problem, natural(problem), (1.0, 2.0), (low_g,), (equal,))
-        g, h = (1.0 - 4.0 + 3.0) / 4.0 - 1.0, 3.0 / 8.0 - 1.0
-        lagrangian = (8.0 + 4.0 + 2.0 + 7.0) + low_g * g + equal * h
-        hessian = np.array([[4.0, 1.0], [1.0, 2.0]])
-        slope_f = np.array([4.0 * (1.0 - 3.0) + 2.0, 4.0 + 1.0])
-        slope = slope_f + low_g * np.array([0.25, -0.5]) + equal / 8.0
-        exact = lagrangian - 0.5 * slope @ np.linalg.solve(hessian, slope)
-        least, rounding = bound(point)
-        assert least <= exact
-        unit = np.diag([4.0, 2.0]) ** 0.5
-        floor = np.linalg.eigvalsh(np.linalg.inv(unit) @ hessian @ np.linalg.inv(unit))[0]
-        bowl = -0.5 * slope**2 / (floor * np.diag(hessian))
-        assert least == pytest.approx(lagrangian + bowl.sum(), abs=1e-9)
-        along = np.abs(hessian) @ np.array([1.0, 2.0])
-        linear = np.abs(slope_f - hessian @ np.array([1.0, 2.0]))
-        sizes = 21.0 + low_g * (1.0 + abs(g)) + equal * (1.0 + abs(h))
-        sizes += (np.array([1.0, 2.0]) * (along + linear)).sum()
-        assert rounding == pytest.approx(ROUNDING * sizes, rel=1e-9)
+@pytest.mark.parametrize("b", [2.0, -2.0])
+@pytest.mark.parametrize(("low", "high"), [(-10.0, 10.0), (-INF, INF)])
+def test_the_bound_of_a_quadratic_program(b, low, high):
+    """At (1, b), in a box and without one: the least of L over the box is known exactly."""
+    lam_g, lam_h, x = 0.5, 3.0, np.array([1.0, b])
+    problem = program(low, high)
+    point = at(problem, natural(problem), x, (lam_g,), (lam_h,))
+    g, h = (1.0 - 2.0 * b + 3.0) / 4.0 - 1.0, (1.0 + b) / 8.0 - 1.0
+    minimise = 8.0 + b**2 + b + 7.0
+    lagrangian = minimise + lam_g * g + lam_h * h
+    hessian = np.array([[4.0, 1.0], [1.0, 2.0]])
+    slope_f = np.array([4.0 * (1.0 - 3.0) + b, 2.0 * b + 1.0])
+    slope = slope_f + lam_g * np.array([0.25, -0.5]) + lam_h / 8.0
+    least, rounding = bound(point)
+    assert least <= lagrangian - 0.5 * slope @ np.linalg.solve(hessian, slope)
+    floor = 1.0 - 1.0 / math.sqrt(8.0)  # the least eigenvalue of Q scaled to unit diagonal
+    bowl = -0.5 * slope**2 / (floor * np.diag(hessian))
+    assert least == pytest.approx(lagrangian + bowl.sum(), abs=1e-9)
+    along = hessian @ np.abs(x)
+    sizes = minimise + lam_g * (1.0 + abs(g)) + lam_h * (1.0 + abs(h))
+    sizes += np.abs(x) @ (along + np.abs(slope_f - hessian @ x))
+    assert rounding == pytest.approx(ROUNDING * sizes, rel=1e-9, abs=0.0)
 
 
 def test_rounding_of_a_quadratic_slope_is_charged():

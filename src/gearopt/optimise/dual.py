@@ -26,12 +26,12 @@ def bound(point: Point) -> tuple[float, float]:
     rows = lam_g * (1.0 + np.abs(point.g)), lam_h * (1.0 + np.abs(point.h))
     doubt = ROUNDING * point.pull
     if shape.hessian is None:  # the objective is a logarithm
-        slack = _allowance(1.0 + abs(point.f), *rows)
+        slack = _allowance(1.0, point.f, *rows)
         drop = float(box(point.gradient, doubt, y, point.low, point.high).sum())
     else:
         hessian = hessian_of(point.problem, shape)
         linear, along = point.gradient_f - hessian @ y, np.abs(hessian) @ np.abs(y)
-        slack = _allowance(point.f, *rows, np.abs(y) * along, np.abs(linear) * np.abs(y))
+        slack = _allowance(point.f, *rows, y * along, linear * y)
         doubt = doubt + ROUNDING * (along + np.abs(linear))
         drop = least(point.gradient, doubt, y, point.low, point.high, curvature(hessian))
     return float(lagrangian + drop - slack), slack
@@ -60,4 +60,5 @@ def farkas(
 
 
 def _allowance(*terms: Array | float) -> float:
+    """Rounding of a sum of terms, by their sizes."""
     return ROUNDING * sum(float(np.abs(t).sum()) for t in terms)
