@@ -67,10 +67,10 @@ def test_convex_problem_is_proven(method, gap):
 
 
 @pytest.mark.parametrize("method", SAMPLERS)
-def test_samplers_come_close_and_claim_nothing(method):
-    result = solve(box(), method, Budget(evaluations=40_000), seed=1)
-    assert result.status == "feasible"  # the bound is ours, from the gradients at their point
-    assert result.bound is None or result.bound <= 1.0 < result.value < 1.01
+def test_samplers_are_polished_and_the_bound_is_ours(method):
+    result = solve(box(), method, Budget(evaluations=4_000), seed=1)
+    assert result.status == "optimal" and result.evaluations <= 4_000
+    assert result.bound <= 1.0 and result.value == pytest.approx(1.0, rel=1e-9)
 
 
 @pytest.mark.parametrize("method", [*SAMPLERS, "scip"])
@@ -88,7 +88,7 @@ def test_the_same_seed_gives_the_same_answer(method):
     first, again, other = (solve(box(), method, budget, seed=s) for s in (4, 4, 5))
     assert first.design == again.design and first.value == again.value
     if method != "multistart":
-        assert other.value != first.value
+        assert other.design != first.design
 
 
 @pytest.mark.parametrize("method", [*SAMPLERS, "multistart"])

@@ -1,5 +1,6 @@
 """Wrong packing files: one SceneError each, with file, key, value, and what to write."""
 
+import dataclasses
 import json
 import subprocess
 import sys
@@ -9,6 +10,7 @@ import pytest
 
 import gearopt
 from gearopt.errors import SceneError, SolveError
+from gearopt.report.proof_words import proof
 from gearopt.scenes.packing import EXAMPLE
 from gearopt.scenes.reading.load import read
 
@@ -173,3 +175,32 @@ def test_compare_takes_a_packing():
     assert [r.method for r in found.groups[0].rows][:2] == ["hop", "sa"]
     assert "free layers" in found.groups[0].rows[2].refused
     assert not found.groups[0].proven and len(found.groups) == 1
+
+
+NAMED = EXAMPLE.replace("count = 3", "layer = 2", 1).replace("count = 3", "count = 2")
+
+
+def test_a_named_layer_with_cylinders_below_it():
+    """One in layer 2, two small ones free: one of them at least lies below; 20 x 20 x 20."""
+    result = gearopt.solve(read(NAMED.encode())[1], budget=gearopt.Budget(evaluations=50_000))
+    assert result.status == "optimal" and result.value == pytest.approx(8_000.0, rel=1e-8)
+    assert sorted(v["layer"] for v in result.design["layers"]) == [1, 2]
+
+
+def test_a_layer_below_a_named_one_that_must_stay_empty_is_refused():
+    text = NAMED.replace("layer = 2", "layer = 6").replace("most = 2", "most = 6")
+    error = wrong(text)
+    assert error.key == "cylinder[1].layer" and error.value == "6"
+    assert "2 cylinders have no layer of their own, and below a layer none is" in error.rule
+    assert error.fix.value == "3"
+    read(text.replace("layer = 6", "layer = 3").encode())
+
+
+def test_words_of_a_bound_say_where_its_time_ended_it():
+    result = gearopt.solve(read(NAMED.encode())[1], budget=gearopt.Budget(evaluations=50_000))
+    words = " ".join(proof(result))
+    assert "Bound: 2 ways to share the cylinders out" in words and "Its time ended it" not in words
+    early = dataclasses.replace(
+        result, proof={**result.proof, "method": "subdivision, stopped early"}
+    )
+    assert "Its time ended it: it is weaker than it could be." in " ".join(proof(early))

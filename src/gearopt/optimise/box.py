@@ -8,16 +8,22 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearopt.errors import SolveError
+from gearopt.optimise import discrete
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Array
 
 
 @dataclass(frozen=True)
 class Box:
-    """Lower and upper ends (n,) in search coordinates, and how each coordinate is read."""
+    """Lower and upper ends (n,) in search coordinates, and how each coordinate is read.
+
+    least, most: natural ends, those of integers whole.
+    """
 
     low: Array
     high: Array
+    least: Array
+    most: Array
     logarithmic: Array
     whole: Array
     sets: dict[int, Array]
@@ -26,7 +32,7 @@ class Box:
         """Natural points (N, n) of coordinates (N, n) in [0, 1]."""
         y = self.low + np.clip(unit, 0.0, 1.0) * (self.high - self.low)
         x = np.where(self.logarithmic, np.exp(np.where(self.logarithmic, y, 0.0)), y)
-        x = np.where(self.whole, np.clip(np.rint(x), self._least, self._most), x)
+        x = np.where(self.whole, np.clip(np.rint(x), self.least, self.most), x)
         for k, values in self.sets.items():
             x[:, k] = values[np.clip(np.rint(y[:, k]), 0, len(values) - 1).astype(int)]
         return x
@@ -40,41 +46,33 @@ class Box:
         width = np.where(self.high > self.low, self.high - self.low, 1.0)
         return np.clip((y - self.low) / width, 0.0, 1.0)
 
-    @property
-    def _least(self) -> Array:
-        return np.where(self.logarithmic, np.exp(self.low.clip(max=700.0)), self.low)
-
-    @property
-    def _most(self) -> Array:
-        return np.where(self.logarithmic, np.exp(self.high.clip(max=700.0)), self.high)
-
 
 def box(problem: Problem) -> Box:
-    """The search box of a problem; SolveError names a variable without finite bounds.
+    """The search box of a problem; SolveError names a variable without finite bounds or values.
 
     A positive variable whose ends differ by more than a factor of 10 is searched by its logarithm,
     whether declared log or not.
     """
-    lower, upper, _ = problem.bounds()
-    low, high = lower.copy(), upper.copy()
-    count = len(lower)
-    logarithmic, whole = np.zeros(count, bool), np.zeros(count, bool)
+    least, most = (bound.copy() for bound in problem.bounds()[:2])
+    low, high = least.copy(), most.copy()
+    logarithmic, whole = np.zeros(len(low), bool), np.zeros(len(low), bool)
     sets: dict[int, Array] = {}
     for k, (variable, name) in enumerate(problem.columns):
-        if not upper[k] / 2.0 - lower[k] / 2.0 < np.finfo(float).max / 2.0:
+        if not most[k] / 2.0 - least[k] / 2.0 < np.finfo(float).max / 2.0:
             raise SolveError(
-                f"a sampler needs finite bounds; {name} has {lower[k]:g} and {upper[k]:g}"
+                f"a sampler needs finite bounds; {name} has {least[k]:g} and {most[k]:g}"
             )
         if variable.values is not None:
-            allowed = [v for v in variable.values if lower[k] <= v <= upper[k]]
-            sets[k] = np.array(allowed)
-            low[k], high[k] = 0.0, len(allowed) - 1.0
+            sets[k] = np.array(discrete.values(problem, k))
+            low[k], high[k] = 0.0, len(sets[k]) - 1.0
             continue
-        whole[k] = variable.integer
-        logarithmic[k] = variable.log or (lower[k] > 0 and upper[k] > 10.0 * lower[k])
+        if variable.integer:
+            whole[k], (least[k], most[k]) = True, discrete.ends(problem, k)
+        logarithmic[k] = variable.log or (least[k] > 0 and most[k] > 10.0 * least[k])
+        low[k], high[k] = least[k], most[k]
         if logarithmic[k]:
-            low[k], high[k] = np.log(lower[k]), np.log(upper[k])
-    return Box(low, high, logarithmic, whole, sets)
+            low[k], high[k] = np.log([least[k], most[k]])
+    return Box(low, high, least, most, logarithmic, whole, sets)
 
 
 def violation(problem: Problem, points: Array) -> tuple[Array, Array]:

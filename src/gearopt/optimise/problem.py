@@ -138,6 +138,16 @@ class Problem:
         object.__setattr__(other, "memo", self.memo)
         return other
 
+    def holding(self, point: Array) -> "Problem":
+        """The same problem with its discrete variables fixed at a point's, as continuous ones."""
+        discrete = np.array([v.discrete for v, _ in self.columns])
+        repeats = tuple(replace(r, variables=_continuous(r.variables)) for r in self.repeats)
+        other = replace(self, variables=_continuous(self.variables), repeats=repeats)
+        object.__setattr__(other, "memo", self.memo)
+        lower, upper, guess = (np.where(discrete, point, b) for b in self.bounds())
+        other.__dict__["_bounds"] = lower, upper, guess
+        return other
+
     def bounds(self) -> tuple[Array, Array, Array]:
         """Lower bounds, upper bounds and guess of a point, each (n,); not to be written to."""
         return self._bounds
@@ -274,6 +284,10 @@ def _bounds(variables: tuple[Var, ...]) -> tuple[Array, Array, Array]:
         )
 
     return column("lower"), column("upper"), column("guess")
+
+
+def _continuous(variables: tuple[Var, ...]) -> tuple[Var, ...]:
+    return tuple(replace(v, integer=False, values=None) for v in variables)
 
 
 def _between(variable: Var, lower: Number, upper: Number) -> Number:

@@ -145,8 +145,11 @@ def _shared_out(found: Mapping[str, Any]) -> str:
     if found["method"] == "volume":
         return "Bound: the volume of the cylinders, and the widest with the highest of them."
     ways = found["ways_to_share_out"]
-    shared = f"{ways:,} ways to share the cylinders out among layers" if ways > 1 else "one layer"
+    shared = f"{ways:,} ways" if ways > 1 else "one way"
+    early = (
+        " Its time ended it: it is weaker than it could be." if "early" in found["method"] else ""
+    )
     return (
-        f"Bound: {shared}; for each the least plan that discs, pairs and triples in any order "
-        "need, by subdivision of the width."
+        f"Bound: {shared} to share the cylinders out among layers; for each the least plan that "
+        f"discs, pairs and triples in any order need, by subdivision of the width.{early}"
     )

@@ -4,6 +4,7 @@ Places are searched by annealing and Ipopt; the bound is computed, and proves th
 is met.
 """
 
+import math
 from dataclasses import replace
 
 from gearopt.errors import SolveError
@@ -12,18 +13,20 @@ from gearopt.formulations.packing import points, text
 from gearopt.formulations.packing.bound import bound
 from gearopt.formulations.packing.design import describe
 from gearopt.formulations.packing.plan import Plan
+from gearopt.formulations.packing.state import Spent, lateness
 from gearopt.optimise.certificate import reconcile
 from gearopt.optimise.comparing.trial import Model
 from gearopt.optimise.explaining.explanation import Explanation
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.progress import in_part
-from gearopt.optimise.result import Result
+from gearopt.optimise.result import Budget, Result
 from gearopt.optimise.solve import run
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.tables.packing import EXAMPLE, Scene
 
 __all__ = ["EXAMPLE", "Scene", "compared", "explain", "model", "solve"]
 SMOOTH = ("ipopt", "multistart")  # methods that need derivatives
+MOMENT = 0.1  # seconds for a bound after a run that has spent all of its time
 ASSUMED = (
     "Cylinders are rigid, upright and of their nominal size; they may touch each other and walls."
 )
@@ -40,7 +43,7 @@ def solve(scene: Scene, ask: Ask) -> Result:
     if result.value is None or outcome.x is None:
         return result
     if result.bound is None:
-        result = _bounded(plan, result, ask.gap)
+        result = _bounded(plan, result, replace(ask, watch=watch))
     report = {"assumptions": [ASSUMED]}
     if result.status != "optimal":
         report["notes"] = [UNPROVEN]
@@ -48,12 +51,17 @@ def solve(scene: Scene, ask: Ask) -> Result:
     return replace(result, design=describe(plan, found), report=report)
 
 
-def _bounded(plan: Plan, result: Result, gap: float) -> Result:
-    """A result with the computed bound of its plan."""
-    floor = bound(plan)
+def _bounded(plan: Plan, result: Result, ask: Ask) -> Result:
+    """A result with the computed bound of its plan, in what is left of the time, or MOMENT."""
+    left = ask.budget.less(result.seconds).seconds
+    spent = Spent(
+        Budget(), ask.watch, evaluations=result.evaluations, best=result.value or math.inf
+    )
+    late = lateness(spent.clock, None if left is None else max(left, MOMENT), spent.goes_on)
+    floor = bound(plan, late)
     relaxation = replace(result, objective={"value": None}, bound=floor.value)
     relaxation = replace(relaxation, status="feasible", proof=packing.proof(floor))
-    return reconcile(result, relaxation, gap)
+    return reconcile(result, relaxation, ask.gap)
 
 
 def explain(scene: Scene, ask: Ask) -> Explanation:

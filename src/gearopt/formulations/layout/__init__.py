@@ -19,7 +19,7 @@ from gearopt.formulations.layout.slabs import Arrangement, arrangements
 from gearopt.formulations.layout.text import direct, positions, sides, smooth
 from gearopt.optimise.box import violation
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.result import Budget
+from gearopt.optimise.result import Budget, Watch
 from gearopt.optimise.solvers import ipopt
 from gearopt.optimise.terms import Array
 
@@ -63,20 +63,24 @@ def _methods(box: Gearbox, orders: tuple[Arrangement, ...]) -> dict[str, Any]:
     texts = cache(lambda m: smooth(box, orders[m]))
     plain = direct(box, orders, {})
 
-    def polished(x: Array) -> tuple[Array, float]:
-        """A point no worse than x, by Ipopt from there, and its value (inf: not feasible)."""
+    def polished(
+        x: Array, budget: Budget | None = None, watch: Watch | None = None
+    ) -> annealing.Polished:
+        """A point no worse than x, by Ipopt from there, its value (inf: not feasible), the cost."""
         m = round(x[-1]) if len(orders) > 1 else 0
-        return _polish(plain, texts(m), shape, x)
+        return _polish(plain, texts(m), shape, x, budget or Budget(), watch)
 
     found: dict[str, Any] = {
-        "exact": exact.method(shape, turns(box), polished),
+        "exact": exact.method(shape, turns(box), lambda x: polished(x)[:2]),
         "sa": annealing.method(shape, free=False),
-        "sa-polish": annealing.method(shape, free=False, polish=lambda x: polished(x)[0]),
+        "sa-polish": annealing.method(shape, free=False, polish=polished),
     }
     return found | ({} if len(orders) > 1 else {"sa-paper": annealing.method(shape, free=True)})
 
 
-def _polish(plain: Problem, text: Problem, shape: Chain, x: Array) -> tuple[Array, float]:
+def _polish(
+    plain: Problem, text: Problem, shape: Chain, x: Array, budget: Budget, watch: Watch | None
+) -> annealing.Polished:
     """X or a better point that Ipopt reaches from it; the value is inf where x is not feasible."""
     links = shape.link.size
     value, lack = (float(v[0]) for v in violation(plain, x[None]))
@@ -85,9 +89,12 @@ def _polish(plain: Problem, text: Problem, shape: Chain, x: Array) -> tuple[Arra
     if shape.longest:
         start = np.append(start, value)
     value = value if lack <= CLOSE else math.inf
-    end = ipopt.run(text, Budget(), 0, None, start=start).x
-    if end is None:
-        return x, value
-    moved = np.concatenate([np.remainder(end[:links] + np.pi, 2 * np.pi) - np.pi, x[links:]])
+    ended = ipopt.run(text, budget, 0, watch, start=start)
+    kept = annealing.Polished(x, value, ended.evaluations, ended.finished)
+    if ended.x is None:
+        return kept
+    turned = np.remainder(ended.x[:links] + np.pi, 2 * np.pi) - np.pi
+    moved = np.concatenate([turned, x[links:]])
     found, excess = (float(v[0]) for v in violation(plain, moved[None]))
-    return (moved, found) if excess <= CLOSE and found < value else (x, value)
+    better = excess <= CLOSE and found < value
+    return kept._replace(x=moved, value=found) if better else kept

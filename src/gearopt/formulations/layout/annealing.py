@@ -2,39 +2,73 @@
 
 import time
 from collections.abc import Callable
-from typing import Any
+from dataclasses import replace
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from gearopt.formulations.layout.chain import Chain
 from gearopt.optimise.kernels import kernel
+from gearopt.optimise.polish import KEPT, sampling
 from gearopt.optimise.result import Budget, Event, Outcome, Watch
 from gearopt.optimise.terms import Array
 
 RANDOM = True
 PACED = True  # the cooling is stretched over the evaluations it is given
-COUNTS = "layout measured"
-SETTINGS = {"moves": "one angle, normal", "temperatures": (0.03, 3e-5), "penalty": 2.0}
+COUNTS = {
+    "sa": "layout measured",
+    "sa-polish": "layout measured or Ipopt iteration",
+    "sa-paper": "layout measured",
+}
+ANGLES = {"moves": "one angle, normal", "temperatures": (0.03, 3e-5), "penalty": 2.0}
+POSITIONS = {
+    "moves": "one shaft in the plane, normal",
+    "temperatures": (0.24, 2.4e-4),
+    "penalty": 2.0,
+    "penalty of a centre distance": 6.0,
+    "repaired": "what lacks at most 0.3 mm of centre distance",
+}
+SETTINGS = {  # by method
+    "sa": ANGLES,
+    "sa-polish": {**ANGLES, "polished by": "ipopt, from the best point", **KEPT},
+    "sa-paper": POSITIONS,
+}
 STEPS = 128_701  # where the budget names no evaluations: what the paper reports
 SLICE = 20_000  # steps between two looks at clock and watcher: some milliseconds
+
+LOOKS = 100  # parts of a run at the least, after each of which its best is told
 
 Goes = Callable[[int, float], bool]
 
 
+class Polished(NamedTuple):
+    """A polished point, its value, Ipopt's iterations, and whether Ipopt came to its own end."""
+
+    x: Array
+    value: float
+    evaluations: int
+    finished: bool
+
+
+Polish = Callable[[Array, Budget, Watch | None], Polished]
+
+
 def anneal(
-    chain: Chain, seed: int, steps: int, goes: Goes, free: bool = False
+    chain: Chain, seed: int, steps: int, goes: Goes, free: bool = False, looks: int = 1
 ) -> tuple[Array, int]:
     """Anneal; best value, arrangement and angles (N + 2,), inf if none is feasible, and steps made.
 
-    free: positions instead of angles, the paper's way. goes(steps, best): whether to go on.
+    free: positions instead of angles, the paper's way. goes(steps, best): whether to go on; it is
+    asked after SLICE steps, and `looks` times at the least.
     """
     kernels = kernel("gearopt.formulations.layout.anneal_kernel")
     links = chain.link.size
     found, state = np.full(links + 2, np.inf), np.zeros(4)
     theta, y, z = np.zeros(links), np.zeros(links + 1), np.zeros(links + 1)
-    for start in range(0, steps, SLICE):
-        stop = min(steps, start + SLICE)
-        own = (seed * 1_000_003 + start // SLICE) % 2**32  # a stream for every slice
+    size = min(SLICE, max(1, -(-steps // looks)))
+    for start in range(0, steps, size):
+        stop = min(steps, start + size)
+        own = (seed * 1_000_003 + start // size) % 2**32  # a stream for every slice
         if free:
             kernels.anneal_positions(chain, own, start, stop, steps, y, z, state, found)
         else:
@@ -51,24 +85,37 @@ def point(chain: Chain, found: Array) -> Array | None:
     return np.append(found[2:], found[1]) if chain.factor.size > 1 else found[2:].copy()
 
 
-def method(chain: Chain, free: bool, polish: Callable[[Array], Array] | None = None) -> Any:
-    """A run(problem, budget, seed, watch); polish(point): a local method that keeps the point."""
+def method(chain: Chain, free: bool, polish: Polish | None = None) -> Any:
+    """A run(problem, budget, seed, watch); polish: a local method that keeps the point."""
 
     def run(problem: Any, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
-        clock = time.perf_counter()
+        clock, least, told = time.perf_counter(), np.inf, True
+        own = budget if polish is None else sampling(budget)
 
         def goes(steps: int, best: float) -> bool:
-            seconds = time.perf_counter() - clock
+            nonlocal least, told
+            seconds, least = time.perf_counter() - clock, best
             event = Event(seconds, steps, best if np.isfinite(best) else None)
-            late = budget.seconds is not None and seconds > budget.seconds
-            return not late and (watch is None or watch(event) is not False)
+            told = watch is None or watch(event) is not False
+            return told and (own.seconds is None or seconds <= own.seconds)
 
-        steps = budget.evaluations or STEPS
-        found, made = anneal(chain, seed, steps, goes, free)
+        steps = STEPS if own.evaluations is None else max(1, own.evaluations)
+        found, made = anneal(chain, seed, steps, goes, free, LOOKS)
         x = point(chain, found)
         message = "" if x is not None else "no feasible layout was visited"
-        if x is not None and polish is not None:
-            x = polish(x)
-        return Outcome(x, made == steps, evaluations=made, message=message)
+        outcome = Outcome(x, made == steps, evaluations=made, message=message)
+        if x is None or polish is None or not told:
+            return outcome
+        before = time.perf_counter() - clock
+
+        def also(event: Event) -> bool:
+            best = min(least, np.inf if event.best is None else event.best)
+            count = made + event.evaluations
+            now = replace(event, seconds=before + event.seconds, evaluations=count, best=best)
+            return watch is None or watch(now) is not False
+
+        last = polish(x, budget.less(before, made), also)
+        finished = outcome.finished and last.finished
+        return replace(outcome, x=last.x, finished=finished, evaluations=made + last.evaluations)
 
     return run

@@ -24,10 +24,10 @@ def problem(plan: Plan, loose: bool = True) -> Problem:
     it measures gaps to the best bound: a distant one hides the differences between methods.
     """
 
-    def floor(packing: Problem) -> Bound:
-        if "bound" not in packing.memo:
-            packing.memo["bound"] = bound(plan)
-        found: Bound = packing.memo["bound"]
+    def floor(packing: Problem, spent: Spent) -> Bound:
+        found: Bound = packing.memo.get("bound") or bound(plan, spent.late())
+        if found.complete:
+            packing.memo["bound"] = found
         return found
 
     def finish(outcome: Outcome, spent: Spent, floor: Bound) -> Outcome:
@@ -41,8 +41,9 @@ def problem(plan: Plan, loose: bool = True) -> Problem:
 
 def proof(floor: Bound) -> dict[str, Any]:
     """How a bound was proven, as a result says it."""
+    method = "subdivision" if floor.choices else "volume"
     return {
-        "method": "subdivision" if floor.choices else "volume",
+        "method": method if floor.complete else f"{method}, stopped early",
         "arithmetic": "double, with a rounding allowance",
         "ways_to_share_out": floor.choices,
     }

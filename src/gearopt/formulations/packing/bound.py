@@ -5,8 +5,11 @@ height is exact; the plan must hold each layer, so its area is at least the leas
 d(w) the most that any layer needs (`depth`), found by subdivision: on [a, b] w d(w) >= a d(b).
 
 Discs are grown by half the gap, so that the container's inside is its size less 2 wall - gap.
+
+Every step leaves a bound that is valid: one that is late ends with what it has proven.
 """
 
+import heapq
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -14,7 +17,7 @@ from itertools import product
 
 import numpy as np
 
-from gearopt.formulations.packing.depth import depth
+from gearopt.formulations.packing.depth import ORDERS, Late, always, depth, never, orders_of
 from gearopt.formulations.packing.plan import Plan, least_layers
 from gearopt.optimise.terms import Array
 
@@ -28,29 +31,53 @@ Need = Callable[[Array], Array]  # depth at widths
 
 @dataclass(frozen=True)
 class Bound:
-    """value: no objective is below. choices: ways to share out that were looked at; 0: none."""
+    """value: no objective is below. choices: ways to share out that there are; 0: too many.
+
+    complete: all that can be best were looked at, to the end.
+    """
 
     value: float
     choices: int
+    complete: bool = True
 
 
-def bound(plan: Plan) -> Bound:
-    """The bound of a plan."""
+def bound(plan: Plan, late: Late = never) -> Bound:
+    """The bound of a plan; late: asked all the time, it ends the work with a weaker bound."""
     kinds = _kinds(plan)
-    if math.prod(math.comb(n + plan.most - 1, plan.most - 1) for n in kinds.values()) > CHOICES:
+    free = [n for (_, _, layer), n in kinds.items() if not layer]
+    if math.prod(math.comb(n + plan.most - 1, plan.most - 1) for n in free) > CHOICES:
         return Bound(_coarse(plan) * (1.0 - ROUNDING), 0)
-    ways = []
-    for layers in set(_ways(plan, kinds)):
-        tall = sum(max((h for _, h in layer), default=0.0) for layer in layers)
-        tall = tall if plan.objective == "volume" else 1.0
-        discs = tuple({tuple(sorted(r for r, _ in layer)) for layer in layers if layer})
-        ways.append((tall * _quick(plan, discs), tall, discs))
+    ways = [_described(plan, layers) for layers in set(_ways(plan, kinds))]
+    heap = [(tall * _quick(plan, discs), 0, k) for k, (tall, discs) in enumerate(ways)]
+    heapq.heapify(heap)
     least = math.inf
-    for quick, tall, discs in sorted(ways):
-        if quick >= least:
-            break
-        least = min(least, tall * _area(plan, discs, least / tall))
-    return Bound(least * (1.0 - ROUNDING), len(ways))
+    while heap[0][1] < 2:  # the way with the least bound is looked at, ever more closely
+        value, looked, k = heap[0]
+        if late():
+            known = max(value, _coarse(plan)) * (1.0 - ROUNDING)
+            return Bound(known, len(ways), complete=False)
+        tall, discs = ways[k]
+        last = looked == 1 or not _ordered(plan, discs)
+        area = _area(plan, discs, least / tall, late, thorough=last)
+        value = max(value, tall * area)
+        least = min(least, value) if last else least
+        heapq.heapreplace(heap, (value, 2 if last else 1, k))
+    return Bound(heap[0][0] * (1.0 - ROUNDING), len(ways))
+
+
+def _described(
+    plan: Plan, layers: tuple[tuple[tuple[float, float], ...], ...]
+) -> tuple[float, tuple[Layer, ...]]:
+    """Height that counts, and the different layers of discs, of a way to share out."""
+    tall = sum(max((h for _, h in layer), default=0.0) for layer in layers)
+    discs = {tuple(sorted(r for r, _ in layer)) for layer in layers if layer}
+    return tall if plan.objective == "volume" else 1.0, tuple(sorted(discs))
+
+
+def _ordered(plan: Plan, discs: tuple[Layer, ...]) -> bool:
+    """Whether a closer look says more: orders of discs count in some layer."""
+    few = any(len(layer) > 1 and orders_of(np.array(layer)) <= ORDERS for layer in discs)
+    return plan.shape != "circle" and few
 
 
 def _kinds(plan: Plan) -> dict[tuple[float, float, int], int]:
@@ -66,9 +93,11 @@ def _kinds(plan: Plan) -> dict[tuple[float, float, int], int]:
 def _ways(
     plan: Plan, kinds: dict[tuple[float, float, int], int]
 ) -> Iterator[tuple[tuple[tuple[float, float], ...], ...]]:
-    """Every way to share out: (radius, height) of the cylinders of each layer, in any order."""
-    named = any(layer for _, _, layer in kinds)
-    needed = 1 if named else least_layers(plan)  # by fixed places that overlap
+    """Every way to share out: (radius, height) of the cylinders of each layer, in any order.
+
+    Layers that need not hold one may be taken in any order, so that the first one always does.
+    """
+    needed = least_layers(plan)  # by fixed places that overlap
     shares = [
         [tuple(n * (k == layer) for k in range(1, plan.most + 1))]
         if layer
@@ -84,7 +113,7 @@ def _ways(
             )
             for k in range(plan.most)
         ]
-        if all(layers[: plan.least]) and sum(map(bool, layers)) >= needed:
+        if all(layers[: plan.filled]) and sum(map(bool, layers)) >= needed:
             yield tuple(sorted(layers))
 
 
@@ -129,10 +158,12 @@ def _quick(plan: Plan, layers: tuple[Layer, ...]) -> float:
     return size * (size if plan.width is None else plan.width)
 
 
-def _area(plan: Plan, layers: tuple[Layer, ...], enough: float) -> float:
+def _area(
+    plan: Plan, layers: tuple[Layer, ...], enough: float, late: Late, thorough: bool
+) -> float:
     """Least area of the container of some layers (any of them alone needs no more).
 
-    enough: an area beyond which the answer need not be told from it.
+    enough: an area beyond which the answer need not be told from it. thorough: orders count too.
     """
     if plan.shape == "circle":
         return math.pi * _circle(plan, layers) ** 2
@@ -140,32 +171,35 @@ def _area(plan: Plan, layers: tuple[Layer, ...], enough: float) -> float:
     widest = 2.0 * max(max(layer) for layer in layers)
 
     def need(w: Array) -> Array:
-        return np.asarray(np.max([depth(layer, w) for layer in layers], axis=0))
+        hurry = late if thorough else always
+        return np.asarray(np.max([depth(layer, w, hurry) for layer in layers], axis=0))
 
     if plan.width is not None:
         deep = max(along, float(need(np.array([plan.width - spare]))[0]))
         return plan.width * (deep + spare)
     if plan.shape == "square":
-        return float(_square(need, max(widest, across, along)) + spare) ** 2
+        return float(_square(need, max(widest, across, along), late) + spare) ** 2
     return min(
-        _rectangle(need, max(widest, a), max(widest, b), spare, enough)
+        _rectangle(need, max(widest, a), max(widest, b), spare, enough, late)
         for a, b in {(across, along), (along, across)}
     )
 
 
-def _square(need: Need, least: float) -> float:
+def _square(need: Need, least: float, late: Late) -> float:
     """Lower end of the side at which a square is deep enough."""
     low, high = least, max(least, float(need(np.array([least]))[0]))
     if high <= least:
         return least
-    while high - low > TIGHT * high:
+    while high - low > TIGHT * high and not late():
         middle = 0.5 * (low + high)
         enough = float(need(np.array([middle]))[0]) <= middle
         low, high = (low, middle) if enough else (middle, high)
     return low
 
 
-def _rectangle(need: Need, across: float, along: float, spare: float, enough: float) -> float:
+def _rectangle(
+    need: Need, across: float, along: float, spare: float, enough: float, late: Late
+) -> float:
     """Least area of a rectangle not wider than deep, `across` by `along` at the least."""
 
     def deep(w: Array) -> Array:
@@ -184,8 +218,8 @@ def _rectangle(need: Need, across: float, along: float, spare: float, enough: fl
         open_ = floor < min(enough, least * (1.0 - TIGHT))
         proven = min(proven, float(floor[~open_].min(initial=math.inf)))
         low, high, floor = low[open_], high[open_], floor[open_]
-        if len(low) > CELLS:
-            return min(proven, float(floor.min()))
+        if len(low) > CELLS or late():
+            return min(proven, least, float(floor.min(initial=math.inf)))
         middle = 0.5 * (low + high)
         low, high = np.concatenate([low, middle]), np.concatenate([middle, high])
     return min(proven, least)

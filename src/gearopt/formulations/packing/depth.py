@@ -23,14 +23,31 @@ LARGEST = 8  # discs whose pairs count where the order is left out; small ones a
 HALVINGS = 40  # of the one-dimensional search of a triple: to 1e-12 of a width
 
 
-def depth(radii: Sequence[float], w: Array) -> Array:
-    """Lower bound on the depth that discs of these radii need at widths w >= 2 max(radii), (m,)."""
+Late = Callable[[], bool]
+
+
+def never() -> bool:
+    """Late: a bound that nothing hurries."""
+    return False
+
+
+def always() -> bool:
+    """Late: a bound without the orders."""
+    return True
+
+
+def depth(radii: Sequence[float], w: Array, late: Late = never) -> Array:
+    """Lower bound on the depth that discs of these radii need at widths w >= 2 max(radii), (m,).
+
+    late: asked while the orders are looked at; once it says so the bound is the one without them.
+    """
     rho = np.sort(np.asarray(radii, float))[::-1]
     found = np.maximum(2.0 * rho[0], math.pi * float((rho**2).sum()) / w)
     for least in np.unique(rho):
         found = np.maximum(found, _oler(2.0 * least, int((rho >= least).sum()), w))
-    if orders_of(rho) <= ORDERS:
-        return np.asarray(np.maximum(found, _by_order(rho, w)))
+    by_order = _by_order(rho, w, late) if orders_of(rho) <= ORDERS else None
+    if by_order is not None:
+        return np.asarray(np.maximum(found, by_order))
     for a, b in _kinds_of_pairs(rho[:LARGEST]):
         found = np.maximum(found, a + b + _pair(a, b, w))
     return np.asarray(found)
@@ -96,8 +113,8 @@ def _beside(outer: float, first: float, second: float, most: Array, other: Array
     return np.asarray(np.maximum(_along(outer, most - low), fixed + _along(second, high)))
 
 
-def _by_order(rho: Array, w: Array) -> Array:
-    """The least over all orders of the longest chain of distances along."""
+def _by_order(rho: Array, w: Array, late: Late) -> Array | None:
+    """The least over all orders of the longest chain of distances along; None once it is late."""
     pair: Callable[..., Array] = _kept(_pair, w)
     triple: Callable[..., Array] = _kept(_triple, w)
     least = np.full(w.shape, np.inf)
@@ -108,6 +125,8 @@ def _by_order(rho: Array, w: Array) -> Array:
         for k, c in enumerate(order):
             at = np.full(w.shape, c)
             for j, a in enumerate(order[:k]):
+                if late():
+                    return None
                 step = pair(a, c)
                 for b in set(order[j + 1 : k]):
                     step = np.maximum(step, triple(a, b, c))

@@ -9,13 +9,12 @@ from gearopt.formulations.packing.plan import Places, Plan
 def describe(plan: Plan, found: Places) -> dict[str, Any]:
     """Container, layers from the floor up, and cylinders in the order of the plan.
 
-    Where no place is fixed, the container's left front corner is the origin; where no layer is
-    fixed, layers are counted without gaps from the floor.
+    Where no place is fixed, the container's left front corner is the origin. Layers are counted
+    without gaps from the floor, which keeps those that have a name: all below them hold a cylinder.
     """
     container, x, y = _container(plan, found)
     levels = sorted(set(found.layer.tolist()))
-    free = all(c.layer is None for c in plan.cylinders)
-    names = {k: n for n, k in enumerate(levels, 1)} if free else {k: k for k in levels}
+    names = {k: n for n, k in enumerate(levels, 1)}
     layers, floors, floor = [], {}, 0.0
     for k in levels:
         top = floor + max(

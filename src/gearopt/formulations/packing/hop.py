@@ -1,8 +1,10 @@
-"""`hop`: many short annealing runs, each polished by Ipopt; the best packing so far is never lost.
+"""`hop`: rounds of short annealing runs, each polished by Ipopt; the best packing is never lost.
 
-A hop starts from a random scatter in a random number of layers or, now and then, from the best
-packing with a cylinder thrown elsewhere; the kernel anneals it, its layers are kept, and Ipopt
-solves the smooth text for the places. The search ends after so many hops without a better packing.
+A round starts from random scatters in a random number of layers, then changes its own best packing:
+two cylinders of about one size change places, or one is thrown elsewhere. The kernel anneals the
+start (a changed packing cold, to keep what is good in it), its layers are kept, and Ipopt
+solves the smooth text for the places. A round ends after so many hops without a better packing of
+its own; the next one starts afresh, while the budget lasts, until several have ended alike.
 """
 
 import math
@@ -19,24 +21,31 @@ from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.solvers import ipopt
 from gearopt.optimise.terms import Array
 
-PATIENCE = 200  # hops without a better packing end the search
-MOVES = 1500  # of an annealing run, for each cylinder
+SCATTERS = 5  # first hops of a round
+PATIENCE = 100  # hops without a better packing of its own end a round
+ALIKE = 5  # rounds that end with the best packing found end the search
+ROUNDS = 10  # at the most, where the budget has no end
+MOVES, MOVES_COLD = 1500, 300  # of an annealing run, for each cylinder: of a scatter, of a change
 HOT, COLD = 0.1, 1e-4  # temperatures, in units of the objective's logarithm
-WARM = 0.05  # where a hop starts from the best packing
-FROM_BEST = 0.3  # share of such hops
-HOPEFUL = 1.05  # times the best: what annealing leaves above is not polished, which costs more
+WARM = 1e-3  # where a hop starts from the best packing of its round
+SWAPS = 0.5  # share of changes in which two cylinders change places
+RANKS = 3  # two that do are at most so far from one another in the order of sizes
+HOPEFUL = 1.05  # times the round's best: what annealing leaves above is not polished: that is dear
 BETTER = 1e-10  # relative; a smaller improvement is rounding and counts as none
+SAME = 1e-7  # relative; rounds that end so near are alike
 FEASIBLE = 1e-9  # largest violation of all rows together
 PROVEN = 1e-8  # relative gap to the bound that ends the search; the bound is 1e-9 loose itself
 
 RANDOM = True
 COUNTS = "annealing move or Ipopt iteration"
 SETTINGS = {
-    "hops without a better packing": PATIENCE,
-    "moves of a hop, each cylinder": MOVES,
-    "temperatures": (HOT, COLD),
-    "hops from the best packing": FROM_BEST,
-    "polished": f"below {HOPEFUL} times the best",
+    "hops without a better packing that end a round": PATIENCE,
+    "rounds that end alike end the search": ALIKE,
+    "scatters that begin a round": SCATTERS,
+    "moves of a hop, each cylinder, from a scatter and from the best": (MOVES, MOVES_COLD),
+    "temperatures from a scatter": (HOT, COLD),
+    "temperatures from the best": (WARM, COLD),
+    "polished": f"below {HOPEFUL} times the round's best",
     "local method": "ipopt",
 }
 
@@ -45,39 +54,82 @@ def method(plan: Plan, floor: Floor, finish: Finish) -> Any:
     """The run of `hop` for a plan: it stops at the bound; `finish` adds bound and proof."""
 
     def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
-        """Hop until the bound is reached, nothing better is found, or the budget is spent."""
-        spent, rng, idle = Spent(budget, watch), np.random.default_rng(seed), 0
-        least = floor(problem)
+        """Hop until the bound is reached, rounds end alike, or the budget is spent."""
+        spent, rng = Spent(budget, watch), np.random.default_rng(seed)
+        first = points.point(plan, row(plan))
+        spent.keep(float(problem.batch(first[None]).F[0, 0]), first)
+        least = floor(problem, spent)
         spent.bound = least.value
-        best = points.point(plan, row(plan))
-        spent.best = float(problem.batch(best[None]).F[0, 0])
-        while idle < PATIENCE and spent.goes_on() and not spent.close(PROVEN):
-            most = int(rng.integers(plan.fewest, plan.most + 1))
-            begin, hot = scattered(plan, most, rng), HOT
-            if rng.random() < FROM_BEST:
-                begin, hot = _kicked(plan, points.places(plan, problem, best), rng), WARM
-                most = max(most, int(begin.layer.max()))
-            moves = min(MOVES * len(plan.radius), spent.left())
-            last, _, _ = anneal(plan, begin, most, moves, (hot, COLD), rng, spent)
-            value, found = math.inf, best
-            if float(problem.batch(points.point(plan, last)[None]).F[0, 0]) < HOPEFUL * spent.best:
-                value, found = polished(plan, problem, last, spent)
-            idle = 0 if value < spent.best * (1.0 - BETTER) else idle + 1
-            if value < spent.best:
-                spent.best, best = value, found
-        return finish(Outcome(best, not spent.stopped, evaluations=spent.evaluations), spent, least)
+        endless = budget.seconds is None and budget.evaluations is None
+        ends: list[float] = []
+        while spent.goes_on() and not spent.close(PROVEN):
+            value = _round(plan, problem, rng, spent)
+            if not spent.stopped:
+                ends.append(value)
+            alike = sum(v <= spent.best + SAME * abs(spent.best) for v in ends)
+            if alike >= ALIKE or (endless and len(ends) >= ROUNDS):
+                break
+        finished = not spent.stopped or (bool(ends) and not spent.ended)
+        outcome = Outcome(spent.x, finished, evaluations=spent.evaluations)
+        return finish(outcome, spent, least)
 
     return run
 
 
-def _kicked(plan: Plan, best: Places, rng: np.random.Generator) -> Places:
-    """The best packing with one free cylinder put where another one is."""
+def _round(plan: Plan, problem: Problem, rng: np.random.Generator, spent: Spent) -> float:
+    """One round; the objective of its best packing, infinite where none met all limits."""
+    best, own, idle, hops = math.inf, np.empty(0), 0, 0
+    while idle < PATIENCE and spent.goes_on() and not spent.close(PROVEN):
+        if hops < SCATTERS or not len(own):
+            most, moves, hot = int(rng.integers(plan.fewest, plan.most + 1)), MOVES, HOT
+            begin = scattered(plan, most, rng)
+        else:
+            begin, moves, hot = (
+                _changed(plan, points.places(plan, problem, own), rng),
+                MOVES_COLD,
+                WARM,
+            )
+            most = max(plan.fewest, int(begin.layer.max()))
+        moves = min(moves * len(plan.radius), spent.left())
+        last = anneal(plan, problem, begin, most, moves, (hot, COLD), rng, spent)
+        value, found = math.inf, own
+        if float(problem.batch(points.point(plan, last)[None]).F[0, 0]) < HOPEFUL * best:
+            value, found = polished(plan, problem, last, spent)
+        idle, hops = 0 if value < best * (1.0 - BETTER) else idle + 1, hops + 1
+        if value < best:
+            best, own = value, found
+            spent.keep(value, found)
+    return best
+
+
+def _changed(plan: Plan, best: Places, rng: np.random.Generator) -> Places:
+    """A packing with two cylinders in one another's place, or one where another one is."""
     x, y, layer, centre = best.copied()
-    k, other = rng.choice(plan.free), rng.integers(len(x))
+    k = int(rng.choice(plan.free))
+    partners = _partners(plan, k) if rng.random() < SWAPS else []
+    if partners:
+        other = int(rng.choice(partners))
+        for part in (x, y, layer) if k in plan.lifted else (x, y):
+            part[[k, other]] = part[[other, k]]
+        return Places(x, y, layer, centre)
+    other = int(rng.integers(len(x)))
     x[k], y[k] = x[other] + rng.normal(), y[other] + rng.normal()
     if k in plan.lifted:
         layer[k] = layer[other]
     return Places(x, y, layer, centre)
+
+
+def _partners(plan: Plan, k: int) -> list[int]:
+    """The free cylinders of about the size of k that may change places with it, and are unlike."""
+    lifted, order = set(plan.lifted), np.argsort(plan.radius, kind="stable").tolist()
+    rank = order.index(k)
+    near = order[max(0, rank - RANKS) : rank + RANKS + 1]
+    sizes = list(zip(plan.radius, plan.height, strict=True))
+    return [
+        j
+        for j in near
+        if j in plan.free and sizes[j] != sizes[k] and (j in lifted) == (k in lifted)
+    ]
 
 
 def polished(plan: Plan, problem: Problem, begin: Places, spent: Spent) -> tuple[float, Array]:

@@ -20,7 +20,8 @@ TOUCHING = 1e-9  # mm; overlaps below it are rounding of the places written in a
 class Cylinder:
     """A cylinder with an upright axis: radius and height [mm].
 
-    at: the place of its axis [mm], layer: its layer (from 1, the lowest), each None where free.
+    at: the place of its axis [mm], layer: its layer, each None where free. Layers are counted from
+    the floor: 1 is the lowest, and every layer below another holds a cylinder.
     """
 
     name: str
@@ -35,7 +36,8 @@ class Plan:
     """A packing that is asked for.
 
     width: of the rectangle [mm], None where free. gap: between cylinders, wall: to the container,
-    both sideways [mm]. least, most: number of layers. objective: volume or area (of the plan).
+    both sideways [mm]. least, most: number of layers, of which
+    `least` hold a cylinder. objective: volume or area (of the plan).
     """
 
     cylinders: tuple[Cylinder, ...]
@@ -50,6 +52,8 @@ class Plan:
     def __post_init__(self) -> None:
         if not self.free:
             raise ValueError("every cylinder is fixed: nothing is left to place")
+        if self.filled > min(self.most, len(self.named) + len(self.lifted)):
+            raise ValueError(f"{self.filled} layers cannot each hold a cylinder")
 
     @cached_property
     def radius(self) -> Array:
@@ -78,10 +82,20 @@ class Plan:
         return tuple(k for k, c in enumerate(self.cylinders) if c.layer is None and not one)
 
     @cached_property
+    def named(self) -> frozenset[int]:
+        """Layers that hold a cylinder whatever is chosen."""
+        lifted = set(self.lifted)
+        return frozenset(c.layer or 1 for k, c in enumerate(self.cylinders) if k not in lifted)
+
+    @cached_property
+    def filled(self) -> int:
+        """Layers from the floor that each hold one: those asked for, all up to a named one."""
+        return max(self.least, *self.named, 1)
+
+    @cached_property
     def fewest(self) -> int:
         """Layers without which fixed places and layers cannot be kept."""
-        given = max(c.layer or 1 for c in self.cylinders)
-        return max(self.least, given, least_layers(self))
+        return max(self.filled, least_layers(self))
 
     @property
     def pairs(self) -> Iterator[tuple[int, int]]:
@@ -149,7 +163,7 @@ def row(plan: Plan) -> Places:
     if coloured is None:
         raise ValueError("fixed cylinders overlap in more layers than there are")
     layer = np.array(coloured, dtype=np.int64)
-    for level in range(1, plan.least + 1):  # every layer asked for holds one
+    for level in range(1, plan.filled + 1):
         if not (layer == level).any():
             layer[next(k for k in plan.lifted if (layer == layer[k]).sum() > 1)] = level
     centre = np.zeros(2)

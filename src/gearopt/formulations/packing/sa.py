@@ -6,7 +6,7 @@ import numpy as np
 
 from gearopt.formulations.packing import points
 from gearopt.formulations.packing.plan import Plan, row
-from gearopt.formulations.packing.state import Finish, Floor, Spent, anneal, scattered
+from gearopt.formulations.packing.state import LOOKS, Finish, Floor, Spent, anneal, scattered
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch
 
@@ -25,16 +25,16 @@ def method(plan: Plan, floor: Floor, finish: Finish) -> Any:
     def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
         """Anneal once; the best state that meets all limits, or else the row of all, is kept."""
         spent, rng = Spent(budget, watch), np.random.default_rng(seed)
-        least = floor(problem)
+        first = points.point(plan, row(plan))
+        spent.keep(float(problem.batch(first[None]).F[0, 0]), first)
+        least = floor(problem, spent)
         spent.bound = least.value
-        best = points.point(plan, row(plan))
-        spent.best = float(problem.batch(best[None]).F[0, 0])
         most = budget.evaluations
         moves = MOVES * len(plan.radius) if most is None else most
         begin = scattered(plan, plan.most, rng)
-        _, found, value = anneal(plan, begin, plan.most, moves, (HOT, COLD), rng, spent)
-        if found is not None and value < spent.best:
-            spent.best, best = value, points.point(plan, found)
-        return finish(Outcome(best, not spent.stopped, evaluations=spent.evaluations), spent, least)
+        if spent.goes_on():
+            anneal(plan, problem, begin, plan.most, moves, (HOT, COLD), rng, spent, LOOKS)
+        outcome = Outcome(spent.x, not spent.stopped, evaluations=spent.evaluations)
+        return finish(outcome, spent, least)
 
     return run

@@ -8,7 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from gearopt.formulations.packing import points
 from gearopt.formulations.packing.bound import Bound
+from gearopt.formulations.packing.depth import Late
 from gearopt.formulations.packing.plan import Places, Plan, row
 from gearopt.optimise.kernels import kernel
 from gearopt.optimise.problem import Problem
@@ -17,6 +19,9 @@ from gearopt.optimise.terms import Array
 
 KERNEL = "gearopt.formulations.packing.anneal_kernel"
 SLICE = 100_000  # moves times cylinders of one call: some hundredths of a second
+LOOKS = 100  # parts of a long annealing run, after each of which its best so far is told
+SHARE = 0.2  # of the seconds of a run may go into its bound
+LOOK = 0.05  # seconds between two questions to the watcher while the bound is computed
 CODES = {"rectangle": 0, "square": 1, "circle": 2}
 
 
@@ -24,7 +29,8 @@ CODES = {"rectangle": 0, "square": 1, "circle": 2}
 class Spent:
     """What a search has spent and found; it has state because it is filled as the search goes.
 
-    bound: nothing lies below it (-inf before it is known). best: the least objective found.
+    bound: nothing lies below it (-inf before it is known). best, x: the least objective found, and
+    its point of `direct`. stopped: the search is to end; ended: it was the watcher that said so.
     """
 
     budget: Budget
@@ -33,20 +39,33 @@ class Spent:
     clock: float = field(default_factory=time.perf_counter)
     evaluations: int = 0
     best: float = math.inf
+    x: Array = field(default_factory=lambda: np.empty(0))
     stopped: bool = False
+    ended: bool = False
+
+    def keep(self, value: float, x: Array) -> None:
+        """Remember a packing that meets all limits, if it is the best."""
+        if value < self.best:
+            self.best, self.x = value, x
 
     def goes_on(self, more: int = 0) -> bool:
         """Whether budget and watcher let the search go on, `more` evaluations being under way."""
+        if self.stopped:
+            return False
         spent = self.evaluations + more
         seconds = time.perf_counter() - self.clock
         most_s, most_n = self.budget.seconds, self.budget.evaluations
         over = (most_s is not None and seconds > most_s) or (most_n is not None and spent >= most_n)
         if not over and self.watch is not None:
-            best = self.best if math.isfinite(self.best) else None
-            bound = self.bound if math.isfinite(self.bound) else None
-            over = self.watch(Event(seconds, spent, best, bound)) is False
-        self.stopped = self.stopped or over
-        return not self.stopped
+            best, bound = (v if math.isfinite(v) else None for v in (self.best, self.bound))
+            over = self.ended = self.watch(Event(seconds, spent, best, bound)) is False
+        self.stopped = over
+        return not over
+
+    def late(self) -> Late:
+        """Whether the bound has had its share of the time, or the search is to end."""
+        share = None if self.budget.seconds is None else SHARE * self.budget.seconds
+        return lateness(self.clock, share, self.goes_on)
 
     def left(self) -> int:
         """Evaluations that are left."""
@@ -58,7 +77,22 @@ class Spent:
         return self.best - self.bound <= max(gap, self.budget.gap) * abs(self.best)
 
 
-Floor = Callable[[Problem], Bound]
+def lateness(clock: float, seconds: float | None, goes_on: Callable[[], bool]) -> Late:
+    """Whether `seconds` since `clock` are over, or goes_on(), asked every LOOK seconds, said no."""
+    last, over = -math.inf, False
+
+    def late() -> bool:
+        nonlocal last, over
+        now = time.perf_counter()
+        over = over or (seconds is not None and now - clock > seconds)
+        if not over and now - last > LOOK:
+            last, over = now, not goes_on()
+        return over
+
+    return late
+
+
+Floor = Callable[[Problem, Spent], Bound]
 Finish = Callable[[Outcome, Spent, Bound], Outcome]  # the outcome with bound and proof
 
 
@@ -66,7 +100,7 @@ def numbers(plan: Plan, most: int) -> Array:
     """The scalars of the kernel, for `most` layers."""
     code = 3 if plan.width is not None else CODES[plan.shape]
     volume = float(plan.objective == "volume")
-    anchored, least = float(bool(plan.fixed)), plan.least if plan.least > 1 else 0
+    anchored, least = float(bool(plan.fixed)), plan.filled if plan.filled > 1 else 0
     return np.array([plan.gap, plan.wall, plan.width or 0.0, code, volume, least, most, anchored])
 
 
@@ -107,23 +141,26 @@ def scattered(plan: Plan, most: int, rng: np.random.Generator) -> Places:
 
 def anneal(
     plan: Plan,
+    problem: Problem,
     begin: Places,
     most: int,
     moves: int,
     temperatures: tuple[float, float],
     rng: np.random.Generator,
     spent: Spent,
-) -> tuple[Places, Places | None, float]:
-    """Anneal from a packing: the last state, the best that meets all limits, and its objective.
+    looks: int = 1,
+) -> Places:
+    """Anneal from a packing; the last state. The best one that meets all limits is kept in `spent`.
 
     most: layers of this run. moves: of the whole run, which ends early where the budget does.
+    looks: parts of it, after each of which the best is told.
     """
     anneal_slice = kernel(KERNEL).anneal
     n = len(plan.radius)
     x, y, layer, centre = begin.copied()
     best = np.append(np.zeros(3 * n + 2), np.inf)
-    size = max(1, SLICE // n)
-    done = 0
+    size = max(1, min(SLICE // n, -(-moves // looks)))
+    done, least = 0, spent.best
     while done < moves:
         last = min(moves, done + size)
         seed = int(rng.integers(2**31))
@@ -133,10 +170,10 @@ def anneal(
         )  # fmt: skip
         spent.evaluations += last - done
         done = last
+        if best[-1] < least:
+            levels, least = best[2 * n : 3 * n].astype(np.int64), float(best[-1])
+            found = points.point(plan, Places(best[:n], best[n : 2 * n], levels, best[3 * n : -1]))
+            spent.keep(float(problem.batch(found[None]).F[0, 0]), found)
         if done < moves and not spent.goes_on():
             break
-    found = None
-    if math.isfinite(best[-1]):
-        levels = best[2 * n : 3 * n].astype(np.int64)
-        found = Places(best[:n], best[n : 2 * n], levels, best[3 * n : -1])
-    return Places(x, y, layer, centre), found, float(best[-1])
+    return Places(x, y, layer, centre)

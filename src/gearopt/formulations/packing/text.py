@@ -40,8 +40,8 @@ def direct(plan: Plan, **methods: Any) -> Problem:
         rows = tuple(_close(plan, axes, layer, i, j) for i, j in _near(plan))
         if rows:
             defines["apart"] = rows
-        if plan.lifted and plan.least > 1:
-            held = [sum(np.where(at == k, 1.0, 0.0) for at in layer) for k in _levels(plan.least)]
+        if plan.lifted and plan.filled > 1:
+            held = [sum(np.where(at == k, 1.0, 0.0) for at in layer) for k in _levels(plan.filled)]
             defines["occupied"] = tuple(2.0 - count for count in held)
         return Terms(_objective(plan, area, stack(plan, layer)), limits, defines)
 
@@ -157,7 +157,7 @@ def _sides(plan: Plan, guess: Places) -> tuple[Var, ...]:
         sides = ("side",) if plan.shape == "square" else ("width", "depth")
         names |= {n: (least, most) for n in (sides if plan.width is None else ("depth",))}
     return tuple(
-        Var(name, "mm", *ends, float(v), search=True)
+        Var(name, "mm", *ends, float(np.clip(v, *ends)), search=True)  # a rounding may be outside
         for (name, ends), v in zip(names.items(), at, strict=True)
     )
 

@@ -1,8 +1,9 @@
 """One method on one problem: posed, warmed up, run, timed by our clock, judged by our certificate.
 
 A method's module says what must be known of it: RANDOM (another seed is another run), PACED (it
-plans ahead for the evaluations it is given), COUNTS (what it counts as one), SETTINGS. What a
-module leaves out is taken as random, not paced, with steps of its own.
+plans ahead for the evaluations it is given), COUNTS (what it counts as one), SETTINGS. COUNTS and
+SETTINGS are by method where a module holds several. What a module leaves out is taken as random,
+not paced, with steps of its own.
 """
 
 import sys
@@ -72,8 +73,8 @@ def enter(method: str, model: Callable[[str], Model]) -> Entry:
         problem,
         getattr(module, "RANDOM", True),
         getattr(module, "PACED", False),
-        getattr(module, "COUNTS", "step of its own"),
-        getattr(module, "SETTINGS", {}),
+        _own(method, getattr(module, "COUNTS", "step of its own")),
+        _own(method, getattr(module, "SETTINGS", {})),
     )
     times = []
     try:
@@ -90,6 +91,12 @@ def enter(method: str, model: Callable[[str], Model]) -> Entry:
         evaluations=outcome.evaluations,
         finished=outcome.finished,
     )
+
+
+def _own(method: str, declared: Any) -> Any:
+    """What a module declares of a method: the same of all its methods, or by their names."""
+    by_name = isinstance(declared, Mapping) and method in declared
+    return declared[method] if by_name else declared
 
 
 def attempt(entry: Entry, seed: int, budget: Budget, told: Callable[[Event], bool]) -> Run | None:

@@ -2,13 +2,15 @@
 
 Energy is the logarithm of the objective (or the objective over its scale) plus a penalty that grows
 as the temperature falls. Half of the moves change one coordinate, half change all, with steps that
-shrink with the temperature; discrete coordinates move by at least one value.
+shrink with the temperature; discrete coordinates move by at least one value. The best feasible
+point and the last states of the chains are polished (`polish`).
 """
 
 import time
 
 import numpy as np
 
+from gearopt.optimise import polish
 from gearopt.optimise.box import Box, box, violation
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Event, Outcome, Watch
@@ -17,40 +19,42 @@ from gearopt.optimise.terms import Array
 CHAINS = 32
 SWEEPS = 4000  # where the budget names no evaluations: 128,000 in all
 HOT, COLD = 0.3, 1e-7  # temperatures, in units of the logarithm of the objective
-PENALTY = 5.0  # energy of a violation of 1, at first; grows a hundredfold
+PENALTY, HARDER = 5.0, 100.0  # energy of a violation of 1 at first, and how often it at last
 LONGEST, SHORTEST = 0.3, 1e-6  # steps in a box of width 1
 FEASIBLE = 1e-9
 
 RANDOM = True
 PACED = True  # the cooling is stretched over the evaluations it is given
-COUNTS = "point evaluated"
+COUNTS = "point evaluated or Ipopt iteration"
 SETTINGS = {
     "chains": CHAINS,
     "temperatures": (HOT, COLD),
     "penalty": PENALTY,
     "steps": (LONGEST, SHORTEST),
+    **polish.SETTINGS,
 }
 
 
 def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
-    """Anneal CHAINS chains; the best feasible point ever visited is the answer."""
+    """Anneal CHAINS chains; the best feasible point ever visited is polished."""
     clock, rng, space = time.perf_counter(), np.random.default_rng(seed), box(problem)
-    size = len(space.low)
-    sweeps = SWEEPS if budget.evaluations is None else max(1, budget.evaluations // CHAINS - 1)
-    unit = rng.random((CHAINS, size))
+    last = polish.prepared(problem, budget, clock, watch)
+    own = last.sampling
+    sweeps = SWEEPS if own.evaluations is None else max(1, own.evaluations // CHAINS - 1)
+    unit = rng.random((CHAINS, len(space.low)))
     unit[0] = space.unit(problem.bounds()[2][None])[0]
     value, excess = violation(problem, space.points(unit))
     scale = max(abs(float(value[0])), 1e-300) if np.isfinite(value[0]) else 1.0
     positive = bool((value[np.isfinite(value)] > 0).all())
     best, least = _kept(space, unit, value, excess, None, np.inf)
-    finished = True
+    finished = told = True
     for sweep in range(sweeps):
         done = sweep / sweeps
         temperature = HOT * (COLD / HOT) ** done
         moved = _moved(rng, space, unit, LONGEST * (SHORTEST / LONGEST) ** done)
         new_value, new_excess = violation(problem, space.points(moved))
         best, least = _kept(space, moved, new_value, new_excess, best, least)
-        weight = PENALTY * 100.0**done
+        weight = PENALTY * HARDER**done
         energy = _energy(value, excess, weight, scale, positive)
         with np.errstate(invalid="ignore", over="ignore"):
             # two points without a value: no rise is known
@@ -59,16 +63,17 @@ def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Out
         accept = rng.random(CHAINS) < chance
         unit[accept], value[accept] = moved[accept], new_value[accept]
         excess[accept] = new_excess[accept]
-        if not _goes_on(clock, budget, watch, (sweep + 2) * CHAINS, least):
+        seconds = time.perf_counter() - clock
+        event = Event(seconds, (sweep + 2) * CHAINS, least if np.isfinite(least) else None)
+        told = watch is None or watch(event) is not False
+        if not told or (own.seconds is not None and seconds > own.seconds):
             finished = False
             break
-    spent = (sweep + 2) * CHAINS
-    return Outcome(
-        best,
-        finished,
-        evaluations=spent,
-        message="" if best is not None else "no feasible point was visited",
-    )
+    message = "" if best is not None else "no feasible point was visited"
+    found = Outcome(best, finished, evaluations=(sweep + 2) * CHAINS, message=message)
+    energy = _energy(value, excess, PENALTY * HARDER, scale, positive)
+    order = np.argsort(np.nan_to_num(energy, nan=np.inf), kind="stable")
+    return polish.polished(last, found, space.points(unit[order])) if told else found
 
 
 def _moved(rng: np.random.Generator, space: Box, unit: Array, step: float) -> Array:
@@ -107,12 +112,3 @@ def _kept(
     if good[k] < least:
         return space.points(unit[k : k + 1])[0], float(good[k])
     return best, least
-
-
-def _goes_on(clock: float, budget: Budget, watch: Watch | None, spent: int, least: float) -> bool:
-    seconds = time.perf_counter() - clock
-    if budget.seconds is not None and seconds > budget.seconds:
-        return False
-    return watch is None or (
-        watch(Event(seconds, spent, least if np.isfinite(least) else None)) is not False
-    )

@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 
 from gearopt.errors import SolveError
-from gearopt.optimise import posynomial
+from gearopt.optimise import discrete, posynomial
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Event, Outcome, Watch
 
@@ -108,20 +108,21 @@ def _column(problem: Problem, index: int) -> _Column:
     low, high, guess = (float(b[index]) for b in problem.bounds())
     if not low > 0.0:
         raise SolveError(f"bonmin takes positive variables only; {name} may be {low:g}")
-    allowed = tuple(v for v in variable.values or () if low <= v <= high)
-    if variable.integer:
-        low, high = (float(b) for b in (np.ceil(low), np.floor(high)))
-    if low > high or (variable.values is not None and not allowed):
-        raise SolveError(f"{problem.name}: no value of {name} is within its bounds")
-    if len(allowed) == 1 or low == high:
-        only = allowed or (low,)
+    values: tuple[float, ...] = ()
+    if variable.values is not None:
+        values = tuple(discrete.values(problem, index))
+    elif variable.integer:
+        low, high = discrete.ends(problem, index)
+        guess = min(max(guess, low), high)
+    if len(values) == 1 or low == high:
+        only = values or (low,)
         return _Column(ca.SX(math.log(only[0])), ca.SX(0, 1), only)
-    if allowed:
-        picks = ca.SX.sym(name, len(allowed))
-        count = len(allowed)
-        logs = ca.dot(ca.DM([math.log(v) for v in allowed]), picks)
+    if values:
+        picks = ca.SX.sym(name, len(values))
+        count = len(values)
+        logs = ca.dot(ca.DM([math.log(v) for v in values]), picks)
         share = (1.0 / count,) * count
-        return _Column(logs, picks, allowed, True, (0.0,) * count, (1.0,) * count, share)
+        return _Column(logs, picks, values, True, (0.0,) * count, (1.0,) * count, share)
     one = ca.SX.sym(name)
     if variable.integer:
         return _Column(ca.log(one), one, (), True, (low,), (high,), (guess,))

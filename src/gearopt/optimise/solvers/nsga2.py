@@ -1,7 +1,8 @@
 """NSGA-II of pymoo on whole populations (`Problem.batch`), integers and finite sets included.
 
 One objective is searched like several: the answer is the best feasible individual in the first
-objective; where there are several, the rest of the front comes with it.
+objective, polished (`polish`); where there are several, the rest of the front comes with it, and
+nothing is polished.
 """
 
 import time
@@ -9,26 +10,28 @@ from typing import Any
 
 import numpy as np
 
-from gearopt.optimise.box import box
+from gearopt.optimise import polish
+from gearopt.optimise.box import Box, box
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Event, Outcome, Watch
 
 POPULATION = 100
 GENERATIONS = 300  # where the budget names no evaluations
-EQUAL = 1e-6  # an equality counts as met within this
+EQUAL = 1e-6  # an equality counts as met within this, before the polish
 
 RANDOM = True
 PACED = True  # its generations are those that its evaluations pay for
-COUNTS = "point evaluated"
+COUNTS = "point evaluated or Ipopt iteration"
 SETTINGS = {
     "population": POPULATION,
     "crossover and mutation": "simulated binary, polynomial; pymoo's defaults",
     "equalities within": EQUAL,
+    **polish.SETTINGS,
 }
 
 
 def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
-    """Evolve a population of POPULATION; the best feasible individual of the last generation."""
+    """Evolve a population of POPULATION; the best feasible one of the last is polished."""
     from pymoo.algorithms.moo.nsga2 import NSGA2
     from pymoo.core.problem import Problem as PymooProblem
 
@@ -53,25 +56,37 @@ def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Out
             out["F"] = np.nan_to_num(found.F, nan=1e300, posinf=1e300)
             out["G"] = np.nan_to_num(np.hstack([found.G - 1.0, equal]), nan=1e300, posinf=1e300)
 
-    size = min(POPULATION, budget.evaluations or POPULATION)
-    generations = GENERATIONS if budget.evaluations is None else budget.evaluations // size
+    last = polish.prepared(problem, budget, clock, watch)
+    own = last.sampling
+    size = min(POPULATION, own.evaluations or POPULATION)
+    generations = GENERATIONS if own.evaluations is None else own.evaluations // size
     algorithm = NSGA2(pop_size=size)
     algorithm.setup(Batch(), seed=seed, termination=("n_gen", max(1, generations)))
-    finished = True
+    finished = told = True
     while algorithm.has_next():
         algorithm.next()
         seconds = time.perf_counter() - clock
-        late = budget.seconds is not None and seconds > budget.seconds
+        late = own.seconds is not None and seconds > own.seconds
         best = min((float(one.F[0]) for one in algorithm.opt if one.feas), default=None)
         event = Event(seconds, int(algorithm.evaluator.n_eval), best)
-        if late or (watch is not None and watch(event) is False):
+        told = watch is None or watch(event) is not False
+        if late or not told:
             finished = not algorithm.has_next()
             break
+    found = _front(algorithm, space, len(rows.objectives) > 1, finished)
+    everyone = sorted(algorithm.pop, key=lambda one: (float(one.CV[0]), float(one.F[0])))
+    starts = space.points(np.array([one.X for one in everyone]))
+    return polish.polished(last, found, starts) if told else found
+
+
+def _front(algorithm: Any, space: Box, several: bool, finished: bool) -> Outcome:
+    """The best feasible individual of the first objective; of several, the others beside it."""
     spent = int(algorithm.evaluator.n_eval)
     good = [one for one in algorithm.opt if one.feas]
     if not good:
         return Outcome(None, finished, evaluations=spent, message="no feasible individual")
     front = sorted(good, key=lambda one: float(one.F[0]))
     points = [space.points(one.X[None])[0] for one in front]
-    others = tuple(points[1:]) if len(rows.objectives) > 1 else ()
-    return Outcome(points[0], finished, others=others, evaluations=spent)
+    return Outcome(
+        points[0], finished, others=tuple(points[1:]) if several else (), evaluations=spent
+    )

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from gearopt.errors import SolveError
-from gearopt.optimise import posynomial
+from gearopt.optimise import discrete, posynomial
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Event, Outcome, Watch
 from gearopt.optimise.terms import Array
@@ -129,20 +129,21 @@ def _logarithm(scip: Any, problem: Problem, index: int) -> Any:
 
     variable, name = problem.columns[index]
     low, high = (float(b[index]) for b in problem.bounds()[:2])
+    if not low > 0.0:
+        raise SolveError(f"scip takes positive variables only; {name} may be {low:g}")
     log = scip.addVar(name, lb=math.log(low), ub=math.log(high) if math.isfinite(high) else None)
-    if variable.values is not None:
-        allowed = [v for v in variable.values if low <= v <= high]
-    elif variable.integer and high - low < FEW:
-        allowed = [float(v) for v in range(math.ceil(low), math.floor(high) + 1)]
-    elif variable.integer:
-        whole = scip.addVar(vtype="I", lb=math.ceil(low), ub=math.floor(high))
-        scip.addCons(exp(log) == whole)
+    if not variable.discrete:
         return log
-    else:
-        return log
-    picks = [scip.addVar(vtype="B") for _ in allowed]
+    if variable.integer:
+        low, high = discrete.ends(problem, index)
+        if not high - low < FEW:
+            most = high if math.isfinite(high) else None
+            scip.addCons(exp(log) == scip.addVar(vtype="I", lb=low, ub=most))
+            return log
+    values = discrete.values(problem, index)
+    picks = [scip.addVar(vtype="B") for _ in values]
     scip.addCons(quicksum(picks) == 1)
-    scip.addCons(quicksum(math.log(v) * w for v, w in zip(allowed, picks, strict=True)) == log)
+    scip.addCons(quicksum(math.log(v) * w for v, w in zip(values, picks, strict=True)) == log)
     return log
 
 

@@ -16,6 +16,7 @@ from gearopt.scenes.axis.gears import KG_M2
 from gearopt.scenes.axis.springs import output_stiffness
 from gearopt.scenes.tables.servo import Scene
 
+RANDOM, COUNTS = split.exact.RANDOM, split.exact.COUNTS  # of the methods that are passed on here
 ROUNDING = 1e-12  # of an objective
 SHOWN = {  # objective: factor to the unit that is shown, the unit
     "inertia": (KG_M2, "kg_m2"),

@@ -66,7 +66,9 @@ class CylinderTable(Table):
         None, description="Fixed place [x, y] of the axis, from an origin of your choice"
     )
     layer: Annotated[int | None, whole(1, 1, MOST)] = Field(
-        None, description="Fixed layer, 1 is the lowest"
+        None,
+        description="Fixed layer, counted from the floor: 1 is the lowest, and every layer below "
+        "it holds a cylinder",
     )
 
 
@@ -150,11 +152,7 @@ class Scene(Table):
             rule = f"makes {total} cylinders; at most {MOST} can be packed"
             left = max(1, self.cylinder[most].count - (total - MOST))
             raise refuse(rule, left, ("cylinder", most, "count"))
-        given = {own.layer for own in self.cylinder if own.layer is not None}
-        movable = sum(own.count for own in self.cylinder if own.layer is None)
-        if (self.layers.exactly or 0) > len(given) + movable:
-            rule = f"leaves a layer empty: {movable} cylinders have no layer of their own"
-            raise refuse(rule, len(given) + movable, ("layers", "exactly"))
+        self._check_layers()
         self._check_container()
         self._check_places()
         return self
@@ -162,6 +160,20 @@ class Scene(Table):
     @property
     def _most(self) -> int:
         return self.layers.exactly or self.layers.most or 1
+
+    def _check_layers(self) -> None:
+        """No layer that must hold a cylinder stays empty."""
+        given = {own.layer for own in self.cylinder if own.layer is not None}
+        movable = sum(own.count for own in self.cylinder if own.layer is None)
+        rule = f"leaves a layer empty: {movable} cylinders have no layer of their own"
+        if (self.layers.exactly or 0) > len(given) + movable:
+            raise refuse(rule, len(given) + movable, ("layers", "exactly"))
+        empty = sorted(set(range(1, max(given, default=0))) - given)
+        if len(empty) > movable:
+            top = next(k for k, own in enumerate(self.cylinder) if own.layer == max(given))
+            raise refuse(
+                f"{rule}, and below a layer none is", empty[movable], ("cylinder", top, "layer")
+            )
 
     def _check_container(self) -> None:
         """A given width holds the widest cylinder, and all that are fixed."""

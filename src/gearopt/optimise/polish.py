@@ -1,0 +1,164 @@
+"""The last step of a sampler: Ipopt from its best points, their discrete variables held.
+
+A sampler meets an equality or a limit only as nearly as its last steps are short; a local method
+meets them to rounding. From the best point so reached, one discrete variable is moved to its next
+value up or down, and solved again, as long as that helps. A part of the budget is kept for all
+this, and what it takes counts. Ipopt may leave for a worse local optimum, so the best of the
+sampler's point and these is the answer.
+"""
+
+import math
+import time
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from gearopt.errors import SolveError
+from gearopt.optimise.discrete import values
+from gearopt.optimise.feasibility import violation
+from gearopt.optimise.form import form
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.result import Budget, Event, Outcome, Watch
+from gearopt.optimise.solvers import ipopt
+from gearopt.optimise.terms import Array
+
+SHARE, MOST = 0.1, 500  # of a budget is kept; evaluations at the most
+STARTS = 5  # points of the sampler to polish, of different discrete values
+RUNS = 60  # of Ipopt at the most, where the budget names no evaluations
+FEASIBLE = 1e-8  # that of a certificate
+KEPT = {"kept for it": f"{SHARE:.0%} of the budget, {MOST} evaluations at the most"}
+SETTINGS = {
+    "polished by": "ipopt, discrete variables held; then with one at its next value",
+    "points polished": f"{STARTS}, by {RUNS} runs at the most",
+    **KEPT,
+}
+
+
+@dataclass(frozen=True)
+class Polish:
+    """What a sampler's last step may spend, since when (`time.perf_counter`), and who watches.
+
+    budget: of the whole run. skipped: why there is none, None where there is; "" goes unsaid.
+    """
+
+    problem: Problem
+    budget: Budget
+    clock: float
+    watch: Watch | None
+    skipped: str | None
+
+    @property
+    def sampling(self) -> Budget:
+        """What the sampling before it may spend."""
+        return self.budget if self.skipped is not None else sampling(self.budget)
+
+
+def sampling(budget: Budget) -> Budget:
+    """What the sampling before a polish may spend of the budget of both."""
+    seconds, most = budget.seconds, budget.evaluations
+    return replace(
+        budget,
+        seconds=None if seconds is None else (1.0 - SHARE) * seconds,
+        evaluations=None if most is None else most - min(MOST, int(SHARE * most)),
+    )
+
+
+def prepared(problem: Problem, budget: Budget, clock: float, watch: Watch | None) -> Polish:
+    """The polish of a run that began at `clock`: the text is traced here, within its budget."""
+    return Polish(problem, budget, clock, watch, _obstacle(problem))
+
+
+def _obstacle(problem: Problem) -> str | None:
+    """Why a problem cannot be polished, None if it can; "" goes without saying."""
+    lower, upper, guess = problem.bounds()
+    variables = [v for v, _ in problem.columns]
+    free = [not v.discrete and a < b for v, a, b in zip(variables, lower, upper, strict=True)]
+    if not any(free) or len(problem.rows.objectives) > 1:
+        return ""
+    try:
+        form(problem.holding(guess))
+    except SolveError as refusal:
+        return f"not polished: {refusal}"
+    return None
+
+
+def polished(polish: Polish, sampled: Outcome, starts: Array) -> Outcome:
+    """The sampler's outcome, or a better one that Ipopt reaches from one of `starts` (N, n).
+
+    starts: in order of promise; the first of each choice of discrete values counts, and the
+    sampler's own point.
+    """
+    problem = polish.problem
+    if polish.skipped is not None:
+        return replace(sampled, message=sampled.message or polish.skipped)
+    best, least, done = sampled, _value(problem, sampled.x), True
+    spent, runs = sampled.evaluations, 0
+    waiting, tried = _chosen(problem, sampled.x, starts), set[tuple[float, ...]]()
+    while waiting and done and runs < RUNS:
+        start = waiting.pop(0)
+        tried.add(_choice(problem, start))
+        found = _solved(polish, start, spent, least)
+        runs, spent, done = runs + 1, spent + found.evaluations, found.finished
+        value = _value(problem, found.x)
+        if value < least:
+            best, least = replace(found, message=""), value
+        if not waiting and best.x is not None:
+            waiting = [x for x in _beside(problem, best.x) if _choice(problem, x) not in tried]
+    return replace(best, finished=sampled.finished and done, evaluations=spent, infeasible=False)
+
+
+def _choice(problem: Problem, x: Array) -> tuple[float, ...]:
+    """The discrete values of a point."""
+    return tuple(float(a) for a, (v, _) in zip(x, problem.columns, strict=True) if v.discrete)
+
+
+def _chosen(problem: Problem, best: Array | None, starts: Array) -> list[Array]:
+    """The best point, and the starts that differ from one another in a discrete value."""
+    firsts: dict[tuple[float, ...], Array] = {}
+    for x in starts:
+        firsts.setdefault(_choice(problem, x), x)
+    return [*list(firsts.values())[:STARTS], *([] if best is None else [best])]
+
+
+def _beside(problem: Problem, x: Array) -> list[Array]:
+    """The points with one discrete variable at its next value up or down."""
+    found = []
+    for k in np.flatnonzero([v.discrete for v, _ in problem.columns]):
+        given = values(problem, int(k))
+        at = given.index(float(x[k]))
+        for place in (at - 1, at + 1):
+            if 0 <= place <= given.index(given[-1]):
+                found.append(x.copy())
+                found[-1][k] = given[place]
+    return found
+
+
+def _solved(polish: Polish, start: Array, spent: int, least: float) -> Outcome:
+    """Ipopt from a start with what is left of the budget; nothing, unfinished, where none is."""
+    before = time.perf_counter() - polish.clock
+    left = polish.budget.less(before, spent)
+    if left.seconds == 0.0 or left.evaluations == 0:
+        return Outcome(None, finished=False)
+
+    def told(event: Event) -> bool:
+        value = min(least, math.inf if event.best is None else event.best)
+        now = replace(
+            event,
+            seconds=before + event.seconds,
+            evaluations=spent + event.evaluations,
+            best=value if math.isfinite(value) else None,
+        )
+        return polish.watch is None or polish.watch(now) is not False
+
+    return ipopt.run(polish.problem.holding(start), left, 0, told, start=start)
+
+
+def _value(problem: Problem, x: Array | None) -> float:
+    """The objective of a point by the certificate's measure; inf where it is not feasible."""
+    if x is None:
+        return math.inf
+    with np.errstate(all="ignore"):
+        batch = problem.batch(x[None])
+        excess, _ = violation(problem, x, batch)
+    value = float(batch.F[0, 0])
+    return value if excess <= FEASIBLE and not math.isnan(value) else math.inf

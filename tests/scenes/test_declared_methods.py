@@ -1,0 +1,124 @@
+"""What a comparison must know of every method of every kind of file, and the curves they tell."""
+
+import sys
+from pathlib import Path
+
+import pytest
+
+import gearopt
+from gearopt.errors import SolveError
+from gearopt.formulations.layout import annealing
+from gearopt.optimise.comparing.trial import Entry, attempt, enter
+from gearopt.optimise.kernels import kernel
+from gearopt.optimise.result import Budget
+from gearopt.optimise.solve import method_of
+from gearopt.scenes import compound, drive, packing, servo
+
+PROBLEMS = Path(__file__).parents[2] / "problems"
+ROOMS = {room.Scene: room for room in (compound, drive, packing, servo)}
+FILES = (
+    *("elevator", "elevator_box", "sandgren_train", "seven_points"),
+    pytest.param("three_stage_together", marks=pytest.mark.slow),
+    *("servo_axis", "servo_gimbal_ratio", "servo_gimbal_move", "servo_gimbal_swing"),
+    *("servo_gimbal_costs", "servo_gimbal_grades", "elevator_processes"),
+)
+
+
+def posed(name, method):
+    scene = gearopt.load(PROBLEMS / f"{name}.toml")
+    scene = getattr(scene, "scene", scene)
+    return ROOMS[type(scene)].model(scene, method)
+
+
+def own_methods(name):
+    """The exact and other methods that the models of a file bring, by name."""
+    scene = gearopt.load(PROBLEMS / f"{name}.toml")
+    scene = getattr(scene, "scene", scene)
+    room = ROOMS[type(scene)]
+    found = {}
+    for method in room.compared(scene):
+        try:
+            problem = room.model(scene, method).problem
+        except SolveError:
+            continue
+        found |= {own: method_of(problem, own) for own in problem.methods}
+    return found
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_every_method_says_whether_it_is_random_and_what_it_counts(name):
+    methods = own_methods(name)
+    assert methods
+    for method, run in methods.items():
+        module = sys.modules[run.__module__]
+        assert isinstance(module.RANDOM, bool), method
+        assert module.COUNTS, method
+        for declared in (module.COUNTS, getattr(module, "SETTINGS", {})):
+            by_name = isinstance(declared, dict) and set(declared) & set(methods)
+            assert not by_name or method in declared, method
+
+
+def test_a_servo_train_is_compared_once_not_for_every_seed():
+    found = gearopt.compare(
+        PROBLEMS / "servo_gimbal.toml", ("exact",), seeds=3, evaluations=100, seconds=0.02
+    )
+    (row,) = found.groups[0].rows
+    assert not row.random and len(row.equal_evaluations.runs) == 1
+
+
+def test_settings_of_a_layout_are_those_of_each_method():
+    law = kernel("gearopt.formulations.layout.anneal_kernel")
+    angles, positions = annealing.SETTINGS["sa"], annealing.SETTINGS["sa-paper"]
+    assert angles["temperatures"] == (law.HOT, law.COLD) and angles["penalty"] == law.PENALTY
+    free = (law.FREE * law.HOT, law.FREE * law.COLD)
+    assert positions["temperatures"] == pytest.approx(free) and positions["penalty"] == law.PENALTY
+    assert positions["penalty of a centre distance"] == law.MESH
+    assert str(law.MESHING) in positions["repaired"]
+    entries = {m: enter(m, lambda m: posed("elevator_box", m)) for m in annealing.SETTINGS}
+    assert entries["sa"].settings == angles and entries["sa-paper"].settings == positions
+    assert "ipopt" in entries["sa-polish"].settings["polished by"]
+    assert entries["sa"].counts == "layout measured"
+    assert entries["sa-polish"].counts == "layout measured or Ipopt iteration"
+
+
+def curve(name, method, evaluations, seed=1):
+    """The run of a method by evaluations; what went before a step is never better than it."""
+    model = posed(name, method)
+    run = attempt(
+        Entry(method, model, model.problem), seed, Budget(60.0, evaluations), lambda event: True
+    )
+    values = [best for _, _, best in run.steps]
+    counts = [n for _, n, _ in run.steps]
+    assert values == sorted(values, reverse=True) and counts == sorted(counts)
+    assert values[-1] == run.objective and counts[-1] <= run.evaluations and not run.clipped
+    return run
+
+
+CURVES = [  # file, method, evaluations, points of the curve at the least
+    ("seven_points", "sa", 20_000, 20),
+    ("seven_points", "hop", 60_000, 4),
+    ("seven_points", "annealing", 5_000, 20),
+    ("seven_points", "nsga2", 5_000, 20),
+    ("seven_points", "multistart", 300, 10),
+    ("elevator_box", "sa", 20_000, 5),
+    ("elevator_box", "sa-polish", 20_000, 5),
+    ("elevator_box", "sa-paper", 128_701, 3),
+    ("elevator_box", "multistart", 300, 10),
+    ("elevator", "annealing", 5_000, 3),
+    ("elevator", "nsga2", 5_000, 4),
+    ("elevator", "multistart", 300, 4),
+    ("servo_gimbal_ratio", "ipopt", 100, 3),
+    ("sandgren_train", "annealing", 5_000, 4),
+]
+
+
+@pytest.mark.parametrize(("name", "method", "evaluations", "least"), CURVES)
+def test_a_curve_tells_of_the_way_to_the_best(name, method, evaluations, least):
+    assert len(curve(name, method, evaluations).steps) >= least
+
+
+def test_a_polish_counts():
+    """Ipopt's iterations are evaluations of sa-polish, within its budget."""
+    plain, polished = (curve("elevator_box", m, 5_000) for m in ("sa", "sa-polish"))
+    assert plain.evaluations == 5_000 and 4_500 < polished.evaluations <= 5_000
+    assert polished.steps[-1][1] > 4_500 and polished.objective < plain.objective
