@@ -10,6 +10,7 @@ import pytest
 
 from gearopt.formulations import sizing
 from gearopt.formulations.train import FaceWidth, Stage, Train
+from gearopt.optimise import polish
 from gearopt.optimise.certificate import certify
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome
@@ -206,11 +207,12 @@ def test_far_out_on_an_exponential_is_not_stationary():
     assert solve(problem).value == pytest.approx(1.5 * 2.0 ** (1.0 / 3.0), rel=1e-12)
 
 
-def test_annealing_in_si_units_is_not_stationary():
-    """Sizes of micrometres, an objective of 1e-12: close, but on a slope."""
+def test_annealing_in_si_units_is_not_stationary(monkeypatch):
+    """Sizes of micrometres, an objective of 1e-12: close, but on a slope (before its polish)."""
+    monkeypatch.setattr(polish, "polished", lambda last, found, starts: found)
     problem = measured(CASES["rosenbrock"](), 1e-12, 1e-6)
-    result, _ = annealed = run(problem, "annealing", Budget(evaluations=3200))
-    assert result.status == "feasible" and annealed[0].value > 0.0
+    result, _ = run(problem, "annealing", Budget(evaluations=3200))
+    assert result.status == "feasible" and result.value > 0.0
 
 
 MINIMA = {

@@ -26,6 +26,15 @@ def values(problem: Problem, column: int) -> Sequence[float]:
     return found or _nothing(problem, column, "value of its set")
 
 
+def checked(problem: Problem) -> None:
+    """Raise SolveError where the bounds of a discrete variable hold none of its values."""
+    for column, (variable, _) in enumerate(problem.columns):
+        if variable.values is not None:
+            values(problem, column)
+        elif variable.integer:
+            ends(problem, column)
+
+
 def ends(problem: Problem, column: int) -> tuple[float, float]:
     """Least and most whole number between the bounds of an integer, infinite where they are."""
     low, high = _widened(problem, column)

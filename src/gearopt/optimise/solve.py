@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from gearopt.errors import SolveError
-from gearopt.optimise import solvers
+from gearopt.optimise import discrete, solvers
 from gearopt.optimise.certificate import Verdict, certify
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.problem import Problem, one_objective
@@ -88,9 +88,8 @@ def method_of(problem: Problem | Conic, name: str) -> Callable[..., Outcome]:
             takes = "a Conic (cvxpy text)" if name == "conic" else "a Problem (numpy text)"
             kind = type(problem).__name__
             raise SolveError(f"{name} takes {takes}; {problem.name} is a {kind}")
-        for (variable, one), low, high in zip(problem.columns, *problem.bounds()[:2], strict=True):
-            if not variable.allowed(low, high):
-                raise SolveError(f"{problem.name}: no value of {one} is within its bounds")
+        if isinstance(problem, Problem):
+            discrete.checked(problem)
         run: Callable[..., Outcome] = import_module(f"gearopt.optimise.solvers.{name}").run
         return run
     conic_only = isinstance(problem, Conic)

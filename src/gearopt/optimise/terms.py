@@ -84,12 +84,6 @@ class Var:
                     f"not {self.values!r}"
                 )
 
-    def allowed(self, lower: float, upper: float) -> bool:
-        """Whether a discrete variable may take any value between two bounds."""
-        if self.values is not None:
-            return any(lower <= v <= upper for v in self.values)
-        return not self.integer or bool(np.ceil(lower) <= np.floor(upper))
-
     @property
     def discrete(self) -> bool:
         """Whether only some values are allowed."""
