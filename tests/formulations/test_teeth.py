@@ -5,9 +5,10 @@ from dataclasses import replace
 from fractions import Fraction
 
 import pytest
+from brute_force import some_drive
 
-from gearopt.errors import SolveError
 from gearopt.formulations import sizing, teeth
+from gearopt.formulations.teeth import wide
 from gearopt.formulations.teeth.search import possible
 from gearopt.formulations.train import OBJECTIVES, FaceWidth, Stage, Train
 from gearopt.optimise.result import Budget
@@ -87,10 +88,36 @@ def test_no_budget_at_all_still_answers():
     assert result.status == "limit" and result.value is None
 
 
-def test_too_many_pairs_are_refused_with_a_remedy():
-    huge = drive(total=F(10**6), widths=("0.6",), tolerance=F(1, 2), pinion_teeth=(5, 1000))
-    with pytest.raises(SolveError, match="limit its wheel teeth or its ratio"):
-        solve(teeth.problem(huge))
+def test_more_pairs_than_memory_takes_are_a_limit_and_say_what_to_narrow():
+    one = {"total": F(10**6), "widths": ("0.6",), "pinion_teeth": (5, 1000)}
+    found = solve(teeth.problem(drive(**one, tolerance=F(1, 100)), floor=1.0))
+    assert found.status == "limit" and found.bound == 1.0 and found.value > 1.0
+    assert "narrow its pinion teeth" in found.message and "up to 5 teeth" in found.message
+    nothing = solve(teeth.problem(drive(**one, tolerance=F(1, 2)), floor=1.0))
+    assert nothing.status == "limit" and nothing.value is None
+
+
+@pytest.mark.parametrize("number", range(20))
+def test_wide_ranges_are_searched_like_narrow_ones(number, monkeypatch):
+    """Pinions left out for their cost change nothing: of random drives and their ten best."""
+    train = some_drive(number, 2)
+    expected = [run(teeth.problem(train, n))[1] for n in (1, 10)]
+    monkeypatch.setattr(wide, "FEW", 150)
+    assert wide.narrowed(train) != train
+    for n, whole in zip((1, 10), expected, strict=True):
+        found = run(teeth.problem(train, n))[1]
+        assert found.infeasible == whole.infeasible and found.bound == whole.bound
+        assert (found.x is None) == (whole.x is None)
+        points = zip((found.x, *found.others), (whole.x, *whole.others), strict=True)
+        assert whole.x is None or all((a == b).all() for a, b in points)
+
+
+@pytest.mark.slow
+def test_five_to_five_hundred_teeth_are_proven():
+    """The best of wide ranges is that of 5 to 100 teeth: larger pinions cost more."""
+    found = [solve(teeth.problem(drive(pinion_teeth=(5, most)))) for most in (100, 500, 1000)]
+    assert {f.status for f in found} == {"optimal"}
+    assert len({f.value for f in found}) == 1
 
 
 def test_top_is_in_order_distinct_and_starts_with_the_best():
@@ -177,10 +204,11 @@ def test_a_drive_of_nonsense_numbers_is_refused():
         replace(drive(), objective="mass")
 
 
-def test_a_tolerance_that_leaves_too_many_pairs_is_refused_before_memory_is_spent():
-    wide = drive(total=F(100), widths=("0.6",) * 3, tolerance=F(1, 2), pinion_teeth=(5, 200))
-    with pytest.raises(SolveError, match="narrow it, or limit wheel teeth"):
-        solve(teeth.problem(wide))
+def test_a_tolerance_that_leaves_too_many_pairs_is_told_before_memory_is_spent(monkeypatch):
+    monkeypatch.setattr("gearopt.formulations.teeth.bound.ENTRIES", 100_000)
+    loose = drive(total=F(100), widths=("0.6",) * 3, tolerance=F(1, 2))
+    found = solve(teeth.problem(loose))
+    assert found.status == "limit" and "narrow it, or limit wheel teeth" in found.message
 
 
 @pytest.mark.slow

@@ -192,3 +192,15 @@ def test_discrete_problems_are_refused_by_name():
     problem = Problem("whole", (Var("z", "", 1, 9, 5, integer=True),), (), lambda x, p: None)
     with pytest.raises(SolveError, match="z is discrete"):
         elastic(problem, [])
+
+
+def test_a_parameter_at_the_end_of_what_the_text_takes_is_probed_on_one_side():
+    """An efficiency of 1 in sqrt(1 - eta^2): nothing above it, an infinite slope."""
+    eta = Param("eta", "", 1.0)
+
+    def evaluate(x, p):
+        return Terms({"c": x.x + 0.1 * np.sqrt(1.0 - p.eta**2)}, {"m": 1.0 / x.x})
+
+    (found,) = explain(Problem("end", (Var("x", "", 0.1, 10.0, 2.0),), (eta,), evaluate)).influences
+    assert found.sensitivity is None
+    assert found.resolved[0] is not None and found.resolved[1] is None

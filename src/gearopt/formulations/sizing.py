@@ -7,6 +7,7 @@ ratio free within its tolerance this is a relaxation of `teeth`, so its bound ho
 """
 
 import math
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -46,7 +47,7 @@ def problem(train: Train) -> Problem:
             _PARAMETER_UNITS.get(name, ""),
             value,
             count if isinstance(value, tuple) else 1,
-            role=_role(train, name),
+            role=_role(train, name, "data"),
         )
         for name, value in numbers.items()
     )
@@ -57,10 +58,52 @@ def problem(train: Train) -> Problem:
     return Problem("sizing", _variables(train), parameters, evaluate)
 
 
-def _role(train: Train, name: str) -> str | tuple[str, ...]:
-    """The role of a parameter: the ratio is a duty, a tied width no limit."""
+def movable(train: Train) -> Problem:
+    """The limits of `problem` with all that is given as a number of its own, to be moved.
+
+    Wheel teeth that are given are variables, one component a stage that gives them; the proportion
+    b/d1 of tied widths is a given parameter. The objective means nothing.
+    """
+    own = problem(train)
+    wheels = given_wheels(train)
+    parameters = tuple(replace(q, role=_role(train, q.name, "given")) for q in own.parameters)
+
+    def evaluate(x: Any, p: Any) -> Terms:
+        found = own.evaluate(x, p)
+        teeth = zip(wheels, each(x.wheel_teeth) if wheels else (), strict=True)
+        rows = {
+            f"wheel_teeth[{k + 1}]": each(x.pinion_teeth)[k] * each(x.ratio)[k] / z
+            for k, z in teeth
+        }
+        return Terms({"module": each(x.module)[0]}, found.limits, equal={**found.equal, **rows})
+
+    variables = _with_wheels(train) if wheels else own.variables
+    return Problem("sizing", variables, parameters, evaluate)
+
+
+def given_wheels(train: Train) -> tuple[int, ...]:
+    """The stages (from 0) whose wheel teeth are given."""
+    return tuple(k for k, stage in enumerate(train.stages) if stage.wheel_fixed)
+
+
+def _with_wheels(train: Train) -> tuple[Var, ...]:
+    """The variables with ratios free and given wheel teeth as a block of their own."""
+    count = len(train.stages)
+    teeth = tuple(float(train.stages[k].wheel_teeth[0]) for k in given_wheels(train))
+    low, high = ((end,) * count for end in RATIO)
+
+    def free(v: Var) -> Var:
+        guess = tuple(max(u, RATIO[0]) for u in each(v.guess))
+        return replace(v, lower=low, upper=high, guess=guess)
+
+    found = (free(v) if v.name == "ratio" else v for v in _variables(train))
+    return (*found, Var("wheel_teeth", "", teeth, teeth, teeth, len(teeth), log=True, search=True))
+
+
+def _role(train: Train, name: str, tied: str) -> str | tuple[str, ...]:
+    """The role of a parameter: the ratio is a duty; `tied`: that of a width tied to d1."""
     if name.startswith("width"):
-        return tuple("data" if s.face_width.tied else "limit" for s in train.stages)
+        return tuple(tied if s.face_width.tied else "limit" for s in train.stages)
     if name in ("lowest_ratio", "highest_ratio", "torque"):
         return "given"
     return "limit" if name in BY_STAGE else "data"

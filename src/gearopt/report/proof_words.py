@@ -23,6 +23,8 @@ def proof(result: Result, measures: Measures = METRIC) -> list[str]:
         alike = part.objective["name"] == result.objective["name"]
         if part.name in ("sizing", "apart") and alike and result.status == "optimal":
             lines += _beside(result, part, measures)
+        if part.name == "sizing" and result.status == "limit" and result.value is None:
+            lines += _instead(part, measures)
     lines += result.report.get("notes", []) if result.status != "infeasible" else []
     if result.message and result.status != "infeasible" and not leading(result):
         lines.append(result.message[0].upper() + result.message[1:].rstrip(".") + ".")
@@ -56,6 +58,17 @@ def _beside(result: Result, part: Result, measures: Measures) -> list[str]:
     return [
         f"With real-valued teeth and modules: {value} "
         f"(whole teeth and standard modules cost {cost} %)."
+    ]
+
+
+def _instead(part: Result, measures: Measures) -> list[str]:
+    """What is known where no whole teeth were found: the answer with real-valued ones."""
+    name, unit, value, bound, side = goal(part)
+    if value is None or bound is None:
+        return []
+    return [
+        f"With real-valued teeth and modules there is a {name} of {amount(value, unit, measures)}; "
+        f"whole teeth have none {side} {amount(bound, unit, measures)}."
     ]
 
 

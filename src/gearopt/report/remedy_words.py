@@ -1,7 +1,7 @@
 """Ways out of an impossible request, in words and cells, as terminal and page both show them."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from gearopt.report.words import edit, limit_words
@@ -37,18 +37,32 @@ def remedy_words(
     if not ways:
         return [*why, late or "No way out was found by moving limits."], [], []
     rows = [row for way in ways for row in _rows(way)]
-    sure = all(way["verified"].get("with_less", "infeasible") == "infeasible" for way in ways)
-    less = sure and any(way["kind"] != "choice" for way in ways)
-    words = "Each was tried: a design exists with it"
-    words += ", and none with 0.1 % (or one tooth) less." if less else "."
+    words = f"Each was tried: a design exists with it{_less(ways)}."
+    if any(way["verified"].get("others") == "need more" for way in ways):
+        words += " Least change: no other limit and no given size does with less, moved alone."
     if conflict:
         words += " Proven least: no smaller factor does, even with real-valued teeth and modules."
     return why, rows, [f"{words} {late}".rstrip()]
 
 
+def _less(ways: Sequence[Mapping[str, Any]]) -> str:
+    """What is known of smaller changes."""
+    moved = [way for way in ways if way["kind"] != "choice"]
+    doubtful = [
+        way["changes"][0]["key"]
+        for way in moved
+        if way["verified"].get("with_less", "infeasible") != "infeasible"
+    ]
+    if len(doubtful) == len(moved):
+        return ""
+    but = f" (not known of {', '.join(doubtful)})" if doubtful else ""
+    return f", and none with 0.1 % (or one tooth or module) less{but}"
+
+
 def _rows(way: Mapping[str, Any]) -> list[tuple[str, ...]]:
     """A row for every edit of a way out."""
-    label = KINDS.get(way["kind"], f"{way['what'].replace('_', ' ')}, all alike")
+    alike = ", all alike" if way["kind"] == "even" else ", one stage"
+    label = KINDS.get(way["kind"], f"{way['what'].replace('_', ' ')}{alike}")
     product = "product " if len(way["changes"]) > 1 and way["kind"] == "least" else ""
     rows: list[tuple[str, ...]] = []
     for k, change in enumerate(way["changes"]):

@@ -133,6 +133,8 @@ def _answer(scene: Scene, ask: Ask) -> Result:
     ask = replace(ask, budget=ask.budget.less(ideal.seconds))
     floor = -math.inf if ideal.bound is None else ideal.bound
     found = _sized(scene, train, ask, _discrete(scene, train, ask.top, floor))
+    if found.status == "limit" and found.value is None:  # the continuous bound holds all the same
+        found = replace(found, bound=ideal.bound)
     return reconcile(replace(found, parts=(replace(ideal, name="sizing"),)), ideal, ask.gap)
 
 

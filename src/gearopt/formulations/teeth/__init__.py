@@ -6,6 +6,7 @@ tied, free or on a step. `exact` proves its answer by exhausting all other train
 
 import math
 import time
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -15,6 +16,7 @@ from gearopt.errors import SolveError
 from gearopt.formulations.teeth.progress import MARGIN, TIE, Progress, Teeth
 from gearopt.formulations.teeth.search import BEAM, search
 from gearopt.formulations.teeth.stage import table
+from gearopt.formulations.teeth.wide import narrowed, trimmed
 from gearopt.formulations.train import Sizes, Stage, Train, terms
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch
@@ -147,7 +149,7 @@ def _ends(span: tuple[int, int | None]) -> tuple[float, float]:
 def _outcome(
     train: Train, count: int, floor: float, budget: Budget, watch: Watch | None
 ) -> Outcome:
-    progress = search(train, 1, budget, watch, floor)
+    train, progress, missing = _searched(train, count, floor, budget, watch)
     found = _in_order(progress)
     if count > 1 and found and not (progress.stopped or progress.enough):
         left = budget.less(time.perf_counter() - progress.clock, progress.looked)
@@ -175,7 +177,7 @@ def _outcome(
             bound=lower,
             proof=partial,
             evaluations=progress.looked,
-            message=_why(progress, count),
+            message=missing or _why(progress, count),
         )
     if not points:
         return Outcome(
@@ -191,6 +193,37 @@ def _outcome(
         others=tuple(points[1:]),
         evaluations=progress.looked,
     )
+
+
+def _searched(
+    train: Train, count: int, floor: float, budget: Budget, watch: Watch | None
+) -> tuple[Train, Progress, str]:
+    """A search for the best train, the drive that holds all of use, and what was not searched.
+
+    Wide ranges are searched among few pinions first, which leaves out pinions of no use. If there
+    still are more pairs than memory takes, the search among few pinions is all there is.
+    """
+    first, few = Progress(count, budget, watch, floor), narrowed(train)
+    if few == train:
+        try:
+            return train, search(train, 1, budget, watch, floor), ""
+        except SolveError as reason:
+            first.stopped = True
+            return train, first, str(reason)
+    most = max(s.pinion_teeth[1] or 0 for s in few.stages)
+    try:
+        first = search(few, count, replace(budget, gap=0.0), watch)
+        useful = trimmed(train, first.threshold)
+        left = budget.less(time.perf_counter() - first.clock, first.looked)
+        progress = search(useful, 1, left, watch, floor)
+    except SolveError as reason:
+        first.stopped, first.floor, first.lower = True, floor, -math.inf
+        return train, first, f"{reason}. Only pinions of up to {most} teeth were searched"
+    progress.clock = first.clock
+    progress.looked, progress.nodes = progress.looked + first.looked, progress.nodes + first.nodes
+    if progress.stopped:  # what the first search found is a train of the drive as well
+        progress.add(np.array([v for v, _ in first.found]), iter([t for _, t in first.found]))
+    return useful, progress, ""
 
 
 def _why(progress: Progress, count: int) -> str:

@@ -60,8 +60,7 @@ def search(
     the ratio of a single stage is then searched to the end.
     """
     progress = Progress(wanted, budget, watch, floor)
-    most = train.highest_ratio
-    cut = min(most, Fraction(3.0 * float(train.ratio) ** (1.0 / len(train.stages))))
+    most, cut = train.highest_ratio, first_cut(train)
     progress.whole = cut == most
     closed = _look(train, cut, progress, FIRST_LOOK)
     reach = _reach(train, cut, most, progress.threshold)
@@ -70,6 +69,12 @@ def search(
     if not over and not (closed and reach <= cut):
         _look(train, max(cut, reach), progress, math.inf)
     return progress
+
+
+def first_cut(train: Train) -> Fraction:
+    """Largest stage ratio of a first look: three times that of an even split."""
+    even = float(train.ratio) ** (1.0 / len(train.stages))
+    return min(train.highest_ratio, Fraction(3.0 * even))
 
 
 def _look(train: Train, cut: Fraction, progress: Progress, patience: float) -> bool:
@@ -250,6 +255,12 @@ def _reach(train: Train, cut: Fraction, most: Fraction, threshold: float) -> Fra
 
 def possible(train: Train, seconds: float, watch: Watch | None) -> bool | None:
     """Whether any train meets all limits; None where that is not known in time."""
+    found = any_train(train, seconds, watch)
+    return found if found is None else bool(found)
+
+
+def any_train(train: Train, seconds: float, watch: Watch | None) -> Teeth | None:
+    """The teeth of some train that meets all limits, () where there is none; None: not known."""
 
     def first(event: Event) -> bool:
         told = watch is None or watch(event) is not False
@@ -260,5 +271,5 @@ def possible(train: Train, seconds: float, watch: Watch | None) -> bool | None:
     except SolveError:  # too many pairs to look at
         return None
     if progress.found:
-        return True
-    return None if progress.stopped else False
+        return progress.found[0][1]
+    return None if progress.stopped else ()

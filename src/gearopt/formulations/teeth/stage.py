@@ -189,30 +189,39 @@ def _pairs(stage: Stage, low: Fraction, cut: Fraction, coprime: bool) -> tuple[I
 
     SolveError where they are more than memory is worth.
     """
-    high = cut if stage.ratio[1] is None else min(cut, stage.ratio[1])
-    most_wheel = stage.wheel_teeth[1]
-    pinions, wheels = [], []
-    least_z1, most_z1 = stage.pinion_teeth
-    assert most_z1 is not None
-    expected = (high - low + 1) * most_z1 * (most_z1 - least_z1 + 1)
-    if min(expected, (most_wheel or expected) * (most_z1 - least_z1 + 1)) > PAIRS:
+    ranges = spans(stage, low, cut)
+    count = sum(stop - start + 1 for _, start, stop in ranges)
+    if count > PAIRS:
         raise SolveError(
-            f"a stage has some {float(expected):.2g} tooth pairs to choose from: "
-            "limit its wheel teeth or its ratio (limits.wheel_teeth, limits.stage_ratio)"
+            f"a stage has {count:,} tooth pairs to choose from: narrow its pinion teeth, or limit "
+            "its wheel teeth or ratio (limits.pinion_teeth, limits.wheel_teeth, limits.stage_ratio)"
         )
-    for z in range(least_z1, most_z1 + 1):
-        start = max(stage.wheel_teeth[0], math.ceil(low * z))
-        stop = math.floor(high * z)
-        stop = stop if most_wheel is None else min(stop, most_wheel)
-        wheel = np.arange(start, stop + 1, dtype=np.int64)
-        pinions.append(np.full(len(wheel), z, dtype=np.int64))
-        wheels.append(wheel)
-    z1, z2 = np.concatenate(pinions), np.concatenate(wheels)
+    wheels = [np.arange(start, stop + 1, dtype=np.int64) for _, start, stop in ranges]
+    z1 = np.repeat([z for z, _, _ in ranges], [len(w) for w in wheels]).astype(np.int64)
+    z2 = np.concatenate(wheels)
     if coprime:
         keep = np.gcd(z1, z2) == 1
         z1, z2 = z1[keep], z2[keep]
     order = np.argsort(z2 / z1, kind="stable")
     return z1[order], z2[order]
+
+
+def spans(stage: Stage, low: Fraction, cut: Fraction) -> list[tuple[int, int, int]]:
+    """Of every pinion z1 its least and most wheel teeth for ratios from low to cut.
+
+    The most is one below the least where there are none.
+    """
+    high = cut if stage.ratio[1] is None else min(cut, stage.ratio[1])
+    most_wheel = stage.wheel_teeth[1]
+    least_z1, most_z1 = stage.pinion_teeth
+    assert most_z1 is not None
+    found = []
+    for z in range(least_z1, most_z1 + 1):
+        start = max(stage.wheel_teeth[0], math.ceil(low * z))
+        stop = math.floor(high * z)
+        stop = stop if most_wheel is None else min(stop, most_wheel)
+        found.append((z, start, max(stop, start - 1)))
+    return found
 
 
 def _allowed(stage: Stage, z1: Index, z2: Index, cosine: float) -> tuple[Index, Index]:

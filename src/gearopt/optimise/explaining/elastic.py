@@ -18,35 +18,46 @@ def elastic(problem: Problem, groups: Sequence[Sequence[Handle]]) -> Problem:
     """The problem of the least relaxation: minimise the product of the factors.
 
     Variable `relaxation`: a factor >= 1 for each group, shared by its handles and within the reach
-    of all of them; limits in no group stay as they are. The objective is left out. SolveError for
-    discrete variables.
+    of all of them; a handle in several groups moves by the product of their factors, limits in no
+    group stay as they are. The objective is left out. SolveError for discrete variables.
     """
     for variable, name in problem.columns:
         if variable.discrete:
             raise SolveError(f"limits are relaxed in continuous problems; {name} is discrete")
-    owner = {(h.kind, h.place): k for k, group in enumerate(groups) for h in group}
+    owners: dict[tuple[str, int], list[int]] = {}
+    for k, group in enumerate(groups):
+        for h in group:
+            owners.setdefault((h.kind, h.place), []).append(k)
     reach = tuple(min(h.reach for h in group) for group in groups)
     factor = Var("relaxation", "", 1.0, reach, 1.0, len(groups), log=True)
     direction = {(h.kind, h.place): h.direction for group in groups for h in group}
-    rows = {h.name: k for k, group in enumerate(groups) for h in group if h.kind == ROW}
+    rows = {h.name: (h.kind, h.place) for group in groups for h in group if h.kind == ROW}
 
     def parts(x: Any) -> tuple[Any, ...]:
         return x.relaxation if isinstance(x.relaxation, tuple) else (x.relaxation,)
 
+    def factors(x: Any) -> dict[tuple[str, int], Any]:
+        """The factor of every handle."""
+        found = {}
+        for which, own in owners.items():
+            found[which] = parts(x)[own[0]]
+            for k in own[1:]:
+                found[which] = found[which] * parts(x)[k]
+        return found
+
     def parameters(x: Any, p: Any) -> Any:
         scalars = [s for q in problem.parameters for s in _tuple(getattr(p, q.name))]
-        for (kind, place), k in owner.items():
+        for (kind, place), f in factors(x).items():
             if kind == PARAM:
-                scalars[place] = scalars[place] * parts(x)[k] ** direction[kind, place]
+                scalars[place] = scalars[place] * f ** direction[kind, place]
         return namespace(problem.parameters, scalars)
 
     def hardened(x: Any, terms: Terms, prefix: str = "") -> dict[str, Any]:
         """All inequality rows, those with a factor of their own divided by it."""
-        factors = parts(x)
-        found = {}
+        own, found = factors(x), {}
         for name, value in flat(terms.limits) + flat(terms.defines):
-            k = rows.get(prefix + name)
-            found[name] = value if k is None else value / factors[k]
+            which = rows.get(prefix + name)
+            found[name] = value if which is None else value / own[which]
         return found
 
     def evaluate(x: Any, p: Any) -> Terms:
@@ -54,7 +65,7 @@ def elastic(problem: Problem, groups: Sequence[Sequence[Handle]]) -> Problem:
         product: Any = 1.0
         for f in parts(x):
             product = product * f
-        bounds = _bound_rows(problem, owner, x, parts(x))
+        bounds = _bound_rows(problem, factors(x), x)
         return Terms({"relaxation": product}, hardened(x, terms), defines=bounds, equal=terms.equal)
 
     def repeated(r: Repeat) -> Callable[[Any, Any, Any], Terms]:
@@ -66,7 +77,7 @@ def elastic(problem: Problem, groups: Sequence[Sequence[Handle]]) -> Problem:
 
     return Problem(
         f"{problem.name}, relaxed",
-        (*_wider(problem, owner), factor),
+        (*_wider(problem, list(owners)), factor),
         problem.parameters,
         evaluate,
         tuple(replace(r, evaluate=repeated(r)) for r in problem.repeats),
@@ -77,18 +88,16 @@ def _tuple(value: Any) -> tuple[Any, ...]:
     return value if isinstance(value, tuple) else (value,)
 
 
-def _bound_rows(
-    problem: Problem, owner: dict[tuple[str, int], int], x: Any, factors: tuple[Any, ...]
-) -> dict[str, Any]:
+def _bound_rows(problem: Problem, factors: dict[tuple[str, int], Any], x: Any) -> dict[str, Any]:
     """Bounds that may move, as rows <= 1."""
     lower, upper, _ = problem.bounds()
     flat_x = [s for v in problem.variables for s in _tuple(getattr(x, v.name))]
     found = {}
-    for (kind, k), group in owner.items():
+    for (kind, k), factor in factors.items():
         if kind not in (LOWER, UPPER):
             continue
         value = float(lower[k] if kind == LOWER else upper[k])
-        here, factor = flat_x[k], factors[group]
+        here = flat_x[k]
         name = f"{problem.columns[k][1]} {kind}"
         if value > 0:
             found[name] = value / (here * factor) if kind == LOWER else here / (value * factor)
@@ -98,10 +107,10 @@ def _bound_rows(
     return found
 
 
-def _wider(problem: Problem, owner: dict[tuple[str, int], int]) -> tuple[Var, ...]:
+def _wider(problem: Problem, movable: Sequence[tuple[str, int]]) -> tuple[Var, ...]:
     """The variables, with room where their bounds may move."""
     lower, upper, _ = (a.copy() for a in problem.bounds())
-    for kind, k in owner:
+    for kind, k in movable:
         if kind == LOWER:
             value = lower[k]
             lower[k] = value / REACH if value > 0 else value - REACH * scale(value)

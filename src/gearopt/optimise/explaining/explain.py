@@ -109,7 +109,7 @@ def _influences(
         yield Influence(
             key or name,
             f"{number:.10g}",
-            float(slope[place]) if value else None,
+            float(slope[place]) if value and math.isfinite(slope[place]) else None,
             sides,
             step,
             price,

@@ -63,6 +63,11 @@ class Clock:
         """Whether nothing is left, or the user stopped."""
         return self.stopped or self.left.seconds == 0.0
 
+    def within(self, seconds: float) -> float:
+        """So many seconds, or what is left if that is less."""
+        left = self.left.seconds
+        return seconds if left is None else min(seconds, left)
+
     def solve(self, problem: Problem) -> Result:
         """Solve within what is left; a run that the user stops ends the rest too."""
         result = solve(problem, "ipopt", self.left, watch=self.watch)
@@ -80,12 +85,28 @@ def least(problem: Problem, movable: Sequence[Handle], clock: Clock) -> Repair |
 
     None where no factors within reach suffice, or time ran out.
     """
-    form = elastic(problem, [[h] for h in movable])
+    found = least_factors(problem, [[h] for h in movable], clock)
+    if found is None:
+        return None
+    factors, value, bound = found
+    moves = tuple((h, float(f)) for h, f in zip(movable, factors, strict=True) if f > 1.0 + SAME)
+    return Repair("least", value, bound, moves)
+
+
+def least_factors(
+    problem: Problem, groups: Sequence[Sequence[Handle]], clock: Clock
+) -> tuple[Array, float, float | None] | None:
+    """Factors of groups of limits of the smallest product, that product, and its bound.
+
+    As few factors are above 1 as that product allows; whole numbers are at whole values. None
+    where no factors within reach suffice, or time ran out.
+    """
+    form = elastic(problem, groups)
     found = clock.solve(form)
     if found.value is None or found.status not in CERTAIN:
         return None
     factors = np.atleast_1d(found.design["relaxation"])
-    reach = np.array([h.reach for h in movable])
+    reach = np.array([min(h.reach for h in group) for group in groups])
     allowed = np.where(factors > 1.0 + SAME, reach, 1.0)
     for k in np.argsort(factors, kind="stable"):
         if allowed[k] == 1.0 or clock.over:
@@ -99,9 +120,8 @@ def least(problem: Problem, movable: Sequence[Handle], clock: Clock) -> Repair |
             and other.value <= found.value * (1.0 + SAME)
         ):
             allowed, factors = fewer, np.atleast_1d(other.design["relaxation"])
-    factors = _whole(form, movable, factors, allowed, clock)
-    moves = tuple((h, float(f)) for h, f in zip(movable, factors, strict=True) if f > 1.0 + SAME)
-    return Repair("least", found.value, found.bound, moves)
+    firsts = [group[0] for group in groups]
+    return _whole(form, firsts, factors, allowed, clock), found.value, found.bound
 
 
 def _whole(

@@ -34,7 +34,8 @@ class Sensitivities:
 def sensitivities(problem: Problem, x: Array) -> Sensitivities:
     """Sensitivities of a continuous problem at its optimum x (n,).
 
-    Where an input is infinite, or is a parameter without effect, the sensitivity is 0. SolveError
+    Where an input is infinite, or is a parameter without effect, the sensitivity is 0; at the end
+    of what a text takes (a square root of 0) it may be infinite. SolveError
     where no multipliers exist (a system too large, or no optimality).
     """
     shape = form(problem)
@@ -50,8 +51,9 @@ def sensitivities(problem: Problem, x: Array) -> Sensitivities:
     unit = 1.0 if shape.log_objective else max(abs(float(f[0])), 1e-300)
     finite = np.where(np.isfinite(p), p, 0.0)
     along = np.where(shape.logarithmic, 1.0, x)
+    by_parameter = _by_parameter(problem, shape, y, p, *lam) * finite
     return Sensitivities(
-        np.nan_to_num(_by_parameter(problem, shape, y, p, *lam) * finite) / unit + 0.0,  # no -0
+        np.nan_to_num(by_parameter, posinf=np.inf, neginf=-np.inf) / unit + 0.0,  # no -0
         slope * along / unit,
         lam[0] / unit,
     )

@@ -13,11 +13,12 @@ from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result
 from gearopt.optimise.terms import Array
 from gearopt.physics.modules import MODULES
-from gearopt.scenes.explaining.cures import FIELDS, next_module
-from gearopt.scenes.explaining.numbers import Number, eased, numbers, put, times
+from gearopt.scenes.explaining.cures import next_module
+from gearopt.scenes.explaining.levers import FIELDS
+from gearopt.scenes.explaining.numbers import Number, eased, moved, numbers, times
 from gearopt.scenes.tables.drive import Scene
 
-SMALL = 1e-5  # of ln input: the step for how parameters follow from the numbers of the file
+STEPS = (-1e-5, 1e-5)  # of ln input: how parameters follow from the numbers of the file
 EASE = 0.01  # the step whose price is told; one for teeth, the next one for modules
 
 
@@ -29,18 +30,19 @@ def influences(
     Sensitivities are those of real-valued sizes (at the point `ideal` of their problem; None: none
     known); prices are of the drive as it is: solved(scene) -> objective, or None.
     """
+    scene = _spelt(scene)
     base = sizing.problem(scene.train())
     slope = None if ideal is None else sensitivities(base, ideal)
     value = None if ideal is None else float(base.batch(ideal[None]).F[0, 0])
-    for number in (*numbers(scene), *_preset(scene)):
+    for number in numbers(scene):
         if clock.over:
             return
         if number.path[:2] == ("teeth", "modules") and _is_series(scene):
             continue
 
         def resolved(factor: float, number: Number = number) -> float | None:
-            moved = put(scene, number.path, times(number.value, factor))
-            return clock.value(sizing.problem(moved.train()))
+            other = moved(scene, number.path, times(number.value, factor))
+            return None if other is None else clock.value(sizing.problem(other.train()))
 
         own: float | None = None
         both: tuple[float | None, float | None] = (None, None)
@@ -61,10 +63,13 @@ def _smooth(scene: Scene, number: Number) -> bool:
     return bool(getattr(number.value, "number", number.value)) and not in_series
 
 
-def _preset(scene: Scene) -> tuple[Number, ...]:
-    """The load limits that a preset sets, which the file does not write."""
-    names = ("k_factor", "unit_load") if scene.limits.preset else ()
-    return tuple(Number(("limits", name), scene.limits.load(name)) for name in names)
+def _spelt(scene: Scene) -> Scene:
+    """The scene with the load limits that a preset sets written out."""
+    limits = scene.limits
+    if limits.preset is None:
+        return scene
+    loads = {name: limits.load(name) for name in ("k_factor", "unit_load")}
+    return scene.model_copy(update={"limits": limits.model_copy(update={"preset": None, **loads})})
 
 
 def _is_range(number: Number) -> bool:
@@ -75,21 +80,25 @@ def _is_series(scene: Scene) -> bool:
     return scene.teeth is not None and scene.teeth.modules in MODULES.values()
 
 
-def _chained(scene: Scene, number: Number, base: Problem, slope: Any) -> float:
-    """D ln objective / d ln number, through the parameters and given sizes that follow from it."""
+def _chained(scene: Scene, number: Number, base: Problem, slope: Any) -> float | None:
+    """D ln objective / d ln number, through the parameters and given sizes that follow from it.
+
+    None where the rules of the file allow one side alone: there multipliers are not unique.
+    """
     import numpy as np
 
-    ends = [
-        sizing.problem(put(scene, number.path, times(number.value, math.exp(s))).train())
-        for s in (-SMALL, SMALL)
-    ]
+    below, above = (moved(scene, number.path, times(number.value, math.exp(s))) for s in STEPS)
+    if below is None or above is None:
+        return None
+    ends = [sizing.problem(other.train()) for other in (below, above)]
+    width = STEPS[1] - STEPS[0]
     lower, upper, _ = base.bounds()
     given = lower == upper
     with np.errstate(invalid="ignore", divide="ignore"):
-        below, above = (np.log(e.parameter_values()) for e in ends)
-        rates = np.nan_to_num((above - below) / (2 * SMALL))
+        values = [np.log(e.parameter_values()) for e in ends]
+        rates = np.nan_to_num((values[1] - values[0]) / width)
         sizes = [np.where(given, e.bounds()[0], 1.0) for e in ends]
-        moves = np.log(sizes[1] / sizes[0]) / (2 * SMALL)
+        moves = np.log(sizes[1] / sizes[0]) / width
     return float(slope.parameters @ rates + slope.columns @ moves) + 0.0
 
 
@@ -101,13 +110,16 @@ def _price(scene: Scene, number: Number, result: Result, solved: Any) -> tuple[s
     value: Any
     if scene.teeth is not None and "module" in number.path:
         value = next_module(scene, number.value, direction)
-        step = "" if value is None else f"to {value}"
+        step = f"to {value}"
     elif isinstance(number.value, int):
         value, step = number.value + direction, f"{direction:+d}"
     else:
         value = eased(number.value, 1.0 + EASE, direction)
         step = f"{direction * EASE:+.0%}"
-    found = None if value is None else solved(put(scene, number.path, value))
+    other = None if value is None else moved(scene, number.path, value)
+    if other is None:
+        return "", None
+    found = solved(other)
     return step, None if found is None else (found - result.value) / abs(result.value)
 
 

@@ -7,7 +7,7 @@ from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Context, Decima
 from fractions import Fraction
 from typing import Any
 
-from pydantic import BaseModel
+from pydantic import BaseModel, ValidationError
 
 from gearopt.optimise.explaining.explain import DIGITS, ROOM
 from gearopt.scenes.reading.fields import Reads
@@ -80,6 +80,47 @@ def put(scene: Any, path: Path, value: Any) -> Any:
     return scene.model_copy(update={step: put(here, rest, (value, value) if pair else value)})
 
 
+def moved(scene: BaseModel, path: Path, value: Any) -> Any:
+    """The scene with another value at a place; None where the rules of the file refuse it.
+
+    A fraction where a whole number stands (real-valued teeth) is judged by the next whole number
+    beyond it.
+    """
+    now, judged = at(scene, path), value
+    if isinstance(now, tuple) and not isinstance(value, tuple):
+        now = now[0]
+    if isinstance(now, int) and isinstance(value, Fraction):
+        judged = math.floor(value) if value < now else math.ceil(value)
+    return put(scene, path, value) if allowed(put(scene, path, judged)) else None
+
+
+def allowed(scene: BaseModel) -> bool:
+    """Whether a scene is one that its file's own rules take."""
+    try:
+        type(scene).model_validate(content(scene))
+    except ValidationError:
+        return False
+    return True
+
+
+def content(scene: BaseModel) -> dict[str, Any]:
+    """What the file of a scene holds, to be read anew by its own rules."""
+    found: dict[str, Any] = _content(scene, ())
+    return found
+
+
+def _content(value: Any, path: Path) -> Any:
+    if isinstance(value, BaseModel):
+        return {
+            name: _content(getattr(value, name), (*path, name))
+            for name in type(value).model_fields
+            if name in value.model_fields_set and getattr(value, name) is not None
+        }
+    if isinstance(value, tuple):
+        return [_content(v, path) for v in value]
+    return written(value, path)
+
+
 def times(value: Any, factor: float) -> Any:
     """A number of a file times a factor, unrounded."""
     if isinstance(value, Quantity):
@@ -95,6 +136,8 @@ def read(model: type[BaseModel], field: str, raw: Any) -> Any:
 
 def written(value: Any, path: Path) -> Any:
     """A value as a file holds it at a place: texts for quantities, decimals, integers, lists."""
+    if path[:2] == ("teeth", "modules") and isinstance(value, Fraction):
+        return f"{exact(value)} mm"
     if path[-1:] == ("ratio_tolerance",):
         return f"{exact(100 * value)} %"
     if isinstance(value, Quantity):

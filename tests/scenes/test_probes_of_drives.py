@@ -1,0 +1,63 @@
+"""Influences of numbers that stand at an end of what a problem file may hold."""
+
+import pytest
+from edits import scene_of
+
+from gearopt import explain
+from gearopt.scenes.explaining.numbers import numbers
+
+ENDS = {  # numbers at an end of what a file may hold: the table they stand in, and their lines
+    "ratio 1": ("duty", "ratio = 1"),
+    "ratio 1.0005": ("duty", "ratio = 1.0005"),
+    "equal speeds": ("duty", "output_speed = '1450 rpm'"),
+    "largest ratio": ("duty", "ratio = 1_000_000"),
+    "largest tolerance": ("duty", "ratio = 5\nratio_tolerance = '50 %'"),
+    "no tolerance": ("duty", "ratio = 1\nratio_tolerance = 0"),
+    "least pinion": ("stage", "pinion_teeth = 5"),
+    "largest pinion": ("stage", "pinion_teeth = 1000"),
+    "both teeth": ("stage", "pinion_teeth = 20\nwheel_teeth = 20"),
+    "one module of the list": ("limits", "module = ['2 mm', '2 mm']"),
+    "close modules": ("limits", "module = ['2 mm', '2.001 mm']"),
+    "close stage ratios": ("limits", "stage_ratio = [1, 1.0002]"),
+    "largest helix angle": ("gears", "helix_angle = '45 deg'"),
+    "widest faces": ("gears", "face_width_over_diameter = 10"),
+}
+
+
+def at_an_end(end, whole=""):
+    """The scene of a drive with a number at an end of its range."""
+    place, lines = ENDS[end]
+    tables = {
+        "duty": "power = '7.5 kW'\ninput_speed = '1450 rpm'",
+        "gears": "",
+        "stage": "",
+        "limits": "k_factor = '2.07 MPa'\nunit_load = '48 MPa'\npinion_teeth = [20, 40]",
+    }
+    tables["duty"] += "" if place == "duty" else "\nratio = 1"
+    tables["gears"] += "" if "face" in lines else "face_width_over_diameter = 0.6"
+    tables[place] += "\n" + lines
+    heads = (f"[[{n}]]\n{t}" if n == "stage" else f"[{n}]\n{t}" for n, t in tables.items())
+    return scene_of("\n".join([*heads, whole]))[0]
+
+
+@pytest.mark.parametrize("end", ["ratio 1", "equal speeds", "largest pinion", "close modules"])
+def test_a_probe_that_the_file_would_refuse_counts_as_no_design_there(end):
+    scene = at_an_end(end)
+    found = {i.key: i for i in explain(scene).influences}
+    written = {n.key for n in numbers(scene)}
+    assert set(found) == written
+    key = {"ratio 1": "duty.ratio", "equal speeds": "duty.output_speed"}.get(end)
+    assert key is None or found[key].sensitivity is None and None in found[key].resolved
+    if end == "close modules":  # 2 mm times 1.001 is above 2.001 mm: the other end is no substitute
+        assert found["limits.module[1]"].resolved[1] is None
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("whole", ["", "[teeth]\nmodules = ['2 mm', '50 mm']"])
+@pytest.mark.parametrize("end", ENDS)
+def test_numbers_at_the_ends_of_their_ranges_are_explained(end, whole):
+    found = explain(at_an_end(end, whole))
+    vast = end == "largest ratio" and whole  # more pairs than are listed: no price, and said so
+    assert found.result.status == ("limit" if vast else "optimal")
+    assert bool(found.message) == bool(vast)
+    assert any(i.sensitivity is not None for i in found.influences)
