@@ -24,12 +24,13 @@ from gearopt.optimise.terms import Array
 
 SHARE, MOST = 0.1, 500  # of a budget is kept; evaluations at the most
 STARTS = 5  # points of the sampler to polish, of different discrete values
-RUNS = 60  # of Ipopt at the most, where the budget names no evaluations
+RUNS = 60  # of Ipopt at the most
+ITERATIONS = 2000  # of all runs at the most, where the budget names no evaluations
 FEASIBLE = 1e-8  # that of a certificate
 KEPT = {"kept for it": f"{SHARE:.0%} of the budget, {MOST} evaluations at the most"}
 SETTINGS = {
     "polished by": "ipopt, discrete variables held; then with one at its next value",
-    "points polished": f"{STARTS}, by {RUNS} runs at the most",
+    "points polished": f"{STARTS}, by {RUNS} runs and {ITERATIONS} iterations at the most",
     **KEPT,
 }
 
@@ -86,25 +87,32 @@ def polished(polish: Polish, sampled: Outcome, starts: Array) -> Outcome:
     """The sampler's outcome, or a better one that Ipopt reaches from one of `starts` (N, n).
 
     starts: in order of promise; the first of each choice of discrete values counts, and the
-    sampler's own point.
+    sampler's own point. The iterations that are planned are its own end; clock and watcher are not.
     """
-    problem = polish.problem
+    problem, most = polish.problem, polish.budget.evaluations
     if polish.skipped is not None:
         return replace(sampled, message=sampled.message or polish.skipped)
     best, least, done = sampled, _value(problem, sampled.x), True
-    spent, runs = sampled.evaluations, 0
+    planned = ITERATIONS if most is None else most - sampled.evaluations
+    spent = runs = 0
     waiting, tried = _chosen(problem, sampled.x, starts), set[tuple[float, ...]]()
-    while waiting and done and runs < RUNS:
+    while waiting and done and runs < RUNS and spent < planned:
         start = waiting.pop(0)
         tried.add(_choice(problem, start))
-        found = _solved(polish, start, spent, least)
-        runs, spent, done = runs + 1, spent + found.evaluations, found.finished
+        found = _solved(polish, start, sampled.evaluations + spent, planned - spent, least)
+        runs, spent = runs + 1, spent + found.evaluations
+        done = found.finished or spent >= planned
         value = _value(problem, found.x)
         if value < least:
             best, least = replace(found, message=""), value
         if not waiting and best.x is not None:
             waiting = [x for x in _beside(problem, best.x) if _choice(problem, x) not in tried]
-    return replace(best, finished=sampled.finished and done, evaluations=spent, infeasible=False)
+    return replace(
+        best,
+        finished=sampled.finished and done,
+        evaluations=sampled.evaluations + spent,
+        infeasible=False,
+    )
 
 
 def _choice(problem: Problem, x: Array) -> tuple[float, ...]:
@@ -133,11 +141,11 @@ def _beside(problem: Problem, x: Array) -> list[Array]:
     return found
 
 
-def _solved(polish: Polish, start: Array, spent: int, least: float) -> Outcome:
-    """Ipopt from a start with what is left of the budget; nothing, unfinished, where none is."""
+def _solved(polish: Polish, start: Array, spent: int, most: int, least: float) -> Outcome:
+    """Ipopt from a start, `most` iterations; nothing, unfinished, where no time is left."""
     before = time.perf_counter() - polish.clock
-    left = polish.budget.less(before, spent)
-    if left.seconds == 0.0 or left.evaluations == 0:
+    left = replace(polish.budget.less(before), evaluations=most)
+    if left.seconds == 0.0:
         return Outcome(None, finished=False)
 
     def told(event: Event) -> bool:
