@@ -1,5 +1,6 @@
 """The command line: exit codes, one message for bad input, nothing but JSON with --json."""
 
+import io
 import json
 import os
 import signal
@@ -11,6 +12,7 @@ from pathlib import Path
 import pytest
 
 import gearopt
+from gearopt.cli.app import print_whole, write_html
 
 ROOT = Path(__file__).parents[1]
 ELEVATOR = ROOT / "problems" / "elevator.toml"
@@ -234,6 +236,68 @@ def test_a_full_disk_is_one_message():
         done = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True)
     assert done.returncode == 2
     assert done.stderr == "gearopt: the output cannot be written (No space left on device)\n"
+
+
+INTERRUPTED = """
+import os, runpy, signal, sys
+
+class Interrupts:
+    def find_spec(self, name, *where):
+        if name == module:
+            for _ in range(int(times)):
+                os.kill(os.getpid(), 2)
+
+module, times, *sys.argv[1:] = sys.argv[1:]
+signal.signal(signal.SIGINT, signal.default_int_handler)
+del sys.modules["signal"]
+sys.meta_path.insert(0, Interrupts())
+runpy.run_module("gearopt", run_name="__main__", alter_sys=True)
+"""
+
+
+@pytest.mark.parametrize(
+    ("module", "times", "code", "words"),
+    [
+        ("signal", 1, 130, "gearopt: interrupted\n"),
+        ("numpy", 1, 130, "gearopt: interrupted\n"),
+        ("typer", 1, 130, "gearopt: interrupted\n"),
+        ("casadi", 1, 4, ""),
+        ("casadi", 2, 130, "gearopt: interrupted\n"),
+        ("gearopt.report.terminal.result", 1, 130, "gearopt: interrupted\n"),
+    ],
+)
+def test_ctrl_c_while_a_module_is_read_is_no_traceback(module, times, code, words):
+    """While it loads, at the start of a run, twice in a run, and after it."""
+    done = subprocess.run(
+        [sys.executable, "-c", INTERRUPTED, module, str(times), "solve", str(ELEVATOR)],
+        capture_output=True,
+        text=True,
+    )
+    assert (done.returncode, done.stderr) == (code, words)
+
+
+def test_a_page_and_its_tables_are_written_whole_before_ctrl_c_counts(tmp_path, monkeypatch):
+    def interrupted(path, text, **kind):
+        signal.raise_signal(signal.SIGINT)
+        return path.write_bytes(text.encode())
+
+    monkeypatch.setattr(Path, "write_text", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        write_html(tmp_path / "page.html", "whole")
+    assert (tmp_path / "page.html").read_bytes() == b"whole"
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+
+
+def test_json_is_printed_whole_before_ctrl_c_counts(monkeypatch):
+    class Screen(io.StringIO):
+        def write(self, text):
+            signal.raise_signal(signal.SIGINT)
+            return super().write(text)
+
+    monkeypatch.setattr(sys, "stdout", screen := Screen())
+    with pytest.raises(KeyboardInterrupt):
+        print_whole("{}")
+    assert screen.getvalue() == "{}\n"
 
 
 @pytest.mark.slow

@@ -1,19 +1,31 @@
 """The public names are those of `__all__`, each documented."""
 
 import inspect
-import types
+import subprocess
+import sys
+
+import pytest
 
 import gearopt
+from gearopt import api
+from gearopt.optimise.result import Budget
 
 
 def test_all_is_what_the_package_offers():
-    offered = {
-        name
-        for name, value in vars(gearopt).items()
-        if not name.startswith("_") and not isinstance(value, types.ModuleType)
-    }
-    assert offered == set(gearopt.__all__)
-    assert gearopt.__all__ == sorted(gearopt.__all__)
+    assert gearopt.__all__ == sorted(gearopt.__all__) == dir(gearopt)
+    assert gearopt.solve is api.solve and gearopt.Budget is Budget
+    with pytest.raises(AttributeError, match="'gearopt' has no attribute 'nothing'"):
+        gearopt.nothing  # noqa: B018
+
+
+def test_a_name_is_imported_when_it_is_asked_for():
+    """Before that Ctrl-C has nothing to interrupt."""
+    code = (
+        "import sys, gearopt, gearopt.__main__; print('numpy' in sys.modules)\n"
+        "from gearopt import *; print(solve.__name__, Budget(1.0).seconds)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert done.stdout.split() == ["False", "solve", "1.0"] and done.stderr == ""
 
 
 def test_public_names_are_documented():

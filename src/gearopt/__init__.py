@@ -1,13 +1,18 @@
-"""gearopt: constrained optimisation of gears, with a proof of how good the answer is."""
+"""gearopt: constrained optimisation of gears, with a proof of how good the answer is.
 
-from gearopt.api import compare, explain, load, solve
-from gearopt.errors import CertificateError, GearoptError, SceneError, SolveError
-from gearopt.optimise.comparing.comparison import Comparison
-from gearopt.optimise.conic.problem import Conic
-from gearopt.optimise.explaining.explanation import Explanation
-from gearopt.optimise.problem import Problem
-from gearopt.optimise.result import Budget, Event, Result
-from gearopt.optimise.terms import Param, Repeat, Terms, Var
+A name is imported when it is first asked for: the command must answer Ctrl-C before numpy is read.
+"""
+
+TYPE_CHECKING = False  # as in typing, which takes its time too
+if TYPE_CHECKING:
+    from gearopt.api import compare, explain, load, solve
+    from gearopt.errors import CertificateError, GearoptError, SceneError, SolveError
+    from gearopt.optimise.comparing.comparison import Comparison
+    from gearopt.optimise.conic.problem import Conic
+    from gearopt.optimise.explaining.explanation import Explanation
+    from gearopt.optimise.problem import Problem
+    from gearopt.optimise.result import Budget, Event, Result
+    from gearopt.optimise.terms import Param, Repeat, Terms, Var
 
 __all__ = [
     "Budget",
@@ -30,3 +35,17 @@ __all__ = [
     "load",
     "solve",
 ]
+
+
+def __getattr__(name: str) -> object:
+    """A name of `__all__`, from `gearopt.api`, which holds them all."""
+    if name not in __all__:
+        raise AttributeError(f"module 'gearopt' has no attribute {name!r}")
+    from importlib import import_module
+
+    return getattr(import_module("gearopt.api"), name)
+
+
+def __dir__() -> list[str]:
+    """The names on offer."""
+    return __all__

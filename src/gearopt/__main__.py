@@ -1,11 +1,19 @@
 """The entry point: `gearopt` and `python -m gearopt`."""
 
 import io
+import os
 import sys
 
 
 def main() -> None:
     """Run the command line; an interrupt, even while it is still loading, is no traceback."""
+    try:
+        import signal
+
+        if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+            signal.signal(signal.SIGINT, leave)
+    except KeyboardInterrupt:
+        leave()
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # an ASCII terminal has no cubic millimetre
@@ -13,9 +21,16 @@ def main() -> None:
         from gearopt.cli import run
 
         run()
-    except KeyboardInterrupt:
-        print("gearopt: interrupted", file=sys.stderr)
-        sys.exit(130)
+    finally:
+        signal.signal(signal.SIGINT, signal.SIG_IGN)  # all is done but the flushing
+
+
+def leave(*signalled: object) -> None:
+    """End at once with one line; an exception could be raised in a callback, printed and lost."""
+    try:
+        os.write(2, b"gearopt: interrupted\n")
+    finally:
+        os._exit(130)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,7 @@
-"""The way in from Python: `load` a problem file; `solve` or `compare` a file, scene or problem."""
+"""The way in from Python: `load` a problem file; `solve` or `compare` a file, scene or problem.
+
+All that `import gearopt` offers is to be found here, imported or defined.
+"""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -7,7 +10,7 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from gearopt.errors import SolveError
+from gearopt.errors import CertificateError, GearoptError, SceneError, SolveError  # noqa: F401
 from gearopt.optimise.comparing.compare import EVALUATIONS, SECONDS, SEEDS, Follow, Plan
 from gearopt.optimise.comparing.compare import compare as compare_methods
 from gearopt.optimise.comparing.comparison import Comparison
@@ -16,9 +19,10 @@ from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.explaining.explanation import Explanation
 from gearopt.optimise.problem import Problem, one_objective
 from gearopt.optimise.progress import whole
-from gearopt.optimise.result import Budget, Result, Watch, plain
+from gearopt.optimise.result import Budget, Event, Result, Watch, plain  # noqa: F401
 from gearopt.optimise.solve import GAP
 from gearopt.optimise.solve import solve as solve_problem
+from gearopt.optimise.terms import Param, Repeat, Terms, Var  # noqa: F401
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.load import load as load_file
 from gearopt.scenes.reading.load import scene_module

@@ -168,6 +168,18 @@ def test_a_servo_train_names_the_same_pinions():
     assert len(said) == 1 and "stage 1 is undercut, with 16 teeth" in said[0]
 
 
+def test_a_stop_while_real_valued_sizes_are_sought_is_heard(tmp_path):
+    """And their value, which whole teeth never reach, is not told as the best one so far."""
+    path, seen = tmp_path / "drive.toml", []
+    path.write_text(FILE)
+    stopped = gearopt.solve(path, watch=lambda event: bool(seen.append(event)))
+    assert stopped.status == "limit" and stopped.value is None
+    assert len(seen) == 2 and seen[0].best is seen[0].bound is None
+    gearopt.solve(path, watch=lambda event: seen.append(event) is None)
+    told = [event.best for event in seen if event.best is not None]
+    assert told == sorted(told, reverse=True)
+
+
 def test_rows_of_a_page_are_those_of_a_terminal_and_every_other_key(result):
     assert set(PAGE_ROWS) == set(result.design["stages"][0])
     assert [key for key in PAGE_ROWS if key in ROWS] == list(ROWS)

@@ -164,6 +164,18 @@ def test_a_shaft_through_a_wheel_is_told_with_cures_that_work():
         assert gearopt.solve(type(scene(TABLE4)).model_validate(right)).status == "optimal"
 
 
+def test_a_search_and_the_ways_out_of_it_share_a_budget(monkeypatch):
+    given = []
+    none = {"conflict": [], "remedies": [], "message": ""}
+    monkeypatch.setattr(
+        "gearopt.scenes.box.ways.ways", lambda *asked: given.append(asked[-1].budget) or none
+    )
+    tight = scene(with_layout(largest_height='"350 mm"'))
+    result = gearopt.solve(tight, budget=gearopt.Budget(50.0))
+    spent = result.seconds + result.parts[0].seconds
+    assert given[0].seconds == pytest.approx(50.0 - spent, rel=1e-12)
+
+
 def test_an_impossible_height_names_the_least_one():
     """The lowest box is as high as the largest wheel with walls; nothing else helps."""
     result = gearopt.solve(scene(with_layout(largest_height='"350 mm"')))
@@ -367,6 +379,19 @@ def test_together_stopped_at_once_gives_the_gears_chosen_first(small):
     assert result.status == "limit" and result.value is not None
     assert whole.status == "optimal" and whole.value <= result.value
     assert whole.bound <= whole.value <= whole.parts[0].value
+
+
+def test_a_stop_is_heard_while_the_gears_chosen_first_are_laid_out(small):
+    """And their box, which is not the answer's, is not told as the best one so far."""
+    from gearopt.scenes.box.at_once import at_once
+    from gearopt.scenes.drive import bare, solve
+    from gearopt.scenes.reading.ask import Ask
+
+    seen = []
+    sized = solve(bare(small), Ask())
+    result = at_once(small, Ask(watch=lambda event: bool(seen.append(event))), sized)
+    assert result.parts[0].status == "limit" and seen[0].best is None
+    assert "real-valued" not in [part.name for part in result.parts]  # a start is no answer
 
 
 def test_every_answer_makes_a_page(small, tmp_path):

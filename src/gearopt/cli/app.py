@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
+from gearopt.cli.watching import unbroken
 from gearopt.optimise.result import Result
 
 app = typer.Typer(
@@ -55,6 +56,12 @@ def exit_code(result: Result) -> int:
     if result.status == "limit":
         return 4 if result.value is None else 0
     return EXIT[result.status]
+
+
+def print_whole(text: str, end: str = "\n") -> None:
+    """Print what a file may be made of: all of it, even if Ctrl-C comes."""
+    with unbroken():
+        print(text, end=end, flush=True)
 
 
 def console() -> Console:

@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from gearopt.cli.app import File, Html, Json, app, console
+from gearopt.cli.app import File, Html, Json, app, console, print_whole
 from gearopt.cli.watching import following, reached
 from gearopt.cli.writing import check_html, write
 from gearopt.optimise.comparing.compare import EVALUATIONS, SECONDS, SEEDS, Progress
@@ -67,7 +67,7 @@ def compare(
 
 def _show(found: Comparison, as_json: bool) -> None:
     if as_json:
-        print(found.to_json())
+        print_whole(found.to_json())
         return
     from gearopt.report.terminal.comparison import show
 

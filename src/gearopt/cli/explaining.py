@@ -4,7 +4,7 @@ from typing import Annotated
 
 import typer
 
-from gearopt.cli.app import File, Json, app, console, exit_code
+from gearopt.cli.app import File, Json, app, console, exit_code, print_whole
 from gearopt.cli.watching import watching
 from gearopt.optimise.result import Budget
 
@@ -23,7 +23,7 @@ def explain(
     with watching(seconds, quiet=as_json) as watch:
         found = explain_file(file, budget=Budget(seconds), watch=watch)
     if as_json:
-        print(found.to_json())
+        print_whole(found.to_json())
     elif found.result.value is None:
         from gearopt.report.terminal.result import show as show_result
 

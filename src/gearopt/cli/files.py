@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
-from gearopt.cli.app import Json, app
+from gearopt.cli.app import Json, app, print_whole
 from gearopt.errors import GearoptError
 
 
@@ -44,7 +44,7 @@ def check(
             if not as_json:
                 print(f"{file}: a valid {loaded.kind} file")
     if as_json:
-        print(json.dumps(found, indent=2))
+        print_whole(json.dumps(found, indent=2))
     raise typer.Exit(0 if all(f["valid"] for f in found) else 2)
 
 
@@ -59,9 +59,9 @@ def schema(
     from gearopt.scenes.reading.schema import json_schema, reference
 
     if table:
-        print(reference(_known(kind)), end="")
+        print_whole(reference(_known(kind)), end="")
     else:
-        print(json.dumps(json_schema(_known(kind)), indent=2))
+        print_whole(json.dumps(json_schema(_known(kind)), indent=2))
 
 
 @app.command()
@@ -69,7 +69,7 @@ def new(kind: Annotated[str, typer.Argument(help="A kind of problem file.")] = "
     """Print a problem file to start from: `gearopt new drive > my.toml`."""
     from gearopt.scenes.reading.load import scene_module
 
-    print(scene_module(_known(kind)).EXAMPLE, end="")
+    print_whole(scene_module(_known(kind)).EXAMPLE, end="")
 
 
 def _known(kind: str) -> str:

@@ -9,7 +9,7 @@ from typing import Annotated, Any
 
 import typer
 
-from gearopt.cli.app import Json, app, console
+from gearopt.cli.app import Json, app, console, print_whole
 from gearopt.errors import GearoptError
 from gearopt.optimise.result import Result
 
@@ -23,7 +23,7 @@ def doctor(as_json: Json = False) -> None:
     checks = {"exact": _works("exact"), "ipopt": _works("ipopt")}
     found |= {f"{name} works": word for name, word in checks.items()}
     if as_json:
-        print(json.dumps(found, indent=2))
+        print_whole(json.dumps(found, indent=2))
     else:
         for name, text in found.items():
             print(f"{name:14} {text}")
@@ -69,7 +69,7 @@ def bench(
     measure: Callable[[int], list[dict[str, Any]]] = import_module(f"gearopt.bench.{name}").run
     rows = measure(repeat)
     if as_json:
-        print(json.dumps(rows, indent=2))
+        print_whole(json.dumps(rows, indent=2))
         return
     from gearopt.report.terminal.result import rows_table
 

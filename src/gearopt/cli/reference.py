@@ -25,7 +25,7 @@ EXIT_CODES = {
     2: "the file or the command is wrong; one message says where and what to write",
     3: "proven: no design meets the limits",
     4: "nothing found within the time",
-    130: "interrupted before there was anything to keep",
+    130: "interrupted before there was anything to keep, or by a second Ctrl-C",
 }
 KINDS: dict[Any, str] = {int: "N", float: "NUMBER", str: "TEXT", Path: "FILE"}
 

@@ -4,7 +4,7 @@ from typing import Annotated
 
 import typer
 
-from gearopt.cli.app import Csv, File, Html, Json, Units, app, console, exit_code
+from gearopt.cli.app import Csv, File, Html, Json, Units, app, console, exit_code, print_whole
 from gearopt.cli.reporting import SECONDS, TOP_ON_PAGE, Files, checked, written
 from gearopt.cli.watching import watching
 from gearopt.optimise.result import Budget, Result
@@ -70,7 +70,7 @@ def solve(
 
 def _show(result: Result, files: Files, lines: list[str], as_json: bool) -> None:
     if as_json:
-        print(result.to_json())
+        print_whole(result.to_json())
         return
     from gearopt.report.terminal.result import show
 

@@ -2,6 +2,7 @@
 
 import logging
 import math
+import os
 import signal
 import time
 from collections.abc import Callable, Iterator
@@ -12,6 +13,8 @@ from rich.console import Console
 
 from gearopt.optimise.result import Event, Watch
 from gearopt.optimise.scale import gap
+
+SHOW_CURSOR = b"\r\x1b[K\x1b[?25h"  # and clear the line of the progress that hid it
 
 
 @contextmanager
@@ -30,15 +33,18 @@ def watching(seconds: float, quiet: bool) -> Iterator[Watch]:
 def following(words: Callable[[Any], str], quiet: bool) -> Iterator[Callable[[Any], bool]]:
     """A watcher, False after Ctrl-C (the second one kills), that shows words(progress)."""
     stopped = False
+    screen = Console(stderr=True, highlight=False)
+    status = screen.status("") if screen.is_terminal and not quiet else None
 
     def stop(number: int, frame: Any) -> None:
         nonlocal stopped
+        if stopped:
+            os.write(2, b"" if status is None else SHOW_CURSOR)
+            signal.signal(signal.SIGINT, before)
+            signal.raise_signal(signal.SIGINT)
         stopped = True
-        signal.signal(signal.SIGINT, before)
 
     before = signal.signal(signal.SIGINT, stop)
-    screen = Console(stderr=True, highlight=False)
-    status = screen.status("") if screen.is_terminal and not quiet else None
     started, shown = time.perf_counter(), 0.0
     news = _News(screen)
     if not quiet:
@@ -62,6 +68,19 @@ def following(words: Callable[[Any], str], quiet: bool) -> Iterator[Callable[[An
         if status is not None:
             status.stop()
         signal.signal(signal.SIGINT, before)
+
+
+@contextmanager
+def unbroken() -> Iterator[None]:
+    """Hold Ctrl-C back until what is being written is written."""
+    came: list[int] = []
+    before = signal.signal(signal.SIGINT, lambda number, frame: came.append(number))
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+        if came:
+            signal.raise_signal(signal.SIGINT)
 
 
 class _News(logging.Handler):

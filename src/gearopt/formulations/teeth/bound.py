@@ -8,6 +8,7 @@ Backward recursion over the stages; the finer the grid, the closer the bound.
 """
 
 import math
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,7 +20,8 @@ from gearopt.formulations.teeth.stage import Table
 from gearopt.formulations.train import Train
 from gearopt.optimise.terms import Array
 
-ENTRIES = 10_000_000  # of the last stage's table: about 1 GB while it is made
+ENTRIES = 10_000_000  # of the last stage's table
+SLICE = 500_000  # of them, between two looks at the clock
 EDGE = 1e-9  # cells overlap by this much in log ratio, so that rounding never misses a neighbour
 
 
@@ -47,23 +49,26 @@ class Bound:
         return np.asarray(least[cell] + _ahead(self.to_go[stage + 1], least.shape[1])[cell])
 
 
-def bound(train: Train, tables: list[Table], delta: float) -> Bound:
-    """The bound of all stages but the first, on cells of `delta` in log ratio."""
-    low, high = math.log(train.lowest_ratio), math.log(train.highest_ratio)
-    cells = int(high / delta) + 1
+def bound(train: Train, tables: list[Table], delta: float, tick: Callable[[], None]) -> Bound:
+    """The bound of all stages but the first, on cells of `delta` in log ratio.
+
+    tick: called several times a second; what it raises ends the work.
+    """
+    cells = int(math.log(train.highest_ratio) / delta) + 1
     widest = max((float(t.log_ratio[-1]) for t in tables if len(t.log_ratio)), default=0.0)
     ratio_cells = int(widest / delta) + 1
     count = len(tables)
     least: list[Array | None] = [None] * count
     for k in range(1, count - 1):
         alike = k > 1 and train.stages[k] == train.stages[k - 1]
-        least[k] = least[k - 1] if alike else _least(tables[k], cells, ratio_cells, delta)
+        least[k] = least[k - 1] if alike else _least(tables[k], cells, ratio_cells, delta, tick)
     to_go = [np.full(cells + ratio_cells + 2, np.inf) for _ in range(count)]
-    to_go[-1][:cells] = _last(train, tables[-1], cells, delta, low, high)
+    to_go[-1][:cells] = _last(train, tables[-1], cells, delta, tick)
     for k in range(count - 2, 0, -1):
         ahead = _ahead(to_go[k + 1], ratio_cells)[:cells]
         now = least[k]
         assert now is not None
+        tick()
         to_go[k][:cells] = (now + ahead).min(axis=1)
     edges = np.arange(ratio_cells + 1) * delta
     starts = [np.append(np.searchsorted(t.log_ratio, edges[:-1]), len(t.z1)) for t in tables]
@@ -75,11 +80,14 @@ def _ahead(to_go: Array, ratio_cells: int) -> Array:
     return sliding_window_view(np.minimum(to_go[:-1], to_go[1:]), ratio_cells)
 
 
-def _least(table: Table, cells: int, ratio_cells: int, delta: float) -> Array:
+def _least(
+    table: Table, cells: int, ratio_cells: int, delta: float, tick: Callable[[], None]
+) -> Array:
     """Least cost of one stage for every torque cell and ratio cell."""
     column = np.minimum((table.log_ratio / delta).astype(np.int64), ratio_cells - 1)
     found = np.full(cells * ratio_cells, np.inf)
     for k in range(len(table.modules)):
+        tick()
         with np.errstate(divide="ignore"):
             reach = np.log(table.capacity(k) / table.train.torque) + EDGE
         carries = reach >= 0.0
@@ -87,6 +95,7 @@ def _least(table: Table, cells: int, ratio_cells: int, delta: float) -> Array:
         np.minimum.at(found, row * ratio_cells + column[carries], table.floor(k)[carries])
     grid = found.reshape(cells, ratio_cells)
     grid = np.minimum.accumulate(grid[::-1], axis=0)[::-1]  # what carries more carries less
+    tick()
     slope = np.full(ratio_cells, np.inf)
     np.minimum.at(slope, column, table.slope)
     torque = table.train.torque * np.exp(np.arange(cells) * delta - EDGE)
@@ -95,22 +104,37 @@ def _least(table: Table, cells: int, ratio_cells: int, delta: float) -> Array:
     return np.asarray(np.maximum(grid, loaded))
 
 
-def _last(train: Train, table: Table, cells: int, delta: float, low: float, high: float) -> Array:
+def _last(train: Train, table: Table, cells: int, delta: float, tick: Callable[[], None]) -> Array:
     """Least cost of the last stage from every cell: exact pairs, least possible torque."""
+    low, high = math.log(train.lowest_ratio), math.log(train.highest_ratio)
     edge = np.arange(cells) * delta
     start = np.searchsorted(table.log_ratio, low - edge - delta - EDGE)
     stop = np.searchsorted(table.log_ratio, high - edge + EDGE)
-    if (stop - start).sum() > ENTRIES:
+    count = stop - start
+    if count.sum() > ENTRIES:
         raise SolveError(
             "the ratio tolerance leaves too many pairs to the last stage: narrow it, or limit "
             "wheel teeth or stage ratio (limits.wheel_teeth, limits.stage_ratio)"
         )
-    cell, pair = ragged(start, stop - start)
-    reached = np.maximum(edge[cell], low - table.log_ratio[pair])
-    cost = table.cost(train.torque * np.exp(reached - EDGE), pair)
     found = np.full(cells, np.inf)
-    np.minimum.at(found, cell, cost)
+    for part in slices(count, SLICE):
+        tick()
+        cell, pair = ragged(start[part], count[part])
+        reached = np.maximum(edge[part][cell], low - table.log_ratio[pair])
+        cost = table.cost(train.torque * np.exp(reached - EDGE), pair)
+        np.minimum.at(found[part], cell, cost)
     return found
+
+
+def slices(count: NDArray[np.int64], most: int) -> Iterator[slice]:
+    """Slices of what is counted whose sums are at most `most`, or of one entry; none is empty."""
+    done = np.cumsum(count)
+    first = 0
+    while first < len(count):
+        before = done[first - 1] if first else 0
+        last = max(first + 1, int(np.searchsorted(done, before + most, side="right")))
+        yield slice(first, last)
+        first = last
 
 
 def ragged(

@@ -14,6 +14,10 @@ MARGIN = 1e-11  # a node is dropped only when its bound exceeds the best by this
 Teeth = tuple[tuple[int, int], ...]
 
 
+class Spent(Exception):
+    """Budget or watcher ended a search between two of its steps."""
+
+
 @dataclass
 class Progress:
     """What a search has found and spent; it has state because it is filled as the search goes.
@@ -64,6 +68,11 @@ class Progress:
         """Note the least open bound of a search, if that search covers all trains."""
         if self.whole:
             self.lower = max(self.lower, bound)
+
+    def tick(self) -> None:
+        """Raise Spent where budget and watcher do not let the search go on."""
+        if not self.goes_on():
+            raise Spent
 
     def goes_on(self) -> bool:
         """Whether budget and watcher let the search go on."""

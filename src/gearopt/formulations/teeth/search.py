@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearopt.errors import SolveError
-from gearopt.formulations.teeth.bound import EDGE, Bound, bound, ragged
-from gearopt.formulations.teeth.progress import TIE, Progress, Teeth
+from gearopt.formulations.teeth.bound import EDGE, SLICE, Bound, bound, ragged
+from gearopt.formulations.teeth.progress import TIE, Progress, Spent, Teeth
 from gearopt.formulations.teeth.stage import Table, table
 from gearopt.formulations.train import Train, share
 from gearopt.optimise.result import Budget, Event, Watch
@@ -62,12 +62,14 @@ def search(
     progress = Progress(wanted, budget, watch, floor)
     most, cut = train.highest_ratio, first_cut(train)
     progress.whole = cut == most
-    closed = _look(train, cut, progress, FIRST_LOOK)
-    reach = _reach(train, cut, most, progress.threshold)
-    progress.whole = True
-    over = progress.stopped or progress.enough
-    if not over and not (closed and reach <= cut):
-        _look(train, max(cut, reach), progress, math.inf)
+    try:
+        closed = _look(train, cut, progress, FIRST_LOOK)
+        reach = _reach(train, cut, most, progress.threshold)
+        progress.whole = True
+        if not (closed and reach <= cut):
+            _look(train, max(cut, reach), progress, math.inf)
+    except Spent:
+        pass  # `stopped` or `enough` says why
     return progress
 
 
@@ -79,7 +81,7 @@ def first_cut(train: Train) -> Fraction:
 
 def _look(train: Train, cut: Fraction, progress: Progress, patience: float) -> bool:
     """Search all ratios up to a cut, on ever finer grids; False when patience ran out."""
-    tables = _tables(train, cut)
+    tables = _tables(train, cut, progress)
     if any(len(t.z1) == 0 for t in tables):
         return True
     delta = 0.01 if len(tables) <= 3 else 0.005
@@ -87,7 +89,7 @@ def _look(train: Train, cut: Fraction, progress: Progress, patience: float) -> b
         finer = math.log(train.highest_ratio) * tables[-1].log_ratio[-1] / (delta / 2) ** 2
         last = len(tables) <= 2 or finer > CELLS
         enough = progress.looked + min(patience, math.inf if last else PATIENCE)
-        rest = bound(train, tables, delta)
+        rest = bound(train, tables, delta, progress.tick)
         if _closed(train, tables, rest, progress, enough):
             return True
         if patience <= PATIENCE:
@@ -95,13 +97,13 @@ def _look(train: Train, cut: Fraction, progress: Progress, patience: float) -> b
         delta /= 2
 
 
-def _tables(train: Train, cut: Fraction) -> list[Table]:
+def _tables(train: Train, cut: Fraction, progress: Progress) -> list[Table]:
     """The tables of all stages; equal inner stages share one."""
     tables: list[Table] = []
     for k in range(len(train.stages)):
         inner = 1 < k < len(train.stages) - 1
         same = inner and train.stages[k] == train.stages[k - 1]
-        tables.append(tables[-1] if same else table(train, k, cut))
+        tables.append(tables[-1] if same else table(train, k, cut, progress.tick))
     return tables
 
 
@@ -121,8 +123,7 @@ def _closed(
     while heap and heap[0][0] <= progress.threshold:
         if heap[0][2].level:
             progress.raise_lower(heap[0][0])
-        if not progress.goes_on():
-            return True
+        progress.tick()
         if progress.looked > patience:
             return False
         chunk: Chunk | None = heapq.heappop(heap)[2]
@@ -152,7 +153,7 @@ def _expand(
         group, pair = ragged(start, rest.starts[level][cell + 1] - start)
         node = owner[group]
     progress.looked += len(pair)
-    own = stage.cost(train.torque * np.exp(chunk.log_ratio[node]), pair)
+    own = _costs(train, stage, chunk, node, pair, progress)
     if progress.wanted == 1:
         keep = _cheapest_of_ratio(node, stage.ratio[pair], own)
         node, pair, own = node[keep], pair[keep], own[keep]
@@ -167,6 +168,25 @@ def _expand(
         return None
     path = np.column_stack([chunk.path[node[use]], pair[use]])
     return Chunk(level + 1, lower[use], cost[use], log_ratio[use], path)
+
+
+def _costs(
+    train: Train,
+    stage: Table,
+    chunk: Chunk,
+    node: NDArray[np.int64],
+    pair: NDArray[np.int64],
+    progress: Progress,
+) -> Array:
+    """What pairs of a stage cost behind nodes of a chunk."""
+    torque = train.torque * np.exp(chunk.log_ratio)
+    found = np.empty(len(pair))
+    for start in range(0, len(pair), SLICE):
+        if start:  # a first dive, however short the budget, ends with a train
+            progress.tick()
+        part = slice(start, start + SLICE)
+        found[part] = stage.cost(torque[node[part]], pair[part])
+    return found
 
 
 def _cheapest_of_ratio(node: NDArray[np.int64], ratio: Array, cost: Array) -> NDArray[np.bool_]:
@@ -193,7 +213,7 @@ def _complete(train: Train, tables: list[Table], chunk: Chunk, progress: Progres
     stop = np.searchsorted(stage.log_ratio, high - chunk.log_ratio + EDGE)
     node, pair = ragged(start, stop - start)
     progress.looked += len(pair)
-    total = chunk.cost[node] + stage.cost(train.torque * np.exp(chunk.log_ratio[node]), pair)
+    total = chunk.cost[node] + _costs(train, stage, chunk, node, pair, progress)
     progress.compared += int(np.isfinite(total).sum())
     use = np.nonzero(np.isfinite(total) & (total <= progress.threshold))[0]
     use = use[np.argsort(total[use], kind="stable")]

@@ -6,6 +6,7 @@ irrational except at 0, 60 and 90 (Niven's theorem), so no tie with a rational l
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
@@ -143,12 +144,19 @@ class Table:
         return float(face.low) * d
 
 
-def table(train: Train, position: int, cut: Fraction) -> Table:
-    """The table of a stage (counted from 0) for ratios up to `cut`."""
+def table(
+    train: Train, position: int, cut: Fraction, tick: Callable[[], None] = lambda: None
+) -> Table:
+    """The table of a stage (counted from 0) for ratios up to `cut`.
+
+    tick: called several times a second; what it raises ends the work.
+    """
+    tick()
     stage = train.stages[position]
     cosine = math.cos(train.helix_angle)
     least = train.lowest_ratio if len(train.stages) == 1 else stage.ratio[0]
     z1, z2 = _pairs(stage, max(stage.ratio[0], least), cut, train.coprime)
+    tick()
     ratio = z2 / z1
     face, modules = stage.face_width, stage.modules
     widest = float(face.fixed) if face.fixed is not None else float(face.high or 0)
@@ -166,6 +174,7 @@ def table(train: Train, position: int, cut: Fraction) -> Table:
     )
     volume = train.objective in ("gear_volume", "mass")
     slope = np.asarray(share(train, position, 1.0, load, ratio)) if volume else np.zeros(len(z1))
+    tick()
     first, last = _allowed(stage, z1, z2, cosine)
     return Table(
         train,

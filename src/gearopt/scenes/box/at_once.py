@@ -45,7 +45,8 @@ def at_once(scene: Scene, ask: Ask, sized: Result) -> Result:
     point = outcome.x[: sum(v.size for v in own.variables)]
     gears = replace(sized, design=scene.design(sizes), limits=limits(own, point))
     found = told(scene, result, events, replace(gears, report={}), box, angles, order)
-    smooth = _from(scene, (order.slabs, sizes, angles), ask)
+    left = replace(ask, budget=asked.less(result.seconds))
+    smooth = _from(scene, (order.slabs, sizes, angles), left)
     return replace(found, parts=(*found.parts, *smooth))
 
 
@@ -96,7 +97,7 @@ def _from(scene: Scene, start: Start, ask: Ask) -> tuple[Result, ...]:
     unit = scene.gearbox(sizes).unit
     watch = in_part(ask.watch, unit, REAL_VALUED)
     result, _ = run(problem, "ipopt", ask.budget, watch=watch)
-    if result.value is None:
+    if result.value is None or result.status == "limit":  # a start is no answer
         return ()
     return (replace(result, name=REAL_VALUED, objective=result.objective | {"unit": unit}),)
 

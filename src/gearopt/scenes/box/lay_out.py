@@ -112,12 +112,14 @@ def _impossible(
 ) -> Result:
     from gearopt.scenes.box.ways import ways
 
+    spent = sized.seconds + (0.0 if result is None else result.seconds)
+    left = replace(ask, budget=ask.budget.less(spent))
     if result is None:
         proof = {"method": "closed form", "conflict": []}
         objective = {"name": str(scene.layout and scene.layout.minimise), "value": None}
         result = replace(sized, method="data check", objective=objective, bound=None, gap=None)
         result = replace(result, status="infeasible", proof=proof, certificate={}, limits={})
-    found = ways(scene, sizes_of(sized), ask)
+    found = ways(scene, sizes_of(sized), left)
     return replace(
         result,
         design={},

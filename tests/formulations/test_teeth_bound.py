@@ -1,0 +1,163 @@
+"""The bound on later stages against its definition in plain loops, and against every train."""
+
+import math
+from dataclasses import replace
+from fractions import Fraction
+from importlib import import_module
+
+import numpy as np
+import pytest
+from brute_force import best_choice, every_train, some_drive
+from small_drives import FACES, drive, tables_of
+
+from gearopt.errors import SolveError
+from gearopt.formulations.teeth import bound as bounds
+from gearopt.formulations.teeth.bound import EDGE, bound, ragged, slices
+from gearopt.formulations.teeth.progress import Progress
+from gearopt.optimise.result import Budget
+
+F = Fraction
+searching = import_module("gearopt.formulations.teeth.search")  # `teeth.search` is its function
+
+
+def naive(train, tables, delta):
+    """The bound's definition in plain loops: (to_go, least) by stage and cell."""
+    low, high = math.log(train.lowest_ratio), math.log(train.highest_ratio)
+    cells = int(high / delta) + 1
+    widest = max(float(t.log_ratio[-1]) for t in tables)
+    columns = int(widest / delta) + 1
+    least, to_go = {}, {}
+    last = tables[-1]
+    ends = np.full(cells + columns + 2, np.inf)
+    for x in range(cells):
+        for j, r in enumerate(last.log_ratio):
+            if low - (x + 1) * delta - bounds.EDGE <= r <= high - x * delta + bounds.EDGE:
+                torque = train.torque * math.exp(max(x * delta, low - r) - bounds.EDGE)
+                ends[x] = min(ends[x], last.cost(np.array([torque]), np.array([j]))[0])
+    to_go[len(tables) - 1] = ends
+    for k in range(len(tables) - 2, 0, -1):
+        t = tables[k]
+        own = np.full((cells, columns), np.inf)
+        grow = np.full(columns, np.inf)
+        floors = [t.floor(m) for m in range(len(t.modules))]
+        most = [t.capacity(m) for m in range(len(t.modules))]
+        for j, r in enumerate(t.log_ratio):
+            column = min(int(r / delta), columns - 1)
+            grow[column] = min(grow[column], t.slope[j])
+            for m in range(len(t.modules)):
+                if most[m][j] > 0.0:
+                    reach = math.log(most[m][j] / train.torque) + bounds.EDGE
+                    if reach >= 0.0:
+                        for x in range(min(int(reach / delta), cells - 1) + 1):
+                            own[x, column] = min(own[x, column], floors[m][j])
+        for x in range(cells):
+            loaded = train.torque * math.exp(x * delta - bounds.EDGE) * grow
+            own[x] = np.maximum(own[x], np.where(np.isfinite(grow), loaded, 0.0))
+        least[k] = own
+        now = np.full(cells + columns + 2, np.inf)
+        for x in range(cells):
+            now[x] = min(
+                own[x, r] + min(to_go[k + 1][x + r], to_go[k + 1][x + r + 1])
+                for r in range(columns)
+            )
+        to_go[k] = now
+    return to_go, least
+
+
+@pytest.mark.parametrize("face", FACES)
+@pytest.mark.parametrize(
+    ("stages", "objective", "total"),
+    [(2, "gear_volume", F(9)), (3, "gear_volume", F(20)), (4, "total_length", F(12))],
+)
+@pytest.mark.parametrize("edge", [EDGE, 4e-3])
+def test_the_bound_is_its_definition(stages, objective, total, face, edge, monkeypatch):
+    """Also where cells overlap by so much that one sees it."""
+    monkeypatch.setattr(bounds, "EDGE", edge)
+    train = drive(stages, face, total, objective=objective, pinion_teeth=(15, 17))
+    tables, delta = tables_of(train), 0.07
+    found = bound(train, tables, delta, lambda: None)
+    to_go, least = naive(train, tables, delta)
+    assert found.delta == delta and len(found.to_go) == len(found.least) == stages
+    for k, expected in to_go.items():
+        assert found.to_go[k] == pytest.approx(expected, rel=1e-12)
+    for k, expected in least.items():
+        assert found.least[k] == pytest.approx(expected, rel=1e-12)
+        cell = np.arange(len(expected))
+        beyond = np.minimum(to_go[k + 1][:-1], to_go[k + 1][1:])
+        ahead = np.array([beyond[x : x + expected.shape[1]] for x in cell])
+        assert found.onward(k, cell) == pytest.approx(expected + ahead, rel=1e-12)
+    for k, t in enumerate(tables):
+        edges = [int((t.log_ratio < r * delta).sum()) for r in range(len(found.starts[k]) - 1)]
+        assert found.starts[k].tolist() == [*edges, len(t.z1)]
+    assert found.cell(np.array([0.0, 0.0699, 0.0701, 0.15])).tolist() == [0, 0, 1, 2]
+
+
+@pytest.mark.parametrize("number", [0, 2, 4, 8, 12])
+def test_the_bound_is_below_every_train_and_close(number):
+    train = some_drive(number, 3)
+    trains, tables = every_train(train), tables_of(train)
+    if any(len(t.z1) == 0 for t in tables):
+        return
+    rest = bound(train, tables, 0.005, lambda: None)
+    ratio, torque = np.ones(len(trains.values)), train.torque
+    behind = []
+    for k in range(3):
+        z1, z2 = trains.teeth[:, k, 0], trains.teeth[:, k, 1]
+        behind.append(best_choice(train, k, torque * ratio, z1, z2)[0])
+        ratio = ratio * z2 / z1
+    reached = np.log(trains.teeth[:, 0, 1] / trains.teeth[:, 0, 0])
+    ahead = rest.to_go[1][rest.cell(reached)]
+    assert (ahead <= (behind[1] + behind[2]) * (1.0 + 1e-12)).all()
+    if len(trains.values):
+        assert ((behind[0] + ahead).min() / trains.values.min()) > 0.9
+
+
+def test_equal_inner_stages_share_what_was_made(monkeypatch):
+    made = []
+    real = bounds._least
+    monkeypatch.setattr(bounds, "_least", lambda *a: made.append(1) or real(*a))
+    same = tuple(replace(s, k_factor=2.0, unit_load=40.0) for s in drive(5).stages)
+    train = replace(drive(5, total=F(40)), stages=same)
+    tables = searching._tables(train, train.highest_ratio, Progress(1, Budget(), None))
+    assert tables[1] is tables[2] is tables[3]
+    assert tables[0] is not tables[1] and tables[3] is not tables[4]
+    assert [t.position for t in tables] == [0, 1, 1, 1, 4]
+    bound(train, tables, 0.1, lambda: None)
+    assert len(made) == 1
+    other = replace(train, stages=(*same[:2], replace(same[2], k_factor=1.0), *same[3:]))
+    tables = searching._tables(other, other.highest_ratio, Progress(1, Budget(), None))
+    assert len({id(t) for t in tables}) == 5
+    bound(other, tables, 0.1, lambda: None)
+    assert len(made) == 4
+
+
+def test_too_many_entries_are_refused_and_as_many_are_not(monkeypatch):
+    train = drive(2)
+    tables = tables_of(train)
+    edge = np.arange(int(math.log(train.highest_ratio) / 0.1) + 1) * 0.1
+    low, high = math.log(train.lowest_ratio), math.log(train.highest_ratio)
+    logs = tables[-1].log_ratio
+    ends = [(low - x - 0.1 - EDGE, high - x + EDGE) for x in edge]
+    count = sum(int(((logs >= a) & (logs < b)).sum()) for a, b in ends)
+    monkeypatch.setattr(bounds, "ENTRIES", count)
+    bound(train, tables, 0.1, lambda: None)
+    monkeypatch.setattr(bounds, "ENTRIES", count - 1)
+    with pytest.raises(SolveError, match="too many pairs to the last stage"):
+        bound(train, tables, 0.1, lambda: None)
+
+
+@pytest.mark.parametrize("most", [1, 3, 7, 100])
+def test_slices_and_ragged_are_lists(most):
+    rng = np.random.default_rng(most)
+    count, start = rng.integers(0, 5, 40), rng.integers(0, 50, 40)
+    parts = [range(40)[part] for part in slices(count, most)]
+    assert [k for part in parts for k in part] == list(range(40)) and all(parts)
+    for part, after in zip(parts, [*parts[1:], None], strict=True):
+        assert len(part) == 1 or count[list(part)].sum() <= most
+        if after is not None:  # none could be longer
+            assert count[list(part)].sum() + count[after[0]] > most
+    owner, index = ragged(start, count)
+    assert owner.tolist() == [k for k in range(40) for _ in range(count[k])]
+    assert index.tolist() == [start[k] + j for k in range(40) for j in range(count[k])]
+    assert list(slices(np.empty(0, int), most)) == []
+    assert [len(a) for a in ragged(np.empty(0, int), np.empty(0, int))] == [0, 0]

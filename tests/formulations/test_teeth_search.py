@@ -1,0 +1,345 @@
+"""What a search keeps, prunes and spends, and that it may be stopped at any look at the clock."""
+
+import math
+import time
+from dataclasses import replace
+from fractions import Fraction
+from importlib import import_module
+from itertools import product
+
+import numpy as np
+import pytest
+from brute_force import cost, every_train, some_drive
+from small_drives import FACES, OBJECTIVES, drive
+
+from gearopt.formulations.teeth import _in_order
+from gearopt.formulations.teeth import bound as bounds
+from gearopt.formulations.teeth import stage as staging
+from gearopt.formulations.teeth.bound import bound
+from gearopt.formulations.teeth.progress import MARGIN, TIE, Progress, Spent
+from gearopt.formulations.teeth.search import possible, search, within
+from gearopt.formulations.teeth.stage import table
+from gearopt.optimise.result import Budget, Event
+
+F = Fraction
+searching = import_module("gearopt.formulations.teeth.search")  # `teeth.search` is its function
+
+
+def fake(value, *numbers):
+    return value, tuple((n, 2 * n) for n in numbers)
+
+
+def filled(wanted, *found):
+    progress = Progress(wanted, Budget(), None)
+    progress.add(np.array([v for v, _ in found]), iter([t for _, t in found]))
+    return progress
+
+
+def test_the_best_and_its_ties_are_kept():
+    near, far = 1.0 + 0.5 * TIE, 1.0 + 3.0 * TIE
+    progress = filled(1, fake(2.0, 9), fake(near, 8), fake(1.0, 7), fake(far, 6))
+    assert progress.found == [fake(1.0, 7), fake(near, 8)]
+    progress.add(np.array([1.0, near]), iter([((7, 14),), ((5, 10),)]))
+    assert progress.found == [fake(1.0, 7), fake(near, 5), fake(near, 8)]
+    progress.add(np.array([0.5]), iter([((4, 8),)]))
+    assert progress.found == [fake(0.5, 4)]
+    edge = 0.5 * (1.0 + TIE)
+    progress.add(np.array([edge]), iter([((3, 6),)]))
+    assert progress.found == [fake(0.5, 4), fake(edge, 3)]
+
+
+def test_a_list_keeps_as_many_as_are_wanted():
+    progress = filled(2, fake(3.0, 9), fake(1.0, 7), fake(1.0, 6))
+    assert progress.found == [fake(1.0, 6), fake(1.0, 7)]
+    assert filled(3, fake(3.0, 9)).found == [fake(3.0, 9)]
+
+
+def test_what_is_pruned_is_above_the_best_by_more_than_rounding():
+    assert filled(1).threshold == math.inf
+    assert filled(2, fake(1.0, 7)).threshold == math.inf
+    assert filled(1, fake(2.0, 7)).threshold == 2.0 * (1.0 + MARGIN)
+    assert filled(2, fake(2.0, 7), fake(4.0, 8)).threshold == 4.0 * (1.0 - TIE)
+
+
+def test_a_bound_counts_where_the_search_is_of_all_trains():
+    progress = Progress(1, Budget(), None, floor=2.0)
+    progress.raise_lower(5.0)
+    assert (progress.looked, progress.compared, progress.nodes) == (0, 0, 0)
+    assert progress.bound == 2.0
+    progress.whole = True
+    progress.raise_lower(5.0)
+    progress.raise_lower(4.0)
+    assert progress.bound == 5.0
+    progress.floor = 6.0
+    assert progress.bound == 6.0
+
+
+@pytest.mark.parametrize(
+    ("budget", "looked", "seconds", "over"),
+    [
+        (Budget(), 10**9, 1e9, False),
+        (Budget(seconds=5.0), 0, 4.0, False),
+        (Budget(seconds=5.0), 0, 5.0, False),
+        (Budget(seconds=5.0), 0, 5.5, True),
+        (Budget(evaluations=10), 9, 0.0, False),
+        (Budget(evaluations=10), 10, 0.0, True),
+        (Budget(evaluations=10), 11, 0.0, True),
+        (Budget(5.0, 10), 9, 6.0, True),
+        (Budget(5.0, 10), 10, 1.0, True),
+    ],
+)
+def test_budgets_end_a_search(budget, looked, seconds, over, monkeypatch):
+    seen = []
+    progress = Progress(1, budget, seen.append, clock=100.0, looked=looked)
+    monkeypatch.setattr(time, "perf_counter", lambda: 100.0 + seconds)
+    assert progress.goes_on() is not over and progress.stopped is over
+    assert seen == ([] if over else [Event(seconds, looked, None, None)])
+    assert Progress(1, Budget(), None).goes_on()
+
+
+def test_a_watcher_is_told_and_stops_a_search():
+    seen = []
+    progress = filled(1, fake(3.0, 7))
+    progress.watch, progress.floor, progress.looked = lambda e: seen.append(e), 2.0, 5
+    assert progress.goes_on() and not progress.stopped  # None is not False
+    progress.tick()
+    assert [(e.evaluations, e.best, e.bound) for e in seen] == [(5, 3.0, 2.0)] * 2
+    progress.watch = lambda event: False
+    with pytest.raises(Spent):
+        progress.tick()
+    assert progress.stopped and not progress.enough
+    progress.watch = None
+    assert not progress.goes_on()
+
+
+def test_a_gap_that_is_reached_is_enough():
+    for gap, enough in ((0.5, True), (0.25, True), (0.24, False), (0.0, False)):
+        progress = filled(1, fake(4.0, 7))
+        progress.budget, progress.floor = Budget(gap=gap), 3.0
+        assert progress.goes_on() is not enough and progress.enough is enough
+        assert not progress.stopped
+    listed = filled(2, fake(4.0, 7), fake(4.0, 8))
+    listed.budget, listed.floor = Budget(gap=0.5), 3.0
+    assert listed.goes_on()
+    assert Progress(1, Budget(gap=0.5), None, floor=3.0).goes_on()
+    none = filled(1, fake(4.0, 7))
+    none.budget, none.floor = Budget(gap=0.0), 4.0
+    assert none.goes_on()  # a gap of nothing is not asked for
+
+
+def test_within_is_decided_in_whole_numbers():
+    train = drive(2, total=F(10**20 + 1, 10**19), tolerance=F(0))
+    assert not within(train, ((10, 100), (10, 10)))
+    pairs = ((10**10, 10**20 + 1), (10**10, 10))
+    assert within(train, pairs)
+    wide = replace(train, ratio=F(10), tolerance=F(1, 10))
+    for teeth_of, good in (((10, 90), True), ((10, 110), True), ((100, 899), False)):
+        assert within(wide, (teeth_of,)) is good
+    assert not within(wide, ((100, 1101),)) and within(wide, ((10, 100),))
+    halves = replace(wide, ratio=F(9, 4), tolerance=F(1, 9))  # from 2 to 5/2
+    for teeth_of, good in (((10, 20), 1), ((10, 25), 1), ((100, 199), 0), ((100, 251), 0)):
+        assert within(halves, (teeth_of,)) is bool(good)
+
+
+@pytest.mark.parametrize("number", range(8))
+def test_the_cheapest_of_equal_ratios_and_of_those_the_first(number):
+    rng = np.random.default_rng(number)
+    node = np.sort(rng.integers(0, 4, 60))
+    ratio = np.concatenate([np.sort(rng.integers(1, 5, (node == n).sum())) for n in range(4)])
+    price = rng.choice([1.0, 1.0 + 0.5 * TIE, 1.0 + 5.0 * TIE, 2.0, np.inf], 60)
+    keep = searching._cheapest_of_ratio(node, ratio.astype(float), price)
+    expected = np.zeros(60, bool)
+    for n, r in product(range(4), range(1, 5)):
+        group = np.flatnonzero((node == n) & (ratio == r))
+        if len(group) and np.isfinite(price[group]).any():
+            good = [g for g in group if price[g] <= price[group].min() * (1.0 + TIE)]
+            expected[good[0]] = True
+    assert (keep == expected).all()
+    none = searching._cheapest_of_ratio(np.empty(0, int), np.empty(0), np.empty(0))
+    assert none.tolist() == [] and none.dtype == bool
+    one = searching._cheapest_of_ratio(np.zeros(1, int), np.ones(1), np.array([np.inf]))
+    assert one.tolist() == [False]
+
+
+@pytest.mark.parametrize("face", FACES)
+@pytest.mark.parametrize("objective", OBJECTIVES)
+def test_the_reach_of_a_stage_is_where_its_load_alone_costs_too_much(face, objective):
+    train = drive(3, face, F(200), objective=objective)
+    cut, most = F(18), train.highest_ratio
+
+    def least(k, u):
+        """Of stage k at the input torque, with real-valued sizes and K-factor alone."""
+        own = train.stages[k]
+        load = 2.0 * train.torque * (1.0 + 1.0 / u) / own.k_factor
+        if objective in ("gear_volume", "mass"):
+            return cost(train, k, 1.0, load, u)
+        width = own.face_width
+        d = math.sqrt(load / 24.0) if width.fixed else (load / float(width.high)) ** (1.0 / 3.0)
+        return cost(train, k, d, 1.0, u)
+
+    for value in [min(least(k, u) for k in range(3)) for u in (20.0, 60.0, 150.0)]:
+        found = float(searching._reach(train, cut, most, value))
+        ratios = np.geomspace(float(cut), float(most), 2000)
+        useful = [u for u in ratios if min(least(k, u) for k in range(3)) <= value]
+        step = ratios[1] / ratios[0]
+        assert found == pytest.approx(useful[-1] * step, rel=1e-9)
+    tie = min(least(k, ratios[700]) for k in range(3))
+    found = [
+        float(searching._reach(train, cut, most, tie * part)) for part in (1 - 1e-14, 1 + 1e-14)
+    ]
+    assert ratios[700] == pytest.approx(found[0], rel=1e-12)
+    assert ratios[701] == pytest.approx(found[1], rel=1e-12)
+    assert searching._reach(train, cut, most, 1e-9) == cut
+    assert searching._reach(train, cut, most, math.inf) == most
+    assert searching._reach(train, cut, most, 1e30) == most
+    assert searching._reach(train, most, most, 1e-9) == most
+
+
+WORK = {  # stages, seed, trains wanted: pairs looked at, nodes, trains compared
+    (2, 0, 1): (15523, 4, 3055),
+    (2, 3, 1): (5596, 16, 13),
+    (2, 6, 1): (2753, 13, 18),
+    (2, 8, 1): (640, 2, 11),
+    (2, 10, 1): (8621, 4, 412),
+    (2, 13, 1): (3349, 2, 1189),
+    (2, 15, 1): (18397, 4, 2575),
+    (2, 13, 10): (3257, 2, 1143),
+    (3, 2, 1): (1158, 8, 7),
+    (3, 2, 10): (6299, 94, 36),
+    (3, 5, 1): (4874, 74, 6),
+    (3, 5, 10): (24508, 168, 39),
+    (3, 8, 1): (946, 38, 30),
+    (3, 8, 10): (1614, 74, 55),
+    (3, 9, 1): (2614, 16, 157),
+    (3, 9, 10): (2903, 16, 244),
+    (3, 12, 1): (1010, 50, 5),
+    (3, 12, 10): (4014, 90, 29),
+    (4, 0, 1): (7467, 69, 6),
+    (4, 3, 1): (153016, 1052, 0),
+}
+IMPATIENT = {  # the same with finer grids sooner
+    (3, 5, 1): (3699, 68, 6),
+    (3, 7, 1): (4355, 13, 2689),
+    (3, 9, 1): (2561, 11, 152),
+}
+
+
+def work(stages, number, wanted):
+    progress = search(some_drive(number, stages), wanted, Budget())
+    return progress.found, (progress.looked, progress.nodes, progress.compared)
+
+
+@pytest.mark.parametrize("case", WORK)
+def test_pruning_is_worth_what_it_was(case):
+    """Within what rounding may change; a bound that is less tight looks at more."""
+    assert work(*case)[1] == pytest.approx(WORK[case], rel=0.02, abs=1)
+
+
+@pytest.mark.parametrize("case", IMPATIENT)
+def test_finer_grids_find_the_same_with_less(case, monkeypatch):
+    found = work(*case)[0]
+    monkeypatch.setattr(searching, "FIRST_LOOK", 300)
+    monkeypatch.setattr(searching, "PATIENCE", 1000)
+    again, counts = work(*case)
+    assert again == found and counts == pytest.approx(IMPATIENT[case], rel=0.02, abs=1)
+
+
+@pytest.mark.parametrize(("stages", "number", "first"), [(3, 5, 0.01), (4, 0, 0.005)])
+def test_grids_are_halved_while_they_fit(stages, number, first, monkeypatch):
+    """One grid for a first look, however short; then finer ones, up to the largest."""
+    train, made, looked = some_drive(number, stages), [], []
+
+    def noted(train, tables, delta, tick):
+        made.append(delta)
+        looked.append(tick.__self__.looked)
+        return bound(train, tables, delta, tick)
+
+    monkeypatch.setattr(searching, "bound", noted)
+    monkeypatch.setattr(searching, "FIRST_LOOK", 0)
+    monkeypatch.setattr(searching, "PATIENCE", 0)
+    own = table(train, stages - 1, train.highest_ratio)
+    finer = math.log(train.highest_ratio) * own.log_ratio[-1] / (first / 2) ** 2
+    for cells, deltas in ((finer, [first, first, first / 2]), (finer * (1 - 1e-9), [first] * 2)):
+        made.clear()
+        looked.clear()
+        monkeypatch.setattr(searching, "CELLS", cells)
+        search(train, 1, Budget(evaluations=20_000))
+        assert made == deltas
+        assert looked[0] == 0 and (np.diff(looked) > 0).all()
+
+
+@pytest.mark.parametrize(("stages", "number"), [(2, 3), (2, 6), (3, 2), (3, 8)])
+@pytest.mark.parametrize("tolerance", [F(0), F(1, 1000), None])
+def test_what_is_near_an_end_of_the_ratio_is_decided_in_whole_numbers(
+    stages, number, tolerance, monkeypatch
+):
+    """Whatever is called near: here far more than rounding asks for."""
+    train = some_drive(number, stages)
+    train = train if tolerance is None else replace(train, tolerance=tolerance)
+    found = search(train, 5, Budget())
+    monkeypatch.setattr(searching, "EDGE", 0.003)
+    again = search(train, 5, Budget())
+    assert again.found == found.found and again.looked >= found.looked
+    assert all(within(train, teeth_of) for _, teeth_of in again.found)
+
+
+@pytest.mark.parametrize(("stages", "number"), [(2, n) for n in range(0, 24, 2)] + [(3, 2), (3, 8)])
+def test_some_random_drives_by_brute_force(stages, number):
+    train = some_drive(number, stages)
+    found, trains = _in_order(search(train, 1, Budget())), every_train(train)
+    assert bool(found) == bool(len(trains.values))
+    assert not found or np.array_equal(found[0], trains.teeth[trains.best()])
+
+
+def train_of_six():
+    return drive(3, total=F(60), pinion_teeth=(15, 18))
+
+
+def test_a_search_may_stop_at_every_look_at_the_clock(monkeypatch):
+    """Bound and value stay true, and nothing goes on after it."""
+    monkeypatch.setattr(bounds, "SLICE", 50)
+    monkeypatch.setattr(searching, "SLICE", 50)
+    train = train_of_six()
+    seen = []
+    best = search(train, 1, Budget(), seen.append)
+    assert not best.stopped
+    value = best.found[0][0]
+    assert all(e.best is None or e.best >= value for e in seen)
+    assert all(e.bound is None or e.bound <= value for e in seen)
+    for stop in (1, 2, 3, *np.linspace(4, len(seen), 12).astype(int).tolist()):
+        told = []
+        progress = search(train, 1, Budget(), lambda e, t=told, n=stop: t.append(e) or len(t) < n)
+        assert progress.stopped and len(told) == stop
+        assert progress.bound <= value
+        assert not progress.found or progress.found[0][0] >= value
+
+
+def test_no_more_than_a_slice_is_sized_between_two_looks_at_the_clock(monkeypatch):
+    monkeypatch.setattr(bounds, "SLICE", 40)
+    monkeypatch.setattr(searching, "SLICE", 40)
+    whole = search(train_of_six(), 1, Budget())
+    sized, most = [0], []
+    real = staging.Table.cost
+    monkeypatch.setattr(
+        staging.Table, "cost", lambda t, q, p: sized.append(sized.pop() + len(p)) or real(t, q, p)
+    )
+
+    def watch(event):
+        most.append(sized[0])
+        sized[0] = 0
+        return True
+
+    parts = search(train_of_six(), 1, Budget(), watch)
+    assert parts.found == whole.found and parts.looked == whole.looked
+    assert max(most) <= 250 and len(most) > 100  # a dive through three stages, or one cell
+
+
+def test_possible_needs_one_train_only():
+    seen = []
+    train = some_drive(8, 3)
+    assert possible(train, 60.0, lambda e: seen.append(e) is None) is True
+    assert len([e for e in seen if e.best is not None]) == 1
+    assert possible(train, 0.0, None) is None and possible(train, 60.0, None) is True
+    assert possible(train, 60.0, lambda event: False) is None
+    assert possible(train, 60.0, lambda event: None) is True
+    assert possible(replace(train, stages=train.stages[:1]), 60.0, None) is False
