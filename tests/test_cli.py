@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 import gearopt
-from gearopt.cli.app import print_whole, write_html
+from gearopt.cli.app import print_whole
 
 ROOT = Path(__file__).parents[1]
 ELEVATOR = ROOT / "problems" / "elevator.toml"
@@ -274,18 +274,6 @@ def test_ctrl_c_while_a_module_is_read_is_no_traceback(module, times, code, word
         text=True,
     )
     assert (done.returncode, done.stderr) == (code, words)
-
-
-def test_a_page_and_its_tables_are_written_whole_before_ctrl_c_counts(tmp_path, monkeypatch):
-    def interrupted(path, text, **kind):
-        signal.raise_signal(signal.SIGINT)
-        return path.write_bytes(text.encode())
-
-    monkeypatch.setattr(Path, "write_text", interrupted)
-    with pytest.raises(KeyboardInterrupt):
-        write_html(tmp_path / "page.html", "whole")
-    assert (tmp_path / "page.html").read_bytes() == b"whole"
-    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
 
 
 def test_json_is_printed_whole_before_ctrl_c_counts(monkeypatch):

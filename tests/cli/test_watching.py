@@ -27,7 +27,7 @@ from gearopt.optimise.result import Event
             Event(1.0, 20, 5.0899e-07, 5e-07, "train", "inertia", "kg_m2"),
             "train: 20 evaluations, best 5.0899 g cm², gap 1.8 %, 9 s left",
         ),
-        (Event(1.0, 20, 0.0, 0.0), "20 evaluations, best 0, bound 0, 9 s left"),
+        (Event(1.0, 20, 0.0, 0.0), "20 evaluations, best 0, gap 0 %, 9 s left"),
         (Event(1.0, 20, -4.0, -5.0), "20 evaluations, best -4, gap 25 %, 9 s left"),
     ],
 )

@@ -170,7 +170,7 @@ def test_a_search_and_the_ways_out_of_it_share_a_budget(monkeypatch):
     monkeypatch.setattr(
         "gearopt.scenes.box.ways.ways", lambda *asked: given.append(asked[-1].budget) or none
     )
-    tight = scene(with_layout(largest_height='"350 mm"'))
+    tight = scene(with_layout(largest_height='"415 mm"', largest_width='"600 mm"'))
     result = gearopt.solve(tight, budget=gearopt.Budget(50.0))
     spent = result.seconds + result.parts[0].seconds
     assert given[0].seconds == pytest.approx(50.0 - spent, rel=1e-12)
