@@ -166,3 +166,15 @@ def test_a_layout_that_meets_the_box_exactly_fits():
     assert extents(wheel, motor, output)[0] == pytest.approx(60.0, rel=1e-9)
     narrow = replace(wheel, box=(60.0 * (1.0 - 1e-7), 130.0))
     assert first_that_fits([narrow]) is None
+
+
+def test_the_second_pinion_is_in_the_box():
+    """Gear 3 is larger than gear 2, and as large as gear 4: two discs of 10.5 mm, 20 mm apart."""
+    point = np.array([16, 40, 20, 40, 0.3, 0.5])
+    box = of_train(point, 3.0, 2.0, math.pi, (50.0, 50.0))
+    assert box.radii == pytest.approx((3.0, 10.5, 10.5))
+    result = solve(servo_box.problem(box))
+    side = 21.0 + 20.0 / math.sqrt(2.0)
+    assert result.status == "optimal" and 50.0 * result.value == pytest.approx(side, rel=1e-6)
+    sizes = [replace(box, box=(side + off, side + off)) for off in (-1e-4, 1e-4)]
+    assert [first_that_fits([b]) is not None for b in sizes] == [False, True]

@@ -132,7 +132,9 @@ def assumptions():
         f"peak at the output, {PAPER.bending:g} MPa by Lewis, D3 of {float(PAPER.bore):g} mm at "
         f"the least, tip diameters of {tips} mm at the most, N within "
         f"{100 * float(PAPER.tolerance):g} % of {float(PAPER.ratio):g}",
-        "D2 and D4 of {:g} and {:g} mm at the most".format(*STIFF.wheels),
+        "D2 and D4 of {:g} and {:g} mm at the most".format(
+            *(tip - 2.0 * STIFF.module for tip in STIFF.wheel_tips)
+        ),
         f"D1 of {STIFF.module * STIFF.pinion_teeth[0]:g} mm at the least",
         "D3 at least {:g} mm and {:g} mm above shaft 2".format(*STIFF.bore),
         f"widths of {STIFF.face_width:g} and shaft of {STIFF.shaft_diameter:g} mm at the least",

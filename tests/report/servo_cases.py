@@ -229,6 +229,8 @@ def box_part(point, half_sweep=HALF_SWEEP):
         "motor_angle_deg": math.degrees(motor),
         "output_angle_deg": math.degrees(output),
         "radii_mm": list(box.radii),
+        "motor_mm": MOTOR,
+        "shaft_mm": 4.0,
         "links_mm": list(box.links),
         "hub_mm": HUB,
         "half_sweep_deg": half_sweep,

@@ -4,6 +4,7 @@ import math
 import tomllib
 from dataclasses import replace
 from decimal import Decimal
+from fractions import Fraction as F
 from pathlib import Path
 
 import numpy as np
@@ -14,14 +15,16 @@ from typer.testing import CliRunner
 import gearopt
 from gearopt.cli import app
 from gearopt.errors import SceneError
-from gearopt.formulations import servo_box
+from gearopt.formulations import servo_box, split
 from gearopt.optimise.explaining.repair import Clock
 from gearopt.optimise.result import Budget
 from gearopt.report.proof_words import proof
+from gearopt.report.remedy_words import remedy_words
 from gearopt.report.servo_achieved import best_words
-from gearopt.scenes.axis.assumptions import notes
+from gearopt.scenes.axis.assumptions import assumptions, notes
 from gearopt.scenes.axis.choice import box_of, front, posed
 from gearopt.scenes.axis.gears import of_point
+from gearopt.scenes.axis.overlap import given_overlap
 from gearopt.scenes.axis.ways_out import ways_out
 from gearopt.scenes.reading.load import read
 from gearopt.scenes.servo import EXAMPLE
@@ -320,6 +323,78 @@ def test_a_box_that_is_required_changes_the_train():
     assert servo_box.first_that_fits([found]) is not None
 
 
+def test_a_sweep_that_is_not_given_is_twice_the_sector():
+    """So far its teeth reach; a full wheel sweeps a turn."""
+    for sector, half in (("25 %", 90.0), ("12.5 %", 45.0), ("60 %", 180.0), ("100 %", 180.0)):
+        edits = (("train", "sector"), sector), *NARROW[:1], (("space", "required"), False)
+        scene = changed(EXAMPLE, *edits, drop=[*BARE, ("space", "swept_angle")])
+        x = np.array([17, 23, 91, 207, 0.3, 0.5])
+        assert math.degrees(box_of(scene, x).half_sweep) == pytest.approx(half)
+    tied = changed(EXAMPLE, (("duty",), {"motion": "move", "angle": "90 deg"}), drop=BARE)
+    assert tied.space.swept_angle.value == pytest.approx(math.pi)  # 90 of sector, 90 of travel
+
+
+def test_the_output_shaft_is_told_and_may_be_given():
+    """Without a key it is as thick as the shaft between the stages; the report says which."""
+    said = "Output shaft with hub: "
+    cases = (
+        ((), [("space",)], 8, "8 mm, as thick as the shaft"),
+        (((("train", "output_shaft_diameter"), "1 in"),), [("space",)], F("25.4"), "25.4 mm."),
+        (((("train", "output_shaft_diameter"), "9 mm"),), [], 16, "16 mm, hub_diameter of"),
+    )
+    for edits, drop, thick, words in cases:
+        scene = changed(EXAMPLE, *edits, drop=drop)
+        assert scene.servo_train().bodies.output_shaft == thick
+        assert any(said + words in line for line in assumptions(scene))
+
+
+FEW = [
+    (("train", "modules"), ["0.3 mm", "0.5 mm"]),
+    (("train", "pinion_teeth"), [16, 24]),
+    (("accuracy", "error"), "0.2 deg"),
+    (("space", "required"), False),
+]
+
+
+def test_shafts_in_the_way_change_the_train_and_are_named():
+    """The first wheel may not run into the hub, nor the motor into the shaft; each is a limit."""
+    free = solved(EXAMPLE, *FEW, drop=BARE)
+    wide = solved(EXAMPLE, *FEW, (("space", "motor_diameter"), "50 mm"), drop=BARE)
+    assert free.value < wide.value and wide.limits["motor"] <= 1.0
+    first, second = free.design["train"]["stages"]
+    needed, there = first["wheel_tip_diameter_mm"] + 16.0, 2.0 * second["centre_distance_mm"]
+    assert free.limits["output_shaft"] == pytest.approx(needed / there)
+    scene = changed(EXAMPLE, *FEW, (("space", "hub_diameter"), "95 mm"), drop=BARE)
+    explained = gearopt.explain(scene)
+    assert explained.conflict == ("output_shaft",)
+    assert "leaves room for the output shaft" in explained.message
+    (only,) = (r for r in explained.remedies if r.what == "space.hub_diameter")
+    z1, z3, z2, z4, m1, m2 = split.feasible(replace(scene.servo_train(), bodies=None)).T
+    left = np.minimum(m2 * (z3 + z4) - m1 * (z2 + 2), m2 * (z4 - 2.5))  # around the output's axis
+    clear = (m1 * (z2 - 2.5) >= 8.0) & (m2 * (z3 - 2.5) >= 8.0) & (m1 * (z1 + z2) >= 32.0)
+    largest = left[clear].max()
+    assert only.changes[0].write == f'"{largest:.5g} mm"' and largest == pytest.approx(88.9)
+    assert only.verified == {"with": "optimal", "with_less": "infeasible"} and only.bound is None
+    _, _, (sure,) = remedy_words(explained.to_dict())  # whole teeth alone are excluded
+    assert "none with 0.1 %" in sure and "real-valued" not in sure
+
+
+def test_given_gears_that_overlap_something_are_noted():
+    given = {"module": "1 mm", "pinion_teeth": 20, "wheel_teeth": 100}
+    small = {"module": "0.5 mm", "pinion_teeth": 20, "wheel_teeth": 100}
+    edits = [(("mesh", k, n), v) for k, g in enumerate((given, small)) for n, v in g.items()]
+    said = given_overlap(changed(EXAMPLE, *edits, drop=BARE))
+    assert said == "In the given train the first wheel runs into the output shaft."
+    assert given_overlap(changed(text("gimbal"))) == ""
+
+
+def test_a_stiff_train_with_wheel_tips_below_a_tooth_is_impossible():
+    tips = (("train", "wheel_tip_diameters"), ["1 mm", "1 mm"])
+    result = solved(STIFF, tips)
+    stiff = next(part for part in result.parts if part.name == "stiff")
+    assert result.status == stiff.status == "infeasible"
+
+
 def test_a_look_for_a_box_stops_in_time():
     tight = (*NARROW, (("space", "height"), "95 mm"))
     scene = changed(EXAMPLE, *tight, drop=BARE)
@@ -465,6 +540,7 @@ def test_a_run_out_of_time_says_so():
 
 
 NO_GRADE = {k: v for k, v in GIVEN_GEARS.items() if k != "grade"}
+GIVEN_TEETH = {"module": "0.5 mm", "pinion_teeth": 17, "wheel_teeth": 85}
 REFUSED = [  # edits, dropped, key, words
     ([], [("motor",)], "motor", "belong together"),
     ([], [("duty",)], "duty", "belong together"),
@@ -545,6 +621,46 @@ REFUSED = [  # edits, dropped, key, words
         "budget[1].rule",
         "not for grades",
     ),
+    (
+        [(("train", "second_pinion_diameter"), "8.5 mm")],
+        [],
+        "train.second_pinion_diameter",
+        "too small around a shaft of 8 mm",
+    ),
+    ([(("shaft", "diameter"), "0.5 in")], [], "train.second_pinion_diameter", "0.5 in"),
+    (
+        [(("train", "output_shaft_diameter"), "17 mm")],
+        [],
+        "space.hub_diameter",
+        "below the 17 mm of output_shaft_diameter",
+    ),
+    ([(("space", "swept_angle"), "60 deg")], [], "space.swept_angle", "below the 90 deg"),
+    ([(("space", "swept_angle"), "181 deg")], [], "train.sector", "travel of 91 deg"),
+    ([(("train", "sector"), "20 %")], [], "train.sector", "travel of 108 deg"),
+    (
+        [(("duty",), {"motion": "move", "angle": "100 deg"})],
+        [],
+        "train.sector",
+        "smaller than the 100 deg that the load turns",
+    ),
+    (
+        [(("duty",), {"motion": "swing", "amplitude": "50 deg", "frequency": "1 Hz"})],
+        [("motor", "friction")],
+        "train.sector",
+        "smaller than the 100 deg that the load turns",
+    ),
+    (
+        [(("duty",), {"motion": "move", "angle": "80 deg"}), (("space", "swept_angle"), "160 deg")],
+        [],
+        "space.swept_angle",
+        "the 90 deg of the wheel's sector and the 80 deg",
+    ),
+    (
+        [(("mesh", k, n), v) for k in (0, 1) for n, v in GIVEN_TEETH.items()],
+        [],
+        "mesh[2].pinion_teeth",
+        "root circle of 7.25 mm, thinner than the shaft of 8 mm",
+    ),
 ]  # fmt: skip
 
 
@@ -623,6 +739,7 @@ def test_wheels_may_have_more_than_a_thousand_teeth():
         text("gimbal_light"),
         *((("train", k), v) for k, v in edits.items()),
         (("accuracy", "error"), "1 deg"),
+        (("shaft", "diameter"), "1 mm"),
         drop=[("train", "wheel_teeth")],
     )
     result = gearopt.solve(scene)

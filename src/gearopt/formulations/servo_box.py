@@ -1,10 +1,10 @@
 """The smallest box around a two-stage servo train whose last wheel is a sector that swings.
 
 Seen along the shafts: the output shaft carries a sector that sweeps an angle about its mesh line,
-gear 2 and the motor are discs, and both links have given lengths. So a layout is two angles. The
-box stands along the axes; its sides shrink together, by a scale. The exact search halves intervals
-of the output link's angle; for each the motor link's angle is decided on its arcs, with the extents
-of the interval at their least.
+all else on the three shafts is discs, and both links have given lengths. So a layout is two angles.
+The box stands along the axes; its sides shrink together, by a scale. The exact search halves
+intervals of the output link's angle; for each the motor link's angle is decided on its arcs, with
+the extents of the interval at their least.
 """
 
 import math
@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from gearopt.errors import SolveError
 from gearopt.optimise.kernels import kernel
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Event, Outcome, Watch
@@ -33,10 +34,10 @@ KERNEL = "gearopt.formulations.servo_box_kernel"
 class ServoBox:
     """Discs, links and a box; lengths in mm, angles in rad.
 
-    radii: of the motor (or its gear, if larger), of gear 2 and of the last wheel, over tips. links:
-    centre distances of stage 1 and 2. hub: radius about the output shaft that the motor keeps out
-    of. half_sweep: of the sector to either side of its mesh line, travel included; pi for a full
-    wheel. box: width and height.
+    radii: of what is largest on each shaft, over tips: motor or gear 1, gear 2 or 3, last wheel.
+    links: centre distances of stage 1 and 2. hub: radius about the output shaft that the motor
+    keeps out of. half_sweep: of the sector to either side of its mesh line, travel included; pi for
+    a full wheel. box: width and height.
     """
 
     radii: tuple[float, float, float]
@@ -74,7 +75,8 @@ def of_train(
 ) -> ServoBox:
     """The box of a point of `split.problem`: tips d + 2 m, centre distances (d_1 + d_2)/2."""
     z1, z3, z2, z4, m1, m2 = (float(v) for v in point)
-    radii = (max(motor_radius, 0.5 * m1 * (z1 + 2)), 0.5 * m1 * (z2 + 2), 0.5 * m2 * (z4 + 2))
+    tips = [0.5 * m * (z + 2) for m, z in ((m1, z1), (m1, z2), (m2, z3), (m2, z4))]
+    radii = max(motor_radius, tips[0]), max(tips[1], tips[2]), tips[3]
     return ServoBox(radii, (0.5 * m1 * (z1 + z2), 0.5 * m2 * (z3 + z4)), hub, half_sweep, box)
 
 
@@ -160,14 +162,14 @@ def first_that_fits(boxes: Iterable[ServoBox], limit: int = 10_000) -> tuple[int
     """Place of the first box of scale 1 that has a layout, and its angles; None if none has.
 
     A layout that meets the box exactly fits: the box is TIE larger than it is. Every box before the
-    found one is proven to have none. RuntimeError where `limit` intervals do not decide.
+    found one is proven to have none. SolveError where `limit` intervals do not decide.
     """
     code, cells, angles = kernel(KERNEL), np.zeros((DEEP, 2)), np.zeros(2)
     for k, box in enumerate(boxes):
         given = numbers(box)
         answer = code.fits(given._replace(box=(1.0 + TIE) * given.box), cells, angles, limit)
         if answer < 0:
-            raise RuntimeError(f"box {k} is not decided within {limit} intervals")
+            raise SolveError(f"whether train {k + 1} fits is not decided in {limit:,} intervals")
         if answer:
             return k, angles.copy()
     return None

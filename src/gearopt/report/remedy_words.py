@@ -40,7 +40,7 @@ def remedy_words(
     words = f"Each was tried: a design exists with it{_less(ways)}."
     if any(way["verified"].get("others") == "need more" for way in ways):
         words += " Least change: no other limit and no given size does with less, moved alone."
-    if conflict:
+    if conflict and any(way["bound"] is not None for way in ways):
         words += " Proven least: no smaller factor does, even with real-valued teeth and modules."
     return why, rows, [f"{words} {late}".rstrip()]
 

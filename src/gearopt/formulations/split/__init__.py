@@ -5,6 +5,7 @@ by enumeration; `relaxation`: its bound as a geometric program. `stiff`: real si
 under a frequency or stiffness. `staged`: total ratio and its split at once, of real-valued gears.
 """
 
+from gearopt.formulations.split.bodies import Bodies
 from gearopt.formulations.split.core import (
     core,
     first_ratio,
@@ -22,6 +23,7 @@ from gearopt.formulations.split.train import OBJECTIVES, ServoTrain
 
 __all__ = [
     "OBJECTIVES",
+    "Bodies",
     "ServoTrain",
     "StiffTrain",
     "core",

@@ -65,7 +65,7 @@ def _goes_on(clock: float, looked: int, best: float, budget: Budget, watch: Watc
 def _proof(looked: int, feasible: int | None, done: bool) -> dict[str, Any]:
     found: dict[str, Any] = {
         "method": "exhausted" if done else "enumeration, stopped early",
-        "arithmetic": "ratios, tips and bore in whole numbers; the rest in double",
+        "arithmetic": "ratios and diameters in whole numbers; the rest in double",
         "trains_looked_at": looked,
     }
     return found if feasible is None else {**found, "feasible_trains": feasible}

@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from gearopt.formulations.ratio.duty import GOALS, ServoDuty
+from gearopt.formulations.split.bodies import least
 from gearopt.formulations.split.train import ServoTrain
 from gearopt.optimise.terms import Array
 from gearopt.physics.inertia import disc_inertia, disc_mass
@@ -17,8 +18,10 @@ class Numbers(NamedTuple):
 
     least, most (P + 1,): z2 z4 is between least[z1 z3] and most[z1 z3]. wheel: most teeth of a
     wheel. wheel_1, wheel_2, bored (K,), for each module: most teeth of wheel 1 and 2 by their tips,
-    least of gear 3 by the bore. low, high: total ratio. bore; tip: largest pitch diameter of gear 4
-    [mm]. load: 2 T/(b sigma) [mm2]. lewis: form factors by teeth. disc_mass [kg/mm2] and
+    least of gear 3 by the bore and around its shaft. clear_1, clear_2, stage_1 (K,): least teeth of
+    gear 2, of gear 4, of gears 1 and 2 together; unit (K,), output: what keeps gear 2 clear of the
+    output shaft (`bodies.Least`). low, high: total ratio. bore; tip: largest pitch diameter of gear
+    4 [mm]. load: 2 T/(b sigma) [mm2]. lewis: form factors by teeth. disc_mass [kg/mm2] and
     disc_inertia [t/mm2]: per d^2 and per d^4. duty: see `duty_numbers`.
     """
 
@@ -29,6 +32,11 @@ class Numbers(NamedTuple):
     wheel_1: Any
     wheel_2: Any
     bored: Any
+    clear_1: Any
+    clear_2: Any
+    stage_1: Any
+    unit: Any
+    output: int
     module: Array
     lewis: Array
     lost: Array
@@ -76,6 +84,7 @@ def numbers(train: ServoTrain, moved: bool = False) -> Numbers:
     products = range(most**2 + 1)
     teeth = np.arange(most + 1, dtype=float)
     thick, long = train.shaft or (0.0, 0.0)
+    clear = least(train.bodies, train.modules, wheel)
     return Numbers(
         least=np.array([-(-low.numerator * p // low.denominator) for p in products], np.int64),
         most=np.array([high.numerator * p // high.denominator for p in products], np.int64),
@@ -84,8 +93,16 @@ def numbers(train: ServoTrain, moved: bool = False) -> Numbers:
         wheel_1=np.minimum(tips[0], wheel),
         wheel_2=np.minimum(tips[1], wheel),
         bored=np.array(
-            [max(math.ceil(train.bore / m), train.pinion_teeth[0]) for m in train.modules]
+            [
+                max(math.ceil(train.bore / m), around, train.pinion_teeth[0])
+                for m, around in zip(train.modules, clear.pinion_2, strict=True)
+            ]
         ),
+        clear_1=np.array(clear.wheel_1, np.int64),
+        clear_2=np.array(clear.wheel_2, np.int64),
+        stage_1=np.array(clear.stage_1, np.int64),
+        unit=np.array(clear.units, np.int64),
+        output=clear.output,
         module=np.array([float(m) for m in train.modules]),
         lewis=np.array(lewis_form_factor(np.maximum(teeth, train.pinion_teeth[0]))),
         lost=np.array(train.lost_motion or (0.0, 0.0)),

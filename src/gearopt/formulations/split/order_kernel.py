@@ -3,7 +3,15 @@
 from numba import njit
 
 from gearopt.formulations.split import duty_kernel
-from gearopt.formulations.split.teeth_kernel import ALLOWANCE, possible, promise, sound, worth
+from gearopt.formulations.split.teeth_kernel import (
+    ALLOWANCE,
+    first_wheel,
+    last_wheel,
+    possible,
+    promise,
+    sound,
+    worth,
+)
 
 promise_of_duty = duty_kernel.promise
 
@@ -18,7 +26,7 @@ def between(s, goal, k, above, most, rows):
     pinions = s.pinion[1] - s.pinion[0] + 1
     i, z1 = k // pinions, s.pinion[0] + k % pinions
     m1, count = s.module[i], 0
-    for z2 in range(z1, s.wheel_1[i] + 1):
+    for z2 in range(first_wheel(s, i, z1), s.wheel_1[i] + 1):
         if goal > 2:
             least = promise_of_duty(s, m1, z1, z2, most)
         else:
@@ -28,7 +36,7 @@ def between(s, goal, k, above, most, rows):
         for j in range(s.module.size):
             m2 = s.module[j]
             for z3 in range(s.bored[j], s.pinion[1] + 1):
-                low = max(-(-s.least[z1 * z3] // z2), z3)
+                low = max(-(-s.least[z1 * z3] // z2), last_wheel(s, i, z2, j, z3))
                 high = min(s.most[z1 * z3] // z2, s.wheel_2[j])
                 for z4 in range(low, high + 1):
                     value = worth(s, goal, m1, z1, z2, m2, z3, z4)

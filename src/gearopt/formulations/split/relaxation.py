@@ -5,6 +5,7 @@ from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
+from gearopt.formulations.split.bodies import clear_rows
 from gearopt.formulations.split.train import (
     ServoTrain,
     lewis_stress,
@@ -25,7 +26,7 @@ def relaxation(train: ServoTrain, goal: str = "inertia") -> Problem:
 
     Variables, of both stages: pinion_diameter [mm], ratio, module [mm]; those of the duty's own
     problem where its goal is asked for. The form factor of either pinion is that of the most teeth,
-    which no pinion exceeds.
+    which no pinion exceeds; `clear_rows` relax what gears keep clear of.
     """
     low, high = (float(r) for r in train.ratios)
     moved = _moved(train, goal)
@@ -90,6 +91,12 @@ def _terms(train: ServoTrain, goal: str, moved: Problem | None, x: Any, p: Any) 
     }
     if train.most_wheel_teeth is not None:
         limits["wheel_teeth_high"] = tuple(d / (train.most_wheel_teeth * m) for _, d, m in pairs)
+    if train.bodies is not None:
+        known = train.bodies
+        shaft, output, motor = (
+            float(d) or None for d in (known.shaft, known.output_shaft, known.motor)
+        )
+        limits |= clear_rows(shaft, output, motor, (d1, d2, d3, d4), modules)
     if moved is None:
         return Terms({goal: found[goal]}, limits, equal=equal)
     own = SimpleNamespace(**vars(p) | {"gear_inertia": found["inertia"], "ratio_low": 1.0})
@@ -108,10 +115,10 @@ def _size(train: ServoTrain) -> tuple[float, float]:
 
 
 def _variables(train: ServoTrain) -> tuple[Var, ...]:
-    ends, size = _modules(train), _size(train)
+    ends, guess = _modules(train), float(train.bore)
+    size = (*_size(train), guess)
     least, most = min(size) / BEYOND, max(size) * BEYOND
     even = float(train.ratio) ** 0.5
-    guess = float(train.bore)
     return (
         Var("pinion_diameter", "mm", least, most, guess, 2, log=True, search=True),
         Var("ratio", "", 1.0 / BEYOND, even**2 * BEYOND, even, 2, log=True, search=True),

@@ -4,6 +4,7 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
+from gearopt.formulations.split.bodies import TIP, clear_rows
 from gearopt.formulations.split.train import (
     gear_mass,
     lewis_stress,
@@ -32,9 +33,10 @@ class StiffTrain:
     stiffness: least at the output, motor locked [N mm/rad]: (2 pi f)^2 J_L or a load torque over an
     angle. line_stiffness: of a mesh; shear_modulus: of the middle shaft. ratio: least and most.
     module: of both stages; pinion_teeth: least, of both pinions, which also give the form factors.
-    bore: least pitch diameter of gear 3, and by how much it must exceed the shaft's. wheels:
-    largest pitch diameters of gears 2 and 4. face_width, shaft_diameter: least. inertia: largest
-    at the motor [t mm2]. The rest is as in `ServoTrain`.
+    bore: least pitch diameter of gear 3, and by how much it must exceed the shaft's. wheel_tips:
+    largest tip diameters of gears 2 and 4. output, motor: diameters of the output shaft with its
+    hub and of the motor, kept clear as in `bodies.clear_rows`. face_width, shaft_diameter: least.
+    inertia: largest at the motor [t mm2]. The rest is as in `ServoTrain`.
     """
 
     stiffness: float
@@ -44,7 +46,7 @@ class StiffTrain:
     module: float
     pinion_teeth: tuple[int, int]
     bore: tuple[float, float]
-    wheels: tuple[float, float]
+    wheel_tips: tuple[float, float]
     face_width: float
     shaft_diameter: float
     shaft_length: float
@@ -55,6 +57,8 @@ class StiffTrain:
     lost_motion: tuple[float, float] | None = None
     error: float = math.inf
     sector: float = 1.0
+    output: float = 0.0
+    motor: float = 0.0
 
 
 def stiff(train: StiffTrain) -> Problem:
@@ -73,7 +77,7 @@ def stiff(train: StiffTrain) -> Problem:
         *((Param("error", "rad", train.error, role="limit"),) if _bounded(train) else ()),
         Param("bending", "MPa", train.bending, role="limit"),
         *ratio_parameters(*train.ratio),
-        Param("wheel_diameter", "mm", train.wheels, 2, role="limit"),
+        Param("wheel_tip", "mm", train.wheel_tips, 2, role="limit"),
     )
     return Problem("split stiff", _variables(train), parameters, evaluate)
 
@@ -107,12 +111,21 @@ def _terms(train: StiffTrain, x: Any, p: Any) -> Terms:
         ),
         "bore": train.bore[0] / d3,
         "bore_wall": (x.shaft_diameter + train.bore[1]) / d3,
-        "wheel_diameter": tuple(d / w for d, w in zip((d2, d4), p.wheel_diameter, strict=True)),
+        "wheel_tip": tuple(
+            (d + float(TIP) * train.module) / t for d, t in zip((d2, d4), p.wheel_tip, strict=True)
+        ),
         "face_width_low": tuple(train.face_width / b for b in widths),
         "shaft_diameter_low": train.shaft_diameter / x.shaft_diameter,
     }
     if train.lost_motion is not None and _bounded(train):
         limits["error"] = train_error(train.lost_motion, d2, d4, n2) / p.error
+    limits |= clear_rows(
+        x.shaft_diameter,
+        train.output or None,
+        train.motor or None,
+        diameters,
+        (train.module, train.module),
+    )
     return Terms({"mass": gears + 1000.0 * long}, limits, equal=equal)
 
 
@@ -121,10 +134,10 @@ def _bounded(train: StiffTrain) -> bool:
 
 
 def _variables(train: StiffTrain) -> tuple[Var, ...]:
-    sizes = (train.module, train.face_width, train.shaft_diameter, *train.wheels)
+    pinion = 1.1 * train.module * max(train.pinion_teeth)
+    sizes = (pinion, train.module, train.face_width, train.shaft_diameter, *train.wheel_tips)
     least, most = min(sizes) / BEYOND, max(sizes) * BEYOND
     even = math.sqrt(train.ratio[0])
-    pinion = 1.1 * train.module * max(train.pinion_teeth)
     width, shaft = 2.0 * train.face_width, 2.0 * train.shaft_diameter
     return (
         Var("pinion_diameter", "mm", least, most, pinion, 2, log=True, search=True),

@@ -4,6 +4,7 @@ import math
 from typing import Any
 
 from gearopt.formulations.split import exact
+from gearopt.formulations.split.bodies import rows
 from gearopt.formulations.split.train import ServoTrain, lewis_stress, objectives
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Terms, Var
@@ -47,6 +48,8 @@ def problem(train: ServoTrain, *goals: str) -> Problem:
         }
         if train.duty is not None and (goal := train.duty.goal) in goals:
             limits |= train.duty.limits(ratios[0] * ratios[1], found[goal])
+        if train.bodies is not None:
+            limits |= rows(train.bodies, (d1, d2, d3, d4), modules)
         return Terms({g: found[g] for g in goals}, limits)
 
     methods = {}

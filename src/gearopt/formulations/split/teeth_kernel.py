@@ -1,8 +1,8 @@
 """Kernels that look at every choice of teeth and modules of a two-stage servo train.
 
-Ratios, tip diameters and the bore are decided in whole numbers (`numbers`); error and stress, which
-no tie can meet as they hold irrational numbers, in double with ALLOWANCE. In goal: 0 inertia,
-1 mass, 2 error, above that what a duty makes least.
+Ratios, tip diameters, the bore and what gears keep clear of are decided in whole numbers
+(`numbers`); error and stress, which no tie can meet as they hold irrational numbers, in double with
+ALLOWANCE. In goal: 0 inertia, 1 mass, 2 error, above that what a duty makes least.
 """
 
 import math
@@ -65,6 +65,21 @@ def sound(s, m1, z1, z2, m2, z3, z4):
 
 
 @njit(cache=True)
+def first_wheel(s, i, z1):
+    """Least teeth of gear 2 behind a pinion: around its shaft, and with the motor beside it."""
+    return max(z1, s.clear_1[i], s.stage_1[i] - z1)
+
+
+@njit(cache=True)
+def last_wheel(s, i, z2, j, z3):
+    """Least teeth of gear 4: around its hub, and gear 2 clear of the output shaft."""
+    if s.unit[j] == 0:
+        return z3
+    beside = -(-(s.unit[i] * (z2 + 2) + s.output) // s.unit[j])
+    return max(z3, s.clear_2[j], beside - z3)
+
+
+@njit(cache=True)
 def every(s, goal, first, last, best, found):
     """Look at all trains of the first stages `first` to `last`, counted over modules and teeth.
 
@@ -75,6 +90,7 @@ def every(s, goal, first, last, best, found):
     looked = feasible = 0
     for k in range(first, last):
         i, z1 = k // pinions, s.pinion[0] + k % pinions
+        clear = first_wheel(s, i, z1)
         for z2 in range(z1, s.wheel_1[i] + 1):
             for j in range(s.module.size):
                 for z3 in range(s.pinion[0], s.pinion[1] + 1):
@@ -82,7 +98,9 @@ def every(s, goal, first, last, best, found):
                     high = min(s.most[z1 * z3] // z2, s.wheel)
                     for z4 in range(max(low, z3), high + 1):
                         looked += 1
-                        if z4 > s.wheel_2[j] or z3 < s.bored[j]:
+                        if z4 > s.wheel_2[j] or z3 < s.bored[j] or z2 < clear:
+                            continue
+                        if z4 < last_wheel(s, i, z2, j, z3):
                             continue
                         if not sound(s, s.module[i], z1, z2, s.module[j], z3, z4):
                             continue
@@ -132,14 +150,14 @@ def useful(s, goal, first, last, best, found):
     for k in range(first, last):
         i, z1 = k // pinions, s.pinion[0] + k % pinions
         m1 = s.module[i]
-        for z2 in range(z1, s.wheel_1[i] + 1):
+        for z2 in range(first_wheel(s, i, z1), s.wheel_1[i] + 1):
             looked += 1
             if promise(s, goal, m1, z1, z2) >= best * ALLOWANCE:
                 continue
             for j in range(s.module.size):
                 m2 = s.module[j]
                 for z3 in range(s.bored[j], s.pinion[1] + 1):
-                    low = max(-(-s.least[z1 * z3] // z2), z3)
+                    low = max(-(-s.least[z1 * z3] // z2), last_wheel(s, i, z2, j, z3))
                     high = min(s.most[z1 * z3] // z2, s.wheel_2[j])
                     if low > high:
                         continue
@@ -175,10 +193,10 @@ def listed(s, best, most):
     count = 0
     for i in range(s.module.size):
         for z1 in range(s.pinion[0], s.pinion[1] + 1):
-            for z2 in range(z1, s.wheel_1[i] + 1):
+            for z2 in range(first_wheel(s, i, z1), s.wheel_1[i] + 1):
                 for j in range(s.module.size):
                     for z3 in range(s.bored[j], s.pinion[1] + 1):
-                        low = max(-(-s.least[z1 * z3] // z2), z3)
+                        low = max(-(-s.least[z1 * z3] // z2), last_wheel(s, i, z2, j, z3))
                         high = min(s.most[z1 * z3] // z2, s.wheel_2[j])
                         for z4 in range(low, high + 1):
                             m1, m2 = s.module[i], s.module[j]

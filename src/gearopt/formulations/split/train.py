@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
+from gearopt.formulations.split.bodies import Bodies
 from gearopt.formulations.ratio.duty import ServoDuty
 from gearopt.optimise.terms import Param
 from gearopt.physics.backlash import output_error
@@ -28,7 +29,8 @@ class ServoTrain:
     and 4. shaft: diameter and length of the middle one; None: its inertia is not counted.
     lost_motion: 2 j_t + 2 delta_p of each stage [mm], so that its error at the wheel is that over
     the wheel's diameter; None: the error is not looked at. error: largest at the output [rad].
-    duty: what the train's inertia and ratio are judged by, if its goal is asked for.
+    duty: what the train's inertia and ratio are judged by, if its goal is asked for. bodies:
+    shafts, hub and motor that gears keep clear of; None: not looked at.
     """
 
     ratio: Fraction
@@ -47,6 +49,7 @@ class ServoTrain:
     error: float = math.inf
     sector: float = 1.0
     duty: ServoDuty | None = None
+    bodies: Bodies | None = None
 
     def __post_init__(self) -> None:
         if not self.ratio > 0 or not 0 <= self.tolerance < 1:

@@ -5,6 +5,7 @@ from typing import Any
 
 from gearopt.optimise.result import Result
 from gearopt.scenes.axis.achieved import candidates, why_not
+from gearopt.scenes.axis.overlap import given_overlap, overlaps
 from gearopt.scenes.explaining.undercut import undercut
 from gearopt.scenes.tables.servo import Scene
 from gearopt.scenes.tables.servo_train import Train
@@ -60,6 +61,7 @@ def _of_train(scene: Scene) -> list[str]:
         "rating by ISO 6336 or AGMA 2101.",
         _counted(scene),
     ]
+    found += _of_bodies(scene)
     if scene.stiffness is not None:
         found.append(
             "Stiffness: one pair of teeth in mesh, the shaft between the stages twisted over its "
@@ -69,8 +71,9 @@ def _of_train(scene: Scene) -> list[str]:
             found.append("Line stiffness of a mesh after Buckingham and Lewis: unverified.")
     if scene.space is not None:
         found.append(
-            "The box is that of gears, motor and hub seen along the shafts, without clearances; "
-            "its depth is not checked. Lists and plots of other trains leave the box aside."
+            "The box holds all gears, the last wheel wherever it swings, shafts, hub and motor, "
+            "seen along the shafts, without clearances; its depth is not checked. Lists and plots "
+            "of other trains leave the box aside."
         )
     return found
 
@@ -90,6 +93,25 @@ def _counted(scene: Scene) -> str:
         "The mass of a train is that of its gears; its inertia has the shaft between the stages in "
         f"it{lightest}."
     )
+
+
+def _of_bodies(scene: Scene) -> list[str]:
+    """What keeps clear of what, and how thick the output shaft is taken to be."""
+    assert scene.train is not None
+    bodies = scene.servo_train().bodies
+    assert bodies is not None
+    thick = f"{float(bodies.output_shaft):g} mm"
+    if scene.space is not None:
+        thick += ", hub_diameter of [space]"
+    elif scene.train.output_shaft_diameter is None:
+        thick += ", as thick as the shaft between the stages"
+    motor = " and motor" if scene.space is not None else ""
+    return [
+        "There are three planes along the shafts: motor, stage 1, stage 2. The motor's shaft ends "
+        "at its pinion, the other two pass through all three. What shares a plane does not "
+        f"overlap, without clearance: gears, shafts{motor}. Root circles, 1.25 m inside the pitch "
+        f"circle, are around their shafts. Output shaft with hub: {thick}."
+    ]
 
 
 def notes(scene: Scene, design: dict[str, Any], results: tuple[Result, ...]) -> list[str]:
@@ -119,6 +141,9 @@ def notes(scene: Scene, design: dict[str, Any], results: tuple[Result, ...]) -> 
         found.append(
             "The lightest train has real-valued sizes: it is a floor for gears with whole teeth."
         )
+        found += overlaps(scene, results)
+    if said := given_overlap(scene):
+        found.append(said)
     found += [
         f"There is no answer for the part {part.name}: {(part.message or part.status).rstrip('.')}."
         for part in results[1:]

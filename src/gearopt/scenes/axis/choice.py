@@ -15,6 +15,7 @@ from gearopt.optimise.terms import Array, Terms
 from gearopt.scenes.axis.gears import KG_M2
 from gearopt.scenes.axis.springs import output_stiffness
 from gearopt.scenes.tables.servo import Scene
+from gearopt.scenes.tables.servo_bodies import half_sweep
 
 RANDOM, COUNTS = split.exact.RANDOM, split.exact.COUNTS  # of the methods that are passed on here
 ROUNDING = 1e-12  # of an objective
@@ -74,13 +75,13 @@ def posed(scene: Scene, boxed: bool = True) -> Problem:
 
 def box_of(scene: Scene, point: Array) -> servo_box.ServoBox:
     """The box of a train, as its layout sees it."""
-    space = scene.space
-    assert space is not None
+    space, train = scene.space, scene.train
+    assert space is not None and train is not None
     return servo_box.of_train(
         point,
         0.5 * space.motor_diameter.value,
         0.5 * space.hub_diameter.value,
-        min(0.5 * space.swept_angle.value, math.pi),
+        half_sweep(train, space),
         (space.width.value, space.height.value),
     )
 
@@ -143,7 +144,7 @@ def _looked(count: int, stiff: int | None) -> dict[str, Any]:
     """How an order of trains is proven; stiff: how many of them are, where that is asked for."""
     found: dict[str, Any] = {
         "method": "exhausted",
-        "arithmetic": "ratios, tips and bore in whole numbers; the rest in double",
+        "arithmetic": "ratios and diameters in whole numbers; the rest in double",
         "trains_looked_at": count,
     }
     return found if stiff is None else found | {"trains_stiff_enough": stiff}

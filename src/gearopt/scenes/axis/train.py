@@ -137,17 +137,33 @@ def box_part(scene: Scene, gears: Gears, ask: Ask) -> tuple[Result, dict[str, An
     result = replace(result, name="box", objective=result.objective | {"unit": ""})
     if outcome.x is None or result.value is None:
         return result, {}
-    width, height = (float(side) for side in servo_box.extents(box, *outcome.x))
+    motor, output, fits = _laid_out(box, result, outcome.x)
+    bodies = scene.servo_train().bodies
+    assert bodies is not None
+    width, height = (float(side) for side in servo_box.extents(box, motor, output))
     return result, {
         "inner_width_mm": box.box[0],
         "inner_height_mm": box.box[1],
         "needed_width_mm": width,
         "needed_height_mm": height,
-        "fits": result.value <= 1.0 + servo_box.TIE,
-        "motor_angle_deg": math.degrees(outcome.x[0]),
-        "output_angle_deg": math.degrees(outcome.x[1]),
+        "fits": fits,
+        "motor_angle_deg": math.degrees(motor),
+        "output_angle_deg": math.degrees(output),
         "radii_mm": list(box.radii),
+        "motor_mm": 0.5 * float(bodies.motor),
+        "shaft_mm": 0.5 * float(bodies.shaft),
         "links_mm": list(box.links),
         "hub_mm": box.hub,
         "half_sweep_deg": math.degrees(box.half_sweep),
     }
+
+
+def _laid_out(box: servo_box.ServoBox, result: Result, x: Array) -> tuple[float, float, bool]:
+    """Angles of motor and output, and whether they fit; decided anew within the gap of the box."""
+    least, most = result.bound, 1.0 + servo_box.TIE
+    assert result.value is not None
+    if result.value > most and least is not None and least <= most:
+        found = servo_box.first_that_fits([box])
+        if found is not None:
+            return float(found[1][0]), float(found[1][1]), True
+    return float(x[0]), float(x[1]), result.value <= most

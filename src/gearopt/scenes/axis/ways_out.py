@@ -15,6 +15,7 @@ from gearopt.optimise.explaining.repair import Clock, conflict
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import solve
 from gearopt.scenes.axis.choice import posed
+from gearopt.scenes.axis.clearance import blocked
 from gearopt.scenes.axis.gears import errors, of_point
 from gearopt.scenes.tables.servo import Scene
 from gearopt.scenes.tables.servo_mesh import WORDS, Mesh
@@ -45,7 +46,10 @@ def ways_out(
         if still.status != "infeasible":
             return (), (), "time ran out before it was known why"
         told = still.message
+    rooms = blocked(scene, clock, lambda other: _status(other, clock))
     if asked is None:
+        if rooms is not None:
+            return rooms.conflict, rooms.remedies, rooms.message
         names, message = _other(scene, told, clock)
         return names, (), message
     free = with_error(scene, units.parse(LOOSE, "angle"))
@@ -60,6 +64,8 @@ def ways_out(
     bound = (floor or best.value) / asked.value
     found = [ways(scene, best, bound, clock) for ways in (_wider, _finer)]
     proven = tuple(r for r in found if r.verified["with"] == "optimal")
+    if rooms is not None:
+        return rooms.conflict, (*rooms.remedies, *proven), rooms.message
     return names, proven, _message(free, least)
 
 

@@ -9,6 +9,7 @@ from gearopt.formulations.ratio import ServoDuty
 from gearopt.formulations.split import ServoTrain, StiffTrain
 from gearopt.physics.stiffness import stiffness_of_frequency
 from gearopt.scenes.reading.fields import Table, refuse, words
+from gearopt.scenes.tables.servo_bodies import bodies, check_sector, check_shafts
 from gearopt.scenes.tables.servo_example import EXAMPLE
 from gearopt.scenes.tables.servo_mesh import Accuracy, Mesh, Source
 from gearopt.scenes.tables.servo_motion import Duty, Load, Motor, servo_duty
@@ -138,6 +139,8 @@ class Scene(Table):
                     raise refuse("needs a table [train]", at=(name,), action="remove")
             return
         self._check_aim(self.train)
+        check_shafts(self.train, self.shaft, self.space, self.mesh)
+        check_sector(self.train, self.space, self.duty)
         stiff = self.stiffness
         if stiff is not None and self.shaft is None:
             raise refuse("is missing: [stiffness] counts how it twists", at=("shaft",))
@@ -232,6 +235,7 @@ class Scene(Table):
             error=math.inf if error is None else error.value,
             sector=float(table.sector),
             duty=self.servo_duty(),
+            bodies=bodies(table, shaft, self.space),
         )
 
     @property
@@ -252,6 +256,7 @@ class Scene(Table):
         spring = self.stiffness
         assert table is not None and spring is not None and least is not None
         assert own.shaft is not None
+        assert own.bodies is not None
         assert spring.line_stiffness is not None
         module = float(own.modules[0])
         teeth = own.pinion_teeth[0]
@@ -268,10 +273,12 @@ class Scene(Table):
             module=module,
             pinion_teeth=(teeth, int(second)),
             bore=(float(own.bore), table.shaft_wall.value),
-            wheels=(float(own.wheel_tips[0]) - 2 * module, float(own.wheel_tips[1]) - 2 * module),
+            wheel_tips=(float(own.wheel_tips[0]), float(own.wheel_tips[1])),
             face_width=table.face_width.value,
             shaft_diameter=table.shaft_diameter.value,
             shaft_length=own.shaft[1],
             inertia=table.inertia.value,
+            output=float(own.bodies.output_shaft),
+            motor=float(own.bodies.motor),
             **numbers,
         )

@@ -40,7 +40,6 @@ WORDS = RADIAL | THICKNESS | PITCH
 GEARS = ("module", "pinion_teeth", "wheel_teeth")
 
 Deviation = Annotated[Quantity | None, quantity("length", "0.018 mm", zero=True)]
-Teeth = Annotated[int | None, whole(16, 12, 1000)]
 
 
 def _deviation(description: str) -> Quantity | None:
@@ -76,8 +75,12 @@ class Mesh(Table):
     module: Annotated[Quantity | None, quantity("length", "0.5 mm")] = Field(
         None, description="Module of given gears"
     )
-    pinion_teeth: Teeth = Field(None, description="Teeth of a given pinion")
-    wheel_teeth: Teeth = Field(None, description="Teeth of a given wheel")
+    pinion_teeth: Annotated[int | None, whole(20, 12, 1000)] = Field(
+        None, description="Teeth of a given pinion"
+    )
+    wheel_teeth: Annotated[int | None, whole(120, 12, 1000)] = Field(
+        None, description="Teeth of a given wheel"
+    )
     pinion_reading: Deviation = _deviation("Test radius of the pinion, below nominal at the most")
     wheel_reading: Deviation = _deviation("Test radius of the wheel, below nominal at the most")
     centre_distance: Deviation = _deviation("Centre distance, above nominal at the most")

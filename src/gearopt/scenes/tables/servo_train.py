@@ -5,7 +5,6 @@ from typing import Annotated
 
 from pydantic import Field, model_validator
 
-from gearopt import units
 from gearopt.physics.modules import MODULES
 from gearopt.scenes.reading.fields import (
     Table,
@@ -63,6 +62,11 @@ class Train(Table):
     )
     second_pinion_diameter: Annotated[Quantity, quantity("length", "11.5 mm")] = Field(
         description="Least pitch diameter of the second pinion, around its shaft"
+    )
+    output_shaft_diameter: Annotated[Quantity | None, quantity("length", "10 mm")] = Field(
+        None,
+        description="Diameter of the output shaft, which the first wheel keeps clear of; by "
+        "default hub_diameter of [space], without it the diameter of [shaft]",
     )
     wheel_tip_diameters: Annotated[
         tuple[Quantity, ...], several(quantity("length", "80 mm"), ["80 mm", "106 mm"])
@@ -187,15 +191,16 @@ class Space(Table):
     width: Annotated[Quantity, quantity("length", "80 mm")] = Field(description="Inner width")
     height: Annotated[Quantity, quantity("length", "130 mm")] = Field(description="Inner height")
     motor_diameter: Annotated[Quantity, quantity("length", "24 mm")] = Field(
-        description="Diameter of the motor"
+        description="Diameter of the motor, which both other shafts keep clear of"
     )
     hub_diameter: Annotated[Quantity, quantity("length", "16 mm", zero=True)] = Field(
-        description="Diameter around the output shaft that the motor keeps out of"
+        description="Diameter of the output shaft with its hub, over its whole length; motor and "
+        "gears keep clear of it"
     )
-    swept_angle: Annotated[Quantity, quantity("angle", "180 deg", most="360 deg")] = Field(
-        default_factory=lambda: units.parse("360 deg", "angle"),
-        description="Angle that the last wheel sweeps, its own sector and its travel together",
-        json_schema_extra={"default": "360 deg"},
+    swept_angle: Annotated[Quantity | None, quantity("angle", "180 deg", most="360 deg")] = Field(
+        None,
+        description="Angle that the last wheel sweeps, its own sector and its travel together; by "
+        "default twice its sector, as far as its teeth reach, and 360 deg at the most",
     )
     required: Annotated[bool, truth()] = Field(
         True, description="Only trains that fit are chosen; false: told whether the best one does"

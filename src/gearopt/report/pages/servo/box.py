@@ -44,7 +44,8 @@ def section(result: Result, measures: Measures) -> Section | None:
         box_words(box, measures),
         f"Drawn to scale, dimensions in {measures.lengths}. Heavy: the box inside; thin dashed: "
         "the room that the train needs, which may be anywhere in it. Numbers in circles are "
-        "shafts: 1 motor, 2 middle, 3 output.",
+        "shafts: 1 motor, 2 middle, 3 output. The last wheel is in a plane with pinion 2: motor "
+        "and wheel 1 may lie over it, but not over the output shaft with its hub.",
     ]
     drawing = _drawing(box, result.design.get("train"), measures)
     return Section("In the box", words=words, drawings=(drawing,), half="train" in result.design)
@@ -95,9 +96,9 @@ def _drawing(box: Mapping[str, Any], train: Any, measures: Measures) -> Drawing:
     for number, place in enumerate((at.motor, at.middle, (0.0, 0.0)), 1):
         sheet.balloon(str(number), around(sheet.at(*place), (26.0, 36.0, 50.0, 66.0), 0.0))
     for name, place, radius, colour in (
-        ("motor", at.motor, box["radii_mm"][0], ""),
+        ("motor", at.motor, box["motor_mm"], ""),
         ("hub", (0.0, 0.0), box["hub_mm"], ""),
-        ("wheel 1", at.middle, box["radii_mm"][1], FIRST),
+        ("wheel 1", at.middle, wheel_1(box, train), FIRST),
     ):
         _name(sheet, name, place, radius, colour)
     discs = [(at.motor, box["radii_mm"][0]), (at.middle, box["radii_mm"][1])]
@@ -107,23 +108,35 @@ def _drawing(box: Mapping[str, Any], train: Any, measures: Measures) -> Drawing:
 
 
 def _discs(sheet: Sheet, box: Mapping[str, Any], train: Any, at: Axes, measures: Measures) -> None:
-    """Wheel 1 with pinion 2 on its shaft, the motor with pinion 1, the hub."""
-    r1, r2, _ = box["radii_mm"]
-    unit = measures.unit("mm")
-    sheet.circle(*at.middle, r2, "tip", FIRST, f"wheel 1: radius {measures.length(r2)} {unit}")
-    sheet.circle(*at.motor, r1, "motor", title=f"motor: radius {measures.length(r1)} {unit}")
-    hub = box["hub_mm"]
+    """Wheel 1, motor, hub and middle shaft, and the pinions on the first two shafts."""
+    unit, hub = measures.unit("mm"), box["hub_mm"]
+
+    def circle(place: Point, radius: float, style: str, told: str, colour: str = "") -> None:
+        title = f"{told}: radius {measures.length(radius)} {unit}"
+        sheet.circle(*place, radius, style, colour, title)
+
+    circle(at.middle, wheel_1(box, train), "tip", "wheel 1", FIRST)
+    circle(at.motor, box["motor_mm"], "motor", "motor")
     if hub > 0.0:
-        told = f"hub that the motor clears: radius {measures.length(hub)} {unit}"
-        sheet.circle(0.0, 0.0, hub, "shaft", title=told)
+        circle((0.0, 0.0), hub, "shaft", "output shaft with hub")
     for stage, place, colour in zip(
         (train or {}).get("stages", ()), (at.motor, at.middle), (FIRST, LAST), strict=False
     ):
         tip = 0.5 * stage["pinion_tip_diameter_mm"]
-        told = f"pinion, z {stage['pinion_teeth']}: tip radius {measures.length(tip)} {unit}"
-        sheet.circle(*place, tip, "tip", colour, told)
-    for place, radius in ((at.motor, r1), (at.middle, r2), ((0.0, 0.0), hub)):
+        circle(place, tip, "tip", f"pinion, z {stage['pinion_teeth']}, tip", colour)
+    if box["shaft_mm"] > 0.0:
+        circle(at.middle, box["shaft_mm"], "shaft", "shaft between the stages")
+    for place, radius in zip(
+        (at.motor, at.middle, (0.0, 0.0)), (*box["radii_mm"][:2], hub), strict=True
+    ):
         sheet.cross(*place, radius)
+
+
+def wheel_1(box: Mapping[str, Any], train: Any) -> float:
+    """Tip radius of wheel 1 [mm]; pinion 2 may be the larger one on its shaft."""
+    if not train:
+        return float(box["radii_mm"][1])
+    return 0.5 * float(train["stages"][0]["wheel_tip_diameter_mm"])
 
 
 def _sizes(

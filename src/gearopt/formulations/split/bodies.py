@@ -1,0 +1,121 @@
+"""Shafts, hub and motor of a servo train, and which gears they must keep clear of.
+
+Along the shafts there are three planes: the motor, stage 1, stage 2. The motor's shaft ends at gear
+1; the middle shaft and the output shaft, which the hub surrounds, pass through all three. What
+shares a plane must not overlap:
+
+motor plane: motor and middle shaft (`motor`), motor and output shaft (by the links' angles:
+`servo_box`). Stage 1: gear 2 around the middle shaft (`shaft[1]`), gear 2 and output shaft
+(`output_shaft`), which leaves gear 1 room too. Stage 2: gear 3 around the middle shaft
+(`shaft[2]`), gear 4 around the output shaft (`hub`), which leaves gear 3 room too.
+"""
+
+from dataclasses import dataclass
+from fractions import Fraction
+from math import lcm
+from typing import Any
+
+from gearopt.errors import SolveError
+from gearopt.physics.geometry import ADDENDUM, DEDENDUM
+
+TIP, ROOT = 2 * Fraction(ADDENDUM), 2 * Fraction(DEDENDUM)  # of a diameter, in modules
+LARGEST = 2**61  # of whole numbers that are added in 64 bits
+
+
+@dataclass(frozen=True)
+class Bodies:
+    """Diameters [mm] of what is beside the gears, exactly; 0 where one is not known.
+
+    shaft: between the stages. output_shaft: with its hub. motor: its body.
+    """
+
+    shaft: Fraction = Fraction(0)
+    output_shaft: Fraction = Fraction(0)
+    motor: Fraction = Fraction(0)
+
+    def __post_init__(self) -> None:
+        if not min(self.shaft, self.output_shaft, self.motor) >= 0:
+            raise ValueError("diameters of shafts, hub and motor are not below zero")
+
+
+def rows(bodies: Bodies, diameters: Any, modules: Any) -> dict[str, Any]:
+    """Limits of real gears: what must fit over the room that is there.
+
+    diameters: pitch diameters of gears 1 to 4; modules of both stages [mm].
+    """
+    shaft, output, motor = (float(d) for d in (bodies.shaft, bodies.output_shaft, bodies.motor))
+    tip, root = float(TIP), float(ROOT)
+    (d1, d2, d3, d4), (m1, m2) = diameters, modules
+    found: dict[str, Any] = {
+        "output_shaft": (d2 + tip * m1 + output) / (d3 + d4),
+        "hub": output / (d4 - root * m2),
+        "shaft": (shaft / (d2 - root * m1), shaft / (d3 - root * m2)),
+    }
+    if motor > 0.0:
+        found["motor"] = (motor + shaft) / (d1 + d2)
+    return found
+
+
+def clear_rows(shaft: Any, output: Any, motor: Any, diameters: Any, modules: Any) -> dict[str, Any]:
+    """`rows` as posynomials of real gears, none of them above it where both ratios are >= 1.
+
+    A sum of pitch diameters is at most twice that of the wheel. None: not known.
+    """
+    tip, root = float(TIP), float(ROOT)
+    (_, d2, d3, d4), (m1, m2) = diameters, modules
+    beside = d2 + tip * m1 if output is None else d2 + tip * m1 + output
+    found: dict[str, Any] = {"output_shaft": beside / (2.0 * d4)}
+    if output is not None:
+        found["hub"] = (output + root * m2) / d4
+    if shaft is not None:
+        found["shaft"] = ((shaft + root * m1) / d2, (shaft + root * m2) / d3)
+    if motor is not None:
+        found["motor"] = (motor if shaft is None else motor + shaft) / (2.0 * d2)
+    return found
+
+
+@dataclass(frozen=True)
+class Least:
+    """The limits of `rows` in whole numbers, by module of the stage.
+
+    wheel_1, pinion_2, wheel_2: least teeth. stage_1: least z1 + z2. Gear 2 keeps clear of the
+    output shaft where units[i] (z2 + 2) + output <= units[j] (z3 + z4).
+    """
+
+    wheel_1: list[int]
+    pinion_2: list[int]
+    wheel_2: list[int]
+    stage_1: list[int]
+    units: list[int]
+    output: int
+
+
+def least(bodies: Bodies | None, modules: tuple[Fraction, ...], wheel: int) -> Least:
+    """Those numbers, decided in fractions; nothing is asked for without bodies.
+
+    wheel: most teeth of a wheel. SolveError where 64 bits do not hold the whole numbers.
+    """
+    none = [0] * len(modules)
+    if bodies is None:
+        return Least(none, none, none, none, none, 0)
+    unit = Fraction(1, lcm(*(d.denominator for d in (bodies.output_shaft, *modules))))
+    units, output = [int(m / unit) for m in modules], int(bodies.output_shaft / unit)
+    if max(units) * (wheel + 2) + output > LARGEST:
+        raise SolveError(
+            "modules and output shaft cannot be compared exactly: write their diameters with fewer "
+            "digits"
+        )
+    beside = bodies.motor + bodies.shaft
+    return Least(
+        wheel_1=_around(bodies.shaft, modules),
+        pinion_2=_around(bodies.shaft, modules),
+        wheel_2=_around(bodies.output_shaft, modules),
+        stage_1=[-(-beside // m) for m in modules] if bodies.motor > 0 else none,
+        units=units,
+        output=output,
+    )
+
+
+def _around(diameter: Fraction, modules: tuple[Fraction, ...]) -> list[int]:
+    """Least teeth of a gear whose root circle is not inside a shaft."""
+    return [-(-(diameter / m + ROOT) // 1) for m in modules]
