@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-from gearopt.formulations.split.bodies import Bodies
 from gearopt.formulations.ratio.duty import ServoDuty
+from gearopt.formulations.split.bodies import Bodies
 from gearopt.optimise.terms import Param
 from gearopt.physics.backlash import output_error
 from gearopt.physics.inertia import disc_inertia, disc_mass

@@ -105,12 +105,15 @@ def _of_bodies(scene: Scene) -> list[str]:
         thick += ", hub_diameter of [space]"
     elif scene.train.output_shaft_diameter is None:
         thick += ", as thick as the shaft between the stages"
+    thin = ""
+    if scene.shaft is None:
+        thin = " Without [shaft] the shaft between the stages is as thin as a line."
     motor = " and motor" if scene.space is not None else ""
     return [
         "There are three planes along the shafts: motor, stage 1, stage 2. The motor's shaft ends "
         "at its pinion, the other two pass through all three. What shares a plane does not "
         f"overlap, without clearance: gears, shafts{motor}. Root circles, 1.25 m inside the pitch "
-        f"circle, are around their shafts. Output shaft with hub: {thick}."
+        f"circle, are around their shafts. Output shaft with hub: {thick}.{thin}"
     ]
 
 

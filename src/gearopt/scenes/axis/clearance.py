@@ -56,7 +56,7 @@ def blocked(scene: Scene, clock: Clock, status: Callable[[Scene], str]) -> Block
     ways = _ways(scene, clock, status)
     proven = tuple(way for way in ways if way.verified["with"] == "optimal")
     if ways and not proven:
-        message += "; with less in the way, box or stiffness stay out of reach"
+        message += "; with less in the way, box, stiffness or duty stay out of reach"
     return Blocked(names, proven, message)
 
 

@@ -9,6 +9,7 @@ from gearopt.formulations.ratio import ServoDuty
 from gearopt.optimise.progress import in_part
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run, solve
+from gearopt.optimise.terms import Array
 from gearopt.scenes.axis.achieved import NAMES
 from gearopt.scenes.axis.choice import FRONT, SHOWN, box_of, front, posed, weighed
 from gearopt.scenes.axis.gears import Gears, described, of_point
