@@ -103,11 +103,11 @@ def _of_bodies(scene: Scene) -> list[str]:
     thick = f"{float(bodies.output_shaft):g} mm"
     if scene.space is not None:
         thick += ", hub_diameter of [space]"
+    elif scene.train.output_shaft_diameter is None and scene.shaft is None:
+        thick = "as thin as a line"
     elif scene.train.output_shaft_diameter is None:
         thick += ", as thick as the shaft between the stages"
-    thin = ""
-    if scene.shaft is None:
-        thin = " Without [shaft] the shaft between the stages is as thin as a line."
+    thin = "" if scene.shaft is not None else " The middle shaft, not given, is a line."
     motor = " and motor" if scene.space is not None else ""
     return [
         "There are three planes along the shafts: motor, stage 1, stage 2. The motor's shaft ends "

@@ -47,14 +47,16 @@ def ways_out(
             return (), (), "time ran out before it was known why"
         told = still.message
     rooms = blocked(scene, clock, lambda other: _status(other, clock))
+    if asked is None and rooms is not None:
+        return rooms.conflict, rooms.remedies, rooms.message
     if asked is None:
-        if rooms is not None:
-            return rooms.conflict, rooms.remedies, rooms.message
         names, message = _other(scene, told, clock)
         return names, (), message
     free = with_error(scene, units.parse(LOOSE, "angle"))
     least = _solved(_aiming(free, "error"), clock)
     if least.status == "infeasible":
+        if rooms is not None:
+            return rooms.conflict, rooms.remedies, rooms.message
         names, message = _other(free, least.message, clock)
         return names, (), f"it is not for the accuracy: {message}"
     if least.status != "optimal":
