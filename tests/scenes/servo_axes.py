@@ -188,6 +188,14 @@ def lewis(z):
 Train = tuple[int, int, int, int, F, F]  # z1, z2, z3, z4, m1, m2
 
 
+def chosen(result):
+    """z1, z2, z3, z4 and both modules of an answer, as it is shown."""
+    first, second = result.design["train"]["stages"]
+    teeth = [s[f"{gear}_teeth"] for s in (first, second) for gear in ("pinion", "wheel")]
+    modules = [F(str(s["normal_module_mm"])) for s in (first, second)]
+    return (*teeth, *modules)
+
+
 def room(axis, train):
     """Bodies that overlap in a plane, by name; touching is no overlap."""
     z1, z2, z3, z4, m1, m2 = train

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from servo_axes import (
     beside_the_output,
+    chosen,
     fits_on_a_grid,
     outline,
     random_axis,
@@ -31,14 +32,6 @@ PIXEL = 0.02  # rounding of a drawing
 
 def solved(axis):
     return gearopt.solve(read(axis.text().encode(), "axis.toml")[1])
-
-
-def chosen(result):
-    """z1, z2, z3, z4 and both modules of an answer, as it is shown."""
-    first, second = result.design["train"]["stages"]
-    teeth = [s[f"{gear}_teeth"] for s in (first, second) for gear in ("pinion", "wheel")]
-    modules = [F(str(s["normal_module_mm"])) for s in (first, second)]
-    return (*teeth, *modules)
 
 
 def check(seed, most_pinions=3):
