@@ -319,3 +319,15 @@ def test_a_box_that_no_train_keeps_is_told_once():
     result = gearopt.solve(scene(FAST, space=narrow, train=few))
     assert result.status == "infeasible"
     assert " ".join(shown(result).split()).count("that keep all other limits keeps the box") == 1
+
+
+@pytest.mark.parametrize("aim", [{}, {"maximise": None, "minimise": "inertia"}])
+def test_an_output_shaft_in_the_way_is_named_without_an_error_to_hold(aim):
+    """No accuracy is asked for, with the duty as objective or not: the largest shaft is told."""
+    told = scene(FAST, train=FEW | aim | {"ratio": 48, "output_shaft_diameter": "95 mm"})
+    explained = gearopt.explain(told)
+    assert explained.result.status == "infeasible" and explained.conflict == ("output_shaft",)
+    (way,) = explained.remedies
+    assert way.what == "train.output_shaft_diameter" and way.bound is None
+    assert way.verified == {"with": "optimal", "with_less": "infeasible"}
+    assert "room for the output shaft" in explained.message
