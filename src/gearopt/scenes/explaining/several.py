@@ -1,5 +1,6 @@
 """Several numbers of an impossible drive moved together: the least product that suffices."""
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -22,6 +23,9 @@ from gearopt.scenes.explaining.levers import (
 )
 from gearopt.scenes.explaining.tried import FARTHEST, Case, enlarged, trimmed
 from gearopt.scenes.tables.drive import Scene
+
+NEAR = 1.0 - 1e-6  # a value this close to what is needed is that one
+MOST = 3  # whole numbers of which both neighbours are tried
 
 
 def is_real(scene: Scene, clock: Clock) -> bool:
@@ -61,13 +65,27 @@ def together(case: Case, base: Problem, movable: list[Lever]) -> tuple[float | N
         return None, None
     moves, bound = found
     stepped = tuple(m for m in moves if is_stepped(case.scene, m[0]))
-    rest: Moves | None = tuple(m for m in moves if m not in stepped)
-    real = tuple(m for m in rest or () if m[0].sort == "size")
-    if stepped:
-        cured = applied(case.scene, stepped)
-        rest = None if cured is None else _after(case, cured.scene)
-    whole = None if rest is None else _beside(case, stepped, rest)
-    return bound, _from_sizes(case, movable, real) if whole is None else whole
+    others = tuple(m for m in moves if m not in stepped)
+    for whole in _rounded(case.scene, stepped):
+        cured = applied(case.scene, whole) if whole else None
+        rest = others if cured is None else _after(case, cured.scene)
+        made = None if rest is None else _beside(case, whole, rest)
+        if made is not None:
+            return bound, made
+    return bound, _from_sizes(case, movable, tuple(m for m in others if m[0].sort == "size"))
+
+
+def _rounded(scene: Scene, moves: Moves) -> list[Moves]:
+    """Moves of whole numbers at the value beyond or before what real-valued sizes need."""
+    ways = []
+    for lever, factor in moves:
+        known = [1.0, *steps(scene, lever)]
+        beyond = next((k for k, f in enumerate(known) if f >= factor * NEAR), len(known) - 1)
+        exact = known[beyond] <= factor / NEAR
+        ways.append([(lever, f) for f in known[beyond - (not exact) : beyond + 1][::-1]])
+    if len(ways) > MOST:  # too many to try all: all beyond
+        ways = [way[:1] for way in ways]
+    return [tuple(m for m in way if m[1] > 1.0) for way in itertools.product(*ways)]
 
 
 def _beside(case: Case, fixed: Moves, rest: Moves) -> Moves | None:
