@@ -187,12 +187,15 @@ def test_what_exact_says_when_it_is_stopped():
     nothing = outcome(train, watch=lambda event: False)
     assert not nothing.finished and nothing.x is None and nothing.bound is None
     assert outcome(train, floor=floor, watch=lambda event: False).bound == floor
-    left = iter(range(20))
-    some = outcome(train, 5, watch=lambda event: event.best is None or next(left, None) is None)
+    seen = []
+    some = outcome(train, 5, watch=lambda e: seen.append(e) is None and e.best is None)
     assert not some.finished and some.others == () and "not 5" in some.message
+    assert [event.best is None for event in seen] == [True] * (len(seen) - 1) + [False]
+    assert problem(train).batch(some.x[None]).F[0, 0] == pytest.approx(seen[-1].best, rel=1e-12)
     assert some.proof["method"] == "branch and bound, stopped early"
     enough = outcome(train, floor=0.5 * whole.bound, gap=0.6)
     assert enough.finished and enough.bound < whole.bound and "gap" in enough.message
+    assert problem(train).batch(enough.x[None]).F[0, 0] >= whole.bound
     again = outcome(train, 3, floor=0.5 * whole.bound, gap=0.6)
     assert again.finished and again.others == () and again.evaluations == enough.evaluations
 

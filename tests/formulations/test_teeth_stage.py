@@ -95,16 +95,18 @@ def test_a_torque_at_the_limit_is_carried_whatever_its_rounding(name):
     assert (carried <= exact * (1.0 + 4.0 * ALLOWANCE)).all()
 
 
-@pytest.mark.parametrize("face", ["free", "open"])
+@pytest.mark.parametrize("face", ["free", "open", "fixed"])
 def test_a_width_at_its_limit_is_not_beyond_it_whatever_its_rounding(face):
     own = table(drive(1, face, F(3), tolerance=F(1, 3), modules=(F(2),), helix_angle=0.2), 0, F(4))
     index = np.arange(len(own.z1))
     most = own.capacity(0) / (1.0 + 3.0 * ALLOWANCE)
     for part in (1.0 + 0.9 * ALLOWANCE, 1.0, 1.0 - 0.1 * ALLOWANCE):
         value, module, width = own._best(part * most, index)
-        assert np.isfinite(value).all() and (module == 2.0).all()
-        assert (width <= 0.6 * own.diameter(module, index)).all()
-        assert width == pytest.approx(0.6 * own.diameter(module, index), rel=1e-11)
+        good = own.first <= own.last
+        assert (np.isfinite(value) == good).all() and (module == 2.0).all() and good.any()
+        limit = 24.0 if face == "fixed" else 0.6 * own.diameter(module, index)
+        assert (width <= limit)[good].all()
+        assert width[good] == pytest.approx(np.broadcast_to(limit, width.shape)[good], rel=1e-11)
 
 
 def test_of_equal_costs_the_smaller_module_is_taken_on_steps():
