@@ -82,6 +82,19 @@ def test_discrete_values_are_checked():
     assert "values of z" in certify(problem, Outcome(np.array([1.25, 12.4])), 1e-6).message
 
 
+def test_nothing_is_proven_where_a_variable_is_discrete():
+    problem = Problem(
+        "mixed",
+        (Var("n", "", 0, 9, 3, integer=True), Var("x", "", 0, 9, 1.0)),
+        (),
+        lambda x, p: Terms({"f": (x.n - 2.5) ** 2 + (x.x - 1.0) ** 2}),
+    )
+    for finished, status in ((True, "feasible"), (False, "limit")):
+        verdict = certify(problem, Outcome(np.array([3.0, 1.0]), finished), 1e-6)
+        assert (verdict.status, verdict.bound) == (status, None)
+        assert list(verdict.certificate) == ["feasibility"]
+
+
 def test_a_claimed_bound_above_a_feasible_value_is_an_error():
     with pytest.raises(CertificateError, match="below the claimed bound"):
         certify(hill(), Outcome(np.array([0.4, 10.0]), bound=0.6), 1e-6, exact=True)
@@ -301,7 +314,7 @@ def test_a_value_below_our_bound_is_an_error_or_explained():
     with pytest.raises(CertificateError, match="below the dual bound"):
         ours(-101.0, 0.0)
     with pytest.raises(CertificateError, match="below the dual bound"):
-        ours(-101.0, 0.0, excess=0.99e-10)
+        ours(-101.0, 0.0, excess=0.995e-10)
     assert ours(-100.0, 0.0).status == "feasible"  # by 1e-6 exactly
     for excess in (1e-10, 5e-9):
         verdict = ours(-101.0, 0.0, excess=excess)
@@ -319,6 +332,7 @@ def test_of_two_objectives_the_first_counts_and_nothing_is_proven():
     problem = Problem("two", (variable,), (), lambda x, p: Terms({"f": x.x, "g": 1.0 / x.x}))
     verdict = certify(problem, Outcome(np.array([1.0])), 1e-6)
     assert (verdict.status, verdict.objective, verdict.bound) == ("feasible", 1.0, None)
+    assert verdict.message == ""
     stopped = certify(problem, Outcome(np.array([1.0]), finished=False), 1e-6)
     assert stopped.status == "limit"
 
@@ -404,7 +418,7 @@ def test_an_excess_of_1e_8_is_feasible_and_a_little_more_is_not():
     assert rows[1].message == "row is violated by 1.1e-08. Ended."
     early = certify(problem, Outcome(np.array([2.0]), finished=False), 1e-6)
     assert early.status == "limit"
-    for x, fine in zip(at, (True, False), strict=True):
+    for x, fine in zip([-1e-8, *at], (True, True, False), strict=True):
         claim = Outcome(np.array([0.5]), others=(np.array([x]),))
         if fine:
             assert certify(problem, claim, 1e-6).objective == 0.5
@@ -432,6 +446,34 @@ def test_the_better_multipliers_give_bound_and_residuals():
             "method": "dual",
             "arithmetic": "double, with a rounding allowance",
         }
+    inside = replace(outcome, x=outcome.x * [1.0 + 2e-6, 1.0])  # where we see no limit that holds
+    verdict = certify(hill(), inside, 1e-6)
+    assert verdict.certificate["stationarity"] <= 1e-5 and verdict.gap < 3e-6
+    assert verdict.certificate["complementarity"] == pytest.approx(1.6e-6, rel=1e-3)
+
+
+def test_multipliers_of_a_method_are_taken_as_at_least_zero(monkeypatch):
+    """Its own alone: the right ones prove the optimum, those below zero count as none."""
+    _, outcome = run(hill())
+    monkeypatch.setattr("gearopt.optimise.multipliers.MOST", 0)
+    assert certify(hill(), outcome, 1e-9).status == "optimal"
+    none, below = (
+        certify(hill(), replace(outcome, lam_g=np.array([lam])), 1e-9) for lam in (0.0, -5.0)
+    )
+    assert none.status == below.status == "feasible" and none.bound == below.bound
+    assert none.certificate == below.certificate and none.bound < 0.3
+    bare = certify(hill(), replace(outcome, lam_g=None), 1e-9)
+    assert (bare.status, bare.bound) == ("feasible", None)
+
+
+def test_a_long_list_of_variables_is_cut():
+    many = Var("variable", "", 1.0, 9.0, 2.0, 60)
+    problem = Problem(
+        "many", (many,), (), lambda x, p: Terms({"loss": np.log(0.0 * x.variable[0] - 1.0)})
+    )
+    with np.errstate(invalid="ignore"):
+        verdict = certify(problem, Outcome(np.full(60, 2.0)), 1e-6)
+    assert verdict.status == "failed" and len(verdict.message) == 300
 
 
 def test_without_finite_bounds_there_is_no_bound():

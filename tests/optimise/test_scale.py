@@ -205,9 +205,10 @@ def test_the_scale_of_a_variable():
     assert size(-10.0, 10.0, 0.0, 0.0) == 0.02  # a thousandth of the box
     assert size(100.0, 100.5, 100.2, 100.1) == 0.5
     assert size(-INF, INF, 0.0, 0.0) == 1.0 and size(0.0, INF, 0.0, 0.0) == 1.0
-    assert size(-INF, INF, 3.0, 0.0) == 3.0
+    assert size(-INF, INF, 3.0, 0.0) == 3.0 and size(-INF, INF, 0.3, 0.2) == 0.3
     assert size(7.0, 7.0, 7.0, 7.0) == 7.0 and size(0.0, 0.0, 0.0, 0.0) == 1.0
     assert size(1e-6, 10.0, 1.0, 1e-3, log=True) == 1e-3
+    assert size(1e-6, 10.0, 1.0, -1e-3, log=True) == 1e-3
 
 
 def test_the_scale_of_an_objective():
@@ -219,7 +220,10 @@ def test_the_scale_of_an_objective():
     edge = plane(lambda a, b: np.sqrt(a) + np.sqrt(10.0 - b), 0.0)
     assert math.isfinite(objective_scale(edge, np.array([0.0, 10.0])))
     root = plane(lambda a, b: np.sqrt(1.0 - b) + a, -10.0)
-    assert objective_scale(root, np.array([1.0, 1.0])) >= 1.0  # NaN beyond b = 1 counts as nothing
+    found = objective_scale(root, np.array([1.0, 1.0]))  # NaN beyond b = 1 counts as nothing
+    assert found == pytest.approx(1e4, rel=1e-3)
+    steep = plane(lambda a, b: a + 1e3 * (np.maximum(a, 10.0) - np.minimum(b, -10.0)))
+    assert objective_scale(steep, np.array([10.0, -10.0])) == pytest.approx(10.0, rel=1e-4)
     mixed = Problem(
         "mixed",
         (Var("n", "", 0, 9, 3, integer=True), Var("x", "", 0, 9, 2.0), Var("c", "", 5, 5, 5)),
@@ -240,6 +244,8 @@ def test_many_variables_are_moved_some_at_a_time(monkeypatch):
     monkeypatch.setattr("gearopt.optimise.scale.ENTRIES", 800)
     assert objective_scale(many, np.ones(40)) == whole == pytest.approx(40.0, rel=1e-6)
     assert counts == [1, 20, 20, 20, 20]
+    monkeypatch.setattr("gearopt.optimise.scale.ENTRIES", 20)
+    assert objective_scale(many, np.ones(40)) == whole
 
 
 def test_a_gap_is_relative_to_the_value_or_to_the_scale():

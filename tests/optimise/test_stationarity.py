@@ -12,10 +12,12 @@ from gearopt.formulations import sizing
 from gearopt.formulations.train import FaceWidth, Stage, Train
 from gearopt.optimise import polish
 from gearopt.optimise.certificate import certify
+from gearopt.optimise.form import form
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome
 from gearopt.optimise.solve import run, solve
 from gearopt.optimise.solvers import ipopt
+from gearopt.optimise.stationarity import acting, evaluated, residuals
 from gearopt.optimise.terms import Named, Terms, Var
 
 INF = np.inf
@@ -199,6 +201,54 @@ def test_a_stopped_run_is_never_stationary(name):
     assert certify(solved(name)[0], stopped, 1e-6).status == "limit"
 
 
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_residuals_term_by_term(sign):
+    """F = s (3 t^2 x - 5 t) + 1e-6 u with t/8 <= 1 and x <= 2, log x; at x = 3/2, t = 3, u = 2."""
+
+    def evaluate(x, p):
+        minimise = sign * (3.0 * x.t**2 * x.x - 5.0 * x.t) + 1e-6 * x.u
+        return Terms({"f": minimise}, {"t": x.t / 8.0, "x": x.x / 2.0})
+
+    x, t = Var("x", "", 0.1, 9.0, 1.0, log=True), Var("t", "", 0.0, 10.0, 4.0)
+    problem = Problem("mixed", (x, t, Var("u", "", -10.0, 10.0, 1.0)), (), evaluate)
+    shape = form(problem)
+    low, high, _ = (shape.to_y(b) for b in problem.bounds())
+    y, lam = shape.to_y(np.array([1.5, 3.0, 2.0])), np.array([2.0, 0.5])
+    point = evaluated(problem, shape, y, low, high, lam, np.empty(0))
+    assert point.pull == pytest.approx([41.0, 22.25, 1e-6])
+    assert point.gradient == pytest.approx([40.5 * sign + 0.5, 22.0 * sign + 0.25, 1e-6])
+    slopes, bends = np.array([41.0, 22.25 * 4.0, 2e-6]), np.array([40.5, 9.0 * 16.0, 0.0])
+    unit = slopes + 0.5 * bends
+    assert acting(point) == pytest.approx(unit + 1e-8 * unit[1], rel=1e-12)
+    room = 3.0 if sign > 0.0 else 4.0  # to the bound below, or its own scale
+    promised = [abs(40.5 * sign + 0.5) / unit[0], abs(22.0 * sign + 0.25) * room / unit[1]]
+    promised.append(2e-6 / (2e-6 + 1e-8 * unit[1]))
+    found = residuals(point)
+    assert found["stationarity"] == pytest.approx(max(promised), rel=1e-6)
+    assert found["complementarity"] == pytest.approx(2.0 * 5.0 / 8.0 / unit[1], rel=1e-6)
+
+
+def test_what_acts_on_logarithms():
+    """F = log(x + 1/x) at x = 2: slope 0.6, curvature 0.64; 1 where the whole is convex."""
+    x, t = Var("x", "", 0.1, 9.0, 1.0, log=True), Var("t", "", 0.1, 9.0, 1.0)
+    for variables, expected in (((x,), [1.0]), ((x, t), [0.92 + 0.92e-8, 0.92e-8])):
+        problem = Problem("sum", variables, (), lambda x, p: Terms({"f": x.x + 1.0 / x.x}))
+        shape, at = form(problem), np.full(len(variables), 2.0)
+        ends = (shape.to_y(b) for b in (at, *problem.bounds()[:2]))
+        point = evaluated(problem, shape, *ends, np.empty(0), np.empty(0))
+        assert acting(point) == pytest.approx(expected, rel=1e-12)
+    assert residuals(point)["complementarity"] == 0.0
+
+
+@pytest.mark.parametrize(("off", "status"), [(0.45e-6, "stationary"), (0.55e-6, "feasible")])
+def test_a_minimum_is_met_within_a_millionth(off, status):
+    """Of -cos x: slope d over half the curvature is 2 d, in units of the guess."""
+    problem = line(lambda x: -np.cos(x), -2.0, 2.0, 1.0)
+    verdict = certify(problem, Outcome(np.array([off])), 1e-6)
+    assert verdict.status == status
+    assert verdict.certificate["stationarity"] == pytest.approx(2.0 * off, rel=1e-5)
+
+
 def test_far_out_on_an_exponential_is_not_stationary():
     """The optimum is 1.8; stopped after 20 iterations at 2.9e13 it was called stationary."""
     problem = line(lambda x: np.exp(x) + np.exp(-2.0 * x), -5.0, 200.0, 100.0)
@@ -222,6 +272,8 @@ MINIMA = {
     "sine": (np.sin, 1.5 * np.pi, 0.0, 6.0),
     "kink": (abs, 0.0, -1.0, 1.0),
     "end of a slope": (lambda x: x - x**2 / 8.0, 0.0, 0.0, 1.0),
+    "lower end": (lambda x: x - x**2 / 16.0, 2.0, 2.0, 3.0),
+    "upper end": (lambda x: x**2 / 16.0 - x - x**3, 3.0, 2.0, 3.0),
     "cubic at its end": (lambda x: x**3, 0.0, 0.0, 1.0),
 }
 NO_MINIMA = {

@@ -178,9 +178,10 @@ def _local(
         message = f"{why}. {before.message}".strip() if why else before.message
         before = replace(before, status="feasible" if why else "stationary", message=message)
     bounds = [dual_bound(point) for point in points] if shape.convex else []
-    least, rounding = max((b for b in bounds if math.isfinite(b[0])), default=(-math.inf, 0.0))
-    if not math.isfinite(least):
+    known = [pair for pair in bounds if math.isfinite(pair[0])]
+    if not known:
         return before
+    least, rounding = max(known)
     proof = {"method": "dual", "arithmetic": "double, with a rounding allowance"}
     value = shape.objective(least)
     return bounded(

@@ -1,6 +1,5 @@
 """How far a point is from feasible, and what has the worst of it."""
 
-import math
 from typing import Any
 
 import numpy as np
@@ -33,9 +32,7 @@ def violation(problem: Problem | Conic, x: Array, batch: Batch) -> tuple[float, 
             np.array(discrete),
         ]
     )
-    if np.isnan(amounts).any():
-        return math.nan, names[int(np.isnan(amounts).argmax())]
-    worst = int(amounts.argmax())  # at least 0, that of a value that is met
+    worst = int(amounts.argmax())  # the first NaN; at least 0, that of a value that is met
     return float(amounts[worst]), names[worst]
 
 
