@@ -30,6 +30,7 @@ UNITS = {
     "kg_m2": "kg*m^2",
     "Nm_per_rad": "N*m/rad",
     "deg_per_mm": "deg/mm",
+    "rad_per_s2": "rad/s^2",
 }
 INCHES = {
     "in³": "in^3",
@@ -39,6 +40,7 @@ INCHES = {
     "oz in²": "oz*in^2",
     "lbf in/rad": "lbf*in/rad",
     "°/in": "deg/in",
+    "rad/s²": "rad/s^2",
 }
 
 
