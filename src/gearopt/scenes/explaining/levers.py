@@ -62,6 +62,11 @@ class Lever:
         return self.path[0] != "stage"
 
     @property
+    def eases(self) -> bool:
+        """Whether more of it is never harder: so with limits, the duty, and b/d1."""
+        return self.sort != "size" or self.family == WIDTH
+
+    @property
     def reach(self) -> float:
         """The largest factor by which it may move."""
         return min(h.reach for h in self.handles)

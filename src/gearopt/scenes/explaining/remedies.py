@@ -1,7 +1,7 @@
 """Ways out of an impossible drive, as edits of its file that were tried before they are told."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -49,7 +49,7 @@ def remedies(scene: Scene, clock: Clock) -> Ways:
     case, real = Case(scene, clock), is_real(scene, clock)
     base, known, movable = posed(scene)
     blamed = _conflict(base, known, clock) if real else ()
-    singles = list(_singles(case, base if real else None, movable, blamed))
+    singles = _tried(case, _singles(case, base if real else None, movable, blamed))
     floor, beside = together(case, base, movable) if real else (None, None)
     found = _changes(case, movable, singles, beside, floor)
     if scene.duty.ratio_tolerance == 0 and (remedy := eased_tolerance(case)) is not None:
@@ -89,6 +89,7 @@ def _singles(
     """
     places = {(h.kind, h.place) for h in blamed if not h.given}
     conflicting = places and all(not h.given for h in blamed)
+    common: dict[tuple[str, int], float] = {}  # least factors of all stages: one needs no less
     for lever in movable:
         start, bound = 1.0, None
         if base is not None:
@@ -111,9 +112,21 @@ def _singles(
             stepped = least_step(case, lever, FARTHEST * start)
             if stepped is not None:
                 yield Way(kind, ((lever, stepped[0]),), bound, stepped[1])
-        elif (moves := least_between(case, ((lever, start),))) is not None:
-            yield Way(kind, moves, bound)
+        else:
+            start = max(start, common.get((lever.family, lever.direction), 1.0))
+            doubts = len(case.open)
+            moves = None if math.isinf(start) else least_between(case, ((lever, start),))
+            if lever.shared and (moves is not None or len(case.open) == doubts):
+                least = math.inf if moves is None else moves[0][1]
+                common[lever.family, lever.direction] = least
+            if moves is not None:
+                yield Way(kind, moves, bound)
     yield from _alike(case, base, movable)
+
+
+def _tried(case: Case, ways: Iterable[Way]) -> list[tuple[Way, Remedy]]:
+    """Ways with their edits, each as it is found: those that were found before time ran out."""
+    return [(way, r) for way in ways if (r := _remedy(case, way)) is not None]
 
 
 def _alike(case: Case, base: Problem | None, movable: Sequence[Lever]) -> Iterator[Way]:
@@ -145,19 +158,19 @@ def _alike(case: Case, base: Problem | None, movable: Sequence[Lever]) -> Iterat
 def _changes(
     case: Case,
     movable: list[Lever],
-    singles: list[Way],
+    singles: list[tuple[Way, Remedy]],
     beside: Moves | None,
     floor: float | None,
 ) -> list[Remedy]:
     """The remedies of limits and sizes, the least first, then those that ask for less."""
-    ways = list(singles)
+    ways = []
     if beside is not None and len(beside) > 1:
         ways.append(Way("least", beside, floor))
-    for way in singles:
+    for way, _ in singles:
         several = way.kind == "even" and len(way.moves) > 1 and case.scene.teeth is not None
         if several and (kept := trimmed(case, way.moves)) is not None:
             ways.append(Way("least", kept, floor))
-    told = [r for way in ways if (r := _remedy(case, way)) is not None]
+    told = [r for _, r in (*singles, *_tried(case, ways))]
     best = min((_product(r) for r in told if r.kind != "less"), default=FARTHEST)
     joint = least_together(case, movable, best * (1.0 - SAME))
     if joint is not None and (r := _remedy(case, Way("least", joint[0], floor, joint[1] or None))):

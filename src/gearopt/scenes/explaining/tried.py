@@ -116,7 +116,8 @@ def enlarged(case: Case, moves: Moves, fixed: Moves = ()) -> Moves | None:
     def works(extra: float, back: float = 0.0) -> bool | None:
         return case.works((*larger(extra), *fixed), back)
 
-    extra = least_value(1.0, WIDEST, works)
+    hopeless = all(lever.eases for lever, _ in moves) and works(WIDEST[-1]) is False
+    extra = None if hopeless else least_value(1.0, WIDEST, works)
     return None if extra is None else larger(extra)
 
 
