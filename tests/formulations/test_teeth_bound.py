@@ -66,10 +66,13 @@ def naive(train, tables, delta):
 
 @pytest.mark.parametrize("face", FACES)
 @pytest.mark.parametrize(
-    ("stages", "objective", "total"),
-    [(2, "gear_volume", F(9)), (3, "gear_volume", F(20)), (4, "total_length", F(12))],
+    ("stages", "objective", "total", "edge"),
+    [
+        (2, "gear_volume", F(9), EDGE),
+        (3, "gear_volume", F(16), 4e-3),
+        (4, "total_length", F(8), EDGE),
+    ],
 )
-@pytest.mark.parametrize("edge", [EDGE, 4e-3])
 def test_the_bound_is_its_definition(stages, objective, total, face, edge, monkeypatch):
     """Also where cells overlap by so much that one sees it."""
     monkeypatch.setattr(bounds, "EDGE", edge)

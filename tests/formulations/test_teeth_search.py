@@ -306,7 +306,7 @@ def test_a_search_may_stop_at_every_look_at_the_clock(monkeypatch):
     value = best.found[0][0]
     assert all(e.best is None or e.best >= value for e in seen)
     assert all(e.bound is None or e.bound <= value for e in seen)
-    for stop in (1, 2, 3, *np.linspace(4, len(seen), 12).astype(int).tolist()):
+    for stop in (1, 2, 3, *np.linspace(4, len(seen), 6).astype(int).tolist()):
         told = []
         progress = search(train, 1, Budget(), lambda e, t=told, n=stop: t.append(e) or len(t) < n)
         assert progress.stopped and len(told) == stop

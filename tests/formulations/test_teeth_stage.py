@@ -20,7 +20,7 @@ F = Fraction
 def test_the_best_module_and_width_of_every_pair(face, objective):
     train = drive(3, face, F(30), objective=objective, wheel_diameter=F(150), helix_angle=0.2)
     for k, own in enumerate(table(train, k, F(5, 2)) for k in range(3)):
-        for torque in np.geomspace(300.0, 1e5, 6):
+        for torque in np.geomspace(300.0, 1e5, 4):
             index = np.arange(len(own.z1))
             expected = best_choice(train, k, np.full(len(index), torque), own.z1, own.z2)
             found = own._best(np.full(len(index), torque), index)
