@@ -334,6 +334,21 @@ def test_no_more_than_a_slice_is_sized_between_two_looks_at_the_clock(monkeypatc
     assert max(most) <= 250 and len(most) > 100  # a dive through three stages, or one cell
 
 
+@pytest.mark.parametrize(
+    "pairs", [((17, 17), (20, 60)), ((20, 60), (17, 17)), ((20, 30), (20, 40))]
+)
+def test_the_only_train_has_the_whole_ratio_in_one_stage(pairs):
+    """At the very end of the last stage's window, where rounding must not lose it."""
+    given = {"k_factor": 1e9, "unit_load": 1e9, "modules": (F(2),)}
+    stages = tuple(
+        replace(drive(1).stages[0], pinion_teeth=(a, a), wheel_teeth=(b, b), **given)
+        for a, b in pairs
+    )
+    train = replace(drive(2, total=3), tolerance=F(0), stages=stages)
+    assert [teeth_of for _, teeth_of in search(train, 1, Budget()).found] == [pairs]
+    assert search(replace(train, ratio=F(3) + F(1, 10**12)), 1, Budget()).found == []
+
+
 def test_possible_needs_one_train_only():
     seen = []
     train = some_drive(8, 3)
