@@ -156,7 +156,7 @@ def test_the_best_known_of_six_cylinders_is_found_by_every_seed(most):
     """20 x (20 + 4 sqrt 200) x 10, from 25 seeds, each stopped when it is there."""
     known = 200 * (20 + 4 * math.sqrt(200))
     until = {
-        "budget": Budget(evaluations=4_000_000),
+        "budget": Budget(evaluations=2_000_000),
         "watch": lambda e: e.best > known * (1 + 1e-9),
     }
     found = [best(Plan(SIX, most=most), seed=k, **until) for k in range(25)]

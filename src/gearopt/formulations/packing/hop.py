@@ -1,9 +1,10 @@
 """`hop`: rounds of short annealing runs, each polished by Ipopt; the best packing is never lost.
 
 A round starts from random scatters in a random number of layers, then changes its own best packing:
-two cylinders of about one size change places, or one is thrown elsewhere. The kernel anneals the
-start (a changed packing cold, to keep what is good in it), its layers are kept, and Ipopt
-solves the smooth text for the places. A round ends after so many hops without a better packing of
+two cylinders of about one size change places, or one is thrown elsewhere. A share of the hops
+starts from a scatter all the same: changes seldom lead to another number of layers. The kernel
+anneals the start (a changed packing cold, to keep what is good in it), its layers are kept, and
+Ipopt solves the smooth text for the places. A round ends after so many hops without a better packing of
 its own; the next one starts afresh, while the budget lasts, until several have ended alike.
 """
 
@@ -22,6 +23,7 @@ from gearopt.optimise.solvers import ipopt
 from gearopt.optimise.terms import Array
 
 SCATTERS = 5  # first hops of a round
+FRESH, FRESH_LAYERS = 0.15, 0.5  # share of scatters among the later hops; where layers are free
 PATIENCE = 100  # hops without a better packing of its own end a round
 ALIKE = 5  # rounds that end with the best packing found end the search
 ROUNDS = 10  # at the most, where the budget has no end
@@ -42,6 +44,7 @@ SETTINGS = {
     "hops without a better packing that end a round": PATIENCE,
     "rounds that end alike end the search": ALIKE,
     "scatters that begin a round": SCATTERS,
+    "share of scatters later, and where the number of layers is free": (FRESH, FRESH_LAYERS),
     "moves of a hop, each cylinder, from a scatter and from the best": (MOVES, MOVES_COLD),
     "temperatures from a scatter": (HOT, COLD),
     "temperatures from the best": (WARM, COLD),
@@ -79,16 +82,14 @@ def method(plan: Plan, floor: Floor, finish: Finish) -> Any:
 def _round(plan: Plan, problem: Problem, rng: np.random.Generator, spent: Spent) -> float:
     """One round; the objective of its best packing, infinite where none met all limits."""
     best, own, idle, hops = math.inf, np.empty(0), 0, 0
+    fresh = FRESH_LAYERS if plan.most > plan.fewest else FRESH
     while idle < PATIENCE and spent.goes_on() and not spent.close(PROVEN):
-        if hops < SCATTERS or not len(own):
+        if hops < SCATTERS or not len(own) or rng.random() < fresh:
             most, moves, hot = int(rng.integers(plan.fewest, plan.most + 1)), MOVES, HOT
             begin = scattered(plan, most, rng)
         else:
-            begin, moves, hot = (
-                _changed(plan, points.places(plan, problem, own), rng),
-                MOVES_COLD,
-                WARM,
-            )
+            moves, hot = MOVES_COLD, WARM
+            begin = _changed(plan, points.places(plan, problem, own), rng)
             most = max(plan.fewest, int(begin.layer.max()))
         moves = min(moves * len(plan.radius), spent.left())
         last = anneal(plan, problem, begin, most, moves, (hot, COLD), rng, spent)
