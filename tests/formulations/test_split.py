@@ -11,9 +11,11 @@ from servo_trains import PAPER, STIFF
 
 from gearopt.formulations.split import (
     core,
+    exact,
     feasible,
     first_ratio,
     lightest_stage_ratio,
+    order,
     problem,
     relaxation,
     stage_counts,
@@ -301,6 +303,32 @@ def test_a_run_stops_when_told():
     result = solve(problem(PAPER), "enumeration", watch=watch)
     assert result.status == "limit" and len(seen) == 1
     assert solve(problem(PAPER), "enumeration", Budget(evaluations=1000)).status == "limit"
+
+
+@pytest.mark.parametrize("goal", ["inertia", "mass", "error"])
+@pytest.mark.parametrize("method", ["exact", "enumeration"])
+def test_looks_at_the_clock_change_nothing(goal, method, monkeypatch):
+    """A search that pauses after every first stage finds, counts and lists the same."""
+    train = replace(PAPER, pinion_teeth=(16, 22), modules=PAPER.modules[2:4])
+    whole, listed = solve(problem(train, goal), method), feasible(train, goal)
+    monkeypatch.setattr(exact, "STEPS", (1, 1))
+    monkeypatch.setattr(order, "STEPS", 1)
+    monkeypatch.setattr(order, "ROOM", 1)
+    seen, checks = [], []
+    parts = solve(problem(train, goal), method, watch=lambda event: seen.append(event) or True)
+    assert parts.to_dict() | {"seconds": 0} == whole.to_dict() | {"seconds": 0}
+    assert max(np.diff([0, *(e.evaluations for e in seen)])) < 0.1 * whole.evaluations
+    again = feasible(train, goal, check=lambda: checks.append(0))
+    assert np.array_equal(again, listed) and len(checks) > 100
+
+
+def test_a_list_of_all_trains_stops_when_told():
+    def check():
+        raise TimeoutError
+
+    with pytest.raises(TimeoutError):
+        feasible(PAPER, check=check)
+    assert feasible(PAPER, most=10) is None
 
 
 def test_annealing_takes_the_same_problem():

@@ -113,7 +113,7 @@ def train(point):
 
 def front():
     """Trains of which none is better in inertia, mass and error, from neighbours of the best."""
-    rows = split.trains(WIDE, math.radians(0.1))[::40] + [
+    rows = [*split.trains(WIDE, math.radians(0.1))[::40]] + [
         solve(split.problem(WIDE, goal)).design for goal in split.OBJECTIVES
     ]
     points = [row if isinstance(row, np.ndarray) else point_of(row) for row in rows]

@@ -21,6 +21,7 @@ from gearopt.optimise.result import Budget
 from gearopt.report.proof_words import proof
 from gearopt.report.remedy_words import remedy_words
 from gearopt.report.servo_achieved import best_words
+from gearopt.scenes.axis import choice
 from gearopt.scenes.axis.assumptions import assumptions, notes
 from gearopt.scenes.axis.choice import box_of, front, posed
 from gearopt.scenes.axis.gears import of_point
@@ -290,7 +291,7 @@ def test_the_whole_toothed_train_is_as_stiff_as_asked():
     assert result.limits["stiffness"] == pytest.approx(
         (230.0 / result.design["stiffness"]["frequency_Hz"]) ** 2, rel=1e-12
     )
-    points, worth = front(example)
+    points, worth = front(example, Clock(Budget()))
     assert 1e-3 * worth[:, 0].min() == pytest.approx(result.value, rel=1e-12)
     free = gearopt.solve(changed(EXAMPLE, drop=[("space",), ("lightest",)]))
     assert result.value > free.value
@@ -316,7 +317,7 @@ def test_a_box_that_is_required_changes_the_train():
     loose = gearopt.solve(changed(EXAMPLE, *NARROW, (("space", "required"), False), drop=BARE))
     assert loose.value < result.value and not loose.design["box"]["fits"]
     assert any("does not fit" in note for note in loose.report["notes"])
-    points, worth = front(scene)
+    points, worth = front(scene, Clock(Budget()))
     better = [x for x, row in zip(points, worth, strict=True) if 1e-3 * row[0] < result.value]
     assert better and servo_box.first_that_fits([box_of(scene, x) for x in better]) is None
     found = box_of(scene, gears_point(result))
@@ -421,6 +422,20 @@ def test_neighbours_are_not_beaten_in_all_three():
     error = named["error"]["error_deg"]
     assert error == pytest.approx(0.09798, abs=6e-6)
     assert named["inertia"]["inertia_kg_m2"] == pytest.approx(1.562e-7, abs=6e-11)
+
+
+def test_a_look_for_neighbours_in_parts_finds_the_same_and_stops_in_time(monkeypatch):
+    scene, seen = gearopt.load(PROBLEMS / "servo_gimbal_light.toml"), []
+    points, worth = front(scene, Clock(Budget()))
+    monkeypatch.setattr(choice, "PART", 1000)
+    again = front(scene, Clock(Budget(), lambda event: seen.append(event) or True))
+    assert np.array_equal(again[0], points) and np.array_equal(again[1], worth)
+    assert len(seen) > 10
+    assert front(scene, Clock(Budget(seconds=0.0))) is None
+    for count in (1, len(seen) // 2):
+        left = iter(range(count))
+        stopped = Clock(Budget(), lambda event, left=left: next(left, None) is not None)
+        assert front(scene, stopped) is None and stopped.stopped
 
 
 def test_given_gears_stand_beside_the_best():

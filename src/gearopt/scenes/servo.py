@@ -52,7 +52,7 @@ def solve(scene: Scene, ask: Ask) -> Result:
     clock = Clock(ask.budget, ask.watch)
     gears, found = given_gears(scene), _Found()
     if scene.train is not None:
-        gears, found = _trained(scene, ask)
+        gears, found = _trained(scene, ask, clock)
     if scene.duty is not None:
         found += _moved(scene, _part(ask, clock, found), found.design.get("train"))
     if gears is not None:
@@ -86,13 +86,13 @@ def _part(ask: Ask, clock: Clock, found: _Found) -> Ask:
     return replace(ask, method=method, budget=clock.left)
 
 
-def _trained(scene: Scene, ask: Ask) -> tuple[Gears | None, _Found]:
+def _trained(scene: Scene, ask: Ask, clock: Clock) -> tuple[Gears | None, _Found]:
     """The train, what is known beside it, and its neighbours."""
     result, gears = train_part(scene, ask)
     report = beside(scene, gears)
     if gears is None:
         return None, _Found((result,), report=report)
-    report |= {"trains": neighbours(scene)}
+    report |= {"trains": neighbours(scene, clock)}
     return gears, _Found((result,), result.design, report)
 
 

@@ -4,8 +4,9 @@ A round starts from random scatters in a random number of layers, then changes i
 two cylinders of about one size change places, or one is thrown elsewhere. A share of the hops
 starts from a scatter all the same: changes seldom lead to another number of layers. The kernel
 anneals the start (a changed packing cold, to keep what is good in it), its layers are kept, and
-Ipopt solves the smooth text for the places. A round ends after so many hops without a better packing of
-its own; the next one starts afresh, while the budget lasts, until several have ended alike.
+Ipopt solves the smooth text for the places. A round ends after so many hops without a better
+packing of its own; the next one starts afresh, while the budget lasts, until several have ended
+alike.
 """
 
 import math

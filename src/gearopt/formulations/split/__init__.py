@@ -12,9 +12,8 @@ from gearopt.formulations.split.core import (
     lightest_stage_ratio,
     stage_counts,
 )
-from gearopt.formulations.split.exact import feasible, trains
 from gearopt.formulations.split.front import unbeaten
-from gearopt.formulations.split.order import in_order
+from gearopt.formulations.split.order import feasible, in_order, trains
 from gearopt.formulations.split.relaxation import relaxation
 from gearopt.formulations.split.staged import staged
 from gearopt.formulations.split.stiff import StiffTrain, stiff

@@ -9,7 +9,15 @@ import math
 
 from numba import njit
 
-from gearopt.formulations.split.teeth_kernel import first_wheel, last_wheel, moved, sound, worth
+from gearopt.formulations.split.teeth_kernel import (
+    first_stage,
+    first_stages,
+    first_wheel,
+    last_wheel,
+    moved,
+    sound,
+    worth,
+)
 
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 STEPS = 70  # of a golden section: a range of 1e6 shrinks to 3e-14 of its logarithm
@@ -93,40 +101,43 @@ def best_of_row(s, goal, m1, z1, z2, m2, z3, low, high, middle):
 
 
 @njit(cache=True)
-def useful(s, goal, first, last, best, found):
-    """Like `useful` of the teeth, for what a duty makes least.
+def useful(s, goal, first, most, best, found):
+    """Like `useful` of the teeth, for what a duty makes least; a promise is STEPS steps.
 
     Error and stress fall with the teeth of wheel 4 and gears keep clear above some number of them,
     so that those allowed are the largest ones.
     """
-    pinions = s.pinion[1] - s.pinion[0] + 1
-    looked, middle = 0, centre(s.duty)
-    for k in range(first, last):
-        i, z1 = k // pinions, s.pinion[0] + k % pinions
+    looked, steps, middle = 0, 0, centre(s.duty)
+    n, (end, pinions, wheels) = first, first_stages(s)
+    while n < end and steps < most:
+        i, z1, z2 = first_stage(n, s.pinion[0], pinions, wheels)
+        n, steps = n + 1, steps + 1
+        if not first_wheel(s, i, z1) <= z2 <= s.wheel_1[i]:
+            continue
         m1 = s.module[i]
-        for z2 in range(first_wheel(s, i, z1), s.wheel_1[i] + 1):
-            looked += 1
-            if promise(s, m1, z1, z2, best) >= best:
-                continue
-            for j in range(s.module.size):
-                m2 = s.module[j]
-                for z3 in range(s.bored[j], s.pinion[1] + 1):
-                    low = max(-(-s.least[z1 * z3] // z2), last_wheel(s, i, z2, j, z3))
-                    high = min(s.most[z1 * z3] // z2, s.wheel_2[j])
-                    if low > high or not sound(s, m1, z1, z2, m2, z3, high):
-                        continue
-                    top = high
-                    while low < top:
-                        z4 = (low + top) // 2
-                        if sound(s, m1, z1, z2, m2, z3, z4):
-                            top = z4
-                        else:
-                            low = z4 + 1
-                    z4, more = best_of_row(s, goal, m1, z1, z2, m2, z3, low, high, middle)
-                    looked += more
-                    value = worth(s, goal, m1, z1, z2, m2, z3, z4)
-                    if value < best:
-                        best = value
-                        found[0], found[1], found[2], found[3] = z1, z2, z3, z4
-                        found[4], found[5] = i, j
-    return best, looked, 0
+        looked, steps = looked + 1, steps + STEPS
+        if promise(s, m1, z1, z2, best) >= best:
+            continue
+        for j in range(s.module.size):
+            m2 = s.module[j]
+            for z3 in range(s.bored[j], s.pinion[1] + 1):
+                steps += 1
+                low = max(-(-s.least[z1 * z3] // z2), last_wheel(s, i, z2, j, z3))
+                high = min(s.most[z1 * z3] // z2, s.wheel_2[j])
+                if low > high or not sound(s, m1, z1, z2, m2, z3, high):
+                    continue
+                top = high
+                while low < top:
+                    z4 = (low + top) // 2
+                    if sound(s, m1, z1, z2, m2, z3, z4):
+                        top = z4
+                    else:
+                        low = z4 + 1
+                z4, more = best_of_row(s, goal, m1, z1, z2, m2, z3, low, high, middle)
+                looked, steps = looked + more, steps + more
+                value = worth(s, goal, m1, z1, z2, m2, z3, z4)
+                if value < best:
+                    best = value
+                    found[0], found[1], found[2], found[3] = z1, z2, z3, z4
+                    found[4], found[5] = i, j
+    return best, looked, 0, n

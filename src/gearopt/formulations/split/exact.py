@@ -15,7 +15,7 @@ from gearopt.optimise.terms import Array
 
 RANDOM = False
 COUNTS = "choice of teeth and modules"
-SLICE = 0.05  # s between two looks at the budget
+STEPS = 2_000, 1_000_000  # of the kernel between two looks at the budget: at first, at the most
 ROUNDING = 1e-12  # of an objective, between the kernel's text and the problem's
 FLAT = 1e-11  # of a duty's: along a row of wheel teeth rounding may hide a better train
 NO_TEETH = "no teeth and modules meet all limits"
@@ -31,18 +31,13 @@ def method(train: ServoTrain, goal: str, whole: bool) -> Any:
         given, aim = numbers(train, goal in UNITS), (*OBJECTIVES, *UNITS).index(goal)
         code = kernel(DUTY if goal in UNITS and not whole else KERNEL)
         look = code.every if whole else code.useful
-        found = np.zeros(6, np.int64)
+        found, count = np.zeros(6, np.int64), kernel(KERNEL).first_stages(given)[0]
         look(given, aim, 0, 0, math.inf, found)  # compiled before the clock starts
         clock, best, looked, feasible = time.perf_counter(), math.inf, 0, 0
-        first, count = 0, len(given.module) * (train.pinion_teeth[1] - train.pinion_teeth[0] + 1)
-        step = 1
+        first, (steps, most) = 0, STEPS
         while first < count:
-            begun = time.perf_counter()
-            last = min(first + step, count)
-            best, more, good = look(given, aim, first, last, best, found)
-            looked, feasible, first = looked + more, feasible + good, last
-            spent = time.perf_counter() - begun
-            step = 2 * step if spent < 0.25 * SLICE else step
+            best, more, good, first = look(given, aim, first, steps, best, found)
+            looked, feasible, steps = looked + more, feasible + good, min(2 * steps, most)
             if first < count and not _goes_on(clock, looked, best, budget, watch):
                 break
         proof = _proof(looked, feasible if whole else None, first == count)
@@ -92,30 +87,3 @@ def point(given: Numbers, row: Any) -> Array:
     """The point of a kernel's row: pinion teeth, wheel teeth, modules, of both stages."""
     z1, z2, z3, z4, i, j = (int(v) for v in row)
     return np.array([z1, z3, z2, z4, given.module[i], given.module[j]], float)
-
-
-def feasible(train: ServoTrain, moved: bool = False, most: int = 1_000_000) -> Array | None:
-    """All feasible trains as points of `split.problem`, (trains, 6); None for more than `most`.
-
-    moved: they keep the speed limit of the duty's motor too.
-    """
-    given, listed = numbers(train, moved), kernel(KERNEL).listed
-    count, _ = listed(given, math.inf, 0)
-    if count > most:
-        return None
-    _, rows = listed(given, math.inf, count)
-    z1, z2, z3, z4, i, j = rows.T
-    return np.column_stack([z1, z3, z2, z4, given.module[i], given.module[j]]).astype(float)
-
-
-def trains(train: ServoTrain, error: float) -> list[Array]:
-    """All feasible trains with an error [rad] of at most `error`, the least error first."""
-    given, code = numbers(train), kernel(KERNEL)
-    count, _ = code.listed(given, error, 0)
-    _, rows = code.listed(given, error, count)
-    points = [point(given, row) for row in rows]
-    errors = [
-        code.worth(given, 2, m1, int(z1), int(z2), m2, int(z3), int(z4))
-        for z1, z3, z2, z4, m1, m2 in points
-    ]
-    return [points[k] for k in np.argsort(errors, kind="stable")]

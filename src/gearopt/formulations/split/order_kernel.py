@@ -1,10 +1,12 @@
-"""A kernel that lists the trains of a first stage whose objective lies between two values."""
+"""A kernel that lists the trains whose objective lies between two values."""
 
 from numba import njit
 
 from gearopt.formulations.split import duty_kernel
 from gearopt.formulations.split.teeth_kernel import (
     ALLOWANCE,
+    first_stage,
+    first_stages,
     first_wheel,
     last_wheel,
     possible,
@@ -13,22 +15,27 @@ from gearopt.formulations.split.teeth_kernel import (
     worth,
 )
 
+STEPS = duty_kernel.STEPS
 promise_of_duty = duty_kernel.promise
 
 
 @njit(cache=True)
-def between(s, goal, k, above, most, rows):
-    """Feasible trains with above < objective <= most, of first stages k (module and pinion teeth).
+def between(s, goal, first, most_steps, above, most, rows):
+    """Feasible trains with above < objective <= most, of the first stages from `first` on.
 
-    rows (capacity, 6): z1, z2, z3, z4 and the modules' indices; how many there are, also where they
-    are more than the capacity.
+    rows (capacity, 6): z1, z2, z3, z4 and the modules' indices. Returns how many there are, also
+    where they are more than the capacity, and the first stage to go on from.
     """
-    pinions = s.pinion[1] - s.pinion[0] + 1
-    i, z1 = k // pinions, s.pinion[0] + k % pinions
-    m1, count = s.module[i], 0
-    for z2 in range(first_wheel(s, i, z1), s.wheel_1[i] + 1):
+    count = steps = 0
+    n, (end, pinions, wheels) = first, first_stages(s)
+    while n < end and steps < most_steps:
+        i, z1, z2 = first_stage(n, s.pinion[0], pinions, wheels)
+        n, steps = n + 1, steps + 1
+        if not first_wheel(s, i, z1) <= z2 <= s.wheel_1[i]:
+            continue
+        m1 = s.module[i]
         if goal > 2:
-            least = promise_of_duty(s, m1, z1, z2, most)
+            least, steps = promise_of_duty(s, m1, z1, z2, most), steps + STEPS
         else:
             least = promise(s, goal, m1, z1, z2)
         if least > most * ALLOWANCE:
@@ -38,6 +45,7 @@ def between(s, goal, k, above, most, rows):
             for z3 in range(s.bored[j], s.pinion[1] + 1):
                 low = max(-(-s.least[z1 * z3] // z2), last_wheel(s, i, z2, j, z3))
                 high = min(s.most[z1 * z3] // z2, s.wheel_2[j])
+                steps += 1 + max(0, high + 1 - low)
                 for z4 in range(low, high + 1):
                     value = worth(s, goal, m1, z1, z2, m2, z3, z4)
                     if not above < value <= most:
@@ -51,4 +59,4 @@ def between(s, goal, k, above, most, rows):
                         rows[count, 2], rows[count, 3] = z3, z4
                         rows[count, 4], rows[count, 5] = i, j
                     count += 1
-    return count
+    return count, n

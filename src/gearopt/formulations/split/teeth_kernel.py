@@ -3,11 +3,14 @@
 Ratios, tip diameters, the bore and what gears keep clear of are decided in whole numbers
 (`numbers`); error and stress, which no tie can meet as they hold irrational numbers, in double with
 ALLOWANCE. In goal: 0 inertia, 1 mass, 2 error, above that what a duty makes least.
+
+First stages are numbered, so that a search may pause at any of them: it goes on from number `first`
+until it has taken `most` steps (a row or a choice of teeth is one) and returns the number to go on
+from.
 """
 
 import math
 
-import numpy as np
 from numba import njit
 
 ALLOWANCE = 1.0 + 1e-12  # of error and stress: many times their rounding
@@ -80,39 +83,61 @@ def last_wheel(s, i, z2, j, z3):
 
 
 @njit(cache=True)
-def every(s, goal, first, last, best, found):
-    """Look at all trains of the first stages `first` to `last`, counted over modules and teeth.
+def first_stages(s):
+    """How many first stages are numbered, and the numbers of pinions and wheels of each module.
 
-    best: the least objective so far; found (6,): its z1, z2, z3, z4 and module indices. Of equal
-    trains the first one counts. Returns best, the trains of a right ratio, and the feasible ones.
+    Wheels beyond their limits are among them.
     """
     pinions = s.pinion[1] - s.pinion[0] + 1
-    looked = feasible = 0
-    for k in range(first, last):
-        i, z1 = k // pinions, s.pinion[0] + k % pinions
+    wheels = max(0, s.wheel_1.max() - s.pinion[0] + 1)
+    return s.module.size * pinions * wheels, pinions, wheels
+
+
+@njit(cache=True)
+def first_stage(n, least, pinions, wheels):
+    """Module index, pinion and wheel teeth of first stage n; least: fewest teeth of either."""
+    k = n // wheels
+    return k // pinions, least + k % pinions, least + n % wheels
+
+
+@njit(cache=True)
+def every(s, goal, first, most, best, found):
+    """Look at all trains of the first stages from `first` on.
+
+    best: the least objective so far; found (6,): its z1, z2, z3, z4 and module indices. Of equal
+    trains the first one counts. Returns best, the trains of a right ratio, the feasible ones, and
+    the first stage to go on from.
+    """
+    looked = feasible = steps = 0
+    n, (end, pinions, wheels) = first, first_stages(s)
+    while n < end and steps < most:
+        i, z1, z2 = first_stage(n, s.pinion[0], pinions, wheels)
+        n, steps = n + 1, steps + 1
+        if not z1 <= z2 <= s.wheel_1[i]:
+            continue
         clear = first_wheel(s, i, z1)
-        for z2 in range(z1, s.wheel_1[i] + 1):
-            for j in range(s.module.size):
-                for z3 in range(s.pinion[0], s.pinion[1] + 1):
-                    low = -(-s.least[z1 * z3] // z2)
-                    high = min(s.most[z1 * z3] // z2, s.wheel)
-                    for z4 in range(max(low, z3), high + 1):
-                        looked += 1
-                        if z4 > s.wheel_2[j] or z3 < s.bored[j] or z2 < clear:
-                            continue
-                        if z4 < last_wheel(s, i, z2, j, z3):
-                            continue
-                        if not sound(s, s.module[i], z1, z2, s.module[j], z3, z4):
-                            continue
-                        value = worth(s, goal, s.module[i], z1, z2, s.module[j], z3, z4)
-                        if goal > 2 and not possible(s.duty, value):
-                            continue
-                        feasible += 1
-                        if value < best:
-                            best = value
-                            found[0], found[1], found[2], found[3] = z1, z2, z3, z4
-                            found[4], found[5] = i, j
-    return best, looked, feasible
+        for j in range(s.module.size):
+            for z3 in range(s.pinion[0], s.pinion[1] + 1):
+                low = max(-(-s.least[z1 * z3] // z2), z3)
+                high = min(s.most[z1 * z3] // z2, s.wheel)
+                steps += 1 + max(0, high + 1 - low)
+                for z4 in range(low, high + 1):
+                    looked += 1
+                    if z4 > s.wheel_2[j] or z3 < s.bored[j] or z2 < clear:
+                        continue
+                    if z4 < last_wheel(s, i, z2, j, z3):
+                        continue
+                    if not sound(s, s.module[i], z1, z2, s.module[j], z3, z4):
+                        continue
+                    value = worth(s, goal, s.module[i], z1, z2, s.module[j], z3, z4)
+                    if goal > 2 and not possible(s.duty, value):
+                        continue
+                    feasible += 1
+                    if value < best:
+                        best = value
+                        found[0], found[1], found[2], found[3] = z1, z2, z3, z4
+                        found[4], found[5] = i, j
+    return best, looked, feasible, n
 
 
 @njit(cache=True)
@@ -138,75 +163,52 @@ def promise(s, goal, m1, z1, z2):
 
 
 @njit(cache=True)
-def useful(s, goal, first, last, best, found):
+def useful(s, goal, first, most, best, found):
     """Like `every`, for the best train alone: what cannot be better is not looked at.
 
     First stages whose promise is no better are dropped. With the other numbers fixed, inertia and
     mass grow with z4, error and stress fall with it: of every row of z4 only one end can be best.
-    Returns best, first stages and trains looked at.
+    Returns best, first stages and trains looked at, 0, and the first stage to go on from.
     """
-    pinions = s.pinion[1] - s.pinion[0] + 1
-    looked = 0
-    for k in range(first, last):
-        i, z1 = k // pinions, s.pinion[0] + k % pinions
+    looked = steps = 0
+    n, (end, pinions, wheels) = first, first_stages(s)
+    while n < end and steps < most:
+        i, z1, z2 = first_stage(n, s.pinion[0], pinions, wheels)
+        n, steps = n + 1, steps + 1
+        if not first_wheel(s, i, z1) <= z2 <= s.wheel_1[i]:
+            continue
         m1 = s.module[i]
-        for z2 in range(first_wheel(s, i, z1), s.wheel_1[i] + 1):
-            looked += 1
-            if promise(s, goal, m1, z1, z2) >= best * ALLOWANCE:
-                continue
-            for j in range(s.module.size):
-                m2 = s.module[j]
-                for z3 in range(s.bored[j], s.pinion[1] + 1):
-                    low = max(-(-s.least[z1 * z3] // z2), last_wheel(s, i, z2, j, z3))
-                    high = min(s.most[z1 * z3] // z2, s.wheel_2[j])
-                    if low > high:
+        looked += 1
+        if promise(s, goal, m1, z1, z2) >= best * ALLOWANCE:
+            continue
+        for j in range(s.module.size):
+            m2 = s.module[j]
+            for z3 in range(s.bored[j], s.pinion[1] + 1):
+                steps += 1
+                low = max(-(-s.least[z1 * z3] // z2), last_wheel(s, i, z2, j, z3))
+                high = min(s.most[z1 * z3] // z2, s.wheel_2[j])
+                if low > high:
+                    continue
+                if goal != 2:
+                    least = max(
+                        (s.lost[0] * z3 / (m1 * z2) + s.lost[1] / m2) / s.error,
+                        s.load / (m2 * m2 * s.lewis[z3]),
+                        s.load * z3 / (m1 * m1 * z2 * s.lewis[z1]),
+                    )
+                    if least > high + 1:
                         continue
-                    if goal != 2:
-                        least = max(
-                            (s.lost[0] * z3 / (m1 * z2) + s.lost[1] / m2) / s.error,
-                            s.load / (m2 * m2 * s.lewis[z3]),
-                            s.load * z3 / (m1 * m1 * z2 * s.lewis[z1]),
-                        )
-                        if least > high + 1:
-                            continue
-                        low = max(low, int(least * (1.0 - 1e-9)))
-                    while low <= high:
-                        looked += 1
-                        z4 = high if goal == 2 else low
-                        if sound(s, m1, z1, z2, m2, z3, z4):
-                            value = worth(s, goal, m1, z1, z2, m2, z3, z4)
-                            if value < best:
-                                best = value
-                                found[0], found[1], found[2], found[3] = z1, z2, z3, z4
-                                found[4], found[5] = i, j
-                            break
-                        if goal == 2:
-                            break
-                        low += 1
-    return best, looked, 0
-
-
-@njit(cache=True)
-def listed(s, best, most):
-    """All feasible trains with an error of at most `best` [rad]: rows z1, z2, z3, z4, i, j."""
-    rows = np.empty((most, 6), np.int64)
-    count = 0
-    for i in range(s.module.size):
-        for z1 in range(s.pinion[0], s.pinion[1] + 1):
-            for z2 in range(first_wheel(s, i, z1), s.wheel_1[i] + 1):
-                for j in range(s.module.size):
-                    for z3 in range(s.bored[j], s.pinion[1] + 1):
-                        low = max(-(-s.least[z1 * z3] // z2), last_wheel(s, i, z2, j, z3))
-                        high = min(s.most[z1 * z3] // z2, s.wheel_2[j])
-                        for z4 in range(low, high + 1):
-                            m1, m2 = s.module[i], s.module[j]
-                            if not sound(s, m1, z1, z2, m2, z3, z4):
-                                continue
-                            if worth(s, 2, m1, z1, z2, m2, z3, z4) > best:
-                                continue
-                            if count < most:
-                                rows[count, 0], rows[count, 1] = z1, z2
-                                rows[count, 2], rows[count, 3] = z3, z4
-                                rows[count, 4], rows[count, 5] = i, j
-                            count += 1
-    return count, rows
+                    low = max(low, int(least * (1.0 - 1e-9)))
+                while low <= high:
+                    looked, steps = looked + 1, steps + 1
+                    z4 = high if goal == 2 else low
+                    if sound(s, m1, z1, z2, m2, z3, z4):
+                        value = worth(s, goal, m1, z1, z2, m2, z3, z4)
+                        if value < best:
+                            best = value
+                            found[0], found[1], found[2], found[3] = z1, z2, z3, z4
+                            found[4], found[5] = i, j
+                        break
+                    if goal == 2:
+                        break
+                    low += 1
+    return best, looked, 0, n

@@ -15,7 +15,7 @@ from gearopt.optimise.explaining.elastic import elastic
 from gearopt.optimise.explaining.handles import REACH, Handle
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.progress import of_others
-from gearopt.optimise.result import Budget, Result, Watch
+from gearopt.optimise.result import Budget, Event, Result, Watch
 from gearopt.optimise.solve import solve
 from gearopt.optimise.terms import Array
 
@@ -62,6 +62,12 @@ class Clock:
     def over(self) -> bool:
         """Whether nothing is left, or the user stopped."""
         return self.stopped or self.left.seconds == 0.0
+
+    def goes_on(self) -> bool:
+        """Whether time is left and the watcher, who is asked, lets a look at many designs go on."""
+        if self.watch is not None and self.watch(Event(self.seconds, 0)) is False:
+            self.stopped = True
+        return not self.over
 
     def within(self, seconds: float) -> float:
         """So many seconds, or what is left if that is less."""

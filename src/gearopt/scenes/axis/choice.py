@@ -28,6 +28,7 @@ SHOWN = {  # objective: factor to the unit that is shown, the unit
     "rms_torque": (1e-3, "Nm"),
 }
 FRONT = 400  # trains that are shown
+PART = 50_000  # trains that are weighed between two looks at the clock
 
 
 def posed(scene: Scene, boxed: bool = True) -> Problem:
@@ -150,21 +151,6 @@ def _looked(count: int, stiff: int | None) -> dict[str, Any]:
     return found if stiff is None else found | {"trains_stiff_enough": stiff}
 
 
-def _feasible(scene: Scene, posed: Problem) -> Array | None:
-    """All trains that keep every limit but stiffness and box; None where they are too many."""
-    import numpy as np
-
-    assert scene.train is not None
-    moved, train = scene.train.goal in UNITS, scene.servo_train()
-    points = split.feasible(train, moved)
-    if points is None or not moved or train.duty is None:
-        return points
-    z1, z3, z2, z4, *_ = points.T
-    used = train.duty.limits(z2 * z4 / (z1 * z3), posed.batch(points).F[:, 0])
-    kept = [np.broadcast_to(limit, len(points)) <= 1.0 + ROUNDING for limit in used.values()]
-    return points[np.all(kept, axis=0)] if kept else points
-
-
 def weighed(scene: Scene) -> tuple[str, ...]:
     """What trains are held against each other by: inertia, or what the duty makes least, first."""
     assert scene.train is not None
@@ -172,19 +158,34 @@ def weighed(scene: Scene) -> tuple[str, ...]:
     return (first, "mass", *(("error",) if scene.sources else ()))
 
 
-def front(scene: Scene) -> tuple[Array, Array] | None:
+def front(scene: Scene, clock: Clock) -> tuple[Array, Array] | None:
     """Points and worth (by `weighed`) of all trains that no other is better than in all of it.
 
-    Stiffness is kept, a box not looked at; None where the feasible trains are too many.
+    Stiffness is kept, a box not looked at; None where the feasible trains are too many, or time is
+    up.
     """
-    posed = split.problem(scene.servo_train(), *weighed(scene))
-    points = _feasible(scene, posed)
-    if points is None or len(points) == 0:
+    import numpy as np
+
+    def check() -> None:
+        if not clock.goes_on():
+            raise TimeoutError
+
+    train, goals = scene.servo_train(), weighed(scene)
+    posed, least = split.problem(train, *goals), scene.least_stiffness
+    try:
+        points = split.feasible(train, goals[0], check=check)
+        if points is None:
+            return None
+        best, worth = points[:0], np.empty((0, len(goals)))
+        for start in range(0, len(points), PART):
+            check()
+            part = points[start : start + PART]
+            if least is not None:
+                part = part[output_stiffness(scene, part.T) >= least]
+            if len(part):
+                best, worth = np.vstack([best, part]), np.vstack([worth, posed.batch(part).F])
+                kept = split.unbeaten(worth)
+                best, worth = best[kept], worth[kept]
+    except TimeoutError:
         return None
-    if (least := scene.least_stiffness) is not None:
-        points = points[output_stiffness(scene, points.T) >= least]
-    if len(points) == 0:
-        return None
-    worth = posed.batch(points).F
-    kept = split.unbeaten(worth)
-    return points[kept], worth[kept]
+    return (best, worth) if len(best) else None

@@ -6,6 +6,7 @@ from typing import Any
 
 from gearopt.formulations import servo_box, split
 from gearopt.formulations.ratio import ServoDuty
+from gearopt.optimise.explaining.repair import Clock
 from gearopt.optimise.progress import in_part
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run, solve
@@ -39,14 +40,15 @@ def train_part(scene: Scene, ask: Ask) -> tuple[Result, Gears | None]:
     return replace(result, design={"train": described(scene, gears)}), gears
 
 
-def neighbours(scene: Scene) -> list[dict[str, Any]]:
-    """The trains that no other is better than in all that is weighed; thinned if many.
+def neighbours(scene: Scene, clock: Clock) -> list[dict[str, Any]]:
+    """The trains that no other is better than in all that is weighed; none if time is up.
 
-    One that is the best by two goals stands there twice, each time named by one of them.
+    Thinned if many. One that is the best by two goals stands there twice, each time named by one
+    of them.
     """
     import numpy as np
 
-    found = front(scene)
+    found = front(scene, clock)
     if found is None:
         return []
     points, worth = found
