@@ -32,7 +32,11 @@ def remedy_words(
     conflict, ways, late = found["conflict"], found["remedies"], found["message"]
     if conflict:
         names = ", ".join(limit_words(n) for n in conflict)
-        why.append(f"These cannot hold together, and none of them is to spare: {names}.")
+        why.append(
+            f"These cannot hold together, and none of them is to spare: {names}."
+            if len(conflict) > 1
+            else f"This limit cannot be kept, even if all others are dropped: {names}."
+        )
     late = f"{late[0].upper()}{late[1:]}." if late else ""
     if not ways:
         return [*why, late or "No way out was found by moving limits."], [], []
