@@ -283,8 +283,12 @@ def test_json_is_printed_whole_before_ctrl_c_counts(monkeypatch):
             return super().write(text)
 
     monkeypatch.setattr(sys, "stdout", screen := Screen())
-    with pytest.raises(KeyboardInterrupt):
-        print_whole("{}")
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)  # ignored in the background
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            print_whole("{}")
+    finally:
+        signal.signal(signal.SIGINT, before)
     assert screen.getvalue() == "{}\n"
 
 
