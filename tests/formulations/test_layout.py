@@ -138,6 +138,7 @@ FOLDED = Gearbox(  # coaxial: both centre distances are the same
     partial=True,
 )
 ELEVATOR = gearbox("elevator")
+QUICK = ("volume", "height", "width", "keep_out")
 GRID = {
     "volume": ELEVATOR,
     "height": replace(ELEVATOR, objective="height", largest=(500.0, math.inf, math.inf)),
@@ -187,7 +188,10 @@ def best_on_grid(box):
     return float(value[short <= 0.0].min(initial=math.inf))
 
 
-@pytest.mark.parametrize("name", GRID)
+@pytest.mark.parametrize(
+    "name",
+    [n if n in QUICK else pytest.param(n, marks=pytest.mark.slow) for n in GRID],
+)
 def test_exact_against_a_grid(name):
     box = GRID[name]
     result, grid = solve(problem(box)), best_on_grid(box)

@@ -194,7 +194,7 @@ def test_two_stages_as_by_brute_force(seed):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", [0, 2, 3])  # 1 takes half a minute
 def test_three_stages_as_by_brute_force(seed):
     same_as_brute_force(seed, 3, 1e-3)
 

@@ -175,7 +175,9 @@ def some(seed):
     return Stack(tuple(found), tuple(budgets))
 
 
-@pytest.mark.parametrize("seed", range(40))
+@pytest.mark.parametrize(
+    "seed", [*range(10), *(pytest.param(k, marks=pytest.mark.slow) for k in range(10, 40))]
+)
 def test_random_stacks_by_three_solvers(seed):
     tolerances = some(seed)
     posed = problem(tolerances)

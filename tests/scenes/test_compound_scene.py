@@ -92,6 +92,7 @@ def test_what_is_achieved_stands_in_the_title(ratio, first):
     assert bool(result.message) == (ratio > 25)
 
 
+@pytest.mark.slow
 def test_the_range_that_is_proposed_is_within_reach():
     for ratio in (26, 60, 399, 1000, 6400):
         for teeth in solved(ratio).report["reach"]["wider_teeth"]:

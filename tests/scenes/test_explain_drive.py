@@ -68,7 +68,13 @@ def spelt(names):
 
 
 @pytest.mark.parametrize("exact", [False, True], ids=["1 %", "exact"])
-@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize(
+    "case",
+    [
+        c if c == "1000:1 by two stages of 10" else pytest.param(c, marks=pytest.mark.slow)
+        for c in CASES
+    ],
+)
 def test_least_repair_known_before(case, exact):
     text, percent, precise, where, conflict = CASES[case]
     text = without_teeth(text).replace(*EXACT) if exact else without_teeth(text)
@@ -133,9 +139,9 @@ def test_given_teeth_that_contradict_the_ratio():
 
 
 def test_solve_says_the_same():
-    result = solve(PROBLEMS / "elevator_small_wheels.toml")
-    found = explain(PROBLEMS / "elevator_small_wheels.toml")
-    assert tuple(result.report["ways_out"]["conflict"]) == found.conflict
+    result = solve(PROBLEMS / "thousand_in_two_stages.toml")
+    found = explain(PROBLEMS / "thousand_in_two_stages.toml")
+    assert found.remedies and tuple(result.report["ways_out"]["conflict"]) == found.conflict
     assert [r["changes"][0]["write"] for r in result.report["ways_out"]["remedies"]] == [
         r.changes[0].write for r in found.remedies
     ]
@@ -208,10 +214,10 @@ helix_angle = "{draw.choice([0, 12, 25])} deg"
 @pytest.mark.slow
 @pytest.mark.parametrize("block", range(10))
 def test_every_remedy_of_random_impossible_drives_is_verified(block):
-    """100 impossible drives in all; those drawn possible are left out and counted."""
+    """50 impossible drives in all; those drawn possible are left out and counted."""
     impossible = 0
     seed = 1000 * block
-    while impossible < 10:
+    while impossible < 5:
         seed += 1
         scene, content = scene_of(random_file(seed))
         found = explain(scene, budget=Budget(seconds=60))
@@ -325,6 +331,7 @@ def test_a_tolerance_of_zero_can_be_eased():
     assert ease.changes[0].was == '"0 %"' and verify(content, ease)
 
 
+@pytest.mark.slow
 def test_standard_modules_move_to_standard_modules():
     text = with_limits(ELEVATOR, 'module = ["1 mm", "2 mm"]', 'wheel_diameter = "260 mm"')
     scene, content = scene_of(text)

@@ -97,6 +97,7 @@ def test_a_free_width_leaves_the_processes_out_and_says_so():
     assert words.count("face_width_over_diameter as one number") == 2
 
 
+@pytest.mark.slow
 def test_an_impossible_drive_has_no_processes():
     text = ELEVATOR.replace(
         "pinion_teeth = [20, 40]", 'pinion_teeth = [20, 40]\nwheel_diameter = "250 mm"'

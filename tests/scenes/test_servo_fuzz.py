@@ -67,7 +67,7 @@ def test_the_bases_load(base):
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_mutation_of_every_base(kind):
-    assert {fate(kind, base, seed) for base in BASES for seed in range(4)}
+    assert {fate(kind, base, seed) for base in BASES for seed in range(2)}
 
 
 def answer(kind, base, seed):

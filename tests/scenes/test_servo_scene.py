@@ -281,6 +281,7 @@ def test_lightest_trains_known_independently(frequency, grams):
     assert stiff.status == "optimal" and 1e3 * stiff.value == pytest.approx(grams, abs=6e-6)
 
 
+@pytest.mark.slow
 def test_the_whole_toothed_train_is_as_stiff_as_asked():
     """230 Hz cuts the best trains off; the answer is the best of the unbeaten ones."""
     least = [(("stiffness", "frequency"), "230 Hz"), (("accuracy", "error"), "0.12 deg")]
