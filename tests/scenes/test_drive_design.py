@@ -164,7 +164,7 @@ def test_the_least_teeth_that_are_not_named_are_those_of_tables(pressure, helix,
 def test_a_servo_train_names_the_same_pinions():
     scene = gearopt.load(PROBLEMS / "servo_gimbal_light.toml")
     stages = [{"pinion_teeth": 16}, {"pinion_teeth": 17}]
-    said = [n for n in servo_notes(scene, {"train": {"stages": stages}}, ()) if "undercut" in n]
+    said = [n for n in servo_notes(scene, {"train": {"stages": stages}}, (), {}) if "undercut" in n]
     assert len(said) == 1 and "stage 1 is undercut, with 16 teeth" in said[0]
 
 

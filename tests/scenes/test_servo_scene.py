@@ -22,7 +22,7 @@ from gearopt.report.proof_words import proof
 from gearopt.report.remedy_words import remedy_words
 from gearopt.report.servo_achieved import best_words
 from gearopt.scenes.axis import choice
-from gearopt.scenes.axis.assumptions import assumptions, notes
+from gearopt.scenes.axis.assumptions import UNLISTED, assumptions, notes
 from gearopt.scenes.axis.choice import box_of, front, posed
 from gearopt.scenes.axis.gears import of_point
 from gearopt.scenes.axis.overlap import given_overlap
@@ -439,6 +439,13 @@ def test_a_look_for_neighbours_in_parts_finds_the_same_and_stops_in_time(monkeyp
         assert front(scene, stopped) is None and stopped.stopped
 
 
+def test_trains_that_are_not_listed_are_said_to_be(monkeypatch):
+    monkeypatch.setattr(choice, "LISTED", 100)
+    result = gearopt.solve(PROBLEMS / "servo_gimbal_light.toml")
+    assert result.status == "optimal" and result.report["trains"] == []
+    assert UNLISTED in result.report["notes"]
+
+
 def test_given_gears_stand_beside_the_best():
     report = gearopt.solve(PROBLEMS / "servo_gimbal.toml").report
     assert report["given_inertia_kg_m2"] == pytest.approx(7.578e-7, abs=6e-11)
@@ -788,7 +795,7 @@ def test_a_message_with_a_stop_gets_no_second_one():
     result = gearopt.solve(changed(RATIO))
     late = replace(result, status="limit", message="Bound of ratio is violated by 1.01.")
     assert "Bound of ratio is violated by 1.01." in proof(late)
-    note = notes(changed(RATIO), {}, (result, replace(late, objective={"name": "ratio"})))
+    note = notes(changed(RATIO), {}, (result, replace(late, objective={"name": "ratio"})), {})
     assert note == ["There is no answer for the part ratio: Bound of ratio is violated by 1.01."]
 
 

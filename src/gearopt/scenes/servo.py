@@ -62,7 +62,7 @@ def solve(scene: Scene, ask: Ask) -> Result:
     figures = key_figures(scene, found.results, found.design, found.report)
     answer, *parts = found.results
     told: dict[str, Any] = {"assumptions": assumptions(scene)}
-    if said := notes(scene, found.design, found.results):
+    if said := notes(scene, found.design, found.results, found.report):
         told["notes"] = said
     if answer.status == "infeasible" and scene.train is not None:
         conflict, remedies, message = ways_out(scene, clock, answer.message)

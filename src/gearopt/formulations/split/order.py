@@ -33,7 +33,7 @@ def unchecked() -> None:
 def feasible(
     train: ServoTrain,
     goal: str = "inertia",
-    most: int = 1_000_000,
+    most: int = LOT,
     check: Callable[[], None] = unchecked,
 ) -> Array | None:
     """All feasible trains; None for more than `most`. The motor's limits hold if a duty is goal."""

@@ -117,7 +117,12 @@ def _of_bodies(scene: Scene) -> list[str]:
     ]
 
 
-def notes(scene: Scene, design: dict[str, Any], results: tuple[Result, ...]) -> list[str]:
+UNLISTED = "Other trains are not shown beside this one: there are too many, or the time was up."
+
+
+def notes(
+    scene: Scene, design: dict[str, Any], results: tuple[Result, ...], report: dict[str, Any]
+) -> list[str]:
     """What a reader should know beside the numbers."""
     duty, found = scene.servo_duty(), []
     if duty is not None and "ratio" in design:
@@ -147,6 +152,8 @@ def notes(scene: Scene, design: dict[str, Any], results: tuple[Result, ...]) -> 
         found += overlaps(scene, results)
     if said := given_overlap(scene):
         found.append(said)
+    if report.get("trains") == []:
+        found.append(UNLISTED)
     found += [
         f"There is no answer for the part {part.name}: {(part.message or part.status).rstrip('.')}."
         for part in results[1:]

@@ -28,6 +28,7 @@ SHOWN = {  # objective: factor to the unit that is shown, the unit
     "rms_torque": (1e-3, "Nm"),
 }
 FRONT = 400  # trains that are shown
+LISTED = 1_000_000  # trains that these are chosen from, at the most
 PART = 50_000  # trains that are weighed between two looks at the clock
 
 
@@ -173,7 +174,7 @@ def front(scene: Scene, clock: Clock) -> tuple[Array, Array] | None:
     train, goals = scene.servo_train(), weighed(scene)
     posed, least = split.problem(train, *goals), scene.least_stiffness
     try:
-        points = split.feasible(train, goals[0], check=check)
+        points = split.feasible(train, goals[0], LISTED, check)
         if points is None:
             return None
         best, worth = points[:0], np.empty((0, len(goals)))
