@@ -7,9 +7,10 @@ import pytest
 
 from gearopt.errors import CertificateError
 from gearopt.optimise.certificate import FARKAS, Verdict, bounded, certify, reconcile, told
+from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Result
-from gearopt.optimise.solve import run
+from gearopt.optimise.solve import run, solve
 from gearopt.optimise.solvers import ipopt
 from gearopt.optimise.terms import Terms, Var
 
@@ -310,20 +311,37 @@ def test_our_own_bound_decides_within_the_tolerance():
 
 
 def test_a_value_below_our_bound_is_an_error_or_explained():
-    """An error where hardly a limit is exceeded; else the excess is named."""
+    """An error where no limit is exceeded by more than rounding; else the excess is named."""
     with pytest.raises(CertificateError, match="below the dual bound"):
         ours(-101.0, 0.0)
     with pytest.raises(CertificateError, match="below the dual bound"):
-        ours(-101.0, 0.0, excess=0.995e-10)
+        ours(-101.0, 0.0, excess=1e-14)
     assert ours(-100.0, 0.0).status == "feasible"  # by 1e-6 exactly
-    for excess in (1e-10, 5e-9):
+    for excess in (1.01e-14, 5e-9):
         verdict = ours(-101.0, 0.0, excess=excess)
         assert verdict.status == "feasible" and verdict.gap == 0.0
         words = f"row is violated by {excess:.3g}, which the objective gains from. Ended."
         assert verdict.message == words
 
 
-def test_gaps_are_told_where_they_are_finite():
+@pytest.mark.parametrize(("slope", "kind"), [(1e5, Problem), (-1e5, Problem), (1e5, Conic)])
+def test_limits_that_contradict_each_other_by_a_little_are_no_error(slope, kind):
+    """x >= 1 + 1e-10 and x <= 1: a point between them is accepted, and may lie below the bound."""
+    x = Var("x", "", -10.0, 10.0, 1.0)
+
+    def text(x, p):
+        rows = {"least": 2.0 + 1e-10 - x.x, "most": x.x}
+        return Terms({"f": slope * (x.x - 1.0) + 1.0}, rows)
+
+    problem = kind("rows", (x,), (), text)
+    if kind is Problem:
+        verdict = certify(problem, Outcome(np.array([1.0 + 5e-11])), 1e-6)
+    else:
+        verdict = solve(problem)
+    assert verdict.status in ("feasible", "stationary")
+    assert verdict.message.startswith(("least is violated by 5e-11", "most is violated by 5e-11"))
+    assert verdict.message.endswith("which the objective gains from.")
+
     assert (told(0.5), told(-0.5), told(np.inf), told(-np.inf)) == (0.5, 0.0, None, None)
 
 

@@ -131,6 +131,49 @@ def test_against_all_choices_of_rows():
         assert found == pytest.approx(lam, abs=1e-9)
 
 
+@pytest.mark.parametrize("held", [0, 2])
+def test_of_rows_that_depend_on_each_other_those_are_kept_that_level_the_slopes(held):
+    """At corners where more limits meet than there are variables, in any units; with equalities."""
+    rng = np.random.default_rng(6)
+    missed = 0
+    for _ in range(100):
+        size, count = rng.integers(3, 8), rng.integers(4, 12)
+        of_g, of_h = rng.normal(size=(count, size)), rng.normal(size=(held, size))
+        of_g[1] = of_g[0]
+        of_g[3] = of_g[2] + of_g[0]
+        lam = np.where(rng.random(count) < 0.6, rng.random(count), 0.0)
+        gradient = 1e6 * (-of_g.T @ lam - of_h.T @ rng.normal(size=held))
+        of_g *= 10.0 ** rng.integers(-3, 3, (count, 1))
+        lam_g, lam_h = given(gradient, g=np.zeros(count), of_g=of_g, of_h=of_h)
+        left = gradient + of_g.T @ lam_g + of_h.T @ lam_h
+        missed += not np.abs(left).max() <= 1e-9 * np.abs(gradient).max()
+        assert (lam_g >= 0.0).all()
+    assert missed == 0
+
+
+def test_a_corner_of_many_limits_is_a_minimum():
+    """Four planes meet in three variables; the slope of a concave objective is within three."""
+    planes = np.array([[-3, -1, -3], [-1, 1, 0], [3, 1, -2], [0, -3, 0]])
+    slope = -planes.T @ np.array([1, 1, 0, 1])
+
+    def text(x, p):
+        limits = {f"plane_{k}": 1.0 + row @ np.array(x.x) for k, row in enumerate(planes)}
+        bent = -0.1 * sum(v**2 for v in x.x)
+        return Terms({"f": slope @ np.array(x.x) + bent + 9.0}, limits)
+
+    problem = Problem("corner", (Var("x", "", -9.0, 9.0, 1.0, 3),), (), text)
+    assert certify(problem, Outcome(np.zeros(3)), 1e-6).status == "stationary"
+
+
+def test_without_an_end_of_the_choice_rows_of_the_wrong_sign_are_left_out(monkeypatch):
+    def endless(*system):
+        raise RuntimeError("Maximum number of iterations reached.")
+
+    monkeypatch.setattr("scipy.optimize.nnls", endless)
+    lam_g, _ = given([-1.0, -2.0], g=np.zeros(2), of_g=[[-1.0, 0.0], [0.0, 1.0]])
+    assert lam_g == pytest.approx([0.0, 2.0])
+
+
 def test_slopes_that_are_no_numbers_have_no_multipliers():
     """Of free variables; a row that is off its limit and a variable on its bound do not matter."""
     one = {"gradient": [-1.0, -2.0], "g": [0.0, -1.0], "of_g": [[np.nan, 1.0], [np.inf, np.inf]]}
