@@ -242,6 +242,7 @@ def test_rounding_is_that_of_all_terms():
     ("minimise", "said"),
     [
         (lambda a: a**4 - 200 * a**6, ""),  # rises at first
+        (lambda a: 0.01 + a**4 - 1e5 * a**6, ""),  # to a thousandth
         (lambda a: -(a**4) + 200 * a**6, ""),  # rises further on
         (lambda a: -(a**4) + 50 * a**6, "a"),
     ],

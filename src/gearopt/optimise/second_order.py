@@ -155,7 +155,7 @@ def _sinks(point: Point, cone: _Cone, d: Array) -> bool:
     here, size, _ = _lagrangian(point, cone, point.y)
     fell = []
     for t in STEPS:
-        moved = _curve(point, cone, t * step, t * pull)
+        moved = _curve(point, cone, t * step)
         there, more, _ = _lagrangian(point, cone, point.y + moved)
         bent = t * pull @ (moved - 0.5 * t * step)
         further = there - here - point.gradient @ moved - bent
@@ -164,14 +164,13 @@ def _sinks(point: Point, cone: _Cone, d: Array) -> bool:
     return bool(max(fell) <= 0 and fell[-2] < 0)
 
 
-def _curve(point: Point, cone: _Cone, step: Array, pull: Array) -> Array:
+def _curve(point: Point, cone: _Cone, step: Array) -> Array:
     """A step along a flat direction and, across it, to what the Lagrangian and firm rows ask for.
 
-    pull: the Hessian times the step. The step's own slope and curvature count as none.
+    They ask for slopes and rows as they are at the point; what these are there counts as none.
     """
-    moved, size = step.copy(), len(cone.unit)
+    moved = step.copy()
     _, _, off = _lagrangian(point, cone, point.y)
-    off[:size] += pull[cone.free] * cone.unit
     for _ in range(NEWTON):
         _, _, now = _lagrangian(point, cone, point.y + moved)
         moved[cone.free] -= cone.unit * (cone.across @ (now - off))
