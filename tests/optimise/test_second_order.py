@@ -189,6 +189,7 @@ BENT = {  # objective, equality; whether the objective falls along a
     "coupled": (lambda a, b: b**2 + 3 * a**2 * b + a**4, None, True),
     "coupled, held": (lambda a, b: b**2 + a**2 * b + a**4, None, False),
     "on a curve": (lambda a, b: 2 * b**2 - a**4, lambda a, b: b - a**2, False),
+    "on a steep curve": (lambda a, b: 2 * b**2 - a**4, lambda a, b: 5 * (b - a**2), False),
     "off a line": (lambda a, b: -(b**2), lambda a, b: b - a**2, True),
     "falls with a force": (lambda a, b: a**2 - b - a**4, lambda a, b: b - a**2, True),
     "rises with a force": (lambda a, b: a**2 - b + a**4, lambda a, b: b - a**2, False),
@@ -210,6 +211,15 @@ def test_valleys_are_followed_along_their_floor(name, turn):
     force = 1.0 if "force" in name else 0.0
     found = word(turned(minimise), (0, 0), **equal, forces=(force,) * len(equal))
     assert (found != "") == falls
+
+
+def test_a_floor_that_bends_by_less_than_a_millionth_is_flat():
+    """In the sum and the difference of the variables; rounding of the floor is not divided by."""
+
+    def text(a, b):
+        return (b - a - (a + b) ** 2) ** 2 - (a + b) ** 4 + 2e-7 * (a + b) ** 2
+
+    assert word(text, (0, 0)) != ""
 
 
 def test_a_valley_that_a_limit_bends_is_followed():

@@ -32,9 +32,9 @@ class _Cone:
     """Directions d (k,) of the free variables, in units of `unit`, along what holds.
 
     free (n,): which variables have no price on their bound. curved (k, k): Hessian. firm: rows of
-    limits with a price and of equalities, loose: of limits without one and of such bounds, d must
-    meet firm d = 0 and loose d <= 0. priced: which limits are firm. length: of firm rows before
-    they were made 1.
+    limits with a price and of equalities, loose: of all limits that hold, and of bounds without a
+    price; d must meet firm d = 0 and loose d <= 0. priced: which limits are firm. length: of firm
+    rows before they were made 1.
     """
 
     free: Any
@@ -100,7 +100,7 @@ def _cone(point: Point, free: Any) -> _Cone:
     of_g, of_h = (dense(j) for j in point.shape.jacobians(point.y, p))
     priced = point.lam_g[:, None] * np.abs(of_g) * own > STATIONARY * acting(point)
     firm = priced.any(axis=1)
-    loose = (point.g >= -NEAR) & ~firm
+    loose = point.g >= -NEAR
     low, high = (end[free] for end in _ends(point))
     bounds = np.eye(int(free.sum()))
     curved = dense(hessian(point))[np.ix_(free, free)] * np.outer(own[free], own[free])
@@ -146,10 +146,8 @@ def _sinks(point: Point, cone: _Cone, d: Array) -> bool:
     """
     step = np.zeros(len(point.y))
     step[cone.free] = cone.unit * d
-    length = float((np.abs(step) / own_scales(point)).max(initial=0.0))
-    room = np.where(step > 0.0, point.high - point.y, point.y - point.low)
-    reach = min(1.0 / length, float((room / np.abs(step))[step != 0.0].min()) / STEPS[-1])
-    step = step * reach
+    length = float((np.abs(step) / own_scales(point)).max())
+    step = step / length
     curved = dense(hessian(point))
     pull, pulls = curved @ step, np.abs(curved) @ np.abs(step)
     here, size, _ = _lagrangian(point, cone, point.y)
