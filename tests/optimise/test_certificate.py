@@ -523,3 +523,48 @@ def test_reconciled_results_keep_what_nobody_contradicts():
     assert reconcile(tie, replace(ideal, bound=1e8 - 100.0), 1e-6).status == "optimal"
     with pytest.raises(CertificateError):
         reconcile(tie, replace(ideal, bound=1e8 + 2.0), 1e-6)
+
+
+def test_a_bound_counts_only_from_an_exact_algorithm_and_where_it_is_finite():
+    """x + 1/y at (1, 10): 1.1, of which a method says that nothing is below; 0.5 is."""
+    claim = Outcome(np.array([1.0, 10.0]), bound=1.1, proof={"method": "own"})
+    assert certify(hill(), claim, 1e-6, exact=True).status == "optimal"
+    verdict = certify(hill(), claim, 1e-6)
+    assert verdict.status == "feasible" and verdict.bound <= 0.5
+    nothing = certify(hill(), replace(claim, bound=-np.inf), 1e-6, exact=True)
+    assert nothing.status == "feasible" and nothing.bound == verdict.bound
+
+
+def test_what_is_not_solved_says_how_far_it_is_from_feasible():
+    off = certify(hill(), Outcome(np.array([1.0, 3.2])), 1e-6)
+    assert off.status == "failed" and off.certificate == {"feasibility": pytest.approx(0.25)}
+    x = Var("x", "", -1.0, 1.0, 1.0)
+    pole = Problem("pole", (x,), (), lambda x, p: Terms({"f": 1.0 / x.x}))
+    verdict = certify(pole, Outcome(np.zeros(1)), 1e-6)
+    assert verdict.status == "failed" and verdict.certificate == {"feasibility": 0.0}
+
+
+def test_a_variable_that_nothing_holds_is_named():
+    x = Var("x", "", -np.inf, np.inf, 1.0)
+    problem = Problem("free", (x,), (), lambda x, p: Terms({"f": np.exp(-x.x * 1e-8)}))
+    verdict = certify(problem, Outcome(np.array([2e9]), message="Ended."), 1e-6)
+    assert verdict.status == "failed" and verdict.message.startswith("nothing holds x (2e+09)")
+    assert certify(problem, Outcome(np.array([0.9e9])), 1e-6).status == "feasible"
+
+
+def test_an_exhausted_search_is_told_as_it_was():
+    claim = Outcome(None, infeasible=True, proof={"method": "exhausted"}, message="None of 9.")
+    verdict = certify(hill(), claim, 1e-6, exact=True)
+    assert (verdict.status, verdict.proof, verdict.message) == (
+        "infeasible",
+        {"method": "exhausted"},
+        "None of 9.",
+    )
+
+
+def test_a_text_without_derivatives_is_feasible_and_says_why_no_more():
+    x = Var("x", "", 1.0, 9.0, 2.0)
+    table = Problem("table", (x,), (), lambda x, p: Terms({"f": np.frexp(x.x)[0]}))
+    verdict = certify(table, Outcome(np.array([2.0]), message="Ended."), 1e-6)
+    assert verdict.status == "feasible"
+    assert verdict.message.startswith("Ended. No bound, no optimality conditions: the text of table")
