@@ -567,4 +567,6 @@ def test_a_text_without_derivatives_is_feasible_and_says_why_no_more():
     table = Problem("table", (x,), (), lambda x, p: Terms({"f": np.frexp(x.x)[0]}))
     verdict = certify(table, Outcome(np.array([2.0]), message="Ended."), 1e-6)
     assert verdict.status == "feasible"
-    assert verdict.message.startswith("Ended. No bound, no optimality conditions: the text of table")
+    assert verdict.message.startswith(
+        "Ended. No bound, no optimality conditions: the text of table"
+    )

@@ -2,6 +2,7 @@
 
 from types import SimpleNamespace
 
+import casadi as ca
 import numpy as np
 import pytest
 
@@ -61,6 +62,14 @@ def test_no_multiplier_is_negative():
     assert lam_g == pytest.approx([0.0, 2.0], abs=1e-12)
 
 
+@pytest.fixture(params=["dense", "sparse"])
+def either(request, monkeypatch):
+    """Solve dense systems, or all as large sparse ones."""
+    if request.param == "sparse":
+        monkeypatch.setattr("gearopt.optimise.multipliers.SMALL", -1)
+        monkeypatch.setattr("gearopt.optimise.multipliers.SPARSE", 1.0)
+
+
 def given(gradient, g=(), of_g=(), of_h=(), y=None, low=None, high=None):
     """Multipliers of numbers as they are: slopes, rows, their derivatives, and where y lies."""
     size = len(gradient)
@@ -72,7 +81,8 @@ def given(gradient, g=(), of_g=(), of_h=(), y=None, low=None, high=None):
         return 0.0, np.array(g, float), np.zeros(sizes[2]), np.array(gradient, float), None
 
     derivatives.numel_out = sizes.get
-    shape = SimpleNamespace(derivatives=derivatives, jacobians=lambda y, p: rows)
+    sparse = [ca.sparsify(ca.DM(r)) for r in rows]
+    shape = SimpleNamespace(derivatives=derivatives, jacobians=lambda y, p: sparse)
     y = np.zeros(size) if y is None else np.array(y, float)
     ends = (
         np.full(size, s * np.inf) if e is None else np.array(e) for s, e in ((-1, low), (1, high))
@@ -80,6 +90,7 @@ def given(gradient, g=(), of_g=(), of_h=(), y=None, low=None, high=None):
     return multipliers(shape, y, np.empty(0), *ends)
 
 
+@pytest.mark.usefixtures("either")
 def test_rows_count_from_a_millionth_below_their_limit():
     one = {"gradient": [-2.0], "of_g": [[1.0]]}
     for g, lam in ((0.0, 2.0), (1e-9, 2.0), (-NEAR, 2.0), (-1.001 * NEAR, 0.0), (-1.0, 0.0)):
@@ -87,6 +98,7 @@ def test_rows_count_from_a_millionth_below_their_limit():
     assert NEAR == 1e-6
 
 
+@pytest.mark.usefixtures("either")
 def test_variables_on_their_bounds_do_not_count():
     """Two slopes, one row that could level either; on a bound a slope may stay."""
     two = {"gradient": [-2.0, -8.0], "g": [0.0], "of_g": [[1.0, 2.0]]}
@@ -105,6 +117,7 @@ def test_variables_on_their_bounds_do_not_count():
         assert given(**two, **ends)[0] == pytest.approx([lam])
 
 
+@pytest.mark.usefixtures("either")
 def test_rows_that_pull_the_wrong_way_are_left_out_one_after_another():
     """Without the first the second pulls the wrong way too; the equality may."""
     lam_g, lam_h = given(
@@ -118,6 +131,34 @@ def test_rows_that_pull_the_wrong_way_are_left_out_one_after_another():
     twice = [[-2.0, -2.0], [-1.0, 2.0], [0.0, 1.0]]
     lam_g, _ = given(gradient=[-1.0, -2.0], g=np.zeros(3), of_g=twice)
     assert lam_g == pytest.approx([0.0, 0.0, 2.0], abs=1e-12)
+
+
+@pytest.mark.usefixtures("either")
+@pytest.mark.parametrize("unit", [1e-6, 1.0, 1e6])
+def test_rows_that_repeat_others_share_their_multiplier(unit):
+    """In any unit; rows without a slope have none, and the only row may be of the wrong sign."""
+    both = {"g": np.zeros(3), "of_g": unit * np.array([[1.0, 2.0], [1.0, 2.0], [0.0, 0.0]])}
+    lam_g, lam_h = given([-3.0, -6.0], of_h=[[unit, -unit]], **both)
+    assert (lam_g >= 0.0).all() and lam_g[2] == 0.0
+    assert lam_g.sum() * unit == pytest.approx(3.0, rel=1e-9)
+    assert lam_h * unit == pytest.approx([0.0], abs=1e-9)
+    assert given([3.0], g=[0.0], of_g=[[unit]])[0] == pytest.approx([0.0])
+    assert given([3.0], g=[0.0], of_g=[[0.0]])[0] == pytest.approx([0.0])
+
+
+def test_large_systems_of_few_entries_are_solved_as_sparse_ones(monkeypatch):
+    from scipy.sparse import linalg
+
+    seen, solve = [], linalg.splu
+    monkeypatch.setattr(linalg, "splu", lambda matrix: seen.append(1) or solve(matrix))
+    rows = {"g": [0.0, -1.0, 0.0], "of_g": [[1.0, 0, 0], [0, 0, 0], [0, 1, 0]], "of_h": [[0, 0, 1]]}
+    for small, share, sparse in ((9, 1.0, 0), (8, 0.3333, 0), (8, 0.33334, 1)):
+        monkeypatch.setattr("gearopt.optimise.multipliers.SMALL", small)
+        monkeypatch.setattr("gearopt.optimise.multipliers.SPARSE", share)
+        seen.clear()
+        lam_g, lam_h = given([-1.0, -2.0, 3.0], **rows)
+        assert lam_g == pytest.approx([1.0, 0.0, 2.0]) and lam_h == pytest.approx([-3.0])
+        assert len(seen) == sparse
 
 
 def test_against_all_choices_of_rows():
@@ -174,6 +215,7 @@ def test_without_an_end_of_the_choice_rows_of_the_wrong_sign_are_left_out(monkey
     assert lam_g == pytest.approx([0.0, 2.0])
 
 
+@pytest.mark.usefixtures("either")
 def test_slopes_that_are_no_numbers_have_no_multipliers():
     """Of free variables; a row that is off its limit and a variable on its bound do not matter."""
     one = {"gradient": [-1.0, -2.0], "g": [0.0, -1.0], "of_g": [[np.nan, 1.0], [np.inf, np.inf]]}
