@@ -9,7 +9,7 @@ from gearopt.optimise.second_order import no_minimum
 from gearopt.optimise.stationarity import evaluated
 from gearopt.optimise.terms import Terms, Var
 
-NAMES = "abc"
+NAMES = "abcd"
 OPEN = "whether it is a minimum is open: limits hold that have no price"
 
 
@@ -69,6 +69,12 @@ def test_slopes_of_limits_act_too(bend, said, unit):
 @pytest.mark.parametrize(("bend", "said"), [(2e-2, "b"), (0.5e-2, "")])
 def test_beside_a_variable_that_is_acted_on_much_a_little_is_rounding(bend, said):
     assert word(lambda a, b: 5e11 * a**2 - bend * b**2 / 2, (0, 0)) == said
+    assert word(lambda a, b, c: 5e11 * a**2 - bend * b**2 / 2, (0, 0, 0)) == said  # c is idle
+
+
+def test_neither_a_factor_nor_an_idle_variable_hides_curvature():
+    assert word(lambda a: -1e-20 * a**2, (0,)) == "a"
+    assert word(lambda a, b: -5e-10 * a**2, (0, 0), equal=(lambda a, b: a + b,), forces=(0,)) != ""
 
 
 PRICES = [(1.0, 0.6e-6, ""), (1.0, 0.4e-6, "a"), (100.0, 6e-5, ""), (100.0, 4e-5, "a")]
@@ -84,12 +90,14 @@ def test_a_bound_holds_from_a_millionth_of_what_acts(unit, slope, said, sign):
 
 
 @pytest.mark.parametrize(("unit", "price", "said"), PRICES)
-@pytest.mark.parametrize("sign", [1.0, -1.0])
+@pytest.mark.parametrize("sign", [1.0, -1e3])
 def test_a_limit_holds_from_a_millionth_of_what_acts(unit, price, said, sign):
-    """It need not be of all variables."""
+    """It need not be of all variables; by its slope times its price."""
     given = {"ends": (-3.0 * unit, 3.0 * unit), "guess": unit}
-    rows = {"rows": (lambda a, b: sign * a,), "prices": (price,)}
-    found = word(lambda a, b: -sign * price * a - a**2 / 2 + b**2 / 2, (0, 0), **given, **rows)
+    rows = {"rows": (lambda a, b: sign * a,), "prices": (price / abs(sign),)}
+    found = word(
+        lambda a, b: -np.sign(sign) * price * a - a**2 / 2 + b**2 / 2, (0, 0), **given, **rows
+    )
     assert found == said
 
 
@@ -98,6 +106,8 @@ def test_a_limit_holds_from_a_millionth_of_what_acts(unit, price, said, sign):
     [
         (-1.0, 0.0, (0.0, 3.0), "a"),  # away from the bound
         (1.0, 3.0, (0.0, 3.0), "a"),
+        (0.5, 3.0, (0.0, 3.0), "a"),
+        (0.5, 0.0, (0.0, 3.0), ""),
         (1.0, 1.0, (0.0, 3.0), "a"),  # no bound
         (-1.0, 1.0, (0.0, 3.0), "a"),
         (1.0, 1e-6, (0.0, 3.0), ""),
@@ -129,6 +139,13 @@ def test_bounds_without_a_price_block_one_side(ends, sign):
     assert word(lambda a, b: sign * a * b, (0, 0), ends, guess) == "open"
     more = [*ends, (-3, 3)]
     assert word(lambda a, b, c: sign * a * b, (0, 0, 0), more, [*guess, 1.0]) == "open"
+    more = [*ends, (0, 3)]  # c is on a bound of its own
+    assert word(lambda a, b, c: sign * a * b, (0, 0, 0), more, [*guess, 1.0]) == "open"
+    assert word(lambda a, b, c: a**2 + b**2, (0, 0, 0), more, [*guess, 1.0]) == ""
+    hold = {"equal": (lambda a, b, c: c,), "forces": (0.0,)}
+    more = [*ends, (-3, 3)]
+    found = word(lambda a, b, c: sign * a * b - c**2, (0, 0, 0), more, [*guess, 1.0], **hold)
+    assert found == "open"
     inside = word(lambda a, b: -sign * a * b, (0, 0), ends, guess)
     assert inside == "a, b"
 
@@ -154,6 +171,17 @@ def test_edges_of_limits_without_a_price_are_looked_at():
     rows = (lambda a, b: a + 0.1 * b, lambda a, b: -a - 0.1 * b)
     found = word(lambda a, b: -(a**2) - b**2 / 2, (0, 0), rows=rows, prices=(0, 0))
     assert found == "b"
+
+
+def test_limits_without_a_price_are_those_of_the_variables():
+    rows = (lambda a, b: a / 100 + b, lambda a, b: -a / 100 - b)
+    wide = {"ends": [(-300, 300), (-3, 3)], "guess": [100.0, 1.0]}
+    found = word(lambda a, b: -((a / 100 + b) ** 2), (0, 0), **wide, rows=rows, prices=(0, 0))
+    assert found == "open"
+
+
+def test_rows_without_a_slope_hold_nothing():
+    assert word(lambda a, b: b**2, (0, 0), equal=(lambda a, b: a**2,), forces=(0,)) == ""
 
 
 @pytest.mark.parametrize(("turn", "said"), [(5e-9, ""), (5e-10, "b")])
@@ -189,7 +217,7 @@ BENT = {  # objective, equality; whether the objective falls along a
     "coupled": (lambda a, b: b**2 + 3 * a**2 * b + a**4, None, True),
     "coupled, held": (lambda a, b: b**2 + a**2 * b + a**4, None, False),
     "on a curve": (lambda a, b: 2 * b**2 - a**4, lambda a, b: b - a**2, False),
-    "on a steep curve": (lambda a, b: 2 * b**2 - a**4, lambda a, b: 5 * (b - a**2), False),
+    "on a low curve": (lambda a, b: 2 * b**2 - a**4, lambda a, b: 0.2 * (b - a**2), False),
     "off a line": (lambda a, b: -(b**2), lambda a, b: b - a**2, True),
     "falls with a force": (lambda a, b: a**2 - b - a**4, lambda a, b: b - a**2, True),
     "rises with a force": (lambda a, b: a**2 - b + a**4, lambda a, b: b - a**2, False),
@@ -200,17 +228,47 @@ BENT = {  # objective, equality; whether the objective falls along a
 @pytest.mark.parametrize("name", BENT)
 @pytest.mark.parametrize("turn", [0.0, 0.4])
 def test_valleys_are_followed_along_their_floor(name, turn):
-    """Straight on, a valley that bends rises, and a line leaves an equality; also when turned."""
+    """Straight on a bent valley rises, and a line leaves an equality; turned and moved too."""
     minimise, row, falls = BENT[name]
     c, s = np.cos(turn), np.sin(turn)
 
     def turned(text):
-        return lambda a, b: text(c * a - s * b, s * a + c * b)
+        return lambda a, b: text(c * (a - turn) - s * (b - turn), s * (a - turn) + c * (b - turn))
 
     equal = {} if row is None else {"equal": (turned(row),)}
     force = 1.0 if "force" in name else 0.0
-    found = word(turned(minimise), (0, 0), **equal, forces=(force,) * len(equal))
+    found = word(turned(minimise), (turn, turn), **equal, forces=(force,) * len(equal))
     assert (found != "") == falls
+
+
+@pytest.mark.parametrize("name", [n for n in BENT if "force" in n])
+def test_what_is_left_of_a_limit_hardly_changes_the_lagrangian(name, monkeypatch):
+    """One step towards the curve leaves a cube of the step's length, and it falls by its fourth."""
+    monkeypatch.setattr("gearopt.optimise.second_order.NEWTON", 1)
+    test_valleys_are_followed_along_their_floor(name, 0.4)
+
+
+def test_rounding_of_the_curvature_is_no_fall():
+    """Of level valleys in any direction."""
+    rng = np.random.default_rng(3)
+    for _ in range(12):
+        (c, s), (p, q, r) = (f(rng.uniform(0, 7)) for f in (np.cos, np.sin)), rng.normal(size=3)
+
+        def level(a, b, c=c, s=s, p=p, q=q, r=r):
+            u, v = c * a - s * b, s * a + c * b
+            return (u + p * u**2 + q * u * v + r * v**2) ** 2
+
+        assert word(level, (0, 0)) == ""
+
+
+def test_slopes_and_curvature_that_are_too_small_to_count_are_no_fall():
+    for slope, bend in ((1e-8, 0.0), (-1e-8, 0.0), (0.0, 1e-7), (0.0, -1e-7)):
+
+        def text(a, b, slope=slope, bend=bend):
+            return (a - b) ** 2 / 2 + slope * (a + b - 2) + bend * (a + b - 2) ** 2
+
+        assert word(text, (1, 1)) == ""
+    assert word(lambda a, b: (b - a**2) ** 2 - 0.01 * a**4 + 4e-7 * b, (0, 0)) == "a"
 
 
 def test_a_floor_that_bends_by_less_than_a_millionth_is_flat():
@@ -232,8 +290,9 @@ def test_a_valley_that_a_limit_bends_is_followed():
 @pytest.mark.parametrize("unit", [1.0, 100.0])
 def test_a_fall_must_be_seen_above_the_rounding(size, said, unit):
     """Of 1 + x^4: at a hundredth of the scale, 1e-12 of what is added up."""
-    text = lambda a: 1.0 - size * (a / unit) ** 4  # noqa: E731
-    assert word(text, (0,), (-3 * unit, 3 * unit), unit) == said
+    for offset in (1.0, -1.0):
+        text = lambda a, offset=offset: offset - size * (a / unit) ** 4  # noqa: E731
+        assert word(text, (0,), (-3 * unit, 3 * unit), unit) == said
 
 
 def test_rounding_is_that_of_all_terms():
@@ -255,6 +314,9 @@ def test_rounding_is_that_of_all_terms():
         (lambda a: 0.01 + a**4 - 1e5 * a**6, ""),  # to a thousandth
         (lambda a: -(a**4) + 200 * a**6, ""),  # rises further on
         (lambda a: -(a**4) + 50 * a**6, "a"),
+        (lambda a: a**3, "a"),
+        (lambda a: -(a**3), "a"),
+        (lambda a: a**2 - 50 * a**4, ""),  # not flat
     ],
 )
 def test_a_fall_is_one_at_every_step(minimise, said):
@@ -262,14 +324,14 @@ def test_a_fall_is_one_at_every_step(minimise, said):
 
 
 def test_flat_directions_end_at_bounds():
-    """Beyond its bounds the objective would rise."""
+    """Beyond the bound the objective would rise, and on the other side too."""
 
     def walled(a):
-        return -(a**4) + 1e9 * np.maximum(abs(a) - 0.05, 0.0) ** 2
+        return -((a - 1) ** 4) + 1e9 * np.maximum(abs(a - 1) - 0.05, 0.0) ** 2
 
-    assert word(walled, (0,), (-0.05, 0.05), 0.05) == "a"
-    for ends in ((-3.0, 0.05), (-0.05, 3.0)):
-        assert word(walled, (0,), ends, 0.02) == "a"
+    assert word(walled, (1,), (0.95, 4.0)) == "a"
+    assert word(walled, (1,), (-4.0, 1.05)) == "a"
+    assert word(walled, (1,), (-4.0, 4.0)) == ""
 
 
 def test_variables_with_a_price_stay_while_flat_directions_are_followed():
@@ -282,4 +344,4 @@ def test_the_variables_are_named_by_their_share_of_their_scale():
     wide = {"ends": [(-300, 300), (-3, 3)], "guess": [100.0, 1.0]}
     for share, said in ((2.0, "b, a"), (3.2, "b, a"), (3.5, "b")):
         assert word(lambda a, b, s=share: -((s * a / 100 + b) ** 2), (0, 0), **wide) == said
-    assert word(lambda a, b, c: -((a + b + c) ** 2), (0, 0, 0)).count(",") == 2
+    assert word(lambda a, b, c, d: -((a + b + c + d) ** 2), (0, 0, 0, 0)).count(",") == 2

@@ -182,7 +182,7 @@ def _lagrangian(point: Point, cone: _Cone, y: Array) -> tuple[float, float, Arra
     parts = point.shape.derivatives(y, p, point.lam_g, point.lam_h)
     f, g, h, _, slope = (np.array(part).ravel() for part in parts)
     value = f[0] + point.lam_g @ g + point.lam_h @ h
-    sizes = abs(f[0]) + point.lam_g @ (1.0 + np.abs(g)) + np.abs(point.lam_h) @ (1.0 + np.abs(h))
+    sizes = abs(f[0]) + point.lam_g.sum() + np.abs(point.lam_h).sum()  # the unit of a row is 1
     held = np.concatenate([g[cone.priced], h]) / cone.length
     return float(value), float(sizes), np.concatenate([slope[cone.free] * cone.unit, held])
 
