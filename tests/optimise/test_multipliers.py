@@ -183,7 +183,7 @@ def test_of_rows_that_depend_on_each_other_those_are_kept_that_level_the_slopes(
         of_g[1] = of_g[0]
         of_g[3] = of_g[2] + of_g[0]
         lam = np.where(rng.random(count) < 0.6, rng.random(count), 0.0)
-        gradient = 1e6 * (-of_g.T @ lam - of_h.T @ rng.normal(size=held))
+        gradient = 10.0 ** rng.integers(-18, 18) * (-of_g.T @ lam - of_h.T @ rng.normal(size=held))
         of_g *= 10.0 ** rng.integers(-3, 3, (count, 1))
         lam_g, lam_h = given(gradient, g=np.zeros(count), of_g=of_g, of_h=of_h)
         left = gradient + of_g.T @ lam_g + of_h.T @ lam_h

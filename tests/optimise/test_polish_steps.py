@@ -138,8 +138,22 @@ def test_the_best_feasible_point_is_the_answer(ipopt):
     nothing = mixed(text=lambda x: {"f": np.log(x.x - 9.0)})
     ipopt.answer = lambda start: Outcome(start)
     assert polished(last(nothing), Outcome(at(1.0)), np.empty((0, 3))).x.tolist() == [1, 2, 5]
-    ipopt.answer = lambda start: Outcome(None)
-    assert polished(last(problem), Outcome(None), np.array([at(1.0)])).x is None
+    half = mixed(text=lambda x: {"f": np.sqrt(x.x - 5.0)})  # no number is worse than any
+    ipopt.answer = lambda start: Outcome(at(1.0, x=6.0))
+    assert polished(last(half), Outcome(at(1.0, x=4.0)), np.empty((0, 3))).x[2] == 6.0
+    ipopt.answer = lambda start: Outcome(None, infeasible=True)
+    nothing = polished(last(problem), Outcome(None, infeasible=True), np.array([at(1.0)]))
+    assert nothing.x is None and not nothing.infeasible
+
+
+def test_the_ends_of_a_set_have_one_neighbour(ipopt):
+    low = mixed(text=lambda x: {"f": x.n + x.x})
+    polished(last(low), Outcome(at(1.0, 1.0)), np.empty((0, 3)))
+    assert {tuple(a[:2]) for a in ipopt.asked} == {(1, 1), (2, 1), (1, 2)}
+    ipopt.asked.clear()
+    high = mixed(text=lambda x: {"f": 90.0 - x.n - x.k + x.x})
+    polished(last(high), Outcome(at(8.0, 3.0)), np.empty((0, 3)))
+    assert {tuple(a[:2]) for a in ipopt.asked} == {(8, 3), (4, 3), (8, 2)}
 
 
 def test_a_watcher_is_told_of_the_whole_run(ipopt):

@@ -36,6 +36,10 @@ def test_units_are_the_powers_of_two_next_to_the_scales():
     shape = form(curved)
     unit = unit_at(curved, shape, shape.to_y(np.array([5.0, 1e3, 3.0])))
     assert unit.objective == 0.5
+    steep = mixed(lambda x: np.exp(3.0 * x.a))  # over a tenth: over a hundredth it is half of it
+    shape = form(steep)
+    unit = unit_at(steep, shape, shape.to_y(np.array([5.0, 1e3, 3.0])))
+    assert unit.objective == 2.0**20
 
 
 @pytest.mark.parametrize(
@@ -50,9 +54,12 @@ def test_an_objective_of_any_size_has_a_unit(factor, unit):
 
 
 def test_an_objective_without_a_number_has_the_unit_1():
-    problem = mixed(lambda x: x.a * 1e308 * x.b)
-    shape = form(problem)
-    assert unit_at(problem, shape, shape.to_y(np.array([5.0, 1e3, 3.0]))).objective == 1.0
+    for text in (lambda x: x.a * 1e308 * x.b, lambda x: 1.5e308 * (x.a - 5.0)):
+        problem = mixed(text)
+        shape = form(problem)
+        with np.errstate(all="ignore"):
+            unit = unit_at(problem, shape, shape.to_y(np.array([5.0, 1e3, 3.0])))
+        assert unit.objective == 1.0
 
 
 def test_logarithms_stay_as_they_are():
@@ -79,3 +86,25 @@ def test_terms_are_those_of_the_natural_variables():
     assert f == pytest.approx(1015.0) and g == pytest.approx(15.0 / 8.0 - 1.0)
     assert h == pytest.approx(0.0) and len(levels) == 0
     assert f == np.array(own(y, [])[0]).ravel()
+
+
+def test_epigraphs_stay_as_they_are(monkeypatch):
+    monkeypatch.setattr("gearopt.optimise.epigraph.WIDE", 1)
+    monkeypatch.setattr("gearopt.optimise.epigraph.GROUP", 2)
+    logs = Var("c", "", 0.1, 9.0, 2.0, 4, log=True)
+
+    def text(x, p):
+        return Terms({"f": sum(x.c)}, {"g": x.a / 8.0})
+
+    problem = Problem("wide", (Var("a", "", -9.0, 9.0, 5.0), logs), (), text)
+    shape = form(problem)
+    parts = split(shape, kinds(problem))
+    units = np.array([4.0, 1.0, 1.0, 1.0, 1.0])
+    z, *terms = scaled(shape, parts, ca.SX(units))
+    more = parts.z.numel() - 5
+    assert more > 0 and parts.levels.numel() > 0
+    y = np.concatenate([[6.0], np.log([1.0, 2.0, 3.0, 4.0]), np.linspace(0.5, 1.5, more)])
+    seen = ca.Function("seen", [z, parts.p], terms)(y / np.concatenate([units, np.ones(more)]), [])
+    own = [parts.objective, parts.inequalities, parts.equalities, parts.levels]
+    for one, other in zip(seen, ca.Function("own", [parts.z, parts.p], own)(y, []), strict=True):
+        assert np.array(one).ravel() == pytest.approx(np.array(other).ravel(), rel=1e-14)

@@ -64,12 +64,11 @@ def _needed(columns: Array, target: Array, count: int) -> Any:
     """Which of the first `count` entries are above 0 in the least squares where they are >= 0."""
     from scipy.optimize import nnls
 
-    size = np.abs(columns).max(axis=0)
-    unit = np.column_stack([columns / np.where(size > 0.0, size, 1.0), target])
-    signed, other = np.delete(unit, slice(count, -1), axis=1), unit[:, count:-1]
+    other = columns[:, count:]
+    signed = np.column_stack([columns[:, :count], target / np.abs(target).max()])
     signed -= other @ np.linalg.lstsq(other, signed, rcond=None)[0]
     try:
-        x, _ = nnls(signed[:, :-1], signed[:, -1] / np.abs(target).max())
+        x, _ = nnls(signed[:, :-1], signed[:, -1])
     except RuntimeError:  # no end of its iterations
         return np.ones(count, bool)
     return x > 0.0
