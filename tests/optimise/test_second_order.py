@@ -246,6 +246,14 @@ def test_what_is_left_of_a_limit_hardly_changes_the_lagrangian(name, monkeypatch
     """One step towards the curve leaves a cube of the step's length, and it falls by its fourth."""
     monkeypatch.setattr("gearopt.optimise.second_order.NEWTON", 1)
     test_valleys_are_followed_along_their_floor(name, 0.4)
+    sign = -1.0 if "falls" in name else 1.0
+
+    def limit(a, b):
+        return (a + b) ** 2 - (b - a)
+
+    given = {"rows": (limit,), "prices": (1.0,)}
+    found = word(lambda a, b: sign * (a + b) ** 4 - limit(a, b), (0, 0), **given)
+    assert (found != "") == (sign < 0.0)
 
 
 def test_rounding_of_the_curvature_is_no_fall():
