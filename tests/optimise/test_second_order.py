@@ -249,7 +249,7 @@ def test_what_is_left_of_a_limit_hardly_changes_the_lagrangian(name, monkeypatch
     sign = -1.0 if "falls" in name else 1.0
 
     def limit(a, b):
-        return (a + b) ** 2 - (b - a)
+        return (a + b) ** 2 - (b - a) - 3 * (b - a) ** 2
 
     given = {"rows": (limit,), "prices": (1.0,)}
     found = word(lambda a, b: sign * (a + b) ** 4 - limit(a, b), (0, 0), **given)
