@@ -256,6 +256,18 @@ def test_what_is_left_of_a_limit_hardly_changes_the_lagrangian(name, monkeypatch
     assert (found != "") == (sign < 0.0)
 
 
+def test_where_nothing_bends_a_direction_is_followed_straight():
+    """Curvature of 1e-9 of what acts, and a fourth power that rises or falls."""
+    given = {"rows": (lambda a, b: a + b,), "prices": (1.0,)}
+    for sign, said in ((1.0, ""), (-1.0, "a, b")):
+
+        def text(a, b, sign=sign):
+            return -(a + b) + 1e-9 * (a - b) ** 2 + sign * (a - b) ** 4
+
+        found = word(text, (0, 0), **given)
+        assert ", ".join(sorted(found.split(", "))) == said
+
+
 def test_rounding_of_the_curvature_is_no_fall():
     """Of level valleys in any direction."""
     rng = np.random.default_rng(3)

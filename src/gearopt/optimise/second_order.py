@@ -50,8 +50,10 @@ class _Cone:
         """Of a slope and an excess of the firm rows, the Newton step that undoes both, (k, .)."""
         size, count = len(self.curved), len(self.firm)
         system = np.block([[self.curved, self.firm.T], [self.firm, np.zeros((count, count))]])
-        inverse: Array = np.linalg.pinv(system, rcond=FLAT, hermitian=True)
-        return inverse[:size]
+        values, vectors = np.linalg.eigh(system)
+        some = np.abs(values) > FLAT
+        inverse: Array = (vectors[:size, some] / values[some]) @ vectors[:, some].T
+        return inverse
 
 
 def no_minimum(point: Point) -> str:
