@@ -570,3 +570,12 @@ def test_a_text_without_derivatives_is_feasible_and_says_why_no_more():
     assert verdict.message.startswith(
         "Ended. No bound, no optimality conditions: the text of table"
     )
+
+
+def test_the_better_bound_brings_its_proof():
+    found = Result("a", "feasible", "exact", {"name": "f", "value": 1.0}, proof={"method": "own"})
+    ideal = replace(found, bound=1.0, proof={"method": "dual"})
+    known = reconcile(found, ideal, 1e-6)
+    assert (known.status, known.bound, known.proof) == ("optimal", 1.0, {"method": "dual"})
+    kept = reconcile(replace(found, bound=1.0), replace(ideal, bound=0.5), 1e-6)
+    assert (kept.bound, kept.proof) == (1.0, {"method": "own"})
