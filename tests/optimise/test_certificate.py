@@ -7,9 +7,10 @@ import pytest
 
 from gearopt.errors import CertificateError
 from gearopt.optimise.certificate import FARKAS, Verdict, bounded, certify, reconcile, told
+from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Result
-from gearopt.optimise.solve import run
+from gearopt.optimise.solve import run, solve
 from gearopt.optimise.solvers import ipopt
 from gearopt.optimise.terms import Terms, Var
 
@@ -310,20 +311,37 @@ def test_our_own_bound_decides_within_the_tolerance():
 
 
 def test_a_value_below_our_bound_is_an_error_or_explained():
-    """An error where hardly a limit is exceeded; else the excess is named."""
+    """An error where no limit is exceeded by more than rounding; else the excess is named."""
     with pytest.raises(CertificateError, match="below the dual bound"):
         ours(-101.0, 0.0)
     with pytest.raises(CertificateError, match="below the dual bound"):
-        ours(-101.0, 0.0, excess=0.995e-10)
+        ours(-101.0, 0.0, excess=1e-14)
     assert ours(-100.0, 0.0).status == "feasible"  # by 1e-6 exactly
-    for excess in (1e-10, 5e-9):
+    for excess in (1.01e-14, 5e-9):
         verdict = ours(-101.0, 0.0, excess=excess)
         assert verdict.status == "feasible" and verdict.gap == 0.0
         words = f"row is violated by {excess:.3g}, which the objective gains from. Ended."
         assert verdict.message == words
 
 
-def test_gaps_are_told_where_they_are_finite():
+@pytest.mark.parametrize(("slope", "kind"), [(1e5, Problem), (-1e5, Problem), (1e5, Conic)])
+def test_limits_that_contradict_each_other_by_a_little_are_no_error(slope, kind):
+    """x >= 1 + 1e-10 and x <= 1: a point between them is accepted, and may lie below the bound."""
+    x = Var("x", "", -10.0, 10.0, 1.0)
+
+    def text(x, p):
+        rows = {"least": 2.0 + 1e-10 - x.x, "most": x.x}
+        return Terms({"f": slope * (x.x - 1.0) + 1.0}, rows)
+
+    problem = kind("rows", (x,), (), text)
+    if kind is Problem:
+        verdict = certify(problem, Outcome(np.array([1.0 + 5e-11])), 1e-6)
+    else:
+        verdict = solve(problem)
+    assert verdict.status in ("feasible", "stationary")
+    assert verdict.message.startswith(("least is violated by 5e-11", "most is violated by 5e-11"))
+    assert verdict.message.endswith("which the objective gains from.")
+
     assert (told(0.5), told(-0.5), told(np.inf), told(-np.inf)) == (0.5, 0.0, None, None)
 
 
@@ -505,3 +523,59 @@ def test_reconciled_results_keep_what_nobody_contradicts():
     assert reconcile(tie, replace(ideal, bound=1e8 - 100.0), 1e-6).status == "optimal"
     with pytest.raises(CertificateError):
         reconcile(tie, replace(ideal, bound=1e8 + 2.0), 1e-6)
+
+
+def test_a_bound_counts_only_from_an_exact_algorithm_and_where_it_is_finite():
+    """x + 1/y at (1, 10): 1.1, of which a method says that nothing is below; 0.5 is."""
+    claim = Outcome(np.array([1.0, 10.0]), bound=1.1, proof={"method": "own"})
+    assert certify(hill(), claim, 1e-6, exact=True).status == "optimal"
+    verdict = certify(hill(), claim, 1e-6)
+    assert verdict.status == "feasible" and verdict.bound <= 0.5
+    nothing = certify(hill(), replace(claim, bound=-np.inf), 1e-6, exact=True)
+    assert nothing.status == "feasible" and nothing.bound == verdict.bound
+
+
+def test_what_is_not_solved_says_how_far_it_is_from_feasible():
+    off = certify(hill(), Outcome(np.array([1.0, 3.2])), 1e-6)
+    assert off.status == "failed" and off.certificate == {"feasibility": pytest.approx(0.25)}
+    x = Var("x", "", -1.0, 1.0, 1.0)
+    pole = Problem("pole", (x,), (), lambda x, p: Terms({"f": 1.0 / x.x}))
+    verdict = certify(pole, Outcome(np.zeros(1)), 1e-6)
+    assert verdict.status == "failed" and verdict.certificate == {"feasibility": 0.0}
+
+
+def test_a_variable_that_nothing_holds_is_named():
+    x = Var("x", "", -np.inf, np.inf, 1.0)
+    problem = Problem("free", (x,), (), lambda x, p: Terms({"f": np.exp(-x.x * 1e-8)}))
+    verdict = certify(problem, Outcome(np.array([2e9]), message="Ended."), 1e-6)
+    assert verdict.status == "failed" and verdict.message.startswith("nothing holds x (2e+09)")
+    assert certify(problem, Outcome(np.array([0.9e9])), 1e-6).status == "feasible"
+
+
+def test_an_exhausted_search_is_told_as_it_was():
+    claim = Outcome(None, infeasible=True, proof={"method": "exhausted"}, message="None of 9.")
+    verdict = certify(hill(), claim, 1e-6, exact=True)
+    assert (verdict.status, verdict.proof, verdict.message) == (
+        "infeasible",
+        {"method": "exhausted"},
+        "None of 9.",
+    )
+
+
+def test_a_text_without_derivatives_is_feasible_and_says_why_no_more():
+    x = Var("x", "", 1.0, 9.0, 2.0)
+    table = Problem("table", (x,), (), lambda x, p: Terms({"f": np.frexp(x.x)[0]}))
+    verdict = certify(table, Outcome(np.array([2.0]), message="Ended."), 1e-6)
+    assert verdict.status == "feasible"
+    assert verdict.message.startswith(
+        "Ended. No bound, no optimality conditions: the text of table"
+    )
+
+
+def test_the_better_bound_brings_its_proof():
+    found = Result("a", "feasible", "exact", {"name": "f", "value": 1.0}, proof={"method": "own"})
+    ideal = replace(found, bound=1.0, proof={"method": "dual"})
+    known = reconcile(found, ideal, 1e-6)
+    assert (known.status, known.bound, known.proof) == ("optimal", 1.0, {"method": "dual"})
+    kept = reconcile(replace(found, bound=1.0), replace(ideal, bound=0.5), 1e-6)
+    assert (kept.bound, kept.proof) == (1.0, {"method": "own"})

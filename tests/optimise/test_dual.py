@@ -111,6 +111,10 @@ def test_the_bound_of_a_quadratic_program(b, low, high):
     sizes = minimise + lam_g * (1.0 + abs(g)) + lam_h * (1.0 + abs(h))
     sizes += np.abs(x) @ (along + np.abs(slope_f - hessian @ x))
     assert rounding == pytest.approx(ROUNDING * sizes, rel=1e-9, abs=0.0)
+    other, linear = np.array([3.0, b]), slope_f - hessian @ x
+    point = at(problem, natural(problem), other, (0.0,), (0.0,))
+    sizes = abs(point.f) + np.abs(other) @ (np.abs(hessian) @ np.abs(other) + np.abs(linear))
+    assert bound(point)[1] == pytest.approx(ROUNDING * sizes, rel=1e-9, abs=0.0)
 
 
 def test_rounding_of_a_quadratic_slope_is_charged():
@@ -133,6 +137,8 @@ def test_rounding_of_a_quadratic_slope_is_charged():
     assert plain - least == pytest.approx(expected, rel=0.05, abs=0.0)
     still = bound(replace(point, gradient=np.zeros(3)))
     assert point.f - still[0] - rounding == pytest.approx(ROUNDING * 3.0 * 1e9, rel=0.05, abs=0.0)
+    pulled = bound(replace(point, gradient=np.zeros(3), pull=np.array([0.0, 0.0, 7.0])))
+    assert still[0] - pulled[0] == pytest.approx(ROUNDING * 7.0 * 1e9, rel=0.05, abs=0.0)
 
 
 def clash(span=10.0, **equal):

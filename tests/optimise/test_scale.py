@@ -222,6 +222,8 @@ def test_the_scale_of_an_objective():
     root = plane(lambda a, b: np.sqrt(1.0 - b) + a, -10.0)
     found = objective_scale(root, np.array([1.0, 1.0]))  # NaN beyond b = 1 counts as nothing
     assert found == pytest.approx(1e4, rel=1e-3)
+    pole = plane(lambda a, b: 1.0 / (a - 1.0) + b)
+    assert objective_scale(pole, np.array([1.0, 1.0])) == 0.0  # no number there, nor a warning
     steep = plane(lambda a, b: a + 1e3 * (np.maximum(a, 10.0) - np.minimum(b, -10.0)))
     assert objective_scale(steep, np.array([10.0, -10.0])) == pytest.approx(10.0, rel=1e-4)
     mixed = Problem(

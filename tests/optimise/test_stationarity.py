@@ -14,6 +14,7 @@ from gearopt.optimise import polish
 from gearopt.optimise.certificate import certify
 from gearopt.optimise.form import form
 from gearopt.optimise.problem import Problem
+from gearopt.optimise.quadratic import natural
 from gearopt.optimise.result import Budget, Outcome
 from gearopt.optimise.solve import run, solve
 from gearopt.optimise.solvers import ipopt
@@ -228,6 +229,33 @@ def test_residuals_term_by_term(sign):
     assert found["complementarity"] == pytest.approx(2.0 * 5.0 / 8.0 / unit[1], rel=1e-6)
 
 
+def test_what_acts_is_added_up_whatever_its_sign():
+    """a^2 + b at (1, -1) with a row of slopes -2, -3 and an equality 2 - a^2, whose force is -4."""
+    problem = plane(
+        lambda a, b: a**2 + b,
+        guess=(1.0, 1.0),
+        limits=lambda a, b: -2.0 * a - 3.0 * b,
+        equal=lambda a, b: 2.0 - a**2 + b - b,
+    )
+    shape, y = form(problem), np.array([1.0, -1.0])
+    low, high, _ = problem.bounds()
+    point = evaluated(problem, shape, y, low, high, np.array([5.0]), np.array([-4.0]))
+    assert point.pull == pytest.approx([2.0 + 10.0 + 8.0, 1.0 + 15.0])
+    assert point.gradient == pytest.approx([2.0 - 10.0 + 8.0, 1.0 - 15.0])
+    unit = point.pull + 0.5 * np.array([2.0 + 8.0, 0.0])
+    assert acting(point) == pytest.approx(unit + 1e-8 * unit.max(), rel=1e-12)
+
+
+def test_what_acts_in_a_quadratic_program():
+    """The unit is no logarithm's, though it is convex: 3 a + a^2/2 + b^2 at (1, 2)."""
+    problem = plane(lambda a, b: 3.0 * a + a**2 / 2.0 + b**2, guess=(1.0, 1.0))
+    shape, y = natural(problem), np.array([1.0, 2.0])
+    low, high, _ = problem.bounds()
+    point = evaluated(problem, shape, y, low, high, np.empty(0), np.empty(0))
+    assert shape.convex
+    assert acting(point) == pytest.approx(np.array([4.5, 12.0]) + 12e-8, rel=1e-12)
+
+
 def test_what_acts_on_logarithms():
     """F = log(x + 1/x) at x = 2: slope 0.6, curvature 0.64; 1 where the whole is convex."""
     x, t = Var("x", "", 0.1, 9.0, 1.0, log=True), Var("t", "", 0.1, 9.0, 1.0)
@@ -364,3 +392,8 @@ def test_too_many_variables_for_a_look_at_the_curvature_is_said(monkeypatch):
     verdict = certify(problem, outcome, 1e-6)
     assert verdict.status == "feasible"
     assert "curvature is not looked at: 2 variables are off their bounds" in verdict.message
+    monkeypatch.setattr("gearopt.optimise.second_order.MOST", 2)
+    assert certify(problem, outcome, 1e-6).status == "stationary"
+    monkeypatch.setattr("gearopt.optimise.second_order.MOST", 1)
+    convex, _, outcome = solved("cube")
+    assert certify(convex, outcome, 1e-6).message == ""

@@ -15,8 +15,8 @@ import numpy as np
 
 from gearopt.errors import CertificateError, SolveError
 from gearopt.optimise.conic.problem import Conic
+from gearopt.optimise.dual import ROUNDING, farkas
 from gearopt.optimise.dual import bound as dual_bound
-from gearopt.optimise.dual import farkas
 from gearopt.optimise.feasibility import runaway, violation
 from gearopt.optimise.form import Form, form
 from gearopt.optimise.multipliers import multipliers
@@ -123,13 +123,15 @@ def bounded(
     """Judge a point by a bound that we computed ourselves; before: the verdict without one.
 
     worst: the name of what has the largest violation. rounding: that was taken off the bound.
-    CertificateError where the value lies below the bound though hardly a limit is exceeded.
+    CertificateError where the value lies below the bound though no limit is exceeded: an excess
+    gains its price, which may be any (of limits that contradict each other by a little), but within
+    ROUNDING that is less than the rounding taken off the bound.
     """
     value, excess = before.objective, before.certificate["feasibility"]
     assert value is not None and excess is not None
     tolerance = max(tolerance, FEASIBLE)
     found, scale = measured(problem, x, value, bound, tolerance, rounding)
-    if found < -100 * FEASIBLE and excess < FEASIBLE / 100:
+    if found < -100 * FEASIBLE and excess <= ROUNDING:
         raise CertificateError(f"a feasible value {value!r} lies below the dual bound {bound!r}")
     status, message = before.status, before.message
     if abs(found) <= tolerance:

@@ -1,7 +1,7 @@
 """Multipliers of a point, computed from its gradients alone: no method's word is needed.
 
 Of the rows near their limit, those multipliers that leave the least gradient in the variables that
-are off their bounds; an active-set least squares with multipliers of inequalities >= 0.
+are off their bounds; a least squares with multipliers of inequalities >= 0.
 """
 
 from typing import Any
@@ -36,18 +36,42 @@ def multipliers(
     slopes = columns if isinstance(columns, np.ndarray) else columns.data
     if not (np.isfinite(slopes).all() and np.isfinite(gradient[free]).all()):
         return None
-    count = len(active)
-    keep = np.ones(count + len(no_h), bool)
+    lam = _signed(columns, -gradient[free], len(active))
+    no_g[active] = lam[: len(active)]
+    return no_g, lam[len(active) :]
+
+
+def _signed(columns: Any, target: Array, count: int) -> Array:
+    """The x of least |columns x - target| whose first `count` entries are not below 0.
+
+    Entries below 0 are left out together. That is too many where columns depend on each other, as
+    at a corner where more limits meet than there are variables: of a dense system those stay that
+    are needed. A large sparse one is solved as often as it was, and its x may be beside the least.
+    """
+    keep = np.ones(columns.shape[1], bool)
+    exact = isinstance(columns, np.ndarray)
     while True:
-        lam = np.zeros(len(keep))
-        lam[keep] = _least_squares(columns[:, keep], -gradient[free])
-        wrong = keep[:count] & (lam[:count] < 0.0)
+        x = np.zeros(len(keep))
+        x[keep] = _least_squares(columns[:, keep], target)
+        wrong = x[:count] < 0.0
         if not wrong.any():
-            break
-        keep[:count] &= ~wrong
-    lam_g = no_g.copy()
-    lam_g[active] = lam[:count]
-    return lam_g, lam[count:]
+            return x
+        keep[:count] &= _needed(columns, target, count) if exact else ~wrong
+        exact = False  # what is below 0 from here on is so by rounding
+
+
+def _needed(columns: Array, target: Array, count: int) -> Any:
+    """Which of the first `count` entries are above 0 in the least squares where they are >= 0."""
+    from scipy.optimize import nnls
+
+    other = columns[:, count:]
+    signed = np.column_stack([columns[:, :count], target / np.abs(target).max()])
+    signed -= other @ np.linalg.lstsq(other, signed, rcond=None)[0]
+    try:
+        x, _ = nnls(signed[:, :-1], signed[:, -1])
+    except RuntimeError:  # no end of its iterations
+        return np.ones(count, bool)
+    return x > 0.0
 
 
 def _rows(shape: Form, y: Array, p: Array, active: Any) -> Any:

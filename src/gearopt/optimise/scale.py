@@ -40,7 +40,7 @@ def objective_scale(problem: Problem | Conic, x: Array, step: float = FEASIBLE) 
     """
     lower, upper, _ = problem.bounds()
     fixed = np.array([v.discrete and isinstance(problem, Problem) for v, _ in problem.columns])
-    moves = np.flatnonzero((upper > lower) & ~fixed)
+    moves = np.flatnonzero(~fixed)
     size = step * sizes(problem, x)
     with np.errstate(all="ignore"):
         here = float(problem.batch(x[None]).F[0, 0])

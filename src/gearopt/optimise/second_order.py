@@ -2,10 +2,12 @@
 
 The Lagrangian must not fall along any direction that the limits which hold leave free. Its Hessian
 is reduced to the directions along limits and bounds with a price; those that hold without a price
-block one side of a direction. Directions without curvature are followed for some steps.
+block one side of a direction. Directions without curvature are followed for some steps, on the
+curve along which the limits go on to hold and the Lagrangian is least across the direction.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -22,6 +24,7 @@ STEPS = (1e-3, 1e-2, 1e-1)  # of the variables' scale, by which flat directions 
 NOISE = 1e-12  # of all terms that are added up, in these steps
 MOST = 1000  # variables off their bounds; the reduced Hessian is dense
 ROUNDS = 20  # of making the entries of a matrix equal
+NEWTON = 10  # steps from a straight line to a curve, by the Hessian at the point
 
 
 @dataclass(frozen=True)
@@ -29,8 +32,9 @@ class _Cone:
     """Directions d (k,) of the free variables, in units of `unit`, along what holds.
 
     free (n,): which variables have no price on their bound. curved (k, k): Hessian. firm: rows of
-    limits with a price and of equalities, loose: of limits without one and of such bounds, d must
-    meet firm d = 0 and loose d <= 0.
+    limits with a price and of equalities, loose: of all limits that hold, and of bounds without a
+    price; d must meet firm d = 0 and loose d <= 0. priced: which limits are firm. length: of firm
+    rows before they were made 1.
     """
 
     free: Any
@@ -38,6 +42,18 @@ class _Cone:
     curved: Array
     firm: Array
     loose: Array
+    priced: Any
+    length: Array
+
+    @cached_property
+    def across(self) -> Array:
+        """Of a slope and an excess of the firm rows, the Newton step that undoes both, (k, .)."""
+        size, count = len(self.curved), len(self.firm)
+        system = np.block([[self.curved, self.firm.T], [self.firm, np.zeros((count, count))]])
+        values, vectors = np.linalg.eigh(system)
+        some = np.abs(values) > FLAT
+        inverse: Array = (vectors[:size, some] / values[some]) @ vectors[:, some].T
+        return inverse
 
 
 def no_minimum(point: Point) -> str:
@@ -86,7 +102,7 @@ def _cone(point: Point, free: Any) -> _Cone:
     of_g, of_h = (dense(j) for j in point.shape.jacobians(point.y, p))
     priced = point.lam_g[:, None] * np.abs(of_g) * own > STATIONARY * acting(point)
     firm = priced.any(axis=1)
-    loose = (point.g >= -NEAR) & ~firm
+    loose = point.g >= -NEAR
     low, high = (end[free] for end in _ends(point))
     bounds = np.eye(int(free.sum()))
     curved = dense(hessian(point))[np.ix_(free, free)] * np.outer(own[free], own[free])
@@ -94,16 +110,16 @@ def _cone(point: Point, free: Any) -> _Cone:
     size = size + WEAK * size.max(initial=0.0)
     root = np.sqrt(np.where(size > 0.0, size, 1.0))
     unit = own[free] / root
-    rows = [_normal(r[:, free] * unit) for r in (np.vstack([of_g[firm], of_h]), of_g[loose])]
-    held = np.vstack([rows[1], -bounds[low], bounds[high]])
-    return _Cone(free, unit, curved / np.outer(root, root), rows[0], held)
+    held, length = _normal(np.vstack([of_g[firm], of_h])[:, free] * unit)
+    sides = np.vstack([_normal(of_g[loose][:, free] * unit)[0], -bounds[low], bounds[high]])
+    return _Cone(free, unit, curved / np.outer(root, root), held, sides, firm, length)
 
 
-def _normal(rows: Array) -> Array:
-    """Rows of length 1."""
-    length = np.linalg.norm(rows, axis=1, keepdims=True)
-    found: Array = rows / np.where(length > 0.0, length, 1.0)
-    return found
+def _normal(rows: Array) -> tuple[Array, Array]:
+    """Rows of length 1, and their lengths before."""
+    length = np.linalg.norm(rows, axis=1)
+    length = np.where(length > 0.0, length, 1.0)
+    return rows / length[:, None], length
 
 
 def _equal(matrix: Array) -> Array:
@@ -112,13 +128,13 @@ def _equal(matrix: Array) -> Array:
     for _ in range(ROUNDS):
         root = np.sqrt(found)
         largest = (np.abs(matrix) / np.outer(root, root)).max(axis=1, initial=0.0)
-        found = found * np.where(np.isfinite(largest) & (largest > 0.0), largest, 1.0)
-    return np.where(np.abs(matrix).max(axis=1, initial=0.0) > 0.0, found, 0.0)
+        found = found * np.where(largest == 0.0, 1.0, largest)
+    return np.where(largest == 0.0, 0.0, found)
 
 
 def _eigen(curved: Array, rows: Array) -> list[tuple[float, Array]]:
     """Curvatures below FLAT along rows d = 0, least first, with their directions of length 1."""
-    _, sizes, turned = np.linalg.svd(rows) if len(rows) else (0, np.empty(0), np.eye(len(curved)))
+    _, sizes, turned = np.linalg.svd(rows)
     across = turned[int((sizes > RANK).sum()) :].T
     values, vectors = np.linalg.eigh(across.T @ curved @ across)
     found = zip(values, (across @ vectors).T, strict=True)
@@ -128,33 +144,49 @@ def _eigen(curved: Array, rows: Array) -> list[tuple[float, Array]]:
 def _sinks(point: Point, cone: _Cone, d: Array) -> bool:
     """Whether the Lagrangian falls along d by more than its slope and curvature say, at all STEPS.
 
-    It need not be seen at the shortest steps; but nowhere may it rise.
+    It need not be seen at the shortest step; but nowhere may it rise.
     """
     step = np.zeros(len(point.y))
     step[cone.free] = cone.unit * d
-    length = float((np.abs(step) / own_scales(point)).max(initial=0.0))
-    room = np.where(step > 0.0, point.high - point.y, point.y - point.low)
-    reach = min(1.0 / length, float((room / np.abs(step))[step != 0.0].min()) / STEPS[-1])
-    step = step * reach
-    slope, bent = point.gradient @ step, step @ dense(hessian(point)) @ step
-    here, size = _lagrangian(point, point.y)
+    length = float((np.abs(step) / own_scales(point)).max())
+    step = step / length
+    curved = dense(hessian(point))
+    pull, pulls = curved @ step, np.abs(curved) @ np.abs(step)
+    here, size, _ = _lagrangian(point, cone, point.y)
     fell = []
     for t in STEPS:
-        there, more = _lagrangian(point, point.y + t * step)
-        further = there - here - t * slope - 0.5 * t**2 * bent
-        noise = NOISE * (size + more) + WEAK * t**2 * abs(bent)
+        moved = _curve(point, cone, t * step)
+        there, more, _ = _lagrangian(point, cone, point.y + moved)
+        bent = t * pull @ (moved - 0.5 * t * step)
+        further = there - here - point.gradient @ moved - bent
+        noise = NOISE * (size + more + t * pulls @ np.abs(moved))
         fell.append(0 if not abs(further) > noise else np.sign(further))
-    return bool(max(fell) <= 0 and fell[-1] < 0 and fell[-2] < 0)
+    return bool(max(fell) <= 0 and fell[-2] < 0)
 
 
-def _lagrangian(point: Point, y: Array) -> tuple[float, float]:
-    """Value of the Lagrangian at y, and the sizes of what is added up in it."""
+def _curve(point: Point, cone: _Cone, step: Array) -> Array:
+    """A step along a flat direction and, across it, to what the Lagrangian and firm rows ask for.
+
+    They ask for slopes and rows as they are at the point; what these are there counts as none.
+    """
+    moved = step.copy()
+    _, _, off = _lagrangian(point, cone, point.y)
+    for _ in range(NEWTON):
+        _, _, now = _lagrangian(point, cone, point.y + moved)
+        moved[cone.free] -= cone.unit * (cone.across @ (now - off))
+        moved = np.clip(moved, point.low - point.y, point.high - point.y)
+    return moved
+
+
+def _lagrangian(point: Point, cone: _Cone, y: Array) -> tuple[float, float, Array]:
+    """Value of the Lagrangian at y, the sizes of its terms, and its slope and the firm rows."""
     p = point.problem.parameter_values()
-    parts = point.shape.derivatives(y, p, point.lam_g, point.lam_h)[:3]
-    f, g, h = (np.array(part).ravel() for part in parts)
+    parts = point.shape.derivatives(y, p, point.lam_g, point.lam_h)
+    f, g, h, _, slope = (np.array(part).ravel() for part in parts)
     value = f[0] + point.lam_g @ g + point.lam_h @ h
-    sizes = abs(f[0]) + point.lam_g @ (1.0 + np.abs(g)) + np.abs(point.lam_h) @ (1.0 + np.abs(h))
-    return float(value), float(sizes)
+    sizes = abs(f[0]) + point.lam_g.sum() + np.abs(point.lam_h).sum()  # the unit of a row is 1
+    held = np.concatenate([g[cone.priced], h]) / cone.length
+    return float(value), float(sizes), np.concatenate([slope[cone.free] * cone.unit, held])
 
 
 def _words(point: Point, cone: _Cone, d: Array) -> str:

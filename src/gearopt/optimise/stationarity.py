@@ -54,8 +54,7 @@ def evaluated(
     f, g, h, gradient_f, gradient = (np.array(part).ravel() for part in parts)
     pull = np.abs(gradient_f)
     for jacobian, lam in zip(shape.jacobians(y, p), (lam_g, lam_h), strict=True):
-        if len(lam):
-            pull = pull + np.array(ca.mtimes(ca.fabs(jacobian).T, np.abs(lam))).ravel()
+        pull = pull + np.array(ca.mtimes(ca.fabs(jacobian).T, np.abs(lam))).ravel()
     given = (problem, shape, y, low, high, lam_g, lam_h)
     return Point(*given, float(f[0]), g, h, gradient_f, gradient, pull)
 
@@ -68,8 +67,8 @@ def residuals(point: Point) -> dict[str, float]:
     slack = np.abs(point.lam_g * point.g).max(initial=0.0)
     with np.errstate(divide="ignore", invalid="ignore"):
         promised = np.where(slope == 0.0, 0.0, np.abs(slope) * room / unit)
-        held = 0.0 if slack == 0.0 else slack / unit.max(initial=0.0)
-    return {"stationarity": float(promised.max(initial=0.0)), "complementarity": float(held)}
+        held = 0.0 if slack == 0.0 else slack / unit.max()
+    return {"stationarity": float(promised.max()), "complementarity": float(held)}
 
 
 def own_scales(point: Point) -> Array:
@@ -91,7 +90,7 @@ def acting(point: Point) -> Array:
     there = rows == columns
     bend[rows[there]] = np.abs(np.array(curved.nonzeros())[there])
     size = point.pull * own + 0.5 * bend * own**2
-    unit: Array = size + WEAK * size.max(initial=0.0)
+    unit: Array = size + WEAK * size.max()
     return unit
 
 
