@@ -267,10 +267,9 @@ def _reach(train: Train, cut: Fraction, most: Fraction, threshold: float) -> Fra
             )
             lower = share(train, k, d, 1.0, ratios)
         useful |= np.asarray(lower) <= threshold
-    if useful[-1]:
-        return most
-    beyond = ratios[1:][useful[:-1]]
-    return Fraction(float(beyond[-1])) if len(beyond) else cut
+    beyond = [*ratios[1:], most]  # the next of the grid; at its end `most` itself, unrounded
+    last = np.flatnonzero(useful)
+    return Fraction(beyond[last[-1]]) if len(last) else cut
 
 
 def possible(train: Train, seconds: float, watch: Watch | None) -> bool | None:

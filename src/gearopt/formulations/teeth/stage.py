@@ -146,8 +146,7 @@ def table(
     tick()
     stage = train.stages[position]
     cosine = math.cos(train.helix_angle)
-    least = train.lowest_ratio if len(train.stages) == 1 else stage.ratio[0]
-    z1, z2 = _pairs(stage, max(stage.ratio[0], least), cut, train.coprime)
+    z1, z2 = _pairs(train, position, cut)
     tick()
     ratio = z2 / z1
     face, modules = stage.face_width, stage.modules
@@ -185,12 +184,12 @@ def table(
     )
 
 
-def _pairs(stage: Stage, low: Fraction, cut: Fraction, coprime: bool) -> tuple[Index, Index]:
-    """All (z1, z2) of a stage with ratios from low to cut, by ratio, then by teeth.
+def _pairs(train: Train, position: int, cut: Fraction) -> tuple[Index, Index]:
+    """All (z1, z2) of a stage with ratios up to cut, by ratio, then by teeth.
 
     SolveError where they are more than memory is worth.
     """
-    ranges = spans(stage, low, cut)
+    ranges = spans(train, position, cut)
     count = sum(stop - start + 1 for _, start, stop in ranges)
     if count > PAIRS:
         raise SolveError(
@@ -200,18 +199,20 @@ def _pairs(stage: Stage, low: Fraction, cut: Fraction, coprime: bool) -> tuple[I
     wheels = [np.arange(start, stop + 1, dtype=np.int64) for _, start, stop in ranges]
     z1 = np.repeat([z for z, _, _ in ranges], [len(w) for w in wheels]).astype(np.int64)
     z2 = np.concatenate(wheels)
-    if coprime:
+    if train.coprime:
         keep = np.gcd(z1, z2) == 1
         z1, z2 = z1[keep], z2[keep]
     order = np.argsort(z2 / z1, kind="stable")
     return z1[order], z2[order]
 
 
-def spans(stage: Stage, low: Fraction, cut: Fraction) -> list[tuple[int, int, int]]:
-    """Of every pinion z1 its least and most wheel teeth for ratios from low to cut.
+def spans(train: Train, position: int, cut: Fraction) -> list[tuple[int, int, int]]:
+    """Of every pinion z1 of a stage its least and most wheel teeth for ratios up to cut.
 
     The most is one below the least where there are none.
     """
+    stage = train.stages[position]
+    low = max(stage.ratio[0], train.lowest_ratio) if len(train.stages) == 1 else stage.ratio[0]
     high = cut if stage.ratio[1] is None else min(cut, stage.ratio[1])
     most_wheel = stage.wheel_teeth[1]
     least_z1, most_z1 = stage.pinion_teeth
