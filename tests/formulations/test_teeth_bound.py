@@ -90,7 +90,8 @@ def test_the_bound_is_its_definition(stages, objective, total, face, edge, monke
         ahead = np.array([beyond[x : x + expected.shape[1]] for x in cell])
         assert found.onward(k, cell) == pytest.approx(expected + ahead, rel=1e-12)
     for k, t in enumerate(tables):
-        edges = [int((t.log_ratio < r * delta).sum()) for r in range(len(found.starts[k]) - 1)]
+        widest = max(float(t.log_ratio[-1]) for t in tables)
+        edges = [int((t.log_ratio < r * delta).sum()) for r in range(int(widest / delta) + 1)]
         assert found.starts[k].tolist() == [*edges, len(t.z1)]
     assert found.cell(np.array([0.0, 0.0699, 0.0701, 0.15])).tolist() == [0, 0, 1, 2]
 
@@ -127,11 +128,20 @@ def test_equal_inner_stages_share_what_was_made(monkeypatch):
     assert [t.position for t in tables] == [0, 1, 1, 1, 4]
     bound(train, tables, 0.1, lambda: None)
     assert len(made) == 1
+    ends = [replace(s, k_factor=k) for s, k in zip(same[:2], (3.0, 4.0), strict=True)]
+    unlike = replace(train, stages=(ends[0], *same[1:4], ends[1]))
+    bound(unlike, tables_of(unlike), 0.1, lambda: None)  # of the inner stages alone
+    assert len(made) == 2
+    made.clear()
+    pair = replace(train, stages=(same[0], ends[0], same[2], same[3], same[4]))
+    tables = searching._tables(pair, pair.highest_ratio, Progress(1, Budget(), None))
+    assert tables[2] is tables[3] and tables[1] is not tables[2]
+    assert [t.position for t in tables] == [0, 1, 2, 2, 4]
     other = replace(train, stages=(*same[:2], replace(same[2], k_factor=1.0), *same[3:]))
     tables = searching._tables(other, other.highest_ratio, Progress(1, Budget(), None))
     assert len({id(t) for t in tables}) == 5
     bound(other, tables, 0.1, lambda: None)
-    assert len(made) == 4
+    assert len(made) == 3
 
 
 def test_too_many_entries_are_refused_and_as_many_are_not(monkeypatch):

@@ -137,9 +137,9 @@ def test_ties_go_to_fewest_teeth_then_to_the_smaller_first():
     progress = Progress(5, Budget(), None)
     near = 1.0 + 0.9 * TIE
     rows = [(1.0, (18, 20)), (near, (20, 17)), (near, (17, 20)), (1.0 + 3 * TIE, (12, 12))]
-    rows.append((2.0, (12, 13)))
+    rows += [(2.0, (12, 14)), (2.0, (13, 12))]
     progress.found = [(value, teeth_of(*n)) for value, n in rows]
-    order = [(17, 20), (20, 17), (18, 20), (12, 12), (12, 13)]
+    order = [(17, 20), (20, 17), (18, 20), (12, 12), (13, 12), (12, 14)]
     assert _in_order(progress) == [teeth_of(*n) for n in order]
     assert _in_order(Progress(1, Budget(), None)) == []
 
@@ -167,6 +167,7 @@ def test_what_exact_claims():
     assert best.bound == pytest.approx(trains.values.min(), rel=1e-12)
     assert best.proof["method"] == "exhausted" and best.proof["pruning_margin"] == MARGIN
     assert 0 < best.proof["trains_compared"] <= best.evaluations and best.proof["nodes"] > 0
+    assert len(outcome(train, 2).others) == 1
     listed = outcome(train, 5)
     assert len(listed.others) == 4 and (listed.x == best.x).all()
     values = problem(train).batch(np.array([listed.x, *listed.others])).F[:, 0]

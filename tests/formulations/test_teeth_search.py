@@ -104,6 +104,9 @@ def test_a_watcher_is_told_and_stops_a_search():
     assert progress.goes_on() and not progress.stopped  # None is not False
     progress.tick()
     assert [(e.evaluations, e.best, e.bound) for e in seen] == [(5, 3.0, 2.0)] * 2
+    progress.add(np.array([3.0 * (1.0 + 0.5 * TIE)]), iter([((8, 16),)]))
+    progress.tick()
+    assert len(progress.found) == 2 and seen[-1].best == 3.0  # of ties the least
     progress.watch = lambda event: False
     with pytest.raises(Spent):
         progress.tick()
@@ -244,9 +247,53 @@ def test_finer_grids_find_the_same_with_less(case, monkeypatch):
     assert again == found and counts == pytest.approx(IMPATIENT[case], rel=0.02, abs=1)
 
 
-@pytest.mark.parametrize(("stages", "number", "first"), [(3, 5, 0.01), (4, 0, 0.005)])
+@pytest.mark.parametrize("patience", [1, 1000])
+@pytest.mark.parametrize(
+    ("face", "total", "tolerance"),
+    [("tied", 5, 0), ("stepped", 5, F(1, 50)), ("fixed", 4, F(1, 1000))],
+)
+def test_a_look_that_is_cut_short_proves_nothing(face, total, tolerance, patience, monkeypatch):
+    """Where patience ends before the trains do, the search goes on, up to the same ratio too."""
+    train = drive(3, face, total, tolerance=F(tolerance), pinion_teeth=(15, 18))
+    assert searching.first_cut(train) == train.highest_ratio
+    monkeypatch.setattr(searching, "FIRST_LOOK", patience)
+    monkeypatch.setattr(searching, "PATIENCE", 1000)
+    found = search(train, 1, Budget())
+    assert found.found[0][0] == pytest.approx(every_train(train).values.min(), rel=1e-12)
+
+
+@pytest.mark.parametrize("ratio", [F(101, 10), F(107, 10)])
+def test_one_stage_may_have_all_of_a_ratio_that_no_double_is(ratio):
+    """A heavy second stage is best idle; the first look ends below the ratio of the first."""
+    assert F(float(ratio)) < ratio
+    given = {"k_factor": 1e9, "unit_load": 1e9, "pinion_teeth": (20, 20)}
+    train = drive(2, total=ratio, tolerance=F(0))
+    stages = tuple(
+        replace(s, modules=(m,), **given) for s, m in zip(train.stages, (F(2), F(20)), strict=True)
+    )
+    found = search(replace(train, stages=stages), 1, Budget()).found
+    assert [pairs for _, pairs in found] == [((20, int(20 * ratio)), (20, 20))]
+
+
+def test_of_many_trains_no_more_than_the_wanted_are_spelled_out(monkeypatch):
+    """And their ties; the others are known to be worse by their cost alone."""
+    train, spelled = drive(2, total=6), []
+    monkeypatch.setattr(
+        searching, "within", lambda t, teeth_of: spelled.append(teeth_of) or within(t, teeth_of)
+    )
+    for wanted, most in ((1, 3), (4, 12)):
+        spelled.clear()
+        progress = search(train, wanted, Budget())
+        assert len(progress.found) == wanted and progress.compared > 100
+        assert len(spelled) <= most
+
+
+@pytest.mark.parametrize(("stages", "number", "first"), [(2, 0, 0.01), (3, 5, 0.01), (4, 0, 0.005)])
 def test_grids_are_halved_while_they_fit(stages, number, first, monkeypatch):
-    """One grid for a first look, however short; then finer ones, up to the largest."""
+    """One grid for a first look, however short; then finer ones, up to the largest.
+
+    Of two stages, whose bound is that of the last one alone, none is finer.
+    """
     train, made, looked = some_drive(number, stages), [], []
 
     def noted(train, tables, delta, tick):
@@ -259,7 +306,8 @@ def test_grids_are_halved_while_they_fit(stages, number, first, monkeypatch):
     monkeypatch.setattr(searching, "PATIENCE", 0)
     own = table(train, stages - 1, train.highest_ratio)
     finer = math.log(train.highest_ratio) * own.log_ratio[-1] / (first / 2) ** 2
-    for cells, deltas in ((finer, [first, first, first / 2]), (finer * (1 - 1e-9), [first] * 2)):
+    halved = [first, first, first / 2] if stages > 2 else [first] * 2
+    for cells, deltas in ((finer, halved), (finer * (1 - 1e-9), [first] * 2)):
         made.clear()
         looked.clear()
         monkeypatch.setattr(searching, "CELLS", cells)
