@@ -107,6 +107,9 @@ def test_a_watcher_is_told_and_stops_a_search():
     progress.add(np.array([3.0 * (1.0 + 0.5 * TIE)]), iter([((8, 16),)]))
     progress.tick()
     assert len(progress.found) == 2 and seen[-1].best == 3.0  # of ties the least
+    progress.lower = 3.5  # of what is left; the best train is one of all
+    progress.tick()
+    assert seen[-1].bound == 3.0
     progress.watch = lambda event: False
     with pytest.raises(Spent):
         progress.tick()

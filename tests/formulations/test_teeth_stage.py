@@ -9,6 +9,8 @@ import pytest
 from brute_force import SAME, best_choice, cost
 from small_drives import FACES, OBJECTIVES, drive
 
+from gearopt.errors import SolveError
+from gearopt.formulations.teeth import stage as staging
 from gearopt.formulations.teeth.stage import ALLOWANCE, table
 from gearopt.formulations.train import FaceWidth, Stage, Train
 
@@ -172,6 +174,16 @@ def test_pairs_are_all_of_a_stage_by_ratio_then_teeth(limits, coprime):
     assert found == [(a, b) for _, a, b in sorted(expected)]
     assert own.ratio.tolist() == [b / a for a, b in found]
     assert own.log_ratio.tolist() == np.log(own.ratio).tolist()
+
+
+def test_more_pairs_than_memory_takes_are_counted_before_they_are_made(monkeypatch):
+    train = drive(2, total=F(4))
+    count = len(table(train, 0, F(3)).z1)
+    monkeypatch.setattr(staging, "PAIRS", count)
+    assert len(table(train, 0, F(3)).z1) == count
+    monkeypatch.setattr(staging, "PAIRS", count - 1)
+    with pytest.raises(SolveError, match=f"has {count} tooth pairs .* narrow its pinion teeth"):
+        table(train, 0, F(3))
 
 
 def test_the_only_stage_keeps_to_the_least_ratio():
