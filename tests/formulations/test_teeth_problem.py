@@ -116,6 +116,19 @@ def test_the_point_of_teeth_is_the_brute_forces_and_keeps_every_row(face, object
         assert width == pytest.approx(trains.widths[k], rel=1e-12)
 
 
+def test_widths_are_whole_steps_whatever_rounding_makes_of_them():
+    """24 x 0.7 / 0.7 is below 24 in double precision."""
+    face = FaceWidth(F(1, 5), F(3, 5), step=F(7, 10))
+    train = drive(2, total=6)
+    train = replace(train, stages=tuple(replace(s, face_width=face) for s in train.stages))
+    trains, below = every_train(train), 0
+    for k in range(0, len(trains.values), 15):
+        x = best_point(train, tuple(map(tuple, trains.teeth[k].tolist())))
+        assert sizes(train, x)[3] == pytest.approx(trains.widths[k], rel=1e-12)
+        below += (trains.widths[k] / 0.7 < np.rint(trains.widths[k] / 0.7)).any()
+    assert below > 3
+
+
 def test_ends_of_the_set_of_modules_are_no_limits_and_hunting_teeth_are():
     train = drive(2)
     names = [row.name for row in problem(train).rows.inequalities]
@@ -125,6 +138,10 @@ def test_ends_of_the_set_of_modules_are_no_limits_and_hunting_teeth_are():
     assert names[-2:] == ["common_divisor[1]", "common_divisor[2]"]
     x = best_point(train, ((16, 52), (18, 63)))
     assert hunting.batch(x[None]).G[0, -2:].tolist() == [4.0, 9.0]
+    for near in (-1e-7, 1e-7):  # whole teeth, as a solver of real numbers returns them
+        assert hunting.batch(x[None] + near).G[0, -2:].tolist() == [4.0, 9.0]
+    one = problem(replace(drive(1, total=3), coprime=True))
+    assert one.batch(best_point(drive(1, total=3), ((15, 45),))[None]).G[0, -1] == 15.0
     with pytest.raises(SolveError, match="hunting teeth"):
         hunting.traced()
 

@@ -409,3 +409,11 @@ def test_possible_needs_one_train_only():
     assert possible(train, 60.0, lambda event: False) is None
     assert possible(train, 60.0, lambda event: None) is True
     assert possible(replace(train, stages=train.stages[:1]), 60.0, None) is False
+
+
+def test_any_train_is_one_that_keeps_every_limit():
+    train = drive(2, total=6)
+    teeth_of, trains = searching.any_train(train, 60.0, None), every_train(train)
+    assert list(map(list, teeth_of)) in trains.teeth.tolist()
+    assert searching.any_train(drive(2, total=6, modules=(F(1, 10),)), 60.0, None) == ()
+    assert searching.any_train(train, 0.0, None) is None

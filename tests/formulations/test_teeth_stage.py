@@ -119,6 +119,7 @@ def test_of_equal_costs_the_smaller_module_is_taken_on_steps():
     own = table(train, 0, train.highest_ratio)
     module, width = own.choose(1e-3, 0)
     assert (module, width) == (2.0, 1.0)
+    assert own.steps[0].min() == 1  # no width of no step, however small the load
     assert own.first.tolist() == [0] * len(own.z1) and own.last.tolist() == [1] * len(own.z1)
 
 
@@ -177,8 +178,10 @@ def test_pairs_are_all_of_a_stage_by_ratio_then_teeth(limits, coprime):
 
 
 def test_more_pairs_than_memory_takes_are_counted_before_they_are_made(monkeypatch):
-    train = drive(2, total=F(4))
+    """Also where small pinions have none, as their wheels would be too small."""
+    train = drive(2, total=F(4), wheel_teeth=(55, None))
     count = len(table(train, 0, F(3)).z1)
+    assert count == sum(max(0, 3 * z - 54) for z in range(15, 21))
     monkeypatch.setattr(staging, "PAIRS", count)
     assert len(table(train, 0, F(3)).z1) == count
     monkeypatch.setattr(staging, "PAIRS", count - 1)

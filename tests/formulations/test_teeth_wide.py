@@ -102,10 +102,10 @@ def test_a_wide_drive_is_that_of_all_its_pinions_and_tells_no_bound_of_a_part(fe
 def test_a_watcher_that_says_stop_once_stops_both_searches_of_a_wide_drive(few, whole):
     train, all_seen = wide_drive(), []
     outcome(train, watch=all_seen.append)
-    for stop in (1, 5, len(all_seen) // 2, len(all_seen) - 1):
+    for stop, count in ((1, 1), (5, 1), (20, 5), (len(all_seen) // 2, 1), (len(all_seen) - 1, 1)):
         seen = []
         watch = lambda e, t=seen, n=stop: t.append(e) or len(t) != n  # noqa: E731
-        found = outcome(train, floor=1.0, watch=watch)
+        found = outcome(train, count, floor=1.0, watch=watch)
         assert len(seen) == stop and not found.finished and not found.infeasible
         assert 1.0 <= found.bound <= whole.bound
         best = [e.best for e in seen if e.best is not None]

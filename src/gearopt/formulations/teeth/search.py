@@ -161,9 +161,7 @@ def _expand(
         node, pair, own = node[keep], pair[keep], own[keep]
     cost = chunk.cost[node] + own
     log_ratio = chunk.log_ratio[node] + stage.log_ratio[pair]
-    below = log_ratio <= math.log(train.highest_ratio) + EDGE
-    lower = np.full(len(cost), np.inf)
-    lower[below] = cost[below] + rest.to_go[level + 1][rest.cell(log_ratio[below])]
+    lower = cost + rest.to_go[level + 1][rest.cell(log_ratio)]
     use = np.flatnonzero(np.isfinite(lower) & (lower <= progress.threshold))
     use = use[np.argsort(lower[use], kind="stable")]
     if not len(use):
@@ -265,7 +263,7 @@ def _reach(train: Train, cut: Fraction, most: Fraction, threshold: float) -> Fra
                 if face.fixed
                 else (load / face.widest) ** (1.0 / 3.0)
             )
-            lower = share(train, k, d, 1.0, ratios)
+            lower = share(train, k, d, math.nan, ratios)  # a length, whatever the width
         useful |= np.asarray(lower) <= threshold
     beyond = [*ratios[1:], most]  # the next of the grid; at its end `most` itself, unrounded
     last = np.flatnonzero(useful)

@@ -71,7 +71,7 @@ class Table:
     def choose(self, torque: float, pair: int) -> tuple[float, float]:
         """Module and face width [mm] behind `cost`."""
         _, module, width = self._best(np.array([torque]), np.array([pair]))
-        return float(module[0]), float(width[0])
+        return module.item(), width.item()
 
     def capacity(self, module: int) -> Array:
         """Largest torque [N mm] each pair carries with a module (index); 0 where not allowed."""
@@ -82,7 +82,7 @@ class Table:
 
     def floor(self, module: int) -> Array:
         """Least objective share of each pair with a module (index), whatever the torque."""
-        pair = np.arange(len(self.z1))
+        pair = np.arange(len(self.ratio))
         d = self.diameter(self.modules[module], pair)
         width = self._least_width(d) if self.steps is None else self.steps[0][module] * self.step
         return np.asarray(share(self.train, self.position, d, width, self.ratio))

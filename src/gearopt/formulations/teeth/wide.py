@@ -55,5 +55,4 @@ def _least(train: Train, k: int, teeth: NDArray[np.int64]) -> Array:
     d = reference_diameter(float(stage.modules[0]), teeth, train.helix_angle)
     face = stage.face_width
     width = float(face.low) * d if face.fixed is None else np.full(len(d), float(face.fixed))
-    ratio = max(1.0, float(stage.ratio[0]))
-    return np.asarray(share(train, k, d, width, ratio))
+    return np.asarray(share(train, k, d, width, float(stage.ratio[0])))
