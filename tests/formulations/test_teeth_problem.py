@@ -70,6 +70,13 @@ def test_wheels_reach_as_far_as_the_ratio_and_a_limit_let_them():
     }
 
 
+def test_wheels_reach_as_far_as_their_own_pinions():
+    train = drive(2, total=12, tolerance=F(1, 100))
+    larger = replace(train.stages[1], pinion_teeth=(15, 30))
+    ends = bounds_of(replace(train, stages=(train.stages[0], larger)))
+    assert ends["wheel_teeth"][1] == [242.0, 363.0]  # floor(12.12 z1)
+
+
 @pytest.mark.parametrize(("face", "low"), [("free", 0.2), ("open", 6e-7)])
 def test_free_widths_lie_between_ends_a_little_apart(face, low):
     train = drive(2, face, helix_angle=0.3)
@@ -197,6 +204,11 @@ def test_what_exact_claims():
     none = outcome(drive(2, total=6, modules=(F(1, 10),)))
     assert none.infeasible and none.x is None and none.bound is None
     assert none.proof["method"] == "exhausted"
+    looks = []
+    for count in (1, 5):  # where there is no train, no second search lists more
+        looks.append([])
+        outcome(drive(2, total=6, modules=(F(1, 10),)), count, watch=looks[-1].append)
+    assert len(looks[0]) == len(looks[1]) > 0
 
 
 def test_what_exact_says_when_it_is_stopped():
@@ -230,6 +242,6 @@ def test_a_list_that_is_stopped_gives_the_best_alone():
 
 
 def test_the_default_method_is_exact():
-    result, _ = run(problem(drive(2, total=6)))
-    assert result.method == "exact" and result.status == "optimal"
+    result, found = run(problem(drive(2, total=6)))
+    assert result.method == "exact" and result.status == "optimal" and found.others == ()
     assert not teeth.RANDOM

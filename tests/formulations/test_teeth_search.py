@@ -65,6 +65,7 @@ def test_a_bound_counts_where_the_search_is_of_all_trains():
     progress = Progress(1, Budget(), None, floor=2.0)
     progress.raise_lower(5.0)
     assert (progress.looked, progress.compared, progress.nodes) == (0, 0, 0)
+    assert Progress(1, Budget(), None).bound == -math.inf
     assert progress.bound == 2.0
     progress.whole = True
     progress.raise_lower(5.0)
@@ -409,6 +410,15 @@ def test_possible_needs_one_train_only():
     assert possible(train, 60.0, lambda event: False) is None
     assert possible(train, 60.0, lambda event: None) is True
     assert possible(replace(train, stages=train.stages[:1]), 60.0, None) is False
+
+
+@pytest.mark.parametrize("position", [0, 1, 2])
+def test_a_stage_without_a_pair_leaves_no_train(position):
+    train = drive(3)
+    none = replace(train.stages[position], wheel_teeth=(1, 10))
+    stages = (*train.stages[:position], none, *train.stages[position + 1 :])
+    progress = search(replace(train, stages=stages), 1, Budget())
+    assert progress.found == [] and not progress.stopped
 
 
 def test_any_train_is_one_that_keeps_every_limit():

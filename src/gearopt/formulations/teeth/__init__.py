@@ -247,11 +247,11 @@ def best_point(train: Train, teeth: Teeth) -> Array:
         only = table(train.fixed_teeth(k, z1, z2), k, train.highest_ratio)
         module, width = only.choose(torque, 0)
         face = train.stages[k].face_width
-        free = not face.tied and face.step is None and face.fixed is None
+        given = face.tied or face.step is not None  # by d1 or as width_steps
         columns["module"].append(module)
         columns["pinion_teeth"].append(z1)
         columns["wheel_teeth"].append(z2)
-        columns["face_width"].append(width if free else float(face.fixed or 1))
+        columns["face_width"].append(1.0 if given else width)
         columns["width_steps"].append(round(width / float(face.step)) if face.step else 1)
         torque *= z2 / z1
     return np.array([value for v in _variables(train) for value in columns[v.name]])

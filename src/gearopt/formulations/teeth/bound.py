@@ -52,10 +52,10 @@ class Bound:
 def bound(train: Train, tables: list[Table], delta: float, tick: Callable[[], None]) -> Bound:
     """The bound of all stages but the first, on cells of `delta` in log ratio.
 
-    tick: called several times a second; what it raises ends the work.
+    Every table has a pair. tick: called several times a second; what it raises ends the work.
     """
     cells = int(math.log(train.highest_ratio) / delta) + 1
-    widest = max((float(t.log_ratio[-1]) for t in tables if len(t.ratio)), default=0.0)
+    widest = max(float(t.log_ratio[-1]) for t in tables)
     ratio_cells = int(widest / delta) + 1
     count = len(tables)
     least: list[Array | None] = [None] * count
@@ -142,5 +142,4 @@ def ragged(
     """Owner and index of all start[i] .. start[i] + count[i] - 1, one after the other."""
     owner = np.repeat(np.arange(len(count)), count)
     ends = np.cumsum(count)
-    total = int(ends[-1]) if len(ends) else 0
-    return owner, np.arange(total) - np.repeat(ends - count, count) + np.repeat(start, count)
+    return owner, np.arange(len(owner)) - np.repeat(ends - count, count) + np.repeat(start, count)

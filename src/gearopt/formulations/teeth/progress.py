@@ -81,13 +81,12 @@ class Progress:
         over = (most_s is not None and seconds > most_s) or (
             most_n is not None and self.looked >= most_n
         )
+        best = self.found[0][0] if self.found else None
         if not over and self.watch is not None:
-            best = self.found[0][0] if self.found else None
             lower = min(self.bound, math.inf if best is None else best)  # of all, not of the rest
             known = lower if math.isfinite(lower) else None
             over = self.watch(Event(seconds, self.looked, best, known)) is False
         self.stopped = self.stopped or over
-        if self.budget.gap > 0.0 and self.wanted == 1 and self.found:
-            value = self.found[0][0]
-            self.enough = value - self.bound <= self.budget.gap * value
+        if self.budget.gap > 0.0 and self.wanted == 1 and best is not None:
+            self.enough = best - self.bound <= self.budget.gap * best
         return not (self.stopped or self.enough)

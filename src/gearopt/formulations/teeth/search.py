@@ -121,10 +121,9 @@ def _closed(
             heapq.heappush(heap, (float(chunk.bound[0]), next(order), chunk))
 
     zero = np.zeros(1)
-    wait(Chunk(0, zero, zero, zero, np.empty((1, 0), dtype=np.int64)))
+    wait(Chunk(0, np.array([-math.inf]), zero, zero, np.empty((1, 0), dtype=np.int64)))
     while heap and heap[0][0] <= progress.threshold:
-        if heap[0][2].level:
-            progress.raise_lower(heap[0][0])
+        progress.raise_lower(heap[0][0])
         progress.tick()
         if progress.looked > patience:
             return False
@@ -147,7 +146,7 @@ def _expand(
         _complete(train, tables, chunk, progress)
         return None
     if level == 0:
-        node, pair = np.zeros(len(stage.z1), dtype=np.int64), np.arange(len(stage.z1))
+        node, pair = np.zeros(len(stage.ratio), dtype=np.int64), np.arange(len(stage.ratio))
     else:
         onward = chunk.cost[:, None] + rest.onward(level, rest.cell(chunk.log_ratio))
         owner, cell = np.nonzero(onward <= progress.threshold)
