@@ -144,6 +144,14 @@ def test_equal_inner_stages_share_what_was_made(monkeypatch):
     assert len(made) == 3
 
 
+def test_a_grid_looks_at_the_clock_at_every_module_and_stage():
+    """Each of them is a pass over a grid of up to ten million cells."""
+    train, looks = drive(3), []
+    bound(train, tables_of(train), 0.1, lambda: looks.append(1))
+    inner = len(train.stages[1].modules) + 1  # its modules, and the load alone
+    assert len(looks) == inner + 1 + 1  # the recursion over it, and one slice of the last stage
+
+
 def test_too_many_entries_are_refused_and_as_many_are_not(monkeypatch):
     train = drive(2)
     tables = tables_of(train)
