@@ -13,6 +13,7 @@ from gearopt.errors import SolveError
 from gearopt.formulations import teeth
 from gearopt.formulations.teeth import MOST, _in_order, _why, best_point, problem, sizes
 from gearopt.formulations.teeth.progress import MARGIN, TIE, Progress
+from gearopt.formulations.teeth.search import search
 from gearopt.formulations.train import FaceWidth
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import method_of, run
@@ -209,6 +210,14 @@ def test_what_exact_claims():
         looks.append([])
         outcome(drive(2, total=6, modules=(F(1, 10),)), count, watch=looks[-1].append)
     assert len(looks[0]) == len(looks[1]) > 0
+
+
+def test_the_bound_is_the_least_of_ties_whatever_their_rounding():
+    """A free width makes the volume the same for 21 pairs, but for the last digits."""
+    train = drive(1, "open", total=4, tolerance=F(0), pinion_teeth=(12, 40))
+    values = [value for value, _ in search(train, 1, Budget()).found]
+    assert min(values) < max(values) <= min(values) * (1.0 + TIE)
+    assert outcome(train).bound == min(values)
 
 
 def test_what_exact_says_when_it_is_stopped():

@@ -134,6 +134,10 @@ def test_pairs_beyond_memory_leave_the_best_of_few_pinions_and_no_claim(few, mon
     """Also where a gap is asked for: few pinions prove nothing of the others."""
     monkeypatch.setattr(staging, "PAIRS", 2 * FEW)
     train = wide_drive()
+    narrow = replace(train.stages[0], pinion_teeth=(15, 30))
+    train = replace(train, stages=(narrow, *train.stages[1:]))
+    few_teeth = [s.pinion_teeth[1] for s in wide.narrowed(train).stages]
+    assert few_teeth == [30, 33, 33]
     first = search(wide.narrowed(train), 1, Budget())
     for gap in (0.0, 0.5):
         found = outcome(train, floor=1.0, gap=gap)
