@@ -66,17 +66,19 @@ def naive(train, tables, delta):
 
 @pytest.mark.parametrize("face", FACES)
 @pytest.mark.parametrize(
-    ("stages", "objective", "total", "edge"),
+    ("stages", "objective", "total", "edge", "torque"),
     [
-        (2, "gear_volume", F(9), EDGE),
-        (3, "gear_volume", F(16), 4e-3),
-        (4, "total_length", F(8), EDGE),
+        (2, "gear_volume", F(9), EDGE, 2e4),
+        (3, "gear_volume", F(16), 4e-3, 2e4),
+        (3, "gear_volume", F(5), EDGE, 200.0),
+        (4, "total_length", F(8), EDGE, 2e4),
     ],
 )
-def test_the_bound_is_its_definition(stages, objective, total, face, edge, monkeypatch):
-    """Also where cells overlap by so much that one sees it."""
+def test_the_bound_is_its_definition(stages, objective, total, face, edge, torque, monkeypatch):
+    """Also where cells overlap by so much that one sees it, and where any pair carries the load."""
     monkeypatch.setattr(bounds, "EDGE", edge)
     train = drive(stages, face, total, objective=objective, pinion_teeth=(15, 17))
+    train = replace(train, torque=torque)
     tables, delta = tables_of(train), 0.07
     found = bound(train, tables, delta, lambda: None)
     to_go, least = naive(train, tables, delta)

@@ -279,6 +279,23 @@ def test_one_stage_may_have_all_of_a_ratio_that_no_double_is(ratio):
     assert [pairs for _, pairs in found] == [((20, int(20 * ratio)), (20, 20))]
 
 
+@pytest.mark.parametrize("tolerance", [F(0), F(1, 100)])
+def test_what_a_first_look_proves_is_not_told_as_a_bound_of_all(tolerance):
+    """The best train has 38:1 in its light first stage, beyond the first look."""
+    given = {"k_factor": 1e9, "unit_load": 1e9, "pinion_teeth": (20, 20)}
+    train = drive(3, total=60, tolerance=tolerance)
+    stages = tuple(
+        replace(s, modules=(m,), **given) for s, m in zip(train.stages, (2, 20, 20), strict=True)
+    )
+    train, seen = replace(train, stages=stages), []
+    best, (first, *_) = search(train, 1, Budget(), seen.append).found[0]
+    assert F(first[1], first[0]) > searching.first_cut(train)
+    told = [event.bound for event in seen if event.bound is not None]
+    assert told and max(told) <= best
+    near = search(train, 1, Budget(gap=0.1))
+    assert near.found[0][0] * (1.0 - 0.1) <= best and near.bound <= best
+
+
 def test_of_many_trains_no_more_than_the_wanted_are_spelled_out(monkeypatch):
     """And their ties; the others are known to be worse by their cost alone."""
     train, spelled = drive(2, total=6), []
@@ -292,7 +309,7 @@ def test_of_many_trains_no_more_than_the_wanted_are_spelled_out(monkeypatch):
         assert len(spelled) <= most
 
 
-@pytest.mark.parametrize(("stages", "number", "first"), [(2, 0, 0.01), (3, 5, 0.01), (4, 0, 0.005)])
+@pytest.mark.parametrize(("stages", "number", "first"), [(2, 3, 0.01), (3, 5, 0.01), (4, 0, 0.005)])
 def test_grids_are_halved_while_they_fit(stages, number, first, monkeypatch):
     """One grid for a first look, however short; then finer ones, up to the largest.
 

@@ -120,6 +120,10 @@ def test_of_equal_costs_the_smaller_module_is_taken_on_steps():
     module, width = own.choose(1e-3, 0)
     assert (module, width) == (2.0, 1.0)
     assert own.steps[0].min() == 1  # no width of no step, however small the load
+    # 9 steps of d = 40 are as much as 4 of d = 60; the load needs 8.9 and 3.96 of them
+    torque = 8.9 * 40**2 / (2.0 * (1.0 + 1.0 / 3.0))
+    carried = replace(train, stages=(replace(train.stages[0], unit_load=1e9),))
+    assert table(carried, 0, train.highest_ratio).choose(torque, 0) == (2.0, 9.0)
     assert own.first.tolist() == [0] * len(own.z1) and own.last.tolist() == [1] * len(own.z1)
 
 

@@ -12,7 +12,7 @@ from small_drives import FACES, OBJECTIVES, drive
 from gearopt.formulations.teeth import problem, wide
 from gearopt.formulations.teeth import stage as staging
 from gearopt.formulations.teeth.progress import MARGIN
-from gearopt.formulations.teeth.search import search
+from gearopt.formulations.teeth.search import first_cut, search
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import method_of
 
@@ -99,10 +99,21 @@ def test_a_wide_drive_is_that_of_all_its_pinions_and_tells_no_bound_of_a_part(fe
     assert found.proof["nodes"] == first.nodes + second.nodes
 
 
+def test_nor_where_the_first_look_is_at_all_ratios(few):
+    train = drive(3, total=4, pinion_teeth=(15, 60), modules=(F(1),), tolerance=F(1, 500))
+    assert first_cut(train) == train.highest_ratio
+    seen, best = [], outcome(train).bound
+    found = outcome(train, watch=seen.append)
+    assert found.bound == best and all(e.bound is None or e.bound <= best for e in seen)
+    assert search(wide.narrowed(train), 1, Budget()).found[0][0] > 1.01 * best
+
+
 def test_a_watcher_that_says_stop_once_stops_both_searches_of_a_wide_drive(few, whole):
     train, all_seen = wide_drive(), []
     outcome(train, watch=all_seen.append)
-    for stop, count in ((1, 1), (5, 1), (20, 5), (len(all_seen) // 2, 1), (len(all_seen) - 1, 1)):
+    known = [event.best is not None for event in all_seen]
+    second = next(k for k in range(1, len(known)) if known[k - 1] and not known[k])
+    for stop, count in ((1, 1), (second, 5), (second + 1, 1), (second + 4, 1), (len(known) - 1, 1)):
         seen = []
         watch = lambda e, t=seen, n=stop: t.append(e) or len(t) != n  # noqa: E731
         found = outcome(train, count, floor=1.0, watch=watch)
