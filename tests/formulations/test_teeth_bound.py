@@ -66,17 +66,19 @@ def naive(train, tables, delta):
 
 @pytest.mark.parametrize("face", FACES)
 @pytest.mark.parametrize(
-    ("stages", "objective", "total", "edge"),
+    ("stages", "objective", "total", "edge", "torque"),
     [
-        (2, "gear_volume", F(9), EDGE),
-        (3, "gear_volume", F(16), 4e-3),
-        (4, "total_length", F(8), EDGE),
+        (2, "gear_volume", F(9), EDGE, 2e4),
+        (3, "gear_volume", F(16), 4e-3, 2e4),
+        (3, "gear_volume", F(5), EDGE, 200.0),
+        (4, "total_length", F(8), EDGE, 2e4),
     ],
 )
-def test_the_bound_is_its_definition(stages, objective, total, face, edge, monkeypatch):
-    """Also where cells overlap by so much that one sees it."""
+def test_the_bound_is_its_definition(stages, objective, total, face, edge, torque, monkeypatch):
+    """Also where cells overlap by so much that one sees it, and where any pair carries the load."""
     monkeypatch.setattr(bounds, "EDGE", edge)
     train = drive(stages, face, total, objective=objective, pinion_teeth=(15, 17))
+    train = replace(train, torque=torque)
     tables, delta = tables_of(train), 0.07
     found = bound(train, tables, delta, lambda: None)
     to_go, least = naive(train, tables, delta)
@@ -90,7 +92,8 @@ def test_the_bound_is_its_definition(stages, objective, total, face, edge, monke
         ahead = np.array([beyond[x : x + expected.shape[1]] for x in cell])
         assert found.onward(k, cell) == pytest.approx(expected + ahead, rel=1e-12)
     for k, t in enumerate(tables):
-        edges = [int((t.log_ratio < r * delta).sum()) for r in range(len(found.starts[k]) - 1)]
+        widest = max(float(t.log_ratio[-1]) for t in tables)
+        edges = [int((t.log_ratio < r * delta).sum()) for r in range(int(widest / delta) + 1)]
         assert found.starts[k].tolist() == [*edges, len(t.z1)]
     assert found.cell(np.array([0.0, 0.0699, 0.0701, 0.15])).tolist() == [0, 0, 1, 2]
 
@@ -127,11 +130,28 @@ def test_equal_inner_stages_share_what_was_made(monkeypatch):
     assert [t.position for t in tables] == [0, 1, 1, 1, 4]
     bound(train, tables, 0.1, lambda: None)
     assert len(made) == 1
+    ends = [replace(s, k_factor=k) for s, k in zip(same[:2], (3.0, 4.0), strict=True)]
+    unlike = replace(train, stages=(ends[0], *same[1:4], ends[1]))
+    bound(unlike, tables_of(unlike), 0.1, lambda: None)  # of the inner stages alone
+    assert len(made) == 2
+    made.clear()
+    pair = replace(train, stages=(same[0], ends[0], same[2], same[3], same[4]))
+    tables = searching._tables(pair, pair.highest_ratio, Progress(1, Budget(), None))
+    assert tables[2] is tables[3] and tables[1] is not tables[2]
+    assert [t.position for t in tables] == [0, 1, 2, 2, 4]
     other = replace(train, stages=(*same[:2], replace(same[2], k_factor=1.0), *same[3:]))
     tables = searching._tables(other, other.highest_ratio, Progress(1, Budget(), None))
     assert len({id(t) for t in tables}) == 5
     bound(other, tables, 0.1, lambda: None)
-    assert len(made) == 4
+    assert len(made) == 3
+
+
+def test_a_grid_looks_at_the_clock_at_every_module_and_stage():
+    """Each of them is a pass over a grid of up to ten million cells."""
+    train, looks = drive(3), []
+    bound(train, tables_of(train), 0.1, lambda: looks.append(1))
+    inner = len(train.stages[1].modules) + 1  # its modules, and the load alone
+    assert len(looks) == inner + 1 + 1  # the recursion over it, and one slice of the last stage
 
 
 def test_too_many_entries_are_refused_and_as_many_are_not(monkeypatch):

@@ -13,6 +13,7 @@ from gearopt.errors import SolveError
 from gearopt.formulations import teeth
 from gearopt.formulations.teeth import MOST, _in_order, _why, best_point, problem, sizes
 from gearopt.formulations.teeth.progress import MARGIN, TIE, Progress
+from gearopt.formulations.teeth.search import search
 from gearopt.formulations.train import FaceWidth
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import method_of, run
@@ -70,6 +71,13 @@ def test_wheels_reach_as_far_as_the_ratio_and_a_limit_let_them():
     }
 
 
+def test_wheels_reach_as_far_as_their_own_pinions():
+    train = drive(2, total=12, tolerance=F(1, 100))
+    larger = replace(train.stages[1], pinion_teeth=(15, 30))
+    ends = bounds_of(replace(train, stages=(train.stages[0], larger)))
+    assert ends["wheel_teeth"][1] == [242.0, 363.0]  # floor(12.12 z1)
+
+
 @pytest.mark.parametrize(("face", "low"), [("free", 0.2), ("open", 6e-7)])
 def test_free_widths_lie_between_ends_a_little_apart(face, low):
     train = drive(2, face, helix_angle=0.3)
@@ -116,6 +124,19 @@ def test_the_point_of_teeth_is_the_brute_forces_and_keeps_every_row(face, object
         assert width == pytest.approx(trains.widths[k], rel=1e-12)
 
 
+def test_widths_are_whole_steps_whatever_rounding_makes_of_them():
+    """24 x 0.7 / 0.7 is below 24 in double precision."""
+    face = FaceWidth(F(1, 5), F(3, 5), step=F(7, 10))
+    train = drive(2, total=6)
+    train = replace(train, stages=tuple(replace(s, face_width=face) for s in train.stages))
+    trains, below = every_train(train), 0
+    for k in range(0, len(trains.values), 15):
+        x = best_point(train, tuple(map(tuple, trains.teeth[k].tolist())))
+        assert sizes(train, x)[3] == pytest.approx(trains.widths[k], rel=1e-12)
+        below += (trains.widths[k] / 0.7 < np.rint(trains.widths[k] / 0.7)).any()
+    assert below > 3
+
+
 def test_ends_of_the_set_of_modules_are_no_limits_and_hunting_teeth_are():
     train = drive(2)
     names = [row.name for row in problem(train).rows.inequalities]
@@ -125,6 +146,10 @@ def test_ends_of_the_set_of_modules_are_no_limits_and_hunting_teeth_are():
     assert names[-2:] == ["common_divisor[1]", "common_divisor[2]"]
     x = best_point(train, ((16, 52), (18, 63)))
     assert hunting.batch(x[None]).G[0, -2:].tolist() == [4.0, 9.0]
+    for near in (-1e-7, 1e-7):  # whole teeth, as a solver of real numbers returns them
+        assert hunting.batch(x[None] + near).G[0, -2:].tolist() == [4.0, 9.0]
+    one = problem(replace(drive(1, total=3), coprime=True))
+    assert one.batch(best_point(drive(1, total=3), ((15, 45),))[None]).G[0, -1] == 15.0
     with pytest.raises(SolveError, match="hunting teeth"):
         hunting.traced()
 
@@ -137,9 +162,9 @@ def test_ties_go_to_fewest_teeth_then_to_the_smaller_first():
     progress = Progress(5, Budget(), None)
     near = 1.0 + 0.9 * TIE
     rows = [(1.0, (18, 20)), (near, (20, 17)), (near, (17, 20)), (1.0 + 3 * TIE, (12, 12))]
-    rows.append((2.0, (12, 13)))
+    rows += [(2.0, (12, 14)), (2.0, (13, 12))]
     progress.found = [(value, teeth_of(*n)) for value, n in rows]
-    order = [(17, 20), (20, 17), (18, 20), (12, 12), (12, 13)]
+    order = [(17, 20), (20, 17), (18, 20), (12, 12), (13, 12), (12, 14)]
     assert _in_order(progress) == [teeth_of(*n) for n in order]
     assert _in_order(Progress(1, Budget(), None)) == []
 
@@ -167,6 +192,7 @@ def test_what_exact_claims():
     assert best.bound == pytest.approx(trains.values.min(), rel=1e-12)
     assert best.proof["method"] == "exhausted" and best.proof["pruning_margin"] == MARGIN
     assert 0 < best.proof["trains_compared"] <= best.evaluations and best.proof["nodes"] > 0
+    assert len(outcome(train, 2).others) == 1
     listed = outcome(train, 5)
     assert len(listed.others) == 4 and (listed.x == best.x).all()
     values = problem(train).batch(np.array([listed.x, *listed.others])).F[:, 0]
@@ -179,6 +205,19 @@ def test_what_exact_claims():
     none = outcome(drive(2, total=6, modules=(F(1, 10),)))
     assert none.infeasible and none.x is None and none.bound is None
     assert none.proof["method"] == "exhausted"
+    looks = []
+    for count in (1, 5):  # where there is no train, no second search lists more
+        looks.append([])
+        outcome(drive(2, total=6, modules=(F(1, 10),)), count, watch=looks[-1].append)
+    assert len(looks[0]) == len(looks[1]) > 0
+
+
+def test_the_bound_is_the_least_of_ties_whatever_their_rounding():
+    """A free width makes the volume the same for 21 pairs, but for the last digits."""
+    train = drive(1, "open", total=4, tolerance=F(0), pinion_teeth=(12, 40))
+    values = [value for value, _ in search(train, 1, Budget()).found]
+    assert min(values) < max(values) <= min(values) * (1.0 + TIE)
+    assert outcome(train).bound == min(values)
 
 
 def test_what_exact_says_when_it_is_stopped():
@@ -212,6 +251,6 @@ def test_a_list_that_is_stopped_gives_the_best_alone():
 
 
 def test_the_default_method_is_exact():
-    result, _ = run(problem(drive(2, total=6)))
-    assert result.method == "exact" and result.status == "optimal"
+    result, found = run(problem(drive(2, total=6)))
+    assert result.method == "exact" and result.status == "optimal" and found.others == ()
     assert not teeth.RANDOM

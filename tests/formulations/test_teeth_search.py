@@ -1,7 +1,6 @@
-"""What a search keeps, prunes and spends, and that it may be stopped at any look at the clock."""
+"""What a search prunes and proves, and that it may be stopped at any look at the clock."""
 
 import math
-import time
 from dataclasses import replace
 from fractions import Fraction
 from importlib import import_module
@@ -16,115 +15,13 @@ from gearopt.formulations.teeth import _in_order
 from gearopt.formulations.teeth import bound as bounds
 from gearopt.formulations.teeth import stage as staging
 from gearopt.formulations.teeth.bound import bound
-from gearopt.formulations.teeth.progress import MARGIN, TIE, Progress, Spent
+from gearopt.formulations.teeth.progress import TIE
 from gearopt.formulations.teeth.search import possible, search, within
 from gearopt.formulations.teeth.stage import table
-from gearopt.optimise.result import Budget, Event
+from gearopt.optimise.result import Budget
 
 F = Fraction
 searching = import_module("gearopt.formulations.teeth.search")  # `teeth.search` is its function
-
-
-def fake(value, *numbers):
-    return value, tuple((n, 2 * n) for n in numbers)
-
-
-def filled(wanted, *found):
-    progress = Progress(wanted, Budget(), None)
-    progress.add(np.array([v for v, _ in found]), iter([t for _, t in found]))
-    return progress
-
-
-def test_the_best_and_its_ties_are_kept():
-    near, far = 1.0 + 0.5 * TIE, 1.0 + 3.0 * TIE
-    progress = filled(1, fake(2.0, 9), fake(near, 8), fake(1.0, 7), fake(far, 6))
-    assert progress.found == [fake(1.0, 7), fake(near, 8)]
-    progress.add(np.array([1.0, near]), iter([((7, 14),), ((5, 10),)]))
-    assert progress.found == [fake(1.0, 7), fake(near, 5), fake(near, 8)]
-    progress.add(np.array([0.5]), iter([((4, 8),)]))
-    assert progress.found == [fake(0.5, 4)]
-    edge = 0.5 * (1.0 + TIE)
-    progress.add(np.array([edge]), iter([((3, 6),)]))
-    assert progress.found == [fake(0.5, 4), fake(edge, 3)]
-
-
-def test_a_list_keeps_as_many_as_are_wanted():
-    progress = filled(2, fake(3.0, 9), fake(1.0, 7), fake(1.0, 6))
-    assert progress.found == [fake(1.0, 6), fake(1.0, 7)]
-    assert filled(3, fake(3.0, 9)).found == [fake(3.0, 9)]
-
-
-def test_what_is_pruned_is_above_the_best_by_more_than_rounding():
-    assert filled(1).threshold == math.inf
-    assert filled(2, fake(1.0, 7)).threshold == math.inf
-    assert filled(1, fake(2.0, 7)).threshold == 2.0 * (1.0 + MARGIN)
-    assert filled(2, fake(2.0, 7), fake(4.0, 8)).threshold == 4.0 * (1.0 - TIE)
-
-
-def test_a_bound_counts_where_the_search_is_of_all_trains():
-    progress = Progress(1, Budget(), None, floor=2.0)
-    progress.raise_lower(5.0)
-    assert (progress.looked, progress.compared, progress.nodes) == (0, 0, 0)
-    assert progress.bound == 2.0
-    progress.whole = True
-    progress.raise_lower(5.0)
-    progress.raise_lower(4.0)
-    assert progress.bound == 5.0
-    progress.floor = 6.0
-    assert progress.bound == 6.0
-
-
-@pytest.mark.parametrize(
-    ("budget", "looked", "seconds", "over"),
-    [
-        (Budget(), 10**9, 1e9, False),
-        (Budget(seconds=5.0), 0, 4.0, False),
-        (Budget(seconds=5.0), 0, 5.0, False),
-        (Budget(seconds=5.0), 0, 5.5, True),
-        (Budget(evaluations=10), 9, 0.0, False),
-        (Budget(evaluations=10), 10, 0.0, True),
-        (Budget(evaluations=10), 11, 0.0, True),
-        (Budget(5.0, 10), 9, 6.0, True),
-        (Budget(5.0, 10), 10, 1.0, True),
-    ],
-)
-def test_budgets_end_a_search(budget, looked, seconds, over, monkeypatch):
-    seen = []
-    progress = Progress(1, budget, seen.append, clock=100.0, looked=looked)
-    monkeypatch.setattr(time, "perf_counter", lambda: 100.0 + seconds)
-    assert progress.goes_on() is not over and progress.stopped is over
-    assert seen == ([] if over else [Event(seconds, looked, None, None)])
-    assert Progress(1, Budget(), None).goes_on()
-
-
-def test_a_watcher_is_told_and_stops_a_search():
-    seen = []
-    progress = filled(1, fake(3.0, 7))
-    progress.watch, progress.floor, progress.looked = lambda e: seen.append(e), 2.0, 5
-    assert progress.goes_on() and not progress.stopped  # None is not False
-    progress.tick()
-    assert [(e.evaluations, e.best, e.bound) for e in seen] == [(5, 3.0, 2.0)] * 2
-    progress.watch = lambda event: False
-    with pytest.raises(Spent):
-        progress.tick()
-    assert progress.stopped and not progress.enough
-    progress.watch = None
-    assert not progress.goes_on()
-
-
-def test_a_gap_that_is_reached_is_enough():
-    for gap, enough in ((0.5, True), (0.25, True), (0.24, False), (0.0, False)):
-        progress = filled(1, fake(4.0, 7))
-        progress.budget, progress.floor = Budget(gap=gap), 3.0
-        assert progress.goes_on() is not enough and progress.enough is enough
-        assert not progress.stopped
-    listed = filled(2, fake(4.0, 7), fake(4.0, 8))
-    listed.budget, listed.floor = Budget(gap=0.5), 3.0
-    assert listed.goes_on()
-    assert Progress(1, Budget(gap=0.5), None, floor=3.0).goes_on()
-    none = filled(1, fake(4.0, 7))
-    none.budget, none.floor = Budget(gap=0.0), 4.0
-    assert none.goes_on()  # a gap of nothing is not asked for
 
 
 def test_within_is_decided_in_whole_numbers():
@@ -244,9 +141,70 @@ def test_finer_grids_find_the_same_with_less(case, monkeypatch):
     assert again == found and counts == pytest.approx(IMPATIENT[case], rel=0.02, abs=1)
 
 
-@pytest.mark.parametrize(("stages", "number", "first"), [(3, 5, 0.01), (4, 0, 0.005)])
+@pytest.mark.parametrize("patience", [1, 1000])
+@pytest.mark.parametrize(
+    ("face", "total", "tolerance"),
+    [("tied", 5, 0), ("stepped", 5, F(1, 50)), ("fixed", 4, F(1, 1000))],
+)
+def test_a_look_that_is_cut_short_proves_nothing(face, total, tolerance, patience, monkeypatch):
+    """Where patience ends before the trains do, the search goes on, up to the same ratio too."""
+    train = drive(3, face, total, tolerance=F(tolerance), pinion_teeth=(15, 18))
+    assert searching.first_cut(train) == train.highest_ratio
+    monkeypatch.setattr(searching, "FIRST_LOOK", patience)
+    monkeypatch.setattr(searching, "PATIENCE", 1000)
+    found = search(train, 1, Budget())
+    assert found.found[0][0] == pytest.approx(every_train(train).values.min(), rel=1e-12)
+
+
+@pytest.mark.parametrize("ratio", [F(101, 10), F(107, 10)])
+def test_one_stage_may_have_all_of_a_ratio_that_no_double_is(ratio):
+    """A heavy second stage is best idle; the first look ends below the ratio of the first."""
+    assert F(float(ratio)) < ratio
+    given = {"k_factor": 1e9, "unit_load": 1e9, "pinion_teeth": (20, 20)}
+    train = drive(2, total=ratio, tolerance=F(0))
+    stages = tuple(
+        replace(s, modules=(m,), **given) for s, m in zip(train.stages, (F(2), F(20)), strict=True)
+    )
+    found = search(replace(train, stages=stages), 1, Budget()).found
+    assert [pairs for _, pairs in found] == [((20, int(20 * ratio)), (20, 20))]
+
+
+@pytest.mark.parametrize("tolerance", [F(0), F(1, 100)])
+def test_what_a_first_look_proves_is_not_told_as_a_bound_of_all(tolerance):
+    """The best train has 38:1 in its light first stage, beyond the first look."""
+    given = {"k_factor": 1e9, "unit_load": 1e9, "pinion_teeth": (20, 20)}
+    train = drive(3, total=60, tolerance=tolerance)
+    stages = tuple(
+        replace(s, modules=(m,), **given) for s, m in zip(train.stages, (2, 20, 20), strict=True)
+    )
+    train, seen = replace(train, stages=stages), []
+    best, (first, *_) = search(train, 1, Budget(), seen.append).found[0]
+    assert F(first[1], first[0]) > searching.first_cut(train)
+    told = [event.bound for event in seen if event.bound is not None]
+    assert told and max(told) <= best
+    near = search(train, 1, Budget(gap=0.1))
+    assert near.found[0][0] * (1.0 - 0.1) <= best and near.bound <= best
+
+
+def test_of_many_trains_no_more_than_the_wanted_are_spelled_out(monkeypatch):
+    """And their ties; the others are known to be worse by their cost alone."""
+    train, spelled = drive(2, total=6), []
+    monkeypatch.setattr(
+        searching, "within", lambda t, teeth_of: spelled.append(teeth_of) or within(t, teeth_of)
+    )
+    for wanted, most in ((1, 3), (4, 12)):
+        spelled.clear()
+        progress = search(train, wanted, Budget())
+        assert len(progress.found) == wanted and progress.compared > 100
+        assert len(spelled) <= most
+
+
+@pytest.mark.parametrize(("stages", "number", "first"), [(2, 3, 0.01), (3, 5, 0.01), (4, 0, 0.005)])
 def test_grids_are_halved_while_they_fit(stages, number, first, monkeypatch):
-    """One grid for a first look, however short; then finer ones, up to the largest."""
+    """One grid for a first look, however short; then finer ones, up to the largest.
+
+    Of two stages, whose bound is that of the last one alone, none is finer.
+    """
     train, made, looked = some_drive(number, stages), [], []
 
     def noted(train, tables, delta, tick):
@@ -259,7 +217,8 @@ def test_grids_are_halved_while_they_fit(stages, number, first, monkeypatch):
     monkeypatch.setattr(searching, "PATIENCE", 0)
     own = table(train, stages - 1, train.highest_ratio)
     finer = math.log(train.highest_ratio) * own.log_ratio[-1] / (first / 2) ** 2
-    for cells, deltas in ((finer, [first, first, first / 2]), (finer * (1 - 1e-9), [first] * 2)):
+    halved = [first, first, first / 2] if stages > 2 else [first] * 2
+    for cells, deltas in ((finer, halved), (finer * (1 - 1e-9), [first] * 2)):
         made.clear()
         looked.clear()
         monkeypatch.setattr(searching, "CELLS", cells)
@@ -358,3 +317,20 @@ def test_possible_needs_one_train_only():
     assert possible(train, 60.0, lambda event: False) is None
     assert possible(train, 60.0, lambda event: None) is True
     assert possible(replace(train, stages=train.stages[:1]), 60.0, None) is False
+
+
+@pytest.mark.parametrize("position", [0, 1, 2])
+def test_a_stage_without_a_pair_leaves_no_train(position):
+    train = drive(3)
+    none = replace(train.stages[position], wheel_teeth=(1, 10))
+    stages = (*train.stages[:position], none, *train.stages[position + 1 :])
+    progress = search(replace(train, stages=stages), 1, Budget())
+    assert progress.found == [] and not progress.stopped
+
+
+def test_any_train_is_one_that_keeps_every_limit():
+    train = drive(2, total=6)
+    teeth_of, trains = searching.any_train(train, 60.0, None), every_train(train)
+    assert list(map(list, teeth_of)) in trains.teeth.tolist()
+    assert searching.any_train(drive(2, total=6, modules=(F(1, 10),)), 60.0, None) == ()
+    assert searching.any_train(train, 0.0, None) is None

@@ -9,6 +9,8 @@ import pytest
 from brute_force import SAME, best_choice, cost
 from small_drives import FACES, OBJECTIVES, drive
 
+from gearopt.errors import SolveError
+from gearopt.formulations.teeth import stage as staging
 from gearopt.formulations.teeth.stage import ALLOWANCE, table
 from gearopt.formulations.train import FaceWidth, Stage, Train
 
@@ -117,6 +119,11 @@ def test_of_equal_costs_the_smaller_module_is_taken_on_steps():
     own = table(train, 0, train.highest_ratio)
     module, width = own.choose(1e-3, 0)
     assert (module, width) == (2.0, 1.0)
+    assert own.steps[0].min() == 1  # no width of no step, however small the load
+    # 9 steps of d = 40 are as much as 4 of d = 60; the load needs 8.9 and 3.96 of them
+    torque = 8.9 * 40**2 / (2.0 * (1.0 + 1.0 / 3.0))
+    carried = replace(train, stages=(replace(train.stages[0], unit_load=1e9),))
+    assert table(carried, 0, train.highest_ratio).choose(torque, 0) == (2.0, 9.0)
     assert own.first.tolist() == [0] * len(own.z1) and own.last.tolist() == [1] * len(own.z1)
 
 
@@ -172,6 +179,18 @@ def test_pairs_are_all_of_a_stage_by_ratio_then_teeth(limits, coprime):
     assert found == [(a, b) for _, a, b in sorted(expected)]
     assert own.ratio.tolist() == [b / a for a, b in found]
     assert own.log_ratio.tolist() == np.log(own.ratio).tolist()
+
+
+def test_more_pairs_than_memory_takes_are_counted_before_they_are_made(monkeypatch):
+    """Also where small pinions have none, as their wheels would be too small."""
+    train = drive(2, total=F(4), wheel_teeth=(55, None))
+    count = len(table(train, 0, F(3)).z1)
+    assert count == sum(max(0, 3 * z - 54) for z in range(15, 21))
+    monkeypatch.setattr(staging, "PAIRS", count)
+    assert len(table(train, 0, F(3)).z1) == count
+    monkeypatch.setattr(staging, "PAIRS", count - 1)
+    with pytest.raises(SolveError, match=f"has {count} tooth pairs .* narrow its pinion teeth"):
+        table(train, 0, F(3))
 
 
 def test_the_only_stage_keeps_to_the_least_ratio():

@@ -58,6 +58,11 @@ class FaceWidth:
         """Whether b = high d1."""
         return self.low == self.high and self.step is None and self.fixed is None
 
+    @property
+    def widest(self) -> float:
+        """Largest b/d1; inf where there is no limit."""
+        return _or_inf(self.high)
+
 
 @dataclass(frozen=True)
 class Stage:
@@ -147,7 +152,7 @@ class Train:
             "k_factor": tuple(s.k_factor for s in stages),
             "unit_load": tuple(s.unit_load for s in stages),
             "width_low": tuple(float(s.face_width.low) for s in stages),
-            "width_high": tuple(_or_inf(s.face_width.high) for s in stages),
+            "width_high": tuple(s.face_width.widest for s in stages),
             "module_low": tuple(float(min(s.modules, default=0)) for s in stages),
             "module_high": tuple(_or_inf(max(s.modules, default=None)) for s in stages),
             "pinion_low": tuple(float(s.pinion_teeth[0]) for s in stages),

@@ -6,7 +6,6 @@ tied, free or on a step. `exact` proves its answer by exhausting all other train
 
 import math
 import time
-from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -47,7 +46,7 @@ def problem(train: Train, count: int = 1, floor: float = -math.inf) -> Problem:
     Variables, one component a stage: module [mm], pinion_teeth, wheel_teeth, and face_width [mm] or
     width_steps where the width is not tied to d1.
     """
-    numbers = SimpleNamespace(**_scalars(train))
+    numbers = SimpleNamespace(**train.numbers())
 
     def evaluate(x: Any, p: Any) -> Terms:
         found = terms(train, numbers, *_sizes(train, x))
@@ -72,13 +71,6 @@ def problem(train: Train, count: int = 1, floor: float = -math.inf) -> Problem:
     return Problem("teeth", _variables(train), (), evaluate, methods=methods, vectorised=True)
 
 
-def _scalars(train: Train) -> dict[str, Any]:
-    """`train.numbers()` as `terms` reads it: blocks of one are scalars."""
-    return {
-        k: v[0] if isinstance(v, tuple) and len(v) == 1 else v for k, v in train.numbers().items()
-    }
-
-
 def sizes(train: Train, point: Array) -> Sizes:
     """Modules, pinion teeth, ratios and face widths, a tuple each, of a point of `problem`."""
     return _sizes(train, namespace(_variables(train), [float(v) for v in point]))
@@ -95,7 +87,7 @@ def _width(train: Train, k: int, x: Any, module: Any, z1: Any) -> Any:
     if face.step is not None:
         return each(x.width_steps)[k] * float(face.step)
     if face.tied:
-        return float(face.high or 0) * reference_diameter(module, z1, train.helix_angle)
+        return float(face.low) * reference_diameter(module, z1, train.helix_angle)
     return each(x.face_width)[k]
 
 
@@ -138,8 +130,8 @@ def _widths(train: Train, stage: Stage) -> tuple[float, float]:
     ends = zip((stage.modules[0], stage.modules[-1]), _ends(stage.pinion_teeth), strict=True)
     least, most = (reference_diameter(float(m), z, train.helix_angle) for m, z in ends)
     face = stage.face_width
-    low = float(face.low) or 1e-6 * float(face.high or 1)  # thinner than paper
-    return 0.999 * low * least, 1.001 * float(face.high or 1) * most
+    low = float(face.low) or 1e-6 * face.widest  # thinner than paper
+    return 0.999 * low * least, 1.001 * face.widest * most
 
 
 def _ends(span: tuple[int, int | None]) -> tuple[float, float]:
@@ -210,19 +202,21 @@ def _searched(
         except SolveError as reason:
             first.stopped = True
             return train, first, str(reason)
-    most = max(s.pinion_teeth[1] or 0 for s in few.stages)
     try:
-        first = search(few, count, replace(budget, gap=0.0), watch)
+        first = search(few, count, budget, watch, floor, whole=False)
+        if first.stopped or first.enough:
+            return train, first, ""
         useful = trimmed(train, first.threshold)
         left = budget.less(time.perf_counter() - first.clock, first.looked)
         progress = search(useful, 1, left, watch, floor)
     except SolveError as reason:
-        first.stopped, first.floor, first.lower = True, floor, -math.inf
-        return train, first, f"{reason}. Only pinions of up to {most} teeth were searched"
+        first.stopped = True
+        most = max(_ends(s.pinion_teeth)[1] for s in few.stages)
+        return train, first, f"{reason}. Only pinions of up to {most:.0f} teeth were searched"
     progress.clock = first.clock
     progress.looked, progress.nodes = progress.looked + first.looked, progress.nodes + first.nodes
-    if progress.stopped:  # what the first search found is a train of the drive as well
-        progress.add(np.array([v for v, _ in first.found]), iter([t for _, t in first.found]))
+    # What the first search found is a train of the drive as well, where the second one is stopped.
+    progress.add(np.array([v for v, _ in first.found]), iter([t for _, t in first.found]))
     return useful, progress, ""
 
 
@@ -253,11 +247,11 @@ def best_point(train: Train, teeth: Teeth) -> Array:
         only = table(train.fixed_teeth(k, z1, z2), k, train.highest_ratio)
         module, width = only.choose(torque, 0)
         face = train.stages[k].face_width
-        free = not face.tied and face.step is None and face.fixed is None
+        given = face.tied or face.step is not None  # by d1 or as width_steps
         columns["module"].append(module)
         columns["pinion_teeth"].append(z1)
         columns["wheel_teeth"].append(z2)
-        columns["face_width"].append(width if free else float(face.fixed or 1))
+        columns["face_width"].append(1.0 if given else width)
         columns["width_steps"].append(round(width / float(face.step)) if face.step else 1)
         torque *= z2 / z1
     return np.array([value for v in _variables(train) for value in columns[v.name]])

@@ -52,10 +52,10 @@ class Bound:
 def bound(train: Train, tables: list[Table], delta: float, tick: Callable[[], None]) -> Bound:
     """The bound of all stages but the first, on cells of `delta` in log ratio.
 
-    tick: called several times a second; what it raises ends the work.
+    Every table has a pair. tick: called several times a second; what it raises ends the work.
     """
     cells = int(math.log(train.highest_ratio) / delta) + 1
-    widest = max((float(t.log_ratio[-1]) for t in tables if len(t.log_ratio)), default=0.0)
+    widest = max(float(t.log_ratio[-1]) for t in tables)
     ratio_cells = int(widest / delta) + 1
     count = len(tables)
     least: list[Array | None] = [None] * count
@@ -70,8 +70,8 @@ def bound(train: Train, tables: list[Table], delta: float, tick: Callable[[], No
         assert now is not None
         tick()
         to_go[k][:cells] = (now + ahead).min(axis=1)
-    edges = np.arange(ratio_cells + 1) * delta
-    starts = [np.append(np.searchsorted(t.log_ratio, edges[:-1]), len(t.z1)) for t in tables]
+    edges = np.arange(ratio_cells) * delta
+    starts = [np.append(np.searchsorted(t.log_ratio, edges), len(t.ratio)) for t in tables]
     return Bound(delta, to_go, least, starts)
 
 
@@ -84,7 +84,7 @@ def _least(
     table: Table, cells: int, ratio_cells: int, delta: float, tick: Callable[[], None]
 ) -> Array:
     """Least cost of one stage for every torque cell and ratio cell."""
-    column = np.minimum((table.log_ratio / delta).astype(np.int64), ratio_cells - 1)
+    column = (table.log_ratio / delta).astype(np.int64)
     found = np.full(cells * ratio_cells, np.inf)
     for k in range(len(table.modules)):
         tick()
@@ -129,12 +129,11 @@ def _last(train: Train, table: Table, cells: int, delta: float, tick: Callable[[
 def slices(count: NDArray[np.int64], most: int) -> Iterator[slice]:
     """Slices of what is counted whose sums are at most `most`, or of one entry; none is empty."""
     done = np.cumsum(count)
-    first = 0
+    first = before = 0
     while first < len(count):
-        before = done[first - 1] if first else 0
         last = max(first + 1, int(np.searchsorted(done, before + most, side="right")))
         yield slice(first, last)
-        first = last
+        first, before = last, int(done[last - 1])
 
 
 def ragged(
@@ -143,5 +142,4 @@ def ragged(
     """Owner and index of all start[i] .. start[i] + count[i] - 1, one after the other."""
     owner = np.repeat(np.arange(len(count)), count)
     ends = np.cumsum(count)
-    total = int(ends[-1]) if len(ends) else 0
-    return owner, np.arange(total) - np.repeat(ends - count, count) + np.repeat(start, count)
+    return owner, np.arange(len(owner)) - np.repeat(ends - count, count) + np.repeat(start, count)

@@ -58,11 +58,11 @@ class Progress:
         """Keep the wanted best (and, for a single one, its ties)."""
         known = {teeth for _, teeth in self.found}
         fresh = [(float(v), t) for v, t in zip(totals, trains, strict=True) if t not in known]
-        self.found = sorted(self.found + fresh)
-        if len(self.found) > self.wanted:
-            edge = self.found[self.wanted - 1][0] * (1.0 + TIE if self.wanted == 1 else 1.0)
-            extra = [f for f in self.found[self.wanted :] if f[0] <= edge and self.wanted == 1]
-            self.found = self.found[: self.wanted] + extra
+        best = sorted(self.found + fresh)
+        if self.wanted == 1:
+            self.found = [f for f in best if f[0] <= best[0][0] * (1.0 + TIE)]
+        else:
+            self.found = best[: self.wanted]
 
     def raise_lower(self, bound: float) -> None:
         """Note the least open bound of a search, if that search covers all trains."""
@@ -81,13 +81,12 @@ class Progress:
         over = (most_s is not None and seconds > most_s) or (
             most_n is not None and self.looked >= most_n
         )
+        best = self.found[0][0] if self.found else None
         if not over and self.watch is not None:
-            best = self.found[0][0] if self.found else None
             lower = min(self.bound, math.inf if best is None else best)  # of all, not of the rest
             known = lower if math.isfinite(lower) else None
             over = self.watch(Event(seconds, self.looked, best, known)) is False
         self.stopped = self.stopped or over
-        if self.budget.gap > 0.0 and self.wanted == 1 and self.found:
-            value = self.found[0][0]
-            self.enough = value - self.bound <= self.budget.gap * value
+        if self.budget.gap > 0.0 and self.wanted == 1 and best is not None:
+            self.enough = best - self.bound <= self.budget.gap * best
         return not (self.stopped or self.enough)

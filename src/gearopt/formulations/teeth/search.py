@@ -53,19 +53,21 @@ def search(
     budget: Budget,
     watch: Watch | None = None,
     floor: float = -math.inf,
+    whole: bool = True,
 ) -> Progress:
     """The `wanted` best trains; `stopped` or `enough` where the search was not exhausted.
 
     A first look at stage ratios near the even split gives a train; what it does not exclude by
-    the ratio of a single stage is then searched to the end.
+    the ratio of a single stage is then searched to the end. floor: a bound known from elsewhere.
+    whole: False where its own bound is of no use, as that of a part of the caller's drive.
     """
     progress = Progress(wanted, budget, watch, floor)
     most, cut = train.highest_ratio, first_cut(train)
-    progress.whole = cut == most
+    progress.whole = whole and cut == most
     try:
         closed = _look(train, cut, progress, FIRST_LOOK)
         reach = _reach(train, cut, most, progress.threshold)
-        progress.whole = True
+        progress.whole = whole
         if not (closed and reach <= cut):
             _look(train, max(cut, reach), progress, math.inf)
     except Spent:
@@ -82,7 +84,7 @@ def first_cut(train: Train) -> Fraction:
 def _look(train: Train, cut: Fraction, progress: Progress, patience: float) -> bool:
     """Search all ratios up to a cut, on ever finer grids; False when patience ran out."""
     tables = _tables(train, cut, progress)
-    if any(len(t.z1) == 0 for t in tables):
+    if any(len(t.ratio) == 0 for t in tables):
         return True
     delta = 0.01 if len(tables) <= 3 else 0.005
     while True:
@@ -119,10 +121,9 @@ def _closed(
             heapq.heappush(heap, (float(chunk.bound[0]), next(order), chunk))
 
     zero = np.zeros(1)
-    wait(Chunk(0, zero, zero, zero, np.empty((1, 0), dtype=np.int64)))
+    wait(Chunk(0, np.array([-math.inf]), zero, zero, np.empty((1, 0), dtype=np.int64)))
     while heap and heap[0][0] <= progress.threshold:
-        if heap[0][2].level:
-            progress.raise_lower(heap[0][0])
+        progress.raise_lower(heap[0][0])
         progress.tick()
         if progress.looked > patience:
             return False
@@ -145,7 +146,7 @@ def _expand(
         _complete(train, tables, chunk, progress)
         return None
     if level == 0:
-        node, pair = np.zeros(len(stage.z1), dtype=np.int64), np.arange(len(stage.z1))
+        node, pair = np.zeros(len(stage.ratio), dtype=np.int64), np.arange(len(stage.ratio))
     else:
         onward = chunk.cost[:, None] + rest.onward(level, rest.cell(chunk.log_ratio))
         owner, cell = np.nonzero(onward <= progress.threshold)
@@ -159,10 +160,8 @@ def _expand(
         node, pair, own = node[keep], pair[keep], own[keep]
     cost = chunk.cost[node] + own
     log_ratio = chunk.log_ratio[node] + stage.log_ratio[pair]
-    below = log_ratio <= math.log(train.highest_ratio) + EDGE
-    lower = np.full(len(cost), np.inf)
-    lower[below] = cost[below] + rest.to_go[level + 1][rest.cell(log_ratio[below])]
-    use = np.nonzero(np.isfinite(lower) & (lower <= progress.threshold))[0]
+    lower = cost + rest.to_go[level + 1][rest.cell(log_ratio)]
+    use = np.flatnonzero(np.isfinite(lower) & (lower <= progress.threshold))
     use = use[np.argsort(lower[use], kind="stable")]
     if not len(use):
         return None
@@ -198,8 +197,8 @@ def _cheapest_of_ratio(node: NDArray[np.int64], ratio: Array, cost: Array) -> ND
         return np.empty(0, dtype=bool)
     new = np.concatenate([[True], (np.diff(node) != 0) | (np.diff(ratio) != 0)])
     group = np.cumsum(new) - 1
-    least = np.minimum.reduceat(cost, np.nonzero(new)[0])
-    good = np.nonzero(np.isfinite(cost) & (cost <= least[group] * (1.0 + TIE)))[0]
+    least = np.minimum.reduceat(cost, np.flatnonzero(new))
+    good = np.flatnonzero(np.isfinite(cost) & (cost <= least[group] * (1.0 + TIE)))
     keep = np.zeros(len(node), dtype=bool)
     keep[good[np.unique(group[good], return_index=True)[1]]] = True
     return keep
@@ -215,25 +214,23 @@ def _complete(train: Train, tables: list[Table], chunk: Chunk, progress: Progres
     progress.looked += len(pair)
     total = chunk.cost[node] + _costs(train, stage, chunk, node, pair, progress)
     progress.compared += int(np.isfinite(total).sum())
-    use = np.nonzero(np.isfinite(total) & (total <= progress.threshold))[0]
+    use = np.flatnonzero(np.isfinite(total) & (total <= progress.threshold))
     use = use[np.argsort(total[use], kind="stable")]
-    reached = chunk.log_ratio[node[use]] + stage.log_ratio[pair[use]]
-    near = np.minimum(np.abs(reached - low), np.abs(reached - high)) < 2 * EDGE
 
     def teeth(k: np.int64) -> Teeth:
         path = [*chunk.path[node[k]], pair[k]]
         return tuple((int(t.z1[j]), int(t.z2[j])) for t, j in zip(tables, path, strict=True))
 
     kept: list[tuple[float, Teeth]] = []
-    for k, doubtful in zip(use, near, strict=True):
-        candidate = teeth(k)
-        if doubtful and not within(train, candidate):
-            continue
-        if not doubtful and not low < chunk.log_ratio[node[k]] + stage.log_ratio[pair[k]] < high:
-            continue
-        kept.append((float(total[k]), candidate))
-        if len(kept) >= progress.wanted and total[k] > kept[progress.wanted - 1][0] * (1 + TIE):
+    most = math.inf
+    for k in use:
+        if total[k] > most:
             break
+        candidate = teeth(k)
+        if within(train, candidate):
+            kept.append((float(total[k]), candidate))
+            if len(kept) == progress.wanted:
+                most = float(total[k]) * (1.0 + TIE)
     progress.add(np.array([v for v, _ in kept]), iter([t for _, t in kept]))
 
 
@@ -252,8 +249,6 @@ def _reach(train: Train, cut: Fraction, most: Fraction, threshold: float) -> Fra
 
     Any stage carries at least the input torque; its share alone then grows with its ratio.
     """
-    if cut >= most or math.isinf(threshold):
-        return most
     ratios = np.geomspace(float(cut), float(most), 2000)
     useful = np.zeros(len(ratios), dtype=bool)
     for k, stage in enumerate(train.stages):
@@ -265,12 +260,13 @@ def _reach(train: Train, cut: Fraction, most: Fraction, threshold: float) -> Fra
             d = (
                 (load / float(face.fixed)) ** 0.5
                 if face.fixed
-                else (load / float(face.high or 1)) ** (1.0 / 3.0)
+                else (load / face.widest) ** (1.0 / 3.0)
             )
-            lower = share(train, k, d, 1.0, ratios)
+            lower = share(train, k, d, math.nan, ratios)  # a length, whatever the width
         useful |= np.asarray(lower) <= threshold
-    last = int(np.nonzero(useful)[0].max(initial=-1))
-    return cut if last < 0 else min(most, Fraction(float(ratios[min(last + 1, len(ratios) - 1)])))
+    beyond = [*ratios[1:], most]  # the next of the grid; at its end `most` itself, unrounded
+    last = np.flatnonzero(useful)
+    return Fraction(beyond[last[-1]]) if len(last) else cut
 
 
 def possible(train: Train, seconds: float, watch: Watch | None) -> bool | None:

@@ -54,6 +54,12 @@ class Table:
         """The stage's limits."""
         return self.train.stages[self.position]
 
+    @property
+    def step(self) -> float:
+        """Step of the face width [mm]; nan where there is none."""
+        step = self.stage.face_width.step
+        return math.nan if step is None else float(step)
+
     def diameter(self, module: Any, pair: Any) -> Any:
         """Pinion reference diameter [mm] of pairs (indices) with modules [mm]."""
         return reference_diameter(module, self.z1[pair], self.train.helix_angle)
@@ -65,7 +71,7 @@ class Table:
     def choose(self, torque: float, pair: int) -> tuple[float, float]:
         """Module and face width [mm] behind `cost`."""
         _, module, width = self._best(np.array([torque]), np.array([pair]))
-        return float(module[0]), float(width[0])
+        return module.item(), width.item()
 
     def capacity(self, module: int) -> Array:
         """Largest torque [N mm] each pair carries with a module (index); 0 where not allowed."""
@@ -76,15 +82,14 @@ class Table:
 
     def floor(self, module: int) -> Array:
         """Least objective share of each pair with a module (index), whatever the torque."""
-        pair = np.arange(len(self.z1))
+        pair = np.arange(len(self.ratio))
         d = self.diameter(self.modules[module], pair)
-        return np.asarray(
-            share(self.train, self.position, d, self._least_width(module, pair, d), self.ratio)
-        )
+        width = self._least_width(d) if self.steps is None else self.steps[0][module] * self.step
+        return np.asarray(share(self.train, self.position, d, width, self.ratio))
 
     def _best(self, torque: Array, pair: Index) -> tuple[Array, Array, Array]:
         if self.steps is not None:
-            return self._best_on_steps(torque, pair)
+            return self._best_on_steps(*self.steps, torque, pair)
         # The smallest module that carries the torque is the best one: every objective grows
         # with it, for a tied width, and for a free one once the width has its least value.
         needed = self.need[pair] * (torque * (1.0 - ALLOWANCE)) ** self.exponent
@@ -93,38 +98,30 @@ class Table:
         k = np.minimum(k, len(self.modules) - 1)
         module = self.modules[k]
         d = self.diameter(module, pair)
-        width = np.maximum(
-            self._least_width(0, pair, d), self._loaded_width(torque, pair, d, module)
-        )
-        face = self.stage.face_width
-        if face.tied or face.fixed is not None:
-            width = self._least_width(0, pair, d)
-        elif face.high is not None:
-            width = np.minimum(width, float(face.high) * d)
+        width, face = self._least_width(d), self.stage.face_width
+        if face.fixed is None:
+            loaded = self._loaded_width(torque, pair, d, module)
+            width = np.clip(loaded, width, face.widest * d)
         value = share(self.train, self.position, d, width, self.ratio[pair])
         return np.where(possible, value, np.inf), module, width
 
-    def _best_on_steps(self, torque: Array, pair: Index) -> tuple[Array, Array, Array]:
+    def _best_on_steps(
+        self, least: Array, most: Array, torque: Array, pair: Index
+    ) -> tuple[Array, Array, Array]:
         """Rounding a width up to the step can make a larger module the better one: try all."""
-        assert self.steps is not None and self.stage.face_width.step is not None
-        step = float(self.stage.face_width.step)
-        best = np.full(len(pair), np.inf)
-        best_module, best_width = np.zeros(len(pair)), np.zeros(len(pair))
+        best, best_module, best_width = (np.full(len(pair), np.inf) for _ in range(3))
         for k, module in enumerate(self.modules):
             d = self.diameter(module, pair)
-            needed = self._loaded_width(torque, pair, d, module) / step
-            count = np.maximum(np.ceil(needed * (1.0 - ALLOWANCE)), self.steps[0][k][pair])
-            possible = (self.first[pair] <= k) & (k <= self.last[pair])
-            possible &= count <= self.steps[1][k][pair]
-            value = np.where(
-                possible,
-                share(self.train, self.position, d, count * step, self.ratio[pair]),
-                np.inf,
-            )
+            needed = self._loaded_width(torque, pair, d, module) / self.step
+            count = np.maximum(np.ceil(needed * (1.0 - ALLOWANCE)), least[k][pair])
+            possible = (self.first[pair] <= k) & (k <= self.last[pair]) & (count <= most[k][pair])
+            width = count * self.step
+            value = share(self.train, self.position, d, width, self.ratio[pair])
+            value = np.where(possible, value, np.inf)
             better = value < best * (1.0 - ALLOWANCE)
             best = np.where(better, value, best)
             best_module = np.where(better, module, best_module)
-            best_width = np.where(better, count * step, best_width)
+            best_width = np.where(better, width, best_width)
         return best, best_module, best_width
 
     def _loaded_width(self, torque: Array, pair: Index, d: Array, module: Any) -> Array:
@@ -133,15 +130,10 @@ class Table:
         by_bending = unit_load(torque, d, 1.0, module) / self.stage.unit_load
         return np.asarray(np.maximum(by_contact, by_bending))
 
-    def _least_width(self, module: int, pair: Index, d: Array) -> Array:
-        """Least face width [mm] the file allows for a pair."""
+    def _least_width(self, d: Array) -> Array:
+        """Least face width [mm] the file allows for pinion diameters [mm], but for steps."""
         face = self.stage.face_width
-        if face.fixed is not None:
-            return np.full(len(d), float(face.fixed))
-        if self.steps is not None:
-            assert face.step is not None
-            return np.asarray(self.steps[0][module][pair] * float(face.step))
-        return float(face.low) * d
+        return float(face.low) * d if face.fixed is None else np.full_like(d, float(face.fixed))
 
 
 def table(
@@ -154,12 +146,11 @@ def table(
     tick()
     stage = train.stages[position]
     cosine = math.cos(train.helix_angle)
-    least = train.lowest_ratio if len(train.stages) == 1 else stage.ratio[0]
-    z1, z2 = _pairs(stage, max(stage.ratio[0], least), cut, train.coprime)
+    z1, z2 = _pairs(train, position, cut)
     tick()
     ratio = z2 / z1
     face, modules = stage.face_width, stage.modules
-    widest = float(face.fixed) if face.fixed is not None else float(face.high or 0)
+    widest = face.widest if face.fixed is None else float(face.fixed)
     exponent = 0.5 if face.fixed is not None else 1.0 / 3.0
     # With b = widest (fixed) or widest*d, at unit torque: K-factor and unit load against module.
     contact = k_factor(1.0, 1.0, widest, ratio) / stage.k_factor
@@ -173,7 +164,7 @@ def table(
         unit_load(1.0, 1.0, 1.0, 1.0) / stage.unit_load * z1 / cosine,
     )
     volume = train.objective in ("gear_volume", "mass")
-    slope = np.asarray(share(train, position, 1.0, load, ratio)) if volume else np.zeros(len(z1))
+    slope = np.asarray(share(train, position, 1.0, load, ratio)) if volume else np.zeros_like(ratio)
     tick()
     first, last = _allowed(stage, z1, z2, cosine)
     return Table(
@@ -193,12 +184,12 @@ def table(
     )
 
 
-def _pairs(stage: Stage, low: Fraction, cut: Fraction, coprime: bool) -> tuple[Index, Index]:
-    """All (z1, z2) of a stage with ratios from low to cut, by ratio, then by teeth.
+def _pairs(train: Train, position: int, cut: Fraction) -> tuple[Index, Index]:
+    """All (z1, z2) of a stage with ratios up to cut, by ratio, then by teeth.
 
     SolveError where they are more than memory is worth.
     """
-    ranges = spans(stage, low, cut)
+    ranges = spans(train, position, cut)
     count = sum(stop - start + 1 for _, start, stop in ranges)
     if count > PAIRS:
         raise SolveError(
@@ -208,18 +199,20 @@ def _pairs(stage: Stage, low: Fraction, cut: Fraction, coprime: bool) -> tuple[I
     wheels = [np.arange(start, stop + 1, dtype=np.int64) for _, start, stop in ranges]
     z1 = np.repeat([z for z, _, _ in ranges], [len(w) for w in wheels]).astype(np.int64)
     z2 = np.concatenate(wheels)
-    if coprime:
+    if train.coprime:
         keep = np.gcd(z1, z2) == 1
         z1, z2 = z1[keep], z2[keep]
     order = np.argsort(z2 / z1, kind="stable")
     return z1[order], z2[order]
 
 
-def spans(stage: Stage, low: Fraction, cut: Fraction) -> list[tuple[int, int, int]]:
-    """Of every pinion z1 its least and most wheel teeth for ratios from low to cut.
+def spans(train: Train, position: int, cut: Fraction) -> list[tuple[int, int, int]]:
+    """Of every pinion z1 of a stage its least and most wheel teeth for ratios up to cut.
 
     The most is one below the least where there are none.
     """
+    stage = train.stages[position]
+    low = max(stage.ratio[0], train.lowest_ratio) if len(train.stages) == 1 else stage.ratio[0]
     high = cut if stage.ratio[1] is None else min(cut, stage.ratio[1])
     most_wheel = stage.wheel_teeth[1]
     least_z1, most_z1 = stage.pinion_teeth

@@ -5,7 +5,6 @@ even as the only stage and in the smallest module, are in no better one.
 """
 
 from dataclasses import replace
-from fractions import Fraction
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +12,7 @@ from numpy.typing import NDArray
 from gearopt.formulations.teeth.progress import MARGIN
 from gearopt.formulations.teeth.search import first_cut
 from gearopt.formulations.teeth.stage import spans
-from gearopt.formulations.train import Stage, Train, share
+from gearopt.formulations.train import Train, share
 from gearopt.optimise.terms import Array
 from gearopt.physics.geometry import reference_diameter
 
@@ -26,12 +25,12 @@ def narrowed(train: Train) -> Train:
     A pinion alone may have more. The drive itself where its ranges are not wide.
     """
     stages = []
-    for stage in train.stages:
-        low, high = stage.pinion_teeth
-        pairs = np.cumsum([stop - start + 1 for _, start, stop in _spans(train, stage)])
+    for k, stage in enumerate(train.stages):
+        low, _ = stage.pinion_teeth
+        found = spans(train, k, first_cut(train))
+        pairs = np.cumsum([stop - start + 1 for _, start, stop in found])
         few = int(np.searchsorted(pairs, FEW, side="right"))
-        most = high if few == len(pairs) else low + max(few - 1, 0)
-        stages.append(replace(stage, pinion_teeth=(low, most)))
+        stages.append(replace(stage, pinion_teeth=(low, low + max(few - 1, 0))))
     return replace(train, stages=tuple(stages))
 
 
@@ -50,17 +49,10 @@ def trimmed(train: Train, most: float) -> Train:
     return replace(train, stages=tuple(stages))
 
 
-def _spans(train: Train, stage: Stage) -> list[tuple[int, int, int]]:
-    """The pairs of a stage with the ratios that a search looks at first."""
-    least = train.lowest_ratio if len(train.stages) == 1 else Fraction(1)
-    return spans(stage, max(stage.ratio[0], least), first_cut(train))
-
-
 def _least(train: Train, k: int, teeth: NDArray[np.int64]) -> Array:
     """Least share (n,) of a stage (counted from 0) with pinions of so many teeth."""
     stage = train.stages[k]
     d = reference_diameter(float(stage.modules[0]), teeth, train.helix_angle)
     face = stage.face_width
     width = float(face.low) * d if face.fixed is None else np.full(len(d), float(face.fixed))
-    ratio = max(1.0, float(stage.ratio[0]))
-    return np.asarray(share(train, k, d, width, ratio))
+    return np.asarray(share(train, k, d, width, float(stage.ratio[0])))
