@@ -298,6 +298,26 @@ def chosen(rng):
     )
 
 
+def wide(rng):
+    """Terms of different size in a wide box; the optimum is small, but not zero."""
+    width = 10.0 ** rng.integers(4, 13)
+    steep, at = 10.0 ** rng.uniform(-3.0, 1.0), rng.uniform(0.2, 0.8)
+    rest = 10.0 ** rng.uniform(-3.0, 0.0)
+    guess = float(rng.choice([0.0, 0.9 * width, rng.uniform(0.0, 1.0) * width]))
+    kind = int(rng.integers(3))
+
+    def text(x, p):
+        if kind == 0:
+            return Terms({"f": (steep * (x.u - x.v)) ** 2 + (x.v / width - at) ** 2 + rest})
+        if kind == 1:
+            return Terms({"f": steep * (x.u - 3.0) ** 2 + (x.v - 4.0) ** 2 + rest})
+        return Terms({"f": steep * (x.u / width - at) ** 3 + (x.v / width - at) ** 2 + 7.0})
+
+    return _problem(
+        "wide", [Var("u", "", 0.0, width, guess), Var("v", "", 0.0, width, guess)], text
+    )
+
+
 FAMILIES = (
     trigonometric,
     mixed,
@@ -309,4 +329,5 @@ FAMILIES = (
     quadratic,
     norms,
     chosen,
+    wide,
 )

@@ -19,13 +19,13 @@ METHODS = (*QUICK, "multistart", "nsga2", "scip", "bonmin")
 NEAR = 0.05  # of a variable's range: what lies farther off may be another minimum
 
 
-@pytest.mark.parametrize("seed", range(10))
+@pytest.mark.parametrize("seed", range(11))
 def test_a_problem_of_every_family(seed):
     check(seed, QUICK, 2_000, starts=3)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(10, 30))
+@pytest.mark.parametrize("seed", range(11, 33))
 def test_many_problems_by_every_method(seed):
     check(seed, METHODS, 20_000, starts=12)
 
@@ -60,7 +60,9 @@ def held(own, result, best, rng):
     scale = size(own, low, high, rng)
     if result.bound is not None:
         assert result.bound <= best + 1e-7 * abs(best) + 1e-9 * scale
-    if result.status == "optimal":
+    if result.status == "optimal" and own.name == "wide":
+        assert result.value <= best * (1.0 + 1.1e-6)
+    elif result.status == "optimal":
         assert result.value <= best + 1.1e-6 * abs(best) + 1e-7 * scale
     if result.status == "stationary":
         nowhere_better_near(own, x, value, scale, rng)

@@ -14,8 +14,17 @@ from gearopt.optimise.certificate import certify, reconcile
 from gearopt.optimise.comparing.comparison import excess
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.result import Outcome, Result
-from gearopt.optimise.scale import FEASIBLE, gap, is_known, measured, objective_scale, sizes, unit
+from gearopt.optimise.result import Budget, Outcome, Result
+from gearopt.optimise.scale import (
+    FEASIBLE,
+    gap,
+    is_known,
+    measured,
+    objective_scale,
+    sizes,
+    unit,
+    zero_scale,
+)
 from gearopt.optimise.solve import solve
 from gearopt.optimise.terms import Terms, Var
 
@@ -48,6 +57,7 @@ ZERO = {
     "slope": plane(lambda a, b: a + b, 0.0),
     "difference": plane(lambda a, b: a - b, limits=lambda a, b: 1.0 + b - a),
     "distance": plane(lambda a, b: a - 3.0, limits=lambda a, b: 1.0 + (3.0 - a) / 7.0),
+    "valley beside a limit": plane(lambda a, b: (a - b) ** 2, limits=lambda a, b: (a + b) / 3.0),
     "along a line": plane(lambda a, b: (a - b) ** 2, equal=lambda a, b: (a + b) / 4.0),
 }
 
@@ -258,14 +268,45 @@ def test_a_gap_is_relative_to_the_value_or_to_the_scale():
     assert unit(-2.0, 5.0) == 2.0 and unit(1e-9, 5.0) == 5.0
 
 
-def test_rounding_of_a_bound_is_part_of_the_scale():
-    problem = plane(lambda a, b: a + b, 0.0)
+def test_a_zero_is_measured_by_the_way_from_the_guess():
+    problem = plane(lambda a, b: a + b, 0.0)  # 2 at the guess
     at = np.array([1e-12, 0.0])
     assert measured(problem, at, 1e-12, -1e-9, 1e-6) == (
         pytest.approx(5e-10, rel=1e-2),
         {"scale": pytest.approx(2.0)},
     )
-    found, told = measured(problem, at, 1e-12, -1e-9, 1e-6, rounding=1e-7)
-    assert told["scale"] == pytest.approx(12.0) and found == pytest.approx(1.001e-9 / 12.0)
+    valley = plane(lambda a, b: (a - b) ** 2)  # 0 at the guess
+    scale = zero_scale(valley, np.array([2.0, 2.0]))
+    assert scale == pytest.approx(2 * 0.01 * 2.0**2)
+    assert zero_scale(valley, np.array([2.0, 2.001])) == 0.0
+    assert zero_scale(plane(lambda a, b: a - b), np.array([2.0, 2.0])) == pytest.approx(4.0)
+
+
+U = 1e11
+WIDE = {  # sums of terms of different size in wide boxes: width, guess, optimum, text
+    "s, t": (1e12, 2e11, 1e-3, lambda a, b: ((a - b) / 1e3) ** 2 + (b / U - 1.0) ** 2 + 1e-3),
+    "1e7": (1e7, 9e6, 1e-3, lambda a, b: (a - b) ** 2 + (b / 1e7 - 0.5) ** 2 + 1e-3),
+    "1e8": (1e8, 9e7, 1e-3, lambda a, b: (a - b) ** 2 + (b / 1e8 - 0.5) ** 2 + 1e-3),
+    "1e11": (1e11, 1e3, 1.0, lambda a, b: (a - 3.0) ** 2 + (b - 4.0) ** 2 / 3.0 + 1.0),
+    "1e15": (1e15, 1e3, 1.0, lambda a, b: (a - 3.0) ** 2 + (b - 4.0) ** 2 / 3.0 + 1.0),
+    "1e9": (1e9, 1e3, 1.0, lambda a, b: (a - 3e8) ** 2 + (b - 4e8) ** 2 / 3.0 + 1.0),
+}
+
+
+@pytest.mark.parametrize("name", WIDE)
+@pytest.mark.parametrize("method", ["ipopt", "qp", "annealing"])
+def test_nothing_is_optimal_above_its_optimum_in_a_wide_box(name, method):
+    width, guess, least, text = WIDE[name]
+    evaluate = lambda x, p: Terms({"f": text(x.a, x.b)})  # noqa: E731
+    both = tuple(Var(v, "", 0.0, width, guess) for v in "ab")
+    for budget in (Budget(evaluations=8), Budget(evaluations=2000)):
+        result = solve(Problem("wide", both, (), evaluate), method, budget)
+        assert result.bound is None or result.bound <= least * (1.0 + 1e-9)
+        near = result.value is not None and result.value <= least * (1.0 + 1e-6)
+        assert near or result.status in ("feasible", "limit")
+
+
+def test_a_gap_within_the_tolerance_needs_no_scale():
+    problem, at = plane(lambda a, b: a + b, 0.0), np.array([1e-12, 0.0])
     assert measured(problem, at, 1.0, 1.0 - 1e-7, 1e-6) == (pytest.approx(1e-7), {})
     assert measured(problem, at, 1.0, 0.5, 1e-6) == (0.5, {})

@@ -253,13 +253,13 @@ def test_what_acts_in_a_quadratic_program():
     low, high, _ = problem.bounds()
     point = evaluated(problem, shape, y, low, high, np.empty(0), np.empty(0))
     assert shape.convex
-    assert acting(point) == pytest.approx(np.array([4.5, 12.0]) + 12e-8, rel=1e-12)
+    assert acting(point) == pytest.approx(np.array([4.5, 12.0]) + 12e-14, rel=1e-15)
 
 
 def test_what_acts_on_logarithms():
     """F = log(x + 1/x) at x = 2: slope 0.6, curvature 0.64; 1 where the whole is convex."""
     x, t = Var("x", "", 0.1, 9.0, 1.0, log=True), Var("t", "", 0.1, 9.0, 1.0)
-    for variables, expected in (((x,), [1.0]), ((x, t), [0.92 + 0.92e-8, 0.92e-8])):
+    for variables, expected in (((x,), [1.0]), ((x, t), [0.92 + 0.92e-14, 0.92e-14])):
         problem = Problem("sum", variables, (), lambda x, p: Terms({"f": x.x + 1.0 / x.x}))
         shape, at = form(problem), np.full(len(variables), 2.0)
         ends = (shape.to_y(b) for b in (at, *problem.bounds()[:2]))
@@ -313,6 +313,9 @@ NO_MINIMA = {
     "sine": (np.sin, 0.5 * np.pi, 0.0, 6.0),
     "kink": (lambda x: -abs(x), 0.0, -1.0, 1.0),
     "cubic": (lambda x: x**3, 0.0, -1.0, 1.0),
+    "cubic above zero": (lambda x: 7.0 + x**3, 0.0, -5.0, 5.0),
+    "quintic above zero": (lambda x: 7.0 + x**5, 0.0, -5.0, 5.0),
+    "quartic above zero": (lambda x: 1.0 - x**4, 0.0, -5.0, 5.0),
     "cubic at its other end": (lambda x: x**3, 0.0, -1.0, 0.0),
 }
 

@@ -23,12 +23,13 @@ from gearopt.optimise.multipliers import multipliers
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.quadratic import natural
 from gearopt.optimise.result import Outcome, Result
-from gearopt.optimise.scale import FEASIBLE, is_known, measured
+from gearopt.optimise.scale import FEASIBLE, is_known, measured, way
 from gearopt.optimise.scale import gap as gap_of
 from gearopt.optimise.second_order import no_minimum
 from gearopt.optimise.stationarity import STATIONARY, Point, evaluated, residuals
 from gearopt.optimise.terms import Array
 
+LOOSE = 1e-2  # a gap above which no point of a convex problem is said to be a minimum
 FARKAS = 1e-9  # an infeasibility proof must show at least this violation
 
 
@@ -118,19 +119,18 @@ def bounded(
     bound: float,
     tolerance: float,
     worst: str,
-    rounding: float = 0.0,
 ) -> Verdict:
     """Judge a point by a bound that we computed ourselves; before: the verdict without one.
 
-    worst: the name of what has the largest violation. rounding: that was taken off the bound.
-    CertificateError where the value lies below the bound though no limit is exceeded: an excess
-    gains its price, which may be any (of limits that contradict each other by a little), but within
-    ROUNDING that is less than the rounding taken off the bound.
+    worst: the name of what has the largest violation. CertificateError where the value lies below
+    the bound though no limit is exceeded: an excess gains its price, which may be any (of limits
+    that contradict each other by a little), but within ROUNDING that is less than the rounding
+    taken off the bound.
     """
     value, excess = before.objective, before.certificate["feasibility"]
     assert value is not None and excess is not None
     tolerance = max(tolerance, FEASIBLE)
-    found, scale = measured(problem, x, value, bound, tolerance, rounding)
+    found, scale = measured(problem, x, value, bound, tolerance)
     if found < -100 * FEASIBLE and excess <= ROUNDING:
         raise CertificateError(f"a feasible value {value!r} lies below the dual bound {bound!r}")
     status, message = before.status, before.message
@@ -149,8 +149,8 @@ def bounded(
 
 
 def told(gap: float) -> float | None:
-    """A gap as results hold it: at least 0, and None where it is infinite."""
-    return max(gap, 0.0) if math.isfinite(gap) else None
+    """A gap as results hold it: at least 0; None where it is infinite, or below a bound."""
+    return max(gap, 0.0) if -100 * FEASIBLE <= gap < math.inf else None
 
 
 def _local(
@@ -169,8 +169,8 @@ def _local(
     points = _points(problem, shape, outcome)
     if not points:
         return before
-    judged = [(residuals(point), point) for point in points]
-    found, best = min(judged, key=lambda j: np.nan_to_num(np.max([*j[0].values()]), nan=np.inf))
+    each = [(residuals(point), point) for point in points]
+    found, best = min(each, key=lambda j: np.nan_to_num(np.max([*j[0].values()]), nan=np.inf))
     before = replace(before, certificate=dict(before.certificate) | found)
     lower, upper, guess = problem.bounds()
     if loose := runaway(problem, outcome.x, lower, upper, guess):
@@ -183,12 +183,25 @@ def _local(
     known = [pair for pair in bounds if math.isfinite(pair[0])]
     if not known:
         return before
-    least, rounding = max(known)
+    least = max(known)[0]
     proof = {"method": "dual", "arithmetic": "double, with a rounding allowance"}
     value = shape.objective(least)
-    return bounded(
-        problem, outcome.x, replace(before, proof=proof), value, tolerance, worst, rounding
-    )
+    judged = bounded(problem, outcome.x, replace(before, proof=proof), value, tolerance, worst)
+    return _doubted(problem, outcome.x, judged)
+
+
+def _doubted(problem: Problem, x: Array, before: Verdict) -> Verdict:
+    """No point of a convex form is a minimum if its bound leaves much, of it and of the way there.
+
+    The way is that of the objective from the guess: what is less of it may be rounding alone.
+    """
+    value, bound, gap = before.objective, before.bound, before.gap
+    if before.status != "stationary" or value is None or bound is None or gap is None:
+        return before
+    if gap <= LOOSE or value - bound <= STATIONARY * way(problem, x):
+        return before
+    words = f"no minimum is known here: the bound is {100.0 * gap:.3g} % lower"
+    return replace(before, status="feasible", message=f"{words}. {before.message}".strip())
 
 
 def _points(problem: Problem, shape: Form, outcome: Outcome) -> list[Point]:
@@ -246,7 +259,9 @@ def reconcile(result: Result, relaxation: Result, tolerance: float) -> Result:
         return result
     status = "optimal" if gap <= tolerance else result.status
     certificate = (
-        result.certificate if is_known(value, scale) else result.certificate | {"scale": scale}
+        result.certificate
+        if is_known(value, scale) or 0.0 < bound <= value
+        else result.certificate | {"scale": scale}
     )
     return replace(
         result,

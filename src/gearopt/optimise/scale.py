@@ -5,6 +5,7 @@ nor a factor of the objective decides it.
 """
 
 import math
+from typing import Any
 
 import numpy as np
 
@@ -14,6 +15,8 @@ from gearopt.optimise.terms import Array
 
 FEASIBLE = 1e-8  # of its own scale a variable, of 1 a row is off; that is below any data error
 PART = 1e-3  # of its box is the least scale of a variable, so that one at zero has a scale too
+COARSE, FINE = 1e-2, 1e-10  # steps that see curvature, and slopes alone
+NOTHING = 1e-20  # far below the rounding of what adds up to a value
 ENTRIES = 1_000_000  # of the points that are evaluated at once
 
 
@@ -32,16 +35,18 @@ def sizes(problem: Problem | Conic, x: Array) -> Array:
     return np.where(size > 0.0, size, 1.0)
 
 
-def objective_scale(problem: Problem | Conic, x: Array, step: float = FEASIBLE) -> float:
+def objective_scale(
+    problem: Problem | Conic, x: Array, step: float = FEASIBLE, own: Array | None = None
+) -> float:
     """How far the objective moves, in all, where each variable moves by its own scale.
 
-    Measured with steps of `step` of each scale, inside the box, and divided by it. Discrete
-    variables of a Problem stay where they are: its text may know no values between theirs.
+    Measured with steps of `step` of each scale (`own`, by default `sizes`), inside the box, and
+    divided by it. Discrete variables of a Problem stay where they are: its text may know no values
+    between theirs.
     """
     lower, upper, _ = problem.bounds()
-    fixed = np.array([v.discrete and isinstance(problem, Problem) for v, _ in problem.columns])
-    moves = np.flatnonzero(~fixed)
-    size = step * sizes(problem, x)
+    moves = np.flatnonzero(~_fixed(problem))
+    size = step * (sizes(problem, x) if own is None else own)
     with np.errstate(all="ignore"):
         here = float(problem.batch(x[None]).F[0, 0])
         total, count = 0.0, max(1, ENTRIES // (2 * len(x)))
@@ -56,13 +61,50 @@ def objective_scale(problem: Problem | Conic, x: Array, step: float = FEASIBLE) 
     return total / step
 
 
+def _fixed(problem: Problem | Conic) -> Any:
+    """Which variables may only have certain values, (n,)."""
+    return np.array([v.discrete and isinstance(problem, Problem) for v, _ in problem.columns])
+
+
+def way(problem: Problem | Conic, x: Array) -> float:
+    """How far the objective has come from that of the guess; NaN where that is no number."""
+    begin = np.where(_fixed(problem), x, problem.bounds()[2])
+    with np.errstate(all="ignore"):
+        first, here = (float(v) for v in problem.batch(np.stack([begin, x])).F[:, 0])
+    return abs(first - here)
+
+
+def zero_scale(problem: Problem | Conic, x: Array) -> float:
+    """What an objective of zero is measured by: the `way` from the guess.
+
+    0 where the objective at x is no zero: where it moves by less than itself as every variable
+    moves by FEASIBLE of its magnitude. A width of the box plays no part, as it may be any. From a
+    guess that is as good, how far it moves in all where the variables do: by COARSE of their
+    magnitude if it is NOTHING beside that, else by FINE.
+    """
+    here, came = float(problem.batch(x[None]).F[0, 0]), way(problem, x)
+    size = np.maximum(np.abs(x), np.abs(problem.bounds()[2]))
+    size = np.where([v.log for v, _ in problem.columns], np.abs(x), size)
+    size = np.where(size > 0.0, size, sizes(problem, x))
+    moved = objective_scale(problem, x, own=size)
+    if is_known(here, moved):
+        return 0.0
+    if came > FEASIBLE * moved and math.isfinite(came):
+        return came
+    wide = objective_scale(problem, x, COARSE, size)
+    if abs(here) <= NOTHING * wide:
+        return wide
+    fine = objective_scale(problem, x, FINE, size)
+    return fine if abs(here) <= FINE * fine else 0.0
+
+
 def gap(value: float, bound: float, scale: float = 0.0) -> float:
     """How far a value lies above a bound, relative to |value|.
 
     A value below FEASIBLE of the objective's scale is zero, as far as it can be known: then the gap
-    is relative to the scale.
+    is relative to the scale. Above a bound that is positive no optimum is zero.
     """
-    if (size := unit(value, scale)) > 0.0:
+    if (size := unit(value, 0.0 if 0.0 < bound <= value else scale)) > 0.0:
         return (value - bound) / size
     return 0.0 if value == bound else math.copysign(math.inf, value - bound)
 
@@ -78,20 +120,14 @@ def is_known(value: float, scale: float) -> bool:
 
 
 def measured(
-    problem: Problem | Conic,
-    x: Array,
-    value: float,
-    bound: float,
-    enough: float,
-    rounding: float = 0.0,
+    problem: Problem | Conic, x: Array, value: float, bound: float, enough: float
 ) -> tuple[float, dict[str, float]]:
     """The gap of a point, and {"scale": ...} where it is relative to the objective's own scale.
 
-    enough: a gap relative to |value| up to it needs no scale. rounding: that was taken off the
-    bound, and keeps a value from being known better.
+    enough: a gap relative to |value| up to it needs no scale.
     """
     found = gap(value, bound)
-    if 0.0 <= found <= enough:
+    if 0.0 <= found <= enough or 0.0 < bound <= value:
         return found, {}
-    scale = objective_scale(problem, x) + rounding / FEASIBLE
+    scale = zero_scale(problem, x)
     return (found, {}) if is_known(value, scale) else (gap(value, bound, scale), {"scale": scale})

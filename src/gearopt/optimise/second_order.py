@@ -7,7 +7,6 @@ curve along which the limits go on to hold and the Lagrangian is least across th
 """
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -21,6 +20,7 @@ FLAT = 1e-6  # of what acts on a direction: curvature below it is none
 RANK = 1e-9  # of the largest singular value: a row that depends on others
 ALONG = 1e-6  # of a direction's length: less does not leave a limit
 STEPS = (1e-3, 1e-2, 1e-1)  # of the variables' scale, by which flat directions are followed
+BOX = 0.1  # of its box is another scale of a variable: one near zero is small for no reason
 NOISE = 1e-12  # of all terms that are added up, in these steps
 MOST = 1000  # variables off their bounds; the reduced Hessian is dense
 ROUNDS = 20  # of making the entries of a matrix equal
@@ -45,14 +45,17 @@ class _Cone:
     priced: Any
     length: Array
 
-    @cached_property
-    def across(self) -> Array:
-        """Of a slope and an excess of the firm rows, the Newton step that undoes both, (k, .)."""
-        size, count = len(self.curved), len(self.firm)
-        system = np.block([[self.curved, self.firm.T], [self.firm, np.zeros((count, count))]])
+    def across(self, d: Array) -> Array:
+        """Of a slope and an excess of the firm rows, the Newton step across d that undoes both.
+
+        (k, k and one for each firm row).
+        """
+        rows = np.vstack([self.firm, d])
+        size, count = len(self.curved), len(rows)
+        system = np.block([[self.curved, rows.T], [rows, np.zeros((count, count))]])
         values, vectors = np.linalg.eigh(system)
         some = np.abs(values) > FLAT
-        inverse: Array = (vectors[:size, some] / values[some]) @ vectors[:, some].T
+        inverse: Array = (vectors[:size, some] / values[some]) @ vectors[:-1, some].T
         return inverse
 
 
@@ -142,20 +145,26 @@ def _eigen(curved: Array, rows: Array) -> list[tuple[float, Array]]:
 
 
 def _sinks(point: Point, cone: _Cone, d: Array) -> bool:
-    """Whether the Lagrangian falls along d by more than its slope and curvature say, at all STEPS.
+    """Whether the Lagrangian falls along d, by steps of the variables' scales or of their box."""
+    own, width = own_scales(point), point.high - point.low
+    wide = np.where(np.isfinite(width), np.maximum(own, BOX * width), own)
+    step = np.zeros(len(point.y))
+    step[cone.free] = cone.unit * d
+    across = cone.across(d)
+    return any(_falls(point, cone, step / (np.abs(step) / s).max(), across) for s in (own, wide))
+
+
+def _falls(point: Point, cone: _Cone, step: Array, across: Array) -> bool:
+    """Whether the Lagrangian falls by more than its slope and curvature say, at all STEPS.
 
     It need not be seen at the shortest step; but nowhere may it rise.
     """
-    step = np.zeros(len(point.y))
-    step[cone.free] = cone.unit * d
-    length = float((np.abs(step) / own_scales(point)).max())
-    step = step / length
     curved = dense(hessian(point))
     pull, pulls = curved @ step, np.abs(curved) @ np.abs(step)
     here, size, _ = _lagrangian(point, cone, point.y)
     fell = []
     for t in STEPS:
-        moved = _curve(point, cone, t * step)
+        moved = _curve(point, cone, t * step, across)
         there, more, _ = _lagrangian(point, cone, point.y + moved)
         bent = t * pull @ (moved - 0.5 * t * step)
         further = there - here - point.gradient @ moved - bent
@@ -164,7 +173,7 @@ def _sinks(point: Point, cone: _Cone, d: Array) -> bool:
     return bool(max(fell) <= 0 and fell[-2] < 0)
 
 
-def _curve(point: Point, cone: _Cone, step: Array) -> Array:
+def _curve(point: Point, cone: _Cone, step: Array, across: Array) -> Array:
     """A step along a flat direction and, across it, to what the Lagrangian and firm rows ask for.
 
     They ask for slopes and rows as they are at the point; what these are there counts as none.
@@ -173,7 +182,7 @@ def _curve(point: Point, cone: _Cone, step: Array) -> Array:
     _, _, off = _lagrangian(point, cone, point.y)
     for _ in range(NEWTON):
         _, _, now = _lagrangian(point, cone, point.y + moved)
-        moved[cone.free] -= cone.unit * (cone.across @ (now - off))
+        moved[cone.free] -= cone.unit * (across @ (now - off))
         moved = np.clip(moved, point.low - point.y, point.high - point.y)
     return moved
 

@@ -18,6 +18,7 @@ from gearopt.optimise.terms import Array
 
 STATIONARY = 1e-6  # of what acts on a variable; of the objective itself where the form is convex
 WEAK = 1e-8  # of the variable that is acted on most: less is rounding of the multipliers
+ALONE = 1e-14  # the same without multipliers
 
 
 @dataclass(frozen=True)
@@ -90,7 +91,8 @@ def acting(point: Point) -> Array:
     there = rows == columns
     bend[rows[there]] = np.abs(np.array(curved.nonzeros())[there])
     size = point.pull * own + 0.5 * bend * own**2
-    unit: Array = size + WEAK * size.max()
+    held = point.lam_g.any() or point.lam_h.any()
+    unit: Array = size + (WEAK if held else ALONE) * size.max()
     return unit
 
 

@@ -19,7 +19,7 @@ from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.progress import following, in_part, of_problem
 from gearopt.optimise.result import Budget, Event, Outcome
-from gearopt.optimise.scale import objective_scale
+from gearopt.optimise.scale import zero_scale
 from gearopt.optimise.solve import GAP, judge, method_of
 from gearopt.optimise.terms import Array
 
@@ -142,8 +142,8 @@ def attempt(entry: Entry, seed: int, budget: Budget, told: Callable[[Event], boo
 
 
 def _scale(problem: Problem | Conic, x: Array, verdict: Verdict) -> float:
-    """The objective's own scale at a point, with the rounding of its bound where it has one."""
-    return verdict.certificate.get("scale") or objective_scale(problem, x)
+    """What a gap of this point is measured by, if its objective is zero."""
+    return verdict.certificate.get("scale") or zero_scale(problem, x)
 
 
 def _clipped(run: Run) -> Run:

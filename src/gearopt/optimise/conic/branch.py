@@ -26,7 +26,7 @@ from gearopt.optimise.conic.relaxation import (
 )
 from gearopt.optimise.conic.scaling import Scaled, scaled
 from gearopt.optimise.result import Budget, Outcome
-from gearopt.optimise.scale import gap, objective_scale
+from gearopt.optimise.scale import gap, zero_scale
 from gearopt.optimise.terms import Array
 
 NODES = 20_000  # where the budget names no evaluations
@@ -174,7 +174,7 @@ def _take(search: _Search, z: Array) -> None:
     x = np.clip(z, search.data.lower, search.data.upper)[search.data.user]
     value, excess = judged(search.problem, x)
     if excess <= SLACK and value < search.value:
-        search.x, search.value, search.scale = x, value, objective_scale(search.problem, x)
+        search.x, search.value, search.scale = x, value, zero_scale(search.problem, x)
 
 
 def _halves(data: Canonical, leaf: Leaf) -> list[tuple[Array, Array]]:
