@@ -191,16 +191,16 @@ def _local(
 
 
 def _doubted(problem: Problem, x: Array, before: Verdict) -> Verdict:
-    """No point of a convex form is a minimum if its bound leaves much, of it and of the way there.
+    """No point of a convex form is a minimum if its bound leaves much of it and of the way there.
 
     The way is that of the objective from the guess: what is less of it may be rounding alone.
     """
-    value, bound, gap = before.objective, before.bound, before.gap
-    if before.status != "stationary" or value is None or bound is None or gap is None:
+    value, bound = before.objective, before.bound
+    if before.status != "stationary" or value is None or bound is None:
         return before
-    if gap <= LOOSE or value - bound <= STATIONARY * way(problem, x):
+    if value - bound <= max(LOOSE * abs(value), STATIONARY * way(problem, x)):
         return before
-    words = f"no minimum is known here: the bound is {100.0 * gap:.3g} % lower"
+    words = f"no minimum is known here: the bound is lower by {value - bound:.3g}"
     return replace(before, status="feasible", message=f"{words}. {before.message}".strip())
 
 

@@ -16,7 +16,7 @@ from gearopt.optimise.terms import Array
 FEASIBLE = 1e-8  # of its own scale a variable, of 1 a row is off; that is below any data error
 PART = 1e-3  # of its box is the least scale of a variable, so that one at zero has a scale too
 COARSE, FINE = 1e-2, 1e-10  # steps that see curvature, and slopes alone
-NOTHING = 1e-20  # far below the rounding of what adds up to a value
+NOTHING = 1e-28  # the square of a rounding
 ENTRIES = 1_000_000  # of the points that are evaluated at once
 
 
