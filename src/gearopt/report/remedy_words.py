@@ -48,7 +48,10 @@ def remedy_words(
             "with less, moved alone."
         )
     if any(way["verified"].get("nearer") == "infeasible" for way in ways):
-        words += " The ratio to choose is the nearest to the one asked for that the limits reach."
+        words += (
+            " The ratio to choose is the nearest that the limits reach (within the tolerance "
+            "around it others do too)."
+        )
     if conflict and any(way["bound"] is not None for way in ways):
         words += " Proven least: no smaller factor does, even with real-valued teeth and modules."
     return why, rows, [f"{words} {late}".rstrip()]
@@ -64,6 +67,7 @@ def _less(ways: Sequence[Mapping[str, Any]]) -> str:
     ]
     if len(doubtful) == len(moved):
         return ""
+    doubtful += [w["changes"][0]["key"] for w in ways if w["verified"].get("nearer") == "undecided"]
     but = f" (not known of {', '.join(doubtful)})" if doubtful else ""
     return f", and none with 0.1 % (or one tooth or module) less{but}"
 
