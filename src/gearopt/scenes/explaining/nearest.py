@@ -2,26 +2,41 @@
 
 import math
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from decimal import Context, Decimal
 from fractions import Fraction
 from typing import Any
 
-from gearopt.formulations.teeth.progress import Teeth
 from gearopt.optimise.explaining.explain import DIGITS, TAKEN_BACK
 from gearopt.optimise.explaining.explanation import Remedy
 from gearopt.scenes.explaining.levers import edits
 from gearopt.scenes.explaining.numbers import SHORT, allowed, eased, put
-from gearopt.scenes.explaining.switches import TOLERANCES
-from gearopt.scenes.explaining.tried import Case, least_value
+from gearopt.scenes.explaining.several import is_real
+from gearopt.scenes.explaining.tried import Case
 from gearopt.scenes.tables.drive import Scene
 
 TOLERANCE = ("duty", "ratio_tolerance")
-WIDEST = Fraction(999, 1000)  # part of the ratio asked for, down to which others are looked for
+WIDEST = (
+    Fraction(1, 2),
+    Fraction(999, 1000),
+)  # distances to which ratios are looked for, up and down
 NEARER = Fraction(1, 10**9)  # part of its distance by which one that is nearer is asked for
-SHARP = 1e-5  # part of its distance to which that of real-valued teeth is known
-QUESTIONS = 20  # at most, for nearer ratios
+SHARP = Fraction(1, 10**5)  # part of its distance to which that of real-valued teeth is known
+CLOSE = Fraction(1, 10)  # part of its distance from where all that is nearer is asked for at once
+BACK = Fraction(TAKEN_BACK)
+QUESTIONS = 40  # at most, for nearer ratios
 LONGEST = 15  # digits of what is written
+
+
+@dataclass(frozen=True)
+class Reached:
+    """Ratios that a design exists for, at a distance from the one asked for (a part of it).
+
+    Of real-valued teeth the one below and the one above: at least one of them is reached.
+    """
+
+    away: Fraction
+    ratios: tuple[Fraction, ...]
 
 
 def nearest_ratio(case: Case, away: Fraction | None) -> Remedy | None:
@@ -29,11 +44,12 @@ def nearest_ratio(case: Case, away: Fraction | None) -> Remedy | None:
 
     away: the least tolerance known to suffice, None where the file can hold none.
     """
-    away = away or _least_tolerance(case)
-    if away is None:
+    far = max(WIDEST[0], min(WIDEST[1], 1 - 1 / case.scene.duty.total_ratio))
+    reached = _met(case, away or far)
+    if isinstance(reached, str) or reached.away == 0:
         return None
-    reached, word = (_real if case.scene.teeth is None else _of_teeth)(case, away)
-    for found in (one for ratio in reached for one in _written(case.scene, ratio)):
+    reached, word = _nearest(case, reached)
+    for found in (one for ratio in reached.ratios for one in _written(case.scene, ratio)):
         if case.status(found) == "feasible":
             place = ("duty", "ratio" if found.duty.output_speed is None else "output_speed")
             change = edits(case.scene, found, [place]).changes[0]
@@ -42,59 +58,48 @@ def nearest_ratio(case: Case, away: Fraction | None) -> Remedy | None:
     return None
 
 
-def _least_tolerance(case: Case) -> Fraction | None:
-    """The least tolerance that suffices, also beyond those that a file may hold."""
-    scene, few = case.scene, TOLERANCES[0]
+def _nearest(case: Case, best: Reached) -> tuple[Reached, str]:
+    """What is reached next to the ratio asked for; and whether all that is nearer is impossible.
 
-    def works(value: float, back: float = 0.0) -> bool | None:
-        word = case.status(_within(scene, Fraction(value * (1.0 - back))))
-        return {"feasible": True, "infeasible": False}.get(word)
+    Whole teeth are known to be next in exact numbers, real-valued ones but for TAKEN_BACK of the
+    distance, as limits are met in doubles.
+    """
+    whole, low = case.scene.teeth is not None, case.scene.duty.ratio_tolerance
+    sharp = NEARER if whole else SHARP
+    excluded = whole  # by the last answer: perhaps all that is nearer is
+    for _ in range(QUESTIONS):
+        if best.away - low <= sharp * best.away:
+            break
+        away = Fraction(math.sqrt(max(low, best.away * BACK) * best.away))
+        if excluded and best.away - low <= CLOSE * best.away:
+            away = best.away * (1 - NEARER)
+        found = _met(case, away)
+        if found == "undecided":
+            break
+        excluded = whole and isinstance(found, str)
+        low, best = (low, found) if isinstance(found, Reached) else (away, best)
+    known = best.away - low <= (NEARER if whole else BACK) * best.away
+    return best, "infeasible" if known else "undecided"
 
-    widest = float(max(TOLERANCES[1], min(WIDEST, 1 - 1 / scene.duty.total_ratio)))
-    if works(widest) is not True:  # one question where no ratio helps
-        return None
-    least = least_value(float(scene.duty.ratio_tolerance or few), (widest,), works)
-    return None if least is None else Fraction(least)
+
+def _met(case: Case, away: Fraction) -> Reached | str:
+    """A ratio within a distance, or else what is known: infeasible or undecided."""
+    asked, within = case.scene.duty.total_ratio, _within(case.scene, away)
+    if case.scene.teeth is None:
+        word, below, above = case.status(within), asked * (1 - away), asked * (1 + away)
+        return Reached(away, (below, above)) if word == "feasible" else word
+    if is_real(within, case.clock):
+        return "infeasible"
+    teeth = case.teeth(within.train())
+    if not teeth:
+        return "undecided" if teeth is None else "infeasible"
+    ratio = Fraction(math.prod(z2 for _, z2 in teeth), math.prod(z1 for z1, _ in teeth))
+    return Reached(abs(ratio / asked - 1), (ratio,))
 
 
 def _within(scene: Scene, tolerance: Fraction) -> Scene:
     found: Scene = put(scene, TOLERANCE, tolerance)
     return found
-
-
-def _real(case: Case, away: Fraction) -> tuple[list[Fraction], str]:
-    """The ratios of real-valued teeth next to the one asked for, below and above it.
-
-    And whether those nearer by TAKEN_BACK of the distance are impossible.
-    """
-    low, high = case.scene.duty.ratio_tolerance, away
-    while high - low > SHARP * high:
-        middle = (low + high) / 2
-        found = case.status(_within(case.scene, middle))
-        if found == "undecided":  # too near to the limits for doubles
-            break
-        low, high = (low, middle) if found == "feasible" else (middle, high)
-    asked = case.scene.duty.total_ratio
-    word = "infeasible" if high - low <= TAKEN_BACK * high else "undecided"
-    return [asked * (1 - high), asked * (1 + high)], word
-
-
-def _of_teeth(case: Case, away: Fraction) -> tuple[list[Fraction], str]:
-    """The ratio of whole teeth next to the one asked for, in integers; whether none is nearer."""
-    train, asked, word = case.scene.train(), case.scene.duty.total_ratio, "undecided"
-    best: list[Fraction] = []
-    for _ in range(QUESTIONS):
-        teeth = case.teeth(replace(train, tolerance=away))
-        if not teeth:
-            word = "infeasible" if teeth == () else "undecided"
-            break
-        best = [_ratio(teeth)]
-        away = abs(best[0] / asked - 1) * (1 - NEARER)
-    return best, word
-
-
-def _ratio(teeth: Teeth) -> Fraction:
-    return Fraction(math.prod(z2 for _, z2 in teeth), math.prod(z1 for z1, _ in teeth))
 
 
 def _written(scene: Scene, ratio: Fraction) -> Iterator[Scene]:
