@@ -66,6 +66,7 @@ def _nearest(case: Case, best: Reached) -> tuple[Reached, str]:
     """
     whole, low = case.scene.teeth is not None, case.scene.duty.ratio_tolerance
     sharp = NEARER if whole else SHARP
+    proven = low  # below it nothing is reached, between it and `low` that is not known
     excluded = whole  # by the last answer: perhaps all that is nearer is
     for _ in range(QUESTIONS):
         if best.away - low <= sharp * best.away:
@@ -74,11 +75,14 @@ def _nearest(case: Case, best: Reached) -> tuple[Reached, str]:
         if excluded and best.away - low <= CLOSE * best.away:
             away = best.away * (1 - NEARER)
         found = _met(case, away)
-        if found == "undecided":
-            break
         excluded = whole and isinstance(found, str)
-        low, best = (low, found) if isinstance(found, Reached) else (away, best)
-    known = best.away - low <= (NEARER if whole else BACK) * best.away
+        if isinstance(found, Reached):
+            best = found
+        else:
+            low, proven = away, away if found == "infeasible" else proven
+        if case.clock.over:
+            break
+    known = best.away - proven <= (NEARER if whole else BACK) * best.away
     return best, "infeasible" if known else "undecided"
 
 
