@@ -1,15 +1,17 @@
 """Packings: kernel against text, known values, statuses, budgets, shapes, clearances, layers."""
 
 import math
+from types import SimpleNamespace
 
+import numba
 import numpy as np
 import pytest
 
 from gearopt.formulations import packing
-from gearopt.formulations.packing import hop, points, sa, text
+from gearopt.formulations.packing import hop, points, sa, state, text
 from gearopt.formulations.packing.design import describe
 from gearopt.formulations.packing.plan import Cylinder, Places, Plan, colours, overlap, row
-from gearopt.formulations.packing.state import KERNEL, held, numbers, scattered
+from gearopt.formulations.packing.state import KERNEL, Spent, held, numbers, scattered
 from gearopt.optimise.kernels import kernel
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import run, solve
@@ -279,3 +281,30 @@ def test_fixed_ones_that_overlap_are_refused():
 def test_held_names_what_is_fixed():
     plan = Plan((*LARGE[:1], Cylinder("l", 1.0, 1.0, layer=2), *SIX[:1]), most=2)
     assert held(plan).tolist() == [1, 2, 0]
+
+
+@pytest.mark.parametrize("method", [hop, sa], ids=["hop", "sa"])
+def test_kernel_is_compiled_before_the_clock_starts(method, monkeypatch):
+    """The first use on a machine compiles for seconds, which are not the search's."""
+    order = []
+    monkeypatch.setattr(method, "ready", lambda: order.append("compiled"))
+    monkeypatch.setattr(method, "Spent", lambda *given: order.append("clock") or Spent(*given))
+    run(packing.problem(Plan(SIX)), method.__name__.rsplit(".", 1)[-1], Budget(evaluations=10))
+    assert order == ["compiled", "clock"]
+
+
+@pytest.mark.parametrize("plan", PLANS.values(), ids=PLANS)
+def test_what_is_compiled_before_is_what_a_search_calls(plan, monkeypatch):
+    """Machine code belongs to types: a search of others would compile within its time."""
+    seen, compiled = [], kernel(KERNEL).anneal
+
+    def spy(*given):
+        seen.append(tuple(map(numba.typeof, given)))
+        return compiled(*given)
+
+    monkeypatch.setattr(state, "kernel", lambda name: SimpleNamespace(anneal=spy))
+    state.ready.__wrapped__()
+    assert len(seen) == 1
+    run(packing.problem(plan), "sa", Budget(evaluations=100))
+    run(packing.problem(plan), "hop", Budget(evaluations=100))
+    assert len(seen) >= 3 and len(set(seen)) == 1

@@ -143,6 +143,7 @@ DECLARED = [
     (lambda: var(values=()), "values are finite numbers"),
     (lambda: var(values=(math.nan,)), "values are finite numbers"),
     (lambda: var(values=("a",)), "values are finite numbers"),
+    (lambda: var(integer=True, values=(0.0, 2.5, 3.0)), "2.5 among its values is not whole; write"),
     (lambda: var(lower=math.nan), "lower is nan"),
     (lambda: var(upper=None), "upper is None"),
     (lambda: var(guess="1"), "guess is '1'"),
@@ -188,6 +189,15 @@ def test_discrete_variables_without_a_value_between_their_bounds(method):
             SolveError, match="no (whole number|value of its set) lies between .* for a"
         ):
             solve(own(ok, nothing), method)
+
+
+@pytest.mark.parametrize("method", ["annealing", "nsga2", "scip", "bonmin"])
+def test_whole_values_of_an_integer_are_kept_to(method):
+    """Of 0, 3 and 9 between 0.3 and 5 only 3 is left, and it is printed as it is evaluated."""
+    whole = var(lower=0.3, upper=5.0, guess=1.5, integer=True, values=(0.0, 3.0, 9.0))
+    result = solve(own(ok, whole), method)
+    assert result.design["a"] == 3 and isinstance(result.design["a"], int)
+    assert result.value == 3.0 and result.status in ("optimal", "feasible")
 
 
 def two(x, p):

@@ -1,11 +1,17 @@
 """Ways out of drives with given teeth, modules and widths, against brute force over the file."""
 
+from dataclasses import replace
+from fractions import Fraction
+
 import pytest
-from given_drives import faults, feasible, given_drive, readable
+from given_drives import every_train, faults, feasible, given_drive, readable, with_changes
 
 from gearopt import Budget
+from gearopt.optimise.explaining.repair import Clock
 from gearopt.report.remedy_words import remedy_words
 from gearopt.scenes import drive
+from gearopt.scenes.explaining.nearest import nearest_ratio
+from gearopt.scenes.explaining.tried import Case
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.load import read
 
@@ -105,7 +111,7 @@ def test_teeth_that_do_not_suffice_alone_move_together():
 def test_a_module_is_added_to_a_list():
     """Between 1 mm and 8 mm: a module of series I, and both series instead of the list."""
     found = explained(SHORT_LIST)
-    ways = [c.write for w in found.remedies if w.kind == "choice" for c in w.changes]
+    ways = [c.write for w in found.remedies if w.what == "modules" for c in w.changes]
     assert len(ways) == 2 and ways[1] == '"ISO 54 I+II"'
     assert ways[0].startswith('["1 mm", ') and ways[0].count("mm") == 3
     assert not faults(SHORT_LIST, found)
@@ -135,3 +141,119 @@ def check(seed):
     found = explained(text)
     assert feasible(text) == (found.result.value is not None)
     assert not faults(text, found)
+
+
+GIVEN_PAIR = NEITHER_ALONE.replace("3.17", "3").replace("0.05 %", "0.5 %").replace("= 60", "= 63")
+FEW_PINIONS = """
+gearopt = 1
+kind = "drive"
+stages = 1
+[duty]
+power = "1 kW"
+input_speed = "1450 rpm"
+ratio = 5.123
+ratio_tolerance = "0.01 %"
+[gears]
+face_width_over_diameter = 0.6
+[limits]
+k_factor = "2.07 MPa"
+unit_load = "48 MPa"
+pinion_teeth = [17, 30]
+[teeth]
+"""
+TWO_OF_TEN = """
+gearopt = 1
+kind = "drive"
+stages = 2
+[duty]
+power = "1 kW"
+input_speed = "1450 rpm"
+output_speed = "1.45 rpm"
+ratio_tolerance = "0 %"
+[gears]
+face_width_over_diameter = 0.6
+[limits]
+k_factor = "2.07 MPa"
+unit_load = "48 MPa"
+stage_ratio = [1, 10]
+pinion_teeth = [17, 40]
+"""
+
+
+def ratio_chosen(text, found):
+    """The way out by another ratio, and the ratio that its edit asks for."""
+    (way,) = [w for w in found.remedies if w.what == "ratio"]
+    edited = with_changes(text, [(c.key, c.write) for c in way.changes])
+    assert feasible(edited) and way.kind == "choice"
+    return way, read(edited.encode())[1].duty.total_ratio
+
+
+@pytest.mark.parametrize(
+    ("text", "key", "write"),
+    [
+        (GIVEN_PAIR, "duty.ratio", "3.15"),
+        (FEW_PINIONS, "duty.ratio", "5.125"),
+        (TWO_OF_TEN, "duty.output_speed", '"14.5 rpm"'),
+    ],
+    ids=["given pair", "few pinions", "beyond any tolerance"],
+)
+def test_the_nearest_ratio_is_told(text, key, write):
+    """63/20, 41/8 (of 24 to 123 teeth) and 10 x 10 instead of 1000."""
+    found = explained(text)
+    way, ratio = ratio_chosen(text, found)
+    (change,) = way.changes
+    assert (change.key, change.write) == (key, write)
+    asked = read(text.encode())[1].duty.total_ratio
+    assert way.factor == pytest.approx(float(max(ratio / asked, asked / ratio)))
+    words = remedy_words(found.to_dict())
+    assert any("or choose" in row[0] and key in row[1] for row in words[1])
+    assert "what is asked for is kept" in words[2][0]
+    assert "is the nearest that the limits reach" in words[2][0]
+
+
+def nearest_by_listing(scene):
+    """The total ratios next to the one asked for: of all trains within 45 % of it."""
+    asked = scene.duty.total_ratio
+    trains = every_train(replace(scene.train(), tolerance=Fraction(45, 100))).teeth
+    wheels, pinions = trains[:, :, 1].prod(axis=1), trains[:, :, 0].prod(axis=1)
+    known = {Fraction(int(w), int(p)) for w, p in zip(wheels, pinions, strict=True)}
+    away = min((abs(r - asked) for r in known), default=None)
+    return {r for r in known if abs(r - asked) == away}
+
+
+def check_nearest(seed):
+    """The ratio to choose reaches, within the tolerance, the next of all. False: nothing to see."""
+    text = given_drive(seed)
+    scene = read(text.encode())[1]
+    if scene.teeth is None or len(scene.stage) > 2 or feasible(text):
+        return False
+    reached = nearest_by_listing(scene)
+    case = Case(scene, Clock(Budget(seconds=60.0)))
+    way = nearest_ratio(case, None)
+    if not reached:  # none so near
+        assert way is None or way.factor > 1.4
+        return False
+    assert way is not None and way.verified == {"with": "feasible", "nearer": "infeasible"}
+    (change,) = way.changes
+    edited = with_changes(text, [(change.key, change.write)])
+    written = read(edited.encode())[1].duty.total_ratio
+    assert any(abs(r - written) <= scene.duty.ratio_tolerance * written for r in reached)
+    assert any(abs(r - written) <= Fraction(1, 10**5) * r for r in reached)
+    return feasible(edited)
+
+
+def test_the_nearest_ratio_is_that_of_listing_all_trains():
+    assert all(check_nearest(seed) for seed in (102, 108, 113, 115, 128, 137))
+
+
+@pytest.mark.slow
+def test_the_nearest_ratio_of_more_drives_is_that_of_listing_all_trains():
+    assert sum(check_nearest(seed) for seed in range(140, 340)) >= 30
+
+
+def test_no_ratio_is_told_where_none_is_written_or_time_ran_out():
+    """63/22 is no decimal number, so a file without a tolerance cannot ask for it."""
+    exact = GIVEN_PAIR.replace("0.5 %", "0 %").replace("teeth = 20\n", "teeth = 22\n")
+    for text, seconds in ((exact, 60.0), (GIVEN_PAIR, 0.0)):
+        scene = read(text.encode())[1]
+        assert nearest_ratio(Case(scene, Clock(Budget(seconds=seconds))), None) is None

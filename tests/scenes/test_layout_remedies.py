@@ -9,11 +9,13 @@ import pytest
 from edits import edited, scene_of
 
 import gearopt
+from gearopt.formulations import layout
 from gearopt.formulations.layout import faults
 from gearopt.formulations.layout.gearbox import KeepOut, Place
 from gearopt.formulations.layout.possible import possible
 from gearopt.formulations.layout.slabs import orders
 from gearopt.optimise.result import Budget
+from gearopt.scenes.box import ways
 
 PROBLEMS = Path(__file__).parents[2] / "problems"
 TABLE4 = (PROBLEMS / "table4_process_one_layout.toml").read_text(encoding="utf-8")
@@ -212,3 +214,12 @@ def test_random_impossible_layouts_get_remedies_that_are_least(seed):
     found, content = told(some_file(seed))
     assert found.result.status == "infeasible"
     assert_least(found, content)
+
+
+def test_kernels_are_compiled_before_the_time_of_the_ways_out_runs(monkeypatch):
+    """On a machine's first use compiling takes longer than a question may."""
+    order, clock = [], ways.Clock
+    monkeypatch.setattr(layout, "ready", lambda: order.append("compiled"))
+    monkeypatch.setattr(ways, "Clock", lambda *given: order.append("clock") or clock(*given))
+    assert gearopt.solve(scene_of(BARE + FAR)[0], budget=Budget(1.0)).status == "infeasible"
+    assert order[:2] == ["compiled", "clock"]

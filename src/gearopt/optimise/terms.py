@@ -45,10 +45,11 @@ class Param:
 class Var:
     """A variable of `size` components; lower, upper and guess are one float or one a component.
 
-    log: positive and searched as its logarithm. integer: whole numbers only. values: the finite
-    set a component may take (module series, grades). Infinite bounds are allowed, but without
-    finite ones no dual bound can be computed. search: the bounds are only the ends of a search, no
-    limits of the user (a component whose bounds are equal is given by the user all the same).
+    log: positive and searched as its logarithm. integer: whole numbers only, and its values too.
+    values: the finite set a component may take (module series, grades). Infinite bounds are
+    allowed, but without finite ones no dual bound can be computed. search: the bounds are only the
+    ends of a search, no limits of the user (a component whose bounds are equal is given by the
+    user all the same).
     """
 
     name: str
@@ -82,6 +83,11 @@ class Var:
                 raise ValueError(
                     f"variable {self.name}: values are finite numbers, such as values=(1.0, 1.25), "
                     f"not {self.values!r}"
+                )
+            if self.integer and (broken := values[values != np.round(values)]).size:
+                raise ValueError(
+                    f"variable {self.name}: {broken[0]:g} among its values is not whole; write "
+                    "whole values, or integer=False"
                 )
 
     @property

@@ -43,7 +43,15 @@ def remedy_words(
     rows = [row for way in ways for row in _rows(way)]
     words = f"Each was tried: a design exists with it{_less(ways)}."
     if any(way["verified"].get("others") == "need more" for way in ways):
-        words += " Least change: no other limit and no given size does with less, moved alone."
+        words += (
+            " Least change: what is asked for is kept, and no other limit and no given size does "
+            "with less, moved alone."
+        )
+    if any(way["verified"].get("nearer") == "infeasible" for way in ways):
+        words += (
+            " The ratio to choose is the nearest that the limits reach (within the tolerance "
+            "around it others do too)."
+        )
     if conflict and any(way["bound"] is not None for way in ways):
         words += " Proven least: no smaller factor does, even with real-valued teeth and modules."
     return why, rows, [f"{words} {late}".rstrip()]
@@ -59,6 +67,7 @@ def _less(ways: Sequence[Mapping[str, Any]]) -> str:
     ]
     if len(doubtful) == len(moved):
         return ""
+    doubtful += [w["changes"][0]["key"] for w in ways if w["verified"].get("nearer") == "undecided"]
     but = f" (not known of {', '.join(doubtful)})" if doubtful else ""
     return f", and none with 0.1 % (or one tooth or module) less{but}"
 
@@ -76,7 +85,7 @@ def _rows(way: Mapping[str, Any]) -> list[tuple[str, ...]]:
                 label if k == 0 else "  and",
                 edit(change),
                 change["was"].strip('"'),
-                _factor(change["factor"]) if way["kind"] != "choice" else "",
+                _factor(change["factor"]),
                 f"{product}{way['bound']:.4f}" if proven else "",
             )
         )

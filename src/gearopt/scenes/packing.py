@@ -13,7 +13,7 @@ from gearopt.formulations.packing import points, text
 from gearopt.formulations.packing.bound import bound
 from gearopt.formulations.packing.design import describe
 from gearopt.formulations.packing.plan import Plan
-from gearopt.formulations.packing.state import Spent, lateness
+from gearopt.formulations.packing.state import Spent, lateness, ready
 from gearopt.optimise.certificate import reconcile
 from gearopt.optimise.comparing.trial import Model
 from gearopt.optimise.explaining.explanation import Explanation
@@ -38,6 +38,8 @@ def solve(scene: Scene, ask: Ask) -> Result:
     plan = scene.plan()
     problem = _problem(plan, ask.method)
     watch = in_part(ask.watch, plan.unit())
+    if ask.method in (None, *problem.methods):
+        ready()
     result, outcome = run(problem, ask.method, ask.budget, ask.seed, watch, ask.gap)
     result = replace(result, objective=result.objective | {"unit": plan.unit()})
     if result.value is None or outcome.x is None:

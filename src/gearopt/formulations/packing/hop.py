@@ -16,7 +16,7 @@ import numpy as np
 
 from gearopt.formulations.packing import points, text
 from gearopt.formulations.packing.plan import Places, Plan, row
-from gearopt.formulations.packing.state import Finish, Floor, Spent, anneal, scattered
+from gearopt.formulations.packing.state import Finish, Floor, Spent, anneal, ready, scattered
 from gearopt.optimise.box import violation
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch
@@ -59,6 +59,7 @@ def method(plan: Plan, floor: Floor, finish: Finish) -> Any:
 
     def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
         """Hop until the bound is reached, rounds end alike, or the budget is spent."""
+        ready()
         spent, rng = Spent(budget, watch), np.random.default_rng(seed)
         first = points.point(plan, row(plan))
         spent.keep(float(problem.batch(first[None]).F[0, 0]), first)

@@ -6,7 +6,7 @@ import numpy as np
 
 from gearopt.formulations.packing import points
 from gearopt.formulations.packing.plan import Plan, row
-from gearopt.formulations.packing.state import LOOKS, Finish, Floor, Spent, anneal, scattered
+from gearopt.formulations.packing.state import LOOKS, Finish, Floor, Spent, anneal, ready, scattered
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch
 
@@ -24,6 +24,7 @@ def method(plan: Plan, floor: Floor, finish: Finish) -> Any:
 
     def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
         """Anneal once; the best state that meets all limits, or else the row of all, is kept."""
+        ready()
         spent, rng = Spent(budget, watch), np.random.default_rng(seed)
         first = points.point(plan, row(plan))
         spent.keep(float(problem.batch(first[None]).F[0, 0]), first)

@@ -4,6 +4,7 @@ import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -94,6 +95,18 @@ def lateness(clock: float, seconds: float | None, goes_on: Callable[[], bool]) -
 
 Floor = Callable[[Problem, Spent], Bound]
 Finish = Callable[[Outcome, Spent, Bound], Outcome]  # the outcome with bound and proof
+
+
+@cache
+def ready() -> None:
+    """Have the kernel compiled, once on a machine, before a clock runs: by one move of a disc."""
+    x, y, radius, height = np.zeros(1), np.zeros(1), np.ones(1), np.ones(1)
+    layer, free = np.ones(1, np.int64), np.zeros(1, np.int64)
+    plain = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0])
+    best = np.append(np.zeros(5), np.inf)
+    kernel(KERNEL).anneal(
+        0, 0, 1, 1, 1.0, 0.1, x, y, layer, np.zeros(2), radius, height, free, plain, best
+    )
 
 
 def numbers(plan: Plan, most: int) -> Array:

@@ -28,11 +28,12 @@ class Remedy:
 
     kind: "least" (smallest product of factors over all limits), "even" (one factor for one kind of
     limit), "one" (a number of one stage), "pair" (two changes, each as small as the other allows),
-    "less" (the duty), or "choice" (a switch of the file). what: the limits that move. factor: that
-    product or common factor, as written (infinite where a number is shifted). bound: a smaller one
-    is proven impossible (None: not proven). verified: status with the edits, and with each taken
-    back by 0.1 %, one tooth or one module ({"with": ..., "with_less": ...}); "others": what all
-    other single numbers need.
+    "less" (the duty), or "choice" (a switch of the file, or the nearest ratio that the limits
+    reach). what: the limits that move. factor: that product or common factor, as written (infinite
+    where a number is shifted). bound: a smaller one is proven impossible (None: not proven).
+    verified: status with the edits, and with each taken back by 0.1 %, one tooth or one module
+    ({"with": ..., "with_less": ...}); "nearer": of ratios nearer to the one asked for; "others":
+    what all other single numbers need.
     """
 
     kind: str

@@ -33,11 +33,11 @@ def lay_out(scene: Scene, ask: Ask, sized: Result) -> Result:
     box = scene.gearbox(sizes_of(sized))
     orders = arrangements(box)
     wrong = layout.faults(box)
+    layout.ready()
     parts = (replace(sized, name="gears"),)
     if wrong:
         return _impossible(scene, sized, ask, parts, wrong)
     problem = layout.problem(box, ask.method)
-    layout.ready()
     watch, events = following(in_part(ask.watch, box.unit))
     asked = ask.budget.less(sized.seconds)
     gap = ask.gap if ask.budget.gap else GAP

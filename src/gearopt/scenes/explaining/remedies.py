@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from typing import Any
 
 from gearopt.optimise.explaining.explain import TAKEN_BACK
@@ -19,6 +20,8 @@ from gearopt.scenes.explaining.levers import (
     bound_of,
     comparable,
 )
+from gearopt.scenes.explaining.nearest import nearest_ratio
+from gearopt.scenes.explaining.numbers import read
 from gearopt.scenes.explaining.several import is_real, is_stepped, posed, together, widest
 from gearopt.scenes.explaining.switches import eased_tolerance, switches
 from gearopt.scenes.explaining.tried import (
@@ -30,6 +33,7 @@ from gearopt.scenes.explaining.tried import (
     trimmed,
 )
 from gearopt.scenes.tables.drive import Scene
+from gearopt.scenes.tables.duty import Duty
 
 
 @dataclass(frozen=True)
@@ -54,10 +58,19 @@ def remedies(scene: Scene, clock: Clock) -> Ways:
     found = _changes(case, movable, singles, beside, floor)
     if scene.duty.ratio_tolerance == 0 and (remedy := eased_tolerance(case)) is not None:
         found.append(remedy)
+    if (remedy := nearest_ratio(case, _tolerance(found))) is not None:
+        found.append(remedy)
     if scene.teeth is not None:
         found += switches(case)
     late = "time ran out before all ways out were tried" if clock.over else ""
     return Ways(tuple(h.name for h in blamed), tuple(found), late)
+
+
+def _tolerance(found: Sequence[Remedy]) -> Fraction | None:
+    """The ratio tolerance that one of the remedies writes."""
+    written = [c.write for r in found for c in r.changes if c.key == "duty.ratio_tolerance"]
+    value = read(Duty, "ratio_tolerance", written[0].strip('"')) if written else None
+    return None if value is None else Fraction(value)
 
 
 def _conflict(base: Problem, known: Sequence[Handle], clock: Clock) -> tuple[Handle, ...]:
