@@ -62,6 +62,14 @@ def printed(result):
             "12 to 60 teeth make ratios of 0.04 to 25 in two pairs. No two pairs of 5 to 400 "
             'teeth make it: kind = "drive" has more stages.',
         ),
+        (  # a drive takes ratios from 1
+            1e-9,
+            (12, 60),
+            "ratio 0.04 instead of 1e-09 (+3,999,999,900 %), out of reach of 12 to 60 teeth; "
+            "proven nearest",
+            "12 to 60 teeth make ratios of 0.04 to 25 in two pairs. No two pairs of 5 to 400 "
+            "teeth make it.",
+        ),
     ],
 )
 def test_a_ratio_out_of_reach_is_said_first(ratio, teeth, first, then):

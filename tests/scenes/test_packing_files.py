@@ -2,9 +2,13 @@
 
 import dataclasses
 import json
+import re
 import subprocess
 import sys
+import tomllib
+from itertools import product
 from pathlib import Path
+from random import Random
 
 import pytest
 
@@ -194,6 +198,88 @@ def test_a_layer_below_a_named_one_that_must_stay_empty_is_refused():
     assert "2 cylinders have no layer of their own, and below a layer none is" in error.rule
     assert error.fix.value == "3"
     read(text.replace("layer = 6", "layer = 3").encode())
+
+
+TWO = NAMED.replace("layer = 2", "layer = 3").replace("count = 2", "layer = 2\ncount = 4")
+TWO = TWO.replace("most = 2", "exactly = 4")
+LAYERS = re.compile(r"(layers\.exactly|cylinder\[(\d+)\]\.layer) = (\d+)")
+
+
+def mended(text, error):
+    """A file with the layers that an error's remedy asks for."""
+    words = error.remedy if error.fix is None else f"{error.fix.key} = {error.fix.value}"
+    edits = LAYERS.findall(words)
+    assert edits
+    content = tomllib.loads(text)
+    for _, cylinder, layer in edits:
+        if cylinder:
+            content["cylinder"][int(cylinder) - 1]["layer"] = int(layer)
+        else:
+            content["layers"]["exactly"] = int(layer)
+    lines = [f"{k} = {json.dumps(v)}" for k, v in content.items() if isinstance(v, str | int)]
+    for name, tables in content.items():
+        for table in tables if isinstance(tables, list) else [tables]:
+            if isinstance(table, dict):
+                lines.append(f"[[{name}]]" if isinstance(tables, list) else f"[{name}]")
+                lines += [f"{k} = {json.dumps(v)}" for k, v in table.items()]
+    return "\n".join(lines)
+
+
+def test_layers_that_no_single_number_fills_get_all_their_numbers():
+    error = wrong(TWO)
+    assert error.key == "layers.exactly" and error.value == "4" and error.fix is None
+    assert error.remedy == ("Write layers.exactly = 2 and cylinder[1].layer = 1, all of them")
+    scene = read(mended(TWO, error).encode())[1]
+    result = gearopt.solve(scene, budget=gearopt.Budget(evaluations=20_000))
+    assert result.status == "optimal" and len(result.design["layers"]) == 2
+
+
+def some_layers(random):
+    """Some cylinders with and without a layer of their own, and [layers]."""
+    tables = []
+    for _ in range(random.randint(1, 4)):
+        own = random.choice(["", f"layer = {random.randint(1, 6)}\n"])
+        size = f'diameter = "{random.randint(5, 20)} mm"\nheight = "10 mm"\n'
+        tables.append(f"[[cylinder]]\n{size}{own}count = {random.randint(1, 2)}\n")
+    number = f"{random.choice(['most', 'exactly'])} = {random.randint(1, 6)}"
+    return "\n".join(["gearopt = 1", 'kind = "packing"', *tables, "[layers]", number])
+
+
+def fillable(text):
+    """Whether some choice of layers fills every one that must be, by trying all."""
+    content = tomllib.loads(text)
+    least, most = content["layers"].get("exactly", 1), max(content["layers"].values())
+    cylinders = [c.get("layer") for c in content["cylinder"] for _ in range(c["count"])]
+    open_ = [k for k, layer in enumerate(cylinders) if layer is None]
+    if any(layer is not None and layer > most for layer in cylinders):
+        return False
+    for choice in product(range(1, most + 1), repeat=len(open_)):
+        used = {layer for layer in cylinders if layer is not None} | set(choice)
+        if used == set(range(1, max(used) + 1)) and max(used) >= least:
+            return True
+    return False
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_what_is_to_be_written_for_layers_loads_and_is_possible(seed):
+    """One message mends every file but one with two layers above the top, each told alone."""
+    text = some_layers(Random(seed))
+    assert fillable(text) == loads(text)
+    for _ in range(4):
+        if loads(text):
+            break
+        error, before = wrong(text), text
+        text = mended(text, error)
+        assert text != before and ("above the" in error.rule or loads(text)), str(error)
+    assert loads(text) and fillable(text)
+
+
+def loads(text):
+    try:
+        read(text.encode())
+    except SceneError:
+        return False
+    return True
 
 
 def test_words_of_a_bound_say_where_its_time_ended_it():

@@ -12,9 +12,12 @@ from scene_files import dump, parse
 
 import gearopt
 from gearopt.errors import SceneError
+from gearopt.optimise.explaining.repair import Clock
 from gearopt.optimise.result import Budget
 from gearopt.report.pages.result import page, sections, tables
 from gearopt.report.terminal.result import show
+from gearopt.scenes.axis.clearance import blocked
+from gearopt.scenes.axis.ways_out import ways_out
 from gearopt.scenes.reading.load import read
 
 PROBLEMS = Path(__file__).parents[2] / "problems"
@@ -331,3 +334,26 @@ def test_an_output_shaft_in_the_way_is_named_without_an_error_to_hold(aim):
     assert way.what == "train.output_shaft_diameter" and way.bound is None
     assert way.verified == {"with": "optimal", "with_less": "infeasible"}
     assert "room for the output shaft" in explained.message
+
+
+def test_no_reason_is_given_where_time_ran_out_before_it_was_known():
+    """Not even that real-valued teeth keep all limits, which nobody had the time to look at."""
+    asked = scene(QUICK, accuracy=None, train=FEW | {"minimise": "inertia"})
+    names, remedies, message = ways_out(asked, Clock(gearopt.Budget(0.0)))
+    assert (names, remedies) == ((), ()) and message == "time ran out before it was known why"
+
+
+def test_a_diameter_that_was_not_tried_in_time_is_not_called_out_of_reach(monkeypatch):
+    """The trains in the way are known; time ends in the search for the diameters."""
+    asked, clock = scene(QUICK, accuracy=None, train=FEW), Clock(gearopt.Budget(60.0))
+    answers = iter(["infeasible", "optimal", *["optimal"] * 3])
+
+    def answer(train, clock):
+        found = next(answers, "limit")
+        clock.stopped = found == "limit"
+        return found
+
+    monkeypatch.setattr("gearopt.scenes.axis.clearance._status", answer)
+    rooms = blocked(asked, clock, lambda other: "limit")
+    assert not rooms.remedies and "out of reach" not in rooms.message
+    assert rooms.message.endswith("; time ran out before all ways out were tried")

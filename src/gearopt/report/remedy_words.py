@@ -66,16 +66,23 @@ def _less(ways: Sequence[Mapping[str, Any]]) -> str:
         if way["verified"].get("with_less", "infeasible") != "infeasible"
     ]
     if len(doubtful) == len(moved):
-        return ""
+        return "; whether less does is not known" if any(map(_doubtful, moved)) else ""
     doubtful += [w["changes"][0]["key"] for w in ways if w["verified"].get("nearer") == "undecided"]
     but = f" (not known of {', '.join(doubtful)})" if doubtful else ""
     return f", and none with 0.1 % (or one tooth or module) less{but}"
+
+
+def _doubtful(way: Mapping[str, Any]) -> bool:
+    """Whether it stayed undecided if less would do."""
+    return bool(way["verified"].get("with_less") == "undecided")
 
 
 def _rows(way: Mapping[str, Any]) -> list[tuple[str, ...]]:
     """A row for every edit of a way out."""
     alike = ", all alike" if way["kind"] == "even" else ", one stage"
     label = KINDS.get(way["kind"], f"{way['what'].replace('_', ' ')}{alike}")
+    if way["kind"] == "least" and _doubtful(way):
+        label = "least found"
     product = "product " if len(way["changes"]) > 1 and way["kind"] == "least" else ""
     rows: list[tuple[str, ...]] = []
     for k, change in enumerate(way["changes"]):

@@ -113,9 +113,8 @@ def _out_of_reach(train: compound.Compound, reach: dict[str, Any]) -> str:
     ]
     if ways:
         return f"{made}. Write {' or '.join(ways)}."
-    return (
-        f'{made}. No two pairs of {LEAST} to {MOST} teeth make it: kind = "drive" has more stages.'
-    )
+    more = ': kind = "drive" has more stages' if train.ratio >= 1 else ""  # a drive slows down
+    return f"{made}. No two pairs of {LEAST} to {MOST} teeth make it{more}."
 
 
 def explain(scene: Scene, ask: Ask) -> Explanation:

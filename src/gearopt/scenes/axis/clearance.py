@@ -55,7 +55,9 @@ def blocked(scene: Scene, clock: Clock, status: Callable[[Scene], str]) -> Block
     message = f"no train that keeps all other limits leaves room for the {what}"
     ways = _ways(scene, clock, status)
     proven = tuple(way for way in ways if way.verified["with"] == "optimal")
-    if ways and not proven:
+    if clock.over:
+        message += "; time ran out before all ways out were tried"
+    elif ways and not proven:
         message += "; with less in the way, box, stiffness or duty stay out of reach"
     return Blocked(names, proven, message)
 

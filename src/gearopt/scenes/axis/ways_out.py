@@ -26,6 +26,7 @@ ROOM = 1e-9  # by which a proposal is easier, to be feasible in doubles
 BACK = 1e-3  # a remedy that much smaller must be impossible
 LOOSE = "90 deg"  # an error that no train misses
 WIDER = tuple(Fraction(1, 10**k) for k in range(6, 0, -1))  # ratio tolerances that are tried
+LATE = "time ran out before it was known why"
 NAMED = 3  # sources of error that the message names
 
 
@@ -44,7 +45,7 @@ def ways_out(
             names, message = _of_duty(scene, clock)
             return names, (), message
         if still.status != "infeasible":
-            return (), (), "time ran out before it was known why"
+            return (), (), LATE
         told = still.message
     rooms = blocked(scene, clock, lambda other: _status(other, clock))
     if asked is None and rooms is not None:
@@ -125,6 +126,8 @@ def _other(scene: Scene, told: str, clock: Clock) -> tuple[tuple[str, ...], str]
             continue
         own, ends = (_span(scene, one) for one in (train, other))
         return (), f"no whole teeth make the ratio {own}; {ends} some do"
+    if clock.over:
+        return (), LATE
     return (), (
         "real-valued teeth and modules keep all other limits, whole teeth and the modules of the "
         "list do not"

@@ -42,14 +42,21 @@ LEFT = 0.01  # part of a keep-out that is left of it
 
 
 @dataclass(frozen=True)
+class Without:
+    """For a value: the list of tables without this one, wherever it stands."""
+
+    table: Any
+
+
+@dataclass(frozen=True)
 class Move:
     """One change of the file, its size from 0 (none) to 1 (the farthest that is proposed).
 
     path: its place. searched(size): the value with which to search; monotone, a larger size never
     makes less possible. proposed(size): what to write then, the best first. back(value): a proposal
     taken back a little. change(size): how much is changed, relative. steps: halvings of the
-    size that find it accurately; 0 for a switch. texts: of a switch its key, what stands there and
-    what to write.
+    size that find it accurately; 0 for a switch. limit: how far it is moved, in words. texts: of a
+    switch its key, what stands there and what to write.
     """
 
     path: Path
@@ -58,6 +65,7 @@ class Move:
     back: Callable[[Any], Any]
     change: Callable[[float], float]
     steps: int
+    limit: str
     texts: tuple[str, str, str] | None = None
 
     @property
@@ -67,7 +75,11 @@ class Move:
 
     def put(self, scene: Scene, value: Any) -> Scene:
         """The scene with a value at the place of this move."""
-        found: Scene = put(scene, self.path, value)
+        path = self.path
+        if isinstance(value, Without):
+            path = path[:-1]
+            value = tuple(one for one in at(scene, path) if one is not value.table)
+        found: Scene = put(scene, path, value)
         return found
 
     def key(self) -> str:
@@ -101,6 +113,11 @@ def moves(scene: Scene, sizes: Sizes) -> tuple[Move, ...]:
     return tuple(found)
 
 
+def limits_of(tried: tuple[Move, ...]) -> tuple[str, ...]:
+    """How far moves go, each said once."""
+    return tuple(dict.fromkeys(move.limit for move in tried))
+
+
 def _factors(number: Number) -> Iterator[Move]:
     """The moves of a length or stress by a factor."""
     value, path = number.value, number.path
@@ -108,10 +125,10 @@ def _factors(number: Number) -> Iterator[Move]:
     named = str(next(p for p in reversed(path) if isinstance(p, str)))
     for table, sign in ((LARGER, 1), (SMALLER, -1)):
         if inside and value.number and (farthest := table.get(named)):
-            yield _factor(path, value, farthest, sign)
+            yield _factor(path, value, farthest, sign, named)
 
 
-def _factor(path: Path, value: Quantity, farthest: float, sign: int) -> Move:
+def _factor(path: Path, value: Quantity, farthest: float, sign: int, named: str) -> Move:
     return Move(
         path,
         lambda size: times(value, farthest ** (sign * size)),
@@ -119,6 +136,7 @@ def _factor(path: Path, value: Quantity, farthest: float, sign: int) -> Move:
         lambda new: times(new, 1.0 - sign * BACK),
         lambda size: farthest**size - 1.0,
         math.ceil(math.log2(math.log(farthest) / FINE)),
+        f"{named} up to {farthest:g} times" if sign > 0 else f"{named} down to 1/{farthest:g}",
     )
 
 
@@ -172,7 +190,12 @@ def _shift(
         return (nearer, nearer) if new[0] == new[1] else _with(ends, end, nearer)
 
     steps = math.ceil(math.log2(max(farthest / NEAR, 2.0)))
-    return Move(path, *values, back, lambda size: farthest * size / reach, steps)
+    what, part = "an end of a place", ""
+    if path[0] == "keep_out":
+        part = f" (and {100.0 * (1.0 - LEFT):g} % of its width)"
+        what = "a side of a keep-out inwards"
+    limit = f"{what} by up to {REACHES * reach:.0f} mm{part}"
+    return Move(path, *values, back, lambda size: farthest * size / reach, steps, limit)
 
 
 def _with(ends: tuple[Quantity, Quantity], end: int, new: Quantity) -> tuple[Quantity, Quantity]:
@@ -200,20 +223,23 @@ def switches(scene: Scene) -> tuple[Move, ...]:
         for k, one in enumerate(tables):
             called = f"that of shaft {one.shaft}" if field == "place" else one.name or "it"
             texts = (f"{field}[{k + 1}]", called, "")
-            found.append(_switch((field,), tables[:k] + tables[k + 1 :], texts))
+            limit = f"a {field.replace('_', '-')} left out"
+            found.append(_switch((field, k), Without(one), texts, limit))
     if table.slabs is not None:
         was = str([list(slab) for slab in table.slabs])
-        found.append(_switch(("layout", "slabs"), None, ("layout.slabs", was, '"best"')))
+        found.append(
+            _switch(("layout", "slabs"), None, ("layout.slabs", was, '"best"'), "slabs left free")
+        )
     if table.split_line is not None:
         texts = ("layout.split_line", str(list(table.split_line)), "")
-        found.append(_switch(("layout", "split_line"), None, texts))
+        found.append(_switch(("layout", "split_line"), None, texts, "no split line"))
     if table.span == "full":
         texts = ("layout.span", '"full"', '"partial"')
-        found.append(_switch(("layout", "span"), "partial", texts))
+        found.append(_switch(("layout", "span"), "partial", texts, "partial span"))
     return tuple(found)
 
 
-def _switch(path: Path, value: Any, texts: tuple[str, str, str]) -> Move:
+def _switch(path: Path, value: Any, texts: tuple[str, str, str], limit: str) -> Move:
     return Move(
         path,
         lambda size: value,
@@ -221,5 +247,6 @@ def _switch(path: Path, value: Any, texts: tuple[str, str, str]) -> Move:
         lambda new: new,
         lambda size: 1.0,
         0,
+        limit,
         texts,
     )

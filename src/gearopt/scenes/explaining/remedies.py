@@ -129,7 +129,7 @@ def _singles(
             start = max(start, common.get((lever.family, lever.direction), 1.0))
             doubts = len(case.open)
             moves = None if math.isinf(start) else least_between(case, ((lever, start),))
-            if lever.shared and (moves is not None or len(case.open) == doubts):
+            if lever.shared and len(case.open) == doubts:  # else a smaller one may do
                 least = math.inf if moves is None else moves[0][1]
                 common[lever.family, lever.direction] = least
             if moves is not None:
@@ -181,8 +181,8 @@ def _changes(
         ways.append(Way("least", beside, floor))
     for way, _ in singles:
         several = way.kind == "even" and len(way.moves) > 1 and case.scene.teeth is not None
-        if several and (kept := trimmed(case, way.moves)) is not None:
-            ways.append(Way("least", kept, floor))
+        if several:
+            ways.append(Way("least", trimmed(case, way.moves), floor))
     told = [r for _, r in (*singles, *_tried(case, ways))]
     best = min((_product(r) for r in told if r.kind != "less"), default=FARTHEST)
     joint = least_together(case, movable, best * (1.0 - SAME))
@@ -219,8 +219,7 @@ def _all_limits(case: Case, movable: list[Lever]) -> Remedy | None:
     """All limits enlarged alike, then each made as small as the others allow."""
     moves = tuple((m, 1.0) for m in widest(movable))
     larger = enlarged(case, moves) if moves and case.scene.teeth is not None else None
-    kept = None if larger is None else trimmed(case, larger)
-    return None if kept is None else _remedy(case, Way("least", kept, None))
+    return None if larger is None else _remedy(case, Way("least", trimmed(case, larger), None))
 
 
 def _product(remedy: Remedy) -> float:

@@ -99,8 +99,8 @@ def _beside(case: Case, fixed: Moves, rest: Moves) -> Moves | None:
     for still, alike in ((given, limits), ((), rest)):  # what is given need not be easier further
         beside = (*fixed, *still)
         larger = enlarged(case, alike, beside) if alike else None
-        if larger is not None and (kept := trimmed(case, larger, beside)) is not None:
-            return (*beside, *kept)
+        if larger is not None:
+            return (*beside, *trimmed(case, larger, beside))
     return None
 
 

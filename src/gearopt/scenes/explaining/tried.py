@@ -18,6 +18,7 @@ from gearopt.scenes.tables.drive import Scene
 WIDEST = (1.02, 1.1, 1.3, 2.0, 4.0)  # extra factors that are tried for whole teeth, in turn
 FARTHEST = 4.0  # factor to which numbers that may only take steps are tried
 CLOSE = 1.0 + 0.5 * TAKEN_BACK  # ratio of an impossible to a possible factor that ends a search
+DOUBTS = 3  # factors that may stay undecided before a search ends at the least that is known
 LEAST = 1.0 + 1e-7  # a search between two factors this close ends in any case
 SECONDS = 2.0  # at most, for one question whether whole teeth are possible
 
@@ -125,37 +126,39 @@ def least_value(low: float, wider: Sequence[float], works: Works) -> float | Non
     """The least value from `low` on that will do, looked for below the first of `wider` that does.
 
     works(value, back): whether a value will do, also with its edits taken back by a part; None:
-    not known. None where none does, or time ran out.
+    not known, so that the widest is tried. None where none is known to do.
     """
     if works(low):
         return low
     for high in wider:
         found = works(high)
+        if found is None and high < wider[-1]:
+            high, found = wider[-1], works(wider[-1]) or None
         if found is not False:
             return _between(low, high, works) if found else None
         low = high
     return None
 
 
-def _between(low: float, high: float, works: Works) -> float | None:
-    """The least factor between an impossible and a possible one; None where time ran out.
+def _between(low: float, high: float, works: Works) -> float:
+    """The least factor known to do, between an impossible and a possible one.
 
-    works(factor, back): whether a factor will do, also with its edits taken back by a part.
+    works(factor, back): whether a factor will do, also with its edits taken back by a part. One
+    that stays undecided is not known to do.
     """
-    while high > low * CLOSE or (high > low * LEAST and works(high, TAKEN_BACK)):
+    doubts = 0
+    while doubts < DOUBTS:
+        if high <= low * CLOSE and not (high > low * LEAST and works(high, TAKEN_BACK)):
+            break
         middle = math.sqrt(low * high)
         found = works(middle)
-        if found is None:
-            return None
+        doubts += found is None
         low, high = (low, middle) if found else (middle, high)
     return high
 
 
-def trimmed(case: Case, moves: Moves, fixed: Moves = ()) -> Moves | None:
-    """Moves of which each is needed, and as small as the others and those fixed allow.
-
-    None where time ran out.
-    """
+def trimmed(case: Case, moves: Moves, fixed: Moves = ()) -> Moves:
+    """Moves of which each is needed, and as small as the others and those fixed allow."""
     kept = moves
     for lever, factor in reversed(moves):
         beside = tuple(m for m in kept if m[0] is not lever)
@@ -164,8 +167,6 @@ def trimmed(case: Case, moves: Moves, fixed: Moves = ()) -> Moves | None:
             kept = beside
             continue
         least = _between(1.0, factor, _alone(case, others, lever))
-        if least is None:
-            return None
         kept = tuple((m, least if m is lever else f) for m, f in kept)
     return kept
 

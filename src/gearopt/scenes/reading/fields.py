@@ -59,7 +59,8 @@ def refuse(
 
     write: the value to set (None: the field's example), or for `swap` the key to exchange with.
     at: the place below the checked table, for checks of several keys. action: as in
-    errors.Fix, or sample: to set, but one right value of many.
+    errors.Fix, or sample: to set, but one right value of many; or tell: `write` is the sentence
+    that says what to do, where that takes edits of several keys.
     """
     context = {"rule": rule, "write": write, "at": at, "action": action}
     return PydanticCustomError("gearopt", "{rule}", context)

@@ -68,6 +68,8 @@ def translate(
     shown = short(value) if found else ""
     if action == "remove":
         return SceneError(file, key, shown, rule, "Remove it", Fix("remove", key))
+    if action == "tell":
+        return SceneError(file, key, shown, rule, write)
     if action == "swap":
         other = dotted((*place[:-1], write))
         return SceneError(

@@ -17,6 +17,7 @@ from gearopt.formulations.packing.plan import (
 )
 from gearopt.scenes.reading.fields import Table, choice, quantity, refuse, whole, words
 from gearopt.scenes.reading.lists import pair
+from gearopt.scenes.reading.toml import dotted
 from gearopt.units import Quantity
 
 EXAMPLE = """\
@@ -142,7 +143,7 @@ class Scene(Table):
                 raise refuse(rule, 1, ("cylinder", k, "count"))
             if own.layer is not None and own.layer > self._most:
                 rule = f"is above the {self._most} of [layers]"
-                raise refuse(rule, self._most, ("cylinder", k, "layer"))
+                raise refuse(rule, self._layer_for(k), ("cylinder", k, "layer"))
         if all(own.at is not None for own in self.cylinder):
             rule = "fixes the last free cylinder, so that nothing is left to place"
             raise refuse(rule, at=("cylinder", len(self.cylinder) - 1, "at"), action="remove")
@@ -161,19 +162,37 @@ class Scene(Table):
     def _most(self) -> int:
         return self.layers.exactly or self.layers.most or 1
 
+    def _layer_for(self, k: int) -> int:
+        """The highest layer for a cylinder that leaves none empty; the top where none does."""
+        movable = sum(own.count for own in self.cylinder if own.layer is None)
+        others = {own.layer for j, own in enumerate(self.cylinder) if own.layer and j != k}
+        for layer in range(self._most, 0, -1):
+            given = others | {layer}
+            if max(self.layers.exactly or 0, *given) <= len(given) + movable:
+                return layer
+        return self._most
+
     def _check_layers(self) -> None:
         """No layer that must hold a cylinder stays empty."""
+        exactly = self.layers.exactly or 0
         given = {own.layer for own in self.cylinder if own.layer is not None}
         movable = sum(own.count for own in self.cylinder if own.layer is None)
+        filled, top = len(given) + movable, max(given, default=0)
+        if max(exactly, top) <= filled:
+            return
         rule = f"leaves a layer empty: {movable} cylinders have no layer of their own"
-        if (self.layers.exactly or 0) > len(given) + movable:
-            raise refuse(rule, len(given) + movable, ("layers", "exactly"))
-        empty = sorted(set(range(1, max(given, default=0))) - given)
-        if len(empty) > movable:
-            top = next(k for k, own in enumerate(self.cylinder) if own.layer == max(given))
-            raise refuse(
-                f"{rule}, and below a layer none is", empty[movable], ("cylinder", top, "layer")
-            )
+        edits: dict[tuple[str | int, ...], int] = _lowered(self.cylinder, filled)
+        place: tuple[str | int, ...] = ("layers", "exactly")
+        if exactly > filled:
+            edits = {place: filled} | edits
+        else:
+            place = ("cylinder", next(k for k, c in enumerate(self.cylinder) if c.layer == top))
+            place, rule = (*place, "layer"), f"{rule}, and below a layer none is"
+        if len(edits) == 1:
+            raise refuse(rule, edits[place], place)
+        together = [f"{dotted(key)} = {layer}" for key, layer in edits.items()]
+        write = f"Write {', '.join(together[:-1])} and {together[-1]}, all of them"
+        raise refuse(rule, write, place, "tell")
 
     def _check_container(self) -> None:
         """A given width holds the widest cylinder, and all that are fixed."""
@@ -230,6 +249,22 @@ class Scene(Table):
             most=self._most,
             objective=self.objective.minimise,
         )
+
+
+def _lowered(cylinders: tuple[CylinderTable, ...], most: int) -> dict[tuple[str | int, ...], int]:
+    """Layers to write for cylinders whose own is above `most`: the highest that are still free.
+
+    Cylinders that share a layer still do, and no others.
+    """
+    given = {own.layer for own in cylinders if own.layer is not None}
+    free = [layer for layer in range(1, most + 1) if layer not in given]
+    above = sorted(layer for layer in given if layer > most)
+    new = dict(zip(above, free[len(free) - len(above) :], strict=True))
+    return {
+        ("cylinder", k, "layer"): new[own.layer]
+        for k, own in enumerate(cylinders)
+        if own.layer in new
+    }
 
 
 def _away(plan: Plan, i: int, j: int) -> list[str]:
