@@ -108,7 +108,9 @@ def test_even_repair_known_before():
 @pytest.mark.slow
 def test_whole_teeth_need_more_than_real_valued_ones():
     scene, content = scene_of(SMALL_WHEELS)
-    for remedy in explain(scene).remedies:
+    moved = [r for r in explain(scene).remedies if r.what != "ratio"]
+    assert len(moved) > 4
+    for remedy in moved:
         assert remedy.factor > remedy.bound * 1.001
         known = {"with": "feasible", "with_less": "infeasible"}
         assert known.items() <= remedy.verified.items()
@@ -212,9 +214,9 @@ helix_angle = "{draw.choice([0, 12, 25])} deg"
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("block", range(10))
+@pytest.mark.parametrize("block", range(4))
 def test_every_remedy_of_random_impossible_drives_is_verified(block):
-    """50 impossible drives in all; those drawn possible are left out and counted."""
+    """20 impossible drives in all; those drawn possible are left out and counted."""
     impossible = 0
     seed = 1000 * block
     while impossible < 5:
