@@ -282,6 +282,35 @@ def test_a_zero_is_measured_by_the_way_from_the_guess():
     assert zero_scale(plane(lambda a, b: a - b), np.array([2.0, 2.0])) == pytest.approx(4.0)
 
 
+def of_two(minimise, guess, low=-10.0, high=10.0, log=False):
+    both = tuple(Var(v, "", low, high, guess, log=log) for v in "ab")
+    return Problem("two", both, (), lambda x, p: Terms({"f": minimise(x.a, x.b)}))
+
+
+def test_what_a_zero_is_measured_by():
+    sums, difference = (lambda a, b: a + b), (lambda a, b: a - b)
+    assert zero_scale(of_two(sums, 1.0), np.array([-1e-9, 0.0])) == pytest.approx(
+        2.0 + 1e-9, rel=1e-13
+    )
+    less = of_two(lambda a, b: a + b - 1.0, 1.0)  # the way, however short beside the magnitudes
+    assert zero_scale(less, np.array([0.0, 1.0])) == pytest.approx(1.0)
+    for guess, x, magnitudes in ((-1.0, -3.0, 6.0), (-2.0, -1.0, 4.0), (0.0, 0.0, 0.04)):
+        assert zero_scale(of_two(difference, guess), np.full(2, x)) == pytest.approx(magnitudes)
+    logs = of_two(lambda a, b: (a - 1.0) * (a - 5.0), 5.0, 0.1, log=True)
+    assert zero_scale(logs, np.array([1.0, 5.0])) == pytest.approx(4.01)
+    level = of_two(difference, 1.0)  # the guess is as good
+    for beside, scale in ((1e-10, 2.0), (1e-9, 0.0), (-1e-9, 0.0), (1.5e-8, 0.0)):
+        assert zero_scale(level, np.array([1.0 + beside, 1.0])) == pytest.approx(scale, rel=1e-6)
+
+
+def test_above_a_positive_bound_no_value_is_zero():
+    assert gap(1e-12, 1e-13, 1.0) == pytest.approx(0.9) and gap(1e-12, 0.0, 1.0) == 1e-12
+    assert gap(1e-12, 2e-12, 1.0) == pytest.approx(-1e-12)
+    problem, at = plane(lambda a, b: a + b, 0.0), np.array([1e-12, 0.0])
+    assert measured(problem, at, 1e-12, 1e-13, 1e-6) == (pytest.approx(0.9), {})
+    assert measured(problem, at, 1e-12, 0.0, 1e-6)[1] == {"scale": pytest.approx(2.0)}
+
+
 U = 1e11
 WIDE = {  # sums of terms of different size in wide boxes: width, guess, optimum, text
     "s, t": (1e12, 2e11, 1e-3, lambda a, b: ((a - b) / 1e3) ** 2 + (b / U - 1.0) ** 2 + 1e-3),
