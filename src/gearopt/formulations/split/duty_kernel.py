@@ -13,8 +13,8 @@ from gearopt.formulations.split.teeth_kernel import (
     first_stage,
     first_stages,
     first_wheel,
-    last_wheel,
     moved,
+    row,
     sound,
     worth,
 )
@@ -122,8 +122,7 @@ def useful(s, goal, first, most, best, found):
             m2 = s.module[j]
             for z3 in range(s.bored[j], s.pinion[1] + 1):
                 steps += 1
-                low = max(-(-s.least[z1 * z3] // z2), last_wheel(s, i, z2, j, z3))
-                high = min(s.most[z1 * z3] // z2, s.wheel_2[j])
+                low, high = row(s, i, z1, z2, j, z3)
                 if low > high or not sound(s, m1, z1, z2, m2, z3, high):
                     continue
                 top = high

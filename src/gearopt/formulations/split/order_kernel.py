@@ -8,9 +8,9 @@ from gearopt.formulations.split.teeth_kernel import (
     first_stage,
     first_stages,
     first_wheel,
-    last_wheel,
     possible,
     promise,
+    row,
     sound,
     worth,
 )
@@ -43,8 +43,7 @@ def between(s, goal, first, most_steps, above, most, rows):
         for j in range(s.module.size):
             m2 = s.module[j]
             for z3 in range(s.bored[j], s.pinion[1] + 1):
-                low = max(-(-s.least[z1 * z3] // z2), last_wheel(s, i, z2, j, z3))
-                high = min(s.most[z1 * z3] // z2, s.wheel_2[j])
+                low, high = row(s, i, z1, z2, j, z3)
                 steps += 1 + max(0, high + 1 - low)
                 for z4 in range(low, high + 1):
                     value = worth(s, goal, m1, z1, z2, m2, z3, z4)

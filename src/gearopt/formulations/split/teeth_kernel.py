@@ -83,6 +83,13 @@ def last_wheel(s, i, z2, j, z3):
 
 
 @njit(cache=True)
+def row(s, i, z1, z2, j, z3):
+    """Least and most teeth of gear 4 by the ratio, its tip and what gears keep clear of."""
+    low = max(-(-s.least[z1 * z3] // z2), last_wheel(s, i, z2, j, z3))
+    return low, min(s.most[z1 * z3] // z2, s.wheel_2[j])
+
+
+@njit(cache=True)
 def first_stages(s):
     """How many first stages are numbered, and the numbers of pinions and wheels of each module.
 
@@ -185,8 +192,7 @@ def useful(s, goal, first, most, best, found):
             m2 = s.module[j]
             for z3 in range(s.bored[j], s.pinion[1] + 1):
                 steps += 1
-                low = max(-(-s.least[z1 * z3] // z2), last_wheel(s, i, z2, j, z3))
-                high = min(s.most[z1 * z3] // z2, s.wheel_2[j])
+                low, high = row(s, i, z1, z2, j, z3)
                 if low > high:
                     continue
                 if goal != 2:
