@@ -10,7 +10,7 @@ import pytest
 import gearopt
 from gearopt.errors import CertificateError
 from gearopt.formulations import compound
-from gearopt.optimise.certificate import certify, reconcile
+from gearopt.optimise.certificate import Verdict, _doubted, certify, reconcile
 from gearopt.optimise.comparing.comparison import excess
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.problem import Problem
@@ -339,3 +339,22 @@ def test_a_gap_within_the_tolerance_needs_no_scale():
     problem, at = plane(lambda a, b: a + b, 0.0), np.array([1e-12, 0.0])
     assert measured(problem, at, 1.0, 1.0 - 1e-7, 1e-6) == (pytest.approx(1e-7), {})
     assert measured(problem, at, 1.0, 0.5, 1e-6) == (0.5, {})
+
+
+@pytest.mark.parametrize(
+    ("at", "below", "status"),
+    [
+        (0.5, 0.009, "stationary"),  # of a value of 1
+        (0.5, 0.02, "feasible"),
+        (-0.5, 0.009, "stationary"),
+        (0.0, 1.5e-6, "stationary"),  # of a way of 2 from the guess
+        (0.0, 3e-6, "feasible"),
+    ],
+)
+def test_a_bound_far_below_doubts_a_minimum(at, below, status):
+    problem, value = plane(lambda a, b: a + b), 2.0 * at
+    before = Verdict("stationary", value, bound=value - below, message="Ended.")
+    found = _doubted(problem, np.full(2, at), before)
+    assert found.status == status
+    doubt = f"no minimum is known here: the bound is lower by {below:.3g}. Ended."
+    assert found.message == ("Ended." if status == "stationary" else doubt)
