@@ -24,8 +24,8 @@ from gearopt.optimise.solve import GAP
 from gearopt.optimise.solve import solve as solve_problem
 from gearopt.optimise.terms import Param, Repeat, Terms, Var  # noqa: F401
 from gearopt.scenes.reading.ask import Ask
+from gearopt.scenes.reading.load import kind_of, scene_module
 from gearopt.scenes.reading.load import load as load_file
-from gearopt.scenes.reading.load import scene_module
 
 
 def load(path: str | Path) -> BaseModel:
@@ -135,7 +135,7 @@ def compare(
 def _opened(what: str | Path | BaseModel) -> tuple[BaseModel, Any, dict[str, Any]]:
     """The scene of a file (or the scene itself), the module of its kind, and what it is called."""
     if isinstance(what, BaseModel):
-        kind = type(what).__module__.rsplit(".", 1)[-1]
+        kind = kind_of(what)
         title = {"title": getattr(what, "title", "")}
         return what, scene_module(kind), {"scene": kind, "asked": title}
     loaded = load_file(what)

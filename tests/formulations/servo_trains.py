@@ -3,7 +3,7 @@
 import math
 from fractions import Fraction as F
 
-from gearopt.formulations.split import ServoTrain, StiffTrain
+from gearopt.formulations.servo.split import ServoTrain, StiffTrain
 
 TAN = math.tan(math.radians(20.0))
 LOST = (4.0 * TAN * 0.0512 + 2.0 * 0.029, 4.0 * TAN * 0.0649 + 2.0 * 0.033)

@@ -8,7 +8,7 @@ from packing_brute_force import drawn_fault, least_at_random, least_of_two, rand
 
 from gearopt.formulations import packing
 from gearopt.formulations.packing import points
-from gearopt.formulations.packing.bound import bound
+from gearopt.formulations.packing.container_bound import bound
 from gearopt.formulations.packing.design import describe
 from gearopt.formulations.packing.plan import Cylinder, Plan, row
 from gearopt.formulations.packing.state import KERNEL, Spent, lateness, numbers

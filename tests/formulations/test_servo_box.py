@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from servo_trains import PAPER
 
-from gearopt.formulations import servo_box, split
-from gearopt.formulations.servo_box import ServoBox, extents, first_that_fits, of_train
+from gearopt.formulations.servo import servo_box, split
+from gearopt.formulations.servo.servo_box import ServoBox, extents, first_that_fits, of_train
 from gearopt.optimise.kernels import kernel
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import solve

@@ -205,7 +205,7 @@ def test_a_drive_of_nonsense_numbers_is_refused():
 
 
 def test_a_tolerance_that_leaves_too_many_pairs_is_told_before_memory_is_spent(monkeypatch):
-    monkeypatch.setattr("gearopt.formulations.teeth.bound.ENTRIES", 100_000)
+    monkeypatch.setattr("gearopt.formulations.teeth.later_stages.ENTRIES", 100_000)
     loose = drive(total=F(100), widths=("0.6",) * 3, tolerance=F(1, 2))
     found = solve(teeth.problem(loose))
     assert found.status == "limit" and "narrow it, or limit wheel teeth" in found.message

@@ -11,8 +11,8 @@ from brute_force import best_choice, every_train, some_drive
 from small_drives import FACES, drive, tables_of
 
 from gearopt.errors import SolveError
-from gearopt.formulations.teeth import bound as bounds
-from gearopt.formulations.teeth.bound import EDGE, bound, ragged, slices
+from gearopt.formulations.teeth import later_stages as bounds
+from gearopt.formulations.teeth.later_stages import EDGE, bound, ragged, slices
 from gearopt.formulations.teeth.progress import Progress
 from gearopt.optimise.result import Budget
 

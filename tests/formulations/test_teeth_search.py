@@ -12,9 +12,9 @@ from brute_force import cost, every_train, some_drive
 from small_drives import FACES, OBJECTIVES, drive
 
 from gearopt.formulations.teeth import _in_order
-from gearopt.formulations.teeth import bound as bounds
+from gearopt.formulations.teeth import later_stages as bounds
 from gearopt.formulations.teeth import stage as staging
-from gearopt.formulations.teeth.bound import bound
+from gearopt.formulations.teeth.later_stages import bound
 from gearopt.formulations.teeth.progress import TIE
 from gearopt.formulations.teeth.search import possible, search, within
 from gearopt.formulations.teeth.stage import table

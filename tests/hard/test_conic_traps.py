@@ -11,9 +11,9 @@ import cvxpy as cp
 import numpy as np
 import pytest
 
-from gearopt.optimise.conic.bound import Leaf
 from gearopt.optimise.conic.canonical import canonical
 from gearopt.optimise.conic.certificate import certify
+from gearopt.optimise.conic.cone_bound import Leaf
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.result import Budget, Outcome
 from gearopt.optimise.solve import run, solve

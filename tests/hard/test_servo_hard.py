@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from servo_trains import PAPER, STIFF
 
-from gearopt.formulations import servo_box
-from gearopt.formulations.ratio import Drive, acceleration, best_ratio, move, swing
-from gearopt.formulations.servo_box import ServoBox, first_that_fits
-from gearopt.formulations.split import problem, relaxation, stiff
+from gearopt.formulations.servo import servo_box
+from gearopt.formulations.servo.ratio import Drive, acceleration, best_ratio, move, swing
+from gearopt.formulations.servo.servo_box import ServoBox, first_that_fits
+from gearopt.formulations.servo.split import problem, relaxation, stiff
 from gearopt.optimise.certificate import certify
 from gearopt.optimise.result import Outcome
 from gearopt.optimise.solve import solve

@@ -12,9 +12,9 @@ from scipy.optimize import linprog
 
 import gearopt
 from gearopt.errors import CertificateError, SolveError
-from gearopt.optimise.conic.bound import Leaf, inside, lagrangian
 from gearopt.optimise.conic.canonical import canonical
 from gearopt.optimise.conic.certificate import certify, covers
+from gearopt.optimise.conic.cone_bound import Leaf, inside, lagrangian
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.conic.propagate import propagate
 from gearopt.optimise.conic.scaling import after, equal, scaled

@@ -13,10 +13,10 @@ import youn
 from servo_tolerances import BASE, E_RSS, E_WC, components, stack
 from servo_trains import PAPER, STIFF
 
-from gearopt.formulations import servo_box, split, tolerance
-from gearopt.formulations.ratio import Drive, acceleration, best_ratio, move
-from gearopt.formulations.servo_box import ServoBox
-from gearopt.formulations.tolerance import grades
+from gearopt.formulations.servo import servo_box, split, tolerance
+from gearopt.formulations.servo.ratio import Drive, acceleration, best_ratio, move
+from gearopt.formulations.servo.servo_box import ServoBox
+from gearopt.formulations.servo.tolerance import grades
 from gearopt.optimise.solve import solve
 from gearopt.physics.servo_drive import load_acceleration, shortest_move_time, torque_slope
 from gearopt.physics.stiffness import stiffness_of_frequency

@@ -24,9 +24,9 @@ from youn_optimum import (
     with_error,
 )
 
-from gearopt.formulations import servo_box, split
-from gearopt.formulations.ratio import best_ratio
-from gearopt.formulations.tolerance.sampling import drawn
+from gearopt.formulations.servo import servo_box, split
+from gearopt.formulations.servo.ratio import best_ratio
+from gearopt.formulations.servo.tolerance.sampling import drawn
 from gearopt.optimise.solve import solve
 
 

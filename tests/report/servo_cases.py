@@ -9,12 +9,12 @@ from servo_tolerances import PRESSURE_ANGLE, TERMS
 from servo_trains import PAPER
 
 import gearopt
-from gearopt.formulations import ratio, servo_box, split, tolerance
-from gearopt.formulations.ratio import Drive, best_ratio
-from gearopt.formulations.split.train import lewis_stress, objectives
-from gearopt.formulations.tolerance.distributions import RUN_OUT, UNIFORM
-from gearopt.formulations.tolerance.sampling import drawn, errors
-from gearopt.formulations.tolerance.stack import Component, ErrorBudget, Stack
+from gearopt.formulations.servo import ratio, servo_box, split, tolerance
+from gearopt.formulations.servo.ratio import Drive, best_ratio
+from gearopt.formulations.servo.split.servo_train import lewis_stress, objectives
+from gearopt.formulations.servo.tolerance.distributions import RUN_OUT, UNIFORM
+from gearopt.formulations.servo.tolerance.sampling import drawn, errors
+from gearopt.formulations.servo.tolerance.stack import Component, ErrorBudget, Stack
 from gearopt.optimise.solve import solve
 from gearopt.physics import stiffness
 from gearopt.physics.servo_drive import load_acceleration

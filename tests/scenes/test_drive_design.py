@@ -7,9 +7,9 @@ import pytest
 
 import gearopt
 from gearopt.report.result_words import PAGE_ROWS, ROWS
-from gearopt.scenes.axis.assumptions import notes as servo_notes
-from gearopt.scenes.explaining.undercut import undercut
-from gearopt.scenes.tables.limits import ORIGINS, PRESETS
+from gearopt.scenes.drive.explaining.undercut import undercut
+from gearopt.scenes.drive.tables.limits import ORIGINS, PRESETS
+from gearopt.scenes.servo.assumptions import notes as servo_notes
 
 PROBLEMS = Path(__file__).parents[2] / "problems"
 FILE = """

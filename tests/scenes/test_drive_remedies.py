@@ -10,8 +10,8 @@ from gearopt import Budget
 from gearopt.optimise.explaining.repair import Clock
 from gearopt.report.remedy_words import remedy_words
 from gearopt.scenes import drive
-from gearopt.scenes.explaining.nearest import nearest_ratio
-from gearopt.scenes.explaining.tried import WIDEST, Case, least_value
+from gearopt.scenes.drive.explaining.nearest import nearest_ratio
+from gearopt.scenes.drive.explaining.tried import WIDEST, Case, least_value
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.load import read
 

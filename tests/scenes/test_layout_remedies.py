@@ -17,10 +17,10 @@ from gearopt.formulations.layout.possible import possible
 from gearopt.formulations.layout.slabs import orders
 from gearopt.optimise.result import Budget
 from gearopt.report.remedy_words import remedy_words
-from gearopt.scenes.box import ways
-from gearopt.scenes.box.moves import LARGER, SMALLER
-from gearopt.scenes.box.ways import BRIEF
 from gearopt.scenes.drive import Scene
+from gearopt.scenes.drive.box import ways
+from gearopt.scenes.drive.box.moves import LARGER, SMALLER
+from gearopt.scenes.drive.box.ways import BRIEF
 
 PROBLEMS = Path(__file__).parents[2] / "problems"
 TABLE4 = (PROBLEMS / "table4_process_one_layout.toml").read_text(encoding="utf-8")
@@ -163,7 +163,7 @@ def ways_by(monkeypatch, text, answer):
         asked.append(seconds)
         return answer(box)
 
-    monkeypatch.setattr("gearopt.scenes.box.ways.possible", possible_)
+    monkeypatch.setattr("gearopt.scenes.drive.box.ways.possible", possible_)
     scene, _ = scene_of(text)
     return gearopt.solve(scene).report["ways_out"], asked
 
@@ -294,7 +294,7 @@ def some_box(seed, box):
 def test_a_fault_excludes_every_order_of_slabs(seeds):
     """What the data check calls impossible no order allows, each searched alone."""
     scene, _ = scene_of(BARE)
-    from gearopt.scenes.box.lay_out import sizes_of
+    from gearopt.scenes.drive.box.lay_out import sizes_of
 
     plain = scene.gearbox(sizes_of(gearopt.solve(scene).parts[0]))
     seen = 0

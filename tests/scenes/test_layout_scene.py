@@ -168,7 +168,7 @@ def test_a_search_and_the_ways_out_of_it_share_a_budget(monkeypatch):
     given = []
     none = {"conflict": [], "remedies": [], "message": ""}
     monkeypatch.setattr(
-        "gearopt.scenes.box.ways.ways", lambda *asked: given.append(asked[-1].budget) or none
+        "gearopt.scenes.drive.box.ways.ways", lambda *asked: given.append(asked[-1].budget) or none
     )
     tight = scene(with_layout(largest_height='"415 mm"', largest_width='"600 mm"'))
     result = gearopt.solve(tight, budget=gearopt.Budget(50.0))
@@ -369,8 +369,8 @@ def small():
 
 
 def test_together_stopped_at_once_gives_the_gears_chosen_first(small):
-    from gearopt.scenes.box.at_once import at_once
     from gearopt.scenes.drive import bare, solve
+    from gearopt.scenes.drive.box.at_once import at_once
     from gearopt.scenes.reading.ask import Ask
 
     sized = solve(bare(small), Ask())
@@ -383,8 +383,8 @@ def test_together_stopped_at_once_gives_the_gears_chosen_first(small):
 
 def test_a_stop_is_heard_while_the_gears_chosen_first_are_laid_out(small):
     """And their box, which is not the answer's, is not told as the best one so far."""
-    from gearopt.scenes.box.at_once import at_once
     from gearopt.scenes.drive import bare, solve
+    from gearopt.scenes.drive.box.at_once import at_once
     from gearopt.scenes.reading.ask import Ask
 
     seen = []

@@ -20,7 +20,7 @@ from servo_axes import (
 )
 
 import gearopt
-from gearopt.formulations import split
+from gearopt.formulations.servo import split
 from gearopt.report.measures import METRIC
 from gearopt.report.pages.servo.box import section
 from gearopt.scenes.reading.load import read

@@ -15,20 +15,20 @@ from typer.testing import CliRunner
 import gearopt
 from gearopt.cli import app
 from gearopt.errors import SceneError
-from gearopt.formulations import servo_box, split
+from gearopt.formulations.servo import servo_box, split
 from gearopt.optimise.explaining.repair import Clock
 from gearopt.optimise.result import Budget
 from gearopt.report.proof_words import proof
 from gearopt.report.remedy_words import remedy_words
 from gearopt.report.servo_achieved import best_words
-from gearopt.scenes.axis import choice
-from gearopt.scenes.axis.assumptions import UNLISTED, assumptions, notes
-from gearopt.scenes.axis.choice import box_of, front, posed
-from gearopt.scenes.axis.gears import of_point
-from gearopt.scenes.axis.overlap import given_overlap
-from gearopt.scenes.axis.ways_out import ways_out
+from gearopt.scenes.servo import choice
 from gearopt.scenes.reading.load import read
 from gearopt.scenes.servo import EXAMPLE
+from gearopt.scenes.servo.assumptions import UNLISTED, assumptions, notes
+from gearopt.scenes.servo.choice import box_of, front, posed
+from gearopt.scenes.servo.gears import of_point
+from gearopt.scenes.servo.overlap import given_overlap
+from gearopt.scenes.servo.ways_out import ways_out
 
 PROBLEMS = Path(__file__).parents[2] / "problems"
 

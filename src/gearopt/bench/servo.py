@@ -10,8 +10,8 @@ import time
 from fractions import Fraction
 from typing import Any
 
-from gearopt.formulations import split
-from gearopt.formulations.split import OBJECTIVES, ServoTrain
+from gearopt.formulations.servo import split
+from gearopt.formulations.servo.split import OBJECTIVES, ServoTrain
 from gearopt.optimise.solve import solve
 from gearopt.physics.backlash import radial_backlash
 

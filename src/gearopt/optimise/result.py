@@ -14,7 +14,7 @@ import numpy as np
 from gearopt.optimise.terms import Array
 
 if TYPE_CHECKING:
-    from gearopt.optimise.conic.bound import Leaf
+    from gearopt.optimise.conic.cone_bound import Leaf
 
 FORMAT = 1
 _version = cache(version)  # reading package metadata takes a millisecond

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from gearopt.formulations.packing import points
-from gearopt.formulations.packing.bound import Bound
+from gearopt.formulations.packing.container_bound import Bound
 from gearopt.formulations.packing.depth import Late
 from gearopt.formulations.packing.plan import Places, Plan, row
 from gearopt.optimise.kernels import kernel

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearopt.errors import SolveError
-from gearopt.formulations.teeth.bound import EDGE, SLICE, Bound, bound, ragged
+from gearopt.formulations.teeth.later_stages import EDGE, SLICE, Bound, bound, ragged
 from gearopt.formulations.teeth.progress import TIE, Progress, Spent, Teeth
 from gearopt.formulations.teeth.stage import Table, table
 from gearopt.formulations.train import Train, share

@@ -11,8 +11,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from gearopt.optimise.conic.bound import Leaf, emptiness, lagrangian
 from gearopt.optimise.conic.canonical import Canonical
+from gearopt.optimise.conic.cone_bound import Leaf, emptiness, lagrangian
 from gearopt.optimise.conic.interior import interior
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.conic.propagate import cutoff, propagate

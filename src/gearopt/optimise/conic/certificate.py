@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from gearopt.optimise.certificate import FARKAS, Verdict, bounded
-from gearopt.optimise.conic.bound import Leaf, emptiness, lagrangian
 from gearopt.optimise.conic.canonical import Canonical, canonical
+from gearopt.optimise.conic.cone_bound import Leaf, emptiness, lagrangian
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.conic.propagate import cutoff, narrowed, propagate
 from gearopt.optimise.feasibility import runaway, violation

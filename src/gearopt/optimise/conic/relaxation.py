@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gearopt.optimise.certificate import FARKAS
-from gearopt.optimise.conic.bound import Leaf, emptiness, lagrangian
 from gearopt.optimise.conic.canonical import Canonical, shifted
+from gearopt.optimise.conic.cone_bound import Leaf, emptiness, lagrangian
 from gearopt.optimise.conic.interior import Point, interior, polished
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.conic.propagate import cutoff, propagate

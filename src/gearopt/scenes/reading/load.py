@@ -20,6 +20,7 @@ from gearopt.scenes.reading.spelling import near
 from gearopt.scenes.reading.toml import cut, dotted
 
 FORMAT = 1
+READER = "reading"  # the folder of `gearopt.scenes` that is no kind
 HEAD = ("gearopt", "kind")  # keys of every file
 LARGEST_FILE = 1_000_000  # bytes
 DEEPEST_KEY = r"(?:[\w-]\s*\.\s*){6000}"  # tomllib's time grows with the square: 1 s at 5000
@@ -37,13 +38,18 @@ class Loaded:
 
 
 def kinds() -> tuple[str, ...]:
-    """The kinds of problem file: the modules of `gearopt.scenes`."""
-    return tuple(sorted(m.name for m in iter_modules(gearopt.scenes.__path__) if not m.ispkg))
+    """The kinds of problem file: the modules and folders of `gearopt.scenes`, but its reader."""
+    return tuple(sorted({m.name for m in iter_modules(gearopt.scenes.__path__)} - {READER}))
 
 
 def scene_module(kind: str) -> Any:
     """The module of a kind."""
     return import_module(f"gearopt.scenes.{kind}")
+
+
+def kind_of(scene: BaseModel) -> str:
+    """The kind of a scene, by the room that its class stands in."""
+    return type(scene).__module__.removeprefix(f"{gearopt.scenes.__name__}.").split(".")[0]
 
 
 def _likely(content: dict[str, Any]) -> str:

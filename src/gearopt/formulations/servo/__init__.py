@@ -1,0 +1,1 @@
+"""A servo axis: its ratio, its two-stage train, its box, its tolerances."""

@@ -1,0 +1,178 @@
+"""The ratio at which a motor accelerates its load most, at standstill or at a load speed."""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from gearopt.formulations.servo.ratio.drive import BEYOND, FAINT, Drive, present, quotient
+from gearopt.formulations.servo.ratio.secant_bound import convex_bound
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.result import Budget, Outcome, Watch
+from gearopt.optimise.terms import Param, Terms, Var
+from gearopt.physics.servo_drive import load_acceleration, torque_slope
+
+RANDOM = False
+COUNTS = "ratio evaluated"
+STANDING = 1e-12  # of the torque that friction leaves, where rounding decides whether it moves
+
+
+def acceleration(drive: Drive, load_speed: float = 0.0) -> Problem:
+    """Minimise 1/a, a the acceleration of the load [rad/s2] at load_speed [rad/s].
+
+    Variables: ratio, acceleration. `exact` is the closed form. Source: Youn, eqs. (3) to (6).
+    """
+    drive.needs(torque=drive.torque)
+    if not 0.0 <= load_speed < math.inf:
+        raise ValueError(f"load_speed = {load_speed!r}: needs a number >= 0, or positive")
+    line, capped = (load_speed > 0.0 and math.isfinite(s) for s in _speeds(drive))
+
+    def evaluate(x: Any, p: Any) -> Terms:
+        needed = drive.torque_needed(p, x.ratio, x.acceleration) / p.torque
+        if line:
+            needed = needed + x.ratio * p.load_speed / p.no_load_speed
+        limits = {"motor_torque": needed}
+        if capped:
+            limits["motor_speed"] = x.ratio * p.load_speed / p.speed_limit
+        ends, equal = drive.ratio_rows(p, x.ratio)
+        return Terms({"inverse_acceleration": 1.0 / x.acceleration}, limits | ends, equal=equal)
+
+    free = math.isinf(_stationary(drive, load_speed)) and math.isinf(drive.ratios(load_speed)[1])
+    scales = (*ratio_scales(drive), *(quotient(s, load_speed) for s in _speeds(drive)))
+    ratio = drive.ratio_variable(scales, free)
+    variables = (ratio, acceleration_variable(drive, float(np.max(ratio.upper))))
+
+    def exact(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
+        """The closed form; budget and seed change nothing."""
+        values = present(problem)
+        return _exact(drive.of(values), values.get("load_speed", 0.0))
+
+    if line or capped:
+        own = (Param("load_speed", "rad/s", load_speed, role="given"), *drive.parameters())
+    else:
+        own = drive.parameters("no_load_speed", "speed_limit")
+    return Problem("ratio", variables, own, evaluate, methods={"exact": exact})
+
+
+def _speeds(drive: Drive) -> tuple[float, float]:
+    return drive.no_load_speed, drive.speed_limit
+
+
+def ratio_scales(drive: Drive) -> tuple[float, float]:
+    """Ratios of equal inertias, and at which the torque just overcomes the load's friction."""
+    match = math.sqrt(quotient(drive.load_inertia, drive.inertia))
+    return match, quotient(drive.load_friction, drive.efficiency * drive.net_torque)
+
+
+def acceleration_variable(drive: Drive, largest_ratio: float) -> Var:
+    """The variable of the load's acceleration [rad/s2]; no ratio up to the largest gives more."""
+    product = math.sqrt(drive.load_inertia) * math.sqrt(drive.inertia)
+    most = drive.torque * quotient(1.0, product)
+    if drive.load_inertia:
+        most = min(most, drive.torque * largest_ratio / drive.load_inertia)
+    if drive.inertia:
+        most = min(most, drive.torque * BEYOND / (drive.inertia * drive.ratio[0]))
+    low = FAINT * most if 0.0 < most < math.inf else FAINT
+    high = most if most > 0.0 else 1.0
+    guess = 0.1 * high if high < math.inf else 1.0
+    return Var("acceleration", "rad/s2", low, high, guess, log=True, search=True)
+
+
+def best_ratio(drive: Drive, load_speed: float = 0.0) -> tuple[float, float]:
+    """Ratio of the largest acceleration, and that acceleration [rad/s2], in closed form.
+
+    N^2 - 2 c N - q = 0, c = F_L/(eta T) - b J_L/(eta T J), q = J_L/(eta J), J of motor and gears,
+    then held within the drive's ratios, as 1/a is convex in log N. Where nothing moves, the
+    acceleration is 0 or negative; the ratio is infinite where no largest acceleration exists.
+    """
+    low, high = drive.ratios(load_speed)
+    ratio = min(max(_stationary(drive, load_speed), low), high)
+    return ratio, law_of(drive, load_speed, ratio) if ratio < math.inf else math.inf
+
+
+def _stationary(drive: Drive, load_speed: float) -> float:
+    """The positive root, multiplied out by J, without cancellation and without a quotient by J."""
+    torque, inertia, eta = drive.net_torque, drive.inertia, drive.efficiency
+    if torque <= 0.0:
+        return drive.ratio[0]
+    slope = torque_slope(drive.torque, load_speed, drive.no_load_speed)
+    linear = (drive.load_friction * inertia - slope * drive.load_inertia) / (eta * torque)
+    product = math.sqrt(drive.load_inertia / eta) * math.sqrt(inertia)
+    size = math.hypot(linear, product)
+    if linear < 0.0:
+        return float(drive.load_inertia / (eta * (size - linear)))
+    return quotient(linear + size, inertia)
+
+
+def law_of(drive: Drive, load_speed: float, ratio: float) -> float:
+    """Acceleration [rad/s2] of the drive's load at a load speed [rad/s] and a ratio."""
+    slope = torque_slope(drive.torque, load_speed, drive.no_load_speed)
+    found: float = load_acceleration(
+        ratio,
+        drive.load_inertia,
+        drive.inertia,
+        drive.net_torque,
+        drive.load_friction,
+        drive.efficiency,
+        slope,
+    )
+    return found
+
+
+def _exact(drive: Drive, load_speed: float) -> Outcome:
+    """The closed form; its bound follows from convexity alone."""
+    low, high = drive.ratios(load_speed)
+    if low > high:
+        return impossible(f"the motor's speed limit allows a ratio of {high:.6g} at the most")
+    ratio, best = best_ratio(drive, load_speed)
+    if math.isinf(ratio):
+        return unbounded("acceleration", "a motor inertia, a largest ratio or a speed limit")
+    if reason := standstill(drive, load_speed, ratio, best):
+        return impossible(reason)
+
+    def inverse(n: float) -> float:
+        found = law_of(drive, load_speed, n)
+        return 1.0 / found if found > 0.0 else math.inf
+
+    bound = convex_bound(inverse, ratio, low, high, min(1.0, best / unopposed(drive, ratio)))
+    return Outcome(np.array([ratio, best]), bound=bound, proof=proof(), evaluations=6)
+
+
+def standstill(drive: Drive, load_speed: float, ratio: float, best: float) -> str:
+    """Why the load does not move at its best ratio; empty where it does."""
+    if drive.net_torque <= 0.0:
+        return "the motor's own friction takes all its torque"
+    if best > STANDING * unopposed(drive, ratio):
+        return ""
+    slope = torque_slope(drive.torque, load_speed, drive.no_load_speed)
+    torque, friction = drive.efficiency * drive.net_torque**2, 4.0 * slope * drive.load_friction
+    why = f"at the best ratio, {ratio:.6g}, the acceleration is {best:.3g} rad/s2"
+    if torque <= friction * (1.0 + STANDING):
+        why += ": the falling torque never exceeds the load's friction"
+    return why
+
+
+def unopposed(drive: Drive, ratio: float) -> float:
+    """Acceleration [rad/s2] that the torque would give at a ratio without friction and line."""
+    found: float = load_acceleration(
+        ratio, drive.load_inertia, drive.inertia, drive.net_torque, 0.0, drive.efficiency
+    )
+    return found
+
+
+def proof() -> dict[str, Any]:
+    """How a closed form is proven: the law beside it, and convexity."""
+    return {"method": "closed form", "arithmetic": "double", "bound": "log-log convexity"}
+
+
+def impossible(reason: str) -> Outcome:
+    """An outcome for a drive that cannot do what is asked."""
+    return Outcome(
+        None, infeasible=True, proof={**proof(), "reason": reason}, message=reason, evaluations=1
+    )
+
+
+def unbounded(what: str, remedy: str) -> Outcome:
+    """An outcome for a duty without a best ratio."""
+    text = f"unbounded: the {what} is better the larger the ratio; give {remedy}"
+    return Outcome(None, message=text, evaluations=1)

@@ -1,0 +1,178 @@
+"""The smallest box around a two-stage servo train whose last wheel is a sector that swings.
+
+Seen along the shafts: the output shaft carries a sector that sweeps an angle about its mesh line,
+all else on the three shafts is discs, and both links have given lengths. So a layout is two angles.
+The box stands along the axes; its sides shrink together, by a scale. The exact search halves
+intervals of the output link's angle; for each the motor link's angle is decided on its arcs, with
+the extents of the interval at their least.
+"""
+
+import math
+import time
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from gearopt.errors import SolveError
+from gearopt.optimise.kernels import kernel
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.result import Budget, Event, Outcome, Watch
+from gearopt.optimise.terms import Array, Terms, Var
+
+RANDOM = False
+COUNTS = "interval of angles judged"
+TIE = 1e-9  # of the box's sides: layouts that meet it exactly are many, and fit
+GAP = 1e-6  # where the budget asks for none
+NODES = 20_000  # of a slice
+DEEP = 4_000  # open intervals; each halving leaves one
+KERNEL = "gearopt.formulations.servo.servo_box_kernel"
+
+
+@dataclass(frozen=True)
+class ServoBox:
+    """Discs, links and a box; lengths in mm, angles in rad.
+
+    radii: of what is largest on each shaft, over tips: motor or gear 1, gear 2 or 3, last wheel.
+    links: centre distances of stage 1 and 2. hub: radius about the output shaft that the motor
+    keeps out of. half_sweep: of the sector to either side of its mesh line, travel included; pi for
+    a full wheel. box: width and height.
+    """
+
+    radii: tuple[float, float, float]
+    links: tuple[float, float]
+    hub: float
+    half_sweep: float
+    box: tuple[float, float]
+
+    def __post_init__(self) -> None:
+        if not min(*self.radii, *self.links, *self.box) > 0.0 or not self.hub >= 0.0:
+            raise ValueError("radii, links and box are positive lengths")
+        if not 0.0 < self.half_sweep <= math.pi:
+            raise ValueError("half_sweep is an angle above 0, at most pi (a full wheel)")
+
+
+class Numbers(NamedTuple):
+    """A `ServoBox` as the kernel reads it."""
+
+    radius: Array
+    link: Array
+    hub: float
+    half_sweep: float
+    box: Array
+
+
+def numbers(box: ServoBox) -> Numbers:
+    """The numbers of the kernel."""
+    arrays = (np.array(v, float) for v in (box.radii, box.links, box.box))
+    radius, link, sides = arrays
+    return Numbers(radius, link, float(box.hub), float(box.half_sweep), sides)
+
+
+def of_train(
+    point: Array, motor_radius: float, hub: float, half_sweep: float, box: tuple[float, float]
+) -> ServoBox:
+    """The box of a point of `split.problem`: tips d + 2 m, centre distances (d_1 + d_2)/2."""
+    z1, z3, z2, z4, m1, m2 = (float(v) for v in point)
+    tips = [0.5 * m * (z + 2) for m, z in ((m1, z1), (m1, z2), (m2, z3), (m2, z4))]
+    radii = max(motor_radius, tips[0]), max(tips[1], tips[2]), tips[3]
+    return ServoBox(radii, (0.5 * m1 * (z1 + z2), 0.5 * m2 * (z3 + z4)), hub, half_sweep, box)
+
+
+def extents(box: ServoBox, motor: Any, output: Any) -> tuple[Any, Any]:
+    """Width and height [mm] of a layout.
+
+    motor: angle of the link from gear 2 to the motor, output: from the output shaft to gear 2
+    [rad]. A sector of half angle g reaches R where its mesh line is at most g off a direction, else
+    R cos(off - g), at least its hub.
+    """
+    r1, r2, r4 = box.radii
+    a, b = box.links
+    sides = []
+    for axis in range(4):
+        turn = 0.5 * math.pi * axis
+        along, across = np.cos(output - turn), np.abs(np.sin(output - turn))
+        corner = along * math.cos(box.half_sweep) + across * math.sin(box.half_sweep)
+        swept = r4 * np.where(along >= math.cos(box.half_sweep), 1.0, corner)
+        second = b * along
+        most = np.maximum(np.maximum(swept, box.hub), second + r2)
+        sides.append(np.maximum(most, second + a * np.cos(motor - turn) + r1))
+    return sides[0] + sides[2], sides[1] + sides[3]
+
+
+def problem(box: ServoBox) -> Problem:
+    """Least scale of the box: max(width/W, height/H), with the motor clear of the hub.
+
+    Variables: motor_angle, output_angle [rad]. A scale up to 1 fits.
+    """
+
+    def evaluate(x: Any, p: Any) -> Terms:
+        width, height = extents(box, x.motor_angle, x.output_angle)
+        a, b = box.links
+        squared = a * a + b * b + 2.0 * a * b * np.cos(x.motor_angle - x.output_angle)
+        clear = 1.0 + ((box.radii[0] + box.hub) ** 2 - squared) / (a + b) ** 2
+        scale = np.maximum(width / box.box[0], height / box.box[1])
+        report = {"width": width, "height": height}
+        return Terms({"scale": scale}, {"motor_clear_of_hub": clear}, report=report)
+
+    def exact(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
+        """Intervals of the output link; the seed changes nothing."""
+        return _searched(box, budget, watch)
+
+    angles = tuple(Var(f"{n}_angle", "rad", -math.pi, math.pi, 0.0) for n in ("motor", "output"))
+    return Problem("servo box", angles, (), evaluate, methods={"exact": exact})
+
+
+def _searched(box: ServoBox, budget: Budget, watch: Watch | None) -> Outcome:
+    given, search = numbers(box), kernel(KERNEL).search
+    cells, angles = np.zeros((DEEP, 2)), np.zeros(2)
+    most = 4.0 * (sum(box.radii) + sum(box.links)) / min(box.box)  # any layout is smaller
+    search(given, cells, 0, math.inf, angles, GAP, most, 1)  # compiled before the clock starts
+    cells[0] = -math.pi, math.pi
+    clock, count, best, looked, stuck, goes = time.perf_counter(), 1, math.inf, 0, False, True
+    rel = 0.9 * (budget.gap or GAP)
+    while count and goes:
+        left = NODES if budget.evaluations is None else budget.evaluations - looked
+        step = max(1, min(NODES, left))
+        count, best, more, bad = search(given, cells, count, best, angles, rel, most, step)
+        looked, stuck = looked + more, stuck or bad
+        seconds = time.perf_counter() - clock
+        late = budget.seconds is not None and seconds > budget.seconds
+        full = budget.evaluations is not None and looked >= budget.evaluations
+        event = Event(seconds, looked, best if math.isfinite(best) else None)
+        goes = not (late or full) and (watch is None or watch(event) is not False)
+    found = math.isfinite(best)
+    done = count == 0 and not stuck
+    x = np.remainder(angles + math.pi, 2.0 * math.pi) - math.pi if found else None
+    proof = {
+        "method": "exhausted" if done else "branch and bound, stopped early",
+        "arithmetic": "intervals in double, widened by 1e-12",
+        "nodes": looked,
+        "pruning_margin": rel,
+    }
+    if done and not found:
+        text = "in no layout does the motor clear the hub of the output shaft"
+        return Outcome(None, infeasible=True, proof=proof, evaluations=looked, message=text)
+    bound = best * (1.0 - rel) if done else None
+    return Outcome(x, finished=done, bound=bound, proof=proof, evaluations=looked)
+
+
+def first_that_fits(boxes: Iterable[ServoBox], limit: int = 10_000) -> tuple[int, Array] | None:
+    """Place of the first box of scale 1 that has a layout, and its angles; None if none has.
+
+    A layout that meets the box exactly fits: the box is TIE larger than it is. Every box before the
+    found one is proven to have none. SolveError where `limit` intervals do not decide.
+    """
+    code, cells, angles = kernel(KERNEL), np.zeros((DEEP, 2)), np.zeros(2)
+    for k, box in enumerate(boxes):
+        given = numbers(box)
+        answer = code.fits(given._replace(box=(1.0 + TIE) * given.box), cells, angles, limit)
+        if answer < 0:
+            raise SolveError(f"whether train {k + 1} fits is not decided in {limit:,} intervals")
+        if answer:
+            return k, angles.copy()
+    return None
+
+
+__all__ = ["ServoBox", "extents", "first_that_fits", "of_train", "problem"]

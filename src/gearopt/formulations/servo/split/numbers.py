@@ -1,0 +1,120 @@
+"""A servo train as its kernels read it: limits as whole numbers of teeth."""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from gearopt.formulations.servo.ratio.duty import GOALS, ServoDuty
+from gearopt.formulations.servo.split.bodies import least
+from gearopt.formulations.servo.split.servo_train import ServoTrain
+from gearopt.optimise.terms import Array
+from gearopt.physics.inertia import disc_inertia, disc_mass
+from gearopt.physics.stiffness import lewis_form_factor
+
+
+class Numbers(NamedTuple):
+    """Limits as whole numbers of teeth, the rest as plain numbers.
+
+    least, most (P + 1,): z2 z4 is between least[z1 z3] and most[z1 z3]. wheel: most teeth of a
+    wheel. wheel_1, wheel_2, bored (K,), for each module: most teeth of wheel 1 and 2 by their tips,
+    least of gear 3 by the bore and around its shaft. clear_1, clear_2, stage_1 (K,): least teeth of
+    gear 2, of gear 4, of gears 1 and 2 together; unit (K,), output: what keeps gear 2 clear of the
+    output shaft (`bodies.Least`). low, high: total ratio. bore; tip: largest pitch diameter of gear
+    4 [mm]. load: 2 T/(b sigma) [mm2]. lewis: form factors by teeth. disc_mass [kg/mm2] and
+    disc_inertia [t/mm2]: per d^2 and per d^4. duty: see `duty_numbers`.
+    """
+
+    least: Any
+    most: Any
+    pinion: Any
+    wheel: int
+    wheel_1: Any
+    wheel_2: Any
+    bored: Any
+    clear_1: Any
+    clear_2: Any
+    stage_1: Any
+    unit: Any
+    output: int
+    module: Array
+    lewis: Array
+    lost: Array
+    error: float
+    load: float
+    low: float
+    high: float
+    bore: float
+    tip: float
+    disc_mass: float
+    disc_inertia: float
+    shaft_inertia: float
+    sector: float
+    duty: Array
+
+
+def duty_numbers(duty: ServoDuty | None) -> Array:
+    """Motion (0 acceleration, 1 move, 2 swing), then numbers in the order of the kernel's `duty`.
+
+    Load and motor inertia [t mm2], torque less the motor's friction, load friction [N mm],
+    efficiency, slope of the torque [N mm], angle [rad], speed limit [rad/s], friction of the motor
+    [N mm], peak acceleration [rad/s2], largest rms torque [N mm].
+    """
+    if duty is None:
+        return np.zeros(12)
+    own = duty.drive
+    loads = own.load_inertia, own.inertia, own.net_torque, own.load_friction
+    motor = own.efficiency, duty.slope, duty.angle, own.speed_limit, own.motor_friction
+    most = own.torque if duty.motion == "swing" and own.torque else math.inf
+    kind = list(GOALS).index(duty.motion)
+    return np.array([kind, *loads, *motor, duty.peak_acceleration, most])
+
+
+def numbers(train: ServoTrain, moved: bool = False) -> Numbers:
+    """The numbers of a train; every tie is decided here, in fractions.
+
+    moved: the motor's speed limit holds too.
+    """
+    low, high = train.ratios
+    if moved and train.duty is not None and train.duty.most_ratio is not None:
+        high = min(high, train.duty.most_ratio)
+    most = train.pinion_teeth[1]
+    tips = [[math.floor(tip / m) - 2 for m in train.modules] for tip in train.wheel_tips]
+    wheel = train.wheel_teeth
+    products = range(most**2 + 1)
+    teeth = np.arange(most + 1, dtype=float)
+    thick, long = train.shaft or (0.0, 0.0)
+    clear = least(train.bodies, train.modules, wheel)
+    return Numbers(
+        least=np.array([-(-low.numerator * p // low.denominator) for p in products], np.int64),
+        most=np.array([high.numerator * p // high.denominator for p in products], np.int64),
+        pinion=np.array(train.pinion_teeth, np.int64),
+        wheel=wheel,
+        wheel_1=np.minimum(tips[0], wheel),
+        wheel_2=np.minimum(tips[1], wheel),
+        bored=np.array(
+            [
+                max(math.ceil(train.bore / m), around, train.pinion_teeth[0])
+                for m, around in zip(train.modules, clear.pinion_2, strict=True)
+            ]
+        ),
+        clear_1=np.array(clear.wheel_1, np.int64),
+        clear_2=np.array(clear.wheel_2, np.int64),
+        stage_1=np.array(clear.stage_1, np.int64),
+        unit=np.array(clear.units, np.int64),
+        output=clear.output,
+        module=np.array([float(m) for m in train.modules]),
+        lewis=np.array(lewis_form_factor(np.maximum(teeth, train.pinion_teeth[0]))),
+        lost=np.array(train.lost_motion or (0.0, 0.0)),
+        error=float(train.error),
+        load=2.0 * train.output_torque / (train.face_width * train.bending),
+        low=float(low),
+        high=float(high) * (1.0 + 1e-15),
+        bore=float(train.bore),
+        tip=float(train.wheel_tips[1]),
+        disc_mass=1000.0 * float(disc_mass(train.density, train.face_width, 1.0)),
+        disc_inertia=float(disc_inertia(train.density, train.face_width, 1.0)),
+        shaft_inertia=float(disc_inertia(train.density, long, thick)),
+        sector=float(train.sector),
+        duty=duty_numbers(train.duty),
+    )

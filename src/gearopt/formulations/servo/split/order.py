@@ -1,0 +1,95 @@
+"""All feasible trains: at once, or in the order of an objective, in lots, however many there are.
+
+Trains are points of `split.problem`, (trains, 6). `check` is called several times a second and may
+raise, to stop.
+"""
+
+import math
+from collections.abc import Callable, Iterator
+
+import numpy as np
+
+from gearopt.formulations.servo.ratio.duty import UNITS
+from gearopt.formulations.servo.split.numbers import Numbers, numbers
+from gearopt.formulations.servo.split.servo_train import OBJECTIVES, ServoTrain
+from gearopt.formulations.servo.split.teeth import problem
+from gearopt.optimise.kernels import kernel
+from gearopt.optimise.terms import Array
+
+KERNEL = "gearopt.formulations.servo.split.order_kernel"
+TEETH = "gearopt.formulations.servo.split.teeth_kernel"
+FIRST = 1e-3  # by which the trains of the first lot are worse than the best one, at the most
+WIDER = 4.0  # from a lot of few trains to the next one
+LOT = 1_000_000  # trains of a lot, at the most; more where they are as good as each other
+ALIKE = 1e-9  # relative: no lot is split further
+STEPS = 1_000_000  # of the kernel between two checks
+ROOM = 4096  # trains that it may note between two checks, at first
+
+
+def unchecked() -> None:
+    """Let a list of trains go on to its end."""
+
+
+def feasible(
+    train: ServoTrain,
+    goal: str = "inertia",
+    most: int = LOT,
+    check: Callable[[], None] = unchecked,
+) -> Array | None:
+    """All feasible trains; None for more than `most`. The motor's limits hold if a duty is goal."""
+    given, aim = _posed(train, goal)
+    return _listed(given, aim, -math.inf, math.inf, most, check)
+
+
+def trains(train: ServoTrain, error: float) -> Array:
+    """All feasible trains with an error [rad] of at most `error`, the least error first."""
+    given, aim = _posed(train, "error")
+    found = _listed(given, aim, -math.inf, error, 0, unchecked)
+    assert found is not None
+    return found[problem(train, "error").batch(found).F[:, 0].argsort(kind="stable")]
+
+
+def in_order(
+    train: ServoTrain, goal: str, best: float, check: Callable[[], None]
+) -> Iterator[Array]:
+    """Lots of trains, the best first; together all. best: the least objective, > 0."""
+    (given, aim), posed = _posed(train, goal), problem(train, goal)
+    above, reached, step = -math.inf, best, FIRST
+    while True:
+        most = reached + step * best
+        most = most if math.isfinite(most) and step < 1.0 / ALIKE else math.inf
+        found = _listed(given, aim, above, most, LOT if step > ALIKE else 0, check)
+        if found is None:
+            step /= WIDER
+            continue
+        if len(found):
+            yield found[posed.batch(found).F[:, 0].argsort(kind="stable")]
+        if math.isinf(most):
+            return
+        above = reached = most
+        step *= WIDER if len(found) < LOT / WIDER else 1.0
+
+
+def _posed(train: ServoTrain, goal: str) -> tuple[Numbers, int]:
+    """A train and its goal as the kernel reads them."""
+    return numbers(train, goal in UNITS), (*OBJECTIVES, *UNITS).index(goal)
+
+
+def _listed(
+    given: Numbers, aim: int, above: float, most: float, limit: int, check: Callable[[], None]
+) -> Array | None:
+    """Trains between two values; None where they are more than a limit above 0."""
+    parts, total, first = [], 0, 0
+    rows, count = np.empty((ROOM, 6), np.int64), kernel(TEETH).first_stages(given)[0]
+    while first < count:
+        check()
+        good, last = kernel(KERNEL).between(given, aim, first, STEPS, above, most, rows)
+        if good > len(rows):
+            rows = np.empty((2 * good, 6), np.int64)
+            continue
+        parts.append(rows[:good].copy())
+        total, first = total + good, last
+        if 0 < limit < total:
+            return None
+    z1, z2, z3, z4, i, j = np.concatenate([rows[:0], *parts]).T
+    return np.column_stack([z1, z3, z2, z4, given.module[i], given.module[j]]).astype(float)

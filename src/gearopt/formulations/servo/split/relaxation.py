@@ -1,0 +1,126 @@
+"""The continuous relaxation of the integer problem: a geometric program, hence a proven bound."""
+
+import math
+from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
+
+from gearopt.formulations.servo.split.bodies import clear_rows
+from gearopt.formulations.servo.split.servo_train import (
+    ServoTrain,
+    lewis_stress,
+    objectives,
+    ratio_parameters,
+    ratio_rows,
+)
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.terms import Param, Terms, Var
+from gearopt.physics.inertia import disc_inertia
+from gearopt.physics.stiffness import lewis_form_factor
+
+BEYOND = 1e3  # factor between the lengths of a train and the ends of the search
+
+
+def relaxation(train: ServoTrain, goal: str = "inertia") -> Problem:
+    """Least goal of a train with real teeth and modules; no train of whole teeth is below it.
+
+    Variables, of both stages: pinion_diameter [mm], ratio, module [mm]; those of the duty's own
+    problem where its goal is asked for. The form factor of either pinion is that of the most teeth,
+    which no pinion exceeds; `clear_rows` relax what gears keep clear of.
+    """
+    low, high = (float(r) for r in train.ratios)
+    moved = _moved(train, goal)
+
+    def evaluate(x: Any, p: Any) -> Terms:
+        return _terms(train, goal, moved, x, p)
+
+    error = (Param("error", "rad", train.error, role="limit"),)
+    parameters = (
+        *(error if math.isfinite(train.error) else ()),
+        Param("bending_stress", "MPa", train.bending, role="limit"),
+        *ratio_parameters(low, high),
+        Param("bore", "mm", float(train.bore), role="limit"),
+        Param("wheel_tip", "mm", tuple(float(t) for t in train.wheel_tips), 2, role="limit"),
+    )
+    variables = _variables(train)
+    if moved is not None:
+        known = {q.name for q in parameters} | {"gear_inertia"}
+        parameters += tuple(q for q in moved.parameters if q.name not in known)
+        variables += tuple(v for v in moved.variables if v.name != "ratio")
+    return Problem("split relaxation", variables, parameters, evaluate)
+
+
+def _moved(train: ServoTrain, goal: str) -> Problem | None:
+    """The duty's own problem for trains of the ratios asked for; None where it is not the goal.
+
+    The gears' inertia is a number there, which any train exceeds and the text below replaces.
+    """
+    if train.duty is None or goal != train.duty.goal:
+        return None
+    smallest = disc_inertia(train.density, train.face_width, _size(train)[0])
+    own = replace(train.duty.drive, gear_inertia=float(smallest), ratio=(1.0, math.inf))
+    return replace(train.duty, drive=own).problem()
+
+
+def _terms(train: ServoTrain, goal: str, moved: Problem | None, x: Any, p: Any) -> Terms:
+    most = lewis_form_factor(float(train.pinion_teeth[1]))
+    ends = _modules(train)
+    (d1, d3), (n1, n2), modules = x.pinion_diameter, x.ratio, x.module
+    d2, d4 = d1 * n1, d3 * n2
+    bounded = ("error",) if math.isfinite(train.error) else ()
+    plain = (goal,) if moved is None else ("inertia",)
+    found = objectives(train, (*plain, *bounded), (d1, d2, d3, d4), (n1, n2))
+    pairs = tuple(zip((d1, d3), (d2, d4), modules, strict=True))
+    torques = (train.output_torque / n2, train.output_torque)
+    ratio, equal = ratio_rows(p, train.tolerance == 0, n1 * n2)
+    limits = ratio | {name: found[name] / p.error for name in bounded}
+    limits |= {
+        "stage_ratio_low": (1.0 / n1, 1.0 / n2),
+        "bending_stress": tuple(
+            lewis_stress(t, d, train.face_width, m, most) / p.bending_stress
+            for t, (_, d, m) in zip(torques, pairs, strict=True)
+        ),
+        "bore": p.bore / d3,
+        "wheel_tip": tuple(
+            (d + 2.0 * m) / t for (_, d, m), t in zip(pairs, p.wheel_tip, strict=True)
+        ),
+        "pinion_teeth_low": tuple(train.pinion_teeth[0] * m / d for d, _, m in pairs),
+        "pinion_teeth_high": tuple(d / (train.pinion_teeth[1] * m) for d, _, m in pairs),
+        "module_low": tuple(ends[0] / m for m in modules),
+        "module_high": tuple(m / ends[1] for m in modules),
+    }
+    if train.most_wheel_teeth is not None:
+        limits["wheel_teeth_high"] = tuple(d / (train.most_wheel_teeth * m) for _, d, m in pairs)
+    if train.bodies is not None:
+        known = train.bodies
+        shaft, output, motor = (
+            float(d) or None for d in (known.shaft, known.output_shaft, known.motor)
+        )
+        limits |= clear_rows(shaft, output, motor, (d1, d2, d3, d4), modules)
+    if moved is None:
+        return Terms({goal: found[goal]}, limits, equal=equal)
+    own = SimpleNamespace(**vars(p) | {"gear_inertia": found["inertia"], "ratio_low": 1.0})
+    duty = moved.evaluate(SimpleNamespace(**vars(x) | {"ratio": n1 * n2}), own)
+    limits |= {name: v for name, v in duty.limits.items() if name != "ratio_low"}
+    return Terms(duty.minimise, limits, equal=equal)
+
+
+def _modules(train: ServoTrain) -> tuple[float, float]:
+    return float(min(train.modules)), float(max(train.modules))
+
+
+def _size(train: ServoTrain) -> tuple[float, float]:
+    """Pitch diameter of the smallest pinion, and the largest tip of a wheel [mm]."""
+    return train.pinion_teeth[0] * _modules(train)[0], float(max(train.wheel_tips))
+
+
+def _variables(train: ServoTrain) -> tuple[Var, ...]:
+    ends, guess = _modules(train), float(train.bore)
+    size = (*_size(train), guess)
+    least, most = min(size) / BEYOND, max(size) * BEYOND
+    even = float(train.ratio) ** 0.5
+    return (
+        Var("pinion_diameter", "mm", least, most, guess, 2, log=True, search=True),
+        Var("ratio", "", 1.0 / BEYOND, even**2 * BEYOND, even, 2, log=True, search=True),
+        Var("module", "mm", ends[0] / BEYOND, ends[1] * BEYOND, ends[0], 2, log=True, search=True),
+    )

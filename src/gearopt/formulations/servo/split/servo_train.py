@@ -1,0 +1,170 @@
+"""What is given of a two-stage servo train, and what its sizes make of it.
+
+Stage 1 is at the motor, stage 2 at the load; gears 2 and 3 share a shaft. All gears are solid
+discs, the last one may be a sector. Numbers at which a tie may occur are exact fractions.
+"""
+
+import math
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from gearopt.formulations.servo.ratio.duty import ServoDuty
+from gearopt.formulations.servo.split.bodies import Bodies
+from gearopt.optimise.terms import Param
+from gearopt.physics.backlash import output_error
+from gearopt.physics.inertia import disc_inertia, disc_mass
+
+OBJECTIVES = {"inertia": "t mm2", "mass": "kg", "error": "rad"}  # beside that of a duty
+
+
+@dataclass(frozen=True)
+class ServoTrain:
+    """A two-stage train from a motor to a load; lengths in mm, the rest in N, rad, MPa, t.
+
+    ratio: total, within a relative tolerance. modules: those to choose from. pinion_teeth: least
+    and most. most_wheel_teeth: None for no limit. face_width: of all gears. sector: part of a full
+    disc that the last wheel is. output_torque: peak at the load [N mm]. bending: allowable Lewis
+    stress [MPa]. bore: least pitch diameter of gear 3. wheel_tips: largest tip diameters of gears 2
+    and 4. shaft: diameter and length of the middle one; None: its inertia is not counted.
+    lost_motion: 2 j_t + 2 delta_p of each stage [mm], so that its error at the wheel is that over
+    the wheel's diameter; None: the error is not looked at. error: largest at the output [rad].
+    duty: what the train's inertia and ratio are judged by, if its goal is asked for. bodies:
+    shafts, hub and motor that gears keep clear of; None: not looked at.
+    """
+
+    ratio: Fraction
+    tolerance: Fraction
+    modules: tuple[Fraction, ...]
+    pinion_teeth: tuple[int, int]
+    most_wheel_teeth: int | None
+    face_width: float
+    density: float
+    output_torque: float
+    bending: float
+    bore: Fraction
+    wheel_tips: tuple[Fraction, Fraction]
+    shaft: tuple[float, float] | None = None
+    lost_motion: tuple[float, float] | None = None
+    error: float = math.inf
+    sector: float = 1.0
+    duty: ServoDuty | None = None
+    bodies: Bodies | None = None
+
+    def __post_init__(self) -> None:
+        if not self.ratio > 0 or not 0 <= self.tolerance < 1:
+            raise ValueError("a train needs a ratio > 0 and a tolerance from 0 to below 1")
+        if not self.modules or min(self.modules) <= 0:
+            raise ValueError("a train needs modules > 0 to choose from")
+        if not 12 <= self.pinion_teeth[0] <= self.pinion_teeth[1]:
+            raise ValueError("pinion_teeth: needs 12 (for the Lewis factor) <= least <= most")
+        positive = (self.face_width, self.density, self.output_torque, self.bending, self.error)
+        lengths = (*(self.lost_motion or ()), *(self.shaft or ()), *self.wheel_tips, self.bore)
+        if not all(value > 0 for value in (*positive, *lengths)):
+            raise ValueError("widths, loads, allowances and limits of a train are positive")
+        if not 0.0 < self.sector <= 1.0:
+            raise ValueError("the sector is a part of a disc: above 0 and at most 1")
+        if self.lost_motion is None and self.error < math.inf:
+            raise ValueError("a largest error needs lost_motion")
+
+    @property
+    def goals(self) -> tuple[str, ...]:
+        """The objectives that are known of it."""
+        error = ("error",) if self.lost_motion is not None else ()
+        return ("inertia", "mass", *error, *((self.duty.goal,) if self.duty else ()))
+
+    @property
+    def wheel_teeth(self) -> int:
+        """Most teeth of a wheel: what is given, or what the tips leave."""
+        left = max(self.wheel_tips) // min(self.modules) - 2
+        return max(int(left), 1) if self.most_wheel_teeth is None else self.most_wheel_teeth
+
+    @property
+    def ratios(self) -> tuple[Fraction, Fraction]:
+        """Least and most total ratio."""
+        return self.ratio * (1 - self.tolerance), self.ratio * (1 + self.tolerance)
+
+
+Four = tuple[Any, Any, Any, Any]
+Two = tuple[Any, Any]
+
+
+def train_inertia(
+    density: Any, diameters: Four, widths: Two, ratios: Two, shaft: Two | None, sector: Any
+) -> Any:
+    """Inertia of gears and shaft [t mm2] seen at the motor.
+
+    J_1 + (J_2 + J_3 + J_s)/n_1^2 + kappa J_4/(n_1 n_2)^2; diameters of gears 1 to 4, widths of the
+    stages and shaft (diameter, length) [mm], ratios n, sector kappa, density [t/mm3]. Without a
+    shaft J_s is left out.
+    """
+    d1, d2, d3, d4 = diameters
+    (b1, b2), (n1, n2) = widths, ratios
+    middle = disc_inertia(density, b1, d2) + disc_inertia(density, b2, d3)
+    if shaft is not None:
+        thick, long = shaft
+        middle = middle + disc_inertia(density, long, thick)
+    last = sector * disc_inertia(density, b2, d4)
+    return disc_inertia(density, b1, d1) + middle / n1**2 + last / (n1 * n2) ** 2
+
+
+def gear_mass(density: Any, diameters: Four, widths: Two, sector: Any) -> Any:
+    """Mass [kg] of the four gears as discs, the last one as a sector of one.
+
+    density [t/mm3], diameters and widths [mm] as in `train_inertia`.
+    """
+    d1, d2, d3, d4 = diameters
+    b1, b2 = widths
+    first = disc_mass(density, b1, d1) + disc_mass(density, b1, d2)
+    second = disc_mass(density, b2, d3) + sector * disc_mass(density, b2, d4)
+    return 1000.0 * (first + second)
+
+
+def train_error(lost_motion: Two, wheel_1: Any, wheel_2: Any, ratio_2: Any) -> Any:
+    """Error [rad] at the output: lost motion over wheel diameter, that of stage 1 over n_2.
+
+    lost_motion 2 j_t + 2 delta_p of each stage and wheel diameters [mm].
+    """
+    angles = lost_motion[0] / wheel_1, lost_motion[1] / wheel_2
+    return output_error(angles, (ratio_2, 1.0))
+
+
+def objectives(
+    train: ServoTrain, names: tuple[str, ...], diameters: Four, ratios: Two
+) -> dict[str, Any]:
+    """The named objectives of a train of one face width; ValueError for one it has not."""
+    if unknown := set(names) - set(train.goals):
+        raise ValueError(f"no objective {unknown.pop()!r}; known: {', '.join(train.goals)}")
+    widths = (train.face_width, train.face_width)
+    numbers = train.density, diameters, widths
+    inertia = train_inertia(*numbers, ratios, train.shaft, train.sector)
+    found = {"inertia": inertia, "mass": gear_mass(*numbers, train.sector)}
+    if train.lost_motion is not None:
+        found["error"] = train_error(train.lost_motion, diameters[1], diameters[3], ratios[1])
+    if train.duty is not None and train.duty.goal in names:
+        found[train.duty.goal] = train.duty.value(ratios[0] * ratios[1], inertia)
+    return {name: found[name] for name in names}
+
+
+def ratio_parameters(low: float, high: float) -> tuple[Param, ...]:
+    """The ends of the total ratio, one where they are equal."""
+    if low == high:
+        return (Param("ratio", "", low, role="given"),)
+    ends = (("ratio_low", low), ("ratio_high", high))
+    return tuple(Param(name, "", value, role="given") for name, value in ends)
+
+
+def ratio_rows(p: Any, tied: bool, ratio: Any) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Rows of the total ratio: limits, or an equality (tied), for which no two limits can stand."""
+    if tied:
+        return {}, {"ratio": ratio / p.ratio}
+    return {"ratio_low": p.ratio_low / ratio, "ratio_high": ratio / p.ratio_high}, {}
+
+
+def lewis_stress(torque: Any, diameter: Any, face_width: Any, module: Any, form_factor: Any) -> Any:
+    """Lewis stress 2 T/(d b m Y) [MPa] at the root of a gear.
+
+    torque T [N mm] on the gear of pitch diameter d, face_width b, module m [mm]; form_factor Y on
+    the module. No dynamic nor stress concentration factor.
+    """
+    return 2.0 * torque / (diameter * face_width * module * form_factor)

@@ -1,0 +1,147 @@
+"""The lightest two-stage servo train of a least stiffness, with real sizes: a geometric program."""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+from gearopt.formulations.servo.split.bodies import TIP, clear_rows
+from gearopt.formulations.servo.split.servo_train import (
+    gear_mass,
+    lewis_stress,
+    ratio_parameters,
+    ratio_rows,
+    train_error,
+    train_inertia,
+)
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.terms import Param, Terms, Var
+from gearopt.physics.inertia import disc_mass
+from gearopt.physics.stiffness import (
+    lewis_form_factor,
+    mesh_compliance,
+    output_compliance,
+    shaft_compliance,
+)
+
+BEYOND = 1e3  # factor between the lengths of a train and the ends of the search
+
+
+@dataclass(frozen=True)
+class StiffTrain:
+    """A two-stage train whose output must be stiff; lengths in mm, the rest in N, rad, MPa, t.
+
+    stiffness: least at the output, motor locked [N mm/rad]: (2 pi f)^2 J_L or a load torque over an
+    angle. line_stiffness: of a mesh; shear_modulus: of the middle shaft. ratio: least and most.
+    module: of both stages; pinion_teeth: least, of both pinions, which also give the form factors.
+    bore: least pitch diameter of gear 3, and by how much it must exceed the shaft's. wheel_tips:
+    largest tip diameters of gears 2 and 4. output, motor: diameters of the output shaft with its
+    hub and of the motor, kept clear as in `bodies.clear_rows`. face_width, shaft_diameter: least.
+    inertia: largest at the motor [t mm2]. The rest is as in `ServoTrain`.
+    """
+
+    stiffness: float
+    line_stiffness: float
+    shear_modulus: float
+    ratio: tuple[float, float]
+    module: float
+    pinion_teeth: tuple[int, int]
+    bore: tuple[float, float]
+    wheel_tips: tuple[float, float]
+    face_width: float
+    shaft_diameter: float
+    shaft_length: float
+    density: float
+    output_torque: float
+    bending: float
+    inertia: float
+    lost_motion: tuple[float, float] | None = None
+    error: float = math.inf
+    sector: float = 1.0
+    output: float = 0.0
+    motor: float = 0.0
+
+
+def stiff(train: StiffTrain) -> Problem:
+    """Least mass [kg] of gears and middle shaft, with a stiff output.
+
+    Variables: pinion_diameter, face_width [mm] and ratio of both stages, shaft_diameter [mm]. The
+    compliance at the output is that of both meshes and of the shaft between them.
+    """
+
+    def evaluate(x: Any, p: Any) -> Terms:
+        return _terms(train, x, p)
+
+    parameters = (
+        Param("stiffness", "N mm/rad", train.stiffness, role="limit"),
+        Param("inertia", "t mm2", train.inertia, role="limit"),
+        *((Param("error", "rad", train.error, role="limit"),) if _bounded(train) else ()),
+        Param("bending", "MPa", train.bending, role="limit"),
+        *ratio_parameters(*train.ratio),
+        Param("wheel_tip", "mm", train.wheel_tips, 2, role="limit"),
+    )
+    return Problem("split stiff", _variables(train), parameters, evaluate)
+
+
+def _terms(train: StiffTrain, x: Any, p: Any) -> Terms:
+    (d1, d3), (n1, n2), widths = x.pinion_diameter, x.ratio, x.face_width
+    d2, d4 = d1 * n1, d3 * n2
+    diameters, shaft = (d1, d2, d3, d4), (x.shaft_diameter, train.shaft_length)
+    gears = gear_mass(train.density, diameters, widths, train.sector)
+    long = disc_mass(train.density, train.shaft_length, x.shaft_diameter)
+    inertia = train_inertia(train.density, diameters, widths, (n1, n2), shaft, train.sector)
+    springs = (
+        mesh_compliance(train.line_stiffness, widths[1], d4),
+        shaft_compliance(train.shear_modulus, x.shaft_diameter, train.shaft_length),
+        mesh_compliance(train.line_stiffness, widths[0], d2),
+    )
+    factors = [lewis_form_factor(float(z)) for z in train.pinion_teeth]
+    loads = ((train.output_torque / n2, d2), (train.output_torque, d4))
+    tied = train.ratio[0] == train.ratio[1]
+    ratio, equal = ratio_rows(p, tied, n1 * n2)
+    limits = ratio | {
+        "stiffness": p.stiffness * output_compliance(springs, (1.0, n2, n2)),
+        "inertia": inertia / p.inertia,
+        "stage_ratio_low": (1.0 / n1, 1.0 / n2),
+        "bending_stress": tuple(
+            lewis_stress(torque, d, b, train.module, y) / p.bending
+            for (torque, d), b, y in zip(loads, widths, factors, strict=True)
+        ),
+        "pinion_teeth_low": tuple(
+            z * train.module / d for z, d in zip(train.pinion_teeth, (d1, d3), strict=True)
+        ),
+        "bore": train.bore[0] / d3,
+        "bore_wall": (x.shaft_diameter + train.bore[1]) / d3,
+        "wheel_tip": tuple(
+            (d + float(TIP) * train.module) / t for d, t in zip((d2, d4), p.wheel_tip, strict=True)
+        ),
+        "face_width_low": tuple(train.face_width / b for b in widths),
+        "shaft_diameter_low": train.shaft_diameter / x.shaft_diameter,
+    }
+    if train.lost_motion is not None and _bounded(train):
+        limits["error"] = train_error(train.lost_motion, d2, d4, n2) / p.error
+    limits |= clear_rows(
+        x.shaft_diameter,
+        train.output or None,
+        train.motor or None,
+        diameters,
+        (train.module, train.module),
+    )
+    return Terms({"mass": gears + 1000.0 * long}, limits, equal=equal)
+
+
+def _bounded(train: StiffTrain) -> bool:
+    return math.isfinite(train.error)
+
+
+def _variables(train: StiffTrain) -> tuple[Var, ...]:
+    pinion = 1.1 * train.module * max(train.pinion_teeth)
+    sizes = (pinion, train.module, train.face_width, train.shaft_diameter, *train.wheel_tips)
+    least, most = min(sizes) / BEYOND, max(sizes) * BEYOND
+    even = math.sqrt(train.ratio[0])
+    width, shaft = 2.0 * train.face_width, 2.0 * train.shaft_diameter
+    return (
+        Var("pinion_diameter", "mm", least, most, pinion, 2, log=True, search=True),
+        Var("ratio", "", 1.0 / BEYOND, even**2 * BEYOND, even, 2, log=True, search=True),
+        Var("face_width", "mm", least, most, width, 2, log=True, search=True),
+        Var("shaft_diameter", "mm", least, most, shaft, log=True, search=True),
+    )

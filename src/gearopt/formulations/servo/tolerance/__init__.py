@@ -1,0 +1,156 @@
+"""Tolerances at least cost within budgets of the error: which parts should be made how accurately.
+
+    minimise    sum a_i t_i^-k_i                  (-a_i ln t_i where k_i = 0)
+    subject to  sum_i l_bi t_i + (sum_i (q_bi t_i)^2)^(1/2) <= 1        for every budget b
+                least_i <= t_i <= most_i
+
+`stack` has what l and q are for the worst case, RSS, and mean + kappa sd. Where all k > 0 cost and
+budgets are log-convex, so `ipopt` and `gp` find the optimum and the dual bound proves it.
+`exact` is the closed form, or the roots of the optimality conditions, with a bound of its own.
+`conic` states the same as cones, `grades` chooses among few tolerances a component, `backlash`
+turns tolerances with a least backlash into this form, `sampling` draws what comes out.
+"""
+
+import time
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+
+from gearopt.formulations.servo.tolerance.cost_bound import lower_bound
+from gearopt.formulations.servo.tolerance.roots import closed_form, levels, roots
+from gearopt.formulations.servo.tolerance.stack import Stack
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.result import Budget, Event, Outcome, Watch
+from gearopt.optimise.terms import Array, Terms, Var, each
+
+RANDOM = False
+COUNTS = "solution in closed form or by roots"
+LEVELS = 4  # roots inside each other that `exact` takes on: some 0.3 s for 14 components
+TIE = 1e-12  # by which least tolerances may exceed a budget
+SMALLEST = 1e-290  # mm, the end of a search
+
+
+def problem(stack: Stack) -> Problem:
+    """The stack as a problem: variables t [mm], limits the budgets by name, least and most."""
+    components = stack.components
+
+    def evaluate(x: Any, p: Any) -> Terms:
+        t = each(x.t)
+        cost = sum(
+            c.cost * width**-c.exponent if c.exponent > 0 else -c.cost * np.log(width)
+            for c, width in zip(components, t, strict=True)
+        )
+        limits = {b.label: _used([b.weights(c) for c in components], t) for b in stack.budgets}
+        return Terms({"cost": cost}, {**limits, **_ends(stack, t)})
+
+    low, high, guess = (tuple(map(float, ends)) for ends in search(stack))
+    t = Var("t", "mm", low, high, guess, len(components), log=True, search=True)
+    methods = {"exact": _exact(stack)} if levels(stack) <= LEVELS else {}
+    return Problem("tolerance", (t,), (), evaluate, methods=methods)
+
+
+def _used(weights: list[tuple[float, float]], t: tuple[Any, ...]) -> Any:
+    """Utilisation of a budget: sum l t + (sum (q t)^2)^(1/2)."""
+    linear = [weight * width for (weight, _), width in zip(weights, t, strict=True) if weight > 0]
+    square = [weight * width for (_, weight), width in zip(weights, t, strict=True) if weight > 0]
+    return sum(linear) + (sum(part**2 for part in square) ** 0.5 if square else 0.0)
+
+
+def _ends(stack: Stack, t: tuple[Any, ...]) -> Mapping[str, Any]:
+    """The least and most tolerances that were given."""
+    found = {}
+    for k, (c, width) in enumerate(zip(stack.components, t, strict=True), 1):
+        if c.least > 0.0:
+            found[f"least[{k}]"] = c.least / width
+        if c.most < np.inf:
+            found[f"most[{k}]"] = width / c.most
+    return found
+
+
+def search(stack: Stack) -> tuple[Array, Array, Array]:
+    """Ends that no cheapest t [mm] comes near, and a t that keeps the limits where one exists.
+
+    A t is no more than what alone uses up a budget, and costs no more than the guess does less the
+    least that all others cost; the ends are twice as far.
+    """
+    low, high = stack.least, stack.most
+    used, loose = stack.used(low).max(), stack.used(high).max()
+    share = 1.0 if loose <= 1.0 else max(0.0, 1.0 - used) / max(loose - used, TIE)
+    guess = np.maximum(low + share * (high - low), np.where(low > 0.0, low, 1e-9 * high))
+    k = stack.exponent
+    with np.errstate(all="ignore"):  # a cost beyond doubles leaves the end of the search far away
+        own, total = stack.costs(high), float(stack.costs(guess).sum())
+        dearest = np.fmax(total - (own.sum() - own), own)
+        power = np.where(k > 0.0, np.log(stack.cost / dearest) / k, -dearest / stack.cost)
+    narrowest = np.exp(np.clip(power, np.log(SMALLEST), np.log(guess)))
+    return 0.5 * np.maximum(np.minimum(narrowest, guess), low), 2.0 * high, guess
+
+
+def _exact(stack: Stack) -> Any:
+    def exact(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
+        """The closed form where there is one, else roots; proven by the bound of its multipliers.
+
+        Nothing here is random.
+        """
+        clock = time.perf_counter()
+
+        def goes_on() -> bool:
+            seconds = time.perf_counter() - clock
+            late = budget.seconds is not None and seconds > budget.seconds
+            return not late and (watch is None or watch(Event(seconds, 0)) is not False)
+
+        if (conflict := impossible(stack)) is not None:
+            return conflict
+        try:
+            with np.errstate(over="raise"):
+                return _proven(stack, goes_on)
+        except TimeoutError as early:
+            return Outcome(None, finished=False, message=str(early))
+        except ArithmeticError as extreme:
+            return Outcome(None, message=f"beyond the range of doubles: {extreme}")
+
+    return exact
+
+
+def _proven(stack: Stack, goes_on: Callable[[], bool]) -> Outcome:
+    """The cheapest tolerances with the bound of their multipliers."""
+    found = closed_form(stack)
+    t, lam = found or roots(stack, goes_on)
+    proof = {
+        "method": "closed form" if found else "dual",
+        "arithmetic": "double, with a rounding allowance",
+        "multipliers": dict(zip([b.label for b in stack.budgets], lam.tolist(), strict=True)),
+    }
+    return Outcome(t, bound=lower_bound(stack, lam, t), proof=proof, evaluations=1)
+
+
+def impossible(stack: Stack) -> Outcome | None:
+    """The claim that least tolerances break a budget, with the largest that do; None if none do."""
+    free = stack.least == 0.0
+    for row, (budget, used) in enumerate(zip(stack.budgets, stack.used(stack.least), strict=True)):
+        weight = stack.linear[row] + stack.square[row]
+        starved = free & (weight > 0.0)  # their cost would be infinite
+        if used <= 1.0 + TIE and not (used >= 1.0 and starved.any()):
+            continue
+        chosen = _largest(stack, row, weight * stack.least)
+        names = ", ".join(stack.components[k].name for k in chosen)
+        proof = {
+            "method": "closed form",
+            "conflict": [budget.label, *(f"least[{k + 1}]" for k in chosen)],
+            "components": [stack.components[k].name for k in chosen],
+            "least_utilisation": float(used),
+        }
+        message = f"the least tolerances of {names} alone use up the budget {budget.label}"
+        return Outcome(None, infeasible=True, proof=proof, message=message)
+    return None
+
+
+def _largest(stack: Stack, row: int, shares: Array) -> list[int]:
+    """Components, the largest first, until their least tolerances use up a budget."""
+    order = np.argsort(-shares, kind="stable")
+    for count in range(1, len(order)):
+        some = np.isin(np.arange(len(order)), order[:count])
+        if stack.used(np.where(some, stack.least, 0.0))[row] > 1.0 + TIE:
+            return [int(k) for k in order[:count]]
+    return [int(k) for k in order if shares[k] > 0.0]

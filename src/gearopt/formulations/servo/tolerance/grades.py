@@ -1,0 +1,165 @@
+"""One of several grades (tolerance, cost) for every component, at least cost within one budget.
+
+    minimise  sum cost_i   subject to   sum s_i t_i <= E   or   (sum (s_i t_i)^2)^(1/2) <= E
+
+Both rules add up weights, s t/E or (s t/E)^2, to 1 at most: the multiple-choice knapsack. `exact`
+solves it by dynamic programming, in whole numbers where all that is given are whole numbers and
+fractions. `conic.milp` states the same with one 0-1 variable a grade.
+"""
+
+import time
+from dataclasses import dataclass
+from fractions import Fraction
+from numbers import Rational
+from typing import Any, Literal, get_args
+
+import numpy as np
+
+from gearopt.errors import SolveError
+from gearopt.formulations.servo.tolerance.knapsack import picked, whole
+from gearopt.optimise.dual import ROUNDING
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.result import Budget, Event, Outcome, Watch
+from gearopt.optimise.terms import Terms, Var, each
+
+RANDOM = False
+COUNTS = "pair of weight and cost"
+TIE = 1e-12  # by which weights in double may exceed the limit; fractions may not at all
+
+Rule = Literal["worst_case", "rss"]
+Amount = int | float | Fraction
+
+
+@dataclass(frozen=True)
+class Graded:
+    """A component: sensitivity s >= 0 and its grades (tolerance t [mm] > 0, cost)."""
+
+    name: str
+    sensitivity: Amount
+    grades: tuple[tuple[Amount, Amount], ...]
+
+
+@dataclass(frozen=True)
+class Choice:
+    """Components to be graded, and the error > 0 that a rule allows them together."""
+
+    components: tuple[Graded, ...]
+    error: Amount
+    rule: Rule = "worst_case"
+
+    def __post_init__(self) -> None:
+        if self.rule not in get_args(Rule) or not self.error > 0 or not self.components:
+            raise ValueError("a choice needs components, an error > 0, worst_case or rss")
+        for one in self.components:
+            if not one.grades or one.sensitivity < 0 or any(t <= 0 for t, _ in one.grades):
+                raise ValueError(f"{one.name}: needs grades t > 0 and a sensitivity >= 0")
+
+    @property
+    def rational(self) -> bool:
+        """Whether every number is a whole number or a fraction."""
+        numbers = [self.error, *(c.sensitivity for c in self.components)]
+        numbers += [v for c in self.components for grade in c.grades for v in grade]
+        return all(isinstance(v, Rational) for v in numbers)
+
+    @property
+    def weights(self) -> list[list[Any]]:
+        """Weight of every grade of every component; fractions where all numbers are rational."""
+        number: Any = Fraction if self.rational else float
+        power = 1 if self.rule == "worst_case" else 2
+        return [
+            [(number(c.sensitivity) * number(t) / number(self.error)) ** power for t, _ in c.grades]
+            for c in self.components
+        ]
+
+    @property
+    def costs(self) -> list[list[Any]]:
+        """Cost of every grade of every component; fractions where all numbers are rational."""
+        number: Any = Fraction if self.rational else float
+        return [[number(cost) for _, cost in c.grades] for c in self.components]
+
+
+def problem(choice: Choice) -> Problem:
+    """Variables: the grade of every component, counted from 1; `exact` proves the cheapest."""
+    weights, costs = (
+        [np.array(row, float) for row in rows] for rows in (choice.weights, choice.costs)
+    )
+    widths = [np.array([float(t) for t, _ in c.grades]) for c in choice.components]
+
+    def evaluate(x: Any, p: Any) -> Terms:
+        at = [_position(grade) for grade in each(x.grade)]
+        cost, weight = (
+            sum(row[k] for row, k in zip(rows, at, strict=True)) for rows in (costs, weights)
+        )
+        used = weight if choice.rule == "worst_case" else weight**0.5
+        t = tuple(row[k] for row, k in zip(widths, at, strict=True))
+        return Terms({"cost": cost}, {choice.rule: used}, report={"tolerance_mm": t})
+
+    most = tuple(float(len(row)) for row in costs)
+    grade = Var("grade", "", 1.0, most, 1.0, len(costs), integer=True)
+    methods = {"exact": _exact(choice)}
+    return Problem("grades", (grade,), (), evaluate, methods=methods, vectorised=True)
+
+
+def _position(grade: Any) -> Any:
+    if not isinstance(grade, float | np.ndarray | np.generic):
+        raise SolveError("grades are looked up in tables: for exact, annealing and nsga2 only")
+    return np.rint(grade).astype(int) - 1
+
+
+def _exact(choice: Choice) -> Any:
+    def exact(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
+        """Dynamic programming over all picks; the seed changes nothing."""
+        clock = time.perf_counter()
+
+        def goes_on(looked: int) -> bool:
+            seconds = time.perf_counter() - clock
+            late = budget.seconds is not None and seconds > budget.seconds
+            full = budget.evaluations is not None and looked >= budget.evaluations
+            return not (late or full) and (
+                watch is None or watch(Event(seconds, looked)) is not False
+            )
+
+        rows, limit, arithmetic = _numbers(choice)
+        found = picked(*rows, limit, goes_on)
+        if not found.finished:
+            return Outcome(None, False, evaluations=found.looked, message="stopped early")
+        proof = {
+            "method": "exhausted",
+            "arithmetic": arithmetic,
+            "pairs": found.looked,
+            "pairs_kept": found.largest,
+        }
+        if found.positions is None:
+            return _impossible(choice, proof, limit)
+        costs = [float(row[k]) for row, k in zip(choice.costs, found.positions, strict=True)]
+        rounding = ROUNDING * sum(map(abs, costs))
+        return Outcome(
+            np.array(found.positions) + 1.0,
+            bound=sum(costs) - (0.0 if choice.rational else rounding),
+            proof=proof,
+            evaluations=found.looked,
+        )
+
+    return exact
+
+
+def _numbers(choice: Choice) -> tuple[tuple[list[Any], list[Any]], Any, str]:
+    """Weights and costs to be added up, the limit of the weights, and the arithmetic."""
+    if choice.rational:
+        weights, limit = whole(choice.weights)
+        return (weights, whole(choice.costs)[0]), limit, "rational"
+    rows = [[np.array(row) for row in part] for part in (choice.weights, choice.costs)]
+    return (rows[0], rows[1]), 1.0 + TIE, f"double, weights to {TIE:g}"
+
+
+def _impossible(choice: Choice, proof: dict[str, Any], limit: Any) -> Outcome:
+    """The claim that the finest grades break the budget, with the fewest components that do."""
+    finest = [min(row) for row in choice.weights]  # the least weight
+    allowed = 1 if choice.rational else limit
+    order = sorted(range(len(finest)), key=lambda k: -finest[k])
+    sums = [sum(finest[k] for k in order[:count]) for count in range(len(order))]
+    count = next((count for count, used in enumerate(sums) if used > allowed), len(order))
+    names = [choice.components[k].name for k in order[:count]]
+    proof |= {"conflict": [choice.rule], "components": names}
+    message = f"the finest grades of {', '.join(names)} alone exceed the budget {choice.rule}"
+    return Outcome(None, infeasible=True, proof=proof, message=message)

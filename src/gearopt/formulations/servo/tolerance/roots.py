@@ -1,0 +1,154 @@
+"""Least cost of a stack by the roots of its optimality conditions: water filling.
+
+At the optimum w_i t_i^-(k_i + 1) = A_i + B_i t_i within the ends of t_i, where
+
+    A = sum_b lam_b l_b,    B = sum_b (lam_b/r_b) q_b^2,    r_b = |q_b t|
+
+Each t_i follows from A_i, B_i by Newton's method. The multiplier lam_b of a budget is the one at
+which it is used up (utilisation falls as lam_b rises, all others following), or zero; r_b is where
+|q_b t|/r_b = 1, which falls as r_b rises. So all unknowns are roots of monotone functions, one
+inside the other. All is scaled, and done in logarithms: no spread of a, s or E matters.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from gearopt.formulations.servo.tolerance.stack import Stack
+from gearopt.optimise.terms import Array
+
+STEPS = 5  # of Newton: the error is below 0.7, then e^2/8: 6e-2, 5e-4, 3e-8, 1e-16, done
+REACH = 300.0  # of the logarithm of a multiplier or a radius, scaled
+
+Solution = tuple[Array, Array]  # tolerances t (components,) and multipliers lam (budgets,)
+
+
+def closed_form(stack: Stack) -> Solution | None:
+    """T = E w/|s w|_p with w = (a/s^p)^(1/(k + p)); p = 1 worst case, 2 RSS. Lam = sum w t^-k.
+
+    None unless there is one such budget, one exponent, and t within its ends.
+    """
+    if len(stack.budgets) > 1 or len(set(stack.exponent)) > 1:
+        return None
+    (linear,), (square,) = stack.linear, stack.square
+    if linear.any() and square.any():
+        return None
+    p, weight = (2, square) if square.any() else (1, linear)
+    if not weight.all():
+        return None
+    k = float(stack.exponent[0])
+    shape = np.exp((np.log(stack.cost) - p * np.log(weight)) / (k + p))
+    t = shape / np.linalg.norm(weight * shape, p)
+    given = np.array([c.most for c in stack.components])
+    if not ((stack.least <= t) & (t <= given)).all():
+        return None
+    return t, np.array([(stack.slope * t**-k).sum()])
+
+
+def roots(stack: Stack, goes_on: Callable[[], bool] = lambda: True) -> Solution:
+    """Tolerances and multipliers of a stack whose least tolerances keep its budgets.
+
+    TimeoutError when goes_on() says no; it is asked before each step of the outermost root.
+    ArithmeticError for costs or multipliers beyond doubles.
+    """
+    one, unit, price = scaled(stack)
+    lam, u = _settled(one, (), (), dict.fromkeys(range(len(stack.budgets)), 0.0), goes_on)
+    over = float((one.used(u) / np.maximum(1.0, one.used(one.least))).max())
+    t = np.maximum(stack.least, unit * u / max(1.0, over))
+    return t, price * np.array(lam)
+
+
+def scaled(stack: Stack) -> tuple[Stack, Array, float]:
+    """The stack in u = t/unit, as 1 uses up a budget or is the upper end, and costs over price."""
+    unit, k = stack.most, stack.exponent
+    with np.errstate(over="raise"):
+        costs = stack.cost * unit**-k
+        price = float((costs * len(unit) ** k).sum())  # with k, lam of n equal components
+    parts = tuple(
+        replace(c, sensitivity=c.sensitivity * t, cost=a / price, least=c.least / t, most=1.0)
+        for c, t, a in zip(stack.components, unit.tolist(), costs.tolist(), strict=True)
+    )
+    return Stack(parts, stack.budgets), unit, price
+
+
+def levels(stack: Stack) -> int:
+    """How many roots lie inside each other: the time grows tenfold with each."""
+    return len(stack.budgets) + len(_mixed(stack))
+
+
+def _mixed(stack: Stack) -> list[int]:
+    """Budgets whose radius is unknown: |q t| alone is 1 where it is used up."""
+    return [int(b) for b in np.flatnonzero(stack.linear.any(1) & stack.square.any(1))]
+
+
+def _settled(
+    stack: Stack,
+    lam: tuple[float, ...],
+    radii: tuple[float, ...],
+    last: dict[int, float],
+    goes_on: Callable[[], bool] = lambda: True,
+) -> tuple[tuple[float, ...], Array]:
+    """All multipliers and the tolerances where the first multipliers and radii are given.
+
+    last: the root last found at each depth, near which the next one is. goes_on: see `roots`.
+    """
+    budget, mixed, depth = len(lam), _mixed(stack), len(lam) + len(radii)
+    if budget < len(stack.budgets):
+        unused = _settled(stack, (*lam, 0.0), radii, last)
+        target = max(1.0, float(stack.used(stack.least)[budget]))
+        if stack.used(unused[1])[budget] <= target:
+            return unused
+
+        def used(x: float) -> float:
+            if not goes_on():
+                raise TimeoutError("stopped early")
+            t = _settled(stack, (*lam, math.exp(x)), radii, last)[1]
+            return math.log(stack.used(t)[budget] / target)
+
+        last[depth] = _root(used, last[depth])
+        return _settled(stack, (*lam, math.exp(last[depth])), radii, last)
+    if len(radii) < len(mixed):
+        budget = mixed[len(radii)]
+        if lam[budget] == 0.0:
+            return _settled(stack, lam, (*radii, 1.0), last)
+
+        def beyond(x: float) -> float:
+            t = _settled(stack, lam, (*radii, math.exp(x)), last)[1]
+            return math.log(np.linalg.norm(stack.square[budget] * t)) - x
+
+        last[depth] = _root(beyond, last.get(depth, 0.0))
+        return _settled(stack, lam, (*radii, math.exp(last[depth])), last)
+    radius = np.ones(len(lam))
+    radius[mixed] = radii
+    return lam, cheapest(stack, lam @ stack.linear, (lam / radius) @ stack.square**2)
+
+
+@np.errstate(divide="ignore", invalid="ignore")  # what nothing holds goes to its upper end
+def cheapest(stack: Stack, linear: Array, square: Array) -> Array:
+    """The t that minimises cost + A t + B t^2/2 within the ends; A, B (components,) >= 0."""
+    k = stack.exponent
+    log_a, log_b = np.log(linear / stack.slope), np.log(square / stack.slope)
+    y = np.minimum(-log_a / (k + 1.0), -log_b / (k + 2.0))  # each alone would go beyond the root
+    held = np.isfinite(y)
+    y = np.where(held, y, 0.0)
+    for _ in range(STEPS):  # on the logarithm of w t^-(k + 1) = A + B t, convex and rising in y
+        first, second = log_a + (k + 1.0) * y, log_b + (k + 2.0) * y
+        total = np.logaddexp(first, second)
+        y = y - np.where(held, total / (k + 1.0 + np.exp(second - total)), 0.0)
+    return np.clip(np.where(held, np.exp(y), np.inf), stack.least, stack.most)
+
+
+def _root(falling: Callable[[float], float], near: float) -> float:
+    """Where a falling function is zero; ArithmeticError where that is beyond `REACH`."""
+    from scipy.optimize import brentq
+
+    start, step = near, 0.01 if falling(near) > 0.0 else -0.01
+    far = start + step
+    while (falling(far) > 0.0) == (step > 0.0):
+        start, step = far, 4.0 * step
+        far = start + step
+        if abs(far) > REACH:
+            raise ArithmeticError("a multiplier is beyond the range of doubles")
+    return float(brentq(falling, start, far, xtol=1e-15, rtol=1e-15))

@@ -1,0 +1,111 @@
+"""Drawn errors of a stack: what a budget gives in fact, with intervals that need no assumption.
+
+The error is e = sum s_i t_i X_i, X_i from the components' distributions. Its quantile has the
+interval between two order statistics: X_(r) <= Q_p unless fewer than r of the draws are below Q_p,
+a binomial chance. The yield has the interval of Clopper and Pearson (Biometrika 26, 1934).
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from gearopt.formulations.servo.tolerance.stack import Stack
+from gearopt.optimise.terms import Array
+
+THREE_SD = 0.99865  # of a normal error, below its mean and three standard deviations
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """What `count` draws say of the error beside its limit; errors in the unit of the limit.
+
+    quantile: that of `probability`, within quantile_low .. quantile_high; yield_share: of e <=
+    limit, within yield_low .. yield_high; both intervals hold with at least `confidence`.
+    worst_case: sum s t, which no draw of a distribution on [-t, t] exceeds. largest: of the draws.
+    """
+
+    count: int
+    seed: int
+    mean: float
+    sd: float
+    probability: float
+    confidence: float
+    quantile: float
+    quantile_low: float
+    quantile_high: float
+    limit: float
+    yield_share: float
+    yield_low: float
+    yield_high: float
+    largest: float
+    worst_case: float
+
+
+def drawn(
+    stack: Stack,
+    t: Array,
+    limit: float,
+    count: int = 400_000,
+    probability: float = THREE_SD,
+    confidence: float = 0.99,
+    seed: int = 0,
+) -> Drawn:
+    """Draw the error of tolerances t [mm] and hold its quantile and yield against a limit.
+
+    The quantile and the yield are one-sided, of the signed error. An end of the quantile's interval
+    is infinite where the draws are too few for it. ValueError for less than two draws, and for a
+    probability or a confidence not between 0 and 1.
+    """
+    if count < 2 or not 0.0 < probability < 1.0 or not 0.0 < confidence < 1.0:
+        raise ValueError("needs two draws or more, and probabilities between 0 and 1")
+    e = errors(stack, t, count, seed)
+    first, last = order_interval(count, probability, confidence)
+    middle = min(max(int(np.ceil(probability * count)), 1), count)
+    inside = [k for k in (first, middle, last) if 1 <= k <= count]
+    e.partition([k - 1 for k in inside])
+    good = int((e <= limit).sum())
+    low, high = binomial_interval(good, count, confidence)
+    return Drawn(
+        count=count,
+        seed=seed,
+        mean=float(e.mean()),
+        sd=float(e.std(ddof=1)),
+        probability=probability,
+        confidence=confidence,
+        quantile=float(e[middle - 1]),
+        quantile_low=float(e[first - 1]) if first >= 1 else -np.inf,
+        quantile_high=float(e[last - 1]) if last <= count else np.inf,
+        limit=limit,
+        yield_share=good / count,
+        yield_low=low,
+        yield_high=high,
+        largest=float(e.max()),
+        worst_case=float(sum(c.sensitivity * w for c, w in zip(stack.components, t, strict=True))),
+    )
+
+
+def errors(stack: Stack, t: Array, count: int, seed: int) -> Array:
+    """Errors of `count` draws, (count,): one component after the other, from one generator."""
+    generator = np.random.default_rng(seed)
+    total = np.zeros(count)
+    for one, width in zip(stack.components, t, strict=True):
+        total += one.sensitivity * float(width) * one.distribution.draw(generator, count)
+    return total
+
+
+def order_interval(count: int, probability: float, confidence: float) -> tuple[int, int]:
+    """Ranks r < s, from 1, of X_(r) <= Q_p <= X_(s); 0 and count + 1 where there are none."""
+    from scipy.stats import binom
+
+    tail = 0.5 * (1.0 - confidence)
+    return int(binom.ppf(tail, count, probability)), int(binom.isf(tail, count, probability)) + 1
+
+
+def binomial_interval(good: int, count: int, confidence: float) -> tuple[float, float]:
+    """Ends of the share whose draws would be as few, or as many, with half of 1 - confidence."""
+    from scipy.stats import beta
+
+    tail = 0.5 * (1.0 - confidence)
+    low = float(beta.ppf(tail, good, count - good + 1)) if good > 0 else 0.0
+    high = float(beta.isf(tail, good + 1, count - good)) if good < count else 1.0
+    return low, high

@@ -1,0 +1,225 @@
+"""kind = "drive": a multi-stage drive of cylindrical gears of least volume, mass or length.
+
+With a [teeth] table the answer has whole teeth and standard modules and is proven by exhaustion;
+without one, or by the method ipopt, sizes are continuous and proven by a dual bound.
+"""
+
+import math
+from dataclasses import asdict, replace
+from typing import Any
+
+from gearopt.errors import SolveError
+from gearopt.formulations import sizing, teeth
+from gearopt.formulations.train import Train
+from gearopt.optimise.certificate import reconcile
+from gearopt.optimise.comparing.trial import Model
+from gearopt.optimise.explaining.explanation import Change, Explanation, Remedy
+from gearopt.optimise.explaining.repair import Clock
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.progress import in_part
+from gearopt.optimise.result import Result
+from gearopt.optimise.solve import GAP, run
+from gearopt.scenes.drive.explaining.assumptions import assumptions, notes
+from gearopt.scenes.drive.explaining.undercut import undercut
+from gearopt.scenes.drive.scene import EXAMPLE, Scene
+from gearopt.scenes.reading.ask import Ask
+
+__all__ = ["EXAMPLE", "Scene", "compared", "explain", "model", "solve"]
+PROCESSES = ("process_one", "process_two")  # tables; as methods with a hyphen
+WEAKER = " Its contact ratio is less than the one given, its root is weaker."
+CONTINUOUS = ("ipopt", "gp", "multistart")  # methods that take no whole teeth
+
+
+def solve(scene: Scene, ask: Ask) -> Result:
+    """Size the drive: exactly where [teeth] is given, else continuously.
+
+    The exact answer carries the continuous one as a part: what whole teeth and standard modules
+    cost, and a second, independent bound. With [process_one] or [process_two] the designs by those
+    rules are parts as well. What the design takes for granted is in its report.
+    """
+    result = _solved(scene, ask)
+    told: dict[str, Any] = {"assumptions": assumptions(scene)}
+    if ask.prices and result.value is not None:
+        clock = Clock(ask.budget.less(result.seconds), ask.watch)
+        found = _explained(_unruled(scene), ask, result, clock)
+        influences = [asdict(i) for i in found.influences]
+        told["prices"] = {"influences": influences, "message": found.message}
+    return replace(result, report=result.report | told)
+
+
+def _solved(scene: Scene, ask: Ask) -> Result:
+    """The drive, laid out where the file asks for it; else ways out where there is none."""
+    if scene.layout is not None:
+        from gearopt.scenes.drive.box.at_once import at_once
+        from gearopt.scenes.drive.box.lay_out import lay_out
+
+        sized = _solved(bare(scene), replace(ask, method=None))
+        if sized.value is None:
+            return sized
+        return (at_once if scene.layout.together else lay_out)(_unruled(scene), ask, sized)
+    result = _answer(scene, ask)
+    if result.status != "infeasible":
+        return _with_processes(scene, ask, result)
+    from gearopt.scenes.drive.explaining.remedies import remedies
+
+    ways = asdict(remedies(_unruled(scene), Clock(ask.budget.less(result.seconds), ask.watch)))
+    return replace(result, report=result.report | {"ways_out": ways})
+
+
+def explain(scene: Scene, ask: Ask) -> Explanation:
+    """Why the drive is as it is, or what would make it possible, in the numbers of its file."""
+    scene = _unruled(scene)
+    if scene.layout is not None:
+        result = _solved(scene, ask)
+        if result.status == "infeasible":
+            return _ways_out(result)
+        return _explained(scene, ask, result, Clock(ask.budget.less(result.seconds), ask.watch))
+    clock = Clock(ask.budget, ask.watch)
+    half = replace(ask.budget, seconds=ask.budget.seconds and 0.5 * ask.budget.seconds)
+    result = _answer(scene, replace(ask, budget=half))
+    if result.status == "infeasible":
+        from gearopt.scenes.drive.explaining.remedies import remedies
+
+        return Explanation(result, **vars(remedies(scene, clock)), seconds=clock.seconds)
+    if result.value is None:
+        return Explanation(result, message="no design was found in time", seconds=clock.seconds)
+    return _explained(scene, ask, result, clock)
+
+
+def _explained(scene: Scene, ask: Ask, result: Result, clock: Clock) -> Explanation:
+    """What every number of the file does to a design that was found."""
+    if scene.layout is not None:
+        from gearopt.scenes.drive.box.explain import explained as box_explained
+
+        return box_explained(scene, result, clock)
+    from gearopt.scenes.drive.explaining.explained import explained
+
+    return explained(scene, result, clock, lambda other: _answer(other, _exactly(ask, clock)))
+
+
+def _exactly(ask: Ask, clock: Clock) -> Ask:
+    """What is asked of a drive that is compared with another: one train, to the end."""
+    return replace(ask, budget=replace(clock.left, gap=0.0), watch=clock.watch, gap=GAP, top=1)
+
+
+def _ways_out(result: Result) -> Explanation:
+    """The ways out that an impossible layout brings along."""
+    none: dict[str, Any] = {"conflict": [], "remedies": [], "message": ""}
+    ways = result.report.get("ways_out", none)
+    found = tuple(
+        Remedy(**{**r, "changes": tuple(Change(**c) for c in r["changes"])})
+        for r in ways["remedies"]
+    )
+    return Explanation(result, tuple(ways["conflict"]), found, message=ways["message"])
+
+
+def bare(scene: Scene) -> Scene:
+    """The drive without its layout: what is sized."""
+    return scene.model_copy(update={"layout": None, "place": (), "keep_out": ()})
+
+
+def _unruled(scene: Scene) -> Scene:
+    """The drive without its design processes, which change nothing of what is best."""
+    return scene.model_copy(update=dict.fromkeys(PROCESSES))
+
+
+def _answer(scene: Scene, ask: Ask) -> Result:
+    train = scene.train()
+    if _continuous(scene, ask.method):
+        return _sized(scene, train, ask, sizing.problem(train))
+    ideal = _sized(scene, train, Ask(budget=ask.budget, watch=ask.watch), sizing.problem(train))
+    if ideal.status == "infeasible":  # then no whole teeth do either
+        return replace(ideal, name="drive")
+    ask = replace(ask, budget=ask.budget.less(ideal.seconds))
+    floor = -math.inf if ideal.bound is None else ideal.bound
+    found = _sized(scene, train, ask, _discrete(scene, train, ask.top, floor))
+    if found.status == "limit" and found.value is None:  # the continuous bound holds all the same
+        found = replace(found, bound=ideal.bound)
+    return reconcile(replace(found, parts=(replace(ideal, name="sizing"),)), ideal, ask.gap)
+
+
+def _discrete(scene: Scene, train: Train, top: int = 1, floor: float = -math.inf) -> Problem:
+    """The problem of whole teeth, with all methods that a drive has for it."""
+    problem = teeth.problem(train, top, floor)
+    return replace(problem, methods={**problem.methods, **scene.processes()})
+
+
+def _with_processes(scene: Scene, ask: Ask, best: Result) -> Result:
+    """The exact answer with what the processes of the file design as parts, under its bound."""
+    asked = [name for name in PROCESSES if getattr(scene, name) is not None]
+    if not asked or ask.method not in (None, "exact"):
+        return best
+    train = scene.train()
+    problem = _discrete(scene, train)
+    parts, told = [], list(best.report.get("notes", []))
+    for name in asked:
+        words, method = name.replace("_", " "), name.replace("_", "-")
+        try:
+            watch = in_part(ask.watch, train.unit, words)
+            part, outcome = run(problem, method, ask.budget, ask.seed, watch, ask.gap)
+        except SolveError as reason:
+            told.append(f"There is no design by {words}: {reason}.")
+            continue
+        made = {} if outcome.x is None else scene.design(teeth.sizes(train, outcome.x))
+        part = replace(part, objective=part.objective | {"unit": train.unit}, design=made)
+        parts.append(reconcile(replace(part, name=words), best, ask.gap))
+    return replace(best, parts=(*best.parts, *parts), report=best.report | {"notes": told})
+
+
+def compared(scene: Scene) -> tuple[str, ...]:
+    """The methods of a comparison that names none."""
+    if scene.layout is None:
+        asked = (name.replace("_", "-") for name in PROCESSES if getattr(scene, name) is not None)
+        return ("exact", *asked, "ipopt", "annealing", "nsga2")
+    if scene.layout.together:
+        return ("exact", "ipopt")
+    return ("exact", "sa", "sa-polish", "multistart", "nsga2")
+
+
+def model(scene: Scene, method: str) -> Model:
+    """The problem that a method solves for this drive; SolveError where there is none for it.
+
+    With a [layout] that is the layout of the gears that are best without it.
+    """
+    if scene.layout is not None:
+        from gearopt.scenes.drive.box import at_once, lay_out
+
+        sized = solve(bare(scene), Ask())
+        if not scene.layout.together:
+            return lay_out.posed(scene, method, sized)
+        if sized.value is None:
+            raise SolveError("there are no gears to lay out: gearopt explain says why")
+        return at_once.posed(scene, method, lay_out.lay_out(scene, Ask(), sized))
+    train = scene.train()
+    if _continuous(scene, method):
+        return Model(sizing.problem(train), "Real-valued teeth and modules", train.unit)
+    return Model(_discrete(scene, train), "Whole teeth and standard modules", train.unit)
+
+
+def _continuous(scene: Scene, method: str | None) -> bool:
+    """Whether a method gets real-valued teeth."""
+    if scene.teeth is None and method in ("exact", *(n.replace("_", "-") for n in PROCESSES)):
+        raise SolveError(f"the method {method} needs a [teeth] table in the file")
+    return scene.teeth is None or method in CONTINUOUS
+
+
+def _sized(scene: Scene, train: Train, ask: Ask, problem: Problem) -> Result:
+    """Solve one formulation of the drive and put its answer in a drawing's words."""
+    exact = problem.name == "teeth"
+    formulation = teeth if exact else sizing
+    watch = in_part(ask.watch, train.unit)
+    result, outcome = run(problem, ask.method, ask.budget, ask.seed, watch, ask.gap)
+    result = replace(result, objective=result.objective | {"unit": train.unit})
+    if result.value is None or outcome.x is None:
+        return result
+    designs = [scene.design(formulation.sizes(train, x)) for x in (outcome.x, *outcome.others)]
+    values = [float(problem.batch(x[None]).F[0, 0]) for x in (outcome.x, *outcome.others)]
+    trains = [
+        {"objective": value, "ratio": design["ratio"], "stages": design["stages"]}
+        for value, design in zip(values, designs, strict=True)
+    ]
+    report: dict[str, Any] = {"trains": trains} if exact and ask.top > 1 else {}
+    angles = scene.gears.pressure_angle.value, scene.gears.helix_angle.value
+    if told := [*notes(scene, exact), *undercut(designs[0]["stages"], *angles, WEAKER)]:
+        report["notes"] = told
+    return replace(result, name="drive", design=designs[0], report=report)

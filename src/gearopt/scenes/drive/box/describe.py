@@ -1,0 +1,148 @@
+"""A layout in the words of its drawing: shafts, gears, box, gaps."""
+
+import math
+from typing import Any
+
+from gearopt.formulations.layout.gearbox import Gearbox, KeepOut
+from gearopt.formulations.layout.placed import Placed, placed
+from gearopt.formulations.layout.slabs import Arrangement
+from gearopt.optimise.result import Result
+from gearopt.scenes.drive.scene import Scene
+
+
+def described(
+    scene: Scene, box: Gearbox, one: Arrangement, angles: tuple[float, ...], sized: Result
+) -> dict[str, Any]:
+    """The layout as a Result's design holds it; every quantity with its unit in the key."""
+    found = placed(box, one, angles)
+    shafts = [body for own in one.bodies for body in own if body.name.startswith("shaft")]
+    bearings = [
+        {"shaft": k, "diameter_mm": 2 * body.radius, "from_mm": body.x[0], "to_mm": body.x[1]}
+        for k, own in enumerate(one.bodies, 1)
+        for body in own
+        if body.name.startswith("bearing")
+    ]
+    return {
+        "box": _box(found),
+        "shafts": [
+            {
+                "shaft": k,
+                "y_mm": y,
+                "z_mm": z,
+                "diameter_mm": 2 * body.radius,
+                "from_mm": body.x[0],
+                "to_mm": body.x[1],
+            }
+            for k, ((y, z), body) in enumerate(zip(found.axes, shafts, strict=True), 1)
+        ],
+        "gears": _gears(scene, one, sized),
+        "bearings": bearings,
+        "link_angles_deg": [math.degrees(t) for t in angles],
+        "slabs": [[s + 1 for s in slab] for slab in one.slabs],
+        "gaps": _gaps(box, one, found),
+        "clearances": _clearances(box),
+        "obstacles": [_keep_out(k, found) for k in box.keep_outs],
+        "motor": {"diameter_mm": 2 * box.motor} if box.motor else None,
+        "split": [k + 1 for k in box.level],
+    }
+
+
+def used(found: dict[str, Any]) -> dict[str, float]:
+    """Of every two axes that must keep apart, the part of their distance that is needed."""
+    return {
+        " to ".join(gap["between"]).replace(" ", "_"): 1.0
+        - (gap["gap_mm"] - gap["needed_mm"]) / gap["axes_mm"]
+        for gap in found["gaps"]
+    }
+
+
+def _box(found: Placed) -> dict[str, float]:
+    width, height, length = found.width, found.height, found.length
+    return {
+        "width_mm": width,
+        "height_mm": height,
+        "length_mm": length,
+        "left_mm": found.left,
+        "bottom_mm": found.bottom,
+        "volume_mm3": width * height * length,
+        "plan_area_mm2": width * length,
+        "face_area_mm2": width * height,
+    }
+
+
+def _gears(scene: Scene, one: Arrangement, sized: Result) -> list[dict[str, Any]]:
+    stages, gears = sized.design["stages"], []
+    for k, own in enumerate(one.bodies, 1):
+        for body in (b for b in own if b.gear):
+            member = body.name.split()[0]
+            stage = stages[body.stage]
+            gears.append(
+                {
+                    "name": body.name,
+                    "stage": body.stage + 1,
+                    "member": member,
+                    "shaft": k,
+                    "teeth": stage[f"{member}_teeth"],
+                    "normal_module_mm": stage["normal_module_mm"],
+                    "reference_diameter_mm": stage[f"{member}_diameter_mm"],
+                    "tip_diameter_mm": stage[f"{member}_tip_diameter_mm"],
+                    "root_diameter_mm": stage[f"{member}_root_diameter_mm"],
+                    "helix_angle_deg": math.degrees(scene.gears.helix_angle.value),
+                    "from_mm": body.x[0],
+                    "to_mm": body.x[1],
+                }
+            )
+    return gears
+
+
+def _gaps(box: Gearbox, one: Arrangement, found: Placed) -> list[dict[str, Any]]:
+    """Clear distances of bodies that must keep apart, the narrowest over its need first."""
+    gaps = []
+    for (i, j), need in one.needs.items():
+        (ya, za), (yb, zb) = found.axes[i], found.axes[j]
+        there = math.hypot(yb - ya, zb - za)
+        gap = there - (need.distance - need.clearance)
+        gaps.append(
+            {
+                "between": list(need.between),
+                "gap_mm": gap,
+                "needed_mm": need.clearance,
+                "axes_mm": there,
+            }
+        )
+    for k, keep in enumerate(box.keep_outs):
+        for i, (y, z) in enumerate(found.axes):
+            if (needed := float(one.keep_apart[k, i])) > 0.0:
+                dy = max(keep.y[0] - y, y - keep.y[1], 0.0)
+                dz = max(keep.z[0] - z, z - keep.z[1], 0.0)
+                gaps.append(
+                    {
+                        "between": [f"shaft {i + 1} with its gears", keep.name],
+                        "gap_mm": math.hypot(dy, dz) - needed + box.clearances.shafts,
+                        "needed_mm": box.clearances.shafts,
+                        "axes_mm": math.hypot(dy, dz),
+                    }
+                )
+    return sorted(gaps, key=lambda g: float(g["gap_mm"]) - float(g["needed_mm"]))
+
+
+def _clearances(box: Gearbox) -> dict[str, float]:
+    found = box.clearances
+    return {
+        "gear_to_gear_mm": found.gears,
+        "gear_to_shaft_mm": found.shafts,
+        "wall_mm": found.wall,
+        "axial_mm": found.axial,
+    }
+
+
+def _keep_out(keep: KeepOut, found: Placed) -> dict[str, Any]:
+    return {
+        "name": keep.name,
+        "left_mm": keep.y[0],
+        "right_mm": keep.y[1],
+        "bottom_mm": keep.z[0],
+        "top_mm": keep.z[1],
+        "from_mm": max(keep.x[0], -0.1 * found.length),
+        "to_mm": min(keep.x[1], 1.1 * found.length),
+    }

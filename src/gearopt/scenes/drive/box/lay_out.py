@@ -1,0 +1,163 @@
+"""The box of a drive whose gears are sized: data checks, then the layout by any method."""
+
+from dataclasses import replace
+from typing import Any
+
+from gearopt.errors import SolveError
+from gearopt.formulations import layout
+from gearopt.formulations.layout.exact import GAP
+from gearopt.formulations.layout.gearbox import Gearbox
+from gearopt.formulations.layout.placed import placed, read
+from gearopt.formulations.layout.slabs import Arrangement, arrangements
+from gearopt.formulations.train import Sizes
+from gearopt.optimise.comparing.trial import Model
+from gearopt.optimise.progress import following, in_part
+from gearopt.optimise.result import Result
+from gearopt.optimise.solve import run
+from gearopt.optimise.terms import Array
+from gearopt.scenes.drive.box.describe import described, used
+from gearopt.scenes.drive.scene import Scene
+from gearopt.scenes.reading.ask import Ask
+
+SIZES = ("normal_module_mm", "pinion_teeth", "ratio", "face_width_mm")
+
+
+def sizes_of(sized: Result) -> Sizes:
+    """Modules, pinion teeth, ratios and face widths of a sized drive."""
+    stages = sized.design["stages"]
+    return tuple(tuple(s[key] for s in stages) for key in SIZES)
+
+
+def lay_out(scene: Scene, ask: Ask, sized: Result) -> Result:
+    """The layout of a sized drive; the sizing is kept as its part `gears`."""
+    box = scene.gearbox(sizes_of(sized))
+    orders = arrangements(box)
+    wrong = layout.faults(box)
+    layout.ready()
+    parts = (replace(sized, name="gears"),)
+    if wrong:
+        return _impossible(scene, sized, ask, parts, wrong)
+    problem = layout.problem(box, ask.method)
+    watch, events = following(in_part(ask.watch, box.unit))
+    asked = ask.budget.less(sized.seconds)
+    gap = ask.gap if ask.budget.gap else GAP
+    result, outcome = run(problem, ask.method, asked, ask.seed, watch, gap)
+    result = replace(result, objective=result.objective | {"unit": box.unit}, parts=parts)
+    if result.status == "infeasible":
+        notes = ["No angles of the links keep all distances, places and sides."]
+        return _impossible(scene, sized, ask, parts, notes, result)
+    if result.value is None or outcome.x is None:
+        return replace(result, name="drive")
+    found = told(scene, result, events, sized, box, *read(orders, outcome.x))
+    if outcome.others:
+        front = [_sides(box, orders, x) for x in (outcome.x, *outcome.others)]
+        found = replace(found, report=found.report | {"front": front})
+    return found
+
+
+def told(
+    scene: Scene,
+    result: Result,
+    events: list[dict[str, Any]],
+    sized: Result,
+    box: Gearbox,
+    angles: tuple[float, ...],
+    order: Arrangement,
+) -> Result:
+    """A result with its gears and layout in the words of a drawing."""
+    found = described(scene, box, order, angles, sized)
+    before = sum(p.seconds for p in result.parts), sum(p.evaluations for p in result.parts)
+    seconds, spent = before[0] + result.seconds, before[1] + result.evaluations
+    last = {"seconds": seconds, "evaluations": spent, "best": result.value, "bound": result.bound}
+    steps = [
+        e | {"seconds": before[0] + e["seconds"], "evaluations": before[1] + e["evaluations"]}
+        for e in events
+    ]
+    return replace(
+        result,
+        name="drive",
+        design=sized.design | {"layout": found},
+        limits=sized.limits | used(found) | _sides_used(result),
+        report={
+            "progress": [*steps, last],
+            "notes": [*_notes(scene, sized), *_reached(box, found)],
+        },
+        evaluations=spent,
+        seconds=seconds,
+    )
+
+
+def _sides_used(result: Result) -> dict[str, float]:
+    return {n: v for n, v in result.limits.items() if n.startswith("largest_")}
+
+
+def posed(scene: Scene, method: str, sized: Result) -> Model:
+    """The layout problem that a method gets; SolveError where the gears cannot be laid out."""
+    if sized.value is None:
+        raise SolveError("there are no gears to lay out: gearopt explain says why")
+    box = scene.gearbox(sizes_of(sized))
+    if wrong := layout.faults(box):
+        raise SolveError(" ".join(wrong))
+    words = "Layout by four sides" if method in layout.GRADIENT else "Layout by link angles"
+    return Model(layout.problem(box, method), words, box.unit)
+
+
+def _impossible(
+    scene: Scene,
+    sized: Result,
+    ask: Ask,
+    parts: tuple[Result, ...],
+    notes: list[str],
+    result: Result | None = None,
+) -> Result:
+    from gearopt.scenes.drive.box.ways import ways
+
+    spent = sized.seconds + (0.0 if result is None else result.seconds)
+    left = replace(ask, budget=ask.budget.less(spent))
+    if result is None:
+        proof = {"method": "closed form", "conflict": []}
+        objective = {"name": str(scene.layout and scene.layout.minimise), "value": None}
+        result = replace(sized, method="data check", objective=objective, bound=None, gap=None)
+        result = replace(result, status="infeasible", proof=proof, certificate={}, limits={})
+    found = ways(scene, sizes_of(sized), left)
+    return replace(
+        result,
+        design={},
+        parts=parts,
+        message=" ".join(notes),
+        report={"notes": notes, "ways_out": found},
+    )
+
+
+def _reached(box: Gearbox, found: dict[str, Any]) -> list[str]:
+    """Keep-outs that the box itself reaches into: only what is on the shafts is kept out."""
+    side = found["box"]
+    left, bottom = side["left_mm"], side["bottom_mm"]
+    right, top = left + side["width_mm"], bottom + side["height_mm"]
+    deep = {
+        k.name: min(right - k.y[0], k.y[1] - left, top - k.z[0], k.z[1] - bottom)
+        for k in box.keep_outs
+    }
+    return [
+        f"The box itself reaches {d:.1f} mm into {name}: gears, shafts and bearings are kept out "
+        "of it, walls are not (a larger shaft_clearance keeps them out too)."
+        for name, d in deep.items()
+        if d > 0.05
+    ]
+
+
+def _notes(scene: Scene, sized: Result) -> list[str]:
+    notes = list(sized.report.get("notes", []))
+    if not scene.given and not (scene.layout and scene.layout.together):
+        notes.append(
+            "The gears were chosen first, for their own objective; with together = true in "
+            "[layout] they are chosen for the box."
+        )
+    return notes
+
+
+def _sides(box: Gearbox, orders: tuple[Arrangement, ...], x: Array) -> dict[str, float]:
+    angles, one = read(orders, x)
+    found = placed(box, one, angles)
+    volume = found.width * found.height * found.length
+    return {"width_mm": found.width, "height_mm": found.height, "volume_mm3": volume}

@@ -1,0 +1,80 @@
+"""What a drive takes for granted, and what a reader of its result should know."""
+
+from gearopt.formulations.design import STEEL_DENSITY
+from gearopt.physics.geometry import ADDENDUM, DEDENDUM
+from gearopt.scenes.drive.scene import Scene
+from gearopt.scenes.drive.tables.layout import Layout
+from gearopt.scenes.drive.tables.limits import ORIGINS
+
+CLEARANCES = {
+    "gear_clearance": "between gears that do not mesh",
+    "shaft_clearance": "between a shaft and what is not on it",
+    "wall_clearance": "to the walls across the shafts",
+    "axial_clearance": "along the shafts",
+}
+
+
+def notes(scene: Scene, exact: bool) -> list[str]:
+    """What a reader of the result should know beside the numbers."""
+    found = []
+    limits, stages = scene.limits, scene.stage
+    if limits.preset is not None:
+        found.append(f"The load limits are those of preset {limits.preset}, not of a standard.")
+    if scene.teeth is not None and not exact:
+        found.append("Teeth and modules are real numbers here; the table [teeth] was left aside.")
+    names = ("wheel_teeth", "stage_ratio", "wheel_diameter")
+    if not any(getattr(table, name) for table in (limits, *stages) for name in names):
+        found.append("No limit on wheel teeth, stage ratio or wheel diameter was set.")
+    if scene.objective.density is None:
+        found.append(f"Masses are those of steel, {1e9 * STEEL_DENSITY:g} kg/dm³ (assumed).")
+    return found
+
+
+def assumptions(scene: Scene) -> list[str]:
+    """What a design takes for granted, in sentences."""
+    angle, density = scene.gears.pressure_angle, scene.objective.density
+    assumed = "" if "pressure_angle" in scene.gears.model_fields_set else " (default)"
+    mass = (
+        f"the density of the file, {density}"
+        if density
+        else f"steel of {1e9 * STEEL_DENSITY:g} kg/dm^3, because the file gives no density"
+    )
+    found = [
+        "External cylindrical gears without profile shift; no losses in mesh and bearings.",
+        f"Tip and root circles by the basic rack ISO 53 profile A: addendum {ADDENDUM:g} m_n, "
+        f"dedendum {DEDENDUM:g} m_n; nominal sizes, without backlash.",
+        "Loads are limited by K-factor and unit load alone: index values, not a rating by ISO 6336 "
+        "or AGMA 2101. Application, dynamic and load distribution factors are not in them.",
+        f"The normal pressure angle of {angle}{assumed} enters contact ratio and undercut alone; "
+        "K-factor and unit load do not depend on it.",
+        f"Volumes and masses are those of solid reference cylinders; masses with {mass}.",
+    ]
+    if scene.limits.preset is not None:
+        name = scene.limits.preset
+        found.insert(3, f"The load limits are those of preset {name}: {ORIGINS[name]}.")
+    return found if scene.layout is None else [*found, *_layout_assumptions(scene.layout)]
+
+
+def _layout_assumptions(layout: Layout) -> list[str]:
+    """Of a layout: clearances, shafts, bearings, walls."""
+    clear = [
+        f"{words} {getattr(layout, name)}{'' if name in layout.model_fields_set else ' (default)'}"
+        for name, words in CLEARANCES.items()
+    ]
+    shafts = (
+        "Shaft diameters are those of the file; they are not checked."
+        if layout.shaft_stress is None
+        else f"Shaft diameters follow from torsion alone at {layout.shaft_stress}: no bending, no "
+        "keyways or other notches."
+    )
+    bearings = (
+        "Bearings are those of the file; their life is not checked."
+        if layout.bearing_diameters
+        else "The file gives no bearings: there is no room for them in the box."
+    )
+    ends = "run from wall to wall" if layout.span == "full" else "end beside their gears"
+    return [
+        f"Clearances of the layout: {', '.join(clear)}.",
+        f"{shafts} Shafts {ends}.",
+        f"{bearings} The box is measured inside its walls.",
+    ]

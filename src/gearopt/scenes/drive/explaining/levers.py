@@ -1,0 +1,248 @@
+"""The numbers of a drive's file that a way out may move, and the file with some of them moved."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Any
+
+from gearopt.optimise.explaining.explanation import Change
+from gearopt.optimise.explaining.handles import Handle
+from gearopt.scenes.drive.explaining.cures import Cure, inherited, next_module
+from gearopt.scenes.drive.explaining.numbers import Path, allowed, eased, put, written
+from gearopt.scenes.drive.scene import Scene
+from gearopt.scenes.drive.tables.stages import StageTable
+from gearopt.scenes.reading.toml import dotted, toml_text
+from gearopt.units import Quantity
+
+FIELDS = {  # name of a limit or of a given size -> key in the file, and its end of a range
+    "k_factor": ("k_factor", None),
+    "unit_load": ("unit_load", None),
+    "wheel_diameter": ("wheel_diameter", None),
+    "module_low": ("module", 0),
+    "module_high": ("module", 1),
+    "pinion_teeth_low": ("pinion_teeth", 0),
+    "pinion_teeth_high": ("pinion_teeth", 1),
+    "wheel_teeth_low": ("wheel_teeth", 0),
+    "wheel_teeth_high": ("wheel_teeth", 1),
+    "stage_ratio_low": ("stage_ratio", 0),
+    "stage_ratio_high": ("stage_ratio", 1),
+    "face_width_low": ("face_width_over_diameter", 0),
+    "face_width_high": ("face_width_over_diameter", 1),
+    "module": ("module", None),
+    "pinion_teeth": ("pinion_teeth", None),
+    "wheel_teeth": ("wheel_teeth", None),
+    "face_width": ("face_width", None),
+    "face_width_over_diameter": ("face_width_over_diameter", None),
+}
+DUTY = {"ratio_low": "ratio_tolerance", "ratio_high": "ratio_tolerance", "torque": "power"}
+WIDTH = "face_width_over_diameter"
+CLOSE = 1.0005  # ratio of a refused to an allowed factor that ends a search
+
+
+@dataclass(frozen=True)
+class Lever:
+    """A number of the file, moved one way.
+
+    family: the limits or sizes it sets; path: where it is written; end: of a range (None: the
+    number, or both ends); direction: +1 or -1; sort: limit, size (given) or duty; handles: what of
+    the real-valued problem it moves.
+    """
+
+    family: str
+    path: Path
+    end: int | None
+    direction: int
+    sort: str
+    handles: tuple[Handle, ...] = ()
+
+    @property
+    def shared(self) -> bool:
+        """Whether it holds for more than one stage."""
+        return self.path[0] != "stage"
+
+    @property
+    def eases(self) -> bool:
+        """Whether more of it is never harder: so with limits, the duty, and b/d1."""
+        return self.sort != "size" or self.family == WIDTH
+
+    @property
+    def reach(self) -> float:
+        """The largest factor by which it may move."""
+        return min(h.reach for h in self.handles)
+
+
+Moves = tuple[tuple[Lever, float], ...]
+
+
+def levers(scene: Scene, handles: Sequence[Handle]) -> list[Lever]:
+    """Every number that a way out may move, with the handles of the problem behind it.
+
+    A number of [limits] or [gears] for all stages that have none of their own, and that of each
+    stage alone; where a single stage takes it from there, once.
+    """
+    found: list[Lever] = []
+    groups: dict[tuple[str, int], list[Handle]] = {}
+    for handle in handles:
+        groups.setdefault((handle.family, handle.direction), []).append(handle)
+    for (family, direction), group in groups.items():
+        if family in DUTY:
+            path: Path = ("duty", DUTY[family])
+            if inherited(scene, path):  # a tolerance of zero has no factor
+                end = {"ratio_low": 0, "ratio_high": 1}.get(family)
+                found.append(Lever(family, path, end, direction, "duty", tuple(group)))
+        elif family in FIELDS:
+            found += _of_stages(scene, family, direction, {stage_of(h): h for h in group})
+    return found
+
+
+def _of_stages(scene: Scene, family: str, direction: int, group: dict[int, Handle]) -> list[Lever]:
+    field, own_end = FIELDS[family]
+    table = "gears" if field == WIDTH else "limits"
+    shared = getattr(getattr(scene, table), field, None)
+    takers = [k for k in group if not scene.stage or getattr(scene.stage[k], field) is None]
+    given = next(iter(group.values())).given
+    # A range of [limits] with equal ends is widened; a size that a stage gives is moved, and b/d1.
+    widened = given and field != WIDTH
+    end = (0 if direction < 0 else 1) if widened else own_end
+    taken = "limit" if widened or not given else "size"
+    found = []
+    if shared is not None and takers:
+        behind = tuple(group[k] for k in takers)
+        found.append(Lever(family, (table, field), end, direction, taken, behind))
+    for k, handle in group.items():
+        path = ("stage", k, field)
+        if k not in takers:
+            sort = "size" if given else "limit"
+            found.append(Lever(family, path, own_end, direction, sort, (handle,)))
+        elif shared is not None and takers != [k]:
+            found.append(Lever(family, path, end, direction, taken, (handle,)))
+        elif shared is None and inherited(scene, path) is not None:  # a load limit of a preset
+            found.append(Lever(family, path, own_end, direction, "limit", (handle,)))
+    return found
+
+
+def stage_of(handle: Handle) -> int:
+    """The stage (from 0) that a handle belongs to."""
+    return int(handle.name.split("[")[1].rstrip("]")) - 1 if "[" in handle.name else 0
+
+
+def staged(scene: Scene) -> Scene:
+    """The scene with one table a stage."""
+    if scene.stage:
+        return scene
+    return scene.model_copy(update={"stage": (StageTable(),) * int(scene.stages or 0)})
+
+
+def applied(scene: Scene, moves: Sequence[tuple[Lever, float]]) -> Cure | None:
+    """The scene with numbers moved by factors >= 1; None where the file's rules refuse it."""
+    found = staged(scene)
+    paths: list[Path] = []
+    for lever, factor in sorted(moves, key=lambda move: not move[0].shared):
+        value = _value(found, lever, factor)
+        if value is None:
+            return None
+        found = put(found, lever.path, value)
+        paths += [lever.path] if lever.path not in paths else []
+    return edits(scene, found, paths) if allowed(found) else None
+
+
+def edits(scene: Scene, found: Scene, paths: Sequence[Path]) -> Cure:
+    """What leads from a scene to another that differs at some places."""
+    changes = []
+    for path in paths:
+        was, now = inherited(scene, path), inherited(found, path)
+        old, new = (toml_text(_raw(v, path)) for v in (was, now))
+        changes.append(Change(dotted(path), old, new, apart(was, now)))
+    return Cure(found, tuple(changes), tuple(paths))
+
+
+def _raw(value: Any, path: Path) -> Any:
+    """A value as its table writes it: in [limits] a range stays one where its ends are equal."""
+    raw = written(value, path)
+    pair = isinstance(value, tuple) and path[0] == "limits" and not isinstance(raw, list)
+    return [raw, raw] if pair else raw
+
+
+def _value(scene: Scene, lever: Lever, factor: float) -> Any:
+    """What to write for a factor; None where no module of [teeth] is left."""
+    now = inherited(scene, lever.path)
+    if lever.path[-1] == "ratio_tolerance":
+        return max(now, eased(tolerance(now, lever.end, factor), 1.0, 1))
+    if not isinstance(now, tuple):
+        return eased(now, factor, lever.direction)
+    ends = list(now)
+    for k in (0, 1) if lever.end is None else (lever.end,):
+        ends[k] = eased(ends[k], factor, lever.direction)
+        if lever.path[-1] == "module" and scene.teeth is not None:
+            ends[k] = next_module(scene, ends[k], lever.direction, beyond=False)
+    return None if None in ends else tuple(ends)
+
+
+def steps(scene: Scene, lever: Lever) -> list[float]:
+    """The factors of all values of a whole number or module, from near to far; else empty."""
+    now = inherited(scene, lever.path)
+    now = now[lever.end or 0] if isinstance(now, tuple) else now
+    if lever.path[-1] == "module" and scene.teeth is not None:
+        size = now.exact[0]
+        beyond = [m for m in scene.teeth.modules if (m - size) * lever.direction > 0]
+        return sorted(float(max(m, size) / min(m, size)) for m in beyond)
+    if not isinstance(now, int):
+        return []
+    far = 4 * now if lever.direction > 0 else max(1, now // 4)
+    values = range(now + lever.direction, far + lever.direction, lever.direction)
+    return [max(v, now) / min(v, now) for v in values]
+
+
+def apart(before: Any, after: Any) -> float:
+    """How far two values are apart, as a factor >= 1; of ranges, the product of both ends'.
+
+    Ends that were equal and are equal are one number.
+    """
+    if isinstance(before, tuple):
+        if before[0] == before[1] and after[0] == after[1]:
+            return apart(before[0], after[0])
+        return math.prod(apart(a, b) for a, b in zip(before, after, strict=True))
+    a, b = (float(v.number if isinstance(v, Quantity) else v) for v in (before, after))
+    return max(a, b) / min(a, b) if min(a, b) > 0.0 else math.inf
+
+
+def tolerance(now: Fraction, end: int | None, factor: float) -> Fraction:
+    """The ratio tolerance at which the lowest (0) or highest (1) ratio is a factor further out."""
+    f = Fraction(factor)
+    return 1 - (1 - now) / f if end == 0 else (1 + now) * f - 1
+
+
+def bound_of(scene: Scene, lever: Lever, bound: float | None) -> float | None:
+    """The proven least factor of a number as the file has it, from that of its handles."""
+    if bound is None:
+        return None
+    if lever.path[-1] == "ratio_tolerance":
+        now = scene.duty.ratio_tolerance
+        return float(tolerance(now, lever.end, bound) / now)
+    return None if _mismatched(scene, lever) else bound
+
+
+def _mismatched(scene: Scene, lever: Lever) -> bool:
+    """Whether the problem has another number than the file: an end between two modules."""
+    now = inherited(scene, lever.path)
+    if lever.path[-1] != "module" or scene.teeth is None or lever.end is None:
+        return False
+    return any(float(now[lever.end].exact[0]) != h.value for h in lever.handles)
+
+
+def comparable(scene: Scene, found: Sequence[Lever]) -> bool:
+    """Whether a proven least product of handles is one of the file's numbers."""
+    return not any(_mismatched(scene, lever) for lever in found)
+
+
+def reachable(scene: Scene, lever: Lever) -> Lever:
+    """The lever with its handles' reach cut to what the file's rules allow (1: no move)."""
+    low, high = 1.0, max((h.reach for h in lever.handles), default=1.0)
+    if applied(scene, [(lever, high)]) is not None:
+        return lever
+    while high > low * CLOSE:
+        middle = math.sqrt(low * high)
+        refused = applied(scene, [(lever, middle)]) is None
+        low, high = (low, middle) if refused else (middle, high)
+    return replace(lever, handles=tuple(replace(h, reach=low) for h in lever.handles))

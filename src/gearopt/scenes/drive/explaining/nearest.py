@@ -1,0 +1,138 @@
+"""The nearest total ratio that the limits of an impossible drive reach, as an edit of its duty."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from decimal import Context, Decimal
+from fractions import Fraction
+from typing import Any
+
+from gearopt.optimise.explaining.explain import DIGITS, TAKEN_BACK
+from gearopt.optimise.explaining.explanation import Remedy
+from gearopt.scenes.drive.explaining.levers import edits
+from gearopt.scenes.drive.explaining.numbers import SHORT, allowed, eased, put
+from gearopt.scenes.drive.explaining.several import is_real
+from gearopt.scenes.drive.explaining.tried import Case
+from gearopt.scenes.drive.scene import Scene
+
+TOLERANCE = ("duty", "ratio_tolerance")
+WIDEST = (
+    Fraction(1, 2),
+    Fraction(999, 1000),
+)  # distances to which ratios are looked for, up and down
+NEARER = Fraction(1, 10**9)  # part of its distance by which one that is nearer is asked for
+SHARP = Fraction(1, 10**5)  # part of its distance to which that of real-valued teeth is known
+CLOSE = Fraction(1, 10)  # part of its distance from where all that is nearer is asked for at once
+BACK = Fraction(TAKEN_BACK)
+QUESTIONS = 40  # at most, for nearer ratios
+LONGEST = 15  # digits of what is written
+
+
+@dataclass(frozen=True)
+class Reached:
+    """Ratios that a design exists for, at a distance from the one asked for (a part of it).
+
+    Of real-valued teeth the one below and the one above: at least one of them is reached.
+    """
+
+    away: Fraction
+    ratios: tuple[Fraction, ...]
+
+
+def nearest_ratio(case: Case, away: Fraction | None) -> Remedy | None:
+    """The ratio next to the one asked for that a design exists for, written into the duty.
+
+    away: the least tolerance known to suffice, None where the file can hold none.
+    """
+    far = max(WIDEST[0], min(WIDEST[1], 1 - 1 / case.scene.duty.total_ratio))
+    reached = _met(case, away or far)
+    if isinstance(reached, str) or reached.away == 0:
+        return None
+    reached, word = _nearest(case, reached)
+    for found in (one for ratio in reached.ratios for one in _written(case.scene, ratio)):
+        if case.status(found) == "feasible":
+            place = ("duty", "ratio" if found.duty.output_speed is None else "output_speed")
+            change = edits(case.scene, found, [place]).changes[0]
+            verified = {"with": "feasible", "nearer": word}
+            return Remedy("choice", "ratio", (change,), change.factor, None, verified)
+    return None
+
+
+def _nearest(case: Case, best: Reached) -> tuple[Reached, str]:
+    """What is reached next to the ratio asked for; and whether all that is nearer is impossible.
+
+    Whole teeth are known to be next in exact numbers, real-valued ones but for TAKEN_BACK of the
+    distance, as limits are met in doubles.
+    """
+    whole, low = case.scene.teeth is not None, case.scene.duty.ratio_tolerance
+    sharp = NEARER if whole else SHARP
+    proven = low  # below it nothing is reached, between it and `low` that is not known
+    excluded = whole  # by the last answer: perhaps all that is nearer is
+    for _ in range(QUESTIONS):
+        if best.away - low <= sharp * best.away:
+            break
+        away = Fraction(math.sqrt(max(low, best.away * BACK) * best.away))
+        if excluded and best.away - low <= CLOSE * best.away:
+            away = best.away * (1 - NEARER)
+        found = _met(case, away)
+        excluded = whole and isinstance(found, str)
+        if isinstance(found, Reached):
+            best = found
+        else:
+            low, proven = away, away if found == "infeasible" else proven
+        if case.clock.over:
+            break
+    known = best.away - proven <= (NEARER if whole else BACK) * best.away
+    return best, "infeasible" if known else "undecided"
+
+
+def _met(case: Case, away: Fraction) -> Reached | str:
+    """A ratio within a distance, or else what is known: infeasible or undecided."""
+    asked, within = case.scene.duty.total_ratio, _within(case.scene, away)
+    if case.scene.teeth is None:
+        word, below, above = case.status(within), asked * (1 - away), asked * (1 + away)
+        return Reached(away, (below, above)) if word == "feasible" else word
+    if is_real(within, case.clock):
+        return "infeasible"
+    teeth = case.teeth(within.train())
+    if not teeth:
+        return "undecided" if teeth is None else "infeasible"
+    ratio = Fraction(math.prod(z2 for _, z2 in teeth), math.prod(z1 for z1, _ in teeth))
+    return Reached(abs(ratio / asked - 1), (ratio,))
+
+
+def _within(scene: Scene, tolerance: Fraction) -> Scene:
+    found: Scene = put(scene, TOLERANCE, tolerance)
+    return found
+
+
+def _written(scene: Scene, ratio: Fraction) -> Iterator[Scene]:
+    """The scene that asks for a ratio, as a file can write it; the output speed where it has that.
+
+    Whole teeth: exactly, or so that the ratio is within the tolerance. Real-valued ones: a short
+    number that is as near, or else one rounded away from the ratio asked for.
+    """
+    asked, speed = scene.duty.total_ratio, scene.duty.output_speed
+    number = ratio if speed is None else speed.number * asked / ratio
+    way = 1 if (number > asked if speed is None else number > speed.number) else -1
+    if scene.teeth is not None:
+        numbers = [_short(number, digits) for digits in range(DIGITS, LONGEST + 1)]
+    else:
+        numbers = [_short(number, SHORT), eased(number, 1.0, way)]
+    for k, value in enumerate(numbers):
+        new: Any = value if speed is None else replace(speed, number=value)
+        found: Scene = put(scene, ("duty", "ratio" if speed is None else "output_speed"), new)
+        if not allowed(found):
+            continue
+        written = found.duty.total_ratio
+        missed = abs(ratio - written)
+        if scene.teeth is not None and missed <= scene.duty.ratio_tolerance * written:
+            yield found
+            return
+        if scene.teeth is None and (k or missed <= Fraction(TAKEN_BACK) * abs(ratio - asked)):
+            yield found
+
+
+def _short(number: Fraction, digits: int) -> Fraction:
+    one, other = Decimal(number.numerator), Decimal(number.denominator)
+    return Fraction(Context(prec=digits).divide(one, other))

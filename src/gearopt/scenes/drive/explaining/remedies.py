@@ -1,0 +1,258 @@
+"""Ways out of an impossible drive, as edits of its file that were tried before they are told."""
+
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Any
+
+from gearopt.optimise.explaining.explain import TAKEN_BACK
+from gearopt.optimise.explaining.explanation import Remedy
+from gearopt.optimise.explaining.handles import Handle
+from gearopt.optimise.explaining.repair import SAME, Clock, conflict, even
+from gearopt.optimise.problem import Problem
+from gearopt.scenes.drive.explaining.cures import less
+from gearopt.scenes.drive.explaining.joint import least_together
+from gearopt.scenes.drive.explaining.levers import (
+    Lever,
+    Moves,
+    applied,
+    bound_of,
+    comparable,
+)
+from gearopt.scenes.drive.explaining.nearest import nearest_ratio
+from gearopt.scenes.drive.explaining.numbers import read
+from gearopt.scenes.drive.explaining.several import is_real, is_stepped, posed, together, widest
+from gearopt.scenes.drive.explaining.switches import eased_tolerance, switches
+from gearopt.scenes.drive.explaining.tried import (
+    FARTHEST,
+    Case,
+    enlarged,
+    least_between,
+    least_step,
+    trimmed,
+)
+from gearopt.scenes.drive.scene import Scene
+from gearopt.scenes.drive.tables.duty import Duty
+
+
+@dataclass(frozen=True)
+class Ways:
+    """conflict: names of limits that cannot hold together; remedies; message: what is missing."""
+
+    conflict: tuple[str, ...] = ()
+    remedies: tuple[Remedy, ...] = ()
+    message: str = ""
+
+
+def remedies(scene: Scene, clock: Clock) -> Ways:
+    """The conflict and the ways out of an impossible drive, the least change first.
+
+    Every remedy was tried: a design exists with it.
+    """
+    case, real = Case(scene, clock), is_real(scene, clock)
+    base, known, movable = posed(scene)
+    blamed = _conflict(base, known, clock) if real else ()
+    singles = _tried(case, _singles(case, base if real else None, movable, blamed))
+    floor, beside = together(case, base, movable) if real else (None, None)
+    found = _changes(case, movable, singles, beside, floor)
+    if scene.duty.ratio_tolerance == 0 and (remedy := eased_tolerance(case)) is not None:
+        found.append(remedy)
+    if (remedy := nearest_ratio(case, _tolerance(found))) is not None:
+        found.append(remedy)
+    if scene.teeth is not None:
+        found += switches(case)
+    late = "time ran out before all ways out were tried" if clock.over else ""
+    return Ways(tuple(h.name for h in blamed), tuple(found), late)
+
+
+def _tolerance(found: Sequence[Remedy]) -> Fraction | None:
+    """The ratio tolerance that one of the remedies writes."""
+    written = [c.write for r in found for c in r.changes if c.key == "duty.ratio_tolerance"]
+    value = read(Duty, "ratio_tolerance", written[0].strip('"')) if written else None
+    return None if value is None else Fraction(value)
+
+
+def _conflict(base: Problem, known: Sequence[Handle], clock: Clock) -> tuple[Handle, ...]:
+    """The limits that cannot hold together; with what is given where limits alone can."""
+    limits = [h for h in known if not h.given]
+    return conflict(base, limits, clock) or conflict(base, known, clock)
+
+
+@dataclass(frozen=True)
+class Way:
+    """Moves that suffice, what they are called, and the proven least factor.
+
+    sure: every smaller change of the same numbers is known to be impossible; None: try a step less.
+    """
+
+    kind: str
+    moves: Moves
+    bound: float | None
+    sure: bool | None = None
+
+
+def _singles(
+    case: Case, base: Problem | None, movable: Sequence[Lever], blamed: Sequence[Handle]
+) -> Iterator[Way]:
+    """Every number that suffices alone, moved as little as that takes.
+
+    base: the problem with real-valued sizes where that is impossible too; only what moves a limit
+    of the conflict helps it.
+    """
+    places = {(h.kind, h.place) for h in blamed if not h.given}
+    conflicting = places and all(not h.given for h in blamed)
+    common: dict[tuple[str, int], float] = {}  # least factors of all stages: one needs no less
+    for lever in movable:
+        start, bound = 1.0, None
+        if base is not None:
+            own = {(h.kind, h.place) for h in lever.handles}
+            given = any(h.given for h in lever.handles)
+            if conflicting and not given and not own & places:
+                continue
+            alike = even(base, lever.handles, case.clock)
+            if alike is None:
+                continue
+            start, bound = alike.factor, bound_of(case.scene, lever, alike.bound)
+        if case.clock.over:
+            return
+        kind = "less" if lever.sort == "duty" else ("even" if lever.shared else "one")
+        if is_stepped(case.scene, lever):
+            alone = least_together(case, [lever], FARTHEST * start)
+            if alone is not None:
+                yield Way(kind, alone[0], bound, alone[1] or None)
+        elif lever.path[-1] == "module" and case.scene.teeth is not None:
+            stepped = least_step(case, lever, FARTHEST * start)
+            if stepped is not None:
+                yield Way(kind, ((lever, stepped[0]),), bound, stepped[1])
+        else:
+            start = max(start, common.get((lever.family, lever.direction), 1.0))
+            doubts = len(case.open)
+            moves = None if math.isinf(start) else least_between(case, ((lever, start),))
+            if lever.shared and len(case.open) == doubts:  # else a smaller one may do
+                least = math.inf if moves is None else moves[0][1]
+                common[lever.family, lever.direction] = least
+            if moves is not None:
+                yield Way(kind, moves, bound)
+    yield from _alike(case, base, movable)
+
+
+def _tried(case: Case, ways: Iterable[Way]) -> list[tuple[Way, Remedy]]:
+    """Ways with their edits, each as it is found: those that were found before time ran out."""
+    return [(way, r) for way in ways if (r := _remedy(case, way)) is not None]
+
+
+def _alike(case: Case, base: Problem | None, movable: Sequence[Lever]) -> Iterator[Way]:
+    """One factor for a kind of limit that every stage has for itself, and for both load limits."""
+    limits = [m for m in movable if m.sort == "limit"]
+    common = {m.family for m in limits if m.shared}
+    groups = [
+        [m for m in limits if m.family == family and not m.shared]
+        for family in dict.fromkeys(m.family for m in limits)
+        if family not in common
+    ]
+    loads = [m for m in limits if m.family in ("k_factor", "unit_load")]
+    groups.append([m for m in loads if m.shared or m.family not in common])
+    for group in groups:
+        if len(group) < 2 or case.clock.over:
+            continue
+        start, bound = 1.0, None
+        if base is not None:
+            alike = even(base, [h for m in group for h in m.handles], case.clock)
+            if alike is None:
+                continue
+            start = alike.factor
+            bound = alike.bound if comparable(case.scene, group) else None
+        moves = least_between(case, tuple((m, start) for m in group))
+        if moves is not None:
+            yield Way("even", moves, bound)
+
+
+def _changes(
+    case: Case,
+    movable: list[Lever],
+    singles: list[tuple[Way, Remedy]],
+    beside: Moves | None,
+    floor: float | None,
+) -> list[Remedy]:
+    """The remedies of limits and sizes, the least first, then those that ask for less."""
+    ways = []
+    if beside is not None and len(beside) > 1:
+        ways.append(Way("least", beside, floor))
+    for way, _ in singles:
+        several = way.kind == "even" and len(way.moves) > 1 and case.scene.teeth is not None
+        if several:
+            ways.append(Way("least", trimmed(case, way.moves), floor))
+    told = [r for _, r in (*singles, *_tried(case, ways))]
+    best = min((_product(r) for r in told if r.kind != "less"), default=FARTHEST)
+    joint = least_together(case, movable, best * (1.0 - SAME))
+    if joint is not None and (r := _remedy(case, Way("least", joint[0], floor, joint[1] or None))):
+        told.append(r)
+    if not any(r.kind != "less" for r in told) and (r := _all_limits(case, movable)):
+        told.append(r)
+    own = sorted((r for r in told if r.kind != "less"), key=_product)
+    own.sort(key=lambda r: r.kind == "even" and len(r.changes) > 1)  # its numbers move alike
+    if own:
+        all_known = not (case.clock.over or case.open) and _product(own[0]) <= FARTHEST
+        tried = "need more" if all_known else "not all known"
+        least = replace(
+            own[0],
+            kind="least",
+            factor=_product(own[0]),
+            bound=own[0].bound if floor is None else floor,
+            verified={**own[0].verified, "others": tried},
+        )
+        own = [least, *_worth_telling(r for r in own[1:] if r.kind != "least")]
+    return _distinct([*own, *(r for r in told if r.kind == "less")])
+
+
+def _worth_telling(found: Any) -> Iterator[Remedy]:
+    """Of the numbers of single stages the least one of each kind."""
+    seen = set()
+    for remedy in found:
+        if remedy.kind != "one" or remedy.what not in seen:
+            yield remedy
+        seen.add(remedy.what if remedy.kind == "one" else "")
+
+
+def _all_limits(case: Case, movable: list[Lever]) -> Remedy | None:
+    """All limits enlarged alike, then each made as small as the others allow."""
+    moves = tuple((m, 1.0) for m in widest(movable))
+    larger = enlarged(case, moves) if moves and case.scene.teeth is not None else None
+    return None if larger is None else _remedy(case, Way("least", trimmed(case, larger), None))
+
+
+def _product(remedy: Remedy) -> float:
+    return math.prod(c.factor for c in remedy.changes)
+
+
+def _distinct(found: Sequence[Remedy]) -> list[Remedy]:
+    """Of remedies that edit the same keys, the one of the smallest factor."""
+    best: dict[tuple[str, ...], Remedy] = {}
+    for remedy in found:
+        keys = tuple(sorted(c.key for c in remedy.changes))
+        if keys not in best or _product(remedy) < _product(best[keys]) * (1.0 - SAME):
+            best[keys] = remedy
+    return list(best.values())
+
+
+def _remedy(case: Case, way: Way) -> Remedy | None:
+    """A way out as edits, tried as they are written; None if it is none."""
+    cured = applied(case.scene, way.moves)
+    if cured is None or case.status(cured.scene) != "feasible":
+        return None
+    if way.sure is not None:
+        word = "infeasible" if way.sure else "undecided"
+    else:
+        each = (None,) if way.kind == "even" else range(len(cured.changes))
+        words = {case.status(less(case.scene, cured, TAKEN_BACK, k)) for k in each}
+        word = words.pop() if len(words) == 1 else "mixed"
+    factors = [c.factor for c in cured.changes]
+    return Remedy(
+        way.kind,
+        ", ".join(dict.fromkeys(lever.family for lever, _ in way.moves)),
+        cured.changes,
+        max(factors) if way.kind == "even" else math.prod(factors),
+        way.bound,
+        {"with": "feasible", "with_less": word},
+    )

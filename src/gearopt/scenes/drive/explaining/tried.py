@@ -1,0 +1,185 @@
+"""Whether an impossible drive would be possible with some numbers moved, and the least that do."""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+from gearopt.formulations import sizing
+from gearopt.formulations.teeth.progress import Teeth
+from gearopt.formulations.teeth.search import any_train, possible
+from gearopt.formulations.teeth.wide import narrowed
+from gearopt.formulations.train import Train
+from gearopt.optimise.explaining.explain import TAKEN_BACK, THERE
+from gearopt.optimise.explaining.repair import Clock
+from gearopt.scenes.drive.explaining.cures import less
+from gearopt.scenes.drive.explaining.levers import Lever, Moves, applied, steps
+from gearopt.scenes.drive.scene import Scene
+
+WIDEST = (1.02, 1.1, 1.3, 2.0, 4.0)  # extra factors that are tried for whole teeth, in turn
+FARTHEST = 4.0  # factor to which numbers that may only take steps are tried
+CLOSE = 1.0 + 0.5 * TAKEN_BACK  # ratio of an impossible to a possible factor that ends a search
+DOUBTS = 3  # factors that may stay undecided before a search ends at the least that is known
+LEAST = 1.0 + 1e-7  # a search between two factors this close ends in any case
+SECONDS = 2.0  # at most, for one question whether whole teeth are possible
+
+Works = Callable[..., bool | None]
+
+
+@dataclass(frozen=True)
+class Case:
+    """A drive that is impossible, and the time to look for ways out.
+
+    open: questions that no answer was found to in time; a list, to be added to.
+    """
+
+    scene: Scene
+    clock: Clock
+    open: list[Train] = field(default_factory=list)
+
+    def possible(self, train: Train) -> bool | None:
+        """Whether a drive has a design, with whole teeth where the file asks for them.
+
+        None where that is not known in time.
+        """
+        if self.clock.over:
+            return None
+        if self.scene.teeth is None:
+            word = self.clock.solve(sizing.problem(train)).status
+            return True if word in THERE else (False if word == "infeasible" else None)
+        few, seconds = narrowed(train), self.clock.within(SECONDS)
+        if few != train and possible(few, seconds, self.clock.watch):
+            return True
+        found = possible(train, seconds, self.clock.watch)
+        if found is None:
+            self.open.append(train)
+        return found
+
+    def teeth(self, train: Train) -> Teeth | None:
+        """The teeth of some train of a drive, () where there is none; None: not known in time."""
+        if self.clock.over:
+            return None
+        return any_train(train, self.clock.within(SECONDS), self.clock.watch)
+
+    def status(self, scene: Scene) -> str:
+        """What is known of a changed drive: feasible, infeasible or undecided.
+
+        Real-valued sizes are asked first: where they are impossible, whole teeth are.
+        """
+        if self.clock.over:
+            return "undecided"
+        if scene.teeth is not None:
+            if self.clock.solve(sizing.problem(scene.train())).status == "infeasible":
+                return "infeasible"
+        found = self.possible(scene.train())
+        return "undecided" if found is None else ("feasible" if found else "infeasible")
+
+    def works(self, moves: Sequence[tuple[Lever, float]], back: float = 0.0) -> bool | None:
+        """Whether moves suffice (less a part `back` of each); None: not known, or refused."""
+        cured = applied(self.scene, moves)
+        if cured is None:
+            return None
+        return self.possible((less(self.scene, cured, back) if back else cured.scene).train())
+
+
+def least_step(case: Case, lever: Lever, most: float) -> tuple[float, bool] | None:
+    """The least factor, at most `most`, of a number that may only take steps.
+
+    And whether every smaller one is known to be impossible.
+    """
+    sure = True
+    for factor in steps(case.scene, lever):
+        cured = applied(case.scene, [(lever, factor)])
+        if cured is None or factor > most or case.clock.over:
+            break
+        found = case.possible(cured.scene.train())
+        if found:
+            return factor, sure
+        sure = sure and found is False
+    return None
+
+
+def least_between(case: Case, moves: Moves) -> Moves | None:
+    """The least moves that suffice, all alike: as given, or enlarged for whole teeth."""
+    if case.scene.teeth is None:
+        return moves
+    return enlarged(case, moves)
+
+
+def enlarged(case: Case, moves: Moves, fixed: Moves = ()) -> Moves | None:
+    """Moves with the least common factor beyond their own with which a design exists.
+
+    fixed: moves that are made beside them, as they are.
+    """
+
+    def larger(extra: float) -> Moves:
+        return tuple((lever, min(f * extra, max(f, lever.reach))) for lever, f in moves)
+
+    def works(extra: float, back: float = 0.0) -> bool | None:
+        return case.works((*larger(extra), *fixed), back)
+
+    hopeless = all(lever.eases for lever, _ in moves) and works(WIDEST[-1]) is False
+    extra = None if hopeless else least_value(1.0, WIDEST, works)
+    return None if extra is None else larger(extra)
+
+
+def least_value(low: float, wider: Sequence[float], works: Works) -> float | None:
+    """The least value from `low` on that will do, looked for below the first of `wider` that does.
+
+    works(value, back): whether a value will do, also with its edits taken back by a part; None:
+    not known, so that the widest is tried. None where none is known to do.
+    """
+    if works(low):
+        return low
+    for high in wider:
+        found = works(high)
+        if found is None and high < wider[-1]:
+            high, found = wider[-1], works(wider[-1]) or None
+        if found is not False:
+            return _between(low, high, works) if found else None
+        low = high
+    return None
+
+
+def _between(low: float, high: float, works: Works) -> float:
+    """The least factor known to do, between an impossible and a possible one.
+
+    works(factor, back): whether a factor will do, also with its edits taken back by a part. One
+    that stays undecided is not known to do.
+    """
+    doubts = 0
+    while doubts < DOUBTS:
+        if high <= low * CLOSE and not (high > low * LEAST and works(high, TAKEN_BACK)):
+            break
+        middle = math.sqrt(low * high)
+        found = works(middle)
+        doubts += found is None
+        low, high = (low, middle) if found else (middle, high)
+    return high
+
+
+def trimmed(case: Case, moves: Moves, fixed: Moves = ()) -> Moves:
+    """Moves of which each is needed, and as small as the others and those fixed allow."""
+    kept = moves
+    for lever, factor in reversed(moves):
+        beside = tuple(m for m in kept if m[0] is not lever)
+        others = (*beside, *fixed)
+        if others and case.works(others):
+            kept = beside
+            continue
+        least = _between(1.0, factor, _alone(case, others, lever))
+        kept = tuple((m, least if m is lever else f) for m, f in kept)
+    return kept
+
+
+def _alone(case: Case, others: Moves, lever: Lever) -> Works:
+    """Whether a factor of one move will do beside the others: works(factor, back)."""
+
+    def works(factor: float, back: float = 0.0) -> bool | None:
+        moves = (*others, (lever, factor))
+        cured = applied(case.scene, moves)
+        if cured is None or not back:
+            return case.works(moves)
+        one = less(case.scene, cured, back, cured.paths.index(lever.path))
+        return case.possible(one.train())
+
+    return works

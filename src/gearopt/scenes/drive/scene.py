@@ -1,0 +1,242 @@
+"""A drive's file as a whole: its tables, how they fit together, and the drive they describe."""
+
+from collections.abc import Callable
+from decimal import Decimal
+from fractions import Fraction
+from typing import Annotated, Any
+
+from pydantic import Field, model_validator
+
+from gearopt.formulations.design import describe
+from gearopt.formulations.layout.gearbox import Gearbox
+from gearopt.formulations.process import methods
+from gearopt.formulations.train import FaceWidth, Sizes, Stage, Train
+from gearopt.optimise.result import Outcome
+from gearopt.physics.loads import torque
+from gearopt.scenes.drive.tables.duty import Duty
+from gearopt.scenes.drive.tables.layout import KeepOutTable, Layout, PlaceTable, gearbox
+from gearopt.scenes.drive.tables.limits import Limits, Objective, Teeth
+from gearopt.scenes.drive.tables.process import ProcessOneTable, ProcessTwoTable
+from gearopt.scenes.drive.tables.stages import Gears, StageTable
+from gearopt.scenes.reading.fields import Table, refuse, whole, words
+
+EXAMPLE = """\
+gearopt = 1
+kind = "drive"
+title = "A two-stage drive"
+
+[duty]
+power = "7.5 kW"
+input_speed = "1450 rpm"
+output_speed = "66.5 rpm"      # or: ratio = 21.8
+ratio_tolerance = "1 %"
+
+[gears]
+helix_angle = "25 deg"
+
+[[stage]]                      # from the input on; what is fixed or differs in this stage
+face_width_over_diameter = 0.6 # b/d1; a range [0.3, 0.6] leaves the width free
+
+[[stage]]
+face_width_over_diameter = 0.75
+
+[limits]
+k_factor = "2.07 MPa"          # contact; or: preset = "chong-lee-elevator"
+unit_load = "48 MPa"           # tooth root
+pinion_teeth = [20, 40]
+
+[teeth]                        # whole teeth, standard modules; without it sizes are continuous
+modules = "ISO 54 I"
+
+[objective]
+minimise = "gear_volume"       # or mass, sum_of_centre_distances, total_length
+
+# [layout]                     # without the # the gears are laid out in the smallest box
+# shaft_stress = "40 MPa"      # torsion; or: shaft_diameters = ["20 mm", "35 mm", "60 mm"]
+# span = "full"                # shafts from wall to wall; or partial
+
+# [process_one]                # designs by the rules of a paper, beside the best one:
+# stage_ratios = [4.96, 4.36]  # by K-factor and unit load,
+# [process_two]                # and after Niemann
+# first_centre_distance = "150 mm"
+# modules = ["2 mm", "3 mm"]   # or: pinion_teeth = [23, 25]
+"""
+
+
+class Scene(Table):
+    """A drive."""
+
+    title: Annotated[str, words()] = Field("", description="A line for the report")
+    source: Annotated[str, words()] = Field(
+        "", description="Where the data and the expected value come from"
+    )
+    duty: Duty
+    stages: Annotated[int | None, whole(2, 1, 6)] = Field(
+        None, description="Number of stages (or write one [[stage]] table a stage)"
+    )
+    gears: Gears = Field(default_factory=Gears)
+    stage: tuple[StageTable, ...] = Field((), description="One table a stage, from the input on")
+    limits: Limits
+    teeth: Teeth | None = None
+    objective: Objective = Field(default_factory=Objective)
+    layout: Layout | None = None
+    place: tuple[PlaceTable, ...] = Field((), description="One table a place")
+    keep_out: tuple[KeepOutTable, ...] = Field((), description="One table a keep-out")
+    process_one: ProcessOneTable | None = None
+    process_two: ProcessTwoTable | None = None
+
+    @model_validator(mode="after")
+    def _consistent(self) -> "Scene":
+        number = len(self.stage)
+        if self.stages is None and not self.stage:
+            if self.gears.face_width_over_diameter is None:
+                raise refuse("is missing: one table [[stage]] a stage", at=("stage",))
+            raise refuse("is missing (or write one [[stage]] table a stage)", at=("stages",))
+        if number > 6:
+            raise refuse(
+                "is one more than the six stages allowed", at=("stage", 6), action="remove"
+            )
+        if self.stages is not None and self.stage and self.stages != number:
+            raise refuse(f"differs from the {number} [[stage]] tables", number, ("stages",))
+        for k, own in enumerate(self.stage or (StageTable(),)):
+            self._check_width(own, ("stage", k) if self.stage else ("gears",))
+            if self.teeth is not None and not self._modules(own):
+                place = ("stage", k, "module") if own.module else ("limits", "module")
+                raise refuse("holds no module that [teeth] allows", self._around(own), place)
+        self._check_layout(len(self.stage) or int(self.stages or 0))
+        for name, table in (("process_one", self.process_one), ("process_two", self.process_two)):
+            if table is not None and self.teeth is None:
+                raise refuse("needs a table [teeth]", at=(name,), action="remove")
+            if table is not None:
+                table.check(len(self.stage) or int(self.stages or 0), name)
+        return self
+
+    def _check_layout(self, stages: int) -> None:
+        """The tables of a layout, against the drive and each other."""
+        if self.layout is None:
+            for name in ("place", "keep_out"):
+                if getattr(self, name):
+                    raise refuse("needs a table [layout]", at=(name,), action="remove")
+            return
+        self.layout.check(stages)
+        for k, place in enumerate(self.place):
+            if place.shaft > stages + 1:
+                rule = f"is above {stages + 1}, the output shaft"
+                raise refuse(rule, stages + 1, ("place", k, "shaft"), "sample")
+        if self.layout.together and self.teeth is None:
+            raise refuse("needs a table [teeth]", False, ("layout", "together"))
+
+    def _check_width(self, own: StageTable, place: tuple[Any, ...]) -> None:
+        """One rule for the face width, and a range where a range is needed."""
+        key = (*place, "face_width_over_diameter")
+        if own.face_width is not None:
+            if own.face_width_step is not None:
+                raise refuse(
+                    "stands beside face_width, which fixes the width",
+                    at=(*place, "face_width_step"),
+                    action="remove",
+                )
+            span = own.face_width_over_diameter
+            if span is not None and span[0] == span[1]:
+                raise refuse(
+                    "stands beside face_width: only a range can limit a fixed width",
+                    [float(span[1] / 2), float(span[1])],
+                    key,
+                )
+            return
+        step = own.face_width_step or self.gears.face_width_step
+        span = own.face_width_over_diameter or self.gears.face_width_over_diameter
+        if span is None:
+            ways = " (or give face_width, or set it in [gears])" if place[0] == "stage" else ""
+            raise refuse(f"is missing{ways}", 0.6 if step is None else None, key)
+        if step is not None and span[0] == span[1]:
+            raise refuse(
+                "ties the width, so that it cannot keep to face_width_step: give a range",
+                [float(span[0] / 2), float(span[1])],
+                key,
+            )
+
+    def _modules(self, own: StageTable) -> tuple[Fraction, ...]:
+        span = own.module or self.limits.module
+        ends = () if span is None else tuple(end.exact[0] for end in span)
+        if self.teeth is None:
+            return tuple(sorted(set(ends)))
+        if own.module and ends[0] == ends[1]:
+            return ends[:1]
+        series = self.teeth.modules
+        return tuple(m for m in series if not ends or ends[0] <= m <= ends[1])
+
+    def _around(self, own: StageTable) -> list[str]:
+        """The narrowest range of modules of [teeth] around one that holds none of them."""
+        span = own.module or self.limits.module
+        assert span is not None and self.teeth is not None
+        series = self.teeth.modules
+        below = max((m for m in series if m < span[0].exact[0]), default=series[0])
+        above = min((m for m in series if m > span[1].exact[0]), default=series[-1])
+        return [f"{Decimal(m.numerator) / m.denominator} mm" for m in (below, above)]
+
+    @property
+    def given(self) -> bool:
+        """Whether teeth, modules and face widths are all given, so that nothing is to be sized."""
+
+        def one(ends: tuple[Any, Any] | None) -> bool:
+            return ends is not None and ends[0] == ends[1]
+
+        return bool(self.stage) and all(
+            one(s.pinion_teeth) and one(s.wheel_teeth) and one(s.module) and s.face_width
+            for s in self.stage
+        )
+
+    def train(self) -> Train:
+        """The drive as plain numbers."""
+        stages = self.stage or (StageTable(),) * int(self.stages or 0)
+        density = self.objective.density
+        return Train(
+            torque=torque(self.duty.power.value, self.duty.input_speed.value),
+            ratio=self.duty.total_ratio,
+            tolerance=self.duty.ratio_tolerance,
+            stages=tuple(self._stage(s) for s in stages),
+            helix_angle=self.gears.helix_angle.value,
+            coprime=bool(self.teeth and self.teeth.coprime),
+            objective=self.objective.minimise,
+            density=density.value if density else None,
+        )
+
+    def design(self, sizes: Sizes) -> dict[str, Any]:
+        """The drive of given sizes in the words of its drawing."""
+        angle, speed = self.gears.pressure_angle.value, self.duty.input_speed.value
+        return describe(self.train(), sizes, angle, speed)
+
+    def processes(self) -> dict[str, Callable[..., Outcome]]:
+        """The two design processes, with what the file tells them, as methods for whole teeth."""
+        one, two = self.process_one, self.process_two
+        return methods(self.train(), one.inputs() if one else None, two.inputs() if two else None)
+
+    def gearbox(self, sizes: Sizes) -> Gearbox:
+        """The drive of given sizes, to be laid out; it needs the table [layout]."""
+        assert self.layout is not None
+        return gearbox(self.layout, self.place, self.keep_out, self.train(), sizes)
+
+    def _stage(self, own: StageTable) -> Stage:
+        limits = self.limits
+        diameter = own.wheel_diameter or limits.wheel_diameter
+        return Stage(
+            k_factor=(own.k_factor or limits.load("k_factor")).value,
+            unit_load=(own.unit_load or limits.load("unit_load")).value,
+            face_width=self._face_width(own),
+            modules=self._modules(own),
+            pinion_teeth=own.pinion_teeth or limits.pinion_teeth,
+            wheel_teeth=own.wheel_teeth or limits.wheel_teeth or (1, None),
+            ratio=own.stage_ratio or limits.stage_ratio or (Fraction(1), None),
+            wheel_diameter=diameter.exact[0] if diameter else None,
+        )
+
+    def _face_width(self, own: StageTable) -> FaceWidth:
+        proportion = own.face_width_over_diameter
+        if own.face_width is not None:
+            low, high = proportion or (Fraction(0), None)
+            return FaceWidth(low, high, fixed=own.face_width.exact[0])
+        span = proportion or self.gears.face_width_over_diameter
+        assert span is not None  # checked by _check_width
+        step = own.face_width_step or self.gears.face_width_step
+        return FaceWidth(span[0], span[1], step=step.exact[0] if step else None)

@@ -1,0 +1,162 @@
+"""What the answer for a servo axis takes for granted, in sentences."""
+
+import math
+from typing import Any
+
+from gearopt.optimise.result import Result
+from gearopt.scenes.drive.explaining.undercut import undercut
+from gearopt.scenes.servo.achieved import candidates, why_not
+from gearopt.scenes.servo.overlap import given_overlap, overlaps
+from gearopt.scenes.servo.scene import Scene
+from gearopt.scenes.servo.tables.trains import Train
+
+SLOWEST = "acceleration"  # what nobody wants least
+FRICTION = {
+    "acceleration": "The motor speeds the load up; friction is Coulomb's and opposes the motion.",
+    "move": "Ramps up and down are alike, though friction helps to brake; the motor's torque is "
+    "the same up to its speed limit.",
+    "swing": "Coulomb friction is in phase with the speed, inertia with the acceleration; no "
+    "losses in the train. Where [motor] has a torque, it is the largest rms torque.",
+}
+
+
+def assumptions(scene: Scene) -> list[str]:
+    """All that holds for this file."""
+    found = []
+    if scene.duty is not None:
+        found.append(FRICTION[scene.duty.motion])
+        found.append("The best ratio counts the motor's inertia alone, not that of a train.")
+    if scene.train is not None:
+        found += _of_train(scene)
+    if scene.mesh:
+        found.append(
+            "Error: lost motion between both flanks at the output, by small angles; every "
+            "deviation is one-sided and at its worst at once."
+        )
+    if any(mesh.grade is not None for mesh in scene.mesh):
+        found.append(
+            "Pitch deviations by grade are F_pT of ISO 1328-1:2013, not rounded, of both gears."
+        )
+    if scene.tolerances is not None:
+        found.append(
+            "Cost of a tolerance: that of the old one times (old/new)^exponent. Drawn errors: "
+            "run-outs t cos(phi), phi uniform; all else uniform from 0 to t."
+        )
+    if any(budget.rule == "rss" for budget in scene.budget):
+        found.append(
+            "The root of the sum of squares leaves aside that one-sided deviations have a mean "
+            "above zero: the yield that is drawn counts it."
+        )
+    return found
+
+
+def _of_train(scene: Scene) -> list[str]:
+    assert scene.train is not None
+    found = [
+        "External spur gears without profile shift, solid discs of one face width; addendum 1 m.",
+        *_sector(scene.train),
+        "Bending stress after Lewis at the tip of one tooth, form factor pi (0.154 - 0.912/z) of "
+        "full-depth teeth of 20 degrees (up to 8 % above tables, so that stresses may be that much "
+        "higher): no dynamic, load distribution or notch factor, and no contact stress. It is no "
+        "rating by ISO 6336 or AGMA 2101.",
+        _counted(scene),
+    ]
+    found += _of_bodies(scene)
+    if scene.stiffness is not None:
+        found.append(
+            "Stiffness: one pair of teeth in mesh, the shaft between the stages twisted over its "
+            "length; bearings, housing, motor and output shaft are rigid; motor locked."
+        )
+        if scene.stiffness.line_stiffness is None:
+            found.append("Line stiffness of a mesh after Buckingham and Lewis: unverified.")
+    if scene.space is not None:
+        found.append(
+            "The box holds all gears, the last wheel wherever it swings, shafts, hub and motor, "
+            "seen along the shafts, without clearances; its depth is not checked. Lists and plots "
+            "of other trains leave the box aside."
+        )
+    return found
+
+
+def _sector(train: Train) -> tuple[str, ...]:
+    """What part of a disc the last wheel is, where it is no whole one."""
+    share = 100.0 * float(train.sector)
+    return () if share == 100.0 else (f"The last wheel is {share:g} % of a disc.",)
+
+
+def _counted(scene: Scene) -> str:
+    """What mass and inertia hold."""
+    if scene.shaft is None:
+        return "Mass and inertia of a train are those of its gears; no shaft is counted."
+    lightest = ", and so has the mass of [lightest]" if scene.lightest is not None else ""
+    return (
+        "The mass of a train is that of its gears; its inertia has the shaft between the stages in "
+        f"it{lightest}."
+    )
+
+
+def _of_bodies(scene: Scene) -> list[str]:
+    """What keeps clear of what, and how thick the output shaft is taken to be."""
+    assert scene.train is not None
+    bodies = scene.servo_train().bodies
+    assert bodies is not None
+    thick = f"{float(bodies.output_shaft):g} mm"
+    if scene.space is not None:
+        thick += ", hub_diameter of [space]"
+    elif scene.train.output_shaft_diameter is None and scene.shaft is None:
+        thick = "as thin as a line"
+    elif scene.train.output_shaft_diameter is None:
+        thick += ", as thick as the shaft between the stages"
+    thin = "" if scene.shaft is not None else " The middle shaft, not given, is a line."
+    motor = " and motor" if scene.space is not None else ""
+    return [
+        "There are three planes along the shafts: motor, stage 1, stage 2. The motor's shaft ends "
+        "at its pinion, the other two pass through all three. What shares a plane does not "
+        f"overlap, without clearance: gears, shafts{motor}. Root circles, 1.25 m inside the pitch "
+        f"circle, are around their shafts. Output shaft with hub: {thick}.{thin}"
+    ]
+
+
+UNLISTED = "Other trains are not shown beside this one: there are too many, or the time was up."
+
+
+def notes(
+    scene: Scene, design: dict[str, Any], results: tuple[Result, ...], report: dict[str, Any]
+) -> list[str]:
+    """What a reader should know beside the numbers."""
+    duty, found = scene.servo_duty(), []
+    if duty is not None and "ratio" in design:
+        judged = candidates(scene, design.get("train")).values()
+        found = [said for one in judged if (said := why_not(duty, one))]
+    if scene.train is not None and scene.train.maximise is None and scene.train.aim == SLOWEST:
+        found.append(
+            f'minimise = "{SLOWEST}" was read as maximise: the largest one was looked for.'
+        )
+    if not design.get("box", {}).get("fits", True):
+        found.append("The best train does not fit the box of [space].")
+    asked, drawn = scene.accuracy.error, design.get("drawn")
+    if asked is not None and drawn is not None:
+        limit = math.degrees(asked.value)
+        worst = drawn["worst_case_deg"]
+        if worst > limit * (1.0 + 1e-9):
+            found.append(
+                f"The new tolerances at their worst make {worst:.5g} degrees, above the "
+                f"{limit:.5g} of [accuracy]: their budget counts otherwise."
+            )
+    stages = design.get("train", {}).get("stages", [])
+    found += undercut(stages, scene.accuracy.pressure_angle.value, 0.0)
+    if scene.lightest is not None:
+        found.append(
+            "The lightest train has real-valued sizes: it is a floor for gears with whole teeth."
+        )
+        found += overlaps(scene, results)
+    if said := given_overlap(scene):
+        found.append(said)
+    if report.get("trains") == []:
+        found.append(UNLISTED)
+    found += [
+        f"There is no answer for the part {part.name}: {(part.message or part.status).rstrip('.')}."
+        for part in results[1:]
+        if part.value is None
+    ]
+    return found

@@ -1,0 +1,126 @@
+"""Four gears of a servo train as every part of its result shows them."""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+from gearopt.formulations.servo.split.servo_train import ServoTrain, lewis_stress, objectives
+from gearopt.optimise.terms import Array
+from gearopt.physics.geometry import ADDENDUM
+from gearopt.physics.stiffness import lewis_form_factor
+from gearopt.scenes.servo.scene import Scene
+from gearopt.scenes.servo.tables.mesh import Source
+
+KG_M2 = 1e-3  # of a t mm2
+
+
+@dataclass(frozen=True)
+class Gears:
+    """Modules [mm] and teeth of both stages, from the motor on."""
+
+    modules: tuple[float, float]
+    pinions: tuple[int, int]
+    wheels: tuple[int, int]
+
+    @property
+    def ratios(self) -> tuple[float, float]:
+        """Ratios of both stages."""
+        (z1, z3), (z2, z4) = self.pinions, self.wheels
+        return z2 / z1, z4 / z3
+
+    @property
+    def diameters(self) -> tuple[float, float, float, float]:
+        """Pitch diameters of gears 1 to 4 [mm]."""
+        (m1, m2), (z1, z3), (z2, z4) = self.modules, self.pinions, self.wheels
+        return m1 * z1, m1 * z2, m2 * z3, m2 * z4
+
+    @property
+    def point(self) -> Array:
+        """The point of `split.problem`."""
+        import numpy as np
+
+        return np.array([*self.pinions, *self.wheels, *self.modules], float)
+
+    def sensitivity(self, source: Source) -> float:
+        """Error of the output [rad] per mm of a deviation."""
+        wheel = self.diameters[1] if source.stage == 1 else self.diameters[3]
+        return source.per_mm / (wheel * (self.ratios[1] if source.stage == 1 else 1.0))
+
+
+def of_point(x: Array) -> Gears:
+    """The gears of a point of `split.problem`."""
+    z1, z3, z2, z4 = (round(float(z)) for z in x[:4])
+    return Gears((float(x[4]), float(x[5])), (z1, z3), (z2, z4))
+
+
+def given_gears(scene: Scene) -> Gears | None:
+    """The gears that a file gives in its [[mesh]] tables."""
+    if not scene.mesh or not scene.mesh[0].given:
+        return None
+    first, second = scene.mesh
+    assert first.module is not None and second.module is not None
+    return Gears(
+        (first.module.value, second.module.value),
+        (int(first.pinion_teeth or 0), int(second.pinion_teeth or 0)),
+        (int(first.wheel_teeth or 0), int(second.wheel_teeth or 0)),
+    )
+
+
+def errors(scene: Scene, gears: Gears) -> list[dict[str, Any]]:
+    """Every source of error at the output, all at their worst; they add up."""
+    return [
+        {
+            "source": s.name,
+            "kind": s.kind,
+            "stage": s.stage,
+            "tolerance_mm": s.tolerance,
+            "error_deg": math.degrees(s.tolerance * gears.sensitivity(s)),
+        }
+        for s in scene.sources
+    ]
+
+
+def stages(gears: Gears, train: ServoTrain | None = None) -> list[dict[str, Any]]:
+    """Both stages in the words of a drawing; stress and width where the train is known."""
+    found: list[dict[str, Any]] = []
+    for k in (0, 1):
+        m, z1, z2, n = gears.modules[k], gears.pinions[k], gears.wheels[k], gears.ratios[k]
+        stage: dict[str, Any] = {
+            "normal_module_mm": m,
+            "pinion_teeth": z1,
+            "wheel_teeth": z2,
+            "ratio": n,
+            "pinion_diameter_mm": m * z1,
+            "wheel_diameter_mm": m * z2,
+            "pinion_tip_diameter_mm": m * (z1 + 2.0 * ADDENDUM),
+            "wheel_tip_diameter_mm": m * (z2 + 2.0 * ADDENDUM),
+            "centre_distance_mm": 0.5 * m * (z1 + z2),
+        }
+        if train is not None:
+            torque = train.output_torque / (gears.ratios[1] if k == 0 else 1.0)
+            factor = lewis_form_factor(z1)
+            stage["face_width_mm"] = train.face_width
+            stage["bending_stress_MPa"] = lewis_stress(torque, m * z2, train.face_width, m, factor)
+        found.append(stage)
+    return found
+
+
+def described(scene: Scene, gears: Gears) -> dict[str, Any]:
+    """The train of a result: stages, ratio, with [train] inertia and mass; its error, if known.
+
+    Off a single ratio that is asked for it is by ratio_error_percent.
+    """
+    n, table = gears.ratios[0] * gears.ratios[1], scene.train
+    found: dict[str, Any] = {"stages": stages(gears), "ratio": n}
+    if table is not None:
+        train = scene.servo_train()
+        worth = objectives(train, ("inertia", "mass"), gears.diameters, gears.ratios)
+        found["stages"] = stages(gears, train)
+        if table.ratio[0] == table.ratio[1]:
+            found["ratio_error_percent"] = 100.0 * (n / float(train.ratio) - 1.0)
+        found |= {"inertia_kg_m2": KG_M2 * worth["inertia"], "mass_kg": worth["mass"]}
+    if scene.sources:
+        error = sum(s.tolerance * gears.sensitivity(s) for s in scene.sources)
+        found["error_deg"] = math.degrees(error)
+    part = {} if table is None or table.sector == 1 else {"sector": float(table.sector)}
+    return found | part

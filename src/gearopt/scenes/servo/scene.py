@@ -1,0 +1,284 @@
+"""A servo axis's file as a whole: its tables, how they fit together, and what they describe."""
+
+import math
+from typing import Annotated, Any
+
+from pydantic import Field, model_validator
+
+from gearopt.formulations.servo.ratio import ServoDuty
+from gearopt.formulations.servo.split import ServoTrain, StiffTrain
+from gearopt.physics.stiffness import stiffness_of_frequency
+from gearopt.scenes.reading.fields import Table, refuse, words
+from gearopt.scenes.servo.example import EXAMPLE
+from gearopt.scenes.servo.tables.bodies import bodies, check_sector, check_shafts
+from gearopt.scenes.servo.tables.mesh import Accuracy, Mesh, Source
+from gearopt.scenes.servo.tables.motion import Duty, Load, Motor, servo_duty
+from gearopt.scenes.servo.tables.tolerances import (
+    BudgetTable,
+    CostTable,
+    Price,
+    Tolerances,
+    check_costs,
+    price,
+)
+from gearopt.scenes.servo.tables.trains import (
+    MADE_LEAST,
+    Lightest,
+    Shaft,
+    Space,
+    Stiffness,
+    Train,
+)
+
+__all__ = ["EXAMPLE", "Scene"]  # messages show tables of the example
+
+
+class Scene(Table):
+    """A servo axis: motor, two-stage spur gear train, load. Tables switch its parts on."""
+
+    title: Annotated[str, words()] = Field("", description="A line for the report")
+    source: Annotated[str, words()] = Field(
+        "", description="Where the data and the expected value come from"
+    )
+    motor: Motor | None = None
+    load: Load | None = None
+    duty: Duty | None = None
+    train: Train | None = None
+    shaft: Shaft | None = None
+    mesh: tuple[Mesh, ...] = Field((), description="One table a stage, from the motor on")
+    accuracy: Accuracy = Field(default_factory=Accuracy)
+    tolerances: Tolerances | None = None
+    cost: tuple[CostTable, ...] = Field((), description="One table a deviation")
+    budget: tuple[BudgetTable, ...] = Field((), description="One table a budget")
+    stiffness: Stiffness | None = None
+    lightest: Lightest | None = None
+    space: Space | None = None
+
+    @model_validator(mode="after")
+    def _consistent(self) -> "Scene":
+        if not (self.motor or self.load or self.duty or self.train or self.mesh):
+            rule = "is missing, as are [train] and [[mesh]]: nothing is asked for"
+            raise refuse(rule, at=("duty",))
+        self._check_motion()
+        self._check_meshes()
+        self._check_train()
+        self._check_tolerances()
+        return self
+
+    def _check_motion(self) -> None:
+        if self.motor is None and self.duty is None and (self.stiffness or self.load is None):
+            return
+        for name in ("motor", "load", "duty"):
+            if getattr(self, name) is None:
+                rule = "is missing: [motor], [load] and [duty] belong together"
+                raise refuse(rule, at=(name,))
+        assert self.duty and self.motor and self.load
+        self.duty.check(self.motor, self.load)
+
+    def _check_meshes(self) -> None:
+        if len(self.mesh) > 2:
+            raise refuse("is one more than the two stages", at=("mesh", 2), action="remove")
+        if len(self.mesh) == 1:
+            raise refuse("is missing: one table [[mesh]] for each of the two stages", at=("mesh",))
+        if not self.mesh and self.tolerances:
+            raise refuse("is missing: [tolerances] needs one a stage", at=("mesh",))
+        if not self.mesh and "accuracy" in self.model_fields_set:
+            raise refuse("needs tables [[mesh]]", at=("accuracy",), action="remove")
+        given = [mesh.given for mesh in self.mesh]
+        if any(given) and not all(given):
+            rule = "is missing: the gears of the other [[mesh]] are given"
+            raise refuse(rule, at=("mesh", given.index(False), "module"))
+        self._check_deviations()
+        for k, mesh in enumerate(self.mesh):
+            if mesh.grade is not None and self.train is not None:
+                rule = "stands beside [train], which chooses the diameters that it depends on"
+                raise refuse(rule, at=("mesh", k, "grade"), action="remove")
+        if self.mesh and self.train is None:
+            if self.tolerances is None:
+                raise refuse("is missing: [[mesh]] needs it, or [tolerances]", at=("train",))
+            if not any(given):
+                rule = "is missing: without [train] tolerances are for given gears"
+                raise refuse(rule, at=("mesh", 0, "module"))
+
+    def _check_deviations(self) -> None:
+        """Both meshes have deviations, or neither has; what counts errors needs them."""
+        told = [mesh.deviates for mesh in self.mesh]
+        if not self.mesh or all(told):
+            return
+        needs = {
+            "the other [[mesh]] has one": any(told),
+            "[tolerances] are made of them": self.tolerances is not None,
+            "[accuracy] holds their error": self.accuracy.error is not None,
+        }
+        for why, needed in needs.items():
+            if needed:
+                rule = f"is missing, as is any deviation: {why}"
+                raise refuse(rule, at=("mesh", told.index(False), "pitch"))
+
+    def _check_aim(self, train: Train) -> None:
+        """What the train is chosen for is known: an error of deviations, a motion of [duty]."""
+        key = "minimise" if train.maximise is None else "maximise"
+        aim = f'{key} = "{train.aim}"'
+        needs = f"{aim} needs"
+        if train.goal == "error" and not self.sources:
+            if not self.mesh:
+                raise refuse(f"is missing: {needs} one a stage", at=("mesh",))
+            raise refuse(f"is missing, as is any deviation: {needs} one", at=("mesh", 0, "pitch"))
+        motion = MADE_LEAST[train.aim][1]
+        if motion is None:
+            return
+        if self.duty is None:
+            raise refuse(f"is missing: {needs} it", at=("duty",))
+        if self.duty.motion != motion:
+            raise refuse(f"does not suit {aim} of [train]", motion, ("duty", "motion"))
+
+    def _check_train(self) -> None:
+        if self.train is None:
+            for name in ("shaft", "stiffness", "lightest", "space"):
+                if getattr(self, name) is not None:
+                    raise refuse("needs a table [train]", at=(name,), action="remove")
+            return
+        self._check_aim(self.train)
+        check_shafts(self.train, self.shaft, self.space, self.mesh)
+        check_sector(self.train, self.space, self.duty)
+        stiff = self.stiffness
+        if stiff is not None and self.shaft is None:
+            raise refuse("is missing: [stiffness] counts how it twists", at=("shaft",))
+        if stiff is not None and stiff.frequency is not None and self.load is None:
+            raise refuse("needs a table [load]", at=("stiffness", "frequency"), action="remove")
+        if self.lightest is None:
+            return
+        if stiff is None:
+            raise refuse("needs a table [stiffness]", at=("lightest",), action="remove")
+        if stiff.line_stiffness is None:
+            rule = "is missing: [lightest] does not know the teeth that youngs_modulus asks for"
+            raise refuse(rule, "10300 MPa", ("stiffness", "line_stiffness"), "sample")
+        if stiff.frequency is None and stiff.windup is None:
+            rule = "is missing (or give windup): [lightest] needs it"
+            raise refuse(rule, at=("stiffness", "frequency"))
+
+    def _check_tolerances(self) -> None:
+        if self.tolerances is None:
+            for name in ("budget", "cost"):
+                if getattr(self, name):
+                    raise refuse("needs a table [tolerances]", at=(name,), action="remove")
+            return
+        check_costs(self.cost, self.sources)
+        rules = [b.rule for b in self.budget]
+        for k, rule in enumerate(rules):
+            if rule in rules[:k]:
+                text = "repeats a rule: one budget for each"
+                raise refuse(text, at=("budget", k), action="remove")
+        if self.tolerances.grades is not None:
+            if len(rules) > 1:
+                rule = "is one too many: grades are chosen within one budget"
+                raise refuse(rule, at=("budget", 1), action="remove")
+            if rules == ["mean_plus_sd"]:
+                rule = "is not for grades, which add up"
+                raise refuse(rule, "worst_case", ("budget", 0, "rule"))
+        self._check_weights()
+
+    def _check_weights(self) -> None:
+        """Every deviation counts in a budget, or an upper end: kappa = 0 leaves run-outs out."""
+        assert self.tolerances is not None
+        unheard = {s.name for s in self.sources if s.law.mean == 0.0}
+        blind = [b.rule == "mean_plus_sd" and b.kappa == 0 for b in self.budget]
+        if not unheard or not any(blind):
+            return
+        if len(unheard) == len(self.sources):
+            rule = "leaves nothing to count: the mean of run-outs is 0"
+            raise refuse(rule, 3, ("budget", blind.index(True), "kappa"))
+        if all(blind) and self.tolerances.largest_factor is None:
+            rule = "is missing: with kappa = 0 no budget counts the run-outs, whose mean is 0"
+            raise refuse(rule, 4, ("tolerances", "largest_factor"), "sample")
+
+    @property
+    def prices(self) -> tuple[Price, ...]:
+        """What every one of `sources` costs."""
+        assert self.tolerances is not None
+        return tuple(price(source, self.tolerances, self.cost) for source in self.sources)
+
+    @property
+    def sources(self) -> tuple[Source, ...]:
+        """All deviations above zero, stage by stage."""
+        angle = self.accuracy.pressure_angle.value
+        found = [mesh.sources(k, angle) for k, mesh in enumerate(self.mesh, 1)]
+        return tuple(source for stage in found for source in stage)
+
+    def servo_duty(self) -> ServoDuty | None:
+        """What the load does and what drives it, in plain numbers; None where nothing is said."""
+        if self.duty is None or self.motor is None or self.load is None:
+            return None
+        return servo_duty(self.duty, self.motor, self.load)
+
+    def servo_train(self) -> ServoTrain:
+        """The train to be chosen, in plain numbers."""
+        table, shaft, error = self.train, self.shaft, self.accuracy.error
+        assert table is not None
+        ratio, tolerance = table.ratios
+        lost = [sum(s.per_mm * s.tolerance for s in self.sources if s.stage == k) for k in (1, 2)]
+        first, second = (q.exact[0] for q in table.wheel_tip_diameters)
+        return ServoTrain(
+            ratio=ratio,
+            tolerance=tolerance,
+            modules=table.modules,
+            pinion_teeth=table.pinion_teeth,
+            most_wheel_teeth=table.wheel_teeth,
+            face_width=table.face_width.value,
+            density=table.density.value,
+            output_torque=table.output_torque.value,
+            bending=table.bending_stress.value,
+            bore=table.second_pinion_diameter.exact[0],
+            wheel_tips=(first, second),
+            shaft=None if shaft is None else (shaft.diameter.value, shaft.length.value),
+            lost_motion=(lost[0], lost[1]) if self.sources else None,
+            error=math.inf if error is None else error.value,
+            sector=float(table.sector),
+            duty=self.servo_duty(),
+            bodies=bodies(table, shaft, self.space),
+        )
+
+    @property
+    def least_stiffness(self) -> float | None:
+        """Stiffness that the output must have [N mm/rad]; None where none is asked for."""
+        table, found = self.stiffness, []
+        if table is not None and table.frequency is not None and self.load is not None:
+            found.append(
+                float(stiffness_of_frequency(table.frequency.value, self.load.inertia.value))
+            )
+        if table is not None and table.windup is not None and table.load_torque is not None:
+            found.append(table.load_torque.value / table.windup.value)
+        return max(found, default=None)
+
+    def stiff_train(self) -> StiffTrain:
+        """The lightest train to be sized, in plain numbers."""
+        own, table, least = self.servo_train(), self.lightest, self.least_stiffness
+        spring = self.stiffness
+        assert table is not None and spring is not None and least is not None
+        assert own.shaft is not None
+        assert own.bodies is not None
+        assert spring.line_stiffness is not None
+        module = float(own.modules[0])
+        teeth = own.pinion_teeth[0]
+        second = max(teeth, -(-own.bore // own.modules[0]))
+        numbers: dict[str, Any] = {
+            name: getattr(own, name)
+            for name in ("density", "output_torque", "bending", "lost_motion", "error", "sector")
+        }
+        return StiffTrain(
+            stiffness=least,
+            line_stiffness=spring.line_stiffness.value,
+            shear_modulus=spring.shear_modulus.value,
+            ratio=(float(own.ratios[0]), float(own.ratios[1])),
+            module=module,
+            pinion_teeth=(teeth, int(second)),
+            bore=(float(own.bore), table.shaft_wall.value),
+            wheel_tips=(float(own.wheel_tips[0]), float(own.wheel_tips[1])),
+            face_width=table.face_width.value,
+            shaft_diameter=table.shaft_diameter.value,
+            shaft_length=own.shaft[1],
+            inertia=table.inertia.value,
+            output=float(own.bodies.output_shaft),
+            motor=float(own.bodies.motor),
+            **numbers,
+        )

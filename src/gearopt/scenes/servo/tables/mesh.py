@@ -1,0 +1,204 @@
+"""[[mesh]] and [accuracy]: where the error of a servo train comes from, and how large it may be."""
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Annotated
+
+from pydantic import Field, model_validator
+
+from gearopt import units
+from gearopt.formulations.servo.tolerance.distributions import RUN_OUT, UNIFORM, Distribution
+from gearopt.physics.backlash import (
+    backlash_angle,
+    pitch_error_angle,
+    radial_backlash,
+    thickness_backlash,
+)
+from gearopt.physics.tolerances import SCOPE, total_pitch_tolerance
+from gearopt.scenes.reading.fields import Table, number, quantity, refuse, whole
+from gearopt.units import Quantity
+
+RADIAL = {  # key -> words; one-sided radial displacements
+    "pinion_reading": "test radius of pinion",
+    "wheel_reading": "test radius of wheel",
+    "centre_distance": "centre distance of stage",
+    "pinion_bearing_clearance": "bearing clearance of pinion",
+    "wheel_bearing_clearance": "bearing clearance of wheel",
+    "pinion_bearing_run_out": "bearing run-out of pinion",
+    "wheel_bearing_run_out": "bearing run-out of wheel",
+}
+THICKNESS = {
+    "pinion_thickness": "tooth thickness of pinion",
+    "wheel_thickness": "tooth thickness of wheel",
+}
+PITCH = {
+    "pitch": "pitch of stage",
+    "pinion_pitch": "pitch of pinion",
+    "wheel_pitch": "pitch of wheel",
+}
+WORDS = RADIAL | THICKNESS | PITCH
+GEARS = ("module", "pinion_teeth", "wheel_teeth")
+
+Deviation = Annotated[Quantity | None, quantity("length", "0.018 mm", zero=True)]
+
+
+def _deviation(description: str) -> Quantity | None:
+    found: Quantity | None = Field(None, description=description)
+    return found
+
+
+@dataclass(frozen=True)
+class Source:
+    """One deviation of a mesh.
+
+    key: of its [[mesh]]. per_mm: angle [rad] at a wheel of diameter 1 mm and 1 mm of deviation.
+    kind: backlash or pitch.
+    """
+
+    name: str
+    key: str
+    kind: str
+    stage: int
+    tolerance: float
+    per_mm: float
+    law: Distribution
+
+
+class Mesh(Table):
+    """The deviations of a gear pair, one table a stage, from the motor on; all count at once.
+
+    Radial deviations open the backlash 2 tan(alpha) times, thinner teeth once. With module,
+    pinion_teeth and wheel_teeth the gears are given: beside [train] they are compared with the best
+    ones, without it tolerances are for them.
+    """
+
+    module: Annotated[Quantity | None, quantity("length", "0.5 mm")] = Field(
+        None, description="Module of given gears"
+    )
+    pinion_teeth: Annotated[int | None, whole(20, 12, 1000)] = Field(
+        None, description="Teeth of a given pinion"
+    )
+    wheel_teeth: Annotated[int | None, whole(120, 12, 1000)] = Field(
+        None, description="Teeth of a given wheel"
+    )
+    pinion_reading: Deviation = _deviation("Test radius of the pinion, below nominal at the most")
+    wheel_reading: Deviation = _deviation("Test radius of the wheel, below nominal at the most")
+    centre_distance: Deviation = _deviation("Centre distance, above nominal at the most")
+    pinion_bearing_clearance: Deviation = _deviation(
+        "Half the radial clearance of the pinion's bearings"
+    )
+    wheel_bearing_clearance: Deviation = _deviation(
+        "Half the radial clearance of the wheel's bearings"
+    )
+    pinion_bearing_run_out: Deviation = _deviation("Half the run-out of the pinion's bearings")
+    wheel_bearing_run_out: Deviation = _deviation("Half the run-out of the wheel's bearings")
+    pinion_thickness: Deviation = _deviation(
+        "Tooth thickness of the pinion, below nominal at the most (its lower allowance)"
+    )
+    wheel_thickness: Deviation = _deviation(
+        "Tooth thickness of the wheel, below nominal at the most (its lower allowance)"
+    )
+    pitch: Deviation = _deviation("Cumulative pitch deviation of the pair (or one for each gear)")
+    pinion_pitch: Deviation = _deviation("Cumulative pitch deviation of the pinion")
+    wheel_pitch: Deviation = _deviation("Cumulative pitch deviation of the wheel")
+    grade: Annotated[Fraction | None, number(7, 1, 11)] = Field(
+        None,
+        description="Grade of ISO 1328-1 of both given gears, instead of pitch deviations; not "
+        "beside [train]",
+    )
+
+    @model_validator(mode="after")
+    def _complete(self) -> "Mesh":
+        for name in GEARS:
+            if self.given and getattr(self, name) is None:
+                raise refuse("is missing: gears are given by module and teeth", at=(name,))
+        if self.given and int(self.wheel_teeth or 0) < int(self.pinion_teeth or 0):
+            rule = "is below pinion_teeth: a train from motor to load reduces the speed"
+            raise refuse(rule, "pinion_teeth", ("wheel_teeth",), "swap")
+        for name in PITCH:
+            if self.grade is not None and getattr(self, name) is not None:
+                raise refuse("stands beside grade, which sets it", at=(name,), action="remove")
+        if self.grade is not None:
+            self._check_scope()
+        for name in ("pinion_pitch", "wheel_pitch"):
+            if self.pitch is not None and getattr(self, name) is not None:
+                raise refuse("stands beside pitch", at=(name,), action="remove")
+        if not (self.given or self.deviates):
+            raise refuse("is missing, as is any deviation", at=("pitch",))
+        return self
+
+    def _check_scope(self) -> None:
+        """Gears within the scope of ISO 1328-1, which does not allow extrapolation."""
+        if not self.given:
+            rule = "needs given gears: it depends on their diameters"
+            raise refuse(rule, at=("grade",), action="remove")
+        low, high = SCOPE["module"]
+        assert self.module is not None
+        if not low <= self.module.value <= high:
+            rule = f"is outside the scope of ISO 1328-1 ({low:g} to {high:g} mm), which grade needs"
+            raise refuse(rule, at=("module",))
+        if self.diameters[0] < SCOPE["diameter"][0]:
+            rule = "makes a diameter below 5 mm, outside the scope of ISO 1328-1"
+            raise refuse(rule, f"{5.0 / int(self.pinion_teeth or 1) + 0.05:.1f} mm", ("module",))
+
+    def _length(self, name: str) -> float:
+        found = getattr(self, name)
+        return 0.0 if found is None else float(found.value)
+
+    @property
+    def deviates(self) -> bool:
+        """Whether any deviation is told."""
+        return self.grade is not None or any(self._length(name) for name in WORDS)
+
+    @property
+    def given(self) -> bool:
+        """Whether the gears are given."""
+        return any(getattr(self, name) is not None for name in GEARS)
+
+    @property
+    def diameters(self) -> tuple[float, float]:
+        """Pitch diameters of given gears [mm]."""
+        assert self.module is not None
+        module = self.module.value
+        return module * int(self.pinion_teeth or 0), module * int(self.wheel_teeth or 0)
+
+    def sources(self, stage: int, pressure_angle: float) -> tuple[Source, ...]:
+        """The deviations above zero of a stage (from 1); pressure_angle [rad]."""
+        laws = {
+            **dict.fromkeys(RADIAL, backlash_angle(radial_backlash(1.0, pressure_angle), 1.0)),
+            **dict.fromkeys(
+                THICKNESS, backlash_angle(thickness_backlash(-1.0, 0.0, 0.0, pressure_angle), 1.0)
+            ),
+            **dict.fromkeys(PITCH, pitch_error_angle(1.0, 1.0)),
+        }
+        found = []
+        for name, words in WORDS.items():
+            tolerance = self._tolerance(name)
+            if tolerance <= 0.0:
+                continue
+            kind = "pitch" if name in PITCH else "backlash"
+            law = RUN_OUT if name.endswith("run_out") else UNIFORM
+            own = f"{words} {stage}", name, kind, stage, tolerance, float(laws[name]), law
+            found.append(Source(*own))
+        return tuple(found)
+
+    def _tolerance(self, name: str) -> float:
+        if self.grade is None or name not in ("pinion_pitch", "wheel_pitch"):
+            return self._length(name)
+        assert self.module is not None
+        diameter = self.diameters[("pinion_pitch", "wheel_pitch").index(name)]
+        grade = float(self.grade)
+        return float(total_pitch_tolerance(diameter, self.module.value, grade))
+
+
+class Accuracy(Table):
+    """How far the output may be off, whatever deviations within tolerance come together."""
+
+    error: Annotated[Quantity | None, quantity("angle", "0.1082 deg", most="90 deg")] = Field(
+        None, description="Largest error of the output, both flanks; told but not held without it"
+    )
+    pressure_angle: Annotated[Quantity, quantity("angle", "20 deg", most="45 deg")] = Field(
+        default_factory=lambda: units.parse("20 deg", "angle"),
+        description="Pressure angle",
+        json_schema_extra={"default": "20 deg"},
+    )

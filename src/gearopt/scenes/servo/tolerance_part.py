@@ -1,0 +1,206 @@
+"""The tolerances of a servo train at least cost, and what they give in fact."""
+
+import math
+from dataclasses import asdict, replace
+from typing import Any
+
+from gearopt.formulations.servo.tolerance import grades as graded
+from gearopt.formulations.servo.tolerance import problem as continuous
+from gearopt.formulations.servo.tolerance.sampling import drawn, errors
+from gearopt.formulations.servo.tolerance.stack import Component, ErrorBudget, Stack
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.progress import in_part
+from gearopt.optimise.result import Result
+from gearopt.optimise.solve import run
+from gearopt.optimise.terms import Array
+from gearopt.scenes.reading.ask import Ask
+from gearopt.scenes.servo.gears import Gears
+from gearopt.scenes.servo.scene import Scene
+from gearopt.scenes.servo.tables.tolerances import BudgetTable
+
+BINS = 60
+QUANTILE = ("quantile", "quantile_low", "quantile_high")
+ANGLES = (  # of what is drawn
+    *("mean", "sd", "quantile", "quantile_low", "quantile_high"),
+    *("limit", "largest", "worst_case"),
+)
+
+
+def stack(scene: Scene, gears: Gears) -> Stack:
+    """The deviations of a file as a tolerance stack of given gears; errors in degrees."""
+    table = scene.tolerances
+    assert table is not None
+    low = 0.0 if table.least_factor is None else float(table.least_factor)
+    high = math.inf if table.largest_factor is None else float(table.largest_factor)
+    parts = tuple(
+        Component(
+            name=s.name,
+            sensitivity=math.degrees(gears.sensitivity(s)),
+            cost=price.cost * s.tolerance**price.exponent,
+            exponent=price.exponent,
+            least=low * s.tolerance,
+            most=high * s.tolerance,
+            distribution=s.law,
+        )
+        for s, price in zip(scene.sources, scene.prices, strict=True)
+    )
+    asked = scene.accuracy.error
+    limit = None if asked is None else math.degrees(asked.value)
+    budgets = tuple(_budget(b, parts, old(scene), limit) for b in scene.budget or (BudgetTable(),))
+    return Stack(parts, budgets)
+
+
+def old(scene: Scene) -> Array:
+    """The tolerances of the file [mm]."""
+    import numpy as np
+
+    return np.array([s.tolerance for s in scene.sources])
+
+
+def _budget(
+    table: BudgetTable, parts: tuple[Component, ...], t: Array, limit: float | None
+) -> ErrorBudget:
+    """A budget in degrees; its default limit is that of the file, else what t uses."""
+    rule: Any = table.rule
+    kappa = float(table.kappa)
+    if table.limit is not None:
+        limit = math.degrees(table.limit.value)
+    elif limit is None:
+        beside = ErrorBudget("worst_case", 1.0, name="all")  # no part is without influence on it
+        limit = float(Stack(parts, (ErrorBudget(rule, 1.0, kappa), beside)).used(t)[0])
+    return ErrorBudget(rule, limit, kappa)
+
+
+def problem(scene: Scene, gears: Gears) -> Problem:
+    """The problem of a file's tolerances: real ones, or grades."""
+    own = stack(scene, gears)
+    table = scene.tolerances
+    assert table is not None
+    if table.grades is None:
+        return continuous(own)
+    steps = [2.0 ** (0.5 * j) for j in range(-table.grades, table.grades + 1)]
+    parts = tuple(
+        graded.Graded(
+            c.name,
+            c.sensitivity,
+            tuple((s.tolerance * f, price.cost * f**-price.exponent) for f in steps),
+        )
+        for c, s, price in zip(own.components, scene.sources, scene.prices, strict=True)
+    )
+    (budget,) = own.budgets
+    rule: Any = budget.rule
+    return graded.problem(graded.Choice(parts, budget.error, rule))
+
+
+def tolerance_part(
+    scene: Scene, gears: Gears, ask: Ask
+) -> tuple[Result, dict[str, Any], dict[str, Any]]:
+    """The certified tolerances, their part of the design, and their part of the report."""
+    import numpy as np
+
+    posed, own = problem(scene, gears), stack(scene, gears)
+    watch = in_part(ask.watch, part="tolerances")
+    result, outcome = run(posed, ask.method, ask.budget, ask.seed, watch, ask.gap)
+    result = replace(result, name="tolerances", objective=result.objective | {"unit": ""})
+    report = by_every_rule(own.components, old(scene), "old")
+    if result.value is None or outcome.x is None:
+        proof = {k: v for k, v in result.proof.items() if k != "conflict"}
+        return replace(result, proof=proof), {}, report
+    t = np.array(outcome.x, float)
+    if scene.tolerances is not None and scene.tolerances.grades is not None:
+        t = old(scene) * 2.0 ** (0.5 * (t - 1.0 - scene.tolerances.grades))
+    design: dict[str, Any] = {
+        "tolerances": _rows(scene, own, t),
+        "allocation": _allocation(own, t, result, scene),
+        "drawn": _drawn(own, t, scene.tolerances.seed if scene.tolerances else 0),
+    }
+    report |= by_every_rule(own.components, t, "new")
+    report |= {f"new_{end}_deg": design["drawn"][f"{end}_deg"] for end in QUANTILE}
+    report["tolerance_cost"] = design["allocation"]["cost"]
+    report["old_tolerance_cost"] = design["allocation"]["old_cost"]
+    limits = {_named(name, own): used for name, used in result.limits.items()}
+    return replace(result, design=design, limits=limits), design, report
+
+
+def _named(limit: str, own: Stack) -> str:
+    """`least[3]` as "least of centre distance of stage 1"."""
+    stem, _, index = limit.rstrip("]").partition("[")
+    return f"{stem} of {own.components[int(index) - 1].name}" if index else limit
+
+
+def _rows(scene: Scene, own: Stack, t: Array) -> list[dict[str, Any]]:
+    table = scene.tolerances
+    assert table is not None
+    ends = 2.0 ** (0.5 * table.grades) if table.grades is not None else None
+    rows = []
+    named = zip(scene.sources, scene.prices, own.components, t.tolist(), strict=True)
+    for source, price, part, new in named:
+        before = source.tolerance
+        low, high = (part.least, part.most) if ends is None else (before / ends, before * ends)
+        rows.append(
+            {
+                "name": source.name,
+                "stage": source.stage,
+                "kind": source.kind,
+                "old_mm": before,
+                "new_mm": new,
+                "lower_mm": low,
+                "upper_mm": high if math.isfinite(high) else None,
+                "sensitivity_deg_per_mm": part.sensitivity,
+                "old_cost": price.cost,
+                "new_cost": price.cost * (before / new) ** price.exponent,
+            }
+        )
+    return rows
+
+
+def _allocation(own: Stack, t: Array, result: Result, scene: Scene) -> dict[str, Any]:
+    budgets = []
+    for budget, used in zip(own.budgets, own.used(t), strict=True):
+        row: dict[str, Any] = {"rule": budget.rule}
+        if budget.rule == "mean_plus_sd":
+            row["kappa"] = budget.kappa
+        budgets.append(row | {"limit_deg": budget.error, "used_deg": float(used) * budget.error})
+    return {
+        "budgets": budgets,
+        "cost": result.value,
+        "old_cost": sum(price.cost for price in scene.prices),
+        "method": str(result.proof.get("method", result.method)),
+    }
+
+
+def _drawn(own: Stack, t: Array, seed: int) -> dict[str, Any]:
+    """Drawn errors of the new tolerances, held against the first budget's limit."""
+    import numpy as np
+
+    found = asdict(drawn(own, t, own.budgets[0].error, seed=seed))
+    for name in ANGLES:
+        found[f"{name}_deg"] = found.pop(name)
+    counts, edges = np.histogram(errors(own, t, found["count"], seed), BINS)
+    return found | {"histogram": {"edges_deg": edges.tolist(), "counts": counts.tolist()}}
+
+
+def by_every_rule(parts: tuple[Component, ...], t: Array, whose: str) -> dict[str, float]:
+    """What tolerances t give by every rule [deg], named after whose they are."""
+    kinds: tuple[tuple[str, Any, float], ...] = (
+        ("worst_case", "worst_case", 0.0),
+        ("rss", "rss", 0.0),
+        ("mean", "mean_plus_sd", 0.0),
+        ("mean_plus_3_sd", "mean_plus_sd", 3.0),
+    )
+    budgets = tuple(ErrorBudget(rule, 1.0, kappa, name) for name, rule, kappa in kinds)
+    used = Stack(parts, budgets).used(t).tolist()
+    found = {f"{whose}_{name}_deg": v for (name, _, _), v in zip(kinds, used, strict=True)}
+    found[f"{whose}_sd_deg"] = (
+        found[f"{whose}_mean_plus_3_sd_deg"] - found[f"{whose}_mean_deg"]
+    ) / 3.0
+    return found
+
+
+def of_given(scene: Scene, gears: Gears) -> dict[str, float]:
+    """What the tolerances of the file give on given gears, by every rule [deg]."""
+    parts = tuple(
+        Component(s.name, math.degrees(gears.sensitivity(s)), 1.0, 1.0, 0.0, math.inf, s.law)
+        for s in scene.sources
+    )
+    return by_every_rule(parts, old(scene), "given")

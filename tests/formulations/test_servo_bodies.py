@@ -1,0 +1,100 @@
+"""What the gears of a servo train keep clear of: rows, relaxed rows, whole numbers are one law."""
+
+import math
+from dataclasses import replace
+from fractions import Fraction as F
+
+import numpy as np
+import pytest
+from servo_trains import PAPER, STIFF
+
+from gearopt.errors import SolveError
+from gearopt.formulations.servo.split import Bodies, problem, relaxation, stiff
+from gearopt.formulations.servo.split.bodies import clear_rows, least, rows
+from gearopt.optimise.solve import solve
+
+
+def flat(found):
+    return {
+        f"{name}{k}": value
+        for name, parts in found.items()
+        for k, value in enumerate(parts if isinstance(parts, tuple) else (parts,))
+    }
+
+
+def test_relaxed_rows_are_below_the_true_ones_where_both_break_at_one():
+    """A train that keeps its limits keeps the relaxed ones, for any sizes and ratios above 1."""
+    rng = np.random.default_rng(3)
+    for _ in range(500):
+        m1, m2 = rng.uniform(0.1, 5.0, 2)
+        d1, d3 = m1 * rng.uniform(12, 60), m2 * rng.uniform(12, 60)
+        sizes = d1, d1 * rng.uniform(1.0, 20.0), d3, d3 * rng.uniform(1.0, 20.0)
+        shaft, output, motor = rng.uniform(0.01, 60.0, 3)
+        bodies = Bodies(F(shaft), F(output), F(motor))
+        true = flat(rows(bodies, sizes, (m1, m2)))
+        relaxed = flat(clear_rows(shaft, output, motor, sizes, (m1, m2)))
+        assert (
+            true.keys() == relaxed.keys() == {"output_shaft0", "hub0", "shaft0", "shaft1", "motor0"}
+        )
+        for name in true:
+            assert true[name] > 1.0 or relaxed[name] <= 1.0 + 1e-12
+
+
+def test_the_numbers_of_the_paper():
+    """Shaft 8, hub 16, motor 24 mm: 22.4 mm of gear 2 and hub in 58.5 mm, and so on."""
+    bodies = Bodies(F(8), F(16), F(24))
+    found = rows(bodies, (8.0, 48.0, 13.0, 104.0), (0.5, 0.5))
+    assert found["output_shaft"] == pytest.approx((24.5 + 8.0) / 58.5)
+    assert found["hub"] == pytest.approx(16.0 / 102.75)
+    assert found["shaft"] == pytest.approx((8.0 / 46.75, 8.0 / 11.75))
+    assert found["motor"] == pytest.approx(16.0 / 28.0)
+
+
+def test_a_train_with_nothing_in_the_way_is_the_same():
+    free, held = PAPER, replace(PAPER, bodies=Bodies(F(8), F(16), F(24)))
+    results = [solve(problem(t), "enumeration") for t in (free, held)]
+    assert results[0].value == results[1].value
+    assert [r.proof["feasible_trains"] for r in results] == [62054, 62054]
+
+
+@pytest.mark.parametrize("bodies", [Bodies(F(8), F(16), F(60)), Bodies(F(16), F(80), F(0))])
+def test_bodies_in_the_way_change_the_train_and_raise_the_bound(bodies):
+    loose = replace(PAPER, error=math.radians(0.3), bore=F(15))
+    held = replace(loose, bodies=bodies)
+    free, found = (solve(problem(t)) for t in (loose, held))
+    assert free.value < found.value and found.status == "optimal"
+    assert solve(problem(held), "enumeration").value == pytest.approx(found.value, rel=1e-12)
+    bounds = [solve(relaxation(t)).bound for t in (loose, held)]
+    assert bounds[0] <= bounds[1] * (1.0 + 1e-9) and bounds[1] <= found.value
+
+
+def test_numbers_too_long_for_whole_numbers_are_refused():
+    fine = Bodies(F(0), F(1, 10**17), F(0))
+    with pytest.raises(SolveError, match="fewer digits"):
+        least(fine, PAPER.modules, 300)
+    with pytest.raises(ValueError, match="not below zero"):
+        Bodies(F(-1))
+
+
+@pytest.mark.parametrize("tips", [(1.0, 1.0), (1.0, 105.0), (61.0, 0.2)])
+def test_wheels_smaller_than_a_tooth_are_impossible(tips):
+    """There was an error of a log variable instead: tip diameters less two modules below zero."""
+    result = solve(stiff(replace(STIFF, wheel_tips=tips)))
+    assert result.status == "infeasible" and "wheel_tip" in str(result.proof["conflict"])
+
+
+@pytest.mark.parametrize("bore", [F(10**9), F(1, 10**9)])
+def test_a_bore_far_from_all_other_lengths_is_within_the_search(bore):
+    result = solve(relaxation(replace(PAPER, bore=bore)))
+    assert result.status == ("infeasible" if bore > 1 else "optimal")
+    teeth = 16, max(16, math.ceil(bore / F(1, 2)))
+    own = solve(stiff(replace(STIFF, bore=(float(bore), 3.5), pinion_teeth=teeth)))
+    assert own.status == ("infeasible" if bore > 1 else "optimal")
+
+
+def test_the_lightest_train_keeps_its_wheels_off_the_shafts():
+    free, thick = (solve(stiff(replace(STIFF, output=d))) for d in (0.0, 102.7))
+    wheels = [r.design["pinion_diameter_mm"][1] * r.design["ratio"][1] for r in (free, thick)]
+    assert free.status == thick.status == "optimal" and thick.value >= free.value
+    assert wheels[0] < 103.9 < 102.7 + 2.5 * 0.5 - 1e-6 <= wheels[1]
+    assert solve(stiff(replace(STIFF, output=110.0))).status == "infeasible"

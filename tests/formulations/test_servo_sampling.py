@@ -1,0 +1,193 @@
+"""Drawn errors against exact moments and quantiles; offsets that keep a least backlash."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from servo_tolerances import BASE, E_WC, PRESSURE_ANGLE, S, stack
+
+from gearopt.formulations.servo.tolerance import problem
+from gearopt.formulations.servo.tolerance.backlash import Mesh, bilateral, offset_of
+from gearopt.formulations.servo.tolerance.distributions import NORMAL, RUN_OUT, UNIFORM, offset
+from gearopt.formulations.servo.tolerance.sampling import binomial_interval, drawn, order_interval
+from gearopt.formulations.servo.tolerance.stack import Component, ErrorBudget, Stack
+from gearopt.optimise.solve import solve
+
+LAWS = (UNIFORM, RUN_OUT, NORMAL, offset(RUN_OUT), offset(NORMAL))
+
+
+def moments(parts, t):
+    s = np.array([c.sensitivity for c in parts])
+    mean = np.array([c.distribution.mean for c in parts])
+    sd = np.array([c.distribution.sd for c in parts])
+    return (s * mean) @ t, np.linalg.norm(s * sd * t)
+
+
+def below(parts, t, x):
+    """P(e <= x) of uniform and run-out terms by Gil-Pelaez, from their characteristic functions."""
+    from scipy.integrate import quad
+    from scipy.special import j0
+
+    mean, sd = moments(parts, t)
+
+    def integrand(w):
+        size = 1.0
+        for c, width in zip(parts, t, strict=True):
+            a = w * c.sensitivity * width
+            size *= np.sinc(0.5 * a / np.pi) if c.distribution is UNIFORM else j0(a)
+        return math.sin(w * (x - mean)) * size / w  # sinc is even about the mean
+
+    return 0.5 + quad(integrand, 1e-9, 12.0 / sd, limit=500, epsabs=1e-10)[0] / math.pi
+
+
+@pytest.mark.parametrize("law", LAWS, ids=lambda law: law.name)
+def test_draws_have_the_stated_moments(law):
+    x = law.draw(np.random.default_rng(0), 200_000)
+    assert x.mean() == pytest.approx(law.mean, abs=5 * law.sd / math.sqrt(len(x)))
+    assert x.std() == pytest.approx(law.sd, rel=0.02)
+
+
+def test_the_baseline_of_the_paper():
+    """Mean 0.0510, sd 0.0138, 99.865 % quantile 0.0872, mean + 3 sd 0.0925, worst case 0.1082."""
+    base = stack(("mean_plus_sd", 0.0925))
+    mean, sd = moments(base.components, BASE)
+    found = drawn(base, BASE, 0.0925)
+    assert [mean, sd, mean + 3 * sd] == pytest.approx([0.0510, 0.0138, 0.0925], abs=5e-5)
+    assert found.mean == pytest.approx(mean, abs=5 * sd / math.sqrt(found.count))
+    assert found.sd == pytest.approx(sd, rel=5e-3)
+    assert found.worst_case == pytest.approx(0.1082, abs=5e-5) and found.largest < 0.1082
+    assert found.quantile == pytest.approx(0.0872, abs=2e-4)
+    assert found.quantile_low < 0.0872 < found.quantile_high
+    assert found.quantile_high - found.quantile_low < 8e-4
+    exact = [below(base.components, BASE, x) for x in (found.quantile_low, found.quantile_high)]
+    assert exact[0] < found.probability < exact[1]
+    digit = [below(base.components, BASE, x) for x in (0.08715, 0.08725)]
+    assert digit[0] < found.probability < digit[1]  # 0.0872 is the exact quantile, as printed
+    share = below(base.components, BASE, 0.0925)
+    assert found.yield_low < share < found.yield_high and share > 0.9999
+    assert found.limit == 0.0925 and found.seed == 0
+
+
+def test_backlash_alone():
+    """Mean 0.0285, mean + 3 sd 0.0544, worst case 0.0632 deg."""
+    base = stack(("worst_case", E_WC))
+    radial = np.array(["pitch" not in c.name for c in base.components])
+    mean, sd = moments(base.components, np.where(radial, BASE, 0.0))
+    assert [mean, mean + 3 * sd] == pytest.approx([0.0285, 0.0544], abs=5e-5)
+    assert (S * BASE)[radial].sum() == pytest.approx(0.0632, abs=5e-5)
+
+
+def test_the_statistical_optimum_holds_its_budget():
+    """99.865 % quantile 0.1062 within the budget 0.1082, worst case 0.1443."""
+    best = stack(("mean_plus_sd", E_WC), least=0.25, most=4.0)
+    t = np.array(solve(problem(best)).design["t_mm"])
+    found = drawn(best, t, E_WC)
+    assert found.quantile == pytest.approx(0.1062, abs=3e-4)
+    assert found.quantile_low < 0.1062 < found.quantile_high < E_WC
+    digit = [below(best.components, t, x) for x in (0.10615, 0.10625)]
+    assert digit[0] < found.probability < digit[1]  # 0.1062 is the exact quantile, as printed
+    assert found.yield_low > found.probability
+    assert found.worst_case == pytest.approx(0.1443, abs=5e-5)
+
+
+def test_intervals_hold_as_often_as_they_say():
+    """Quantile 0.9 of 300 uniform draws, 1000 times: 95 % and no less; nor far more."""
+    one = Stack((Component("a", 1.0, 1.0),), (ErrorBudget("worst_case", 1.0),))
+    runs = [drawn(one, [1.0], 0.9, 300, 0.9, 0.95, seed) for seed in range(1000)]
+    quantile = np.mean([r.quantile_low <= 0.9 <= r.quantile_high for r in runs])
+    share = np.mean([r.yield_low <= 0.9 <= r.yield_high for r in runs])
+    assert 0.94 < quantile < 0.99 and 0.94 < share < 0.99
+
+
+def test_intervals_against_their_definition():
+    """By binomial sums: the chance to miss is at most 5 % a side, and more with one rank less."""
+    count, p = 50, 0.9
+
+    def missed(first, last):
+        chance = [math.comb(count, k) * p**k * (1 - p) ** (count - k) for k in range(count + 1)]
+        return sum(chance[:first]), sum(chance[last:])
+
+    first, last = order_interval(count, p, 0.9)
+    assert max(missed(first, last)) <= 0.05 < min(missed(first + 1, last - 1))
+    assert order_interval(100, 0.99865, 0.99)[1] == 101  # too few draws for an upper end
+    assert binomial_interval(0, 10, 0.95) == pytest.approx((0.0, 1.0 - 0.025**0.1), rel=1e-12)
+    assert binomial_interval(10, 10, 0.95) == pytest.approx((0.025**0.1, 1.0), rel=1e-12)
+    assert binomial_interval(4, 10, 0.95) == pytest.approx((0.12155, 0.73762), abs=5e-6)
+
+
+def test_few_draws_and_seeds():
+    base = stack(("worst_case", E_WC))
+    few = drawn(base, BASE, E_WC, 100)
+    assert few.quantile_high == math.inf and few.quantile_low < few.quantile
+    assert few == drawn(base, BASE, E_WC, 100) != drawn(base, BASE, E_WC, 100, seed=1)
+    with pytest.raises(ValueError, match="two draws"):
+        drawn(base, BASE, E_WC, 1)
+
+
+def meshes(stack_, backlash=0.005):
+    radial = [k for k, c in enumerate(stack_.components) if "pitch" not in c.name]
+    return tuple(
+        Mesh(
+            stage,
+            tuple(k for k in radial if stack_.components[k].name.startswith(stage)),
+            backlash,
+            PRESSURE_ANGLE,
+        )
+        for stage in ("12", "34")
+    )
+
+
+def test_a_least_backlash_costs_budget():
+    """5 um in both stages: 0.0070 deg; radial sensitivities double."""
+    base = stack(("worst_case", E_WC))
+    about = bilateral(base, meshes(base))
+    lost = math.degrees(2 * 0.005 / (48 * 8) + 2 * 0.005 / 104)
+    assert lost == pytest.approx(0.0070, abs=5e-5)
+    assert about.budgets[0].error == pytest.approx(E_WC - lost, rel=1e-14)
+    doubled = [
+        b.sensitivity / a.sensitivity
+        for a, b in zip(base.components, about.components, strict=True)
+    ]
+    assert doubled == [1.0 if "pitch" in c.name else 2.0 for c in base.components]
+
+
+def test_backlash_of_the_offset_lies_between_what_is_asked_and_what_is_counted():
+    """j = 2 tan(alpha) (c + X) over all deviations X in +-t: from j_req to j_req + 4 tan sum t."""
+    base = stack(("worst_case", E_WC))
+    about = bilateral(base, meshes(base))
+    t = np.array(solve(problem(about)).design["t_mm"])
+    error = math.fsum(
+        c.sensitivity * w for c, w in zip(base.components, t, strict=True) if "pitch" in c.name
+    )
+    for mesh, (diameter, ratio) in zip(meshes(base), ((48.0, 8.0), (104.0, 1.0)), strict=True):
+        radial = t[list(mesh.components)].sum()
+        least, most = (
+            2 * math.tan(PRESSURE_ANGLE) * (offset_of(mesh, t) + sign * radial) for sign in (-1, 1)
+        )
+        assert least == pytest.approx(0.005, rel=1e-12)
+        error += math.degrees(2 * most / (diameter * ratio))
+    assert error == pytest.approx(E_WC, rel=1e-12)  # the greatest backlash, and the pitch
+
+
+@pytest.mark.parametrize("law", [UNIFORM, RUN_OUT, NORMAL])
+def test_moments_about_the_offset(law):
+    """Mean s t and the sd of s X t, X on [-1, 1], of twice the sensitivity."""
+    base = Stack((Component("a", 3.0, 1.0, distribution=law),), (ErrorBudget("mean_plus_sd", 9.0),))
+    (about,) = bilateral(base, (Mesh("m", (0,), 0.0, PRESSURE_ANGLE),)).components
+    spread = 3.0**-0.5 if law is UNIFORM else law.sd
+    assert about.sensitivity * about.distribution.mean == pytest.approx(3.0, rel=1e-15)
+    assert about.sensitivity * about.distribution.sd == pytest.approx(3.0 * spread, rel=1e-15)
+
+
+def test_what_bilateral_refuses():
+    base = stack(("worst_case", E_WC))
+    with pytest.raises(ValueError, match="leaves out the offset"):
+        bilateral(stack(("rss", E_WC)), meshes(base))
+    with pytest.raises(ValueError, match="of the budget worst_case"):
+        bilateral(base, meshes(base, 0.1))
+    both = replace(meshes(base)[0], components=(0, 13))
+    with pytest.raises(ValueError, match="2 sensitivities"):
+        bilateral(base, (both,))
+    with pytest.raises(ValueError, match="one mesh, once"):
+        bilateral(base, (*meshes(base), meshes(base)[0]))

@@ -1,0 +1,239 @@
+"""Ratio and train together for a duty: against enumeration by other code, and known numbers."""
+
+import math
+from dataclasses import replace
+from fractions import Fraction as F
+from itertools import product
+
+import numpy as np
+import pytest
+from servo_trains import PAPER
+
+from gearopt.formulations.servo.ratio import Drive, ServoDuty, best_ratio
+from gearopt.formulations.servo.split import feasible, in_order, order, problem, relaxation
+from gearopt.formulations.servo.split.exact import KERNEL
+from gearopt.formulations.servo.split.numbers import numbers
+from gearopt.optimise import tape
+from gearopt.optimise.kernels import kernel
+from gearopt.optimise.result import Budget
+from gearopt.optimise.solve import solve
+
+DRIVE = Drive(19.8, 8.6e-3, 50.0, 421.68595, 3.0)
+MOVE = ServoDuty(replace(DRIVE, speed_limit=800.0), "move", angle=6.0 * math.pi)
+SWING = ServoDuty(
+    replace(DRIVE, torque=0.0, load_friction=100.0),
+    "swing",
+    amplitude=math.radians(20.0),
+    angular_frequency=4.0 * math.pi,
+)
+FASTEST = ServoDuty(DRIVE, "acceleration")
+SMALL = replace(
+    PAPER,
+    pinion_teeth=(14, 18),
+    most_wheel_teeth=44,
+    shaft=None,
+    lost_motion=None,
+    error=math.inf,
+    bending=5000.0,
+)
+
+
+def any_duty(rng, ratio):
+    """A duty whose best ratio is somewhere about a ratio, with everything that may bind."""
+    load = float(10.0 ** rng.uniform(-3.0, 1.0))
+    torque, eta = float(rng.uniform(5.0, 60.0)), float(rng.uniform(0.7, 1.0))
+    drive = Drive(
+        load_inertia=load,
+        motor_inertia=load / ratio**2 * float(rng.uniform(0.3, 3.0)),
+        torque=torque,
+        load_friction=float(rng.uniform(0.0, 0.9)) * torque * ratio,
+        motor_friction=float(rng.uniform(0.0, 0.2)) * torque,
+        efficiency=eta,
+    )
+    kind = rng.integers(4)
+    if kind == 0:
+        return ServoDuty(drive, "acceleration")
+    if kind == 1:
+        line = replace(drive, no_load_speed=float(rng.uniform(1.5, 6.0)) * ratio)
+        return ServoDuty(line, "acceleration", load_speed=1.0)
+    if kind == 2:
+        limited = replace(drive, speed_limit=float(10.0 ** rng.uniform(0.0, 3.0)))
+        return ServoDuty(limited, "move", angle=float(rng.uniform(0.1, 30.0)))
+    plain = replace(drive, efficiency=1.0, torque=0.0)
+    return ServoDuty(plain, "swing", amplitude=1.0, angular_frequency=float(rng.uniform(1.0, 9.0)))
+
+
+def worth(duty, n, gears):
+    """What the duty makes least, from the balance of torques; inf where the load does not move."""
+    own = duty.drive
+    rotor = own.motor_inertia + gears
+    if duty.motion == "swing":
+        w = duty.angular_frequency
+        inertia = duty.amplitude * w * w * (own.load_inertia / n + n * rotor)
+        return math.sqrt(inertia**2 / 2 + (own.load_friction / n + own.motor_friction) ** 2)
+    at_speed = own.torque
+    if duty.load_speed and math.isfinite(own.no_load_speed):
+        at_speed *= 1 - n * duty.load_speed / own.no_load_speed
+    out = own.efficiency * n * (at_speed - own.motor_friction) - own.load_friction
+    a = out / (own.load_inertia + own.efficiency * n * n * rotor)
+    if a <= 0.0:
+        return math.inf
+    if duty.motion == "acceleration":
+        return 1.0 / a
+    v = min(math.sqrt(a * duty.angle), own.speed_limit / n)
+    return duty.angle / v + v / a
+
+
+def full_enumeration(train):
+    """Feasible trains that move the load, and the best value of all; whole numbers as fractions."""
+    low, high = train.ratios
+    pinions = range(train.pinion_teeth[0], train.pinion_teeth[1] + 1)
+    wheels = range(train.pinion_teeth[0], train.most_wheel_teeth + 1)
+    best, count = math.inf, 0
+    for z1, z2, z3, z4 in product(pinions, wheels, pinions, wheels):
+        if z2 < z1 or z4 < z3 or not low <= F(z2 * z4, z1 * z3) <= high:
+            continue
+        for m1, m2 in product(train.modules, repeat=2):
+            if m1 * (z2 + 2) > train.wheel_tips[0] or m2 * (z4 + 2) > train.wheel_tips[1]:
+                continue
+            if m2 * z3 < train.bore:
+                continue
+            d1, d2, d3, d4 = (float(m * z) for m, z in ((m1, z1), (m1, z2), (m2, z3), (m2, z4)))
+            n1, n2, width = z2 / z1, z4 / z3, train.face_width
+            loads = (train.output_torque / n2, d2, m1, z1), (train.output_torque, d4, m2, z3)
+            root = [2 * t / (d * width * float(m) * math.pi * (0.154 - 0.912 / z))
+                    for t, d, m, z in loads]  # fmt: skip
+            if max(root) > train.bending:
+                continue
+            j1, j2, j3, j4 = (math.pi / 32 * train.density * width * d**4 for d in (d1, d2, d3, d4))
+            gears = j1 + (j2 + j3) / n1**2 + train.sector * j4 / (n1 * n2) ** 2
+            value = worth(train.duty, n1 * n2, gears)
+            if value < math.inf:
+                best, count = min(best, value), count + 1
+    return count, best
+
+
+@pytest.mark.parametrize("seed", range(16))
+def test_it_is_what_full_enumeration_by_other_code_finds(seed):
+    rng = np.random.default_rng(seed)
+    modules = tuple(sorted(F(int(k), 20) for k in rng.choice(np.arange(6, 20), 2, replace=False)))
+    middle = F(int(rng.integers(25, 70)), 10)
+    train = replace(
+        SMALL,
+        ratio=middle,
+        tolerance=F(int(rng.integers(1, 13)), 100),
+        modules=modules,
+        bore=F(int(rng.integers(16, 36)), 2) * modules[0],
+        wheel_tips=(40 * modules[1], F(int(rng.integers(35, 47))) * modules[1]),
+        bending=float(rng.uniform(300.0, 3000.0)),
+        sector=float(rng.uniform(0.2, 1.0)),
+        density=float(10.0 ** rng.uniform(-9.0, -7.0)),
+    )
+    train = replace(train, duty=any_duty(rng, float(middle)))
+    count, best = full_enumeration(train)
+    goal = train.duty.goal
+    whole, quick = (solve(problem(train, goal), m) for m in ("enumeration", "exact"))
+    assert whole.proof["feasible_trains"] == count
+    if count == 0:
+        assert whole.status == quick.status == "infeasible"
+        return
+    assert whole.status == quick.status == "optimal" and quick.gap < 2e-11
+    assert whole.value == pytest.approx(best, rel=1e-12)
+    assert quick.value == pytest.approx(best, rel=1e-11)
+    assert quick.bound <= best and solve(relaxation(train, goal)).bound <= best * (1 + 1e-12)
+
+
+@pytest.mark.parametrize("duty", [FASTEST, MOVE, SWING], ids=lambda d: d.motion)
+@pytest.mark.parametrize("ratio", [(F(48), F(1, 100)), (F(60), F(2, 3))], ids=["48", "20-100"])
+def test_real_teeth_are_a_close_bound_of_whole_ones(duty, ratio):
+    """The relaxation shares no text with the kernels: its duty is a variable and a limit."""
+    train = replace(PAPER, duty=duty, ratio=ratio[0], tolerance=ratio[1])
+    text = relaxation(train, duty.goal)
+    assert tape.kinds(text).log_convex
+    relaxed, result = solve(text), solve(problem(train, duty.goal))
+    assert relaxed.status == result.status == "optimal" and relaxed.gap < 1e-9
+    assert relaxed.bound <= result.value <= 1.01 * relaxed.bound
+
+
+def test_gears_move_the_best_ratio_as_known_independently():
+    """With 7.578e-7 kg m2 of the paper's gears: N* = 45.999, 4.1 % less acceleration."""
+    plain = ServoDuty(replace(DRIVE, load_friction=0.0, motor_friction=0.0), "acceleration")
+    ratio, most = best_ratio(plain.with_gears(7.578e-4).drive)
+    assert ratio == pytest.approx(45.999, abs=6e-4)
+    assert 100.0 * (1.0 - most / best_ratio(plain.drive)[1]) == pytest.approx(4.1, abs=0.06)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_the_kernel_and_the_text_are_one_law_of_the_duty(seed):
+    rng = np.random.default_rng(100 + seed)
+    duty = any_duty(rng, 30.0)
+    given, code = numbers(replace(PAPER, duty=duty)), kernel(KERNEL)
+    for n, gears in zip(rng.uniform(1.0, 100.0, 50), 10.0 ** rng.uniform(-6, 0, 50), strict=True):
+        found = code.moved(given.duty, n, gears)
+        if math.isinf(found):
+            assert duty.acceleration(n, gears) <= 0.0 and duty.value(n, gears) > 1e10
+            assert duty.limits(n, 1.0)["friction_torque"] >= 1.0 - 1e-12
+        else:
+            assert found == pytest.approx(duty.value(n, gears), rel=1e-13)
+            assert found == pytest.approx(worth(duty, n, gears), rel=1e-12)
+
+
+def test_the_speed_limit_of_the_motor_is_kept_exactly():
+    """A train of ratio 4 and no other: allowed at just 4, impossible below."""
+    train = replace(SMALL, ratio=F(4), tolerance=F(0), modules=(F(1, 2),), bore=F(7))
+    drive = replace(DRIVE, speed_limit=4.0, load_friction=0.0)
+    at = ServoDuty(drive, "acceleration", load_speed=1.0, most_ratio=F(4))
+    below = replace(at, most_ratio=F(4) - F(1, 10**20))
+    for method in ("exact", "enumeration"):
+        found = solve(problem(replace(train, duty=at), at.goal), method)
+        assert found.status == "optimal" and found.limits["motor_speed"] == 1.0
+        none = solve(problem(replace(train, duty=below), at.goal), method)
+        assert none.status == "infeasible"
+
+
+def test_a_swing_keeps_to_the_torque_of_the_motor():
+    train = replace(PAPER, duty=SWING)
+    least = solve(problem(train, SWING.goal)).value
+    for factor, status in ((1.0 + 1e-6, "optimal"), (1.0 - 1e-6, "infeasible")):
+        duty = replace(SWING, drive=replace(SWING.drive, torque=factor * least))
+        for method in ("exact", "enumeration"):
+            found = solve(problem(replace(train, duty=duty), duty.goal), method)
+            assert found.status == status
+        assert solve(relaxation(replace(train, duty=duty), duty.goal)).status == "optimal"
+
+
+def test_where_no_train_moves_the_load_none_is_found():
+    stuck = ServoDuty(replace(DRIVE, load_friction=1e5), "acceleration")
+    for method in ("exact", "enumeration"):
+        assert solve(problem(replace(PAPER, duty=stuck), stuck.goal), method).status == "infeasible"
+
+
+@pytest.mark.parametrize("goal", ["inverse_acceleration", "inertia", "mass"])
+def test_lots_of_trains_are_in_order_and_together_all(goal, monkeypatch):
+    monkeypatch.setattr(order, "LOT", 500)
+    train = replace(SMALL, ratio=F(4), tolerance=F(1, 20), modules=(F(1, 2), F(3, 5)), bore=F(7))
+    train = replace(train, duty=replace(FASTEST, drive=replace(DRIVE, load_friction=10.0)))
+    posed, calls = problem(train, goal), []
+    best = solve(posed).value
+    lots = list(in_order(train, goal, best, lambda: calls.append(1)))
+    points = np.concatenate(lots)
+    values = posed.batch(points).F[:, 0]
+    assert len(lots) > 3 and calls and (np.diff(values) >= -1e-12 * values[1:]).all()
+    assert values[0] == pytest.approx(best, rel=1e-12)
+    every = feasible(train)
+    assert {tuple(x) for x in points.tolist()} == {tuple(x) for x in every.tolist()}
+    assert len(points) == len(every)
+
+
+def test_samplers_take_the_same_problem():
+    train = replace(PAPER, duty=FASTEST, ratio=F(60), tolerance=F(2, 3), error=math.radians(0.12))
+    text = problem(train, FASTEST.goal)
+    result = solve(text, "annealing", Budget(evaluations=10_000), seed=1)
+    assert result.status == "feasible"
+    assert solve(text).value * (1.0 - 1e-11) <= result.value < 1.2 * solve(text).value
+
+
+def test_a_run_stops_when_told():
+    train = replace(PAPER, duty=FASTEST)
+    found = solve(problem(train, FASTEST.goal), watch=lambda event: False)
+    assert found.status == "limit" and found.bound is None
