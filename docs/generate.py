@@ -8,16 +8,16 @@ import re
 import sys
 from pathlib import Path
 
+import commands
 import gallery
 import pictures
 import python_api
 
-from gearopt.cli.reference import reference
 from gearopt.scenes.reading.load import kinds, scene_module
 from gearopt.scenes.reading.schema import reference as tables
 
 DOCS = Path(__file__).parent
-PAGES = {"commands.md": reference, "gallery.md": gallery.page, "python.md": python_api.page}
+PAGES = {"commands.md": commands.page, "gallery.md": gallery.page, "python.md": python_api.page}
 
 
 def page_of(kind: str) -> str:

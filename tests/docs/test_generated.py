@@ -4,6 +4,7 @@ import re
 import tomllib
 from pathlib import Path
 
+import commands
 import gallery
 import generate
 import pytest
@@ -13,7 +14,6 @@ from typer.testing import CliRunner
 import gearopt
 from gearopt.cli import app
 from gearopt.cli.app import EXIT
-from gearopt.cli.reference import EXIT_CODES, reference
 from gearopt.scenes.reading.load import kinds, scene_module
 from gearopt.scenes.reading.schema import reference as tables
 
@@ -31,7 +31,7 @@ def test_the_page_is_what_is_written_now(name):
 
 
 def section(name):
-    return reference().split(f"\n## gearopt {name}\n")[1].split("\n## ")[0]
+    return commands.page().split(f"\n## gearopt {name}\n")[1].split("\n## ")[0]
 
 
 @pytest.mark.parametrize("command", app.registered_commands, ids=lambda c: c.callback.__name__)
@@ -58,8 +58,8 @@ def same(a, b):
 
 
 def test_every_exit_code_is_told():
-    assert {*EXIT.values(), 0, 2, 3, 4} <= set(EXIT_CODES)
-    assert all(f"| {code} | " in page("commands.md") for code in EXIT_CODES)
+    assert {*EXIT.values(), 0, 2, 3, 4} <= set(commands.EXIT_CODES)
+    assert all(f"| {code} | " in page("commands.md") for code in commands.EXIT_CODES)
 
 
 @pytest.mark.parametrize("kind", kinds())

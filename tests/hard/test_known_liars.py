@@ -9,14 +9,12 @@ import numpy as np
 import pytest
 
 from gearopt.errors import SolveError
-from gearopt.formulations import teeth
 from gearopt.optimise.certificate import STATIONARY, certify
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome
 from gearopt.optimise.solve import solve
-from gearopt.optimise.solvers import bonmin, ipopt
+from gearopt.optimise.solvers import ipopt
 from gearopt.optimise.terms import Param, Terms, Var
-from gearopt.scenes.reading.load import read
 
 SANDGREN = 2.7008571488865134e-12  # at 16, 19, 43, 49, by enumeration
 
@@ -149,38 +147,6 @@ def test_hpipm_is_off_by_two_thirds_on_two_teeth():
     ours = solve(problem, "qp")
     assert ours.status == "optimal"
     assert np.abs(ours.design["F_N"] - right).max() <= 1e-12 * case[2]
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("name", "algorithm", "best"),
-    [("elevator", "B-OA", 5782370.7), ("three_stage", "B-OA", 12677057.9)],
-)
-def test_bonmin_outer_approximation_claims_success_above_the_optimum(
-    monkeypatch, name, algorithm, best
-):
-    """4 % and 28 % above, on the model that B-BB solves."""
-    with open(f"problems/{name}.toml", "rb") as file:
-        _, scene = read(file.read())
-    problem = teeth.problem(scene.train())
-    monkeypatch.setitem(bonmin.OPTIONS, "algorithm", algorithm)
-    outcome = bonmin.run(problem, Budget(seconds=60), 0, None)
-    assert outcome.finished and "SUCCESS" in outcome.message  # the lie
-    verdict = certify(problem, outcome, 1e-6)
-    assert verdict.objective > 1.03 * best
-    assert verdict.status == "feasible" and verdict.bound is None
-
-
-@pytest.mark.slow
-def test_bonmin_hybrid_calls_a_solvable_drive_infeasible(monkeypatch):
-    with open("problems/three_stage.toml", "rb") as file:
-        _, scene = read(file.read())
-    problem = teeth.problem(scene.train())
-    monkeypatch.setitem(bonmin.OPTIONS, "algorithm", "B-Hyb")
-    outcome = bonmin.run(problem, Budget(seconds=60), 0, None)
-    assert "claims infeasible" in outcome.message  # the lie
-    assert certify(problem, outcome, 1e-6).status == "failed"
-    assert solve(problem, "exact").status == "optimal"
 
 
 def notch():

@@ -84,14 +84,14 @@ def posynomial(low, high, **kind):
     )
 
 
-@pytest.mark.parametrize("method", [*SAMPLERS, "scip", "bonmin"])
+@pytest.mark.parametrize("method", [*SAMPLERS, "scip"])
 @pytest.mark.parametrize(("low", "high", "value"), [(0.3, 3.7, 5.0), (2.2, 9.9, 3 + 4 / 3 + 1)])
 def test_every_method_for_whole_numbers_takes_fractional_bounds(method, low, high, value):
     result = solve(posynomial(low, high, integer=True), method, SMALL)
     assert result.value == pytest.approx(value, rel=1e-7)
 
 
-@pytest.mark.parametrize("method", [*SAMPLERS, "scip", "bonmin"])
+@pytest.mark.parametrize("method", [*SAMPLERS, "scip"])
 @pytest.mark.parametrize("kind", [{"integer": True}, {"values": (1.0, 2.0)}])
 def test_bounds_that_hold_no_value_are_named(method, kind):
     with pytest.raises(SolveError, match=r"between 1\.2 and 1\.9 for n"):

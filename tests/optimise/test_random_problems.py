@@ -15,7 +15,7 @@ from gearopt.errors import SolveError
 from gearopt.optimise.result import Budget
 
 QUICK = ("ipopt", "gp", "qp", "annealing")
-METHODS = (*QUICK, "multistart", "nsga2", "scip", "bonmin")
+METHODS = (*QUICK, "multistart", "nsga2", "scip")
 NEAR = 0.05  # of a variable's range: what lies farther off may be another minimum
 
 

@@ -29,7 +29,6 @@ LAWS = [
     lambda a, b, c, d: stiffness.mesh_compliance(a, b, c),
     lambda a, b, c, d: stiffness.output_compliance((a, b), (c, d)),
     lambda a, b, c, d: stiffness.locked_frequency(a, b),
-    lambda a, b, c, d: stiffness.free_frequency(a, b, c, d),
     lambda a, b, c, d: stiffness.stiffness_of_frequency(a, b),
     lambda a, b, c, d: backlash.radial_backlash(a, 0.2 * b, 0.3 * c),
     lambda a, b, c, d: backlash.thickness_backlash(-a, -b, -0.1 * c, 0.35, 0.2 * d),

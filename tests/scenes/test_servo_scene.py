@@ -21,9 +21,8 @@ from gearopt.optimise.result import Budget
 from gearopt.report.proof_words import proof
 from gearopt.report.remedy_words import remedy_words
 from gearopt.report.servo_achieved import best_words
-from gearopt.scenes.servo import choice
 from gearopt.scenes.reading.load import read
-from gearopt.scenes.servo import EXAMPLE
+from gearopt.scenes.servo import EXAMPLE, choice
 from gearopt.scenes.servo.assumptions import UNLISTED, assumptions, notes
 from gearopt.scenes.servo.choice import box_of, front, posed
 from gearopt.scenes.servo.gears import of_point

@@ -18,7 +18,7 @@ from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Param, Terms, Var
 from gearopt.physics.modules import SERIES_I
 
-METHODS = ("exact", "scip", "bonmin", "annealing", "nsga2", "ipopt", "gp", "multistart")
+METHODS = ("exact", "scip", "annealing", "nsga2", "ipopt", "gp", "multistart")
 CONTINUOUS = METHODS[5:]
 SECONDS = 1.0
 RANDOM_DRIVES = 5

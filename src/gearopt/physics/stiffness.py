@@ -74,15 +74,6 @@ def locked_frequency(stiffness: Any, load_inertia: Any) -> Any:
     return (stiffness / load_inertia) ** 0.5 / (2.0 * math.pi)
 
 
-def free_frequency(stiffness: Any, load_inertia: Any, motor_inertia: Any, ratio: Any) -> Any:
-    """Frequency sqrt(K (1/J_L + 1/(N^2 J_M)))/(2 pi) [Hz] of load against free motor.
-
-    stiffness K [N mm/rad] at the load; load_inertia J_L, motor_inertia J_M [t mm2], ratio N > 0.
-    """
-    inverse = 1.0 / load_inertia + 1.0 / (ratio**2 * motor_inertia)
-    return (stiffness * inverse) ** 0.5 / (2.0 * math.pi)
-
-
 def stiffness_of_frequency(frequency_Hz: Any, load_inertia: Any) -> Any:
     """Stiffness K = (2 pi f)^2 J_L [N mm/rad] at which the load swings at f, motor locked.
 

@@ -7,7 +7,7 @@ from gearopt.report import comparison_words as words
 from gearopt.report.pages.comparison_figures import LEAST, anytime, final, span
 from gearopt.report.pages.frame import render
 
-KNOWN = ("exact", "ipopt", "annealing", "nsga2", "scip", "gp", "multistart", "bonmin")
+KNOWN = ("exact", "ipopt", "annealing", "nsga2", "scip", "gp", "multistart")
 COLOURS = 8  # --series-1 ... in frame.css, told apart by the colour-blind
 
 

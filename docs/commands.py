@@ -40,7 +40,7 @@ class Word:
     option: bool
 
 
-def reference() -> str:
+def page() -> str:
     """Every command with its arguments, options and defaults, then the exit codes, in Markdown."""
     commands = [c for c in app.registered_commands if not c.hidden and c.callback is not None]
     named = [(c.name or c.callback.__name__, c.callback) for c in commands if c.callback]
