@@ -11,6 +11,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from gearopt.errors import CertificateError, GearoptError, SceneError, SolveError  # noqa: F401
+from gearopt.optimise.clock import whole
 from gearopt.optimise.comparing.compare import EVALUATIONS, SECONDS, SEEDS, Follow, Plan
 from gearopt.optimise.comparing.compare import compare as compare_methods
 from gearopt.optimise.comparing.comparison import Comparison
@@ -18,7 +19,6 @@ from gearopt.optimise.comparing.trial import Model
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.explaining.explanation import Explanation
 from gearopt.optimise.problem import Problem, one_objective
-from gearopt.optimise.progress import whole
 from gearopt.optimise.result import Budget, Event, Result, Watch, plain  # noqa: F401
 from gearopt.optimise.solve import GAP
 from gearopt.optimise.solve import solve as solve_problem

@@ -7,7 +7,7 @@ import pytest
 from given_drives import every_train, faults, feasible, given_drive, readable, with_changes
 
 from gearopt import Budget
-from gearopt.optimise.explaining.repair import Clock
+from gearopt.optimise.clock import Clock
 from gearopt.report.remedy_words import remedy_words
 from gearopt.scenes import drive
 from gearopt.scenes.drive.explaining.nearest import nearest_ratio

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 import gearopt
-from gearopt.optimise.progress import OTHERS
+from gearopt.optimise.clock import OTHERS
 from gearopt.scenes.reading.load import read
 
 PROBLEMS = Path(__file__).parents[2] / "problems"

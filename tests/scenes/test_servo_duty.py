@@ -12,7 +12,7 @@ from scene_files import dump, parse
 
 import gearopt
 from gearopt.errors import SceneError
-from gearopt.optimise.explaining.repair import Clock
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget
 from gearopt.report.pages.result import page, sections, tables
 from gearopt.report.terminal.result import show

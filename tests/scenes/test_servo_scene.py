@@ -16,7 +16,7 @@ import gearopt
 from gearopt.cli import app
 from gearopt.errors import SceneError
 from gearopt.formulations.servo import servo_box, split
-from gearopt.optimise.explaining.repair import Clock
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget
 from gearopt.report.proof_words import proof
 from gearopt.report.remedy_words import remedy_words

@@ -1,6 +1,5 @@
 """`solve`: run a method on a problem and certify what it returns."""
 
-import time
 from collections.abc import Callable
 from difflib import get_close_matches
 from importlib import import_module
@@ -12,9 +11,9 @@ import numpy as np
 from gearopt.errors import SolveError
 from gearopt.optimise import discrete, solvers
 from gearopt.optimise.certificate import Verdict, certify
+from gearopt.optimise.clock import Clock, of_problem
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.problem import Problem, one_objective
-from gearopt.optimise.progress import of_problem
 from gearopt.optimise.result import Budget, Outcome, Result, Watch, versions
 from gearopt.optimise.terms import Array
 
@@ -54,11 +53,18 @@ def run(
     Of several objectives the first counts; the outcome's other points are those of the front.
     """
     name = method or next(iter(problem.methods), _default(problem))
-    start = time.perf_counter()
+    clock = Clock()
     told = of_problem(watch, problem)
     outcome = method_of(problem, name)(problem, budget or Budget(), seed, told)
     verdict = judge(problem, name, outcome, gap)
-    return _result(problem, name, outcome, verdict, time.perf_counter() - start, seed), outcome
+    return _result(problem, name, outcome, verdict, clock.seconds, seed), outcome
+
+
+def solve_within(clock: Clock, problem: Problem | Conic, method: str | None = None) -> Result:
+    """Solve within what a clock has left; a run that is stopped ends the rest too."""
+    result = solve(problem, method, clock.left, watch=clock.watch)
+    clock.stopped = clock.stopped or result.status == "limit"
+    return result
 
 
 def back_ends() -> tuple[str, ...]:

@@ -8,9 +8,9 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from gearopt.errors import SolveError
+from gearopt.optimise.clock import in_part, of_problem
 from gearopt.optimise.comparing.comparison import Comparison, Group, Row, Run, sample
 from gearopt.optimise.comparing.trial import Entry, Model, attempt, enter
-from gearopt.optimise.progress import in_part, of_problem
 from gearopt.optimise.result import Budget, Event
 from gearopt.optimise.solve import GAP, judge, method_of
 

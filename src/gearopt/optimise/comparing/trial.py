@@ -14,10 +14,10 @@ from typing import Any
 
 from gearopt.errors import GearoptError, SolveError
 from gearopt.optimise.certificate import Verdict
+from gearopt.optimise.clock import following, in_part, of_problem
 from gearopt.optimise.comparing.comparison import Run
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.progress import following, in_part, of_problem
 from gearopt.optimise.result import Budget, Event, Outcome
 from gearopt.optimise.scale import zero_scale
 from gearopt.optimise.solve import GAP, judge, method_of

@@ -1,21 +1,21 @@
 """`explain`: what would make a problem possible, or what its answer owes to each input."""
 
 import math
-import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 
 import numpy as np
 
+from gearopt.optimise.clock import Clock, of_others
 from gearopt.optimise.explaining.elastic import elastic
 from gearopt.optimise.explaining.explanation import Change, Explanation, Influence, Remedy
 from gearopt.optimise.explaining.handles import PARAM, Handle, effective, handles
-from gearopt.optimise.explaining.repair import Clock, Repair, impossible
+from gearopt.optimise.explaining.repair import Repair, impossible, value_within
 from gearopt.optimise.explaining.sensitivity import BINDS, sensitivities
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Result, Watch
-from gearopt.optimise.solve import run
+from gearopt.optimise.solve import run, solve_within
 from gearopt.optimise.terms import Array, spread
 
 THERE = ("optimal", "stationary", "feasible")  # a design exists
@@ -36,8 +36,7 @@ def explain(
     parameter its sensitivity, checked by re-solving, and the price of easing it by 1 % if it is a
     limit. SolveError for discrete variables.
     """
-    start = time.perf_counter()
-    clock = Clock(budget or Budget(), watch)
+    clock = Clock(budget or Budget(), of_others(watch))
     result, outcome = run(problem, "ipopt", clock.left, watch=watch)
     if result.status in ("infeasible", "failed"):
         found_ = handles(problem)
@@ -56,7 +55,7 @@ def explain(
         influences = tuple(_influences(problem, result, outcome, clock))
         late = "stopped before all numbers were looked at" if clock.over else ""
         found = Explanation(result, (), (), binding(result), influences, late)
-    return replace(found, seconds=time.perf_counter() - start)
+    return replace(found, seconds=clock.seconds)
 
 
 def binding(result: Result) -> tuple[str, ...]:
@@ -95,7 +94,7 @@ def _influences(
             continue
 
         def solved(factor: float, place: int = place) -> float | None:
-            return clock.value(_scaled(problem, place, factor))
+            return value_within(clock, _scaled(problem, place, factor))
 
         step, price = "", None
         if place in limits:
@@ -154,7 +153,9 @@ def _remedy(problem: Problem, repair: Repair, clock: Clock) -> Remedy:
     form = elastic(problem, [[h] for h in handles_])
 
     def status(now: Array) -> str:
-        return clock.solve(form.within("relaxation", tuple(now), tuple(now))).status
+        return solve_within(
+            clock, form.within("relaxation", tuple(now), tuple(now)), "ipopt"
+        ).status
 
     back = np.eye(len(asked)) if repair.kind == "least" else np.ones((1, len(asked)))
     words = {status(np.maximum(asked * (1.0 - TAKEN_BACK * row), 1.0)) for row in back}

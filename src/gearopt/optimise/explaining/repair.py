@@ -5,18 +5,17 @@ them to spare), the least repair (the smallest product of factors over all limit
 kind of limit, the even repair (one factor for that kind alone).
 """
 
-import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.elastic import elastic
 from gearopt.optimise.explaining.handles import REACH, Handle
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.progress import of_others
-from gearopt.optimise.result import Budget, Event, Result, Watch
-from gearopt.optimise.solve import solve
+from gearopt.optimise.result import Result
+from gearopt.optimise.solve import solve_within
 from gearopt.optimise.terms import Array
 
 CERTAIN = ("optimal", "stationary")
@@ -38,52 +37,10 @@ class Repair:
     moves: tuple[tuple[Handle, float], ...]
 
 
-class Clock:
-    """What is left of a budget shared by many solves of changed problems, told of as such.
-
-    It has state because time passes.
-    """
-
-    def __init__(self, budget: Budget, watch: Watch | None = None) -> None:
-        self._budget, self.watch, self._start = budget, of_others(watch), time.perf_counter()
-        self.stopped = False
-
-    @property
-    def seconds(self) -> float:
-        """Time spent."""
-        return time.perf_counter() - self._start
-
-    @property
-    def left(self) -> Budget:
-        """The budget of the next solve."""
-        return self._budget.less(self.seconds)
-
-    @property
-    def over(self) -> bool:
-        """Whether nothing is left, or the user stopped."""
-        return self.stopped or self.left.seconds == 0.0
-
-    def goes_on(self) -> bool:
-        """Whether time is left and the watcher, who is asked, lets a look at many designs go on."""
-        if self.watch is not None and self.watch(Event(self.seconds, 0)) is False:
-            self.stopped = True
-        return not self.over
-
-    def within(self, seconds: float) -> float:
-        """So many seconds, or what is left if that is less."""
-        left = self.left.seconds
-        return seconds if left is None else min(seconds, left)
-
-    def solve(self, problem: Problem) -> Result:
-        """Solve within what is left; a run that the user stops ends the rest too."""
-        result = solve(problem, "ipopt", self.left, watch=self.watch)
-        self.stopped = self.stopped or result.status == "limit"
-        return result
-
-    def value(self, problem: Problem) -> float | None:
-        """The optimal value of a problem; None where it is not certain that it is one."""
-        result = self.solve(problem)
-        return result.value if result.status in CERTAIN else None
+def value_within(clock: Clock, problem: Problem) -> float | None:
+    """The optimal value of a problem; None where it is not certain that it is one."""
+    result = solve_within(clock, problem, "ipopt")
+    return result.value if result.status in CERTAIN else None
 
 
 def least(problem: Problem, movable: Sequence[Handle], clock: Clock) -> Repair | None:
@@ -108,7 +65,7 @@ def least_factors(
     where no factors within reach suffice, or time ran out.
     """
     form = elastic(problem, groups)
-    found = clock.solve(form)
+    found = solve_within(clock, form, "ipopt")
     if found.value is None or found.status not in CERTAIN:
         return None
     factors = np.atleast_1d(found.design["relaxation"])
@@ -119,7 +76,7 @@ def least_factors(
             continue
         fewer = allowed.copy()
         fewer[k] = 1.0
-        other = clock.solve(form.within("relaxation", 1.0, tuple(fewer)))
+        other = solve_within(clock, form.within("relaxation", 1.0, tuple(fewer)), "ipopt")
         if (
             other.status in CERTAIN
             and other.value is not None
@@ -141,7 +98,7 @@ def _whole(
     low, high = np.ones(len(factors)), allowed.copy()
 
     def follow() -> Array | None:
-        found = clock.solve(form.within("relaxation", tuple(low), tuple(high)))
+        found = solve_within(clock, form.within("relaxation", tuple(low), tuple(high)), "ipopt")
         return None if found.value is None else np.atleast_1d(found.design["relaxation"])
 
     whole = [k for k, h in enumerate(movable) if h.whole and factors[k] > 1.0 + SAME]
@@ -164,7 +121,7 @@ def _whole(
 
 def even(problem: Problem, family: Sequence[Handle], clock: Clock) -> Repair | None:
     """The repair of one common factor for a family of limits; None where it cannot suffice."""
-    found = clock.solve(elastic(problem, [family]))
+    found = solve_within(clock, elastic(problem, [family]), "ipopt")
     if found.value is None or found.status not in CERTAIN:
         return None
     moves = tuple((h, found.value) for h in family)
@@ -246,7 +203,7 @@ def _verdict(form: Problem, kept: Sequence[int], movable: Sequence[Handle], cloc
     """Solve with the kept limits as they are and all others dropped."""
     upper = np.full(len(movable), REACH)
     upper[list(kept)] = 1.0
-    return clock.solve(form.within("relaxation", 1.0, tuple(upper)))
+    return solve_within(clock, form.within("relaxation", 1.0, tuple(upper)), "ipopt")
 
 
 def _blamed(verdict: Result, kept: Sequence[int], movable: Sequence[Handle]) -> list[int]:

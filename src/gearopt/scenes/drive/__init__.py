@@ -12,11 +12,10 @@ from gearopt.errors import SolveError
 from gearopt.formulations import sizing, teeth
 from gearopt.formulations.train import Train
 from gearopt.optimise.certificate import reconcile
+from gearopt.optimise.clock import Clock, in_part, of_others
 from gearopt.optimise.comparing.trial import Model
 from gearopt.optimise.explaining.explanation import Change, Explanation, Remedy
-from gearopt.optimise.explaining.repair import Clock
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.progress import in_part
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import GAP, run
 from gearopt.scenes.drive.explaining.assumptions import assumptions, notes
@@ -40,8 +39,7 @@ def solve(scene: Scene, ask: Ask) -> Result:
     result = _solved(scene, ask)
     told: dict[str, Any] = {"assumptions": assumptions(scene)}
     if ask.prices and result.value is not None:
-        clock = Clock(ask.budget.less(result.seconds), ask.watch)
-        found = _explained(_unruled(scene), ask, result, clock)
+        found = _explained(_unruled(scene), ask, result, _others(ask, result.seconds))
         influences = [asdict(i) for i in found.influences]
         told["prices"] = {"influences": influences, "message": found.message}
     return replace(result, report=result.report | told)
@@ -62,7 +60,7 @@ def _solved(scene: Scene, ask: Ask) -> Result:
         return _with_processes(scene, ask, result)
     from gearopt.scenes.drive.explaining.remedies import remedies
 
-    ways = asdict(remedies(_unruled(scene), Clock(ask.budget.less(result.seconds), ask.watch)))
+    ways = asdict(remedies(_unruled(scene), _others(ask, result.seconds)))
     return replace(result, report=result.report | {"ways_out": ways})
 
 
@@ -73,8 +71,8 @@ def explain(scene: Scene, ask: Ask) -> Explanation:
         result = _solved(scene, ask)
         if result.status == "infeasible":
             return _ways_out(result)
-        return _explained(scene, ask, result, Clock(ask.budget.less(result.seconds), ask.watch))
-    clock = Clock(ask.budget, ask.watch)
+        return _explained(scene, ask, result, _others(ask, result.seconds))
+    clock = _others(ask)
     half = replace(ask.budget, seconds=ask.budget.seconds and 0.5 * ask.budget.seconds)
     result = _answer(scene, replace(ask, budget=half))
     if result.status == "infeasible":
@@ -84,6 +82,11 @@ def explain(scene: Scene, ask: Ask) -> Explanation:
     if result.value is None:
         return Explanation(result, message="no design was found in time", seconds=clock.seconds)
     return _explained(scene, ask, result, clock)
+
+
+def _others(ask: Ask, spent: float = 0.0) -> Clock:
+    """The clock of changed problems, for what is left after so many seconds."""
+    return Clock(ask.budget.less(spent), of_others(ask.watch))
 
 
 def _explained(scene: Scene, ask: Ask, result: Result, clock: Clock) -> Explanation:

@@ -15,10 +15,10 @@ from gearopt.formulations.packing.design import describe
 from gearopt.formulations.packing.plan import Plan
 from gearopt.formulations.packing.state import Spent, lateness, ready
 from gearopt.optimise.certificate import reconcile
+from gearopt.optimise.clock import in_part
 from gearopt.optimise.comparing.trial import Model
 from gearopt.optimise.explaining.explanation import Explanation
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.progress import in_part
 from gearopt.optimise.result import Budget, Result
 from gearopt.optimise.solve import run
 from gearopt.scenes.packing.scene import EXAMPLE, Scene

@@ -9,10 +9,10 @@ from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
 from gearopt.formulations.servo.ratio.duty import UNITS
+from gearopt.optimise.clock import Clock, of_others
 from gearopt.optimise.comparing.trial import Model
 from gearopt.optimise.explaining.explain import binding
 from gearopt.optimise.explaining.explanation import Change, Explanation, Remedy
-from gearopt.optimise.explaining.repair import Clock
 from gearopt.optimise.result import Result
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.servo.assumptions import assumptions, notes
@@ -49,7 +49,7 @@ def solve(scene: Scene, ask: Ask) -> Result:
 
     A method that is asked for is that of the answer; parts are solved by their own.
     """
-    clock = Clock(ask.budget, ask.watch)
+    clock = Clock(ask.budget, of_others(ask.watch))
     gears, found = given_gears(scene), _Found()
     if scene.train is not None:
         gears, found = _trained(scene, ask, clock)

@@ -7,9 +7,8 @@ from typing import Any
 
 from gearopt.formulations.servo import servo_box, split
 from gearopt.formulations.servo.ratio.duty import UNITS
-from gearopt.optimise.explaining.repair import Clock
+from gearopt.optimise.clock import Clock, in_part, of_others
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.progress import in_part, of_others
 from gearopt.optimise.result import Budget, Event, Outcome, Watch
 from gearopt.optimise.terms import Array, Terms
 from gearopt.scenes.servo.gears import KG_M2
@@ -168,7 +167,7 @@ def front(scene: Scene, clock: Clock) -> tuple[Array, Array] | None:
     import numpy as np
 
     def check() -> None:
-        if not clock.goes_on():
+        if not clock.tell():
             raise TimeoutError
 
     train, goals = scene.servo_train(), weighed(scene)

@@ -7,9 +7,9 @@ from fractions import Fraction
 from typing import Any
 
 from gearopt.formulations.servo import split
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.explanation import Change, Remedy
-from gearopt.optimise.explaining.repair import Clock
-from gearopt.optimise.solve import solve
+from gearopt.optimise.solve import solve_within
 from gearopt.scenes.servo.scene import Scene
 from gearopt.units import Quantity
 
@@ -66,9 +66,7 @@ def _status(train: split.ServoTrain, clock: Clock) -> str:
     """Status of a train in any box, whatever its duty; a run that the user stops ends the rest."""
     if clock.over:
         return "limit"
-    result = solve(split.problem(train), budget=clock.left, watch=clock.watch)
-    clock.stopped = clock.stopped or result.status == "limit"
-    return result.status
+    return solve_within(clock, split.problem(train)).status
 
 
 Place = tuple[str, str]  # table and key

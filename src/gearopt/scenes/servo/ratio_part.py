@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import Any
 
 from gearopt.formulations.servo.ratio import ServoDuty
-from gearopt.optimise.progress import in_part
+from gearopt.optimise.clock import in_part
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run
 from gearopt.physics.servo_drive import largest_acceleration

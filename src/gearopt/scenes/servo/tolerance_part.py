@@ -8,8 +8,8 @@ from gearopt.formulations.servo.tolerance import grades as graded
 from gearopt.formulations.servo.tolerance import problem as continuous
 from gearopt.formulations.servo.tolerance.sampling import drawn, errors
 from gearopt.formulations.servo.tolerance.stack import Component, ErrorBudget, Stack
+from gearopt.optimise.clock import in_part
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.progress import in_part
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run
 from gearopt.optimise.terms import Array

@@ -6,8 +6,7 @@ from typing import Any
 
 from gearopt.formulations.servo import servo_box, split
 from gearopt.formulations.servo.ratio import ServoDuty
-from gearopt.optimise.explaining.repair import Clock
-from gearopt.optimise.progress import in_part
+from gearopt.optimise.clock import Clock, in_part
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run, solve
 from gearopt.optimise.terms import Array

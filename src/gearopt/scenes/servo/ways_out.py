@@ -9,11 +9,12 @@ from gearopt import units
 from gearopt.formulations.servo import split
 from gearopt.formulations.servo.ratio.duty import UNITS
 from gearopt.formulations.servo.split.exact import NO_TEETH
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.explanation import Change, Remedy
 from gearopt.optimise.explaining.handles import handles
-from gearopt.optimise.explaining.repair import Clock, conflict
+from gearopt.optimise.explaining.repair import conflict
 from gearopt.optimise.result import Result
-from gearopt.optimise.solve import solve
+from gearopt.optimise.solve import solve, solve_within
 from gearopt.scenes.servo.choice import posed
 from gearopt.scenes.servo.clearance import blocked
 from gearopt.scenes.servo.gears import errors, of_point
@@ -40,7 +41,7 @@ def ways_out(
     asked = scene.accuracy.error
     assert scene.train is not None
     if scene.train.goal in UNITS:
-        still = _solved(_aiming(scene, "inertia"), clock)
+        still = solve_within(clock, posed(_aiming(scene, "inertia")))
         if still.status == "optimal":
             names, message = _of_duty(scene, clock)
             return names, (), message
@@ -54,7 +55,7 @@ def ways_out(
         names, message = _other(scene, told, clock)
         return names, (), message
     free = with_error(scene, units.parse(LOOSE, "angle"))
-    least = _solved(_aiming(free, "error"), clock)
+    least = solve_within(clock, posed(_aiming(free, "error")))
     if least.status == "infeasible":
         if rooms is not None:
             return rooms.conflict, rooms.remedies, rooms.message
@@ -79,13 +80,6 @@ def _aiming(scene: Scene, aim: str) -> Scene:
     return scene.model_copy(update={"train": train})
 
 
-def _solved(scene: Scene, clock: Clock) -> Result:
-    """The train of a scene within what is left; a run that the user stops ends the rest too."""
-    result = solve(posed(scene), budget=clock.left, watch=clock.watch)
-    clock.stopped = clock.stopped or result.status == "limit"
-    return result
-
-
 def _conflict(scene: Scene, clock: Clock) -> tuple[tuple[str, ...], float | None]:
     """Limits that real-valued teeth and modules do not keep either, and their least error [rad].
 
@@ -95,14 +89,15 @@ def _conflict(scene: Scene, clock: Clock) -> tuple[tuple[str, ...], float | None
     names = _blamed(train, clock)
     if not names:
         return (), None
-    return names, clock.solve(split.relaxation(replace(train, error=math.pi), "error")).bound
+    relaxed = split.relaxation(replace(train, error=math.pi), "error")
+    return names, solve_within(clock, relaxed).bound
 
 
 def _blamed(train: split.ServoTrain, clock: Clock, goal: str = "") -> tuple[str, ...]:
     """Limits that no real-valued teeth and modules keep together, none of them to spare."""
     known = "error" if train.lost_motion is not None else "inertia"
     relaxed = split.relaxation(train, goal or known)
-    if clock.solve(relaxed).status != "infeasible":
+    if solve_within(clock, relaxed).status != "infeasible":
         return ()
     return tuple(handle.name for handle in conflict(relaxed, handles(relaxed), clock))
 
@@ -122,7 +117,7 @@ def _other(scene: Scene, told: str, clock: Clock) -> tuple[tuple[str, ...], str]
             continue
         other = replace(train, tolerance=wider)
         problem = split.problem(other, "inertia")
-        if clock.over or solve(problem, budget=clock.left, watch=clock.watch).status != "optimal":
+        if clock.over or solve_within(clock, problem).status != "optimal":
             continue
         own, ends = (_span(scene, one) for one in (train, other))
         return (), f"no whole teeth make the ratio {own}; {ends} some do"
@@ -249,4 +244,4 @@ def _scaled(scene: Scene, part: float, exact: bool = False) -> Scene:
 
 
 def _status(scene: Scene, clock: Clock) -> str:
-    return "limit" if clock.over else _solved(scene, clock).status
+    return "limit" if clock.over else solve_within(clock, posed(scene)).status

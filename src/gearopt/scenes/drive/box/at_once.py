@@ -8,9 +8,9 @@ from gearopt.errors import SolveError
 from gearopt.formulations import sizing, teeth, together
 from gearopt.formulations.layout.slabs import Slabs, arrange
 from gearopt.formulations.train import Sizes
+from gearopt.optimise.clock import following, in_part
 from gearopt.optimise.comparing.trial import Model
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.progress import following, in_part
 from gearopt.optimise.result import Outcome, Result
 from gearopt.optimise.solve import limits, run
 from gearopt.scenes.drive.box.lay_out import lay_out, sizes_of, told

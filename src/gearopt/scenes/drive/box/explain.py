@@ -5,9 +5,10 @@ from dataclasses import replace
 
 from gearopt.formulations import layout
 from gearopt.formulations.train import Sizes
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.explain import slopes
 from gearopt.optimise.explaining.explanation import Explanation, Influence
-from gearopt.optimise.explaining.repair import CERTAIN, Clock
+from gearopt.optimise.explaining.repair import CERTAIN
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import solve
 from gearopt.scenes.drive.box.lay_out import sizes_of

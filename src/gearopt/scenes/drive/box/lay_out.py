@@ -10,8 +10,8 @@ from gearopt.formulations.layout.gearbox import Gearbox
 from gearopt.formulations.layout.placed import placed, read
 from gearopt.formulations.layout.slabs import Arrangement, arrangements
 from gearopt.formulations.train import Sizes
+from gearopt.optimise.clock import following, in_part
 from gearopt.optimise.comparing.trial import Model
-from gearopt.optimise.progress import following, in_part
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run
 from gearopt.optimise.terms import Array

@@ -10,8 +10,8 @@ from gearopt.formulations import layout
 from gearopt.formulations.layout.gearbox import Gearbox
 from gearopt.formulations.layout.possible import possible
 from gearopt.formulations.train import Sizes
+from gearopt.optimise.clock import Clock, of_others
 from gearopt.optimise.explaining.explanation import Change, Remedy
-from gearopt.optimise.explaining.repair import Clock
 from gearopt.scenes.drive.box.moves import Move, limits_of, moves, switches
 from gearopt.scenes.drive.explaining.numbers import allowed
 from gearopt.scenes.drive.scene import Scene
@@ -96,7 +96,7 @@ class Questions:
 
 def ways(scene: Scene, sizes: Sizes, ask: Ask) -> dict[str, Any]:
     """Each change that alone makes these gears possible to lay out; else pairs of changes."""
-    clock = Clock(ask.budget, ask.watch)
+    clock = Clock(ask.budget, of_others(ask.watch))
     asked = Questions(sizes, clock)
     single, choices = moves(scene, sizes), switches(scene)
     chosen = [c for m in choices if (c := _chosen(scene, m, asked)) is not None]

@@ -3,9 +3,10 @@
 from collections.abc import Callable
 
 from gearopt.formulations import sizing
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.explain import binding
 from gearopt.optimise.explaining.explanation import Explanation
-from gearopt.optimise.explaining.repair import CERTAIN, Clock
+from gearopt.optimise.explaining.repair import CERTAIN
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run
 from gearopt.scenes.drive.explaining.influences import influences

@@ -5,9 +5,10 @@ from collections.abc import Iterator
 from typing import Any
 
 from gearopt.formulations import sizing
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.explain import slopes
 from gearopt.optimise.explaining.explanation import Influence
-from gearopt.optimise.explaining.repair import Clock
+from gearopt.optimise.explaining.repair import value_within
 from gearopt.optimise.explaining.sensitivity import sensitivities
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result
@@ -42,7 +43,7 @@ def influences(
 
         def resolved(factor: float, number: Number = number) -> float | None:
             other = moved(scene, number.path, times(number.value, factor))
-            return None if other is None else clock.value(sizing.problem(other.train()))
+            return None if other is None else value_within(clock, sizing.problem(other.train()))
 
         own: float | None = None
         both: tuple[float | None, float | None] = (None, None)

@@ -6,10 +6,11 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.explain import TAKEN_BACK
 from gearopt.optimise.explaining.explanation import Remedy
 from gearopt.optimise.explaining.handles import Handle
-from gearopt.optimise.explaining.repair import SAME, Clock, conflict, even
+from gearopt.optimise.explaining.repair import SAME, conflict, even
 from gearopt.optimise.problem import Problem
 from gearopt.scenes.drive.explaining.cures import less
 from gearopt.scenes.drive.explaining.joint import least_together

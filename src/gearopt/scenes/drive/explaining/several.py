@@ -6,9 +6,11 @@ from dataclasses import replace
 
 from gearopt.formulations import sizing
 from gearopt.formulations.train import Train
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.handles import Handle, handles
-from gearopt.optimise.explaining.repair import SAME, Clock, least_factors
+from gearopt.optimise.explaining.repair import SAME, least_factors
 from gearopt.optimise.problem import Problem
+from gearopt.optimise.solve import solve_within
 from gearopt.scenes.drive.explaining.joint import least_together
 from gearopt.scenes.drive.explaining.levers import (
     WIDTH,
@@ -30,7 +32,7 @@ MOST = 3  # whole numbers of which both neighbours are tried
 
 def is_real(scene: Scene, clock: Clock) -> bool:
     """Whether real-valued sizes are impossible too."""
-    return clock.solve(sizing.problem(scene.train())).status == "infeasible"
+    return solve_within(clock, sizing.problem(scene.train())).status == "infeasible"
 
 
 def posed(scene: Scene) -> tuple[Problem, list[Handle], list[Lever]]:

@@ -9,8 +9,9 @@ from gearopt.formulations.teeth.progress import Teeth
 from gearopt.formulations.teeth.search import any_train, possible
 from gearopt.formulations.teeth.wide import narrowed
 from gearopt.formulations.train import Train
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.explain import TAKEN_BACK, THERE
-from gearopt.optimise.explaining.repair import Clock
+from gearopt.optimise.solve import solve_within
 from gearopt.scenes.drive.explaining.cures import less
 from gearopt.scenes.drive.explaining.levers import Lever, Moves, applied, steps
 from gearopt.scenes.drive.scene import Scene
@@ -44,7 +45,7 @@ class Case:
         if self.clock.over:
             return None
         if self.scene.teeth is None:
-            word = self.clock.solve(sizing.problem(train)).status
+            word = solve_within(self.clock, sizing.problem(train)).status
             return True if word in THERE else (False if word == "infeasible" else None)
         few, seconds = narrowed(train), self.clock.within(SECONDS)
         if few != train and possible(few, seconds, self.clock.watch):
@@ -68,7 +69,7 @@ class Case:
         if self.clock.over:
             return "undecided"
         if scene.teeth is not None:
-            if self.clock.solve(sizing.problem(scene.train())).status == "infeasible":
+            if solve_within(self.clock, sizing.problem(scene.train())).status == "infeasible":
                 return "infeasible"
         found = self.possible(scene.train())
         return "undecided" if found is None else ("feasible" if found else "infeasible")

@@ -1,12 +1,13 @@
 """Events of a run of many parts: named, in the unit that is shown, on one clock."""
 
+import time
 from dataclasses import replace
 from itertools import pairwise
 from random import Random
 
 import gearopt
 from gearopt import Budget, Problem, Terms, Var
-from gearopt.optimise.progress import in_part, of_others, of_problem, whole
+from gearopt.optimise.clock import Clock, in_part, of_others, of_problem, whole
 from gearopt.optimise.result import Event, Outcome
 
 
@@ -86,3 +87,40 @@ def test_events_of_an_own_problem_name_it():
         events, watch = seen(lambda told: told)
         gearopt.solve(own, name, budget=Budget(evaluations=50), watch=watch)
         assert events and {(e.part, e.objective, e.unit) for e in events} == {("square", "y", "")}
+
+
+def test_a_clock_tells_what_is_reached_and_stops_once():
+    events = []
+    clock = Clock(Budget(), lambda event: events.append(event) or len(events) < 3)
+    assert clock.tell() and (events[0].best, events[0].bound) == (None, None)
+    clock.evaluations, clock.best, clock.bound = 7, 3.0, 4.0
+    assert clock.tell(2)
+    assert (events[1].evaluations, events[1].best, events[1].bound) == (
+        9,
+        3.0,
+        3.0,
+    )  # no bound above
+    assert not clock.tell() and clock.stopped and clock.refused and clock.over
+    assert not clock.tell() and len(events) == 3  # it is not asked again
+
+
+def test_a_clock_ends_with_its_budget():
+    clock = Clock(Budget(evaluations=5))
+    assert clock.tell(4) and not clock.over
+    assert not clock.tell(5) and clock.stopped and not clock.refused
+    late = Clock(
+        Budget(seconds=1.0, evaluations=5), start=time.perf_counter() - 0.75, evaluations=3
+    )
+    assert 0.2 < late.within(9.0) <= 0.25 and late.within(0.1) == 0.1
+    assert late.left.evaluations == 2 and late.tell()
+    assert Clock(Budget(seconds=0.0)).over and Clock(Budget(evaluations=0)).over
+    assert Clock().within(9.0) == 9.0 and not Clock().over
+
+
+def test_a_run_within_another_counts_in_it():
+    events = []
+    outer = Clock(Budget(evaluations=10), events.append, evaluations=4, best=2.0)
+    inner = outer.inner()
+    assert inner(Event(0.0, 3, 5.0)) and inner(Event(0.0, 5, 1.0))
+    assert [(e.evaluations, e.best) for e in events] == [(7, 2.0), (9, 1.0)]
+    assert not inner(Event(0.0, 6)) and outer.evaluations == 10
