@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 import gearopt
+from gearopt.formulations.servo.servo_design import ServoDesign, ServoReport, Stage, TrainDesign
 from gearopt.report.result_words import PAGE_ROWS, ROWS
 from gearopt.scenes.drive.explaining.undercut import undercut
 from gearopt.scenes.drive.tables.limits import ORIGINS, PRESETS
@@ -163,8 +164,9 @@ def test_the_least_teeth_that_are_not_named_are_those_of_tables(pressure, helix,
 
 def test_a_servo_train_names_the_same_pinions():
     scene = gearopt.load(PROBLEMS / "servo_gimbal_light.toml")
-    stages = [{"pinion_teeth": 16}, {"pinion_teeth": 17}]
-    said = [n for n in servo_notes(scene, {"train": {"stages": stages}}, (), {}) if "undercut" in n]
+    stages = tuple(Stage(0.5, z, 100, 100 / z, *[1.0] * 5) for z in (16, 17))
+    design = ServoDesign(train=TrainDesign(stages, 37.0))
+    said = [n for n in servo_notes(scene, (), design, ServoReport()) if "undercut" in n]
     assert len(said) == 1 and "stage 1 is undercut, with 16 teeth" in said[0]
 
 

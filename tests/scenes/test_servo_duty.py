@@ -262,7 +262,7 @@ def test_a_train_that_the_motor_cannot_drive_is_noted():
         train=FEW | {"maximise": None, "minimise": "inertia"},
     )
     result = gearopt.solve(told)
-    assert result.status == "optimal" and result.design["ratio"]["chosen"] is None
+    assert result.status == "optimal" and "chosen" not in result.design["ratio"]
     chosen, given = (n for n in result.report["notes"] if n.startswith("With the"))
     assert chosen.startswith("With the chosen train, of ratio 20") and "800 rad/s" in chosen
     assert given.startswith("With the given train, of ratio 48, the motor would turn at 2400")

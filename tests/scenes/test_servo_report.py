@@ -8,7 +8,9 @@ import pytest
 from scene_files import dump, parse
 
 import gearopt
+from gearopt.formulations.servo.servo_design import ServoDesign, ServoReport
 from gearopt.optimise.result import Budget
+from gearopt.optimise.typed import typed, untyped
 from gearopt.report.proof_words import proof
 from gearopt.scenes.reading.load import read
 from gearopt.scenes.servo import model
@@ -78,7 +80,10 @@ def test_the_page_explains_every_name(name):
     page = (ROOT / "docs" / "servo.md").read_text(encoding="utf-8")
     rows = [line for line in page.splitlines() if line.startswith("| `")]
     explained = set(re.findall(r"`(\w+)`", " ".join(rows)))
-    names = {
-        k.removesuffix("_with_train") for k in told(gearopt.solve(PROBLEMS / f"servo_{name}.toml"))
-    }
+    result = gearopt.solve(PROBLEMS / f"servo_{name}.toml")
+    names = {k.removesuffix("_with_train") for k in told(result)}
     assert len(names) > 4 and names - OWN <= explained | {"best_total_ratio"}
+    plain = result.to_dict()
+    assert untyped(typed(ServoDesign, plain["design"])) == plain["design"]
+    report = ServoReport.from_dict(plain["report"])
+    assert report.to_dict().items() <= plain["report"].items() and len(report.figures) > 3

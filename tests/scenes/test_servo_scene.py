@@ -15,18 +15,18 @@ from typer.testing import CliRunner
 import gearopt
 from gearopt.cli import app
 from gearopt.errors import SceneError
-from gearopt.formulations.servo import servo_box, split
+from gearopt.formulations.servo import choice, servo_box, split
+from gearopt.formulations.servo.choice import front
+from gearopt.formulations.servo.servo_design import ServoDesign, ServoReport
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget
 from gearopt.report.proof_words import proof
 from gearopt.report.remedy_words import remedy_words
 from gearopt.report.servo_achieved import best_words
 from gearopt.scenes.reading.load import read
-from gearopt.scenes.servo import EXAMPLE, choice
-from gearopt.scenes.servo.assumptions import UNLISTED, assumptions, notes
-from gearopt.scenes.servo.choice import box_of, front, posed
+from gearopt.scenes.servo import EXAMPLE
+from gearopt.scenes.servo.assumptions import UNLISTED, assumptions, given_overlap, notes
 from gearopt.scenes.servo.gears import of_point
-from gearopt.scenes.servo.overlap import given_overlap
 from gearopt.scenes.servo.ways_out import ways_out
 
 PROBLEMS = Path(__file__).parents[2] / "problems"
@@ -291,7 +291,7 @@ def test_the_whole_toothed_train_is_as_stiff_as_asked():
     assert result.limits["stiffness"] == pytest.approx(
         (230.0 / result.design["stiffness"]["frequency_Hz"]) ** 2, rel=1e-12
     )
-    points, worth = front(example, Clock(Budget()))
+    points, worth = front(example.choice(), Clock(Budget()))
     assert 1e-3 * worth[:, 0].min() == pytest.approx(result.value, rel=1e-12)
     free = gearopt.solve(changed(EXAMPLE, drop=[("space",), ("lightest",)]))
     assert result.value > free.value
@@ -317,10 +317,10 @@ def test_a_box_that_is_required_changes_the_train():
     loose = gearopt.solve(changed(EXAMPLE, *NARROW, (("space", "required"), False), drop=BARE))
     assert loose.value < result.value and not loose.design["box"]["fits"]
     assert any("does not fit" in note for note in loose.report["notes"])
-    points, worth = front(scene, Clock(Budget()))
+    points, worth = front(scene.choice(), Clock(Budget()))
     better = [x for x, row in zip(points, worth, strict=True) if 1e-3 * row[0] < result.value]
-    assert better and servo_box.first_that_fits([box_of(scene, x) for x in better]) is None
-    found = box_of(scene, gears_point(result))
+    assert better and servo_box.first_that_fits([scene.box(x) for x in better]) is None
+    found = scene.box(gears_point(result))
     assert servo_box.first_that_fits([found]) is not None
 
 
@@ -330,7 +330,7 @@ def test_a_sweep_that_is_not_given_is_twice_the_sector():
         edits = (("train", "sector"), sector), *NARROW[:1], (("space", "required"), False)
         scene = changed(EXAMPLE, *edits, drop=[*BARE, ("space", "swept_angle")])
         x = np.array([17, 23, 91, 207, 0.3, 0.5])
-        assert math.degrees(box_of(scene, x).half_sweep) == pytest.approx(half)
+        assert math.degrees(scene.box(x).half_sweep) == pytest.approx(half)
     tied = changed(EXAMPLE, (("duty",), {"motion": "move", "angle": "90 deg"}), drop=BARE)
     assert tied.space.swept_angle.value == pytest.approx(math.pi)  # 90 of sector, 90 of travel
 
@@ -399,7 +399,7 @@ def test_a_stiff_train_with_wheel_tips_below_a_tooth_is_impossible():
 def test_a_look_for_a_box_stops_in_time():
     tight = (*NARROW, (("space", "height"), "95 mm"))
     scene = changed(EXAMPLE, *tight, drop=BARE)
-    result = gearopt.solve(posed(scene), budget=Budget(seconds=0.02))
+    result = gearopt.solve(choice.train_problem(scene.choice()), budget=Budget(seconds=0.02))
     assert result.status == "limit" and result.value is None
 
 
@@ -426,16 +426,16 @@ def test_neighbours_are_not_beaten_in_all_three():
 
 def test_a_look_for_neighbours_in_parts_finds_the_same_and_stops_in_time(monkeypatch):
     scene, seen = gearopt.load(PROBLEMS / "servo_gimbal_light.toml"), []
-    points, worth = front(scene, Clock(Budget()))
+    points, worth = front(scene.choice(), Clock(Budget()))
     monkeypatch.setattr(choice, "PART", 1000)
-    again = front(scene, Clock(Budget(), lambda event: seen.append(event) or True))
+    again = front(scene.choice(), Clock(Budget(), lambda event: seen.append(event) or True))
     assert np.array_equal(again[0], points) and np.array_equal(again[1], worth)
     assert len(seen) > 10
-    assert front(scene, Clock(Budget(seconds=0.0))) is None
+    assert front(scene.choice(), Clock(Budget(seconds=0.0))) is None
     for count in (1, len(seen) // 2):
         left = iter(range(count))
         stopped = Clock(Budget(), lambda event, left=left: next(left, None) is not None)
-        assert front(scene, stopped) is None and stopped.stopped
+        assert front(scene.choice(), stopped) is None and stopped.stopped
 
 
 def test_trains_that_are_not_listed_are_said_to_be(monkeypatch):
@@ -548,8 +548,11 @@ def test_comparing_takes_the_train_without_its_box():
     scene = changed(EXAMPLE)
     found = gearopt.compare(scene, ("exact", "annealing"), seeds=1, evaluations=500, seconds=0.2)
     assert found is not None
-    assert posed(scene, boxed=False).methods.keys() == {"exact", "enumeration"}
-    x = gearopt.solve(posed(scene, boxed=False)).design
+    assert choice.train_problem(scene.choice(boxed=False)).methods.keys() == {
+        "exact",
+        "enumeration",
+    }
+    x = gearopt.solve(choice.train_problem(scene.choice(boxed=False))).design
     assert of_point([*x["pinion_teeth"], *x["wheel_teeth"], *x["module_mm"]]).pinions == (17, 23)
 
 
@@ -794,7 +797,8 @@ def test_a_message_with_a_stop_gets_no_second_one():
     result = gearopt.solve(changed(RATIO))
     late = replace(result, status="limit", message="Bound of ratio is violated by 1.01.")
     assert "Bound of ratio is violated by 1.01." in proof(late)
-    note = notes(changed(RATIO), {}, (result, replace(late, objective={"name": "ratio"})), {})
+    ratio = replace(late, objective={"name": "ratio"})
+    note = notes(changed(RATIO), (result, ratio), ServoDesign(), ServoReport())
     assert note == ["There is no answer for the part ratio: Bound of ratio is violated by 1.01."]
 
 

@@ -1,4 +1,4 @@
-"""Dataclasses from plain JSON data, each value held to the type that its field declares."""
+"""Dataclasses from plain JSON data and back, each value held to the type its field declares."""
 
 from collections.abc import Mapping
 from dataclasses import MISSING, fields, is_dataclass
@@ -38,6 +38,16 @@ def typed(kind: Any, data: Any, where: str = "") -> Any:
     if not isinstance(data, NUMBERS[kind]) or (isinstance(data, bool) and kind is not bool):
         raise ValueError(f"has another sort of value in {where} than a {kind.__name__}")
     return data
+
+
+def untyped(value: Any) -> Any:
+    """Plain data of dataclasses, for `typed`: a field that holds its default is left out."""
+    if is_dataclass(value) and not isinstance(value, type):
+        held = ((f, getattr(value, f.name)) for f in fields(value))
+        return {f.name: untyped(v) for f, v in held if v != f.default}
+    if isinstance(value, Mapping):
+        return {k: untyped(v) for k, v in value.items()}
+    return [untyped(v) for v in value] if isinstance(value, list | tuple) else value
 
 
 def _filled(kind: Any, data: Any, where: str) -> Any:

@@ -16,9 +16,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from gearopt.errors import SolveError
+from gearopt.formulations.servo.servo_design import BoxDesign
 from gearopt.optimise.kernels import kernel
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.result import Budget, Event, Outcome, Watch
+from gearopt.optimise.result import Budget, Event, Outcome, Result, Watch
 from gearopt.optimise.terms import Array, Terms, Var
 
 RANDOM = False
@@ -175,4 +176,35 @@ def first_that_fits(boxes: Iterable[ServoBox], limit: int = 10_000) -> tuple[int
     return None
 
 
-__all__ = ["ServoBox", "extents", "first_that_fits", "of_train", "problem"]
+def box_design(
+    box: ServoBox, result: Result, x: Array, motor_mm: float, shaft_mm: float
+) -> BoxDesign:
+    """The layout x of a certified result, decided again within the gap of a box of about its size.
+
+    motor_mm, shaft_mm: radii of the motor and of the shaft between the stages.
+    """
+    assert result.value is not None
+    fits, most = result.value <= 1.0 + TIE, 1.0 + TIE
+    if not fits and result.bound is not None and result.bound <= most:
+        found = first_that_fits([box])
+        fits, x = found is not None, x if found is None else found[1]
+    motor, output = float(x[0]), float(x[1])
+    width, height = (float(side) for side in extents(box, motor, output))
+    return BoxDesign(
+        inner_width_mm=box.box[0],
+        inner_height_mm=box.box[1],
+        needed_width_mm=width,
+        needed_height_mm=height,
+        fits=fits,
+        motor_angle_deg=math.degrees(motor),
+        output_angle_deg=math.degrees(output),
+        radii_mm=box.radii,
+        motor_mm=motor_mm,
+        shaft_mm=shaft_mm,
+        links_mm=box.links,
+        hub_mm=box.hub,
+        half_sweep_deg=math.degrees(box.half_sweep),
+    )
+
+
+__all__ = ["ServoBox", "box_design", "extents", "first_that_fits", "of_train", "problem"]

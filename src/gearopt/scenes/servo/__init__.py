@@ -5,43 +5,40 @@ box, the tolerances that its accuracy asks for. Each is a certified result; the 
 asks for of train, ratio and tolerances is the answer, the others are its parts.
 """
 
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, replace
 from typing import Any
 
+from gearopt.formulations.servo.choice import SHOWN, train_problem
 from gearopt.formulations.servo.ratio.duty import UNITS
+from gearopt.formulations.servo.servo_design import ServoDesign, ServoReport
 from gearopt.optimise.clock import Clock, of_others
 from gearopt.optimise.comparing.trial import Model
 from gearopt.optimise.explaining.explain import binding
 from gearopt.optimise.explaining.explanation import Change, Explanation, Remedy
 from gearopt.optimise.result import Result
+from gearopt.optimise.typed import untyped
+from gearopt.physics.inertia import disc_mass
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.servo.assumptions import assumptions, notes
-from gearopt.scenes.servo.choice import SHOWN, posed
 from gearopt.scenes.servo.gears import Gears, described, errors, given_gears
-from gearopt.scenes.servo.key_figures import key_figures
-from gearopt.scenes.servo.ratio_part import ratio_part
 from gearopt.scenes.servo.scene import EXAMPLE, Scene
-from gearopt.scenes.servo.springs import stiffness_of
+from gearopt.scenes.servo.tolerance_part import of_given, tolerance_part
 from gearopt.scenes.servo.tolerance_part import problem as tolerance_problem
-from gearopt.scenes.servo.tolerance_part import tolerance_part
-from gearopt.scenes.servo.train_part import beside, box_part, lightest_part, neighbours, train_part
+from gearopt.scenes.servo.train_part import (
+    Found,
+    beside,
+    box_part,
+    lightest_part,
+    neighbours,
+    ratio_part,
+    train_part,
+)
 from gearopt.scenes.servo.ways_out import ways_out
 
 __all__ = ["EXAMPLE", "Scene", "compared", "explain", "model", "solve"]
 
-
-@dataclass(frozen=True)
-class _Found:
-    """Some results with their parts of the answer's design and report."""
-
-    results: tuple[Result, ...] = ()
-    design: dict[str, Any] = field(default_factory=dict)
-    report: dict[str, Any] = field(default_factory=dict)
-
-    def __add__(self, other: "_Found") -> "_Found":
-        return _Found(
-            self.results + other.results, self.design | other.design, self.report | other.report
-        )
+GOALS = {"inertia": "inertia_kg_m2", "mass": "mass_kg", "error": "error_deg"}
+COUNTS = {"combinations": "trains_looked_at", "feasible_trains": "feasible_trains"}
 
 
 def solve(scene: Scene, ask: Ask) -> Result:
@@ -50,19 +47,19 @@ def solve(scene: Scene, ask: Ask) -> Result:
     A method that is asked for is that of the answer; parts are solved by their own.
     """
     clock = Clock(ask.budget, of_others(ask.watch))
-    gears, found = given_gears(scene), _Found()
+    gears, found = given_gears(scene), Found()
     if scene.train is not None:
         gears, found = _trained(scene, ask, clock)
     if scene.duty is not None:
-        found += _moved(scene, _part(ask, clock, found), found.design.get("train"))
+        found += ratio_part(scene, found.design.train, _part(ask, clock, found))
     if gears is not None:
         found += _geared(scene, _part(ask, clock, found), gears)
     if scene.lightest is not None:
-        found += _Found((lightest_part(scene, _part(ask, clock, found)),))
-    figures = key_figures(scene, found.results, found.design, found.report)
+        found += _lightest(scene, _part(ask, clock, found))
+    found += Found(report=_key_figures(scene, found))
     answer, *parts = found.results
     told: dict[str, Any] = {"assumptions": assumptions(scene)}
-    if said := notes(scene, found.design, found.results, found.report):
+    if said := notes(scene, found.results, found.design, found.report):
         told["notes"] = said
     if answer.status == "infeasible" and scene.train is not None:
         conflict, remedies, message = ways_out(scene, clock, answer.message)
@@ -73,53 +70,107 @@ def solve(scene: Scene, ask: Ask) -> Result:
         }
     return replace(
         answer,
-        design=found.design,
-        report=found.report | figures | told,
+        design=untyped(found.design),
+        report=found.report.to_dict() | told,
         parts=tuple(parts),
         seconds=clock.seconds,
     )
 
 
-def _part(ask: Ask, clock: Clock, found: _Found) -> Ask:
+def _part(ask: Ask, clock: Clock, found: Found) -> Ask:
     """What is asked of the next part: the method, if nothing was solved yet, and the time left."""
     method = None if found.results else ask.method
     return replace(ask, method=method, budget=clock.left)
 
 
-def _trained(scene: Scene, ask: Ask, clock: Clock) -> tuple[Gears | None, _Found]:
+def _trained(scene: Scene, ask: Ask, clock: Clock) -> tuple[Gears | None, Found]:
     """The train, what is known beside it, and its neighbours."""
     result, gears = train_part(scene, ask)
     report = beside(scene, gears)
+    counts = {k: result.proof[v] for k, v in COUNTS.items() if "feasible_trains" in result.proof}
+    report |= ServoReport(figures=counts)
     if gears is None:
-        return None, _Found((result,), report=report)
-    report |= {"trains": neighbours(scene, clock)}
-    return gears, _Found((result,), result.design, report)
+        return None, Found((result,), report=report)
+    report |= ServoReport(trains=neighbours(scene, clock))
+    return gears, Found((result,), ServoDesign(train=described(scene, gears)), report)
 
 
-def _moved(scene: Scene, ask: Ask, train: dict[str, Any] | None) -> _Found:
-    """The best total ratio, and what the axis achieves with its train."""
-    result, design, report = ratio_part(scene, train, ask)
-    return _Found((result,), {"ratio": design} if design else {}, report)
-
-
-def _geared(scene: Scene, ask: Ask, gears: Gears) -> _Found:
+def _geared(scene: Scene, ask: Ask, gears: Gears) -> Found:
     """What follows from the gears, chosen or given: errors, stiffness, box, tolerances."""
-    found = _Found((), {"train": described(scene, gears)})
-    if rows := errors(scene, gears):
-        sums = {
-            f"{kind}_deg": sum(row["error_deg"] for row in rows if row["kind"] == kind)
-            for kind in ("backlash", "pitch")
-        }
-        found += _Found((), {"errors": rows}, sums)
-    if scene.stiffness is not None:
-        found += _Found((), {"stiffness": stiffness_of(scene, gears)})
+    rows, springs = errors(scene, gears), scene.springs
+    sums = {
+        f"{kind}_deg": sum(row.error_deg for row in rows if row.kind == kind)
+        for kind in ("backlash", "pitch")
+        if rows
+    }
+    design = ServoDesign(
+        train=described(scene, gears),
+        errors=rows,
+        stiffness=None if springs is None else springs.design(gears.point),
+    )
+    found = Found((), design, ServoReport(figures=sums))
     if scene.space is not None:
-        result, design = box_part(scene, gears, ask)
-        found += _Found((result,), {"box": design} if design else {})
+        found += box_part(scene, gears, ask)
     if scene.tolerances is not None:
-        result, design, report = tolerance_part(scene, gears, ask)
-        found += _Found((result,), design, report)
+        found += tolerance_part(scene, gears, ask)
     return found
+
+
+def _lightest(scene: Scene, ask: Ask) -> Found:
+    """The lightest real-valued train, by the names of docs/servo.md too."""
+    result = lightest_part(scene, ask)
+    if result.value is None:
+        return Found((result,))
+    mass = {"lightest_mass_kg": result.value}
+    return Found((result,), report=ServoReport(lightest_train=result.design, figures=mass))
+
+
+def _key_figures(scene: Scene, found: Found) -> ServoReport:
+    """The chosen and the given train, least values and room, by the names of docs/servo.md."""
+    design, figures = found.design, {}
+    for one in found.report.trains or ():
+        if key := GOALS.get(one.best_of):
+            figures[f"least_{key}"] = getattr(one, key)
+    if design.box is not None:
+        figures["needed_width_mm"] = design.box.needed_width_mm
+        figures["needed_height_mm"] = design.box.needed_height_mm
+    if scene.train is not None:
+        figures |= _of_train("chosen", design)
+    if (gears := given_gears(scene)) is None:
+        return ServoReport(figures=figures)
+    springs = scene.springs
+    train = described(scene, gears)
+    stiffness = None if springs is None else springs.design(gears.point)
+    figures |= _of_train("given", ServoDesign(train=train, stiffness=stiffness))
+    if scene.sources:
+        figures |= of_given(scene, gears)
+    if scene.lightest is not None and springs is not None and train.mass_kg is not None:
+        thick, long = springs.shaft
+        shaft = 1000.0 * float(disc_mass(scene.servo_train().density, long, thick))
+        figures["given_mass_with_shaft_kg"] = train.mass_kg + shaft
+    return ServoReport(given_train=train, given_stiffness=stiffness, figures=figures)
+
+
+def _of_train(whose: str, design: ServoDesign) -> dict[str, float]:
+    """A train and its stiffness as key figures."""
+    train, springs = design.train, design.stiffness
+    found = (
+        {}
+        if train is None
+        else {
+            "ratio": train.ratio,
+            "inertia_kg_m2": train.inertia_kg_m2,
+            "mass_kg": train.mass_kg,
+            "error_deg": train.error_deg,
+        }
+    )
+    if springs is not None:
+        found |= {
+            "output_stiffness_Nm_per_rad": springs.output_Nm_per_rad,
+            "frequency_Hz": springs.frequency_Hz,
+            "windup_deg": springs.windup_deg,
+        }
+    return {f"{whose}_{name}": v for name, v in found.items() if v is not None}
 
 
 def explain(scene: Scene, ask: Ask) -> Explanation:
@@ -150,7 +201,8 @@ def model(scene: Scene, method: str) -> Model:
     """The problem of the answer; that of a train without its box, which is no row of it."""
     if scene.train is not None:
         unit = SHOWN[scene.train.goal][1]
-        return Model(posed(scene, boxed=False), "Whole teeth and modules, without a box", unit)
+        problem = train_problem(scene.choice(boxed=False))
+        return Model(problem, "Whole teeth and modules, without a box", unit)
     if (duty := scene.servo_duty()) is not None:
         return Model(duty.problem(), "Total ratio", UNITS[duty.goal])
     gears = given_gears(scene)

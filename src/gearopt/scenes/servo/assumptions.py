@@ -1,14 +1,19 @@
 """What the answer for a servo axis takes for granted, in sentences."""
 
 import math
-from typing import Any
+from dataclasses import replace
+from fractions import Fraction
 
+from gearopt.formulations.servo.ratio.achieved import why_not
+from gearopt.formulations.servo.servo_design import ServoDesign, ServoReport
+from gearopt.formulations.servo.split.bodies import broken
 from gearopt.optimise.result import Result
+from gearopt.optimise.typed import untyped
 from gearopt.scenes.drive.explaining.undercut import undercut
-from gearopt.scenes.servo.achieved import candidates, why_not
-from gearopt.scenes.servo.overlap import given_overlap, overlaps
+from gearopt.scenes.servo.gears import given_gears
 from gearopt.scenes.servo.scene import Scene
 from gearopt.scenes.servo.tables.trains import Train
+from gearopt.scenes.servo.train_part import candidates
 
 SLOWEST = "acceleration"  # what nobody wants least
 FRICTION = {
@@ -117,42 +122,76 @@ def _of_bodies(scene: Scene) -> list[str]:
     ]
 
 
+WHAT = {
+    "output_shaft": "the first wheel runs into the output shaft",
+    "hub": "the output shaft is thicker than the last wheel's root circle",
+    "shaft": "the middle shaft is thicker than the root circle of a gear on it",
+    "motor": "the motor runs into the middle shaft",
+}
+
+
+def given_overlap(scene: Scene) -> str:
+    """What of the gears of [[mesh]] is in the way of something; empty where nothing is."""
+    gears = given_gears(scene)
+    if scene.train is None or gears is None:
+        return ""
+    bodies = scene.servo_train().bodies
+    assert bodies is not None
+    return _told("In the given train", broken(bodies, gears.diameters, gears.modules))
+
+
+def _overlaps(scene: Scene, results: tuple[Result, ...]) -> str:
+    """The same of the lightest train, whose limits are relaxed: its mass then is a floor alone."""
+    found = [r for r in results if r.name == "stiff" and r.value is not None]
+    if not found:
+        return ""
+    design, train = found[0].design, scene.servo_train()
+    assert train.bodies is not None
+    (d1, d3), (n1, n2) = design["pinion_diameter_mm"], design["ratio"]
+    module = float(train.modules[0])
+    bodies = replace(train.bodies, shaft=Fraction(design["shaft_diameter_mm"]))
+    diameters = d1, n1 * d1, d3, n2 * d3
+    return _told("In the lightest train", broken(bodies, diameters, (module, module)))
+
+
+def _told(whose: str, broken: list[str]) -> str:
+    return f"{whose} {' and '.join(WHAT[name] for name in broken)}." if broken else ""
+
+
 UNLISTED = "Other trains are not shown beside this one: there are too many, or the time was up."
 
 
 def notes(
-    scene: Scene, design: dict[str, Any], results: tuple[Result, ...], report: dict[str, Any]
+    scene: Scene, results: tuple[Result, ...], design: ServoDesign, report: ServoReport
 ) -> list[str]:
     """What a reader should know beside the numbers."""
     duty, found = scene.servo_duty(), []
-    if duty is not None and "ratio" in design:
-        judged = candidates(scene, design.get("train")).values()
+    if duty is not None and design.ratio is not None:
+        judged = candidates(scene, design.train).values()
         found = [said for one in judged if (said := why_not(duty, one))]
     if scene.train is not None and scene.train.maximise is None and scene.train.aim == SLOWEST:
         found.append(
             f'minimise = "{SLOWEST}" was read as maximise: the largest one was looked for.'
         )
-    if not design.get("box", {}).get("fits", True):
+    if design.box is not None and not design.box.fits:
         found.append("The best train does not fit the box of [space].")
-    asked, drawn = scene.accuracy.error, design.get("drawn")
+    asked, drawn = scene.accuracy.error, design.drawn
     if asked is not None and drawn is not None:
         limit = math.degrees(asked.value)
-        worst = drawn["worst_case_deg"]
+        worst = drawn.worst_case_deg
         if worst > limit * (1.0 + 1e-9):
             found.append(
                 f"The new tolerances at their worst make {worst:.5g} degrees, above the "
                 f"{limit:.5g} of [accuracy]: their budget counts otherwise."
             )
-    stages = design.get("train", {}).get("stages", [])
-    found += undercut(stages, scene.accuracy.pressure_angle.value, 0.0)
+    stages = () if design.train is None else design.train.stages
+    found += undercut(untyped(stages), scene.accuracy.pressure_angle.value, 0.0)
     if scene.lightest is not None:
         found.append(
             "The lightest train has real-valued sizes: it is a floor for gears with whole teeth."
         )
-        found += overlaps(scene, results)
-    if said := given_overlap(scene):
-        found.append(said)
-    if report.get("trains") == []:
+    found += [said for said in (_overlaps(scene, results), given_overlap(scene)) if said]
+    if report.trains == ():
         found.append(UNLISTED)
     found += [
         f"There is no answer for the part {part.name}: {(part.message or part.status).rstrip('.')}."

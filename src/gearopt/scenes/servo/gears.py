@@ -1,17 +1,15 @@
 """Four gears of a servo train as every part of its result shows them."""
 
 import math
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
 
+from gearopt.formulations.servo.servo_design import KG_M2, ErrorSource, Stage, TrainDesign
 from gearopt.formulations.servo.split.servo_train import ServoTrain, lewis_stress, objectives
 from gearopt.optimise.terms import Array
 from gearopt.physics.geometry import ADDENDUM
 from gearopt.physics.stiffness import lewis_form_factor
 from gearopt.scenes.servo.scene import Scene
 from gearopt.scenes.servo.tables.mesh import Source
-
-KG_M2 = 1e-3  # of a t mm2
 
 
 @dataclass(frozen=True)
@@ -66,61 +64,61 @@ def given_gears(scene: Scene) -> Gears | None:
     )
 
 
-def errors(scene: Scene, gears: Gears) -> list[dict[str, Any]]:
+def errors(scene: Scene, gears: Gears) -> tuple[ErrorSource, ...]:
     """Every source of error at the output, all at their worst; they add up."""
-    return [
-        {
-            "source": s.name,
-            "kind": s.kind,
-            "stage": s.stage,
-            "tolerance_mm": s.tolerance,
-            "error_deg": math.degrees(s.tolerance * gears.sensitivity(s)),
-        }
+    return tuple(
+        ErrorSource(
+            source=s.name,
+            kind=s.kind,
+            stage=s.stage,
+            tolerance_mm=s.tolerance,
+            error_deg=math.degrees(s.tolerance * gears.sensitivity(s)),
+        )
         for s in scene.sources
-    ]
+    )
 
 
-def stages(gears: Gears, train: ServoTrain | None = None) -> list[dict[str, Any]]:
-    """Both stages in the words of a drawing; stress and width where the train is known."""
-    found: list[dict[str, Any]] = []
-    for k in (0, 1):
-        m, z1, z2, n = gears.modules[k], gears.pinions[k], gears.wheels[k], gears.ratios[k]
-        stage: dict[str, Any] = {
-            "normal_module_mm": m,
-            "pinion_teeth": z1,
-            "wheel_teeth": z2,
-            "ratio": n,
-            "pinion_diameter_mm": m * z1,
-            "wheel_diameter_mm": m * z2,
-            "pinion_tip_diameter_mm": m * (z1 + 2.0 * ADDENDUM),
-            "wheel_tip_diameter_mm": m * (z2 + 2.0 * ADDENDUM),
-            "centre_distance_mm": 0.5 * m * (z1 + z2),
-        }
-        if train is not None:
-            torque = train.output_torque / (gears.ratios[1] if k == 0 else 1.0)
-            factor = lewis_form_factor(z1)
-            stage["face_width_mm"] = train.face_width
-            stage["bending_stress_MPa"] = lewis_stress(torque, m * z2, train.face_width, m, factor)
-        found.append(stage)
-    return found
+def _stage(gears: Gears, k: int, train: ServoTrain | None) -> Stage:
+    """A stage (0 or 1) in the words of a drawing; stress and width where the train is known."""
+    m, z1, z2, n = gears.modules[k], gears.pinions[k], gears.wheels[k], gears.ratios[k]
+    stress = None
+    if train is not None:
+        torque = train.output_torque / (gears.ratios[1] if k == 0 else 1.0)
+        factor = lewis_form_factor(z1)
+        stress = lewis_stress(torque, m * z2, train.face_width, m, factor)
+    return Stage(
+        normal_module_mm=m,
+        pinion_teeth=z1,
+        wheel_teeth=z2,
+        ratio=n,
+        pinion_diameter_mm=m * z1,
+        wheel_diameter_mm=m * z2,
+        pinion_tip_diameter_mm=m * (z1 + 2.0 * ADDENDUM),
+        wheel_tip_diameter_mm=m * (z2 + 2.0 * ADDENDUM),
+        centre_distance_mm=0.5 * m * (z1 + z2),
+        face_width_mm=None if train is None else train.face_width,
+        bending_stress_MPa=stress,
+    )
 
 
-def described(scene: Scene, gears: Gears) -> dict[str, Any]:
-    """The train of a result: stages, ratio, with [train] inertia and mass; its error, if known.
-
-    Off a single ratio that is asked for it is by ratio_error_percent.
-    """
+def described(scene: Scene, gears: Gears) -> TrainDesign:
+    """The train of a result."""
     n, table = gears.ratios[0] * gears.ratios[1], scene.train
-    found: dict[str, Any] = {"stages": stages(gears), "ratio": n}
-    if table is not None:
-        train = scene.servo_train()
-        worth = objectives(train, ("inertia", "mass"), gears.diameters, gears.ratios)
-        found["stages"] = stages(gears, train)
-        if table.ratio[0] == table.ratio[1]:
-            found["ratio_error_percent"] = 100.0 * (n / float(train.ratio) - 1.0)
-        found |= {"inertia_kg_m2": KG_M2 * worth["inertia"], "mass_kg": worth["mass"]}
-    if scene.sources:
-        error = sum(s.tolerance * gears.sensitivity(s) for s in scene.sources)
-        found["error_deg"] = math.degrees(error)
-    part = {} if table is None or table.sector == 1 else {"sector": float(table.sector)}
-    return found | part
+    train = None if table is None else scene.servo_train()
+    error = sum(s.tolerance * gears.sensitivity(s) for s in scene.sources)
+    found = TrainDesign(
+        stages=(_stage(gears, 0, train), _stage(gears, 1, train)),
+        ratio=n,
+        error_deg=math.degrees(error) if scene.sources else None,
+    )
+    if table is None or train is None:
+        return found
+    worth = objectives(train, ("inertia", "mass"), gears.diameters, gears.ratios)
+    single = table.ratio[0] == table.ratio[1]
+    return replace(
+        found,
+        ratio_error_percent=100.0 * (n / float(train.ratio) - 1.0) if single else None,
+        inertia_kg_m2=KG_M2 * worth["inertia"],
+        mass_kg=worth["mass"],
+        sector=float(table.sector),
+    )

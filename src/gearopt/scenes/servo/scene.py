@@ -5,12 +5,16 @@ from typing import Annotated, Any
 
 from pydantic import Field, model_validator
 
+from gearopt.formulations.servo import servo_box
+from gearopt.formulations.servo.choice import Choice
 from gearopt.formulations.servo.ratio import ServoDuty
 from gearopt.formulations.servo.split import ServoTrain, StiffTrain
+from gearopt.formulations.servo.springs import Springs
+from gearopt.optimise.terms import Array
 from gearopt.physics.stiffness import stiffness_of_frequency
 from gearopt.scenes.reading.fields import Table, refuse, words
 from gearopt.scenes.servo.example import EXAMPLE
-from gearopt.scenes.servo.tables.bodies import bodies, check_sector, check_shafts
+from gearopt.scenes.servo.tables.bodies import bodies, check_sector, check_shafts, half_sweep
 from gearopt.scenes.servo.tables.mesh import Accuracy, Mesh, Source
 from gearopt.scenes.servo.tables.motion import Duty, Load, Motor, servo_duty
 from gearopt.scenes.servo.tables.tolerances import (
@@ -239,25 +243,52 @@ class Scene(Table):
         )
 
     @property
-    def least_stiffness(self) -> float | None:
-        """Stiffness that the output must have [N mm/rad]; None where none is asked for."""
-        table, found = self.stiffness, []
-        if table is not None and table.frequency is not None and self.load is not None:
-            found.append(
-                float(stiffness_of_frequency(table.frequency.value, self.load.inertia.value))
-            )
-        if table is not None and table.windup is not None and table.load_torque is not None:
-            found.append(table.load_torque.value / table.windup.value)
-        return max(found, default=None)
+    def springs(self) -> Springs | None:
+        """Meshes and shaft as springs, in plain numbers; None without [stiffness]."""
+        table, shaft, train, load = self.stiffness, self.shaft, self.train, self.load
+        if table is None or shaft is None or train is None:
+            return None
+        line, elastic, torque = table.line_stiffness, table.youngs_modulus, table.load_torque
+        inertia, least = None if load is None else load.inertia.value, []
+        if table.frequency is not None and inertia is not None:
+            least.append(float(stiffness_of_frequency(table.frequency.value, inertia)))
+        if table.windup is not None and torque is not None:
+            least.append(torque.value / table.windup.value)
+        return Springs(
+            face_width=train.face_width.value,
+            shear_modulus=table.shear_modulus.value,
+            shaft=(shaft.diameter.value, shaft.length.value),
+            line_stiffness=None if line is None else line.value,
+            youngs_modulus=math.nan if elastic is None else elastic.value,
+            load_inertia=inertia,
+            load_torque=None if torque is None else torque.value,
+            least=max(least, default=None),
+        )
+
+    def choice(self, boxed: bool = True) -> Choice:
+        """The train to be chosen, and what it must keep; boxed: a required box too."""
+        assert self.train is not None
+        held = boxed and self.space is not None and self.space.required
+        room = self.box if held else None
+        return Choice(self.servo_train(), self.train.goal, self.springs, room)
+
+    def box(self, point: Array) -> servo_box.ServoBox:
+        """The box of a train, as its layout sees it; point: of `split.problem`."""
+        space, train = self.space, self.train
+        assert space is not None and train is not None
+        return servo_box.of_train(
+            point,
+            0.5 * space.motor_diameter.value,
+            0.5 * space.hub_diameter.value,
+            half_sweep(train, space),
+            (space.width.value, space.height.value),
+        )
 
     def stiff_train(self) -> StiffTrain:
         """The lightest train to be sized, in plain numbers."""
-        own, table, least = self.servo_train(), self.lightest, self.least_stiffness
-        spring = self.stiffness
-        assert table is not None and spring is not None and least is not None
-        assert own.shaft is not None
+        own, table, springs = self.servo_train(), self.lightest, self.springs
+        assert table and springs and springs.least and springs.line_stiffness
         assert own.bodies is not None
-        assert spring.line_stiffness is not None
         module = float(own.modules[0])
         teeth = own.pinion_teeth[0]
         second = max(teeth, -(-own.bore // own.modules[0]))
@@ -266,9 +297,9 @@ class Scene(Table):
             for name in ("density", "output_torque", "bending", "lost_motion", "error", "sector")
         }
         return StiffTrain(
-            stiffness=least,
-            line_stiffness=spring.line_stiffness.value,
-            shear_modulus=spring.shear_modulus.value,
+            stiffness=springs.least,
+            line_stiffness=springs.line_stiffness,
+            shear_modulus=springs.shear_modulus,
             ratio=(float(own.ratios[0]), float(own.ratios[1])),
             module=module,
             pinion_teeth=(teeth, int(second)),
@@ -276,7 +307,7 @@ class Scene(Table):
             wheel_tips=(float(own.wheel_tips[0]), float(own.wheel_tips[1])),
             face_width=table.face_width.value,
             shaft_diameter=table.shaft_diameter.value,
-            shaft_length=own.shaft[1],
+            shaft_length=springs.shaft[1],
             inertia=table.inertia.value,
             output=float(own.bodies.output_shaft),
             motor=float(own.bodies.motor),

@@ -4,6 +4,15 @@ import math
 from dataclasses import asdict, replace
 from typing import Any
 
+from gearopt.formulations.servo.servo_design import (
+    Allocation,
+    BudgetUse,
+    DrawnErrors,
+    Histogram,
+    ServoDesign,
+    ServoReport,
+    ToleranceRow,
+)
 from gearopt.formulations.servo.tolerance import grades as graded
 from gearopt.formulations.servo.tolerance import problem as continuous
 from gearopt.formulations.servo.tolerance.sampling import drawn, errors
@@ -13,16 +22,23 @@ from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run
 from gearopt.optimise.terms import Array
+from gearopt.optimise.typed import untyped
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.servo.gears import Gears
 from gearopt.scenes.servo.scene import Scene
 from gearopt.scenes.servo.tables.tolerances import BudgetTable
+from gearopt.scenes.servo.train_part import Found
 
 BINS = 60
-QUANTILE = ("quantile", "quantile_low", "quantile_high")
 ANGLES = (  # of what is drawn
     *("mean", "sd", "quantile", "quantile_low", "quantile_high"),
     *("limit", "largest", "worst_case"),
+)
+RULES: tuple[tuple[str, Any, float], ...] = (  # name, rule and kappa
+    ("worst_case", "worst_case", 0.0),
+    ("rss", "rss", 0.0),
+    ("mean", "mean_plus_sd", 0.0),
+    ("mean_plus_3_sd", "mean_plus_sd", 3.0),
 )
 
 
@@ -92,34 +108,36 @@ def problem(scene: Scene, gears: Gears) -> Problem:
     return graded.problem(graded.Choice(parts, budget.error, rule))
 
 
-def tolerance_part(
-    scene: Scene, gears: Gears, ask: Ask
-) -> tuple[Result, dict[str, Any], dict[str, Any]]:
-    """The certified tolerances, their part of the design, and their part of the report."""
+def tolerance_part(scene: Scene, gears: Gears, ask: Ask) -> Found:
+    """The certified tolerances, what they cost and what they give."""
     import numpy as np
 
-    posed, own = problem(scene, gears), stack(scene, gears)
+    posed, own, table = problem(scene, gears), stack(scene, gears), scene.tolerances
+    assert table is not None
     watch = in_part(ask.watch, part="tolerances")
     result, outcome = run(posed, ask.method, ask.budget, ask.seed, watch, ask.gap)
     result = replace(result, name="tolerances", objective=result.objective | {"unit": ""})
-    report = by_every_rule(own.components, old(scene), "old")
+    figures = by_every_rule(own.components, old(scene), "old")
     if result.value is None or outcome.x is None:
         proof = {k: v for k, v in result.proof.items() if k != "conflict"}
-        return replace(result, proof=proof), {}, report
+        return Found((replace(result, proof=proof),), report=ServoReport(figures=figures))
     t = np.array(outcome.x, float)
-    if scene.tolerances is not None and scene.tolerances.grades is not None:
-        t = old(scene) * 2.0 ** (0.5 * (t - 1.0 - scene.tolerances.grades))
-    design: dict[str, Any] = {
-        "tolerances": _rows(scene, own, t),
-        "allocation": _allocation(own, t, result, scene),
-        "drawn": _drawn(own, t, scene.tolerances.seed if scene.tolerances else 0),
+    if table.grades is not None:
+        t = old(scene) * 2.0 ** (0.5 * (t - 1.0 - table.grades))
+    allotted, draws = _allocation(own, t, result, scene), _drawn(own, t, table.seed)
+    design = ServoDesign(tolerances=_rows(scene, own, t), allocation=allotted, drawn=draws)
+    ends = [getattr(draws, f"quantile{end}_deg") for end in ("", "_low", "_high")]
+    figures |= by_every_rule(own.components, t, "new")
+    figures |= {
+        "new_quantile_deg": ends[0],
+        "new_quantile_low_deg": ends[1],
+        "new_quantile_high_deg": ends[2],
+        "tolerance_cost": allotted.cost,
+        "old_tolerance_cost": allotted.old_cost,
     }
-    report |= by_every_rule(own.components, t, "new")
-    report |= {f"new_{end}_deg": design["drawn"][f"{end}_deg"] for end in QUANTILE}
-    report["tolerance_cost"] = design["allocation"]["cost"]
-    report["old_tolerance_cost"] = design["allocation"]["old_cost"]
     limits = {_named(name, own): used for name, used in result.limits.items()}
-    return replace(result, design=design, limits=limits), design, report
+    result = replace(result, design=untyped(design), limits=limits)
+    return Found((result,), design, ServoReport(figures=figures))
 
 
 def _named(limit: str, own: Stack) -> str:
@@ -128,7 +146,7 @@ def _named(limit: str, own: Stack) -> str:
     return f"{stem} of {own.components[int(index) - 1].name}" if index else limit
 
 
-def _rows(scene: Scene, own: Stack, t: Array) -> list[dict[str, Any]]:
+def _rows(scene: Scene, own: Stack, t: Array) -> tuple[ToleranceRow, ...]:
     table = scene.tolerances
     assert table is not None
     ends = 2.0 ** (0.5 * table.grades) if table.grades is not None else None
@@ -138,38 +156,39 @@ def _rows(scene: Scene, own: Stack, t: Array) -> list[dict[str, Any]]:
         before = source.tolerance
         low, high = (part.least, part.most) if ends is None else (before / ends, before * ends)
         rows.append(
-            {
-                "name": source.name,
-                "stage": source.stage,
-                "kind": source.kind,
-                "old_mm": before,
-                "new_mm": new,
-                "lower_mm": low,
-                "upper_mm": high if math.isfinite(high) else None,
-                "sensitivity_deg_per_mm": part.sensitivity,
-                "old_cost": price.cost,
-                "new_cost": price.cost * (before / new) ** price.exponent,
-            }
+            ToleranceRow(
+                name=source.name,
+                stage=source.stage,
+                kind=source.kind,
+                old_mm=before,
+                new_mm=new,
+                lower_mm=low,
+                upper_mm=high if math.isfinite(high) else None,
+                sensitivity_deg_per_mm=part.sensitivity,
+                old_cost=price.cost,
+                new_cost=price.cost * (before / new) ** price.exponent,
+            )
         )
-    return rows
+    return tuple(rows)
 
 
-def _allocation(own: Stack, t: Array, result: Result, scene: Scene) -> dict[str, Any]:
-    budgets = []
-    for budget, used in zip(own.budgets, own.used(t), strict=True):
-        row: dict[str, Any] = {"rule": budget.rule}
-        if budget.rule == "mean_plus_sd":
-            row["kappa"] = budget.kappa
-        budgets.append(row | {"limit_deg": budget.error, "used_deg": float(used) * budget.error})
-    return {
-        "budgets": budgets,
-        "cost": result.value,
-        "old_cost": sum(price.cost for price in scene.prices),
-        "method": str(result.proof.get("method", result.method)),
-    }
+def _allocation(own: Stack, t: Array, result: Result, scene: Scene) -> Allocation:
+    assert result.value is not None
+    budgets = tuple(
+        BudgetUse(
+            rule=budget.rule,
+            limit_deg=budget.error,
+            used_deg=float(used) * budget.error,
+            kappa=budget.kappa if budget.rule == "mean_plus_sd" else None,
+        )
+        for budget, used in zip(own.budgets, own.used(t), strict=True)
+    )
+    before = sum(price.cost for price in scene.prices)
+    method = str(result.proof.get("method", result.method))
+    return Allocation(budgets, result.value, before, method)
 
 
-def _drawn(own: Stack, t: Array, seed: int) -> dict[str, Any]:
+def _drawn(own: Stack, t: Array, seed: int) -> DrawnErrors:
     """Drawn errors of the new tolerances, held against the first budget's limit."""
     import numpy as np
 
@@ -177,20 +196,14 @@ def _drawn(own: Stack, t: Array, seed: int) -> dict[str, Any]:
     for name in ANGLES:
         found[f"{name}_deg"] = found.pop(name)
     counts, edges = np.histogram(errors(own, t, found["count"], seed), BINS)
-    return found | {"histogram": {"edges_deg": edges.tolist(), "counts": counts.tolist()}}
+    return DrawnErrors(**found, histogram=Histogram(tuple(edges.tolist()), tuple(counts.tolist())))
 
 
 def by_every_rule(parts: tuple[Component, ...], t: Array, whose: str) -> dict[str, float]:
     """What tolerances t give by every rule [deg], named after whose they are."""
-    kinds: tuple[tuple[str, Any, float], ...] = (
-        ("worst_case", "worst_case", 0.0),
-        ("rss", "rss", 0.0),
-        ("mean", "mean_plus_sd", 0.0),
-        ("mean_plus_3_sd", "mean_plus_sd", 3.0),
-    )
-    budgets = tuple(ErrorBudget(rule, 1.0, kappa, name) for name, rule, kappa in kinds)
+    budgets = tuple(ErrorBudget(rule, 1.0, kappa, name) for name, rule, kappa in RULES)
     used = Stack(parts, budgets).used(t).tolist()
-    found = {f"{whose}_{name}_deg": v for (name, _, _), v in zip(kinds, used, strict=True)}
+    found = {f"{whose}_{name}_deg": v for (name, _, _), v in zip(RULES, used, strict=True)}
     found[f"{whose}_sd_deg"] = (
         found[f"{whose}_mean_plus_3_sd_deg"] - found[f"{whose}_mean_deg"]
     ) / 3.0

@@ -1,21 +1,36 @@
-"""The train of a servo axis: chosen and proven, with its stiffness, its box and its neighbours."""
+"""The parts of a servo axis's answer: train, ratio and box, with what is known beside them."""
 
 import math
-from dataclasses import replace
-from typing import Any
+from dataclasses import dataclass, replace
 
 from gearopt.formulations.servo import servo_box, split
+from gearopt.formulations.servo.choice import SHOWN, front, train_problem
 from gearopt.formulations.servo.ratio import ServoDuty
+from gearopt.formulations.servo.ratio.achieved import (
+    NAMES,
+    Candidate,
+    achieved,
+    best_ratio_of,
+    curve,
+    judged,
+    landmarks,
+)
+from gearopt.formulations.servo.servo_design import (
+    KG_M2,
+    ListedTrain,
+    RatioDesign,
+    ServoDesign,
+    ServoReport,
+    StageCount,
+    Teeth,
+    TrainDesign,
+)
 from gearopt.optimise.clock import Clock, in_part
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run, solve
-from gearopt.optimise.terms import Array
+from gearopt.optimise.typed import untyped
 from gearopt.scenes.reading.ask import Ask
-from gearopt.scenes.servo.achieved import NAMES
-from gearopt.scenes.servo.choice import FRONT, SHOWN, box_of, front, posed, weighed
-from gearopt.scenes.servo.gears import Gears, described, of_point
-from gearopt.scenes.servo.key_figures import GOALS
-from gearopt.scenes.servo.ratio_part import scaled
+from gearopt.scenes.servo.gears import Gears, described, given_gears, of_point
 from gearopt.scenes.servo.scene import Scene
 
 WORDS = {  # objectives as a list of trains calls them
@@ -24,22 +39,37 @@ WORDS = {  # objectives as a list of trains calls them
     "rms_torque": "rms torque",
 }
 STAGES = 6  # that a ratio is split into, at the most, for comparison
+LISTED = 400  # trains that are shown
+
+
+@dataclass(frozen=True)
+class Found:
+    """Some results with their parts of the answer's design and report."""
+
+    results: tuple[Result, ...] = ()
+    design: ServoDesign = ServoDesign()
+    report: ServoReport = ServoReport()
+
+    def __add__(self, other: "Found") -> "Found":
+        results = self.results + other.results
+        return Found(results, self.design | other.design, self.report | other.report)
 
 
 def train_part(scene: Scene, ask: Ask) -> tuple[Result, Gears | None]:
     """The certified best train."""
-    assert scene.train is not None
-    unit = SHOWN[scene.train.goal][1]
-    watch = in_part(ask.watch, unit)
-    result, outcome = run(posed(scene), ask.method, ask.budget, ask.seed, watch, ask.gap)
+    choice = scene.choice()
+    unit = SHOWN[choice.goal][1]
+    problem, watch = train_problem(choice), in_part(ask.watch, unit)
+    result, outcome = run(problem, ask.method, ask.budget, ask.seed, watch, ask.gap)
     result = replace(result, objective=result.objective | {"unit": unit})
     if result.value is None or outcome.x is None:
         return result, None
     gears = of_point(outcome.x)
-    return replace(result, design={"train": described(scene, gears)}), gears
+    design = ServoDesign(train=described(scene, gears))
+    return replace(result, design=untyped(design)), gears
 
 
-def neighbours(scene: Scene, clock: Clock) -> list[dict[str, Any]]:
+def neighbours(scene: Scene, clock: Clock) -> tuple[ListedTrain, ...]:
     """The trains that no other is better than in all that is weighed; none if time is up.
 
     Thinned if many. One that is the best by two goals stands there twice, each time named by one
@@ -47,79 +77,144 @@ def neighbours(scene: Scene, clock: Clock) -> list[dict[str, Any]]:
     """
     import numpy as np
 
-    found = front(scene, clock)
+    choice = scene.choice()
+    found = front(choice, clock)
     if found is None:
-        return []
+        return ()
     points, worth = found
     best = worth.argmin(0).tolist()
-    many = np.linspace(0, len(points) - 1, min(FRONT, len(points))).round().astype(int)
+    many = np.linspace(0, len(points) - 1, min(LISTED, len(points))).round().astype(int)
     shown = [(k, "") for k in many.tolist() if k not in best]
-    shown += [(k, name) for k, name in zip(best, weighed(scene), strict=True)]
-    return [
+    shown += [(k, name) for k, name in zip(best, choice.weighed, strict=True)]
+    return tuple(
         _neighbour(scene, of_point(points[k]), float(worth[k, 0]), name)
         for k, name in sorted(shown)
-    ]
+    )
 
 
-def _neighbour(scene: Scene, gears: Gears, first: float, best_of: str) -> dict[str, Any]:
+def _neighbour(scene: Scene, gears: Gears, first: float, best_of: str) -> ListedTrain:
     """A train as the list shows it; first: what it is weighed by first."""
     train, duty = described(scene, gears), scene.servo_duty()
-    found = {key: train[key] for key in (*GOALS.values(), "ratio") if key in train}
-    if duty is not None and weighed(scene)[0] == duty.goal:
-        value = SHOWN[duty.goal][0] * first
-        found[NAMES[duty.motion][2]] = 1.0 / value if duty.motion == "acceleration" else value
-    return found | {
-        "stages": [
-            {"normal_module_mm": m, "pinion_teeth": z, "wheel_teeth": w}
+    assert scene.train is not None and train.inertia_kg_m2 and train.mass_kg
+    judged_by = {}
+    if duty is not None and scene.train.goal == duty.goal:
+        judged_by = {NAMES[duty.motion][2]: _judged(duty, first)}
+    return ListedTrain(
+        stages=tuple(
+            Teeth(m, z, w)
             for m, z, w in zip(gears.modules, gears.pinions, gears.wheels, strict=True)
-        ],
-        "best_of": WORDS.get(best_of, best_of),
-    }
+        ),
+        ratio=train.ratio,
+        best_of=WORDS.get(best_of, best_of),
+        inertia_kg_m2=train.inertia_kg_m2,
+        mass_kg=train.mass_kg,
+        error_deg=train.error_deg,
+        **judged_by,
+    )
 
 
-def beside(scene: Scene, chosen: Gears | None) -> dict[str, Any]:
+def _judged(duty: ServoDuty, goal: float) -> float:
+    """What a duty is judged by, from what is made least by it."""
+    value = SHOWN[duty.goal][0] * goal
+    return 1.0 / value if duty.motion == "acceleration" else value
+
+
+def beside(scene: Scene, chosen: Gears | None) -> ServoReport:
     """What else is known of a train: real-valued bounds, and other numbers of stages.
 
     These are of the ratio that is asked for, or of the chosen train where a range is.
     """
     assert scene.train is not None
-    train = scene.servo_train()
-    report: dict[str, Any] = {}
-    for goal in dict.fromkeys(("inertia", *weighed(scene))):
-        if (bound := solve(split.relaxation(train, goal)).bound) is not None:
-            report |= _bound(goal, bound, train.duty)
+    choice, figures = scene.choice(), {}
+    duty = choice.train.duty
+    for goal in dict.fromkeys(("inertia", *choice.weighed)):
+        bound = solve(split.relaxation(choice.train, goal)).bound
+        if bound is None:
+            continue
+        factor, unit = SHOWN[goal]
+        name, value = f"{goal}_{unit}", factor * bound
+        if duty is not None and goal == duty.goal:
+            name, value = NAMES[duty.motion][2], _judged(duty, bound)
+        figures[f"real_valued_bound_{name}"] = value
     low, high = scene.train.ratio
     ratio = float(low) if low == high else 1.0 if chosen is None else math.prod(chosen.ratios)
-    report["stage_counts"] = _counts(ratio) if ratio > 1.0 else []
-    report["stage_ratio_of_least_mass"] = split.lightest_stage_ratio()
-    return report
+    figures["stage_ratio_of_least_mass"] = split.lightest_stage_ratio()
+    return ServoReport(stage_counts=_counts(ratio) if ratio > 1.0 else (), figures=figures)
 
 
-def _bound(goal: str, bound: float, duty: ServoDuty | None) -> dict[str, float]:
-    """What no train is better than, by the name of what it bounds."""
-    factor, unit = SHOWN[goal]
-    name, value = f"{goal}_{unit}", factor * bound
-    if duty is not None and goal == duty.goal:
-        name = NAMES[duty.motion][2]
-        value = 1.0 / value if duty.motion == "acceleration" else value
-    return {f"real_valued_bound_{name}": value}
-
-
-def _counts(ratio: float) -> list[dict[str, Any]]:
+def _counts(ratio: float) -> tuple[StageCount, ...]:
     """Inertia and mass of the bare train in pinions, by number of stages."""
     rows = []
     pairs = (split.stage_counts(ratio, STAGES, goal) for goal in ("inertia", "mass"))
     for count, (inertia, mass) in enumerate(zip(*pairs, strict=True), 1):
         ratios = inertia.design["ratio"]
-        rows.append(
-            {
-                "stages": count,
-                "inertia_in_pinions": inertia.value,
-                "mass_in_pinions": mass.value,
-                "ratios_of_least_inertia": ratios if isinstance(ratios, list) else [ratios],
-            }
-        )
-    return rows
+        assert inertia.value is not None and mass.value is not None
+        each = tuple(ratios) if isinstance(ratios, list) else (ratios,)
+        rows.append(StageCount(count, inertia.value, mass.value, each))
+    return tuple(rows)
+
+
+def candidates(scene: Scene, chosen: TrainDesign | None) -> dict[str, Candidate]:
+    """The ratio of [duty], the chosen train, and the given one beside it."""
+    found = {}
+    if scene.duty is not None and scene.duty.ratio is not None:
+        asked = float(scene.duty.ratio)
+        found["given"] = Candidate(f"At the given ratio of {asked:g}", asked)
+    trains = {"chosen": chosen if scene.train else None}
+    if scene.train is not None and (gears := given_gears(scene)) is not None:
+        trains["given_train"] = described(scene, gears)
+    for who, train in trains.items():
+        if train is not None and train.inertia_kg_m2 is not None:
+            where = f"With the {who.removesuffix('_train')} train, of ratio {train.ratio:.6g},"
+            found[who] = Candidate(where, train.ratio, train.inertia_kg_m2 / KG_M2)
+    return found
+
+
+def ratio_part(scene: Scene, chosen: TrainDesign | None, ask: Ask) -> Found:
+    """The certified best total ratio; the train of the answer and what is given beside it."""
+    duty = scene.servo_duty()
+    assert duty is not None
+    factor, shown = SHOWN[duty.goal]
+    watch = in_part(ask.watch, shown, factor=factor)
+    result, outcome = run(duty.problem(), ask.method, ask.budget, ask.seed, watch, ask.gap)
+    result = scaled(result, factor, shown)
+    if result.value is None or outcome.x is None:
+        return Found((result,))
+    best = float(outcome.x[0])
+    name, unit, key = NAMES[duty.motion]
+    reached, own = float(judged(duty, best)), candidates(scene, chosen)
+    figures = {"best_total_ratio": best, f"best_{key}": reached} | landmarks(duty)
+    with_train = None if "chosen" not in own else own["chosen"].inertia
+    if with_train is not None:
+        other = best_ratio_of(duty.with_gears(with_train))
+        if other is not None:
+            own["best_with_train"] = Candidate("", other, with_train)
+            figures["best_total_ratio_with_train"] = other
+    others = {who: achieved(duty, one, reached) for who, one in own.items()}
+    for who, found in others.items():
+        stem, _, end = f"{who}_{key}".partition("_with_train_")
+        if found is not None:
+            figures[f"{stem}_{end}_with_train" if end else stem] = found.value
+    ratio = RatioDesign(
+        duty=duty.motion,
+        total_ratio=best,
+        value=reached,
+        name=name,
+        unit=unit,
+        best=achieved(duty, Candidate("", best), reached),
+        curve=curve(duty, best, with_train),
+        **({"given": None} | others),
+    )
+    design = ServoDesign(ratio=ratio)
+    told = ServoReport(figures=figures)
+    return Found((replace(result, design=untyped(design)),), design, told)
+
+
+def scaled(result: Result, factor: float, unit: str) -> Result:
+    """A result whose objective and bound are shown in another unit."""
+    found = None if result.value is None else factor * result.value
+    bound = None if result.bound is None else factor * result.bound
+    return replace(result, objective=result.objective | {"value": found, "unit": unit}, bound=bound)
 
 
 def lightest_part(scene: Scene, ask: Ask) -> Result:
@@ -129,43 +224,15 @@ def lightest_part(scene: Scene, ask: Ask) -> Result:
     return replace(scaled(result, 1.0, "kg"), name="stiff")
 
 
-def box_part(scene: Scene, gears: Gears, ask: Ask) -> tuple[Result, dict[str, Any]]:
-    """The smallest box of the train's proportions, and its part of the design."""
-    box = box_of(scene, gears.point)
-    watch = in_part(ask.watch, part="box")
-    result, outcome = run(
-        servo_box.problem(box), None, ask.budget, ask.seed, watch, max(ask.gap, servo_box.GAP)
-    )
+def box_part(scene: Scene, gears: Gears, ask: Ask) -> Found:
+    """The smallest box of the train's proportions."""
+    box, bodies = scene.box(gears.point), scene.servo_train().bodies
+    assert bodies is not None
+    watch, gap = in_part(ask.watch, part="box"), max(ask.gap, servo_box.GAP)
+    result, outcome = run(servo_box.problem(box), None, ask.budget, ask.seed, watch, gap)
     result = replace(result, name="box", objective=result.objective | {"unit": ""})
     if outcome.x is None or result.value is None:
-        return result, {}
-    motor, output, fits = _laid_out(box, result, outcome.x)
-    bodies = scene.servo_train().bodies
-    assert bodies is not None
-    width, height = (float(side) for side in servo_box.extents(box, motor, output))
-    return result, {
-        "inner_width_mm": box.box[0],
-        "inner_height_mm": box.box[1],
-        "needed_width_mm": width,
-        "needed_height_mm": height,
-        "fits": fits,
-        "motor_angle_deg": math.degrees(motor),
-        "output_angle_deg": math.degrees(output),
-        "radii_mm": list(box.radii),
-        "motor_mm": 0.5 * float(bodies.motor),
-        "shaft_mm": 0.5 * float(bodies.shaft),
-        "links_mm": list(box.links),
-        "hub_mm": box.hub,
-        "half_sweep_deg": math.degrees(box.half_sweep),
-    }
-
-
-def _laid_out(box: servo_box.ServoBox, result: Result, x: Array) -> tuple[float, float, bool]:
-    """Angles of motor and output, and whether they fit; decided anew within the gap of the box."""
-    least, most = result.bound, 1.0 + servo_box.TIE
-    assert result.value is not None
-    if result.value > most and least is not None and least <= most:
-        found = servo_box.first_that_fits([box])
-        if found is not None:
-            return float(found[1][0]), float(found[1][1]), True
-    return float(x[0]), float(x[1]), result.value <= most
+        return Found((result,))
+    radii = 0.5 * float(bodies.motor), 0.5 * float(bodies.shaft)
+    found = servo_box.box_design(box, result, outcome.x, *radii)
+    return Found((result,), ServoDesign(box=found))

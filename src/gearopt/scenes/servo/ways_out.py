@@ -7,6 +7,7 @@ from fractions import Fraction
 
 from gearopt import units
 from gearopt.formulations.servo import split
+from gearopt.formulations.servo.choice import train_problem
 from gearopt.formulations.servo.ratio.duty import UNITS
 from gearopt.formulations.servo.split.exact import NO_TEETH
 from gearopt.optimise.clock import Clock
@@ -15,7 +16,6 @@ from gearopt.optimise.explaining.handles import handles
 from gearopt.optimise.explaining.repair import conflict
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import solve, solve_within
-from gearopt.scenes.servo.choice import posed
 from gearopt.scenes.servo.clearance import blocked
 from gearopt.scenes.servo.gears import errors, of_point
 from gearopt.scenes.servo.scene import Scene
@@ -41,7 +41,7 @@ def ways_out(
     asked = scene.accuracy.error
     assert scene.train is not None
     if scene.train.goal in UNITS:
-        still = solve_within(clock, posed(_aiming(scene, "inertia")))
+        still = solve_within(clock, train_problem(_aiming(scene, "inertia").choice()))
         if still.status == "optimal":
             names, message = _of_duty(scene, clock)
             return names, (), message
@@ -55,7 +55,7 @@ def ways_out(
         names, message = _other(scene, told, clock)
         return names, (), message
     free = with_error(scene, units.parse(LOOSE, "angle"))
-    least = solve_within(clock, posed(_aiming(free, "error")))
+    least = solve_within(clock, train_problem(_aiming(free, "error").choice()))
     if least.status == "infeasible":
         if rooms is not None:
             return rooms.conflict, rooms.remedies, rooms.message
@@ -173,8 +173,8 @@ def _message(scene: Scene, least: Result) -> str:
         ],
         float,
     )
-    rows = sorted(errors(scene, of_point(point)), key=lambda row: -row["error_deg"])
-    largest = ", ".join(f"{row['source']} {row['error_deg']:.4f} deg" for row in rows[:NAMED])
+    rows = sorted(errors(scene, of_point(point)), key=lambda row: -row.error_deg)
+    largest = ", ".join(f"{row.source} {row.error_deg:.4f} deg" for row in rows[:NAMED])
     return (
         f"the most accurate train has an error of {least.value:.5f} deg; of it the largest parts "
         f"are {largest}"
@@ -244,4 +244,4 @@ def _scaled(scene: Scene, part: float, exact: bool = False) -> Scene:
 
 
 def _status(scene: Scene, clock: Clock) -> str:
-    return "limit" if clock.over else solve_within(clock, posed(scene)).status
+    return "limit" if clock.over else solve_within(clock, train_problem(scene.choice())).status

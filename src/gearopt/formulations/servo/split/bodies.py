@@ -19,6 +19,7 @@ from gearopt.errors import SolveError
 from gearopt.physics.geometry import ADDENDUM, DEDENDUM
 
 TIP, ROOT = 2 * Fraction(ADDENDUM), 2 * Fraction(DEDENDUM)  # of a diameter, in modules
+TIGHT = 1.0 + 1e-9  # a tie is no overlap
 LARGEST = 2**61  # of whole numbers that are added in 64 bits
 
 
@@ -54,6 +55,15 @@ def rows(bodies: Bodies, diameters: Any, modules: Any) -> dict[str, Any]:
     if motor > 0.0:
         found["motor"] = (motor + shaft) / (d1 + d2)
     return found
+
+
+def broken(bodies: Bodies, diameters: Any, modules: Any) -> list[str]:
+    """Names of the `rows` that a train breaks; a tie is no overlap."""
+    values = {
+        name: v if isinstance(v, tuple) else (v,)
+        for name, v in rows(bodies, diameters, modules).items()
+    }
+    return [name for name, parts in values.items() if not all(0.0 <= v <= TIGHT for v in parts)]
 
 
 def clear_rows(shaft: Any, output: Any, motor: Any, diameters: Any, modules: Any) -> dict[str, Any]:

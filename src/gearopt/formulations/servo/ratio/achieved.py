@@ -1,13 +1,15 @@
-"""What an axis achieves with a train, chosen or given, or at a ratio: by the duty of its file."""
+"""What an axis achieves at a ratio, with a train or without, beside the best: by its duty."""
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from gearopt.formulations.servo.ratio import ServoDuty
-from gearopt.scenes.servo.gears import KG_M2, described, given_gears
-from gearopt.scenes.servo.scene import Scene
+import numpy as np
+
+from gearopt.formulations.servo.ratio.duty import ServoDuty
+from gearopt.formulations.servo.servo_design import KG_M2, Achieved, RatioCurve
+from gearopt.optimise.solve import run
+from gearopt.physics.servo_drive import largest_acceleration
 
 NAMES = {  # of the value that a duty is judged by, its unit, and as a key
     "acceleration": ("load acceleration", "rad/s²", "load_acceleration_rad_per_s2"),
@@ -16,6 +18,8 @@ NAMES = {  # of the value that a duty is judged by, its unit, and as a key
 }
 RPM = 30.0 / math.pi  # of a rad/s
 TIE = 1e-12  # relative: a motor that is used to the full is not overloaded by rounding
+POINTS = 200  # of the curve
+REACH = 5.0  # of the curve, to either side of the best ratio
 
 
 @dataclass(frozen=True)
@@ -30,26 +34,8 @@ class Candidate:
     inertia: float | None = None
 
 
-def candidates(scene: Scene, chosen: Mapping[str, Any] | None) -> dict[str, Candidate]:
-    """The ratio of [duty], the chosen train as `design` has it, and the given one beside it."""
-    found = {}
-    if scene.duty is not None and scene.duty.ratio is not None:
-        asked = float(scene.duty.ratio)
-        found["given"] = Candidate(f"At the given ratio of {asked:g}", asked)
-    trains = {"chosen": chosen if scene.train else None}
-    if scene.train is not None and (gears := given_gears(scene)) is not None:
-        trains["given_train"] = described(scene, gears)
-    for who, train in trains.items():
-        if train is not None:
-            where = f"With the {who.removesuffix('_train')} train, of ratio {train['ratio']:.6g},"
-            found[who] = Candidate(where, train["ratio"], train["inertia_kg_m2"] / KG_M2)
-    return found
-
-
 def judged(duty: ServoDuty, ratio: Any) -> Any:
     """What a duty is judged by, at ratios: rad/s2, s or N m; NaN where the load does not move."""
-    import numpy as np
-
     n = np.asarray(ratio, float)
     value = duty.value(n)
     if duty.motion == "swing":
@@ -58,18 +44,22 @@ def judged(duty: ServoDuty, ratio: Any) -> Any:
     return 1.0 / value if duty.motion == "acceleration" else value
 
 
-def achieved(bare: ServoDuty, one: Candidate, best: float) -> dict[str, Any] | None:
+def achieved(bare: ServoDuty, one: Candidate, best: float) -> Achieved | None:
     """What a candidate gives, beside the best value of all; None where the motor fails."""
     if why_not(bare, one):
         return None
     duty, ratio = bare.with_gears(one.inertia or 0.0), one.ratio
     value = float(judged(duty, ratio))
     less = 1.0 - value / best if duty.motion == "acceleration" else value / best - 1.0
-    found = {"total_ratio": ratio, "value": value, "loss_percent": 100.0 * less}
-    if one.inertia is not None:
-        found["gear_inertia_kg_m2"] = KG_M2 * one.inertia
-    found["inertia_ratio"] = duty.drive.load_inertia / ratio**2 / duty.drive.inertia
-    return found | _speeds(duty, ratio) | _torques(duty, ratio, value)
+    return Achieved(
+        total_ratio=ratio,
+        value=value,
+        loss_percent=100.0 * less,
+        inertia_ratio=duty.drive.load_inertia / ratio**2 / duty.drive.inertia,
+        gear_inertia_kg_m2=None if one.inertia is None else KG_M2 * one.inertia,
+        **_speeds(duty, ratio),
+        **_torques(duty, ratio, value),
+    )
 
 
 def _speeds(duty: ServoDuty, ratio: float) -> dict[str, float]:
@@ -123,3 +113,49 @@ def why_not(bare: ServoDuty, one: Candidate) -> str:
             f"{1e-3 * axis.torque:.6g} N m."
         )
     return ""
+
+
+def best_ratio_of(duty: ServoDuty) -> float | None:
+    """The best ratio of a duty; None where nothing moves."""
+    outcome = run(duty.problem())[1]
+    return None if outcome.x is None else float(outcome.x[0])
+
+
+def landmarks(duty: ServoDuty) -> dict[str, float]:
+    """The ratio of equal inertias, and what less friction would give at standstill.
+
+    Losses of the train count: J_L/eta in the place of J_L, as a = T/(2 sqrt(J_L J_M/eta)) at
+    N = sqrt(J_L/(eta J_M)).
+    """
+    axis = duty.drive
+    load = axis.load_inertia / axis.efficiency
+    if load == 0.0:
+        return {}
+    found = {"matched_inertia_ratio": math.sqrt(load / axis.motor_inertia)}
+    if duty.motion == "swing" or duty.load_speed:
+        return found
+    inertias = load, axis.motor_inertia
+    return found | {
+        "frictionless_load_acceleration_rad_per_s2": largest_acceleration(*inertias, axis.torque),
+        "load_acceleration_without_load_friction_rad_per_s2": largest_acceleration(
+            *inertias, axis.net_torque
+        ),
+    }
+
+
+def curve(duty: ServoDuty, best: float, gears: float | None) -> RatioCurve:
+    """The value about the best ratio, where the load moves and the motor's speed allows it.
+
+    gears: inertia of a train [t mm2]; what it leaves of the value stands there too.
+    """
+    low, high = duty.drive.ratios(duty.speed)
+    ratios = np.geomspace(max(best / REACH, low), min(best * REACH, high), POINTS)
+    ratios = np.unique(np.append(ratios, best))
+    values = judged(duty, ratios)
+    moves = np.isfinite(values)
+    less = [] if gears is None else judged(duty.with_gears(gears), ratios[moves]).tolist()
+    return RatioCurve(
+        tuple(ratios[moves].tolist()),
+        tuple(values[moves].tolist()),
+        tuple(v if math.isfinite(v) else None for v in less),
+    )

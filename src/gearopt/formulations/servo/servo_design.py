@@ -1,0 +1,303 @@
+"""What a servo axis's result holds, as its JSON names it: every quantity with its unit in the key.
+
+A field that has a default is left out of the JSON where it holds that.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields, replace
+from typing import Any
+
+from gearopt.optimise.typed import typed, untyped
+
+KG_M2 = 1e-3  # of a t mm2
+
+
+@dataclass(frozen=True)
+class Teeth:
+    """One stage of a train, as a list of trains names it."""
+
+    normal_module_mm: float
+    pinion_teeth: int
+    wheel_teeth: int
+
+
+@dataclass(frozen=True)
+class Stage(Teeth):
+    """One stage of a train; face width and Lewis stress where a file chooses the train."""
+
+    ratio: float
+    pinion_diameter_mm: float
+    wheel_diameter_mm: float
+    pinion_tip_diameter_mm: float
+    wheel_tip_diameter_mm: float
+    centre_distance_mm: float
+    face_width_mm: float | None = None
+    bending_stress_MPa: float | None = None
+
+
+@dataclass(frozen=True)
+class TrainDesign:
+    """A train; ratio_error_percent: off a single ratio that is asked for. error: at the output.
+
+    inertia: at the motor, and mass where a file chooses the train. sector: part of a disc that the
+    last wheel is.
+    """
+
+    stages: tuple[Stage, ...]
+    ratio: float
+    ratio_error_percent: float | None = None
+    inertia_kg_m2: float | None = None
+    mass_kg: float | None = None
+    error_deg: float | None = None
+    sector: float = 1.0
+
+
+@dataclass(frozen=True)
+class ListedTrain:
+    """A train of the list beside the chosen one, by what trains are compared.
+
+    best_of: by what it is the best of all, empty for none.
+    """
+
+    stages: tuple[Teeth, ...]
+    ratio: float
+    best_of: str
+    inertia_kg_m2: float
+    mass_kg: float
+    error_deg: float | None = None
+    load_acceleration_rad_per_s2: float | None = None
+    move_time_s: float | None = None
+    rms_torque_Nm: float | None = None
+
+
+@dataclass(frozen=True)
+class StageCount:
+    """A bare train of a number of stages, inertia and mass in those of a pinion."""
+
+    stages: int
+    inertia_in_pinions: float
+    mass_in_pinions: float
+    ratios_of_least_inertia: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Achieved:
+    """What an axis achieves at a ratio, loss_percent: worse than the best; without gears or with.
+
+    Speed, torques and their shares where the motion knows them.
+    """
+
+    total_ratio: float
+    value: float
+    loss_percent: float
+    inertia_ratio: float
+    gear_inertia_kg_m2: float | None = None
+    motor_speed_rpm: float | None = None
+    motor_speed_used_percent: float | None = None
+    motor_torque_used_percent: float | None = None
+    peak_motor_torque_Nm: float | None = None
+    torque_to_load_percent: float | None = None
+    torque_to_rotor_percent: float | None = None
+    torque_to_gears_percent: float | None = None
+    torque_to_friction_percent: float | None = None
+
+
+@dataclass(frozen=True)
+class RatioCurve:
+    """The value over the total ratio; with the chosen train, None where the load does not move."""
+
+    total_ratio: tuple[float, ...]
+    value: tuple[float, ...]
+    value_with_train: tuple[float | None, ...] = ()
+
+
+@dataclass(frozen=True)
+class RatioDesign:
+    """The best total ratio of a motion, its value by name and unit, and what else achieves.
+
+    given: a ratio without gears. best_with_train: the best ratio with the chosen train's inertia.
+    None where nothing of the kind is there, or the motor fails.
+    """
+
+    duty: str
+    total_ratio: float
+    value: float
+    name: str
+    unit: str
+    given: Achieved | None
+    best: Achieved | None
+    curve: RatioCurve
+    chosen: Achieved | None = None
+    given_train: Achieved | None = None
+    best_with_train: Achieved | None = None
+
+
+@dataclass(frozen=True)
+class ErrorSource:
+    """One deviation at its worst, and its error at the output; kind: backlash or pitch."""
+
+    source: str
+    kind: str
+    stage: int
+    tolerance_mm: float
+    error_deg: float
+
+
+@dataclass(frozen=True)
+class Spring:
+    """A mesh or shaft of the train, its share of the compliance, its stiffness at the output."""
+
+    name: str
+    compliance_share: float
+    referred_Nm_per_rad: float
+
+
+@dataclass(frozen=True)
+class StiffnessDesign:
+    """Stiffness at the output; frequency and wind-up where load and torque are given."""
+
+    output_Nm_per_rad: float
+    springs: tuple[Spring, ...]
+    frequency_Hz: float | None = None
+    windup_deg: float | None = None
+
+
+@dataclass(frozen=True)
+class BoxDesign:
+    """A train in its box, as `servo_box` has it: inner and needed sides, angles of both links."""
+
+    inner_width_mm: float
+    inner_height_mm: float
+    needed_width_mm: float
+    needed_height_mm: float
+    fits: bool
+    motor_angle_deg: float
+    output_angle_deg: float
+    radii_mm: tuple[float, float, float]
+    motor_mm: float
+    shaft_mm: float
+    links_mm: tuple[float, float]
+    hub_mm: float
+    half_sweep_deg: float
+
+
+@dataclass(frozen=True)
+class ToleranceRow:
+    """A tolerance before and after; upper_mm: None for none."""
+
+    name: str
+    stage: int
+    kind: str
+    old_mm: float
+    new_mm: float
+    lower_mm: float
+    upper_mm: float | None
+    sensitivity_deg_per_mm: float
+    old_cost: float
+    new_cost: float
+
+
+@dataclass(frozen=True)
+class BudgetUse:
+    """A budget of errors and what the new tolerances use of it."""
+
+    rule: str
+    limit_deg: float
+    used_deg: float
+    kappa: float | None = None
+
+
+@dataclass(frozen=True)
+class Allocation:
+    """What the new tolerances cost and use."""
+
+    budgets: tuple[BudgetUse, ...]
+    cost: float
+    old_cost: float
+    method: str
+
+
+@dataclass(frozen=True)
+class Histogram:
+    """How many drawn errors lie between two edges."""
+
+    edges_deg: tuple[float, ...]
+    counts: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class DrawnErrors:
+    """`sampling.Drawn` in degrees, with its histogram; an end is None where the draws are few."""
+
+    count: int
+    seed: int
+    probability: float
+    confidence: float
+    yield_share: float
+    yield_low: float
+    yield_high: float
+    mean_deg: float
+    sd_deg: float
+    quantile_deg: float
+    quantile_low_deg: float | None
+    quantile_high_deg: float | None
+    limit_deg: float
+    largest_deg: float
+    worst_case_deg: float
+    histogram: Histogram
+
+
+@dataclass(frozen=True)
+class ServoDesign:
+    """The design of a servo axis: what its file asks for."""
+
+    ratio: RatioDesign | None = None
+    train: TrainDesign | None = None
+    errors: tuple[ErrorSource, ...] = ()
+    stiffness: StiffnessDesign | None = None
+    box: BoxDesign | None = None
+    tolerances: tuple[ToleranceRow, ...] = ()
+    allocation: Allocation | None = None
+    drawn: DrawnErrors | None = None
+
+    def __or__(self, other: "ServoDesign") -> "ServoDesign":
+        """Both together; what the other has counts."""
+        return replace(self, **_given(other))
+
+
+@dataclass(frozen=True)
+class ServoReport:
+    """What is told beside the design. figures: by the names that docs/servo.md lists.
+
+    trains: none of them where they are too many, None where no train was chosen.
+    """
+
+    trains: tuple[ListedTrain, ...] | None = None
+    stage_counts: tuple[StageCount, ...] | None = None
+    given_train: TrainDesign | None = None
+    given_stiffness: StiffnessDesign | None = None
+    lightest_train: Mapping[str, Any] | None = None
+    figures: Mapping[str, float] = field(default_factory=dict)
+
+    def __or__(self, other: "ServoReport") -> "ServoReport":
+        """Both together; what the other has counts."""
+        return replace(self, **_given(other) | {"figures": {**self.figures, **other.figures}})
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain data, the figures at its top."""
+        found: dict[str, Any] = untyped(self)
+        figures: dict[str, Any] = found.pop("figures", {})
+        return found | figures
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any]) -> "ServoReport":
+        """What is known of it in the report of a result."""
+        own = {f.name for f in fields(cls)}
+        figures = {k: v for k, v in data.items() if isinstance(v, float)}
+        found: ServoReport = typed(cls, {k: v for k, v in data.items() if k in own})
+        return replace(found, figures=figures)
+
+
+def _given(found: Any) -> dict[str, Any]:
+    """The fields of a dataclass that do not hold their default."""
+    return {f.name: v for f in fields(found) if (v := getattr(found, f.name)) != f.default}

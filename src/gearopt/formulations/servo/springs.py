@@ -1,0 +1,78 @@
+"""How stiff a servo train is at its output: meshes and shaft in series, motor locked."""
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+from gearopt.formulations.servo.servo_design import Spring, StiffnessDesign
+from gearopt.physics.stiffness import (
+    lewis_form_factor,
+    line_stiffness,
+    locked_frequency,
+    mesh_compliance,
+    output_compliance,
+    shaft_compliance,
+    tooth_factor,
+)
+
+NAMES = ("mesh of stage 2", "shaft between the stages", "mesh of stage 1")
+
+
+@dataclass(frozen=True)
+class Springs:
+    """What is given of meshes and shaft between the stages; lengths in mm, moduli in MPa.
+
+    shaft: diameter and length. line_stiffness: of a mesh; None where it follows from the gears'
+    youngs_modulus and teeth. load_inertia [t mm2] and load_torque [N mm]: None for none. least:
+    stiffness that the output must have [N mm/rad], None where none is asked for.
+    """
+
+    face_width: float
+    shear_modulus: float
+    shaft: tuple[float, float]
+    line_stiffness: float | None = None
+    youngs_modulus: float = math.nan
+    load_inertia: float | None = None
+    load_torque: float | None = None
+    least: float | None = None
+
+    def compliances(self, point: Iterable[Any]) -> tuple[Any, Any, Any]:
+        """Compliances [rad/(N mm)] at the output, as NAMES has them, of a point of `split.problem`.
+
+        The six numbers of the point may be arrays.
+        """
+        z1, z3, z2, z4, m1, m2 = point
+        ratio = z4 / z3
+        twist = shaft_compliance(self.shear_modulus, *self.shaft)
+        return (
+            mesh_compliance(self._line(z3, z4), self.face_width, m2 * z4),
+            twist / ratio**2,
+            mesh_compliance(self._line(z1, z2), self.face_width, m1 * z2) / ratio**2,
+        )
+
+    def _line(self, *pair: Any) -> Any:
+        """Line stiffness [MPa] of a pair of gears, given or by Lewis's form of its teeth."""
+        if self.line_stiffness is not None:
+            return self.line_stiffness
+        one, two = (tooth_factor(lewis_form_factor(z) / math.pi) for z in pair)
+        return line_stiffness(self.youngs_modulus, one, self.youngs_modulus, two)
+
+    def output_stiffness(self, point: Iterable[Any]) -> Any:
+        """Stiffness at the output [N mm/rad] of a point of `split.problem`."""
+        return 1.0 / output_compliance(self.compliances(point), (1.0, 1.0, 1.0))
+
+    def design(self, point: Iterable[Any]) -> StiffnessDesign:
+        """Stiffness, frequency and wind-up of a train, with the share of every spring."""
+        parts = [float(c) for c in self.compliances(point)]
+        total = math.fsum(parts)
+        inertia, torque = self.load_inertia, self.load_torque
+        return StiffnessDesign(
+            output_Nm_per_rad=1e-3 / total,
+            springs=tuple(
+                Spring(name, part / total, 1e-3 / part)
+                for name, part in zip(NAMES, parts, strict=True)
+            ),
+            frequency_Hz=None if inertia is None else float(locked_frequency(1.0 / total, inertia)),
+            windup_deg=None if torque is None else math.degrees(torque * total),
+        )
