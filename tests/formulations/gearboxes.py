@@ -4,10 +4,11 @@ import math
 
 import numpy as np
 
-from gearopt.formulations.layout.gearbox import Clearances, Gearbox, Pair, Shaft
+from gearopt.formulations.layout.gearbox import Clearances, Gearbox, Shaft
 from gearopt.formulations.layout.slabs import arrangements, clashes
+from gearopt.physics.gears import GearPair
 
-COSINE = math.cos(math.radians(25.0))
+HELIX = math.radians(25.0)
 MODULES = (1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 16.0, 20.0)
 THREE, TWO = (8.0, 15.0, 22.5, 35.0), (10.0, 17.5, 30.0)  # shaft radii
 TRAINS = {  # module, teeth, face width; shaft radii
@@ -19,16 +20,13 @@ TRAINS = {  # module, teeth, face width; shaft radii
 }
 
 
-def helical(module, z1, z2, width, cosine=COSINE):
-    """A pair with tip radii d/2 + m."""
-    d1, d2 = module * z1 / cosine, module * z2 / cosine
-    return Pair(0.5 * (d1 + d2), 0.5 * d1 + module, 0.5 * d2 + module, width)
-
-
 def gearbox(name, clearances=Clearances(), **given):  # noqa: B008 -- frozen
     rows, radii = TRAINS[name]
     return Gearbox(
-        tuple(helical(*row) for row in rows), tuple(Shaft(r) for r in radii), clearances, **given
+        tuple(GearPair.of_teeth(*row, HELIX) for row in rows),
+        tuple(Shaft(r) for r in radii),
+        clearances,
+        **given,
     )
 
 
@@ -43,9 +41,9 @@ def some_box(seed, stages=None, **given):
         for _ in range(stages):
             module, z1 = MODULES[min(size, len(MODULES) - 1)], int(rng.integers(18, 41))
             u = rng.uniform(2.0, 8.0 if stages < 4 else 5.0)
-            cosine = math.cos(math.radians(rng.choice([0.0, 15.0, 25.0])))
-            width = rng.uniform(0.5, 1.0) * module * z1 / cosine
-            pairs.append(helical(module, z1, round(u * z1), width, cosine))
+            helix = math.radians(rng.choice([0.0, 15.0, 25.0]))
+            width = rng.uniform(0.5, 1.0) * module * z1 / math.cos(helix)
+            pairs.append(GearPair.of_teeth(module, z1, round(u * z1), width, helix))
             torque *= u
             shafts.append(Shaft(2.0 * torque ** (1 / 3)))
             size += int(rng.integers(1, 4))

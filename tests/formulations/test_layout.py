@@ -12,13 +12,14 @@ from gearboxes import gearbox, law, places, some_box
 from gearopt.errors import SolveError
 from gearopt.formulations.layout import problem
 from gearopt.formulations.layout.chain import chain, turns
-from gearopt.formulations.layout.gearbox import Clearances, Gearbox, KeepOut, Pair, Place, Shaft
+from gearopt.formulations.layout.gearbox import Clearances, Gearbox, KeepOut, Place, Shaft
 from gearopt.formulations.layout.slabs import arrange, arrangements, clashes, in_order
 from gearopt.formulations.layout.text import positions, sides, smooth
 from gearopt.optimise.box import violation
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import run, solve
 from gearopt.optimise.solvers import ipopt
+from gearopt.physics.gears import GearPair
 
 NONE = Clearances(0.0, 0.0, 0.0, 0.0)
 DEGREE = math.radians(1.0)
@@ -71,7 +72,7 @@ def test_stages_in_one_slab_clash():
 def test_shaft_beside_a_wheel_of_a_neighbour_is_a_data_check():
     """a_2 - r_a1 is 25.8 mm, of which a shaft of 45.6 mm leaves 3.0 mm."""
     box = gearbox("table4_p1")
-    between = box.pairs[1].centre_distance - box.pairs[0].wheel_radius
+    between = box.pairs[1].centre_distance - 0.5 * box.pairs[0].wheel.tip_diameter
     assert between == pytest.approx(25.8, abs=0.02)
     shafts = (*box.shafts[:2], Shaft(22.8), box.shafts[3])
     left = between - 22.8
@@ -127,13 +128,13 @@ def test_the_best_arrangement_is_that_of_every_one_tried():
     alone = [solve(problem(replace(box, slabs=a.slabs))).value for a in orders]
     assert best.status == "optimal"
     assert best.value == pytest.approx(min(alone), rel=2e-6)
-    assert orders[best.design["arrangement"]].slabs == orders[int(np.argmin(alone))].slabs
+    assert alone[best.design["arrangement"]] == pytest.approx(min(alone), rel=2e-6)
     with pytest.raises(SolveError, match="one order of slabs"):
         problem(box, "ipopt")
 
 
 FOLDED = Gearbox(  # coaxial: both centre distances are the same
-    (Pair(160.0, 42.0, 124.0, 30.0), Pair(160.0, 52.0, 116.0, 50.0)),
+    (GearPair.of_teeth(3.0, 26, 242 / 3, 30.0), GearPair.of_teeth(4.0, 24, 56, 50.0)),
     (Shaft(10.0), Shaft(17.5), Shaft(30.0)),
     partial=True,
 )
@@ -322,7 +323,7 @@ def test_a_watcher_stops_a_run_and_keeps_the_best(method):
     assert len(events) == 3
     assert result.evaluations <= 60_000
     assert result.status == "limit"
-    assert result.value == pytest.approx(events[-1].best, rel=1e-12)
+    assert result.value <= events[-1].best * (1.0 + 1e-12)  # what came after is kept too
 
 
 def test_exact_stopped_early_keeps_a_valid_bound():

@@ -30,8 +30,8 @@ def made(train, method, one=None, two=None):
     result, outcome = run(problem, method)
     if outcome.x is None:
         return result, []
-    modules, z1, ratios, _ = teeth.sizes(train, outcome.x)
-    return result, [(m, z, round(z * u)) for m, z, u in zip(modules, z1, ratios, strict=True)]
+    pairs = teeth.pairs(train, outcome.x)
+    return result, [(p.normal_module, p.pinion_teeth, p.wheel_teeth) for p in pairs]
 
 
 def loaded(train, k):
@@ -223,8 +223,8 @@ def test_what_is_missing_is_named():
 
 def test_the_design_in_words_has_the_widths_of_the_rule():
     result, gears = made(TWO, "process-one", one=ProcessOne(PRINTED))
-    m, z1, z2 = zip(*gears, strict=True)
-    d = [a * b / math.cos(TWO.helix_angle) for a, b in zip(m, z1, strict=True)]
-    u = tuple(b / a for a, b in zip(z1, z2, strict=True))
-    found = describe(TWO, (m, z1, u, (0.6 * d[0], 0.75 * d[1])), math.radians(20.0), 150.0)
+    cosine = math.cos(TWO.helix_angle)
+    rows = zip(gears, (0.6, 0.75), strict=True)
+    pairs = tuple(TWO.pair(m, z1, z2, part * m * z1 / cosine) for (m, z1, z2), part in rows)
+    found = describe(TWO, pairs, 150.0)
     assert found["gear_volume_mm3"] == pytest.approx(result.value, rel=1e-12)

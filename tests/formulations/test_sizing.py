@@ -133,9 +133,8 @@ def test_one_watt_to_20_megawatts_from_20_random_starts(power_kW, speed_rpm):
     limits = {"modules": (F("0.05"), F(200)), "pinion_teeth": (20, 60)}
     train = drive(power_kW, speed_rpm, 110, [0.6, 0.6, 0.75], F(1, 100), **limits)
     _, outcome = run(sizing.problem(train))
-    module, teeth, ratio, _ = sizing.sizes(train, outcome.x)
-    largest = max(m * z * u for m, z, u in zip(module, teeth, ratio, strict=True))
-    cap = F(0.95 * largest / math.cos(train.helix_angle))
+    largest = max(p.wheel.reference_diameter for p in sizing.pairs(train, outcome.x))
+    cap = F(0.95 * largest)
     capped = replace(train, stages=tuple(replace(s, wheel_diameter=cap) for s in train.stages))
     problem = sizing.problem(capped)
     best = solve(problem)

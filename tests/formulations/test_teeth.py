@@ -149,8 +149,8 @@ def test_fixed_things_stay_fixed():
     )
     result, outcome = run(teeth.problem(replace(train, stages=(first, train.stages[1]))))
     assert result.status == "optimal"
-    module, z1, u, width = teeth.sizes(replace(train, stages=(first, train.stages[1])), outcome.x)
-    assert (module[0], z1[0], z1[0] * u[0], width[0]) == (2.5, 24, pytest.approx(119), 40.0)
+    pair, _ = teeth.pairs(replace(train, stages=(first, train.stages[1])), outcome.x)
+    assert pair == train.pair(2.5, 24, 119, 40.0)
 
 
 def test_finer_series_and_wider_tolerance_never_hurt():

@@ -9,15 +9,16 @@ import numpy as np
 import pytest
 from brute_force import ONE, SAME, every_train, log_uniform, some_drive
 
-from gearopt.formulations.teeth import problem, sizes
+from gearopt.formulations.teeth import pairs, problem
 from gearopt.formulations.train import FaceWidth, Stage, Train
 from gearopt.optimise.solve import run
 
 
 def teeth_of(train, point):
     """((z1, z2), ...), modules and widths of a point."""
-    module, z1, u, b = sizes(train, point)
-    return [[round(z), round(z * r)] for z, r in zip(z1, u, strict=True)], module, b
+    made = pairs(train, point)
+    teeth = [[p.pinion_teeth, p.wheel_teeth] for p in made]
+    return teeth, tuple(p.normal_module for p in made), tuple(p.face_width for p in made)
 
 
 def agrees(train):

@@ -11,7 +11,7 @@ from small_drives import FACES, OBJECTIVES, drive
 
 from gearopt.errors import SolveError
 from gearopt.formulations import teeth
-from gearopt.formulations.teeth import MOST, _in_order, _why, best_point, problem, sizes
+from gearopt.formulations.teeth import MOST, _in_order, _why, best_point, pairs, problem
 from gearopt.formulations.teeth.progress import MARGIN, TIE, Progress
 from gearopt.formulations.teeth.search import search
 from gearopt.formulations.train import FaceWidth
@@ -102,10 +102,14 @@ def test_stages_of_unlike_widths_share_the_variables():
     x = best_point(train, ((16, 40), (17, 48), (18, 52)))
     low, high, _ = problem(train).bounds()
     assert (low <= x).all() and (x <= high).all()
-    module, z1, ratio, width = sizes(train, x)
-    assert z1 == (16, 17, 18) and ratio == (40 / 16, 48 / 17, 52 / 18)
-    assert width[2] == 24.0 and width[1] == pytest.approx(0.6 * module[1] * 17)
-    assert width[0] % 2 == 0.0
+    first, second, third = pairs(train, x)
+    assert [(p.pinion_teeth, p.wheel_teeth) for p in (first, second, third)] == [
+        (16, 40),
+        (17, 48),
+        (18, 52),
+    ]
+    assert second.face_width == pytest.approx(0.6 * second.normal_module * 17)
+    assert third.face_width == 24.0 and first.face_width % 2 == 0.0
 
 
 @pytest.mark.parametrize("face", FACES)
@@ -119,9 +123,9 @@ def test_the_point_of_teeth_is_the_brute_forces_and_keeps_every_row(face, object
         batch = posed.batch(x[None])
         assert batch.F[0, 0] == pytest.approx(trains.values[k], rel=1e-12)
         assert (batch.G <= 1.0 + 1e-11).all()
-        module, _, _, width = sizes(train, x)
-        assert module == tuple(trains.modules[k])
-        assert width == pytest.approx(trains.widths[k], rel=1e-12)
+        made = pairs(train, x)
+        assert [p.normal_module for p in made] == list(trains.modules[k])
+        assert [p.face_width for p in made] == pytest.approx(trains.widths[k], rel=1e-12)
 
 
 def test_widths_are_whole_steps_whatever_rounding_makes_of_them():
@@ -132,7 +136,8 @@ def test_widths_are_whole_steps_whatever_rounding_makes_of_them():
     trains, below = every_train(train), 0
     for k in range(0, len(trains.values), 15):
         x = best_point(train, tuple(map(tuple, trains.teeth[k].tolist())))
-        assert sizes(train, x)[3] == pytest.approx(trains.widths[k], rel=1e-12)
+        widths = [p.face_width for p in pairs(train, x)]
+        assert widths == pytest.approx(trains.widths[k], rel=1e-12)
         below += (trains.widths[k] / 0.7 < np.rint(trains.widths[k] / 0.7)).any()
     assert below > 3
 

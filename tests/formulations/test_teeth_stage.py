@@ -106,7 +106,7 @@ def test_a_width_at_its_limit_is_not_beyond_it_whatever_its_rounding(face):
         value, module, width = own._best(part * most, index)
         good = own.first <= own.last
         assert (np.isfinite(value) == good).all() and (module == 2.0).all() and good.any()
-        limit = 24.0 if face == "fixed" else 0.6 * own.diameter(module, index)
+        limit = 24.0 if face == "fixed" else 0.6 * own.made(module, index).pinion.reference_diameter
         assert (width <= limit)[good].all()
         assert width[good] == pytest.approx(np.broadcast_to(limit, width.shape)[good], rel=1e-11)
 

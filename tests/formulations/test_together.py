@@ -39,12 +39,12 @@ def elevator():
 
 
 def frame(train, radii, **choices):
-    """A function that makes the gearbox of sizes on shafts of given radii."""
+    """A function that makes the gearbox of gear pairs on shafts of given radii."""
 
-    def make(sizes):
+    def make(pairs):
         shafts = tuple(Shaft(r) for r in radii)
         clear = choices.get("clearances", Clearances())
-        return Gearbox(together.pairs(train, sizes), shafts, **{**choices, "clearances": clear})
+        return Gearbox(pairs, shafts, **{**choices, "clearances": clear})
 
     return make
 
@@ -97,13 +97,13 @@ def some_frame(rng, train):
         "level": [(), (), (), (0, stages)][int(rng.integers(4))],
     }
 
-    def make(sizes):
+    def make(pairs):
         radii, ratio = [first], 1.0
-        for k, u in enumerate(sizes[2], 1):
-            ratio *= u
+        for k, pair in enumerate(pairs, 1):
+            ratio *= pair.ratio
             radii.append(first * (ratio ** (1.0 / 3.0) if torsion else growth**k))
         shafts = tuple(Shaft(r) for r in radii)
-        return Gearbox(together.pairs(train, sizes), shafts, **choices)
+        return Gearbox(pairs, shafts, **choices)
 
     return make
 
@@ -128,12 +128,12 @@ def widths(train, stage, torque, m, z1, z2):
 
 
 def every(train):
-    """Sizes of all trains with every module that carries the load."""
+    """Gear pairs of all trains with every module that carries the load."""
     found = []
 
     def go(k, torque, ratio, rows):
         if k == len(train.stages):
-            found.append(tuple(zip(*rows, strict=True)))
+            found.append(tuple(rows))
             return
         stage, last = train.stages[k], k == len(train.stages) - 1
         for z1 in range(stage.pinion_teeth[0], stage.pinion_teeth[1] + 1):
@@ -146,7 +146,7 @@ def every(train):
                 for module in stage.modules:
                     b = widths(train, stage, torque, float(module), z1, z2)
                     if b is not None:
-                        row = (float(module), float(z1), z2 / z1, b)
+                        row = train.pair(float(module), float(z1), float(z2), b)
                         go(k + 1, torque * z2 / z1, ratio * u, [*rows, row])
 
     go(0, train.torque, F(1), [])
@@ -158,8 +158,8 @@ def least_box(train, make, rel):
     branch = kernel("gearopt.formulations.layout.branch_kernel").branch
     best, links = math.inf, len(train.stages)
     theta, cells, bounds = np.zeros(links), np.zeros((4000, 2, links)), np.zeros(4000)
-    for sizes in every(train):
-        box = make(sizes)
+    for pairs in every(train):
+        box = make(pairs)
         for order in arrangements(box):
             if clashes(box, order):
                 continue
@@ -217,7 +217,7 @@ def test_anchor_with_a_shared_slab():
     result = certified(train, make, 1e-2)
     assert result.status == "optimal"
     assert result.value <= 38_165_872.4
-    box = make(together.sizes(train, np.array([1.5, 3, 4, 21, 21, 24, 162, 89, 80])))
+    box = make(together.pairs(train, np.array([1.5, 3, 4, 21, 21, 24, 162, 89, 80])))
     assert orders(box)[result.design["arrangement"]] == ((0, 2), (1,))
 
 
@@ -242,7 +242,7 @@ def test_never_worse_than_sizing_first(seed):
     if sized.status == "infeasible":
         assert result.status == "infeasible"
         return
-    box = make(teeth.sizes(train, outcome.x))
+    box = make(teeth.pairs(train, outcome.x))
     for order in (a for a in arrangements(box) if not clashes(box, a)):
         laid = run(layout.problem(replace(box, slabs=order.slabs)), "exact", Budget(gap=1e-4))[0]
         if laid.value is not None:
@@ -280,11 +280,11 @@ def test_what_face_widths_decide_is_refused():
         together.problem(train, frame(train, (10.0, 17.5, 30.0), keep_outs=(keep,)))
 
 
-def test_pairs_of_other_sizes_are_refused():
+def test_other_pairs_are_refused():
     train = elevator()
     make = frame(train, (10.0, 17.5, 30.0))
-    with pytest.raises(SolveError, match="takes its pairs from"):
-        together.problem(train, lambda sizes: make((*sizes[:3], (50.0, 50.0))))
+    with pytest.raises(SolveError, match="must have the gear pairs"):
+        together.problem(train, lambda pairs: make(tuple(p.of_width(50.0) for p in pairs)))
 
 
 def test_the_text_measures_a_layout_as_layout_does():
@@ -292,7 +292,7 @@ def test_the_text_measures_a_layout_as_layout_does():
     make = frame(train, (10.0, 17.5, 30.0))
     problem = together.problem(train, make)
     point = np.array([2.0, 3.0, 21, 24, 128, 85, -0.7, -1.5])
-    box = make(together.sizes(train, point))
+    box = make(together.pairs(train, point))
     laid = layout.problem(box).batch(point[None, -2:])
     found = problem.batch(np.stack([point, point]))
     assert found.F[:, 0] == pytest.approx(laid.F[0, 0], rel=1e-14)

@@ -13,12 +13,11 @@ from gearopt.formulations import sizing, teeth
 from gearopt.formulations.design import describe
 from gearopt.formulations.process import rules
 from gearopt.optimise.solve import run, solve
-from gearopt.physics.geometry import gear_volume
+from gearopt.physics.gears import GearPair
 from gearopt.physics.loads import k_factor
 
 PROBLEMS = Path(__file__).parents[2] / "problems"
 K, U = 2.07, 48.0  # MPa, Table 1
-PRESSURE_ANGLE = math.radians(20.0)  # Table 1
 APART = 0.05  # mm; what is farther from its recomputation is marked
 
 
@@ -73,15 +72,12 @@ def recomputed(name, widths="printed"):
     """A design from its modules, teeth and helix angle; widths: printed, or ruled (b = m_a d1)."""
     rows = DESIGNS[name]
     own = train(len(rows))
-    m = tuple(row.m for row in rows)
-    z = tuple(row.z1 for row in rows)
-    u = tuple(row.z2 / row.z1 for row in rows)
-    b = tuple(float(row.b) for row in rows)
+    pairs = tuple(own.pair(row.m, row.z1, row.z2, float(row.b)) for row in rows)
     if widths == "ruled":
-        share = PROPORTIONS[2] if len(rows) == 2 else (0.6, 0.6, 0.8)
-        cosine = math.cos(own.helix_angle)
-        b = tuple(f * x * y / cosine for f, x, y in zip(share, m, z, strict=True))
-    return describe(own, (m, z, u, b), PRESSURE_ANGLE, 1.0)  # speed: of no quantity used here
+        shares = PROPORTIONS[2] if len(rows) == 2 else (0.6, 0.6, 0.8)
+        rows = zip(shares, pairs, strict=True)
+        pairs = tuple(p.of_width(f * p.pinion.reference_diameter) for f, p in rows)
+    return describe(own, pairs, 1.0)  # speed: of no quantity used here
 
 
 def cell(text, value):
@@ -127,7 +123,7 @@ def volume(stages, ratios):
     torque, total = train(stages).torque, 0.0
     for u in ratios:
         d = math.cbrt(k_factor(torque, 1.0, 0.7, u) / K)
-        total += gear_volume(d, 0.7 * d, u)
+        total += GearPair.of_diameter(1.0, d, d, u, 0.7 * d).volume  # whatever the module
         torque *= u
     return total
 
@@ -138,7 +134,7 @@ def best_split(stages):
     own = replace(train(stages), tolerance=0)
     result, outcome = run(sizing.problem(own), "ipopt")
     assert result.status == "optimal"
-    return sizing.sizes(own, outcome.x)[2], result.value
+    return tuple(p.ratio for p in sizing.pairs(own, outcome.x)), result.value
 
 
 def niemann(stages):

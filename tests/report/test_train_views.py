@@ -45,8 +45,7 @@ def result(rows):
     width = FaceWidth(0, None)
     stages = (Stage(1.0, 1.0, width, (), (1, None)),) * len(rows)
     train = Train(5e4, 1, 0, stages, helix_angle=0.4)
-    sizes = zip(*((m, z1, z2 / z1, b) for m, z1, z2, b in rows), strict=True)
-    design = describe(train, tuple(sizes), 0.35, 150.0)
+    design = describe(train, tuple(train.pair(*row) for row in rows), 150.0)
     objective = {"name": "gear_volume", "value": 1.0, "unit": "mm3"}
     return gearopt.Result(
         name="drive", status="optimal", method="exact", objective=objective, design=design

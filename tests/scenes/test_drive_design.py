@@ -7,6 +7,7 @@ import pytest
 
 import gearopt
 from gearopt.formulations.servo.servo_design import ServoDesign, ServoReport, Stage, TrainDesign
+from gearopt.physics.gears import Rack
 from gearopt.report.result_words import PAGE_ROWS, ROWS
 from gearopt.scenes.drive.explaining.undercut import undercut
 from gearopt.scenes.drive.tables.limits import ORIGINS, PRESETS
@@ -150,7 +151,7 @@ def test_an_undercut_pinion_is_named(tmp_path, result, teeth):
 def test_the_least_teeth_that_are_not_named_are_those_of_tables(pressure, helix, least):
     angles = math.radians(pressure), math.radians(helix)
     stages = [{"pinion_teeth": z} for z in (least - 1, least, least + 1, 5)]
-    notes = list(undercut(stages, *angles))
+    notes = list(undercut(stages, Rack(angles[0]), angles[1]))
     assert [n[: n.index(" is undercut")] for n in notes] == [
         "The pinion of stage 1",
         "The pinion of stage 4",

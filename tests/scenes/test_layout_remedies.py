@@ -294,9 +294,9 @@ def some_box(seed, box):
 def test_a_fault_excludes_every_order_of_slabs(seeds):
     """What the data check calls impossible no order allows, each searched alone."""
     scene, _ = scene_of(BARE)
-    from gearopt.scenes.drive.box.lay_out import sizes_of
+    from gearopt.scenes.drive.box.lay_out import pairs_of
 
-    plain = scene.gearbox(sizes_of(gearopt.solve(scene).parts[0]))
+    plain = scene.gearbox(pairs_of(scene, gearopt.solve(scene).parts[0]))
     seen = 0
     for seed in seeds:
         box = some_box(seed, plain)

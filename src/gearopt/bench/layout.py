@@ -10,11 +10,12 @@ import time
 from typing import Any
 
 from gearopt.formulations import layout
-from gearopt.formulations.layout.gearbox import Clearances, Gearbox, Pair, Shaft
+from gearopt.formulations.layout.gearbox import Clearances, Gearbox, Shaft
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import run as solved
+from gearopt.physics.gears import GearPair
 
-COSINE = math.cos(math.radians(25.0))
+HELIX = math.radians(25.0)
 SEEDS = 25
 THREE, TWO = (8.0, 15.0, 22.5, 35.0), (10.0, 17.5, 30.0)  # radii of the shafts [mm]
 PAPER = ((1.5, 27, 229, 26.8), (3.0, 26, 105, 47.8), (4.0, 27, 87, 95.3))
@@ -49,10 +50,7 @@ CASES: dict[str, tuple[Any, tuple[float, ...], bool, float, float]] = {
 def gearbox(name: str) -> Gearbox:
     """The gearbox of a case."""
     train, shafts, partial, room, _ = CASES[name]
-    pairs = tuple(
-        Pair(0.5 * m * (z1 + z2) / COSINE, 0.5 * m * z1 / COSINE + m, 0.5 * m * z2 / COSINE + m, b)
-        for m, z1, z2, b in train
-    )
+    pairs = tuple(GearPair.of_teeth(m, z1, z2, b, HELIX) for m, z1, z2, b in train)
     clearances = Clearances(5.0 * room, 2.0 * room, 10.0 * room, 10.0 * room)
     return Gearbox(pairs, tuple(Shaft(r) for r in shafts), clearances, partial)
 

@@ -3,59 +3,47 @@
 import math
 from typing import Any
 
-from gearopt.formulations.train import Sizes, Train
-from gearopt.physics.geometry import (
-    centre_distance,
-    cylinder_volume,
-    gear_volume,
-    overlap_ratio,
-    reference_diameter,
-    root_diameter,
-    standard_contact_ratio,
-    tip_diameter,
-)
+from gearopt.formulations.train import Train
+from gearopt.physics.gears import GearPair
 from gearopt.physics.loads import k_factor, pitch_line_velocity, unit_load
 
 STEEL_DENSITY = 7.85e-9  # t/mm3: EN 1991-1-1 table A.4 (to 78.5 kN/m3), Steel for Life Blue Book
 
 
-def describe(
-    train: Train, sizes: Sizes, pressure_angle: float, input_speed: float
-) -> dict[str, Any]:
-    """Stages and totals; every quantity with its unit in the key.
+def describe(train: Train, pairs: tuple[GearPair, ...], input_speed: float) -> dict[str, Any]:
+    """Return stages and totals; every quantity with its unit in the key.
 
-    pressure_angle [rad], the normal one; input_speed [rad/s]. Masses are those of solid reference
-    cylinders, of steel where the train has no density.
+    input_speed [rad/s]. Masses are those of solid reference cylinders, of steel where the train
+    has no density.
     """
     stages: list[dict[str, Any]] = []
     torque, speed = train.torque, input_speed
     density = train.density or STEEL_DENSITY
-    for m, z, u, b in zip(*sizes, strict=True):
-        d = reference_diameter(m, z, train.helix_angle)
-        masses = [1000.0 * density * cylinder_volume(x, b) for x in (d, d * u)]
+    for pair in pairs:
+        pinion, wheel = pair.gears
+        d, b, u = pinion.reference_diameter, pair.face_width, pair.ratio
+        masses = [1000.0 * gear.mass(density) for gear in pair.gears]
         stages.append(
             {
-                "normal_module_mm": m,
-                "pinion_teeth": _whole(z),
-                "wheel_teeth": _whole(z * u),
+                "normal_module_mm": pair.normal_module,
+                "pinion_teeth": _whole(pair.pinion_teeth),
+                "wheel_teeth": _whole(pair.wheel_teeth),
                 "ratio": u,
                 "face_width_mm": b,
                 "pinion_diameter_mm": d,
-                "wheel_diameter_mm": d * u,
-                "pinion_tip_diameter_mm": tip_diameter(d, m),
-                "wheel_tip_diameter_mm": tip_diameter(d * u, m),
-                "pinion_root_diameter_mm": root_diameter(d, m),
-                "wheel_root_diameter_mm": root_diameter(d * u, m),
-                "centre_distance_mm": centre_distance(d, u),
-                "transverse_contact_ratio": standard_contact_ratio(
-                    m, z, u, pressure_angle, train.helix_angle
-                ),
-                "overlap_ratio": overlap_ratio(b, m, train.helix_angle),
+                "wheel_diameter_mm": wheel.reference_diameter,
+                "pinion_tip_diameter_mm": pinion.tip_diameter,
+                "wheel_tip_diameter_mm": wheel.tip_diameter,
+                "pinion_root_diameter_mm": pinion.root_diameter,
+                "wheel_root_diameter_mm": wheel.root_diameter,
+                "centre_distance_mm": pair.centre_distance,
+                "transverse_contact_ratio": pair.transverse_contact_ratio,
+                "overlap_ratio": pair.overlap_ratio,
                 "pinion_torque_Nm": 1e-3 * torque,
                 "pitch_line_velocity_m_per_s": 1e-3 * pitch_line_velocity(speed, d),
                 "k_factor_MPa": k_factor(torque, d, b, u),
-                "unit_load_MPa": unit_load(torque, d, b, m),
-                "gear_volume_mm3": gear_volume(d, b, u),
+                "unit_load_MPa": unit_load(torque, d, b, pair.normal_module),
+                "gear_volume_mm3": pair.volume,
                 "pinion_mass_kg": masses[0],
                 "wheel_mass_kg": masses[1],
                 "mass_kg": sum(masses),

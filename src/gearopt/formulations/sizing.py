@@ -11,10 +11,10 @@ from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
-from gearopt.formulations.train import BY_STAGE, Sizes, Train, terms
+from gearopt.formulations.train import BY_STAGE, Train, terms
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Array, Param, Terms, Var, each, namespace
-from gearopt.physics.geometry import reference_diameter
+from gearopt.physics.gears import GearPair, reference_diameter
 from gearopt.physics.loads import k_factor
 
 BEYOND = 1e6  # factor between any length of a drive and the ends of the search: they never bind
@@ -53,7 +53,7 @@ def problem(train: Train) -> Problem:
     )
 
     def evaluate(x: Any, p: Any) -> Terms:
-        return terms(train, p, *text_sizes(train, x, p.helix_cosine, each(p.width_high)))
+        return terms(train, p, text_pairs(train, x, p))
 
     return Problem("sizing", _variables(train), parameters, evaluate)
 
@@ -109,22 +109,27 @@ def _role(train: Train, name: str, tied: str) -> str | tuple[str, ...]:
     return "limit" if name in BY_STAGE else "data"
 
 
-def sizes(train: Train, point: Array) -> Sizes:
-    """Modules, pinion teeth, ratios and face widths, a tuple each, of a point of `problem`."""
+def pairs(train: Train, point: Array) -> tuple[GearPair, ...]:
+    """Return the gear pairs of a point of `problem`."""
     x = namespace(_variables(train), [float(v) for v in point])
-    return text_sizes(train, x, math.cos(train.helix_angle), each(train.numbers()["width_high"]))
+    return text_pairs(train, x, SimpleNamespace(**train.numbers()))
 
 
-def text_sizes(train: Train, x: Any, cosine: Any, proportion: Any) -> Sizes:
-    """Sizes from the variables x of the text; proportion: b/d1 where the width is tied."""
-    module, teeth = each(x.module), each(x.pinion_teeth)
-    width = tuple(
-        proportion[k] * reference_diameter(module[k] / cosine, teeth[k])
-        if stage.face_width.tied
-        else each(x.face_width)[k]
-        for k, stage in enumerate(train.stages)
-    )
-    return module, teeth, each(x.ratio), width
+def text_pairs(train: Train, x: Any, numbers: Any) -> tuple[GearPair, ...]:
+    """Return the gear pairs of the variables x of the text.
+
+    numbers: `train.numbers()` as attributes, floats or parameters.
+    """
+    found = []
+    for k, stage in enumerate(train.stages):
+        m, z, u = each(x.module)[k], each(x.pinion_teeth)[k], each(x.ratio)[k]
+        d = reference_diameter(m / numbers.helix_cosine, z)
+        if stage.face_width.tied:
+            width = each(numbers.width_high)[k] * reference_diameter(m / numbers.helix_cosine, z)
+        else:
+            width = each(x.face_width)[k]
+        found.append(GearPair.of_diameter(m, z, d, u, width, train.helix_angle, train.rack))
+    return tuple(found)
 
 
 def _variables(train: Train) -> tuple[Var, ...]:

@@ -10,10 +10,8 @@ from fractions import Fraction
 from typing import Any
 
 from gearopt.optimise.terms import Terms, each
-from gearopt.physics.geometry import centre_distance, gear_volume, reference_diameter
+from gearopt.physics.gears import ISO_53_A, GearPair, Rack
 from gearopt.physics.loads import k_factor, unit_load
-
-Sizes = tuple[tuple[Any, ...], ...]  # modules, pinion teeth, ratios, face widths; one a stage each
 
 OBJECTIVES = {  # name -> unit
     "gear_volume": "mm3",
@@ -98,8 +96,8 @@ class Stage:
 class Train:
     """A drive: input torque [N mm], total ratio and its relative tolerance, and its stages.
 
-    helix_angle [rad] of every stage. coprime: z1 and z2 without common divisor (hunting teeth).
-    objective: a key of OBJECTIVES; mass needs density [t/mm3].
+    helix_angle [rad] and basic rack of every stage. coprime: z1 and z2 without common divisor
+    (hunting teeth). objective: a key of OBJECTIVES; mass needs density [t/mm3].
     """
 
     torque: float
@@ -107,6 +105,7 @@ class Train:
     tolerance: Fraction
     stages: tuple[Stage, ...]
     helix_angle: float = 0.0
+    rack: Rack = ISO_53_A
     coprime: bool = False
     objective: str = "gear_volume"
     density: float | None = None
@@ -134,6 +133,12 @@ class Train:
         """The same drive with the teeth of one stage (counted from 0) given."""
         one = replace(self.stages[stage], pinion_teeth=(pinion, pinion), wheel_teeth=(wheel, wheel))
         return replace(self, stages=self.stages[:stage] + (one,) + self.stages[stage + 1 :])
+
+    def pair(self, module: Any, pinion_teeth: Any, wheel_teeth: Any, face_width: Any) -> GearPair:
+        """Return the gear pair of a stage with these numbers; module, face_width [mm]."""
+        return GearPair.of_teeth(
+            module, pinion_teeth, wheel_teeth, face_width, self.helix_angle, self.rack
+        )
 
     @property
     def unit(self) -> str:
@@ -169,58 +174,47 @@ def _or_inf(number: Fraction | int | None) -> float:
     return math.inf if number is None else float(number)
 
 
-def share(
-    train: Train, stage: int, pinion_diameter: Any, face_width: Any, ratio: Any, density: Any = None
-) -> Any:
-    """What a stage (counted from 0) adds to the objective, in its unit (mm3, kg or mm).
+def share(train: Train, stage: int, pair: GearPair, density: Any = None) -> Any:
+    """Return what the pair of a stage (counted from 0) adds to the objective, in its unit.
 
-    pinion_diameter, face_width [mm], ratio and density [t/mm3] (by default the train's): floats,
-    arrays or casadi scalars. total_length is that of the shafts in one line, from the rim of the
-    first pinion to that of the last wheel over reference circles: d1/2 + sum of centre distances +
-    d2/2.
+    density [t/mm3], by default the train's. total_length is that of the shafts in one line, from
+    the rim of the first pinion to that of the last wheel over reference circles: d1/2 + sum of
+    centre distances + d2/2.
     """
     if train.objective == "gear_volume":
-        return gear_volume(pinion_diameter, face_width, ratio)
+        return pair.volume
     if train.objective == "mass":
-        rho: Any = train.density if density is None else density
-        return 1000.0 * rho * gear_volume(pinion_diameter, face_width, ratio)
-    length = centre_distance(pinion_diameter, ratio)
+        return 1000.0 * pair.mass(train.density if density is None else density)
+    length = pair.centre_distance
     if train.objective == "total_length" and stage == 0:
-        length = length + 0.5 * pinion_diameter
+        length = length + 0.5 * pair.pinion.reference_diameter
     if train.objective == "total_length" and stage == len(train.stages) - 1:
-        length = length + 0.5 * pinion_diameter * ratio
+        length = length + 0.5 * pair.wheel.reference_diameter
     return length
 
 
-def terms(
-    train: Train,
-    numbers: Any,
-    module: tuple[Any, ...],
-    pinion_teeth: tuple[Any, ...],
-    ratio: tuple[Any, ...],
-    face_width: tuple[Any, ...],
-) -> Terms:
-    """Objective and limits of a drive, one entry a stage, in geometric-programming text.
+def terms(train: Train, numbers: Any, pairs: tuple[GearPair, ...]) -> Terms:
+    """Return objective and limits of a drive made of these pairs, in geometric-programming text.
 
-    numbers: `train.numbers()` as attributes, floats or parameters. module, face_width [mm].
-    A limit is left out where the drive leaves it open or fixes the quantity.
+    numbers: `train.numbers()` as attributes, floats or parameters. A limit is left out where the
+    drive leaves it open or fixes the quantity.
     """
     total, product, torque = 0.0, 1.0, numbers.torque
     limits: dict[str, Any] = {}
     equal: dict[str, Any] = {}
-    for k, (m, z, u, b) in enumerate(zip(module, pinion_teeth, ratio, face_width, strict=True)):
+    for k, pair in enumerate(pairs):
         own = {name: each(value)[k] for name, value in vars(numbers).items() if name in BY_STAGE}
-        d = reference_diameter(m / numbers.helix_cosine, z)
-        total = total + share(train, k, d, b, u, numbers.density)
+        total = total + share(train, k, pair, numbers.density)
+        d, b, u = pair.pinion.reference_diameter, pair.face_width, pair.ratio
         found = {
             "k_factor": k_factor(torque, d, b, u) / own["k_factor"],
-            "unit_load": unit_load(torque, d, b, m) / own["unit_load"],
-        } | _choices(train.stages[k], own, m, z, u, d, b)
+            "unit_load": unit_load(torque, d, b, pair.normal_module) / own["unit_load"],
+        } | _choices(train.stages[k], own, pair)
         if train.stages[k].wheel_fixed and not train.stages[k].pinion_fixed:
-            equal[f"wheel_teeth[{k + 1}]"] = z * u / own["wheel_low"]
+            equal[f"wheel_teeth[{k + 1}]"] = pair.wheel_teeth / own["wheel_low"]
         limits |= {f"{name}[{k + 1}]": value for name, value in found.items()}
-        torque = torque * u
-        product = product * u
+        torque = torque * pair.ratio
+        product = product * pair.ratio
     if train.tolerance > 0:
         limits["ratio_low"] = numbers.lowest_ratio / product
         limits["ratio_high"] = product / numbers.highest_ratio
@@ -229,9 +223,7 @@ def terms(
     return Terms({train.objective: total}, limits, equal=equal)
 
 
-def _choices(
-    stage: Stage, own: dict[str, Any], m: Any, z: Any, u: Any, d: Any, b: Any
-) -> dict[str, Any]:
+def _choices(stage: Stage, own: dict[str, Any], pair: GearPair) -> dict[str, Any]:
     """Limits on what a stage may choose: its module, teeth, ratio, face width and wheel."""
     found: dict[str, Any] = {}
 
@@ -240,23 +232,23 @@ def _choices(
         found.update({} if low is None else {f"{name}_low": low / value})
         found.update({} if high is None else {f"{name}_high": value / high})
 
-    face = stage.face_width
+    face, d = stage.face_width, pair.pinion.reference_diameter
     if not face.tied:
         low = own["width_low"] * d if face.low > 0 else None
-        between("face_width", b, low, None if face.high is None else own["width_high"] * d)
+        high = None if face.high is None else own["width_high"] * d
+        between("face_width", pair.face_width, low, high)
     if len(stage.modules) > 1:
-        between("module", m, own["module_low"], own["module_high"])
+        between("module", pair.normal_module, own["module_low"], own["module_high"])
     if not stage.pinion_fixed:
         high = None if stage.pinion_teeth[1] is None else own["pinion_high"]
-        between("pinion_teeth", z, own["pinion_low"], high)
+        between("pinion_teeth", pair.pinion_teeth, own["pinion_low"], high)
     if not stage.wheel_fixed:
         low = own["wheel_low"] if stage.wheel_teeth[0] > 1 else None
-        between(
-            "wheel_teeth", z * u, low, None if stage.wheel_teeth[1] is None else own["wheel_high"]
-        )
+        high = None if stage.wheel_teeth[1] is None else own["wheel_high"]
+        between("wheel_teeth", pair.wheel_teeth, low, high)
     given = stage.pinion_fixed and stage.wheel_fixed  # then no bound of a variable keeps u >= 1
     low = own["ratio_low"] if stage.ratio[0] > 1 or given else None
-    between("stage_ratio", u, low, None if stage.ratio[1] is None else own["ratio_high"])
+    between("stage_ratio", pair.ratio, low, None if stage.ratio[1] is None else own["ratio_high"])
     if stage.wheel_diameter is not None:
-        found["wheel_diameter"] = u * d / own["wheel_diameter"]
+        found["wheel_diameter"] = pair.wheel.reference_diameter / own["wheel_diameter"]
     return found

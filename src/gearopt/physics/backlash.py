@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from gearopt.physics.geometry import transverse_pressure_angle
+from gearopt.physics.gears import transverse_pressure_angle
 
 
 def radial_backlash(radial_displacement: Any, pressure_angle: Any, helix_angle: Any = 0.0) -> Any:

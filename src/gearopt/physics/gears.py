@@ -5,14 +5,14 @@ real.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from gearopt.physics.geometry import overlap_ratio, transverse_contact_ratio
-from gearopt.physics.geometry import transverse_pressure_angle as transverse_angle
 from gearopt.physics.inertia import disc_inertia, disc_mass
+
+NEGLIGIBLE = 0.01  # modules that a rack may reach too deep: 17 teeth of 20 degrees need 0.006
 
 
 @dataclass(frozen=True)
@@ -31,16 +31,71 @@ class Rack:
 ISO_53_A = Rack()
 
 
+def reference_diameter(module: Any, teeth: Any, helix_angle: Any = 0.0) -> Any:
+    """Reference (pitch) diameter d = m_n z / cos(beta) [mm].
+
+    module [mm] > 0, the normal one, or the transverse one m_n/cos(beta) without a helix angle;
+    teeth > 0; helix_angle [rad], |beta| < pi/2.
+    Source: ISO 21771:2007, reference diameter.
+    """
+    return module * teeth / np.cos(helix_angle)
+
+
+def transverse_pressure_angle(pressure_angle: Any, helix_angle: Any) -> Any:
+    """Transverse pressure angle alpha_t = arctan(tan(alpha_n)/cos(beta)) [rad].
+
+    pressure_angle alpha_n, the normal one, from 0 to below pi/2; helix_angle beta, |beta| < pi/2.
+    Source: ISO 21771:2007, transverse pressure angle.
+    """
+    return np.arctan(np.tan(pressure_angle) / np.cos(helix_angle))
+
+
+def transverse_contact_ratio(
+    tip_diameters: tuple[Any, Any],
+    base_diameters: tuple[Any, Any],
+    centres: Any,
+    working_angle: Any,
+    base_pitch: Any,
+) -> Any:
+    """Transverse contact ratio eps_alpha = g_alpha/p_bt: how many pairs of teeth touch on average.
+
+    g_alpha = (sqrt(d_a1^2 - d_b1^2) + sqrt(d_a2^2 - d_b2^2))/2 - a sin(alpha_wt). Tip diameters
+    d_a > base diameters d_b of pinion and wheel; centres: their distance a; base_pitch p_bt, the
+    transverse one, all [mm] > 0; working_angle alpha_wt, the transverse one [rad].
+    Valid without undercut (see `teeth_without_undercut`), else too large.
+    Source: ISO 6336-1:2006 and ISO 21771:2007, transverse contact ratio.
+    """
+    (a1, a2), (b1, b2) = tip_diameters, base_diameters
+    reach = 0.5 * (np.sqrt(a1**2 - b1**2) + np.sqrt(a2**2 - b2**2))
+    return (reach - centres * np.sin(working_angle)) / base_pitch
+
+
+def teeth_without_undercut(rack: Rack, helix_angle: Any) -> Any:
+    """Minimum teeth z = 2 h_aP/m_n cos(beta)/sin(alpha_t)^2 that a rack does not undercut.
+
+    helix_angle beta [rad]; for gears without profile shift.
+    Source: the rack's tip line passes through the tangent point of the base circle, h = (d/2)
+    sin(alpha_t)^2; 17.1 for spur gears of 20 degrees. With z teeth the line lies 1 - z/limit
+    modules too deep, up to NEGLIGIBLE of which gears are made as they are: 17 teeth of 20 degrees
+    (0.006), 32 of 14.5, 12 of 25, as tables of minimum numbers of teeth
+    have them.
+    """
+    transverse = transverse_pressure_angle(rack.pressure_angle, helix_angle)
+    return 2.0 * rack.addendum * np.cos(helix_angle) / np.sin(transverse) ** 2
+
+
 @dataclass(frozen=True)
 class Gear:
-    """An external gear: normal module m_n > 0 [mm], number of teeth z > 0, face width b > 0 [mm].
+    """An external gear: normal module m_n [mm], number of teeth z, reference diameter d [mm].
 
-    helix_angle beta [rad], |beta| < pi/2; rack: its basic rack. Diameters are nominal: without
-    backlash. Source: ISO 21771:2007.
+    face_width b [mm]; helix_angle beta [rad], |beta| < pi/2; rack: its basic rack. d is
+    m_n z/cos(beta); `GearPair` sees to that. Diameters are nominal: without backlash. Source: ISO
+    21771:2007.
     """
 
     normal_module: Any
     teeth: Any
+    reference_diameter: Any
     face_width: Any
     helix_angle: Any = 0.0
     rack: Rack = ISO_53_A
@@ -48,12 +103,7 @@ class Gear:
     @property
     def transverse_pressure_angle(self) -> Any:
         """Transverse pressure angle alpha_t = arctan(tan(alpha_n)/cos(beta)) [rad]."""
-        return transverse_angle(self.rack.pressure_angle, self.helix_angle)
-
-    @property
-    def reference_diameter(self) -> Any:
-        """Reference diameter d = m_n z/cos(beta) [mm]."""
-        return self.normal_module * self.teeth / np.cos(self.helix_angle)
+        return transverse_pressure_angle(self.rack.pressure_angle, self.helix_angle)
 
     @property
     def tip_diameter(self) -> Any:
@@ -93,29 +143,74 @@ class Gear:
 class GearPair:
     """Two gears in mesh at their reference centre distance: index 1 the pinion, 2 the wheel.
 
-    normal_module m_n, face_width b [mm], pinion_teeth z1, wheel_teeth z2 > 0; helix_angle beta
-    [rad], |beta| < pi/2 (of the pinion; the wheel's has the other hand). Source: ISO 21771:2007.
+    Normal module, face width, helix angle and rack are those of both. Source: ISO 21771:2007.
     """
 
-    normal_module: Any
-    pinion_teeth: Any
-    wheel_teeth: Any
-    face_width: Any
-    helix_angle: Any = 0.0
-    rack: Rack = ISO_53_A
+    pinion: Gear
+    wheel: Gear
 
-    def _gear(self, teeth: Any) -> Gear:
-        return Gear(self.normal_module, teeth, self.face_width, self.helix_angle, self.rack)
+    @classmethod
+    def of_teeth(
+        cls,
+        normal_module: Any,
+        pinion_teeth: Any,
+        wheel_teeth: Any,
+        face_width: Any,
+        helix_angle: Any = 0.0,
+        rack: Rack = ISO_53_A,
+    ) -> "GearPair":
+        """Return the pair of a normal module [mm], numbers of teeth and a face width [mm]."""
+        d1 = reference_diameter(normal_module, pinion_teeth, helix_angle)
+        own = face_width, helix_angle, rack
+        d2 = d1 * (wheel_teeth / pinion_teeth)
+        return cls(
+            Gear(normal_module, pinion_teeth, d1, *own), Gear(normal_module, wheel_teeth, d2, *own)
+        )
+
+    @classmethod
+    def of_diameter(
+        cls,
+        normal_module: Any,
+        pinion_teeth: Any,
+        pinion_diameter: Any,
+        ratio: Any,
+        face_width: Any,
+        helix_angle: Any = 0.0,
+        rack: Rack = ISO_53_A,
+    ) -> "GearPair":
+        """Return the pair of a pinion and a ratio, for texts in which these are variables.
+
+        normal_module, pinion_diameter (reference, d1 = m_n z1/cos(beta)), face_width [mm].
+        """
+        own = face_width, helix_angle, rack
+        return cls(
+            Gear(normal_module, pinion_teeth, pinion_diameter, *own),
+            Gear(normal_module, pinion_teeth * ratio, pinion_diameter * ratio, *own),
+        )
+
+    def of_width(self, face_width: Any) -> "GearPair":
+        """Return the pair with another face width [mm]."""
+        return GearPair(*(replace(gear, face_width=face_width) for gear in self.gears))
 
     @property
-    def pinion(self) -> Gear:
-        """The driving gear of a reduction."""
-        return self._gear(self.pinion_teeth)
+    def normal_module(self) -> Any:
+        """Normal module m_n [mm]."""
+        return self.pinion.normal_module
 
     @property
-    def wheel(self) -> Gear:
-        """The driven gear of a reduction."""
-        return self._gear(self.wheel_teeth)
+    def pinion_teeth(self) -> Any:
+        """Number of teeth z1."""
+        return self.pinion.teeth
+
+    @property
+    def wheel_teeth(self) -> Any:
+        """Number of teeth z2."""
+        return self.wheel.teeth
+
+    @property
+    def face_width(self) -> Any:
+        """Face width b [mm]."""
+        return self.pinion.face_width
 
     @property
     def gears(self) -> tuple[Gear, Gear]:
@@ -125,7 +220,7 @@ class GearPair:
     @property
     def ratio(self) -> Any:
         """Gear ratio u = z2/z1."""
-        return self.wheel_teeth / self.pinion_teeth
+        return self.wheel.teeth / self.pinion.teeth
 
     @property
     def centre_distance(self) -> Any:
@@ -148,7 +243,7 @@ class GearPair:
     @property
     def base_pitch(self) -> Any:
         """Transverse base pitch p_bt = pi m_n cos(alpha_t)/cos(beta) [mm]."""
-        cosine = np.cos(self.helix_angle)
+        cosine = np.cos(self.pinion.helix_angle)
         angle = self.pinion.transverse_pressure_angle
         return np.pi * self.normal_module / cosine * np.cos(angle)
 
@@ -166,5 +261,6 @@ class GearPair:
 
     @property
     def overlap_ratio(self) -> Any:
-        """Overlap ratio eps_beta; 0 for spur gears."""
-        return overlap_ratio(self.face_width, self.normal_module, self.helix_angle)
+        """Overlap ratio eps_beta = b sin(|beta|)/(pi m_n); 0 for spur gears."""
+        sine = np.abs(np.sin(self.pinion.helix_angle))
+        return self.face_width * sine / (np.pi * self.normal_module)

@@ -14,7 +14,7 @@ from gearopt.errors import SolveError
 from gearopt.formulations.layout import annealing, exact
 from gearopt.formulations.layout.chain import Chain, chain, turns
 from gearopt.formulations.layout.faults import faults
-from gearopt.formulations.layout.gearbox import Gearbox, Pair, Shaft
+from gearopt.formulations.layout.gearbox import Gearbox, Shaft
 from gearopt.formulations.layout.slabs import Arrangement, arrangements
 from gearopt.formulations.layout.text import direct, positions, sides, smooth
 from gearopt.optimise.box import violation
@@ -22,6 +22,7 @@ from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Watch
 from gearopt.optimise.solvers import ipopt
 from gearopt.optimise.terms import Array
+from gearopt.physics.gears import GearPair
 
 __all__ = ["GRADIENT", "faults", "problem", "ready"]
 
@@ -47,7 +48,7 @@ def problem(box: Gearbox, method: str | None = None) -> Problem:
 @cache
 def ready() -> None:
     """Have the kernels compiled, once on a machine, before a clock runs: by a tiny gearbox."""
-    pair, shaft = Pair(10.0, 4.0, 8.0, 5.0), Shaft(1.0)
+    pair, shaft = GearPair.of_teeth(1.0, 6, 14, 5.0), Shaft(1.0)
     tiny = Gearbox((pair, pair), (shaft, shaft, shaft))
     found = problem(tiny)
     for name in ("sa", "exact"):

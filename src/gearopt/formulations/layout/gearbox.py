@@ -8,6 +8,8 @@ the input shaft at 0, 0; x runs along them from the inner face of the box. All l
 import math
 from dataclasses import dataclass
 
+from gearopt.physics.gears import GearPair
+
 Range = tuple[float, float]
 ANYWHERE: Range = (-math.inf, math.inf)
 OBJECTIVES = {  # name -> unit; width along y, height along z, length along x
@@ -17,16 +19,6 @@ OBJECTIVES = {  # name -> unit; width along y, height along z, length along x
     "height": "mm",
     "longest_side": "mm",
 }
-
-
-@dataclass(frozen=True)
-class Pair:
-    """The two gears of a stage: centre distance, tip radii, face width."""
-
-    centre_distance: float
-    pinion_radius: float
-    wheel_radius: float
-    face_width: float
 
 
 @dataclass(frozen=True)
@@ -78,7 +70,7 @@ class Gearbox:
     length.
     """
 
-    pairs: tuple[Pair, ...]
+    pairs: tuple[GearPair, ...]
     shafts: tuple[Shaft, ...]
     clearances: Clearances = Clearances()
     partial: bool = False

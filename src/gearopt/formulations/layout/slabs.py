@@ -189,10 +189,9 @@ def _on(box: Gearbox, k: int, start: dict[int, float], length: float) -> tuple[B
     gears = []
     for stage, word in ((k - 1, "wheel"), (k, "pinion")):
         if 0 <= stage < len(box.pairs):
-            pair = box.pairs[stage]
-            radius = pair.pinion_radius if word == "pinion" else pair.wheel_radius
-            x = (start[stage], start[stage] + pair.face_width)
-            gears.append(Body(f"{word} {stage + 1}", radius, x, True, stage))
+            gear = getattr(box.pairs[stage], word)
+            x = (start[stage], start[stage] + gear.face_width)
+            gears.append(Body(f"{word} {stage + 1}", 0.5 * gear.tip_diameter, x, True, stage))
     own, wide = box.shafts[k], box.shafts[k].bearing_width
     span = (0.0, length)
     if box.partial:

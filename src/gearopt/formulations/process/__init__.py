@@ -25,7 +25,7 @@ from gearopt.formulations.process.rules import (
 from gearopt.formulations.train import Stage, Train
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch
-from gearopt.physics.geometry import reference_diameter
+from gearopt.physics.gears import reference_diameter
 
 RANDOM = False
 COUNTS = "train made by the rules"

@@ -10,7 +10,7 @@ from fractions import Fraction
 
 from gearopt.errors import SolveError
 from gearopt.formulations.train import Stage
-from gearopt.physics.geometry import reference_diameter
+from gearopt.physics.gears import reference_diameter
 from gearopt.physics.loads import k_factor, unit_load
 
 ROUNDING = 1e-12  # relative; a whole number or module missed by so little is met

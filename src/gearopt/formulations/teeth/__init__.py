@@ -16,11 +16,11 @@ from gearopt.formulations.teeth.progress import MARGIN, TIE, Progress, Teeth
 from gearopt.formulations.teeth.search import BEAM, search
 from gearopt.formulations.teeth.stage import table
 from gearopt.formulations.teeth.wide import narrowed, trimmed
-from gearopt.formulations.train import Sizes, Stage, Train, terms
+from gearopt.formulations.train import Stage, Train, terms
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.terms import Array, Terms, Var, each, namespace
-from gearopt.physics.geometry import reference_diameter
+from gearopt.physics.gears import GearPair, reference_diameter
 
 VARIABLES = {
     "module": "mm",
@@ -49,17 +49,17 @@ def problem(train: Train, count: int = 1, floor: float = -math.inf) -> Problem:
     numbers = SimpleNamespace(**train.numbers())
 
     def evaluate(x: Any, p: Any) -> Terms:
-        found = terms(train, numbers, *_sizes(train, x))
+        found = terms(train, numbers, _pairs(train, x))
         # A module is one of a set: the ends of the set are no limits of their own here.
         limits = {n: v for n, v in found.limits.items() if not n.startswith("module_")}
         if not train.coprime:
             return Terms(found.minimise, limits, equal=found.equal)
-        pairs = zip(each(x.pinion_teeth), each(x.wheel_teeth), strict=True)
+        teeth = zip(each(x.pinion_teeth), each(x.wheel_teeth), strict=True)
         if not isinstance(each(x.pinion_teeth)[0], float | np.ndarray | np.generic):
             raise SolveError("hunting teeth (coprime) are for exact, annealing and nsga2 only")
         divisors = {
             f"common_divisor[{k}]": np.gcd(np.rint(a).astype(int), np.rint(b).astype(int))
-            for k, (a, b) in enumerate(pairs, 1)
+            for k, (a, b) in enumerate(teeth, 1)
         }
         return Terms(found.minimise, {**limits, **divisors}, equal=found.equal)
 
@@ -71,15 +71,16 @@ def problem(train: Train, count: int = 1, floor: float = -math.inf) -> Problem:
     return Problem("teeth", _variables(train), (), evaluate, methods=methods, vectorised=True)
 
 
-def sizes(train: Train, point: Array) -> Sizes:
-    """Modules, pinion teeth, ratios and face widths, a tuple each, of a point of `problem`."""
-    return _sizes(train, namespace(_variables(train), [float(v) for v in point]))
+def pairs(train: Train, point: Array) -> tuple[GearPair, ...]:
+    """Return the gear pairs of a point of `problem`."""
+    return _pairs(train, namespace(_variables(train), [float(v) for v in point]))
 
 
-def _sizes(train: Train, x: Any) -> Sizes:
-    module, z1, z2 = each(x.module), each(x.pinion_teeth), each(x.wheel_teeth)
-    width = tuple(_width(train, k, x, module[k], z1[k]) for k in range(len(train.stages)))
-    return module, z1, tuple(b / a for a, b in zip(z1, z2, strict=True)), width
+def _pairs(train: Train, x: Any) -> tuple[GearPair, ...]:
+    columns = zip(each(x.module), each(x.pinion_teeth), each(x.wheel_teeth), strict=True)
+    return tuple(
+        train.pair(m, z1, z2, _width(train, k, x, m, z1)) for k, (m, z1, z2) in enumerate(columns)
+    )
 
 
 def _width(train: Train, k: int, x: Any, module: Any, z1: Any) -> Any:

@@ -21,6 +21,7 @@ from gearopt.formulations.teeth.stage import Table, table
 from gearopt.formulations.train import Train, share
 from gearopt.optimise.result import Budget, Event, Watch
 from gearopt.optimise.terms import Array
+from gearopt.physics.gears import GearPair
 from gearopt.physics.loads import k_factor
 
 BEAM = 4  # nodes followed down at once; measured best for two to four stages
@@ -254,7 +255,7 @@ def _reach(train: Train, cut: Fraction, most: Fraction, threshold: float) -> Fra
     for k, stage in enumerate(train.stages):
         load = k_factor(train.torque, 1.0, 1.0, ratios) / stage.k_factor
         if train.objective in ("gear_volume", "mass"):
-            lower = share(train, k, 1.0, load, ratios)
+            lower = share(train, k, GearPair.of_teeth(1.0, 1.0, ratios, load))  # d1 is 1 mm
         else:
             face = stage.face_width
             d = (
@@ -262,7 +263,9 @@ def _reach(train: Train, cut: Fraction, most: Fraction, threshold: float) -> Fra
                 if face.fixed
                 else (load / face.widest) ** (1.0 / 3.0)
             )
-            lower = share(train, k, d, math.nan, ratios)  # a length, whatever the width
+            lower = share(
+                train, k, GearPair.of_teeth(d, 1.0, ratios, math.nan)
+            )  # a length, whatever the width
         useful |= np.asarray(lower) <= threshold
     beyond = [*ratios[1:], most]  # the next of the grid; at its end `most` itself, unrounded
     last = np.flatnonzero(useful)

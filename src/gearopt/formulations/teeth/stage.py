@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from gearopt.errors import SolveError
 from gearopt.formulations.train import Stage, Train, share
 from gearopt.optimise.terms import Array
-from gearopt.physics.geometry import reference_diameter
+from gearopt.physics.gears import GearPair
 from gearopt.physics.loads import k_factor, unit_load
 
 Index = NDArray[np.int64]
@@ -60,9 +60,9 @@ class Table:
         step = self.stage.face_width.step
         return math.nan if step is None else float(step)
 
-    def diameter(self, module: Any, pair: Any) -> Any:
-        """Pinion reference diameter [mm] of pairs (indices) with modules [mm]."""
-        return reference_diameter(module, self.z1[pair], self.train.helix_angle)
+    def made(self, module: Any, pair: Any) -> GearPair:
+        """Return the gear pairs (indices) with modules [mm], of face width 1 mm."""
+        return self.train.pair(module, self.z1[pair], self.z2[pair], 1.0)
 
     def cost(self, torque: Array, pair: Index) -> Array:
         """Least objective share of pairs at torques [N mm]; inf where nothing carries them."""
@@ -82,10 +82,9 @@ class Table:
 
     def floor(self, module: int) -> Array:
         """Least objective share of each pair with a module (index), whatever the torque."""
-        pair = np.arange(len(self.ratio))
-        d = self.diameter(self.modules[module], pair)
-        width = self._least_width(d) if self.steps is None else self.steps[0][module] * self.step
-        return np.asarray(share(self.train, self.position, d, width, self.ratio))
+        one = self.made(self.modules[module], np.arange(len(self.ratio)))
+        width = self._least_width(one) if self.steps is None else self.steps[0][module] * self.step
+        return self._share(one, width)
 
     def _best(self, torque: Array, pair: Index) -> tuple[Array, Array, Array]:
         if self.steps is not None:
@@ -97,12 +96,12 @@ class Table:
         possible = k <= self.last[pair]
         k = np.minimum(k, len(self.modules) - 1)
         module = self.modules[k]
-        d = self.diameter(module, pair)
-        width, face = self._least_width(d), self.stage.face_width
+        one = self.made(module, pair)
+        width, face = self._least_width(one), self.stage.face_width
         if face.fixed is None:
-            loaded = self._loaded_width(torque, pair, d, module)
-            width = np.clip(loaded, width, face.widest * d)
-        value = share(self.train, self.position, d, width, self.ratio[pair])
+            widest = face.widest * one.pinion.reference_diameter
+            width = np.clip(self._loaded_width(torque, one), width, widest)
+        value = self._share(one, width)
         return np.where(possible, value, np.inf), module, width
 
     def _best_on_steps(
@@ -111,28 +110,32 @@ class Table:
         """Rounding a width up to the step can make a larger module the better one: try all."""
         best, best_module, best_width = (np.full(len(pair), np.inf) for _ in range(3))
         for k, module in enumerate(self.modules):
-            d = self.diameter(module, pair)
-            needed = self._loaded_width(torque, pair, d, module) / self.step
+            one = self.made(module, pair)
+            needed = self._loaded_width(torque, one) / self.step
             count = np.maximum(np.ceil(needed * (1.0 - ALLOWANCE)), least[k][pair])
             possible = (self.first[pair] <= k) & (k <= self.last[pair]) & (count <= most[k][pair])
             width = count * self.step
-            value = share(self.train, self.position, d, width, self.ratio[pair])
-            value = np.where(possible, value, np.inf)
+            value = np.where(possible, self._share(one, width), np.inf)
             better = value < best * (1.0 - ALLOWANCE)
             best = np.where(better, value, best)
             best_module = np.where(better, module, best_module)
             best_width = np.where(better, width, best_width)
         return best, best_module, best_width
 
-    def _loaded_width(self, torque: Array, pair: Index, d: Array, module: Any) -> Array:
+    def _share(self, pair: GearPair, width: Any) -> Array:
+        """Return what pairs of these face widths [mm] add to the objective."""
+        return np.asarray(share(self.train, self.position, pair.of_width(width)))
+
+    def _loaded_width(self, torque: Array, pair: GearPair) -> Array:
         """Least face width [mm] for K-factor and unit load."""
-        by_contact = k_factor(torque, d, 1.0, self.ratio[pair]) / self.stage.k_factor
-        by_bending = unit_load(torque, d, 1.0, module) / self.stage.unit_load
+        d, m = pair.pinion.reference_diameter, pair.normal_module
+        by_contact = k_factor(torque, d, 1.0, pair.ratio) / self.stage.k_factor
+        by_bending = unit_load(torque, d, 1.0, m) / self.stage.unit_load
         return np.asarray(np.maximum(by_contact, by_bending))
 
-    def _least_width(self, d: Array) -> Array:
-        """Least face width [mm] the file allows for pinion diameters [mm], but for steps."""
-        face = self.stage.face_width
+    def _least_width(self, pair: GearPair) -> Array:
+        """Least face width [mm] the file allows for pairs, but for steps."""
+        face, d = self.stage.face_width, pair.pinion.reference_diameter
         return float(face.low) * d if face.fixed is None else np.full_like(d, float(face.fixed))
 
 
@@ -163,8 +166,9 @@ def table(
         k_factor(1.0, 1.0, 1.0, ratio) / stage.k_factor,
         unit_load(1.0, 1.0, 1.0, 1.0) / stage.unit_load * z1 / cosine,
     )
-    volume = train.objective in ("gear_volume", "mass")
-    slope = np.asarray(share(train, position, 1.0, load, ratio)) if volume else np.zeros_like(ratio)
+    slope = np.zeros_like(ratio)
+    if train.objective in ("gear_volume", "mass"):  # no module counts: d1 is 1 mm here
+        slope = np.asarray(share(train, position, GearPair.of_teeth(1.0, 1.0, ratio, load)))
     tick()
     first, last = _allowed(stage, z1, z2, cosine)
     return Table(

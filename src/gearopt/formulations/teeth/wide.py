@@ -14,7 +14,7 @@ from gearopt.formulations.teeth.search import first_cut
 from gearopt.formulations.teeth.stage import spans
 from gearopt.formulations.train import Train, share
 from gearopt.optimise.terms import Array
-from gearopt.physics.geometry import reference_diameter
+from gearopt.physics.gears import reference_diameter
 
 FEW = 200_000  # tooth pairs of a stage that are searched at once
 
@@ -52,7 +52,8 @@ def trimmed(train: Train, most: float) -> Train:
 def _least(train: Train, k: int, teeth: NDArray[np.int64]) -> Array:
     """Least share (n,) of a stage (counted from 0) with pinions of so many teeth."""
     stage = train.stages[k]
-    d = reference_diameter(float(stage.modules[0]), teeth, train.helix_angle)
-    face = stage.face_width
+    module, face = float(stage.modules[0]), stage.face_width
+    d = reference_diameter(module, teeth, train.helix_angle)
     width = float(face.low) * d if face.fixed is None else np.full(len(d), float(face.fixed))
-    return np.asarray(share(train, k, d, width, float(stage.ratio[0])))
+    pair = train.pair(module, teeth, teeth * float(stage.ratio[0]), width)
+    return np.asarray(share(train, k, pair))

@@ -11,21 +11,21 @@ from typing import Any
 
 from gearopt.formulations import teeth
 from gearopt.formulations.layout.gearbox import Gearbox, Shaft
-from gearopt.formulations.layout.pairs import pairs
 from gearopt.formulations.layout.slabs import Arrangement
 from gearopt.formulations.teeth.search import search as sizing
 from gearopt.formulations.together.continuous import angles_of, continuous
 from gearopt.formulations.together.search import MARGINS, Search, keep, lay, prepare, prove
 from gearopt.formulations.together.tables import Make, numbers
-from gearopt.formulations.together.text import laid_out, point, sizes, slabs_of, text
-from gearopt.formulations.train import FaceWidth, Sizes, Stage, Train
+from gearopt.formulations.together.text import laid_out, pairs, point, slabs_of, text
+from gearopt.formulations.train import FaceWidth, Stage, Train
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Event, Outcome, Watch
 from gearopt.optimise.terms import Array
+from gearopt.physics.gears import GearPair
 
-__all__ = ["GAP", "angles_of", "continuous", "laid_out", "pairs", "problem", "ready", "sizes"]
+__all__ = ["GAP", "angles_of", "continuous", "laid_out", "pairs", "problem", "ready"]
 
-Start = tuple[Sizes, Arrangement, Array]
+Start = tuple[tuple[GearPair, ...], Arrangement, Array]
 GAP = 1e-3  # proven where the budget asks for none
 FIRST = 40  # best sizings that are laid out before the search
 SLACK = 1e-6  # relative: margins are this much below the gap asked for, for rounding
@@ -38,10 +38,10 @@ SETTINGS = {"margins": MARGINS, "sizings laid out first": FIRST}
 def problem(train: Train, make: Make, start: Start | None = None) -> Problem:
     """The problem of a drive and its gearbox; `exact` finds the smallest box with its bound.
 
-    make(sizes) -> Gearbox: its pairs are `pairs(train, sizes)`; shaft k may grow with the torque
-    T1 u_1 ... u_k that it carries, and nothing else depends on the sizes. The objective is the
+    make(pairs) -> Gearbox of these gear pairs; shaft k may grow with the torque T1 u_1 ... u_k that
+    it carries, and nothing else depends on the pairs. The objective is the
     gearbox's. Variables are those of `text.text`. start: a layout known before, which is kept
-    unless a better one is found: sizes, its arrangement and link angles.
+    unless a better one is found: gear pairs, arrangement and link angles.
     """
     box = numbers(train, make)[1]
 
@@ -61,8 +61,8 @@ def ready() -> None:
     )
     train = Train(3e4, Fraction(9), Fraction(1, 50), (stage, stage))
 
-    def make(sizes: Sizes) -> Gearbox:
-        return Gearbox(pairs(train, sizes), (Shaft(5.0), Shaft(8.0), Shaft(12.0)))
+    def make(pairs: tuple[GearPair, ...]) -> Gearbox:
+        return Gearbox(pairs, (Shaft(5.0), Shaft(8.0), Shaft(12.0)))
 
     _searched(Search(train, make, Budget(gap=0.01), None, 0), None)
 
@@ -95,7 +95,7 @@ def _first(search: Search) -> bool:
     for _, one in progress.found[:FIRST]:
         if search.stopped:
             break
-        lay(search, teeth.sizes(search.train, teeth.best_point(search.train, one)), MARGINS[3])
+        lay(search, teeth.pairs(search.train, teeth.best_point(search.train, one)), MARGINS[3])
     return bool(progress.found) or progress.stopped
 
 
@@ -118,7 +118,7 @@ def _outcome(search: Search, known: tuple[Any, ...], possible: bool) -> Outcome:
             message="stopped before a layout was found" if stopped else "",
         )
     best = search.best
-    x = point(search.train, best.sizes, known.index(best.slabs), len(known) > 1, best.angles)
+    x = point(search.train, best.pairs, known.index(best.slabs), len(known) > 1, best.angles)
     return Outcome(
         x,
         not stopped,

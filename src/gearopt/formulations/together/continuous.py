@@ -17,9 +17,10 @@ from gearopt.formulations.layout.gearbox import ANYWHERE, Gearbox
 from gearopt.formulations.layout.slabs import Body, Slabs, arrange, faces
 from gearopt.formulations.layout.text import given_places, outside, placed_by, sides
 from gearopt.formulations.together.tables import Make
-from gearopt.formulations.train import Sizes, Train
+from gearopt.formulations.train import Train
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Array, Terms, Var, each
+from gearopt.physics.gears import GearPair
 
 FAR = 2.0  # times the sum of the start's sides: within this they are searched
 NEAR = 0.6  # rad from the start's angles; else the interior point is pushed into worse basins
@@ -28,11 +29,11 @@ Facing = list[tuple[int, int, Body, Body]]
 
 
 def continuous(
-    train: Train, make: Make, slabs: Slabs, start: tuple[Sizes, tuple[float, ...]]
+    train: Train, make: Make, slabs: Slabs, start: tuple[tuple[GearPair, ...], tuple[float, ...]]
 ) -> Problem:
     """Variables: those of `sizing`, angle [rad], left, bottom, width, height and the slabs' widths.
 
-    start: sizes and link angles. SolveError for keep-outs with a range along the shafts.
+    start: gear pairs and link angles. SolveError for keep-outs with a range along the shafts.
     """
     box = make(start[0])
     if any(k.x != ANYWHERE for k in box.keep_outs):
@@ -50,11 +51,11 @@ def continuous(
     ]
     sized = sizing.problem(train)
     round_it = sides(shape, *placed_by([p.centre_distance for p in box.pairs], start[1]))
-    variables = _variables(sized, box, slabs, start, round_it)
+    variables = _variables(sized, box, slabs, start[1], round_it)
 
     def evaluate(x: Any, p: Any) -> Terms:
         found = sized.evaluate(x, p)
-        there = make(sizing.text_sizes(train, x, p.helix_cosine, each(p.width_high)))
+        there = make(sizing.text_pairs(train, x, p))
         y, z = placed_by([pair.centre_distance for pair in there.pairs], each(x.angle))
         rows = _walls(there, order.bodies, (y, z), x)
         rows |= {
@@ -85,18 +86,23 @@ def continuous(
 
 
 def _variables(
-    sized: Problem, box: Gearbox, slabs: Slabs, start: tuple[Sizes, Any], sides: dict[str, float]
+    sized: Problem, box: Gearbox, slabs: Slabs, angles: tuple[float, ...], sides: dict[str, float]
 ) -> tuple[Var, ...]:
     """The variables with the start, and the box around it, as their guess."""
-    values = dict(zip(("module", "pinion_teeth", "ratio", "face_width"), start[0], strict=True))
+    values = {
+        "module": [p.normal_module for p in box.pairs],
+        "pinion_teeth": [p.pinion_teeth for p in box.pairs],
+        "ratio": [p.ratio for p in box.pairs],
+        "face_width": [p.face_width for p in box.pairs],
+    }
     own = tuple(
         replace(v, guess=tuple(np.clip(values[v.name], v.lower, v.upper))) for v in sized.variables
     )
     links = [p.centre_distance for p in box.pairs]
     widths = tuple(max(box.pairs[s].face_width for s in slab) for slab in slabs)
     far = FAR * (sides["width"] + sides["height"] + sum(widths))
-    near = (tuple(t - NEAR for t in start[1]), tuple(t + NEAR for t in start[1]))
-    made = [Var("angle", "rad", *near, start[1], len(links), search=True)]
+    near = (tuple(t - NEAR for t in angles), tuple(t + NEAR for t in angles))
+    made = [Var("angle", "rad", *near, angles, len(links), search=True)]
     made += [Var(n, "mm", -far, 0.0, sides[n], search=True) for n in ("left", "bottom")]
     made += [
         Var(n, "mm", 1e-3 * far, far, sides[n], log=True, search=True) for n in ("width", "height")
@@ -109,8 +115,7 @@ def _variables(
 def _radius(box: Gearbox, body: Body, k: int) -> Any:
     """The radius of a body of shaft k in a gearbox of other sizes."""
     if body.gear:
-        pair = box.pairs[body.stage]
-        return pair.pinion_radius if body.name.startswith("pinion") else pair.wheel_radius
+        return 0.5 * getattr(box.pairs[body.stage], body.name.split()[0]).tip_diameter
     shaft = box.shafts[k]
     return shaft.bearing_radius if body.name.startswith("bearing") else shaft.radius
 

@@ -19,10 +19,11 @@ from gearopt.formulations.layout.slabs import Arrangement, arrangements, clashes
 from gearopt.formulations.teeth.search import within
 from gearopt.formulations.together.prepare import chains, rest, useful
 from gearopt.formulations.together.tables import Drive, Make, Rest
-from gearopt.formulations.train import Sizes, Train
+from gearopt.formulations.train import Train
 from gearopt.optimise.kernels import kernel
 from gearopt.optimise.result import Budget, Event, Watch
 from gearopt.optimise.terms import Array
+from gearopt.physics.gears import GearPair
 
 NODE = "gearopt.formulations.together.node_kernel"
 SEARCH = "gearopt.formulations.together.together_kernel"
@@ -40,11 +41,10 @@ Nodes = NDArray[np.int64]  # (n, N, 2): pair and module of each stage
 
 @dataclass(frozen=True)
 class Design:
-    """A train with its layout: teeth, sizes, slabs, link angles [rad]; its objective."""
+    """A train with its layout: gear pairs, slabs, link angles [rad]; its objective."""
 
     value: float
-    sizes: Sizes
-    teeth: tuple[tuple[int, int], ...]
+    pairs: tuple[GearPair, ...]
     slabs: tuple[tuple[int, ...], ...]
     angles: Array
 
@@ -106,16 +106,16 @@ def cuts(value: float, margin: float) -> tuple[float, float]:
     return value * (1.0 - margin), value * (1.0 - 0.8 * margin)
 
 
-def sized(train: Train, drive: Drive, node: Nodes) -> Sizes:
-    """Modules, pinion teeth, ratios and face widths of a whole node."""
+def sized(train: Train, drive: Drive, node: Nodes) -> tuple[GearPair, ...]:
+    """Return the gear pairs of a whole node."""
     kernels = kernel(NODE)
     torque, found = train.torque, []
     for j, (p, k) in enumerate(node):
         z1, z2 = float(drive.z1[p]), float(drive.z2[p])
         width = kernels.width(drive, j, p, k, torque)
-        found.append((float(drive.modules[j, k]), z1, z2 / z1, float(width)))
+        found.append(train.pair(float(drive.modules[j, k]), z1, z2, float(width)))
         torque *= z2 / z1
-    return tuple(zip(*found, strict=True))
+    return tuple(found)
 
 
 def orders_of(box: Gearbox) -> list[Arrangement]:
@@ -123,9 +123,9 @@ def orders_of(box: Gearbox) -> list[Arrangement]:
     return [a for a in arrangements(box) if not clashes(box, a) and a.length <= box.largest[2]]
 
 
-def lay(search: Search, sizes: Sizes, margin: float) -> None:
+def lay(search: Search, pairs: tuple[GearPair, ...], margin: float) -> None:
     """Keep the best layout of a train if it betters the best value by more than a margin."""
-    box = search.make(sizes)
+    box = search.make(pairs)
     search.trains += 1
     for order in orders_of(box):
         if not _below(search, box, order, margin):
@@ -134,16 +134,15 @@ def lay(search: Search, sizes: Sizes, margin: float) -> None:
         budget, watch = search.watched(min(margin, CLOSE))
         outcome = layout.problem(one).methods["exact"](None, budget, search.seed, watch)
         if outcome.x is not None:
-            keep(search, sizes, order, outcome.x)
+            keep(search, pairs, order, outcome.x)
 
 
-def keep(search: Search, sizes: Sizes, order: Arrangement, angles: Array) -> None:
+def keep(search: Search, pairs: tuple[GearPair, ...], order: Arrangement, angles: Array) -> None:
     """Keep a layout if it is the best so far."""
-    text = layout.problem(replace(search.make(sizes), slabs=order.slabs))
+    text = layout.problem(replace(search.make(pairs), slabs=order.slabs))
     value = float(text.batch(angles[None]).F[0, 0])
     if value < search.value:
-        teeth = tuple((round(z), round(z * u)) for z, u in zip(sizes[1], sizes[2], strict=True))
-        search.best = Design(value, sizes, teeth, order.slabs, angles)
+        search.best = Design(value, pairs, order.slabs, angles)
 
 
 def _below(search: Search, box: Gearbox, order: Arrangement, margin: float) -> bool:

@@ -14,14 +14,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearopt.errors import SolveError
-from gearopt.formulations.layout.gearbox import ANYWHERE, Gearbox, Pair, Shaft
-from gearopt.formulations.layout.pairs import pairs
+from gearopt.formulations.layout.gearbox import ANYWHERE, Gearbox, Shaft
 from gearopt.formulations.layout.slabs import TOUCH, Slabs, arrange, orders
 from gearopt.formulations.teeth.stage import Table, table
-from gearopt.formulations.train import Sizes, Train
+from gearopt.formulations.train import Train
 from gearopt.optimise.terms import Array
+from gearopt.physics.gears import GearPair
 
-Make = Callable[[Sizes], Gearbox]
+Make = Callable[[tuple[GearPair, ...]], Gearbox]
 Index = NDArray[np.int64]
 DELTA = 0.01  # cells of log ratio: a third of it in sizes, below the usual ratio tolerance
 BINS = 48  # of wheel radii, for what a larger wheel saves in width
@@ -90,7 +90,7 @@ class Rest(NamedTuple):
 def numbers(train: Train, make: Make) -> tuple[Drive, Gearbox]:
     """The arrays of a drive, and a gearbox with its constants.
 
-    SolveError where its pairs are not those of its sizes, or where face widths decide which bodies
+    SolveError where its pairs are not those it is made of, or where face widths decide which bodies
     face each other.
     """
     stages = train.stages
@@ -98,8 +98,8 @@ def numbers(train: Train, make: Make) -> tuple[Drive, Gearbox]:
     cells = int(math.log(train.highest_ratio) / DELTA) + 2
     boxes = [make(_loaded_like(train, math.exp(c * DELTA))) for c in range(cells)]
     box = boxes[0]
-    if box.pairs != pairs(train, _loaded_like(train, 1.0)):
-        raise SolveError("the gearbox of sizes takes its pairs from together.pairs(train, sizes)")
+    if box.pairs != _loaded_like(train, 1.0):
+        raise SolveError("the gearbox must have the gear pairs that it is made of")
     _refuse(train, box)
     slabs, faces = _facing(box)
     wide = max(s.bearing_width for s in box.shafts)
@@ -133,12 +133,13 @@ def numbers(train: Train, make: Make) -> tuple[Drive, Gearbox]:
     return Drive(*columns), box
 
 
-def _loaded_like(train: Train, ratio: float) -> Sizes:
-    """Sizes whose shafts all carry the torque behind a ratio."""
-    modules = tuple(float(s.modules[0]) for s in train.stages)
-    teeth = tuple(float(s.pinion_teeth[0]) for s in train.stages)
-    ones = (1.0,) * (len(modules) - 1)
-    return modules, teeth, (ratio, *ones), (1.0,) * len(modules)
+def _loaded_like(train: Train, ratio: float) -> tuple[GearPair, ...]:
+    """Return gear pairs whose shafts all carry the torque behind a ratio."""
+    found = []
+    for k, stage in enumerate(train.stages):
+        z = float(stage.pinion_teeth[0])
+        found.append(train.pair(float(stage.modules[0]), z, z if k else z * ratio, 1.0))
+    return tuple(found)
 
 
 def _bearing(shaft: Shaft) -> float:
@@ -173,7 +174,7 @@ def _objective(box: Gearbox) -> tuple[tuple[float, float], tuple[float, float]]:
 def _facing(box: Gearbox) -> tuple[list[Slabs], NDArray[np.uint8]]:
     """Orders of slabs that none betters whatever the sizes, and which bodies face each other."""
     shafts = tuple(Shaft(1.0, 1.0, 0.0 if box.partial else s.bearing_width) for s in box.shafts)
-    alike = replace(box, pairs=tuple(Pair(2.0, 1.0, 1.0, 1.0) for _ in box.pairs), shafts=shafts)
+    alike = replace(box, pairs=(GearPair.of_teeth(1.0, 2, 2, 1.0),) * len(box.pairs), shafts=shafts)
     found: list[tuple[Slabs, NDArray[np.uint8]]] = []
     for slabs in (box.slabs,) if box.slabs is not None else orders(box):
         new = (slabs, _faces(alike, slabs))

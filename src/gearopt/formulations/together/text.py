@@ -1,7 +1,7 @@
 """A train and its layout as one problem: the limits of `teeth`, then those of the layout.
 
-The gearbox depends on the sizes, so the text builds it for one design at a time; every design has
-the same rows, with a need of zero where nothing faces.
+The gearbox depends on the gear pairs, so the text builds it for one design at a time; every design
+has the same rows, with a need of zero where nothing faces.
 """
 
 import math
@@ -16,9 +16,10 @@ from gearopt.formulations.layout.gearbox import Gearbox
 from gearopt.formulations.layout.slabs import Arrangement, Slabs, arrange, orders
 from gearopt.formulations.layout.text import given_places, positions, sides
 from gearopt.formulations.together.tables import Make
-from gearopt.formulations.train import Sizes, Train
+from gearopt.formulations.train import Train
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Array, Terms, Var, each
+from gearopt.physics.gears import GearPair
 
 
 def slabs_of(box: Gearbox) -> tuple[Slabs, ...]:
@@ -41,9 +42,8 @@ def text(
     count = sum(v.size for v in sized.variables)
 
     def one(point: Array) -> tuple[dict[str, float], dict[str, float], dict[str, float]]:
-        sizes = teeth.sizes(train, point[:count])
         slabs = known[round(point[-1]) if len(known) > 1 else 0]
-        there = make(sizes)
+        there = make(teeth.pairs(train, point[:count]))
         return _terms(there, arrange(there, slabs), point[count : count + links])
 
     def evaluate(x: Any, p: Any) -> Terms:
@@ -106,35 +106,32 @@ def _clear(need: float, dy: float, dz: float) -> float:
     return 1.0 + (need**2 - there) / max(need**2, there, 1.0)
 
 
-def point(train: Train, sizes: Sizes, slabs: int, several: bool, angles: Array) -> Array:
+def point(
+    train: Train, pairs: tuple[GearPair, ...], slabs: int, several: bool, angles: Array
+) -> Array:
     """The point of a train with its layout."""
-    module, z1, ratio, width = sizes
-    faces = [s.face_width for s in train.stages]
-    free = [not f.tied and f.step is None and f.fixed is None for f in faces]
-    columns = {
-        "module": module,
-        "pinion_teeth": z1,
-        "wheel_teeth": [round(z * u) for z, u in zip(z1, ratio, strict=True)],
-        "face_width": [
-            b if own else float(f.fixed or 1) for b, own, f in zip(width, free, faces, strict=True)
-        ],
-        "width_steps": [
-            round(b / float(f.step)) if f.step else 1 for b, f in zip(width, faces, strict=True)
-        ],
-    }
+    columns: dict[str, list[float]] = {name: [] for name in teeth.VARIABLES}
+    for pair, face in zip(pairs, (s.face_width for s in train.stages), strict=True):
+        free = not face.tied and face.step is None and face.fixed is None
+        columns["module"].append(pair.normal_module)
+        columns["pinion_teeth"].append(pair.pinion_teeth)
+        columns["wheel_teeth"].append(pair.wheel_teeth)
+        columns["face_width"].append(pair.face_width if free else float(face.fixed or 1))
+        steps = round(pair.face_width / float(face.step)) if face.step else 1
+        columns["width_steps"].append(steps)
     found = [float(v) for var in teeth.problem(train).variables for v in columns[var.name]]
     return np.array([*found, *angles, *([float(slabs)] if several else [])])
 
 
-def sizes(train: Train, x: Array) -> Sizes:
-    """Modules, pinion teeth, ratios and face widths of a point of `text`."""
+def pairs(train: Train, x: Array) -> tuple[GearPair, ...]:
+    """Return the gear pairs of a point of `text`."""
     count = sum(v.size for v in teeth.problem(train).variables)
-    return teeth.sizes(train, x[:count])
+    return teeth.pairs(train, x[:count])
 
 
 def laid_out(train: Train, make: Make, x: Array) -> tuple[Gearbox, tuple[float, ...], Arrangement]:
     """The gearbox of a point of `text`, its link angles [rad] and its arrangement of slabs."""
-    box = make(sizes(train, x))
+    box = make(pairs(train, x))
     known, links = slabs_of(box), len(train.stages)
     start = sum(v.size for v in teeth.problem(train).variables)
     order = arrange(box, known[round(float(x[-1])) if len(known) > 1 else 0])

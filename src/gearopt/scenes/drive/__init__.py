@@ -163,7 +163,7 @@ def _with_processes(scene: Scene, ask: Ask, best: Result) -> Result:
         except SolveError as reason:
             told.append(f"There is no design by {words}: {reason}.")
             continue
-        made = {} if outcome.x is None else scene.design(teeth.sizes(train, outcome.x))
+        made = {} if outcome.x is None else scene.design(teeth.pairs(train, outcome.x))
         part = replace(part, objective=part.objective | {"unit": train.unit}, design=made)
         parts.append(reconcile(replace(part, name=words), best, ask.gap))
     return replace(best, parts=(*best.parts, *parts), report=best.report | {"notes": told})
@@ -215,14 +215,14 @@ def _sized(scene: Scene, train: Train, ask: Ask, problem: Problem) -> Result:
     result = replace(result, objective=result.objective | {"unit": train.unit})
     if result.value is None or outcome.x is None:
         return result
-    designs = [scene.design(formulation.sizes(train, x)) for x in (outcome.x, *outcome.others)]
+    designs = [scene.design(formulation.pairs(train, x)) for x in (outcome.x, *outcome.others)]
     values = [float(problem.batch(x[None]).F[0, 0]) for x in (outcome.x, *outcome.others)]
     trains = [
         {"objective": value, "ratio": design["ratio"], "stages": design["stages"]}
         for value, design in zip(values, designs, strict=True)
     ]
     report: dict[str, Any] = {"trains": trains} if exact and ask.top > 1 else {}
-    angles = scene.gears.pressure_angle.value, scene.gears.helix_angle.value
-    if told := [*notes(scene, exact), *undercut(designs[0]["stages"], *angles, WEAKER)]:
+    thin = undercut(designs[0]["stages"], train.rack, train.helix_angle, WEAKER)
+    if told := [*notes(scene, exact), *thin]:
         report["notes"] = told
     return replace(result, name="drive", design=designs[0], report=report)

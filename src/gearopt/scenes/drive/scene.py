@@ -10,8 +10,9 @@ from pydantic import Field, model_validator
 from gearopt.formulations.design import describe
 from gearopt.formulations.layout.gearbox import Gearbox
 from gearopt.formulations.process import methods
-from gearopt.formulations.train import FaceWidth, Sizes, Stage, Train
+from gearopt.formulations.train import FaceWidth, Stage, Train
 from gearopt.optimise.result import Outcome
+from gearopt.physics.gears import GearPair, Rack
 from gearopt.physics.loads import torque
 from gearopt.scenes.drive.tables.duty import Duty
 from gearopt.scenes.drive.tables.layout import KeepOutTable, Layout, PlaceTable, gearbox
@@ -197,25 +198,25 @@ class Scene(Table):
             tolerance=self.duty.ratio_tolerance,
             stages=tuple(self._stage(s) for s in stages),
             helix_angle=self.gears.helix_angle.value,
+            rack=Rack(self.gears.pressure_angle.value),
             coprime=bool(self.teeth and self.teeth.coprime),
             objective=self.objective.minimise,
             density=density.value if density else None,
         )
 
-    def design(self, sizes: Sizes) -> dict[str, Any]:
-        """The drive of given sizes in the words of its drawing."""
-        angle, speed = self.gears.pressure_angle.value, self.duty.input_speed.value
-        return describe(self.train(), sizes, angle, speed)
+    def design(self, pairs: tuple[GearPair, ...]) -> dict[str, Any]:
+        """Return the drive of these gear pairs in the words of its drawing."""
+        return describe(self.train(), pairs, self.duty.input_speed.value)
 
     def processes(self) -> dict[str, Callable[..., Outcome]]:
         """The two design processes, with what the file tells them, as methods for whole teeth."""
         one, two = self.process_one, self.process_two
         return methods(self.train(), one.inputs() if one else None, two.inputs() if two else None)
 
-    def gearbox(self, sizes: Sizes) -> Gearbox:
-        """The drive of given sizes, to be laid out; it needs the table [layout]."""
+    def gearbox(self, pairs: tuple[GearPair, ...]) -> Gearbox:
+        """Return the drive of these gear pairs, to be laid out; it needs the table [layout]."""
         assert self.layout is not None
-        return gearbox(self.layout, self.place, self.keep_out, self.train(), sizes)
+        return gearbox(self.layout, self.place, self.keep_out, self.train(), pairs)
 
     def _stage(self, own: StageTable) -> Stage:
         limits = self.limits

@@ -9,6 +9,7 @@ from gearopt.formulations.servo.servo_design import ServoDesign, ServoReport
 from gearopt.formulations.servo.split.bodies import broken
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import untyped
+from gearopt.physics.gears import Rack
 from gearopt.scenes.drive.explaining.undercut import undercut
 from gearopt.scenes.servo.gears import given_gears
 from gearopt.scenes.servo.scene import Scene
@@ -185,7 +186,7 @@ def notes(
                 f"{limit:.5g} of [accuracy]: their budget counts otherwise."
             )
     stages = () if design.train is None else design.train.stages
-    found += undercut(untyped(stages), scene.accuracy.pressure_angle.value, 0.0)
+    found += undercut(untyped(stages), Rack(scene.accuracy.pressure_angle.value), 0.0)
     if scene.lightest is not None:
         found.append(
             "The lightest train has real-valued sizes: it is a floor for gears with whole teeth."

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from gearopt.formulations.servo.servo_design import KG_M2, ErrorSource, Stage, TrainDesign
 from gearopt.formulations.servo.split.servo_train import ServoTrain, lewis_stress, objectives
 from gearopt.optimise.terms import Array
-from gearopt.physics.geometry import ADDENDUM
+from gearopt.physics.gears import ISO_53_A
 from gearopt.physics.stiffness import lewis_form_factor
 from gearopt.scenes.servo.scene import Scene
 from gearopt.scenes.servo.tables.mesh import Source
@@ -93,8 +93,8 @@ def _stage(gears: Gears, k: int, train: ServoTrain | None) -> Stage:
         ratio=n,
         pinion_diameter_mm=m * z1,
         wheel_diameter_mm=m * z2,
-        pinion_tip_diameter_mm=m * (z1 + 2.0 * ADDENDUM),
-        wheel_tip_diameter_mm=m * (z2 + 2.0 * ADDENDUM),
+        pinion_tip_diameter_mm=m * (z1 + 2.0 * ISO_53_A.addendum),
+        wheel_tip_diameter_mm=m * (z2 + 2.0 * ISO_53_A.addendum),
         centre_distance_mm=0.5 * m * (z1 + z2),
         face_width_mm=None if train is None else train.face_width,
         bending_stress_MPa=stress,

@@ -16,9 +16,10 @@ from math import lcm
 from typing import Any
 
 from gearopt.errors import SolveError
-from gearopt.physics.geometry import ADDENDUM, DEDENDUM
+from gearopt.physics.gears import ISO_53_A
 
-TIP, ROOT = 2 * Fraction(ADDENDUM), 2 * Fraction(DEDENDUM)  # of a diameter, in modules
+# Of a diameter beyond and below the reference circle, in modules.
+TIP, ROOT = (2 * Fraction(part) for part in (ISO_53_A.addendum, ISO_53_A.dedendum))
 TIGHT = 1.0 + 1e-9  # a tie is no overlap
 LARGEST = 2**61  # of whole numbers that are added in 64 bits
 

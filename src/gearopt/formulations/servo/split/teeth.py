@@ -8,7 +8,7 @@ from gearopt.formulations.servo.split.bodies import rows
 from gearopt.formulations.servo.split.servo_train import ServoTrain, lewis_stress, objectives
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Terms, Var
-from gearopt.physics.geometry import reference_diameter
+from gearopt.physics.gears import reference_diameter
 from gearopt.physics.stiffness import lewis_form_factor
 
 

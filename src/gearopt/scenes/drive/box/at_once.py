@@ -7,20 +7,20 @@ from typing import Any
 from gearopt.errors import SolveError
 from gearopt.formulations import sizing, teeth, together
 from gearopt.formulations.layout.slabs import Slabs, arrange
-from gearopt.formulations.train import Sizes
 from gearopt.optimise.clock import following, in_part
 from gearopt.optimise.comparing.trial import Model
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Outcome, Result
 from gearopt.optimise.solve import limits, run
-from gearopt.scenes.drive.box.lay_out import lay_out, sizes_of, told
+from gearopt.physics.gears import GearPair
+from gearopt.scenes.drive.box.lay_out import lay_out, pairs_of, told
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.reading.ask import Ask
 
 REAL_VALUED = "real-valued"  # the part with real-valued sizes
 REAL = ("ipopt", "multistart")  # methods that take real-valued teeth
 
-Start = tuple[Slabs, Sizes, tuple[float, ...]]
+Start = tuple[Slabs, tuple[GearPair, ...], tuple[float, ...]]
 
 
 def at_once(scene: Scene, ask: Ask, sized: Result) -> Result:
@@ -39,14 +39,14 @@ def at_once(scene: Scene, ask: Ask, sized: Result) -> Result:
         spent = sum(p.seconds for p in parts)
         return replace(result, name="drive", seconds=result.seconds + spent, **_why(result, apart))
     if isinstance(model.problem, Problem) and real:
-        return _real(scene, result, outcome, sized, model.problem, _start(apart)[0], events)
+        return _real(scene, result, outcome, sized, model.problem, _start(scene, apart)[0], events)
     box, angles, order = together.laid_out(scene.train(), scene.gearbox, outcome.x)
-    own, sizes = teeth.problem(scene.train()), together.sizes(scene.train(), outcome.x)
+    own, pairs = teeth.problem(scene.train()), together.pairs(scene.train(), outcome.x)
     point = outcome.x[: sum(v.size for v in own.variables)]
-    gears = replace(sized, design=scene.design(sizes), limits=limits(own, point))
+    gears = replace(sized, design=scene.design(pairs), limits=limits(own, point))
     found = told(scene, result, events, replace(gears, report={}), box, angles, order)
     left = replace(ask, budget=asked.less(result.seconds))
-    smooth = _from(scene, (order.slabs, sizes, angles), left)
+    smooth = _from(scene, (order.slabs, pairs, angles), left)
     return replace(found, parts=(*found.parts, *smooth))
 
 
@@ -64,37 +64,37 @@ def posed(scene: Scene, method: str, apart: Result) -> Model:
     """The problem that a method gets; apart: the layout of gears chosen first, a start."""
     assert scene.layout is not None
     train = scene.train()
-    unit = scene.gearbox(sizes_of(apart.parts[0])).unit
+    unit = scene.gearbox(pairs_of(scene, apart.parts[0])).unit
     if method == "exact":
         import numpy as np
 
         known = None
         if apart.value is not None:
-            slabs, sizes, angles = _start(apart)
-            known = (sizes, arrange(scene.gearbox(sizes), slabs), np.array(angles))
+            slabs, pairs, angles = _start(scene, apart)
+            known = (pairs, arrange(scene.gearbox(pairs), slabs), np.array(angles))
         problem = together.problem(train, scene.gearbox, known)
         return Model(problem, "Gears and box at once", unit)
     if method not in REAL:
         raise SolveError(f"together = true is for exact and {' and '.join(REAL)}, not for {method}")
     if apart.value is None:
         raise SolveError(f"{method} needs a start: {apart.message}")
-    slabs, sizes, angles = _start(apart)
-    smooth = together.continuous(train, scene.gearbox, slabs, (sizes, angles))
+    slabs, pairs, angles = _start(scene, apart)
+    smooth = together.continuous(train, scene.gearbox, slabs, (pairs, angles))
     return Model(smooth, "Gears and box at once, real-valued teeth", unit)
 
 
-def _start(apart: Result) -> Start:
-    """Slabs, sizes and angles of a layout."""
+def _start(scene: Scene, apart: Result) -> Start:
+    """Slabs, gear pairs and angles of a layout."""
     found = apart.design["layout"]
     slabs = tuple(tuple(s - 1 for s in slab) for slab in found["slabs"])
-    return slabs, sizes_of(apart), tuple(math.radians(t) for t in found["link_angles_deg"])
+    return slabs, pairs_of(scene, apart), tuple(math.radians(t) for t in found["link_angles_deg"])
 
 
 def _from(scene: Scene, start: Start, ask: Ask) -> tuple[Result, ...]:
     """The part with real-valued sizes from an exact answer; none where Ipopt finds no better."""
-    slabs, sizes, angles = start
-    problem = together.continuous(scene.train(), scene.gearbox, slabs, (sizes, angles))
-    unit = scene.gearbox(sizes).unit
+    slabs, pairs, angles = start
+    problem = together.continuous(scene.train(), scene.gearbox, slabs, (pairs, angles))
+    unit = scene.gearbox(pairs).unit
     watch = in_part(ask.watch, unit, REAL_VALUED)
     result, _ = run(problem, "ipopt", ask.budget, watch=watch)
     if result.value is None or result.status == "limit":  # a start is no answer
@@ -116,8 +116,8 @@ def _real(
     train = scene.train()
     own = sizing.problem(train)
     point = outcome.x[: sum(v.size for v in own.variables)]
-    sizes = sizing.sizes(train, point)
-    gears = replace(sized, design=scene.design(sizes), limits=limits(own, point), report={})
-    box = scene.gearbox(sizes)
+    pairs = sizing.pairs(train, point)
+    gears = replace(sized, design=scene.design(pairs), limits=limits(own, point), report={})
+    box = scene.gearbox(pairs)
     angles = together.angles_of(problem, outcome.x)
     return told(scene, result, events, gears, box, angles, arrange(box, slabs))

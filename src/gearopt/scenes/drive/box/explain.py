@@ -4,14 +4,14 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from gearopt.formulations import layout
-from gearopt.formulations.train import Sizes
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.explain import slopes
 from gearopt.optimise.explaining.explanation import Explanation, Influence
 from gearopt.optimise.explaining.repair import CERTAIN
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import solve
-from gearopt.scenes.drive.box.lay_out import sizes_of
+from gearopt.physics.gears import GearPair
+from gearopt.scenes.drive.box.lay_out import pairs_of
 from gearopt.scenes.drive.box.ways import gearbox_of
 from gearopt.scenes.drive.explaining.numbers import Number, numbers, put, times
 from gearopt.scenes.drive.scene import Scene
@@ -26,7 +26,7 @@ def explained(scene: Scene, result: Result, clock: Clock) -> Explanation:
     if result.status not in CERTAIN or result.value is None:
         return Explanation(result, message="slopes need a proven layout", seconds=clock.seconds)
     gears = next((p for p in result.parts if p.name == "gears"), result)
-    found = tuple(_influences(scene, sizes_of(gears), result.value, clock))
+    found = tuple(_influences(scene, pairs_of(scene, gears), result.value, clock))
     late = ", and time ran out" if clock.over else ""
     used = tuple(n for n, v in result.limits.items() if v > 1.0 - SAME)
     return Explanation(
@@ -38,7 +38,9 @@ def explained(scene: Scene, result: Result, clock: Clock) -> Explanation:
     )
 
 
-def _influences(scene: Scene, sizes: Sizes, value: float, clock: Clock) -> Iterator[Influence]:
+def _influences(
+    scene: Scene, pairs: tuple[GearPair, ...], value: float, clock: Clock
+) -> Iterator[Influence]:
     for number in numbers(scene):
         tables = ("layout", "place", "keep_out")
         if number.path[0] not in tables or not isinstance(number.value, Quantity):
@@ -47,7 +49,7 @@ def _influences(scene: Scene, sizes: Sizes, value: float, clock: Clock) -> Itera
             continue
 
         def resolved(factor: float, number: Number = number) -> float | None:
-            box = gearbox_of(put(scene, number.path, times(number.value, factor)), sizes)
+            box = gearbox_of(put(scene, number.path, times(number.value, factor)), pairs)
             if box is None or layout.faults(box):
                 return None
             left = replace(clock.left, gap=COARSE)

@@ -9,28 +9,28 @@ from gearopt.formulations.layout.exact import GAP
 from gearopt.formulations.layout.gearbox import Gearbox
 from gearopt.formulations.layout.placed import placed, read
 from gearopt.formulations.layout.slabs import Arrangement, arrangements
-from gearopt.formulations.train import Sizes
 from gearopt.optimise.clock import following, in_part
 from gearopt.optimise.comparing.trial import Model
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run
 from gearopt.optimise.terms import Array
+from gearopt.physics.gears import GearPair
 from gearopt.scenes.drive.box.describe import described, used
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.reading.ask import Ask
 
-SIZES = ("normal_module_mm", "pinion_teeth", "ratio", "face_width_mm")
+SIZES = ("normal_module_mm", "pinion_teeth", "wheel_teeth", "face_width_mm")
 
 
-def sizes_of(sized: Result) -> Sizes:
-    """Modules, pinion teeth, ratios and face widths of a sized drive."""
-    stages = sized.design["stages"]
-    return tuple(tuple(s[key] for s in stages) for key in SIZES)
+def pairs_of(scene: Scene, sized: Result) -> tuple[GearPair, ...]:
+    """Return the gear pairs of a sized drive."""
+    train = scene.train()
+    return tuple(train.pair(*(s[key] for key in SIZES)) for s in sized.design["stages"])
 
 
 def lay_out(scene: Scene, ask: Ask, sized: Result) -> Result:
     """The layout of a sized drive; the sizing is kept as its part `gears`."""
-    box = scene.gearbox(sizes_of(sized))
+    box = scene.gearbox(pairs_of(scene, sized))
     orders = arrangements(box)
     wrong = layout.faults(box)
     layout.ready()
@@ -95,7 +95,7 @@ def posed(scene: Scene, method: str, sized: Result) -> Model:
     """The layout problem that a method gets; SolveError where the gears cannot be laid out."""
     if sized.value is None:
         raise SolveError("there are no gears to lay out: gearopt explain says why")
-    box = scene.gearbox(sizes_of(sized))
+    box = scene.gearbox(pairs_of(scene, sized))
     if wrong := layout.faults(box):
         raise SolveError(" ".join(wrong))
     words = "Layout by four sides" if method in layout.GRADIENT else "Layout by link angles"
@@ -119,7 +119,7 @@ def _impossible(
         objective = {"name": str(scene.layout and scene.layout.minimise), "value": None}
         result = replace(sized, method="data check", objective=objective, bound=None, gap=None)
         result = replace(result, status="infeasible", proof=proof, certificate={}, limits={})
-    found = ways(scene, sizes_of(sized), left)
+    found = ways(scene, pairs_of(scene, sized), left)
     return replace(
         result,
         design={},

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
-from gearopt.formulations.train import Sizes
+from gearopt.physics.gears import GearPair
 from gearopt.scenes.drive.explaining.numbers import (
     Number,
     Path,
@@ -106,9 +106,9 @@ class Move:
         return self.texts[2] if self.texts else toml_text(written(value, self.path))
 
 
-def moves(scene: Scene, sizes: Sizes) -> tuple[Move, ...]:
+def moves(scene: Scene, pairs: tuple[GearPair, ...]) -> tuple[Move, ...]:
     """Every move of one number of [layout], [[place]] and [[keep_out]]."""
-    reach = sum(pair.centre_distance for pair in scene.gearbox(sizes).pairs)
+    reach = sum(pair.centre_distance for pair in pairs)
     found = [m for n in numbers(scene) for m in _factors(n)]
     for k, place in enumerate(scene.place):
         for axis in ("y", "z"):

@@ -9,9 +9,9 @@ from typing import Any
 from gearopt.formulations import layout
 from gearopt.formulations.layout.gearbox import Gearbox
 from gearopt.formulations.layout.possible import possible
-from gearopt.formulations.train import Sizes
 from gearopt.optimise.clock import Clock, of_others
 from gearopt.optimise.explaining.explanation import Change, Remedy
+from gearopt.physics.gears import GearPair
 from gearopt.scenes.drive.box.moves import Move, limits_of, moves, switches
 from gearopt.scenes.drive.explaining.numbers import allowed
 from gearopt.scenes.drive.scene import Scene
@@ -35,8 +35,8 @@ class Questions:
     It has state because questions stay open: open, what a message says of them.
     """
 
-    def __init__(self, sizes: Sizes, clock: Clock) -> None:
-        self._sizes, self._clock, self.open = sizes, clock, list[str]()
+    def __init__(self, pairs: tuple[GearPair, ...], clock: Clock) -> None:
+        self._pairs, self._clock, self.open = pairs, clock, list[str]()
 
     def fits(self, scene: Scene, seconds: float = SECONDS) -> bool | None:
         """Whether these gears can be laid out; None where that is not known in time."""
@@ -49,7 +49,7 @@ class Questions:
 
     def read(self, scene: Scene) -> Gearbox | None:
         """The gearbox of a changed file; None where its own rules refuse it."""
-        return gearbox_of(scene, self._sizes) if allowed(scene) else None
+        return gearbox_of(scene, self._pairs) if allowed(scene) else None
 
     def smallest(
         self, scene: Callable[[float], Scene], steps: int, key: str, high: float | None = None
@@ -94,11 +94,11 @@ class Questions:
         return None
 
 
-def ways(scene: Scene, sizes: Sizes, ask: Ask) -> dict[str, Any]:
+def ways(scene: Scene, pairs: tuple[GearPair, ...], ask: Ask) -> dict[str, Any]:
     """Each change that alone makes these gears possible to lay out; else pairs of changes."""
     clock = Clock(ask.budget, of_others(ask.watch))
-    asked = Questions(sizes, clock)
-    single, choices = moves(scene, sizes), switches(scene)
+    asked = Questions(pairs, clock)
+    single, choices = moves(scene, pairs), switches(scene)
     chosen = [c for m in choices if (c := _chosen(scene, m, asked)) is not None]
     found = [r for m in single if (r := _moved(scene, m, asked)) is not None]
     remedies = [r for _, r in sorted(found, key=_size)] + chosen
@@ -106,8 +106,8 @@ def ways(scene: Scene, sizes: Sizes, ask: Ask) -> dict[str, Any]:
     if remedies and asked.open:
         message = f"it is not known whether a change of {', '.join(asked.open)} alone does"
     elif not remedies:
-        pairs = _pairs(scene, single + choices[::-1], asked)  # of two tables the last goes first
-        remedies = [r for _, r in sorted(pairs, key=_size)]
+        both = _pairs(scene, single + choices[::-1], asked)  # of two tables the last goes first
+        remedies = [r for _, r in sorted(both, key=_size)]
         if asked.open and not remedies:
             message = "no way out was found, and not every change could be decided"
         elif not remedies:
@@ -122,10 +122,10 @@ def _size(found: tuple[float, Remedy]) -> float:
     return found[0]
 
 
-def gearbox_of(scene: Scene, sizes: Sizes) -> Gearbox | None:
+def gearbox_of(scene: Scene, pairs: tuple[GearPair, ...]) -> Gearbox | None:
     """The gearbox of a scene; None where numbers that were moved contradict each other."""
     try:
-        return scene.gearbox(sizes)
+        return scene.gearbox(pairs)
     except ValueError:
         return None
 

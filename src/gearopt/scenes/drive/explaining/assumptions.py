@@ -1,7 +1,7 @@
 """What a drive takes for granted, and what a reader of its result should know."""
 
 from gearopt.formulations.design import STEEL_DENSITY
-from gearopt.physics.geometry import ADDENDUM, DEDENDUM
+from gearopt.physics.gears import ISO_53_A
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.tables.layout import Layout
 from gearopt.scenes.drive.tables.limits import ORIGINS
@@ -41,8 +41,9 @@ def assumptions(scene: Scene) -> list[str]:
     )
     found = [
         "External cylindrical gears without profile shift; no losses in mesh and bearings.",
-        f"Tip and root circles by the basic rack ISO 53 profile A: addendum {ADDENDUM:g} m_n, "
-        f"dedendum {DEDENDUM:g} m_n; nominal sizes, without backlash.",
+        "Tip and root circles by the basic rack ISO 53 profile A: addendum "
+        f"{ISO_53_A.addendum:g} m_n, dedendum {ISO_53_A.dedendum:g} m_n; nominal sizes, "
+        "without backlash.",
         "Loads are limited by K-factor and unit load alone: index values, not a rating by ISO 6336 "
         "or AGMA 2101. Application, dynamic and load distribution factors are not in them.",
         f"The normal pressure angle of {angle}{assumed} enters contact ratio and undercut alone; "

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
-from gearopt.formulations.teeth import best_point, sizes
+from gearopt.formulations.teeth import best_point, pairs
 from gearopt.formulations.train import Train
 from gearopt.scenes.drive.explaining.levers import Lever, Moves, steps
 from gearopt.scenes.drive.explaining.tried import Case
@@ -76,11 +76,11 @@ def _met(case: Case, train: Train, choices: list[Choice], box: Box) -> Box | boo
     teeth = case.teeth(train)
     if not teeth:
         return False if teeth == () else None
-    modules = sizes(train, best_point(train, teeth))[0]
+    made = pairs(train, best_point(train, teeth))
     places = []
     for choice in choices:
         pinion, wheel = teeth[choice.stage]
-        module = Fraction(modules[choice.stage]).limit_denominator(10**6)
+        module = Fraction(made[choice.stage].normal_module).limit_denominator(10**6)
         value = {"pinion_teeth": pinion, "wheel_teeth": wheel, "module": module}[choice.field]
         places.append(choice.values.index(value))
     return tuple((j, j) for j in places)

@@ -17,8 +17,8 @@ from gearopt.formulations.layout.gearbox import (
     Range,
     Shaft,
 )
-from gearopt.formulations.layout.pairs import pairs
-from gearopt.formulations.train import Sizes, Train
+from gearopt.formulations.train import Train
+from gearopt.physics.gears import GearPair
 from gearopt.physics.loads import torsion_diameter
 from gearopt.scenes.reading.fields import (
     Reads,
@@ -232,18 +232,18 @@ def gearbox(
     places: tuple[PlaceTable, ...],
     keep_outs: tuple[KeepOutTable, ...],
     train: Train,
-    sizes: Sizes,
+    pairs: tuple[GearPair, ...],
 ) -> Gearbox:
-    """A drive of given sizes as a layout sees it."""
+    """Return a drive of these gear pairs as a layout sees it."""
     torques = [train.torque]
-    for u in sizes[2]:
-        torques.append(torques[-1] * u)
+    for pair in pairs:
+        torques.append(torques[-1] * pair.ratio)
     wide, high, long = (
         q.value if q else math.inf
         for q in (table.largest_width, table.largest_height, table.largest_length)
     )
     return Gearbox(
-        pairs(train, sizes),
+        pairs,
         _shafts(table, torques),
         Clearances(
             table.gear_clearance.value,
