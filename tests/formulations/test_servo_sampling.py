@@ -54,19 +54,21 @@ def test_the_baseline_of_the_paper():
     mean, sd = moments(base.components, BASE)
     found = drawn(base, BASE, 0.0925)
     assert [mean, sd, mean + 3 * sd] == pytest.approx([0.0510, 0.0138, 0.0925], abs=5e-5)
-    assert found.mean == pytest.approx(mean, abs=5 * sd / math.sqrt(found.count))
-    assert found.sd == pytest.approx(sd, rel=5e-3)
-    assert found.worst_case == pytest.approx(0.1082, abs=5e-5) and found.largest < 0.1082
-    assert found.quantile == pytest.approx(0.0872, abs=2e-4)
-    assert found.quantile_low < 0.0872 < found.quantile_high
-    assert found.quantile_high - found.quantile_low < 8e-4
-    exact = [below(base.components, BASE, x) for x in (found.quantile_low, found.quantile_high)]
+    assert found.mean_deg == pytest.approx(mean, abs=5 * sd / math.sqrt(found.count))
+    assert found.sd_deg == pytest.approx(sd, rel=5e-3)
+    assert found.worst_case_deg == pytest.approx(0.1082, abs=5e-5) and found.largest_deg < 0.1082
+    assert found.quantile_deg == pytest.approx(0.0872, abs=2e-4)
+    assert found.quantile_low_deg < 0.0872 < found.quantile_high_deg
+    assert found.quantile_high_deg - found.quantile_low_deg < 8e-4
+    exact = [
+        below(base.components, BASE, x) for x in (found.quantile_low_deg, found.quantile_high_deg)
+    ]
     assert exact[0] < found.probability < exact[1]
     digit = [below(base.components, BASE, x) for x in (0.08715, 0.08725)]
     assert digit[0] < found.probability < digit[1]  # 0.0872 is the exact quantile, as printed
     share = below(base.components, BASE, 0.0925)
     assert found.yield_low < share < found.yield_high and share > 0.9999
-    assert found.limit == 0.0925 and found.seed == 0
+    assert found.limit_deg == 0.0925 and found.seed == 0
 
 
 def test_backlash_alone():
@@ -83,19 +85,19 @@ def test_the_statistical_optimum_holds_its_budget():
     best = stack(("mean_plus_sd", E_WC), least=0.25, most=4.0)
     t = np.array(solve(problem(best)).design["t_mm"])
     found = drawn(best, t, E_WC)
-    assert found.quantile == pytest.approx(0.1062, abs=3e-4)
-    assert found.quantile_low < 0.1062 < found.quantile_high < E_WC
+    assert found.quantile_deg == pytest.approx(0.1062, abs=3e-4)
+    assert found.quantile_low_deg < 0.1062 < found.quantile_high_deg < E_WC
     digit = [below(best.components, t, x) for x in (0.10615, 0.10625)]
     assert digit[0] < found.probability < digit[1]  # 0.1062 is the exact quantile, as printed
     assert found.yield_low > found.probability
-    assert found.worst_case == pytest.approx(0.1443, abs=5e-5)
+    assert found.worst_case_deg == pytest.approx(0.1443, abs=5e-5)
 
 
 def test_intervals_hold_as_often_as_they_say():
     """Quantile 0.9 of 300 uniform draws, 1000 times: 95 % and no less; nor far more."""
     one = Stack((Component("a", 1.0, 1.0),), (ErrorBudget("worst_case", 1.0),))
     runs = [drawn(one, [1.0], 0.9, 300, 0.9, 0.95, seed) for seed in range(1000)]
-    quantile = np.mean([r.quantile_low <= 0.9 <= r.quantile_high for r in runs])
+    quantile = np.mean([r.quantile_low_deg <= 0.9 <= r.quantile_high_deg for r in runs])
     share = np.mean([r.yield_low <= 0.9 <= r.yield_high for r in runs])
     assert 0.94 < quantile < 0.99 and 0.94 < share < 0.99
 
@@ -119,7 +121,7 @@ def test_intervals_against_their_definition():
 def test_few_draws_and_seeds():
     base = stack(("worst_case", E_WC))
     few = drawn(base, BASE, E_WC, 100)
-    assert few.quantile_high == math.inf and few.quantile_low < few.quantile
+    assert few.quantile_high_deg is None and few.quantile_low_deg < few.quantile_deg
     assert few == drawn(base, BASE, E_WC, 100) != drawn(base, BASE, E_WC, 100, seed=1)
     with pytest.raises(ValueError, match="two draws"):
         drawn(base, BASE, E_WC, 1)

@@ -253,16 +253,18 @@ def test_the_tail_of_drawn_errors_rests_on_few_of_them():
     assert count - last == pytest.approx(540.0 - half, abs=2.0)
     uniform = stack([1.0], [1.0])
     found = drawn(uniform, np.ones(1), 1.0)
-    assert found.quantile_low < THREE_SD < found.quantile_high
-    assert found.quantile_high - found.quantile_low == pytest.approx(2.0 * half / count, rel=0.3)
+    assert found.quantile_low_deg < THREE_SD < found.quantile_high_deg
+    assert found.quantile_high_deg - found.quantile_low_deg == pytest.approx(
+        2.0 * half / count, rel=0.3
+    )
 
 
 def test_a_run_out_is_arcsine_and_never_beyond_its_tolerance():
     """P(cos phi > c) = acos(c)/pi; a normal error of its variance would reach 3/sqrt(2)."""
     one = stack([1.0], [1.0], rules=("mean_plus_sd",), distribution=RUN_OUT)
     found = drawn(one, np.ones(1), 1.0)
-    assert found.quantile == pytest.approx(math.cos(math.pi * (1.0 - THREE_SD)), abs=2e-6)
-    assert found.largest <= 1.0 and found.yield_share == 1.0
+    assert found.quantile_deg == pytest.approx(math.cos(math.pi * (1.0 - THREE_SD)), abs=2e-6)
+    assert found.largest_deg <= 1.0 and found.yield_share == 1.0
     assert one.used(np.ones(1))[0] == pytest.approx(3.0 / math.sqrt(2.0), rel=1e-12)
 
 
@@ -272,7 +274,7 @@ def test_a_centred_root_sum_of_squares_is_wrong_for_backlash():
     rss, honest = parts.used(np.ones(16))
     assert rss == 4.0 and honest == pytest.approx(8.0 + 3.0 * math.sqrt(16.0 / 12.0))
     found = drawn(parts, np.ones(16), rss)
-    assert found.mean == pytest.approx(8.0, abs=0.01) and found.yield_high < 1e-3
+    assert found.mean_deg == pytest.approx(8.0, abs=0.01) and found.yield_high < 1e-3
     assert drawn(parts, np.ones(16), honest).yield_low > 0.998
 
 

@@ -38,10 +38,11 @@ def about_statistics():
     one, wide = s @ mean, np.linalg.norm(s * sd)
     lash, spread = (s * mean)[radial].sum(), np.linalg.norm((s * sd)[radial])
     found = drawn(stack(("worst_case", E_WC)), BASE, E_WC)
+    low, high = found.quantile_low_deg, found.quantile_high_deg
     return [
         f"mean {one:.4f}, standard deviation {wide:.4f}, mean + 3 of them {one + 3 * wide:.4f}, "
         f"worst case {s.sum():.4f} degrees",
-        f"between {found.quantile_low:.4f} and {found.quantile_high:.4f} degrees (400,000 draws, "
+        f"between {low:.4f} and {high:.4f} degrees (400,000 draws, "
         "99 % confidence)",
         f"mean {lash:.4f}, mean + 3 standard deviations {lash + 3 * spread:.4f}, worst case "
         f"{s[radial].sum():.4f} degrees",
@@ -102,7 +103,7 @@ def about_tolerances():
         f"cost {100 * (1 - worst.value / 14):.0f} % less",
         f"Mean + 3 standard deviations within the same E, each tolerance 0.25 to 4 times the "
         f"paper's: {wide.value:.6f}; the worst case is then {s @ widths(wide):.4f} degrees, the "
-        f"99.865 % quantile {found.quantile_low:.4f} to {found.quantile_high:.4f}",
+        f"99.865 % quantile {found.quantile_low_deg:.4f} to {found.quantile_high_deg:.4f}",
         f"Both budgets, the second by 0.7: {both.value:.6f}",
         f"cost {loose.value:.6f}, but its worst case is {s @ widths(loose):.4f} degrees, "
         f"{s @ widths(loose) / E_WC:.1f} times as much",

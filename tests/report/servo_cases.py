@@ -1,7 +1,7 @@
 """Results of kind servo on the numbers of Youn's gimbal drive, made by the formulations."""
 
 import math
-from dataclasses import asdict, replace
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -13,9 +13,10 @@ from gearopt.formulations.servo import ratio, servo_box, split, tolerance
 from gearopt.formulations.servo.ratio import Drive, best_ratio
 from gearopt.formulations.servo.split.servo_train import lewis_stress, objectives
 from gearopt.formulations.servo.tolerance.distributions import RUN_OUT, UNIFORM
-from gearopt.formulations.servo.tolerance.sampling import drawn, errors
+from gearopt.formulations.servo.tolerance.sampling import drawn
 from gearopt.formulations.servo.tolerance.stack import Component, ErrorBudget, Stack
 from gearopt.optimise.solve import solve
+from gearopt.optimise.typed import untyped
 from gearopt.physics import stiffness
 from gearopt.physics.servo_drive import load_acceleration
 
@@ -179,13 +180,7 @@ def tolerances_part(point):
 
 
 def draws(stack, t, limit):
-    found = asdict(drawn(stack, t, limit, DRAWS))
-    angles = ("mean", "sd", "quantile", "quantile_low", "quantile_high")
-    for key in (*angles, "limit", "largest", "worst_case"):
-        found[f"{key}_deg"] = found.pop(key)
-    counts, edges = np.histogram(errors(stack, t, DRAWS, 0), 60)
-    histogram = {"edges_deg": edges.tolist(), "counts": counts.tolist()}
-    return found | {"histogram": histogram}
+    return untyped(drawn(stack, t, limit, DRAWS))
 
 
 def springs(point):

@@ -227,7 +227,13 @@ class Histogram:
 
 @dataclass(frozen=True)
 class DrawnErrors:
-    """`sampling.Drawn` in degrees, with its histogram; an end is None where the draws are few."""
+    """What `count` draws say of the error beside its limit.
+
+    quantile: that of `probability`, within quantile_low .. quantile_high (None where the draws are
+    too few for it); yield_share: of errors up to the limit, within yield_low .. yield_high; both
+    intervals hold with at least `confidence`. worst_case: sum s t, which no draw of a distribution
+    on [-t, t] exceeds. largest: of the draws.
+    """
 
     count: int
     seed: int

@@ -1,21 +1,19 @@
 """The tolerances of a servo train at least cost, and what they give in fact."""
 
 import math
-from dataclasses import asdict, replace
+from dataclasses import replace
 from typing import Any
 
 from gearopt.formulations.servo.servo_design import (
     Allocation,
     BudgetUse,
-    DrawnErrors,
-    Histogram,
     ServoDesign,
     ServoReport,
     ToleranceRow,
 )
 from gearopt.formulations.servo.tolerance import grades as graded
 from gearopt.formulations.servo.tolerance import problem as continuous
-from gearopt.formulations.servo.tolerance.sampling import drawn, errors
+from gearopt.formulations.servo.tolerance.sampling import drawn
 from gearopt.formulations.servo.tolerance.stack import Component, ErrorBudget, Stack
 from gearopt.optimise.clock import in_part
 from gearopt.optimise.problem import Problem
@@ -29,11 +27,6 @@ from gearopt.scenes.servo.scene import Scene
 from gearopt.scenes.servo.tables.tolerances import BudgetTable
 from gearopt.scenes.servo.train_part import Found
 
-BINS = 60
-ANGLES = (  # of what is drawn
-    *("mean", "sd", "quantile", "quantile_low", "quantile_high"),
-    *("limit", "largest", "worst_case"),
-)
 RULES: tuple[tuple[str, Any, float], ...] = (  # name, rule and kappa
     ("worst_case", "worst_case", 0.0),
     ("rss", "rss", 0.0),
@@ -117,21 +110,21 @@ def tolerance_part(scene: Scene, gears: Gears, ask: Ask) -> Found:
     watch = in_part(ask.watch, part="tolerances")
     result, outcome = run(posed, ask.method, ask.budget, ask.seed, watch, ask.gap)
     result = replace(result, name="tolerances", objective=result.objective | {"unit": ""})
-    figures = by_every_rule(own.components, old(scene), "old")
+    figures: dict[str, Any] = by_every_rule(own.components, old(scene), "old")
     if result.value is None or outcome.x is None:
         proof = {k: v for k, v in result.proof.items() if k != "conflict"}
         return Found((replace(result, proof=proof),), report=ServoReport(figures=figures))
     t = np.array(outcome.x, float)
     if table.grades is not None:
         t = old(scene) * 2.0 ** (0.5 * (t - 1.0 - table.grades))
-    allotted, draws = _allocation(own, t, result, scene), _drawn(own, t, table.seed)
+    allotted = _allocation(own, t, result, scene)
+    draws = drawn(own, t, own.budgets[0].error, seed=table.seed)
     design = ServoDesign(tolerances=_rows(scene, own, t), allocation=allotted, drawn=draws)
-    ends = [getattr(draws, f"quantile{end}_deg") for end in ("", "_low", "_high")]
     figures |= by_every_rule(own.components, t, "new")
     figures |= {
-        "new_quantile_deg": ends[0],
-        "new_quantile_low_deg": ends[1],
-        "new_quantile_high_deg": ends[2],
+        "new_quantile_deg": draws.quantile_deg,
+        "new_quantile_low_deg": draws.quantile_low_deg,
+        "new_quantile_high_deg": draws.quantile_high_deg,
         "tolerance_cost": allotted.cost,
         "old_tolerance_cost": allotted.old_cost,
     }
@@ -186,17 +179,6 @@ def _allocation(own: Stack, t: Array, result: Result, scene: Scene) -> Allocatio
     before = sum(price.cost for price in scene.prices)
     method = str(result.proof.get("method", result.method))
     return Allocation(budgets, result.value, before, method)
-
-
-def _drawn(own: Stack, t: Array, seed: int) -> DrawnErrors:
-    """Drawn errors of the new tolerances, held against the first budget's limit."""
-    import numpy as np
-
-    found = asdict(drawn(own, t, own.budgets[0].error, seed=seed))
-    for name in ANGLES:
-        found[f"{name}_deg"] = found.pop(name)
-    counts, edges = np.histogram(errors(own, t, found["count"], seed), BINS)
-    return DrawnErrors(**found, histogram=Histogram(tuple(edges.tolist()), tuple(counts.tolist())))
 
 
 def by_every_rule(parts: tuple[Component, ...], t: Array, whose: str) -> dict[str, float]:

@@ -5,40 +5,14 @@ interval between two order statistics: X_(r) <= Q_p unless fewer than r of the d
 a binomial chance. The yield has the interval of Clopper and Pearson (Biometrika 26, 1934).
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from gearopt.formulations.servo.servo_design import DrawnErrors, Histogram
 from gearopt.formulations.servo.tolerance.stack import Stack
 from gearopt.optimise.terms import Array
 
+BINS = 60  # of the histogram
 THREE_SD = 0.99865  # of a normal error, below its mean and three standard deviations
-
-
-@dataclass(frozen=True)
-class Drawn:
-    """What `count` draws say of the error beside its limit; errors in the unit of the limit.
-
-    quantile: that of `probability`, within quantile_low .. quantile_high; yield_share: of e <=
-    limit, within yield_low .. yield_high; both intervals hold with at least `confidence`.
-    worst_case: sum s t, which no draw of a distribution on [-t, t] exceeds. largest: of the draws.
-    """
-
-    count: int
-    seed: int
-    mean: float
-    sd: float
-    probability: float
-    confidence: float
-    quantile: float
-    quantile_low: float
-    quantile_high: float
-    limit: float
-    yield_share: float
-    yield_low: float
-    yield_high: float
-    largest: float
-    worst_case: float
 
 
 def drawn(
@@ -49,38 +23,42 @@ def drawn(
     probability: float = THREE_SD,
     confidence: float = 0.99,
     seed: int = 0,
-) -> Drawn:
+) -> DrawnErrors:
     """Draw the error of tolerances t [mm] and hold its quantile and yield against a limit.
 
-    The quantile and the yield are one-sided, of the signed error. An end of the quantile's interval
-    is infinite where the draws are too few for it. ValueError for less than two draws, and for a
-    probability or a confidence not between 0 and 1.
+    Errors in degrees, as the sensitivities have them. The quantile and the yield are one-sided, of
+    the signed error. An end of the quantile's interval is None where the draws are too few for it.
+    ValueError for less than two draws, and for a probability or a confidence not between 0 and 1.
     """
     if count < 2 or not 0.0 < probability < 1.0 or not 0.0 < confidence < 1.0:
         raise ValueError("needs two draws or more, and probabilities between 0 and 1")
     e = errors(stack, t, count, seed)
+    counts, edges = np.histogram(e, BINS)
     first, last = order_interval(count, probability, confidence)
     middle = min(max(int(np.ceil(probability * count)), 1), count)
     inside = [k for k in (first, middle, last) if 1 <= k <= count]
     e.partition([k - 1 for k in inside])
     good = int((e <= limit).sum())
     low, high = binomial_interval(good, count, confidence)
-    return Drawn(
+    return DrawnErrors(
         count=count,
         seed=seed,
-        mean=float(e.mean()),
-        sd=float(e.std(ddof=1)),
         probability=probability,
         confidence=confidence,
-        quantile=float(e[middle - 1]),
-        quantile_low=float(e[first - 1]) if first >= 1 else -np.inf,
-        quantile_high=float(e[last - 1]) if last <= count else np.inf,
-        limit=limit,
         yield_share=good / count,
         yield_low=low,
         yield_high=high,
-        largest=float(e.max()),
-        worst_case=float(sum(c.sensitivity * w for c, w in zip(stack.components, t, strict=True))),
+        mean_deg=float(e.mean()),
+        sd_deg=float(e.std(ddof=1)),
+        quantile_deg=float(e[middle - 1]),
+        quantile_low_deg=float(e[first - 1]) if first >= 1 else None,
+        quantile_high_deg=float(e[last - 1]) if last <= count else None,
+        limit_deg=limit,
+        largest_deg=float(e.max()),
+        worst_case_deg=float(
+            sum(c.sensitivity * w for c, w in zip(stack.components, t, strict=True))
+        ),
+        histogram=Histogram(tuple(edges.tolist()), tuple(counts.tolist())),
     )
 
 
