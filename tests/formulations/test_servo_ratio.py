@@ -353,3 +353,6 @@ def test_the_bound_is_below_the_law_and_refuses_what_is_no_minimum():
     edge = convex_bound(law, 12.0, 12.0, 1e6)
     assert law(12.0) * (1.0 - 1e-9) < edge < law(12.0)
     assert convex_bound(law, 12.0, 1.0, 12.0) is None
+    for power, low, high in ((-1.0, 1.0, 1.0 + 5e-6), (1.0, 1.0 - 5e-6, 1.0)):
+        beside = convex_bound(lambda n, power=power: n**power, 1.0, low, high)
+        assert 1.0 - 2e-5 < beside < min(low**power, high**power)  # the least is within one step

@@ -23,7 +23,7 @@ searching = import_module("gearopt.formulations.teeth.search")  # `teeth.search`
 def naive(train, tables, delta):
     """The bound's definition in plain loops: (to_go, least) by stage and cell."""
     low, high = math.log(train.lowest_ratio), math.log(train.highest_ratio)
-    cells = int(high / delta) + 1
+    cells = int((high + bounds.EDGE) / delta) + 1
     widest = max(float(t.log_ratio[-1]) for t in tables)
     columns = int(widest / delta) + 1
     least, to_go = {}, {}
@@ -93,9 +93,30 @@ def test_the_bound_is_its_definition(stages, objective, total, face, edge, torqu
         assert found.onward(k, cell) == pytest.approx(expected + ahead, rel=1e-12)
     for k, t in enumerate(tables):
         widest = max(float(t.log_ratio[-1]) for t in tables)
-        edges = [int((t.log_ratio < r * delta).sum()) for r in range(int(widest / delta) + 1)]
+        column = [int(v / delta) for v in t.log_ratio]
+        edges = [sum(c < r for c in column) for r in range(int(widest / delta) + 1)]
         assert found.starts[k].tolist() == [*edges, len(t.z1)]
     assert found.cell(np.array([0.0, 0.0699, 0.0701, 0.15])).tolist() == [0, 0, 1, 2]
+
+
+def test_a_pair_is_in_the_cell_that_its_cost_is_in():
+    """Also where the quotient by delta is whole, and the product with it above the logarithm."""
+    train = drive(3)
+    tables = tables_of(train)
+    log = tables[1].log_ratio
+    ends = [(v, v / r) for v in log[log > 0.1] for r in range(20, 100)]
+    value, delta = next((v, d) for v, d in ends if int(v / d) * d > v)
+    rest = bound(train, tables, delta, lambda: None)
+    pair, cell = int(np.searchsorted(log, value)), int(rest.cell(np.array([value]))[0])
+    assert rest.starts[1][cell] <= pair < rest.starts[1][cell + 1]
+
+
+def test_the_largest_ratio_has_a_cell_whatever_its_rounding():
+    train = replace(drive(3), torque=200.0)
+    delta = math.log(train.highest_ratio) / 40 * (1.0 + 1e-15)
+    rest = bound(train, tables_of(train), delta, lambda: None)
+    beyond = np.array([math.log(train.highest_ratio) * (1.0 + 1e-14)])
+    assert np.isfinite(rest.to_go[-1][rest.cell(beyond)]).all()
 
 
 @pytest.mark.parametrize("number", [0, 2, 4, 8, 12])

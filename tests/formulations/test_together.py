@@ -12,6 +12,8 @@ from gearopt.formulations import layout, teeth, together
 from gearopt.formulations.layout.chain import chain, turns
 from gearopt.formulations.layout.gearbox import Clearances, Gearbox, KeepOut, Shaft
 from gearopt.formulations.layout.slabs import arrangements, clashes, orders
+from gearopt.formulations.together import search
+from gearopt.formulations.together.prepare import rest
 from gearopt.formulations.together.tables import numbers
 from gearopt.formulations.train import FaceWidth, Stage, Train
 from gearopt.optimise.kernels import kernel
@@ -278,6 +280,82 @@ def test_what_face_widths_decide_is_refused():
     keep = KeepOut("tank", (50.0, 80.0), (0.0, 10.0), (0.0, 30.0))
     with pytest.raises(SolveError, match="keep-outs with a range of x"):
         together.problem(train, frame(train, (10.0, 17.5, 30.0), keep_outs=(keep,)))
+
+
+def test_bearings_longer_than_the_gap_may_reach_past_a_narrow_gear_and_are_refused():
+    train = three()
+    free = replace(train.stages[0], face_width=FaceWidth(F(3, 10), F(3, 5)))
+    train = replace(train, stages=(free, *train.stages[1:]))
+    gap = Clearances().axial
+
+    def make(wide):
+        shafts = tuple(Shaft(r, r + 5.0, wide) for r in (8.0, 15.0, 22.5, 35.0))
+        return lambda pairs: Gearbox(pairs, shafts, slabs=IN_ORDER, partial=True)
+
+    numbers(train, make(gap))
+    with pytest.raises(SolveError, match="bearings beside gears"):
+        numbers(train, make(gap + 1.0))
+
+
+def at_its_limit():
+    """A drive and frames of its least height in decimals, 2.2 (56 + 2) + 2 8 = 143.6 mm."""
+    face, series = FaceWidth(F(3, 10), F(7, 10)), (F(11, 5), F(12, 5), F(13, 5), F(14, 5))
+    stage = Stage(2.0, 48.0, face, series, (17, 26))
+    train = Train(1.5e4, F(9), F(1, 20), (stage, stage))
+    clear = Clearances(5.0, 2.0, 8.0, 10.0)
+    largest = (math.inf, 143.6, math.inf)
+    return train, frame(train, (8.0, 10.0, 12.0), clearances=clear, largest=largest)
+
+
+def test_a_box_as_large_as_it_may_be_is_not_too_large_by_rounding():
+    train, make = at_its_limit()
+    drive, _ = numbers(train, make)
+    nodes = kernel("gearopt.formulations.together.node_kernel")
+    high = 2.0 * (0.5 * 2.2 * 56 + 2.2 + 8.0)
+    assert high > 143.6  # by rounding alone
+    assert math.isfinite(nodes.worth(drive.aim, 50.0, high * high, high))
+    assert math.isinf(nodes.worth(drive.aim, 50.0, high * high, high * (1.0 + 1e-10)))
+    box = make((train.pair(2.2, 17, 56, 14.0), train.pair(2.2, 21, 55, 32.0)))
+    (order,) = search.orders_of(replace(box, slabs=((0,), (1,))))
+    tight = replace(box, slabs=order.slabs, largest=(math.inf, math.inf, order.length - 1e-12))
+    assert search.orders_of(tight)
+
+
+@pytest.mark.slow
+def test_a_train_that_meets_the_largest_box_exactly_is_found():
+    train, make = at_its_limit()
+    result = certified(train, make, 1e-3)
+    assert result.status == "optimal"
+    assert result.value == pytest.approx(2_716_776.33, rel=1e-3)
+
+
+def test_a_train_whose_layouts_are_not_exhausted_leaves_the_search_unproven(monkeypatch):
+    train = elevator()
+    stage = replace(train.stages[0], modules=(F(2), F(3)), pinion_teeth=(20, 21))
+    train = replace(train, stages=(stage, replace(train.stages[1], modules=(F(3), F(4)))))
+    work = search.Search(train, frame(train, (10.0, 17.5, 30.0)), Budget(), None, 0)
+    pairs = train.pair(2.0, 21, 128, 25.0), train.pair(3.0, 24, 85, 50.0)
+    assert search.lay(work, pairs, 0.3) and math.isfinite(work.value) and not work.stopped
+    monkeypatch.setattr("gearopt.formulations.layout.exact.DEEP", 3)
+    fresh = search.Search(train, work.make, Budget(), None, 0)
+    assert not search.lay(fresh, pairs, 0.003) and not fresh.stopped
+
+
+def test_tables_of_the_rest_hold_ratios_at_the_edges_of_their_cells():
+    """Logarithms a billionth beside multiples of the cells: no ratio falls between two of them."""
+    stage = Stage(2.0, 48.0, FaceWidth(F(3, 5), F(3, 5)), (F(2), F(3), F(4), F(6)), (20, 40))
+    train = Train(3e4, F(42 * 45, 16 * 15), F(0), (stage, stage, stage))
+    teeth = ((16, 42), (15, 45), (20, 20))
+    for k, pair in enumerate(teeth):
+        train = train.fixed_teeth(k, *pair)
+    drive, _ = numbers(train, frame(train, (8.0, 10.0, 12.0, 14.0)))
+    first, second = (math.log(z2 / z1) for z1, z2 in teeth[:2])
+    delta = (second + 1e-9) / 7635
+    assert 1e-9 < first - 6707 * delta < 2e-9
+    tables = rest(drive._replace(delta=delta), lambda: True)
+    cell = int((first + second - 1e-9) / delta)  # as `bound` of the nodes asks
+    assert cell == 6707 + 7635 - 1
+    assert np.isfinite(tables.least[2, :2, cell]).all()
 
 
 def test_other_pairs_are_refused():

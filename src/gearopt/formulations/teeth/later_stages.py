@@ -40,7 +40,7 @@ class Bound:
 
     def cell(self, log_ratio: Array) -> NDArray[np.int64]:
         """Cell of a log ratio."""
-        return (log_ratio / self.delta).astype(np.int64)
+        return _cell(log_ratio, self.delta)
 
     def onward(self, stage: int, cell: NDArray[np.int64]) -> Array:
         """Least cost of stages `stage`.. from each cell by each ratio cell of `stage`."""
@@ -49,12 +49,16 @@ class Bound:
         return np.asarray(least[cell] + _ahead(self.to_go[stage + 1], least.shape[1])[cell])
 
 
+def _cell(log_ratio: Array, delta: float) -> NDArray[np.int64]:
+    return (log_ratio / delta).astype(np.int64)
+
+
 def bound(train: Train, tables: list[Table], delta: float, tick: Callable[[], None]) -> Bound:
     """The bound of all stages but the first, on cells of `delta` in log ratio.
 
     Every table has a pair. tick: called several times a second; what it raises ends the work.
     """
-    cells = int(math.log(train.highest_ratio) / delta) + 1
+    cells = int((math.log(train.highest_ratio) + EDGE) / delta) + 1
     widest = max(float(t.log_ratio[-1]) for t in tables)
     ratio_cells = int(widest / delta) + 1
     count = len(tables)
@@ -70,8 +74,9 @@ def bound(train: Train, tables: list[Table], delta: float, tick: Callable[[], No
         assert now is not None
         tick()
         to_go[k][:cells] = (now + ahead).min(axis=1)
-    edges = np.arange(ratio_cells) * delta
-    starts = [np.append(np.searchsorted(t.log_ratio, edges), len(t.ratio)) for t in tables]
+    columns = [_cell(t.log_ratio, delta) for t in tables]
+    edges = np.arange(ratio_cells)
+    starts = [np.append(np.searchsorted(c, edges), len(c)) for c in columns]
     return Bound(delta, to_go, least, starts)
 
 
@@ -84,7 +89,7 @@ def _least(
     table: Table, cells: int, ratio_cells: int, delta: float, tick: Callable[[], None]
 ) -> Array:
     """Least cost of one stage for every torque cell and ratio cell."""
-    column = (table.log_ratio / delta).astype(np.int64)
+    column = _cell(table.log_ratio, delta)
     found = np.full(cells * ratio_cells, np.inf)
     for k in range(len(table.modules)):
         tick()

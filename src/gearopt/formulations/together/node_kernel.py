@@ -64,9 +64,10 @@ def worth(aim, length, area, big):
     """Least objective of boxes of a length, W H >= area and W, H >= big.
 
     aim (8,): most width, height and length; constant and factor of the length; exponents; 1 for the
-    longest side. It is `Drive.aim`: few arguments keep the innermost loop fast.
+    longest side. It is `Drive.aim`: few arguments keep the innermost loop fast. Rounding makes no
+    box too large that is just as large as it may be.
     """
-    if big > aim[0] or big > aim[1] or length > aim[2]:
+    if big * SAFE > min(aim[0], aim[1]) or length * SAFE > aim[2]:
         return math.inf
     if aim[7] > 0.0:
         return max(big, math.sqrt(area), length, aim[3]) * SAFE

@@ -61,7 +61,7 @@ def fill(d, k, start, stop, rest):
     """
     j, many, begin = k - 1, d.slabs.size, d.start[k - 1]
     end = d.start[k]
-    span = d.log_high - d.log_low + d.delta + 2.0 * EDGE
+    span = d.log_high - d.log_low + d.delta + 4.0 * EDGE
     widths, more = np.zeros(k), np.zeros(many)
     alone = np.zeros((many, k), np.int64)  # 1 + slab of a stage, 0 where it shares with later ones
     for m in range(many):
@@ -84,7 +84,7 @@ def fill(d, k, start, stop, rest):
             torque, there = d.torque, True
             if k > 1:
                 torque = max(torque, through * (d.z1[p] / d.z2[p]))
-                left = int(max(low - d.log_ratio[p] - EDGE, 0.0) / d.delta)
+                left = int(max(cell * d.delta - d.log_ratio[p], 0.0) / d.delta)
                 for i in range(j):
                     widths[i] = min(rest.least[j, i, left], rest.least[j, i, left + 1])
                     there = there and widths[i] < math.inf

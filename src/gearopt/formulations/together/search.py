@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from gearopt.formulations import layout
 from gearopt.formulations.layout.chain import Chain, chain, turns
 from gearopt.formulations.layout.gearbox import Gearbox
-from gearopt.formulations.layout.slabs import Arrangement, arrangements, clashes
+from gearopt.formulations.layout.slabs import TOUCH, Arrangement, arrangements, clashes
 from gearopt.formulations.teeth.search import within
 from gearopt.formulations.together.prepare import chains, rest, useful
 from gearopt.formulations.together.tables import Drive, Make, Rest
@@ -120,12 +120,16 @@ def sized(train: Train, drive: Drive, node: Nodes) -> tuple[GearPair, ...]:
 
 def orders_of(box: Gearbox) -> list[Arrangement]:
     """Arrangements in which no shafts clash and the box is not too long."""
-    return [a for a in arrangements(box) if not clashes(box, a) and a.length <= box.largest[2]]
+    longest = box.largest[2] + TOUCH
+    return [a for a in arrangements(box) if not clashes(box, a) and a.length <= longest]
 
 
-def lay(search: Search, pairs: tuple[GearPair, ...], margin: float) -> None:
-    """Keep the best layout of a train if it betters the best value by more than a margin."""
-    box = search.make(pairs)
+def lay(search: Search, pairs: tuple[GearPair, ...], margin: float) -> bool:
+    """Keep the best layout of a train if it betters the best value by more than a margin.
+
+    False where it is not proven that no other layout of the train does.
+    """
+    box, proven = search.make(pairs), True
     search.trains += 1
     for order in orders_of(box):
         if not _below(search, box, order, margin):
@@ -133,8 +137,10 @@ def lay(search: Search, pairs: tuple[GearPair, ...], margin: float) -> None:
         one = replace(box, slabs=order.slabs)
         budget, watch = search.watched(min(margin, CLOSE))
         outcome = layout.problem(one).methods["exact"](None, budget, search.seed, watch)
+        proven = proven and outcome.finished
         if outcome.x is not None:
             keep(search, pairs, order, outcome.x)
+    return proven
 
 
 def keep(search: Search, pairs: tuple[GearPair, ...], order: Arrangement, angles: Array) -> None:
@@ -215,11 +221,12 @@ def prove(search: Search, work: Work, margin: float) -> bool:
 
 
 def _last_looks(search: Search, drive: Drive, nodes: Nodes, bounds: Array, margin: float) -> None:
-    """Lay out whole trains that may be below the cut."""
+    """Lay out whole trains that may be below the cut; what is not proven of one ends the search."""
     for node, value in zip(nodes, bounds, strict=True):
         teeth = tuple((round(drive.z1[p]), round(drive.z2[p])) for p, _ in node)
         if value < search.value * (1.0 - margin) and within(search.train, teeth):
-            lay(search, sized(search.train, drive, node), margin)
+            proven = lay(search, sized(search.train, drive, node), margin)
+            search.stopped = search.stopped or not proven
         if search.stopped:
             return
 

@@ -153,7 +153,8 @@ def _slab(slabs: Slabs, stage: int) -> int:
 def _refuse(train: Train, box: Gearbox) -> None:
     choice = any(not s.face_width.tied and s.face_width.fixed is None for s in train.stages)
     shared = box.slabs is None or any(len(s) > 1 for s in box.slabs)
-    bearings = box.partial and shared and any(s.bearing_width > 0 for s in box.shafts)
+    widest = max(s.bearing_width for s in box.shafts)  # up to the gap, a bearing stays in it
+    bearings = box.partial and widest > (0.0 if shared else box.clearances.axial)
     along = any(k.x != ANYWHERE for k in box.keep_outs)
     if choice and (along or (bearings and len(box.pairs) > 2)):
         what = "keep-outs with a range of x" if along else "bearings beside gears"

@@ -38,7 +38,8 @@ def convex_bound(
         back, one, two = (rise(sign * k) for k in (-1.0, 1.0, 2.0))
         if one < 0.0 and math.log(width) > STEP * room:
             return -math.inf
-        return max((s for s in (-back, 2.0 * one - two) if math.isfinite(s)), default=-math.inf)
+        lines = (-back, min(2.0 * one - two, one))  # the least of each secant on one step
+        return max((s for s in lines if math.isfinite(s)), default=-math.inf)
 
     value = law(at)
     if not 0.0 < value < math.inf:
