@@ -11,7 +11,6 @@ from pathlib import Path
 import pytest
 
 import gearopt
-from gearopt.cli import run
 
 ROOT = Path(__file__).parents[1]
 ELEVATOR = ROOT / "problems" / "elevator.toml"
@@ -21,20 +20,6 @@ SHORT = ("--seeds", 2, "--seconds", 0.02, "--evaluations", 640)
 def gear(*words, **kind):
     command = [sys.executable, "-m", "gearopt", "compare", *map(str, words)]
     return subprocess.run(command, capture_output=True, text=True, **kind)
-
-
-@pytest.fixture
-def here(capsys, monkeypatch):
-    """The command within this process, which saves the start of another one."""
-
-    def call(*words):
-        monkeypatch.setattr(sys, "argv", ["gearopt", "compare", *map(str, words)])
-        with pytest.raises(SystemExit) as ended:
-            run()
-        said = capsys.readouterr()
-        return subprocess.CompletedProcess(words, ended.value.code, said.out, said.err)
-
-    return call
 
 
 @pytest.mark.slow
@@ -71,7 +56,7 @@ def test_json_is_one_object_and_reads_back():
     ],
 )
 def test_wrong_words_are_exit_2_without_traceback(words, here):
-    done = here(*words, *SHORT[2:])
+    done = here("compare", *words, *SHORT[2:])
     assert done.returncode == 2 and done.stdout == ""
     assert done.stderr and "Traceback" not in done.stderr
 

@@ -1,8 +1,6 @@
 """The docs say what the program does: keys, limits, commands, examples, links."""
 
 import re
-import subprocess
-import sys
 import tomllib
 from fractions import Fraction
 from pathlib import Path
@@ -92,21 +90,24 @@ def test_links_lead_somewhere(page):
         assert "://" in target or (path.parent / target).exists(), target
 
 
-def test_python_of_the_start_page_runs():
+def printed(code, capsys, monkeypatch):
+    """What a page's Python prints, run in the project's folder."""
+    monkeypatch.chdir(ROOT)
+    exec(compile(code, "page", "exec"), {})
+    return capsys.readouterr().out
+
+
+def test_python_of_the_start_page_runs(capsys, monkeypatch):
     code = re.search(r"```python\n(.*?)```", text("docs/start.md"), re.S)[1]
-    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
-    assert done.stdout.startswith("optimal 5782370.7")
-    assert "2.0 21 115" in done.stdout
+    said = printed(code, capsys, monkeypatch)
+    assert said.startswith("optimal 5782370.7") and "2.0 21 115" in said
 
 
-def test_python_of_the_conic_section_runs():
+def test_python_of_the_conic_section_runs(capsys, monkeypatch):
     section = text("docs/contract.md").split("## Conic problems")[1]
     code = re.search(r"```python\n(.*?)```", section, re.S)[1]
-    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
     best = (3**0.5 + 2.0 + 3**0.5) ** 2 / 0.2  # (sum sqrt(a s))^2 / E
-    assert done.stdout == f"optimal {round(best, 6)}\n"
+    assert printed(code, capsys, monkeypatch) == f"optimal {round(best, 6)}\n"
 
 
 def test_the_walk_of_the_start_page(tmp_path):
@@ -131,21 +132,16 @@ def test_the_walk_of_the_start_page(tmp_path):
     assert f"has {gearopt.solve(path).value:,.0f} mm³" in page
 
 
-def test_readme_shows_what_the_command_prints():
+def test_readme_shows_what_the_command_prints(here, monkeypatch):
     """Every line of the shortened output, in order; and README's two commands, that CI reads."""
     page = text("README.md")
     command, shown = re.findall(r"(?ms)^```\n(.*?)^```$", page)[:2]
     assert re.findall(r"(?m)^python3 -m venv.*$", page)[0] == command.strip()
     assert len(re.findall(r"(?m)^python3 -m venv", page)) == 2
-    done = subprocess.run(
-        [sys.executable, "-m", "gearopt", "solve", "problems/elevator.toml"],
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    printed = iter([line.rstrip() for line in done.stdout.splitlines()])
-    assert all(line in printed for line in shown.splitlines() if line != "...")
+    monkeypatch.chdir(ROOT)
+    said = here("solve", "problems/elevator.toml").stdout
+    lines = iter([line.rstrip() for line in said.splitlines()])
+    assert all(line in lines for line in shown.splitlines() if line != "...")
 
 
 def test_paths_of_the_contributors_page_exist():

@@ -106,7 +106,7 @@ def test_cost_rising_with_sensitivity(half, best):
 @pytest.mark.parametrize("rising", [False, True])
 @pytest.mark.parametrize("rss", [False, True])
 @pytest.mark.parametrize("k", [1, 2])
-@pytest.mark.parametrize("half", [3, 5])
+@pytest.mark.parametrize("half", [pytest.param(3, marks=pytest.mark.slow), 5])
 def test_every_law_at_wide_spreads(half, k, rss, rising):
     """Costs up to 1e15: the answer to 1e-6, within our own gap."""
     a, s = spread(-half, half, rising)

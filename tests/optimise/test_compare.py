@@ -146,6 +146,7 @@ def _told(found):
     ]
 
 
+@pytest.mark.slow
 def test_equal_seeds_give_equal_runs():
     methods = ("ipopt", "multistart", "annealing", "nsga2")
     budget = {"evaluations": 128, "seconds": 0.3}  # ten times as long is enough for 128

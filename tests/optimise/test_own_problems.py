@@ -195,7 +195,7 @@ def test_discrete_variables_without_a_value_between_their_bounds(method):
 def test_whole_values_of_an_integer_are_kept_to(method):
     """Of 0, 3 and 9 between 0.3 and 5 only 3 is left, and it is printed as it is evaluated."""
     whole = var(lower=0.3, upper=5.0, guess=1.5, integer=True, values=(0.0, 3.0, 9.0))
-    result = solve(own(ok, whole), method)
+    result = solve(own(ok, whole), method, Budget(evaluations=200))
     assert result.design["a"] == 3 and isinstance(result.design["a"], int)
     assert result.value == 3.0 and result.status in ("optimal", "feasible")
 

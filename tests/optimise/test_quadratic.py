@@ -70,7 +70,9 @@ def exact_energy(k, e, load):
     raise AssertionError("no pair carries")
 
 
-@pytest.mark.parametrize("pairs", [2, 3, 4, 5, 6])
+@pytest.mark.parametrize(
+    "pairs", [2, *(pytest.param(n, marks=pytest.mark.slow) for n in (3, 4, 5)), 6]
+)
 def test_load_sharing_is_the_closed_form(pairs):
     """Open bounds above: the proof rests on the curvature alone."""
     problem = sharing(pairs)

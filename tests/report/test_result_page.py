@@ -396,8 +396,8 @@ def test_a_plain_drive_gives_a_light_page_without_plots():
         assert words in shown, words
 
 
-def test_an_impossible_request_says_what_to_write():
-    result = gearopt.solve("problems/elevator_small_wheels.toml")
+def test_an_impossible_request_says_what_to_write(solved):
+    result = solved("elevator_small_wheels")
     shown = text(page(result, "x"))
     assert "impossible, proven" in shown and "Ways out" in shown
     for way in result.report["ways_out"]["remedies"]:
@@ -405,8 +405,8 @@ def test_an_impossible_request_says_what_to_write():
 
 
 @pytest.mark.slow
-def test_the_page_takes_what_the_solver_gives():
-    result = gearopt.solve("problems/table4_process_one_layout.toml")
+def test_the_page_takes_what_the_solver_gives(solved):
+    result = solved("table4_process_one_layout")
     front, side, _ = drawings(page(result, "x"))
     words = {t.text for t in front.iter("text")}
     assert {"411.98", "873.29", "a1 = 211.85"} <= words and any(w[:4] == "gap " for w in words)

@@ -17,8 +17,8 @@ FILE = Path(__file__).parents[2] / "problems" / "servo_gimbal.toml"
 
 
 @pytest.fixture(scope="module")
-def result():
-    return gearopt.Result.from_json(gearopt.solve(FILE).to_json())
+def result(solved):
+    return solved("servo_gimbal")
 
 
 @pytest.fixture(scope="module")

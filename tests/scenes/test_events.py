@@ -191,7 +191,9 @@ def test_further_trains_are_no_bound_of_the_best():
     assert bounds[-1] <= result.value * ROUNDED
 
 
-@pytest.mark.parametrize("file", ["elevator", "elevator_small_wheels"])
+@pytest.mark.parametrize(
+    "file", ["elevator", pytest.param("elevator_small_wheels", marks=pytest.mark.slow)]
+)
 def test_changed_problems_tell_no_values(file):
     scene = PROBLEMS / f"{file}.toml"
     _, events = told(scene, gearopt.explain, budget=gearopt.Budget(seconds=1.0))

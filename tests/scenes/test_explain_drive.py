@@ -4,6 +4,7 @@ Factors: the drives of Chong and Lee (elastic form with Clarabel and Ipopt, done
 """
 
 import random
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -17,6 +18,12 @@ ELEVATOR = (PROBLEMS / "elevator.toml").read_text(encoding="utf-8")
 THREE = (PROBLEMS / "three_stage.toml").read_text(encoding="utf-8")
 SMALL_WHEELS = (PROBLEMS / "elevator_small_wheels.toml").read_text(encoding="utf-8")
 POSSIBLE = ("optimal", "stationary", "feasible")  # with a feasible point, certified
+
+
+@cache
+def explained(text):
+    """The explanation of a file's text, for all tests that only read it."""
+    return explain(scene_of(text)[0])
 
 
 def without_teeth(text):
@@ -67,14 +74,9 @@ def spelt(names):
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("exact", [False, True], ids=["1 %", "exact"])
-@pytest.mark.parametrize(
-    "case",
-    [
-        c if c == "1000:1 by two stages of 10" else pytest.param(c, marks=pytest.mark.slow)
-        for c in CASES
-    ],
-)
+@pytest.mark.parametrize("case", CASES)
 def test_least_repair_known_before(case, exact):
     text, percent, precise, where, conflict = CASES[case]
     text = without_teeth(text).replace(*EXACT) if exact else without_teeth(text)
@@ -93,6 +95,7 @@ def test_least_repair_known_before(case, exact):
     assert least.verified["others"] == "need more"
 
 
+@pytest.mark.slow
 def test_even_repair_known_before():
     """The same factor on both wheels: 1.12132 at the exact ratio."""
     scene, content = scene_of(without_teeth(SMALL_WHEELS).replace(*EXACT))
@@ -117,6 +120,7 @@ def test_whole_teeth_need_more_than_real_valued_ones():
         assert verify(content, remedy)
 
 
+@pytest.mark.slow
 def test_only_whole_teeth_are_impossible():
     """Real-valued sizes exist, so no limits conflict; the remedies are for the teeth."""
     fine = ELEVATOR.replace(*EXACT).replace("[20, 40]", "[20, 21]")
@@ -140,8 +144,9 @@ def test_given_teeth_that_contradict_the_ratio():
     assert all(verify(content, r) for r in found.remedies)
 
 
-def test_solve_says_the_same():
-    result = solve(PROBLEMS / "thousand_in_two_stages.toml")
+@pytest.mark.slow
+def test_solve_says_the_same(solved):
+    result = solved("thousand_in_two_stages")
     found = explain(PROBLEMS / "thousand_in_two_stages.toml")
     assert found.remedies and tuple(result.report["ways_out"]["conflict"]) == found.conflict
     assert [r["changes"][0]["write"] for r in result.report["ways_out"]["remedies"]] == [
@@ -236,7 +241,7 @@ def test_every_remedy_of_random_impossible_drives_is_verified(block):
 def test_sensitivity_of_every_number_against_re_solving(text):
     """Multipliers and central differences of independent solves agree to 1e-3 for every input."""
     scene, _ = scene_of(text)
-    found = {i.key: i for i in explain(scene).influences}
+    found = {i.key: i for i in explained(text).influences}
     written = {"duty.power", "duty.input_speed", "duty.output_speed", "duty.ratio_tolerance"}
     written |= {"gears.helix_angle", "gears.pressure_angle", "limits.k_factor", "limits.unit_load"}
     written |= {"limits.pinion_teeth[1]", "limits.pinion_teeth[2]"}
@@ -265,7 +270,7 @@ def test_sensitivities_where_other_limits_bind():
 def test_prices_are_those_of_the_drive_solved_again():
     """1 % more K-factor, one tooth less: exact re-solves of the edited file."""
     scene, content = scene_of(ELEVATOR)
-    found = explain(scene)
+    found = explained(ELEVATOR)
     (k,) = (i for i in found.influences if i.key == "limits.k_factor")
     content["limits"]["k_factor"] = "2.0907 MPa"
     again = solve(type(scene).model_validate(content)).value
@@ -303,8 +308,13 @@ wheel_diameter = "300 mm"
 @pytest.mark.parametrize(
     ("stage", "key", "easier"),
     [
-        ('module = "4 mm"', "stage[1].module", "smaller"),
-        ("pinion_teeth = 30\nmodule = ['2 mm', '8 mm']\nwheel_teeth = [100, 120]", "", ""),
+        pytest.param('module = "4 mm"', "stage[1].module", "smaller", marks=pytest.mark.slow),
+        pytest.param(
+            "pinion_teeth = 30\nmodule = ['2 mm', '8 mm']\nwheel_teeth = [100, 120]",
+            "",
+            "",
+            marks=pytest.mark.slow,
+        ),
         ('face_width = "400 mm"', "stage[1].face_width", "smaller"),
     ],
     ids=["module", "teeth", "face width"],
@@ -351,6 +361,7 @@ def test_a_limit_at_a_standard_module_has_a_price_and_no_slope():
     assert found["limits.module[2]"].step == "to 3 mm" and found["limits.module[2]"].price < -0.01
 
 
+@pytest.mark.slow
 def test_a_series_that_is_to_blame_is_named():
     """Modules of 8 and 10 mm only: the limit that cannot be kept is the smallest module."""
     scene, _ = scene_of(SMALL_WHEELS.replace('"ISO 54 I"', '["8 mm", "10 mm"]'))
@@ -359,7 +370,7 @@ def test_a_series_that_is_to_blame_is_named():
 
 def test_what_a_stopped_explanation_prints_is_what_the_whole_one_prints():
     scene, _ = scene_of(ELEVATOR)
-    whole = {i.key: i for i in explain(scene).influences}
+    whole = {i.key: i for i in explained(ELEVATOR).influences}
     for most in (30, 60, 120, 240):
         calls = iter(range(most))
         part = explain(scene, watch=lambda event, calls=calls: next(calls, None) is not None)
@@ -375,6 +386,7 @@ PRESET = SMALL_WHEELS.replace('k_factor = "2.07 MPa"', 'preset = "chong-lee-elev
 )
 
 
+@pytest.mark.slow
 def test_a_better_material_is_worth_as_much_as_less_power():
     """K and U enter as T/K and T/U: both limits times f is the same as the power over f."""
     scene, content = scene_of(without_teeth(PRESET))

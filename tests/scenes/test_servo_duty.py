@@ -41,8 +41,8 @@ def scene(base, **tables_of):
 
 
 @pytest.fixture(scope="module")
-def fast():
-    return gearopt.Result.from_json(gearopt.solve(PROBLEMS / "servo_gimbal_fast.toml").to_json())
+def fast(solved):
+    return solved("servo_gimbal_fast")
 
 
 @pytest.fixture(scope="module")
@@ -282,6 +282,7 @@ def test_wide_ratios_are_held_to_box_and_stiffness():
     assert not loose.design["box"]["fits"] and loose.value == free.value
 
 
+@pytest.mark.slow
 def test_a_look_through_many_trains_stops_in_time():
     narrow = {
         "width": "40 mm",

@@ -76,11 +76,11 @@ NAMES = ("gimbal", "gimbal_fine", "gimbal_stiff", "gimbal_move", "gimbal_swing",
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_the_page_explains_every_name(name):
+def test_the_page_explains_every_name(name, solved):
     page = (ROOT / "docs" / "servo.md").read_text(encoding="utf-8")
     rows = [line for line in page.splitlines() if line.startswith("| `")]
     explained = set(re.findall(r"`(\w+)`", " ".join(rows)))
-    result = gearopt.solve(PROBLEMS / f"servo_{name}.toml")
+    result = solved(f"servo_{name}")
     names = {k.removesuffix("_with_train") for k in told(result)}
     assert len(names) > 4 and names - OWN <= explained | {"best_total_ratio"}
     plain = result.to_dict()

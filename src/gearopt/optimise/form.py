@@ -22,12 +22,14 @@ class Form:
     """A problem in y; `expressions` are casadi (y, p, F, G, H), the rest numbers.
 
     logarithmic: which variables are log (n,). log_objective: F is log f. convex: proven convex.
+    terms(y, p) -> F, G and H in one column.
     derivatives(y, p, lam_g, lam_h) -> F, G, H, grad F, grad L with L = F + lam_g.G + lam_h.H.
     jacobians(y, p) -> of G and of H, sparse. hessian(p) -> of F where it is proven constant (see
     `quadratic`; G and H are then affine), else None.
     """
 
     expressions: tuple[Any, Any, Any, Any, Any]
+    terms: Any
     derivatives: Any
     jacobians: Any
     logarithmic: Any
@@ -102,9 +104,11 @@ def assembled(
     lam_g, lam_h = (type(y).sym(n, r.numel()) for n, r in zip("gh", expressions[3:], strict=True))
     lagrangian = objective + ca.dot(lam_g, inequalities) + ca.dot(lam_h, equalities)
     gradients = [ca.gradient(objective, y), ca.gradient(lagrangian, y)]
-    outputs = [ca.densify(e) for e in (objective, inequalities, equalities, *gradients)]
+    terms = [ca.densify(e) for e in (objective, inequalities, equalities)]
+    outputs = [*terms, *(ca.densify(e) for e in gradients)]
     return Form(
         expressions,
+        ca.Function("terms", [y, p], [ca.vertcat(*terms)]),
         ca.Function("derivatives", [y, p, lam_g, lam_h], outputs),
         ca.Function("jacobians", [y, p], [ca.jacobian(r, y) for r in (inequalities, equalities)]),
         logarithmic,
@@ -131,10 +135,8 @@ def _rows(values: Any, logarithmic: list[bool]) -> Any:
 
 def values(problem: Problem, shape: Form, y: Array) -> tuple[float, Array]:
     """F, and G and H together, at a point."""
-    no_g, no_h = (np.zeros(shape.derivatives.numel_out(k)) for k in (1, 2))
-    parts = shape.derivatives(y, problem.parameter_values(), no_g, no_h)
-    f, g, h = (np.array(part).ravel() for part in parts[:3])
-    return float(f[0]), np.concatenate([g, h])
+    found = np.array(shape.terms(y, problem.parameter_values())).ravel()
+    return float(found[0]), found[1:]
 
 
 def violation(problem: Problem, shape: Form, y: Array) -> float:

@@ -193,7 +193,7 @@ def check_text(what: str, variables: Any, evaluate: Any) -> None:
 
 def spread(value: Number, size: int) -> Array:
     """One float, or `size` floats, as an array (size,)."""
-    return np.broadcast_to(np.asarray(value, float), (size,)).copy()
+    return np.full(size, value, float)
 
 
 def each(value: Any) -> tuple[Any, ...]:

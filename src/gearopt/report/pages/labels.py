@@ -54,7 +54,7 @@ class Ink:
         """Of a letter here: other texts and the paper's edge weigh far more than lines."""
         column, row = int(x // CELL), int(y // CELL)
         lines = sum(
-            self.cells[column + i, row + j] for i in (-1, 0, 1) for j in (-1, 0, 1)
+            self.cells.get((column + i, row + j), 0) for i in (-1, 0, 1) for j in (-1, 0, 1)
         )  # the height of a letter
         texts = sum(1 for u, v, r in self.texts if max(abs(u - x), abs(v - y)) < reach + r)
         edge = 0.6 * SIZE
@@ -64,7 +64,15 @@ class Ink:
 
 def best(text: str, places: Sequence[Place], ink: Ink, reach: float = 0.58 * SIZE) -> Place:
     """The cheapest place; the text, with what is drawn within reach [px] of it, stands there."""
-    found = min(places, key=lambda p: p.cost + sum(ink.cost(x, y, reach) for x, y in p.spots(text)))
+    found, least = places[0], math.inf
+    for place in places:
+        inked = 0.0
+        for x, y in place.spots(text):
+            inked += ink.cost(x, y, reach)
+            if place.cost + inked >= least:
+                break  # no letter costs less than nothing
+        else:
+            found, least = place, place.cost + inked
     ink.texts += ((x, y, reach) for x, y in found.spots(text))
     return found
 
