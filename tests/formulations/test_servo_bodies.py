@@ -11,7 +11,9 @@ from servo_trains import PAPER, STIFF
 from gearopt.errors import SolveError
 from gearopt.formulations.servo.split import Bodies, problem, relaxation, stiff
 from gearopt.formulations.servo.split.bodies import clear_rows, least, rows
+from gearopt.formulations.servo.split.servo_train import pairs
 from gearopt.optimise.solve import solve
+from gearopt.physics.gears import GearPair
 
 
 def flat(found):
@@ -28,11 +30,15 @@ def test_relaxed_rows_are_below_the_true_ones_where_both_break_at_one():
     for _ in range(500):
         m1, m2 = rng.uniform(0.1, 5.0, 2)
         d1, d3 = m1 * rng.uniform(12, 60), m2 * rng.uniform(12, 60)
-        sizes = d1, d1 * rng.uniform(1.0, 20.0), d3, d3 * rng.uniform(1.0, 20.0)
+        n1, n2 = rng.uniform(1.0, 20.0, 2)
+        pairs = (
+            GearPair.of_diameter(m1, d1 / m1, d1, n1, 1.0),
+            GearPair.of_diameter(m2, d3 / m2, d3, n2, 1.0),
+        )
         shaft, output, motor = rng.uniform(0.01, 60.0, 3)
         bodies = Bodies(F(shaft), F(output), F(motor))
-        true = flat(rows(bodies, sizes, (m1, m2)))
-        relaxed = flat(clear_rows(shaft, output, motor, sizes, (m1, m2)))
+        true = flat(rows(bodies, pairs))
+        relaxed = flat(clear_rows(shaft, output, motor, pairs))
         assert (
             true.keys() == relaxed.keys() == {"output_shaft0", "hub0", "shaft0", "shaft1", "motor0"}
         )
@@ -43,7 +49,7 @@ def test_relaxed_rows_are_below_the_true_ones_where_both_break_at_one():
 def test_the_numbers_of_the_paper():
     """Shaft 8, hub 16, motor 24 mm: 22.4 mm of gear 2 and hub in 58.5 mm, and so on."""
     bodies = Bodies(F(8), F(16), F(24))
-    found = rows(bodies, (8.0, 48.0, 13.0, 104.0), (0.5, 0.5))
+    found = rows(bodies, pairs((16, 26, 96, 208, 0.5, 0.5)))
     assert found["output_shaft"] == pytest.approx((24.5 + 8.0) / 58.5)
     assert found["hub"] == pytest.approx(16.0 / 102.75)
     assert found["shaft"] == pytest.approx((8.0 / 46.75, 8.0 / 11.75))

@@ -26,7 +26,7 @@ from gearopt.formulations.servo.split import (
 from gearopt.formulations.servo.split.exact import KERNEL
 from gearopt.formulations.servo.split.front import _one_by_one
 from gearopt.formulations.servo.split.numbers import numbers
-from gearopt.formulations.servo.split.servo_train import OBJECTIVES, train_error
+from gearopt.formulations.servo.split.servo_train import OBJECTIVES, pairs, train_error
 from gearopt.optimise import tape
 from gearopt.optimise.certificate import certify
 from gearopt.optimise.kernels import kernel
@@ -437,7 +437,8 @@ def test_ten_random_starts_end_at_one_optimum():
 def test_the_first_stages_share_of_the_error_does_not_depend_on_the_split():
     """D_2 n_2 = D_1 N: an angle of stage 1 counts by its pinion and the total ratio alone."""
     shares = [
-        train_error((PAPER.lost_motion[0], 0.0), 8.0 * n_1, 1.0, 48.0 / n_1) for n_1 in (3, 6, 12)
+        train_error((PAPER.lost_motion[0], 0.0), pairs((16, 20, 16 * n_1, 960 / n_1, 0.5, 0.5)))
+        for n_1 in (3, 6, 12)
     ]
     assert shares == pytest.approx([PAPER.lost_motion[0] / (8.0 * 48.0)] * 3, rel=1e-14)
 

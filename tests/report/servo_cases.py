@@ -11,7 +11,7 @@ from servo_trains import PAPER
 import gearopt
 from gearopt.formulations.servo import ratio, servo_box, split, tolerance
 from gearopt.formulations.servo.ratio import Drive, best_ratio
-from gearopt.formulations.servo.split.servo_train import lewis_stress, objectives
+from gearopt.formulations.servo.split.servo_train import lewis_stress, objectives, pairs
 from gearopt.formulations.servo.tolerance.distributions import RUN_OUT, UNIFORM
 from gearopt.formulations.servo.tolerance.sampling import drawn
 from gearopt.formulations.servo.tolerance.stack import Component, ErrorBudget, Stack
@@ -63,14 +63,9 @@ def train_part():
     return solve(split.problem(WIDE))
 
 
-def diameters(point):
-    z1, z3, z2, z4, m1, m2 = (float(v) for v in point)
-    return m1 * z1, m1 * z2, m2 * z3, m2 * z4
-
-
 def goals(point):
-    z1, z3, z2, z4, _, _ = (float(v) for v in point)
-    found = objectives(WIDE, tuple(split.OBJECTIVES), diameters(point), (z2 / z1, z4 / z3))
+    gears = pairs([float(v) for v in point], WIDE.face_width)
+    found = objectives(WIDE, tuple(split.OBJECTIVES), gears)
     return {
         "inertia_kg_m2": 1e-3 * found["inertia"],
         "mass_kg": found["mass"],
@@ -142,7 +137,7 @@ def point_of(design):
 @cache
 def tolerances_part(point):
     """Section 3c on the wheels of a train: the old worst case, mean + 3 sd within it."""
-    _, d2, _, d4 = diameters(point)
+    d2, d4 = (pair.wheel.reference_diameter for pair in pairs(point))
     wheels = ((d2, point[3] / point[1]), (d4, 1.0))
     parts, rows = [], []
     for stage, (diameter, after) in enumerate(wheels, 1):
@@ -185,7 +180,7 @@ def draws(stack, t, limit):
 
 def springs(point):
     """Section 3d: both meshes and the middle shaft, seen at the output, with k' = 10.3 GPa."""
-    _, d2, _, d4 = diameters(point)
+    d2, d4 = (pair.wheel.reference_diameter for pair in pairs(point))
     n2 = point[3] / point[1]
     parts = {
         "mesh of stage 1": (stiffness.mesh_compliance(10.3e3, 6.0, d2), n2),

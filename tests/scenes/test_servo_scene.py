@@ -553,7 +553,8 @@ def test_comparing_takes_the_train_without_its_box():
         "enumeration",
     }
     x = gearopt.solve(choice.train_problem(scene.choice(boxed=False))).design
-    assert of_point([*x["pinion_teeth"], *x["wheel_teeth"], *x["module_mm"]]).pinions == (17, 23)
+    pairs = of_point(scene, [*x["pinion_teeth"], *x["wheel_teeth"], *x["module_mm"]])
+    assert [p.pinion_teeth for p in pairs] == [17, 23]
 
 
 def test_a_run_out_of_time_says_so():

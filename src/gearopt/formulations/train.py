@@ -10,7 +10,7 @@ from fractions import Fraction
 from typing import Any
 
 from gearopt.optimise.terms import Terms, each
-from gearopt.physics.gears import ISO_53_A, GearPair, Rack
+from gearopt.physics.gears import ISO_53_A, Gear, GearPair, Rack, reference_diameter
 from gearopt.physics.loads import k_factor, unit_load
 
 OBJECTIVES = {  # name -> unit
@@ -135,9 +135,16 @@ class Train:
         return replace(self, stages=self.stages[:stage] + (one,) + self.stages[stage + 1 :])
 
     def pair(self, module: Any, pinion_teeth: Any, wheel_teeth: Any, face_width: Any) -> GearPair:
-        """Return the gear pair of a stage with these numbers; module, face_width [mm]."""
-        return GearPair.of_teeth(
-            module, pinion_teeth, wheel_teeth, face_width, self.helix_angle, self.rack
+        """Return the gear pair of a stage with these numbers; module, face_width [mm].
+
+        The wheel's reference diameter is u d1 here, as in `GearPair.of_diameter`: whole teeth and
+        real-valued ones then agree to the last bit.
+        """
+        d1 = reference_diameter(module, pinion_teeth, self.helix_angle)
+        own = face_width, self.helix_angle, self.rack
+        return GearPair(
+            Gear(module, pinion_teeth, d1, *own),
+            Gear(module, wheel_teeth, d1 * (wheel_teeth / pinion_teeth), *own),
         )
 
     @property

@@ -160,12 +160,18 @@ class GearPair:
         rack: Rack = ISO_53_A,
     ) -> "GearPair":
         """Return the pair of a normal module [mm], numbers of teeth and a face width [mm]."""
-        d1 = reference_diameter(normal_module, pinion_teeth, helix_angle)
-        own = face_width, helix_angle, rack
-        d2 = d1 * (wheel_teeth / pinion_teeth)
-        return cls(
-            Gear(normal_module, pinion_teeth, d1, *own), Gear(normal_module, wheel_teeth, d2, *own)
+        pinion, wheel = (
+            Gear(
+                normal_module,
+                teeth,
+                reference_diameter(normal_module, teeth, helix_angle),
+                face_width,
+                helix_angle,
+                rack,
+            )
+            for teeth in (pinion_teeth, wheel_teeth)
         )
+        return cls(pinion, wheel)
 
     @classmethod
     def of_diameter(

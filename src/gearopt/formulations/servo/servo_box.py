@@ -17,6 +17,7 @@ import numpy as np
 
 from gearopt.errors import SolveError
 from gearopt.formulations.servo.servo_design import BoxDesign
+from gearopt.formulations.servo.split.servo_train import pairs
 from gearopt.optimise.kernels import kernel
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Event, Outcome, Result, Watch
@@ -74,11 +75,12 @@ def numbers(box: ServoBox) -> Numbers:
 def of_train(
     point: Array, motor_radius: float, hub: float, half_sweep: float, box: tuple[float, float]
 ) -> ServoBox:
-    """The box of a point of `split.problem`: tips d + 2 m, centre distances (d_1 + d_2)/2."""
-    z1, z3, z2, z4, m1, m2 = (float(v) for v in point)
-    tips = [0.5 * m * (z + 2) for m, z in ((m1, z1), (m1, z2), (m2, z3), (m2, z4))]
+    """Return the box of a point of `split.problem`."""
+    both = pairs(float(v) for v in point)
+    tips = [0.5 * gear.tip_diameter for pair in both for gear in pair.gears]
     radii = max(motor_radius, tips[0]), max(tips[1], tips[2]), tips[3]
-    return ServoBox(radii, (0.5 * m1 * (z1 + z2), 0.5 * m2 * (z3 + z4)), hub, half_sweep, box)
+    first, second = (float(pair.centre_distance) for pair in both)
+    return ServoBox(radii, (first, second), hub, half_sweep, box)
 
 
 def extents(box: ServoBox, motor: Any, output: Any) -> tuple[Any, Any]:

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from gearopt.formulations.servo.servo_design import Spring, StiffnessDesign
+from gearopt.formulations.servo.split.servo_train import pairs
+from gearopt.physics.gears import GearPair
 from gearopt.physics.stiffness import (
     lewis_form_factor,
     line_stiffness,
@@ -42,21 +44,21 @@ class Springs:
 
         The six numbers of the point may be arrays.
         """
-        z1, z3, z2, z4, m1, m2 = point
-        ratio = z4 / z3
+        first, second = pairs(point, self.face_width)
         twist = shaft_compliance(self.shear_modulus, *self.shaft)
         return (
-            mesh_compliance(self._line(z3, z4), self.face_width, m2 * z4),
-            twist / ratio**2,
-            mesh_compliance(self._line(z1, z2), self.face_width, m1 * z2) / ratio**2,
+            self._mesh(second),
+            twist / second.ratio**2,
+            self._mesh(first) / second.ratio**2,
         )
 
-    def _line(self, *pair: Any) -> Any:
-        """Line stiffness [MPa] of a pair of gears, given or by Lewis's form of its teeth."""
-        if self.line_stiffness is not None:
-            return self.line_stiffness
-        one, two = (tooth_factor(lewis_form_factor(z) / math.pi) for z in pair)
-        return line_stiffness(self.youngs_modulus, one, self.youngs_modulus, two)
+    def _mesh(self, pair: GearPair) -> Any:
+        """Compliance [rad/(N mm)] of a mesh, its line stiffness given or by Lewis's form."""
+        stiffness: Any = self.line_stiffness
+        if self.line_stiffness is None:
+            one, two = (tooth_factor(lewis_form_factor(g.teeth) / math.pi) for g in pair.gears)
+            stiffness = line_stiffness(self.youngs_modulus, one, self.youngs_modulus, two)
+        return mesh_compliance(stiffness, pair.face_width, pair.wheel.reference_diameter)
 
     def output_stiffness(self, point: Iterable[Any]) -> Any:
         """Stiffness at the output [N mm/rad] of a point of `split.problem`."""

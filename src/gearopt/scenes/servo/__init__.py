@@ -11,6 +11,7 @@ from typing import Any
 from gearopt.formulations.servo.choice import SHOWN, train_problem
 from gearopt.formulations.servo.ratio.duty import UNITS
 from gearopt.formulations.servo.servo_design import ServoDesign, ServoReport
+from gearopt.formulations.servo.split.bodies import Pairs
 from gearopt.optimise.clock import Clock, of_others
 from gearopt.optimise.comparing.trial import Model
 from gearopt.optimise.explaining.explain import binding
@@ -20,7 +21,7 @@ from gearopt.optimise.typed import untyped
 from gearopt.physics.inertia import disc_mass
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.servo.assumptions import assumptions, notes
-from gearopt.scenes.servo.gears import Gears, described, errors, given_gears
+from gearopt.scenes.servo.gears import described, errors, given_gears, to_point
 from gearopt.scenes.servo.scene import EXAMPLE, Scene
 from gearopt.scenes.servo.tolerance_part import of_given, tolerance_part
 from gearopt.scenes.servo.tolerance_part import problem as tolerance_problem
@@ -83,7 +84,7 @@ def _part(ask: Ask, clock: Clock, found: Found) -> Ask:
     return replace(ask, method=method, budget=clock.left)
 
 
-def _trained(scene: Scene, ask: Ask, clock: Clock) -> tuple[Gears | None, Found]:
+def _trained(scene: Scene, ask: Ask, clock: Clock) -> tuple[Pairs | None, Found]:
     """The train, what is known beside it, and its neighbours."""
     result, gears = train_part(scene, ask)
     report = beside(scene, gears)
@@ -95,7 +96,7 @@ def _trained(scene: Scene, ask: Ask, clock: Clock) -> tuple[Gears | None, Found]
     return gears, Found((result,), ServoDesign(train=described(scene, gears)), report)
 
 
-def _geared(scene: Scene, ask: Ask, gears: Gears) -> Found:
+def _geared(scene: Scene, ask: Ask, gears: Pairs) -> Found:
     """What follows from the gears, chosen or given: errors, stiffness, box, tolerances."""
     rows, springs = errors(scene, gears), scene.springs
     sums = {
@@ -106,7 +107,7 @@ def _geared(scene: Scene, ask: Ask, gears: Gears) -> Found:
     design = ServoDesign(
         train=described(scene, gears),
         errors=rows,
-        stiffness=None if springs is None else springs.design(gears.point),
+        stiffness=None if springs is None else springs.design(to_point(gears)),
     )
     found = Found((), design, ServoReport(figures=sums))
     if scene.space is not None:
@@ -140,7 +141,7 @@ def _key_figures(scene: Scene, found: Found) -> ServoReport:
         return ServoReport(figures=figures)
     springs = scene.springs
     train = described(scene, gears)
-    stiffness = None if springs is None else springs.design(gears.point)
+    stiffness = None if springs is None else springs.design(to_point(gears))
     figures |= _of_train("given", ServoDesign(train=train, stiffness=stiffness))
     if scene.sources:
         figures |= of_given(scene, gears)

@@ -9,7 +9,7 @@ from gearopt.formulations.servo.servo_design import ServoDesign, ServoReport
 from gearopt.formulations.servo.split.bodies import broken
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import untyped
-from gearopt.physics.gears import Rack
+from gearopt.physics.gears import GearPair, Rack
 from gearopt.scenes.drive.explaining.undercut import undercut
 from gearopt.scenes.servo.gears import given_gears
 from gearopt.scenes.servo.scene import Scene
@@ -138,7 +138,7 @@ def given_overlap(scene: Scene) -> str:
         return ""
     bodies = scene.servo_train().bodies
     assert bodies is not None
-    return _told("In the given train", broken(bodies, gears.diameters, gears.modules))
+    return _told("In the given train", broken(bodies, gears))
 
 
 def _overlaps(scene: Scene, results: tuple[Result, ...]) -> str:
@@ -148,11 +148,15 @@ def _overlaps(scene: Scene, results: tuple[Result, ...]) -> str:
         return ""
     design, train = found[0].design, scene.servo_train()
     assert train.bodies is not None
-    (d1, d3), (n1, n2) = design["pinion_diameter_mm"], design["ratio"]
-    module = float(train.modules[0])
+    m = float(train.modules[0])
+    first, second = (
+        GearPair.of_diameter(m, d / m, d, n, b)
+        for d, n, b in zip(
+            design["pinion_diameter_mm"], design["ratio"], design["face_width_mm"], strict=True
+        )
+    )
     bodies = replace(train.bodies, shaft=Fraction(design["shaft_diameter_mm"]))
-    diameters = d1, n1 * d1, d3, n2 * d3
-    return _told("In the lightest train", broken(bodies, diameters, (module, module)))
+    return _told("In the lightest train", broken(bodies, (first, second)))
 
 
 def _told(whose: str, broken: list[str]) -> str:

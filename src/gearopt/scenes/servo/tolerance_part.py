@@ -11,6 +11,7 @@ from gearopt.formulations.servo.servo_design import (
     ServoReport,
     ToleranceRow,
 )
+from gearopt.formulations.servo.split.bodies import Pairs
 from gearopt.formulations.servo.tolerance import grades as graded
 from gearopt.formulations.servo.tolerance import problem as continuous
 from gearopt.formulations.servo.tolerance.sampling import drawn
@@ -22,7 +23,7 @@ from gearopt.optimise.solve import run
 from gearopt.optimise.terms import Array
 from gearopt.optimise.typed import untyped
 from gearopt.scenes.reading.ask import Ask
-from gearopt.scenes.servo.gears import Gears
+from gearopt.scenes.servo.gears import sensitivity
 from gearopt.scenes.servo.scene import Scene
 from gearopt.scenes.servo.tables.tolerances import BudgetTable
 from gearopt.scenes.servo.train_part import Found
@@ -35,7 +36,7 @@ RULES: tuple[tuple[str, Any, float], ...] = (  # name, rule and kappa
 )
 
 
-def stack(scene: Scene, gears: Gears) -> Stack:
+def stack(scene: Scene, gears: Pairs) -> Stack:
     """The deviations of a file as a tolerance stack of given gears; errors in degrees."""
     table = scene.tolerances
     assert table is not None
@@ -44,7 +45,7 @@ def stack(scene: Scene, gears: Gears) -> Stack:
     parts = tuple(
         Component(
             name=s.name,
-            sensitivity=math.degrees(gears.sensitivity(s)),
+            sensitivity=math.degrees(sensitivity(gears, s)),
             cost=price.cost * s.tolerance**price.exponent,
             exponent=price.exponent,
             least=low * s.tolerance,
@@ -80,7 +81,7 @@ def _budget(
     return ErrorBudget(rule, limit, kappa)
 
 
-def problem(scene: Scene, gears: Gears) -> Problem:
+def problem(scene: Scene, gears: Pairs) -> Problem:
     """The problem of a file's tolerances: real ones, or grades."""
     own = stack(scene, gears)
     table = scene.tolerances
@@ -101,7 +102,7 @@ def problem(scene: Scene, gears: Gears) -> Problem:
     return graded.problem(graded.Choice(parts, budget.error, rule))
 
 
-def tolerance_part(scene: Scene, gears: Gears, ask: Ask) -> Found:
+def tolerance_part(scene: Scene, gears: Pairs, ask: Ask) -> Found:
     """The certified tolerances, what they cost and what they give."""
     import numpy as np
 
@@ -192,10 +193,10 @@ def by_every_rule(parts: tuple[Component, ...], t: Array, whose: str) -> dict[st
     return found
 
 
-def of_given(scene: Scene, gears: Gears) -> dict[str, float]:
+def of_given(scene: Scene, gears: Pairs) -> dict[str, float]:
     """What the tolerances of the file give on given gears, by every rule [deg]."""
     parts = tuple(
-        Component(s.name, math.degrees(gears.sensitivity(s)), 1.0, 1.0, 0.0, math.inf, s.law)
+        Component(s.name, math.degrees(sensitivity(gears, s)), 1.0, 1.0, 0.0, math.inf, s.law)
         for s in scene.sources
     )
     return by_every_rule(parts, old(scene), "given")

@@ -25,12 +25,13 @@ from gearopt.formulations.servo.servo_design import (
     Teeth,
     TrainDesign,
 )
+from gearopt.formulations.servo.split.bodies import Pairs
 from gearopt.optimise.clock import Clock, in_part
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run, solve
 from gearopt.optimise.typed import untyped
 from gearopt.scenes.reading.ask import Ask
-from gearopt.scenes.servo.gears import Gears, described, given_gears, of_point
+from gearopt.scenes.servo.gears import described, given_gears, of_point, to_point
 from gearopt.scenes.servo.scene import Scene
 
 WORDS = {  # objectives as a list of trains calls them
@@ -55,7 +56,7 @@ class Found:
         return Found(results, self.design | other.design, self.report | other.report)
 
 
-def train_part(scene: Scene, ask: Ask) -> tuple[Result, Gears | None]:
+def train_part(scene: Scene, ask: Ask) -> tuple[Result, Pairs | None]:
     """The certified best train."""
     choice = scene.choice()
     unit = SHOWN[choice.goal][1]
@@ -64,7 +65,7 @@ def train_part(scene: Scene, ask: Ask) -> tuple[Result, Gears | None]:
     result = replace(result, objective=result.objective | {"unit": unit})
     if result.value is None or outcome.x is None:
         return result, None
-    gears = of_point(outcome.x)
+    gears = of_point(scene, outcome.x)
     design = ServoDesign(train=described(scene, gears))
     return replace(result, design=untyped(design)), gears
 
@@ -87,12 +88,12 @@ def neighbours(scene: Scene, clock: Clock) -> tuple[ListedTrain, ...]:
     shown = [(k, "") for k in many.tolist() if k not in best]
     shown += [(k, name) for k, name in zip(best, choice.weighed, strict=True)]
     return tuple(
-        _neighbour(scene, of_point(points[k]), float(worth[k, 0]), name)
+        _neighbour(scene, of_point(scene, points[k]), float(worth[k, 0]), name)
         for k, name in sorted(shown)
     )
 
 
-def _neighbour(scene: Scene, gears: Gears, first: float, best_of: str) -> ListedTrain:
+def _neighbour(scene: Scene, gears: Pairs, first: float, best_of: str) -> ListedTrain:
     """A train as the list shows it; first: what it is weighed by first."""
     train, duty = described(scene, gears), scene.servo_duty()
     assert scene.train is not None and train.inertia_kg_m2 and train.mass_kg
@@ -100,10 +101,7 @@ def _neighbour(scene: Scene, gears: Gears, first: float, best_of: str) -> Listed
     if duty is not None and scene.train.goal == duty.goal:
         judged_by = {NAMES[duty.motion][2]: _judged(duty, first)}
     return ListedTrain(
-        stages=tuple(
-            Teeth(m, z, w)
-            for m, z, w in zip(gears.modules, gears.pinions, gears.wheels, strict=True)
-        ),
+        stages=tuple(Teeth(p.normal_module, p.pinion_teeth, p.wheel_teeth) for p in gears),
         ratio=train.ratio,
         best_of=WORDS.get(best_of, best_of),
         inertia_kg_m2=train.inertia_kg_m2,
@@ -119,7 +117,7 @@ def _judged(duty: ServoDuty, goal: float) -> float:
     return 1.0 / value if duty.motion == "acceleration" else value
 
 
-def beside(scene: Scene, chosen: Gears | None) -> ServoReport:
+def beside(scene: Scene, chosen: Pairs | None) -> ServoReport:
     """What else is known of a train: real-valued bounds, and other numbers of stages.
 
     These are of the ratio that is asked for, or of the chosen train where a range is.
@@ -137,7 +135,13 @@ def beside(scene: Scene, chosen: Gears | None) -> ServoReport:
             name, value = NAMES[duty.motion][2], _judged(duty, bound)
         figures[f"real_valued_bound_{name}"] = value
     low, high = scene.train.ratio
-    ratio = float(low) if low == high else 1.0 if chosen is None else math.prod(chosen.ratios)
+    ratio = (
+        float(low)
+        if low == high
+        else 1.0
+        if chosen is None
+        else math.prod(pair.ratio for pair in chosen)
+    )
     figures["stage_ratio_of_least_mass"] = split.lightest_stage_ratio()
     return ServoReport(stage_counts=_counts(ratio) if ratio > 1.0 else (), figures=figures)
 
@@ -224,9 +228,9 @@ def lightest_part(scene: Scene, ask: Ask) -> Result:
     return replace(scaled(result, 1.0, "kg"), name="stiff")
 
 
-def box_part(scene: Scene, gears: Gears, ask: Ask) -> Found:
+def box_part(scene: Scene, gears: Pairs, ask: Ask) -> Found:
     """The smallest box of the train's proportions."""
-    box, bodies = scene.box(gears.point), scene.servo_train().bodies
+    box, bodies = scene.box(to_point(gears)), scene.servo_train().bodies
     assert bodies is not None
     watch, gap = in_part(ask.watch, part="box"), max(ask.gap, servo_box.GAP)
     result, outcome = run(servo_box.problem(box), None, ask.budget, ask.seed, watch, gap)

@@ -173,7 +173,7 @@ def _message(scene: Scene, least: Result) -> str:
         ],
         float,
     )
-    rows = sorted(errors(scene, of_point(point)), key=lambda row: -row.error_deg)
+    rows = sorted(errors(scene, of_point(scene, point)), key=lambda row: -row.error_deg)
     largest = ", ".join(f"{row.source} {row.error_deg:.4f} deg" for row in rows[:NAMED])
     return (
         f"the most accurate train has an error of {least.value:.5f} deg; of it the largest parts "

@@ -16,7 +16,9 @@ from math import lcm
 from typing import Any
 
 from gearopt.errors import SolveError
-from gearopt.physics.gears import ISO_53_A
+from gearopt.physics.gears import ISO_53_A, GearPair
+
+Pairs = tuple[GearPair, GearPair]  # stage 1 at the motor, stage 2 at the load
 
 # Of a diameter beyond and below the reference circle, in modules.
 TIP, ROOT = (2 * Fraction(part) for part in (ISO_53_A.addendum, ISO_53_A.dedendum))
@@ -40,41 +42,36 @@ class Bodies:
             raise ValueError("diameters of shafts, hub and motor are not below zero")
 
 
-def rows(bodies: Bodies, diameters: Any, modules: Any) -> dict[str, Any]:
-    """Limits of real gears: what must fit over the room that is there.
-
-    diameters: pitch diameters of gears 1 to 4; modules of both stages [mm].
-    """
+def rows(bodies: Bodies, pairs: Pairs) -> dict[str, Any]:
+    """Limits of real gears: what must fit over the room that is there."""
     shaft, output, motor = (float(d) for d in (bodies.shaft, bodies.output_shaft, bodies.motor))
-    tip, root = float(TIP), float(ROOT)
-    (d1, d2, d3, d4), (m1, m2) = diameters, modules
+    first, second = pairs
+    d1, d2, d3, d4 = (gear.reference_diameter for pair in pairs for gear in pair.gears)
     found: dict[str, Any] = {
-        "output_shaft": (d2 + tip * m1 + output) / (d3 + d4),
-        "hub": output / (d4 - root * m2),
-        "shaft": (shaft / (d2 - root * m1), shaft / (d3 - root * m2)),
+        "output_shaft": (first.wheel.tip_diameter + output) / (d3 + d4),
+        "hub": output / second.wheel.root_diameter,
+        "shaft": (shaft / first.wheel.root_diameter, shaft / second.pinion.root_diameter),
     }
     if motor > 0.0:
         found["motor"] = (motor + shaft) / (d1 + d2)
     return found
 
 
-def broken(bodies: Bodies, diameters: Any, modules: Any) -> list[str]:
+def broken(bodies: Bodies, pairs: Pairs) -> list[str]:
     """Names of the `rows` that a train breaks; a tie is no overlap."""
-    values = {
-        name: v if isinstance(v, tuple) else (v,)
-        for name, v in rows(bodies, diameters, modules).items()
-    }
+    values = {name: v if isinstance(v, tuple) else (v,) for name, v in rows(bodies, pairs).items()}
     return [name for name, parts in values.items() if not all(0.0 <= v <= TIGHT for v in parts)]
 
 
-def clear_rows(shaft: Any, output: Any, motor: Any, diameters: Any, modules: Any) -> dict[str, Any]:
+def clear_rows(shaft: Any, output: Any, motor: Any, pairs: Pairs) -> dict[str, Any]:
     """`rows` as posynomials of real gears, none of them above it where both ratios are >= 1.
 
     A sum of pitch diameters is at most twice that of the wheel. None: not known.
     """
-    tip, root = float(TIP), float(ROOT)
-    (_, d2, d3, d4), (m1, m2) = diameters, modules
-    beside = d2 + tip * m1 if output is None else d2 + tip * m1 + output
+    first, second = pairs
+    m1, m2, root = first.normal_module, second.normal_module, float(ROOT)
+    _, d2, d3, d4 = (gear.reference_diameter for pair in pairs for gear in pair.gears)
+    beside = first.wheel.tip_diameter if output is None else first.wheel.tip_diameter + output
     found: dict[str, Any] = {"output_shaft": beside / (2.0 * d4)}
     if output is not None:
         found["hub"] = (output + root * m2) / d4

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from gearopt.formulations.servo.ratio.duty import GOALS, ServoDuty
-from gearopt.formulations.servo.split.bodies import least
+from gearopt.formulations.servo.split.bodies import TIP, least
 from gearopt.formulations.servo.split.servo_train import ServoTrain
 from gearopt.optimise.terms import Array
 from gearopt.physics.inertia import disc_inertia, disc_mass
@@ -79,7 +79,7 @@ def numbers(train: ServoTrain, moved: bool = False) -> Numbers:
     if moved and train.duty is not None and train.duty.most_ratio is not None:
         high = min(high, train.duty.most_ratio)
     most = train.pinion_teeth[1]
-    tips = [[math.floor(tip / m) - 2 for m in train.modules] for tip in train.wheel_tips]
+    tips = [[math.floor(tip / m - TIP) for m in train.modules] for tip in train.wheel_tips]
     wheel = train.wheel_teeth
     products = range(most**2 + 1)
     teeth = np.arange(most + 1, dtype=float)

@@ -15,6 +15,7 @@ from gearopt.formulations.servo.split.servo_train import (
 )
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Param, Terms, Var
+from gearopt.physics.gears import GearPair
 from gearopt.physics.inertia import disc_inertia
 from gearopt.physics.stiffness import lewis_form_factor
 
@@ -66,11 +67,14 @@ def _terms(train: ServoTrain, goal: str, moved: Problem | None, x: Any, p: Any) 
     most = lewis_form_factor(float(train.pinion_teeth[1]))
     ends = _modules(train)
     (d1, d3), (n1, n2), modules = x.pinion_diameter, x.ratio, x.module
-    d2, d4 = d1 * n1, d3 * n2
+    first, second = both = tuple(
+        GearPair.of_diameter(m, d / m, d, n, train.face_width)
+        for m, d, n in zip(modules, (d1, d3), (n1, n2), strict=True)
+    )
+    wheels = [pair.wheel.reference_diameter for pair in both]
     bounded = ("error",) if math.isfinite(train.error) else ()
     plain = (goal,) if moved is None else ("inertia",)
-    found = objectives(train, (*plain, *bounded), (d1, d2, d3, d4), (n1, n2))
-    pairs = tuple(zip((d1, d3), (d2, d4), modules, strict=True))
+    found = objectives(train, (*plain, *bounded), (first, second))
     torques = (train.output_torque / n2, train.output_torque)
     ratio, equal = ratio_rows(p, train.tolerance == 0, n1 * n2)
     limits = ratio | {name: found[name] / p.error for name in bounded}
@@ -78,25 +82,31 @@ def _terms(train: ServoTrain, goal: str, moved: Problem | None, x: Any, p: Any) 
         "stage_ratio_low": (1.0 / n1, 1.0 / n2),
         "bending_stress": tuple(
             lewis_stress(t, d, train.face_width, m, most) / p.bending_stress
-            for t, (_, d, m) in zip(torques, pairs, strict=True)
+            for t, d, m in zip(torques, wheels, modules, strict=True)
         ),
         "bore": p.bore / d3,
         "wheel_tip": tuple(
-            (d + 2.0 * m) / t for (_, d, m), t in zip(pairs, p.wheel_tip, strict=True)
+            pair.wheel.tip_diameter / t for pair, t in zip(both, p.wheel_tip, strict=True)
         ),
-        "pinion_teeth_low": tuple(train.pinion_teeth[0] * m / d for d, _, m in pairs),
-        "pinion_teeth_high": tuple(d / (train.pinion_teeth[1] * m) for d, _, m in pairs),
+        "pinion_teeth_low": tuple(
+            train.pinion_teeth[0] * m / d for d, m in zip((d1, d3), modules, strict=True)
+        ),
+        "pinion_teeth_high": tuple(
+            d / (train.pinion_teeth[1] * m) for d, m in zip((d1, d3), modules, strict=True)
+        ),
         "module_low": tuple(ends[0] / m for m in modules),
         "module_high": tuple(m / ends[1] for m in modules),
     }
     if train.most_wheel_teeth is not None:
-        limits["wheel_teeth_high"] = tuple(d / (train.most_wheel_teeth * m) for _, d, m in pairs)
+        limits["wheel_teeth_high"] = tuple(
+            d / (train.most_wheel_teeth * m) for d, m in zip(wheels, modules, strict=True)
+        )
     if train.bodies is not None:
         known = train.bodies
         shaft, output, motor = (
             float(d) or None for d in (known.shaft, known.output_shaft, known.motor)
         )
-        limits |= clear_rows(shaft, output, motor, (d1, d2, d3, d4), modules)
+        limits |= clear_rows(shaft, output, motor, (first, second))
     if moved is None:
         return Terms({goal: found[goal]}, limits, equal=equal)
     own = SimpleNamespace(**vars(p) | {"gear_inertia": found["inertia"], "ratio_low": 1.0})

@@ -5,15 +5,17 @@ discs, the last one may be a sector. Numbers at which a tie may occur are exact 
 """
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
 from gearopt.formulations.servo.ratio.duty import ServoDuty
-from gearopt.formulations.servo.split.bodies import Bodies
+from gearopt.formulations.servo.split.bodies import TIP, Bodies, Pairs
 from gearopt.optimise.terms import Param
 from gearopt.physics.backlash import output_error
-from gearopt.physics.inertia import disc_inertia, disc_mass
+from gearopt.physics.gears import GearPair
+from gearopt.physics.inertia import disc_inertia
 
 OBJECTIVES = {"inertia": "t mm2", "mass": "kg", "error": "rad"}  # beside that of a duty
 
@@ -76,7 +78,7 @@ class ServoTrain:
     @property
     def wheel_teeth(self) -> int:
         """Most teeth of a wheel: what is given, or what the tips leave."""
-        left = max(self.wheel_tips) // min(self.modules) - 2
+        left = max(self.wheel_tips) / min(self.modules) - TIP
         return max(int(left), 1) if self.most_wheel_teeth is None else self.most_wheel_teeth
 
     @property
@@ -85,64 +87,66 @@ class ServoTrain:
         return self.ratio * (1 - self.tolerance), self.ratio * (1 + self.tolerance)
 
 
-Four = tuple[Any, Any, Any, Any]
-Two = tuple[Any, Any]
+def pairs(point: Iterable[Any], face_width: float = 1.0) -> Pairs:
+    """Return the gear pairs of a point of `split.problem`, whose six numbers may be arrays.
 
-
-def train_inertia(
-    density: Any, diameters: Four, widths: Two, ratios: Two, shaft: Two | None, sector: Any
-) -> Any:
-    """Inertia of gears and shaft [t mm2] seen at the motor.
-
-    J_1 + (J_2 + J_3 + J_s)/n_1^2 + kappa J_4/(n_1 n_2)^2; diameters of gears 1 to 4, widths of the
-    stages and shaft (diameter, length) [mm], ratios n, sector kappa, density [t/mm3]. Without a
-    shaft J_s is left out.
+    face_width [mm]; where it is not given, it is not looked at.
     """
-    d1, d2, d3, d4 = diameters
-    (b1, b2), (n1, n2) = widths, ratios
-    middle = disc_inertia(density, b1, d2) + disc_inertia(density, b2, d3)
+    z1, z3, z2, z4, m1, m2 = point
+    return (
+        GearPair.of_teeth(m1, z1, z2, face_width),
+        GearPair.of_teeth(m2, z3, z4, face_width),
+    )
+
+
+def train_inertia(density: Any, pairs: Pairs, shaft: tuple[Any, Any] | None, sector: Any) -> Any:
+    """Return the inertia of gears and shaft [t mm2] seen at the motor.
+
+    J_1 + (J_2 + J_3 + J_s)/n_1^2 + kappa J_4/(n_1 n_2)^2; shaft (diameter, length) [mm], ratios n,
+    sector kappa, density [t/mm3]. Without a shaft J_s is left out.
+    """
+    first, second = pairs
+    n1, n2 = first.ratio, second.ratio
+    middle = first.wheel.inertia(density) + second.pinion.inertia(density)
     if shaft is not None:
         thick, long = shaft
         middle = middle + disc_inertia(density, long, thick)
-    last = sector * disc_inertia(density, b2, d4)
-    return disc_inertia(density, b1, d1) + middle / n1**2 + last / (n1 * n2) ** 2
+    last = sector * second.wheel.inertia(density)
+    return first.pinion.inertia(density) + middle / n1**2 + last / (n1 * n2) ** 2
 
 
-def gear_mass(density: Any, diameters: Four, widths: Two, sector: Any) -> Any:
-    """Mass [kg] of the four gears as discs, the last one as a sector of one.
+def gear_mass(density: Any, pairs: Pairs, sector: Any) -> Any:
+    """Return the mass [kg] of the four gears as discs, the last one as a sector of one.
 
-    density [t/mm3], diameters and widths [mm] as in `train_inertia`.
+    density [t/mm3].
     """
-    d1, d2, d3, d4 = diameters
-    b1, b2 = widths
-    first = disc_mass(density, b1, d1) + disc_mass(density, b1, d2)
-    second = disc_mass(density, b2, d3) + sector * disc_mass(density, b2, d4)
+    one, two = pairs
+    first = one.pinion.mass(density) + one.wheel.mass(density)
+    second = two.pinion.mass(density) + sector * two.wheel.mass(density)
     return 1000.0 * (first + second)
 
 
-def train_error(lost_motion: Two, wheel_1: Any, wheel_2: Any, ratio_2: Any) -> Any:
-    """Error [rad] at the output: lost motion over wheel diameter, that of stage 1 over n_2.
+def train_error(lost_motion: tuple[Any, Any], pairs: Pairs) -> Any:
+    """Return the error [rad] at the output: lost motion over wheel diameter, of stage 1 over n_2.
 
-    lost_motion 2 j_t + 2 delta_p of each stage and wheel diameters [mm].
+    lost_motion: 2 j_t + 2 delta_p of each stage [mm].
     """
-    angles = lost_motion[0] / wheel_1, lost_motion[1] / wheel_2
-    return output_error(angles, (ratio_2, 1.0))
+    angles = tuple(
+        lost / pair.wheel.reference_diameter for lost, pair in zip(lost_motion, pairs, strict=True)
+    )
+    return output_error(angles, (pairs[1].ratio, 1.0))
 
 
-def objectives(
-    train: ServoTrain, names: tuple[str, ...], diameters: Four, ratios: Two
-) -> dict[str, Any]:
+def objectives(train: ServoTrain, names: tuple[str, ...], pairs: Pairs) -> dict[str, Any]:
     """The named objectives of a train of one face width; ValueError for one it has not."""
     if unknown := set(names) - set(train.goals):
         raise ValueError(f"no objective {unknown.pop()!r}; known: {', '.join(train.goals)}")
-    widths = (train.face_width, train.face_width)
-    numbers = train.density, diameters, widths
-    inertia = train_inertia(*numbers, ratios, train.shaft, train.sector)
-    found = {"inertia": inertia, "mass": gear_mass(*numbers, train.sector)}
+    inertia = train_inertia(train.density, pairs, train.shaft, train.sector)
+    found = {"inertia": inertia, "mass": gear_mass(train.density, pairs, train.sector)}
     if train.lost_motion is not None:
-        found["error"] = train_error(train.lost_motion, diameters[1], diameters[3], ratios[1])
+        found["error"] = train_error(train.lost_motion, pairs)
     if train.duty is not None and train.duty.goal in names:
-        found[train.duty.goal] = train.duty.value(ratios[0] * ratios[1], inertia)
+        found[train.duty.goal] = train.duty.value(pairs[0].ratio * pairs[1].ratio, inertia)
     return {name: found[name] for name in names}
 
 

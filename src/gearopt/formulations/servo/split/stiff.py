@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from gearopt.formulations.servo.split.bodies import TIP, clear_rows
+from gearopt.formulations.servo.split.bodies import clear_rows
 from gearopt.formulations.servo.split.servo_train import (
     gear_mass,
     lewis_stress,
@@ -15,6 +15,7 @@ from gearopt.formulations.servo.split.servo_train import (
 )
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Param, Terms, Var
+from gearopt.physics.gears import Gear, GearPair
 from gearopt.physics.inertia import disc_mass
 from gearopt.physics.stiffness import (
     lewis_form_factor,
@@ -83,19 +84,22 @@ def stiff(train: StiffTrain) -> Problem:
 
 
 def _terms(train: StiffTrain, x: Any, p: Any) -> Terms:
-    (d1, d3), (n1, n2), widths = x.pinion_diameter, x.ratio, x.face_width
-    d2, d4 = d1 * n1, d3 * n2
-    diameters, shaft = (d1, d2, d3, d4), (x.shaft_diameter, train.shaft_length)
-    gears = gear_mass(train.density, diameters, widths, train.sector)
+    (d1, d3), (n1, n2), m = x.pinion_diameter, x.ratio, train.module
+    both = (
+        GearPair.of_diameter(m, d1 / m, d1, n1, x.face_width[0]),
+        GearPair.of_diameter(m, d3 / m, d3, n2, x.face_width[1]),
+    )
+    wheels, shaft = [pair.wheel for pair in both], (x.shaft_diameter, train.shaft_length)
+    gears = gear_mass(train.density, both, train.sector)
     long = disc_mass(train.density, train.shaft_length, x.shaft_diameter)
-    inertia = train_inertia(train.density, diameters, widths, (n1, n2), shaft, train.sector)
+    inertia = train_inertia(train.density, both, shaft, train.sector)
     springs = (
-        mesh_compliance(train.line_stiffness, widths[1], d4),
+        _mesh_compliance(train, wheels[1]),
         shaft_compliance(train.shear_modulus, x.shaft_diameter, train.shaft_length),
-        mesh_compliance(train.line_stiffness, widths[0], d2),
+        _mesh_compliance(train, wheels[0]),
     )
     factors = [lewis_form_factor(float(z)) for z in train.pinion_teeth]
-    loads = ((train.output_torque / n2, d2), (train.output_torque, d4))
+    torques = train.output_torque / n2, train.output_torque
     tied = train.ratio[0] == train.ratio[1]
     ratio, equal = ratio_rows(p, tied, n1 * n2)
     limits = ratio | {
@@ -103,30 +107,28 @@ def _terms(train: StiffTrain, x: Any, p: Any) -> Terms:
         "inertia": inertia / p.inertia,
         "stage_ratio_low": (1.0 / n1, 1.0 / n2),
         "bending_stress": tuple(
-            lewis_stress(torque, d, b, train.module, y) / p.bending
-            for (torque, d), b, y in zip(loads, widths, factors, strict=True)
+            lewis_stress(torque, wheel.reference_diameter, wheel.face_width, m, y) / p.bending
+            for torque, wheel, y in zip(torques, wheels, factors, strict=True)
         ),
         "pinion_teeth_low": tuple(
-            z * train.module / d for z, d in zip(train.pinion_teeth, (d1, d3), strict=True)
+            z * m / d for z, d in zip(train.pinion_teeth, (d1, d3), strict=True)
         ),
         "bore": train.bore[0] / d3,
         "bore_wall": (x.shaft_diameter + train.bore[1]) / d3,
         "wheel_tip": tuple(
-            (d + float(TIP) * train.module) / t for d, t in zip((d2, d4), p.wheel_tip, strict=True)
+            wheel.tip_diameter / t for wheel, t in zip(wheels, p.wheel_tip, strict=True)
         ),
-        "face_width_low": tuple(train.face_width / b for b in widths),
+        "face_width_low": tuple(train.face_width / wheel.face_width for wheel in wheels),
         "shaft_diameter_low": train.shaft_diameter / x.shaft_diameter,
     }
     if train.lost_motion is not None and _bounded(train):
-        limits["error"] = train_error(train.lost_motion, d2, d4, n2) / p.error
-    limits |= clear_rows(
-        x.shaft_diameter,
-        train.output or None,
-        train.motor or None,
-        diameters,
-        (train.module, train.module),
-    )
+        limits["error"] = train_error(train.lost_motion, both) / p.error
+    limits |= clear_rows(x.shaft_diameter, train.output or None, train.motor or None, both)
     return Terms({"mass": gears + 1000.0 * long}, limits, equal=equal)
+
+
+def _mesh_compliance(train: StiffTrain, wheel: Gear) -> Any:
+    return mesh_compliance(train.line_stiffness, wheel.face_width, wheel.reference_diameter)
 
 
 def _bounded(train: StiffTrain) -> bool:

@@ -5,10 +5,15 @@ from typing import Any
 
 from gearopt.formulations.servo.split import exact
 from gearopt.formulations.servo.split.bodies import rows
-from gearopt.formulations.servo.split.servo_train import ServoTrain, lewis_stress, objectives
+from gearopt.formulations.servo.split.servo_train import (
+    ServoTrain,
+    lewis_stress,
+    objectives,
+    pairs,
+)
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Terms, Var
-from gearopt.physics.gears import reference_diameter
+from gearopt.physics.gears import GearPair
 from gearopt.physics.stiffness import lewis_form_factor
 
 
@@ -24,32 +29,25 @@ def problem(train: ServoTrain, *goals: str) -> Problem:
     low, high = (float(r) for r in train.ratios)
 
     def evaluate(x: Any, p: Any) -> Terms:
-        (z1, z3), (z2, z4), modules = x.pinion_teeth, x.wheel_teeth, x.module
-        ratios = (z2 / z1, z4 / z3)
-        teeth = ((modules[0], z1), (modules[0], z2), (modules[1], z3), (modules[1], z4))
-        d1, d2, d3, d4 = (reference_diameter(m, z) for m, z in teeth)
+        first, second = both = pairs((*x.pinion_teeth, *x.wheel_teeth, *x.module), train.face_width)
+        ratios = (first.ratio, second.ratio)
         bounded = () if math.isinf(train.error) else ("error",)
-        found = objectives(train, (*goals, *bounded), (d1, d2, d3, d4), ratios)
-        stress = [
-            lewis_stress(torque, d, train.face_width, m, lewis_form_factor(z))
-            for torque, d, m, z in (
-                (train.output_torque / ratios[1], d2, modules[0], z1),
-                (train.output_torque, d4, modules[1], z3),
-            )
-        ]
-        tips = [d + 2.0 * m for d, m in zip((d2, d4), modules, strict=True)]
+        found = objectives(train, (*goals, *bounded), both)
+        torques = train.output_torque / second.ratio, train.output_torque
+        stress = [bending_stress(torque, p) for torque, p in zip(torques, both, strict=True)]
+        tips = [pair.wheel.tip_diameter for pair in both]
         limits = {name: found[name] / train.error for name in bounded} | {
             "ratio_low": low / (ratios[0] * ratios[1]),
             "ratio_high": ratios[0] * ratios[1] / high,
             "stage_ratio_low": tuple(1.0 / n for n in ratios),
             "bending_stress": tuple(s / train.bending for s in stress),
-            "bore": float(train.bore) / d3,
+            "bore": float(train.bore) / second.pinion.reference_diameter,
             "wheel_tip": tuple(t / float(w) for t, w in zip(tips, train.wheel_tips, strict=True)),
         }
         if train.duty is not None and (goal := train.duty.goal) in goals:
             limits |= train.duty.limits(ratios[0] * ratios[1], found[goal])
         if train.bodies is not None:
-            limits |= rows(train.bodies, (d1, d2, d3, d4), modules)
+            limits |= rows(train.bodies, both)
         return Terms({g: found[g] for g in goals}, limits)
 
     methods = {}
@@ -59,6 +57,14 @@ def problem(train: ServoTrain, *goals: str) -> Problem:
             "enumeration": exact.method(train, goals[0], whole=True),
         }
     return Problem("split", _variables(train), (), evaluate, methods=methods)
+
+
+def bending_stress(wheel_torque: Any, pair: GearPair) -> Any:
+    """Return the Lewis stress [MPa] of a pair by the form of its pinion; wheel_torque [N mm]."""
+    form, wheel = lewis_form_factor(pair.pinion.teeth), pair.wheel
+    return lewis_stress(
+        wheel_torque, wheel.reference_diameter, pair.face_width, pair.normal_module, form
+    )
 
 
 def _variables(train: ServoTrain) -> tuple[Var, ...]:

@@ -14,6 +14,7 @@ from gearopt.physics.backlash import (
     radial_backlash,
     thickness_backlash,
 )
+from gearopt.physics.gears import GearPair
 from gearopt.physics.tolerances import SCOPE, total_pitch_tolerance
 from gearopt.scenes.reading.fields import Table, number, quantity, refuse, whole
 from gearopt.units import Quantity
@@ -137,7 +138,7 @@ class Mesh(Table):
         if not low <= self.module.value <= high:
             rule = f"is outside the scope of ISO 1328-1 ({low:g} to {high:g} mm), which grade needs"
             raise refuse(rule, at=("module",))
-        if self.diameters[0] < SCOPE["diameter"][0]:
+        if self.pair().pinion.reference_diameter < SCOPE["diameter"][0]:
             rule = "makes a diameter below 5 mm, outside the scope of ISO 1328-1"
             raise refuse(rule, f"{5.0 / int(self.pinion_teeth or 1) + 0.05:.1f} mm", ("module",))
 
@@ -155,12 +156,11 @@ class Mesh(Table):
         """Whether the gears are given."""
         return any(getattr(self, name) is not None for name in GEARS)
 
-    @property
-    def diameters(self) -> tuple[float, float]:
-        """Pitch diameters of given gears [mm]."""
+    def pair(self, face_width: float = 1.0) -> GearPair:
+        """Return the gear pair that is given; face_width [mm]."""
         assert self.module is not None
-        module = self.module.value
-        return module * int(self.pinion_teeth or 0), module * int(self.wheel_teeth or 0)
+        teeth = int(self.pinion_teeth or 0), int(self.wheel_teeth or 0)
+        return GearPair.of_teeth(self.module.value, *teeth, face_width)
 
     def sources(self, stage: int, pressure_angle: float) -> tuple[Source, ...]:
         """The deviations above zero of a stage (from 1); pressure_angle [rad]."""
@@ -185,10 +185,9 @@ class Mesh(Table):
     def _tolerance(self, name: str) -> float:
         if self.grade is None or name not in ("pinion_pitch", "wheel_pitch"):
             return self._length(name)
-        assert self.module is not None
-        diameter = self.diameters[("pinion_pitch", "wheel_pitch").index(name)]
-        grade = float(self.grade)
-        return float(total_pitch_tolerance(diameter, self.module.value, grade))
+        gear = self.pair().gears[("pinion_pitch", "wheel_pitch").index(name)]
+        diameter, module = gear.reference_diameter, gear.normal_module
+        return float(total_pitch_tolerance(diameter, module, float(self.grade)))
 
 
 class Accuracy(Table):
