@@ -1,0 +1,81 @@
+"""The page of proofs: what it names exists, and every exact method has its lemmas."""
+
+import ast
+import re
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+PAGE = (ROOT / "docs" / "proofs.md").read_text(encoding="utf-8")
+SOURCE = ROOT / "src" / "gearopt"
+ROOMS = "|".join(("formulations", "optimise", "physics"))
+CODE = sorted(set(re.findall(rf"`((?:{ROOMS})\.[\w.]+)`", PAGE)))
+TESTS = sorted(set(re.findall(r"`(tests/[\w/]+\.py::\w+)`", PAGE)))
+METHODS = {"exact", "enumeration", "hop"}  # of `Problem.methods`: they bring a bound
+
+
+@cache
+def tree(path):
+    return ast.parse(path.read_text(encoding="utf-8"))
+
+
+def module_of(parts):
+    """The file of a dotted name's module, and what is left of the name."""
+    folder = SOURCE
+    for k, part in enumerate(parts):
+        if (folder / f"{part}.py").exists():
+            return folder / f"{part}.py", parts[k + 1 :]
+        if not (folder / part).is_dir():
+            return folder / "__init__.py", parts[k:]
+        folder = folder / part
+    return folder / "__init__.py", ()
+
+
+def defined(body, names):
+    """Whether functions or classes inside each other have these names."""
+    kinds = ast.FunctionDef, ast.ClassDef
+    own = [n for n in body if isinstance(n, kinds) and n.name == names[0]]
+    return bool(own) and (len(names) == 1 or defined(own[0].body, names[1:]))
+
+
+def modules_with_methods():
+    """Modules of the formulations with a dictionary of methods that are proven or bring a bound."""
+    for path in sorted(SOURCE.glob("formulations/**/*.py")):
+        for node in ast.walk(tree(path)):
+            keys = node.keys if isinstance(node, ast.Dict) else ()
+            names = {k.value for k in keys if isinstance(k, ast.Constant)}
+            looped = isinstance(node, ast.DictComp) and "exact" in ast.unparse(node)
+            if names & METHODS or looped:
+                parts = path.relative_to(SOURCE).with_suffix("").parts
+                yield ".".join(p for p in parts if p != "__init__")
+
+
+@pytest.mark.parametrize("name", CODE)
+def test_every_function_of_the_page_exists(name):
+    path, names = module_of(tuple(name.split(".")))
+    assert path.exists() and names and defined(tree(path).body, names)
+
+
+@pytest.mark.parametrize("name", TESTS)
+def test_every_test_of_the_page_exists(name):
+    path, test = name.split("::")
+    assert (ROOT / path).exists() and defined(tree(ROOT / path).body, (test,))
+
+
+def test_every_exact_method_has_a_section():
+    found = set(modules_with_methods())
+    assert len(found) >= 10
+    named = {m for m in found if any(c == m or c.startswith(f"{m}.") for c in CODE)}
+    assert found - named == set()
+
+
+def test_every_lemma_is_numbered_and_followed_by_its_code_and_tests():
+    numbers = [int(n) for n in re.findall(r"^\*\*Lemma (\d+)", PAGE, re.M)]
+    assert numbers == list(range(1, len(numbers) + 1)) and len(numbers) > 50
+    for part in re.split(r"^##+ ", PAGE, flags=re.M):
+        section = " ".join(part.split())
+        if "**Lemma" in section and not section.startswith("Branch and bound"):
+            assert "Code: `" in section and re.search(r"Tests?: `tests/", section), section[:40]
+    assert PAGE.count("*Proof") == PAGE.count("∎") == len(numbers)
