@@ -11,7 +11,8 @@ from gearopt.formulations import packing
 from gearopt.formulations.packing import hop, points, sa, state, text
 from gearopt.formulations.packing.design import describe
 from gearopt.formulations.packing.plan import Cylinder, Places, Plan, colours, overlap, row
-from gearopt.formulations.packing.state import KERNEL, Spent, held, numbers, scattered
+from gearopt.formulations.packing.state import KERNEL, held, numbers, scattered
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.kernels import kernel
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import run, solve
@@ -288,7 +289,7 @@ def test_kernel_is_compiled_before_the_clock_starts(method, monkeypatch):
     """The first use on a machine compiles for seconds, which are not the search's."""
     order = []
     monkeypatch.setattr(method, "ready", lambda: order.append("compiled"))
-    monkeypatch.setattr(method, "Spent", lambda *given: order.append("clock") or Spent(*given))
+    monkeypatch.setattr(method, "Clock", lambda *given: order.append("clock") or Clock(*given))
     run(packing.problem(Plan(SIX)), method.__name__.rsplit(".", 1)[-1], Budget(evaluations=10))
     assert order == ["compiled", "clock"]
 

@@ -11,7 +11,8 @@ from gearopt.formulations.packing import points
 from gearopt.formulations.packing.container_bound import bound
 from gearopt.formulations.packing.design import describe
 from gearopt.formulations.packing.plan import Cylinder, Plan, row
-from gearopt.formulations.packing.state import KERNEL, Spent, lateness, numbers
+from gearopt.formulations.packing.state import KERNEL, lateness, numbers
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.kernels import kernel
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import run, solve
@@ -139,9 +140,9 @@ def test_the_bound_looks_at_clock_and_watcher():
 
 def test_late_asks_the_watcher_now_and_then():
     asked = []
-    late = lateness(Spent(Budget(), None).clock, None, lambda: asked.append(None) is None)
+    late = lateness(Clock(Budget(), asked.append), None)
     assert not any(late() for _ in range(1_000)) and 1 <= len(asked) < 100
-    assert lateness(-1e9, 1.0, lambda: True)()
+    assert lateness(Clock(start=-1e9), 1.0)()
 
 
 def circles(count):

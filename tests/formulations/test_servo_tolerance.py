@@ -15,6 +15,7 @@ from gearopt.formulations.servo.tolerance.distributions import NORMAL, RUN_OUT, 
 from gearopt.formulations.servo.tolerance.roots import cheapest, closed_form, levels, roots
 from gearopt.formulations.servo.tolerance.stack import Component, ErrorBudget, Stack
 from gearopt.optimise import tape
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import solve
 
@@ -136,7 +137,7 @@ def test_the_closed_form_is_the_root():
     for k in (0.0, 0.3, 1.0, 3.0):
         for budget in (("worst_case", E_WC), ("rss", E_RSS)):
             tolerances = stack(budget, k=k)
-            (t, lam), (t_root, lam_root) = closed_form(tolerances), roots(tolerances)
+            (t, lam), (t_root, lam_root) = closed_form(tolerances), roots(tolerances, Clock())
             assert t_root == pytest.approx(t, rel=1e-12)
             assert lam_root == pytest.approx(lam, rel=1e-12)
 
@@ -197,7 +198,7 @@ def test_random_stacks_by_three_solvers(seed):
 def test_no_multipliers_pass_the_optimum(seed):
     """The bound holds for any lam >= 0 and any point; what it bounds is below any allowed point."""
     tolerances = stack(("worst_case", E_WC), ("mean_plus_sd", 0.9 * E_WC), k=ALTERNATING, most=3.0)
-    best, lam = roots(tolerances)
+    best, lam = roots(tolerances, Clock())
     cost = tolerances.costs(best).sum()
     assert lower_bound(tolerances, lam, best) == pytest.approx(cost, rel=1e-13)
     rng = np.random.default_rng(seed)

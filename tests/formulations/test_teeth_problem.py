@@ -15,6 +15,7 @@ from gearopt.formulations.teeth import MOST, _in_order, _why, best_point, pairs,
 from gearopt.formulations.teeth.progress import MARGIN, TIE, Progress
 from gearopt.formulations.teeth.search import search
 from gearopt.formulations.train import FaceWidth
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import method_of, run
 
@@ -164,18 +165,18 @@ def teeth_of(*numbers):
 
 
 def test_ties_go_to_fewest_teeth_then_to_the_smaller_first():
-    progress = Progress(5, Budget(), None)
+    progress = Progress(5, Clock())
     near = 1.0 + 0.9 * TIE
     rows = [(1.0, (18, 20)), (near, (20, 17)), (near, (17, 20)), (1.0 + 3 * TIE, (12, 12))]
     rows += [(2.0, (12, 14)), (2.0, (13, 12))]
     progress.found = [(value, teeth_of(*n)) for value, n in rows]
     order = [(17, 20), (20, 17), (18, 20), (12, 12), (13, 12), (12, 14)]
     assert _in_order(progress) == [teeth_of(*n) for n in order]
-    assert _in_order(Progress(1, Budget(), None)) == []
+    assert _in_order(Progress(1, Clock())) == []
 
 
 def test_why_a_search_ended_is_told():
-    progress = Progress(1, Budget(), None)
+    progress = Progress(1, Clock())
     assert _why(progress, 1) == "stopped before a train was found: give it more time"
     progress.found = [(1.0, teeth_of(17))]
     assert _why(progress, 1) == "stopped before it was exhausted"

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from gearopt.formulations.teeth.progress import MARGIN, TIE, Progress, Spent
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget, Event
 
 
@@ -15,7 +16,7 @@ def fake(value, *numbers):
 
 
 def filled(wanted, *found):
-    progress = Progress(wanted, Budget(), None)
+    progress = Progress(wanted, Clock())
     progress.add(np.array([v for v, _ in found]), iter([t for _, t in found]))
     return progress
 
@@ -47,10 +48,10 @@ def test_what_is_pruned_is_above_the_best_by_more_than_rounding():
 
 
 def test_a_bound_counts_where_the_search_is_of_all_trains():
-    progress = Progress(1, Budget(), None, floor=2.0)
+    progress = Progress(1, Clock(), floor=2.0)
     progress.raise_lower(5.0)
-    assert (progress.looked, progress.compared, progress.nodes) == (0, 0, 0)
-    assert Progress(1, Budget(), None).bound == -math.inf
+    assert (progress.clock.evaluations, progress.compared, progress.nodes) == (0, 0, 0)
+    assert Progress(1, Clock()).bound == -math.inf
     assert progress.bound == 2.0
     progress.whole = True
     progress.raise_lower(5.0)
@@ -65,7 +66,7 @@ def test_a_bound_counts_where_the_search_is_of_all_trains():
     [
         (Budget(), 10**9, 1e9, False),
         (Budget(seconds=5.0), 0, 4.0, False),
-        (Budget(seconds=5.0), 0, 5.0, False),
+        (Budget(seconds=5.0), 0, 5.0, True),
         (Budget(seconds=5.0), 0, 5.5, True),
         (Budget(evaluations=10), 9, 0.0, False),
         (Budget(evaluations=10), 10, 0.0, True),
@@ -76,18 +77,19 @@ def test_a_bound_counts_where_the_search_is_of_all_trains():
 )
 def test_budgets_end_a_search(budget, looked, seconds, over, monkeypatch):
     seen = []
-    progress = Progress(1, budget, seen.append, clock=100.0, looked=looked)
+    progress = Progress(1, Clock(budget, seen.append, 100.0, looked))
     monkeypatch.setattr(time, "perf_counter", lambda: 100.0 + seconds)
-    assert progress.goes_on() is not over and progress.stopped is over
-    assert seen == ([] if over else [Event(seconds, looked, None, None)])
-    assert Progress(1, Budget(), None).goes_on()
+    assert progress.goes_on() is not over and progress.clock.stopped is over
+    assert seen == [Event(seconds, looked, None, None)]
+    assert Progress(1, Clock()).goes_on()
 
 
 def test_a_watcher_is_told_and_stops_a_search():
     seen = []
     progress = filled(1, fake(3.0, 7))
-    progress.watch, progress.floor, progress.looked = lambda e: seen.append(e), 2.0, 5
-    assert progress.goes_on() and not progress.stopped  # None is not False
+    clock, progress.floor = progress.clock, 2.0
+    clock.watch, clock.evaluations = lambda e: seen.append(e), 5
+    assert progress.goes_on() and not progress.clock.stopped  # None is not False
     progress.tick()
     assert [(e.evaluations, e.best, e.bound) for e in seen] == [(5, 3.0, 2.0)] * 2
     progress.add(np.array([3.0 * (1.0 + 0.5 * TIE)]), iter([((8, 16),)]))
@@ -96,24 +98,24 @@ def test_a_watcher_is_told_and_stops_a_search():
     progress.lower = 3.5  # of what is left; the best train is one of all
     progress.tick()
     assert seen[-1].bound == 3.0
-    progress.watch = lambda event: False
+    clock.watch = lambda event: False
     with pytest.raises(Spent):
         progress.tick()
-    assert progress.stopped and not progress.enough
-    progress.watch = None
+    assert progress.clock.stopped and not progress.enough
+    clock.watch = None
     assert not progress.goes_on()
 
 
 def test_a_gap_that_is_reached_is_enough():
     for gap, enough in ((0.5, True), (0.25, True), (0.24, False), (0.0, False)):
         progress = filled(1, fake(4.0, 7))
-        progress.budget, progress.floor = Budget(gap=gap), 3.0
+        progress.clock.budget, progress.floor = Budget(gap=gap), 3.0
         assert progress.goes_on() is not enough and progress.enough is enough
-        assert not progress.stopped
+        assert not progress.clock.stopped
     listed = filled(2, fake(4.0, 7), fake(4.0, 8))
-    listed.budget, listed.floor = Budget(gap=0.5), 3.0
+    listed.clock.budget, listed.floor = Budget(gap=0.5), 3.0
     assert listed.goes_on()
-    assert Progress(1, Budget(gap=0.5), None, floor=3.0).goes_on()
+    assert Progress(1, Clock(Budget(gap=0.5)), floor=3.0).goes_on()
     none = filled(1, fake(4.0, 7))
-    none.budget, none.floor = Budget(gap=0.0), 4.0
+    none.clock.budget, none.floor = Budget(gap=0.0), 4.0
     assert none.goes_on()  # a gap of nothing is not asked for

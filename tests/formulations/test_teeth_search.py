@@ -123,7 +123,7 @@ IMPATIENT = {  # the same with finer grids sooner
 
 def work(stages, number, wanted):
     progress = search(some_drive(number, stages), wanted, Budget())
-    return progress.found, (progress.looked, progress.nodes, progress.compared)
+    return progress.found, (progress.clock.evaluations, progress.nodes, progress.compared)
 
 
 @pytest.mark.parametrize("case", WORK)
@@ -209,7 +209,7 @@ def test_grids_are_halved_while_they_fit(stages, number, first, monkeypatch):
 
     def noted(train, tables, delta, tick):
         made.append(delta)
-        looked.append(tick.__self__.looked)
+        looked.append(tick.__self__.clock.evaluations)
         return bound(train, tables, delta, tick)
 
     monkeypatch.setattr(searching, "bound", noted)
@@ -238,7 +238,7 @@ def test_what_is_near_an_end_of_the_ratio_is_decided_in_whole_numbers(
     found = search(train, 5, Budget())
     monkeypatch.setattr(searching, "EDGE", 0.003)
     again = search(train, 5, Budget())
-    assert again.found == found.found and again.looked >= found.looked
+    assert again.found == found.found and again.clock.evaluations >= found.clock.evaluations
     assert all(within(train, teeth_of) for _, teeth_of in again.found)
 
 
@@ -261,14 +261,14 @@ def test_a_search_may_stop_at_every_look_at_the_clock(monkeypatch):
     train = train_of_six()
     seen = []
     best = search(train, 1, Budget(), seen.append)
-    assert not best.stopped
+    assert not best.clock.stopped
     value = best.found[0][0]
     assert all(e.best is None or e.best >= value for e in seen)
     assert all(e.bound is None or e.bound <= value for e in seen)
     for stop in (1, 2, 3, *np.linspace(4, len(seen), 6).astype(int).tolist()):
         told = []
         progress = search(train, 1, Budget(), lambda e, t=told, n=stop: t.append(e) or len(t) < n)
-        assert progress.stopped and len(told) == stop
+        assert progress.clock.stopped and len(told) == stop
         assert progress.bound <= value
         assert not progress.found or progress.found[0][0] >= value
 
@@ -289,7 +289,7 @@ def test_no_more_than_a_slice_is_sized_between_two_looks_at_the_clock(monkeypatc
         return True
 
     parts = search(train_of_six(), 1, Budget(), watch)
-    assert parts.found == whole.found and parts.looked == whole.looked
+    assert parts.found == whole.found and parts.clock.evaluations == whole.clock.evaluations
     assert max(most) <= 250 and len(most) > 100  # a dive through three stages, or one cell
 
 
@@ -325,7 +325,7 @@ def test_a_stage_without_a_pair_leaves_no_train(position):
     none = replace(train.stages[position], wheel_teeth=(1, 10))
     stages = (*train.stages[:position], none, *train.stages[position + 1 :])
     progress = search(replace(train, stages=stages), 1, Budget())
-    assert progress.found == [] and not progress.stopped
+    assert progress.found == [] and not progress.clock.stopped
 
 
 def test_any_train_is_one_that_keeps_every_limit():

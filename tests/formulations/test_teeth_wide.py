@@ -95,7 +95,7 @@ def test_a_wide_drive_is_that_of_all_its_pinions_and_tells_no_bound_of_a_part(fe
     assert all(e.bound is None or e.bound <= whole.bound * (1.0 + 1e-12) for e in seen)
     assert any(e.bound is not None for e in seen)
     second = search(wide.trimmed(train, first.threshold), 1, Budget())
-    assert found.evaluations == first.looked + second.looked
+    assert found.evaluations == first.clock.evaluations + second.clock.evaluations
     assert found.proof["nodes"] == first.nodes + second.nodes
 
 
@@ -129,13 +129,17 @@ def test_a_watcher_that_says_stop_once_stops_both_searches_of_a_wide_drive(few, 
 def test_both_searches_share_a_budget_and_a_gap(few, whole):
     train = wide_drive()
     first = search(wide.narrowed(train), 1, Budget())
-    short = outcome(train, evaluations=first.looked + 1)
+    short = outcome(train, evaluations=first.clock.evaluations + 1)
     enough = outcome(train, seconds=1e3, evaluations=2 * whole.evaluations)
     assert not short.finished and short.evaluations < enough.evaluations and enough.finished
     value = problem(train).batch(short.x[None]).F[0, 0]  # a train of few pinions is one of all
     assert whole.bound <= value <= first.found[0][0]
     near = outcome(train, floor=0.5 * whole.bound, gap=0.9)
-    assert near.finished and near.evaluations <= first.looked and near.bound == 0.5 * whole.bound
+    assert (
+        near.finished
+        and near.evaluations <= first.clock.evaluations
+        and near.bound == 0.5 * whole.bound
+    )
     close = outcome(train, floor=0.5 * whole.bound, gap=0.1)
     value = problem(train).batch(close.x[None]).F[0, 0]
     assert close.finished and value - close.bound <= 0.1 * value and close.bound <= whole.bound

@@ -42,8 +42,7 @@ def about_statistics():
     return [
         f"mean {one:.4f}, standard deviation {wide:.4f}, mean + 3 of them {one + 3 * wide:.4f}, "
         f"worst case {s.sum():.4f} degrees",
-        f"between {low:.4f} and {high:.4f} degrees (400,000 draws, "
-        "99 % confidence)",
+        f"between {low:.4f} and {high:.4f} degrees (400,000 draws, 99 % confidence)",
         f"mean {lash:.4f}, mean + 3 standard deviations {lash + 3 * spread:.4f}, worst case "
         f"{s[radial].sum():.4f} degrees",
     ]

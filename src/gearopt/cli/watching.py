@@ -4,14 +4,14 @@ import logging
 import math
 import os
 import signal
-import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
 from rich.console import Console
 
-from gearopt.optimise.result import Event, Watch
+from gearopt.optimise.clock import Clock
+from gearopt.optimise.result import Budget, Event, Watch
 from gearopt.optimise.scale import gap
 
 SHOW_CURSOR = b"\r\x1b[K\x1b[?25h"  # and clear the line of the progress that hid it
@@ -20,10 +20,10 @@ SHOW_CURSOR = b"\r\x1b[K\x1b[?25h"  # and clear the line of the progress that hi
 @contextmanager
 def watching(seconds: float, quiet: bool) -> Iterator[Watch]:
     """A watcher of one run that ends it at Ctrl-C and shows long work."""
-    started = time.perf_counter()
+    clock = Clock(Budget(seconds))
 
     def words(event: Event) -> str:
-        return progress(event, seconds - (time.perf_counter() - started))
+        return progress(event, clock.within(seconds))
 
     with following(words, quiet) as watch:
         yield watch
@@ -45,7 +45,7 @@ def following(words: Callable[[Any], str], quiet: bool) -> Iterator[Callable[[An
         stopped = True
 
     before = signal.signal(signal.SIGINT, stop)
-    started, shown = time.perf_counter(), 0.0
+    clock, shown = Clock(), 0.0
     news = _News(screen)
     if not quiet:
         logger = logging.getLogger("gearopt.kernels")
@@ -54,7 +54,7 @@ def following(words: Callable[[Any], str], quiet: bool) -> Iterator[Callable[[An
 
     def watch(progress: Any) -> bool:
         nonlocal shown
-        now = time.perf_counter() - started
+        now = clock.seconds
         if status is not None and now > 0.5 and now > shown + 0.2:
             shown = now
             status.start()

@@ -5,7 +5,6 @@ with u = 6.931 and 12 to 60 teeth, where it is a standard case of discrete optim
 """
 
 import math
-import time
 from bisect import bisect_left
 from dataclasses import dataclass
 from fractions import Fraction
@@ -13,8 +12,9 @@ from typing import Any
 
 import numpy as np
 
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.result import Budget, Event, Outcome, Watch
+from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.terms import Terms, Var
 
 RANDOM = False
@@ -86,8 +86,8 @@ def nearest(
     The ratios of one pair are sorted once; of the other pair's, only the neighbours of what is
     missing count. Ties go to the fewest teeth, then to the smallest numbers.
     """
-    clock, (seconds, most) = time.perf_counter(), _limits(budget)
-    pairs, whole = _pairs(train, clock + seconds)
+    clock = Clock(budget or Budget(), watch)
+    pairs, whole = _pairs(train, clock)
     ratios, target = sorted(pairs), 1 / train.ratio
     best: tuple[Fraction, int, tuple[int, ...]] = (target + train.teeth[1] ** 2, 0, ())
     for looked, first in enumerate(ratios, 1):
@@ -98,29 +98,20 @@ def nearest(
                 (a, c), (b, d) = pairs[first], pairs[second]
                 teeth = (*sorted((a, b)), *sorted((c, d)))
                 best = min(best, (miss, sum(teeth), teeth))
-        if looked % LOOK == 0 or looked == most:
-            spent = time.perf_counter() - clock
-            late = spent > seconds or looked == most
-            event = Event(spent, looked, float(best[0] ** 2))
-            if late or (watch is not None and watch(event) is False):
-                break
+        clock.evaluations, clock.best = looked, float(best[0] ** 2)
+        if (looked % LOOK == 0 or looked == clock.budget.evaluations) and not clock.tell():
+            break
     return best[0], best[2], looked, whole and looked == len(ratios)
 
 
-def _limits(budget: Budget | None) -> tuple[float, int | None]:
-    if budget is None:
-        return math.inf, None
-    return math.inf if budget.seconds is None else budget.seconds, budget.evaluations
-
-
-def _pairs(train: Compound, end: float) -> tuple[dict[Fraction, tuple[int, int]], bool]:
-    """The ratios of one pair with their smallest teeth; False: the clock reached `end` before."""
+def _pairs(train: Compound, clock: Clock) -> tuple[dict[Fraction, tuple[int, int]], bool]:
+    """The ratios of one pair with their smallest teeth; False: the time was over before."""
     low, high = train.teeth
     pairs: dict[Fraction, tuple[int, int]] = {}
     for a in range(low, high + 1):
         for b in range(low, high + 1):
             pairs.setdefault(Fraction(a, b), (a, b))
-        if time.perf_counter() > end and a < high:
+        if clock.over and a < high:
             return pairs, False
     return pairs, True
 

@@ -72,13 +72,17 @@ class Clock:
         self.stopped = self.refused or self._spent(spent)
         return not self.stopped
 
-    def inner(self) -> Watch:
-        """A watcher of a run within this one, whose evaluations and best value count in it."""
+    def inner(self, values: bool = True) -> Watch:
+        """A watcher of a run within this one, whose evaluations and best value count in it.
+
+        values: False where its values are not this run's.
+        """
         before = self.evaluations
 
         def told(event: Event) -> bool:
             self.evaluations = before + event.evaluations
-            self.best = min(self.best, math.inf if event.best is None else event.best)
+            if values and event.best is not None:
+                self.best = min(self.best, event.best)
             return self.tell()
 
         return told

@@ -8,17 +8,17 @@ sampler's point and these is the answer.
 """
 
 import math
-import time
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from gearopt.errors import SolveError
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.discrete import values
 from gearopt.optimise.feasibility import violation
 from gearopt.optimise.form import form
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.result import Budget, Event, Outcome, Watch
+from gearopt.optimise.result import Budget, Outcome
 from gearopt.optimise.solvers import ipopt
 from gearopt.optimise.terms import Array
 
@@ -37,36 +37,31 @@ SETTINGS = {
 
 @dataclass(frozen=True)
 class Polish:
-    """What a sampler's last step may spend, since when (`time.perf_counter`), and who watches.
+    """A sampler's last step, and the clock of the whole run.
 
-    budget: of the whole run. skipped: why there is none, None where there is; "" goes unsaid.
+    skipped: why there is none, None where there is; "" goes unsaid.
     """
 
     problem: Problem
-    budget: Budget
-    clock: float
-    watch: Watch | None
+    clock: Clock
     skipped: str | None
 
-    @property
-    def sampling(self) -> Budget:
-        """What the sampling before it may spend."""
-        return self.budget if self.skipped is not None else sampling(self.budget)
+
+def sampling(clock: Clock, polished: bool) -> tuple[Clock, int | None]:
+    """The clock of the sampling in a run, and the evaluations that are its own end.
+
+    polished: a polish follows, for which a part of the run's budget is kept.
+    """
+    seconds, most = clock.budget.seconds, clock.budget.evaluations
+    if polished:
+        seconds = None if seconds is None else (1.0 - SHARE) * seconds
+        most = None if most is None else most - min(MOST, int(SHARE * most))
+    return Clock(Budget(seconds), clock.watch, clock.start), most
 
 
-def sampling(budget: Budget) -> Budget:
-    """What the sampling before a polish may spend of the budget of both."""
-    seconds, most = budget.seconds, budget.evaluations
-    return replace(
-        budget,
-        seconds=None if seconds is None else (1.0 - SHARE) * seconds,
-        evaluations=None if most is None else most - min(MOST, int(SHARE * most)),
-    )
-
-
-def prepared(problem: Problem, budget: Budget, clock: float, watch: Watch | None) -> Polish:
-    """The polish of a run that began at `clock`: the text is traced here, within its budget."""
-    return Polish(problem, budget, clock, watch, _obstacle(problem))
+def prepared(problem: Problem, clock: Clock) -> Polish:
+    """The polish of a run: the text is traced here, within its budget."""
+    return Polish(problem, clock, _obstacle(problem))
 
 
 def _obstacle(problem: Problem) -> str | None:
@@ -89,18 +84,20 @@ def polished(polish: Polish, sampled: Outcome, starts: Array) -> Outcome:
     starts: in order of promise; the first of each choice of discrete values counts, and the
     sampler's own point. The iterations that are planned are its own end; clock and watcher are not.
     """
-    problem, most = polish.problem, polish.budget.evaluations
+    problem, most = polish.problem, polish.clock.budget.evaluations
     if polish.skipped is not None:
         return replace(sampled, message=sampled.message or polish.skipped)
     best, least, done = sampled, _value(problem, sampled.x), True
     planned = ITERATIONS if most is None else most - sampled.evaluations
     spent = runs = 0
+    polish.clock.evaluations, polish.clock.best = sampled.evaluations, least
     waiting, tried = _chosen(problem, sampled.x, starts), set[tuple[float, ...]]()
     while waiting and done and runs < RUNS and spent < planned:
         start = waiting.pop(0)
         tried.add(_choice(problem, start))
-        found = _solved(polish, start, sampled.evaluations + spent, planned - spent, least)
+        found = _solved(polish, start, planned - spent)
         runs, spent = runs + 1, spent + found.evaluations
+        polish.clock.evaluations = sampled.evaluations + spent
         done = found.finished or spent >= planned
         value = _value(problem, found.x)
         if value < least:
@@ -141,24 +138,13 @@ def _beside(problem: Problem, x: Array) -> list[Array]:
     return found
 
 
-def _solved(polish: Polish, start: Array, spent: int, most: int, least: float) -> Outcome:
+def _solved(polish: Polish, start: Array, most: int) -> Outcome:
     """Ipopt from a start, `most` iterations; nothing, unfinished, where no time is left."""
-    before = time.perf_counter() - polish.clock
-    left = replace(polish.budget.less(before), evaluations=most)
+    left = replace(polish.clock.left, evaluations=most)
     if left.seconds == 0.0:
         return Outcome(None, finished=False)
-
-    def told(event: Event) -> bool:
-        value = min(least, math.inf if event.best is None else event.best)
-        now = replace(
-            event,
-            seconds=before + event.seconds,
-            evaluations=spent + event.evaluations,
-            best=value if math.isfinite(value) else None,
-        )
-        return polish.watch is None or polish.watch(now) is not False
-
-    return ipopt.run(polish.problem.holding(start), left, 0, told, start=start)
+    held = polish.problem.holding(start)
+    return ipopt.run(held, left, 0, polish.clock.inner(), start=start)
 
 
 def _value(problem: Problem, x: Array | None) -> float:

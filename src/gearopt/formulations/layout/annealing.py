@@ -1,6 +1,5 @@
 """Methods `sa` (link angles), `sa-polish` (the same, then Ipopt) and `sa-paper` (positions)."""
 
-import time
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, NamedTuple
@@ -8,9 +7,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from gearopt.formulations.layout.chain import Chain
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.kernels import kernel
 from gearopt.optimise.polish import KEPT, sampling
-from gearopt.optimise.result import Budget, Event, Outcome, Watch
+from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.terms import Array
 
 RANDOM = True
@@ -89,32 +89,22 @@ def method(chain: Chain, free: bool, polish: Polish | None = None) -> Any:
     """A run(problem, budget, seed, watch); polish: a local method that keeps the point."""
 
     def run(problem: Any, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
-        clock, least, told = time.perf_counter(), np.inf, True
-        own = budget if polish is None else sampling(budget)
+        clock = Clock(budget, watch)
+        own, most = sampling(clock, polish is not None)
 
         def goes(steps: int, best: float) -> bool:
-            nonlocal least, told
-            seconds, least = time.perf_counter() - clock, best
-            event = Event(seconds, steps, best if np.isfinite(best) else None)
-            told = watch is None or watch(event) is not False
-            return told and (own.seconds is None or seconds <= own.seconds)
+            own.evaluations, own.best = steps, best
+            return own.tell()
 
-        steps = STEPS if own.evaluations is None else max(1, own.evaluations)
+        steps = STEPS if most is None else max(1, most)
         found, made = anneal(chain, seed, steps, goes, free, LOOKS)
         x = point(chain, found)
         message = "" if x is not None else "no feasible layout was visited"
         outcome = Outcome(x, made == steps, evaluations=made, message=message)
-        if x is None or polish is None or not told:
+        if x is None or polish is None or own.refused:
             return outcome
-        before = time.perf_counter() - clock
-
-        def also(event: Event) -> bool:
-            best = min(least, np.inf if event.best is None else event.best)
-            count = made + event.evaluations
-            now = replace(event, seconds=before + event.seconds, evaluations=count, best=best)
-            return watch is None or watch(now) is not False
-
-        last = polish(x, budget.less(before, made), also)
+        clock.evaluations, clock.best = made, own.best
+        last = polish(x, clock.left, clock.inner())
         finished = outcome.finished and last.finished
         return replace(outcome, x=last.x, finished=finished, evaluations=made + last.evaluations)
 

@@ -6,17 +6,17 @@ steps, so that a search which is stopped has the bound of its last full step.
 """
 
 import math
-import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from gearopt.formulations.layout.annealing import anneal, point
 from gearopt.formulations.layout.chain import Chain
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.kernels import kernel
-from gearopt.optimise.result import Budget, Event, Outcome, Watch
+from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.terms import Array
 
 RANDOM = False
@@ -37,37 +37,19 @@ Polish = Callable[[Array], tuple[Array, float]]
 class Search:
     """A search as it runs; its state is what a stopped one still knows.
 
-    best, x: the best layout. bound: proven. nodes: cells looked at. evaluations: layouts measured.
-    empty: no layout is feasible.
+    clock: counts layouts measured and cells looked at (nodes); has the best value and what is
+    proven. x: the best layout. empty: no layout is feasible.
     """
 
-    budget: Budget
-    watch: Watch | None
-    best: float = math.inf
+    clock: Clock
     x: Array | None = None
-    bound: float = 0.0
     nodes: int = 0
-    evaluations: int = 0
-    stopped: bool = False
     empty: bool = False
-    clock: float = field(default_factory=time.perf_counter)
 
     def left(self, most: int) -> int:
         """How much of `most` the budget's evaluations allow."""
-        if self.budget.evaluations is None:
-            return most
-        return max(0, min(most, self.budget.evaluations - self.nodes - self.evaluations))
-
-    def goes_on(self) -> bool:
-        """Whether budget and watcher let it go on."""
-        seconds, spent = time.perf_counter() - self.clock, self.nodes + self.evaluations
-        late = self.budget.seconds is not None and seconds > self.budget.seconds
-        full = self.budget.evaluations is not None and spent >= self.budget.evaluations
-        best = self.best if math.isfinite(self.best) else None
-        event = Event(seconds, spent, best, self.bound or None)
-        told = self.watch is None or self.watch(event) is not False
-        self.stopped = self.stopped or late or full or not told
-        return not self.stopped
+        left = self.clock.left.evaluations
+        return most if left is None else min(most, left)
 
 
 def method(chain: Chain, turns: tuple[float, float], polish: Polish) -> Any:
@@ -79,46 +61,46 @@ def method(chain: Chain, turns: tuple[float, float], polish: Polish) -> Any:
 
     def run(problem: Any, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
         _compile(chain)
-        search = Search(budget, watch)
+        search = Search(clock := Clock(budget, watch))
         _first(search, chain, seed, polish)
         wanted, proven = budget.gap or GAP, None
         for rel in [g for g in GAPS if g > wanted] + [wanted]:
             bound = None
-            if not search.stopped:
+            if not clock.stopped:
                 bound = _prove(search, chain, turns, rel * (1.0 - INSIDE), polish)
             if bound is None:
                 break
-            if bound < search.best * (1.0 - rel):  # cells that could not be halved are left
-                search.bound, search.stopped = max(search.bound, bound), True
+            if bound < clock.best * (1.0 - rel):  # cells that could not be halved are left
+                clock.bound, clock.stopped = max(clock.bound, bound), True
                 break
             proven = rel
-            search.bound = max(search.bound, min(bound, search.best))
-            if math.isinf(search.best):
+            clock.bound = max(clock.bound, min(bound, clock.best))
+            if math.isinf(clock.best):
                 search.empty = math.isinf(bound)
                 break
         if proven == wanted:
-            search.stopped = False
+            clock.stopped = False
         return _outcome(search, proven)
 
     return run
 
 
 def _outcome(search: Search, proven: float | None) -> Outcome:
+    clock = search.clock
     proof = {
-        "method": "branch and bound, stopped early" if search.stopped else "exhausted",
+        "method": "branch and bound, stopped early" if clock.stopped else "exhausted",
         "arithmetic": "intervals in double, widened by 1e-12",
         "nodes": search.nodes,
         "pruning_margin": proven,
     }
-    spent = search.nodes + search.evaluations
     if search.empty:
-        return Outcome(None, infeasible=True, proof=proof, evaluations=spent)
+        return Outcome(None, infeasible=True, proof=proof, evaluations=clock.evaluations)
     return Outcome(
         search.x,
-        not search.stopped,
-        bound=search.bound or None,
+        not clock.stopped,
+        bound=clock.bound if clock.bound > 0.0 else None,
         proof=proof,
-        evaluations=spent,
+        evaluations=clock.evaluations,
         message="" if search.x is not None else "no layout was found",
     )
 
@@ -133,25 +115,26 @@ def _compile(chain: Chain) -> None:
 
 def _first(search: Search, chain: Chain, seed: int, polish: Polish) -> None:
     """A good layout: the best of some annealing runs, polished."""
+    clock = search.clock
     for k in range(STARTS):
-        spent = search.evaluations
+        spent = clock.evaluations
 
         def goes(steps: int, best: float, spent: int = spent) -> bool:
-            search.evaluations = spent + steps
-            return search.goes_on()
+            clock.evaluations = spent + steps
+            return clock.tell()
 
         found, _ = anneal(chain, STARTS * seed + k, search.left(STEPS), goes)
-        if found[0] < search.best:
-            search.best, search.x = float(found[0]), point(chain, found)
-        if search.stopped:
+        if found[0] < clock.best:
+            clock.best, search.x = float(found[0]), point(chain, found)
+        if clock.stopped:
             return
     if search.x is not None:
         _take(search, *polish(search.x))
 
 
 def _take(search: Search, x: Array, value: float) -> None:
-    if value < search.best:
-        search.best, search.x = value, x
+    if value < search.clock.best:
+        search.clock.best, search.x = value, x
 
 
 def _prove(
@@ -171,16 +154,17 @@ def _prove(
         cells[0, :, 0] = turns
         bounds[0], count = 0.0, 1
         while count:
-            start = search.best
+            start = search.clock.best
             count, best, floor, nodes, near = kernels.branch(
                 chain, m, cells, bounds, count, start, floor, rel, search.left(NODES), theta
             )
             search.nodes += nodes
+            search.clock.evaluations += nodes
             x = np.append(theta, m) if chain.factor.size > 1 else theta.copy()
             if best < start:
                 _take(search, x, best)
             if best < start or near < NEAR:
                 _take(search, *polish(x))
-            if not search.goes_on() and (count or m + 1 < chain.factor.size):
+            if not search.clock.tell() and (count or m + 1 < chain.factor.size):
                 return None
     return floor

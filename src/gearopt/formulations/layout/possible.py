@@ -1,7 +1,6 @@
 """Whether a gearbox can be laid out at all."""
 
 import math
-import time
 from typing import Any
 
 import numpy as np
@@ -12,8 +11,9 @@ from gearopt.formulations.layout.exact import DEEP, NODES
 from gearopt.formulations.layout.faults import faults
 from gearopt.formulations.layout.gearbox import Gearbox
 from gearopt.formulations.layout.slabs import arrangements
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.kernels import kernel
-from gearopt.optimise.result import Event, Watch
+from gearopt.optimise.result import Budget, Watch
 
 STEPS, STARTS = 5_000, 4  # short runs of annealing: most layouts that exist are found by these
 
@@ -23,7 +23,7 @@ def possible(box: Gearbox, seconds: float, watch: Watch | None = None) -> bool |
 
     True with a layout in hand, False because distances clash or every cell of angles is excluded.
     """
-    orders, clock = arrangements(box), time.perf_counter()
+    orders, clock = arrangements(box), Clock(Budget(seconds), watch)
     if faults(box):
         return False
     shape = chain(box, orders)
@@ -39,18 +39,16 @@ def possible(box: Gearbox, seconds: float, watch: Watch | None = None) -> bool |
     for m in range(len(orders)):
         cells[0, 0], cells[0, 1] = -math.pi, math.pi
         cells[0, :, 0] = turns(box)
-        bounds[0], count, nodes, floor = 0.0, 1, 0, math.inf
+        bounds[0], count, floor = 0.0, 1, math.inf
         while count:
             state = (count, math.inf, floor)
             count, best, floor, fresh, _ = kernels.branch(
                 shape, m, cells, bounds, *state, 0.5, NODES, theta
             )
-            nodes += fresh
+            clock.evaluations += fresh
             if math.isfinite(best):
                 return True
-            spent = time.perf_counter() - clock
-            told = watch is None or watch(Event(spent, nodes)) is not False
-            if spent > seconds or not told:
+            if not clock.tell():
                 return None
         if math.isfinite(floor):  # a cell was left undecided
             return None

@@ -31,7 +31,7 @@ def problem(plan: Plan, loose: bool = True) -> Problem:
         return found
 
     def finish(outcome: Outcome, spent: Spent, floor: Bound) -> Outcome:
-        if not loose and spent.best - floor.value > CERTAIN * spent.best:
+        if not loose and spent.clock.best - floor.value > CERTAIN * spent.clock.best:
             return outcome
         return replace(outcome, bound=floor.value, proof=proof(floor))
 

@@ -18,6 +18,7 @@ from gearopt.formulations.packing import points, text
 from gearopt.formulations.packing.plan import Places, Plan, row
 from gearopt.formulations.packing.state import Finish, Floor, Spent, anneal, ready, scattered
 from gearopt.optimise.box import violation
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.solvers import ipopt
@@ -60,22 +61,22 @@ def method(plan: Plan, floor: Floor, finish: Finish) -> Any:
     def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
         """Hop until the bound is reached, rounds end alike, or the budget is spent."""
         ready()
-        spent, rng = Spent(budget, watch), np.random.default_rng(seed)
+        spent, rng = Spent(clock := Clock(budget, watch)), np.random.default_rng(seed)
         first = points.point(plan, row(plan))
         spent.keep(float(problem.batch(first[None]).F[0, 0]), first)
         least = floor(problem, spent)
-        spent.bound = least.value
+        clock.bound = least.value
         endless = budget.seconds is None and budget.evaluations is None
         ends: list[float] = []
-        while spent.goes_on() and not spent.close(PROVEN):
+        while clock.tell() and not spent.close(PROVEN):
             value = _round(plan, problem, rng, spent)
-            if not spent.stopped:
+            if not clock.stopped:
                 ends.append(value)
-            alike = sum(v <= spent.best + SAME * abs(spent.best) for v in ends)
+            alike = sum(v <= clock.best + SAME * abs(clock.best) for v in ends)
             if alike >= ALIKE or (endless and len(ends) >= ROUNDS):
                 break
-        finished = not spent.stopped or (bool(ends) and not spent.ended)
-        outcome = Outcome(spent.x, finished, evaluations=spent.evaluations)
+        finished = not clock.stopped or (bool(ends) and not clock.refused)
+        outcome = Outcome(spent.x, finished, evaluations=clock.evaluations)
         return finish(outcome, spent, least)
 
     return run
@@ -85,7 +86,7 @@ def _round(plan: Plan, problem: Problem, rng: np.random.Generator, spent: Spent)
     """One round; the objective of its best packing, infinite where none met all limits."""
     best, own, idle, hops = math.inf, np.empty(0), 0, 0
     fresh = FRESH_LAYERS if plan.most > plan.fewest else FRESH
-    while idle < PATIENCE and spent.goes_on() and not spent.close(PROVEN):
+    while idle < PATIENCE and spent.clock.tell() and not spent.close(PROVEN):
         if hops < SCATTERS or not len(own) or rng.random() < fresh:
             most, moves, hot = int(rng.integers(plan.fewest, plan.most + 1)), MOVES, HOT
             begin = scattered(plan, most, rng)
@@ -93,7 +94,8 @@ def _round(plan: Plan, problem: Problem, rng: np.random.Generator, spent: Spent)
             moves, hot = MOVES_COLD, WARM
             begin = _changed(plan, points.places(plan, problem, own), rng)
             most = max(plan.fewest, int(begin.layer.max()))
-        moves = min(moves * len(plan.radius), spent.left())
+        left, moves = spent.clock.left.evaluations, moves * len(plan.radius)
+        moves = moves if left is None else min(moves, left)
         last = anneal(plan, problem, begin, most, moves, (hot, COLD), rng, spent)
         value, found = math.inf, own
         if float(problem.batch(points.point(plan, last)[None]).F[0, 0]) < HOPEFUL * best:
@@ -145,10 +147,10 @@ def polished(plan: Plan, problem: Problem, begin: Places, spent: Spent) -> tuple
         local,
         Budget(),
         0,
-        lambda event: spent.goes_on(event.evaluations),
+        lambda event: spent.clock.tell(event.evaluations),
         start=points.start(plan, begin),
     )
-    spent.evaluations += ended.evaluations
+    spent.clock.evaluations += ended.evaluations
     if ended.x is None or ended.infeasible:
         return math.inf, np.empty(0)
     found = points.point(plan, points.places(plan, local, ended.x, begin.layer))

@@ -7,6 +7,7 @@ import numpy as np
 from gearopt.formulations.packing import points
 from gearopt.formulations.packing.plan import Plan, row
 from gearopt.formulations.packing.state import LOOKS, Finish, Floor, Spent, anneal, ready, scattered
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch
 
@@ -25,17 +26,17 @@ def method(plan: Plan, floor: Floor, finish: Finish) -> Any:
     def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
         """Anneal once; the best state that meets all limits, or else the row of all, is kept."""
         ready()
-        spent, rng = Spent(budget, watch), np.random.default_rng(seed)
+        spent, rng = Spent(clock := Clock(budget, watch)), np.random.default_rng(seed)
         first = points.point(plan, row(plan))
         spent.keep(float(problem.batch(first[None]).F[0, 0]), first)
         least = floor(problem, spent)
-        spent.bound = least.value
+        clock.bound = least.value
         most = budget.evaluations
         moves = MOVES * len(plan.radius) if most is None else most
         begin = scattered(plan, plan.most, rng)
-        if spent.goes_on():
+        if clock.tell():
             anneal(plan, problem, begin, plan.most, moves, (HOT, COLD), rng, spent, LOOKS)
-        outcome = Outcome(spent.x, not spent.stopped, evaluations=spent.evaluations)
+        outcome = Outcome(spent.x, not clock.stopped, evaluations=clock.evaluations)
         return finish(outcome, spent, least)
 
     return run

@@ -1,7 +1,6 @@
 """The annealing kernel's view of a packing: arrays in, best packing out, in slices of time."""
 
 import math
-import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cache
@@ -13,9 +12,10 @@ from gearopt.formulations.packing import points
 from gearopt.formulations.packing.container_bound import Bound
 from gearopt.formulations.packing.depth import Late
 from gearopt.formulations.packing.plan import Places, Plan, row
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.kernels import kernel
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.result import Budget, Event, Outcome, Watch
+from gearopt.optimise.result import Outcome
 from gearopt.optimise.terms import Array
 
 KERNEL = "gearopt.formulations.packing.anneal_kernel"
@@ -30,64 +30,39 @@ CODES = {"rectangle": 0, "square": 1, "circle": 2}
 class Spent:
     """What a search has spent and found; it has state because it is filled as the search goes.
 
-    bound: nothing lies below it (-inf before it is known). best, x: the least objective found, and
-    its point of `direct`. stopped: the search is to end; ended: it was the watcher that said so.
+    clock: has its count, the least objective found, and a bound below which nothing lies. x: its
+    point of `direct`.
     """
 
-    budget: Budget
-    watch: Watch | None
-    bound: float = -math.inf
-    clock: float = field(default_factory=time.perf_counter)
-    evaluations: int = 0
-    best: float = math.inf
+    clock: Clock
     x: Array = field(default_factory=lambda: np.empty(0))
-    stopped: bool = False
-    ended: bool = False
 
     def keep(self, value: float, x: Array) -> None:
         """Remember a packing that meets all limits, if it is the best."""
-        if value < self.best:
-            self.best, self.x = value, x
-
-    def goes_on(self, more: int = 0) -> bool:
-        """Whether budget and watcher let the search go on, `more` evaluations being under way."""
-        if self.stopped:
-            return False
-        spent = self.evaluations + more
-        seconds = time.perf_counter() - self.clock
-        most_s, most_n = self.budget.seconds, self.budget.evaluations
-        over = (most_s is not None and seconds > most_s) or (most_n is not None and spent >= most_n)
-        if not over and self.watch is not None:
-            best, bound = (v if math.isfinite(v) else None for v in (self.best, self.bound))
-            over = self.ended = self.watch(Event(seconds, spent, best, bound)) is False
-        self.stopped = over
-        return not over
+        if value < self.clock.best:
+            self.clock.best, self.x = value, x
 
     def late(self) -> Late:
         """Whether the bound has had its share of the time, or the search is to end."""
-        share = None if self.budget.seconds is None else SHARE * self.budget.seconds
-        return lateness(self.clock, share, self.goes_on)
-
-    def left(self) -> int:
-        """Evaluations that are left."""
-        most = self.budget.evaluations
-        return 10**15 if most is None else max(0, most - self.evaluations)
+        seconds = self.clock.budget.seconds
+        return lateness(self.clock, None if seconds is None else SHARE * seconds)
 
     def close(self, gap: float) -> bool:
         """Whether the best found is within a relative gap of the bound."""
-        return self.best - self.bound <= max(gap, self.budget.gap) * abs(self.best)
+        best, gap = self.clock.best, max(gap, self.clock.budget.gap)
+        return best - self.clock.bound <= gap * abs(best)
 
 
-def lateness(clock: float, seconds: float | None, goes_on: Callable[[], bool]) -> Late:
-    """Whether `seconds` since `clock` are over, or goes_on(), asked every LOOK seconds, said no."""
+def lateness(clock: Clock, seconds: float | None) -> Late:
+    """Whether so many seconds of a clock are over, or the clock, told every LOOK seconds, is."""
     last, over = -math.inf, False
 
     def late() -> bool:
         nonlocal last, over
-        now = time.perf_counter()
-        over = over or (seconds is not None and now - clock > seconds)
+        now = clock.seconds
+        over = over or (seconds is not None and now > seconds)
         if not over and now - last > LOOK:
-            last, over = now, not goes_on()
+            last, over = now, not clock.tell()
         return over
 
     return late
@@ -173,7 +148,7 @@ def anneal(
     x, y, layer, centre = begin.copied()
     best = np.append(np.zeros(3 * n + 2), np.inf)
     size = max(1, min(SLICE // n, -(-moves // looks)))
-    done, least = 0, spent.best
+    done, least = 0, spent.clock.best
     while done < moves:
         last = min(moves, done + size)
         seed = int(rng.integers(2**31))
@@ -181,12 +156,12 @@ def anneal(
             seed, done, last, moves, *temperatures, x, y, layer, centre,
             plan.radius, plan.height, held(plan), numbers(plan, most), best,
         )  # fmt: skip
-        spent.evaluations += last - done
+        spent.clock.evaluations += last - done
         done = last
         if best[-1] < least:
             levels, least = best[2 * n : 3 * n].astype(np.int64), float(best[-1])
             found = points.point(plan, Places(best[:n], best[n : 2 * n], levels, best[3 * n : -1]))
             spent.keep(float(problem.batch(found[None]).F[0, 0]), found)
-        if done < moves and not spent.goes_on():
+        if done < moves and not spent.clock.tell():
             break
     return Places(x, y, layer, centre)

@@ -8,7 +8,6 @@ the extents of the interval at their least.
 """
 
 import math
-import time
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any, NamedTuple
@@ -18,9 +17,10 @@ import numpy as np
 from gearopt.errors import SolveError
 from gearopt.formulations.servo.servo_design import BoxDesign
 from gearopt.formulations.servo.split.servo_train import pairs
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.kernels import kernel
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.result import Budget, Event, Outcome, Result, Watch
+from gearopt.optimise.result import Budget, Outcome, Result, Watch
 from gearopt.optimise.terms import Array, Terms, Var
 
 RANDOM = False
@@ -133,19 +133,16 @@ def _searched(box: ServoBox, budget: Budget, watch: Watch | None) -> Outcome:
     most = 4.0 * (sum(box.radii) + sum(box.links)) / min(box.box)  # any layout is smaller
     search(given, cells, 0, math.inf, angles, GAP, most, 1)  # compiled before the clock starts
     cells[0] = -math.pi, math.pi
-    clock, count, best, looked, stuck, goes = time.perf_counter(), 1, math.inf, 0, False, True
+    clock, count, best, stuck = Clock(budget, watch), 1, math.inf, False
     rel = 0.9 * (budget.gap or GAP)
-    while count and goes:
-        left = NODES if budget.evaluations is None else budget.evaluations - looked
-        step = max(1, min(NODES, left))
+    while count and not clock.stopped:
+        left = clock.left.evaluations
+        step = NODES if left is None else max(1, min(NODES, left))
         count, best, more, bad = search(given, cells, count, best, angles, rel, most, step)
-        looked, stuck = looked + more, stuck or bad
-        seconds = time.perf_counter() - clock
-        late = budget.seconds is not None and seconds > budget.seconds
-        full = budget.evaluations is not None and looked >= budget.evaluations
-        event = Event(seconds, looked, best if math.isfinite(best) else None)
-        goes = not (late or full) and (watch is None or watch(event) is not False)
-    found = math.isfinite(best)
+        stuck, clock.best = stuck or bad, best
+        clock.evaluations += more
+        clock.tell()
+    found, looked = math.isfinite(best), clock.evaluations
     done = count == 0 and not stuck
     x = np.remainder(angles + math.pi, 2.0 * math.pi) - math.pi if found else None
     proof = {

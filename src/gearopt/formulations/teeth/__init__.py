@@ -5,7 +5,6 @@ tied, free or on a step. `exact` proves its answer by exhausting all other train
 """
 
 import math
-import time
 from types import SimpleNamespace
 from typing import Any
 
@@ -17,6 +16,7 @@ from gearopt.formulations.teeth.search import BEAM, search
 from gearopt.formulations.teeth.stage import table
 from gearopt.formulations.teeth.wide import narrowed, trimmed
 from gearopt.formulations.train import Stage, Train, terms
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.terms import Array, Terms, Var, each, namespace
@@ -144,14 +144,13 @@ def _outcome(
 ) -> Outcome:
     train, progress, missing = _searched(train, count, floor, budget, watch)
     found = _in_order(progress)
-    if count > 1 and found and not (progress.stopped or progress.enough):
-        left = budget.less(time.perf_counter() - progress.clock, progress.looked)
-        more = search(train, count, left, watch, floor)
+    if count > 1 and found and not (progress.clock.stopped or progress.enough):
+        more = search(train, count, progress.clock.left, watch, floor)
         found = (found[:1] + [t for t in _in_order(more) if t != found[0]])[:count]
         progress.compared += more.compared
-        progress.looked += more.looked
+        progress.clock.evaluations += more.clock.evaluations
         progress.nodes += more.nodes
-        if more.stopped:
+        if more.clock.stopped:
             found = found[:1]
     points = [best_point(train, teeth) for teeth in found]
     proof = {
@@ -161,7 +160,7 @@ def _outcome(
         "nodes": progress.nodes,
         "pruning_margin": MARGIN,
     }
-    if progress.stopped or progress.enough:
+    if progress.clock.stopped or progress.enough:
         lower = progress.bound if math.isfinite(progress.bound) else None
         partial = {**proof, "method": "branch and bound, stopped early"}
         return Outcome(
@@ -169,7 +168,7 @@ def _outcome(
             finished=progress.enough,
             bound=lower,
             proof=partial,
-            evaluations=progress.looked,
+            evaluations=progress.clock.evaluations,
             message=missing or _why(progress, count),
         )
     if not points:
@@ -177,14 +176,14 @@ def _outcome(
             None,
             infeasible=True,
             proof=proof,
-            evaluations=progress.looked,
+            evaluations=progress.clock.evaluations,
         )
     return Outcome(
         points[0],
         bound=progress.found[0][0],
         proof=proof,
         others=tuple(points[1:]),
-        evaluations=progress.looked,
+        evaluations=progress.clock.evaluations,
     )
 
 
@@ -196,26 +195,26 @@ def _searched(
     Wide ranges are searched among few pinions first, which leaves out pinions of no use. If there
     still are more pairs than memory takes, the search among few pinions is all there is.
     """
-    first, few = Progress(count, budget, watch, floor), narrowed(train)
+    first, few = Progress(count, Clock(budget, watch), floor), narrowed(train)
     if few == train:
         try:
             return train, search(train, 1, budget, watch, floor), ""
         except SolveError as reason:
-            first.stopped = True
+            first.clock.stopped = True
             return train, first, str(reason)
     try:
         first = search(few, count, budget, watch, floor, whole=False)
-        if first.stopped or first.enough:
+        if first.clock.stopped or first.enough:
             return train, first, ""
         useful = trimmed(train, first.threshold)
-        left = budget.less(time.perf_counter() - first.clock, first.looked)
-        progress = search(useful, 1, left, watch, floor)
+        progress = search(useful, 1, first.clock.left, watch, floor)
     except SolveError as reason:
-        first.stopped = True
+        first.clock.stopped = True
         most = max(_ends(s.pinion_teeth)[1] for s in few.stages)
         return train, first, f"{reason}. Only pinions of up to {most:.0f} teeth were searched"
-    progress.clock = first.clock
-    progress.looked, progress.nodes = progress.looked + first.looked, progress.nodes + first.nodes
+    progress.clock.start, progress.clock.budget = first.clock.start, budget
+    progress.clock.evaluations += first.clock.evaluations
+    progress.nodes += first.nodes
     # What the first search found is a train of the drive as well, where the second one is stopped.
     progress.add(np.array([v for v, _ in first.found]), iter([t for _, t in first.found]))
     return useful, progress, ""

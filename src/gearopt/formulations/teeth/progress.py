@@ -1,11 +1,10 @@
 """What a search over trains has found and spent so far, and when it must stop."""
 
 import math
-import time
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from gearopt.optimise.result import Budget, Event, Watch
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.terms import Array
 
 TIE = 1e-12  # trains whose objectives differ by less are ties: fewest teeth win
@@ -24,21 +23,18 @@ class Progress:
 
     found: (objective, teeth) of the best trains; wanted: how many of them. floor: a bound on the
     objective known from elsewhere; lower: that of this search, once it covers all trains (whole).
+    clock: counts tooth pairs sized.
     enough: the budget's gap is reached.
     """
 
     wanted: int
-    budget: Budget
-    watch: Watch | None
+    clock: Clock
     floor: float = -math.inf
-    clock: float = field(default_factory=time.perf_counter)
     found: list[tuple[float, Teeth]] = field(default_factory=list)
     lower: float = -math.inf
     whole: bool = False
-    looked: int = 0
     compared: int = 0
     nodes: int = 0
-    stopped: bool = False
     enough: bool = False
 
     @property
@@ -76,17 +72,10 @@ class Progress:
 
     def goes_on(self) -> bool:
         """Whether budget and watcher let the search go on."""
-        seconds = time.perf_counter() - self.clock
-        most_s, most_n = self.budget.seconds, self.budget.evaluations
-        over = (most_s is not None and seconds > most_s) or (
-            most_n is not None and self.looked >= most_n
-        )
-        best = self.found[0][0] if self.found else None
-        if not over and self.watch is not None:
-            lower = min(self.bound, math.inf if best is None else best)  # of all, not of the rest
-            known = lower if math.isfinite(lower) else None
-            over = self.watch(Event(seconds, self.looked, best, known)) is False
-        self.stopped = self.stopped or over
-        if self.budget.gap > 0.0 and self.wanted == 1 and best is not None:
-            self.enough = best - self.bound <= self.budget.gap * best
-        return not (self.stopped or self.enough)
+        clock, gap = self.clock, self.clock.budget.gap
+        clock.bound = self.bound
+        if self.found:
+            clock.best = self.found[0][0]
+            close = clock.best - self.bound <= gap * clock.best
+            self.enough = close and gap > 0.0 and self.wanted == 1
+        return clock.tell() and not self.enough

@@ -19,6 +19,7 @@ from gearopt.formulations.teeth.later_stages import EDGE, SLICE, Bound, bound, r
 from gearopt.formulations.teeth.progress import TIE, Progress, Spent, Teeth
 from gearopt.formulations.teeth.stage import Table, table
 from gearopt.formulations.train import Train, share
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget, Event, Watch
 from gearopt.optimise.terms import Array
 from gearopt.physics.gears import GearPair
@@ -62,7 +63,7 @@ def search(
     the ratio of a single stage is then searched to the end. floor: a bound known from elsewhere.
     whole: False where its own bound is of no use, as that of a part of the caller's drive.
     """
-    progress = Progress(wanted, budget, watch, floor)
+    progress = Progress(wanted, Clock(budget, watch), floor)
     most, cut = train.highest_ratio, first_cut(train)
     progress.whole = whole and cut == most
     try:
@@ -91,7 +92,7 @@ def _look(train: Train, cut: Fraction, progress: Progress, patience: float) -> b
     while True:
         finer = math.log(train.highest_ratio) * tables[-1].log_ratio[-1] / (delta / 2) ** 2
         last = len(tables) <= 2 or finer > CELLS
-        enough = progress.looked + min(patience, math.inf if last else PATIENCE)
+        enough = progress.clock.evaluations + min(patience, math.inf if last else PATIENCE)
         rest = bound(train, tables, delta, progress.tick)
         if _closed(train, tables, rest, progress, enough):
             return True
@@ -126,7 +127,7 @@ def _closed(
     while heap and heap[0][0] <= progress.threshold:
         progress.raise_lower(heap[0][0])
         progress.tick()
-        if progress.looked > patience:
+        if progress.clock.evaluations > patience:
             return False
         chunk: Chunk | None = heapq.heappop(heap)[2]
         while chunk is not None:
@@ -154,7 +155,7 @@ def _expand(
         start = rest.starts[level][cell]
         group, pair = ragged(start, rest.starts[level][cell + 1] - start)
         node = owner[group]
-    progress.looked += len(pair)
+    progress.clock.evaluations += len(pair)
     own = _costs(train, stage, chunk, node, pair, progress)
     if progress.wanted == 1:
         keep = _cheapest_of_ratio(node, stage.ratio[pair], own)
@@ -212,7 +213,7 @@ def _complete(train: Train, tables: list[Table], chunk: Chunk, progress: Progres
     start = np.searchsorted(stage.log_ratio, low - chunk.log_ratio - EDGE)
     stop = np.searchsorted(stage.log_ratio, high - chunk.log_ratio + EDGE)
     node, pair = ragged(start, stop - start)
-    progress.looked += len(pair)
+    progress.clock.evaluations += len(pair)
     total = chunk.cost[node] + _costs(train, stage, chunk, node, pair, progress)
     progress.compared += int(np.isfinite(total).sum())
     use = np.flatnonzero(np.isfinite(total) & (total <= progress.threshold))
@@ -291,4 +292,4 @@ def any_train(train: Train, seconds: float, watch: Watch | None) -> Teeth | None
         return None
     if progress.found:
         return progress.found[0][1]
-    return None if progress.stopped else ()
+    return None if progress.clock.stopped else ()

@@ -18,8 +18,9 @@ from gearopt.formulations.together.search import MARGINS, Search, keep, lay, pre
 from gearopt.formulations.together.tables import Make, numbers
 from gearopt.formulations.together.text import laid_out, pairs, point, slabs_of, text
 from gearopt.formulations.train import FaceWidth, Stage, Train
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.result import Budget, Event, Outcome, Watch
+from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.terms import Array
 from gearopt.physics.gears import GearPair
 
@@ -48,7 +49,7 @@ def problem(train: Train, make: Make, start: Start | None = None) -> Problem:
     def exact(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
         """Depth-first passes with narrowing margins; the seed is that of first layouts."""
         ready()
-        return _searched(Search(train, make, budget, watch, seed), start)
+        return _searched(Search(train, make, Clock(budget, watch), seed), start)
 
     return text(train, make, box, {"exact": exact})
 
@@ -64,7 +65,7 @@ def ready() -> None:
     def make(pairs: tuple[GearPair, ...]) -> Gearbox:
         return Gearbox(pairs, (Shaft(5.0), Shaft(8.0), Shaft(12.0)))
 
-    _searched(Search(train, make, Budget(gap=0.01), None, 0), None)
+    _searched(Search(train, make, Clock(Budget(gap=0.01)), 0), None)
 
 
 def _searched(search: Search, start: Start | None) -> Outcome:
@@ -72,12 +73,13 @@ def _searched(search: Search, start: Start | None) -> Outcome:
     if start is not None:
         keep(search, *start)
     possible = _first(search)
-    wanted = (search.budget.gap or GAP) * (1.0 - SLACK)
+    clock = search.clock
+    wanted = (clock.budget.gap or GAP) * (1.0 - SLACK)
     margins = [m for m in MARGINS if m > wanted] + [wanted]
-    while possible and margins and not search.stopped:
+    while possible and margins and not clock.stopped:
         work = prepare(search, drive, box, wanted)
         while work is not None and margins and prove(search, work, margins[0]):
-            search.bound = max(search.bound, search.value * (1.0 - margins.pop(0)))
+            clock.bound = max(clock.bound, search.value * (1.0 - margins.pop(0)))
             possible = search.best is not None
             if not possible:
                 break
@@ -86,21 +88,17 @@ def _searched(search: Search, start: Start | None) -> Outcome:
 
 def _first(search: Search) -> bool:
     """Lay out the best sizings; False if there is no train at all."""
-
-    def watch(event: Event) -> bool:
-        search.looked = event.evaluations
-        return search.goes_on()
-
-    progress = sizing(search.train, FIRST, Budget(), watch)
+    progress = sizing(search.train, FIRST, Budget(), search.clock.inner(values=False))
     for _, one in progress.found[:FIRST]:
-        if search.stopped:
+        if search.clock.stopped:
             break
         lay(search, teeth.pairs(search.train, teeth.best_point(search.train, one)), MARGINS[3])
-    return bool(progress.found) or progress.stopped
+    return bool(progress.found) or progress.clock.stopped
 
 
 def _outcome(search: Search, known: tuple[Any, ...], possible: bool) -> Outcome:
-    stopped, stages = search.stopped, len(search.train.stages)
+    clock, stages = search.clock, len(search.train.stages)
+    stopped = clock.stopped
     proof = {
         "method": "branch and bound, stopped early" if stopped else "exhausted",
         "arithmetic": "ratios, teeth and steps rational; boxes double, bounds with an allowance",
@@ -114,7 +112,7 @@ def _outcome(search: Search, known: tuple[Any, ...], possible: bool) -> Outcome:
             not stopped,
             infeasible=not stopped and not possible,
             proof=proof,
-            evaluations=search.looked,
+            evaluations=clock.evaluations,
             message="stopped before a layout was found" if stopped else "",
         )
     best = search.best
@@ -122,7 +120,7 @@ def _outcome(search: Search, known: tuple[Any, ...], possible: bool) -> Outcome:
     return Outcome(
         x,
         not stopped,
-        bound=search.bound if 0.0 < search.bound < math.inf else None,
+        bound=clock.bound if 0.0 < clock.bound < math.inf else None,
         proof=proof,
-        evaluations=search.looked,
+        evaluations=clock.evaluations,
     )

@@ -5,7 +5,6 @@ to pass, so that a search which is stopped has the bound of its last full pass.
 """
 
 import math
-import time
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -20,8 +19,9 @@ from gearopt.formulations.teeth.search import within
 from gearopt.formulations.together.prepare import chains, rest, useful
 from gearopt.formulations.together.tables import Drive, Make, Rest
 from gearopt.formulations.train import Train
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.kernels import kernel
-from gearopt.optimise.result import Budget, Event, Watch
+from gearopt.optimise.result import Budget
 from gearopt.optimise.terms import Array
 from gearopt.physics.gears import GearPair
 
@@ -53,49 +53,24 @@ class Design:
 class Search:
     """A search as it runs; its state is what a stopped one still knows.
 
-    best: the best design. bound: proven. looked: choices and cells looked at; nodes: by number of
-    stages chosen: made, and left after a look at their layout. trains: laid out to the end.
+    clock: counts choices and cells looked at; has the best value and what is proven. best: the best
+    design. Nodes by number of stages chosen: made, and left after a look at their layout. trains:
+    laid out to the end.
     """
 
     train: Train
     make: Make
-    budget: Budget
-    watch: Watch | None
+    clock: Clock
     seed: int
     best: Design | None = None
-    bound: float = 0.0
-    looked: int = 0
     trains: int = 0
     made: dict[int, int] = field(default_factory=dict)
     left: dict[int, int] = field(default_factory=dict)
-    stopped: bool = False
-    clock: float = field(default_factory=time.perf_counter)
 
     @property
     def value(self) -> float:
         """The best value, inf without a design."""
-        return math.inf if self.best is None else self.best.value
-
-    def goes_on(self) -> bool:
-        """Whether budget and watcher let it go on."""
-        seconds = time.perf_counter() - self.clock
-        late = self.budget.seconds is not None and seconds > self.budget.seconds
-        full = self.budget.evaluations is not None and self.looked >= self.budget.evaluations
-        best = None if self.best is None else self.best.value
-        event = Event(seconds, self.looked, best, self.bound or None)
-        told = self.watch is None or self.watch(event) is not False
-        self.stopped = self.stopped or late or full or not told
-        return not self.stopped
-
-    def watched(self, gap: float) -> tuple[Budget, Watch]:
-        """Budget and watch for a layout within this search."""
-        spent = self.looked
-
-        def watch(event: Event) -> bool:
-            self.looked = spent + event.evaluations
-            return self.goes_on()
-
-        return Budget(gap=gap), watch
+        return self.clock.best
 
 
 def cuts(value: float, margin: float) -> tuple[float, float]:
@@ -135,7 +110,7 @@ def lay(search: Search, pairs: tuple[GearPair, ...], margin: float) -> bool:
         if not _below(search, box, order, margin):
             continue
         one = replace(box, slabs=order.slabs)
-        budget, watch = search.watched(min(margin, CLOSE))
+        budget, watch = Budget(gap=min(margin, CLOSE)), search.clock.inner(values=False)
         outcome = layout.problem(one).methods["exact"](None, budget, search.seed, watch)
         proven = proven and outcome.finished
         if outcome.x is not None:
@@ -148,6 +123,7 @@ def keep(search: Search, pairs: tuple[GearPair, ...], order: Arrangement, angles
     text = layout.problem(replace(search.make(pairs), slabs=order.slabs))
     value = float(text.batch(angles[None]).F[0, 0])
     if value < search.value:
+        search.clock.best = value
         search.best = Design(value, pairs, order.slabs, angles)
 
 
@@ -162,11 +138,11 @@ def _below(search: Search, box: Gearbox, order: Arrangement, margin: float) -> b
     cells[0, 0], cells[0, 1] = -math.pi, math.pi
     cells[0, :, 0] = turns(box)
     count, best, floor = 1, aim, math.inf
-    while count and best == aim and search.goes_on():
+    while count and best == aim and search.clock.tell():
         count, best, floor, nodes, _ = kernels.branch(
             shape, 0, cells, bounds, count, best, floor, 1.0 - cut / aim, 20_000, theta
         )
-        search.looked += nodes
+        search.clock.evaluations += nodes
     return count > 0 or best < aim or floor < cut
 
 
@@ -184,7 +160,7 @@ class Work:
 def prepare(search: Search, drive: Drive, box: Gearbox, margin: float) -> Work | None:
     """The tables for all cuts down to a margin; None if stopped. box: one of any sizes."""
     fewer = useful(drive, search.value * (1.0 - margin))
-    tables = rest(fewer, search.goes_on)
+    tables = rest(fewer, search.clock.tell)
     # Before all shafts are there, nothing but the sides of the box tells the directions apart.
     bare = turns(replace(box, places=(), keep_outs=(), level=()))
     ranges = [turns(box)] + [bare] * (drive.kind.size - 1)
@@ -215,7 +191,7 @@ def prove(search: Search, work: Work, margin: float) -> bool:
             stack.append((stage - 1, nodes, own, np.array([0, -1])))
         else:
             _last_looks(search, work.drive, nodes, own, margin)
-        if not search.goes_on() or search.value < STALE * work.value:
+        if not search.clock.tell() or search.value < STALE * work.value:
             return False
     return True
 
@@ -226,8 +202,8 @@ def _last_looks(search: Search, drive: Drive, nodes: Nodes, bounds: Array, margi
         teeth = tuple((round(drive.z1[p]), round(drive.z2[p])) for p, _ in node)
         if value < search.value * (1.0 - margin) and within(search.train, teeth):
             proven = lay(search, sized(search.train, drive, node), margin)
-            search.stopped = search.stopped or not proven
-        if search.stopped:
+            search.clock.stopped = search.clock.stopped or not proven
+        if search.clock.stopped:
             return
 
 
@@ -247,7 +223,7 @@ def _children(
     made, looked = kernels.expand(
         work.drive, work.rest, stage, parents, place, stop, levels[0], CHOICES, nodes, bounds
     )
-    search.looked += looked
+    search.clock.evaluations += looked
     search.made[stage] = search.made.get(stage, 0) + made
     order = np.argsort(bounds[:made], kind="stable")
     nodes, bounds = nodes[order], bounds[order]
@@ -268,8 +244,8 @@ def _children(
             alive,
             found,
         )
-        search.looked += cells
-        if not search.goes_on():
+        search.clock.evaluations += cells
+        if not search.clock.tell():
             break
     alive[start:] = 2
     use = np.nonzero(alive)[0]

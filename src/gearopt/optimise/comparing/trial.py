@@ -7,14 +7,13 @@ not paced, with steps of its own.
 """
 
 import sys
-import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 from gearopt.errors import GearoptError, SolveError
 from gearopt.optimise.certificate import Verdict
-from gearopt.optimise.clock import following, in_part, of_problem
+from gearopt.optimise.clock import Clock, following, in_part, of_problem
 from gearopt.optimise.comparing.comparison import Run
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.problem import Problem
@@ -79,9 +78,9 @@ def enter(method: str, model: Callable[[str], Model]) -> Entry:
     times = []
     try:
         for _ in range(2):
-            clock = time.perf_counter()
+            clock = Clock()
             outcome: Outcome = run(problem, WARM, 0, None)
-            times.append(time.perf_counter() - clock)
+            times.append(clock.seconds)
     except SolveError as refusal:
         return replace(entry, refused=str(refusal))
     return replace(
@@ -103,7 +102,7 @@ def attempt(entry: Entry, seed: int, budget: Budget, told: Callable[[Event], boo
     """One run; None where `told` ended it. What is wrong with an answer is the run's message."""
     problem, method = entry.problem, entry.method
     assert problem is not None
-    clock = time.perf_counter()
+    clock = Clock()
     stopped = False
 
     def goes_on(event: Event) -> bool:
@@ -116,10 +115,10 @@ def attempt(entry: Entry, seed: int, budget: Budget, told: Callable[[Event], boo
     watch = of_problem(in_part(followed, unit), problem)
     try:
         outcome = method_of(problem, method)(problem, budget, seed, watch)
-        seconds = time.perf_counter() - clock
+        seconds = clock.seconds
         verdict = judge(problem, method, outcome, GAP)
     except GearoptError as broken:
-        seconds = time.perf_counter() - clock
+        seconds = clock.seconds
         outcome, verdict = Outcome(None), Verdict("failed", message=str(broken))
     if stopped:
         return None

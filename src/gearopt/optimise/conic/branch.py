@@ -11,6 +11,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.conic.canonical import Canonical
 from gearopt.optimise.conic.cone_bound import Leaf, emptiness, lagrangian
 from gearopt.optimise.conic.interior import interior
@@ -18,14 +19,12 @@ from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.conic.propagate import cutoff, propagate
 from gearopt.optimise.conic.relaxation import (
     Found,
-    GoesOn,
     candidates,
     judged,
-    left,
     multipliers,
 )
 from gearopt.optimise.conic.scaling import Scaled, scaled
-from gearopt.optimise.result import Budget, Outcome
+from gearopt.optimise.result import Outcome
 from gearopt.optimise.scale import gap, zero_scale
 from gearopt.optimise.terms import Array
 
@@ -38,29 +37,31 @@ SLACK = 1e-9  # feasibility asked of a design that is kept; the certificate bear
 class _Search:
     """What the search knows; it has state because nodes share the best design.
 
-    x, value: best design so far; scale: the cost's own there. leaves: closed nodes. spent:
-    relaxations solved.
+    clock: counts relaxations solved. x: best design so far; scale: the cost's own there. leaves:
+    closed nodes.
     """
 
     problem: Conic
     data: Canonical
     one: Scaled
-    deadline: float
+    clock: Clock
     x: Array | None = None
-    value: float = np.inf
     scale: float = 0.0
     leaves: list[Leaf] = field(default_factory=list)
-    spent: int = 0
+
+    @property
+    def value(self) -> float:
+        """The cost of the best design, inf without one."""
+        return self.clock.best
 
 
-def branch(
-    problem: Conic, data: Canonical, root: Found, budget: Budget, deadline: float, goes_on: GoesOn
-) -> Outcome:
-    """Search until every leaf is closed within `budget.gap` of the best design."""
+def branch(problem: Conic, data: Canonical, root: Found, clock: Clock) -> Outcome:
+    """Search until every leaf is closed within the budget's gap of the best design."""
     if root.leaf.ray:
         return Outcome(None, infeasible=True, leaves=(root.leaf,), evaluations=1)
-    search = _Search(problem, data, scaled(data, root.scale), deadline)
-    most = NODES if budget.evaluations is None else budget.evaluations
+    search = _Search(problem, data, scaled(data, root.scale), clock)
+    if clock.budget.evaluations is None:
+        clock.budget = replace(clock.budget, evaluations=NODES)
     order = itertools.count()
     first, least = _closed(search, root.leaf.lower, root.leaf.upper)
     if root.leaf.y is not None and root.least > least:
@@ -69,12 +70,13 @@ def branch(
     finished = True
     while heap:
         least, _, leaf = heapq.heappop(heap)
-        done = gap(search.value, least, search.scale) <= max(budget.gap, SLACK)
+        done = gap(search.value, least, search.scale) <= max(clock.budget.gap, SLACK)
         halves = [] if done else _halves(data, leaf)
         if not halves:
             search.leaves.append(leaf)
             continue
-        if search.spent >= most or not goes_on(search.spent, search.value, least):
+        clock.bound = least
+        if not clock.tell():
             search.leaves += [leaf, *(item[2] for item in heap)]
             finished = False
             break
@@ -86,7 +88,7 @@ def branch(
         finished,
         infeasible=search.x is None and finished,
         leaves=tuple(search.leaves),
-        evaluations=search.spent,
+        evaluations=clock.evaluations,
         message="" if finished else "branch and bound stopped early",
     )
 
@@ -103,13 +105,13 @@ def _closed(search: _Search, lower: Array, upper: Array) -> tuple[Leaf, float]:
     box = propagate(data, lower, upper, cutoff(search.value))
     if box is None:
         return leaf, np.inf
-    search.spent += 1
+    search.clock.evaluations += 1
     ends = [
         np.where(np.isin(np.arange(len(lower)), list(data.allowed)), box[k], (lower, upper)[k])
         for k in (0, 1)
     ]
     one = search.one.within(*ends)
-    point = interior(one, left(search.deadline))
+    point = interior(one, search.clock.left.seconds)
     if point.ray:
         y = multipliers(one, point)
         empty = emptiness(data, *box, leaf.x, y) > 0.0
@@ -162,8 +164,8 @@ def _fixed(search: _Search, rounded: Array, lower: Array, upper: Array) -> None:
     if propagate(search.data, low, high, search.value) is None:
         return
     one = search.one.within(low, high)
-    point = interior(one, left(search.deadline))
-    search.spent += 1
+    point = interior(one, search.clock.left.seconds)
+    search.clock.evaluations += 1
     if point.ray:
         return
     for candidate in candidates(one, point):
@@ -174,7 +176,8 @@ def _take(search: _Search, z: Array) -> None:
     x = np.clip(z, search.data.lower, search.data.upper)[search.data.user]
     value, excess = judged(search.problem, x)
     if excess <= SLACK and value < search.value:
-        search.x, search.value, search.scale = x, value, zero_scale(search.problem, x)
+        search.x, search.clock.best = x, value
+        search.scale = zero_scale(search.problem, x)
 
 
 def _halves(data: Canonical, leaf: Leaf) -> list[tuple[Array, Array]]:

@@ -4,13 +4,13 @@ The best point is that of the least cost among feasible ones, the best multiplie
 highest certified bound; they need not come from the same round.
 """
 
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from gearopt.optimise.certificate import FARKAS
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.conic.canonical import Canonical, shifted
 from gearopt.optimise.conic.cone_bound import Leaf, emptiness, lagrangian
 from gearopt.optimise.conic.interior import Point, interior, polished
@@ -26,9 +26,6 @@ ENOUGH = 1e-8  # with this one the second idle round is the last
 PATIENCE = 4  # rounds without a better gap, once there is one
 TIGHT = 1e-11  # a row violated by more is repaired; the certificate bears 1e-8
 MARGIN = 1e-6  # of the strictly feasible point that a repair moves towards
-
-
-GoesOn = Callable[[int, float, float], bool]
 
 
 @dataclass(frozen=True)
@@ -55,33 +52,36 @@ class Found:
         return gap(self.value, self.least)
 
 
-def solved(problem: Conic, data: Canonical, deadline: float, goes_on: GoesOn) -> Found:
+def solved(problem: Conic, data: Canonical, clock: Clock) -> Found:
     """The continuous relaxation of the whole box, in as many scales as help.
 
-    goes_on(spent, best, bound) is asked between rounds.
+    The clock is told between rounds.
     """
     start = Leaf(data.lower, data.upper, np.zeros(len(data.c)), None)
     best = Found(start, equal(data), start.x)
     scale, idle = best.scale, 0
     for _ in range(ROUNDS):
         before = best.gap
-        best, z = _round(problem, data, scaled(data, scale), best, deadline)
-        if best.leaf.ray or best.gap <= CLOSED or not goes_on(best.steps, best.value, best.least):
+        best, z = _round(problem, data, scaled(data, scale), best, clock)
+        if best.leaf.ray or best.gap <= CLOSED:
+            break
+        clock.evaluations, clock.best, clock.bound = best.steps, best.value, best.least
+        if not clock.tell():
             break
         idle = idle + 1 if best.gap >= 0.5 * before else 0
         if idle > (1 if best.gap <= ENOUGH else PATIENCE) or not np.isfinite(z).all():
             break
         scale = after(data, scale, z)
     if best.x is not None and best.excess > TIGHT and not best.leaf.ray:
-        best = _repaired(problem, data, best, deadline)
+        best = _repaired(problem, data, best, clock)
     return best
 
 
 def _round(
-    problem: Conic, data: Canonical, one: Scaled, best: Found, deadline: float
+    problem: Conic, data: Canonical, one: Scaled, best: Found, clock: Clock
 ) -> tuple[Found, Array]:
     """One solve in one scale; the best so far, and the last canonical point, wrong as it may be."""
-    point = interior(one, left(deadline))
+    point = interior(one, clock.left.seconds)
     best = replace(best, steps=best.steps + point.steps, words=point.words)
     z = one.scale.column * point.x
     if point.ray:
@@ -142,14 +142,14 @@ def judged(problem: Conic, x: Array) -> tuple[float, float]:
     return (value, worst) if np.isfinite(value) else (np.inf, np.inf)
 
 
-def _repaired(problem: Conic, data: Canonical, best: Found, deadline: float) -> Found:
+def _repaired(problem: Conic, data: Canonical, best: Found, clock: Clock) -> Found:
     """Move towards a point that meets every limit with a margin, just as far as needed.
 
     The rows are convex, so a step of excess/(excess + MARGIN) is enough but for rounding.
     """
     assert best.x is not None
     one = scaled(shifted(problem, data, MARGIN), best.scale)
-    point = interior(one, left(deadline))
+    point = interior(one, clock.left.seconds)
     if not point.solved:
         return best
     inner = np.clip(one.scale.column * point.x, data.lower, data.upper)[data.user]
@@ -166,8 +166,3 @@ def _repaired(problem: Conic, data: Canonical, best: Found, deadline: float) -> 
 def _given(leaf: Leaf) -> Array:
     assert leaf.y is not None
     return leaf.y
-
-
-def left(deadline: float) -> float | None:
-    """Seconds until a deadline, None where there is none."""
-    return deadline - time.perf_counter() if np.isfinite(deadline) else None

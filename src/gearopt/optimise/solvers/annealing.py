@@ -6,14 +6,13 @@ shrink with the temperature; discrete coordinates move by at least one value. Th
 point and the last states of the chains are polished (`polish`).
 """
 
-import time
-
 import numpy as np
 
 from gearopt.optimise import polish
 from gearopt.optimise.box import Box, box, violation
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.result import Budget, Event, Outcome, Watch
+from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.terms import Array
 
 CHAINS = 32
@@ -37,43 +36,41 @@ SETTINGS = {
 
 def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
     """Anneal CHAINS chains; the best feasible point ever visited is polished."""
-    clock, rng, space = time.perf_counter(), np.random.default_rng(seed), box(problem)
-    last = polish.prepared(problem, budget, clock, watch)
-    own = last.sampling
-    sweeps = SWEEPS if own.evaluations is None else max(1, own.evaluations // CHAINS - 1)
-    unit = rng.random((CHAINS, len(space.low)))
+    clock, rng, space = Clock(budget, watch), np.random.default_rng(seed), box(problem)
+    last = polish.prepared(problem, clock)
+    own, most = polish.sampling(clock, last.skipped is None)
+    chains = CHAINS if most is None else min(CHAINS, max(1, most))
+    sweeps = SWEEPS if most is None else most // chains - 1
+    unit = rng.random((chains, len(space.low)))
     unit[0] = space.unit(problem.bounds()[2][None])[0]
     value, excess = violation(problem, space.points(unit))
     scale = max(abs(float(value[0])), 1e-300) if np.isfinite(value[0]) else 1.0
     positive = bool((value[np.isfinite(value)] > 0).all())
-    best, least = _kept(space, unit, value, excess, None, np.inf)
-    finished = told = True
-    for sweep in range(sweeps):
+    best, own.best = _kept(space, unit, value, excess, None, np.inf)
+    own.evaluations = chains
+    sweep = 0
+    while own.tell() and sweep < sweeps:
         done = sweep / sweeps
         temperature = HOT * (COLD / HOT) ** done
         moved = _moved(rng, space, unit, LONGEST * (SHORTEST / LONGEST) ** done)
         new_value, new_excess = violation(problem, space.points(moved))
-        best, least = _kept(space, moved, new_value, new_excess, best, least)
+        best, own.best = _kept(space, moved, new_value, new_excess, best, own.best)
+        own.evaluations += chains
         weight = PENALTY * HARDER**done
         energy = _energy(value, excess, weight, scale, positive)
         with np.errstate(invalid="ignore", over="ignore"):
             # two points without a value: no rise is known
             rise = _energy(new_value, new_excess, weight, scale, positive) - energy
             chance = np.exp(-np.maximum(np.nan_to_num(rise, nan=np.inf), 0.0) / temperature)
-        accept = rng.random(CHAINS) < chance
+        accept = rng.random(chains) < chance
         unit[accept], value[accept] = moved[accept], new_value[accept]
         excess[accept] = new_excess[accept]
-        seconds = time.perf_counter() - clock
-        event = Event(seconds, (sweep + 2) * CHAINS, least if np.isfinite(least) else None)
-        told = watch is None or watch(event) is not False
-        if not told or (own.seconds is not None and seconds > own.seconds):
-            finished = False
-            break
+        sweep += 1
     message = "" if best is not None else "no feasible point was visited"
-    found = Outcome(best, finished, evaluations=(sweep + 2) * CHAINS, message=message)
+    found = Outcome(best, not own.stopped, evaluations=own.evaluations, message=message)
     energy = _energy(value, excess, PENALTY * HARDER, scale, positive)
     order = np.argsort(np.nan_to_num(energy, nan=np.inf), kind="stable")
-    return polish.polished(last, found, space.points(unit[order])) if told else found
+    return polish.polished(last, found, space.points(unit[order])) if not own.refused else found
 
 
 def _moved(rng: np.random.Generator, space: Box, unit: Array, step: float) -> Array:

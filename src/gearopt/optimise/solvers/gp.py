@@ -5,7 +5,6 @@ re-solved without building anything again. cvxpy's own rules (DGP) check the for
 takes logarithms, its own solver finds the point: nothing is shared with `form` and `ipopt`.
 """
 
-import time
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,9 +12,10 @@ import numpy as np
 
 from gearopt.errors import SolveError
 from gearopt.optimise.blame import blaming, quiet
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.evaluation import called
 from gearopt.optimise.problem import Problem, one_objective
-from gearopt.optimise.result import Budget, Event, Outcome, Watch
+from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.terms import Array, checked, flatten
 
 # Clarabel's defaults give 1e-7 on our drives. Where it cannot reach the first it is asked for the
@@ -42,31 +42,28 @@ def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Out
     """Solve a geometric program to its global optimum; SolveError where the text is none."""
     import cvxpy as cp
 
-    clock = time.perf_counter()
-    if watch is not None and watch(Event(0.0, 0)) is False:
+    clock = Clock(budget, watch)
+    if not clock.tell():
         return Outcome(None, finished=False, message="stopped before it began")
     model = _model(problem)
     _set(problem, model)
     limit: dict[str, float] = {}
-    steps, most = 0, budget.evaluations
     for tolerance in TOLERANCES:
-        if budget.seconds is not None:
-            limit["time_limit"] = max(budget.seconds - (time.perf_counter() - clock), 1e-3)
-        if most is not None:
-            limit["max_iter"] = max(most - steps, 1)
+        left = clock.left
+        if left.seconds is not None:
+            limit["time_limit"] = max(left.seconds, 1e-3)
+        if left.evaluations is not None:
+            limit["max_iter"] = left.evaluations
         accuracy = {f"tol_{name}": tolerance for name in ("gap_abs", "gap_rel", "feas")}
         try:
             with quiet():  # "may be inaccurate": the certificate says how much
                 model.problem.solve(gp=True, solver=cp.CLARABEL, **accuracy, **limit)
         except cp.error.SolverError as broken:
             raise SolveError(f"gp on {problem.name}: {broken}") from broken
-        steps += int(model.problem.solver_stats.num_iters or 0)
-        full = most is not None and steps >= most
-        if full or model.problem.status != cp.OPTIMAL_INACCURATE:
+        clock.evaluations += int(model.problem.solver_stats.num_iters or 0)
+        if clock.over or model.problem.status != cp.OPTIMAL_INACCURATE:
             break
-    status = model.problem.status
-    late = budget.seconds is not None and time.perf_counter() - clock > budget.seconds
-    late = late or full
+    status, late, steps = model.problem.status, clock.over, clock.evaluations
     x = _point(problem, model)
     if x is None:
         return Outcome(None, finished=not late, evaluations=steps, message=f"Clarabel: {status}")

@@ -9,7 +9,6 @@ Claims infeasibility only with the multipliers of the least-violation problem, w
 turns into a proof where the form is convex.
 """
 
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
@@ -19,11 +18,12 @@ import numpy as np
 
 from gearopt.errors import SolveError
 from gearopt.optimise import tape
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.epigraph import Split, split
 from gearopt.optimise.form import Form, form, values, violation
 from gearopt.optimise.nonlinear import OPTIONS, program
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.result import Budget, Event, Outcome, Watch
+from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.scaled_form import Unit, scaled, unit_at
 from gearopt.optimise.terms import Array
 
@@ -61,14 +61,10 @@ class _Run:
         self,
         rows: tuple[int, int],
         values: Callable[[Array], tuple[float, Array]],
-        clock: float,
-        budget: Budget,
-        watch: Watch | None,
+        clock: Clock,
         unit: Callable[[float], float],
     ):
-        self.rows, self.values, self.unit = rows, values, unit
-        self.clock, self.budget, self.watch = clock, budget, watch
-        self.evaluations, self.stopped = 0, False
+        self.rows, self.values, self.clock, self.unit = rows, values, clock, unit
         self.best: Array | None = None
         self.least = np.inf
         self.scale: Unit | None = None
@@ -76,10 +72,9 @@ class _Run:
 
     def note(self, y: Array) -> bool:
         """Take an iterate, in Ipopt's units; whether the run goes on."""
-        self.evaluations += 1
+        self.clock.evaluations += 1
         self.keep(y if self.scale is None else y * self.scale.variables)
-        self.stopped = not self.goes_on()
-        return not self.stopped
+        return self.goes_on()
 
     def keep(self, y: Array) -> None:
         """Remember a point that is feasible and lower than those before."""
@@ -87,22 +82,14 @@ class _Run:
         worst = max(rows[:count].max(initial=0), np.abs(rows[count:]).max(initial=0))
         if worst <= ACCEPTED and value < self.least:
             self.least, self.best = value, y
+            self.clock.best = self.unit(value)
 
     def goes_on(self) -> bool:
         """Whether budget and watcher let the run go on."""
-        seconds = time.perf_counter() - self.clock
-        most_s, most_n = self.budget.seconds, self.budget.evaluations
-        if most_s is not None and seconds > most_s:
-            return False
-        if most_n is not None and self.evaluations >= most_n:
-            return False
-        if self.watch is None:
-            return True
-        best = None if self.best is None else self.unit(self.least)
         try:
-            return self.watch(Event(seconds, self.evaluations, best)) is not False
+            return self.clock.tell()
         except BaseException as raised:
-            self.raised = raised
+            self.raised, self.clock.stopped = raised, True
             return False
 
 
@@ -119,7 +106,7 @@ def run(
     none of them is lower. SolveError for discrete variables. Ipopt is deterministic: the seed
     changes nothing.
     """
-    clock = time.perf_counter()
+    clock = Clock(budget, watch)
     for variable, name in problem.columns:
         if variable.discrete:
             raise SolveError(f"ipopt takes continuous variables only; {name} is discrete")
@@ -128,38 +115,38 @@ def run(
     y0 = shape.to_y(np.clip(guess if start is None else start, lower, upper))
     low, high = shape.to_y(lower), shape.to_y(upper)
     rows = (shape.derivatives.numel_out(1), shape.derivatives.numel_out(2))
-    following = _Run(rows, partial(values, problem, shape), clock, budget, watch, shape.objective)
+    following = _Run(rows, partial(values, problem, shape), clock, shape.objective)
     following.keep(y0)
     point = _ipopt(problem, shape, y0, low, high, following)
-    if not following.stopped and violation(problem, shape, point.y) > STUCK:
+    if not clock.stopped and violation(problem, shape, point.y) > STUCK:
         point, least = _least_violation(problem, shape, point, low, high, following)
-        if least > STUCK and not following.stopped and following.best is None:
+        if least > STUCK and not clock.stopped and following.best is None:
             return Outcome(
                 shape.to_x(point.y),
                 lam_g=point.lam_g,
                 lam_h=point.lam_h,
                 infeasible=True,
-                evaluations=following.evaluations,
+                evaluations=clock.evaluations,
                 message=f"Ipopt: {point.status}; the least violation found is {least:.3g}",
             )
         point = _ipopt(problem, shape, point.y, low, high, following)
     for _ in range(AGAIN):
         assert following.scale is not None
         there = unit_at(problem, shape, point.y).objective
-        if following.stopped or there >= SMALLER * following.scale.objective:
+        if clock.stopped or there >= SMALLER * following.scale.objective:
             break
         point = _ipopt(problem, shape, point.y, low, high, following)
     if following.raised is not None:
         raise following.raised
     lost = _lost(problem, shape, point, following)
-    best = following.best if following.stopped or lost else point.y
+    best = following.best if clock.stopped or lost else point.y
     message = "" if point.status == "Solve_Succeeded" else f"Ipopt: {point.status}"
     return Outcome(
         None if best is None else np.clip(shape.to_x(best), lower, upper),
-        finished=not following.stopped,
+        finished=not clock.stopped,
         lam_g=point.lam_g,
         lam_h=point.lam_h,
-        evaluations=following.evaluations,
+        evaluations=clock.evaluations,
         message="Ipopt ended higher than a point it passed, which is kept" if lost else message,
     )
 
@@ -218,7 +205,7 @@ def _lost(problem: Problem, shape: Form, point: _Point, following: _Run) -> bool
     A violation of ACCEPTED lowers the objective of a solved problem by at most its multipliers
     times it. An end point that is not feasible is worse than any that is.
     """
-    if following.best is None or following.stopped:
+    if following.best is None or following.clock.stopped:
         return False
     value = values(problem, shape, point.y)[0]
     prices = np.abs(np.concatenate([point.lam_g, point.lam_h]))
@@ -247,8 +234,8 @@ def _least_violation(
     solver, monitor = problem.memo[key]
 
     def goes_on(_: Array) -> bool:
-        outer.stopped = outer.stopped or not outer.goes_on()
-        return not outer.stopped
+        outer.clock.evaluations += 1
+        return outer.goes_on()
 
     monitor.follow = goes_on
     start = np.where(np.isfinite(point.y), point.y, 0.0)

@@ -5,15 +5,16 @@ objective, polished (`polish`); where there are several, the rest of the front c
 nothing is polished.
 """
 
-import time
+import math
 from typing import Any
 
 import numpy as np
 
 from gearopt.optimise import polish
 from gearopt.optimise.box import Box, box
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.result import Budget, Event, Outcome, Watch
+from gearopt.optimise.result import Budget, Outcome, Watch
 
 POPULATION = 100
 GENERATIONS = 300  # where the budget names no evaluations
@@ -35,7 +36,7 @@ def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Out
     from pymoo.algorithms.moo.nsga2 import NSGA2
     from pymoo.core.problem import Problem as PymooProblem
 
-    clock, space, rows = time.perf_counter(), box(problem), problem.rows
+    clock, space, rows = Clock(budget, watch), box(problem), problem.rows
 
     class Batch(PymooProblem):  # type: ignore[misc]
         """Our batch as pymoo asks for it: F, G <= 0, with equalities as a pair of bounds."""
@@ -56,27 +57,21 @@ def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Out
             out["F"] = np.nan_to_num(found.F, nan=1e300, posinf=1e300)
             out["G"] = np.nan_to_num(np.hstack([found.G - 1.0, equal]), nan=1e300, posinf=1e300)
 
-    last = polish.prepared(problem, budget, clock, watch)
-    own = last.sampling
-    size = min(POPULATION, own.evaluations or POPULATION)
-    generations = GENERATIONS if own.evaluations is None else own.evaluations // size
+    last = polish.prepared(problem, clock)
+    own, most = polish.sampling(clock, last.skipped is None)
+    size = min(POPULATION, most or POPULATION)
+    generations = GENERATIONS if most is None else most // size
     algorithm = NSGA2(pop_size=size)
     algorithm.setup(Batch(), seed=seed, termination=("n_gen", max(1, generations)))
-    finished = told = True
-    while algorithm.has_next():
+    while algorithm.has_next() and not own.stopped:
         algorithm.next()
-        seconds = time.perf_counter() - clock
-        late = own.seconds is not None and seconds > own.seconds
-        best = min((float(one.F[0]) for one in algorithm.opt if one.feas), default=None)
-        event = Event(seconds, int(algorithm.evaluator.n_eval), best)
-        told = watch is None or watch(event) is not False
-        if late or not told:
-            finished = not algorithm.has_next()
-            break
-    found = _front(algorithm, space, len(rows.objectives) > 1, finished)
+        own.evaluations = int(algorithm.evaluator.n_eval)
+        own.best = min((float(one.F[0]) for one in algorithm.opt if one.feas), default=math.inf)
+        own.tell()
+    found = _front(algorithm, space, len(rows.objectives) > 1, not algorithm.has_next())
     everyone = sorted(algorithm.pop, key=lambda one: (float(one.CV[0]), float(one.F[0])))
     starts = space.points(np.array([one.X for one in everyone]))
-    return polish.polished(last, found, starts) if told else found
+    return polish.polished(last, found, starts) if not own.refused else found
 
 
 def _front(algorithm: Any, space: Box, several: bool, finished: bool) -> Outcome:

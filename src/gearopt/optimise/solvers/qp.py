@@ -6,17 +6,17 @@ repeat others (both fail on those). Where no point meets every row, the least-sq
 found, whose residuals are the multipliers of a conflict.
 """
 
-import time
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from gearopt.errors import SolveError
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.form import Form
 from gearopt.optimise.problem import Problem, one_objective
 from gearopt.optimise.quadratic import Curvature, curvature, hessian_of, misfit, natural
-from gearopt.optimise.result import Budget, Event, Outcome, Watch
+from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.scale import sizes
 from gearopt.optimise.terms import Array
 
@@ -29,6 +29,8 @@ SOLVERS: dict[str, dict[str, Any]] = {
     "daqp": {"daqp": TOLERANCES},
     "qrqp": {"print_iter": False, "print_header": False, "print_info": False},
 }
+EARLY = "stopped before the end"
+
 RANDOM = False
 COUNTS = "quadratic program solved"
 SETTINGS = {"solvers": ", ".join(SOLVERS), **TOLERANCES}
@@ -63,29 +65,26 @@ def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Out
     The solvers are deterministic, and cannot be interrupted: `watch` and the budget are asked
     before each, and `watch` with the answer.
     """
-    clock = time.perf_counter()
+    clock = Clock(budget, watch)
     shape, curved = _checked(problem)
     program = _program(problem, shape)
     words: list[str] = []
-
-    def goes_on(best: float | None = None) -> bool:
-        seconds = time.perf_counter() - clock
-        late = budget.seconds is not None and seconds > budget.seconds
-        event = Event(seconds, len(words), best)
-        return not late and (watch is None or watch(event) is not False)
-
     for name in (*SOLVERS, "daqp"):
-        if not goes_on():
-            return Outcome(None, False, evaluations=len(words), message="stopped before the end")
+        if not clock.tell():
+            return Outcome(None, False, evaluations=len(words), message=EARLY)
         given = np.arange(len(program.most))
         if len(words) == len(SOLVERS) and len(given := _independent(program)) == len(program.most):
             break
         x, lam, status = _solved(problem, name, program, curved, given)
         words.append(f"{name}: {status or 'a row is not met'}")
+        clock.evaluations = len(words)
         if status == "" and program.violation(x) <= VIOLATED:
-            finished = goes_on(float(problem.batch(x[None]).F[0, 0]))
+            clock.best = float(problem.batch(x[None]).F[0, 0])
+            clock.tell()
             lam_g, lam_h = lam[: program.count], lam[program.count :]
-            return Outcome(x, finished, lam_g, lam_h, evaluations=len(words))
+            return Outcome(x, not clock.refused, lam_g, lam_h, evaluations=len(words))
+    if not clock.tell():
+        return Outcome(None, False, evaluations=len(words), message=EARLY)
     return _nearest(problem, program, len(words), "; ".join(words))
 
 

@@ -9,15 +9,15 @@ tolerance is refused, because SCIP then calls anything optimal.
 """
 
 import math
-import time
 from typing import Any
 
 import numpy as np
 
 from gearopt.errors import SolveError
 from gearopt.optimise import discrete, posynomial
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.result import Budget, Event, Outcome, Watch
+from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.terms import Array
 
 FEW = 300  # values of an integer that are worth a binary each
@@ -32,18 +32,17 @@ SETTINGS = {"limits/gap": GAP, "numerics/feastol": FEASIBILITY, "binaries up to"
 
 def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
     """Solve by SCIP; SolveError where the text is no posynomial or pyscipopt is not installed."""
-    clock = time.perf_counter()
+    clock = Clock(budget, watch)
     model = posynomial.read(problem)
     scip, logs = _model(problem, model, budget, seed)
-    if budget.seconds is not None:
-        left = budget.seconds - (time.perf_counter() - clock)
-        scip.setParam("limits/time", max(left, 0.0))
-    follower = _follow(scip, watch, _scale(problem), clock)
+    if (left := clock.left.seconds) is not None:
+        scip.setParam("limits/time", left)
+    _follow(scip, clock, _scale(problem))
     scip.optimize()
     status, nodes = str(scip.getStatus()), int(scip.getNTotalNodes())
     if status == "infeasible":
         return Outcome(None, evaluations=nodes, message="SCIP claims infeasible; not proven by us")
-    finished = status in ("optimal", "gaplimit") and not follower.stopped
+    finished = status in ("optimal", "gaplimit") and not clock.refused
     if not scip.getNSols():
         return Outcome(None, finished, evaluations=nodes, message=f"SCIP: {status}")
     if scip.getPrimalbound() < SMALL:
@@ -160,16 +159,14 @@ def _point(problem: Problem, logs: Array) -> Array:
     return point
 
 
-def _follow(scip: Any, watch: Watch | None, scale: float, clock: float) -> Any:
-    """An event handler that tells `watch` of progress and stops SCIP when it says so."""
+def _follow(scip: Any, clock: Clock, scale: float) -> None:
+    """Have SCIP tell a clock of its progress, and stop where its watcher wants no more."""
     from pyscipopt import SCIP_EVENTTYPE, Eventhdlr
 
     kinds = (SCIP_EVENTTYPE.NODESOLVED, SCIP_EVENTTYPE.BESTSOLFOUND)
 
     class Follower(Eventhdlr):  # type: ignore[misc]
-        """It has state because SCIP calls it."""
-
-        stopped = False
+        """What SCIP calls."""
 
         def eventinit(self) -> None:
             for kind in kinds:
@@ -180,14 +177,11 @@ def _follow(scip: Any, watch: Watch | None, scale: float, clock: float) -> Any:
                 self.model.dropEvent(kind, self)
 
         def eventexec(self, happened: Any) -> None:
-            seconds = time.perf_counter() - clock
             value = self.model.getPrimalbound()
-            best = scale * value if value < self.model.infinity() else None
-            event = Event(seconds, int(self.model.getNTotalNodes()), best)
-            if watch is not None and watch(event) is False:
-                self.stopped = True
+            clock.best = scale * value if value < self.model.infinity() else math.inf
+            clock.evaluations = int(self.model.getNTotalNodes())
+            clock.tell()
+            if clock.refused:
                 self.model.interruptSolve()
 
-    follower = Follower()
-    scip.includeEventhdlr(follower, "follower", "progress and interruption")
-    return follower
+    scip.includeEventhdlr(Follower(), "follower", "progress and interruption")

@@ -13,9 +13,9 @@ from gearopt.formulations.packing import points, text
 from gearopt.formulations.packing.container_bound import bound
 from gearopt.formulations.packing.design import describe
 from gearopt.formulations.packing.plan import Plan
-from gearopt.formulations.packing.state import Spent, lateness, ready
+from gearopt.formulations.packing.state import lateness, ready
 from gearopt.optimise.certificate import reconcile
-from gearopt.optimise.clock import in_part
+from gearopt.optimise.clock import Clock, in_part
 from gearopt.optimise.comparing.trial import Model
 from gearopt.optimise.explaining.explanation import Explanation
 from gearopt.optimise.problem import Problem
@@ -56,11 +56,9 @@ def solve(scene: Scene, ask: Ask) -> Result:
 def _bounded(plan: Plan, result: Result, ask: Ask) -> Result:
     """A result with the computed bound of its plan, in what is left of the time, or MOMENT."""
     left = ask.budget.less(result.seconds).seconds
-    spent = Spent(
-        Budget(), ask.watch, evaluations=result.evaluations, best=result.value or math.inf
-    )
-    late = lateness(spent.clock, None if left is None else max(left, MOMENT), spent.goes_on)
-    floor = bound(plan, late)
+    clock = Clock(Budget(), ask.watch)
+    clock.evaluations, clock.best = result.evaluations, result.value or math.inf
+    floor = bound(plan, lateness(clock, None if left is None else max(left, MOMENT)))
     relaxation = replace(result, objective={"value": None}, bound=floor.value)
     relaxation = replace(relaxation, status="feasible", proof=packing.proof(floor))
     return reconcile(result, relaxation, ask.gap)

@@ -1,7 +1,6 @@
 """The exact methods: every train looked at, or only those that can be the best."""
 
 import math
-import time
 from typing import Any
 
 import numpy as np
@@ -9,8 +8,9 @@ import numpy as np
 from gearopt.formulations.servo.ratio.duty import UNITS
 from gearopt.formulations.servo.split.numbers import Numbers, numbers
 from gearopt.formulations.servo.split.servo_train import OBJECTIVES, ServoTrain
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.kernels import kernel
-from gearopt.optimise.result import Budget, Event, Outcome, Watch
+from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.terms import Array
 
 RANDOM = False
@@ -33,13 +33,15 @@ def method(train: ServoTrain, goal: str, whole: bool) -> Any:
         look = code.every if whole else code.useful
         found, count = np.zeros(6, np.int64), kernel(KERNEL).first_stages(given)[0]
         look(given, aim, 0, 0, math.inf, found)  # compiled before the clock starts
-        clock, best, looked, feasible = time.perf_counter(), math.inf, 0, 0
+        clock, best, feasible = Clock(budget, watch), math.inf, 0
         first, (steps, most) = 0, STEPS
         while first < count:
             best, more, good, first = look(given, aim, first, steps, best, found)
-            looked, feasible, steps = looked + more, feasible + good, min(2 * steps, most)
-            if first < count and not _goes_on(clock, looked, best, budget, watch):
+            feasible, steps = feasible + good, min(2 * steps, most)
+            clock.evaluations, clock.best = clock.evaluations + more, best
+            if first < count and not clock.tell():
                 break
+        looked = clock.evaluations
         proof = _proof(looked, feasible if whole else None, first == count)
         if goal in UNITS and best > given.duty[-1] * (1.0 + ROUNDING):  # of a swing, rms torque
             best = math.inf
@@ -47,14 +49,6 @@ def method(train: ServoTrain, goal: str, whole: bool) -> Any:
         return _outcome(given, found, best, looked, proof, first == count, slack)
 
     return run
-
-
-def _goes_on(clock: float, looked: int, best: float, budget: Budget, watch: Watch | None) -> bool:
-    seconds = time.perf_counter() - clock
-    late = budget.seconds is not None and seconds > budget.seconds
-    full = budget.evaluations is not None and looked >= budget.evaluations
-    event = Event(seconds, looked, best if math.isfinite(best) else None)
-    return not (late or full) and (watch is None or watch(event) is not False)
 
 
 def _proof(looked: int, feasible: int | None, done: bool) -> dict[str, Any]:

@@ -11,8 +11,7 @@ budgets are log-convex, so `ipopt` and `gp` find the optimum and the dual bound 
 turns tolerances with a least backlash into this form, `sampling` draws what comes out.
 """
 
-import time
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -20,8 +19,9 @@ import numpy as np
 from gearopt.formulations.servo.tolerance.cost_bound import lower_bound
 from gearopt.formulations.servo.tolerance.roots import closed_form, levels, roots
 from gearopt.formulations.servo.tolerance.stack import Stack
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.result import Budget, Event, Outcome, Watch
+from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.terms import Array, Terms, Var, each
 
 RANDOM = False
@@ -93,30 +93,24 @@ def _exact(stack: Stack) -> Any:
 
         Nothing here is random.
         """
-        clock = time.perf_counter()
-
-        def goes_on() -> bool:
-            seconds = time.perf_counter() - clock
-            late = budget.seconds is not None and seconds > budget.seconds
-            return not late and (watch is None or watch(Event(seconds, 0)) is not False)
-
+        clock = Clock(budget, watch)
         if (conflict := impossible(stack)) is not None:
             return conflict
         try:
             with np.errstate(over="raise"):
-                return _proven(stack, goes_on)
+                return _proven(stack, clock)
         except TimeoutError as early:
-            return Outcome(None, finished=False, message=str(early))
+            return Outcome(search(stack)[2], finished=False, message=str(early))
         except ArithmeticError as extreme:
             return Outcome(None, message=f"beyond the range of doubles: {extreme}")
 
     return exact
 
 
-def _proven(stack: Stack, goes_on: Callable[[], bool]) -> Outcome:
+def _proven(stack: Stack, clock: Clock) -> Outcome:
     """The cheapest tolerances with the bound of their multipliers."""
     found = closed_form(stack)
-    t, lam = found or roots(stack, goes_on)
+    t, lam = found or roots(stack, clock)
     proof = {
         "method": "closed form" if found else "dual",
         "arithmetic": "double, with a rounding allowance",

@@ -7,7 +7,6 @@ solves it by dynamic programming, in whole numbers where all that is given are w
 fractions. `conic.milp` states the same with one 0-1 variable a grade.
 """
 
-import time
 from dataclasses import dataclass
 from fractions import Fraction
 from numbers import Rational
@@ -17,9 +16,10 @@ import numpy as np
 
 from gearopt.errors import SolveError
 from gearopt.formulations.servo.tolerance.knapsack import picked, whole
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.dual import ROUNDING
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.result import Budget, Event, Outcome, Watch
+from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.terms import Terms, Var, each
 
 RANDOM = False
@@ -109,24 +109,17 @@ def _position(grade: Any) -> Any:
 def _exact(choice: Choice) -> Any:
     def exact(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
         """Dynamic programming over all picks; the seed changes nothing."""
-        clock = time.perf_counter()
-
-        def goes_on(looked: int) -> bool:
-            seconds = time.perf_counter() - clock
-            late = budget.seconds is not None and seconds > budget.seconds
-            full = budget.evaluations is not None and looked >= budget.evaluations
-            return not (late or full) and (
-                watch is None or watch(Event(seconds, looked)) is not False
-            )
-
+        clock = Clock(budget, watch)
         rows, limit, arithmetic = _numbers(choice)
-        found = picked(*rows, limit, goes_on)
+        found = picked(*rows, limit, clock)
         if not found.finished:
-            return Outcome(None, False, evaluations=found.looked, message="stopped early")
+            finest = np.array([min(range(len(w)), key=w.__getitem__) for w in choice.weights])
+            words = "stopped early: the finest grades"
+            return Outcome(finest + 1.0, False, evaluations=clock.evaluations, message=words)
         proof = {
             "method": "exhausted",
             "arithmetic": arithmetic,
-            "pairs": found.looked,
+            "pairs": clock.evaluations,
             "pairs_kept": found.largest,
         }
         if found.positions is None:
@@ -137,7 +130,7 @@ def _exact(choice: Choice) -> Any:
             np.array(found.positions) + 1.0,
             bound=sum(costs) - (0.0 if choice.rational else rounding),
             proof=proof,
-            evaluations=found.looked,
+            evaluations=clock.evaluations,
         )
 
     return exact

@@ -5,13 +5,14 @@ least weight of the components still to come prunes. Whole numbers are compared 
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
 import numpy as np
 
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.terms import Array
 
 FITS = 2**62  # sums of whole numbers below it are of 64 bits, else of Python's own
@@ -21,12 +22,11 @@ FITS = 2**62  # sums of whole numbers below it are of 64 bits, else of Python's 
 class Picked:
     """Positions picked, from 0; None where nothing is within the weight, or it was stopped.
 
-    finished: all was looked at. looked: pairs formed. largest: most pairs kept.
+    finished: all was looked at. largest: most pairs kept.
     """
 
     positions: tuple[int, ...] | None
     finished: bool
-    looked: int
     largest: int
 
 
@@ -34,26 +34,26 @@ def picked(
     weights: Sequence[Array],
     costs: Sequence[Array],
     limit: Any,
-    goes_on: Callable[[int], bool] = lambda looked: True,
+    clock: Clock,
 ) -> Picked:
     """Least sum of costs with a sum of weights <= limit; of equals, the least weight.
 
-    weights, costs: an array a component, of doubles or whole numbers; goes_on(looked) is asked
-    before each component.
+    weights, costs: an array a component, of doubles or whole numbers; the clock counts pairs and is
+    told before each component.
     """
     lightest = [w.min() for w in weights]
     later = [sum(lightest[k + 1 :]) for k in range(len(weights))]
     weight, cost = 0 * weights[0][:1], 0 * costs[0][:1]
-    trail, looked, largest = [], 0, 1
+    trail, largest = [], 1
     for own_weight, own_cost, rest in zip(weights, costs, later, strict=True):
-        if not goes_on(looked):
-            return Picked(None, False, looked, largest)
+        if not clock.tell():
+            return Picked(None, False, largest)
         weight = np.add.outer(weight, own_weight).ravel()
         cost = np.add.outer(cost, own_cost).ravel()
-        looked += len(weight)
+        clock.evaluations += len(weight)
         order = _best(weight, cost, np.flatnonzero(weight + rest <= limit))
         if not len(order):
-            return Picked(None, True, looked, largest)
+            return Picked(None, True, largest)
         trail.append(np.divmod(order, len(own_weight)))
         weight, cost = weight[order], cost[order]
         largest = max(largest, len(order))
@@ -61,7 +61,7 @@ def picked(
     for before, position in reversed(trail):
         chosen.append(int(position[place]))
         place = int(before[place])
-    return Picked(tuple(reversed(chosen)), True, looked, largest)
+    return Picked(tuple(reversed(chosen)), True, largest)
 
 
 def _best(weight: Array, cost: Array, inside: Any) -> Any:

@@ -17,6 +17,7 @@ from dataclasses import replace
 import numpy as np
 
 from gearopt.formulations.servo.tolerance.stack import Stack
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.terms import Array
 
 STEPS = 5  # of Newton: the error is below 0.7, then e^2/8: 6e-2, 5e-4, 3e-8, 1e-16, done
@@ -47,14 +48,14 @@ def closed_form(stack: Stack) -> Solution | None:
     return t, np.array([(stack.slope * t**-k).sum()])
 
 
-def roots(stack: Stack, goes_on: Callable[[], bool] = lambda: True) -> Solution:
+def roots(stack: Stack, clock: Clock) -> Solution:
     """Tolerances and multipliers of a stack whose least tolerances keep its budgets.
 
-    TimeoutError when goes_on() says no; it is asked before each step of the outermost root.
+    TimeoutError when the clock, told before each step of the outermost root, says no.
     ArithmeticError for costs or multipliers beyond doubles.
     """
     one, unit, price = scaled(stack)
-    lam, u = _settled(one, (), (), dict.fromkeys(range(len(stack.budgets)), 0.0), goes_on)
+    lam, u = _settled(one, (), (), dict.fromkeys(range(len(stack.budgets)), 0.0), clock)
     over = float((one.used(u) / np.maximum(1.0, one.used(one.least))).max())
     t = np.maximum(stack.least, unit * u / max(1.0, over))
     return t, price * np.array(lam)
@@ -88,11 +89,11 @@ def _settled(
     lam: tuple[float, ...],
     radii: tuple[float, ...],
     last: dict[int, float],
-    goes_on: Callable[[], bool] = lambda: True,
+    clock: Clock | None = None,
 ) -> tuple[tuple[float, ...], Array]:
     """All multipliers and the tolerances where the first multipliers and radii are given.
 
-    last: the root last found at each depth, near which the next one is. goes_on: see `roots`.
+    last: the root last found at each depth, near which the next one is. clock: see `roots`.
     """
     budget, mixed, depth = len(lam), _mixed(stack), len(lam) + len(radii)
     if budget < len(stack.budgets):
@@ -102,7 +103,7 @@ def _settled(
             return unused
 
         def used(x: float) -> float:
-            if not goes_on():
+            if clock is not None and not clock.tell():
                 raise TimeoutError("stopped early")
             t = _settled(stack, (*lam, math.exp(x)), radii, last)[1]
             return math.log(stack.used(t)[budget] / target)
