@@ -2,13 +2,16 @@
 
 import math
 
+import cvxpy as cp
 import numpy as np
 import pytest
 
 from gearopt.errors import SolveError
 from gearopt.optimise import tape
+from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.solve import run, solve
+from gearopt.optimise.result import Budget
+from gearopt.optimise.solve import back_ends, method_of, run, solve
 from gearopt.optimise.terms import Param, Repeat, Terms, Var
 
 
@@ -259,3 +262,82 @@ def test_an_undeclared_name_is_answered_with_the_declared_ones():
     )
     with pytest.raises(SolveError, match="'radios' here; declared: radius"):
         solve(problem)
+
+
+def load_sharing():
+    """Two springs under a load: a quadratic program."""
+    force = Var("force", "N", 0.0, 1e4, 10.0, size=2)
+    return Problem(
+        "load sharing",
+        (force,),
+        (),
+        lambda x, p: Terms(
+            {"energy": x.force[0] ** 2 + 2.0 * x.force[1] ** 2 + x.force[0]},
+            equal={"load": (x.force[0] + x.force[1]) / 3000.0},
+        ),
+    )
+
+
+def tolerances(integer=False):
+    """Cheapest whole or real-valued widths within a sum."""
+    t = Var("t", "mm", 1.0, 50.0, 2.0, size=4, integer=integer)
+    cost = np.array([1.0, 2.0, 3.0, 4.7])
+    return Conic(
+        "tolerances",
+        (t,),
+        (),
+        lambda x, p: Terms(
+            {"cost": cp.sum(cp.multiply(cost, cp.inv_pos(x.t)))}, {"sum": cp.sum(x.t) / 33.3}
+        ),
+    )
+
+
+POSED = {  # problems of each back end, by what a single one of them may go beyond its evaluations
+    "annealing": (box, 0),
+    "conic": (tolerances, 100),  # whole rounds of Clarabel
+    "conic with whole numbers": (lambda: tolerances(integer=True), 4),  # a node's relaxations
+    "gp": (box, 0),
+    "ipopt": (box, 0),
+    "multistart": (box, 0),
+    "nsga2": (box, 0),
+    "qp": (load_sharing, 0),
+    "scip": (box, 0),
+}
+
+
+def test_every_back_end_is_held_to_its_budget():
+    assert {name.split(" with ")[0] for name in POSED} == set(back_ends())
+
+
+@pytest.mark.parametrize("stop", [1, 3])
+@pytest.mark.parametrize("name", POSED)
+def test_a_back_end_stops_when_its_watcher_says_no(name, stop):
+    method, problem, seen = name.split(" with ")[0], POSED[name][0](), []
+
+    def watch(event):
+        seen.append(event)
+        return len(seen) < stop
+
+    outcome = method_of(problem, method)(problem, Budget(), 0, watch)
+    assert 1 <= len(seen) <= stop  # never asked again
+    assert outcome.finished == (len(seen) < stop)
+    known = seen[-1].best is not None and not outcome.finished
+    assert not known or outcome.x is not None  # the best point is kept
+
+
+@pytest.mark.parametrize("evaluations", [1, 40])
+@pytest.mark.parametrize("name", POSED)
+def test_a_back_end_keeps_to_its_evaluations(name, evaluations):
+    method, (pose, beyond) = name.split(" with ")[0], POSED[name]
+    problem, seen = pose(), []
+    budget = Budget(evaluations=evaluations)
+    outcome = method_of(problem, method)(problem, budget, 0, lambda e: seen.append(e) or True)
+    assert outcome.evaluations <= evaluations + beyond
+    assert all(a.evaluations <= b.evaluations for a, b in zip(seen, seen[1:], strict=False))
+
+
+@pytest.mark.parametrize("name", POSED)
+def test_without_time_a_back_end_ends_at_once(name):
+    method, problem = name.split(" with ")[0], POSED[name][0]()
+    outcome = method_of(problem, method)(problem, Budget(seconds=0.0), 0, None)
+    assert not outcome.finished

@@ -58,6 +58,41 @@ def test_every_method_says_whether_it_is_random_and_what_it_counts(name):
             assert not by_name or method in declared, method
 
 
+SLICES = {  # evaluations of one step, at which budgets are looked at; else a step is one of them
+    "elevator": 60_000,  # whole expansions of a node
+    "elevator_processes": 60_000,
+    "seven_points": 1,
+    "three_stage_together": 60_000,
+    "servo_axis": 5_000,  # of the kernel
+    "servo_gimbal_grades": 1_000,  # pairs of one component
+}
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_every_method_honours_watcher_and_budget(name):
+    for method, run in own_methods(name).items():
+        try:
+            problem = posed(name, method).problem
+            run(problem, Budget(evaluations=1), 0, None)
+        except SolveError:
+            continue  # it needs a table that the file has not
+        for stop in (1, 2):
+            seen = []
+
+            def watch(event, seen=seen, stop=stop):
+                seen.append(event)
+                return len(seen) < stop
+
+            outcome = run(problem, Budget(), 0, watch)
+            assert len(seen) <= stop and outcome.finished == (len(seen) < stop), method
+            assert seen or outcome.evaluations <= 6, method  # a closed form
+            best = seen[-1].best if seen and not outcome.finished else None
+            assert best is None or outcome.x is not None, method
+        for most in (40, 3_000):
+            outcome = run(problem, Budget(evaluations=most), 0, None)
+            assert outcome.evaluations <= most + SLICES.get(name, 0), method
+
+
 def test_a_servo_train_is_compared_once_not_for_every_seed():
     found = gearopt.compare(
         PROBLEMS / "servo_gimbal.toml", ("exact",), seeds=3, evaluations=100, seconds=0.02
