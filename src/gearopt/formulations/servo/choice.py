@@ -13,7 +13,7 @@ from gearopt.formulations.servo.servo_design import KG_M2
 from gearopt.formulations.servo.springs import Springs
 from gearopt.optimise.clock import Clock, in_part, of_others
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.result import Budget, Event, Outcome, Watch
+from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.terms import Array, Terms
 
 RANDOM, COUNTS = split.exact.RANDOM, split.exact.COUNTS  # of the methods that are passed on here
@@ -93,15 +93,16 @@ def train_problem(choice: Choice) -> Problem:
     def method(name: str) -> Callable[..., Outcome]:
         def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
             """The best train; where it breaks a limit, all trains in order until one keeps it."""
+            clock = Clock(budget, watch)
             # a train may be better than the answer where limits are looked at apart
             shown = of_others(watch, "") if choice.apart else in_part(watch, factor=factor)
             found: Outcome = base.methods[name](base, budget, seed, shown)
             found = _counted(found, found.proof, choice.apart)
             if choice.apart and found.x is not None and not choice.keeps(found.x):
-                clock = Clock(budget)
+                clock.evaluations = found.evaluations
                 try:
                     best = float(base.batch(found.x[None]).F[0, 0])
-                    counts, found = found.proof, _in_order(choice, base, best, clock, watch)
+                    counts, found = found.proof, _in_order(choice, base, best, clock)
                     found = _counted(found, counts, choice.apart)
                 except TimeoutError as early:
                     found = Outcome(None, finished=False, message=str(early))
@@ -121,9 +122,7 @@ def _counted(found: Outcome, proof: Mapping[str, Any] | None, apart: tuple[str, 
     return replace(found, proof={**(found.proof or {}), **counts, "not_counted": list(apart)})
 
 
-def _in_order(
-    choice: Choice, base: Problem, best: float, clock: Clock, watch: Watch | None
-) -> Outcome:
+def _in_order(choice: Choice, base: Problem, best: float, clock: Clock) -> Outcome:
     """All feasible trains, the best first, until one is stiff and fits; TimeoutError if late.
 
     best: the objective of the best train, whether it is stiff and fits or not.
@@ -133,8 +132,7 @@ def _in_order(
 
     def check(tried: int = 0) -> None:
         count = looked + tried
-        event = Event(clock.seconds, count)
-        if clock.over or (watch is not None and watch(event) is False):
+        if not clock.tell(count):
             none = f"none of which {' and '.join(asked)}"
             raise TimeoutError(f"stopped after {count:,} trains, {none}")
 
