@@ -16,6 +16,7 @@ from gearopt.formulations.together import search
 from gearopt.formulations.together.prepare import rest
 from gearopt.formulations.together.tables import numbers
 from gearopt.formulations.train import FaceWidth, Stage, Train
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.kernels import kernel
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import run
@@ -333,12 +334,12 @@ def test_a_train_whose_layouts_are_not_exhausted_leaves_the_search_unproven(monk
     train = elevator()
     stage = replace(train.stages[0], modules=(F(2), F(3)), pinion_teeth=(20, 21))
     train = replace(train, stages=(stage, replace(train.stages[1], modules=(F(3), F(4)))))
-    work = search.Search(train, frame(train, (10.0, 17.5, 30.0)), Budget(), None, 0)
+    work = search.Search(train, frame(train, (10.0, 17.5, 30.0)), Clock(), 0)
     pairs = train.pair(2.0, 21, 128, 25.0), train.pair(3.0, 24, 85, 50.0)
-    assert search.lay(work, pairs, 0.3) and math.isfinite(work.value) and not work.stopped
+    assert search.lay(work, pairs, 0.3) and math.isfinite(work.value) and not work.clock.stopped
     monkeypatch.setattr("gearopt.formulations.layout.exact.DEEP", 3)
-    fresh = search.Search(train, work.make, Budget(), None, 0)
-    assert not search.lay(fresh, pairs, 0.003) and not fresh.stopped
+    fresh = search.Search(train, work.make, Clock(), 0)
+    assert not search.lay(fresh, pairs, 0.003) and not fresh.clock.stopped
 
 
 def test_tables_of_the_rest_hold_ratios_at_the_edges_of_their_cells():

@@ -57,13 +57,12 @@ def last(problem, budget=None, watch=None, skipped=None, ago=0.0):
 
 def test_a_tenth_of_a_budget_is_kept_and_500_evaluations_at_the_most():
     for given, left in ((1000, 900), (19, 18), (4_999, 4_500), (5_000, 4_500), (80_000, 79_500)):
-        assert sampling(Budget(10.0, given)) == Budget(9.0, left)
-    assert sampling(Budget(gap=0.5)) == Budget(gap=0.5)
-    whole = Budget(10.0, 1000)
-    for skipped, left in ((None, (9.0, 900)), ("", (10.0, 1000))):
-        polish = last(mixed(), whole, skipped=skipped, ago=3.0)
-        own, most = polish.sampling
-        assert (own.budget.seconds, most) == left and own.start == polish.clock.start
+        own, most = sampling(Clock(Budget(10.0, given)), True)
+        assert (own.budget, most) == (Budget(9.0), left)  # the evaluations are its plan
+    clock = Clock(Budget(10.0, 1000), lambda event: True, 3.0)
+    own, most = sampling(clock, False)
+    assert (own.budget, most, own.start, own.watch) == (Budget(10.0), 1000, 3.0, clock.watch)
+    assert sampling(Clock(Budget(gap=0.5)), True)[0].budget == Budget()
 
 
 def test_what_is_not_polished():
