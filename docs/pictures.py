@@ -15,8 +15,8 @@ import gearopt
 from gearopt.optimise.result import Result
 from gearopt.report.measures import METRIC, Measures
 from gearopt.report.pages import layout_views, packing_views, sheet, train_views
-from gearopt.report.pages.section import Section
 from gearopt.report.pages.sheet import Drawing
+from gearopt.report.section import Section
 
 ROOT = Path(__file__).parents[1]
 ROOM = ROOT / "docs" / "pictures"

@@ -106,7 +106,7 @@ SET = [
     ("layout", ("design", "layout", "gears", 0, "teeth"), 10**9, "teeth"),
     ("layout", ("design", "layout", "gears", 0, "to_mm"), 10**12, "far from"),
     ("layout", ("design", "layout", "gears", 0, "helix_angle_deg"), 89.9999999, "drawn in"),
-    ("layout", ("design", "layout", "gears", 0, "teeth"), {"a": 1}, "TypeError"),
+    ("layout", ("design", "layout", "gears", 0, "teeth"), {"a": 1}, "design.layout.gears[1].teeth"),
     ("drive", ("asked", "title"), "\ud800", "UnicodeEncodeError"),
     ("drive", ("objective", "name"), {"a": 1}, "an objective without a name"),
     ("drive", ("objective", "unit"), ["mm3"], "whose unit is no text"),

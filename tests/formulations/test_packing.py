@@ -16,6 +16,7 @@ from gearopt.optimise.clock import Clock
 from gearopt.optimise.kernels import kernel
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import run, solve
+from gearopt.optimise.typed import untyped
 
 
 def cylinders(*sizes, height=10.0):
@@ -105,7 +106,7 @@ def test_a_short_run_is_feasible_never_below_its_bound_and_repeatable(plan):
     assert first.value == again.value >= first.bound
     assert first.value <= problem.batch(points.point(plan, row(plan))[None]).F[0, 0]
     assert first.evaluations < 11_000
-    design = describe(plan, points.places(plan, problem, outcome.x))
+    design = untyped(describe(plan, points.places(plan, problem, outcome.x)))
     volume, area = (design["container"][k] for k in ("volume_mm3", "area_mm2"))
     assert first.value == pytest.approx(volume if plan.objective == "volume" else area, rel=1e-12)
     check_drawing(plan, design)
@@ -221,7 +222,7 @@ def test_tall_ones_share_a_layer():
 def test_layers_are_renamed_from_the_floor_unless_one_is_fixed():
     plan = Plan(TALL[:2], most=3)
     found = Places(np.zeros(2), np.zeros(2), np.array([3, 2]), np.zeros(2))
-    design = describe(plan, found)
+    design = untyped(describe(plan, found))
     assert [c["layer"] for c in design["cylinders"]] == [2, 1]
     assert [(v["from_mm"], v["to_mm"]) for v in design["layers"]] == [(0.0, 5.0), (5.0, 35.0)]
 

@@ -16,6 +16,7 @@ from gearopt.optimise.clock import Clock
 from gearopt.optimise.kernels import kernel
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import run, solve
+from gearopt.optimise.typed import untyped
 
 
 def alike(*layers, **kind):
@@ -31,7 +32,7 @@ def test_below_a_named_layer_none_is_empty(method):
     result, outcome = run(problem, method, Budget(evaluations=200_000))
     assert result.value == pytest.approx(16_000.0, rel=1e-5) and result.bound <= result.value
     assert result.bound == pytest.approx(16_000.0, rel=1e-8)
-    design = describe(plan, points.places(plan, problem, outcome.x))
+    design = untyped(describe(plan, points.places(plan, problem, outcome.x)))
     assert design["cylinders"][0]["layer"] == 2 and design["cylinders"][0]["from_mm"] == 10.0
     assert sorted(v["layer"] for v in design["layers"]) == [1, 2]
 
@@ -57,7 +58,7 @@ def test_text_kernel_and_bound_ask_for_the_same_layers():
 def test_layers_above_the_named_ones_are_counted_without_gaps():
     plan = alike(1, None, None, most=4)
     places = row(plan)._replace(layer=np.array([1, 4, 3]))
-    assert [c["layer"] for c in describe(plan, places)["cylinders"]] == [1, 3, 2]
+    assert [c.layer for c in describe(plan, places).cylinders] == [1, 3, 2]
 
 
 def test_layers_that_must_stay_empty_are_refused():
@@ -79,7 +80,7 @@ def check(seed):
     proven = False
     for method in ("hop", "sa"):
         result, outcome = run(problem, method, Budget(evaluations=20_000), seed=seed)
-        design = describe(plan, points.places(plan, problem, outcome.x))
+        design = untyped(describe(plan, points.places(plan, problem, outcome.x)))
         assert drawn_fault(plan, design, result.value) is None
         assert result.bound <= min(known, two) * (1.0 + 1e-9)
         if len(plan.cylinders) == 2 and not plan.fixed:

@@ -227,4 +227,4 @@ def test_the_design_in_words_has_the_widths_of_the_rule():
     rows = zip(gears, (0.6, 0.75), strict=True)
     pairs = tuple(TWO.pair(m, z1, z2, part * m * z1 / cosine) for (m, z1, z2), part in rows)
     found = describe(TWO, pairs, 150.0)
-    assert found["gear_volume_mm3"] == pytest.approx(result.value, rel=1e-12)
+    assert found.gear_volume_mm3 == pytest.approx(result.value, rel=1e-12)

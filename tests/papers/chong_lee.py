@@ -13,6 +13,7 @@ from gearopt.formulations import sizing, teeth
 from gearopt.formulations.design import describe
 from gearopt.formulations.process import rules
 from gearopt.optimise.solve import run, solve
+from gearopt.optimise.typed import untyped
 from gearopt.physics.gears import GearPair
 from gearopt.physics.loads import k_factor
 
@@ -77,7 +78,7 @@ def recomputed(name, widths="printed"):
         shares = PROPORTIONS[2] if len(rows) == 2 else (0.6, 0.6, 0.8)
         rows = zip(shares, pairs, strict=True)
         pairs = tuple(p.of_width(f * p.pinion.reference_diameter) for f, p in rows)
-    return describe(own, pairs, 1.0)  # speed: of no quantity used here
+    return untyped(describe(own, pairs, 1.0))  # speed: of no quantity used here
 
 
 def cell(text, value):

@@ -3,6 +3,9 @@
 import math
 
 import gearopt
+from gearopt.formulations.design import describe
+from gearopt.formulations.train import FaceWidth, Stage, Train
+from gearopt.optimise.typed import untyped
 
 HELIX = 25.0
 WALL, AXIAL, CLEARANCE = 10.0, 10.0, 2.0
@@ -68,7 +71,8 @@ def gaps(found, shafts):
             between = math.dist(places[gear["shaft"]], places[shaft["shaft"]])
             gap = between - gear["tip_diameter_mm"] / 2 - shaft["diameter_mm"] / 2
             names = [gear["name"], f"shaft {shaft['shaft']}"]
-            rows.append({"between": names, "gap_mm": gap, "needed_mm": CLEARANCE})
+            sizes = {"gap_mm": gap, "needed_mm": CLEARANCE, "axes_mm": between}
+            rows.append({"between": names} | sizes)
     return sorted(rows, key=lambda row: row["gap_mm"])
 
 
@@ -102,6 +106,7 @@ def layout(rows, axes, radii, partial=False, **more):
         "shafts": shafts,
         "gears": found,
         "bearings": bearings,
+        "link_angles_deg": [],
         "obstacles": [],
         "motor": None,
         "split": [],
@@ -124,18 +129,26 @@ PROGRESS = [
 ]
 
 
-def result(made, **more):
-    """The result of a layout."""
+def drive(rows):
+    """The design of a drive of these stages."""
+    stages = (Stage(1.0, 1.0, FaceWidth(0, None), (), (1, None)),) * len(rows)
+    train = Train(5e4, 1, 0, stages, helix_angle=math.radians(HELIX))
+    return untyped(describe(train, tuple(train.pair(*row) for row in rows), 150.0))
+
+
+def result(made, rows, **more):
+    """The result of a drive that is laid out."""
     volume = made["box"]["volume_mm3"]
     bound = (1.0 - 1e-4) * volume
     told = {
-        "name": "layout",
+        "name": "drive",
+        "scene": "drive",
         "status": "optimal",
         "method": "exact",
         "objective": {"name": "box_volume", "value": volume, "unit": "mm3"},
         "bound": bound,
         "gap": 1e-4,
-        "design": {"layout": made},
+        "design": drive(rows) | {"layout": made},
         "limits": {"gear_to_shaft[1]": 1.0, "wall": 0.93},
         "report": {"progress": PROGRESS, "notes": ["Angles of the shafts are free."]},
         "evaluations": 6503,
@@ -147,12 +160,14 @@ def result(made, **more):
 def three_stage(**more):
     """The proven box of the three-stage drive with shafts from wall to wall."""
     made = layout(THREE_STAGE, FULL_SPAN, THREE_STAGE_RADII)
-    return result(made, **more)
+    return result(made, THREE_STAGE, **more)
 
 
 def partial_span(**more):
     """The same drive with shafts and bearings that end beside their gears."""
-    return result(layout(THREE_STAGE, PARTIAL_SPAN, THREE_STAGE_RADII, partial=True), **more)
+    return result(
+        layout(THREE_STAGE, PARTIAL_SPAN, THREE_STAGE_RADII, partial=True), THREE_STAGE, **more
+    )
 
 
 def elevator(**more):
@@ -164,10 +179,10 @@ def elevator(**more):
         ELEVATOR_AXES,
         ELEVATOR_RADII,
         obstacles=[obstacle],
-        motor={"diameter_mm": 200.0, "length_mm": 260.0, "at": "start"},
+        motor={"diameter_mm": 200.0},
         split=[2],
     )
-    return result(made, **more)
+    return result(made, ELEVATOR, **more)
 
 
 def boxed_in(**more):
@@ -189,9 +204,10 @@ def boxed_in(**more):
         (["shaft 2 with its gears", "step"], math.hypot(300.0 - y2, z2 - 20.0) - wheel_1),
         (["bearing of shaft 1", "wheel 1"], math.hypot(y2, z2) - 20.0 - wheel_1),
     ]
-    found = [{"between": b, "gap_mm": gap, "needed_mm": 2.0} for b, gap in more_gaps]
+    sizes = {"needed_mm": 2.0, "axes_mm": 100.0}
+    found = [{"between": b, "gap_mm": gap} | sizes for b, gap in more_gaps]
     made["gaps"] = sorted(made["gaps"] + found, key=lambda row: row["gap_mm"])
-    return result(made, **more)
+    return result(made, ELEVATOR, **more)
 
 
 def cylinder(name, x, y, diameter, layer=1, fixed=False):
@@ -215,6 +231,7 @@ def packing(**more):
     layers = [{"layer": k, "from_mm": 10.0 * (k - 1), "to_mm": 10.0 * k} for k in (1, 2)]
     told = {
         "name": "packing",
+        "scene": "packing",
         "status": "feasible",
         "method": "annealing",
         "objective": {"name": "volume", "value": 16000.0, "unit": "mm3"},

@@ -14,13 +14,15 @@ from html_reader import ATTACK, Reader
 from svg_reader import drawings, extents, marks, numbers, ours
 
 import gearopt
+from gearopt.formulations.layout.layout_design import LayoutDesign
+from gearopt.optimise.typed import typed
 from gearopt.report.pages import frame
-from gearopt.report.pages.bodies import keep_outs, nearest
+from gearopt.report.pages.bodies import keep_outs, layout_of, nearest
 from gearopt.report.pages.labels import SIZE
 from gearopt.report.pages.layout_solid import MOST
 from gearopt.report.pages.result import page
-from gearopt.report.pages.section import SHEET
 from gearopt.report.pages.solid import Toothed, block, gear_mesh, rod, upright
+from gearopt.report.section import SHEET
 
 ROOM = Path(frame.__file__).parent
 MADE = (cases.three_stage, cases.partial_span, cases.elevator, cases.boxed_in)
@@ -104,19 +106,19 @@ def test_gears_from_the_side_are_as_wide_as_they_are(layout):
         )
         assert np.allclose(drawn, meant, atol=0.02)
         assert len(marks(svg, "rect", "bearing")) == len(found["bearings"])
-        assert len(marks(svg, "rect", "obstacle")) == len(keep_outs(found))
+        assert len(marks(svg, "rect", "obstacle")) == len(keep_outs(typed(LayoutDesign, found)))
         assert len(marks(svg, "rect", "motor")) == (found["motor"] is not None)
 
 
 def test_keep_outs_are_cut_off_near_the_box():
     result = cases.boxed_in()
     found = result.design["layout"]
-    near = {it["name"]: it for it in keep_outs(found)}
+    near = {it.name: it for it in keep_outs(layout_of(result))}
     assert set(near) == {"floor", "step"}
     bottom, height = found["box"]["bottom_mm"], found["box"]["height_mm"]
     lowest = min(bottom, -50.0)  # the motor's underside is lower than the box
-    assert math.isclose(near["floor"]["bottom_mm"], lowest - 0.12 * (bottom + height - lowest))
-    assert near["floor"]["top_mm"] == -60.0 and near["step"]["left_mm"] == 300.0
+    assert math.isclose(near["floor"].bottom_mm, lowest - 0.12 * (bottom + height - lowest))
+    assert near["floor"].top_mm == -60.0 and near["step"].left_mm == 300.0
     html = page(result, "x")
     words = text(html)
     assert "cut off" in words and "as long as it is wide" in words and "far wall" in words
@@ -126,12 +128,12 @@ def test_keep_outs_are_cut_off_near_the_box():
 
 @pytest.mark.parametrize("case", LAYOUTS)
 def test_gaps_are_drawn_as_long_as_they_are(case):
-    found = LAYOUTS[case]().design["layout"]
-    for gap in found["gaps"]:
-        for names in (gap["between"], gap["between"][::-1]):
+    found = layout_of(LAYOUTS[case]())
+    for gap in found.gaps:
+        for names in (gap.between, gap.between[::-1]):
             ends = nearest(found, *names)
             assert ends is not None, names
-            assert math.isclose(math.dist(*ends), gap["gap_mm"], rel_tol=1e-9), names
+            assert math.isclose(math.dist(*ends), gap.gap_mm, rel_tol=1e-9), names
     assert nearest(found, "wheel 1", "nothing") is None
 
 
@@ -411,11 +413,11 @@ def test_the_page_takes_what_the_solver_gives(solved):
     words = {t.text for t in front.iter("text")}
     assert {"411.98", "873.29", "a1 = 211.85"} <= words and any(w[:4] == "gap " for w in words)
     assert "209.90" in {t.text for t in side.iter("text")}
-    found = result.design["layout"]
-    for gap in found["gaps"]:
-        ends = nearest(found, *gap["between"])
+    found = layout_of(result)
+    for gap in found.gaps:
+        ends = nearest(found, *gap.between)
         assert ends is not None
-        assert math.isclose(math.dist(*ends), abs(gap["gap_mm"]), rel_tol=1e-9)
+        assert math.isclose(math.dist(*ends), abs(gap.gap_mm), rel_tol=1e-9)
 
 
 def test_numbers_of_the_layout_are_in_its_tables():

@@ -4,7 +4,6 @@ import csv
 import io
 import math
 import re
-from dataclasses import replace
 from urllib.parse import unquote
 
 import layout_cases as cases
@@ -16,7 +15,7 @@ from rich.console import Console
 import gearopt
 from gearopt.report.measures import INCH, METRIC, SYSTEMS
 from gearopt.report.pages.result import page, sections, tables
-from gearopt.report.pages.table import Table, percent, shown
+from gearopt.report.section import Table, percent, shown
 from gearopt.report.terminal.result import show
 from gearopt.report.words import heading, parted
 
@@ -143,7 +142,7 @@ def test_an_inch_page_names_no_millimetre_but_those_of_modules():
 
 def test_units_in_heads_are_no_markup_on_the_terminal():
     console = Console(width=99, record=True, file=io.StringIO())
-    show(replace(cases.packing(), scene="packing"), console)
+    show(cases.packing(), console)
     assert "x [mm]" in console.export_text()
 
 

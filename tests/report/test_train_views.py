@@ -12,6 +12,7 @@ from svg_reader import drawings, extents, marks, numbers
 import gearopt
 from gearopt.formulations.design import describe
 from gearopt.formulations.train import FaceWidth, Stage, Train
+from gearopt.optimise.typed import untyped
 from gearopt.report.pages.result import page
 from gearopt.report.pages.train_views import PITCH, WIDE
 
@@ -45,10 +46,15 @@ def result(rows):
     width = FaceWidth(0, None)
     stages = (Stage(1.0, 1.0, width, (), (1, None)),) * len(rows)
     train = Train(5e4, 1, 0, stages, helix_angle=0.4)
-    design = describe(train, tuple(train.pair(*row) for row in rows), 150.0)
+    design = untyped(describe(train, tuple(train.pair(*row) for row in rows), 150.0))
     objective = {"name": "gear_volume", "value": 1.0, "unit": "mm3"}
     return gearopt.Result(
-        name="drive", status="optimal", method="exact", objective=objective, design=design
+        name="drive",
+        scene="drive",
+        status="optimal",
+        method="exact",
+        objective=objective,
+        design=design,
     )
 
 
@@ -163,6 +169,6 @@ def test_words_say_that_nothing_is_optimised_and_how_it_would_be():
 def test_a_laid_out_or_missing_design_is_not_drawn_so():
     found = result(TRAINS["two stages"])
     assert drawings(page(replace(found, design={}), "")) == []
-    laid_out = found.design | cases.elevator().design
+    laid_out = cases.elevator().design
     html = page(replace(found, design=laid_out), "")
     assert len(drawings(html)) == 3 and "in one line" not in "".join(Reader(html).text)

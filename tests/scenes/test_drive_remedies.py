@@ -8,7 +8,7 @@ from given_drives import every_train, faults, feasible, given_drive, readable, w
 
 from gearopt import Budget
 from gearopt.optimise.clock import Clock
-from gearopt.report.remedy_words import remedy_words
+from gearopt.report.pages.ways_out import remedy_words
 from gearopt.scenes import drive
 from gearopt.scenes.drive.explaining.nearest import nearest_ratio
 from gearopt.scenes.drive.explaining.tried import WIDEST, Case, least_value

@@ -20,8 +20,8 @@ from gearopt.formulations.servo.choice import front
 from gearopt.formulations.servo.servo_design import ServoDesign, ServoReport
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget
+from gearopt.report.pages.ways_out import remedy_words
 from gearopt.report.proof_words import proof
-from gearopt.report.remedy_words import remedy_words
 from gearopt.report.servo_achieved import best_words
 from gearopt.scenes.reading.load import read
 from gearopt.scenes.servo import EXAMPLE

@@ -35,7 +35,7 @@ def explain(
         report = found.result.report | ({"ways_out": ways} if ways else {})
         show_result(replace(found.result, report=report), console())
     else:
-        from gearopt.report.terminal.explanation import show
+        from gearopt.report.terminal.result import show_explanation
 
-        show(found, console())
+        show_explanation(found, console())
     raise typer.Exit(exit_code(found.result))

@@ -4,8 +4,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from gearopt.optimise.result import Result
+from gearopt.report.kinds import kind_of
 from gearopt.report.measures import METRIC, Measures
-from gearopt.report.result_words import goal, leading, objective
+from gearopt.report.result_words import goal, leading
 from gearopt.report.words import amount, limit_words
 
 
@@ -19,12 +20,7 @@ def proof(result: Result, measures: Measures = METRIC) -> list[str]:
             f"{scope(result)}; {gap_words(result)}."
         )
     lines += _method(result)
-    for part in result.parts:
-        alike = part.objective["name"] == result.objective["name"]
-        if part.name in ("sizing", "apart") and alike and result.status == "optimal":
-            lines += _beside(result, part, measures)
-        if part.name == "sizing" and result.status == "limit" and result.value is None:
-            lines += _instead(part, measures)
+    lines += kind_of(result).beside(result, measures)
     lines += result.report.get("notes", []) if result.status != "infeasible" else []
     if result.message and result.status != "infeasible" and not leading(result):
         lines.append(result.message[0].upper() + result.message[1:].rstrip(".") + ".")
@@ -43,33 +39,6 @@ def gap_words(result: Result) -> str:
 def scope(result: Result) -> str:
     """Of what a bound is true: of all designs, or of the gears that were laid out."""
     return " with these gears" if any(part.name == "gears" for part in result.parts) else ""
-
-
-def _beside(result: Result, part: Result, measures: Measures) -> list[str]:
-    """What another way to the same objective gives: real-valued sizes, or gears chosen first."""
-    if part.value is None or result.value is None:
-        return []
-    more = 100 * (result.value / part.value - 1)
-    value = amount(part.value, objective(result)[1], measures)
-    if part.name == "apart":
-        less = f"{-more:.2f}".replace("-0.00", "0.00")
-        return [f"Gears chosen first and then laid out: {value} (at once is {less} % smaller)."]
-    cost = f"{more:.2f}".replace("-0.00", "0.00")
-    return [
-        f"With real-valued teeth and modules: {value} "
-        f"(whole teeth and standard modules cost {cost} %)."
-    ]
-
-
-def _instead(part: Result, measures: Measures) -> list[str]:
-    """What is known where no whole teeth were found: the answer with real-valued ones."""
-    name, unit, value, bound, side = goal(part)
-    if value is None or bound is None:
-        return []
-    return [
-        f"With real-valued teeth and modules there is a {name} of {amount(value, unit, measures)}; "
-        f"whole teeth have none {side} {amount(bound, unit, measures)}."
-    ]
 
 
 def _method(result: Result) -> list[str]:

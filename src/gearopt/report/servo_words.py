@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from gearopt.report.measures import METRIC, Measures
-from gearopt.report.result_words import PAGE_ROWS
+from gearopt.report.pages.design_tables import STAGE_ROWS as ROWS
 from gearopt.report.words import amount, number
 
 GEARS = ("backlash", "pitch")  # kinds that the error allowed to a train is of
@@ -15,7 +15,7 @@ RULES = {
     "rss": "root sum of squares",
     "mean_plus_sd": "mean + {kappa} sd",
 }
-STAGE_ROWS = PAGE_ROWS | {"bending_stress_MPa": ("bending stress", "MPa")}
+STAGE_ROWS = ROWS | {"bending_stress_MPa": ("bending stress", "MPa")}
 WORTH = {  # keys of a train by which trains are compared, with their units
     "load_acceleration_rad_per_s2": "rad_per_s2",
     "move_time_s": "s",

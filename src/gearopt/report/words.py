@@ -1,11 +1,8 @@
-"""Names, numbers and plain tables, as every report writes them."""
+"""Names and numbers, as every report writes them."""
 
 import math
 from collections.abc import Mapping
 from typing import Any
-
-from rich.markup import escape
-from rich.table import Table
 
 from gearopt.report.measures import METRIC, Measures
 
@@ -19,14 +16,6 @@ VERDICTS = {
     "limit": ("stopped early", "yellow"),
     "failed": ("failed", "red"),
 }
-
-
-def columns(first: str, heads: list[str]) -> Table:
-    """A plain table of right-aligned columns beside a column of names."""
-    table = Table(*map(escape, (first, *heads)), box=None, header_style="bold", pad_edge=False)
-    for column in table.columns[1:]:
-        column.justify, column.no_wrap = "right", True
-    return table
 
 
 def limit_words(name: str) -> str:

@@ -1,6 +1,6 @@
 """kind = "compound": two gear pairs in series whose ratio comes nearest to a given one."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Annotated, Any
 
@@ -13,6 +13,7 @@ from gearopt.optimise.comparing.trial import Model
 from gearopt.optimise.explaining.explanation import Explanation
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run
+from gearopt.optimise.typed import untyped
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.fields import Table, number, whole, words
 from gearopt.scenes.reading.lists import span
@@ -52,6 +53,16 @@ class Scene(Table):
     train: Train
 
 
+@dataclass(frozen=True, kw_only=True)
+class CompoundDesign:
+    """What a result holds of a train; fields are its keys, with their units."""
+
+    driver_teeth: tuple[int, int]
+    driven_teeth: tuple[int, int]
+    ratio: float
+    ratio_error_percent: float
+
+
 def solve(scene: Scene, ask: Ask) -> Result:
     """The teeth whose ratio is nearest; what is achieved is said first, in `report` and message."""
     result, outcome = run(
@@ -63,12 +74,12 @@ def solve(scene: Scene, ask: Ask) -> Result:
     train, teeth = _train(scene), tuple(round(float(z)) for z in outcome.x)
     z1, z2, z3, z4 = teeth
     ratio = Fraction(z3 * z4, z1 * z2)
-    design = {
-        "driver_teeth": [z1, z2],
-        "driven_teeth": [z3, z4],
-        "ratio": float(ratio),
-        "ratio_error_percent": 100.0 * float(ratio / train.ratio - 1),
-    }
+    design = CompoundDesign(
+        driver_teeth=(z1, z2),
+        driven_teeth=(z3, z4),
+        ratio=float(ratio),
+        ratio_error_percent=100.0 * float(ratio / train.ratio - 1),
+    )
     value = float(train.miss(teeth) ** 2)  # rational until here
     least, most = train.reach
     reach = {
@@ -81,7 +92,7 @@ def solve(scene: Scene, ask: Ask) -> Result:
         result,
         objective=result.objective | {"value": value},
         gap=0.0 if result.bound == value else result.gap,
-        design=design,
+        design=untyped(design),
         message=" ".join(filter(None, (_out_of_reach(train, reach), result.message))),
         report={"assumptions": [ASSUMED], "achieved": _achieved(train, ratio), "reach": reach},
     )

@@ -1,12 +1,75 @@
-"""A packing in words: container, layers, cylinders, every length with its unit in the key."""
+"""A packing in words: container, layers, cylinders; fields are the keys of a result, with units."""
 
 import math
+from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 from gearopt.formulations.packing.plan import Places, Plan
+from gearopt.optimise.typed import typed
 
 
-def describe(plan: Plan, found: Places) -> dict[str, Any]:
+@dataclass(frozen=True, kw_only=True)
+class ContainerDesign:
+    """A container from its left front corner; a circle has a diameter, the others two sides."""
+
+    shape: str
+    diameter_mm: float | None = None
+    width_mm: float | None = None
+    depth_mm: float | None = None
+    area_mm2: float
+    left_mm: float
+    front_mm: float
+    height_mm: float
+    volume_mm3: float
+
+    @property
+    def sides(self) -> tuple[float, float]:
+        """Extents in x and y [mm]."""
+        across = self.diameter_mm or 0.0
+        return self.width_mm or across, self.depth_mm or across
+
+
+@dataclass(frozen=True, kw_only=True)
+class LayerDesign:
+    """A layer, counted from the floor: 1 is the lowest."""
+
+    layer: int
+    from_mm: float
+    to_mm: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class CylinderDesign:
+    """A cylinder: its axis, sizes and layer; fixed: the file gives its place."""
+
+    name: str
+    x_mm: float
+    y_mm: float
+    diameter_mm: float
+    height_mm: float
+    layer: int
+    from_mm: float
+    to_mm: float
+    fixed: bool
+
+
+@dataclass(frozen=True, kw_only=True)
+class PackingDesign:
+    """What a result holds of a packing."""
+
+    container: ContainerDesign
+    layers: tuple[LayerDesign, ...]
+    cylinders: tuple[CylinderDesign, ...]
+
+
+def packing_design(data: Mapping[str, Any]) -> PackingDesign:
+    """Return the design that a result of a packing holds; ValueError names what is none of it."""
+    found: PackingDesign = typed(PackingDesign, data, "design")
+    return found
+
+
+def describe(plan: Plan, found: Places) -> PackingDesign:
     """Container, layers from the floor up, and cylinders in the order of the plan.
 
     Where no place is fixed, the container's left front corner is the origin. Layers are counted
@@ -20,24 +83,24 @@ def describe(plan: Plan, found: Places) -> dict[str, Any]:
         top = floor + max(
             c.height for c, at in zip(plan.cylinders, found.layer, strict=True) if at == k
         )
-        layers.append({"layer": names[k], "from_mm": floor, "to_mm": top})
+        layers.append(LayerDesign(layer=names[k], from_mm=floor, to_mm=top))
         floors[k], floor = floor, top
-    cylinders = [
-        {
-            "name": c.name,
-            "x_mm": float(x[k]),
-            "y_mm": float(y[k]),
-            "diameter_mm": 2.0 * c.radius,
-            "height_mm": c.height,
-            "layer": names[int(found.layer[k])],
-            "from_mm": floors[int(found.layer[k])],
-            "to_mm": floors[int(found.layer[k])] + c.height,
-            "fixed": c.at is not None,
-        }
+    cylinders = tuple(
+        CylinderDesign(
+            name=c.name,
+            x_mm=float(x[k]),
+            y_mm=float(y[k]),
+            diameter_mm=2.0 * c.radius,
+            height_mm=c.height,
+            layer=names[int(found.layer[k])],
+            from_mm=floors[int(found.layer[k])],
+            to_mm=floors[int(found.layer[k])] + c.height,
+            fixed=c.at is not None,
+        )
         for k, c in enumerate(plan.cylinders)
-    ]
-    container |= {"height_mm": floor, "volume_mm3": container["area_mm2"] * floor}
-    return {"container": container, "layers": layers, "cylinders": cylinders}
+    )
+    made = ContainerDesign(**container, height_mm=floor, volume_mm3=container["area_mm2"] * floor)
+    return PackingDesign(container=made, layers=tuple(layers), cylinders=cylinders)
 
 
 def _container(plan: Plan, found: Places) -> tuple[dict[str, Any], Any, Any]:

@@ -5,9 +5,9 @@ from typing import Any
 from gearopt.optimise.result import Result
 from gearopt.optimise.scale import gap
 from gearopt.report.measures import Measures
-from gearopt.report.pages.frame import Figure, axis, layout
-from gearopt.report.pages.section import Section
+from gearopt.report.plot import Figure, axis, layout
 from gearopt.report.result_words import objective
+from gearopt.report.section import Section
 from gearopt.report.words import number
 
 LEAST = 1e-4  # s; the logarithmic axis begins here at the earliest

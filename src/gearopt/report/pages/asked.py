@@ -5,8 +5,7 @@ from typing import Any
 
 from gearopt.optimise.result import Result
 from gearopt.report.measures import Measures
-from gearopt.report.pages.section import Section
-from gearopt.report.pages.table import Cell, Table
+from gearopt.report.section import Cell, Section, Table
 
 WORDS = ("title", "source")  # keys of a file that are sentences
 

@@ -5,10 +5,9 @@ from typing import Any
 
 from gearopt.optimise.result import Result
 from gearopt.report.measures import Measures
-from gearopt.report.pages.section import Section
-from gearopt.report.pages.table import Cell, Table
 from gearopt.report.proof_words import scope
 from gearopt.report.result_words import RULED, objective, verdict
+from gearopt.report.section import Cell, Section, Table
 from gearopt.report.words import amount
 
 PARTS = {  # of a result: what their names mean

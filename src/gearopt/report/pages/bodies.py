@@ -2,23 +2,47 @@
 
 import math
 import re
-from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
+
+from gearopt.formulations.design import drive_design
+from gearopt.formulations.layout.layout_design import (
+    BearingDesign,
+    GearDesign,
+    KeepOutDesign,
+    LayoutDesign,
+    ShaftDesign,
+)
+from gearopt.optimise.result import Result
+from gearopt.report.measures import Measures
 
 Point = tuple[float, float]
 Corner = tuple[float, float, float]  # x, y, z
-Layout = Mapping[str, Any]
-
-ENDS = (("from_mm", "to_mm"), ("left_mm", "right_mm"), ("bottom_mm", "top_mm"))  # of a keep-out
 AROUND = 0.12  # of the box's larger side: keep-outs are drawn so far beyond box and motor
 
 
-def box_corners(found: Layout) -> tuple[Corner, Corner]:
+@dataclass(frozen=True)
+class Bodies:
+    """Shafts with their gears and bearings, and which stages stand side by side."""
+
+    shafts: tuple[ShaftDesign, ...]
+    gears: tuple[GearDesign, ...]
+    slabs: tuple[tuple[int, ...], ...]
+    bearings: tuple[BearingDesign, ...] = ()
+
+
+Turning = Bodies | LayoutDesign  # what has shafts and gears
+
+
+def layout_of(result: Result) -> LayoutDesign | None:
+    """Return the layout of a drive, None where its gears are not laid out."""
+    return drive_design(result.design).layout if result.design else None
+
+
+def box_corners(found: LayoutDesign) -> tuple[Corner, Corner]:
     """Two corners of the box."""
-    box = found["box"]
-    y, z = box["left_mm"], box["bottom_mm"]
-    return (0.0, y, z), (box["length_mm"], y + box["width_mm"], z + box["height_mm"])
+    box = found.box
+    y, z = box.left_mm, box.bottom_mm
+    return (0.0, y, z), (box.length_mm, y + box.width_mm, z + box.height_mm)
 
 
 def along(ends: tuple[Corner, Corner], axis: str) -> tuple[float, float]:
@@ -27,40 +51,51 @@ def along(ends: tuple[Corner, Corner], axis: str) -> tuple[float, float]:
     return ends[0][k], ends[1][k]
 
 
-def motor(found: Layout) -> tuple[float, float, float] | None:
-    """Radius, start and end of the motor; one of unknown length is drawn as long as it is wide."""
-    told = found["motor"]
-    if not told:
+def motor(found: LayoutDesign) -> tuple[float, float, float] | None:
+    """Radius, start and end of the motor, which is drawn as long as it is wide."""
+    if found.motor is None:
         return None
-    length = told.get("length_mm", told["diameter_mm"])
-    start = -length if told.get("at", "start") == "start" else found["box"]["length_mm"]
-    return 0.5 * told["diameter_mm"], start, start + length
+    return 0.5 * found.motor.diameter_mm, -found.motor.diameter_mm, 0.0
 
 
-def keep_outs(found: Layout) -> list[dict[str, Any]]:
+def sides(it: KeepOutDesign, axis: str) -> tuple[float, float]:
+    """Both ends of a keep-out along x, y or z [mm]."""
+    if axis == "x":
+        return it.from_mm, it.to_mm
+    return (it.left_mm, it.right_mm) if axis == "y" else (it.bottom_mm, it.top_mm)
+
+
+def keep_outs(found: LayoutDesign) -> list[KeepOutDesign]:
     """The keep-outs near the box, cut off where they reach far beyond it."""
     low, high = _with_motor(found)
     room = AROUND * max(b - a for a, b in zip(low[1:], high[1:], strict=True))
     near = []
-    for it in found["obstacles"]:
-        cut = dict(it)
-        for (start, end), a, b in zip(ENDS, low, high, strict=True):
-            cut[start], cut[end] = max(it[start], a - room), min(it[end], b + room)
-        if all(cut[start] < cut[end] for start, end in ENDS):
+    for it in found.obstacles:
+        cut = replace(
+            it,
+            from_mm=max(it.from_mm, low[0] - room),
+            to_mm=min(it.to_mm, high[0] + room),
+            left_mm=max(it.left_mm, low[1] - room),
+            right_mm=min(it.right_mm, high[1] + room),
+            bottom_mm=max(it.bottom_mm, low[2] - room),
+            top_mm=min(it.top_mm, high[2] + room),
+        )
+        if all(start < end for start, end in (sides(cut, axis) for axis in "xyz")):
             near.append(cut)
     return near
 
 
-def drawn_corners(found: Layout) -> tuple[Corner, Corner]:
+def drawn_corners(found: LayoutDesign) -> tuple[Corner, Corner]:
     """Two corners of all that is drawn."""
     low, high = (list(corner) for corner in _with_motor(found))
     for it in keep_outs(found):
-        for k, (start, end) in enumerate(ENDS):
-            low[k], high[k] = min(low[k], it[start]), max(high[k], it[end])
+        for k, axis in enumerate("xyz"):
+            start, end = sides(it, axis)
+            low[k], high[k] = min(low[k], start), max(high[k], end)
     return (low[0], low[1], low[2]), (high[0], high[1], high[2])
 
 
-def _with_motor(found: Layout) -> tuple[Corner, Corner]:
+def _with_motor(found: LayoutDesign) -> tuple[Corner, Corner]:
     low, high = box_corners(found)
     if (told := motor(found)) is None:
         return low, high
@@ -79,7 +114,24 @@ class Disc:
     end: float
 
 
-def disc(found: Layout, name: str, beside: Mapping[str, Any] | None = None) -> Disc | None:
+def meaning(gear: GearDesign, measures: Measures) -> str:
+    """A gear in a line, as drawings tell it where the pointer rests."""
+    unit = measures.unit("mm")
+    return (
+        f"{gear.name}: z {gear.teeth:.6g}, m_n {gear.normal_module_mm:g} mm, "
+        f"d {measures.length(gear.reference_diameter_mm)} {unit}, "
+        f"d_a {measures.length(gear.tip_diameter_mm)} {unit}, "
+        f"b {measures.length(gear.to_mm - gear.from_mm)} {unit}"
+    )
+
+
+def gear_disc(found: Turning, gear: GearDesign) -> Disc:
+    """The tip circle of a gear."""
+    shaft = next(s for s in found.shafts if s.shaft == gear.shaft)
+    return Disc((shaft.y_mm, shaft.z_mm), 0.5 * gear.tip_diameter_mm, gear.from_mm, gear.to_mm)
+
+
+def disc(found: LayoutDesign, name: str, beside: KeepOutDesign | None = None) -> Disc | None:
     """A gear (its tip circle), shaft, bearing or the motor by name; None for anything else.
 
     "shaft 2 with its gears" is the largest body there of those that a keep-out stands beside.
@@ -88,35 +140,30 @@ def disc(found: Layout, name: str, beside: Mapping[str, Any] | None = None) -> D
         return Disc((0.0, 0.0), *told)
     match = re.fullmatch(r"(?:bearing of )?shaft (\d+)( with its gears)?", name)
     number = int(match[1]) if match else None
-    for gear in found["gears"]:
-        number = gear["shaft"] if gear["name"] == name else number
-    shaft = next((s for s in found["shafts"] if s["shaft"] == number), None)
+    for gear in found.gears:
+        number = gear.shaft if gear.name == name else number
+    shaft = next((s for s in found.shafts if s.shaft == number), None)
     if shaft is None:
         return None
-    bodies = [(f"shaft {number}", shaft["diameter_mm"], shaft)]
-    for gear in found["gears"]:
-        if gear["shaft"] == number:
-            bodies.append((gear["name"], gear["tip_diameter_mm"], gear))
-    for bearing in found["bearings"]:
-        if bearing["shaft"] == number:
-            bodies.append((f"bearing of shaft {number}", bearing["diameter_mm"], bearing))
+    centre = shaft.y_mm, shaft.z_mm
+    bodies: list[tuple[str, ShaftDesign | BearingDesign]] = [(f"shaft {number}", shaft)]
+    bodies += [(f"bearing of shaft {number}", b) for b in found.bearings if b.shaft == number]
+    discs = [(said, Disc(centre, 0.5 * b.diameter_mm, b.from_mm, b.to_mm)) for said, b in bodies]
+    discs += [(g.name, gear_disc(found, g)) for g in found.gears if g.shaft == number]
     if match and match[2]:
-        meant = [body for body in bodies if beside is None or _overlap(body[2], beside)]
+        meant = [body for _, body in discs if beside is None or _overlap(body, beside)]
     else:
-        meant = [body for body in bodies if body[0] == name]
-    if not meant:
-        return None
-    _, diameter, at = max(meant, key=lambda body: float(body[1]))
-    return Disc((shaft["y_mm"], shaft["z_mm"]), 0.5 * diameter, at["from_mm"], at["to_mm"])
+        meant = [body for said, body in discs if said == name]
+    return max(meant, key=lambda body: body.radius, default=None)
 
 
-def _overlap(a: Mapping[str, Any], b: Mapping[str, Any]) -> bool:
-    return bool(min(a["to_mm"], b["to_mm"]) > max(a["from_mm"], b["from_mm"]))
+def _overlap(a: Disc, b: KeepOutDesign) -> bool:
+    return min(a.end, b.to_mm) > max(a.start, b.from_mm)
 
 
-def nearest(found: Layout, one: str, other: str) -> tuple[Corner, Corner] | None:
+def nearest(found: LayoutDesign, one: str, other: str) -> tuple[Corner, Corner] | None:
     """The ends of the gap between two bodies, of one x; None where one is not found."""
-    boxes = {it["name"]: it for it in found["obstacles"]}
+    boxes = {it.name: it for it in found.obstacles}
     if one in boxes:
         swapped = nearest(found, other, one) if other not in boxes else None
         return None if swapped is None else (swapped[1], swapped[0])
@@ -125,9 +172,9 @@ def nearest(found: Layout, one: str, other: str) -> tuple[Corner, Corner] | None
     if a is None:
         return None
     if box is not None:
-        y = min(max(a.centre[0], box["left_mm"]), box["right_mm"])
-        z = min(max(a.centre[1], box["bottom_mm"]), box["top_mm"])
-        b: Disc | None = Disc((y, z), 0.0, box["from_mm"], box["to_mm"])
+        y = min(max(a.centre[0], box.left_mm), box.right_mm)
+        z = min(max(a.centre[1], box.bottom_mm), box.top_mm)
+        b: Disc | None = Disc((y, z), 0.0, box.from_mm, box.to_mm)
     else:
         b = disc(found, other)
     if b is None or (apart := math.dist(a.centre, b.centre)) < 1e-9:

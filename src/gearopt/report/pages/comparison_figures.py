@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from gearopt.optimise.comparing.comparison import Group, Sample
-from gearopt.report.pages.frame import Figure, axis, layout
+from gearopt.report.plot import Figure, axis, layout
 
 LEAST = 1e-9  # gaps below it are drawn as none
 HIGHEST = 10.0  # the curves' beginnings may lie above the plot, where no final gap does

@@ -1,33 +1,92 @@
 """The numbers of a design as tables: its stages, and whatever lists and groups it holds."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
 from gearopt.optimise.result import Result
-from gearopt.report.measures import Measures
-from gearopt.report.pages.section import Section
-from gearopt.report.pages.table import Cell, Table, percent
-from gearopt.report.result_words import EXACT, PAGE_ROWS, ranked, stage_rows, train_rows
-from gearopt.report.words import heading, parted
+from gearopt.report.measures import INCH, Measures, diametral_pitch
+from gearopt.report.result_words import EXACT, objective
+from gearopt.report.section import Cell, Section, Table, Tile, percent
+from gearopt.report.words import MODULE, heading, number, parted
+
+STAGE_ROWS = {  # what a key is called, and its unit (modules are metric in any system)
+    "normal_module_mm": ("module m_n [mm]", ""),
+    "pinion_teeth": ("teeth z1", ""),
+    "wheel_teeth": ("teeth z2", ""),
+    "ratio": ("ratio u", ""),
+    "face_width_mm": ("face width b", "mm"),
+    "pinion_diameter_mm": ("diameter d1", "mm"),
+    "wheel_diameter_mm": ("diameter d2", "mm"),
+    "pinion_tip_diameter_mm": ("tip diameter d_a1", "mm"),
+    "wheel_tip_diameter_mm": ("tip diameter d_a2", "mm"),
+    "pinion_root_diameter_mm": ("root diameter d_f1", "mm"),
+    "wheel_root_diameter_mm": ("root diameter d_f2", "mm"),
+    "centre_distance_mm": ("centres a", "mm"),
+    "transverse_contact_ratio": ("transverse contact ratio ε_α", ""),
+    "overlap_ratio": ("overlap ratio ε_β", ""),
+    "pinion_torque_Nm": ("torque T1", "Nm"),
+    "pitch_line_velocity_m_per_s": ("pitch-line velocity v", "m_per_s"),
+    "k_factor_MPa": ("K-factor", "MPa"),
+    "unit_load_MPa": ("unit load", "MPa"),
+    "gear_volume_mm3": ("volume", "cm3"),
+    "pinion_mass_kg": ("pinion mass", "kg"),
+    "wheel_mass_kg": ("wheel mass", "kg"),
+    "mass_kg": ("mass of both", "kg"),
+}
+PAGE_ONLY = {
+    *("pinion_tip_diameter_mm", "wheel_tip_diameter_mm"),
+    *("pinion_root_diameter_mm", "wheel_root_diameter_mm"),
+    *("transverse_contact_ratio", "overlap_ratio", "pitch_line_velocity_m_per_s"),
+    *("pinion_mass_kg", "wheel_mass_kg", "mass_kg"),
+}
 
 
 def section(result: Result, measures: Measures) -> Section | None:
-    """All tables of the design; None without one, and for kinds whose sections tell its numbers."""
+    """All tables of the design, on the terminal stages and totals; None without one."""
     design = dict(result.design)
-    if not design or result.scene == "servo":
+    if not design:
         return None
-    tables = []
-    if stages := design.pop("stages", []):
-        heads = ["", *(f"stage {k}" for k in range(1, len(stages) + 1))]
-        rows = [[label, *values] for label, values in stage_rows(stages, measures, PAGE_ROWS)]
-        tables.append(Table("stages", heads, rows))
-        tables += _shares(stages, measures)
-    return Section("Design", tables=[*tables, *_tables("", design, measures)])
+    stages = design.pop("stages", [])
+    tables = [stage_table(stages, measures)] if stages else []
+    found = tables_of("", design, measures)
+    told = [*tables, *(table for table in found if table.name == "totals")]
+    return Section(
+        "Design",
+        tables=[*tables, *_shares(stages, measures), *found],
+        terminal=told if result.value is not None else (),
+    )
+
+
+def stage_table(
+    stages: Sequence[Mapping[str, Any]],
+    measures: Measures,
+    rows: Mapping[str, tuple[str, str]] = STAGE_ROWS,
+    page_only: Collection[str] = PAGE_ONLY,
+) -> Table:
+    """Return the stages side by side; page_only: keys of rows that only the page shows."""
+    heads = ["", *(f"stage {k}" for k in range(1, len(stages) + 1))]
+    found, hidden = [], []
+    for key, (words, unit) in rows.items():
+        if not all(key in s for s in stages):
+            continue
+        label = f"{words} [{measures.unit(unit)}]" if unit else words
+        found.append([label, *(measures.of(s[key], unit) for s in stages)])
+        if key in page_only:
+            hidden.append(label)
+        if key == MODULE and measures is INCH:
+            pitches = [diametral_pitch(s[key]) for s in stages]
+            found.append(["diametral pitch P_nd [1/in]", *pitches])
+    return Table("stages", heads, found, page_only=hidden)
+
+
+def ratio_tile(ratio: float, error_percent: float) -> Tile:
+    """The total ratio, and how far it is off the one that is asked for."""
+    return Tile("total ratio", number(ratio), f"{error_percent:+.3f} % off")
 
 
 def _shares(stages: Sequence[Mapping[str, Any]], measures: Measures) -> list[Table]:
     """Volume and mass by stage; nothing to share out for one stage."""
-    if len(stages) < 2:
+    if len(stages) < 2 or not all("gear_volume_mm3" in s for s in stages):
         return []
     volumes = [s["gear_volume_mm3"] for s in stages]
     heads = ["", f"volume [{measures.unit('cm3')}]", "share, %"]
@@ -46,40 +105,54 @@ def trains(result: Result, measures: Measures) -> Section | None:
     """The best distinct trains in proven order; None where only one was asked for."""
     if (best := ranked(result)) is None:
         return None
-    found = best.report["trains"]
-    heads, rows = train_rows(found, best, measures)
-    heads = (*heads[:2], "more, %", *heads[2:])
+    found, (name, unit), length = best.report["trains"], objective(best), measures.unit("mm")
     least = found[0]["objective"]
-    more = [100.0 * (train["objective"] / least - 1.0) for train in found]
-    cells = [
-        (
-            rank,
-            value,
-            Cell(extra, f"{extra:.2f}"),
-            Cell(ratio, f"{ratio:.4f}"),
-            teeth,
-            Cell([measures.of(s["centre_distance_mm"], "mm") for s in one["stages"]], centres),
-        )
-        for (rank, value, ratio, teeth, centres), extra, one in zip(rows, more, found, strict=True)
-    ]
-    table = Table("best trains", [head.replace("\n", " ") for head in heads], cells)
+    goal, centres = (f"{name}\n{measures.unit(unit)}", f"centre distances\n{length}")
+    short = {head.replace("\n", " "): head for head in (goal, centres)}
+    rows = [_train_row(k, train, least, unit, measures) for k, train in enumerate(found, 1)]
+    first, last = short
+    heads = ("", first, "more, %", "ratio", "m_n, z1/z2", last)
+    table = Table("best trains", heads, rows, page_only=("more, %",), short=short, left=6, wrap=6)
     words = (
         "Distinct choices of teeth, each with its best modules and widths: nothing better than the "
         "last one is left out."
     )
     whole = best.proof.get("method") == "exhausted" and (best.gap or 0.0) <= EXACT
     words = words if whole else "The best of the trains that were found; others may be better."
-    return Section("Next best trains", words=(words,), tables=(table,))
+    told = (table,) if result.value is not None else ()
+    return Section("Next best trains", words=(words,), tables=(table,), terminal=told)
 
 
-def _tables(name: str, group: Mapping[str, Any], measures: Measures) -> list[Table]:
+def ranked(result: Result) -> Result | None:
+    """The answer whose next best trains are known: itself, or the gears that were laid out."""
+    gears = (part for part in result.parts if part.name == "gears")
+    return next((one for one in (result, *gears) if len(one.report.get("trains", ())) > 1), None)
+
+
+def _train_row(
+    rank: int, train: Mapping[str, Any], least: float, unit: str, measures: Measures
+) -> list[Any]:
+    stages, extra = train["stages"], 100.0 * (train["objective"] / least - 1.0)
+    teeth = "  ".join(f"{s[MODULE]:g}, {s['pinion_teeth']}/{s['wheel_teeth']}" for s in stages)
+    distances = [s["centre_distance_mm"] for s in stages]
+    return [
+        rank,
+        measures.of(train["objective"], unit),
+        Cell(extra, f"{extra:.2f}"),
+        Cell(train["ratio"], f"{train['ratio']:.4f}"),
+        teeth,
+        Cell([measures.of(a, "mm") for a in distances], "  ".join(map(measures.length, distances))),
+    ]
+
+
+def tables_of(name: str, group: Mapping[str, Any], measures: Measures) -> list[Table]:
     """A table of the single values, then one for every list of records and every group."""
     found, single = [], []
     for key, value in group.items():
         if isinstance(value, Mapping):
-            found += _tables(heading(key, measures), value, measures)
+            found += tables_of(heading(key, measures), value, measures)
         elif _records(value):
-            found.append(_list(heading(key, measures), value, measures))
+            found.append(records(heading(key, measures), value, measures))
         elif value is not None and value != []:
             single.append((heading(key, measures), _converted(key, value, measures)))
     return ([Table(name or "totals", ("", ""), single, name)] if single else []) + found
@@ -89,7 +162,8 @@ def _records(value: Any) -> bool:
     return isinstance(value, Sequence) and bool(value) and isinstance(value[0], Mapping)
 
 
-def _list(name: str, rows: Sequence[Mapping[str, Any]], measures: Measures) -> Table:
+def records(name: str, rows: Sequence[Mapping[str, Any]], measures: Measures) -> Table:
+    """A row for every record, a column for every key."""
     keys = list(dict.fromkeys(key for row in rows for key in row))
     cells = [[_converted(key, row.get(key), measures) for key in keys] for row in rows]
     return Table(name, [heading(key, measures) for key in keys], cells, name)

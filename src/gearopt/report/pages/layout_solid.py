@@ -5,18 +5,19 @@ from collections.abc import Mapping
 from html import escape
 from typing import Any
 
+from gearopt.formulations.layout.layout_design import GearDesign, LayoutDesign
 from gearopt.optimise.result import Result
 from gearopt.report.measures import Measures
 from gearopt.report.pages.bodies import (
-    Layout,
     box_corners,
     drawn_corners,
     keep_outs,
+    layout_of,
+    meaning,
     motor,
     nearest,
 )
-from gearopt.report.pages.frame import Figure
-from gearopt.report.pages.section import Section, meaning, series
+from gearopt.report.pages.sheet import series
 from gearopt.report.pages.solid import (
     Mesh,
     Toothed,
@@ -29,6 +30,8 @@ from gearopt.report.pages.solid import (
     rod,
     space,
 )
+from gearopt.report.plot import Figure
+from gearopt.report.section import Section
 
 MOST = 50_000  # triangles of all gears together, for a page that turns smoothly without a GPU
 DETAIL = ((3, 0.12), (3, 0.3), (2, 0.6), (2, 10.0))  # points on a flank, twist a section [rad]
@@ -45,38 +48,36 @@ ROUNDED = "Teeth are real numbers here: of each gear the nearest whole number is
 
 def section(result: Result, measures: Measures) -> Section | None:
     """The gearbox to turn; None where there is no layout."""
-    found = result.design.get("layout")
-    if not found:
+    if (found := layout_of(result)) is None:
         return None
     view = space(*drawn_corners(found), measures)
-    whole = all(gear["teeth"] == drawn_teeth(gear["teeth"]) for gear in found["gears"])
+    whole = all(gear.teeth == drawn_teeth(gear.teeth) for gear in found.gears)
     words = CAPTION if whole else f"{CAPTION} {ROUNDED}"
     return Section("In three dimensions", figures=(Figure(_traces(found, measures), view, words),))
 
 
-def _traces(found: Layout, measures: Measures) -> list[dict[str, Any]]:
-    places = {s["shaft"]: (s["y_mm"], s["z_mm"]) for s in found["shafts"]}
+def _traces(found: LayoutDesign, measures: Measures) -> list[dict[str, Any]]:
+    places = {s.shaft: (s.y_mm, s.z_mm) for s in found.shafts}
     traces, unit = _gears(found, places, measures), measures.unit("mm")
-    for k, shaft in enumerate(found["shafts"]):
-        past = FLUSH * found["box"]["length_mm"]
-        span = shaft["from_mm"] - past, shaft["to_mm"] + past
-        mesh = rod(places[shaft["shaft"]], shaft["diameter_mm"] / 2, *span)
-        words = f"shaft {shaft['shaft']}: diameter {measures.length(shaft['diameter_mm'])} {unit}"
+    for k, shaft in enumerate(found.shafts):
+        past = FLUSH * found.box.length_mm
+        span = shaft.from_mm - past, shaft.to_mm + past
+        mesh = rod(places[shaft.shaft], shaft.diameter_mm / 2, *span)
+        words = f"shaft {shaft.shaft}: diameter {measures.length(shaft.diameter_mm)} {unit}"
         traces.append(mesh_trace(mesh, words, "--metal", "shafts", showlegend=k == 0))
-    for k, it in enumerate(found["bearings"]):
-        bore = next(s["diameter_mm"] for s in found["shafts"] if s["shaft"] == it["shaft"]) / 2
-        ends = it["from_mm"], it["to_mm"]
-        mesh = rod(places[it["shaft"]], it["diameter_mm"] / 2, *ends, bore)
-        words = f"bearing of shaft {it['shaft']}"
+    for k, it in enumerate(found.bearings):
+        bore = next(s.diameter_mm for s in found.shafts if s.shaft == it.shaft) / 2
+        mesh = rod(places[it.shaft], it.diameter_mm / 2, it.from_mm, it.to_mm, bore)
+        words = f"bearing of shaft {it.shaft}"
         traces.append(mesh_trace(mesh, words, "--soft", "bearings", showlegend=k == 0))
     traces += _housing(found, measures)
     return traces + _clearances(found, places)
 
 
 def _gears(
-    found: Layout, places: Mapping[int, tuple[float, float]], measures: Measures
+    found: LayoutDesign, places: Mapping[int, tuple[float, float]], measures: Measures
 ) -> list[dict[str, Any]]:
-    solids = [(gear, _toothed(found, gear, places)) for gear in found["gears"]]
+    solids = [(gear, _toothed(found, gear, places)) for gear in found.gears]
     for flank, step in DETAIL:
         meshes = [gear_mesh(solid, flank, step) for _, solid in solids]
         if sum(len(faces) for _, faces in meshes) <= MOST:
@@ -84,7 +85,7 @@ def _gears(
     seen: set[int] = set()
     traces = []
     for (gear, _), mesh in zip(solids, meshes, strict=True):
-        stage = gear["stage"]
+        stage = gear.stage
         first, colour = stage not in seen, series(stage)
         seen.add(stage)
         words = escape(meaning(gear, measures))
@@ -92,70 +93,73 @@ def _gears(
     return traces
 
 
-def _toothed(found: Layout, gear: Layout, places: Mapping[int, tuple[float, float]]) -> Toothed:
+def _toothed(
+    found: LayoutDesign, gear: GearDesign, places: Mapping[int, tuple[float, float]]
+) -> Toothed:
     """The gear turned so that it meshes with its mate.
 
     At the middle of the stage the pinion has a tooth on the line of centres and the wheel a gap.
     The hands of a pair are opposite; those of the two gears on a shaft are equal, so that their
     axial forces are.
     """
-    pair = {g["member"]: g for g in found["gears"] if g["stage"] == gear["stage"]}
-    wheel = gear["member"] == "wheel"
+    pair = {g.member: g for g in found.gears if g.stage == gear.stage}
+    wheel = gear.member == "wheel"
     mate = pair.get("pinion" if wheel else "wheel", gear)
-    here, there = places[gear["shaft"]], places[mate["shaft"]]
+    here, there = places[gear.shaft], places[mate.shaft]
     phase = math.atan2(there[1] - here[1], there[0] - here[0])
-    middle = sum(g["from_mm"] + g["to_mm"] for g in pair.values()) / (2.0 * len(pair))
-    hand = 1.0 if (gear["stage"] % 2 == 1) != wheel else -1.0
+    middle = sum(g.from_mm + g.to_mm for g in pair.values()) / (2.0 * len(pair))
+    hand = 1.0 if (gear.stage % 2 == 1) != wheel else -1.0
     return Toothed(
-        gear["teeth"],
-        gear["reference_diameter_mm"],
-        gear["tip_diameter_mm"],
-        gear["root_diameter_mm"],
-        gear["from_mm"],
-        gear["to_mm"],
+        gear.teeth,
+        gear.reference_diameter_mm,
+        gear.tip_diameter_mm,
+        gear.root_diameter_mm,
+        gear.from_mm,
+        gear.to_mm,
         here,
-        hand * math.radians(abs(gear["helix_angle_deg"])),
-        phase + (math.pi / drawn_teeth(gear["teeth"]) if wheel else 0.0),
+        hand * math.radians(abs(gear.helix_angle_deg)),
+        phase + (math.pi / drawn_teeth(gear.teeth) if wheel else 0.0),
         middle,
     )
 
 
-def _housing(found: Layout, measures: Measures) -> list[dict[str, Any]]:
+def _housing(found: LayoutDesign, measures: Measures) -> list[dict[str, Any]]:
     """Walls as lines, the motor, keep-outs."""
-    box = found["box"]
+    box = found.box
     low, high = box_corners(found)
-    size = " x ".join(measures.length(box[k]) for k in ("width_mm", "height_mm", "length_mm"))
+    size = " x ".join(
+        measures.length(side) for side in (box.width_mm, box.height_mm, box.length_mm)
+    )
     traces = [line_trace(edges(low, high), f"box {size} {measures.unit('mm')}", "--ink", 3.0)]
     if told := motor(found):
         mesh = rod((0.0, 0.0), *told)
         traces.append(mesh_trace(mesh, "motor", "--axis", "motor", opacity=0.6, showlegend=True))
     for k, it in enumerate(keep_outs(found)):
-        ends = [
-            (it["from_mm"], it["left_mm"], it["bottom_mm"]),
-            (it["to_mm"], it["right_mm"], it["top_mm"]),
-        ]
+        ends = (it.from_mm, it.left_mm, it.bottom_mm), (it.to_mm, it.right_mm, it.top_mm)
         look = {"opacity": 0.35, "showlegend": k == 0}
-        traces.append(mesh_trace(block(*ends), escape(it["name"]), "--warn", "keep-outs", **look))
+        traces.append(mesh_trace(block(*ends), escape(it.name), "--warn", "keep-outs", **look))
         traces.append(line_trace(edges(*ends), "keep-outs", "--warn", 2.0, showlegend=False))
     return traces
 
 
-def _clearances(found: Layout, places: Mapping[int, tuple[float, float]]) -> list[dict[str, Any]]:
+def _clearances(
+    found: LayoutDesign, places: Mapping[int, tuple[float, float]]
+) -> list[dict[str, Any]]:
     """Shells, the limit within the walls, the narrowest gap; hidden until they are asked for."""
-    room = found["clearances"]
+    room = found.clearances
     hidden: dict[str, Any] = {"visible": "legendonly", "legendgroup": "clearances"}
-    wall, axial = room.get("wall_mm") or 0.0, room.get("axial_mm") or 0.0
+    wall, axial = room.wall_mm, room.axial_mm
     low, high = box_corners(found)
     low = (low[0] + axial, low[1] + wall, low[2] + wall)
     high = (high[0] - axial, high[1] - wall, high[2] - wall)
     traces = [line_trace(edges(low, high), "clearances", "--accent", 2.0, **hidden)]
     hidden |= {"showlegend": False}
-    for gear in found["gears"]:
-        r = gear["tip_diameter_mm"] / 2 + (room.get("gear_to_shaft_mm") or 0.0)
-        mesh: Mesh = rod(places[gear["shaft"]], r, gear["from_mm"], gear["to_mm"])
+    for gear in found.gears:
+        r = gear.tip_diameter_mm / 2 + room.gear_to_shaft_mm
+        mesh: Mesh = rod(places[gear.shaft], r, gear.from_mm, gear.to_mm)
         look = hidden | {"opacity": 0.18, "hoverinfo": "skip", "hovertemplate": ""}
         traces.append(mesh_trace(mesh, "", "--accent", "clearances", **look))
-    for gap in found["gaps"][:1]:
-        if (ends := nearest(found, *gap["between"])) is not None:
+    for gap in found.gaps[:1]:
+        if (ends := nearest(found, *gap.between)) is not None:
             traces.append(line_trace(list(ends), "clearances", "--warn", 8.0, **hidden))
     return traces

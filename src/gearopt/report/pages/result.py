@@ -1,74 +1,19 @@
 """The page of a result: drawings, a solid to turn, progress, numbers, and how sure they are."""
 
 from gearopt.optimise.result import Result
+from gearopt.report.kinds import kind_of
 from gearopt.report.measures import METRIC, Measures
-from gearopt.report.pages import (
-    anytime,
-    asked,
-    assurance,
-    design_tables,
-    layout_solid,
-    layout_views,
-    outcome,
-    packing_solid,
-    packing_views,
-    prices,
-    side_by_side,
-    trade_off,
-    train_views,
-)
 from gearopt.report.pages.frame import render
-from gearopt.report.pages.section import Section
-from gearopt.report.pages.servo import (
-    beside,
-    box,
-    drawn,
-    errors,
-    ratio,
-    stiffness,
-    tolerances,
-    train,
-    trains,
-)
 from gearopt.report.result_words import goal, title, verdict
+from gearopt.report.section import Section
 from gearopt.report.words import amount
-
-SECTIONS = (
-    outcome.summary,
-    outcome.ways_out,
-    layout_views.section,
-    layout_solid.section,
-    packing_views.section,
-    packing_solid.section,
-    train_views.section,
-    side_by_side.section,
-    ratio.section,
-    train.section,
-    box.section,
-    beside.section,
-    beside.stage_counts,
-    trains.by_inertia,
-    trains.by_mass,
-    errors.section,
-    tolerances.section,
-    drawn.section,
-    stiffness.section,
-    design_tables.section,
-    asked.section,
-    outcome.limits,
-    prices.section,
-    design_tables.trains,
-    trade_off.section,
-    anytime.section,
-    assurance.proven,
-    assurance.assumptions,
-)
 
 
 def sections(result: Result, measures: Measures = METRIC) -> list[Section]:
     """What a result has to show, in the order of its page."""
     result = Result.from_dict(result.to_dict())  # plain numbers, as a file of it has them
-    return [made for section in SECTIONS if (made := section(result, measures)) is not None]
+    made = (section(result, measures) for section in kind_of(result).sections)
+    return [section for section in made if section is not None]
 
 
 def page(result: Result, command: str, measures: Measures = METRIC) -> str:

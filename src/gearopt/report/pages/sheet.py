@@ -14,6 +14,7 @@ from gearopt.report.pages.labels import SIZE, Ink, Place, best
 ARROW = (9.0, 2.6)  # length and half width of an arrow head, px
 HATCH = 9.0  # between the lines of a hatch, px
 MOST = 1_000_000  # points or lines of one mark: more than any drawing has room for
+COLOURS = 8  # --series-1 ... in frame.css, told apart by the colour-blind
 Point = tuple[float, float]
 
 
@@ -241,3 +242,8 @@ def _along(start: Point, end: Point) -> Iterable[Point]:
             start[0] + share * (end[0] - start[0]),
             start[1] + share * (end[1] - start[1]),
         )
+
+
+def series(k: int) -> str:
+    """The colour of the k-th of a series, from 1; after eight they begin again."""
+    return f"--series-{(k - 1) % COLOURS + 1}"

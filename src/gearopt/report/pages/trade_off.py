@@ -4,8 +4,8 @@ from typing import Any
 
 from gearopt.optimise.result import Result
 from gearopt.report.measures import Measures
-from gearopt.report.pages.frame import Figure, axis, layout
-from gearopt.report.pages.section import Section
+from gearopt.report.plot import Figure, axis, layout
+from gearopt.report.section import Section
 from gearopt.report.words import number
 
 LINES = 6  # of equal area

@@ -1,20 +1,22 @@
 """A train without a layout, drawn to scale with all its shafts in one line."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
 from itertools import pairwise
 from typing import Any
 
+from gearopt.formulations.layout.layout_design import GearDesign, ShaftDesign
 from gearopt.optimise.result import Result
+from gearopt.optimise.typed import typed
 from gearopt.report.measures import Measures
-from gearopt.report.pages.bodies import Layout
+from gearopt.report.pages.bodies import Bodies
 from gearopt.report.pages.labels import Place
 from gearopt.report.pages.layout_front import gear_circles, gear_names
 from gearopt.report.pages.layout_side import LEVEL, face_widths, gears_on, side_name
-from gearopt.report.pages.section import Section
 from gearopt.report.pages.sheet import Drawing, Sheet, Window
+from gearopt.report.section import Section
 from gearopt.report.words import number
 
-DRAWN = {f"{member}_tip_diameter_mm" for member in ("pinion", "wheel")}  # not in old results
 WIDE = 640.0  # widest drawing [px], as those of a layout
 EDGE = 20.0  # px kept free left and right of the front view
 PITCH = 76.0  # px from stage to stage along the shafts, at least: its face width and module fit
@@ -25,10 +27,25 @@ CHAIN = 30.0  # px from the lowest circle to the dimensions of the centre distan
 SIDE = (24.0, 44.0, 24.0, 60.0)  # px kept free around the side view
 
 
+@dataclass(frozen=True)
+class DrawnStage:
+    """What is drawn of a stage, by the keys of a result."""
+
+    normal_module_mm: float
+    pinion_teeth: float
+    wheel_teeth: float
+    face_width_mm: float
+    pinion_diameter_mm: float
+    wheel_diameter_mm: float
+    pinion_tip_diameter_mm: float
+    wheel_tip_diameter_mm: float
+    centre_distance_mm: float
+
+
 def section(result: Result, measures: Measures) -> Section | None:
     """Both views of the gears, at one scale; None without gears or where they are laid out."""
-    stages = result.design.get("stages")
-    if not stages or result.design.get("layout") or not all(DRAWN <= set(s) for s in stages):
+    drawn = views(result.design.get("stages", ()), measures)
+    if not drawn or result.design.get("layout"):
         return None
     words = (
         "All shafts are drawn in one line: their places are not optimised, and the gaps between "
@@ -39,54 +56,77 @@ def section(result: Result, measures: Measures) -> Section | None:
         "dash-dotted ones reference circles; numbers in circles are shafts, whose diameters are "
         "not known.",
     )
-    return Section("Gears in one line", words=words, drawings=views(stages, measures))
+    return Section("Gears in one line", words=words, drawings=drawn)
 
 
-def views(stages: Sequence[Mapping[str, Any]], measures: Measures) -> tuple[Drawing, Drawing]:
-    """Both views of a train: along its shafts and across them."""
-    found, scale = in_one_line(stages)
+def views(stages: Sequence[Mapping[str, Any]], measures: Measures) -> tuple[Drawing, ...]:
+    """Draw a train along its shafts and across them; nothing where a size is not known."""
+    keys = [f.name for f in fields(DrawnStage)]
+    if not stages or not all(key in stage for stage in stages for key in keys):
+        return ()
+    picked = [{key: stage[key] for key in keys} for stage in stages]
+    found, scale = in_one_line(typed(tuple[DrawnStage, ...], picked, "stages"))
     return _front(found, scale, measures), _side(found, scale, measures)
 
 
-def in_one_line(stages: Sequence[Mapping[str, Any]]) -> tuple[dict[str, Any], float]:
-    """Shafts and gears as a layout holds them, with every shaft at z = 0; and the scale [px/mm].
+def in_one_line(stages: Sequence[DrawnStage]) -> tuple[Bodies, float]:
+    """Shafts and gears with every shaft at z = 0; and the scale [px/mm].
 
     Diameters of shafts are 0: they are not known.
     """
     axes = [0.0]
     for stage in stages:
-        axes.append(axes[-1] + stage["centre_distance_mm"])
-    gears = [
-        {
-            "name": f"{member} {k}",
-            "stage": k,
-            "member": member,
-            "shaft": shaft,
-            "teeth": stage[f"{member}_teeth"],
-            "normal_module_mm": stage["normal_module_mm"],
-            "reference_diameter_mm": stage[f"{member}_diameter_mm"],
-            "tip_diameter_mm": stage[f"{member}_tip_diameter_mm"],
-        }
-        for k, stage in enumerate(stages, 1)
-        for member, shaft in (("pinion", k), ("wheel", k + 1))
+        axes.append(axes[-1] + stage.centre_distance_mm)
+    rims = [
+        (axes[k + end], 0.5 * tip)
+        for k, stage in enumerate(stages)
+        for end, tip in enumerate((stage.pinion_tip_diameter_mm, stage.wheel_tip_diameter_mm))
     ]
-    found = {"gears": gears, "shafts": [{"shaft": k, "y_mm": y} for k, y in enumerate(axes, 1)]}
-    left, right = _ends(found)
-    scale = (WIDE - 2.0 * EDGE) / (right - left)  # no wheel is higher than the row is long
-    scale, starts = _along([s["face_width_mm"] for s in stages], scale)
-    for gear in gears:
-        start = starts[gear["stage"] - 1]
-        gear |= {"from_mm": start, "to_mm": start + stages[gear["stage"] - 1]["face_width_mm"]}
-    for shaft in found["shafts"]:
-        on = [g for g in gears if g["shaft"] == shaft["shaft"]]
-        shaft |= {
-            "z_mm": 0.0,
-            "diameter_mm": 0.0,
-            "from_mm": min(g["from_mm"] for g in on),
-            "to_mm": max(g["to_mm"] for g in on),
-        }
-    slabs = [[k] for k in range(1, len(stages) + 1)]
-    return found | {"slabs": slabs, "bearings": []}, scale
+    long = max(y + r for y, r in rims) - min(y - r for y, r in rims)
+    scale = (WIDE - 2.0 * EDGE) / long  # no wheel is higher than the row is long
+    scale, starts = _along([s.face_width_mm for s in stages], scale)
+    gears = [
+        GearDesign(
+            name=f"{member} {k}",
+            stage=k,
+            member=member,
+            shaft=shaft,
+            teeth=teeth,
+            normal_module_mm=stage.normal_module_mm,
+            reference_diameter_mm=reference,
+            tip_diameter_mm=tip,
+            root_diameter_mm=0.0,
+            helix_angle_deg=0.0,
+            from_mm=start,
+            to_mm=start + stage.face_width_mm,
+        )
+        for k, (stage, start) in enumerate(zip(stages, starts, strict=True), 1)
+        for member, shaft, teeth, reference, tip in (
+            (
+                "pinion",
+                k,
+                stage.pinion_teeth,
+                stage.pinion_diameter_mm,
+                stage.pinion_tip_diameter_mm,
+            ),
+            (
+                "wheel",
+                k + 1,
+                stage.wheel_teeth,
+                stage.wheel_diameter_mm,
+                stage.wheel_tip_diameter_mm,
+            ),
+        )
+    ]
+    shafts = []
+    for k, y in enumerate(axes, 1):
+        on = [g for g in gears if g.shaft == k]
+        ends = min(g.from_mm for g in on), max(g.to_mm for g in on)
+        shafts.append(
+            ShaftDesign(shaft=k, y_mm=y, z_mm=0.0, diameter_mm=0.0, from_mm=ends[0], to_mm=ends[1])
+        )
+    slabs = tuple((k,) for k in range(1, len(stages) + 1))
+    return Bodies(tuple(shafts), tuple(gears), slabs), scale
 
 
 def _along(widths: Sequence[float], scale: float) -> tuple[float, list[float]]:
@@ -101,35 +141,35 @@ def _along(widths: Sequence[float], scale: float) -> tuple[float, list[float]]:
     return scale, [middle - 0.5 * b for middle, b in zip(middles, widths, strict=True)]
 
 
-def _ends(found: Layout) -> tuple[float, float]:
+def _ends(found: Bodies) -> tuple[float, float]:
     """Of the row of gears, over tip circles [mm]."""
-    places = {s["shaft"]: s["y_mm"] for s in found["shafts"]}
-    rims = [(places[g["shaft"]], 0.5 * g["tip_diameter_mm"]) for g in found["gears"]]
+    places = {s.shaft: s.y_mm for s in found.shafts}
+    rims = [(places[g.shaft], 0.5 * g.tip_diameter_mm) for g in found.gears]
     return min(y - r for y, r in rims), max(y + r for y, r in rims)
 
 
-def _front(found: Layout, scale: float, measures: Measures) -> Drawing:
+def _front(found: Bodies, scale: float, measures: Measures) -> Drawing:
     """Along the shafts: circles in a row, centre distances and the length below them."""
     left, right = _ends(found)
-    high = max(0.5 * g["tip_diameter_mm"] for g in found["gears"])
+    high = max(0.5 * g.tip_diameter_mm for g in found.gears)
     if scale * high < LOW:
         high += NAMES / scale
-    axes = [s["y_mm"] for s in found["shafts"]]
+    axes = [s.y_mm for s in found.shafts]
     texts = [measures.length(b - a) for a, b in pairwise(axes)]
     narrow = sum(
         scale * (b - a) < _room(text) for (a, b), text in zip(pairwise(axes), texts, strict=True)
     )
     below = CHAIN + min(narrow, ROWS) * ROW + 46.0
     sheet = Sheet(Window(left, right, -high, high, (EDGE, EDGE, below, 44.0)), scale)
-    places = {s["shaft"]: (s["y_mm"], 0.0) for s in found["shafts"]}
+    places = {s.shaft: (s.y_mm, 0.0) for s in found.shafts}
     gear_circles(sheet, found, places, measures)
     level = sheet.at(0.0, -high)[1] + CHAIN
-    for shaft in found["shafts"]:
-        x = sheet.at(shaft["y_mm"], 0.0)[0]
-        sheet.line((shaft["y_mm"], high + 16.0 / scale), (shaft["y_mm"], -high), "axis")
+    for shaft in found.shafts:
+        x = sheet.at(shaft.y_mm, 0.0)[0]
+        sheet.line((shaft.y_mm, high + 16.0 / scale), (shaft.y_mm, -high), "axis")
         sheet.tick((x, level - CHAIN), (x, level + 5.0))
         spots = [Place(x + dx, 16.0, 0.0, abs(dx), (x, 28.0)) for dx in (0.0, -12.0, 12.0)]
-        sheet.balloon(str(shaft["shaft"]), spots)
+        sheet.balloon(str(shaft.shaft), spots)
     sheet.line((left - 6.0 / scale, 0.0), (right + 6.0 / scale, 0.0), "axis")
     away = sheet.height - 18.0 - sheet.at(0.0, -high)[1]
     sheet.dimension((left, -high), (right, -high), away, measures.length(right - left))
@@ -159,30 +199,30 @@ def _room(text: str) -> float:
     return 2.0 * Place(0, 0).half_width(text) + 4.0
 
 
-def _side(found: Layout, scale: float, measures: Measures) -> Drawing:
+def _side(found: Bodies, scale: float, measures: Measures) -> Drawing:
     """Across the shafts: gears as rectangles, stage after stage, with face width and module."""
-    (left, right), shafts = _ends(found), found["shafts"]
-    places = {s["shaft"]: s["y_mm"] for s in shafts}
+    (left, right), shafts = _ends(found), found.shafts
+    places = {s.shaft: s.y_mm for s in shafts}
     long = sum(max(PITCH, scale * b + GAP) for b in _widths(found)) / scale
     sheet = Sheet(Window(0.0, long, left, right, SIDE), scale)
     tops: dict[int, float] = {}
     for shaft in shafts:
-        gears_on(sheet, found, shaft, shaft["y_mm"], measures)
-    for gear in found["gears"]:
-        top = places[gear["shaft"]] + 0.5 * gear["tip_diameter_mm"]
-        tops[gear["stage"]] = max(top, tops.get(gear["stage"], top))
-    for gear in (g for g in found["gears"] if g["member"] == "wheel"):
-        x = sheet.at(0.5 * (gear["from_mm"] + gear["to_mm"]), 0.0)[0]
-        sheet.label(f"m_n {number(gear['normal_module_mm'])}", [Place(x, LEVEL - 24.0)], "size")
+        gears_on(sheet, found, shaft, shaft.y_mm, measures)
+    for gear in found.gears:
+        top = places[gear.shaft] + 0.5 * gear.tip_diameter_mm
+        tops[gear.stage] = max(top, tops.get(gear.stage, top))
+    for gear in (g for g in found.gears if g.member == "wheel"):
+        x = sheet.at(0.5 * (gear.from_mm + gear.to_mm), 0.0)[0]
+        sheet.label(f"m_n {number(gear.normal_module_mm)}", [Place(x, LEVEL - 24.0)], "size")
     face_widths(sheet, found, tops, measures)
     for shaft in shafts:
-        x, y = sheet.at(shaft["to_mm"], shaft["y_mm"])
+        x, y = sheet.at(shaft.to_mm, shaft.y_mm)
         spots = [Place(x + 20.0, y + dy, 0.0, abs(dy), (x, y)) for dy in (0.0, -14.0, 14.0)]
-        sheet.balloon(str(shaft["shaft"]), spots)
-    for gear in sorted(found["gears"], key=lambda g: -g["tip_diameter_mm"]):
-        side_name(sheet, gear, places[gear["shaft"]], f"z {number(gear['teeth'])}")
+        sheet.balloon(str(shaft.shaft), spots)
+    for gear in sorted(found.gears, key=lambda g: -g.tip_diameter_mm):
+        side_name(sheet, gear, places[gear.shaft], f"z {number(gear.teeth)}")
     return sheet.drawing("side view", "View across the shafts.")
 
 
-def _widths(found: Layout) -> list[float]:
-    return [g["to_mm"] - g["from_mm"] for g in found["gears"] if g["member"] == "wheel"]
+def _widths(found: Bodies) -> list[float]:
+    return [g.to_mm - g.from_mm for g in found.gears if g.member == "wheel"]

@@ -9,7 +9,7 @@ from rich.text import Text
 
 from gearopt.optimise.result import Result
 from gearopt.report.measures import METRIC, Measures
-from gearopt.report.result_words import stage_rows
+from gearopt.report.pages.design_tables import stage_table
 from gearopt.report.servo_achieved import achieved_table, best_words, note, train_words
 from gearopt.report.servo_beside import (
     BARE,
@@ -34,7 +34,8 @@ from gearopt.report.servo_words import (
     stiffness_words,
     teeth_words,
 )
-from gearopt.report.words import columns, heading, number, parted
+from gearopt.report.terminal.table import columns
+from gearopt.report.words import heading, number, parted
 
 Found = Mapping[str, Any]
 
@@ -88,7 +89,7 @@ def _train(train: Found, measures: Measures) -> RenderableType:
     """Stages side by side, then the totals."""
     stages = train["stages"]
     table = columns("train", [f"stage {k}" for k in range(1, len(stages) + 1)])
-    for label, values in stage_rows(stages, measures, STAGE_ROWS):
+    for label, *values in stage_table(stages, measures, STAGE_ROWS, ()).rows:
         table.add_row(Text(label), *map(number, values))
     totals = Table.grid(padding=(0, 2))
     for key, value in train.items():

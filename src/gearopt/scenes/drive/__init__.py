@@ -18,6 +18,7 @@ from gearopt.optimise.explaining.explanation import Change, Explanation, Remedy
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import GAP, run
+from gearopt.optimise.typed import untyped
 from gearopt.scenes.drive.explaining.assumptions import assumptions, notes
 from gearopt.scenes.drive.explaining.undercut import undercut
 from gearopt.scenes.drive.scene import EXAMPLE, Scene
@@ -163,7 +164,7 @@ def _with_processes(scene: Scene, ask: Ask, best: Result) -> Result:
         except SolveError as reason:
             told.append(f"There is no design by {words}: {reason}.")
             continue
-        made = {} if outcome.x is None else scene.design(teeth.pairs(train, outcome.x))
+        made = {} if outcome.x is None else untyped(scene.design(teeth.pairs(train, outcome.x)))
         part = replace(part, objective=part.objective | {"unit": train.unit}, design=made)
         parts.append(reconcile(replace(part, name=words), best, ask.gap))
     return replace(best, parts=(*best.parts, *parts), report=best.report | {"notes": told})
@@ -215,8 +216,9 @@ def _sized(scene: Scene, train: Train, ask: Ask, problem: Problem) -> Result:
     result = replace(result, objective=result.objective | {"unit": train.unit})
     if result.value is None or outcome.x is None:
         return result
-    designs = [scene.design(formulation.pairs(train, x)) for x in (outcome.x, *outcome.others)]
-    values = [float(problem.batch(x[None]).F[0, 0]) for x in (outcome.x, *outcome.others)]
+    points = (outcome.x, *outcome.others)
+    designs = [untyped(scene.design(formulation.pairs(train, x))) for x in points]
+    values = [float(problem.batch(x[None]).F[0, 0]) for x in points]
     trains = [
         {"objective": value, "ratio": design["ratio"], "stages": design["stages"]}
         for value, design in zip(values, designs, strict=True)

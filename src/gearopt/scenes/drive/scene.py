@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 from pydantic import Field, model_validator
 
-from gearopt.formulations.design import describe
+from gearopt.formulations.design import DriveDesign, describe
 from gearopt.formulations.layout.gearbox import Gearbox
 from gearopt.formulations.process import methods
 from gearopt.formulations.train import FaceWidth, Stage, Train
@@ -204,7 +204,7 @@ class Scene(Table):
             density=density.value if density else None,
         )
 
-    def design(self, pairs: tuple[GearPair, ...]) -> dict[str, Any]:
+    def design(self, pairs: tuple[GearPair, ...]) -> DriveDesign:
         """Return the drive of these gear pairs in the words of its drawing."""
         return describe(self.train(), pairs, self.duty.input_speed.value)
 

@@ -21,6 +21,7 @@ from gearopt.optimise.explaining.explanation import Explanation
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Result
 from gearopt.optimise.solve import run
+from gearopt.optimise.typed import untyped
 from gearopt.scenes.packing.scene import EXAMPLE, Scene
 from gearopt.scenes.reading.ask import Ask
 
@@ -50,7 +51,7 @@ def solve(scene: Scene, ask: Ask) -> Result:
     if result.status != "optimal":
         report["notes"] = [UNPROVEN]
     found = points.places(plan, problem, outcome.x)
-    return replace(result, design=describe(plan, found), report=report)
+    return replace(result, design=untyped(describe(plan, found)), report=report)
 
 
 def _bounded(plan: Plan, result: Result, ask: Ask) -> Result:

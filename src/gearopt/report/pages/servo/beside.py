@@ -2,8 +2,7 @@
 
 from gearopt.optimise.result import Result
 from gearopt.report.measures import Measures
-from gearopt.report.pages.section import Section
-from gearopt.report.pages.table import Table
+from gearopt.report.section import Section, Table
 from gearopt.report.servo_beside import (
     BARE,
     COUNTS,
@@ -17,7 +16,7 @@ from gearopt.report.servo_beside import (
 def section(result: Result, measures: Measures) -> Section | None:
     """Chosen, given and real-valued bound side by side; None where no gears are given."""
     rows = beside_rows(result.report, measures)
-    if result.scene != "servo" or not rows:
+    if not rows:
         return None
     words = [
         given_teeth(result.report),
@@ -30,7 +29,7 @@ def section(result: Result, measures: Measures) -> Section | None:
 def stage_counts(result: Result, measures: Measures) -> Section | None:
     """Inertia and mass by number of stages; None without a train."""
     rows = count_rows(result.report)
-    if result.scene != "servo" or not rows:
+    if not rows:
         return None
     table = Table("stage counts", COUNTS, rows)
     half = bool(beside_rows(result.report))

@@ -13,9 +13,9 @@ from gearopt.optimise.result import Result
 from gearopt.report.measures import Measures
 from gearopt.report.pages.labels import Place, around
 from gearopt.report.pages.layout_front import centre_distance
-from gearopt.report.pages.section import Section
 from gearopt.report.pages.servo.sector import label_sector, sector
 from gearopt.report.pages.sheet import Drawing, Point, Sheet, Window
+from gearopt.report.section import Section
 from gearopt.report.servo_words import box_words
 
 WIDE, HIGH = 640.0, 760.0  # largest drawing [px]
@@ -38,7 +38,7 @@ class Axes:
 def section(result: Result, measures: Measures) -> Section | None:
     """The drawing, and in words whether the train fits; None where no box is asked for."""
     box = result.design.get("box")
-    if result.scene != "servo" or not box:
+    if not box:
         return None
     words = [
         box_words(box, measures),

@@ -6,16 +6,15 @@ from typing import Any
 
 from gearopt.optimise.result import Result
 from gearopt.report.measures import Measures
-from gearopt.report.pages.frame import Figure, axis, layout
-from gearopt.report.pages.section import Section
-from gearopt.report.pages.table import Table
+from gearopt.report.plot import Figure, axis, layout
+from gearopt.report.section import Section, Table
 from gearopt.report.servo_words import degrees, drawn_words
 
 
 def section(result: Result, measures: Measures) -> Section | None:
     """The histogram of the draws; None without draws."""
     found = result.design.get("drawn")
-    if result.scene != "servo" or not found:
+    if not found:
         return None
     counts = found["histogram"]["counts"]
     traces = [_bars(found["histogram"], found["count"]), *_lines(found, 1.05 * max(counts))]

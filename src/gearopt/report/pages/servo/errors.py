@@ -6,9 +6,9 @@ from typing import Any
 
 from gearopt.optimise.result import Result
 from gearopt.report.measures import Measures
-from gearopt.report.pages.frame import Figure, axis, layout
-from gearopt.report.pages.section import Section, series
-from gearopt.report.pages.table import Table
+from gearopt.report.pages.sheet import series
+from gearopt.report.plot import Figure, axis, layout
+from gearopt.report.section import Section, Table
 from gearopt.report.servo_words import (
     arc_minutes,
     degrees,
@@ -25,7 +25,7 @@ ROOM = 1.04  # of the longest bar
 def section(result: Result, measures: Measures) -> Section | None:
     """The budget of errors; None where the file has none."""
     found = result.design.get("errors")
-    if result.scene != "servo" or not found:
+    if not found:
         return None
     limit = error_limit(result.design, result.limits)
     total = sum(e["error_deg"] for e in found)

@@ -4,9 +4,8 @@ from typing import Any
 
 from gearopt.optimise.result import Result
 from gearopt.report.measures import Measures
-from gearopt.report.pages.frame import Figure, axis, layout
-from gearopt.report.pages.section import Section
-from gearopt.report.pages.table import Cell, Table
+from gearopt.report.plot import Figure, axis, layout
+from gearopt.report.section import Cell, Section, Table
 from gearopt.report.servo_achieved import (
     DUTIES,
     LINE,
@@ -29,7 +28,7 @@ MARKS = (  # of what is judged beside the best ratio: colour and symbol
 def section(result: Result, measures: Measures) -> Section | None:
     """The curve of a duty, and what trains achieve; None where the file has none."""
     found = result.design.get("ratio")
-    if result.scene != "servo" or not found:
+    if not found:
         return None
     unit = measures.unit(found["unit"])
     ratios = found["curve"]["total_ratio"]

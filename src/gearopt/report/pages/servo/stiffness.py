@@ -6,9 +6,8 @@ from typing import Any
 
 from gearopt.optimise.result import Result
 from gearopt.report.measures import Measures
-from gearopt.report.pages.frame import Figure, axis, layout
-from gearopt.report.pages.section import Section, Tile
-from gearopt.report.pages.table import Table, percent
+from gearopt.report.plot import Figure, axis, layout
+from gearopt.report.section import Section, Table, Tile, percent
 from gearopt.report.servo_words import arc_minutes, degrees
 from gearopt.report.words import amount, number
 
@@ -18,7 +17,7 @@ ROW, REST = 44.0, 70.0  # px of a spring, and of the axis
 def section(result: Result, measures: Measures) -> Section | None:
     """Springs in series, the softest first; None where the file asks for no stiffness."""
     found = result.design.get("stiffness")
-    if result.scene != "servo" or not found:
+    if not found:
         return None
     tiles = [
         Tile("stiffness at the output", amount(found["output_Nm_per_rad"], "Nm_per_rad", measures))

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from gearopt.report.measures import Measures
-from gearopt.report.pages.section import Tile
+from gearopt.report.section import Tile
 from gearopt.report.servo_words import arc_minutes, box_size, degrees
 from gearopt.report.words import amount, number
 

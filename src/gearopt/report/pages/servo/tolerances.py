@@ -4,8 +4,7 @@ from typing import Any
 
 from gearopt.optimise.result import Result
 from gearopt.report.measures import Measures
-from gearopt.report.pages.section import Section
-from gearopt.report.pages.table import Cell, Table, percent
+from gearopt.report.section import Cell, Section, Table, percent
 from gearopt.report.servo_words import cost_words, kind_words
 
 ENDS = 1e-6  # relative: a tolerance as near to an end of its range stands at it
@@ -15,7 +14,7 @@ SHORT = 0.999  # of a cell: a full bar would mark a limit that is reached
 def section(result: Result, measures: Measures) -> Section | None:
     """Old and new tolerances; None where the file has none."""
     rows = result.design.get("tolerances")
-    if result.scene != "servo" or not rows:
+    if not rows:
         return None
     unit = measures.unit("um")
     heads = ["tolerance", "stage", "kind", f"old [{unit}]", f"new [{unit}]", "new/old"]

@@ -3,9 +3,8 @@
 from gearopt.optimise.result import Result
 from gearopt.report.measures import Measures
 from gearopt.report.pages import train_views
-from gearopt.report.pages.section import Section
-from gearopt.report.pages.table import Table
-from gearopt.report.result_words import stage_rows
+from gearopt.report.pages.design_tables import stage_table
+from gearopt.report.section import Section, Table
 from gearopt.report.servo_words import STAGE_ROWS, arc_minutes, degrees
 from gearopt.report.words import heading, parted
 
@@ -13,11 +12,9 @@ from gearopt.report.words import heading, parted
 def section(result: Result, measures: Measures) -> Section | None:
     """Tables of the train, drawn in one line where no box is asked for; None without a train."""
     found = result.design.get("train")
-    if result.scene != "servo" or not found:
+    if not found:
         return None
     stages = found["stages"]
-    heads = ["", *(f"stage {k}" for k in range(1, len(stages) + 1))]
-    rows = [[label, *values] for label, values in stage_rows(stages, measures, STAGE_ROWS)]
     totals = []
     for key, value in found.items():
         if key == "stages" or value is None:
@@ -32,14 +29,13 @@ def section(result: Result, measures: Measures) -> Section | None:
         )
     if "inertia_kg_m2" in found:
         words.append("Inertia is seen at the motor.")
-    known = all("face_width_mm" in stage for stage in stages)
-    drawn = train_views.views(stages, measures) if known and "box" not in result.design else ()
+    drawn = train_views.views(stages, measures) if "box" not in result.design else ()
     if drawn:
         words.append(
             "All shafts are drawn in one line, wheels as full discs; reference circles are "
             f"dash-dotted. Dimensions in {measures.lengths}."
         )
-    tables = (Table("stages", heads, rows), Table("train", ("", ""), totals))
+    tables = (stage_table(stages, measures, STAGE_ROWS, ()), Table("train", ("", ""), totals))
     return Section("Train", words=words, drawings=drawn, tables=tables, half=not drawn)
 
 

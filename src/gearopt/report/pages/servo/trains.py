@@ -5,9 +5,8 @@ from typing import Any
 
 from gearopt.optimise.result import Result
 from gearopt.report.measures import Measures
-from gearopt.report.pages.frame import Figure, axis, layout
-from gearopt.report.pages.section import Section
-from gearopt.report.pages.table import Table
+from gearopt.report.plot import Figure, axis, layout
+from gearopt.report.section import Section, Table
 from gearopt.report.servo_words import degrees, error_limit, teeth_words
 from gearopt.report.words import amount
 
@@ -43,7 +42,7 @@ def by_mass(result: Result, measures: Measures) -> Section | None:
 def _weighed(result: Result) -> list[str]:
     """What the trains are held against each other by; nothing where none are told."""
     found = result.report.get("trains") or []
-    if result.scene != "servo" or not found:
+    if not found:
         return []
     goals = [goal for goal, (key, _, _) in GOALS.items() if key in found[0]]
     return goals if goals[0] == "inertia" else [g for g in goals if g != "inertia"]

@@ -6,12 +6,14 @@ from typing import Any
 
 from gearopt.errors import SolveError
 from gearopt.formulations import sizing, teeth, together
+from gearopt.formulations.design import drive_design
 from gearopt.formulations.layout.slabs import Slabs, arrange
 from gearopt.optimise.clock import following, in_part
 from gearopt.optimise.comparing.trial import Model
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Outcome, Result
 from gearopt.optimise.solve import limits, run
+from gearopt.optimise.typed import untyped
 from gearopt.physics.gears import GearPair
 from gearopt.scenes.drive.box.lay_out import lay_out, pairs_of, told
 from gearopt.scenes.drive.scene import Scene
@@ -43,7 +45,7 @@ def at_once(scene: Scene, ask: Ask, sized: Result) -> Result:
     box, angles, order = together.laid_out(scene.train(), scene.gearbox, outcome.x)
     own, pairs = teeth.problem(scene.train()), together.pairs(scene.train(), outcome.x)
     point = outcome.x[: sum(v.size for v in own.variables)]
-    gears = replace(sized, design=scene.design(pairs), limits=limits(own, point))
+    gears = replace(sized, design=untyped(scene.design(pairs)), limits=limits(own, point))
     found = told(scene, result, events, replace(gears, report={}), box, angles, order)
     left = replace(ask, budget=asked.less(result.seconds))
     smooth = _from(scene, (order.slabs, pairs, angles), left)
@@ -85,9 +87,10 @@ def posed(scene: Scene, method: str, apart: Result) -> Model:
 
 def _start(scene: Scene, apart: Result) -> Start:
     """Slabs, gear pairs and angles of a layout."""
-    found = apart.design["layout"]
-    slabs = tuple(tuple(s - 1 for s in slab) for slab in found["slabs"])
-    return slabs, pairs_of(scene, apart), tuple(math.radians(t) for t in found["link_angles_deg"])
+    found = drive_design(apart.design).layout
+    assert found is not None
+    slabs = tuple(tuple(s - 1 for s in slab) for slab in found.slabs)
+    return slabs, pairs_of(scene, apart), tuple(math.radians(t) for t in found.link_angles_deg)
 
 
 def _from(scene: Scene, start: Start, ask: Ask) -> tuple[Result, ...]:
@@ -117,7 +120,9 @@ def _real(
     own = sizing.problem(train)
     point = outcome.x[: sum(v.size for v in own.variables)]
     pairs = sizing.pairs(train, point)
-    gears = replace(sized, design=scene.design(pairs), limits=limits(own, point), report={})
+    gears = replace(
+        sized, design=untyped(scene.design(pairs)), limits=limits(own, point), report={}
+    )
     box = scene.gearbox(pairs)
     angles = together.angles_of(problem, outcome.x)
     return told(scene, result, events, gears, box, angles, arrange(box, slabs))

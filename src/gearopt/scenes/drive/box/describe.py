@@ -1,101 +1,115 @@
 """A layout in the words of its drawing: shafts, gears, box, gaps."""
 
 import math
-from typing import Any
 
+from gearopt.formulations.design import DriveDesign
 from gearopt.formulations.layout.gearbox import Gearbox, KeepOut
+from gearopt.formulations.layout.layout_design import (
+    BearingDesign,
+    BoxDesign,
+    ClearanceDesign,
+    GapDesign,
+    GearDesign,
+    KeepOutDesign,
+    LayoutDesign,
+    MotorDesign,
+    ShaftDesign,
+)
 from gearopt.formulations.layout.placed import Placed, placed
 from gearopt.formulations.layout.slabs import Arrangement
-from gearopt.optimise.result import Result
 from gearopt.scenes.drive.scene import Scene
 
 
 def described(
-    scene: Scene, box: Gearbox, one: Arrangement, angles: tuple[float, ...], sized: Result
-) -> dict[str, Any]:
-    """The layout as a Result's design holds it; every quantity with its unit in the key."""
+    scene: Scene, box: Gearbox, one: Arrangement, angles: tuple[float, ...], sized: DriveDesign
+) -> LayoutDesign:
+    """Describe the layout of a sized drive as a result holds it."""
     found = placed(box, one, angles)
     shafts = [body for own in one.bodies for body in own if body.name.startswith("shaft")]
-    bearings = [
-        {"shaft": k, "diameter_mm": 2 * body.radius, "from_mm": body.x[0], "to_mm": body.x[1]}
-        for k, own in enumerate(one.bodies, 1)
-        for body in own
-        if body.name.startswith("bearing")
-    ]
-    return {
-        "box": _box(found),
-        "shafts": [
-            {
-                "shaft": k,
-                "y_mm": y,
-                "z_mm": z,
-                "diameter_mm": 2 * body.radius,
-                "from_mm": body.x[0],
-                "to_mm": body.x[1],
-            }
+    return LayoutDesign(
+        box=_box(found),
+        shafts=tuple(
+            ShaftDesign(
+                shaft=k,
+                y_mm=y,
+                z_mm=z,
+                diameter_mm=2 * body.radius,
+                from_mm=body.x[0],
+                to_mm=body.x[1],
+            )
             for k, ((y, z), body) in enumerate(zip(found.axes, shafts, strict=True), 1)
-        ],
-        "gears": _gears(scene, one, sized),
-        "bearings": bearings,
-        "link_angles_deg": [math.degrees(t) for t in angles],
-        "slabs": [[s + 1 for s in slab] for slab in one.slabs],
-        "gaps": _gaps(box, one, found),
-        "clearances": _clearances(box),
-        "obstacles": [_keep_out(k, found) for k in box.keep_outs],
-        "motor": {"diameter_mm": 2 * box.motor} if box.motor else None,
-        "split": [k + 1 for k in box.level],
-    }
+        ),
+        gears=_gears(scene, one, sized),
+        bearings=tuple(
+            BearingDesign(shaft=k, diameter_mm=2 * body.radius, from_mm=body.x[0], to_mm=body.x[1])
+            for k, own in enumerate(one.bodies, 1)
+            for body in own
+            if body.name.startswith("bearing")
+        ),
+        link_angles_deg=tuple(math.degrees(t) for t in angles),
+        slabs=tuple(tuple(s + 1 for s in slab) for slab in one.slabs),
+        gaps=_gaps(box, one, found),
+        clearances=_clearances(box),
+        obstacles=tuple(_keep_out(k, found) for k in box.keep_outs),
+        motor=MotorDesign(diameter_mm=2 * box.motor) if box.motor else None,
+        split=tuple(k + 1 for k in box.level),
+    )
 
 
-def used(found: dict[str, Any]) -> dict[str, float]:
-    """Of every two axes that must keep apart, the part of their distance that is needed."""
+def used(found: LayoutDesign) -> dict[str, float]:
+    """Return, of every two axes that must keep apart, the part of their distance that is needed."""
     return {
-        " to ".join(gap["between"]).replace(" ", "_"): 1.0
-        - (gap["gap_mm"] - gap["needed_mm"]) / gap["axes_mm"]
-        for gap in found["gaps"]
+        " to ".join(gap.between).replace(" ", "_"): 1.0 - (gap.gap_mm - gap.needed_mm) / gap.axes_mm
+        for gap in found.gaps
     }
 
 
-def _box(found: Placed) -> dict[str, float]:
+def _box(found: Placed) -> BoxDesign:
     width, height, length = found.width, found.height, found.length
-    return {
-        "width_mm": width,
-        "height_mm": height,
-        "length_mm": length,
-        "left_mm": found.left,
-        "bottom_mm": found.bottom,
-        "volume_mm3": width * height * length,
-        "plan_area_mm2": width * length,
-        "face_area_mm2": width * height,
-    }
+    return BoxDesign(
+        width_mm=width,
+        height_mm=height,
+        length_mm=length,
+        left_mm=found.left,
+        bottom_mm=found.bottom,
+        volume_mm3=width * height * length,
+        plan_area_mm2=width * length,
+        face_area_mm2=width * height,
+    )
 
 
-def _gears(scene: Scene, one: Arrangement, sized: Result) -> list[dict[str, Any]]:
-    stages, gears = sized.design["stages"], []
+def _gears(scene: Scene, one: Arrangement, sized: DriveDesign) -> tuple[GearDesign, ...]:
+    gears = []
     for k, own in enumerate(one.bodies, 1):
         for body in (b for b in own if b.gear):
-            member = body.name.split()[0]
-            stage = stages[body.stage]
+            member, stage = body.name.split()[0], sized.stages[body.stage]
+            wheel = member == "wheel"
             gears.append(
-                {
-                    "name": body.name,
-                    "stage": body.stage + 1,
-                    "member": member,
-                    "shaft": k,
-                    "teeth": stage[f"{member}_teeth"],
-                    "normal_module_mm": stage["normal_module_mm"],
-                    "reference_diameter_mm": stage[f"{member}_diameter_mm"],
-                    "tip_diameter_mm": stage[f"{member}_tip_diameter_mm"],
-                    "root_diameter_mm": stage[f"{member}_root_diameter_mm"],
-                    "helix_angle_deg": math.degrees(scene.gears.helix_angle.value),
-                    "from_mm": body.x[0],
-                    "to_mm": body.x[1],
-                }
+                GearDesign(
+                    name=body.name,
+                    stage=body.stage + 1,
+                    member=member,
+                    shaft=k,
+                    teeth=stage.wheel_teeth if wheel else stage.pinion_teeth,
+                    normal_module_mm=stage.normal_module_mm,
+                    reference_diameter_mm=stage.wheel_diameter_mm
+                    if wheel
+                    else stage.pinion_diameter_mm,
+                    tip_diameter_mm=stage.wheel_tip_diameter_mm
+                    if wheel
+                    else stage.pinion_tip_diameter_mm,
+                    root_diameter_mm=stage.wheel_root_diameter_mm
+                    if wheel
+                    else stage.pinion_root_diameter_mm,
+                    helix_angle_deg=math.degrees(scene.gears.helix_angle.value),
+                    from_mm=body.x[0],
+                    to_mm=body.x[1],
+                )
             )
-    return gears
+    return tuple(gears)
 
 
-def _gaps(box: Gearbox, one: Arrangement, found: Placed) -> list[dict[str, Any]]:
+def _gaps(box: Gearbox, one: Arrangement, found: Placed) -> tuple[GapDesign, ...]:
     """Clear distances of bodies that must keep apart, the narrowest over its need first."""
     gaps = []
     for (i, j), need in one.needs.items():
@@ -103,12 +117,7 @@ def _gaps(box: Gearbox, one: Arrangement, found: Placed) -> list[dict[str, Any]]
         there = math.hypot(yb - ya, zb - za)
         gap = there - (need.distance - need.clearance)
         gaps.append(
-            {
-                "between": list(need.between),
-                "gap_mm": gap,
-                "needed_mm": need.clearance,
-                "axes_mm": there,
-            }
+            GapDesign(between=need.between, gap_mm=gap, needed_mm=need.clearance, axes_mm=there)
         )
     for k, keep in enumerate(box.keep_outs):
         for i, (y, z) in enumerate(found.axes):
@@ -116,33 +125,33 @@ def _gaps(box: Gearbox, one: Arrangement, found: Placed) -> list[dict[str, Any]]
                 dy = max(keep.y[0] - y, y - keep.y[1], 0.0)
                 dz = max(keep.z[0] - z, z - keep.z[1], 0.0)
                 gaps.append(
-                    {
-                        "between": [f"shaft {i + 1} with its gears", keep.name],
-                        "gap_mm": math.hypot(dy, dz) - needed + box.clearances.shafts,
-                        "needed_mm": box.clearances.shafts,
-                        "axes_mm": math.hypot(dy, dz),
-                    }
+                    GapDesign(
+                        between=(f"shaft {i + 1} with its gears", keep.name),
+                        gap_mm=math.hypot(dy, dz) - needed + box.clearances.shafts,
+                        needed_mm=box.clearances.shafts,
+                        axes_mm=math.hypot(dy, dz),
+                    )
                 )
-    return sorted(gaps, key=lambda g: float(g["gap_mm"]) - float(g["needed_mm"]))
+    return tuple(sorted(gaps, key=lambda g: float(g.gap_mm) - float(g.needed_mm)))
 
 
-def _clearances(box: Gearbox) -> dict[str, float]:
+def _clearances(box: Gearbox) -> ClearanceDesign:
     found = box.clearances
-    return {
-        "gear_to_gear_mm": found.gears,
-        "gear_to_shaft_mm": found.shafts,
-        "wall_mm": found.wall,
-        "axial_mm": found.axial,
-    }
+    return ClearanceDesign(
+        gear_to_gear_mm=found.gears,
+        gear_to_shaft_mm=found.shafts,
+        wall_mm=found.wall,
+        axial_mm=found.axial,
+    )
 
 
-def _keep_out(keep: KeepOut, found: Placed) -> dict[str, Any]:
-    return {
-        "name": keep.name,
-        "left_mm": keep.y[0],
-        "right_mm": keep.y[1],
-        "bottom_mm": keep.z[0],
-        "top_mm": keep.z[1],
-        "from_mm": max(keep.x[0], -0.1 * found.length),
-        "to_mm": min(keep.x[1], 1.1 * found.length),
-    }
+def _keep_out(keep: KeepOut, found: Placed) -> KeepOutDesign:
+    return KeepOutDesign(
+        name=keep.name,
+        left_mm=keep.y[0],
+        right_mm=keep.y[1],
+        bottom_mm=keep.z[0],
+        top_mm=keep.z[1],
+        from_mm=max(keep.x[0], -0.1 * found.length),
+        to_mm=min(keep.x[1], 1.1 * found.length),
+    )

@@ -5,8 +5,10 @@ from typing import Any
 
 from gearopt.errors import SolveError
 from gearopt.formulations import layout
+from gearopt.formulations.design import drive_design
 from gearopt.formulations.layout.exact import GAP
 from gearopt.formulations.layout.gearbox import Gearbox
+from gearopt.formulations.layout.layout_design import LayoutDesign
 from gearopt.formulations.layout.placed import placed, read
 from gearopt.formulations.layout.slabs import Arrangement, arrangements
 from gearopt.optimise.clock import following, in_part
@@ -14,18 +16,20 @@ from gearopt.optimise.comparing.trial import Model
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run
 from gearopt.optimise.terms import Array
+from gearopt.optimise.typed import untyped
 from gearopt.physics.gears import GearPair
 from gearopt.scenes.drive.box.describe import described, used
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.reading.ask import Ask
 
-SIZES = ("normal_module_mm", "pinion_teeth", "wheel_teeth", "face_width_mm")
-
 
 def pairs_of(scene: Scene, sized: Result) -> tuple[GearPair, ...]:
     """Return the gear pairs of a sized drive."""
     train = scene.train()
-    return tuple(train.pair(*(s[key] for key in SIZES)) for s in sized.design["stages"])
+    return tuple(
+        train.pair(s.normal_module_mm, s.pinion_teeth, s.wheel_teeth, s.face_width_mm)
+        for s in drive_design(sized.design).stages
+    )
 
 
 def lay_out(scene: Scene, ask: Ask, sized: Result) -> Result:
@@ -65,7 +69,8 @@ def told(
     order: Arrangement,
 ) -> Result:
     """A result with its gears and layout in the words of a drawing."""
-    found = described(scene, box, order, angles, sized)
+    gears = drive_design(sized.design)
+    found = described(scene, box, order, angles, gears)
     before = sum(p.seconds for p in result.parts), sum(p.evaluations for p in result.parts)
     seconds, spent = before[0] + result.seconds, before[1] + result.evaluations
     last = {"seconds": seconds, "evaluations": spent, "best": result.value, "bound": result.bound}
@@ -76,7 +81,7 @@ def told(
     return replace(
         result,
         name="drive",
-        design=sized.design | {"layout": found},
+        design=untyped(replace(gears, layout=found)),
         limits=sized.limits | used(found) | _sides_used(result),
         report={
             "progress": [*steps, last],
@@ -129,11 +134,10 @@ def _impossible(
     )
 
 
-def _reached(box: Gearbox, found: dict[str, Any]) -> list[str]:
+def _reached(box: Gearbox, found: LayoutDesign) -> list[str]:
     """Keep-outs that the box itself reaches into: only what is on the shafts is kept out."""
-    side = found["box"]
-    left, bottom = side["left_mm"], side["bottom_mm"]
-    right, top = left + side["width_mm"], bottom + side["height_mm"]
+    left, bottom = found.box.left_mm, found.box.bottom_mm
+    right, top = left + found.box.width_mm, bottom + found.box.height_mm
     deep = {
         k.name: min(right - k.y[0], k.y[1] - left, top - k.z[0], k.z[1] - bottom)
         for k in box.keep_outs

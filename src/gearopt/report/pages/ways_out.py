@@ -1,9 +1,12 @@
-"""Ways out of an impossible request, in words and cells, as terminal and page both show them."""
+"""Ways out of an impossible request: why it is one, and what to write instead."""
 
 import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from gearopt.optimise.result import Result
+from gearopt.report.measures import Measures
+from gearopt.report.section import Section, Table
 from gearopt.report.words import edit, limit_words
 
 KINDS = {
@@ -19,6 +22,19 @@ REMEDY_HEADS = (
     "factor",
     "proven least",
 )
+
+
+def section(result: Result, measures: Measures) -> Section | None:
+    """Why nothing meets the limits, and what to write instead; None elsewhere."""
+    found: Mapping[str, Any] = result.report.get("ways_out") or {}
+    if not found:
+        return None
+    why, rows, tried = remedy_words(found)
+    if not found["conflict"] and result.message not in ("", found["message"]):
+        why.insert(0, result.message)
+    tables = [Table("ways out", REMEDY_HEADS, rows, words=True, left=3)] if rows else []
+    told = (*why, *tables, *tried)
+    return Section("Ways out", words=[*why, *tried], tables=tables, terminal=told)
 
 
 def remedy_words(

@@ -1,0 +1,51 @@
+"""What page and terminal show of each kind of result.
+
+Each module here is a kind, of the name that its scene has, and holds a `Kind` called KIND. Nothing
+is registered: a kind without a module, and a problem of a user's own, are shown as `generic` says.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from importlib import import_module
+from pkgutil import iter_modules
+
+from gearopt.optimise.result import Result
+from gearopt.report.measures import Measures
+from gearopt.report.section import Section, Tile
+
+MakeSection = Callable[[Result, Measures], Section | None]  # None: nothing to show of it
+
+
+def _nothing(result: Result, measures: Measures) -> Sequence[str]:
+    return ()
+
+
+def _no_tiles(result: Result, measures: Measures) -> Sequence[Tile]:
+    return ()
+
+
+@dataclass(frozen=True)
+class Kind:
+    """Sections in the order of the page, and those that the terminal shows in its own order.
+
+    tiles: key figures beside objective and bound. beside: sentences after the proof about what
+    else was solved. drawn: whether there is a drawing of its designs.
+    """
+
+    sections: tuple[MakeSection, ...]
+    terminal: tuple[MakeSection, ...]
+    tiles: Callable[[Result, Measures], Sequence[Tile]] = _no_tiles
+    beside: Callable[[Result, Measures], Sequence[str]] = _nothing
+    drawn: bool = True
+
+
+def kind_of(result: Result) -> Kind:
+    """Return what is shown of a result: what its kind says, else what all kinds have."""
+    return kind_named(result.scene)
+
+
+def kind_named(name: str | None) -> Kind:
+    """Return what is shown of a kind of this name."""
+    known = name in {module.name for module in iter_modules(__path__)}
+    found: Kind = import_module(f"{__name__}.{name if known else 'generic'}").KIND
+    return found

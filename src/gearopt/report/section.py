@@ -1,0 +1,167 @@
+"""What pages and terminal are made of: sections of key figures, sentences, drawings, plots, tables.
+
+A table is written once. What only one of the two shows of it is marked: columns and rows by name.
+"""
+
+import csv
+import io
+import re
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+from urllib.parse import quote
+
+from gearopt.report.pages.sheet import Drawing
+from gearopt.report.plot import Figure
+from gearopt.report.words import number, share
+
+SHEET = 660.0  # px across an A4 sheet inside its margins
+GUTTER = 18.0  # px between drawings, as in drawing.css
+LEGIBLE = 0.6  # of a text of 12 px: 5.4 pt on paper
+LONG = 24  # rows; a longer table may break between rows when it is printed
+
+
+@dataclass(frozen=True)
+class Cell:
+    """A value with a text of its own; share: a bar of so much of the cell is drawn behind it.
+
+    short: the text on the terminal, where it is another one.
+    """
+
+    value: Any
+    text: str
+    share: float | None = None
+    short: str | None = None
+
+
+@dataclass(frozen=True)
+class Table:
+    """Rows of values or cells below heads, what it is called and what its CSV file is called.
+
+    words: sentences, not numbers, that may break over lines. folded: a plot shows its values, so
+    that the page holds its CSV only. page_only, terminal_only: heads of the columns and labels (the
+    first cells) of the rows that only one of them shows. short: other heads on the terminal. left,
+    wrap: how many columns stand on the left there, and how many may break over lines.
+    """
+
+    name: str
+    heads: Sequence[str]
+    rows: Sequence[Sequence[Any]]
+    caption: str = ""
+    words: bool = False
+    folded: bool = False
+    page_only: Collection[str] = ()
+    terminal_only: Collection[str] = ()
+    short: Mapping[str, str] = field(default_factory=dict)
+    left: int = 1
+    wrap: int = 1
+
+    def without(self, hidden: Collection[str]) -> tuple[list[str], list[list[Any]]]:
+        """Return heads and rows without the columns and rows of these names."""
+        kept = [k for k, head in enumerate(self.heads) if head not in hidden]
+        rows = [[row[k] for k in kept] for row in self.rows if _plain(row[0]) not in hidden]
+        return [self.heads[k] for k in kept], rows
+
+    @property
+    def long(self) -> bool:
+        """Whether it may not fit on a printed page."""
+        return len(self.rows) > LONG
+
+    @property
+    def stem(self) -> str:
+        """Its name as that of a file: "gaps [mm]" as "gaps-mm"."""
+        return re.sub(r"[^a-z0-9]+", "-", self.name.lower()).strip("-")
+
+    @property
+    def shown(self) -> tuple[list[str], list[list[Cell]]]:
+        """Heads and cells as the page shows them."""
+        heads, rows = self.without(self.terminal_only)
+        return heads, [[shown(value) for value in row] for row in rows]
+
+    def csv(self) -> str:
+        """Heads and values in full precision, as RFC 4180 has it."""
+        text = io.StringIO()
+        writer = csv.writer(text, lineterminator="\r\n")
+        heads, rows = self.without(self.terminal_only)
+        if any(heads):
+            writer.writerow(heads)
+        writer.writerows([_plain(value) for value in row] for row in rows)
+        return text.getvalue()
+
+    @property
+    def link(self) -> str:
+        """The CSV as an address that needs no network."""
+        return "data:text/csv;charset=utf-8," + quote("\ufeff" + self.csv())  # for spreadsheets
+
+
+@dataclass(frozen=True)
+class Tile:
+    """A key figure: what it is called, its value with the unit, a remark."""
+
+    name: str
+    value: str
+    remark: str = ""
+
+
+@dataclass(frozen=True)
+class Section:
+    """A heading, then key figures, sentences, drawings at one scale, plots, tables.
+
+    half: two such sections stand side by side where the page is wide. terminal: the sentences and
+    tables that the terminal shows of it, in its order.
+    """
+
+    heading: str
+    tiles: Sequence[Tile] = ()
+    words: Sequence[str] = ()
+    drawings: Sequence[Drawing] = ()
+    figures: Sequence[Figure] = ()
+    tables: Sequence[Table] = ()
+    half: bool = False
+    terminal: Sequence[Any] = ()
+
+    @property
+    def widest(self) -> float:
+        """Width of the widest drawing [px]: all shrink with it, so that they keep one scale."""
+        return max(drawing.width for drawing in self.drawings)
+
+    @property
+    def printed(self) -> float:
+        """How much the drawings shrink in print so that the first two stand side by side.
+
+        1 where their text would become too small.
+        """
+        both = sum(drawing.width for drawing in self.drawings[:2]) + GUTTER
+        share = SHEET / both
+        return min(1.0, share) if share > LEGIBLE else 1.0
+
+
+def shown(value: Any) -> Cell:
+    """A value as it is read; the items of a list with commas between."""
+    if isinstance(value, Cell):
+        return value
+    if value is None:
+        return Cell(value, "")
+    if isinstance(value, bool):
+        return Cell(value, "yes" if value else "no")
+    if isinstance(value, list | tuple):
+        return Cell(value, ", ".join(shown(v).text for v in value))
+    if isinstance(value, float):
+        return Cell(value, number(round(value, 6) + 0.0))  # no minus before a zero
+    return Cell(value, number(value))
+
+
+def percent(used: float | None) -> Cell:
+    """A part of a whole in per cent, with its bar."""
+    if used is None:
+        return Cell(None, "")
+    return Cell(100.0 * used, share(used), min(1.0, max(0.0, used)))
+
+
+def _plain(value: Any) -> Any:
+    """A value as CSV holds it."""
+    if isinstance(value, Cell):
+        return _plain(value.value)
+    if isinstance(value, list | tuple):
+        return "; ".join(str(_plain(v)) for v in value)
+    return "" if value is None else value
