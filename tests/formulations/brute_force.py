@@ -11,7 +11,7 @@ from fractions import Fraction
 import numpy as np
 
 from gearopt.formulations.train import FaceWidth, Stage, Train
-from gearopt.physics.modules import MODULES
+from gearopt.physics.gears import MODULES
 
 SAME = 1e-12  # objectives closer than this are ties; loads may exceed a limit by this much
 ONE = Fraction(1)

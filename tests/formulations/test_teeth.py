@@ -13,7 +13,7 @@ from gearopt.formulations.teeth.search import possible
 from gearopt.formulations.train import OBJECTIVES, FaceWidth, Stage, Train
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import run, solve
-from gearopt.physics.modules import SERIES_I
+from gearopt.physics.gears import SERIES_I
 
 F = Fraction
 ELEVATOR, ONE_PERCENT = F("1450") / F("66.5"), F(1, 100)

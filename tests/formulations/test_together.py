@@ -20,7 +20,7 @@ from gearopt.optimise.clock import Clock
 from gearopt.optimise.kernels import kernel
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import run
-from gearopt.physics.modules import MODULES
+from gearopt.physics.gears import MODULES
 
 F = Fraction
 IN_ORDER = ((0,), (1,), (2,))

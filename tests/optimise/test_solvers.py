@@ -15,7 +15,7 @@ from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import back_ends, solve
 from gearopt.optimise.terms import Param, Terms, Var
-from gearopt.physics.modules import SERIES_I
+from gearopt.physics.gears import SERIES_I
 
 F = Fraction
 ELEVATOR, ONE_PERCENT = F("1450") / F("66.5"), F(1, 100)

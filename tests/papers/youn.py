@@ -13,7 +13,7 @@ from gearopt.physics.backlash import (
     pitch_error_angle,
     radial_backlash,
 )
-from gearopt.physics.inertia import disc_mass
+from gearopt.physics.gears import disc_mass
 from gearopt.physics.stiffness import (
     line_stiffness,
     locked_frequency,

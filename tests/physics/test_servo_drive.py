@@ -5,11 +5,12 @@ import math
 import numpy as np
 import pytest
 
-from gearopt.physics.inertia import disc_inertia, disc_mass, reflected_inertia
+from gearopt.physics.gears import disc_inertia, disc_mass
 from gearopt.physics.servo_drive import (
     largest_acceleration,
     load_acceleration,
     move_time,
+    reflected_inertia,
     rms_torque,
     shortest_move_time,
     torque_slope,

@@ -7,7 +7,7 @@ import pytest
 from gearopt.optimise.trace import legacy_numpy
 from gearopt.physics import (
     backlash,
-    inertia,
+    gears,
     servo_drive,
     stiffness,
     tolerances,
@@ -15,8 +15,8 @@ from gearopt.physics import (
 )
 
 LAWS = [
-    lambda a, b, c, d: inertia.disc_mass(a, b, c),
-    lambda a, b, c, d: inertia.disc_inertia(a, b, c),
+    lambda a, b, c, d: gears.disc_mass(a, b, c),
+    lambda a, b, c, d: gears.disc_inertia(a, b, c),
     lambda a, b, c, d: servo_drive.load_acceleration(d, a, b, 10.0 * c, 3.0, 0.9, 0.1 * c),
     lambda a, b, c, d: servo_drive.torque_slope(a, b, c),
     lambda a, b, c, d: servo_drive.shortest_move_time(a, b, c),

@@ -14,7 +14,7 @@ from scene_files import dump, parse
 
 from gearopt import solve
 from gearopt.formulations import sizing
-from gearopt.physics.modules import MODULES
+from gearopt.physics.gears import MODULES
 from gearopt.scenes.reading.load import read
 from gearopt.scenes.reading.toml import toml_text
 

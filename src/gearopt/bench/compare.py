@@ -16,7 +16,7 @@ from gearopt.optimise.comparing.comparison import Comparison
 from gearopt.optimise.comparing.trial import Model
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Param, Terms, Var
-from gearopt.physics.modules import SERIES_I
+from gearopt.physics.gears import SERIES_I
 
 METHODS = ("exact", "scip", "annealing", "nsga2", "ipopt", "gp", "multistart")
 CONTINUOUS = METHODS[5:]

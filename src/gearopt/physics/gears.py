@@ -1,16 +1,27 @@
 """External cylindrical gears and gear pairs without profile shift (ISO 21771 terms), in mm and t.
 
 Every quantity is a float, an array (all of one shape) or a casadi scalar; numbers of teeth may be
-real.
+real. An inertia is in t mm^2 (1 kg m^2 = 1e3 t mm^2).
 """
 
 import math
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
 
-from gearopt.physics.inertia import disc_inertia, disc_mass
+
+def _series(text: str) -> tuple[Fraction, ...]:
+    return tuple(Fraction(number) for number in text.split())
+
+
+# ISO 54:1996, table 1 (GB/T 1357-2008 lists the same); 6.5 is one the standard asks to avoid.
+# Checked against three independent public listings.
+SERIES_I = _series("1 1.25 1.5 2 2.5 3 4 5 6 8 10 12 16 20 25 32 40 50")
+SERIES_II = _series("1.125 1.375 1.75 2.25 2.75 3.5 4.5 5.5 6.5 7 9 11 14 18 22 28 36 45")
+
+MODULES = {"ISO 54 I": SERIES_I, "ISO 54 I+II": tuple(sorted(SERIES_I + SERIES_II))}
 
 NEGLIGIBLE = 0.01  # modules that a rack may reach too deep: 17 teeth of 20 degrees need 0.006
 
@@ -29,6 +40,22 @@ class Rack:
 
 
 ISO_53_A = Rack()
+
+
+def disc_mass(density: Any, length: Any, diameter: Any) -> Any:
+    """Mass (pi/4) rho b d^2 [t] of a solid cylinder.
+
+    density rho [t/mm3]; length b, diameter d [mm] >= 0.
+    """
+    return math.pi / 4.0 * density * length * diameter**2
+
+
+def disc_inertia(density: Any, length: Any, diameter: Any) -> Any:
+    """Moment of inertia (pi/32) rho b d^4 [t mm2] of a solid cylinder about its axis.
+
+    density rho [t/mm3]; length b, diameter d [mm] >= 0.
+    """
+    return math.pi / 32.0 * density * length * diameter**4
 
 
 def reference_diameter(module: Any, teeth: Any, helix_angle: Any = 0.0) -> Any:

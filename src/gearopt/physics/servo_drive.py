@@ -11,7 +11,16 @@ from typing import Any
 
 import numpy as np
 
-from gearopt.physics.inertia import reflected_inertia
+
+def reflected_inertia(
+    load_inertia: Any, motor_inertia: Any, ratio: Any, efficiency: Any = 1.0
+) -> Any:
+    """Inertia J_L + eta N^2 J_M [t mm2] that a driving motor's torque accelerates at the load.
+
+    load_inertia J_L, motor_inertia J_M [t mm2] >= 0; ratio N > 0, motor over load speed; efficiency
+    0 < eta <= 1 of the train. Source: Youn, eq. (3), with efficiency.
+    """
+    return load_inertia + efficiency * ratio**2 * motor_inertia
 
 
 def load_acceleration(

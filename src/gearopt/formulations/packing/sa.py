@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from gearopt.formulations.packing import points
+from gearopt.formulations.packing import text
 from gearopt.formulations.packing.plan import Plan, row
 from gearopt.formulations.packing.state import LOOKS, Finish, Floor, Spent, anneal, ready, scattered
 from gearopt.optimise.clock import Clock
@@ -27,7 +27,7 @@ def method(plan: Plan, floor: Floor, finish: Finish) -> Any:
         """Anneal once; the best state that meets all limits, or else the row of all, is kept."""
         ready()
         spent, rng = Spent(clock := Clock(budget, watch)), np.random.default_rng(seed)
-        first = points.point(plan, row(plan))
+        first = text.point(plan, row(plan))
         spent.keep(float(problem.batch(first[None]).F[0, 0]), first)
         least = floor(problem, spent)
         clock.bound = least.value

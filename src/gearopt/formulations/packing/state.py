@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from gearopt.formulations.packing import points
+from gearopt.formulations.packing import text
 from gearopt.formulations.packing.container_bound import Bound
 from gearopt.formulations.packing.depth import Late
 from gearopt.formulations.packing.plan import Places, Plan, row
@@ -160,7 +160,7 @@ def anneal(
         done = last
         if best[-1] < least:
             levels, least = best[2 * n : 3 * n].astype(np.int64), float(best[-1])
-            found = points.point(plan, Places(best[:n], best[n : 2 * n], levels, best[3 * n : -1]))
+            found = text.point(plan, Places(best[:n], best[n : 2 * n], levels, best[3 * n : -1]))
             spent.keep(float(problem.batch(found[None]).F[0, 0]), found)
         if done < moves and not spent.clock.tell():
             break

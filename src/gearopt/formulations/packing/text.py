@@ -12,10 +12,9 @@ from typing import Any
 import numpy as np
 
 from gearopt.errors import SolveError
-from gearopt.formulations.packing import points
 from gearopt.formulations.packing.plan import Places, Plan, row
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.terms import Array, Param, Terms, Var
+from gearopt.optimise.terms import Array, Param, Terms, Var, each, namespace
 
 NEVER = -1.0  # needed d^2/D^2 of a pair in different layers
 
@@ -33,8 +32,8 @@ def direct(plan: Plan, **methods: Any) -> Problem:
         variables.append(layers)
 
     def evaluate(x: Any, p: Any) -> Terms:
-        axes = points.axes(plan, x)
-        layer = points.layers(plan, x)
+        axes = axes_of(plan, x)
+        layer = layers_of(plan, x)
         area, limits = _container(plan, axes, x)
         defines: dict[str, Any] = {}
         rows = tuple(_close(plan, axes, layer, i, j) for i, j in _near(plan))
@@ -69,13 +68,12 @@ def smooth(plan: Plan, layer: Any = None) -> Problem:
     variables = (*_axes(plan, guess), *_sides(plan, guess))
 
     def evaluate(x: Any, p: Any) -> Terms:
-        axes = points.axes(plan, x)
+        axes = axes_of(plan, x)
         walls = _walls(plan, axes, x)
         if pairs:
             squares = [_square(plan, axes, i, j) for i, j in pairs]
             walls["apart"] = tuple(
-                1.0 + (least - there)
-                for least, there in zip(points.each(p.needed), squares, strict=True)
+                1.0 + (least - there) for least, there in zip(each(p.needed), squares, strict=True)
             )
         return Terms(_objective(plan, _area(plan, x), p.height), defines=walls)
 
@@ -132,7 +130,7 @@ def _axes(plan: Plan, guess: Places) -> tuple[Var, ...]:
 
 
 def _centre(plan: Plan, guess: Places) -> tuple[Var, ...]:
-    if not points.has_centre(plan):
+    if not has_centre(plan):
         return ()
     low, high, near, far = _ends(plan)
     return (
@@ -143,7 +141,7 @@ def _centre(plan: Plan, guess: Places) -> tuple[Var, ...]:
 
 def _sides(plan: Plan, guess: Places) -> tuple[Var, ...]:
     """The container's variables; a corner or centre only where something is fixed."""
-    at = points.start(plan, guess)[2 * len(plan.free) :]
+    at = start(plan, guess)[2 * len(plan.free) :]
     low, high, near, far = _ends(plan)
     most = 2.0 * max(high - low, far - near)
     least = 2.0 * float(plan.radius.max() + plan.wall)
@@ -255,3 +253,65 @@ def _walls(plan: Plan, axes: list[tuple[Any, Any]], x: Any) -> dict[str, Any]:
 
 def _objective(plan: Plan, area: Any, height: Any) -> dict[str, Any]:
     return {"volume": area * height} if plan.objective == "volume" else {"area": area}
+
+
+def places(plan: Plan, problem: Problem, at: Array, layer: Any = None) -> Places:
+    """Where all cylinders are at a point of either text; layer: those given to `smooth`."""
+    x = namespace(problem.variables, [float(v) for v in at])
+    both = axes_of(plan, x)
+    centre = np.array([getattr(x, "centre_x", 0.0), getattr(x, "centre_y", 0.0)], float)
+    layer = [round(float(k)) for k in layers_of(plan, x)] if layer is None else layer
+    return Places(
+        np.array([a for a, _ in both], float),
+        np.array([b for _, b in both], float),
+        np.array(layer, dtype=np.int64),
+        centre,
+    )
+
+
+def point(plan: Plan, found: Places) -> Array:
+    """The point of `direct` of a packing; where nothing is fixed, its corner is the origin."""
+    free, x, y = list(plan.free), found.x, found.y
+    if not plan.fixed and plan.shape != "circle":
+        x, y = (v - float((v - plan.radius).min()) + plan.wall for v in (x, y))
+    parts = [x[free], y[free]]
+    if has_centre(plan):
+        parts.append(found.centre)
+    parts.append(found.layer[list(plan.lifted)].astype(float))
+    return np.concatenate(parts)
+
+
+def start(plan: Plan, found: Places) -> Array:
+    """The point of `smooth` of a packing, whose container just holds it."""
+    r, wall, free = plan.radius, plan.wall, list(plan.free)
+    x, y = found.x, found.y
+    if plan.shape == "circle":
+        far = float(np.max(np.hypot(x - found.centre[0], y - found.centre[1]) + r)) + wall
+        centre = found.centre if plan.fixed else np.empty(0)
+        return np.concatenate([x[free], y[free], centre, [far]])
+    left, front = float((x - r).min()) - wall, float((y - r).min()) - wall
+    across, along = float((x + r).max()) + wall - left, float((y + r).max()) + wall - front
+    if not plan.fixed:
+        x, y, left, front = x - left, y - front, 0.0, 0.0
+    corner = [left, front] if plan.fixed else []
+    sides = [max(across, along)] if plan.shape == "square" else [across, along]
+    if plan.width is not None:
+        sides = [along]
+    return np.concatenate([x[free], y[free], corner, sides])
+
+
+def axes_of(plan: Plan, x: Any) -> list[tuple[Any, Any]]:
+    """Axes of all cylinders: those of the free ones are variables."""
+    free = iter(zip(each(x.x), each(x.y), strict=True))
+    return [c.at if c.at is not None else next(free) for c in plan.cylinders]
+
+
+def layers_of(plan: Plan, x: Any) -> list[Any]:
+    """Layers of all cylinders: those that are free are variables."""
+    lifted = dict(zip(plan.lifted, each(x.layer), strict=True)) if plan.lifted else {}
+    return [lifted.get(k, c.layer or 1) for k, c in enumerate(plan.cylinders)]
+
+
+def has_centre(plan: Plan) -> bool:
+    """Whether the centre of the container is a variable: of a circle around fixed cylinders."""
+    return plan.shape == "circle" and bool(plan.fixed)

@@ -9,7 +9,7 @@ from dataclasses import replace
 
 from gearopt.errors import SolveError
 from gearopt.formulations import packing
-from gearopt.formulations.packing import points, text
+from gearopt.formulations.packing import text
 from gearopt.formulations.packing.container_bound import bound
 from gearopt.formulations.packing.design import describe
 from gearopt.formulations.packing.plan import Plan
@@ -50,7 +50,7 @@ def solve(scene: Scene, ask: Ask) -> Result:
     report = {"assumptions": [ASSUMED]}
     if result.status != "optimal":
         report["notes"] = [UNPROVEN]
-    found = points.places(plan, problem, outcome.x)
+    found = text.places(plan, problem, outcome.x)
     return replace(result, design=untyped(describe(plan, found)), report=report)
 
 

@@ -18,7 +18,7 @@ from gearopt.optimise.explaining.explain import binding
 from gearopt.optimise.explaining.explanation import Change, Explanation, Remedy
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import untyped
-from gearopt.physics.inertia import disc_mass
+from gearopt.physics.gears import disc_mass
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.servo.assumptions import assumptions, notes
 from gearopt.scenes.servo.gears import described, errors, given_gears, to_point

@@ -9,7 +9,7 @@ from gearopt.formulations.servo.ratio.duty import GOALS, ServoDuty
 from gearopt.formulations.servo.split.bodies import TIP, least
 from gearopt.formulations.servo.split.servo_train import ServoTrain
 from gearopt.optimise.terms import Array
-from gearopt.physics.inertia import disc_inertia, disc_mass
+from gearopt.physics.gears import disc_inertia, disc_mass
 from gearopt.physics.stiffness import lewis_form_factor
 
 

@@ -15,8 +15,7 @@ from gearopt.formulations.servo.split.servo_train import (
 )
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Param, Terms, Var
-from gearopt.physics.gears import GearPair
-from gearopt.physics.inertia import disc_inertia
+from gearopt.physics.gears import GearPair, disc_inertia
 from gearopt.physics.stiffness import lewis_form_factor
 
 BEYOND = 1e3  # factor between the lengths of a train and the ends of the search

@@ -14,8 +14,7 @@ from gearopt.formulations.servo.ratio.duty import ServoDuty
 from gearopt.formulations.servo.split.bodies import TIP, Bodies, Pairs
 from gearopt.optimise.terms import Param
 from gearopt.physics.backlash import output_error
-from gearopt.physics.gears import GearPair
-from gearopt.physics.inertia import disc_inertia
+from gearopt.physics.gears import GearPair, disc_inertia
 
 OBJECTIVES = {"inertia": "t mm2", "mass": "kg", "error": "rad"}  # beside that of a duty
 

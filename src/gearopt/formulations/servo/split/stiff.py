@@ -15,8 +15,7 @@ from gearopt.formulations.servo.split.servo_train import (
 )
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Param, Terms, Var
-from gearopt.physics.gears import Gear, GearPair
-from gearopt.physics.inertia import disc_mass
+from gearopt.physics.gears import Gear, GearPair, disc_mass
 from gearopt.physics.stiffness import (
     lewis_form_factor,
     mesh_compliance,

@@ -13,7 +13,7 @@ from gearopt.optimise.explaining.sensitivity import sensitivities
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result
 from gearopt.optimise.terms import Array
-from gearopt.physics.modules import MODULES
+from gearopt.physics.gears import MODULES
 from gearopt.scenes.drive.explaining.cures import next_module
 from gearopt.scenes.drive.explaining.levers import FIELDS
 from gearopt.scenes.drive.explaining.numbers import Number, eased, moved, numbers, times

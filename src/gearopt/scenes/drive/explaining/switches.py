@@ -7,7 +7,7 @@ from typing import Any
 
 from gearopt.optimise.explaining.explain import TAKEN_BACK
 from gearopt.optimise.explaining.explanation import Change, Remedy
-from gearopt.physics.modules import MODULES
+from gearopt.physics.gears import MODULES
 from gearopt.scenes.drive.explaining.numbers import eased, put, written
 from gearopt.scenes.drive.explaining.tried import Case, least_value
 from gearopt.scenes.reading.toml import dotted, toml_text

@@ -7,7 +7,7 @@ from pydantic import Field, model_validator
 
 from gearopt import units
 from gearopt.formulations.train import OBJECTIVES
-from gearopt.physics.modules import MODULES
+from gearopt.physics.gears import MODULES
 from gearopt.scenes.drive.tables.stages import (
     K_IS,
     MODULE,

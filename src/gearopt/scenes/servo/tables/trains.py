@@ -5,7 +5,7 @@ from typing import Annotated
 
 from pydantic import Field, model_validator
 
-from gearopt.physics.modules import MODULES
+from gearopt.physics.gears import MODULES
 from gearopt.scenes.reading.fields import (
     Table,
     choice,
