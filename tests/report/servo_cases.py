@@ -11,6 +11,7 @@ from servo_trains import PAPER
 import gearopt
 from gearopt.formulations.servo import ratio, servo_box, split, tolerance
 from gearopt.formulations.servo.ratio import Drive, best_ratio
+from gearopt.formulations.servo.servo_design import Achieved
 from gearopt.formulations.servo.split.servo_train import lewis_stress, objectives, pairs
 from gearopt.formulations.servo.tolerance.distributions import RUN_OUT, UNIFORM
 from gearopt.formulations.servo.tolerance.sampling import drawn
@@ -41,18 +42,20 @@ def ratio_part():
 
     ends = np.geomspace(best / 5.0, best * 5.0, 200)
     ratios = np.unique([*ends, best])
-    given = law(GIVEN)
+
+    def achieved(n):
+        lost = 100.0 * (1.0 - law(n) / most)
+        inertias = LOAD / n**2 / ROTOR
+        return Achieved(n, law(n), lost, inertias)
+
     return solve(ratio.acceleration(drive)), {
         "duty": "acceleration",
         "total_ratio": best,
         "value": most,
         "name": "load acceleration",
         "unit": "rad/s²",
-        "given": {
-            "total_ratio": GIVEN,
-            "value": given,
-            "loss_percent": 100.0 * (1.0 - given / most),
-        },
+        "given": untyped(achieved(GIVEN)),
+        "best": untyped(achieved(best)),
         "curve": {"total_ratio": ratios.tolist(), "value": law(ratios).tolist()},
     }
 
@@ -119,7 +122,8 @@ def front():
     for k in kept:
         keys = ("normal_module_mm", "pinion_teeth", "wheel_teeth")
         few = [{key: s[key] for key in keys} for s in stages(points[k])]
-        found.append(told[k] | {"stages": few, "best_of": ""})
+        ratio = math.prod(s["ratio"] for s in stages(points[k]))
+        found.append(told[k] | {"stages": few, "ratio": ratio, "best_of": ""})
     for goal, key in (("mass", "mass_kg"), ("error", "error_deg"), ("inertia", "inertia_kg_m2")):
         min(found, key=lambda row, key=key: row[key])["best_of"] = goal
     return found
@@ -250,8 +254,6 @@ def _whole(point, half_sweep):
         }
         for row in table
     ]
-    sources.append(source("wind-up at 0.42 N m", "windup", chain["windup_deg"]))
-    sources.append(source("resolution of the sensor", "sensor", 0.0004))
     design = {
         "ratio": ratios[1],
         "train": train(point),
@@ -317,10 +319,6 @@ def _whole(point, half_sweep):
 def named(part, name, goal, unit):
     told = {"name": goal, "value": part.value, "unit": unit}
     return replace(part, name=name, objective=told)
-
-
-def source(name, kind, error):
-    return {"source": name, "kind": kind, "stage": None, "tolerance_mm": None, "error_deg": error}
 
 
 def too_wide(**more):

@@ -21,8 +21,8 @@ from servo_axes import (
 
 import gearopt
 from gearopt.formulations.servo import split
+from gearopt.report.kinds.servo.axis_housing import box as box_section
 from gearopt.report.measures import METRIC
-from gearopt.report.pages.servo.box import section
 from gearopt.scenes.reading.load import read
 
 SAME = 1e-9  # of an objective, by two texts
@@ -73,7 +73,7 @@ def laid_out(axis, train, result):
     assert beside_the_output(axis, train, motor, output) >= -1e-6
     if not box["fits"]:
         assert not fits_on_a_grid(axis, train)
-    drawn(axis, train, box, ET.fromstring(section(result, METRIC).drawings[0].svg))
+    drawn(axis, train, box, ET.fromstring(box_section(result, METRIC).drawings[0].svg))
 
 
 def drawn(axis, train, box, svg):

@@ -17,12 +17,13 @@ from gearopt.cli import app
 from gearopt.errors import SceneError
 from gearopt.formulations.servo import choice, servo_box, split
 from gearopt.formulations.servo.choice import front
-from gearopt.formulations.servo.servo_design import ServoDesign, ServoReport
+from gearopt.formulations.servo.servo_design import RatioDesign, ServoDesign, ServoReport
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget
+from gearopt.optimise.typed import typed
+from gearopt.report.kinds.servo.axis_motion import best_words
 from gearopt.report.pages.ways_out import remedy_words
 from gearopt.report.proof_words import proof
-from gearopt.report.servo_achieved import best_words
 from gearopt.scenes.reading.load import read
 from gearopt.scenes.servo import EXAMPLE
 from gearopt.scenes.servo.assumptions import UNLISTED, assumptions, given_overlap, notes
@@ -119,7 +120,7 @@ def test_a_ratio_below_those_that_are_searched_may_be_better_and_is_said_so():
     light = (("load", "inertia"), "2.15e-6 kg m^2"), (("load", "friction"), "0 N m")
     found = solved(RATIO, *light, (("duty", "ratio"), Decimal("0.5"))).design["ratio"]
     assert found["total_ratio"] == pytest.approx(1.0) and found["given"]["loss_percent"] < 0.0
-    assert best_words(found)[1].endswith("% more.")
+    assert best_words(typed(RatioDesign, found))[1].endswith("% more.")
 
 
 def test_a_swing_keeps_to_the_torque_of_the_motor():

@@ -1,0 +1,110 @@
+"""Servo axes: ratio, train, box, errors, tolerances and stiffness."""
+
+from gearopt.formulations.servo.servo_design import RatioDesign, TrainDesign
+from gearopt.optimise.result import Result
+from gearopt.report.kinds import Kind, MakeSection
+from gearopt.report.kinds.generic import ASKED, FIRST, LAST, TOLD
+from gearopt.report.kinds.servo import axis_accuracy, axis_housing, axis_motion, axis_trains
+from gearopt.report.kinds.servo.axis_words import arc_minutes, degrees, design_of
+from gearopt.report.measures import Measures
+from gearopt.report.pages import outcome
+from gearopt.report.result_words import goal
+from gearopt.report.section import Section, Tile
+from gearopt.report.words import amount, number
+
+
+def tiles(result: Result, measures: Measures) -> list[Tile]:
+    """Return what a glance shall tell beside the objective."""
+    design, name = design_of(result), goal(result)[0]
+    found = []
+    if design.ratio is not None:
+        found += _ratio(design.ratio, name, measures)
+    if design.train is not None:
+        found += _train(design.train, name, measures)
+    if (chain := design.stiffness) is not None:
+        stiff, frequency = amount(chain.output_Nm_per_rad, "Nm_per_rad", measures), ""
+        if chain.frequency_Hz is not None:
+            frequency = f"{number(chain.frequency_Hz)} Hz, motor locked"
+        found.append(Tile("stiffness at the output", stiff, frequency))
+    if (cost := design.allocation) is not None and name != "cost":
+        change = 100.0 * (cost.cost / cost.old_cost - 1.0)
+        found.append(Tile("cost of tolerances", number(cost.cost), f"{change:+.1f} %"))
+    if (drawn := design.drawn) is not None:
+        good = f"{100.0 * drawn.yield_share:.4g} %"
+        found.append(Tile("yield", good, f"of {drawn.count:,} drawn trains"))
+    if (box := design.box) is not None:
+        fits = f"{'fits' if box.fits else 'does not fit'} the box"
+        found.append(Tile("needed room", axis_housing.needed_size(box, measures), fits))
+    return found
+
+
+def _ratio(ratio: RatioDesign, name: str, measures: Measures) -> list[Tile]:
+    """Return what the chosen train gives, unless that is the objective, and the best ratio."""
+    made, chosen = [], ratio.chosen
+    if chosen is not None and not ratio.name.endswith(name):
+        worse = f"{chosen.loss_percent:.3g} % worse than the best ratio, no gears"
+        value = amount(chosen.value, ratio.unit, measures)
+        made.append(Tile(f"{ratio.name} of the train", value, worse))
+    value = amount(ratio.value, ratio.unit, measures)
+    without = ", no gears" if chosen is not None else ""
+    told = f"{ratio.name} {value}{without}"
+    return [*made, Tile("best total ratio", number(ratio.total_ratio), told)]
+
+
+def _train(train: TrainDesign, name: str, measures: Measures) -> list[Tile]:
+    error, angle = train.ratio_error_percent, train.error_deg
+    off = "" if error is None else f", {error:+.3f} %"
+    teeth = ", ".join(f"{s.pinion_teeth}/{s.wheel_teeth}" for s in train.stages)
+    made = [Tile("ratio of the train", number(train.ratio), f"{teeth}{off}")]
+    if name != "error" and angle is not None:
+        made.append(Tile("error at the output", degrees(angle), arc_minutes(angle)))
+    if name != "inertia" and train.inertia_kg_m2 is not None:
+        inertia = amount(train.inertia_kg_m2, "kg_m2", measures)
+        made.append(Tile("inertia at the motor", inertia))
+    if name != "mass" and train.mass_kg is not None:
+        made.append(Tile("mass of the gears", amount(train.mass_kg, "kg", measures)))
+    return made
+
+
+def _answered(make: MakeSection) -> MakeSection:
+    """Return a section that is shown of an answer only."""
+
+    def made(result: Result, measures: Measures) -> Section | None:
+        return None if result.value is None else make(result, measures)
+
+    return made
+
+
+KIND = Kind(
+    sections=(
+        *FIRST,
+        axis_motion.section,
+        axis_trains.section,
+        axis_housing.box,
+        axis_trains.beside,
+        axis_trains.stage_counts,
+        axis_trains.by_inertia,
+        axis_trains.by_mass,
+        axis_accuracy.errors,
+        axis_accuracy.tolerances,
+        axis_accuracy.drawn,
+        axis_housing.stiffness,
+        *ASKED,
+        *LAST,
+    ),
+    terminal=(
+        _answered(axis_motion.section),
+        _answered(axis_trains.section),
+        _answered(axis_trains.best),
+        _answered(axis_trains.beside),
+        _answered(axis_trains.stage_counts),
+        _answered(axis_accuracy.errors),
+        _answered(axis_accuracy.tolerances),
+        _answered(axis_accuracy.drawn),
+        _answered(axis_housing.stiffness),
+        _answered(axis_housing.box),
+        outcome.limits,
+        *TOLD,
+    ),
+    tiles=tiles,
+)

@@ -1,0 +1,380 @@
+"""The accuracy of a servo axis: sources of its error, tolerances, and what draws of them give."""
+
+import math
+from collections.abc import Sequence
+from html import escape
+from itertools import pairwise
+from typing import Any
+
+from gearopt.formulations.servo.servo_design import (
+    Allocation,
+    BudgetUse,
+    DrawnErrors,
+    ErrorSource,
+    Histogram,
+    ToleranceRow,
+)
+from gearopt.optimise.result import Result
+from gearopt.report.kinds.servo.axis_words import (
+    ARCMIN,
+    arc_minutes,
+    degrees,
+    design_of,
+    error_limit,
+)
+from gearopt.report.measures import Measures
+from gearopt.report.pages.sheet import series
+from gearopt.report.plot import Figure, axis, layout
+from gearopt.report.section import Cell, Section, Table, percent
+from gearopt.report.words import number
+
+ROW = 23.0  # px of a source
+REST = 120.0  # px of legend and axis
+ROOM = 1.04  # of the longest bar
+ENDS = 1e-6  # relative: a tolerance as near to an end of its range stands at it
+SHORT = 0.999  # of a cell: a full bar would mark a limit that is reached
+RULES = {
+    "worst_case": "worst case",
+    "rss": "root sum of squares",
+    "mean_plus_sd": "mean + {kappa} sd",
+}
+
+
+def errors(result: Result, measures: Measures) -> Section | None:
+    """Show every source at its limit, one after the other; None where the file has none."""
+    design = design_of(result)
+    found, limit = design.errors, error_limit(design, result.limits)
+    if not found:
+        return None
+    total = sum(e.error_deg for e in found)
+    names = _names([e.source for e in found])
+    order = [f"total {degrees(total)}", *reversed(names)]  # from below
+    traces = _steps(found, names, measures)
+    traces.append(
+        {
+            "type": "bar",
+            "orientation": "h",
+            "name": "total",
+            "y": [order[0]],
+            "x": [total],
+            "hovertemplate": f"total {degrees(total)}, {arc_minutes(total)}<extra></extra>",
+            "marker": {"color": "--series-8"},
+            "showlegend": False,
+        }
+    )
+    shapes = [] if limit is None else [_limit(limit)]
+    across = axis("error at the output [°]", range=[0.0, ROOM * max(total, limit or 0.0)])
+    up = axis("", type="category", categoryorder="array", categoryarray=order, ticks="")
+    up["showgrid"] = False
+    high = round(REST + ROW * len(order))
+    plot = layout(across, up, high, barmode="overlay", bargap=0.25, shapes=shapes)
+    caption = "Each bar begins where the last one ends: the worst case, all at once."
+    words, table = _error_words(total, limit), _error_table(found, total, measures)
+    return Section(
+        "Where the error comes from",
+        words=[*words, *_by_kind(found, total)],
+        figures=(Figure(traces, plot, caption),),
+        tables=(table,),
+        terminal=(table, "\n".join(words)),
+    )
+
+
+def _error_words(total: float, limit: float | None) -> list[str]:
+    """Say what all sources [deg] add up to, and how much that is of what is allowed."""
+    words = [
+        f"All sources at their limits add up to {degrees(total)} ({arc_minutes(total)}) at the "
+        "output."
+    ]
+    if limit is not None:
+        more = f", {degrees(total - limit)} too much" if total > limit * (1.0 + 1e-9) else ""
+        words.append(
+            f"Backlash and pitch make {degrees(total)} of it: {100.0 * total / limit:.1f} % of "
+            f"the {degrees(limit)} allowed to them{more}."
+        )
+    return words
+
+
+def _error_table(found: Sequence[ErrorSource], total: float, measures: Measures) -> Table:
+    """Return every source, and on the terminal their sum."""
+    heads = ["source", "kind", "stage", f"tolerance [{measures.unit('um')}]"]
+    short = {
+        "source": "error at the output",
+        "stage": "where",
+        "error at the output [°]": "°",
+        "of the sum, %": "%",
+    }
+
+    def row(name: str, kind: str, error: float, *place: Any) -> list[Any]:
+        share = 100.0 * error / total if total else None
+        angle = Cell(error, number(error), short=f"{error:.5f}")
+        arc = Cell(ARCMIN * error, f"{ARCMIN * error:.3f}")
+        return [name, kind, *place, angle, arc, Cell(share, "", short=f"{share or 0.0:.1f}")]
+
+    rows = []
+    for e in found:
+        size = measures.of(e.tolerance_mm, "um")
+        place = Cell(e.stage, number(e.stage), short=f"stage {e.stage}")
+        rows.append(row(e.source, e.kind, e.error_deg, place, Cell(size, f"{size:.2f}")))
+    rows.append(row("sum", "", total, "", ""))
+    heads += ["error at the output [°]", "'", "of the sum, %"]
+    return Table("errors", heads, rows, folded=True, terminal_only=("'", "sum"), short=short)
+
+
+def _names(sources: list[str]) -> list[str]:
+    """Return names of bars: spaces without width tell equal ones apart, which a plot would add."""
+    return [escape(name) + "\u200b" * sources[:k].count(name) for k, name in enumerate(sources)]
+
+
+def _steps(
+    found: Sequence[ErrorSource], names: list[str], measures: Measures
+) -> list[dict[str, Any]]:
+    """Return a trace for every kind in every stage, so that the legend names it."""
+    starts = [sum(e.error_deg for e in found[:k]) for k in range(len(found))]
+    groups: dict[tuple[str, int], list[int]] = {}
+    for k, e in enumerate(found):
+        groups.setdefault((e.kind, e.stage), []).append(k)
+    return [
+        {
+            "type": "bar",
+            "orientation": "h",
+            "name": f"{escape(kind)}, stage {stage}",
+            "y": [names[k] for k in rows],
+            "x": [found[k].error_deg for k in rows],
+            "base": [starts[k] for k in rows],
+            "text": [_told(found[k], measures) for k in rows],
+            "textposition": "none",
+            "hovertemplate": "%{text}<extra></extra>",
+            "marker": {"color": series(place)},
+        }
+        for place, ((kind, stage), rows) in enumerate(groups.items(), 1)
+    ]
+
+
+def _told(one: ErrorSource, measures: Measures) -> str:
+    tolerance = f"{measures.of(one.tolerance_mm, 'um'):.4g} {measures.unit('um')}"
+    return (
+        f"{escape(one.source)}: {degrees(one.error_deg)}, {arc_minutes(one.error_deg)}, "
+        f"tolerance {tolerance}"
+    )
+
+
+def _limit(limit: float) -> dict[str, Any]:
+    """Return the limit as a line over all bars."""
+    return {
+        "type": "line",
+        "yref": "paper",
+        "x0": limit,
+        "x1": limit,
+        "y0": 0,
+        "y1": 1,
+        "line": {"color": "--warn", "width": 2.0, "dash": "dash"},
+        "name": f"limit {degrees(limit)}",
+        "showlegend": True,
+    }
+
+
+def _by_kind(found: Sequence[ErrorSource], total: float) -> tuple[str, ...]:
+    """Say how much each kind has of the sum."""
+    sums: dict[str, float] = {}
+    for e in found:
+        sums[e.kind] = sums.get(e.kind, 0.0) + e.error_deg
+    if len(sums) < 2 or not total:
+        return ()
+    parts = (f"{kind} {degrees(v)} ({100.0 * v / total:.1f} %)" for kind, v in sums.items())
+    return (f"By kind: {', '.join(parts)}.",)
+
+
+def tolerances(result: Result, measures: Measures) -> Section | None:
+    """Show the tolerances before and after with their cost; None where the file has none."""
+    design = design_of(result)
+    rows, cost = design.tolerances, design.allocation
+    if not rows or cost is None:
+        return None
+    unit = measures.unit("um")
+    heads = ["tolerance", "stage", "kind", f"old [{unit}]", f"new [{unit}]", "new/old"]
+    heads += ["of the error, %", "cost, old", "cost, new"]
+    total = sum(r.sensitivity_deg_per_mm * r.new_mm for r in rows)
+    dearest = max(max(r.old_cost, r.new_cost) for r in rows)
+    table = Table(
+        "tolerances",
+        heads,
+        [*(_row(r, total, dearest, measures) for r in rows), _sums(rows, measures)],
+        page_only=("stage", "kind", "of the error, %"),
+        short={"cost, old": "cost", "cost, new": "new cost"},
+    )
+    words = _cost_words(cost)
+    ends = (
+        "Of the error: sensitivity times new tolerance, of their sum. The words least and most: "
+        "the new tolerance is the least or the most that the file allows."
+    )
+    told = (table, "\n".join(words))
+    return Section("Tolerances", words=[*words, ends], tables=(table,), terminal=told)
+
+
+def _cost_words(found: Allocation) -> list[str]:
+    """Say what the new tolerances cost, and how far they use each budget."""
+    change = 100.0 * (found.cost / found.old_cost - 1.0)
+    words = [f"Cost {number(found.cost)}, before {number(found.old_cost)}: {change:+.1f} %."]
+    for budget in found.budgets:
+        words.append(
+            f"Budget {_rule(budget)}: {degrees(budget.used_deg)} of {degrees(budget.limit_deg)}, "
+            f"{100.0 * budget.used_deg / budget.limit_deg:.1f} %."
+        )
+    return words
+
+
+def _rule(budget: BudgetUse) -> str:
+    kappa = "" if budget.kappa is None else number(budget.kappa)
+    return RULES[budget.rule].format(kappa=kappa)
+
+
+def _row(row: ToleranceRow, total: float, dearest: float, measures: Measures) -> list[Any]:
+    old, new = (measures.of(t, "um") for t in (row.old_mm, row.new_mm))
+    ratio = row.new_mm / row.old_mm
+    return [
+        row.name,
+        row.stage,
+        row.kind,
+        Cell(old, f"{old:.2f}"),
+        Cell(new, f"{_end(row)} {new:.2f}".strip(), short=f"{new:.2f}"),
+        Cell(ratio, f"{ratio:.3f}"),
+        percent(row.sensitivity_deg_per_mm * row.new_mm / total if total else None),
+        *(_cost(cost, dearest) for cost in (row.old_cost, row.new_cost)),
+    ]
+
+
+def _end(row: ToleranceRow) -> str:
+    """Return whether a new tolerance is the least or the most allowed."""
+    for name, end in (("least", row.lower_mm), ("most", row.upper_mm)):
+        if end and abs(row.new_mm / end - 1.0) < ENDS:
+            return name
+    return ""
+
+
+def _cost(cost: float, dearest: float) -> Cell:
+    """Return a cost with its bar; all bars of the table have one scale."""
+    share = SHORT * max(0.0, cost) / dearest if dearest > 0.0 else None
+    return Cell(cost, f"{cost:.3f}", share)
+
+
+def _sums(rows: Sequence[ToleranceRow], measures: Measures) -> list[Any]:
+    """Return the last row: sums of tolerances and costs."""
+    old, new = (
+        sum(measures.of(t, "um") for t in column)
+        for column in ([r.old_mm for r in rows], [r.new_mm for r in rows])
+    )
+    costs = sum(r.old_cost for r in rows), sum(r.new_cost for r in rows)
+    cells = [Cell(v, f"{v:.2f}") for v in (old, new)]
+    ratio, whole = Cell(new / old, f"{new / old:.3f}"), Cell(100.0, "100.0")
+    return ["sum", None, "", *cells, ratio, whole, *(Cell(cost, f"{cost:.3f}") for cost in costs)]
+
+
+def drawn(result: Result, measures: Measures) -> Section | None:
+    """Show what drawn deviations make of the error; None without draws."""
+    design = design_of(result)
+    found = design.drawn
+    if found is None:
+        return None
+    most = max(found.histogram.counts)
+    plot = layout(
+        axis("error at the output [°]"),
+        axis("drawn trains", range=[0, 1.08 * most]),
+        380,
+        bargap=0.0,
+        shapes=_interval(found),
+    )
+    caption = (
+        f"{found.count:,} trains drawn with every deviation at random within its tolerance "
+        f"(seed {found.seed}); the band is the interval of the quantile."
+    )
+    normal = (
+        f"Mean {degrees(found.mean_deg)}, standard deviation {degrees(found.sd_deg)}; all "
+        f"tolerances at their limits at once would be {degrees(found.worst_case_deg)}."
+    )
+    words, bins = _drawn_words(found), _bins(found.histogram)
+    heads = ("from [°]", "to [°]", "drawn trains")
+    traces = [_bars(bins, found.count), *_lines(found, 1.05 * most)]
+    return Section(
+        "Drawn errors",
+        words=[*words, normal],
+        figures=(Figure(traces, plot, caption),),
+        tables=(Table("drawn errors", heads, bins, folded=True),),
+        half=design.stiffness is not None,
+        terminal=("\n".join(words),),
+    )
+
+
+def _drawn_words(found: DrawnErrors) -> list[str]:
+    """Say what yield and quantile are, with their intervals."""
+    sure = f"{100.0 * found.confidence:g} %"
+    low = f"{math.floor(1e6 * found.yield_low) / 1e4:.4f}"  # outwards, to hold what is said
+    high = f"{math.ceil(1e6 * found.yield_high) / 1e4:.4f}"
+    share, ends = f"{100.0 * found.probability:g} %", _ends(found)
+    words = [
+        f"{100.0 * found.yield_share:.4f} % of {found.count:,} drawn trains keep the limit of "
+        f"{degrees(found.limit_deg)}; with {sure} confidence the yield lies between {low} and "
+        f"{high} %."
+    ]
+    between = " (too few draws for an interval with this confidence)"
+    if ends:
+        interval = f"between {' and '.join(map(degrees, ends))}"
+        between = f" (this quantile lies {interval} with {sure} confidence)"
+    quantile = f"{share} of them have an error of at most {degrees(found.quantile_deg)}"
+    words.append(f"{quantile}{between}; the largest drawn is {degrees(found.largest_deg)}.")
+    return words
+
+
+def _ends(found: DrawnErrors) -> tuple[float, ...]:
+    """Return the interval of the quantile; nothing where the draws were too few."""
+    low, high = found.quantile_low_deg, found.quantile_high_deg
+    return () if low is None or high is None else (low, high)
+
+
+def _bins(histogram: Histogram) -> list[tuple[float, float, int]]:
+    """Return between which errors how many trains were drawn."""
+    ends = pairwise(histogram.edges_deg)
+    return [(a, b, n) for (a, b), n in zip(ends, histogram.counts, strict=True)]
+
+
+def _bars(bins: list[tuple[float, float, int]], count: int) -> dict[str, Any]:
+    told = [f"{a:.4f} to {b:.4f}°: {n:,} ({100.0 * n / count:.3g} %)" for a, b, n in bins]
+    return {
+        "type": "bar",
+        "name": "drawn",
+        "x": [0.5 * (a + b) for a, b, _ in bins],
+        "width": [b - a for a, b, _ in bins],
+        "y": [n for _, _, n in bins],
+        "text": told,
+        "textposition": "none",
+        "hovertemplate": "%{text}<extra></extra>",
+        "marker": {"color": "--series-1/0.55", "line": {"color": "--series-1", "width": 0.6}},
+        "showlegend": False,
+    }
+
+
+def _lines(found: DrawnErrors, top: float) -> list[dict[str, Any]]:
+    """Return mean, quantile and limit as upright lines, with their values in the legend."""
+    marks = (
+        ("mean", found.mean_deg, "--series-4", "dot"),
+        (f"{100.0 * found.probability:g} % quantile", found.quantile_deg, "--series-5", "solid"),
+        ("limit", found.limit_deg, "--warn", "dash"),
+    )
+    return [
+        {
+            "type": "scatter",
+            "mode": "lines",
+            "name": f"{name} {degrees(at)}",
+            "x": [at, at],
+            "y": [0.0, top],
+            "hovertemplate": f"{name} {degrees(at)}<extra></extra>",
+            "line": {"color": colour, "width": 2.0, "dash": dash},
+        }
+        for name, at, colour, dash in marks
+    ]
+
+
+def _interval(found: DrawnErrors) -> list[dict[str, Any]]:
+    """Return the interval of the quantile as a band."""
+    band = {"type": "rect", "yref": "paper", "y0": 0, "y1": 1, "layer": "below"}
+    ends = dict(zip(("x0", "x1"), _ends(found), strict=False))
+    return [band | ends | {"fillcolor": "--series-5/0.2", "line": {"width": 0}}] if ends else []

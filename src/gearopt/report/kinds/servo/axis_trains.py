@@ -1,0 +1,328 @@
+"""The train of a servo axis: chosen, given, beside other trains and other numbers of stages."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+from gearopt.formulations.servo.servo_design import (
+    ListedTrain,
+    RatioDesign,
+    ServoDesign,
+    ServoReport,
+    TrainDesign,
+)
+from gearopt.optimise.result import Result
+from gearopt.optimise.typed import untyped
+from gearopt.report.kinds.servo.axis_words import (
+    UNITS,
+    arc_minutes,
+    degrees,
+    design_of,
+    error_limit,
+    report_of,
+    teeth_words,
+)
+from gearopt.report.measures import Measures
+from gearopt.report.pages import train_views
+from gearopt.report.pages.design_tables import STAGE_ROWS, stage_table
+from gearopt.report.plot import Figure, axis, layout
+from gearopt.report.section import Section, Table
+from gearopt.report.words import amount, heading, parted
+
+ROWS = STAGE_ROWS | {"bending_stress_MPa": ("bending stress", "MPa")}
+BARE = (
+    "A bare train of the same ratio by its number of stages: all pinions alike, all gears full "
+    "discs of one width, no limit but the ratio; inertia at the motor and mass in those of a "
+    "pinion."
+)
+GOALS = {  # what trains are compared by: the field of a train, what it is called
+    "acceleration": ("load_acceleration_rad_per_s2", "load acceleration"),
+    "move time": ("move_time_s", "move time"),
+    "rms torque": ("rms_torque_Nm", "rms torque"),
+    "inertia": ("inertia_kg_m2", "inertia at the motor"),
+    "mass": ("mass_kg", "mass of the gears"),
+    "error": ("error_deg", "error at the output"),
+}
+STAGE = ("normal_module_mm", "pinion_teeth", "wheel_teeth")
+BEST = {  # symbol and colour of the best by a goal
+    "inertia": ("diamond", "--series-4"),
+    "mass": ("square", "--series-3"),
+    "error": ("triangle-up", "--series-5"),
+    **dict.fromkeys(("acceleration", "move time", "rms torque"), ("diamond", "--series-4")),
+}
+
+
+def section(result: Result, measures: Measures) -> Section | None:
+    """Show the train's tables, drawn in one line where no box is asked for; None without one."""
+    design = design_of(result)
+    found = design.train
+    if found is None:
+        return None
+    plain = untyped(found)
+    stages = plain.pop("stages")
+    totals = []
+    for key, value in plain.items():
+        unit = parted(key)[1]
+        totals.append([heading(key, measures), measures.of(value, unit) if unit else value])
+    words = [_sector(found.sector)] if found.sector < 1.0 else []
+    if found.error_deg is not None:
+        words.append(
+            f"The error of {degrees(found.error_deg)} ({arc_minutes(found.error_deg)}) is the "
+            "worst case of backlash and pitch at the output."
+        )
+    if found.inertia_kg_m2 is not None:
+        words.append("Inertia is seen at the motor.")
+    drawn = train_views.views(stages, measures) if design.box is None else ()
+    if drawn:
+        words.append(
+            "All shafts are drawn in one line, wheels as full discs; reference circles are "
+            f"dash-dotted. Dimensions in {measures.lengths}."
+        )
+    side_by_side = replace(stage_table(stages, measures, ROWS, ()), short={"": "train"})
+    tables = (side_by_side, Table("train", ("", ""), totals))
+    half = not drawn
+    return Section("Train", words=words, drawings=drawn, tables=tables, half=half, terminal=tables)
+
+
+def _sector(share: float) -> str:
+    return (
+        f"The last wheel is a sector of {360.0 * share:.4g}°, {100.0 * share:.4g} % of a full one; "
+        "its mass and inertia are counted so."
+    )
+
+
+def best(result: Result, measures: Measures) -> Section | None:
+    """Show the best train by every goal; None where no trains are told."""
+    trains = [t for t in report_of(result).trains or () if t.best_of]
+    if not trains:
+        return None
+    keys = [key for key in UNITS if getattr(trains[0], key) is not None]
+    heads = ["best", "teeth", *(heading(key, measures) for key in keys)]
+    rows = [
+        [t.best_of, teeth_words(t.stages)]
+        + [float(measures.of(getattr(t, key), UNITS[key])) for key in keys]
+        for t in trains
+    ]
+    return Section("Best trains", terminal=(Table("best", heads, rows),))
+
+
+def beside(result: Result, measures: Measures) -> Section | None:
+    """Show chosen, given and real-valued bound side by side; None where no gears are given."""
+    design, report = design_of(result), report_of(result)
+    given, rows = report.given_train, _beside(design, report, measures)
+    if given is None or not rows:
+        return None
+    teeth = f"Given: {teeth_words(given.stages)}."
+    words = (
+        teeth,
+        "Real-valued bound: no train is better, even with real-valued teeth and modules.",
+    )
+    heads = ("", "chosen", "given", "real-valued bound")
+    table = Table("chosen and given", heads, rows, short={"": "train"})
+    terminal = (table, teeth)
+    return Section("The given train", words=words, tables=(table,), half=True, terminal=terminal)
+
+
+def _beside(design: ServoDesign, report: ServoReport, measures: Measures) -> list[list[Any]]:
+    """Return a row for every figure; none where gears are given without being compared."""
+    chosen, given, ratio = design.train, report.given_train, design.ratio
+    if chosen is None or given is None or chosen.mass_kg is None:
+        return []
+    pairs: list[tuple[str, float | None, float | None]] = [
+        ("ratio", chosen.ratio, given.ratio),
+        ("inertia_kg_m2", chosen.inertia_kg_m2, given.inertia_kg_m2),
+        ("mass_kg", chosen.mass_kg, given.mass_kg),
+        ("error_deg", chosen.error_deg, given.error_deg),
+    ]
+    if (own := design.stiffness) is not None and (other := report.given_stiffness) is not None:
+        pairs += [
+            ("output_stiffness_Nm_per_rad", own.output_Nm_per_rad, other.output_Nm_per_rad),
+            ("frequency_Hz", own.frequency_Hz, other.frequency_Hz),
+            ("windup_deg", own.windup_deg, other.windup_deg),
+        ]
+    if ratio is not None:
+        values = [None if one is None else one.value for one in (ratio.chosen, ratio.given_train)]
+        pairs.append((_key(ratio), values[0], values[1]))
+    rows = []
+    for key, *known in pairs:
+        if any(v is not None for v in known):
+            known.append(report.figures.get(f"real_valued_bound_{key}"))
+            unit = parted(key)[1]
+            cells = [None if v is None else float(measures.of(v, unit)) for v in known]
+            rows.append([heading(key, measures), *cells])
+    return rows
+
+
+def _key(ratio: RatioDesign) -> str:
+    """Return the field of a `ListedTrain` that has what a duty is judged by."""
+    return next(key for key, name in GOALS.values() if name == ratio.name)
+
+
+def stage_counts(result: Result, measures: Measures) -> Section | None:
+    """Show inertia and mass by number of stages; None without a train."""
+    design, report = design_of(result), report_of(result)
+    rows = [
+        [
+            row.stages,
+            row.inertia_in_pinions,
+            " x ".join(f"{n:.3f}" for n in row.ratios_of_least_inertia),
+            row.mass_in_pinions,
+        ]
+        for row in report.stage_counts or ()
+    ]
+    if not rows:
+        return None
+    table = Table("stage counts", ("stages", "least inertia", "at ratios", "least mass"), rows)
+    half = bool(_beside(design, report, measures))
+    words = (BARE,)
+    return Section(
+        "Number of stages", words=words, tables=(table,), half=half, terminal=(table, BARE)
+    )
+
+
+def by_inertia(result: Result, measures: Measures) -> Section | None:
+    """Plot error over inertia, or over what the duty is judged by; else mass."""
+    found = _weighed(result)
+    return _front(result, measures, found[0], found[-1]) if found else None
+
+
+def by_mass(result: Result, measures: Measures) -> Section | None:
+    """Plot error over mass of the trains; None where none are told."""
+    return _front(result, measures, "mass", "error") if "error" in _weighed(result) else None
+
+
+def _weighed(result: Result) -> list[str]:
+    """Return what the trains are held against each other by; nothing where none are told."""
+    found = report_of(result).trains
+    if not found:
+        return []
+    goals = [goal for goal, (key, _) in GOALS.items() if getattr(found[0], key) is not None]
+    return goals if goals[0] == "inertia" else [g for g in goals if g != "inertia"]
+
+
+def _front(result: Result, measures: Measures, goal: str, other: str) -> Section:
+    """Plot trains by two goals."""
+    design, report = design_of(result), report_of(result)
+    found, ratio = report.trains or (), design.ratio
+    pair = GOALS[goal], GOALS[other]
+    (key, _), (high, _) = pair
+    groups: list[tuple[str, Sequence[ListedTrain], tuple[int, str, str]]] = []
+    if rest := [t for t in found if not t.best_of]:
+        groups.append(("other trains", rest, (8, "circle", "--series-1")))
+    for name, (symbol, colour) in BEST.items():
+        if few := [t for t in found if t.best_of == name]:
+            most = "largest" if name == "acceleration" else "least"
+            groups.append((f"{most} {name}", few, (12, symbol, colour)))
+    for name, train, mark in (
+        ("chosen", design.train, (20, "circle-open", "--series-2")),
+        ("given", report.given_train, (12, "x", "--series-8")),
+    ):
+        if train is not None and train.mass_kg is not None:
+            groups.append((name, [_listed(train, ratio, name)], mark))
+    groups = [g for g in groups if all(getattr(g[1][0], k) is not None for k in (key, high))]
+    values = [measures.of(getattr(t, key), UNITS[key]) for _, some, _ in groups for t in some]
+    wide = max(values) > 10.0 * min(values)
+    across, up = (axis(f"{name} [{measures.unit(UNITS[k])}]") for k, name in pair)
+    if wide:
+        across |= {"type": "log", "dtick": "D2", "tickformat": "~g"}
+    else:
+        across["type"] = "linear"
+    known = replace(design, allocation=None)  # its own limit, not that of tolerances
+    limit = error_limit(known, result.limits) if other == "error" else None
+    shapes = [] if limit is None else [_level(limit)]
+    traces = [_points(*group, (key, high), measures) for group in groups]
+    figure = Figure(traces, layout(across, up, 400, shapes=shapes), _caption(result, found))
+    tables = (_table(found, measures),) if goal != "mass" else ()
+    return Section(f"{other.capitalize()} and {goal}", figures=(figure,), tables=tables, half=True)
+
+
+def _listed(train: TrainDesign, ratio: RatioDesign | None, who: str) -> ListedTrain:
+    """Return the chosen or the given train as the list of trains has it."""
+    assert train.inertia_kg_m2 is not None and train.mass_kg is not None
+    one = ratio and (ratio.chosen if who == "chosen" else ratio.given_train)
+    judged = {} if ratio is None or one is None else {_key(ratio): one.value}
+    own = train.inertia_kg_m2, train.mass_kg, train.error_deg
+    return ListedTrain(train.stages, train.ratio, "", *own, **judged)
+
+
+def _table(trains: Sequence[ListedTrain], measures: Measures) -> Table:
+    """Return all points with their teeth and modules."""
+    known = [one for one in GOALS.values() if getattr(trains[0], one[0]) is not None]
+    heads = [f"{name} [{measures.unit(UNITS[key])}]" for key, name in known]
+    heads += [f"{what} of stage {k}" for k in (1, 2) for what in ("module [mm]", "z1", "z2")]
+    rows = [
+        [
+            *(measures.of(getattr(t, key), UNITS[key]) for key, _ in known),
+            *(getattr(s, k) for s in t.stages for k in STAGE),
+            t.best_of,
+        ]
+        for t in trains
+    ]
+    return Table("trains", [*heads, "best"], rows, folded=True)
+
+
+def _caption(result: Result, trains: Sequence[ListedTrain]) -> str:
+    """Say what the points are."""
+    goals = _weighed(result)
+    signs = [-1.0 if goal == "acceleration" else 1.0 for goal in goals]
+    keys = [GOALS[goal][0] for goal in goals]
+    worth = [
+        tuple(sign * getattr(t, k) for k, sign in zip(keys, signs, strict=True)) for t in trains
+    ]
+    beaten = any(
+        a != b and all(x <= y for x, y in zip(a, b, strict=True)) for a in worth for b in worth
+    )
+    which = f"{len(trains)} of the best trains"
+    if not beaten:
+        names = f"{', '.join(goals[:-1])} and {goals[-1]}"
+        which = f"{len(trains)} trains, none better than another in {names} at once"
+    return f"{which}; the pointer tells their teeth.".capitalize()
+
+
+def _points(
+    name: str,
+    trains: Sequence[ListedTrain],
+    mark: tuple[int, str, str],
+    keys: tuple[str, str],
+    measures: Measures,
+) -> dict[str, Any]:
+    """Return trains as points; mark: size, symbol and colour; keys: across and up."""
+    size, symbol, colour = mark
+    x, y = ([measures.of(getattr(t, k), UNITS[k]) for t in trains] for k in keys)
+    edge = {"width": 2.6} if symbol.endswith("open") else {"width": 0}
+    return {
+        "type": "scatter",
+        "mode": "markers",
+        "name": name,
+        "x": x,
+        "y": y,
+        "text": [_told(t, measures) for t in trains],
+        "hovertemplate": "%{text}<extra></extra>",
+        "marker": {"color": colour, "size": size, "symbol": symbol, "line": edge},
+    }
+
+
+def _told(train: ListedTrain, measures: Measures) -> str:
+    """Return a train in lines: teeth and modules, then what it is worth."""
+    lines = teeth_words(train.stages).split("; ")
+    for goal, (key, _) in GOALS.items():
+        value = getattr(train, key)
+        if value is not None:
+            told = degrees(value) if goal == "error" else amount(value, UNITS[key], measures)
+            lines.append(f"{goal} {told}")
+    return "<br>".join(lines)
+
+
+def _level(limit: float) -> dict[str, Any]:
+    """Return the error allowed as a line across the plot."""
+    return {
+        "type": "line",
+        "name": f"allowed {degrees(limit)}",
+        "showlegend": True,
+        "xref": "paper",
+        "x0": 0,
+        "x1": 1,
+        "y0": limit,
+        "y1": limit,
+        "line": {"color": "--warn", "width": 1.6, "dash": "dash"},
+    }

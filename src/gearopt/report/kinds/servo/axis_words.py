@@ -1,0 +1,56 @@
+"""A servo axis as its result holds it, and words that several of its sections share."""
+
+from collections.abc import Mapping, Sequence
+
+from gearopt.formulations.servo.servo_design import ServoDesign, ServoReport, Teeth
+from gearopt.optimise.result import Result
+from gearopt.optimise.typed import typed
+from gearopt.report.words import number
+
+ARCMIN = 60.0  # a degree
+UNITS = {  # of what trains are compared by
+    "load_acceleration_rad_per_s2": "rad_per_s2",
+    "move_time_s": "s",
+    "rms_torque_Nm": "Nm",
+    "inertia_kg_m2": "kg_m2",
+    "mass_kg": "kg",
+    "error_deg": "deg",
+}
+
+
+def design_of(result: Result) -> ServoDesign:
+    """Return the design, typed."""
+    found: ServoDesign = typed(ServoDesign, result.design, "design")
+    return found
+
+
+def report_of(result: Result) -> ServoReport:
+    """Return what is told beside the design, typed."""
+    return ServoReport.from_dict(result.report)
+
+
+def degrees(value: float) -> str:
+    """Return an angle [deg] for reading; the same in metric and inch."""
+    return f"{number(float(value))}°"
+
+
+def arc_minutes(value: float) -> str:
+    """Return an angle [deg] in minutes of arc."""
+    return f"{number(ARCMIN * value)} arcmin"
+
+
+def teeth_words(stages: Sequence[Teeth]) -> str:
+    """Return teeth and modules of a train in a line."""
+    return "; ".join(
+        f"{s.pinion_teeth}/{s.wheel_teeth}, m_n {s.normal_module_mm:g} mm" for s in stages
+    )
+
+
+def error_limit(design: ServoDesign, limits: Mapping[str, float]) -> float | None:
+    """Return the largest error [deg] allowed: by a worst-case budget, else to the train."""
+    used = limits.get("error")
+    for budget in () if design.allocation is None else design.allocation.budgets:
+        if budget.rule == "worst_case":
+            return budget.limit_deg
+    error = None if design.train is None else design.train.error_deg
+    return error / used if used and error is not None else None
