@@ -75,6 +75,12 @@ def test_every_part_has_its_section_in_order(found):
     assert tuple(found) == HEADINGS
 
 
+def test_the_bound_is_said_once(result, found):
+    told = {tile.name: tile for tile in found["Result"].tiles}
+    assert told["proven bound"].value.endswith("g cm²") and "gap" in told["proven bound"].remark
+    assert not any(words.startswith("Bound") for words in found["Result"].words)
+
+
 def test_the_curve_of_the_ratio_is_highest_at_the_optimum(result, found):
     made = found["Total ratio"]
     curve, best, given = made.figures[0].data

@@ -12,20 +12,22 @@ from gearopt.report.words import amount, limit_words
 
 def proof(result: Result, measures: Measures = METRIC) -> list[str]:
     """What is certain: the bound, how it is known, what other ways give, what to keep in mind."""
-    lines: list[str] = []
-    name, unit, _, bound, side = goal(result)
-    if bound is not None and result.gap is not None:
-        lines.append(
-            f"Bound: no {name} {side} {amount(bound, unit, measures)} is possible"
-            f"{scope(result)}; {gap_words(result)}."
-        )
-    lines += _method(result)
+    lines = bound_words(result, measures) + _method(result)
     lines += kind_of(result).beside(result, measures)
     lines += result.report.get("notes", []) if result.status != "infeasible" else []
     if result.message and result.status != "infeasible" and not leading(result):
         lines.append(result.message[0].upper() + result.message[1:].rstrip(".") + ".")
     lines.append(f"{result.method}, {result.evaluations:,} evaluations, {result.seconds:.3g} s.")
     return lines
+
+
+def bound_words(result: Result, measures: Measures) -> list[str]:
+    """The bound in a sentence; nothing without one."""
+    name, unit, _, bound, side = goal(result)
+    if bound is None or result.gap is None:
+        return []
+    least = f"no {name} {side} {amount(bound, unit, measures)} is possible"
+    return [f"Bound: {least}{scope(result)}; {gap_words(result)}."]
 
 
 def gap_words(result: Result) -> str:
