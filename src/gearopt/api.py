@@ -89,7 +89,12 @@ def explain(
         return explain_problem(what, budget, watch)
     ask = Ask(budget=budget, watch=watch)
     scene, module, names = _opened(what)
-    found: Explanation = module.explain(scene, ask)
+    if hasattr(module, "explain"):
+        found: Explanation = module.explain(scene, ask)
+    else:
+        from gearopt.scenes.explaining.default import explain as explain_scene
+
+        found = explain_scene(module, scene, ask)
     return replace(found, result=_named(found.result, **names))
 
 

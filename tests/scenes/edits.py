@@ -17,7 +17,7 @@ def scene_of(text):
     return Scene.model_validate(content), content
 
 
-def edited(content, remedy, back=()):
+def edited(content, remedy, back=(), model=Scene):
     """The scene of a content with the changes of a remedy; those in `back` 0.1 % (or 1) smaller."""
     content = _copy(content)
     for change in remedy.changes:
@@ -27,7 +27,7 @@ def edited(content, remedy, back=()):
             place[name] = _value(_less(change.was, change.write) if less else change.write)
         else:
             del place[name]
-    return Scene.model_validate(content)
+    return model.model_validate(content)
 
 
 def _copy(value):

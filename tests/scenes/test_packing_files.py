@@ -166,11 +166,6 @@ def test_gradient_methods_take_no_free_layers():
         gearopt.solve(PROBLEMS / "six_cylinders.toml", "ipopt")
 
 
-def test_explain_is_for_drives():
-    with pytest.raises(SolveError, match="explain is for drives"):
-        gearopt.explain(PROBLEMS / "six_cylinders.toml")
-
-
 @pytest.mark.slow
 def test_compare_takes_a_packing():
     found = gearopt.compare(

@@ -4,7 +4,7 @@ import pytest
 from edits import scene_of
 
 from gearopt import explain
-from gearopt.scenes.drive.explaining.numbers import numbers
+from gearopt.scenes.explaining.numbers import numbers
 
 ENDS = {  # numbers at an end of what a file may hold: the table they stand in, and their lines
     "ratio 1": ("duty", "ratio = 1"),

@@ -68,7 +68,7 @@ def problem(train: Compound) -> Problem:
         proof = {"method": "exhausted", "arithmetic": "rational", "pairs_matched": looked}
         return Outcome(x, bound=float(error**2), proof=proof, evaluations=looked)
 
-    teeth = Var("teeth", "", low, high, low, 4, integer=True)
+    teeth = Var("teeth", "", low, high, low, 4, integer=True, key="train.teeth")
     return Problem("compound", (teeth,), (), evaluate, methods={"exact": exact})
 
 

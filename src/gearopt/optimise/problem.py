@@ -138,6 +138,14 @@ class Problem:
         object.__setattr__(other, "memo", self.memo)
         return other
 
+    def starting(self, point: Array) -> "Problem":
+        """The same problem, of shared variables alone, with a point of its box as the guess."""
+        other = replace(self)
+        object.__setattr__(other, "memo", self.memo)
+        lower, upper, _ = self.bounds()
+        other.__dict__["_bounds"] = lower, upper, np.clip(point, lower, upper)
+        return other
+
     def holding(self, point: Array) -> "Problem":
         """The same problem with its discrete variables fixed at a point's, as continuous ones."""
         discrete = np.array([v.discrete for v, _ in self.columns])

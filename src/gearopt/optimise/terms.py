@@ -22,14 +22,14 @@ class Param:
     name: an identifier; unit: text for reports ("" for a pure number); value: a float, or `size`
     floats; key: its place in the problem file, if it has one. role: "data" stays as it is, a
     "limit" may be relaxed by `explain`, what is "given" (a duty, a fixed size) only where relaxing
-    limits does not help; one word, or one a component.
+    limits does not help. Of key and role one word, or one a component.
     """
 
     name: str
     unit: str
     value: Number
     size: int = 1
-    key: str = ""
+    key: str | tuple[str, ...] = ""
     role: str | tuple[str, ...] = "data"
 
     def __post_init__(self) -> None:
@@ -49,7 +49,8 @@ class Var:
     values: the finite set a component may take (module series, grades). Infinite bounds are
     allowed, but without finite ones no dual bound can be computed. search: the bounds are only the
     ends of a search, no limits of the user (a component whose bounds are equal is given by the
-    user all the same).
+    user all the same). key: the place of its range [lower, upper] in the problem
+    file, or the places of both.
     """
 
     name: str
@@ -62,6 +63,7 @@ class Var:
     log: bool = False
     values: tuple[float, ...] | None = None
     search: bool = False
+    key: str | tuple[str, str] = ""
 
     def __post_init__(self) -> None:
         _check_numbers("variable", self, ("lower", "upper", "guess"))

@@ -6,11 +6,9 @@ from typing import Annotated, Any
 
 from pydantic import Field
 
-from gearopt.errors import SolveError
 from gearopt.formulations import compound
 from gearopt.formulations.compound import wider
 from gearopt.optimise.comparing.trial import Model
-from gearopt.optimise.explaining.explanation import Explanation
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run
 from gearopt.optimise.typed import untyped
@@ -18,7 +16,7 @@ from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.fields import Table, number, whole, words
 from gearopt.scenes.reading.lists import span
 
-__all__ = ["EXAMPLE", "Scene", "compared", "explain", "model", "solve"]
+__all__ = ["EXAMPLE", "Scene", "compared", "model", "solve"]
 LEAST, MOST = 5, 400  # teeth of a gear that a file may ask for
 ASSUMED = "Tooth numbers alone: modules, centre distances and loads are not looked at."
 EXAMPLE = """\
@@ -126,11 +124,6 @@ def _out_of_reach(train: compound.Compound, reach: dict[str, Any]) -> str:
         return f"{made}. Write {' or '.join(ways)}."
     more = ': kind = "drive" has more stages' if train.ratio >= 1 else ""  # a drive slows down
     return f"{made}. No two pairs of {LEAST} to {MOST} teeth make it{more}."
-
-
-def explain(scene: Scene, ask: Ask) -> Explanation:
-    """There is nothing to explain: some train is always nearest."""
-    raise SolveError("explain is for drives; of a compound train the nearest is always found")
 
 
 def compared(scene: Scene) -> tuple[str, ...]:

@@ -64,18 +64,22 @@ def smooth(plan: Plan, layer: Any = None) -> Problem:
     needed, tall = of_layers(plan, levels)
     parameters: tuple[Param, ...] = (Param("height", "mm", tall),)
     if pairs:
-        parameters = (*parameters, Param("needed", "", needed, len(pairs)))
+        gap = Param("gap", "mm", plan.gap, key="container.gap", role="limit")
+        parameters = (*parameters, Param("needed", "", needed, len(pairs)), gap)
+    if plan.width is not None:
+        parameters = (*parameters, Param("width", "mm", plan.width, key="container.width"))
     variables = (*_axes(plan, guess), *_sides(plan, guess))
 
     def evaluate(x: Any, p: Any) -> Terms:
         axes = axes_of(plan, x)
-        walls = _walls(plan, axes, x)
+        width = getattr(p, "width", None)
+        walls = _walls(plan, axes, x, width)
         if pairs:
-            squares = [_square(plan, axes, i, j) for i, j in pairs]
+            squares = [_square(plan, axes, i, j, p.gap) for i, j in pairs]
             walls["apart"] = tuple(
                 1.0 + (least - there) for least, there in zip(each(p.needed), squares, strict=True)
             )
-        return Terms(_objective(plan, _area(plan, x), p.height), defines=walls)
+        return Terms(_objective(plan, _area(plan, x, width), p.height), defines=walls)
 
     return Problem("packing", variables, parameters, evaluate)
 
@@ -160,10 +164,11 @@ def _sides(plan: Plan, guess: Places) -> tuple[Var, ...]:
     )
 
 
-def _square(plan: Plan, axes: list[tuple[Any, Any]], i: int, j: int) -> Any:
+def _square(plan: Plan, axes: list[tuple[Any, Any]], i: int, j: int, gap: Any) -> Any:
     """d^2/D^2 of a pair."""
     (a, b), (c, d) = axes[i], axes[j]
-    return ((a - c) ** 2 + (b - d) ** 2) / plan.apart(i, j) ** 2
+    apart = plan.cylinders[i].radius + plan.cylinders[j].radius + gap
+    return ((a - c) ** 2 + (b - d) ** 2) / apart**2
 
 
 def _near(plan: Plan) -> list[tuple[int, int]]:
@@ -181,7 +186,7 @@ def _near(plan: Plan) -> list[tuple[int, int]]:
 
 def _close(plan: Plan, axes: list[tuple[Any, Any]], layer: list[Any], i: int, j: int) -> Any:
     """The row of a pair: 2 - d^2/D^2 in one layer, 0 in different ones."""
-    row_of = 2.0 - _square(plan, axes, i, j)
+    row_of = 2.0 - _square(plan, axes, i, j, plan.gap)
     return np.where(layer[i] == layer[j], row_of, 0.0) if plan.lifted else row_of
 
 
@@ -211,15 +216,15 @@ def _container(plan: Plan, axes: list[tuple[Any, Any]], x: Any) -> tuple[Any, di
     return across * along, {}
 
 
-def _area(plan: Plan, x: Any) -> Any:
+def _area(plan: Plan, x: Any, width: Any) -> Any:
     if plan.shape == "circle":
         return math.pi * x.container_radius**2
     if plan.shape == "square":
         return x.side**2
-    return x.depth * (x.width if plan.width is None else plan.width)
+    return x.depth * (x.width if width is None else width)
 
 
-def _walls(plan: Plan, axes: list[tuple[Any, Any]], x: Any) -> dict[str, Any]:
+def _walls(plan: Plan, axes: list[tuple[Any, Any]], x: Any, width: Any) -> dict[str, Any]:
     """Rows that keep all inside the container; bounds of x and y hold two sides where they can."""
     scale = 2.0 * float(plan.radius.mean())
     if plan.shape == "circle":
@@ -231,7 +236,7 @@ def _walls(plan: Plan, axes: list[tuple[Any, Any]], x: Any) -> dict[str, Any]:
         ]
         return {"inside": tuple(rows)}
     left, front = getattr(x, "left", 0.0), getattr(x, "front", 0.0)
-    width = getattr(x, "side", getattr(x, "width", plan.width))
+    width = getattr(x, "side", getattr(x, "width", width))
     depth = getattr(x, "side", getattr(x, "depth", None))
     need = plan.radius + plan.wall
     found: dict[str, Any] = {}

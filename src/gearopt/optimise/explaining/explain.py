@@ -10,7 +10,7 @@ import numpy as np
 from gearopt.optimise.clock import Clock, of_others
 from gearopt.optimise.explaining.elastic import elastic
 from gearopt.optimise.explaining.explanation import Change, Explanation, Influence, Remedy
-from gearopt.optimise.explaining.handles import PARAM, Handle, effective, handles
+from gearopt.optimise.explaining.handles import PARAM, Handle, each_word, effective, handles
 from gearopt.optimise.explaining.repair import Repair, impossible, value_within
 from gearopt.optimise.explaining.sensitivity import BINDS, sensitivities
 from gearopt.optimise.problem import Problem
@@ -63,20 +63,14 @@ def binding(result: Result) -> tuple[str, ...]:
     return tuple(name for name, used in result.limits.items() if used >= 1.0 - BINDS)
 
 
-def slopes(
-    value: float, solve_at: Callable[[float], float | None]
-) -> tuple[float | None, float | None]:
-    """D ln objective / d ln input from below and from above, by re-solving at (1 -+ STEP)."""
-
-    def slope(factor: float) -> float | None:
-        other = solve_at(factor)
-        if other is None or value == 0.0:
-            return None
-        if min(other, value) > 0.0:
-            return math.log(other / value) / math.log(factor)
-        return (other - value) / (abs(value) * math.log(factor))
-
-    return slope(1.0 - STEP), slope(1.0 + STEP)
+def slope(value: float, solve_at: Callable[[float], float | None], factor: float) -> float | None:
+    """D ln objective / d ln input by re-solving with the input times a factor near 1."""
+    other = solve_at(factor)
+    if other is None or value == 0.0:
+        return None
+    if min(other, value) > 0.0:
+        return math.log(other / value) / math.log(factor)
+    return (other - value) / (abs(value) * math.log(factor))
 
 
 def _influences(
@@ -84,7 +78,7 @@ def _influences(
 ) -> Iterator[Influence]:
     assert outcome.x is not None and result.value is not None
     value = _nonzero(problem, result.value)
-    slope = sensitivities(problem, outcome.x).parameters
+    known = sensitivities(problem, outcome.x).parameters
     limits = {h.place: h for h in handles(problem) if h.kind == PARAM and not h.given}
     used = effective(problem)
     for place, (name, key, number) in enumerate(_inputs(problem)):
@@ -102,13 +96,13 @@ def _influences(
             eased = solved(1.0 + direction * EASE)
             step = f"{direction * EASE:+.0%}"
             price = None if eased is None or value == 0.0 else (eased - value) / abs(value)
-        sides = slopes(value, solved)
+        sides = slope(value, solved, 1.0 - STEP), slope(value, solved, 1.0 + STEP)
         if clock.over:  # the row may be half done
             return
         yield Influence(
             key or name,
             f"{number:.10g}",
-            float(slope[place]) if value and math.isfinite(slope[place]) else None,
+            float(known[place]) if value and math.isfinite(known[place]) else None,
             sides,
             step,
             price,
@@ -124,9 +118,11 @@ def _nonzero(problem: Problem, value: float) -> float:
 def _inputs(problem: Problem) -> list[tuple[str, str, float]]:
     """Name, key and value of every parameter component."""
     return [
-        (q.name if q.size == 1 else f"{q.name}[{k + 1}]", q.key, float(v))
+        (q.name if q.size == 1 else f"{q.name}[{k + 1}]", key, float(v))
         for q in problem.parameters
-        for k, v in enumerate(spread(q.value, q.size))
+        for k, (key, v) in enumerate(
+            zip(each_word(q.key, q.size), spread(q.value, q.size), strict=True)
+        )
     ]
 
 

@@ -27,10 +27,11 @@ class Remedy:
     """Edits that make a design possible, applied together.
 
     kind: "least" (smallest product of factors over all limits), "even" (one factor for one kind of
-    limit), "one" (a number of one stage), "pair" (two changes, each as small as the other allows),
-    "less" (the duty), or "choice" (a switch of the file, or the nearest ratio that the limits
-    reach). what: the limits that move. factor: that product or common factor, as written (infinite
-    where a number is shifted). bound: a smaller one is proven impossible (None: not proven).
+    limit), "one" (a number of one stage), "alone" (a number of the file), "pair" (two changes, each
+    as small as the other allows), "less" (the duty), or "choice" (a switch of the file, or the
+    nearest ratio that the limits reach). what: the limits that move. factor: that product or common
+    factor, as written (infinite where a number is shifted). bound: a smaller one is proven
+    impossible (None: not proven).
     verified: status with the edits, and with each taken back by 0.1 %, one tooth or one module
     ({"with": ..., "with_less": ...}); "nearer": of ratios nearer to the one asked for; "others":
     what all other single numbers need.
@@ -67,8 +68,8 @@ class Explanation:
     """Why an answer is what it is.
 
     result: the answer itself. conflict: limits that cannot hold together, none of them to spare.
-    remedies: proven ways out, least first. binding: limits used to the full. influences: one an
-    input.
+    remedies: proven ones, least first. binding: limits used to the full. influences: one an
+    input. basis: of which problem the slopes and prices are, the end of a sentence.
     """
 
     result: Result
@@ -78,6 +79,13 @@ class Explanation:
     influences: tuple[Influence, ...] = ()
     message: str = ""
     seconds: float = 0.0
+    basis: str = ""
+
+    @property
+    def prices(self) -> dict[str, Any]:
+        """Influences, and what to say of them, as the report of a result holds them."""
+        influences = [asdict(i) for i in self.influences]
+        return {"influences": influences, "message": self.message, "basis": self.basis}
 
     def to_dict(self) -> dict[str, Any]:
         """Plain dicts, lists and numbers; no NaN and no infinity (None instead)."""

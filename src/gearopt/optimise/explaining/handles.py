@@ -94,14 +94,15 @@ def _parameters(problem: Problem) -> tuple[list[Handle], set[int]]:
     """Parameters that may move, and the rows they govern."""
     acts, signs, elsewhere = _slopes(problem)
     rows = problem.rows.inequalities
-    roles = [np.broadcast_to(np.asarray(q.role), (q.size,)) for q in problem.parameters]
-    movers = np.concatenate(roles or [np.empty(0, str)]) != "data"
+    roles = [each_word(q.role, q.size) for q in problem.parameters]
+    movers = np.array([role != "data" for own in roles for role in own], bool)
     found: list[Handle] = []
     governed: set[int] = set()
     start = 0
     for parameter, own in zip(problem.parameters, roles, strict=True):
         values = spread(parameter.value, parameter.size)
-        for k, (role, value) in enumerate(zip(own, values, strict=True)):
+        keys = each_word(parameter.key, parameter.size)
+        for k, (role, key, value) in enumerate(zip(own, keys, values, strict=True)):
             place = start + k
             touched = np.flatnonzero(acts[:, place])
             ways = {int(s) for s in signs[touched, place]}
@@ -114,22 +115,16 @@ def _parameters(problem: Problem) -> tuple[list[Handle], set[int]]:
             alone = len(names) == 1 and acts[touched[0]][movers].sum() == 1
             name = names[0] if alone else label
             sign = -ways.pop()
-            found.append(
-                Handle(
-                    name,
-                    PARAM,
-                    place,
-                    value,
-                    sign,
-                    parameter.unit,
-                    parameter.key,
-                    names,
-                    role == "given",
-                )
-            )
+            unit, given = parameter.unit, role == "given"
+            found.append(Handle(name, PARAM, place, value, sign, unit, key, names, given))
             governed |= set(touched.tolist())
         start += parameter.size
     return found, governed
+
+
+def each_word(words: str | tuple[str, ...], size: int) -> tuple[str, ...]:
+    """A word of a parameter for each of its components."""
+    return tuple(map(str, np.broadcast_to(np.asarray(words), (size,))))
 
 
 def _slopes(problem: Problem) -> tuple[Array, Array, Array]:
@@ -193,10 +188,18 @@ def _bounds(problem: Problem) -> list[Handle]:
             if math.isfinite(value):
                 word = name if given else f"{name} {kind.split()[0]}"
                 own = (f"{name} {kind}",)
+                key = _end(variable.key, kind, given)
                 found.append(
-                    Handle(word, kind, k, float(value), sign, variable.unit, rows=own, given=given)
+                    Handle(word, kind, k, float(value), sign, variable.unit, key, own, given)
                 )
     return found
+
+
+def _end(key: str | tuple[str, str], kind: str, given: bool) -> str:
+    """The place of a bound: its own, or an end of its range's, or that of one number for both."""
+    if not isinstance(key, str):
+        return key[0 if kind == LOWER else 1]
+    return key if given or not key else f"{key}[{1 if kind == LOWER else 2}]"
 
 
 def scale(value: float) -> float:

@@ -6,6 +6,7 @@ Lagrangian's slope along that variable. No re-solve is needed; `explain` makes o
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -16,19 +17,87 @@ from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Array
 
 BINDS = 1e-6  # a row this close to its limit binds
+HOLDS = 1e-4  # relative: a bound this near to a variable holds it, or did with another number
+KINK = 0.02  # relative difference of slopes from both sides that do not belong to one
+STATIONARY = 1e-4  # largest slope that may be left in a variable off its bounds, of all slopes
 
 
 @dataclass(frozen=True)
 class Sensitivities:
     """parameters (np,) and columns (n,): relative change of the objective per relative change.
 
-    columns: of a bound that holds the variable (0 where none does). multipliers (ng,): of the
-    inequality rows, relative change of the objective per relative change of the row's limit.
+    columns: of a bound that holds the variable (0 where none does). multipliers (ng,), equalities
+    (nh,): of the rows, relative change of the objective per relative change of a row's limit.
     """
 
     parameters: Array
     columns: Array
     multipliers: Array
+    equalities: Array
+
+    def along(
+        self, problem: Problem, x: Array, ends: tuple[Problem, Problem], step: float
+    ) -> float | None:
+        """D ln objective / d ln number, of a number on which the problem depends in any way.
+
+        ends: the problem with the number times exp(-step) and exp(step). The Lagrangian of both is
+        taken at the same x; of variables that their bounds hold, the bounds' moves are added. None
+        where one of them has no value, or other rows, or the slopes from both sides differ.
+        """
+        below, above = (
+            self._change(x, *pair)
+            for pair in zip((ends[0], problem), (problem, ends[1]), strict=True)
+        )
+        if below is None or above is None or not np.isfinite(below + above):
+            return None
+        if abs(above - below) > KINK * (step + max(abs(above), abs(below))):
+            return None
+        return (below + above) / (2.0 * step) + 0.0
+
+    def _change(self, x: Array, before: Problem, after: Problem) -> float | None:
+        """Relative change of the Lagrangian at x from one problem to another; None: other rows."""
+        one, other = before.batch(x[None]), after.batch(x[None])
+        if one.G.shape != other.G.shape or one.H.shape != other.H.shape:
+            return None
+        value, new = float(one.F[0, 0]), float(other.F[0, 0])
+        if min(value, new) > 0.0:
+            change = float(np.log(new / value))
+        else:
+            change = (new - value) / abs(value) if value else np.nan
+        priced = self.multipliers > 0.0
+        change += float(self.multipliers[priced] @ (other.G - one.G)[0, priced])
+        change += float(self.equalities @ (other.H - one.H)[0])
+        return change + float(self.columns @ _moved(before, after, x))
+
+    def stationary(self, problem: Problem, x: Array) -> bool:
+        """Whether no slope is left in a variable that is off its bounds: x may be a kink."""
+        free = ~(_held(problem, x, 0) | _held(problem, x, 1))
+        left = np.abs(self.columns[free]).max(initial=0.0)
+        return bool(left <= STATIONARY * (1.0 + self.multipliers.max(initial=0.0)))
+
+
+def _held(problem: Problem, x: Array, side: int) -> Any:
+    """Which variables (n,) their lower (0) or upper (1) bound holds; equal ones are lower."""
+    lower, upper, _ = problem.bounds()
+    near = np.abs(x - (lower, upper)[side]) <= HOLDS * np.maximum(np.abs(x), HOLDS)
+    return near if side == 0 else near & (lower < upper)
+
+
+def _moved(before: Problem, after: Problem, x: Array) -> Array:
+    """Relative moves (n,) of the bounds that hold x, from one problem to another near it."""
+    found = np.zeros(len(x))
+    for side in (0, 1):
+        held = (_held(before, x, side) | _held(after, x, side)) & (x != 0.0)
+        found[held] = (after.bounds()[side] - before.bounds()[side])[held] / x[held]
+    return found
+
+
+def of_fixed(problem: Problem) -> Sensitivities:
+    """Those of a point whose variables are all fixed: no row has a price."""
+    rows = problem.rows
+    no_g, no_h = np.zeros(len(rows.inequalities)), np.zeros(len(rows.equalities))
+    none = np.zeros(len(problem.parameter_values())), np.zeros(len(problem.columns))
+    return Sensitivities(*none, no_g, no_h)
 
 
 def sensitivities(problem: Problem, x: Array) -> Sensitivities:
@@ -56,6 +125,7 @@ def sensitivities(problem: Problem, x: Array) -> Sensitivities:
         np.nan_to_num(by_parameter, posinf=np.inf, neginf=-np.inf) / unit + 0.0,  # no -0
         slope * along / unit,
         lam[0] / unit,
+        lam[1] / unit,
     )
 
 

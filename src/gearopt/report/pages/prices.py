@@ -8,7 +8,7 @@ from gearopt.report.measures import Measures
 from gearopt.report.result_words import objective
 from gearopt.report.section import Cell, Section, Table
 
-ALIKE = 0.02  # of slopes from below and above that are shown as one
+ALIKE = 0.02  # of slopes from below and above that are shown as one; relative to those above 1
 FLAT = 0.5e-4  # slope that would be shown as 0.0000
 NOTHING = 1e-9  # relative: no change
 BOTH = ("number in the file", "now")
@@ -26,7 +26,7 @@ def section(result: Result, measures: Measures) -> Section | None:
 def of_influences(found: Mapping[str, Any], result: Result) -> Section:
     """What every number does to the objective, and what that means.
 
-    found: influences, as dicts (see `optimise.explaining.explanation.Influence`), and message.
+    found: influences, message and basis, see `optimise.explaining.explanation`.
     """
     rows = [_row(one) for one in found["influences"]]
     table = Table("prices", HEADS, rows, page_only=PAGE_ONLY, terminal_only=TERMINAL_ONLY, wrap=0)
@@ -62,15 +62,10 @@ def influence_words(found: Mapping[str, Any], result: Result) -> list[str]:
     lines = [found["message"][0].upper() + found["message"][1:] + "."] if found["message"] else []
     if not found["influences"]:
         return lines or ["No number of the file was looked at."]
-    words = f"What +1 % brings: slope of the {name} (d ln objective / d ln number)"
+    slope = f"What +1 % brings: slope of the {name} (d ln objective / d ln number)"
     if any(i["sensitivity"] is not None for i in found["influences"]):
-        words += (
-            " with real-valued teeth and modules, by multipliers, checked by solving again. "
-            "What easing a limit brings: the drive itself solved again."
-        )
-    else:
-        words += ", by solving again."
-    return [*lines, words]
+        return [*lines, f"{slope}{found.get('basis', '')}."]
+    return [*lines, f"{slope}, by solving again."]
 
 
 def clean(change: float) -> float:
@@ -80,7 +75,7 @@ def clean(change: float) -> float:
 
 def alike(below: float, above: float) -> bool:
     """Whether slopes from both sides are shown as one."""
-    return abs(above - below) < ALIKE
+    return abs(above - below) < ALIKE * max(1.0, abs(below), abs(above))
 
 
 def price(change: float | None) -> str:

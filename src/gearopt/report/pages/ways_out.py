@@ -11,6 +11,7 @@ from gearopt.report.words import edit, limit_words
 
 KINDS = {
     "least": "least change",
+    "alone": "or this alone",
     "pair": "two together",
     "less": "or ask for less",
     "choice": "or choose",

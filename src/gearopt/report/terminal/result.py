@@ -1,7 +1,6 @@
 """A result on the terminal: the sections of its kind, in words and tables."""
 
 from collections.abc import Sequence
-from dataclasses import asdict
 from typing import Any
 
 from rich.console import Console, RenderableType
@@ -41,9 +40,7 @@ def show_explanation(explanation: Explanation, console: Console) -> None:
     )
     full = ", ".join(limit_words(n) for n in explanation.binding)
     console.print(Text(f"Used to the full: {full}." if full else "No limit is used to the full."))
-    influences = [asdict(i) for i in explanation.influences]
-    found = {"influences": influences, "message": explanation.message}
-    _print(of_influences(found, result).terminal, console)
+    _print(of_influences(explanation.prices, result).terminal, console)
 
 
 def _print(blocks: Sequence[Any], console: Console) -> None:

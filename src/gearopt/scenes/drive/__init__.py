@@ -14,7 +14,7 @@ from gearopt.formulations.train import Train
 from gearopt.optimise.certificate import reconcile
 from gearopt.optimise.clock import Clock, in_part, of_others
 from gearopt.optimise.comparing.trial import Model
-from gearopt.optimise.explaining.explanation import Change, Explanation, Remedy
+from gearopt.optimise.explaining.explanation import Explanation
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import GAP, run
@@ -22,6 +22,7 @@ from gearopt.optimise.typed import untyped
 from gearopt.scenes.drive.explaining.assumptions import assumptions, notes
 from gearopt.scenes.drive.explaining.undercut import undercut
 from gearopt.scenes.drive.scene import EXAMPLE, Scene
+from gearopt.scenes.explaining.default import of_report
 from gearopt.scenes.reading.ask import Ask
 
 __all__ = ["EXAMPLE", "Scene", "compared", "explain", "model", "solve"]
@@ -41,8 +42,7 @@ def solve(scene: Scene, ask: Ask) -> Result:
     told: dict[str, Any] = {"assumptions": assumptions(scene)}
     if ask.prices and result.value is not None:
         found = _explained(_unruled(scene), ask, result, _others(ask, result.seconds))
-        influences = [asdict(i) for i in found.influences]
-        told["prices"] = {"influences": influences, "message": found.message}
+        told["prices"] = found.prices
     return replace(result, report=result.report | told)
 
 
@@ -71,11 +71,10 @@ def explain(scene: Scene, ask: Ask) -> Explanation:
     if scene.layout is not None:
         result = _solved(scene, ask)
         if result.status == "infeasible":
-            return _ways_out(result)
+            return of_report(result)
         return _explained(scene, ask, result, _others(ask, result.seconds))
     clock = _others(ask)
-    half = replace(ask.budget, seconds=ask.budget.seconds and 0.5 * ask.budget.seconds)
-    result = _answer(scene, replace(ask, budget=half))
+    result = _answer(scene, ask.half)
     if result.status == "infeasible":
         from gearopt.scenes.drive.explaining.remedies import remedies
 
@@ -96,7 +95,7 @@ def _explained(scene: Scene, ask: Ask, result: Result, clock: Clock) -> Explanat
         from gearopt.scenes.drive.box.explain import explained as box_explained
 
         return box_explained(scene, result, clock)
-    from gearopt.scenes.drive.explaining.explained import explained
+    from gearopt.scenes.drive.explaining.influences import explained
 
     return explained(scene, result, clock, lambda other: _answer(other, _exactly(ask, clock)))
 
@@ -104,17 +103,6 @@ def _explained(scene: Scene, ask: Ask, result: Result, clock: Clock) -> Explanat
 def _exactly(ask: Ask, clock: Clock) -> Ask:
     """What is asked of a drive that is compared with another: one train, to the end."""
     return replace(ask, budget=replace(clock.left, gap=0.0), watch=clock.watch, gap=GAP, top=1)
-
-
-def _ways_out(result: Result) -> Explanation:
-    """The ways out that an impossible layout brings along."""
-    none: dict[str, Any] = {"conflict": [], "remedies": [], "message": ""}
-    ways = result.report.get("ways_out", none)
-    found = tuple(
-        Remedy(**{**r, "changes": tuple(Change(**c) for c in r["changes"])})
-        for r in ways["remedies"]
-    )
-    return Explanation(result, tuple(ways["conflict"]), found, message=ways["message"])
 
 
 def bare(scene: Scene) -> Scene:

@@ -1,6 +1,6 @@
 """What a caller asks of a scene beside the file: method, budget, how many answers."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from gearopt.optimise.result import Budget, Watch
 from gearopt.optimise.solve import GAP
@@ -20,3 +20,9 @@ class Ask:
     gap: float = GAP
     top: int = 1
     prices: bool = False
+
+    @property
+    def half(self) -> "Ask":
+        """The same in half of its seconds: an answer that leaves time to explain it."""
+        seconds = self.budget.seconds and 0.5 * self.budget.seconds
+        return replace(self, budget=replace(self.budget, seconds=seconds))

@@ -20,7 +20,7 @@ from gearopt.scenes.reading.spelling import near
 from gearopt.scenes.reading.toml import cut, dotted
 
 FORMAT = 1
-READER = "reading"  # the folder of `gearopt.scenes` that is no kind
+SHARED = {"reading", "explaining"}  # folders of `gearopt.scenes` that are no kinds
 HEAD = ("gearopt", "kind")  # keys of every file
 LARGEST_FILE = 1_000_000  # bytes
 DEEPEST_KEY = r"(?:[\w-]\s*\.\s*){6000}"  # tomllib's time grows with the square: 1 s at 5000
@@ -38,8 +38,8 @@ class Loaded:
 
 
 def kinds() -> tuple[str, ...]:
-    """The kinds of problem file: the modules and folders of `gearopt.scenes`, but its reader."""
-    return tuple(sorted({m.name for m in iter_modules(gearopt.scenes.__path__)} - {READER}))
+    """The kinds of problem file: the modules and folders of `gearopt.scenes`, but shared ones."""
+    return tuple(sorted({m.name for m in iter_modules(gearopt.scenes.__path__)} - SHARED))
 
 
 def scene_module(kind: str) -> Any:

@@ -14,11 +14,12 @@ from gearopt.formulations.servo.servo_design import ServoDesign, ServoReport
 from gearopt.formulations.servo.split.bodies import Pairs
 from gearopt.optimise.clock import Clock, of_others
 from gearopt.optimise.comparing.trial import Model
-from gearopt.optimise.explaining.explain import binding
-from gearopt.optimise.explaining.explanation import Change, Explanation, Remedy
+from gearopt.optimise.explaining.explanation import Explanation
+from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import untyped
 from gearopt.physics.gears import disc_mass
+from gearopt.scenes.explaining.default import explained, of_report
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.servo.assumptions import assumptions, notes
 from gearopt.scenes.servo.gears import described, errors, given_gears, to_point
@@ -175,18 +176,16 @@ def _of_train(whose: str, design: ServoDesign) -> dict[str, float]:
 
 
 def explain(scene: Scene, ask: Ask) -> Explanation:
-    """What would make an impossible train possible; of a possible answer the limits that bind."""
-    result = solve(scene, ask)
-    ways = result.report.get("ways_out")
-    if ways is None:
-        bind = binding(result) if result.value is not None else ()
-        return Explanation(result, (), (), bind, (), result.message, result.seconds)
-    found = tuple(
-        Remedy(**{**r, "changes": tuple(Change(**c) for c in r["changes"])})
-        for r in ways["remedies"]
-    )
-    told = ways["message"]
-    return Explanation(result, tuple(ways["conflict"]), found, message=told, seconds=result.seconds)
+    """What every number does to the answer; what would make an impossible one possible."""
+    clock = Clock(ask.budget, of_others(ask.watch))
+    result = solve(scene, ask.half)
+    if "ways_out" in result.report:
+        return of_report(result)
+
+    def answer(other: Scene) -> Result:
+        return solve(other, replace(ask, budget=clock.left, watch=clock.watch))
+
+    return explained(scene, result, clock, answer, lambda other: _posed(other, boxed=True)[0])
 
 
 def compared(scene: Scene) -> tuple[str, ...]:
@@ -200,12 +199,16 @@ def compared(scene: Scene) -> tuple[str, ...]:
 
 def model(scene: Scene, method: str) -> Model:
     """The problem of the answer; that of a train without its box, which is no row of it."""
+    return Model(*_posed(scene, boxed=False))
+
+
+def _posed(scene: Scene, boxed: bool) -> tuple[Problem, str, str]:
+    """The problem of the answer, what it is called, and the unit of its objective."""
     if scene.train is not None:
-        unit = SHOWN[scene.train.goal][1]
-        problem = train_problem(scene.choice(boxed=False))
-        return Model(problem, "Whole teeth and modules, without a box", unit)
+        problem = train_problem(scene.choice(boxed=boxed))
+        return problem, "Whole teeth and modules, without a box", SHOWN[scene.train.goal][1]
     if (duty := scene.servo_duty()) is not None:
-        return Model(duty.problem(), "Total ratio", UNITS[duty.goal])
+        return duty.problem(), "Total ratio", UNITS[duty.goal]
     gears = given_gears(scene)
     assert gears is not None
-    return Model(tolerance_problem(scene, gears), "Tolerances of given gears", "")
+    return tolerance_problem(scene, gears), "Tolerances of given gears", ""

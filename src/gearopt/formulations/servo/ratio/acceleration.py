@@ -48,7 +48,10 @@ def acceleration(drive: Drive, load_speed: float = 0.0) -> Problem:
         return _exact(drive.of(values), values.get("load_speed", 0.0))
 
     if line or capped:
-        own = (Param("load_speed", "rad/s", load_speed, role="given"), *drive.parameters())
+        own = (
+            Param("load_speed", "rad/s", load_speed, key="duty.load_speed", role="given"),
+            *drive.parameters(),
+        )
     else:
         own = drive.parameters("no_load_speed", "speed_limit")
     return Problem("ratio", variables, own, evaluate, methods={"exact": exact})

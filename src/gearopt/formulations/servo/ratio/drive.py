@@ -13,6 +13,12 @@ FAINT = 1e-30  # of the largest acceleration: what is slower counts as not movin
 _UNITS = {"inertia": "t mm2", "torque": "N mm", "friction": "N mm"} | dict.fromkeys(
     ("limit", "speed"), "rad/s"
 )
+_KEYS = {  # names of numbers as a problem file has them
+    **{name: f"motor.{name}" for name in ("torque", "no_load_speed", "speed_limit")},
+    **{"motor_inertia": "motor.inertia", "motor_friction": "motor.friction"},
+    **{"load_inertia": "load.inertia", "load_friction": "load.friction"},
+    "efficiency": "load.efficiency",
+}
 _ROLES = {"torque": "limit", "speed_limit": "limit", "load_inertia": "given"}
 
 
@@ -79,7 +85,8 @@ class Drive:
         if low < high < math.inf:
             values["ratio_high"] = high
         return tuple(
-            Param(n, _UNITS.get(n.split("_")[-1], ""), v, role=_role(n)) for n, v in values.items()
+            Param(n, _UNITS.get(n.split("_")[-1], ""), v, key=_KEYS.get(n, ""), role=_role(n))
+            for n, v in values.items()
         )
 
     def of(self, values: dict[str, float]) -> "Drive":

@@ -60,7 +60,7 @@ def move(drive: Drive, angle: float) -> Problem:
         values = present(problem)
         return _exact(drive.of(values), values["angle"])
 
-    parameters = (*drive.parameters(), Param("angle", "rad", angle, role="given"))
+    parameters = (*drive.parameters(), Param("angle", "rad", angle, key="duty.angle", role="given"))
     return Problem("ratio", variables, parameters, evaluate, methods={"exact": exact})
 
 

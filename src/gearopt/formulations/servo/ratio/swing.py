@@ -47,8 +47,8 @@ def swing(drive: Drive, amplitude: float, angular_frequency: float) -> Problem:
     most = drive.ratios(amplitude * angular_frequency)[1]
     variable = drive.ratio_variable((ratio, most), math.isinf(ratio) and math.isinf(most))
     own = (
-        Param("amplitude", "rad", amplitude, role="given"),
-        Param("angular_frequency", "rad/s", angular_frequency, role="given"),
+        Param("amplitude", "rad", amplitude, key="duty.amplitude", role="given"),
+        Param("angular_frequency", "rad/s", angular_frequency, key="duty.frequency", role="given"),
     )
 
     def exact(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:

@@ -18,6 +18,7 @@ from gearopt.optimise.terms import Param, Terms, Var
 from gearopt.physics.gears import GearPair, disc_inertia
 from gearopt.physics.stiffness import lewis_form_factor
 
+TIPS = ("train.wheel_tip_diameters[1]", "train.wheel_tip_diameters[2]")  # in a problem file
 BEYOND = 1e3  # factor between the lengths of a train and the ends of the search
 
 
@@ -34,13 +35,14 @@ def relaxation(train: ServoTrain, goal: str = "inertia") -> Problem:
     def evaluate(x: Any, p: Any) -> Terms:
         return _terms(train, goal, moved, x, p)
 
-    error = (Param("error", "rad", train.error, role="limit"),)
+    tips = tuple(float(t) for t in train.wheel_tips)
+    error = (Param("error", "rad", train.error, key="accuracy.error", role="limit"),)
     parameters = (
         *(error if math.isfinite(train.error) else ()),
-        Param("bending_stress", "MPa", train.bending, role="limit"),
+        Param("bending_stress", "MPa", train.bending, key="train.bending_stress", role="limit"),
         *ratio_parameters(low, high),
-        Param("bore", "mm", float(train.bore), role="limit"),
-        Param("wheel_tip", "mm", tuple(float(t) for t in train.wheel_tips), 2, role="limit"),
+        Param("bore", "mm", float(train.bore), key="train.second_pinion_diameter", role="limit"),
+        Param("wheel_tip", "mm", tips, 2, TIPS, "limit"),
     )
     variables = _variables(train)
     if moved is not None:

@@ -72,7 +72,7 @@ def _variables(train: ServoTrain) -> tuple[Var, ...]:
     wheel = max(train.wheel_teeth, low)
     modules = tuple(sorted(float(m) for m in train.modules))
     return (
-        Var("pinion_teeth", "", low, high, low, 2, integer=True),
-        Var("wheel_teeth", "", low, wheel, low, 2, integer=True),
+        Var("pinion_teeth", "", low, high, low, 2, integer=True, key="train.pinion_teeth"),
+        Var("wheel_teeth", "", low, wheel, low, 2, integer=True, key=("", "train.wheel_teeth")),
         Var("module", "mm", modules[0], modules[-1], modules[0], 2, values=modules),
     )

@@ -7,7 +7,8 @@ from fractions import Fraction
 from typing import Any
 
 from gearopt.physics.gears import GearPair
-from gearopt.scenes.drive.explaining.numbers import (
+from gearopt.scenes.drive.scene import Scene
+from gearopt.scenes.explaining.numbers import (
     Number,
     Path,
     at,
@@ -17,7 +18,6 @@ from gearopt.scenes.drive.explaining.numbers import (
     times,
     written,
 )
-from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.reading.toml import dotted, toml_text
 from gearopt.units import UNITS, Quantity
 

@@ -13,8 +13,8 @@ from gearopt.optimise.clock import Clock, of_others
 from gearopt.optimise.explaining.explanation import Change, Remedy
 from gearopt.physics.gears import GearPair
 from gearopt.scenes.drive.box.moves import Move, limits_of, moves, switches
-from gearopt.scenes.drive.explaining.numbers import allowed
 from gearopt.scenes.drive.scene import Scene
+from gearopt.scenes.explaining.numbers import allowed
 from gearopt.scenes.reading.ask import Ask
 from gearopt.units import Quantity
 

@@ -4,8 +4,9 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from gearopt.optimise.explaining.explanation import Change
-from gearopt.scenes.drive.explaining.numbers import Path, at, put, times
 from gearopt.scenes.drive.scene import Scene
+from gearopt.scenes.explaining.numbers import Path, at, put
+from gearopt.scenes.explaining.remedies import taken_back
 from gearopt.units import Quantity
 
 
@@ -29,7 +30,7 @@ def less(scene: Scene, cured: Cure, part: float, only: int | None = None) -> Sce
             continue
         now, before = at(found, path), inherited(scene, path)
         series = path[-1] == "module" and scene.teeth is not None
-        back = _module_back(scene, now, before) if series else _towards(now, before, part)
+        back = _module_back(scene, now, before) if series else taken_back(now, before, part)
         found = put(found, path, back)
     return found
 
@@ -74,16 +75,3 @@ def next_module(
         return None
     nearest = min(found, key=lambda m: abs(m - size))
     return replace(module, number=nearest * module.number / size)
-
-
-def _towards(now: Any, before: Any, part: float) -> Any:
-    """A value moved back by a part of its size; integers by one."""
-    if isinstance(now, tuple):
-        old = before if isinstance(before, tuple) else (before, before)
-        return tuple(_towards(a, b, part) for a, b in zip(now, old, strict=True))
-    number, target = (v.number if isinstance(v, Quantity) else v for v in (now, before))
-    if number == target:
-        return now
-    if isinstance(now, int):
-        return now + (1 if target > number else -1)
-    return times(now, 1.0 - part if number > target else 1.0 + part)

@@ -1,58 +1,88 @@
-"""What every number of a drive's file does to its objective."""
+"""A drive that was sized, explained: what binds, and what every number of its file costs."""
 
-import math
-from collections.abc import Iterator
+from collections.abc import Callable
 from typing import Any
 
 from gearopt.formulations import sizing
 from gearopt.optimise.clock import Clock
-from gearopt.optimise.explaining.explain import slopes
-from gearopt.optimise.explaining.explanation import Influence
-from gearopt.optimise.explaining.repair import value_within
+from gearopt.optimise.explaining.explain import EASE, STEP, binding
+from gearopt.optimise.explaining.explanation import Explanation
+from gearopt.optimise.explaining.repair import CERTAIN, value_within
 from gearopt.optimise.explaining.sensitivity import sensitivities
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result
-from gearopt.optimise.terms import Array
+from gearopt.optimise.solve import run
 from gearopt.physics.gears import MODULES
 from gearopt.scenes.drive.explaining.cures import next_module
 from gearopt.scenes.drive.explaining.levers import FIELDS
-from gearopt.scenes.drive.explaining.numbers import Number, eased, moved, numbers, times
 from gearopt.scenes.drive.scene import Scene
+from gearopt.scenes.explaining.influences import Basis, influences
+from gearopt.scenes.explaining.numbers import Number, eased, moved, numbers
 
-STEPS = (-1e-5, 1e-5)  # of ln input: how parameters follow from the numbers of the file
-EASE = 0.01  # the step whose price is told; one for teeth, the next one for modules
+BASIS = (
+    " with real-valued teeth and modules, by multipliers, checked by solving again. "
+    "What easing a limit brings: the drive itself solved again"
+)
+SAME = 1e-6  # gap of an answer that may be compared with another
 
 
-def influences(
-    scene: Scene, result: Result, ideal: Array | None, clock: Clock, solved: Any
-) -> Iterator[Influence]:
-    """What every number of the file does to the objective.
+def explained(
+    scene: Scene, result: Result, clock: Clock, answer: Callable[[Scene], Result]
+) -> Explanation:
+    """The result with the influence of every number; answer(scene) solves a changed drive.
 
-    Sensitivities are those of real-valued sizes (at the point `ideal` of their problem; None: none
-    known); prices are of the drive as it is: solved(scene) -> objective, or None.
+    Slopes are those of real-valued sizes, prices are of the drive as it is.
     """
-    scene = _spelt(scene)
-    base = sizing.problem(scene.train())
-    slope = None if ideal is None else sensitivities(base, ideal)
-    value = None if ideal is None else float(base.batch(ideal[None]).F[0, 0])
-    for number in numbers(scene):
-        if clock.over:
-            return
-        if number.path[:2] == ("teeth", "modules") and _is_series(scene):
-            continue
+    whole = result.status in CERTAIN and (result.gap or 0.0) <= SAME
 
-        def resolved(factor: float, number: Number = number) -> float | None:
-            other = moved(scene, number.path, times(number.value, factor))
-            return None if other is None else value_within(clock, sizing.problem(other.train()))
+    def solved(other: Scene) -> float | None:
+        if not whole:  # a difference to what is not the best means nothing
+            return None
+        found = answer(other)
+        return found.value if found.status in CERTAIN else None
 
-        own: float | None = None
-        both: tuple[float | None, float | None] = (None, None)
-        if slope is not None and value is not None and _smooth(scene, number):
-            own, both = _chained(scene, number, base, slope), slopes(value, resolved)
-        step, price = _price(scene, number, result, solved)
-        if clock.over:  # the row may be half done
-            return
-        yield Influence(number.key, number.text, own, both, step, price)
+    spelt = _spelt(scene)
+    wanted = [
+        n for n in numbers(spelt) if not (n.path[:2] == ("teeth", "modules") and _is_series(scene))
+    ]
+    found = tuple(
+        influences(
+            spelt,
+            _basis(spelt, clock),
+            clock,
+            wanted,
+            lambda number: _price(spelt, number, result, solved),
+            lambda number: _smooth(spelt, number),
+        )
+    )
+    late = f"stopped after {len(found)} of {len(numbers(scene))} numbers" if clock.over else ""
+    if not whole:
+        late = late or "easing a limit is not priced, because the answer is not proven to the end"
+    return Explanation(
+        result,
+        binding=tuple(n for n in binding(result) if not n.startswith("common_divisor")),
+        influences=found,
+        message=late,
+        seconds=clock.seconds,
+        basis=BASIS,
+    )
+
+
+def _basis(scene: Scene, clock: Clock) -> Basis | None:
+    """The optimum of real-valued sizes; None where it is not known."""
+
+    def posed(other: Scene) -> Problem:
+        return sizing.problem(other.train())
+
+    base = posed(scene)
+    ideal, outcome = run(base, "ipopt", clock.left, watch=clock.watch)
+    if ideal.status != "optimal" or ideal.value is None or outcome.x is None:
+        return None
+    x = outcome.x
+    known = sensitivities(base, x)
+    return Basis(
+        ideal.value, lambda other: value_within(clock, posed(other)), posed, x, known, STEP
+    )
 
 
 def _smooth(scene: Scene, number: Number) -> bool:
@@ -79,28 +109,6 @@ def _is_range(number: Number) -> bool:
 
 def _is_series(scene: Scene) -> bool:
     return scene.teeth is not None and scene.teeth.modules in MODULES.values()
-
-
-def _chained(scene: Scene, number: Number, base: Problem, slope: Any) -> float | None:
-    """D ln objective / d ln number, through the parameters and given sizes that follow from it.
-
-    None where the rules of the file allow one side alone: there multipliers are not unique.
-    """
-    import numpy as np
-
-    below, above = (moved(scene, number.path, times(number.value, math.exp(s))) for s in STEPS)
-    if below is None or above is None:
-        return None
-    ends = [sizing.problem(other.train()) for other in (below, above)]
-    width = STEPS[1] - STEPS[0]
-    lower, upper, _ = base.bounds()
-    given = lower == upper
-    with np.errstate(invalid="ignore", divide="ignore"):
-        values = [np.log(e.parameter_values()) for e in ends]
-        rates = np.nan_to_num((values[1] - values[0]) / width)
-        sizes = [np.where(given, e.bounds()[0], 1.0) for e in ends]
-        moves = np.log(sizes[1] / sizes[0]) / width
-    return float(slope.parameters @ rates + slope.columns @ moves) + 0.0
 
 
 def _price(scene: Scene, number: Number, result: Result, solved: Any) -> tuple[str, float | None]:

@@ -9,11 +9,11 @@ from typing import Any
 from gearopt.optimise.explaining.explanation import Change
 from gearopt.optimise.explaining.handles import Handle
 from gearopt.scenes.drive.explaining.cures import Cure, inherited, next_module
-from gearopt.scenes.drive.explaining.numbers import Path, allowed, eased, put, written
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.tables.stages import StageTable
+from gearopt.scenes.explaining.numbers import Path, allowed, eased, put, written
+from gearopt.scenes.explaining.remedies import apart
 from gearopt.scenes.reading.toml import dotted, toml_text
-from gearopt.units import Quantity
 
 FIELDS = {  # name of a limit or of a given size -> key in the file, and its end of a range
     "k_factor": ("k_factor", None),
@@ -192,19 +192,6 @@ def steps(scene: Scene, lever: Lever) -> list[float]:
     far = 4 * now if lever.direction > 0 else max(1, now // 4)
     values = range(now + lever.direction, far + lever.direction, lever.direction)
     return [max(v, now) / min(v, now) for v in values]
-
-
-def apart(before: Any, after: Any) -> float:
-    """How far two values are apart, as a factor >= 1; of ranges, the product of both ends'.
-
-    Ends that were equal and are equal are one number.
-    """
-    if isinstance(before, tuple):
-        if before[0] == before[1] and after[0] == after[1]:
-            return apart(before[0], after[0])
-        return math.prod(apart(a, b) for a, b in zip(before, after, strict=True))
-    a, b = (float(v.number if isinstance(v, Quantity) else v) for v in (before, after))
-    return max(a, b) / min(a, b) if min(a, b) > 0.0 else math.inf
 
 
 def tolerance(now: Fraction, end: int | None, factor: float) -> Fraction:

@@ -10,10 +10,10 @@ from typing import Any
 from gearopt.optimise.explaining.explain import DIGITS, TAKEN_BACK
 from gearopt.optimise.explaining.explanation import Remedy
 from gearopt.scenes.drive.explaining.levers import edits
-from gearopt.scenes.drive.explaining.numbers import SHORT, allowed, eased, put
 from gearopt.scenes.drive.explaining.several import is_real
 from gearopt.scenes.drive.explaining.tried import Case
 from gearopt.scenes.drive.scene import Scene
+from gearopt.scenes.explaining.numbers import SHORT, allowed, eased, put
 
 TOLERANCE = ("duty", "ratio_tolerance")
 WIDEST = (

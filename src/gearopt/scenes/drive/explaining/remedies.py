@@ -22,31 +22,22 @@ from gearopt.scenes.drive.explaining.levers import (
     comparable,
 )
 from gearopt.scenes.drive.explaining.nearest import nearest_ratio
-from gearopt.scenes.drive.explaining.numbers import read
 from gearopt.scenes.drive.explaining.several import is_real, is_stepped, posed, together, widest
 from gearopt.scenes.drive.explaining.switches import eased_tolerance, switches
 from gearopt.scenes.drive.explaining.tried import (
-    FARTHEST,
     Case,
     enlarged,
-    least_between,
+    least_alike,
     least_step,
     trimmed,
 )
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.tables.duty import Duty
+from gearopt.scenes.explaining.numbers import read
+from gearopt.scenes.explaining.remedies import FARTHEST, Remedies
 
 
-@dataclass(frozen=True)
-class Ways:
-    """conflict: names of limits that cannot hold together; remedies; message: what is missing."""
-
-    conflict: tuple[str, ...] = ()
-    remedies: tuple[Remedy, ...] = ()
-    message: str = ""
-
-
-def remedies(scene: Scene, clock: Clock) -> Ways:
+def remedies(scene: Scene, clock: Clock) -> Remedies:
     """The conflict and the ways out of an impossible drive, the least change first.
 
     Every remedy was tried: a design exists with it.
@@ -64,7 +55,7 @@ def remedies(scene: Scene, clock: Clock) -> Ways:
     if scene.teeth is not None:
         found += switches(case)
     late = "time ran out before all ways out were tried" if clock.over else ""
-    return Ways(tuple(h.name for h in blamed), tuple(found), late)
+    return Remedies(tuple(h.name for h in blamed), tuple(found), late)
 
 
 def _tolerance(found: Sequence[Remedy]) -> Fraction | None:
@@ -129,7 +120,7 @@ def _singles(
         else:
             start = max(start, common.get((lever.family, lever.direction), 1.0))
             doubts = len(case.open)
-            moves = None if math.isinf(start) else least_between(case, ((lever, start),))
+            moves = None if math.isinf(start) else least_alike(case, ((lever, start),))
             if lever.shared and len(case.open) == doubts:  # else a smaller one may do
                 least = math.inf if moves is None else moves[0][1]
                 common[lever.family, lever.direction] = least
@@ -164,7 +155,7 @@ def _alike(case: Case, base: Problem | None, movable: Sequence[Lever]) -> Iterat
                 continue
             start = alike.factor
             bound = alike.bound if comparable(case.scene, group) else None
-        moves = least_between(case, tuple((m, start) for m in group))
+        moves = least_alike(case, tuple((m, start) for m in group))
         if moves is not None:
             yield Way("even", moves, bound)
 

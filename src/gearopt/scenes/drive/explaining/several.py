@@ -23,8 +23,9 @@ from gearopt.scenes.drive.explaining.levers import (
     stage_of,
     steps,
 )
-from gearopt.scenes.drive.explaining.tried import FARTHEST, Case, enlarged, trimmed
+from gearopt.scenes.drive.explaining.tried import Case, enlarged, trimmed
 from gearopt.scenes.drive.scene import Scene
+from gearopt.scenes.explaining.remedies import FARTHEST
 
 NEAR = 1.0 - 1e-6  # a value this close to what is needed is that one
 MOST = 3  # whole numbers of which both neighbours are tried

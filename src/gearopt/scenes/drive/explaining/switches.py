@@ -8,8 +8,9 @@ from typing import Any
 from gearopt.optimise.explaining.explain import TAKEN_BACK
 from gearopt.optimise.explaining.explanation import Change, Remedy
 from gearopt.physics.gears import MODULES
-from gearopt.scenes.drive.explaining.numbers import eased, put, written
-from gearopt.scenes.drive.explaining.tried import Case, least_value
+from gearopt.scenes.drive.explaining.tried import Case
+from gearopt.scenes.explaining.numbers import eased, put, written
+from gearopt.scenes.explaining.remedies import least_value
 from gearopt.scenes.reading.toml import dotted, toml_text
 
 TOLERANCES = (Fraction(1, 10**5), Fraction(1, 2))  # tried where the file allows none

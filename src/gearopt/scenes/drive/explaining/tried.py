@@ -1,7 +1,6 @@
 """Whether an impossible drive would be possible with some numbers moved, and the least that do."""
 
-import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from gearopt.formulations import sizing
@@ -10,20 +9,14 @@ from gearopt.formulations.teeth.search import any_train, possible
 from gearopt.formulations.teeth.wide import narrowed
 from gearopt.formulations.train import Train
 from gearopt.optimise.clock import Clock
-from gearopt.optimise.explaining.explain import TAKEN_BACK, THERE
+from gearopt.optimise.explaining.explain import THERE
 from gearopt.optimise.solve import solve_within
 from gearopt.scenes.drive.explaining.cures import less
 from gearopt.scenes.drive.explaining.levers import Lever, Moves, applied, steps
 from gearopt.scenes.drive.scene import Scene
+from gearopt.scenes.explaining.remedies import WIDEST, Works, least_between, least_value
 
-WIDEST = (1.02, 1.1, 1.3, 2.0, 4.0)  # extra factors that are tried for whole teeth, in turn
-FARTHEST = 4.0  # factor to which numbers that may only take steps are tried
-CLOSE = 1.0 + 0.5 * TAKEN_BACK  # ratio of an impossible to a possible factor that ends a search
-DOUBTS = 3  # factors that may stay undecided before a search ends at the least that is known
-LEAST = 1.0 + 1e-7  # a search between two factors this close ends in any case
 SECONDS = 2.0  # at most, for one question whether whole teeth are possible
-
-Works = Callable[..., bool | None]
 
 
 @dataclass(frozen=True)
@@ -99,7 +92,7 @@ def least_step(case: Case, lever: Lever, most: float) -> tuple[float, bool] | No
     return None
 
 
-def least_between(case: Case, moves: Moves) -> Moves | None:
+def least_alike(case: Case, moves: Moves) -> Moves | None:
     """The least moves that suffice, all alike: as given, or enlarged for whole teeth."""
     if case.scene.teeth is None:
         return moves
@@ -123,41 +116,6 @@ def enlarged(case: Case, moves: Moves, fixed: Moves = ()) -> Moves | None:
     return None if extra is None else larger(extra)
 
 
-def least_value(low: float, wider: Sequence[float], works: Works) -> float | None:
-    """The least value from `low` on that will do, looked for below the first of `wider` that does.
-
-    works(value, back): whether a value will do, also with its edits taken back by a part; None:
-    not known, so that the widest is tried. None where none is known to do.
-    """
-    if works(low):
-        return low
-    for high in wider:
-        found = works(high)
-        if found is None and high < wider[-1]:
-            high, found = wider[-1], works(wider[-1]) or None
-        if found is not False:
-            return _between(low, high, works) if found else None
-        low = high
-    return None
-
-
-def _between(low: float, high: float, works: Works) -> float:
-    """The least factor known to do, between an impossible and a possible one.
-
-    works(factor, back): whether a factor will do, also with its edits taken back by a part. One
-    that stays undecided is not known to do.
-    """
-    doubts = 0
-    while doubts < DOUBTS:
-        if high <= low * CLOSE and not (high > low * LEAST and works(high, TAKEN_BACK)):
-            break
-        middle = math.sqrt(low * high)
-        found = works(middle)
-        doubts += found is None
-        low, high = (low, middle) if found else (middle, high)
-    return high
-
-
 def trimmed(case: Case, moves: Moves, fixed: Moves = ()) -> Moves:
     """Moves of which each is needed, and as small as the others and those fixed allow."""
     kept = moves
@@ -167,7 +125,7 @@ def trimmed(case: Case, moves: Moves, fixed: Moves = ()) -> Moves:
         if others and case.works(others):
             kept = beside
             continue
-        least = _between(1.0, factor, _alone(case, others, lever))
+        least = least_between(1.0, factor, _alone(case, others, lever))
         kept = tuple((m, least if m is lever else f) for m, f in kept)
     return kept
 

@@ -40,22 +40,25 @@ class Number:
         return toml_text(written(self.value, self.path)).strip('"')
 
 
-def numbers(scene: BaseModel) -> tuple[Number, ...]:
-    """Every number that the file gives, in the order of the file's tables; counts are left out."""
-    return tuple(n for n in _walk(scene, ()) if n.path != ("stages",))
+def numbers(scene: BaseModel, defaults: bool = False) -> tuple[Number, ...]:
+    """Every number that the file gives, in the order of the file's tables; counts are left out.
+
+    defaults: those too that the file leaves out.
+    """
+    return tuple(n for n in _walk(scene, (), defaults) if n.path != ("stages",))
 
 
-def _walk(value: Any, path: Path) -> Iterator[Number]:
+def _walk(value: Any, path: Path, defaults: bool) -> Iterator[Number]:
     if isinstance(value, BaseModel):
         for name in type(value).model_fields:
-            if name in value.model_fields_set:
-                yield from _walk(getattr(value, name), (*path, name))
+            if defaults or name in value.model_fields_set:
+                yield from _walk(getattr(value, name), (*path, name), defaults)
     elif isinstance(value, tuple):
         if len(value) == 2 and value[0] == value[1] and not isinstance(value[0], BaseModel):
             yield Number(path, value[0])
         else:
             for k, item in enumerate(value):
-                yield from _walk(item, (*path, k))
+                yield from _walk(item, (*path, k), defaults)
     elif isinstance(value, Quantity | Fraction | int) and not isinstance(value, bool):
         yield Number(path, value)
 
@@ -136,7 +139,7 @@ def read(model: type[BaseModel], field: str, raw: Any) -> Any:
 
 def written(value: Any, path: Path) -> Any:
     """A value as a file holds it at a place: texts for quantities, decimals, integers, lists."""
-    if path[:2] == ("teeth", "modules") and isinstance(value, Fraction):
+    if path[1:2] == ("modules",) and isinstance(value, Fraction):
         return f"{exact(value)} mm"
     if path[-1:] == ("ratio_tolerance",):
         return f"{exact(100 * value)} %"

@@ -1,0 +1,1 @@
+"""What the answer to any problem file rests on, said in the numbers of the file."""

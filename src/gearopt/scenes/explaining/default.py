@@ -1,0 +1,179 @@
+"""`explain` of a kind that has none of its own: by its `solve`, and by its `model`'s problem."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+from gearopt.errors import SolveError
+from gearopt.optimise.clock import Clock, of_others
+from gearopt.optimise.conic.problem import Conic
+from gearopt.optimise.explaining.explain import binding
+from gearopt.optimise.explaining.explanation import Change, Explanation, Influence, Remedy
+from gearopt.optimise.explaining.handles import handles
+from gearopt.optimise.explaining.repair import CERTAIN
+from gearopt.optimise.explaining.sensitivity import of_fixed, sensitivities
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.result import Result
+from gearopt.optimise.solve import run
+from gearopt.optimise.terms import Array
+from gearopt.scenes.explaining.influences import Basis, Solved, influences, stepped
+from gearopt.scenes.explaining.numbers import Number, numbers
+from gearopt.scenes.explaining.remedies import remedies
+from gearopt.scenes.reading.ask import Ask
+
+BASIS = (
+    " by multipliers, checked by solving again. What easing a limit or a step brings: solved again"
+)
+HELD = f", with these whole numbers and choices,{BASIS}"
+UNSURE = 0.02  # of a slope by multipliers and one by solving again that are told apart
+PART = 1e-3  # of the change up to which whole numbers and choices stay: the step of a re-solve
+UNPROVEN = "numbers are not solved again, because the answer is not proven to the end"
+
+
+def explain(kind: Any, scene: Any, ask: Ask) -> Explanation:
+    """What every number of a file does to its answer, or which would make it possible.
+
+    kind: the module, with `solve` and `model`.
+    """
+    clock = Clock(ask.budget, of_others(ask.watch))
+
+    def answer(other: Any) -> Result:
+        found: Result = kind.solve(other, replace(ask, budget=clock.left, watch=clock.watch))
+        return found
+
+    def posed(other: Any) -> Problem | Conic:
+        problem: Problem | Conic = kind.model(other, "").problem
+        return problem
+
+    return explained(scene, kind.solve(scene, ask.half), clock, answer, posed)
+
+
+def of_report(result: Result) -> Explanation:
+    """The explanation of an impossible request that its result brings along as `ways_out`."""
+    told: dict[str, Any] = result.report.get("ways_out", {})
+    found = tuple(
+        Remedy(**{**r, "changes": tuple(Change(**c) for c in r["changes"])})
+        for r in told.get("remedies", ())
+    )
+    names, words = tuple(told.get("conflict", ())), told.get("message", "")
+    return Explanation(result, names, found, message=words, seconds=result.seconds)
+
+
+def explained(
+    scene: Any,
+    result: Result,
+    clock: Clock,
+    answer: Callable[[Any], Result],
+    posed: Callable[[Any], Problem | Conic],
+) -> Explanation:
+    """The explanation of a result; answer(scene) solves a changed file, posed(scene) states it."""
+    if result.status == "infeasible":
+        return _impossible(scene, result, clock, answer, posed(scene))
+    if result.value is None:
+        return Explanation(result, message="no design was found in time", seconds=clock.seconds)
+
+    def solved(other: Any) -> float | None:
+        found = run(posed(other), None, clock.left, watch=clock.watch)[0]
+        return found.value if found.status in CERTAIN else None
+
+    problem = posed(scene)
+    own, outcome = run(problem, None, clock.left, watch=clock.watch)
+    if own.value is None or own.status not in CERTAIN:
+        return Explanation(result, (), (), binding(result), (), UNPROVEN, clock.seconds)
+    basis, held = Basis(own.value, solved), False
+    if isinstance(problem, Problem) and outcome.x is not None:
+        x, held = outcome.x, any(variable.discrete for variable, _ in problem.columns)
+        basis = at_point(own.value, solved, lambda other: _held(posed(other), x), scene, x)
+    return priced(scene, result, clock, basis, solved, "", eases(problem), held)
+
+
+def _impossible(
+    scene: Any,
+    result: Result,
+    clock: Clock,
+    answer: Callable[[Any], Result],
+    problem: Problem | Conic,
+) -> Explanation:
+    if isinstance(problem, Conic):
+        names = tuple(result.proof.get("conflict", ()))
+        return Explanation(result, names, message=result.message, seconds=clock.seconds)
+    found = remedies(scene, problem, clock, lambda other: answer(other).status)
+    return Explanation(result, **vars(found), seconds=clock.seconds)
+
+
+def eases(problem: Problem | Conic) -> dict[str, int]:
+    """By the keys of a problem's limits: the direction in which they are easier."""
+    if isinstance(problem, Conic):
+        return {}
+    return {h.key: h.direction for h in handles(problem) if h.key and not h.given}
+
+
+def priced(
+    scene: Any,
+    result: Result,
+    clock: Clock,
+    basis: Basis,
+    solved: Solved,
+    told: str,
+    directions: dict[str, int],
+    held: bool = False,
+) -> Explanation:
+    """The explanation of a design: solved(scene), the objective with changed whole numbers.
+
+    directions: that ease a limit, by key; held: the basis holds whole numbers and choices.
+    """
+    value, ranges = basis.value, list[str]()
+    wanted = [n for n in numbers(scene) if n.path[1:2] != ("modules",)]  # what is offered
+
+    def near(number: Number) -> tuple[float, float]:
+        down, up = basis.kept(scene, number) if held else (basis.step, basis.step)
+        if min(down, up) < basis.step:
+            now = float(getattr(number.value, "number", number.value))
+            low, high = now * (1.0 - down), now * (1.0 + up)
+            unit = getattr(number.value, "unit", "")
+            ranges.append(f"{number.key} from {low:.10g} to {high:.10g} {unit}".rstrip())
+            small = PART * min((c for c in (down, up) if c > 0.0), default=0.0)
+            return small * (down > 0.0), small * (up > 0.0)
+        return down, up
+
+    def price(number: Number) -> tuple[str, float | None]:
+        way = directions.get(number.key, 0)
+        return stepped(scene, number, way, value, basis.solved, solved)
+
+    found = tuple(map(_sure, influences(scene, basis, clock, wanted, price, near=near)))
+    late = f"stopped after {len(found)} of {len(wanted)} numbers" if clock.over else told
+    if ranges:
+        late = "; ".join(filter(None, (late, f"the same design is best with {', '.join(ranges)}")))
+    words = HELD if held else f",{BASIS}"
+    return Explanation(result, (), (), binding(result), found, late, clock.seconds, words)
+
+
+def _sure(found: Influence) -> Influence:
+    """Without a slope by multipliers that is neither side's: there they are not unique."""
+    sides = [s for s in found.resolved if s is not None]
+    own = found.sensitivity
+    if own is None or not sides or any(abs(own - s) <= UNSURE * max(1.0, abs(s)) for s in sides):
+        return found
+    return replace(found, sensitivity=None)
+
+
+def _held(problem: Problem | Conic, x: Array) -> Problem:
+    assert isinstance(problem, Problem)
+    return problem.holding(x)
+
+
+def at_point(
+    value: float, solved: Solved, posed: Callable[[Any], Problem], scene: Any, x: Array
+) -> Basis:
+    """The basis of a point x of posed(scene); without slopes by multipliers where x has none."""
+    held = posed(scene)
+    lower, upper, _ = held.bounds()
+    if (lower == upper).all():
+        return Basis(value, solved, posed, x, of_fixed(held))
+    try:
+        known = sensitivities(held, x)
+    except SolveError:  # the text cannot be traced, or has no slopes
+        return Basis(value, solved)
+    return (
+        Basis(value, solved, posed, x, known) if known.stationary(held, x) else Basis(value, solved)
+    )

@@ -1,0 +1,211 @@
+"""What every number of a file does to the objective: slopes by multipliers, checked by solving."""
+
+import math
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field, replace
+from functools import partial
+from typing import Any
+
+from gearopt.optimise.clock import Clock
+from gearopt.optimise.explaining.explain import EASE, slope
+from gearopt.optimise.explaining.explanation import Influence
+from gearopt.optimise.explaining.sensitivity import Sensitivities
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.terms import Array
+from gearopt.scenes.explaining.numbers import Number, Path, eased, moved, times
+from gearopt.units import Quantity
+
+POSED = 1e-5  # of ln number, to either side, at most: where a problem is posed anew
+NEAR = 1e-4  # relative, of the re-solves: small enough for most choices to stay as they are
+NEAREST = 1e-10  # relative change of a number below which it is not asked whether they do
+HALVINGS = 12  # of the logarithm of the change up to which they do
+SAME = 1e-9  # relative: objectives that are equal
+FARTHEST = 64  # whole steps up to which the first that makes a difference is looked for
+FIRST = 0.1  # step of a length or angle of zero, in its own unit
+
+Solved = Callable[[Any], float | None]  # a changed scene -> its objective; None: no design
+Price = Callable[[Number], tuple[str, float | None]]
+
+
+@dataclass(frozen=True)
+class Basis:
+    """The problem whose slopes are told: its optimum `point` (None: slopes by solving alone).
+
+    posed(scene): that of a changed file; value: its objective; solved(scene): the same of a changed
+    file; step: relative, of the re-solves; memo: what was solved, by number and factor.
+    """
+
+    value: float
+    solved: Solved
+    posed: Callable[[Any], Problem] | None = None
+    point: Array | None = None
+    known: Sensitivities | None = None
+    step: float = NEAR
+    memo: dict[tuple[Path, float], float | None] = field(default_factory=dict)
+
+    def chained(self, scene: Any, number: Number, step: float) -> float | None:
+        """D ln objective / d ln number by multipliers, through all that follows from the number.
+
+        None where the rules of the file allow one side alone: there multipliers are not unique.
+        """
+        if self.posed is None or self.point is None or self.known is None:
+            return None
+        ends = [_times(scene, number, math.exp(s)) for s in (-step, step)]
+        try:
+            below, above = (None if end is None else self.posed(end) for end in ends)
+        except ValueError:  # a formulation's own rule
+            return None
+        if below is None or above is None:
+            return None
+        return self.known.along(self.posed(scene), self.point, (below, above), step)
+
+    def at(self, scene: Any, number: Number, factor: float) -> float | None:
+        """The objective with the number times a factor, by solving again."""
+        if (number.path, factor) not in self.memo:
+            other = _times(scene, number, factor)
+            self.memo[number.path, factor] = None if other is None else self.solved(other)
+        return self.memo[number.path, factor]
+
+    def kept(self, scene: Any, number: Number) -> tuple[float, float]:
+        """How far a number may fall and rise, relative and up to `step`, until the point changes.
+
+        That is where whole numbers or choices are others; of a point that is held. 0: at once.
+        """
+
+        def same(change: float) -> bool:
+            other, solved = (
+                _times(scene, number, 1.0 + change),
+                self.at(scene, number, 1.0 + change),
+            )
+            if other is None or solved is None or self.posed is None or self.point is None:
+                return True  # no design, which the slopes tell
+            held = float(self.posed(other).batch(self.point[None]).F[0, 0])
+            return bool(abs(held - solved) <= SAME * abs(held))
+
+        def far(way: int) -> float:
+            low, high = NEAREST, self.step
+            if same(way * high):
+                return high
+            for _ in range(HALVINGS):
+                middle = math.sqrt(low * high)
+                low, high = (middle, high) if same(way * middle) else (low, middle)
+            return low if low > NEAREST else 0.0
+
+        return far(-1), far(1)
+
+
+def _times(scene: Any, number: Number, factor: float) -> Any:
+    return moved(scene, number.path, times(number.value, factor))
+
+
+def smooth(number: Number) -> bool:
+    """Whether a small relative change of a number means anything: not of zero, nor whole ones."""
+    return bool(getattr(number.value, "number", number.value)) and not isinstance(number.value, int)
+
+
+def influences(
+    scene: Any,
+    basis: Basis | None,
+    clock: Clock,
+    wanted: Iterable[Number],
+    price: Price = lambda number: ("", None),
+    sloped: Callable[[Number], bool] = smooth,
+    near: Callable[[Number], tuple[float, float]] | None = None,
+) -> Iterator[Influence]:
+    """What every wanted number does to the objective, as long as the clock allows.
+
+    price(number): the step that eases it and what that brings. sloped: whether it has a slope.
+    near(number): the relative steps of its re-solves down and up, by default those of the basis;
+    0: none to that side.
+    """
+    for number in wanted:
+        if clock.over:
+            return
+        own: float | None = None
+        both: tuple[float | None, float | None] = (None, None)
+        if basis is not None and sloped(number):
+            down, up = near(number) if near else (basis.step, basis.step)
+            own = basis.chained(scene, number, min(POSED, max(down, up) or POSED))
+            solved = partial(basis.at, scene, number)
+            low, high = (slope(basis.value, solved, 1.0 + s) if s else None for s in (-down, up))
+            both = low, high
+        step, brings = price(number)
+        if clock.over:  # the row may be half done
+            return
+        yield Influence(number.key, number.text, own, both, step, brings)
+
+
+def stepped(
+    scene: Any, number: Number, direction: int, value: float, solved: Solved, whole: Solved
+) -> tuple[str, float | None]:
+    """The step of a number whose price is told, and the relative change that it brings.
+
+    direction: that eases it, 0 where none is known: then 1 % of no number is priced, a whole number
+    is tried both ways. solved: of changed quantities; whole: of changed whole numbers.
+    """
+    now = number.value
+    if isinstance(now, int):
+        return _whole(scene, number, direction, value, whole)
+    if not getattr(now, "number", now):
+        if not isinstance(now, Quantity):
+            return "", None
+        new = replace(now, number=now.number + _fraction(FIRST))
+        return _brings(scene, number, f"to {new}", new, value, solved)
+    if direction == 0:
+        return "", None
+    new = eased(now, 1.0 + EASE, direction)
+    return _brings(scene, number, f"{direction * EASE:+.0%}", new, value, solved)
+
+
+def _fraction(number: float) -> Any:
+    from fractions import Fraction
+
+    return Fraction(str(number))
+
+
+def _brings(
+    scene: Any, number: Number, step: str, new: Any, value: float, solved: Solved
+) -> tuple[str, float | None]:
+    other = moved(scene, number.path, new)
+    if other is None:
+        return "", None
+    found = solved(other)
+    return step, None if found is None or value == 0.0 else (found - value) / abs(value)
+
+
+def _whole(
+    scene: Any, number: Number, direction: int, value: float, solved: Solved
+) -> tuple[str, float | None]:
+    """The first step of a whole number that makes the objective better; else what one step does."""
+
+    def brings(step: int) -> float | None:
+        other = moved(scene, number.path, number.value + step)
+        found = None if other is None else solved(other)
+        return None if found is None or value == 0.0 else (found - value) / abs(value)
+
+    one = {way: brings(way) for way in ((direction,) if direction else (-1, 1))}
+    known = {way: b for way, b in one.items() if b is not None}
+    if not known:
+        return "", None
+    way = min(known, key=lambda w: known[w])
+    if known[way] < -SAME or direction == 0:
+        return f"{way:+d}", known[way]
+    low, high, best = 1, 2, known[way]
+    while high <= FARTHEST:
+        found = brings(way * high)
+        if found is None:
+            return f"{way:+d}", known[way]
+        if found < -SAME:
+            best = found
+            break
+        low, high = high, 2 * high
+    else:
+        return f"{way * low:+d}", best
+    while high - low > 1:  # a wider range never does worse
+        middle = (low + high) // 2
+        found = brings(way * middle)
+        if found is not None and found < -SAME:
+            high, best = middle, found
+        else:
+            low = middle
+    return f"{way * high:+d}", best

@@ -1,0 +1,282 @@
+"""`explain` of every kind: slopes equal to solving again, edits that do what is said of them."""
+
+import math
+from decimal import Decimal
+from fractions import Fraction
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Annotated
+
+import numpy as np
+import pytest
+from edits import edited
+from pydantic import Field
+
+import gearopt
+from gearopt import Param, Problem, Terms, Var
+from gearopt.optimise.comparing.trial import Model
+from gearopt.optimise.result import Outcome
+from gearopt.optimise.solve import solve as solve_problem
+from gearopt.scenes.explaining.default import explain
+from gearopt.scenes.reading.ask import Ask
+from gearopt.scenes.reading.fields import Table, number, quantity, whole
+from gearopt.scenes.reading.load import read, scene_module
+from gearopt.units import Quantity
+
+PROBLEMS = Path(__file__).parents[2] / "problems"
+TRAIN = scene_module("compound").EXAMPLE
+ROW = """
+gearopt = 1
+kind = "packing"
+[[cylinder]]
+diameter = "20 mm"
+height = "10 mm"
+[[cylinder]]
+diameter = "20 mm"
+height = "12 mm"
+[container]
+width = "30 mm"
+gap = "1 mm"
+wall = "2 mm"
+[objective]
+minimise = "area"
+"""
+
+
+def scene(text):
+    return read(text.encode())[1]
+
+
+def slope(text, old, new, step=1e-4):
+    """D ln objective / d ln number by solving moved files; new: the text of a factor."""
+    ends = [gearopt.solve(scene(text.replace(old, new(f)))) for f in (1 - step, 1 + step)]
+    assert all(end.status == "optimal" and old in text for end in ends)
+    low, high = (math.log(end.value) for end in ends)
+    return (high - low) / math.log((1 + step) / (1 - step))
+
+
+@pytest.fixture(scope="module")
+def train():
+    return gearopt.explain(scene(TRAIN))
+
+
+@pytest.fixture(scope="module")
+def row():
+    return gearopt.explain(scene(ROW))
+
+
+def by_key(found):
+    return {i.key: i for i in found.influences}
+
+
+def test_compound_slope_is_that_of_the_same_teeth(train):
+    """Squared error e^2 with e = 1/u - r: d ln e^2/d ln u = -2/(u e), on both sides."""
+    ratio = by_key(train)["train.ratio"]
+    z1, z2 = train.result.design["driver_teeth"]
+    z3, z4 = train.result.design["driven_teeth"]
+    u = Fraction("6.931")
+    known = float(-2 / u / (1 / u - Fraction(z1 * z2, z3 * z4)))
+    assert ratio.sensitivity == pytest.approx(known, rel=1e-3)
+    assert ratio.resolved == pytest.approx((known, known), rel=1e-3)
+
+
+def test_compound_says_where_other_teeth_are_nearest(train):
+    words, low, _, high = train.message.rsplit(" ", 3)
+    assert words.endswith("best with train.ratio from")
+    teeth = train.result.design["driver_teeth"], train.result.design["driven_teeth"]
+    for value, same in ((float(low), 1), (float(high), 1), (float(low) - 1e-6, 0)):
+        other = gearopt.solve(scene(TRAIN.replace("6.931  ", f"{value:.10f}  "))).design
+        assert ((other["driver_teeth"], other["driven_teeth"]) == teeth) == bool(same)
+
+
+def test_compound_prices_the_first_wider_range_that_gains(train):
+    most = by_key(train)["train.teeth[2]"]
+    assert most.step == "+7" and by_key(train)["train.teeth[1]"].price == 0.0
+    wider, narrower = (
+        gearopt.solve(scene(TRAIN.replace("[12, 60]", f"[12, {z}]"))).value for z in (67, 66)
+    )
+    assert wider / train.result.value - 1 == pytest.approx(most.price, abs=1e-9)
+    assert narrower == train.result.value
+
+
+LENGTHS = {
+    "container.gap": ('gap = "1 mm"', 'gap = "{} mm"', 1.0),
+    "container.wall": ('wall = "2 mm"', 'wall = "{} mm"', 2.0),
+    "container.width": ('width = "30 mm"', 'width = "{} mm"', 30.0),
+}
+
+
+@pytest.mark.parametrize("key", LENGTHS)
+def test_packing_slopes_equal_solving_files_again(row, key):
+    old, new, value = LENGTHS[key]
+    known = slope(ROW, old, lambda factor: new.format(value * factor))
+    found = by_key(row)[key]
+    assert found.sensitivity == pytest.approx(known, abs=1e-5)
+    assert found.resolved == pytest.approx((known, known), abs=1e-3)
+
+
+def test_packing_slopes_against_the_closed_form(row):
+    """Depth 2 wall + 20 + (21^2 - (width - 24)^2)^(1/2) of two discs across a strip."""
+    lean = math.sqrt(21.0**2 - 6.0**2)
+    depth = 24.0 + lean
+    assert row.result.value == pytest.approx(30.0 * depth, rel=1e-8)
+    slopes = {key: i.sensitivity for key, i in by_key(row).items()}
+    assert slopes["container.gap"] == pytest.approx(21.0 / lean / depth, rel=1e-6)
+    assert slopes["container.width"] == pytest.approx(1.0 - 6.0 * 30.0 / lean / depth, rel=1e-6)
+    assert slopes["container.wall"] == pytest.approx((4.0 + 24.0 / lean) / depth, rel=1e-6)
+    assert slopes["cylinder[1].height"] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_an_unproven_packing_is_followed_and_whole_numbers_are_left_alone():
+    seven = ROW.replace("height", "count = 3\nheight", 1).replace('width = "30 mm"', "")
+    found = gearopt.explain(scene(seven), budget=gearopt.Budget(evaluations=100_000))
+    assert found.result.status != "optimal" and "not tried" in found.message
+    assert by_key(found)["cylinder[1].count"].price is None
+    assert by_key(found)["container.gap"].resolved[1] > 0.0
+
+
+class Bar(Table):
+    """A bar of round steel under a pull."""
+
+    pull: Annotated[Quantity, quantity("torque", "10 N m")] = Field(description="Pull")
+    stress: Annotated[Quantity, quantity("stress", "100 MPa")] = Field(description="Allowed")
+    safety: Annotated[Fraction, number("1.5", 0, 10)] = Field(description="Factor on the pull")
+    most: Annotated[int, whole(1, 1, 100)] = Field(description="Most bars beside each other")
+    diameter: Annotated[Quantity, quantity("length", "5 mm")] = Field(description="Largest")
+
+
+class Bars(Table):
+    """A further kind, which has no explain of its own."""
+
+    bar: Bar
+
+
+def bars(own, method=""):
+    """Least section n d^2 of n bars, whole, of d up to a largest; in the units of the file."""
+    bar = own.bar
+
+    def evaluate(x, p):
+        stress = p.pull * p.safety / (x.n * x.d**2)
+        return Terms({"section": x.n * x.d**2}, {"stress": stress / p.stress, "size": x.d / p.most})
+
+    def exact(problem, budget, seed, watch):
+        pull, stress, safety, most = problem.parameter_values()
+        least = pull * safety / stress
+        n = math.ceil(least / most**2 - 1e-9)
+        if n > bar.most:
+            return Outcome(None, infeasible=True, proof={"method": "closed form"})
+        return Outcome(
+            np.array([n, math.sqrt(least / n)]), bound=least * (1 - 1e-12), proof={"method": "x"}
+        )
+
+    parameters = (
+        Param("pull", "N mm", bar.pull.value, key="bar.pull", role="given"),
+        Param("stress", "MPa", bar.stress.value, key="bar.stress", role="limit"),
+        Param("safety", "", float(bar.safety), key="bar.safety", role="limit"),
+        Param("most", "mm", bar.diameter.value, key="bar.diameter", role="limit"),
+    )
+    n = Var("n", "", 1, bar.most, 1, integer=True, key=("", "bar.most"))
+    d = Var("d", "mm", 0.01, 1e3, 1.0, log=True, search=True)
+    return Model(Problem("bars", (n, d), parameters, evaluate, methods={"exact": exact}))
+
+
+KIND = SimpleNamespace(model=bars, solve=lambda own, ask: solve_problem(bars(own).problem))
+FILE = {
+    "bar": {
+        **{"pull": "10 N m", "stress": "100 MPa", "safety": Decimal("1.5")},
+        **{"most": 4, "diameter": "5 mm"},
+    }
+}
+
+
+def test_a_further_kind_is_explained_by_its_model_and_its_keys():
+    """6 bars are needed where 4 are allowed: each number alone, tried by reading and solving."""
+    found = explain(KIND, Bars.model_validate(FILE), Ask())
+    assert found.result.status == "infeasible"
+    needed = 1.5  # 10000 * 1.5/100 = 150 = n d^2, and 4 * 25 = 100
+    factors = {r.changes[0].key: r.changes[0].factor for r in found.remedies}
+    assert factors == {
+        "bar.diameter": pytest.approx(math.sqrt(needed), rel=1e-3),
+        "bar.stress": pytest.approx(needed, rel=1e-3),
+        "bar.safety": pytest.approx(needed, rel=1e-3),
+        "bar.most": pytest.approx(1.5),
+        "bar.pull": pytest.approx(needed, rel=1e-3),
+    }
+    assert [r.kind for r in found.remedies].count("least") == 1
+    assert found.remedies[0].what == "bar.diameter" and found.remedies[-1].kind == "less"
+    for remedy in found.remedies:
+        assert remedy.verified["with"] == "feasible"
+        assert remedy.verified["with_less"] == "infeasible"
+        other = edited(FILE, remedy, model=Bars)
+        assert KIND.solve(other, Ask()).status == "optimal"
+
+
+def test_a_further_kind_tells_slopes_of_its_whole_numbers():
+    """n d^2 = pull safety/stress, whatever n."""
+    own = {"bar": FILE["bar"] | {"most": 8, "safety": Decimal("1.4")}}
+    found = explain(KIND, Bars.model_validate(own), Ask())
+    slopes = {i.key: (i.sensitivity, *i.resolved) for i in found.influences}
+    assert slopes["bar.safety"] == pytest.approx((1.0, 1.0, 1.0), rel=1e-3)
+    assert slopes["bar.stress"] == pytest.approx((-1.0, -1.0, -1.0), rel=1e-3)
+    assert slopes["bar.diameter"] == pytest.approx((0.0, 0.0, 0.0), abs=1e-3)
+
+
+AXIS = """
+gearopt = 1
+kind = "servo"
+[motor]
+inertia = "8.6e-6 kg m^2"
+torque = "0.05 N m"
+friction = "0.003 N m"
+[load]
+inertia = "1.98e-2 kg m^2"
+friction = "0.04 N m"
+efficiency = "90 %"
+[duty]
+motion = "acceleration"
+"""
+NUMBERS = {
+    "motor.inertia": ('"8.6e-6 kg m^2"', '"{:.12g} kg m^2"', 8.6e-6),
+    "motor.torque": ('"0.05 N m"', '"{:.12g} N m"', 0.05),
+    "load.inertia": ('"1.98e-2 kg m^2"', '"{:.12g} kg m^2"', 1.98e-2),
+    "load.efficiency": ('"90 %"', '"{:.12g} %"', 90.0),
+}
+
+
+@pytest.fixture(scope="module")
+def axis():
+    return gearopt.explain(scene(AXIS))
+
+
+@pytest.mark.parametrize("key", NUMBERS)
+def test_servo_slopes_equal_solving_files_again(axis, key):
+    old, new, value = NUMBERS[key]
+    known = slope(AXIS, old, lambda factor: new.format(value * factor))
+    found = by_key(axis)[key]
+    assert found.sensitivity == pytest.approx(known, abs=1e-6)
+    assert found.resolved == pytest.approx((known, known), abs=1e-3)
+
+
+def test_servo_prices_a_larger_motor(axis):
+    """1 % more torque is what `motor.torque` is told to be eased by."""
+    found = by_key(axis)["motor.torque"]
+    larger = gearopt.solve(scene(AXIS.replace("0.05 N m", "0.0505 N m")))
+    assert found.step == "+1%"
+    assert found.price == pytest.approx(larger.value / axis.result.value - 1.0, rel=1e-6)
+
+
+def test_a_servo_train_holds_its_teeth():
+    """Inertia is in proportion to density; a larger bore asks for another pinion at once."""
+    text = (PROBLEMS / "servo_axis.toml").read_text()
+    found = gearopt.explain(scene(text))
+    density, bore = (by_key(found)[f"train.{k}"] for k in ("density", "second_pinion_diameter"))
+    assert density.sensitivity == pytest.approx(1.0, abs=1e-6)
+    assert density.resolved == pytest.approx((1.0, 1.0), abs=1e-6)
+    assert (
+        bore.resolved[1] is None and "second_pinion_diameter from 8.9991 to 9 mm" in found.message
+    )
+    least = by_key(found)["train.pinion_teeth[1]"]
+    fewer = text.replace("pinion_teeth = [17,", "pinion_teeth = [16,")
+    other = gearopt.solve(scene(fewer)).value
+    assert least.step == "-1" and fewer != text
+    assert least.price == pytest.approx(other / found.result.value - 1.0, abs=1e-9)
