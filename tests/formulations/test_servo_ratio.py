@@ -356,3 +356,4 @@ def test_the_bound_is_below_the_law_and_refuses_what_is_no_minimum():
     for power, low, high in ((-1.0, 1.0, 1.0 + 5e-6), (1.0, 1.0 - 5e-6, 1.0)):
         beside = convex_bound(lambda n, power=power: n**power, 1.0, low, high)
         assert 1.0 - 2e-5 < beside < min(low**power, high**power)  # the least is within one step
+    assert convex_bound(lambda n: 1.0 / n, 2.0, 1.0, 100.0, room=1e-12) is None  # no step at all

@@ -42,8 +42,8 @@ def convex_bound(
         return max((s for s in lines if math.isfinite(s)), default=-math.inf)
 
     value = law(at)
-    if not 0.0 < value < math.inf:
-        return None
+    if not 0.0 < value < math.inf or at * math.exp(STEP * room) <= at:
+        return None  # also where rounding swallows a step: it would show nothing
     least = min(side(-1.0, at / low), side(1.0, high / at))
     if least == -math.inf:
         return None
