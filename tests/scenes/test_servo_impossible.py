@@ -1,0 +1,159 @@
+"""Servo axes that no train can do: what is named, what is proposed, and what a stop leaves."""
+
+from dataclasses import replace
+from decimal import Decimal
+
+import pytest
+from scene_files import dump, parse
+from servo_files import BARE, NARROW, PROBLEMS, RATIO, STIFF, changed, solved, text
+from typer.testing import CliRunner
+
+import gearopt
+from gearopt.cli import app
+from gearopt.formulations.servo import choice
+from gearopt.formulations.servo.servo_design import ServoDesign, ServoReport
+from gearopt.optimise.clock import Clock
+from gearopt.optimise.result import Budget
+from gearopt.report.proof_words import proof
+from gearopt.scenes.servo import EXAMPLE
+from gearopt.scenes.servo.assumptions import notes
+from gearopt.scenes.servo.ways_out import ways_out
+
+
+def test_a_stiff_train_with_wheel_tips_below_a_tooth_is_impossible():
+    tips = (("train", "wheel_tip_diameters"), ["1 mm", "1 mm"])
+    result = solved(STIFF, tips)
+    stiff = next(part for part in result.parts if part.name == "stiff")
+    assert result.status == stiff.status == "infeasible"
+
+
+def test_a_look_for_a_box_stops_in_time():
+    tight = (*NARROW, (("space", "height"), "95 mm"))
+    scene = changed(EXAMPLE, *tight, drop=BARE)
+    result = gearopt.solve(choice.train_problem(scene.choice()), budget=Budget(seconds=0.02))
+    assert result.status == "limit" and result.value is None
+
+
+def test_tolerances_beyond_the_error_of_the_file_are_named():
+    """Three standard deviations within the limit, the worst case above it."""
+    edits = ((("budget", 0), {"rule": "mean_plus_sd"}),)
+    result = solved(EXAMPLE, *edits, drop=[("space",), ("lightest",)])
+    assert result.design["drawn"]["worst_case_deg"] > 0.12
+    assert any("at their worst" in note for note in result.report["notes"])
+
+
+def test_the_wider_error_that_is_proposed_is_the_least():
+    explained = gearopt.explain(PROBLEMS / "servo_gimbal_impossible.toml")
+    assert {"error", "wheel_tip[2]"} <= set(explained.conflict)
+    least, even = explained.remedies
+    assert least.changes[0].write == '"0.09798 deg"' and least.bound < least.factor
+    assert len(even.changes) == 14 and "pitch of stage 2" in explained.message
+
+
+@pytest.mark.parametrize(
+    ("edits", "blamed", "words"),
+    [
+        (
+            [(("train", "bending_stress"), "1 MPa")],
+            {"bending_stress", "wheel_tip[2]"},
+            "real-valued",
+        ),
+        (
+            [(("train", "output_torque"), "2400 N m")],
+            {"bending_stress", "wheel_tip[2]"},
+            "real-valued",
+        ),
+        ([(("train", "ratio"), 5000)], {"ratio_low", "wheel_tip[2]", "bore"}, "real-valued"),
+        (
+            [(("train", "ratio"), Decimal("47.98255")), (("train", "ratio_tolerance"), 0)],
+            set(),
+            "no whole teeth make the ratio within 0 %; within 0.0001 % some do",
+        ),
+    ],
+)
+def test_what_is_impossible_for_another_reason_is_said(edits, blamed, words):
+    explained = gearopt.explain(changed(text("gimbal_light"), *edits))
+    assert explained.result.status == "infeasible" and explained.remedies == ()
+    assert "not for the accuracy" in explained.message and words in explained.message
+    assert blamed <= set(explained.conflict) and "error" not in explained.conflict
+    assert bool(blamed) == bool(explained.conflict)
+
+
+@pytest.mark.parametrize(
+    ("edit", "words"),
+    [
+        ((("space", "width"), "40 mm"), "keeps the box"),
+        ((("stiffness", "frequency"), "5 kHz"), "keeps the stiffness"),
+    ],
+)
+def test_a_box_or_stiffness_that_no_train_keeps_is_named(edit, words):
+    few = ("modules", ["0.5 mm"]), ("pinion_teeth", [16, 24])
+    loose = (("accuracy", "error"), "0.3 deg")
+    drop = [("lightest",), ("tolerances",), ("budget",), ("cost",)]
+    drop += [("space",)] if edit[0][0] == "stiffness" else [("stiffness",)]
+    edits = [(("train", name), value) for name, value in few]
+    explained = gearopt.explain(changed(EXAMPLE, edit, *edits, loose, drop=drop))
+    assert explained.result.status == "infeasible" and explained.conflict == ()
+    assert words in explained.message
+
+
+def test_the_reason_of_an_impossible_duty_is_told_once(tmp_path):
+    """Eta T^2 < 4 b F_L."""
+    content = parse(RATIO)
+    content["motor"]["no_load_speed"], content["load"]["friction"] = "5 rad/s", "1 N m"
+    content["duty"] = {"motion": "acceleration", "load_speed": "1 rad/s"}
+    file = tmp_path / "duty.toml"
+    file.write_text(dump(content), encoding="utf-8")
+    shown = CliRunner().invoke(app, ["explain", str(file)])
+    assert " ".join(shown.output.split()).count("never exceeds the load's friction") == 1
+
+
+def test_a_run_out_of_time_says_so():
+    result = gearopt.solve(changed(EXAMPLE), budget=Budget(seconds=0.0))
+    assert result.status == "limit" and result.value is None and result.bound is None
+    assert result.message == "stopped before the end" and "ways_out" not in result.report
+    assert {p.name: p.status for p in result.parts} == {"ratio": "optimal", "stiff": "limit"}
+    assert gearopt.Result.from_json(result.to_json()).status == "limit"
+
+
+def test_time_that_ran_out_is_no_reason_of_its_own():
+    scene = changed(text("gimbal_impossible"))
+    for clock in (Clock(Budget(seconds=0.0)), Clock(Budget(), lambda event: False)):
+        conflict, remedies, message = ways_out(scene, clock)
+        assert (conflict, remedies) == ((), ()) and message.startswith("time ran out")
+
+
+def test_a_stop_ends_the_look_for_ways_out():
+    """The least error is found; from then on the user wants no more."""
+    seen = []
+
+    def watch(event):
+        seen.append(event)
+        return len(seen) < 8
+
+    clock = Clock(Budget(), watch)
+    found = ways_out(changed(text("gimbal_impossible")), clock)
+    assert clock.stopped and all(r.verified["with"] == "optimal" for r in found[1])
+    assert len(found[1]) < 2
+
+
+def test_a_message_with_a_stop_gets_no_second_one():
+    result = gearopt.solve(changed(RATIO))
+    late = replace(result, status="limit", message="Bound of ratio is violated by 1.01.")
+    assert "Bound of ratio is violated by 1.01." in proof(late)
+    ratio = replace(late, objective={"name": "ratio"})
+    note = notes(changed(RATIO), (result, ratio), ServoDesign(), ServoReport())
+    assert note == ["There is no answer for the part ratio: Bound of ratio is violated by 1.01."]
+
+
+def test_limits_and_conflicts_of_tolerances_are_named():
+    """One row a deviation; tolerances that use up the budget alone are said."""
+    tight = (("tolerances", "least_factor"), Decimal("0.9"))
+    result = gearopt.solve(changed(text("gimbal_tolerances"), tight))
+    assert result.limits["least of pitch of stage 2"] == pytest.approx(1.0, abs=1e-6)
+    assert not any("[" in name for name in result.limits)
+    none = gearopt.solve(
+        changed(text("gimbal_tolerances"), tight, (("budget", 0, "limit"), "0.05 deg"))
+    )
+    assert none.status == "infeasible"
+    assert "pitch of stage 2" in proof(none)[0] and "alone use up the budget" in proof(none)[0]
