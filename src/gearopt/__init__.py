@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from gearopt.optimise.explaining.explanation import Explanation
     from gearopt.optimise.problem import Problem
     from gearopt.optimise.result import Budget, Event, Result
+    from gearopt.optimise.solve import evaluate
     from gearopt.optimise.terms import Param, Repeat, Terms, Var
 
 __all__ = [
@@ -31,6 +32,7 @@ __all__ = [
     "Terms",
     "Var",
     "compare",
+    "evaluate",
     "explain",
     "load",
     "solve",

@@ -20,7 +20,7 @@ from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.explaining.explanation import Explanation
 from gearopt.optimise.problem import Problem, one_objective
 from gearopt.optimise.result import Budget, Event, Result, Watch, plain  # noqa: F401
-from gearopt.optimise.solve import GAP
+from gearopt.optimise.solve import GAP, evaluate  # noqa: F401
 from gearopt.optimise.solve import solve as solve_problem
 from gearopt.optimise.terms import Param, Repeat, Terms, Var  # noqa: F401
 from gearopt.scenes.reading.ask import Ask

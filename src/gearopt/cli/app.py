@@ -55,6 +55,8 @@ def exit_code(result: Result) -> int:
     """Exit code of a result."""
     if result.status == "limit":
         return 4 if result.value is None else 0
+    if result.status == "evaluated":
+        return 0 if result.feasible else 3
     return EXIT[result.status]
 
 

@@ -22,9 +22,9 @@ from gearopt.optimise.form import Form, form
 from gearopt.optimise.multipliers import multipliers
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.quadratic import natural
-from gearopt.optimise.result import Outcome, Result
-from gearopt.optimise.scale import FEASIBLE, is_known, measured, way
+from gearopt.optimise.result import FEASIBLE, Outcome, Result
 from gearopt.optimise.scale import gap as gap_of
+from gearopt.optimise.scale import is_known, measured, way
 from gearopt.optimise.second_order import no_minimum
 from gearopt.optimise.stationarity import STATIONARY, Point, evaluated, residuals
 from gearopt.optimise.terms import Array

@@ -18,7 +18,7 @@ from gearopt.optimise.discrete import values
 from gearopt.optimise.feasibility import violation
 from gearopt.optimise.form import form
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.result import Budget, Outcome
+from gearopt.optimise.result import FEASIBLE, Budget, Outcome
 from gearopt.optimise.solvers import ipopt
 from gearopt.optimise.terms import Array
 
@@ -26,7 +26,6 @@ SHARE, MOST = 0.1, 500  # of a budget is kept; evaluations at the most
 STARTS = 5  # points of the sampler to polish, of different discrete values
 RUNS = 60  # of Ipopt at the most
 ITERATIONS = 2000  # of all runs at the most, where the budget names no evaluations
-FEASIBLE = 1e-8  # that of a certificate
 KEPT = {"kept for it": f"{SHARE:.0%} of the budget, {MOST} evaluations at the most"}
 SETTINGS = {
     "polished by": "ipopt, discrete variables held; then with one at its next value",

@@ -18,7 +18,8 @@ if TYPE_CHECKING:
 
 FORMAT = 1
 _version = cache(version)  # reading package metadata takes a millisecond
-STATUSES = ("optimal", "stationary", "feasible", "infeasible", "limit", "failed")
+STATUSES = ("optimal", "stationary", "feasible", "evaluated", "infeasible", "limit", "failed")
+FEASIBLE = 1e-8  # of its own scale a variable, of 1 a row is off; that is below any data error
 
 
 @dataclass(frozen=True)
@@ -96,7 +97,9 @@ class Result:
     """The answer to a problem, as `--json` prints it.
 
     status: optimal (our bound within the stated gap), stationary (a local minimum, no bound),
-    feasible, infeasible (proven), limit (stopped early), failed. objective: {name, value, unit}.
+    feasible, evaluated (nothing was minimised; `feasible` says whether the design given meets all
+    limits), infeasible (proven), limit (stopped early), failed. objective: {name, value, unit}; of
+    status evaluated it may be empty.
     bound: nothing feasible is better; gap: (objective - bound)/|objective|, of an objective of zero
     relative to certificate["scale"], its own scale. proof: {method, ...}. certificate:
     {feasibility, stationarity, complementarity}. limits: utilisations by name.
@@ -134,6 +137,12 @@ class Result:
         """The objective's value, None without a feasible design."""
         found = self.objective.get("value")
         return None if found is None else float(found)
+
+    @property
+    def feasible(self) -> bool:
+        """Whether there is a design that meets all limits, as the certificate says."""
+        excess = self.certificate.get("feasibility")
+        return bool(self.design) and excess is not None and excess <= FEASIBLE
 
     def to_dict(self) -> dict[str, Any]:
         """Plain dicts, lists and numbers; no NaN and no infinity (None instead)."""
@@ -206,7 +215,8 @@ def _check_sorts(data: Mapping[str, Any]) -> None:
     value = data["objective"].get("value")
     if not isinstance(value, int | float | None):
         raise ValueError("has an objective whose value is no number")
-    words = [data["objective"].get("name"), data["objective"].get("unit", "")]
+    absent = "" if data["status"] == "evaluated" else None
+    words = [data["objective"].get("name", absent), data["objective"].get("unit", "")]
     if not all(isinstance(word, str) for word in words):
         raise ValueError("has an objective without a name, or whose unit is no text")
 

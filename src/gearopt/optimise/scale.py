@@ -11,9 +11,9 @@ import numpy as np
 
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.problem import Problem
+from gearopt.optimise.result import FEASIBLE
 from gearopt.optimise.terms import Array
 
-FEASIBLE = 1e-8  # of its own scale a variable, of 1 a row is off; that is below any data error
 PART = 1e-3  # of its box is the least scale of a variable, so that one at zero has a scale too
 COARSE, FINE = 1e-2, 1e-10  # steps that see curvature, and slopes alone
 NOTHING = 1e-28  # the square of a rounding

@@ -1,6 +1,7 @@
 """`solve`: run a method on a problem and certify what it returns."""
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Mapping
 from difflib import get_close_matches
 from importlib import import_module
 from pkgutil import iter_modules
@@ -13,9 +14,10 @@ from gearopt.optimise import discrete, solvers
 from gearopt.optimise.certificate import Verdict, certify
 from gearopt.optimise.clock import Clock, of_problem
 from gearopt.optimise.conic.problem import Conic
+from gearopt.optimise.feasibility import violation
 from gearopt.optimise.problem import Problem, one_objective
-from gearopt.optimise.result import Budget, Outcome, Result, Watch, versions
-from gearopt.optimise.terms import Array
+from gearopt.optimise.result import FEASIBLE, Budget, Outcome, Result, Watch, versions
+from gearopt.optimise.terms import Array, Var
 
 LIBRARIES = {Problem: ("casadi",), Conic: ("cvxpy", "clarabel")}  # what an answer rests on
 GAP = 1e-6  # relative; what `optimal` means unless the caller says otherwise
@@ -58,6 +60,40 @@ def run(
     outcome = method_of(problem, name)(problem, budget or Budget(), seed, told)
     verdict = judge(problem, name, outcome, gap)
     return _result(problem, name, outcome, verdict, clock.seconds, seed), outcome
+
+
+def evaluate(problem: Problem | Conic, point: Mapping[str, Any] | Array) -> Result:
+    """What a problem's text gives at a point: objective, report, utilisation of every limit.
+
+    Nothing is minimised; `Result.feasible` says whether the point meets all limits, its message
+    what it exceeds most. point: values by name of the variable (a list for one of size above 1), or
+    all in order (n,). ValueError where a value is missing, unknown, or not a number.
+    """
+    clock, x = Clock(), _given(problem, point)
+    batch = problem.batch(x[None])
+    excess, worst = violation(problem, x, batch)
+    value = float(batch.F[0, 0])
+    verdict = Verdict(
+        "evaluated",
+        value if math.isfinite(value) else None,
+        certificate={"feasibility": excess},
+        message="" if excess <= FEASIBLE else f"{worst} is violated by {excess:.3g}",
+    )
+    return _result(problem, "evaluation", Outcome(x, evaluations=1), verdict, clock.seconds, 0)
+
+
+def _given(problem: Problem | Conic, point: Mapping[str, Any] | Array) -> Array:
+    """The point (n,) of values by name."""
+    if isinstance(point, Mapping):
+        names = list(dict.fromkeys(_head(*column) for column in problem.columns))
+        if odd := sorted(set(point) ^ set(names)):
+            what = "unknown" if odd[0] in point else "missing"
+            raise ValueError(f"{problem.name}: {what} {odd[0]}; variables: {', '.join(names)}")
+        point = np.concatenate([np.ravel(np.asarray(point[name], float)) for name in names])
+    x = np.asarray(point, float)
+    if x.shape != (len(problem.columns),) or np.isnan(x).any():
+        raise ValueError(f"{problem.name}: needs {len(problem.columns)} numbers, not {x.tolist()}")
+    return x
 
 
 def solve_within(clock: Clock, problem: Problem | Conic, method: str | None = None) -> Result:
@@ -113,7 +149,7 @@ def _result(
     seconds: float,
     seed: int,
 ) -> Result:
-    solved = verdict.objective is not None and outcome.x is not None
+    solved = verdict.objective is not None or verdict.status == "evaluated"
     point = outcome.x if solved else None
     return Result(
         name=problem.name,
@@ -139,7 +175,7 @@ def design(problem: Problem | Conic, x: Array) -> dict[str, Any]:
     """Every variable by name and unit (`face_width_mm`); lists for blocks."""
     found: dict[str, Any] = {}
     for (variable, name), value in zip(problem.columns, x, strict=True):
-        head = name.rsplit("[", 1)[0] if variable.size > 1 else name
+        head = _head(variable, name)
         key = f"{head}_{variable.unit}" if variable.unit else head
         number: Any = round(float(value)) if variable.integer else float(value)
         if variable.size > 1:
@@ -147,6 +183,11 @@ def design(problem: Problem | Conic, x: Array) -> dict[str, Any]:
         else:
             found[key] = number
     return found
+
+
+def _head(variable: Var, name: str) -> str:
+    """The name of the variable that a column is of."""
+    return name.rsplit("[", 1)[0] if variable.size > 1 else name
 
 
 def limits(problem: Problem | Conic, x: Array) -> dict[str, float]:

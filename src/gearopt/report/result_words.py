@@ -15,6 +15,8 @@ INVERSE = {"inverse acceleration": ("acceleration", "rad/s²")}  # name and unit
 def certainty(result: Result) -> tuple[str, str]:
     """The status in words, and its colour."""
     words, colour = VERDICTS[result.status]
+    if result.status == "evaluated" and not result.feasible:
+        words, colour = "evaluated, a limit is exceeded", "red"
     if result.status == "optimal" and (result.gap or 0.0) > EXACT:
         words = f"proven within {100 * (result.gap or 0.0):.2g} % of the optimum"
     if "achieved" in result.report:  # something is come near to
@@ -42,7 +44,8 @@ def title(result: Result) -> str:
 
 def objective(result: Result) -> tuple[str, str]:
     """Name of the objective in words, and its unit as a key has it."""
-    return str(result.objective["name"]).replace("_", " "), str(result.objective.get("unit", ""))
+    name, unit = (str(result.objective.get(key, "")) for key in ("name", "unit"))
+    return name.replace("_", " "), unit
 
 
 def goal(result: Result) -> tuple[str, str, float | None, float | None, str]:

@@ -12,6 +12,7 @@ VERDICTS = {
     "optimal": ("proven optimal", "green"),
     "stationary": ("locally optimal (no bound)", "yellow"),
     "feasible": ("feasible, not proven optimal", "yellow"),
+    "evaluated": ("evaluated, all limits met", "green"),
     "infeasible": ("impossible, proven", "red"),
     "limit": ("stopped early", "yellow"),
     "failed": ("failed", "red"),

@@ -16,8 +16,7 @@ from gearopt.optimise.conic.cone_bound import Leaf, emptiness, lagrangian
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.conic.propagate import cutoff, narrowed, propagate
 from gearopt.optimise.feasibility import runaway, violation
-from gearopt.optimise.result import Outcome
-from gearopt.optimise.scale import FEASIBLE
+from gearopt.optimise.result import FEASIBLE, Outcome
 from gearopt.optimise.terms import Array
 
 EXCLUDED = "the bounds of the variables exclude every point"

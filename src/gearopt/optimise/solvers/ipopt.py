@@ -23,12 +23,11 @@ from gearopt.optimise.epigraph import Split, split
 from gearopt.optimise.form import Form, form, values, violation
 from gearopt.optimise.nonlinear import OPTIONS, program
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.result import Budget, Outcome, Watch
+from gearopt.optimise.result import FEASIBLE, Budget, Outcome, Watch
 from gearopt.optimise.scaled_form import Unit, scaled, unit_at
 from gearopt.optimise.terms import Array
 
 ACCEPTED = 1e-9  # an iterate that violates no row by more is kept as the best so far
-FEASIBLE = 1e-8  # that of a certificate
 ROUNDING = 1e-12  # of two values of the objective
 SMALLER = 1e-2  # of the objective's scale at first: less, and Ipopt goes on from where it ended
 AGAIN = 6  # times at most

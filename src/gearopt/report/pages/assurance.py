@@ -34,6 +34,9 @@ def meaning(result: Result) -> str:
         )
     if status == "infeasible":
         return "Proven: no design meets all limits."
+    if status == "evaluated":
+        met = "meets all limits" if result.feasible else "does not meet all limits"
+        return f"Nothing was minimised: the design given was evaluated, and {met}."
     if status == "stationary":
         return "No small change improves the design; a better one elsewhere is not excluded."
     if result.value is None:

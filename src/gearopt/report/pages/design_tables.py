@@ -53,7 +53,7 @@ def section(result: Result, measures: Measures) -> Section | None:
     return Section(
         "Design",
         tables=[*tables, *_shares(stages, measures), *found],
-        terminal=told if result.value is not None else (),
+        terminal=told if result.value is not None or result.status == "evaluated" else (),
     )
 
 

@@ -30,7 +30,7 @@ def _tiles(result: Result, measures: Measures) -> list[Tile]:
 
 def limits(result: Result, measures: Measures, whole: str = "whole") -> Section | None:
     """Utilisation of every limit; None without limits. whole: what is no stage, on the terminal."""
-    if not result.limits or result.value is None:
+    if not result.limits or (result.value is None and result.status != "evaluated"):
         return None
     stages, rows = limit_rows(result.limits)
     heads = ["limit used, %", *(f"stage {k}" for k in range(1, stages + 1)), "whole"]
