@@ -10,6 +10,7 @@ from fractions import Fraction
 
 import numpy as np
 
+from gearopt.formulations.strength.k_factor import K_FACTOR
 from gearopt.formulations.train import FaceWidth, Stage, Train
 from gearopt.physics.gears import MODULES
 
@@ -116,8 +117,8 @@ def best_choice(train, k, torque, z1, z2):
     best, with_module, with_width = np.full(len(z1), np.inf), np.zeros(len(z1)), np.zeros(len(z1))
     for module in stage.modules:
         d = float(module) * z1 / math.cos(train.helix_angle)
-        contact = 2 * torque / (d**2 * stage.k_factor) * (1 + 1 / u)
-        bending = 2 * torque / (d * float(module) * stage.unit_load)
+        contact = 2 * torque / (d**2 * stage.allowable[0]) * (1 + 1 / u)
+        bending = 2 * torque / (d * float(module) * stage.allowable[1])
         b = width(train, stage.face_width, module, z1, np.maximum(contact, bending))
         if stage.wheel_diameter is not None:
             b[side(train, module, z2, stage.wheel_diameter) > 0] = np.inf
@@ -175,7 +176,7 @@ def some_stage(rng, torque, even, stages):
     least = int(rng.integers(14, 26))
     most = least + int(rng.integers(4, 15) if stages == 2 else rng.integers(2, 5))
     wheels = (1, None) if stages == 2 else (30, int(least * even * rng.uniform(1.2, 1.6)) + 20)
-    return Stage(k_limit, u_limit, face, series, (least, most), wheels)
+    return Stage((k_limit, u_limit), face, series, (least, most), wheels)
 
 
 def squeezed(rng, train, even):
@@ -188,7 +189,7 @@ def squeezed(rng, train, even):
         return replace(train, stages=tuple(replace(s, ratio=(ONE, cap)) for s in train.stages))
     last = train.stages[-1]
     torque = train.torque * float(train.ratio) / even
-    d = (2.5 * torque / (last.k_factor * float(last.face_width.high or 1))) ** (1 / 3)
+    d = (2.5 * torque / (last.allowable[0] * float(last.face_width.high or 1))) ** (1 / 3)
     if kind == "modules":
         largest = d / last.pinion_teeth[1] * rng.uniform(0.3, 1.5)
         few = [m for m in last.modules if m <= largest] or last.modules[:1]
@@ -215,5 +216,6 @@ def some_drive(number, stages):
         coprime=bool(rng.random() < 0.2),
         objective=str(rng.choice(names, p=[0.55, 0.2, 0.2, 0.05])),
         density=7.85e-9,
+        law=K_FACTOR,
     )
     return squeezed(rng, train, even) if rng.random() < 0.7 else train

@@ -2,6 +2,7 @@
 
 from fractions import Fraction
 
+from gearopt.formulations.strength.k_factor import K_FACTOR
 from gearopt.formulations.teeth.stage import table
 from gearopt.formulations.train import FaceWidth, Stage, Train
 
@@ -21,10 +22,10 @@ def drive(stages=2, face="tied", total=12, tolerance=None, **changes):
     given = {"modules": (F(1), F(3, 2), F(2), F(3)), "pinion_teeth": (15, 20)}
     of_train = {k: changes.pop(k) for k in ("objective", "helix_angle", "coprime") if k in changes}
     made = tuple(
-        Stage(1.5 + 0.2 * k, 40.0 + k, FACES[face], **given | changes) for k in range(stages)
+        Stage((1.5 + 0.2 * k, 40.0 + k), FACES[face], **given | changes) for k in range(stages)
     )
     tolerance = F(1, 50) if tolerance is None else tolerance
-    return Train(2e4, F(total), tolerance, made, density=7.85e-9, **of_train)
+    return Train(2e4, F(total), tolerance, made, density=7.85e-9, law=K_FACTOR, **of_train)
 
 
 def tables_of(train):

@@ -36,8 +36,8 @@ def made(train, method, one=None, two=None):
 
 def loaded(train, k):
     """The drive with its K-factor limits times k, one a stage."""
-    stages = zip(train.stages, k, strict=True)
-    return replace(train, stages=tuple(replace(s, k_factor=s.k_factor * f) for s, f in stages))
+    pairs = [(s, s.allowable[0] * f, s.allowable[1]) for s, f in zip(train.stages, k, strict=True)]
+    return replace(train, stages=tuple(replace(s, allowable=(k, u)) for s, k, u in pairs))
 
 
 def test_niemann_ratios_as_printed():
@@ -84,21 +84,22 @@ def test_the_chain_of_centres_loads_every_stage_alike(k):
 def test_a_balanced_pinion_reaches_both_limits_at_once():
     """With z1 as a real number K and U are reached by one module; the rule cuts that number."""
     stage, u, angle = TWO.stages[0], 4.96, TWO.helix_angle
-    z = stage.unit_load / stage.k_factor * (1 + 1 / u) * math.cos(angle)
-    d = math.cbrt(k_factor(5e4, 1.0, 0.6, u) / stage.k_factor)
+    z = stage.allowable[1] / stage.allowable[0] * (1 + 1 / u) * math.cos(angle)
+    d = math.cbrt(k_factor(5e4, 1.0, 0.6, u) / stage.allowable[0])
     m = d * math.cos(angle) / z
-    assert unit_load(5e4, d, 0.6 * d, m) == pytest.approx(stage.unit_load, rel=1e-12)
-    assert rules.balanced_pinion(stage, u, angle) == math.floor(z) == 25
+    assert unit_load(5e4, d, 0.6 * d, m) == pytest.approx(stage.allowable[1], rel=1e-12)
+    assert rules.balanced_pinion(TWO.law, stage, u, angle) == math.floor(z) == 25
 
 
 def test_the_needed_module_is_the_least_that_carries_the_load():
-    stage, u, angle = TWO.stages[1], 4.36, TWO.helix_angle
+    stage, angle = TWO.stages[1], TWO.helix_angle
     for z1 in (20, 25, 32):
-        m = rules.needed_module(stage, 2.5e5, z1, u, angle)
+        z2 = 4 * z1 + 7
+        m, u = rules.needed_module(TWO.law, stage, 2.5e5, (z1, z2), angle), z2 / z1
         d = m * z1 / math.cos(angle)
         use = (
-            k_factor(2.5e5, d, 0.75 * d, u) / stage.k_factor,
-            unit_load(2.5e5, d, 0.75 * d, m) / stage.unit_load,
+            k_factor(2.5e5, d, 0.75 * d, u) / stage.allowable[0],
+            unit_load(2.5e5, d, 0.75 * d, m) / stage.allowable[1],
         )
         assert max(use) == pytest.approx(1.0, rel=1e-12)
     assert rules.next_module(stage, 2.5) == Fraction("2.5")
@@ -180,8 +181,8 @@ def test_process_one_holds_its_loads_whatever_the_drive(seed):
         def use(m, z1=z1, z2=z2, share=share, stage=stage, torque=torque):
             d = m * z1 / math.cos(train.helix_angle)
             return max(
-                k_factor(torque, d, share * d, z2 / z1) / stage.k_factor,
-                unit_load(torque, d, share * d, m) / stage.unit_load,
+                k_factor(torque, d, share * d, z2 / z1) / stage.allowable[0],
+                unit_load(torque, d, share * d, m) / stage.allowable[1],
             )
 
         assert use(m) <= 1 + 1e-9
@@ -226,5 +227,5 @@ def test_the_design_in_words_has_the_widths_of_the_rule():
     cosine = math.cos(TWO.helix_angle)
     rows = zip(gears, (0.6, 0.75), strict=True)
     pairs = tuple(TWO.pair(m, z1, z2, part * m * z1 / cosine) for (m, z1, z2), part in rows)
-    found = describe(TWO, pairs, 150.0)
+    found = describe(TWO, pairs)
     assert found.gear_volume_mm3 == pytest.approx(result.value, rel=1e-12)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from gearopt.formulations import sizing
+from gearopt.formulations.strength.k_factor import K_FACTOR
 from gearopt.formulations.train import FaceWidth, Stage, Train
 from gearopt.optimise import tape
 from gearopt.optimise.certificate import certify
@@ -21,9 +22,9 @@ EXACT, ONE_PERCENT = F(0), F(1, 100)
 
 def drive(power_kW, speed_rpm, total, widths, tolerance=EXACT, **stage):
     limits = {"modules": (), "pinion_teeth": (20, 40)} | stage
-    stages = tuple(Stage(2.07, 48.0, FaceWidth(F(str(w)), F(str(w))), **limits) for w in widths)
+    stages = tuple(Stage((2.07, 48.0), FaceWidth(F(str(w)), F(str(w))), **limits) for w in widths)
     torque = 30e6 * power_kW / math.pi / speed_rpm
-    return Train(torque, F(total), tolerance, stages, math.radians(25.0))
+    return Train(torque, F(total), tolerance, stages, math.radians(25.0), law=K_FACTOR)
 
 
 def g(u):
@@ -90,7 +91,11 @@ def test_free_width_and_a_fixed_stage():
 
 @pytest.mark.parametrize(
     ("change", "sign"),
-    [({"k_factor": 2.2}, -1), ({"k_factor": 1.9}, 1), ({"wheel_diameter": F(270)}, 1)],
+    [
+        ({"allowable": (2.2, 48.0)}, -1),
+        ({"allowable": (1.9, 48.0)}, 1),
+        ({"wheel_diameter": F(270)}, 1),
+    ],
 )
 def test_the_answer_moves_the_right_way(change, sign):
     train = drive(7.5, 1450, 20, [0.6, 0.75])

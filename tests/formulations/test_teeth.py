@@ -8,6 +8,7 @@ import pytest
 from brute_force import some_drive
 
 from gearopt.formulations import sizing, teeth
+from gearopt.formulations.strength.k_factor import K_FACTOR
 from gearopt.formulations.teeth import wide
 from gearopt.formulations.teeth.search import possible
 from gearopt.formulations.train import OBJECTIVES, FaceWidth, Stage, Train
@@ -21,14 +22,14 @@ ELEVATOR, ONE_PERCENT = F("1450") / F("66.5"), F(1, 100)
 
 def drive(total=ELEVATOR, widths=("0.6", "0.75"), tolerance=ONE_PERCENT, **stage):
     limits = {"modules": SERIES_I, "pinion_teeth": (20, 40)} | stage
-    stages = tuple(Stage(2.07, 48.0, FaceWidth(F(w), F(w)), **limits) for w in widths)
-    return Train(49392.913, F(total), tolerance, stages, math.radians(25.0))
+    stages = tuple(Stage((2.07, 48.0), FaceWidth(F(w), F(w)), **limits) for w in widths)
+    return Train(49392.913, F(total), tolerance, stages, math.radians(25.0), law=K_FACTOR)
 
 
 def test_table_2_designs_are_beaten_under_their_own_limits():
     """Holding the paper's process-one loads as limits: 8,708,993 -> 8,520,524 mm3."""
     train = drive()
-    own = tuple(replace(s, k_factor=1.416, unit_load=31.78) for s in train.stages)
+    own = tuple(replace(s, allowable=(1.416, 31.78)) for s in train.stages)
     result = solve(teeth.problem(replace(train, stages=own)))
     assert result.status == "optimal"
     assert result.value == pytest.approx(8520524, abs=1.0)

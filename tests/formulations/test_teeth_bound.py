@@ -143,7 +143,7 @@ def test_equal_inner_stages_share_what_was_made(monkeypatch):
     made = []
     real = bounds._least
     monkeypatch.setattr(bounds, "_least", lambda *a: made.append(1) or real(*a))
-    same = tuple(replace(s, k_factor=2.0, unit_load=40.0) for s in drive(5).stages)
+    same = tuple(replace(s, allowable=(2.0, 40.0)) for s in drive(5).stages)
     train = replace(drive(5, total=F(40)), stages=same)
     tables = searching._tables(train, train.highest_ratio, Progress(1, Clock()))
     assert tables[1] is tables[2] is tables[3]
@@ -151,7 +151,7 @@ def test_equal_inner_stages_share_what_was_made(monkeypatch):
     assert [t.position for t in tables] == [0, 1, 1, 1, 4]
     bound(train, tables, 0.1, lambda: None)
     assert len(made) == 1
-    ends = [replace(s, k_factor=k) for s, k in zip(same[:2], (3.0, 4.0), strict=True)]
+    ends = [replace(s, allowable=(k, 40.0)) for s, k in zip(same[:2], (3.0, 4.0), strict=True)]
     unlike = replace(train, stages=(ends[0], *same[1:4], ends[1]))
     bound(unlike, tables_of(unlike), 0.1, lambda: None)  # of the inner stages alone
     assert len(made) == 2
@@ -160,7 +160,7 @@ def test_equal_inner_stages_share_what_was_made(monkeypatch):
     tables = searching._tables(pair, pair.highest_ratio, Progress(1, Clock()))
     assert tables[2] is tables[3] and tables[1] is not tables[2]
     assert [t.position for t in tables] == [0, 1, 2, 2, 4]
-    other = replace(train, stages=(*same[:2], replace(same[2], k_factor=1.0), *same[3:]))
+    other = replace(train, stages=(*same[:2], replace(same[2], allowable=(1.0, 40.0)), *same[3:]))
     tables = searching._tables(other, other.highest_ratio, Progress(1, Clock()))
     assert len({id(t) for t in tables}) == 5
     bound(other, tables, 0.1, lambda: None)

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from brute_force import ONE, SAME, every_train, log_uniform, some_drive
 
+from gearopt.formulations.strength.k_factor import K_FACTOR
 from gearopt.formulations.teeth import pairs, problem
 from gearopt.formulations.train import FaceWidth, Stage, Train
 from gearopt.optimise.solve import run
@@ -72,8 +73,8 @@ def lopsided(number):
     stages = []
     for stage in train.stages:
         k, u, z = log_uniform(rng, 0.02, 50), log_uniform(rng, 5, 50), int(rng.integers(12, 26))
-        loads = {"k_factor": k, "unit_load": u * k}
-        stages.append(replace(stage, **loads, pinion_teeth=(z, z), wheel_teeth=(1, None)))
+        own = {"allowable": (k, u * k), "pinion_teeth": (z, z), "wheel_teeth": (1, None)}
+        stages.append(replace(stage, **own))
     stages[1] = replace(stages[1], face_width=FaceWidth(ONE * 0, ONE))
     return replace(train, tolerance=Fraction(1, 100), coprime=False, stages=tuple(stages))
 
@@ -90,9 +91,11 @@ def test_lopsided_drives():
 def spur(torque=1e5, ratio=Fraction(1), tolerance=Fraction(0), objective="gear_volume", **stages):
     """A spur drive whose stages differ only in pairs (z1, z2), ranges of teeth, or not at all."""
     teeth = stages.pop("teeth")
-    given = {"k_factor": 1e9, "unit_load": 1e9, "face_width": FaceWidth(ONE, ONE)} | stages
+    given = {"allowable": (1e9, 1e9), "face_width": FaceWidth(ONE, ONE)} | stages
     made = tuple(Stage(**given, pinion_teeth=z1, wheel_teeth=z2) for z1, z2 in teeth)
-    return Train(torque, Fraction(ratio), Fraction(tolerance), made, objective=objective)
+    return Train(
+        torque, Fraction(ratio), Fraction(tolerance), made, objective=objective, law=K_FACTOR
+    )
 
 
 def only(*pairs):
@@ -105,7 +108,7 @@ def only(*pairs):
 def test_wheel_diameter_equal_to_the_limit_is_allowed(stage, objective):
     modules = tuple(Fraction(m, 101) for m in range(111, 606, 40))  # diameters no double can hold
     given = {"modules": modules, "teeth": [((17, 26), (1, None))] * 2, "objective": objective}
-    train = spur(3e4, Fraction(147, 10), Fraction(1, 100), k_factor=2.0, unit_load=60.0, **given)
+    train = spur(3e4, Fraction(147, 10), Fraction(1, 100), allowable=(2.0, 60.0), **given)
     loose = agrees(train).design
     module = next(m for m in modules if float(m) == loose["module_mm"][stage])
     limit = module * loose["wheel_teeth"][stage]
@@ -164,7 +167,7 @@ BIT = Fraction(1, 10**15)
 def test_width_exactly_at_a_limit_is_allowed(face, tighter, load, b):
     """One pair with d1 = 100 mm that needs `load` mm of width at K = 1 MPa."""
     given = {"low": Fraction(0), "high": HIGH} | face
-    chosen = {"torque": load * 4000, "ratio": 4, "teeth": only((25, 100)), "k_factor": 1.0}
+    chosen = {"torque": load * 4000, "ratio": 4, "teeth": only((25, 100)), "allowable": (1.0, 1e9)}
     train = spur(**chosen, modules=(Fraction(4),), face_width=FaceWidth(**given))
     assert agrees(train).status == "optimal"
     assert every_train(train).widths.tolist() == [[b]]
@@ -172,7 +175,7 @@ def test_width_exactly_at_a_limit_is_allowed(face, tighter, load, b):
     assert agrees(train).status == "infeasible"
 
 
-@pytest.mark.parametrize("law", ["k_factor", "unit_load"])
+@pytest.mark.parametrize("law", [0, 1], ids=K_FACTOR.names)
 @pytest.mark.parametrize(
     "face",
     [
@@ -185,11 +188,11 @@ def test_width_exactly_at_a_limit_is_allowed(face, tighter, load, b):
 def test_load_equal_to_its_limit_is_allowed(law, face):
     """d1 = 100 mm, b = 20 mm, m = 4 mm, u = 3; no double is exactly the torque."""
     torque = 1e5 / 3
-    limit = 2 * torque / {"k_factor": 100**2 * 20 * 0.75, "unit_load": 100 * 20 * 4}[law]
+    limit = 2 * torque / (100**2 * 20 * 0.75, 100 * 20 * 4)[law]
     chosen = {"ratio": 3, "teeth": only((25, 75)), "modules": (Fraction(4),), "face_width": face}
-    assert agrees(spur(torque=torque, **chosen, **{law: limit})).status == "optimal"
-    less = limit * (1 - 1e-9)
-    assert agrees(spur(torque=torque, **chosen, **{law: less})).status == "infeasible"
+    for factor, status in ((1.0, "optimal"), (1 - 1e-9, "infeasible")):
+        allowable = tuple(limit * factor if k == law else 1e9 for k in (0, 1))
+        assert agrees(spur(torque=torque, **chosen, allowable=allowable)).status == status
 
 
 def ties(train):
@@ -201,7 +204,7 @@ def test_of_equal_diameters_the_fewest_teeth_win():
     """The load needs d1 >= 59 mm: 60 = 3 * 20 = 4 * 15, while 3 * 19 is too small."""
     teeth = [((15, 20), (1, None))]
     modules = (Fraction(3), Fraction(4))
-    train = spur(torque=59**3 / 2.5, ratio=4, teeth=teeth, modules=modules, k_factor=1.0)
+    train = spur(torque=59**3 / 2.5, ratio=4, teeth=teeth, modules=modules, allowable=(1.0, 1e9))
     assert ties(train) == 2
     assert agrees(train).design == {"module_mm": 4.0, "pinion_teeth": 15, "wheel_teeth": 60}
 
@@ -211,7 +214,7 @@ def test_rounding_does_not_decide_ties(stages):
     """A free width that just carries the load makes the volume depend on the ratios alone."""
     teeth = [((z, z + 10), (5 * z, 5 * z + 50)) for z in (17, 23)[:stages]]
     free = {"modules": (Fraction(3), Fraction(4)), "face_width": FaceWidth(ONE * 0, ONE * 10)}
-    train = spur(1e4 / 3, 5**stages, teeth=teeth, k_factor=1.0, **free)
+    train = spur(1e4 / 3, 5**stages, teeth=teeth, allowable=(1.0, 1e9), **free)
     fives = tuple(replace(stage, ratio=(Fraction(5), Fraction(5))) for stage in train.stages)
     train = replace(train, helix_angle=0.3, stages=fives)
     assert ties(train) == 11**stages

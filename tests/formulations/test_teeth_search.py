@@ -67,7 +67,7 @@ def test_the_reach_of_a_stage_is_where_its_load_alone_costs_too_much(face, objec
     def least(k, u):
         """Of stage k at the input torque, with real-valued sizes and K-factor alone."""
         own = train.stages[k]
-        load = 2.0 * train.torque * (1.0 + 1.0 / u) / own.k_factor
+        load = 2.0 * train.torque * (1.0 + 1.0 / u) / own.allowable[0]
         if objective in ("gear_volume", "mass"):
             return cost(train, k, 1.0, load, u)
         width = own.face_width
@@ -160,7 +160,7 @@ def test_a_look_that_is_cut_short_proves_nothing(face, total, tolerance, patienc
 def test_one_stage_may_have_all_of_a_ratio_that_no_double_is(ratio):
     """A heavy second stage is best idle; the first look ends below the ratio of the first."""
     assert F(float(ratio)) < ratio
-    given = {"k_factor": 1e9, "unit_load": 1e9, "pinion_teeth": (20, 20)}
+    given = {"allowable": (1e9, 1e9), "pinion_teeth": (20, 20)}
     train = drive(2, total=ratio, tolerance=F(0))
     stages = tuple(
         replace(s, modules=(m,), **given) for s, m in zip(train.stages, (F(2), F(20)), strict=True)
@@ -172,7 +172,7 @@ def test_one_stage_may_have_all_of_a_ratio_that_no_double_is(ratio):
 @pytest.mark.parametrize("tolerance", [F(0), F(1, 100)])
 def test_what_a_first_look_proves_is_not_told_as_a_bound_of_all(tolerance):
     """The best train has 38:1 in its light first stage, beyond the first look."""
-    given = {"k_factor": 1e9, "unit_load": 1e9, "pinion_teeth": (20, 20)}
+    given = {"allowable": (1e9, 1e9), "pinion_teeth": (20, 20)}
     train = drive(3, total=60, tolerance=tolerance)
     stages = tuple(
         replace(s, modules=(m,), **given) for s, m in zip(train.stages, (2, 20, 20), strict=True)
@@ -298,7 +298,7 @@ def test_no_more_than_a_slice_is_sized_between_two_looks_at_the_clock(monkeypatc
 )
 def test_the_only_train_has_the_whole_ratio_in_one_stage(pairs):
     """At the very end of the last stage's window, where rounding must not lose it."""
-    given = {"k_factor": 1e9, "unit_load": 1e9, "modules": (F(2),)}
+    given = {"allowable": (1e9, 1e9), "modules": (F(2),)}
     stages = tuple(
         replace(drive(1).stages[0], pinion_teeth=(a, a), wheel_teeth=(b, b), **given)
         for a, b in pairs

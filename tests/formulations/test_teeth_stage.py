@@ -10,6 +10,7 @@ from brute_force import SAME, best_choice, cost
 from small_drives import FACES, OBJECTIVES, drive
 
 from gearopt.errors import SolveError
+from gearopt.formulations.strength.k_factor import K_FACTOR
 from gearopt.formulations.teeth import stage as staging
 from gearopt.formulations.teeth.stage import ALLOWANCE, table
 from gearopt.formulations.train import FaceWidth, Stage, Train
@@ -73,8 +74,8 @@ def test_the_slope_is_what_the_load_alone_costs(objective):
     assert len(own.slope) == len(own.z1)
     for k, (a, b) in enumerate(zip(own.z1, own.z2, strict=True)):
         u, stage = b / a, train.stages[1]
-        contact = 2.0 * (1.0 + 1.0 / u) / stage.k_factor  # b d^2 a torque
-        bending = 2.0 * (a / math.cos(0.3)) / stage.unit_load
+        contact = 2.0 * (1.0 + 1.0 / u) / stage.allowable[0]  # b d^2 a torque
+        bending = 2.0 * (a / math.cos(0.3)) / stage.allowable[1]
         volume = objective in ("gear_volume", "mass")
         one = np.array([1.0])
         expected = cost(train, 1, one, max(contact, bending) * one, u)[0] if volume else 0.0
@@ -115,14 +116,14 @@ def test_of_equal_costs_the_smaller_module_is_taken_on_steps():
     """Idle widths of one step: d of 2 x 30 = 3 x 20 costs the same."""
     face = FaceWidth(F(0), F(2), step=F(1))
     wide = {"modules": (F(2), F(3)), "pinion_teeth": (20, 30), "face_width": face}
-    train = Train(1e-3, F(3), F(0), (Stage(1.0, 1.0, **wide),))
+    train = Train(1e-3, F(3), F(0), (Stage((1.0, 1.0), **wide),), law=K_FACTOR)
     own = table(train, 0, train.highest_ratio)
     module, width = own.choose(1e-3, 0)
     assert (module, width) == (2.0, 1.0)
     assert own.steps[0].min() == 1  # no width of no step, however small the load
     # 9 steps of d = 40 are as much as 4 of d = 60; the load needs 8.9 and 3.96 of them
     torque = 8.9 * 40**2 / (2.0 * (1.0 + 1.0 / 3.0))
-    carried = replace(train, stages=(replace(train.stages[0], unit_load=1e9),))
+    carried = replace(train, stages=(replace(train.stages[0], allowable=(1.0, 1e9)),))
     assert table(carried, 0, train.highest_ratio).choose(torque, 0) == (2.0, 9.0)
     assert own.first.tolist() == [0] * len(own.z1) and own.last.tolist() == [1] * len(own.z1)
 

@@ -12,6 +12,7 @@ from gearopt.formulations import layout, teeth, together
 from gearopt.formulations.layout.chain import chain, turns
 from gearopt.formulations.layout.gearbox import Clearances, Gearbox, KeepOut, Shaft
 from gearopt.formulations.layout.slabs import arrangements, clashes, orders
+from gearopt.formulations.strength.k_factor import K_FACTOR
 from gearopt.formulations.together import search
 from gearopt.formulations.together.prepare import rest
 from gearopt.formulations.together.tables import numbers
@@ -29,8 +30,8 @@ IN_ORDER = ((0,), (1,), (2,))
 def chong(kilowatt, rpm, ratio, widths):
     torque = 30e6 * kilowatt / (math.pi * rpm)
     series = MODULES["ISO 54 I"]
-    stages = tuple(Stage(2.07, 48.0, FaceWidth(h, h), series, (20, 40)) for h in widths)
-    return Train(torque, ratio, F(1, 100), stages, math.radians(25))
+    stages = tuple(Stage((2.07, 48.0), FaceWidth(h, h), series, (20, 40)) for h in widths)
+    return Train(torque, ratio, F(1, 100), stages, math.radians(25), law=K_FACTOR)
 
 
 def three():
@@ -77,12 +78,12 @@ def some_train(rng, stages=2):
         wheel = [None, F(300)][int(rng.integers(2))]
         k_limit, u_limit = float(rng.choice([1.5, 3.0])), float(rng.choice([40.0, 60.0]))
         stage = Stage(
-            k_limit, u_limit, some_face(rng), few, (z, z + 1), (1, 90), (F(1), cap), wheel
+            (k_limit, u_limit), some_face(rng), few, (z, z + 1), (1, 90), (F(1), cap), wheel
         )
         found.append(stage)
     ratio = F(int(rng.choice([40, 60, 85] if stages == 2 else [60, 90])), 10)
     torque, helix = float(rng.choice([2e4, 5e4])), math.radians(float(rng.choice([0, 15, 25])))
-    return Train(torque, ratio, F(1, 100), tuple(found), helix, coprime=bool(rng.random() < 0.2))
+    return Train(torque, ratio, F(1, 100), tuple(found), helix, rng.random() < 0.2, law=K_FACTOR)
 
 
 def some_frame(rng, train):
@@ -116,8 +117,8 @@ def widths(train, stage, torque, m, z1, z2):
     d = m * z1 / math.cos(train.helix_angle)
     if stage.wheel_diameter is not None and d * z2 / z1 > float(stage.wheel_diameter):
         return None
-    contact = 2 * torque / d**2 * (1 + z1 / z2) / stage.k_factor
-    load, face = max(contact, 2 * torque / (d * m) / stage.unit_load), stage.face_width
+    contact = 2 * torque / d**2 * (1 + z1 / z2) / stage.allowable[0]
+    load, face = max(contact, 2 * torque / (d * m) / stage.allowable[1]), stage.face_width
     low, high = float(face.low) * d, float(face.high) * d
     if face.fixed is not None:
         b = float(face.fixed)
@@ -301,8 +302,8 @@ def test_bearings_longer_than_the_gap_may_reach_past_a_narrow_gear_and_are_refus
 def at_its_limit():
     """A drive and frames of its least height in decimals, 2.2 (56 + 2) + 2 8 = 143.6 mm."""
     face, series = FaceWidth(F(3, 10), F(7, 10)), (F(11, 5), F(12, 5), F(13, 5), F(14, 5))
-    stage = Stage(2.0, 48.0, face, series, (17, 26))
-    train = Train(1.5e4, F(9), F(1, 20), (stage, stage))
+    stage = Stage((2.0, 48.0), face, series, (17, 26))
+    train = Train(1.5e4, F(9), F(1, 20), (stage, stage), law=K_FACTOR)
     clear = Clearances(5.0, 2.0, 8.0, 10.0)
     largest = (math.inf, 143.6, math.inf)
     return train, frame(train, (8.0, 10.0, 12.0), clearances=clear, largest=largest)
@@ -344,8 +345,8 @@ def test_a_train_whose_layouts_are_not_exhausted_leaves_the_search_unproven(monk
 
 def test_tables_of_the_rest_hold_ratios_at_the_edges_of_their_cells():
     """Logarithms a billionth beside multiples of the cells: no ratio falls between two of them."""
-    stage = Stage(2.0, 48.0, FaceWidth(F(3, 5), F(3, 5)), (F(2), F(3), F(4), F(6)), (20, 40))
-    train = Train(3e4, F(42 * 45, 16 * 15), F(0), (stage, stage, stage))
+    stage = Stage((2.0, 48.0), FaceWidth(F(3, 5), F(3, 5)), (F(2), F(3), F(4), F(6)), (20, 40))
+    train = Train(3e4, F(42 * 45, 16 * 15), F(0), (stage, stage, stage), law=K_FACTOR)
     teeth = ((16, 42), (15, 45), (20, 20))
     for k, pair in enumerate(teeth):
         train = train.fixed_teeth(k, *pair)

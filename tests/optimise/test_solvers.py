@@ -9,6 +9,7 @@ import pytest
 
 from gearopt.errors import SolveError
 from gearopt.formulations import sizing, teeth
+from gearopt.formulations.strength.k_factor import K_FACTOR
 from gearopt.formulations.train import FaceWidth, Stage, Train
 from gearopt.optimise import posynomial
 from gearopt.optimise.problem import Problem
@@ -49,8 +50,8 @@ CATALOGUE_BEST = min(d * d * math.ceil(100.0 / d**3) for d in (1.0, 1.5, 2.0, 2.
 
 def drive(total=ELEVATOR, widths=("0.6", "0.75"), tolerance=ONE_PERCENT, **stage):
     limits = {"modules": SERIES_I, "pinion_teeth": (20, 40)} | stage
-    stages = tuple(Stage(2.07, 48.0, FaceWidth(F(w), F(w)), **limits) for w in widths)
-    return Train(49392.913, F(total), tolerance, stages, math.radians(25.0))
+    stages = tuple(Stage((2.07, 48.0), FaceWidth(F(w), F(w)), **limits) for w in widths)
+    return Train(49392.913, F(total), tolerance, stages, math.radians(25.0), law=K_FACTOR)
 
 
 def test_the_folder_is_the_list_of_methods():

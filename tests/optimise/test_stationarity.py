@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from gearopt.formulations import sizing
+from gearopt.formulations.strength.k_factor import K_FACTOR
 from gearopt.formulations.train import FaceWidth, Stage, Train
 from gearopt.optimise import polish
 from gearopt.optimise.certificate import certify
@@ -84,9 +85,11 @@ def golinski():
 def elevator():
     """Real-valued sizes of a two-stage drive, convex in logarithms: ratio 1450/66.5, 7.5 kW."""
     widths = (FaceWidth(Fraction(w), Fraction(w)) for w in ("0.6", "0.75"))
-    stages = tuple(Stage(2.07, 48.0, w, modules=(), pinion_teeth=(20, 40)) for w in widths)
+    stages = tuple(Stage((2.07, 48.0), w, modules=(), pinion_teeth=(20, 40)) for w in widths)
     total = Fraction(1450) / Fraction("66.5")
-    return sizing.problem(Train(49392.913, total, Fraction(1, 100), stages, math.radians(25.0)))
+    return sizing.problem(
+        Train(49392.913, total, Fraction(1, 100), stages, math.radians(25.0), law=K_FACTOR)
+    )
 
 
 CASES = {

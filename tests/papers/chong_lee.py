@@ -78,7 +78,7 @@ def recomputed(name, widths="printed"):
         shares = PROPORTIONS[2] if len(rows) == 2 else (0.6, 0.6, 0.8)
         rows = zip(shares, pairs, strict=True)
         pairs = tuple(p.of_width(f * p.pinion.reference_diameter) for f, p in rows)
-    return untyped(describe(own, pairs, 1.0))  # speed: of no quantity used here
+    return untyped(describe(own, pairs))
 
 
 def cell(text, value):
@@ -184,7 +184,7 @@ def bracket(ratios):
 def optimum(stages, contact=K, root=U):
     """Least gear volume [mm3] of whole teeth and standard modules under two load limits."""
     own = train(stages)
-    limited = tuple(replace(s, k_factor=contact, unit_load=root) for s in own.stages)
+    limited = tuple(replace(s, allowable=(contact, root)) for s in own.stages)
     result = solve(teeth.problem(replace(own, stages=limited)))
     assert result.status == "optimal" and result.gap < 1e-9
     return result.value

@@ -19,7 +19,7 @@ def from_loads():
     torque, cosine = own.torque, math.cos(own.helix_angle)
     for stage, u, share in zip(own.stages, SPLIT, paper.PROPORTIONS[2], strict=True):
         balanced = paper.U / K * (u + 1) / u * cosine
-        z = rules.balanced_pinion(stage, u, own.helix_angle)
+        z = rules.balanced_pinion(own.law, stage, u, own.helix_angle)
         d = z / cosine
         by_root = math.cbrt(unit_load(torque, d, share * d, 1.0) / paper.U)
         by_contact = math.cbrt(k_factor(torque, d, share * d, u) / K)

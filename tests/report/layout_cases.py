@@ -4,6 +4,7 @@ import math
 
 import gearopt
 from gearopt.formulations.design import describe
+from gearopt.formulations.strength.k_factor import K_FACTOR
 from gearopt.formulations.train import FaceWidth, Stage, Train
 from gearopt.optimise.typed import untyped
 
@@ -131,9 +132,9 @@ PROGRESS = [
 
 def drive(rows):
     """The design of a drive of these stages."""
-    stages = (Stage(1.0, 1.0, FaceWidth(0, None), (), (1, None)),) * len(rows)
-    train = Train(5e4, 1, 0, stages, helix_angle=math.radians(HELIX))
-    return untyped(describe(train, tuple(train.pair(*row) for row in rows), 150.0))
+    stages = (Stage((1.0, 1.0), FaceWidth(0, None), (), (1, None)),) * len(rows)
+    train = Train(5e4, 1, 0, stages, helix_angle=math.radians(HELIX), law=K_FACTOR, speed=150.0)
+    return untyped(describe(train, tuple(train.pair(*row) for row in rows)))
 
 
 def result(made, rows, **more):

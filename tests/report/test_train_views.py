@@ -11,6 +11,7 @@ from svg_reader import drawings, extents, marks, numbers
 
 import gearopt
 from gearopt.formulations.design import describe
+from gearopt.formulations.strength.k_factor import K_FACTOR
 from gearopt.formulations.train import FaceWidth, Stage, Train
 from gearopt.optimise.typed import untyped
 from gearopt.report.pages.result import page
@@ -44,9 +45,9 @@ TRAINS = {  # m_n, z1, z2, b of every stage
 
 def result(rows):
     width = FaceWidth(0, None)
-    stages = (Stage(1.0, 1.0, width, (), (1, None)),) * len(rows)
-    train = Train(5e4, 1, 0, stages, helix_angle=0.4)
-    design = untyped(describe(train, tuple(train.pair(*row) for row in rows), 150.0))
+    stages = (Stage((1.0, 1.0), width, (), (1, None)),) * len(rows)
+    train = Train(5e4, 1, 0, stages, helix_angle=0.4, law=K_FACTOR, speed=150.0)
+    design = untyped(describe(train, tuple(train.pair(*row) for row in rows)))
     objective = {"name": "gear_volume", "value": 1.0, "unit": "mm3"}
     return gearopt.Result(
         name="drive",

@@ -10,6 +10,7 @@ from typing import Any
 
 from gearopt.bench.drive import CASES, train_of
 from gearopt.formulations import sizing, teeth
+from gearopt.formulations.strength.k_factor import K_FACTOR
 from gearopt.formulations.train import FaceWidth, Stage, Train
 from gearopt.optimise.comparing.compare import Plan, compare
 from gearopt.optimise.comparing.comparison import Comparison
@@ -61,8 +62,7 @@ def random_drive(number: int) -> Train:
         width = Fraction(int(rng.integers(40, 111)), 100)
         stages.append(
             Stage(
-                k_factor=float(rng.uniform(1.0, 4.0)),
-                unit_load=float(rng.uniform(25, 80)),
+                allowable=(float(rng.uniform(1.0, 4.0)), float(rng.uniform(25, 80))),
                 face_width=FaceWidth(width, width),
                 modules=SERIES_I,
                 pinion_teeth=(int(rng.integers(17, 22)), 40),
@@ -71,7 +71,7 @@ def random_drive(number: int) -> Train:
     torque = float(np.exp(rng.uniform(np.log(5e3), np.log(5e5))))
     ratio = Fraction(round(100 * even**count), 100)
     helix = float(np.radians(rng.uniform(0.0, 25.0)))
-    return Train(torque, ratio, Fraction(1, 100), tuple(stages), helix)
+    return Train(torque, ratio, Fraction(1, 100), tuple(stages), helix, law=K_FACTOR)
 
 
 def reducer() -> Problem:

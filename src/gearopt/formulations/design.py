@@ -2,14 +2,14 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from gearopt.formulations.layout.layout_design import LayoutDesign
 from gearopt.formulations.train import Train
-from gearopt.optimise.typed import typed
+from gearopt.optimise.typed import INLINE, typed
 from gearopt.physics.gears import GearPair
-from gearopt.physics.loads import k_factor, pitch_line_velocity, unit_load
+from gearopt.physics.loads import pitch_line_velocity
 
 STEEL_DENSITY = 7.85e-9  # t/mm3: EN 1991-1-1 table A.4 (to 78.5 kN/m3), Steel for Life Blue Book
 
@@ -34,8 +34,7 @@ class StageDesign:
     overlap_ratio: float
     pinion_torque_Nm: float
     pitch_line_velocity_m_per_s: float
-    k_factor_MPa: float
-    unit_load_MPa: float
+    indices: Mapping[str, float] = field(metadata=INLINE)  # of the strength law: name_unit
     gear_volume_mm3: float
     pinion_mass_kg: float
     wheel_mass_kg: float
@@ -63,17 +62,15 @@ def drive_design(data: Mapping[str, Any]) -> DriveDesign:
     return found
 
 
-def describe(train: Train, pairs: tuple[GearPair, ...], input_speed: float) -> DriveDesign:
+def describe(train: Train, pairs: tuple[GearPair, ...]) -> DriveDesign:
     """Return stages and totals of a drive.
 
-    input_speed [rad/s]. Masses are those of solid reference cylinders, of steel where the train
-    has no density.
+    Masses are those of solid reference cylinders, of steel where the train has no density.
     """
     stages: list[StageDesign] = []
-    torque, speed = float(train.torque), float(input_speed)
-    density = train.density or STEEL_DENSITY
+    torque, speed = float(train.torque), float(train.speed)
     for pair in pairs:
-        stages.append(_stage(pair, torque, speed, density))
+        stages.append(_stage(train, pair, torque, speed))
         torque, speed = torque * float(pair.ratio), speed / float(pair.ratio)
     ratio = math.prod(s.ratio for s in stages)
     volume = sum(s.gear_volume_mm3 for s in stages)
@@ -87,21 +84,25 @@ def describe(train: Train, pairs: tuple[GearPair, ...], input_speed: float) -> D
         gear_volume_mm3=volume,
         sum_of_centre_distances_mm=centres,
         total_length_mm=0.5 * ends + centres,
-        mass_kg=1000.0 * density * volume,
+        mass_kg=1000.0 * _density(train) * volume,
     )
 
 
-def _stage(pair: GearPair, torque: float, speed: float, density: float) -> StageDesign:
-    """Describe a pair; torque [N mm] and speed [rad/s] are its pinion's, density in t/mm3."""
-    pinion, wheel = pair.gears
-    d, b, u = pinion.reference_diameter, pair.face_width, pair.ratio
-    masses = [1000.0 * float(gear.mass(density)) for gear in pair.gears]
+def _density(train: Train) -> float:
+    return train.density or STEEL_DENSITY
+
+
+def _stage(train: Train, pair: GearPair, torque: float, speed: float) -> StageDesign:
+    """Describe a pair; torque [N mm] and speed [rad/s] are its pinion's."""
+    (pinion, wheel), law = pair.gears, train.law
+    d, loads = pinion.reference_diameter, law.indices(pair, torque, speed)
+    masses = [1000.0 * float(gear.mass(_density(train))) for gear in pair.gears]
     return StageDesign(
         normal_module_mm=float(pair.normal_module),
         pinion_teeth=_whole(pair.pinion_teeth),
         wheel_teeth=_whole(pair.wheel_teeth),
-        ratio=float(u),
-        face_width_mm=float(b),
+        ratio=float(pair.ratio),
+        face_width_mm=float(pair.face_width),
         pinion_diameter_mm=float(d),
         wheel_diameter_mm=float(wheel.reference_diameter),
         pinion_tip_diameter_mm=float(pinion.tip_diameter),
@@ -113,8 +114,10 @@ def _stage(pair: GearPair, torque: float, speed: float, density: float) -> Stage
         overlap_ratio=float(pair.overlap_ratio),
         pinion_torque_Nm=1e-3 * torque,
         pitch_line_velocity_m_per_s=float(1e-3 * pitch_line_velocity(speed, d)),
-        k_factor_MPa=float(k_factor(torque, d, b, u)),
-        unit_load_MPa=float(unit_load(torque, d, b, pair.normal_module)),
+        indices={
+            f"{limit.name}_{limit.unit}": float(load)
+            for limit, load in zip(law.limits, loads, strict=True)
+        },
         gear_volume_mm3=float(pair.volume),
         pinion_mass_kg=masses[0],
         wheel_mass_kg=masses[1],

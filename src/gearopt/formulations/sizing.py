@@ -1,9 +1,10 @@
 """Continuous sizing of a multi-stage drive: teeth and modules as real numbers.
 
-Minimise the drive's objective under K-factor and unit-load limits (Chong and Lee, eqs. 10-12) with
-ratios, modules, teeth and face widths free within their limits. Every row is a posynomial, so the
-log form is convex: Ipopt finds the global optimum and the dual bound proves it. With the total
-ratio free within its tolerance this is a relaxation of `teeth`, so its bound holds there too.
+Minimise the drive's objective under the limits of its strength law (Chong and Lee, eqs. 10-12) with
+ratios, modules, teeth and face widths free within their limits. Where the law is a posynomial, as
+every other row is, the log form is convex: Ipopt finds the global optimum and the dual bound proves
+it. With the total ratio free within its tolerance this is a relaxation of `teeth`, so its bound
+holds there too.
 """
 
 import math
@@ -11,11 +12,10 @@ from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
-from gearopt.formulations.train import BY_STAGE, Train, terms
+from gearopt.formulations.train import Train, terms
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Array, Param, Terms, Var, each, namespace
 from gearopt.physics.gears import GearPair, reference_diameter
-from gearopt.physics.loads import k_factor
 
 BEYOND = 1e6  # factor between any length of a drive and the ends of the search: they never bind
 TEETH = (1.0, 1e6)
@@ -25,8 +25,7 @@ VARIABLES = {"module": "mm", "pinion_teeth": "", "ratio": "", "face_width": "mm"
 _PARAMETER_UNITS = {
     "torque": "N mm",
     "density": "t/mm3",
-    "k_factor": "MPa",
-    "unit_load": "MPa",
+    "speed": "rad/s",
     "wheel_diameter": "mm",
     "module_low": "mm",
     "module_high": "mm",
@@ -41,10 +40,11 @@ def problem(train: Train) -> Problem:
     """
     count = len(train.stages)
     numbers = train.numbers()
+    units = _PARAMETER_UNITS | {limit.name: limit.unit for limit in train.law.limits}
     parameters = tuple(
         Param(
             name,
-            _PARAMETER_UNITS.get(name, ""),
+            units.get(name, ""),
             value,
             count if isinstance(value, tuple) else 1,
             role=_role(train, name, "data"),
@@ -106,7 +106,7 @@ def _role(train: Train, name: str, tied: str) -> str | tuple[str, ...]:
         return tuple(tied if s.face_width.tied else "limit" for s in train.stages)
     if name in ("lowest_ratio", "highest_ratio", "torque"):
         return "given"
-    return "limit" if name in BY_STAGE else "data"
+    return "limit" if name in train.by_stage else "data"
 
 
 def pairs(train: Train, point: Array) -> tuple[GearPair, ...]:
@@ -145,7 +145,9 @@ def _variables(train: Train) -> tuple[Var, ...]:
         if z_fixed and z2_fixed:
             u = numbers.wheel_low[k] / z
         proportion = min(numbers.width_high[k], 1.0)
-        d = (k_factor(torque, 1.0, proportion, u) / stage.k_factor) ** (1.0 / 3.0)
+        unit = GearPair.of_diameter(numbers.helix_cosine / z, z, 1.0, u, proportion)
+        load = train.law.indices(unit, torque, train.speed_at(torque))[0] / stage.allowable[0]
+        d = load ** (1.0 / 3.0)
         m_fixed = len(stage.modules) == 1
         m = numbers.module_low[k] if m_fixed else d * math.cos(train.helix_angle) / z
         b_fixed = stage.face_width.fixed
@@ -170,14 +172,14 @@ def _variables(train: Train) -> tuple[Var, ...]:
 def _lengths(train: Train) -> tuple[float, float]:
     """Ends [mm] of the search for modules and widths, far beyond all that load and file ask for.
 
-    Finite, for the dual bound. A stage's size follows (T/K)^(1/3) or (T/U)^(1/3) at its torque.
+    Finite, for the dual bound. A stage's size follows (T/s)^(1/3) at its torque, for a limit s.
     """
     torques = (train.torque, train.torque * float(train.highest_ratio))
     sizes = [
         (torque / limit) ** (1.0 / 3.0)
         for stage in train.stages
         for torque in torques
-        for limit in (stage.k_factor, stage.unit_load)
+        for limit in stage.allowable
     ]
     for stage in train.stages:
         given = (*stage.modules, stage.face_width.fixed, stage.wheel_diameter)

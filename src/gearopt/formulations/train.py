@@ -5,13 +5,13 @@ fractions; the rest are floats in mm, N, rad, MPa.
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any
 
+from gearopt.formulations.strength import Law
 from gearopt.optimise.terms import Terms, each
 from gearopt.physics.gears import ISO_53_A, Gear, GearPair, Rack, reference_diameter
-from gearopt.physics.loads import k_factor, unit_load
 
 OBJECTIVES = {  # name -> unit
     "gear_volume": "mm3",
@@ -21,9 +21,7 @@ OBJECTIVES = {  # name -> unit
 }
 
 
-BY_STAGE = (  # of `Train.numbers`, those with a value for every stage
-    "k_factor",
-    "unit_load",
+CHOICES = (  # of `Train.numbers`, those that limit what a stage may choose
     "width_low",
     "width_high",
     "module_low",
@@ -66,14 +64,13 @@ class FaceWidth:
 class Stage:
     """One stage: its load limits and what it may choose.
 
-    k_factor, unit_load: limits [MPa]. modules: allowed normal modules [mm], increasing (for the
-    continuous form its first and last are limits; empty: any). pinion_teeth, wheel_teeth: least
-    and most, ratio: least and most of u = z2/z1 >= 1 (None: no limit). wheel_diameter: most [mm]
-    of the wheel's reference diameter.
+    allowable: the limits of the train's strength law, in its order. modules: allowed normal modules
+    [mm], increasing (for the continuous form its first and last are limits; empty: any).
+    pinion_teeth, wheel_teeth: least and most, ratio: least and most of u = z2/z1 >= 1 (None: no
+    limit). wheel_diameter: most [mm] of the wheel's reference diameter.
     """
 
-    k_factor: float
-    unit_load: float
+    allowable: tuple[float, ...]
     face_width: FaceWidth
     modules: tuple[Fraction, ...]
     pinion_teeth: tuple[int, int | None]
@@ -97,7 +94,8 @@ class Train:
     """A drive: input torque [N mm], total ratio and its relative tolerance, and its stages.
 
     helix_angle [rad] and basic rack of every stage. coprime: z1 and z2 without common divisor
-    (hunting teeth). objective: a key of OBJECTIVES; mass needs density [t/mm3].
+    (hunting teeth). objective: a key of OBJECTIVES; mass needs density [t/mm3]. law: what limits
+    the stages. speed: that of the input [rad/s], for laws that depend on it.
     """
 
     torque: float
@@ -109,11 +107,15 @@ class Train:
     coprime: bool = False
     objective: str = "gear_volume"
     density: float | None = None
+    law: Law = field(kw_only=True)
+    speed: float = 0.0
 
     def __post_init__(self) -> None:
-        numbers = [self.torque, *(x for s in self.stages for x in (s.k_factor, s.unit_load))]
+        numbers = [self.torque, *(x for s in self.stages for x in s.allowable)]
         if not all(math.isfinite(x) and x > 0 for x in numbers):
             raise ValueError(f"torque and load limits must be positive numbers: {numbers}")
+        if any(len(s.allowable) != len(self.law.limits) for s in self.stages):
+            raise ValueError(f"every stage needs limits for {', '.join(self.law.names)}")
         if self.ratio < 1 or not 0 <= self.tolerance < 1 or not self.stages:
             raise ValueError("a drive needs stages, ratio >= 1 and a tolerance from 0 to below 1")
         if self.objective == "mass" and self.density is None:
@@ -147,6 +149,15 @@ class Train:
             Gear(module, wheel_teeth, d1 * (wheel_teeth / pinion_teeth), *own),
         )
 
+    def speed_at(self, torque: Any) -> Any:
+        """Return the speed [rad/s] of a shaft that carries a torque [N mm], without losses."""
+        return self.speed * (self.torque / torque)
+
+    @property
+    def by_stage(self) -> tuple[str, ...]:
+        """The names in `numbers` with a value for every stage."""
+        return (*self.law.names, *CHOICES)
+
     @property
     def unit(self) -> str:
         """Unit of the objective."""
@@ -161,8 +172,8 @@ class Train:
             "density": 1.0 if self.density is None else self.density,
             "lowest_ratio": float(self.lowest_ratio),
             "highest_ratio": float(self.highest_ratio),
-            "k_factor": tuple(s.k_factor for s in stages),
-            "unit_load": tuple(s.unit_load for s in stages),
+            "speed": self.speed,
+            **{n: tuple(s.allowable[i] for s in stages) for i, n in enumerate(self.law.names)},
             "width_low": tuple(float(s.face_width.low) for s in stages),
             "width_high": tuple(s.face_width.widest for s in stages),
             "module_low": tuple(float(min(s.modules, default=0)) for s in stages),
@@ -210,13 +221,11 @@ def terms(train: Train, numbers: Any, pairs: tuple[GearPair, ...]) -> Terms:
     limits: dict[str, Any] = {}
     equal: dict[str, Any] = {}
     for k, pair in enumerate(pairs):
-        own = {name: each(value)[k] for name, value in vars(numbers).items() if name in BY_STAGE}
+        own = {name: each(getattr(numbers, name))[k] for name in train.by_stage}
         total = total + share(train, k, pair, numbers.density)
-        d, b, u = pair.pinion.reference_diameter, pair.face_width, pair.ratio
-        found = {
-            "k_factor": k_factor(torque, d, b, u) / own["k_factor"],
-            "unit_load": unit_load(torque, d, b, pair.normal_module) / own["unit_load"],
-        } | _choices(train.stages[k], own, pair)
+        allowable = [own[name] for name in train.law.names]
+        found = train.law.utilisations(pair, torque, numbers.speed / product, allowable)
+        found |= _choices(train.stages[k], own, pair)
         if train.stages[k].wheel_fixed and not train.stages[k].pinion_fixed:
             equal[f"wheel_teeth[{k + 1}]"] = pair.wheel_teeth / own["wheel_low"]
         limits |= {f"{name}[{k + 1}]": value for name, value in found.items()}

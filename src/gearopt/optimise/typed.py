@@ -5,6 +5,7 @@ from dataclasses import MISSING, fields, is_dataclass
 from types import NoneType, UnionType
 from typing import Any, get_args, get_origin, get_type_hints
 
+INLINE = {"inline": True}  # metadata of a mapping whose keys stand among those of its dataclass
 NUMBERS: dict[Any, tuple[type, ...]] = {
     float: (int, float),
     int: (int,),
@@ -44,7 +45,10 @@ def untyped(value: Any) -> Any:
     """Plain data of dataclasses, for `typed`: a field that holds its default is left out."""
     if is_dataclass(value) and not isinstance(value, type):
         held = ((f, getattr(value, f.name)) for f in fields(value))
-        return {f.name: untyped(v) for f, v in held if v != f.default}
+        each = (
+            untyped(v) if f.metadata else {f.name: untyped(v)} for f, v in held if v != f.default
+        )
+        return {k: v for part in each for k, v in part.items()}
     if isinstance(value, Mapping):
         return {k: untyped(v) for k, v in value.items()}
     return [untyped(v) for v in value] if isinstance(value, list | tuple) else value
@@ -54,6 +58,9 @@ def _filled(kind: Any, data: Any, where: str) -> Any:
     """A dataclass with all its fields and no other."""
     hints, held = get_type_hints(kind), _mapping(data, where)
     needed = {f.name for f in fields(kind) if f.default is f.default_factory is MISSING}
+    for inline in (f.name for f in fields(kind) if f.metadata):
+        others = {k: v for k, v in held.items() if k not in hints}
+        held = {k: v for k, v in held.items() if k in hints} | {inline: others}
     if unknown := sorted(set(held) - set(hints)):
         raise ValueError(f"has unknown keys in {where or 'it'}: {', '.join(unknown)}")
     if missing := sorted(needed - set(held)):

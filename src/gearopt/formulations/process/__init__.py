@@ -1,7 +1,9 @@
 """The two design processes of Chong and Lee as methods of the problem `teeth`.
 
 Each makes one train by rules, without a search; what their rules leave open is an input here. Face
-widths are b = m_a d1. The train is judged as any other: a limit it misses is named, never repaired.
+widths are b = m_a d1; the strength law is a proportional one, its first limit of contact, its
+second of the tooth root. The train is judged as any other: a limit it misses is named, never
+repaired.
 """
 
 from collections.abc import Callable
@@ -75,7 +77,7 @@ def methods(
     """
 
     def process_one(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
-        """Ratios given; teeth balanced between K-factor and unit load; modules from the loads."""
+        """Ratios given; teeth balanced between contact and root; modules from the loads."""
         if one is None:
             raise _missing("one", "stage_ratios")
         _check("one", train, one)
@@ -99,6 +101,11 @@ def _missing(which: str, keys: str) -> SolveError:
 
 def _check(which: str, train: Train, inputs: ProcessOne | ProcessTwo) -> None:
     """SolveError where the inputs do not fit the drive."""
+    if not train.law.proportional or len(train.law.limits) != 2:
+        raise SolveError(
+            f"the method process-{which} needs two limits in proportion to the load, of contact "
+            f"and of the tooth root, not {train.law.title}"
+        )
     if not all(stage.face_width.tied for stage in train.stages):
         raise SolveError(
             f"the method process-{which} makes face widths b = m_a d1: write "
@@ -117,12 +124,12 @@ def _first(train: Train, inputs: ProcessOne) -> tuple[list[Gears], str]:
         if inputs.pinion_teeth is not None:
             z1 = inputs.pinion_teeth[k]
         else:
-            z1 = balanced_pinion(stage, float(u), angle)
+            z1 = balanced_pinion(train.law, stage, float(u), angle)
         z2 = wheel_teeth(z1, u)
         if inputs.modules is not None:
             module: Fraction | None = inputs.modules[k]
         else:
-            least = needed_module(stage, torque, z1, z2 / z1, angle)
+            least = needed_module(train.law, stage, torque, (z1, z2), angle)
             module = next_module(stage, least)
             if module is None:
                 return [], _no_module(k, least, stage)
@@ -137,7 +144,7 @@ def _second(train: Train, inputs: ProcessTwo) -> tuple[list[Gears], str]:
 
     A given pinion that is smaller than its centre distance asks for is told.
     """
-    limits = [stage.k_factor for stage in train.stages]
+    limits = [stage.allowable[0] for stage in train.stages]
     ratios = inputs.ratios or niemann_ratios(float(train.ratio), limits)
     gears: list[Gears] = []
     small = []
@@ -173,7 +180,7 @@ def _diameters(train: Train, centre_distance: float, u: list[float]) -> list[flo
             centre_distance,
             (u[k - 1], u[k]),
             (float(one.face_width.high or 0), float(two.face_width.high or 0)),
-            (one.k_factor, two.k_factor),
+            (one.allowable[0], two.allowable[0]),
         )
         found.append(pinion_diameter(centre_distance, u[k]))
     return found

@@ -18,12 +18,11 @@ from gearopt.errors import SolveError
 from gearopt.formulations.teeth.later_stages import EDGE, SLICE, Bound, bound, ragged
 from gearopt.formulations.teeth.progress import TIE, Progress, Spent, Teeth
 from gearopt.formulations.teeth.stage import Table, table
-from gearopt.formulations.train import Train, share
+from gearopt.formulations.train import Stage, Train, share
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget, Event, Watch
 from gearopt.optimise.terms import Array
 from gearopt.physics.gears import GearPair
-from gearopt.physics.loads import k_factor
 
 BEAM = 4  # nodes followed down at once; measured best for two to four stages
 LEAVES = 256  # nodes completed at once
@@ -249,12 +248,15 @@ def within(train: Train, teeth: Teeth) -> bool:
 def _reach(train: Train, cut: Fraction, most: Fraction, threshold: float) -> Fraction:
     """Largest stage ratio that a train at least as good as `threshold` may have.
 
-    Any stage carries at least the input torque; its share alone then grows with its ratio.
+    Any stage carries at least the input torque; its share alone then grows with its ratio, where
+    its law is proportional.
     """
+    if not train.law.proportional:
+        return most
     ratios = np.geomspace(float(cut), float(most), 2000)
     useful = np.zeros(len(ratios), dtype=bool)
     for k, stage in enumerate(train.stages):
-        load = k_factor(train.torque, 1.0, 1.0, ratios) / stage.k_factor
+        load = _least_size(train, stage, ratios)
         if train.objective in ("gear_volume", "mass"):
             lower = share(train, k, GearPair.of_teeth(1.0, 1.0, ratios, load))  # d1 is 1 mm
         else:
@@ -271,6 +273,13 @@ def _reach(train: Train, cut: Fraction, most: Fraction, threshold: float) -> Fra
     beyond = [*ratios[1:], most]  # the next of the grid; at its end `most` itself, unrounded
     last = np.flatnonzero(useful)
     return Fraction(beyond[last[-1]]) if len(last) else cut
+
+
+def _least_size(train: Train, stage: Stage, ratios: Array) -> Array:
+    """Minimum b d1^2 [mm3] that carries the input torque at given ratios: of the fewest teeth."""
+    z = float(stage.pinion_teeth[0])
+    unit = GearPair.of_diameter(math.cos(train.helix_angle) / z, z, 1.0, ratios, 1.0)
+    return train.law.load(unit, train.torque, train.speed, stage.allowable)
 
 
 def possible(train: Train, seconds: float, watch: Watch | None) -> bool | None:

@@ -15,24 +15,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearopt.errors import SolveError
+from gearopt.formulations.strength import ALLOWANCE, HALVINGS
 from gearopt.formulations.train import Stage, Train, share
 from gearopt.optimise.terms import Array
 from gearopt.physics.gears import GearPair
-from gearopt.physics.loads import k_factor, unit_load
 
 Index = NDArray[np.int64]
 
 PAIRS = 3_000_000  # tooth pairs of one stage: about 1 GB of tables
-ALLOWANCE = 1e-12  # a stress utilisation this little above 1 is rounding, not a violation
 
 
 @dataclass(frozen=True)
 class Table:
     """Tooth pairs (n,) of one stage with ratios up to a cut, increasing.
 
-    need, exponent: the least module for torque T is need * T**exponent. first, last: indices of
-    the modules that diameter and width limits allow. slope: least objective per torque, from the
-    load limits alone. steps: least and most number of width steps, (modules, n), or None.
+    first, last: indices of the modules that diameter and width limits allow. steps: least and most
+    number of width steps, (modules, n), or None. load: of a proportional law the minimum width is
+    load T/m^2 [mm]; the minimum module for torque T is need T**exponent; slope: least objective per
+    torque, from the load limits alone. Of other laws load is None, need and slope are 0.
     """
 
     train: Train
@@ -42,12 +42,13 @@ class Table:
     ratio: Array
     log_ratio: Array
     modules: Array
-    need: Array
-    exponent: float
     first: Index
     last: Index
-    slope: Array
     steps: tuple[Array, Array] | None
+    load: Array | None
+    need: Array
+    exponent: float
+    slope: Array
 
     @property
     def stage(self) -> Stage:
@@ -74,21 +75,30 @@ class Table:
         return module.item(), width.item()
 
     def capacity(self, module: int) -> Array:
-        """Largest torque [N mm] each pair carries with a module (index); 0 where not allowed."""
+        """Largest torque [N mm] each pair carries with a module (index); 0 where not allowed.
+
+        Where it is bisected, it is inf above the largest torque of the drive.
+        """
         allowed = (self.first <= module) & (module <= self.last)
+        if self.load is None:
+            return np.where(allowed, self._bisected_capacity(module), 0.0)
         with np.errstate(divide="ignore"):
             most = (self.modules[module] / self.need) ** (1.0 / self.exponent)
         return np.where(allowed, most * (1.0 + 3.0 * ALLOWANCE), 0.0)
 
     def floor(self, module: int) -> Array:
         """Least objective share of each pair with a module (index), whatever the torque."""
-        one = self.made(self.modules[module], np.arange(len(self.ratio)))
-        width = self._least_width(one) if self.steps is None else self.steps[0][module] * self.step
-        return self._share(one, width)
+        every = np.arange(len(self.ratio))
+        one = self.made(self.modules[module], every)
+        return self._share(one, self._widths(one, module, every)[0])
+
+    def width(self, torque: Array, pair: Index, module: int) -> Array:
+        """Minimum face width [mm] of pairs with a module (index) at torques; inf: none allowed."""
+        return self._width(torque, pair, module, self.made(self.modules[module], pair))
 
     def _best(self, torque: Array, pair: Index) -> tuple[Array, Array, Array]:
-        if self.steps is not None:
-            return self._best_on_steps(*self.steps, torque, pair)
+        if self.load is None or self.steps is not None:
+            return self._best_of_all(torque, pair)
         # The smallest module that carries the torque is the best one: every objective grows
         # with it, for a tied width, and for a free one once the width has its least value.
         needed = self.need[pair] * (torque * (1.0 - ALLOWANCE)) ** self.exponent
@@ -97,46 +107,78 @@ class Table:
         k = np.minimum(k, len(self.modules) - 1)
         module = self.modules[k]
         one = self.made(module, pair)
-        width, face = self._least_width(one), self.stage.face_width
-        if face.fixed is None:
-            widest = face.widest * one.pinion.reference_diameter
-            width = np.clip(self._loaded_width(torque, one), width, widest)
+        width, most = self._widths(one)
+        if self.stage.face_width.fixed is None:
+            width = np.clip(self.load[pair] * torque / module**2, width, most)
         value = self._share(one, width)
         return np.where(possible, value, np.inf), module, width
 
-    def _best_on_steps(
-        self, least: Array, most: Array, torque: Array, pair: Index
-    ) -> tuple[Array, Array, Array]:
-        """Rounding a width up to the step can make a larger module the better one: try all."""
+    def _best_of_all(self, torque: Array, pair: Index) -> tuple[Array, Array, Array]:
+        """Try every module: widths on a step, or the law, can make a larger one the better one."""
         best, best_module, best_width = (np.full(len(pair), np.inf) for _ in range(3))
         for k, module in enumerate(self.modules):
             one = self.made(module, pair)
-            needed = self._loaded_width(torque, one) / self.step
-            count = np.maximum(np.ceil(needed * (1.0 - ALLOWANCE)), least[k][pair])
-            possible = (self.first[pair] <= k) & (k <= self.last[pair]) & (count <= most[k][pair])
-            width = count * self.step
-            value = np.where(possible, self._share(one, width), np.inf)
+            width = self._width(torque, pair, k, one)
+            value = np.where(np.isfinite(width), self._share(one, width), np.inf)
             better = value < best * (1.0 - ALLOWANCE)
             best = np.where(better, value, best)
             best_module = np.where(better, module, best_module)
             best_width = np.where(better, width, best_width)
         return best, best_module, best_width
 
+    def _width(self, torque: Array, pair: Index, module: int, one: GearPair) -> Array:
+        """Minimum face width [mm] of the pairs `one`, which are `pair` with a module."""
+        ends = self._widths(one, module, pair)
+        if self.load is not None:
+            needed = self.load[pair] * torque / self.modules[module] ** 2
+        else:
+            law, speed = self.train.law, self.train.speed_at(torque)
+            needed = law.least_width(one, torque, speed, self.stage.allowable, ends)
+        if self.steps is None:
+            width, possible = np.clip(needed, *ends), needed <= ends[1] * (1.0 + ALLOWANCE)
+        else:
+            least, most = (count[module][pair] for count in self.steps)
+            steps = np.maximum(np.ceil(needed / self.step * (1.0 - ALLOWANCE)), least)
+            width, possible = steps * self.step, steps <= most
+        possible = possible & (self.first[pair] <= module) & (module <= self.last[pair])
+        return np.where(possible, width, np.inf)
+
+    def _widths(
+        self, one: GearPair, module: int = 0, pair: Index | slice = slice(None)
+    ) -> tuple[Array, Array]:
+        """Least and most face width [mm] that the file allows pairs; by module where on steps."""
+        face, d = self.stage.face_width, one.pinion.reference_diameter
+        if self.steps is not None:
+            least, most = (count[module][pair] * self.step for count in self.steps)
+            return least, most
+        if face.fixed is not None:
+            fixed = np.full_like(d, float(face.fixed))
+            return fixed, fixed
+        return float(face.low) * d, face.widest * d
+
     def _share(self, pair: GearPair, width: Any) -> Array:
         """Return what pairs of these face widths [mm] add to the objective."""
         return np.asarray(share(self.train, self.position, pair.of_width(width)))
 
-    def _loaded_width(self, torque: Array, pair: GearPair) -> Array:
-        """Least face width [mm] for K-factor and unit load."""
-        d, m = pair.pinion.reference_diameter, pair.normal_module
-        by_contact = k_factor(torque, d, 1.0, pair.ratio) / self.stage.k_factor
-        by_bending = unit_load(torque, d, 1.0, m) / self.stage.unit_load
-        return np.asarray(np.maximum(by_contact, by_bending))
+    def _bisected_capacity(self, module: int) -> Array:
+        """Largest torque [N mm] of every pair with a module (index), from above."""
+        train, every = self.train, np.arange(len(self.ratio))
+        one = self.made(self.modules[module], every)
+        widest = one.of_width(self._widths(one, module, every)[1])
 
-    def _least_width(self, pair: GearPair) -> Array:
-        """Least face width [mm] the file allows for pairs, but for steps."""
-        face, d = self.stage.face_width, pair.pinion.reference_diameter
-        return float(face.low) * d if face.fixed is None else np.full_like(d, float(face.fixed))
+        def carries(torque: Array) -> Any:
+            speed = train.speed_at(torque)
+            return train.law.load(widest, torque, speed, self.stage.allowable) <= 1.0 + ALLOWANCE
+
+        low = np.full(len(every), train.torque)
+        high = low * float(train.highest_ratio)
+        with np.errstate(all="ignore"):  # of widths of zero, where no step is allowed
+            some, all_ = carries(low), carries(high)
+            for _ in range(HALVINGS):
+                middle = np.sqrt(low * high)
+                good = carries(middle)
+                low, high = np.where(good, middle, low), np.where(good, high, middle)
+        return np.where(some, np.where(all_, np.inf, high), 0.0)
 
 
 def table(
@@ -152,23 +194,7 @@ def table(
     z1, z2 = _pairs(train, position, cut)
     tick()
     ratio = z2 / z1
-    face, modules = stage.face_width, stage.modules
-    widest = face.widest if face.fixed is None else float(face.fixed)
-    exponent = 0.5 if face.fixed is not None else 1.0 / 3.0
-    # With b = widest (fixed) or widest*d, at unit torque: K-factor and unit load against module.
-    contact = k_factor(1.0, 1.0, widest, ratio) / stage.k_factor
-    bending = unit_load(1.0, 1.0, widest, 1.0) / stage.unit_load
-    power = 1.0 if face.fixed is not None else 2.0
-    need = np.maximum(
-        contact**exponent * cosine / z1, (bending * (cosine / z1) ** power) ** exponent
-    )
-    load = np.maximum(
-        k_factor(1.0, 1.0, 1.0, ratio) / stage.k_factor,
-        unit_load(1.0, 1.0, 1.0, 1.0) / stage.unit_load * z1 / cosine,
-    )
-    slope = np.zeros_like(ratio)
-    if train.objective in ("gear_volume", "mass"):  # no module counts: d1 is 1 mm here
-        slope = np.asarray(share(train, position, GearPair.of_teeth(1.0, 1.0, ratio, load)))
+    load, need, exponent, slope = _closed(train, position, z1, ratio)
     tick()
     first, last = _allowed(stage, z1, z2, cosine)
     return Table(
@@ -178,14 +204,34 @@ def table(
         z2,
         ratio,
         np.log(ratio),
-        np.array([float(m) for m in modules]),
-        need,
-        exponent,
+        np.array([float(m) for m in stage.modules]),
         first,
         last,
-        slope,
         _steps(stage, z1, cosine),
+        load,
+        need,
+        exponent,
+        slope,
     )
+
+
+def _closed(
+    train: Train, position: int, z1: Index, ratio: Array
+) -> tuple[Array | None, Array, float, Array]:
+    """Load, need, exponent and slope of a `Table`."""
+    stage, cosine = train.stages[position], math.cos(train.helix_angle)
+    if not train.law.proportional:
+        return None, np.zeros_like(ratio), 1.0, np.zeros_like(ratio)
+    one = GearPair.of_diameter(1.0, z1, z1 / cosine, ratio, 1.0)
+    load = train.law.load(one, 1.0, 0.0, stage.allowable)
+    slope = np.zeros_like(ratio)
+    if train.objective in ("gear_volume", "mass"):  # no module counts: d1 is 1 mm here
+        size = load * (z1 / cosine) ** 2  # b d1^2 for a torque of 1 N mm
+        slope = np.asarray(share(train, position, GearPair.of_teeth(1.0, 1.0, ratio, size)))
+    face = stage.face_width
+    if face.fixed is not None:
+        return load, (load / float(face.fixed)) ** 0.5, 0.5, slope
+    return load, (load * cosine / (face.widest * z1)) ** (1.0 / 3.0), 1.0 / 3.0, slope
 
 
 def _pairs(train: Train, position: int, cut: Fraction) -> tuple[Index, Index]:

@@ -12,6 +12,7 @@ from typing import Any
 from gearopt.formulations import teeth
 from gearopt.formulations.layout.gearbox import Gearbox, Shaft
 from gearopt.formulations.layout.slabs import Arrangement
+from gearopt.formulations.strength.k_factor import K_FACTOR
 from gearopt.formulations.teeth.search import search as sizing
 from gearopt.formulations.together.continuous import angles_of, continuous
 from gearopt.formulations.together.search import MARGINS, Search, keep, lay, prepare, prove
@@ -57,10 +58,9 @@ def problem(train: Train, make: Make, start: Start | None = None) -> Problem:
 @cache
 def ready() -> None:
     """Have every kernel compiled, once on a machine, before a clock runs: by a tiny drive."""
-    stage = Stage(
-        2.0, 48.0, FaceWidth(Fraction(1), Fraction(1)), (Fraction(2), Fraction(3)), (20, 22)
-    )
-    train = Train(3e4, Fraction(9), Fraction(1, 50), (stage, stage))
+    one = FaceWidth(Fraction(1), Fraction(1))
+    stage = Stage((2.0, 48.0), one, (Fraction(2), Fraction(3)), (20, 22))
+    train = Train(3e4, Fraction(9), Fraction(1, 50), (stage, stage), law=K_FACTOR)
 
     def make(pairs: tuple[GearPair, ...]) -> Gearbox:
         return Gearbox(pairs, (Shaft(5.0), Shaft(8.0), Shaft(12.0)))

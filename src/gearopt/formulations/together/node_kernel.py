@@ -31,15 +31,17 @@ def module(d, j, p, torque):
 
 @njit(cache=True, inline="always")
 def width(d, j, p, k, torque):
-    """Least face width for a torque, with a module that carries it; inf if no step does."""
+    """Least face width for a torque, with a module of `module`; inf if none carries it."""
+    if d.load.size == 0:
+        cell = int(max(math.log(torque / d.torque) - EDGE, 0.0) / d.step)
+        return d.bisected[min(cell, d.bisected.shape[0] - 1), k, p]
     m = d.modules[j, k]
     if d.kind[j] == 2:
         return d.given[j]
     diameter = m * d.z1[p] / d.cosine
     if d.kind[j] == 0:
         return d.high[j] * diameter
-    contact = 2.0 * torque / (diameter * diameter) * (1.0 + d.z1[p] / d.z2[p]) / d.k_factor[j]
-    load = max(contact, 2.0 * torque / (diameter * m) / d.unit_load[j])
+    load = d.load[p] * torque / (m * m)
     if d.kind[j] == 1:
         return min(max(d.low[j] * diameter, load), d.high[j] * diameter)
     count = max(math.ceil(load / d.given[j] * (1.0 - ALLOWANCE)), d.least_steps[k, p])

@@ -27,6 +27,8 @@ def useful(drive: Drive, cut: float) -> Drive:
         kept = np.concatenate([[0], np.cumsum(keep)])[drive.start]
         names = ("z1", "z2", "log_ratio", "need", "first", "last")
         fewer = {n: getattr(drive, n)[keep] for n in names}
+        fewer["load"] = drive.load[keep] if drive.load.size else drive.load
+        fewer["bisected"] = drive.bisected if drive.load.size else drive.bisected[:, :, keep]
         if drive.least_steps.shape[1] == keep.size:
             steps = {n: getattr(drive, n)[:, keep] for n in ("least_steps", "most_steps")}
             fewer |= {n: np.ascontiguousarray(v) for n, v in steps.items()}

@@ -16,6 +16,7 @@ from gearopt.formulations.layout.chain import Chain, chain, turns
 from gearopt.formulations.layout.gearbox import Gearbox
 from gearopt.formulations.layout.slabs import TOUCH, Arrangement, arrangements, clashes
 from gearopt.formulations.teeth.search import within
+from gearopt.formulations.teeth.stage import table
 from gearopt.formulations.together.prepare import chains, rest, useful
 from gearopt.formulations.together.tables import Drive, Make, Rest
 from gearopt.formulations.train import Train
@@ -25,7 +26,6 @@ from gearopt.optimise.result import Budget
 from gearopt.optimise.terms import Array
 from gearopt.physics.gears import GearPair
 
-NODE = "gearopt.formulations.together.node_kernel"
 SEARCH = "gearopt.formulations.together.together_kernel"
 MARGINS = (0.3, 0.1, 0.03, 0.01, 3e-3, 1e-3, 3e-4, 1e-4)  # of the passes
 CHOICES = 50_000  # pairs looked at in a slice of an expansion
@@ -81,14 +81,19 @@ def cuts(value: float, margin: float) -> tuple[float, float]:
     return value * (1.0 - margin), value * (1.0 - 0.8 * margin)
 
 
-def sized(train: Train, drive: Drive, node: Nodes) -> tuple[GearPair, ...]:
-    """Return the gear pairs of a whole node."""
-    kernels = kernel(NODE)
+def sized(train: Train, drive: Drive, node: Nodes) -> tuple[GearPair, ...] | None:
+    """Return the gear pairs of a whole node; None where one is too weak.
+
+    The widths of a node are bounds where the strength law has no closed form.
+    """
     torque, found = train.torque, []
     for j, (p, k) in enumerate(node):
         z1, z2 = float(drive.z1[p]), float(drive.z2[p])
-        width = kernels.width(drive, j, p, k, torque)
-        found.append(train.pair(float(drive.modules[j, k]), z1, z2, float(width)))
+        only = table(train.fixed_teeth(j, round(z1), round(z2)), j, train.highest_ratio)
+        width = only.width(np.array([torque]), np.array([0]), int(k)).item()
+        if width == math.inf:
+            return None
+        found.append(train.pair(float(drive.modules[j, k]), z1, z2, width))
         torque *= z2 / z1
     return tuple(found)
 
@@ -201,7 +206,8 @@ def _last_looks(search: Search, drive: Drive, nodes: Nodes, bounds: Array, margi
     for node, value in zip(nodes, bounds, strict=True):
         teeth = tuple((round(drive.z1[p]), round(drive.z2[p])) for p, _ in node)
         if value < search.value * (1.0 - margin) and within(search.train, teeth):
-            proven = lay(search, sized(search.train, drive, node), margin)
+            pairs = sized(search.train, drive, node)
+            proven = pairs is None or lay(search, pairs, margin)
             search.clock.stopped = search.clock.stopped or not proven
         if search.clock.stopped:
             return

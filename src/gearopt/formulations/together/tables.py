@@ -24,18 +24,21 @@ from gearopt.physics.gears import GearPair
 Make = Callable[[tuple[GearPair, ...]], Gearbox]
 Index = NDArray[np.int64]
 DELTA = 0.01  # cells of log ratio: a third of it in sizes, below the usual ratio tolerance
+ENTRIES = 20_000_000  # of bisected widths, 160 MB
 BINS = 48  # of wheel radii, for what a larger wheel saves in width
 
 
 class Drive(NamedTuple):
     """N stages with their pairs one after the other (start), M arrangements of the slabs.
 
-    kind: of face widths, 0 tied, 1 free, 2 given, 3 on steps (given: the width or the step).
-    shaft, bearing (N+1, cells): least radius by log ratio reached. gap: between gears, from shafts,
-    to the wall, along the axis. faces (M, N+1, 4, N+1, 4): whether bodies of two shafts face each
-    other: wheel, pinion, shaft, bearing. widths: least of each stage, others (M, N): least length
-    that the stages before one add. aim (8,): most width, height and length; constant of the
-    objective and its factor of the length; exponents of width and height; 1 for the longest side.
+    kind: of face widths, 0 tied, 1 free, 2 given, 3 on steps (given: the width or the step). load:
+    as in `teeth.stage.Table`; for a law without one (size 0), bisected holds minimum widths (cells,
+    modules, pairs) by log ratio reached, in cells of `step`. shaft, bearing (N+1, cells): least
+    radius by log ratio reached. gap: between gears, from shafts, to the wall, along the axis. faces
+    (M, N+1, 4, N+1, 4): whether bodies of two shafts face each other: wheel, pinion, shaft,
+    bearing. widths: least of each stage, others (M, N): least length that the stages before one
+    add. aim (8,): most width, height and length; constant of the objective and its factor of the
+    length; exponents of width and height; 1 for the longest side.
     """
 
     torque: float
@@ -59,8 +62,9 @@ class Drive(NamedTuple):
     low: Array
     high: Array
     given: Array
-    k_factor: Array
-    unit_load: Array
+    load: Array
+    bisected: Array
+    step: float
     least_before: Array
     shaft: Array
     bearing: Array
@@ -117,6 +121,7 @@ def numbers(train: Train, make: Make) -> tuple[Drive, Gearbox]:
         DELTA,
         *_pairs(tables),
         *_stages(train, tables),
+        *_loads(train, tables),
         np.array(before),
         np.array([[b.shafts[x].radius for b in boxes] for x in range(len(box.shafts))]),
         np.array([[_bearing(b.shafts[x]) for b in boxes] for x in range(len(box.shafts))]),
@@ -233,7 +238,7 @@ def _pairs(tables: list[Table]) -> tuple[Any, ...]:
 
 
 def _stages(train: Train, tables: list[Table]) -> tuple[Array, ...]:
-    """What belongs to a stage as a whole, from modules to its load limits."""
+    """What belongs to a stage as a whole, from modules to its face width."""
     faces = [s.face_width for s in train.stages]
     modules = np.full((len(tables), max(len(t.modules) for t in tables)), np.inf)
     for k, t in enumerate(tables):
@@ -248,6 +253,24 @@ def _stages(train: Train, tables: list[Table]) -> tuple[Array, ...]:
         np.array([float(f.low) for f in faces]),
         np.array([math.inf if f.high is None else float(f.high) for f in faces]),
         np.array([float(f.step or f.fixed or 0) for f in faces]),
-        np.array([s.k_factor for s in train.stages]),
-        np.array([s.unit_load for s in train.stages]),
     )
+
+
+def _loads(train: Train, tables: list[Table]) -> tuple[Array, Array, float]:
+    """Loads of all pairs, or least widths by cells of torque, as small as ENTRIES allows."""
+    loads = [t.load for t in tables if t.load is not None]
+    span = math.log(train.highest_ratio) + 2.0 * DELTA
+    if loads:
+        return np.concatenate(loads), np.empty((0, 0, 0)), span
+    pairs, modules = sum(len(t.z1) for t in tables), max(len(t.modules) for t in tables)
+    cells = max(1, min(math.ceil(span / DELTA), ENTRIES // max(1, pairs * modules)))
+    step = span / cells
+    found = np.full((cells, modules, pairs), np.inf)
+    stop = 0
+    for t in tables:
+        start, stop = stop, stop + len(t.z1)
+        for cell in range(cells):
+            torque = np.full(len(t.z1), train.torque * math.exp(cell * step))
+            for k in range(len(t.modules)):
+                found[cell, k, start:stop] = t.width(torque, np.arange(len(t.z1)), k)
+    return np.empty(0), found, step

@@ -191,9 +191,9 @@ class Scene(Table):
     def train(self) -> Train:
         """The drive as plain numbers."""
         stages = self.stage or (StageTable(),) * int(self.stages or 0)
-        density = self.objective.density
+        density, speed = self.objective.density, self.duty.input_speed.value
         return Train(
-            torque=torque(self.duty.power.value, self.duty.input_speed.value),
+            torque=torque(self.duty.power.value, speed),
             ratio=self.duty.total_ratio,
             tolerance=self.duty.ratio_tolerance,
             stages=tuple(self._stage(s) for s in stages),
@@ -202,11 +202,13 @@ class Scene(Table):
             coprime=bool(self.teeth and self.teeth.coprime),
             objective=self.objective.minimise,
             density=density.value if density else None,
+            law=self.limits.LAW,
+            speed=speed,
         )
 
     def design(self, pairs: tuple[GearPair, ...]) -> DriveDesign:
         """Return the drive of these gear pairs in the words of its drawing."""
-        return describe(self.train(), pairs, self.duty.input_speed.value)
+        return describe(self.train(), pairs)
 
     def processes(self) -> dict[str, Callable[..., Outcome]]:
         """The two design processes, with what the file tells them, as methods for whole teeth."""
@@ -222,8 +224,9 @@ class Scene(Table):
         limits = self.limits
         diameter = own.wheel_diameter or limits.wheel_diameter
         return Stage(
-            k_factor=(own.k_factor or limits.load("k_factor")).value,
-            unit_load=(own.unit_load or limits.load("unit_load")).value,
+            allowable=tuple(
+                (getattr(own, name) or limits.load(name)).value for name in limits.LAW.names
+            ),
             face_width=self._face_width(own),
             modules=self._modules(own),
             pinion_teeth=own.pinion_teeth or limits.pinion_teeth,

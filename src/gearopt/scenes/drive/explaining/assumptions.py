@@ -39,15 +39,15 @@ def assumptions(scene: Scene) -> list[str]:
         if density
         else f"steel of {1e9 * STEEL_DENSITY:g} kg/dm^3, because the file gives no density"
     )
+    law = scene.limits.LAW
     found = [
         "External cylindrical gears without profile shift; no losses in mesh and bearings.",
         "Tip and root circles by the basic rack ISO 53 profile A: addendum "
         f"{ISO_53_A.addendum:g} m_n, dedendum {ISO_53_A.dedendum:g} m_n; nominal sizes, "
         "without backlash.",
-        "Loads are limited by K-factor and unit load alone: index values, not a rating by ISO 6336 "
-        "or AGMA 2101. Application, dynamic and load distribution factors are not in them.",
+        f"Loads are limited by {law.title} alone: {law.kind}.",
         f"The normal pressure angle of {angle}{assumed} enters contact ratio and undercut alone; "
-        "K-factor and unit load do not depend on it.",
+        f"{law.title} do not depend on it.",
         f"Volumes and masses are those of solid reference cylinders; masses with {mass}.",
     ]
     if scene.limits.preset is not None:

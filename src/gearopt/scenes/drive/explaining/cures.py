@@ -57,7 +57,7 @@ def inherited(scene: Scene, path: Path) -> Any:
         return getattr(scene.duty, field)
     if field == "face_width_over_diameter":
         return scene.gears.face_width_over_diameter
-    if field in ("k_factor", "unit_load"):
+    if field in scene.limits.LAW.names:
         return scene.limits.load(field)
     return getattr(scene.limits, field, None)
 

@@ -14,7 +14,7 @@ from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run
 from gearopt.physics.gears import MODULES
 from gearopt.scenes.drive.explaining.cures import next_module
-from gearopt.scenes.drive.explaining.levers import FIELDS
+from gearopt.scenes.drive.explaining.levers import fields
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.explaining.influences import Basis, influences
 from gearopt.scenes.explaining.numbers import Number, eased, moved, numbers
@@ -99,7 +99,7 @@ def _spelt(scene: Scene) -> Scene:
     limits = scene.limits
     if limits.preset is None:
         return scene
-    loads = {name: limits.load(name) for name in ("k_factor", "unit_load")}
+    loads = {name: limits.load(name) for name in limits.LAW.names}
     return scene.model_copy(update={"limits": limits.model_copy(update={"preset": None, **loads})})
 
 
@@ -113,7 +113,7 @@ def _is_series(scene: Scene) -> bool:
 
 def _price(scene: Scene, number: Number, result: Result, solved: Any) -> tuple[str, float | None]:
     """The step that eases a limit of the file, and what it brings; "" for what is no limit."""
-    direction = _eases(number)
+    direction = _eases(scene, number)
     if direction == 0 or result.value is None:
         return "", None
     value: Any
@@ -132,15 +132,16 @@ def _price(scene: Scene, number: Number, result: Result, solved: Any) -> tuple[s
     return step, None if found is None else (found - result.value) / abs(result.value)
 
 
-def _eases(number: Number) -> int:
+def _eases(scene: Scene, number: Number) -> int:
     """+1 or -1: the direction that eases a limit of the file; 0 for what is no limit."""
     path = number.path
     if path == ("duty", "ratio_tolerance"):
         return 1 if number.value else 0
     end = path[-1] if isinstance(path[-1], int) else None
     field = path[-2] if end is not None else path[-1]
-    for name, place in FIELDS.items():
+    alone = (*scene.limits.LAW.names, "wheel_diameter")  # limits that are no end of a range
+    for name, place in fields(scene).items():
         if place == (field, end) and path[0] in ("limits", "stage", "gears"):
-            ranged = end is not None or name in ("k_factor", "unit_load", "wheel_diameter")
+            ranged = end is not None or name in alone
             return 0 if not ranged else (-1 if end == 0 else 1)
     return 0

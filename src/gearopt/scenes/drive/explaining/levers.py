@@ -15,9 +15,9 @@ from gearopt.scenes.explaining.numbers import Path, allowed, eased, put, written
 from gearopt.scenes.explaining.remedies import apart
 from gearopt.scenes.reading.toml import dotted, toml_text
 
-FIELDS = {  # name of a limit or of a given size -> key in the file, and its end of a range
-    "k_factor": ("k_factor", None),
-    "unit_load": ("unit_load", None),
+FIELDS: dict[str, tuple[str, int | None]] = {
+    # name of a limit or of a given size -> key in the file, and its end of a range; limits of the
+    # strength law are written under their names
     "wheel_diameter": ("wheel_diameter", None),
     "module_low": ("module", 0),
     "module_high": ("module", 1),
@@ -91,13 +91,13 @@ def levers(scene: Scene, handles: Sequence[Handle]) -> list[Lever]:
             if inherited(scene, path):  # a tolerance of zero has no factor
                 end = {"ratio_low": 0, "ratio_high": 1}.get(family)
                 found.append(Lever(family, path, end, direction, "duty", tuple(group)))
-        elif family in FIELDS:
+        elif family in fields(scene):
             found += _of_stages(scene, family, direction, {stage_of(h): h for h in group})
     return found
 
 
 def _of_stages(scene: Scene, family: str, direction: int, group: dict[int, Handle]) -> list[Lever]:
-    field, own_end = FIELDS[family]
+    field, own_end = fields(scene)[family]
     table = "gears" if field == WIDTH else "limits"
     shared = getattr(getattr(scene, table), field, None)
     takers = [k for k in group if not scene.stage or getattr(scene.stage[k], field) is None]
@@ -120,6 +120,11 @@ def _of_stages(scene: Scene, family: str, direction: int, group: dict[int, Handl
         elif shared is None and inherited(scene, path) is not None:  # a load limit of a preset
             found.append(Lever(family, path, own_end, direction, "limit", (handle,)))
     return found
+
+
+def fields(scene: Scene) -> dict[str, tuple[str, int | None]]:
+    """FIELDS with the limits of the strength law before them."""
+    return {name: (name, None) for name in scene.limits.LAW.names} | FIELDS
 
 
 def stage_of(handle: Handle) -> int:

@@ -135,7 +135,7 @@ def _tried(case: Case, ways: Iterable[Way]) -> list[tuple[Way, Remedy]]:
 
 
 def _alike(case: Case, base: Problem | None, movable: Sequence[Lever]) -> Iterator[Way]:
-    """One factor for a kind of limit that every stage has for itself, and for both load limits."""
+    """One factor for a kind of limit that every stage has for itself, and for all load limits."""
     limits = [m for m in movable if m.sort == "limit"]
     common = {m.family for m in limits if m.shared}
     groups = [
@@ -143,7 +143,7 @@ def _alike(case: Case, base: Problem | None, movable: Sequence[Lever]) -> Iterat
         for family in dict.fromkeys(m.family for m in limits)
         if family not in common
     ]
-    loads = [m for m in limits if m.family in ("k_factor", "unit_load")]
+    loads = [m for m in limits if m.family in case.scene.limits.LAW.names]
     groups.append([m for m in loads if m.shared or m.family not in common])
     for group in groups:
         if len(group) < 2 or case.clock.over:

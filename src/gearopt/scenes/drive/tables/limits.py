@@ -1,11 +1,13 @@
 """[limits], [teeth] and [objective]: what stages must keep to, and what is best."""
 
 from fractions import Fraction
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 from pydantic import Field, model_validator
 
 from gearopt import units
+from gearopt.formulations.strength import Law
+from gearopt.formulations.strength.k_factor import K_FACTOR
 from gearopt.formulations.train import OBJECTIVES
 from gearopt.physics.gears import MODULES
 from gearopt.scenes.drive.tables.stages import (
@@ -36,6 +38,8 @@ ORIGINS = {
 class Limits(Table):
     """Limits of every stage, unless its own table says otherwise."""
 
+    LAW: ClassVar[Law] = K_FACTOR  # each of its limits is a key, here and of a stage
+
     preset: Annotated[str | None, choice(*PRESETS)] = Field(
         None,
         description="K-factor and unit load that a source states: chong-lee-elevator is 300 psi "
@@ -59,18 +63,18 @@ class Limits(Table):
 
     @model_validator(mode="after")
     def _loads(self) -> "Limits":
-        if self.preset is None and self.k_factor is None and self.unit_load is None:
-            raise refuse("is missing (or give k_factor and unit_load)", at=("preset",))
-        for name in ("k_factor", "unit_load"):
-            given = getattr(self, name) is not None
-            if given and self.preset is not None:
+        given = [name for name in self.LAW.names if getattr(self, name) is not None]
+        if self.preset is None and not given:
+            raise refuse(f"is missing (or give {' and '.join(self.LAW.names)})", at=("preset",))
+        for name in self.LAW.names:
+            if name in given and self.preset is not None:
                 raise refuse("stands beside preset, which sets it", at=(name,), action="remove")
-            if not given and self.preset is None:
+            if name not in given and self.preset is None:
                 raise refuse("is missing (or give preset)", at=(name,))
         return self
 
     def load(self, name: str) -> Quantity:
-        """K-factor or unit load, from the file or the preset."""
+        """A limit of the strength law, from the file or the preset."""
         own: Quantity | None = getattr(self, name)
         return own or units.parse(PRESETS[str(self.preset)][name], "stress")
 

@@ -1,0 +1,93 @@
+"""What limits a gear pair at a torque and a speed: one file a law, and what they all can be asked.
+
+A law gives indices (stresses, load factors) of a loaded pair, each with a limit that a stage sets.
+Whoever sizes gears asks it for utilisations or for the minimum face width and knows no formula.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from gearopt.optimise.terms import Array
+from gearopt.physics.gears import GearPair
+
+ALLOWANCE = 1e-12  # a utilisation this little above 1 is rounding, not a violation
+HALVINGS = 50  # of a bisection over 14 units of log width: to rounding
+NARROW = 1e-6  # of the widest face width: nothing narrower is looked for
+
+
+@dataclass(frozen=True)
+class Limit:
+    """The limit of one index: its name, which is also its key in a file, and its unit."""
+
+    name: str
+    unit: str = "MPa"
+
+
+@dataclass(frozen=True)
+class Law:
+    """A strength law: indices of a loaded gear pair, none of which may exceed its limit.
+
+    title: of its indices, in words; kind: what they are and are not, for readers of a result.
+    limits: of the indices, in order. indices(pair, torque, speed): those of a `GearPair` at torque
+    [N mm] and speed [rad/s] of its pinion, in the units of the limits; text on floats, arrays or
+    casadi scalars. Where it is a posynomial, so is the continuous drive, and its minimum is global;
+    else Ipopt takes it as it is.
+
+    Promised of every law: an index falls as the face width grows, and at one power (torque times
+    speed) it rises with the torque. proportional: for given teeth it is c T/(b m_n^2), and for a
+    given pinion diameter it does not fall as the teeth get more and smaller: then minimum widths
+    and modules have closed forms, which are bisected otherwise.
+    """
+
+    title: str
+    limits: tuple[Limit, ...]
+    indices: Callable[[GearPair, Any, Any], tuple[Any, ...]]
+    proportional: bool = False
+    kind: str = "index values, not a rating"
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names of the limits."""
+        return tuple(limit.name for limit in self.limits)
+
+    def utilisations(
+        self, pair: GearPair, torque: Any, speed: Any, allowable: Sequence[Any]
+    ) -> dict[str, Any]:
+        """Every index over its limit, by name; allowable: the limits."""
+        found = self.indices(pair, torque, speed)
+        return {n: i / a for n, i, a in zip(self.names, found, allowable, strict=True)}
+
+    def load(self, pair: GearPair, torque: Any, speed: Any, allowable: Sequence[float]) -> Array:
+        """The largest utilisation; of a proportional law at unit width, the minimum width [mm]."""
+        found = tuple(self.utilisations(pair, torque, speed, allowable).values())
+        return np.asarray(np.maximum.reduce(np.broadcast_arrays(*found)))
+
+    def least_width(
+        self,
+        pair: GearPair,
+        torque: Any,
+        speed: Any,
+        allowable: Sequence[float],
+        ends: tuple[Array, Array],
+    ) -> Array:
+        """Minimum face width [mm] (n,) between two ends that carries; inf where none does.
+
+        pair: of any face width; ends (n,): the narrowest and the widest.
+        """
+
+        def carries(width: Array) -> Any:
+            loaded = pair.of_width(width)
+            return self.load(loaded, torque, speed, allowable) <= 1.0 + ALLOWANCE
+
+        narrowest, widest = np.maximum(ends[0], NARROW * ends[1]), ends[1]
+        with np.errstate(all="ignore"):  # of widths of zero, where there is no choice
+            found = np.where(carries(widest), widest, np.inf)
+            low = narrowest
+            for _ in range(HALVINGS if np.any(narrowest < widest) else 0):
+                middle = np.sqrt(low * np.minimum(found, widest))
+                good = carries(middle)
+                low, found = np.where(good, low, middle), np.where(good, middle, found)
+            return np.where(carries(narrowest), narrowest, found)

@@ -1,0 +1,16 @@
+"""K-factor and unit load: indices of contact stress and of tooth-root stress (Chong and Lee)."""
+
+from gearopt.formulations.strength import Law, Limit
+from gearopt.physics.loads import k_factor, unit_load
+
+K_FACTOR = Law(
+    "K-factor and unit load",
+    (Limit("k_factor"), Limit("unit_load")),
+    lambda pair, torque, speed: (
+        k_factor(torque, pair.pinion.reference_diameter, pair.face_width, pair.ratio),
+        unit_load(torque, pair.pinion.reference_diameter, pair.face_width, pair.normal_module),
+    ),
+    proportional=True,
+    kind="index values, not a rating by ISO 6336 or AGMA 2101. Application, dynamic and load "
+    "distribution factors are not in them",
+)
