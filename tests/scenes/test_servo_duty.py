@@ -17,8 +17,7 @@ from gearopt.optimise.result import Budget
 from gearopt.report.pages.result import page, sections, tables
 from gearopt.report.terminal.result import show
 from gearopt.scenes.reading.load import read
-from gearopt.scenes.servo.clearance import blocked
-from gearopt.scenes.servo.ways_out import ways_out
+from gearopt.scenes.servo.ways_out import blocked, ways_out
 
 PROBLEMS = Path(__file__).parents[2] / "problems"
 FAST = (PROBLEMS / "servo_gimbal_fast.toml").read_text(encoding="utf-8")
@@ -354,7 +353,7 @@ def test_a_diameter_that_was_not_tried_in_time_is_not_called_out_of_reach(monkey
         clock.stopped = found == "limit"
         return found
 
-    monkeypatch.setattr("gearopt.scenes.servo.clearance._status", answer)
-    rooms = blocked(asked, clock, lambda other: "limit")
+    monkeypatch.setattr("gearopt.formulations.servo.impossible.status", answer)
+    rooms = blocked(asked, clock)
     assert not rooms.remedies and "out of reach" not in rooms.message
     assert rooms.message.endswith("; time ran out before all ways out were tried")

@@ -1,22 +1,18 @@
 """What to write instead where no train is accurate enough: found by solving, and solved again."""
 
-import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 from fractions import Fraction
 
 from gearopt import units
-from gearopt.formulations.servo import split
+from gearopt.formulations.servo import impossible, split
 from gearopt.formulations.servo.choice import train_problem
 from gearopt.formulations.servo.ratio.duty import UNITS
 from gearopt.formulations.servo.split.exact import NO_TEETH
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.explanation import Change, Remedy
-from gearopt.optimise.explaining.handles import handles
-from gearopt.optimise.explaining.repair import conflict
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import solve, solve_within
-from gearopt.scenes.servo.clearance import blocked
 from gearopt.scenes.servo.gears import errors, of_point
 from gearopt.scenes.servo.scene import Scene
 from gearopt.scenes.servo.tables.mesh import WORDS, Mesh
@@ -26,9 +22,29 @@ DIGITS = 5  # of a number that is proposed; rounded to the easy side
 ROOM = 1e-9  # by which a proposal is easier, to be feasible in doubles
 BACK = 1e-3  # a remedy that much smaller must be impossible
 LOOSE = "90 deg"  # an error that no train misses
-WIDER = tuple(Fraction(1, 10**k) for k in range(6, 0, -1))  # ratio tolerances that are tried
 LATE = "time ran out before it was known why"
 NAMED = 3  # sources of error that the message names
+COVERED = (
+    "in all trains that keep all other limits the first wheel covers the output shaft, however "
+    "thin that is: allow a larger last wheel, or smaller modules"
+)
+
+Place = tuple[str, str]  # table and key
+PLACES: tuple[Place, ...] = (
+    ("shaft", "diameter"),
+    ("space", "motor_diameter"),
+    ("space", "hub_diameter"),
+    ("train", "output_shaft_diameter"),
+)
+
+
+@dataclass(frozen=True)
+class Blocked:
+    """Bodies that leave no train room, the diameters that would, and a message."""
+
+    conflict: tuple[str, ...]
+    remedies: tuple[Remedy, ...]
+    message: str
 
 
 def ways_out(
@@ -48,7 +64,7 @@ def ways_out(
         if still.status != "infeasible":
             return (), (), LATE
         told = still.message
-    rooms = blocked(scene, clock, lambda other: _status(other, clock))
+    rooms = blocked(scene, clock)
     if asked is None and rooms is not None:
         return rooms.conflict, rooms.remedies, rooms.message
     if asked is None:
@@ -64,7 +80,8 @@ def ways_out(
     if least.status != "optimal":
         return (), (), "time ran out before the least possible error was proven"
     best = units.parse(f"{least.value!r} deg", "angle")
-    names, floor = _conflict(scene, clock)
+    names = impossible.in_conflict(scene.servo_train(), clock)
+    floor = impossible.minimum_error(scene.servo_train(), clock) if names else None
     bound = (floor or best.value) / asked.value
     found = [ways(scene, best, bound, clock) for ways in (_wider, _finer)]
     proven = tuple(r for r in found if r.verified["with"] == "optimal")
@@ -80,45 +97,17 @@ def _aiming(scene: Scene, aim: str) -> Scene:
     return scene.model_copy(update={"train": train})
 
 
-def _conflict(scene: Scene, clock: Clock) -> tuple[tuple[str, ...], float | None]:
-    """Limits that real-valued teeth and modules do not keep either, and their least error [rad].
-
-    Nothing where they keep all of them.
-    """
-    train = scene.servo_train()
-    names = _blamed(train, clock)
-    if not names:
-        return (), None
-    relaxed = split.relaxation(replace(train, error=math.pi), "error")
-    return names, solve_within(clock, relaxed).bound
-
-
-def _blamed(train: split.ServoTrain, clock: Clock, goal: str = "") -> tuple[str, ...]:
-    """Limits that no real-valued teeth and modules keep together, none of them to spare."""
-    known = "error" if train.lost_motion is not None else "inertia"
-    relaxed = split.relaxation(train, goal or known)
-    if solve_within(clock, relaxed).status != "infeasible":
-        return ()
-    return tuple(handle.name for handle in conflict(relaxed, handles(relaxed), clock))
-
-
 def _other(scene: Scene, told: str, clock: Clock) -> tuple[tuple[str, ...], str]:
     """What makes a train impossible whatever its error: limits in conflict, and a sentence.
 
     told: what the search said.
     """
     train = scene.servo_train()
-    if names := _blamed(train, clock):
+    if names := impossible.in_conflict(train, clock):
         return names, "real-valued teeth and modules do not keep all other limits either"
     if told != NO_TEETH:  # it names the box, or the stiffness
         return (), told
-    for wider in WIDER:
-        if wider <= train.tolerance:
-            continue
-        other = replace(train, tolerance=wider)
-        problem = split.problem(other, "inertia")
-        if clock.over or solve_within(clock, problem).status != "optimal":
-            continue
+    if (other := impossible.with_wider_ratio(train, clock)) is not None:
         own, ends = (_span(scene, one) for one in (train, other))
         return (), f"no whole teeth make the ratio {own}; {ends} some do"
     if clock.over:
@@ -143,7 +132,7 @@ def _of_duty(scene: Scene, clock: Clock) -> tuple[tuple[str, ...], str]:
     train = scene.servo_train()
     duty = train.duty
     assert duty is not None
-    names = _blamed(train, clock, duty.goal)
+    names = impossible.in_conflict(train, clock, duty.goal)
     if duty.most_ratio is not None and duty.most_ratio < train.ratios[0]:
         why = f"the motor's speed limit allows a total ratio of {float(duty.most_ratio):.6g}"
         return names, f"it is for the duty: {why} at the most"
@@ -245,3 +234,86 @@ def _scaled(scene: Scene, part: float, exact: bool = False) -> Scene:
 
 def _status(scene: Scene, clock: Clock) -> str:
     return "limit" if clock.over else solve_within(clock, train_problem(scene.choice())).status
+
+
+def blocked(scene: Scene, clock: Clock) -> Blocked | None:
+    """What stands in the way; None where a train is impossible without it too."""
+    blamed = impossible.in_the_way(scene.servo_train(), clock)
+    if blamed is None:
+        return None
+    names = tuple(name for name, diameter in vars(blamed).items() if diameter > 0)
+    if not names:
+        return Blocked(("output_shaft",), (), COVERED)
+    what = " and ".join(name.replace("_", " ") for name in names)
+    message = f"no train that keeps all other limits leaves room for the {what}"
+    ways = _ways(scene, clock)
+    proven = tuple(way for way in ways if way.verified["with"] == "optimal")
+    if clock.over:
+        message += "; time ran out before all ways out were tried"
+    elif ways and not proven:
+        message += "; with less in the way, box, stiffness or duty stay out of reach"
+    return Blocked(names, proven, message)
+
+
+def _diameters(scene: Scene) -> dict[Place, Quantity]:
+    """The diameters that a file gives, above zero."""
+    given = {p: getattr(getattr(scene, p[0]), p[1], None) for p in PLACES}
+    return {p: q for p, q in given.items() if q is not None and q.number > 0}
+
+
+def _ways(scene: Scene, clock: Clock) -> tuple[Remedy, ...]:
+    """Each diameter alone, the least change first; all of them alike where none alone helps."""
+    given = [p for p in _diameters(scene) if p != PLACES[3] or scene.space is None]
+    found = [_smaller(scene, (place,), clock) for place in given]
+    alone = sorted((way for way in found if way is not None), key=lambda way: way.factor)
+    if alone or len(given) < 2:
+        return tuple(alone)
+    alike = _smaller(scene, tuple(given), clock)
+    return () if alike is None else (alike,)
+
+
+def _smaller(scene: Scene, places: tuple[Place, ...], clock: Clock) -> Remedy | None:
+    """The largest part of some diameters that leaves a train; None where none does."""
+
+    def thinner(part: float) -> Scene:
+        return _thinner(scene, places, part)
+
+    part = impossible.largest_part(lambda part: thinner(part).servo_train(), clock)
+    if part is None:
+        return None
+    new = thinner(part)
+    changes = _changes(scene, new)
+    less = thinner(min(part * (1.0 + BACK), 1.0))
+    verified = {"with": _status(new, clock), "with_less": _status(less, clock)}
+    kind = "least" if len(places) == 1 else "even"
+    what = ".".join(places[0]) if len(places) == 1 else "all diameters"
+    factor = max(change.factor for change in changes)
+    return Remedy(kind, what, changes, factor, None, verified)  # a bound is of real-valued teeth
+
+
+def _thinner(scene: Scene, places: tuple[Place, ...], part: float) -> Scene:
+    """The scene with a part of some diameters, rounded down; a hub stays around its shaft."""
+    for place in places:
+        was = _diameters(scene)[place]
+        number = Fraction(_rounded(float(was.number) * part, False))
+        scene = _with(scene, place, replace(was, number=number))
+    given = _diameters(scene)
+    hub, shaft = given.get(PLACES[2]), given.get(PLACES[3])
+    if hub is not None and shaft is not None and hub.value < shaft.value:
+        scene = _with(scene, PLACES[3], hub)
+    return scene
+
+
+def _with(scene: Scene, place: Place, diameter: Quantity) -> Scene:
+    table, key = place
+    changed = getattr(scene, table).model_copy(update={key: diameter})
+    return scene.model_copy(update={table: changed})
+
+
+def _changes(before: Scene, after: Scene) -> tuple[Change, ...]:
+    new = _diameters(after)
+    return tuple(
+        Change(".".join(p), f'"{was}"', f'"{new[p]}"', was.value / new[p].value)
+        for p, was in _diameters(before).items()
+        if new[p] != was
+    )

@@ -1,0 +1,80 @@
+"""Why a servo train is impossible: limits in conflict, a ratio too narrow, bodies in the way."""
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from fractions import Fraction
+from typing import Any
+
+from gearopt.formulations.servo import split
+from gearopt.formulations.servo.split import Bodies, ServoTrain
+from gearopt.optimise.clock import Clock
+from gearopt.optimise.explaining.handles import handles
+from gearopt.optimise.explaining.repair import conflict
+from gearopt.optimise.solve import solve_within
+
+WIDER = tuple(Fraction(1, 10**k) for k in range(6, 0, -1))  # ratio tolerances that are tried
+CLOSE = 1e-7  # relative: between the largest part that leaves a train, and the least that none
+THIN = 1e-6  # part of a diameter below which it is no way out
+
+
+def status(train: ServoTrain, clock: Clock) -> str:
+    """Return the status of a train in any box, whatever its duty."""
+    return "limit" if clock.over else solve_within(clock, split.problem(train)).status
+
+
+def in_conflict(train: ServoTrain, clock: Clock, goal: str = "") -> tuple[str, ...]:
+    """Return limits that no real-valued teeth and modules keep together, none of them to spare."""
+    known = "error" if train.lost_motion is not None else "inertia"
+    relaxed = split.relaxation(train, goal or known)
+    if solve_within(clock, relaxed).status != "infeasible":
+        return ()
+    return tuple(handle.name for handle in conflict(relaxed, handles(relaxed), clock))
+
+
+def minimum_error(train: ServoTrain, clock: Clock) -> float | None:
+    """Return a bound of the error [rad] of real-valued teeth and modules; None without one."""
+    relaxed = split.relaxation(replace(train, error=math.pi), "error")
+    return solve_within(clock, relaxed).bound
+
+
+def with_wider_ratio(train: ServoTrain, clock: Clock) -> ServoTrain | None:
+    """Return the train with the least tolerance of `WIDER` that whole teeth keep; None for none."""
+    for tolerance in WIDER:
+        other = replace(train, tolerance=tolerance)
+        if tolerance > train.tolerance and status(other, clock) == "optimal":
+            return other
+    return None
+
+
+def in_the_way(train: ServoTrain, clock: Clock) -> Bodies | None:
+    """Return the bodies that leave no train room, those of diameter 0 being none of them.
+
+    None where a train is possible with all of them, or impossible without any.
+    """
+    if train.bodies is None or status(train, clock) != "infeasible":
+        return None
+    if status(replace(train, bodies=None), clock) != "optimal":
+        return None
+    blamed = train.bodies
+    for name in ("shaft", "motor", "output_shaft"):
+        none: dict[str, Any] = {name: Fraction(0)}
+        thinner = replace(blamed, **none)
+        if status(replace(train, bodies=thinner), clock) == "infeasible":
+            blamed = thinner
+    return blamed
+
+
+def largest_part(train_of: Callable[[float], ServoTrain], clock: Clock) -> float | None:
+    """Return the largest part of some diameters that leaves a train, by bisection.
+
+    train_of: the train with such a part of them. None where no part does, or time is up.
+    """
+    low, high = THIN, 1.0
+    if status(train_of(low), clock) != "optimal":
+        return None
+    while high - low > CLOSE * high:
+        middle = 0.5 * (low + high)
+        leaves = status(train_of(middle), clock) == "optimal"
+        low, high = (middle, high) if leaves else (low, middle)
+    return None if clock.over else low
