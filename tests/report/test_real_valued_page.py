@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 import gearopt
+from gearopt.physics.gears import Gear
 from gearopt.report.measures import METRIC
 from gearopt.report.pages import layout_solid
 from gearopt.report.pages.result import page, tables
@@ -26,7 +27,7 @@ def real_valued():
 
 @pytest.mark.parametrize("teeth", [20.0, 20.4, 19.6, 20])
 def test_a_gear_closes_whatever_its_teeth(teeth):
-    gear = Toothed(teeth, 40.0, 44.0, 35.0, 0.0, 10.0, (0.0, 0.0))
+    gear = Toothed(Gear(2.0, teeth, 40.0, 10.0), 0.0, 10.0, (0.0, 0.0))
     points, _ = gear_mesh(gear, 3, 0.3)
     around = [math.atan2(z, y) for x, y, z in points if x == 0.0 and (y, z) != (0.0, 0.0)]
     tips = [p for p in points if p[0] == 0.0 and math.hypot(*p[1:]) > 21.9]

@@ -16,6 +16,7 @@ from svg_reader import drawings, extents, marks, numbers, ours
 import gearopt
 from gearopt.formulations.layout.layout_design import LayoutDesign
 from gearopt.optimise.typed import typed
+from gearopt.physics.gears import Gear
 from gearopt.report.pages import frame
 from gearopt.report.pages.bodies import keep_outs, layout_of, nearest
 from gearopt.report.pages.labels import SIZE
@@ -263,7 +264,7 @@ def test_bodies_are_closed_and_turned_outwards():
     assert math.isclose(volume(upright(rod((3, 4), 10, 5, 25))), around * math.pi * 2000)
     assert math.isclose(volume(block((1, 2, 3), (2, 4, 6))), 6.0)
     rack = [
-        volume(gear_mesh(Toothed(60, 180, 186, 172.5, 0, 30, (1, 2), helix), 3, 0.05))
+        volume(gear_mesh(Toothed(Gear(3.0, 60, 180.0, 30.0, helix), 0, 30, (1, 2)), 3, 0.05))
         for helix in (0.0, 0.4, -0.4)
     ]
     middle = math.pi / 4 * 180**2 * 30

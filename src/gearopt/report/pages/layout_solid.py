@@ -7,6 +7,7 @@ from typing import Any
 
 from gearopt.formulations.layout.layout_design import GearDesign, LayoutDesign
 from gearopt.optimise.result import Result
+from gearopt.physics.gears import Gear
 from gearopt.report.measures import Measures
 from gearopt.report.pages.bodies import (
     box_corners,
@@ -109,15 +110,18 @@ def _toothed(
     phase = math.atan2(there[1] - here[1], there[0] - here[0])
     middle = sum(g.from_mm + g.to_mm for g in pair.values()) / (2.0 * len(pair))
     hand = 1.0 if (gear.stage % 2 == 1) != wheel else -1.0
-    return Toothed(
+    made = Gear(
+        gear.normal_module_mm,
         gear.teeth,
         gear.reference_diameter_mm,
-        gear.tip_diameter_mm,
-        gear.root_diameter_mm,
+        gear.to_mm - gear.from_mm,
+        hand * math.radians(abs(gear.helix_angle_deg)),
+    )
+    return Toothed(
+        made,
         gear.from_mm,
         gear.to_mm,
         here,
-        hand * math.radians(abs(gear.helix_angle_deg)),
         phase + (math.pi / drawn_teeth(gear.teeth) if wheel else 0.0),
         middle,
     )

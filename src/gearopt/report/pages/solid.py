@@ -11,13 +11,13 @@ from base64 import b64encode
 from dataclasses import dataclass
 from typing import Any
 
+from gearopt.physics.gears import Gear
 from gearopt.report.measures import Measures
 
 Point = tuple[float, float, float]
 Face = tuple[int, int, int]
 Mesh = tuple[list[Point], list[Face]]
 
-PRESSURE_ANGLE = math.radians(20.0)  # normal; of the basic rack that nearly all gears have
 BACKLASH = 0.03  # of a pitch, so that flanks in mesh are seen apart
 MOST_TEETH, MOST_POINTS = 10_000, 2_000_000  # of a gear that is drawn
 ROUND = 48  # sides of a cylinder
@@ -37,58 +37,56 @@ LIGHT = {
 
 @dataclass(frozen=True)
 class Toothed:
-    """A gear: teeth, diameters [mm], faces from..to along x [mm], helix angle [rad, signed].
+    """A gear, its helix angle signed by its hand, from start to end along x [mm].
 
     centre: (y, z) of its axis. phase: direction of the middle of a tooth at x = middle [rad].
     """
 
-    teeth: float
-    reference: float
-    tip: float
-    root: float
+    gear: Gear
     start: float
     end: float
     centre: tuple[float, float]
-    helix: float = 0.0
     phase: float = 0.0
     middle: float = 0.0
 
 
-def gear_mesh(gear: Toothed, flank: int, step: float) -> Mesh:
+def gear_mesh(placed: Toothed, flank: int, step: float) -> Mesh:
     """A helical gear with involute flanks; the bore is left out.
 
     flank: points on a flank, at least 2. step: largest twist between two sections [rad].
     Half the angle of a tooth at radius r is pi/(2 z) + inv(alpha_t) - inv(alpha_r).
     """
+    gear, start, end = placed.gear, placed.start, placed.end
     outline = _outline(gear, flank)
-    rate = 2.0 * math.tan(gear.helix) / gear.reference  # twist per mm
-    sections = 1 + max(1, math.ceil(abs(rate) * (gear.end - gear.start) / step))
+    rate = 2.0 * math.tan(gear.helix_angle) / gear.reference_diameter  # twist per mm
+    sections = 1 + max(1, math.ceil(abs(rate) * (end - start) / step))
     if sections * len(outline) > MOST_POINTS:
         raise ValueError(f"a gear of {gear.teeth:g} teeth that is drawn in {sections:.0e} sections")
     points: list[Point] = []
+    y, z = placed.centre
     for k in range(sections):
-        x = gear.start + (gear.end - gear.start) * k / (sections - 1)
-        turn = gear.phase + rate * (x - gear.middle)
+        x = start + (end - start) * k / (sections - 1)
+        turn = placed.phase + rate * (x - placed.middle)
         for angle, r in outline:
             at = angle + turn
-            points.append((x, gear.centre[0] + r * math.cos(at), gear.centre[1] + r * math.sin(at)))
+            points.append((x, y + r * math.cos(at), z + r * math.sin(at)))
     faces = _skin(len(outline), sections)
     around, last = len(outline), len(points) - len(outline)
     middle = len(points)
-    points += [(gear.start, *gear.centre), (gear.end, *gear.centre)]
+    points += [(start, y, z), (end, y, z)]
     for k in range(around):  # a fan over each face
         n = (k + 1) % around
         faces += [(middle, n, k), (middle + 1, last + k, last + n)]
     return points, faces
 
 
-def _outline(gear: Toothed, flank: int) -> list[tuple[float, float]]:
+def _outline(gear: Gear, flank: int) -> list[tuple[float, float]]:
     """(angle, radius) once round the gear, a tooth in the middle of angle 0."""
-    transverse = math.atan(math.tan(PRESSURE_ANGLE) / math.cos(gear.helix))
-    base = gear.reference / 2.0 * math.cos(transverse)
+    transverse = float(gear.transverse_pressure_angle)
+    base = float(gear.base_diameter) / 2.0
     teeth = drawn_teeth(gear.teeth)
     half = math.pi / (2.0 * teeth) * (1.0 - 2.0 * BACKLASH)
-    low, high = gear.root / 2.0, gear.tip / 2.0
+    low, high = gear.root_diameter / 2.0, gear.tip_diameter / 2.0
     side = []
     for k in range(flank):
         at = low + (high - low) * k / (flank - 1)

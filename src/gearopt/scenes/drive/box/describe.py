@@ -17,11 +17,10 @@ from gearopt.formulations.layout.layout_design import (
 )
 from gearopt.formulations.layout.placed import Placed, placed
 from gearopt.formulations.layout.slabs import Arrangement
-from gearopt.scenes.drive.scene import Scene
 
 
 def described(
-    scene: Scene, box: Gearbox, one: Arrangement, angles: tuple[float, ...], sized: DriveDesign
+    box: Gearbox, one: Arrangement, angles: tuple[float, ...], sized: DriveDesign
 ) -> LayoutDesign:
     """Describe the layout of a sized drive as a result holds it."""
     found = placed(box, one, angles)
@@ -39,7 +38,7 @@ def described(
             )
             for k, ((y, z), body) in enumerate(zip(found.axes, shafts, strict=True), 1)
         ),
-        gears=_gears(scene, one, sized),
+        gears=_gears(box, one, sized),
         bearings=tuple(
             BearingDesign(shaft=k, diameter_mm=2 * body.radius, from_mm=body.x[0], to_mm=body.x[1])
             for k, own in enumerate(one.bodies, 1)
@@ -78,12 +77,13 @@ def _box(found: Placed) -> BoxDesign:
     )
 
 
-def _gears(scene: Scene, one: Arrangement, sized: DriveDesign) -> tuple[GearDesign, ...]:
+def _gears(box: Gearbox, one: Arrangement, sized: DriveDesign) -> tuple[GearDesign, ...]:
     gears = []
     for k, own in enumerate(one.bodies, 1):
         for body in (b for b in own if b.gear):
             member, stage = body.name.split()[0], sized.stages[body.stage]
-            wheel = member == "wheel"
+            wheel, pair = member == "wheel", box.pairs[body.stage]
+            gear = pair.wheel if wheel else pair.pinion
             gears.append(
                 GearDesign(
                     name=body.name,
@@ -91,17 +91,11 @@ def _gears(scene: Scene, one: Arrangement, sized: DriveDesign) -> tuple[GearDesi
                     member=member,
                     shaft=k,
                     teeth=stage.wheel_teeth if wheel else stage.pinion_teeth,
-                    normal_module_mm=stage.normal_module_mm,
-                    reference_diameter_mm=stage.wheel_diameter_mm
-                    if wheel
-                    else stage.pinion_diameter_mm,
-                    tip_diameter_mm=stage.wheel_tip_diameter_mm
-                    if wheel
-                    else stage.pinion_tip_diameter_mm,
-                    root_diameter_mm=stage.wheel_root_diameter_mm
-                    if wheel
-                    else stage.pinion_root_diameter_mm,
-                    helix_angle_deg=math.degrees(scene.gears.helix_angle.value),
+                    normal_module_mm=float(gear.normal_module),
+                    reference_diameter_mm=float(gear.reference_diameter),
+                    tip_diameter_mm=float(gear.tip_diameter),
+                    root_diameter_mm=float(gear.root_diameter),
+                    helix_angle_deg=math.degrees(gear.helix_angle),
                     from_mm=body.x[0],
                     to_mm=body.x[1],
                 )

@@ -70,7 +70,7 @@ def told(
 ) -> Result:
     """A result with its gears and layout in the words of a drawing."""
     gears = drive_design(sized.design)
-    found = described(scene, box, order, angles, gears)
+    found = described(box, order, angles, gears)
     before = sum(p.seconds for p in result.parts), sum(p.evaluations for p in result.parts)
     seconds, spent = before[0] + result.seconds, before[1] + result.evaluations
     last = {"seconds": seconds, "evaluations": spent, "best": result.value, "bound": result.bound}
