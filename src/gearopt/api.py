@@ -24,6 +24,7 @@ from gearopt.optimise.solve import GAP, evaluate  # noqa: F401
 from gearopt.optimise.solve import solve as solve_problem
 from gearopt.optimise.terms import Param, Repeat, Terms, Var  # noqa: F401
 from gearopt.scenes.reading.ask import Ask
+from gearopt.scenes.reading.inputs import inputs_of
 from gearopt.scenes.reading.load import kind_of, scene_module
 from gearopt.scenes.reading.load import load as load_file
 
@@ -63,7 +64,10 @@ def solve(
         return solve_problem(what, method, budget, seed, watch, gap)
     ask = Ask(method, budget, seed, watch, gap, top, prices)
     scene, module, names = _opened(what)
-    return _named(module.solve(scene, ask), options=asked, **names)
+    result: Result = module.solve(scene, ask)
+    if inputs := inputs_of(scene):
+        result = replace(result, report=result.report | {"inputs": inputs})
+    return _named(result, options=asked, **names)
 
 
 def explain(

@@ -10,6 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
+from pathlib import Path
 from typing import Any
 
 from pydantic import BaseModel, ConfigDict
@@ -31,18 +32,31 @@ class Table(BaseModel):
 
 
 @dataclass(frozen=True)
+class Opened:
+    """The files that are being read: each names the next one as its input; the last is this one."""
+
+    files: tuple[Path, ...]
+
+
+@dataclass(frozen=True)
 class Reads:
     """How a value of a file is read: read(value, example) -> value, or raises `refuse(...)`.
 
     example: a right value, shown where a wrong one stands. schema: the JSON schema of the value.
+    opens: the value names a file, and `Opened` (None of no file) is a third argument.
     """
 
-    reader: Callable[[Any, Any], Any]
+    reader: Callable[..., Any]
     example: Any
     schema: dict[str, Any]
+    opens: bool = False
 
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> core_schema.CoreSchema:
         """Let pydantic call the reader and nothing else."""
+        if self.opens:
+            return core_schema.with_info_plain_validator_function(
+                lambda value, info: self.reader(value, self.example, info.context)
+            )
         return core_schema.no_info_plain_validator_function(
             lambda value: self.reader(value, self.example)
         )

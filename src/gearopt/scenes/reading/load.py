@@ -15,6 +15,7 @@ from pydantic import BaseModel, ValidationError
 
 import gearopt.scenes
 from gearopt.errors import Fix, SceneError
+from gearopt.scenes.reading.fields import Opened
 from gearopt.scenes.reading.remedy import translate, wrong_name, wrong_value
 from gearopt.scenes.reading.spelling import near
 from gearopt.scenes.reading.toml import cut, dotted
@@ -61,8 +62,11 @@ def _likely(content: dict[str, Any]) -> str:
     return max(kinds(), key=known)
 
 
-def load(path: str | Path) -> Loaded:
-    """Read a problem file; SceneError says where it is wrong and what to write instead."""
+def load(path: str | Path, before: tuple[Path, ...] = ()) -> Loaded:
+    """Read a problem file; SceneError says where it is wrong and what to write instead.
+
+    before: the files by way of which it was named as an input.
+    """
     file = str(path)
     try:
         data = Path(path).read_bytes()
@@ -74,7 +78,7 @@ def load(path: str | Path) -> Loaded:
         text = getattr(reason, "strerror", None) or str(reason)
         remedy = "Check the name and the permissions"
         raise SceneError(file, "", "", f"cannot be read ({text})", remedy) from None
-    kind, scene = read(data, file)
+    kind, scene = read(data, file, before)
     return Loaded(scene, kind, file, hashlib.sha256(data).hexdigest(), _asked(data, file))
 
 
@@ -104,7 +108,7 @@ def _name_a_file(path: str | Path) -> str:
     return f"{found}`gearopt new drive` prints a file to start from"
 
 
-def read(data: bytes, file: str = "<text>") -> tuple[str, BaseModel]:
+def read(data: bytes, file: str = "<text>", before: tuple[Path, ...] = ()) -> tuple[str, BaseModel]:
     """Kind and scene of the bytes of a problem file; `file` is the name used in messages."""
     content = _parse(data, file)
     if not content:
@@ -125,7 +129,7 @@ def read(data: bytes, file: str = "<text>") -> tuple[str, BaseModel]:
         del content[key]
     model: type[BaseModel] = scene_module(kind).Scene
     try:
-        return kind, model.model_validate(content)
+        return kind, model.model_validate(content, context=Opened((*before, Path(file).resolve())))
     except ValidationError as wrong:
         raise translate(file, model, content, wrong) from None
 
