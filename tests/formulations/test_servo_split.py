@@ -23,8 +23,8 @@ from gearopt.formulations.servo.split import (
     unbeaten,
 )
 from gearopt.formulations.servo.split.exact import KERNEL
-from gearopt.formulations.servo.split.front import _one_by_one
 from gearopt.formulations.servo.split.numbers import numbers
+from gearopt.formulations.servo.split.order import _one_by_one
 from gearopt.formulations.servo.split.servo_train import OBJECTIVES
 from gearopt.optimise import tape
 from gearopt.optimise.kernels import kernel

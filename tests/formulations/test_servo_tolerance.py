@@ -10,9 +10,14 @@ from servo_tolerances import BASE, E_RSS, E_WC, S, components, stack
 from gearopt.errors import SolveError
 from gearopt.formulations.servo.tolerance import problem, search
 from gearopt.formulations.servo.tolerance.conic import continuous
-from gearopt.formulations.servo.tolerance.cost_bound import lower_bound
 from gearopt.formulations.servo.tolerance.distributions import NORMAL, RUN_OUT, UNIFORM
-from gearopt.formulations.servo.tolerance.roots import cheapest, closed_form, levels, roots
+from gearopt.formulations.servo.tolerance.roots import (
+    cheapest,
+    closed_form,
+    levels,
+    lower_bound,
+    roots,
+)
 from gearopt.formulations.servo.tolerance.stack import Component, ErrorBudget, Stack
 from gearopt.optimise import tape
 from gearopt.optimise.clock import Clock

@@ -32,7 +32,7 @@ from gearopt.report.pages.ways_out import remedy_words
 from gearopt.scenes.reading.load import read
 from gearopt.scenes.servo import EXAMPLE
 from gearopt.scenes.servo.assumptions import UNLISTED, assumptions, given_overlap
-from gearopt.scenes.servo.gears import of_point
+from gearopt.scenes.servo.train_part import of_point
 
 
 @pytest.mark.parametrize(

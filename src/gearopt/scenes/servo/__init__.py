@@ -22,7 +22,6 @@ from gearopt.physics.gears import disc_mass
 from gearopt.scenes.explaining.default import explained, of_report
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.servo.assumptions import assumptions, notes
-from gearopt.scenes.servo.gears import described, errors, given_gears, to_point
 from gearopt.scenes.servo.scene import EXAMPLE, Scene
 from gearopt.scenes.servo.tolerance_part import of_given, tolerance_part
 from gearopt.scenes.servo.tolerance_part import problem as tolerance_problem
@@ -30,9 +29,13 @@ from gearopt.scenes.servo.train_part import (
     Found,
     beside,
     box_part,
+    described,
+    errors,
+    given_gears,
     lightest_part,
     neighbours,
     ratio_part,
+    to_point,
     train_part,
 )
 from gearopt.scenes.servo.ways_out import ways_out

@@ -11,10 +11,9 @@ from gearopt.optimise.result import Result
 from gearopt.optimise.typed import untyped
 from gearopt.physics.gears import GearPair, Rack
 from gearopt.scenes.drive.explaining.undercut import undercut
-from gearopt.scenes.servo.gears import given_gears
 from gearopt.scenes.servo.scene import Scene
 from gearopt.scenes.servo.tables.trains import Train
-from gearopt.scenes.servo.train_part import candidates
+from gearopt.scenes.servo.train_part import candidates, given_gears
 
 SLOWEST = "acceleration"  # what nobody wants least
 FRICTION = {

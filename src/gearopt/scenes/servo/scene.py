@@ -14,7 +14,6 @@ from gearopt.optimise.terms import Array
 from gearopt.physics.stiffness import stiffness_of_frequency
 from gearopt.scenes.reading.fields import Table, refuse, words
 from gearopt.scenes.servo.example import EXAMPLE
-from gearopt.scenes.servo.tables.bodies import bodies, check_sector, check_shafts, half_sweep
 from gearopt.scenes.servo.tables.mesh import Accuracy, Mesh, Source
 from gearopt.scenes.servo.tables.motion import Duty, Load, Motor, servo_duty
 from gearopt.scenes.servo.tables.tolerances import (
@@ -32,6 +31,10 @@ from gearopt.scenes.servo.tables.trains import (
     Space,
     Stiffness,
     Train,
+    bodies,
+    check_sector,
+    check_shafts,
+    half_sweep,
 )
 
 __all__ = ["EXAMPLE", "Scene"]  # messages show tables of the example

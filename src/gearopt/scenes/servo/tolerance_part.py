@@ -23,10 +23,9 @@ from gearopt.optimise.solve import run
 from gearopt.optimise.terms import Array
 from gearopt.optimise.typed import untyped
 from gearopt.scenes.reading.ask import Ask
-from gearopt.scenes.servo.gears import sensitivity
 from gearopt.scenes.servo.scene import Scene
 from gearopt.scenes.servo.tables.tolerances import BudgetTable
-from gearopt.scenes.servo.train_part import Found
+from gearopt.scenes.servo.train_part import Found, sensitivity
 
 RULES: tuple[tuple[str, Any, float], ...] = (  # name, rule and kappa
     ("worst_case", "worst_case", 0.0),

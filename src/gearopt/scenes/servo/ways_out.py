@@ -13,9 +13,9 @@ from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.explanation import Change, Remedy
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import solve, solve_within
-from gearopt.scenes.servo.gears import errors, of_point
 from gearopt.scenes.servo.scene import Scene
 from gearopt.scenes.servo.tables.mesh import WORDS, Mesh
+from gearopt.scenes.servo.train_part import errors, of_point
 from gearopt.units import Quantity
 
 DIGITS = 5  # of a number that is proposed; rounded to the easy side

@@ -12,8 +12,7 @@ from gearopt.formulations.servo.split.core import (
     lightest_stage_ratio,
     stage_counts,
 )
-from gearopt.formulations.servo.split.front import unbeaten
-from gearopt.formulations.servo.split.order import feasible, in_order, trains
+from gearopt.formulations.servo.split.order import feasible, in_order, trains, unbeaten
 from gearopt.formulations.servo.split.relaxation import relaxation
 from gearopt.formulations.servo.split.servo_train import OBJECTIVES, ServoTrain
 from gearopt.formulations.servo.split.staged import staged

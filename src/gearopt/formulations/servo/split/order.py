@@ -1,11 +1,13 @@
-"""All feasible trains: at once, or in the order of an objective, in lots, however many there are.
+"""All feasible trains: at once, in lots in the order of an objective, or those unbeaten in several.
 
 Trains are points of `split.problem`, (trains, 6). `check` is called several times a second and may
 raise, to stop.
 """
 
 import math
+from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Iterator
+from typing import Any
 
 import numpy as np
 
@@ -23,6 +25,9 @@ WIDER = 4.0  # from a lot of few trains to the next one
 LOT = 1_000_000  # trains of a lot, at the most; more where they are as good as each other
 ALIKE = 1e-9  # relative: no lot is split further
 STEPS = 1_000_000  # of the kernel between two checks
+FEW = 60  # rows that are tried against all others
+MANY = 2000  # rows from which on that is quicker than one by one
+SLOW, IDLE = 0.005, 5  # part of the rows that must go at a time, or in so many more attempts
 ROOM = 4096  # trains that it may note between two checks, at first
 
 
@@ -93,3 +98,50 @@ def _listed(
             return None
     z1, z2, z3, z4, i, j = np.concatenate([rows[:0], *parts]).T
     return np.column_stack([z1, z3, z2, z4, given.module[i], given.module[j]]).astype(float)
+
+
+def unbeaten(worth: Array) -> list[int]:
+    """Rows of worth (N, 2 or 3) that no other row is as good as in all columns; less is better.
+
+    In the order of the first column; of equal rows the first one counts.
+    """
+    if worth.shape[1] == 2:
+        worth = np.column_stack([worth, np.zeros(len(worth))])
+    rows = _rest(worth)
+    return [int(rows[k]) for k in _one_by_one(worth[rows])]
+
+
+def _rest(worth: Array) -> Any:
+    """Rows that are left once those that a few good ones beat are dropped, all at once."""
+    low, rows, idle = worth.min(0), np.arange(len(worth)), 0
+    columns = np.ascontiguousarray(worth.T)
+    width = np.maximum(worth.max(0) - low, np.finfo(float).tiny)
+    for direction in np.random.default_rng(0).dirichlet([0.5, 0.5, 0.5], FEW) / width:
+        a, b, c = columns
+        best = (direction @ columns).argmin()
+        x, y, z = columns[:, best]
+        kept = (a < x) | (b < y) | (c < z) | ((a == x) & (b == y) & (c == z))
+        dropped = len(rows) - int(kept.sum())
+        if dropped:
+            rows, columns = rows[kept], np.ascontiguousarray(columns[:, kept])
+        idle = idle + 1 if dropped < SLOW * len(rows) else 0
+        if idle > IDLE or len(rows) < MANY:
+            break
+    return rows
+
+
+def _one_by_one(worth: Array) -> list[int]:
+    """The rows themselves: in the order of the first column, each against a stair of the rest."""
+    kept: list[int] = []
+    stairs: list[tuple[float, float]] = []  # of columns 2 and 3: one rising, the other falling
+    for k in np.lexsort(worth.T[::-1]):
+        step = (float(worth[k, 1]), float(worth[k, 2]))
+        at = bisect_right(stairs, (step[0], math.inf))
+        if at and stairs[at - 1][1] <= step[1]:
+            continue
+        kept.append(int(k))
+        at = bisect_left(stairs, step)
+        while at < len(stairs) and stairs[at][1] >= step[1]:
+            del stairs[at]
+        stairs.insert(at, step)
+    return kept

@@ -16,8 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from gearopt.formulations.servo.tolerance.cost_bound import lower_bound
-from gearopt.formulations.servo.tolerance.roots import closed_form, levels, roots
+from gearopt.formulations.servo.tolerance.roots import closed_form, levels, lower_bound, roots
 from gearopt.formulations.servo.tolerance.stack import Stack
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.problem import Problem
