@@ -11,7 +11,7 @@ from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.elastic import elastic
 from gearopt.optimise.explaining.handles import handles
 from gearopt.optimise.explaining.repair import least
-from gearopt.optimise.result import Budget
+from gearopt.optimise.result import Budget, Outcome
 
 # A bar of diameter d under a force F: least d^2 with 4 F S/(pi d^2 s) <= 1 and d <= D.
 F, STRESS, SAFETY = 1.0e4, 100.0, 1.5
@@ -205,3 +205,58 @@ def test_a_parameter_at_the_end_of_what_the_text_takes_is_probed_on_one_side():
     (found,) = explain(Problem("end", (Var("x", "", 0.1, 10.0, 2.0),), (eta,), evaluate)).influences
     assert found.sensitivity is None
     assert found.resolved[0] is not None and found.resolved[1] is None
+
+
+def bars(most, largest):
+    """Least section n d^2 of n whole bars, n d^2 >= 150, n and d up to a most."""
+
+    def exact(problem, budget, seed, watch):
+        (need,), upper = problem.parameter_values(), problem.bounds()[1]
+        n = math.ceil(need / upper[1] ** 2 - 1e-9)
+        if n > upper[0]:
+            return Outcome(None, infeasible=True, proof={"method": "closed form"})
+        x = np.array([n, math.sqrt(need / n)])
+        return Outcome(x, bound=need * (1.0 - 1e-12), proof={"method": "closed form"})
+
+    def evaluate(x, p):
+        section = x.n * x.d**2
+        return Terms({"section": section}, {"load": p.load / section})
+
+    n = Var("n", "", 1, most, 1, integer=True, key=("", "bars.most"))
+    d = Var("d", "mm", 0.01, largest, 1.0, log=True, key=("", "bars.diameter"))
+    load = Param("load", "", 150.0, role="limit", key="bars.load")
+    return Problem("bars", (n, d), (load,), evaluate, methods={"exact": exact})
+
+
+def test_a_discrete_problem_with_an_exact_method_is_explained():
+    """Four bars of 5 mm hold 100: six bars, 6.124 mm, or 100; each tried by the method itself."""
+    found = explain(bars(4, 5.0))
+    assert found.result.status == "infeasible"
+    writes = {r.changes[0].key: float(r.changes[0].write) for r in found.remedies}
+    assert writes["bars.most"] == 6.0
+    assert writes["bars.diameter"] == pytest.approx(math.sqrt(150.0 / 4.0), rel=1e-3)
+    assert writes["bars.load"] == pytest.approx(100.0, rel=1e-3)
+    for remedy in found.remedies:
+        assert remedy.verified == {"with": "optimal", "with_less": "infeasible"}
+
+
+def test_slopes_of_a_discrete_problem_hold_its_whole_numbers():
+    slopes = {i.key: i for i in explain(bars(8, 5.1)).influences}
+    assert slopes["bars.load"].sensitivity == pytest.approx(1.0, abs=1e-9)
+    assert slopes["bars.load"].resolved == pytest.approx((1.0, 1.0), abs=1e-6)
+    assert slopes["bars.diameter"].sensitivity == 0.0 and slopes["bars.diameter"].price == 0.0
+
+
+def test_a_bound_with_a_key_is_priced():
+    """Area d^2 to be the least with d >= 20: slope 2, and 1 % less is eased."""
+
+    def evaluate(x, p):
+        return Terms({"area": x.d**2}, {"need": 1.0 / x.d})
+
+    d = Var("d", "mm", 20.0, 50.0, 30.0, log=True, key="bar.diameter")
+    found = {i.key: i for i in explain(Problem("bar", (d,), (), evaluate)).influences}
+    lower, upper = found["bar.diameter[1]"], found["bar.diameter[2]"]
+    assert lower.sensitivity == pytest.approx(2.0, abs=1e-9)
+    assert lower.resolved == pytest.approx((2.0, 2.0), abs=1e-6)
+    assert lower.step == "-1%" and lower.price == pytest.approx(0.99**2 - 1.0, abs=1e-9)
+    assert upper.sensitivity == 0.0 and upper.price == 0.0

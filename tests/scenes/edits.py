@@ -10,11 +10,11 @@ from gearopt.scenes.drive import Scene
 NUMBER = re.compile(r"[+-]?[0-9][0-9.]*(?:[eE][+-]?[0-9]+)?")
 
 
-def scene_of(text):
+def scene_of(text, model=Scene):
     """The scene of a file's text, and its content."""
     content = tomllib.loads(text, parse_float=Decimal)
     content = {k: v for k, v in content.items() if k not in ("gearopt", "kind") and k[:2] != "x-"}
-    return Scene.model_validate(content), content
+    return model.model_validate(content), content
 
 
 def edited(content, remedy, back=(), model=Scene):

@@ -9,7 +9,7 @@ from typing import Annotated
 
 import numpy as np
 import pytest
-from edits import edited
+from edits import edited, scene_of
 from pydantic import Field
 
 import gearopt
@@ -280,3 +280,23 @@ def test_a_servo_train_holds_its_teeth():
     other = gearopt.solve(scene(fewer)).value
     assert least.step == "-1" and fewer != text
     assert least.price == pytest.approx(other / found.result.value - 1.0, abs=1e-9)
+
+
+def test_tolerances_that_no_budget_holds():
+    """0.9 of all deviations make 0.0974 deg where 0.08 are allowed: 0.1082 is what they make."""
+    text = (PROBLEMS / "servo_gimbal_tolerances.toml").read_text()
+    text = text.replace("[tolerances]", "[tolerances]\nleast_factor = 0.9")
+    text = text.replace('"worst_case"', '"worst_case"\nlimit = "0.08 deg"', 1)
+    own, content = scene_of(text, scene_module("servo").Scene)
+    found = gearopt.explain(own)
+    assert {"worst_case", "least of pitch of stage 2"} < set(found.conflict)
+    used = 0.08 * found.result.proof["least_utilisation"]
+    assert used < 0.0974
+    whole = {r.changes[0].key: r.changes[0].factor for r in found.remedies}
+    assert set(whole) == {"tolerances.least_factor", "budget[1].limit"}
+    assert whole["budget[1].limit"] == pytest.approx(whole["tolerances.least_factor"], rel=1e-3)
+    for remedy in found.remedies:
+        assert remedy.verified["with_less"] == "infeasible"
+        other = edited(content, remedy, model=type(own))
+        assert gearopt.solve(other).status == "optimal"
+        assert gearopt.solve(edited(content, remedy, remedy.changes, type(own))).value is None

@@ -10,11 +10,27 @@ import numpy as np
 from gearopt.optimise.clock import Clock, of_others
 from gearopt.optimise.explaining.elastic import elastic
 from gearopt.optimise.explaining.explanation import Change, Explanation, Influence, Remedy
-from gearopt.optimise.explaining.handles import PARAM, Handle, each_word, effective, handles
-from gearopt.optimise.explaining.repair import Repair, impossible, value_within
+from gearopt.optimise.explaining.handles import (
+    LOWER,
+    PARAM,
+    ROW,
+    UPPER,
+    Handle,
+    each_word,
+    effective,
+    handles,
+)
+from gearopt.optimise.explaining.repair import (
+    BEYOND,
+    TAKEN_BACK,
+    Repair,
+    impossible,
+    least_value,
+    value_within,
+)
 from gearopt.optimise.explaining.sensitivity import BINDS, sensitivities
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.result import Budget, Outcome, Result, Watch
+from gearopt.optimise.result import Budget, Result, Watch
 from gearopt.optimise.solve import run, solve_within
 from gearopt.optimise.terms import Array, spread
 
@@ -22,7 +38,6 @@ THERE = ("optimal", "stationary", "feasible")  # a design exists
 STEP = 1e-3  # relative, of the re-solves that check a sensitivity
 ZERO = 1e-9  # of the objective at the guess
 EASE = 0.01  # relative, of the step whose price is told
-TAKEN_BACK = 1e-3  # a remedy this much smaller must be impossible
 DIGITS = 6  # of a number that is proposed; rounded to the easy side
 ROOM = 2e-7  # a proposal asks for this much more than the least factor, to be feasible in doubles
 
@@ -30,29 +45,36 @@ ROOM = 2e-7  # a proposal asks for this much more than the least factor, to be f
 def explain(
     problem: Problem, budget: Budget | None = None, watch: Watch | None = None
 ) -> Explanation:
-    """Explain the answer to a continuous problem.
+    """Explain the answer to a problem: one without discrete variables, or with an exact method.
 
-    Impossible: the conflict and its remedies. Possible: the limits that bind, and for every
-    parameter its sensitivity, checked by re-solving, and the price of easing it by 1 % if it is a
-    limit. SolveError for discrete variables.
+    Impossible: the conflict and its remedies; with discrete variables, each number that alone
+    suffices. Possible: the limits that bind, and for every parameter and every bound with a key its
+    sensitivity (discrete variables held), checked by re-solving, and the price of easing it by 1 %
+    if it is a limit. SolveError for discrete variables without an exact method.
     """
     clock = Clock(budget or Budget(), of_others(watch))
-    result, outcome = run(problem, "ipopt", clock.left, watch=watch)
+    discrete = any(variable.discrete for variable, _ in problem.columns)
+    method = next(iter(problem.methods), "ipopt") if discrete else "ipopt"
+    result, outcome = run(problem, method, clock.left, watch=watch)
     if result.status in ("infeasible", "failed"):
-        found_ = handles(problem)
-        limits = [h for h in found_ if not h.given]
-        conflict, repairs = impossible(problem, clock, found_, limits)
-        ways = [_remedy(problem, r, clock) for r in repairs]
+        known = handles(problem)
+        blamed: tuple[Handle, ...] = ()
+        if discrete:
+            found_ = [r for h in known if (r := _alone(problem, h, method, clock)) is not None]
+        else:
+            limits = [h for h in known if not h.given]
+            blamed, repairs = impossible(problem, clock, known, limits)
+            found_ = [_remedy(problem, r, clock) for r in repairs]
         found = Explanation(
             result,
-            tuple(h.name for h in conflict),
-            tuple(way for way in ways if way.verified["with"] in THERE),
+            tuple(h.name for h in blamed),
+            tuple(r for r in found_ if r.verified["with"] in THERE),
             message="time ran out before all ways out were tried" if clock.over else "",
         )
     elif result.value is None or outcome.x is None:
         found = Explanation(result, message="no design was found in time")
     else:
-        influences = tuple(_influences(problem, result, outcome, clock))
+        influences = tuple(_influences(problem, result, outcome.x, method, clock))
         late = "stopped before all numbers were looked at" if clock.over else ""
         found = Explanation(result, (), (), binding(result), influences, late)
     return replace(found, seconds=clock.seconds)
@@ -74,35 +96,35 @@ def slope(value: float, solve_at: Callable[[float], float | None], factor: float
 
 
 def _influences(
-    problem: Problem, result: Result, outcome: Outcome, clock: Clock
+    problem: Problem, result: Result, x: Array, method: str, clock: Clock
 ) -> Iterator[Influence]:
-    assert outcome.x is not None and result.value is not None
+    assert result.value is not None
     value = _nonzero(problem, result.value)
-    known = sensitivities(problem, outcome.x).parameters
-    limits = {h.place: h for h in handles(problem) if h.kind == PARAM and not h.given}
-    used = effective(problem)
-    for place, (name, key, number) in enumerate(_inputs(problem)):
+    known = sensitivities(problem.holding(x), x)
+    for handle in _inputs(problem):
         if clock.over:
             return
-        if not (used[place] and math.isfinite(number)) or number == 0.0:
-            continue
 
-        def solved(factor: float, place: int = place) -> float | None:
-            return value_within(clock, _scaled(problem, place, factor))
+        def solved(factor: float, handle: Handle = handle) -> float | None:
+            other = _moved(problem, replace(handle, direction=1), factor)
+            return value_within(clock, other, method)
 
         step, price = "", None
-        if place in limits:
-            direction = limits[place].direction
-            eased = solved(1.0 + direction * EASE)
-            step = f"{direction * EASE:+.0%}"
+        if handle.direction:
+            eased = solved(1.0 + handle.direction * EASE)
+            step = f"{handle.direction * EASE:+.0%}"
             price = None if eased is None or value == 0.0 else (eased - value) / abs(value)
         sides = slope(value, solved, 1.0 - STEP), slope(value, solved, 1.0 + STEP)
         if clock.over:  # the row may be half done
             return
+        own = float((known.parameters if handle.kind == PARAM else known.columns)[handle.place])
+        if handle.kind != PARAM and abs(x[handle.place] - handle.value) > BINDS * abs(handle.value):
+            own = 0.0  # the bound does not hold the variable
+        sure = value != 0.0 and math.isfinite(own)
         yield Influence(
-            key or name,
-            f"{number:.10g}",
-            float(known[place]) if value and math.isfinite(known[place]) else None,
+            handle.label,
+            f"{handle.value:.10g}",
+            own if sure else None,
             sides,
             step,
             price,
@@ -115,22 +137,74 @@ def _nonzero(problem: Problem, value: float) -> float:
     return 0.0 if math.isfinite(there) and abs(value) <= ZERO * abs(there) else value
 
 
-def _inputs(problem: Problem) -> list[tuple[str, str, float]]:
-    """Name, key and value of every parameter component."""
-    return [
-        (q.name if q.size == 1 else f"{q.name}[{k + 1}]", key, float(v))
-        for q in problem.parameters
-        for k, (key, v) in enumerate(
-            zip(each_word(q.key, q.size), spread(q.value, q.size), strict=True)
-        )
-    ]
+def _inputs(problem: Problem) -> Iterator[Handle]:
+    """Every parameter component that acts, and every bound with a key; direction 0: no limit."""
+    limits = {(h.kind, h.place): h.direction for h in handles(problem) if not h.given}
+    used, place = effective(problem), 0
+    for q in problem.parameters:
+        keys, values = each_word(q.key, q.size), spread(q.value, q.size)
+        for k, (key, value) in enumerate(zip(keys, values, strict=True)):
+            name = q.name if q.size == 1 else f"{q.name}[{k + 1}]"
+            way = limits.get((PARAM, place), 0)
+            if used[place] and math.isfinite(value) and value != 0.0:
+                yield Handle(name, PARAM, place, float(value), way, q.unit, key)
+            place += 1
+    for handle in handles(problem):
+        if (
+            handle.kind in (LOWER, UPPER)
+            and handle.key
+            and not handle.given
+            and handle.value != 0.0
+        ):
+            yield handle
 
 
-def _scaled(problem: Problem, place: int, factor: float) -> Problem:
-    """The problem with one parameter component times a factor."""
-    values = problem.parameter_values()
-    values[place] *= factor
-    return _with(problem, values)
+def _moved(problem: Problem, handle: Handle, factor: float) -> Problem:
+    """The problem with the number of a handle relaxed by a factor; below 1 made stricter."""
+    if handle.kind == PARAM:
+        values = problem.parameter_values()
+        values[handle.place] = handle.relaxed(factor)
+        return _with(problem, values)
+    bounds = [end.copy() for end in problem.bounds()[:2]]
+    bounds[handle.kind == UPPER][handle.place] = handle.relaxed(factor)
+    variable, start = problem.columns[handle.place][0], 0
+    for other in problem.variables:
+        if other.name == variable.name:
+            break
+        start += other.size
+    ends = (tuple(map(float, end[start : start + variable.size])) for end in bounds)
+    return problem.within(variable.name, *ends)
+
+
+def _alone(problem: Problem, handle: Handle, method: str, clock: Clock) -> Remedy | None:
+    """A number that alone makes a problem possible, moved as little as that takes, by solving."""
+    if handle.kind == ROW or handle.value <= 0.0:
+        return None
+    words = dict.fromkeys(THERE, True) | {"infeasible": False}
+    whole = handle.kind in (LOWER, UPPER) and problem.columns[handle.place][0].integer
+    handle = replace(handle, whole=whole)
+
+    def tried(factor: float, back: float = 0.0) -> str:
+        asked = handle.eased(_asked(handle, factor)) if factor > 1.0 else 1.0
+        if back:
+            asked = handle.one_back(asked) if whole else asked * (1.0 - back)
+        return solve_within(clock, _moved(problem, handle, asked), method).status
+
+    def works(factor: float, back: float = 0.0) -> bool | None:
+        return None if clock.over else words.get(tried(factor, back))
+
+    down = whole and handle.direction < 0  # to 1 at the most
+    wider = tuple(f for f in BEYOND if not down or f <= handle.value)
+    least = least_value(1.0, wider, works)
+    if least is None or least == 1.0:
+        return None
+    factor = handle.eased(_asked(handle, least))
+    number = f"{handle.relaxed(factor):.{DIGITS + 2}g}"
+    change = Change(handle.label, f"{handle.value:.10g}", number, factor)
+    verified = {"with": tried(least), "with_less": tried(least, TAKEN_BACK)}
+    return Remedy(
+        "less" if handle.given else "alone", handle.name, (change,), factor, None, verified
+    )
 
 
 def _with(problem: Problem, values: Array) -> Problem:
@@ -159,7 +233,7 @@ def _remedy(problem: Problem, repair: Repair, clock: Clock) -> Remedy:
         repair.kind,
         ", ".join(dict.fromkeys(h.family for h in handles_)),
         tuple(
-            Change(h.key or h.name, f"{h.value:.10g}", f"{h.relaxed(a):.{DIGITS + 2}g}", float(a))
+            Change(h.label, f"{h.value:.10g}", f"{h.relaxed(a):.{DIGITS + 2}g}", float(a))
             for h, a in zip(handles_, asked, strict=True)
         ),
         float(asked.prod() if repair.kind == "least" else asked.max()),

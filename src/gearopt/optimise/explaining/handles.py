@@ -47,6 +47,11 @@ class Handle:
         """What the limits of all stages or components have in common: the name before [k]."""
         return self.name.split("[")[0]
 
+    @property
+    def label(self) -> str:
+        """Where it is written: its key, else its name."""
+        return self.key or self.name
+
     def relaxed(self, factor: float) -> float:
         """The value to write for a factor >= 1."""
         if self.kind in (LOWER, UPPER) and self.value <= 0:

@@ -5,7 +5,8 @@ them to spare), the least repair (the smallest product of factors over all limit
 kind of limit, the even repair (one factor for that kind alone).
 """
 
-from collections.abc import Sequence
+import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,6 +21,15 @@ from gearopt.optimise.terms import Array
 
 CERTAIN = ("optimal", "stationary")
 SAME = 1e-7  # relative: two repairs as small as each other; a factor below 1 + SAME is none
+TAKEN_BACK = 1e-3  # a remedy this much smaller must be impossible
+FARTHEST = 4.0  # factor to which whole numbers and modules are tried
+WIDEST = (1.02, 1.1, 1.3, 2.0, FARTHEST)  # factors tried in turn, before the least is looked for
+CLOSE = 1.0 + 0.5 * TAKEN_BACK  # ratio of an impossible to a possible factor that ends a search
+LEAST = 1.0 + 1e-7  # a search between two factors this close ends in any case
+DOUBTS = 3  # factors that may stay undecided before a search ends at the least that is known
+BEYOND = (*WIDEST, 16.0, 256.0, 1e6)  # the same of real numbers
+
+Works = Callable[..., bool | None]
 
 
 @dataclass(frozen=True)
@@ -37,9 +47,9 @@ class Repair:
     moves: tuple[tuple[Handle, float], ...]
 
 
-def value_within(clock: Clock, problem: Problem) -> float | None:
+def value_within(clock: Clock, problem: Problem, method: str = "ipopt") -> float | None:
     """The optimal value of a problem; None where it is not certain that it is one."""
-    result = solve_within(clock, problem, "ipopt")
+    result = solve_within(clock, problem, method)
     return result.value if result.status in CERTAIN else None
 
 
@@ -210,3 +220,38 @@ def _blamed(verdict: Result, kept: Sequence[int], movable: Sequence[Handle]) -> 
     """Those of the kept limits that the proof of impossibility uses."""
     rows = set(verdict.proof.get("conflict", ()))
     return [k for k in kept if rows & set(movable[k].rows)] or list(kept)
+
+
+def least_value(low: float, wider: Sequence[float], works: Works) -> float | None:
+    """The least value from `low` on that will do, looked for below the first of `wider` that does.
+
+    works(value, back): whether a value will do, also with its edits taken back by a part; None:
+    not known, so that the widest is tried. None where none is known to do.
+    """
+    if works(low):
+        return low
+    for high in wider:
+        found = works(high)
+        if found is None and high < wider[-1]:
+            high, found = wider[-1], works(wider[-1]) or None
+        if found is not False:
+            return least_between(low, high, works) if found else None
+        low = high
+    return None
+
+
+def least_between(low: float, high: float, works: Works) -> float:
+    """The least factor known to do, between an impossible and a possible one.
+
+    works(factor, back): whether a factor will do, also with its edits taken back by a part. One
+    that stays undecided is not known to do.
+    """
+    doubts = 0
+    while doubts < DOUBTS:
+        if high <= low * CLOSE and not (high > low * LEAST and works(high, TAKEN_BACK)):
+            break
+        middle = math.sqrt(low * high)
+        found = works(middle)
+        doubts += found is None
+        low, high = (low, middle) if found else (middle, high)
+    return high

@@ -6,23 +6,14 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from gearopt.optimise.clock import Clock
-from gearopt.optimise.explaining.explain import TAKEN_BACK, THERE
+from gearopt.optimise.explaining.explain import THERE
 from gearopt.optimise.explaining.explanation import Change, Remedy
 from gearopt.optimise.explaining.handles import Handle, handles
-from gearopt.optimise.explaining.repair import conflict
+from gearopt.optimise.explaining.repair import BEYOND, TAKEN_BACK, conflict, least_value
 from gearopt.optimise.problem import Problem
 from gearopt.scenes.explaining.numbers import Number, eased, moved, numbers, times, written
 from gearopt.scenes.reading.toml import toml_text
 from gearopt.units import Quantity
-
-FARTHEST = 4.0  # factor to which whole numbers and modules are tried
-WIDEST = (1.02, 1.1, 1.3, 2.0, FARTHEST)  # factors tried in turn, before the least is looked for
-CLOSE = 1.0 + 0.5 * TAKEN_BACK  # ratio of an impossible to a possible factor that ends a search
-LEAST = 1.0 + 1e-7  # a search between two factors this close ends in any case
-DOUBTS = 3  # factors that may stay undecided before a search ends at the least that is known
-BEYOND = (*WIDEST, 16.0, 256.0, 1e6)  # the same of real numbers
-
-Works = Callable[..., bool | None]
 
 
 @dataclass(frozen=True)
@@ -131,38 +122,3 @@ def apart(before: Any, after: Any) -> float:
         return math.prod(apart(a, b) for a, b in zip(before, after, strict=True))
     a, b = (float(v.number if isinstance(v, Quantity) else v) for v in (before, after))
     return max(a, b) / min(a, b) if min(a, b) > 0.0 else math.inf
-
-
-def least_value(low: float, wider: Sequence[float], works: Works) -> float | None:
-    """The least value from `low` on that will do, looked for below the first of `wider` that does.
-
-    works(value, back): whether a value will do, also with its edits taken back by a part; None:
-    not known, so that the widest is tried. None where none is known to do.
-    """
-    if works(low):
-        return low
-    for high in wider:
-        found = works(high)
-        if found is None and high < wider[-1]:
-            high, found = wider[-1], works(wider[-1]) or None
-        if found is not False:
-            return least_between(low, high, works) if found else None
-        low = high
-    return None
-
-
-def least_between(low: float, high: float, works: Works) -> float:
-    """The least factor known to do, between an impossible and a possible one.
-
-    works(factor, back): whether a factor will do, also with its edits taken back by a part. One
-    that stays undecided is not known to do.
-    """
-    doubts = 0
-    while doubts < DOUBTS:
-        if high <= low * CLOSE and not (high > low * LEAST and works(high, TAKEN_BACK)):
-            break
-        middle = math.sqrt(low * high)
-        found = works(middle)
-        doubts += found is None
-        low, high = (low, middle) if found else (middle, high)
-    return high

@@ -23,7 +23,7 @@ from gearopt.scenes.explaining.default import explained, of_report
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.servo.assumptions import assumptions, notes
 from gearopt.scenes.servo.scene import EXAMPLE, Scene
-from gearopt.scenes.servo.tolerance_part import of_given, tolerance_part
+from gearopt.scenes.servo.tolerance_part import named, of_given, tolerance_part
 from gearopt.scenes.servo.tolerance_part import problem as tolerance_problem
 from gearopt.scenes.servo.train_part import (
     Found,
@@ -188,7 +188,10 @@ def explain(scene: Scene, ask: Ask) -> Explanation:
     def answer(other: Scene) -> Result:
         return solve(other, replace(ask, budget=clock.left, watch=clock.watch))
 
-    return explained(scene, result, clock, answer, lambda other: _posed(other, boxed=True)[0])
+    found = explained(scene, result, clock, answer, lambda other: _posed(other, boxed=True)[0])
+    if scene.train is None and scene.duty is None:
+        found = replace(found, conflict=tuple(named(n, scene.sources) for n in found.conflict))
+    return found
 
 
 def compared(scene: Scene) -> tuple[str, ...]:

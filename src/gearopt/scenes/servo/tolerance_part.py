@@ -1,6 +1,7 @@
 """The tolerances of a servo train at least cost, and what they give in fact."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -24,6 +25,7 @@ from gearopt.optimise.terms import Array
 from gearopt.optimise.typed import untyped
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.servo.scene import Scene
+from gearopt.scenes.servo.tables.mesh import Source
 from gearopt.scenes.servo.tables.tolerances import BudgetTable
 from gearopt.scenes.servo.train_part import Found, sensitivity
 
@@ -55,7 +57,8 @@ def stack(scene: Scene, gears: Pairs) -> Stack:
     )
     asked = scene.accuracy.error
     limit = None if asked is None else math.degrees(asked.value)
-    budgets = tuple(_budget(b, parts, old(scene), limit) for b in scene.budget or (BudgetTable(),))
+    tables = enumerate(scene.budget or (BudgetTable(),), 1)
+    budgets = tuple(_budget(b, parts, old(scene), limit, f"budget[{k}].limit") for k, b in tables)
     return Stack(parts, budgets)
 
 
@@ -67,17 +70,19 @@ def old(scene: Scene) -> Array:
 
 
 def _budget(
-    table: BudgetTable, parts: tuple[Component, ...], t: Array, limit: float | None
+    table: BudgetTable, parts: tuple[Component, ...], t: Array, limit: float | None, key: str
 ) -> ErrorBudget:
     """A budget in degrees; its default limit is that of the file, else what t uses."""
     rule: Any = table.rule
     kappa = float(table.kappa)
     if table.limit is not None:
         limit = math.degrees(table.limit.value)
-    elif limit is None:
+    elif limit is not None:
+        key = "accuracy.error"
+    else:
         beside = ErrorBudget("worst_case", 1.0, name="all")  # no part is without influence on it
         limit = float(Stack(parts, (ErrorBudget(rule, 1.0, kappa), beside)).used(t)[0])
-    return ErrorBudget(rule, limit, kappa)
+    return ErrorBudget(rule, limit, kappa, key=key)
 
 
 def problem(scene: Scene, gears: Pairs) -> Problem:
@@ -128,15 +133,15 @@ def tolerance_part(scene: Scene, gears: Pairs, ask: Ask) -> Found:
         "tolerance_cost": allotted.cost,
         "old_tolerance_cost": allotted.old_cost,
     }
-    limits = {_named(name, own): used for name, used in result.limits.items()}
+    limits = {named(name, own.components): used for name, used in result.limits.items()}
     result = replace(result, design=untyped(design), limits=limits)
     return Found((result,), design, ServoReport(figures=figures))
 
 
-def _named(limit: str, own: Stack) -> str:
+def named(limit: str, parts: Sequence[Component | Source]) -> str:
     """`least[3]` as "least of centre distance of stage 1"."""
     stem, _, index = limit.rstrip("]").partition("[")
-    return f"{stem} of {own.components[int(index) - 1].name}" if index else limit
+    return f"{stem} of {parts[int(index) - 1].name}" if index else limit
 
 
 def _rows(scene: Scene, own: Stack, t: Array) -> tuple[ToleranceRow, ...]:

@@ -12,6 +12,7 @@ turns tolerances with a least backlash into this form, `sampling` draws what com
 """
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -21,17 +22,21 @@ from gearopt.formulations.servo.tolerance.stack import Stack
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch
-from gearopt.optimise.terms import Array, Terms, Var, each
+from gearopt.optimise.terms import Array, Param, Terms, Var, each, spread
 
 RANDOM = False
 COUNTS = "solution in closed form or by roots"
 LEVELS = 4  # roots inside each other that `exact` takes on: some 0.3 s for 14 components
 TIE = 1e-12  # by which least tolerances may exceed a budget
+ENDS = {"least": "tolerances.least_factor", "most": "tolerances.largest_factor"}  # keys in a file
 SMALLEST = 1e-290  # mm, the end of a search
 
 
 def problem(stack: Stack) -> Problem:
-    """The stack as a problem: variables t [mm], limits the budgets by name, least and most."""
+    """The stack as a problem: variables t [mm], limits the budgets by name, least and most.
+
+    Parameters: error of every budget, least and most of the components that have them.
+    """
     components = stack.components
 
     def evaluate(x: Any, p: Any) -> Terms:
@@ -40,13 +45,44 @@ def problem(stack: Stack) -> Problem:
             c.cost * width**-c.exponent if c.exponent > 0 else -c.cost * np.log(width)
             for c, width in zip(components, t, strict=True)
         )
-        limits = {b.label: _used([b.weights(c) for c in components], t) for b in stack.budgets}
-        return Terms({"cost": cost}, {**limits, **_ends(stack, t)})
+        limits = {
+            b.label: _used([b.weights(c) for c in components], t) * (b.error / error)
+            for b, error in zip(stack.budgets, each(p.error), strict=True)
+        }
+        return Terms({"cost": cost}, {**limits, **_ends(stack, t, p)})
 
     low, high, guess = (tuple(map(float, ends)) for ends in search(stack))
     t = Var("t", "mm", low, high, guess, len(components), log=True, search=True)
     methods = {"exact": _exact(stack)} if levels(stack) <= LEVELS else {}
-    return Problem("tolerance", (t,), (), evaluate, methods=methods)
+    return Problem("tolerance", (t,), _parameters(stack), evaluate, methods=methods)
+
+
+def _parameters(stack: Stack) -> tuple[Param, ...]:
+    """Errors allowed, and least and most tolerances that were given."""
+    errors, keys = (tuple(getattr(b, n) for b in stack.budgets) for n in ("error", "key"))
+    found = [Param("error", "", errors, len(errors), keys, "limit")]
+    for name, given in zip(ENDS, _given(stack), strict=True):
+        if given:
+            values = tuple(getattr(stack.components[k], name) for k in given)
+            found.append(Param(name, "mm", values, len(given), ENDS[name], "limit"))
+    return tuple(found)
+
+
+def _given(stack: Stack) -> tuple[list[int], list[int]]:
+    """The components that have a least, and those that have a most tolerance."""
+    parts = list(enumerate(stack.components))
+    return [k for k, c in parts if c.least > 0.0], [k for k, c in parts if c.most < np.inf]
+
+
+def _at(stack: Stack, problem: Problem) -> Stack:
+    """The stack with the parameters of its problem."""
+    values = {q.name: spread(q.value, q.size).tolist() for q in problem.parameters}
+    parts = list(stack.components)
+    for name, given in zip(ENDS, _given(stack), strict=True):
+        for k, value in zip(given, values.get(name, ()), strict=True):
+            parts[k] = replace(parts[k], **{name: value})
+    errors = zip(stack.budgets, values["error"], strict=True)
+    return Stack(tuple(parts), tuple(replace(b, error=error) for b, error in errors))
 
 
 def _used(weights: list[tuple[float, float]], t: tuple[Any, ...]) -> Any:
@@ -56,14 +92,15 @@ def _used(weights: list[tuple[float, float]], t: tuple[Any, ...]) -> Any:
     return sum(linear) + (sum(part**2 for part in square) ** 0.5 if square else 0.0)
 
 
-def _ends(stack: Stack, t: tuple[Any, ...]) -> Mapping[str, Any]:
+def _ends(stack: Stack, t: tuple[Any, ...], p: Any) -> Mapping[str, Any]:
     """The least and most tolerances that were given."""
-    found = {}
-    for k, (c, width) in enumerate(zip(stack.components, t, strict=True), 1):
-        if c.least > 0.0:
-            found[f"least[{k}]"] = c.least / width
-        if c.most < np.inf:
-            found[f"most[{k}]"] = width / c.most
+    least, most = _given(stack)
+    low = {k: q / t[k] for k, q in zip(least, each(p.least) if least else (), strict=True)}
+    high = {k: t[k] / q for k, q in zip(most, each(p.most) if most else (), strict=True)}
+    found: dict[str, Any] = {}
+    for k in range(len(t)):
+        found |= {f"least[{k + 1}]": low[k]} if k in low else {}
+        found |= {f"most[{k + 1}]": high[k]} if k in high else {}
     return found
 
 
@@ -92,14 +129,14 @@ def _exact(stack: Stack) -> Any:
 
         Nothing here is random.
         """
-        clock = Clock(budget, watch)
-        if (conflict := impossible(stack)) is not None:
+        clock, own = Clock(budget, watch), _at(stack, problem)
+        if (conflict := impossible(own)) is not None:
             return conflict
         try:
             with np.errstate(over="raise"):
-                return _proven(stack, clock)
+                return _proven(own, clock)
         except TimeoutError as early:
-            return Outcome(search(stack)[2], finished=False, message=str(early))
+            return Outcome(search(own)[2], finished=False, message=str(early))
         except ArithmeticError as extreme:
             return Outcome(None, message=f"beyond the range of doubles: {extreme}")
 

@@ -50,13 +50,15 @@ class Component:
 class ErrorBudget:
     """The error > 0 allowed by a rule, in the unit of the sensitivities times mm.
 
-    kappa >= 0: standard deviations counted by mean_plus_sd. name: by default the rule.
+    kappa >= 0: standard deviations counted by mean_plus_sd. name: by default the rule. key: the
+    place of the error in a problem file.
     """
 
     rule: Rule
     error: float
     kappa: float = 3.0
     name: str = ""
+    key: str = ""
 
     def __post_init__(self) -> None:
         if self.rule not in get_args(Rule):

@@ -7,8 +7,9 @@ from decimal import Context, Decimal
 from fractions import Fraction
 from typing import Any
 
-from gearopt.optimise.explaining.explain import DIGITS, TAKEN_BACK
+from gearopt.optimise.explaining.explain import DIGITS
 from gearopt.optimise.explaining.explanation import Remedy
+from gearopt.optimise.explaining.repair import TAKEN_BACK
 from gearopt.scenes.drive.explaining.levers import edits
 from gearopt.scenes.drive.explaining.several import is_real
 from gearopt.scenes.drive.explaining.tried import Case

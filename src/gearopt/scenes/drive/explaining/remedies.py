@@ -7,10 +7,9 @@ from fractions import Fraction
 from typing import Any
 
 from gearopt.optimise.clock import Clock
-from gearopt.optimise.explaining.explain import TAKEN_BACK
 from gearopt.optimise.explaining.explanation import Remedy
 from gearopt.optimise.explaining.handles import Handle
-from gearopt.optimise.explaining.repair import SAME, conflict, even
+from gearopt.optimise.explaining.repair import FARTHEST, SAME, TAKEN_BACK, conflict, even
 from gearopt.optimise.problem import Problem
 from gearopt.scenes.drive.explaining.cures import less
 from gearopt.scenes.drive.explaining.joint import least_together
@@ -34,7 +33,7 @@ from gearopt.scenes.drive.explaining.tried import (
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.tables.duty import Duty
 from gearopt.scenes.explaining.numbers import read
-from gearopt.scenes.explaining.remedies import FARTHEST, Remedies
+from gearopt.scenes.explaining.remedies import Remedies
 
 
 def remedies(scene: Scene, clock: Clock) -> Remedies:

@@ -8,7 +8,7 @@ from gearopt.formulations import sizing
 from gearopt.formulations.train import Train
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.handles import Handle, handles
-from gearopt.optimise.explaining.repair import SAME, least_factors
+from gearopt.optimise.explaining.repair import FARTHEST, SAME, least_factors
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.solve import solve_within
 from gearopt.scenes.drive.explaining.joint import least_together
@@ -25,7 +25,6 @@ from gearopt.scenes.drive.explaining.levers import (
 )
 from gearopt.scenes.drive.explaining.tried import Case, enlarged, trimmed
 from gearopt.scenes.drive.scene import Scene
-from gearopt.scenes.explaining.remedies import FARTHEST
 
 NEAR = 1.0 - 1e-6  # a value this close to what is needed is that one
 MOST = 3  # whole numbers of which both neighbours are tried

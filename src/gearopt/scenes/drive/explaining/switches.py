@@ -5,12 +5,11 @@ from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from typing import Any
 
-from gearopt.optimise.explaining.explain import TAKEN_BACK
 from gearopt.optimise.explaining.explanation import Change, Remedy
+from gearopt.optimise.explaining.repair import TAKEN_BACK, least_value
 from gearopt.physics.gears import MODULES
 from gearopt.scenes.drive.explaining.tried import Case
 from gearopt.scenes.explaining.numbers import eased, put, written
-from gearopt.scenes.explaining.remedies import least_value
 from gearopt.scenes.reading.toml import dotted, toml_text
 
 TOLERANCES = (Fraction(1, 10**5), Fraction(1, 2))  # tried where the file allows none

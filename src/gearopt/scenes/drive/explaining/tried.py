@@ -10,11 +10,11 @@ from gearopt.formulations.teeth.wide import narrowed
 from gearopt.formulations.train import Train
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.explain import THERE
+from gearopt.optimise.explaining.repair import WIDEST, Works, least_between, least_value
 from gearopt.optimise.solve import solve_within
 from gearopt.scenes.drive.explaining.cures import less
 from gearopt.scenes.drive.explaining.levers import Lever, Moves, applied, steps
 from gearopt.scenes.drive.scene import Scene
-from gearopt.scenes.explaining.remedies import WIDEST, Works, least_between, least_value
 
 SECONDS = 2.0  # at most, for one question whether whole teeth are possible
 
