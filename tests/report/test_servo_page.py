@@ -324,11 +324,7 @@ def test_a_train_without_a_box_is_drawn_in_one_line():
 def test_proven_impossible_says_why():
     told = {"status": "infeasible", "bound": None, "gap": None, "design": {}, "report": {}}
     told |= {"objective": {"name": "cost", "value": None}, "limits": {}, "certificate": {}}
-    message = "the least tolerances of pitch alone use up the budget worst_case"
-    proof = {"method": "closed form", "conflict": ["worst_case", "least[1]"]}
-    html = page(cases.servo(**told, proof=proof, message=message), "x")
-    assert f"Proof: {message}." in text(html)
-    proof = {"method": "closed form", "reason": "friction takes all its torque"}
+    proof = {"method": "closed form", "sentence": "Proof: friction takes all its torque."}
     assert "Proof: friction takes" in text(page(cases.servo(**told, proof=proof), "x"))
 
 

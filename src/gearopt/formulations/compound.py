@@ -65,7 +65,12 @@ def problem(train: Compound) -> Problem:
         x = np.array(best, float)
         if not done:
             return Outcome(x, finished=False, evaluations=looked, message="stopped early")
+        words = (
+            f"Proof: {looked:,} ratios of a pair, each with the two that miss least with it, in "
+            "rational arithmetic."
+        )
         proof = {"method": "exhausted", "arithmetic": "rational", "pairs_matched": looked}
+        proof |= {"sentence": words}
         return Outcome(x, bound=float(error**2), proof=proof, evaluations=looked)
 
     teeth = Var("teeth", "", low, high, low, 4, integer=True, key="train.teeth")

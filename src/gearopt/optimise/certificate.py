@@ -22,7 +22,7 @@ from gearopt.optimise.form import Form, form
 from gearopt.optimise.multipliers import multipliers
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.quadratic import natural
-from gearopt.optimise.result import FEASIBLE, Outcome, Result
+from gearopt.optimise.result import CONVEX, FEASIBLE, Outcome, Result
 from gearopt.optimise.scale import gap as gap_of
 from gearopt.optimise.scale import is_known, measured, way
 from gearopt.optimise.second_order import no_minimum
@@ -184,7 +184,8 @@ def _local(
     if not known:
         return before
     least = max(known)[0]
-    proof = {"method": "dual", "arithmetic": "double, with a rounding allowance"}
+    arithmetic = "double, with a rounding allowance"
+    proof = {"method": "dual", "arithmetic": arithmetic, "sentence": CONVEX}
     value = shape.objective(least)
     judged = bounded(problem, outcome.x, replace(before, proof=proof), value, tolerance, worst)
     return _doubted(problem, outcome.x, judged)

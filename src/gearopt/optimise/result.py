@@ -18,6 +18,11 @@ if TYPE_CHECKING:
 
 FORMAT = 1
 _version = cache(version)  # reading package metadata takes a millisecond
+CONVEX = (  # sentences of proofs that several methods share
+    "Proof: the problem is convex in logarithms; the bound is a dual one, computed from our own "
+    "derivatives."
+)
+CLOSED_FORM = "Proof: a closed form, and a bound that follows from convexity alone."
 STATUSES = ("optimal", "stationary", "feasible", "evaluated", "infeasible", "limit", "failed")
 FEASIBLE = 1e-8  # of its own scale a variable, of 1 a row is off; that is below any data error
 
@@ -73,7 +78,8 @@ class Outcome:
 
     x: the best point (n,), or None. finished: it ran to its own end, not out of budget.
     lam_g, lam_h: multipliers of the form's rows. infeasible: it claims there is no feasible point,
-    by lam_g, lam_h (a Farkas certificate) or by `proof`. bound and proof: of an exact algorithm.
+    by lam_g, lam_h (a Farkas certificate) or by `proof`. bound and proof: of an exact algorithm;
+    proof["sentence"] is what a reader is told of it, beside a bound or an impossibility.
     others: further points, of an exact algorithm in proven order, of several objectives the rest of
     the front. leaves: of a conic problem, the parts of its box with
     their multipliers. message: what it has to say.

@@ -42,8 +42,18 @@ def problem(plan: Plan, loose: bool = True) -> Problem:
 def proof(floor: Bound) -> dict[str, Any]:
     """How a bound was proven, as a result says it."""
     method = "subdivision" if floor.choices else "volume"
+    shared = f"{floor.choices:,} ways" if floor.choices > 1 else "one way"
+    words = (
+        f"Bound: {shared} to share the cylinders out among layers; for each the least plan that "
+        "discs, pairs and triples in any order need, by subdivision of the width."
+    )
+    if not floor.complete:
+        words += " Its time ended it: it is weaker than it could be."
+    if floor.complete and not floor.choices:
+        words = "Bound: the volume of the cylinders, and the widest with the highest of them."
     return {
         "method": method if floor.complete else f"{method}, stopped early",
         "arithmetic": "double, with a rounding allowance",
         "ways_to_share_out": floor.choices,
+        "sentence": words,
     }

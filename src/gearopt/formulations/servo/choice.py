@@ -10,6 +10,7 @@ import numpy as np
 from gearopt.formulations.servo import servo_box, split
 from gearopt.formulations.servo.ratio.duty import UNITS
 from gearopt.formulations.servo.servo_design import KG_M2
+from gearopt.formulations.servo.split.exact import sentence
 from gearopt.formulations.servo.springs import Springs
 from gearopt.optimise.clock import Clock, in_part, of_others
 from gearopt.optimise.problem import Problem
@@ -119,7 +120,10 @@ def _counted(found: Outcome, proof: Mapping[str, Any] | None, apart: tuple[str, 
     if proof is None or "feasible_trains" not in proof:
         return found
     counts = {k: proof[k] for k in ("trains_looked_at", "feasible_trains")}
-    return replace(found, proof={**(found.proof or {}), **counts, "not_counted": list(apart)})
+    made = {**(found.proof or {}), **counts, "not_counted": list(apart)}
+    if "sentence" in made:
+        made["sentence"] = sentence(made, found.infeasible)
+    return replace(found, proof=made)
 
 
 def _in_order(choice: Choice, base: Problem, best: float, clock: Clock) -> Outcome:
@@ -148,22 +152,23 @@ def _in_order(choice: Choice, base: Problem, best: float, clock: Clock) -> Outco
             point = points[found[0]]
             bound = float(base.batch(point[None]).F[0, 0]) * (1.0 - ROUNDING)
             count = looked + len(lot)
-            proof = _looked(count, stiff + len(points) if counted else None)
+            proof = _looked(count, stiff + len(points) if counted else None, False)
             return Outcome(point, bound=bound, proof=proof, evaluations=count)
         looked, stiff = looked + len(lot), stiff + len(points)
     what = "the box" if stiff else "the stiffness that is asked for"
     text = f"none of the {looked:,} trains that keep all other limits keeps {what}"
-    proof = _looked(looked, stiff if counted else None)
+    proof = _looked(looked, stiff if counted else None, True)
     return Outcome(None, infeasible=True, proof=proof, evaluations=looked, message=text)
 
 
-def _looked(count: int, stiff: int | None) -> dict[str, Any]:
+def _looked(count: int, stiff: int | None, infeasible: bool) -> dict[str, Any]:
     """How an order of trains is proven; stiff: how many of them are, where that is asked for."""
     found: dict[str, Any] = {
         "method": "exhausted",
         "arithmetic": "ratios and diameters in whole numbers; the rest in double",
         "trains_looked_at": count,
     }
+    found["sentence"] = sentence(found, infeasible)
     return found if stiff is None else found | {"trains_stiff_enough": stiff}
 
 

@@ -29,6 +29,9 @@ VARIABLES = {
     "face_width": "mm",
     "width_steps": "",
 }
+NO_TRAIN = (
+    "Proof: every choice of teeth and modules was compared or excluded; none meets all limits."
+)
 MOST = 1e18  # teeth, steps or mm: no limit
 
 RANDOM = False
@@ -160,9 +163,12 @@ def _outcome(
         "nodes": progress.nodes,
         "pruning_margin": MARGIN,
     }
+    compared = f"Proof: {progress.compared:,} trains compared,"
+    opened = f"(nodes opened: {progress.nodes:,})."
     if progress.clock.stopped or progress.enough:
         lower = progress.bound if math.isfinite(progress.bound) else None
-        partial = {**proof, "method": "branch and bound, stopped early"}
+        words = f"{compared} those not looked at are bounded from below {opened}"
+        partial = {**proof, "method": "branch and bound, stopped early", "sentence": words}
         return Outcome(
             points[0] if points else None,
             finished=progress.enough,
@@ -175,13 +181,13 @@ def _outcome(
         return Outcome(
             None,
             infeasible=True,
-            proof=proof,
+            proof=proof | {"sentence": NO_TRAIN},
             evaluations=progress.clock.evaluations,
         )
     return Outcome(
         points[0],
         bound=progress.found[0][0],
-        proof=proof,
+        proof=proof | {"sentence": f"{compared} all others excluded by lower bounds {opened}"},
         others=tuple(points[1:]),
         evaluations=progress.clock.evaluations,
     )

@@ -99,12 +99,15 @@ def _first(search: Search) -> bool:
 def _outcome(search: Search, known: tuple[Any, ...], possible: bool) -> Outcome:
     clock, stages = search.clock, len(search.train.stages)
     stopped = clock.stopped
+    method = "branch and bound, stopped early" if stopped else "exhausted"
     proof = {
-        "method": "branch and bound, stopped early" if stopped else "exhausted",
+        "method": method,
         "arithmetic": "ratios, teeth and steps rational; boxes double, bounds with an allowance",
         "nodes": {f"{stages - k}": n for k, n in sorted(search.made.items())},
         "nodes_with_a_layout": {f"{stages - k}": n for k, n in sorted(search.left.items())},
         "trains_laid_out": search.trains,
+        "sentence": f"Proof: {sum(search.made.values()):,} trains and parts of trains bounded, "
+        f"{search.trains:,} laid out in full ({method}).",
     }
     if search.best is None:
         return Outcome(

@@ -16,7 +16,7 @@ from gearopt.optimise.conic.cone_bound import Leaf, emptiness, lagrangian
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.conic.propagate import cutoff, narrowed, propagate
 from gearopt.optimise.feasibility import runaway, violation
-from gearopt.optimise.result import FEASIBLE, Outcome
+from gearopt.optimise.result import CONVEX, FEASIBLE, Outcome
 from gearopt.optimise.terms import Array
 
 EXCLUDED = "the bounds of the variables exclude every point"
@@ -50,7 +50,8 @@ def certify(problem: Conic, outcome: Outcome, gap: float) -> Verdict:
     if not math.isfinite(bound):
         message = f"{loose} {outcome.message}".strip()
         return Verdict(status, value, certificate=certificate, message=message)
-    proof = {"method": "dual", "arithmetic": ARITHMETIC, "nodes": len(outcome.leaves)}
+    nodes = len(outcome.leaves)
+    proof = {"method": "dual", "arithmetic": ARITHMETIC, "nodes": nodes, "sentence": CONVEX}
     before = Verdict(status, value, certificate=certificate, proof=proof, message=outcome.message)
     verdict = bounded(problem, outcome.x, before, bound, gap, worst)
     unit = verdict.certificate.get("scale") or abs(value) or 1.0
@@ -102,8 +103,9 @@ def _infeasible(problem: Conic, outcome: Outcome) -> Verdict:
             if all(_empty(*_only(data, leaf, fewer)) for leaf in outcome.leaves):
                 numbers = fewer
     conflict = [names[k] for k in sorted(numbers)]
-    proof = {"method": "dual", "conflict": conflict, "nodes": len(outcome.leaves)}
     words = f"no design meets these together: {', '.join(conflict)}" if conflict else EXCLUDED
+    proof = {"method": "dual", "conflict": conflict, "nodes": len(outcome.leaves)}
+    proof |= {"sentence": f"Proof: {words}."} if conflict else {}
     return Verdict("infeasible", proof=proof, message=words)
 
 

@@ -16,6 +16,7 @@ PARTS = {  # of a result: what their names mean
     "real-valued": "real-valued teeth",
 }
 ROWS = ("status", "objective", "value", "bound", "gap, %", "method", "proof", "seconds")
+TOLD = ("method", "arithmetic", "sentence")  # of a proof: told elsewhere
 CHECKS = {  # of a certificate: what each number is
     "feasibility": "largest excess over a limit",
     "stationarity": "largest slope left over",
@@ -89,7 +90,7 @@ def _checks(result: Result) -> list[tuple[str, Any]]:
         for name, value in result.certificate.items()
     ]
     for key, value in result.proof.items():
-        if key not in ("method", "arithmetic") and not isinstance(value, Mapping | list):
+        if key not in TOLD and not isinstance(value, Mapping | list):
             shown = Cell(value, f"{value:.3g}") if isinstance(value, float) else value
             found.append((key.replace("_", " "), shown))
     return found

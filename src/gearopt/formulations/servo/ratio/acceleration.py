@@ -8,7 +8,7 @@ import numpy as np
 from gearopt.formulations.servo.ratio.drive import BEYOND, FAINT, Drive, present, quotient
 from gearopt.formulations.servo.ratio.secant_bound import convex_bound
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.result import Budget, Outcome, Watch
+from gearopt.optimise.result import CLOSED_FORM, Budget, Outcome, Watch
 from gearopt.optimise.terms import Param, Terms, Var
 from gearopt.physics.servo_drive import load_acceleration, torque_slope
 
@@ -165,14 +165,14 @@ def unopposed(drive: Drive, ratio: float) -> float:
 
 def proof() -> dict[str, Any]:
     """How a closed form is proven: the law beside it, and convexity."""
-    return {"method": "closed form", "arithmetic": "double", "bound": "log-log convexity"}
+    found = {"method": "closed form", "arithmetic": "double", "bound": "log-log convexity"}
+    return found | {"sentence": CLOSED_FORM}
 
 
 def impossible(reason: str) -> Outcome:
     """An outcome for a drive that cannot do what is asked."""
-    return Outcome(
-        None, infeasible=True, proof={**proof(), "reason": reason}, message=reason, evaluations=1
-    )
+    found = proof() | {"reason": reason, "sentence": f"Proof: {reason}."}
+    return Outcome(None, infeasible=True, proof=found, message=reason, evaluations=1)
 
 
 def unbounded(what: str, remedy: str) -> Outcome:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.result import Budget, Outcome, Result, Watch
+from gearopt.optimise.result import CLOSED_FORM, Budget, Outcome, Result, Watch
 from gearopt.optimise.solve import solve
 from gearopt.optimise.terms import Param, Terms, Var, each
 
@@ -47,7 +47,7 @@ def core(ratio: float, stages: int, goal: str = "inertia") -> Problem:
             first = first_ratio(total)
             x = np.array([first, total / first])
         value = float(problem.batch(x[None]).F[0, 0])
-        proof = {"method": "closed form", "arithmetic": "double"}
+        proof = {"method": "closed form", "arithmetic": "double", "sentence": CLOSED_FORM}
         return Outcome(x, bound=value * (1.0 - 1e-14), proof=proof, evaluations=1)
 
     closed = goal == "mass" or stages <= 2

@@ -1,6 +1,7 @@
 """The exact methods: every train looked at, or only those that can be the best."""
 
 import math
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -60,6 +61,19 @@ def _proof(looked: int, feasible: int | None, done: bool) -> dict[str, Any]:
     return found if feasible is None else {**found, "feasible_trains": feasible}
 
 
+def sentence(proof: Mapping[str, Any], infeasible: bool) -> str:
+    """Return what a reader is told of an enumeration, by the counts of its proof."""
+    apart = " and ".join(proof.get("not_counted", ()))
+    but = f" but {apart}" if apart else ""
+    feasible = proof.get("feasible_trains")
+    counted = "" if feasible is None else f", {feasible:,} meet all limits{but}"
+    rest = "meets all limits" if infeasible else "can be better"
+    return (
+        f"Proof: {proof['trains_looked_at']:,} choices of teeth and modules looked at{counted}; "
+        f"no other {rest}."
+    )
+
+
 def _outcome(
     given: Numbers,
     found: Any,
@@ -72,6 +86,7 @@ def _outcome(
     x = point(given, found) if math.isfinite(best) else None
     if not done:
         return Outcome(x, finished=False, evaluations=looked, message="stopped before the end")
+    proof["sentence"] = sentence(proof, x is None)
     if x is None:
         return Outcome(None, infeasible=True, proof=proof, evaluations=looked, message=NO_TEETH)
     return Outcome(x, bound=best * (1.0 - slack), proof=proof, evaluations=looked)

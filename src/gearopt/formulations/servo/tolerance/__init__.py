@@ -21,7 +21,7 @@ from gearopt.formulations.servo.tolerance.roots import closed_form, levels, lowe
 from gearopt.formulations.servo.tolerance.stack import Stack
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.result import Budget, Outcome, Watch
+from gearopt.optimise.result import CLOSED_FORM, CONVEX, Budget, Outcome, Watch
 from gearopt.optimise.terms import Array, Param, Terms, Var, each, spread
 
 RANDOM = False
@@ -151,6 +151,7 @@ def _proven(stack: Stack, clock: Clock) -> Outcome:
         "method": "closed form" if found else "dual",
         "arithmetic": "double, with a rounding allowance",
         "multipliers": dict(zip([b.label for b in stack.budgets], lam.tolist(), strict=True)),
+        "sentence": CLOSED_FORM if found else CONVEX,
     }
     return Outcome(t, bound=lower_bound(stack, lam, t), proof=proof, evaluations=1)
 
@@ -172,6 +173,7 @@ def impossible(stack: Stack) -> Outcome | None:
             "least_utilisation": float(used),
         }
         message = f"the least tolerances of {names} alone use up the budget {budget.label}"
+        proof["sentence"] = f"Proof: {message}."
         return Outcome(None, infeasible=True, proof=proof, message=message)
     return None
 

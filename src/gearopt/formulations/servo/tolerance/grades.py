@@ -153,6 +153,6 @@ def _impossible(choice: Choice, proof: dict[str, Any], limit: Any) -> Outcome:
     sums = [sum(finest[k] for k in order[:count]) for count in range(len(order))]
     count = next((count for count, used in enumerate(sums) if used > allowed), len(order))
     names = [choice.components[k].name for k in order[:count]]
-    proof |= {"conflict": [choice.rule], "components": names}
     message = f"the finest grades of {', '.join(names)} alone exceed the budget {choice.rule}"
+    proof |= {"conflict": [choice.rule], "components": names, "sentence": f"Proof: {message}."}
     return Outcome(None, infeasible=True, proof=proof, message=message)
