@@ -10,8 +10,8 @@ from fractions import Fraction
 
 import numpy as np
 
+from gearopt.formulations.gear_train import FaceWidth, Stage, Train
 from gearopt.formulations.strength.k_factor import K_FACTOR
-from gearopt.formulations.train import FaceWidth, Stage, Train
 from gearopt.physics.gears import MODULES
 
 SAME = 1e-12  # objectives closer than this are ties; loads may exceed a limit by this much

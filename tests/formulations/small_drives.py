@@ -2,9 +2,9 @@
 
 from fractions import Fraction
 
+from gearopt.formulations.gear_train import FaceWidth, Stage, Train
 from gearopt.formulations.strength.k_factor import K_FACTOR
 from gearopt.formulations.teeth.stage import table
-from gearopt.formulations.train import FaceWidth, Stage, Train
 
 F = Fraction
 FACES = {

@@ -11,8 +11,8 @@ import gearopt
 from gearopt.errors import SolveError
 from gearopt.formulations import process, teeth
 from gearopt.formulations.design import describe
-from gearopt.formulations.process import ProcessOne, ProcessTwo, rules
-from gearopt.formulations.train import FaceWidth
+from gearopt.formulations.gear_train import FaceWidth
+from gearopt.formulations.process import ProcessOne, ProcessTwo
 from gearopt.optimise.solve import run
 from gearopt.physics.loads import k_factor, unit_load
 
@@ -42,12 +42,12 @@ def loaded(train, k):
 
 def test_niemann_ratios_as_printed():
     u = float(TWO.ratio)
-    assert rules.niemann_ratios(u, (2.0, 2.0)) == pytest.approx((6.2439, 3.4921), abs=5e-5)
-    three = rules.niemann_ratios(110.0, (2.0, 2.0, 2.0))
+    assert process.niemann_ratios(u, (2.0, 2.0)) == pytest.approx((6.2439, 3.4921), abs=5e-5)
+    three = process.niemann_ratios(110.0, (2.0, 2.0, 2.0))
     assert three == pytest.approx((8.8036, 4.2135, 2.9654), abs=5e-5)
     assert math.prod(three) == pytest.approx(110.0)
     with pytest.raises(SolveError, match=r"two and three stages, not of 4: write stage_ratios"):
-        rules.niemann_ratios(300.0, (2.0,) * 4)
+        process.niemann_ratios(300.0, (2.0,) * 4)
 
 
 def test_niemann_ratios_follow_the_allowable_stresses():
@@ -55,7 +55,8 @@ def test_niemann_ratios_follow_the_allowable_stresses():
 
     def slope(k, part):
         far = (
-            rules.niemann_ratios(200.0, k)[part] / rules.niemann_ratios(200.0, (1,) * len(k))[part]
+            process.niemann_ratios(200.0, k)[part]
+            / process.niemann_ratios(200.0, (1,) * len(k))[part]
         )
         return math.log(far) / math.log(2.0)
 
@@ -71,12 +72,12 @@ def test_niemann_ratios_follow_the_allowable_stresses():
 @pytest.mark.parametrize("k", [(2.0, 2.0), (3.0, 1.0), (0.7, 1.9)])
 def test_the_chain_of_centres_loads_every_stage_alike(k):
     ratios, shares, a1, torque = (5.3, 3.7), (0.5, 0.9), 140.0, 6e4
-    a2 = rules.next_centre_distance(a1, ratios, shares, k)
+    a2 = process.next_centre_distance(a1, ratios, shares, k)
     use = []
     for t, a, u, share, limit in zip(
         (torque, torque * 5.3), (a1, a2), ratios, shares, k, strict=True
     ):
-        d = rules.pinion_diameter(a, u)
+        d = process.pinion_diameter(a, u)
         use.append(k_factor(t, d, share * d, u) / limit)
     assert use[1] == pytest.approx(use[0], rel=1e-12)
 
@@ -88,30 +89,30 @@ def test_a_balanced_pinion_reaches_both_limits_at_once():
     d = math.cbrt(k_factor(5e4, 1.0, 0.6, u) / stage.allowable[0])
     m = d * math.cos(angle) / z
     assert unit_load(5e4, d, 0.6 * d, m) == pytest.approx(stage.allowable[1], rel=1e-12)
-    assert rules.balanced_pinion(TWO.law, stage, u, angle) == math.floor(z) == 25
+    assert process.balanced_pinion(TWO.law, stage, u, angle) == math.floor(z) == 25
 
 
 def test_the_needed_module_is_the_least_that_carries_the_load():
     stage, angle = TWO.stages[1], TWO.helix_angle
     for z1 in (20, 25, 32):
         z2 = 4 * z1 + 7
-        m, u = rules.needed_module(TWO.law, stage, 2.5e5, (z1, z2), angle), z2 / z1
+        m, u = process.needed_module(TWO.law, stage, 2.5e5, (z1, z2), angle), z2 / z1
         d = m * z1 / math.cos(angle)
         use = (
             k_factor(2.5e5, d, 0.75 * d, u) / stage.allowable[0],
             unit_load(2.5e5, d, 0.75 * d, m) / stage.allowable[1],
         )
         assert max(use) == pytest.approx(1.0, rel=1e-12)
-    assert rules.next_module(stage, 2.5) == Fraction("2.5")
-    assert rules.next_module(stage, 2.5000001) == 3
-    assert rules.next_module(stage, 50.1) is None
+    assert process.next_module(stage, 2.5) == Fraction("2.5")
+    assert process.next_module(stage, 2.5000001) == 3
+    assert process.next_module(stage, 50.1) is None
 
 
 def test_wheel_teeth_are_cut_and_ties_are_exact():
-    assert rules.wheel_teeth(25, Fraction("4.96")) == 124
-    assert rules.wheel_teeth(25, Fraction("4.9599999")) == 123
-    assert rules.wheel_teeth(25, 4.96) == 124
-    assert rules.wheel_teeth(27, 237.70 / 27) == 237
+    assert process.wheel_teeth(25, Fraction("4.96")) == 124
+    assert process.wheel_teeth(25, Fraction("4.9599999")) == 123
+    assert process.wheel_teeth(25, 4.96) == 124
+    assert process.wheel_teeth(27, 237.70 / 27) == 237
 
 
 def test_process_one_makes_table_2():

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from gearopt.formulations import sizing
+from gearopt.formulations.gear_train import FaceWidth, Stage, Train
 from gearopt.formulations.strength.k_factor import K_FACTOR
-from gearopt.formulations.train import FaceWidth, Stage, Train
 from gearopt.optimise import tape
 from gearopt.optimise.certificate import certify
 from gearopt.optimise.result import Budget

@@ -8,10 +8,10 @@ import pytest
 from brute_force import some_drive
 
 from gearopt.formulations import sizing, teeth
+from gearopt.formulations.gear_train import OBJECTIVES, FaceWidth, Stage, Train
 from gearopt.formulations.strength.k_factor import K_FACTOR
 from gearopt.formulations.teeth import wide
 from gearopt.formulations.teeth.search import possible
-from gearopt.formulations.train import OBJECTIVES, FaceWidth, Stage, Train
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import run, solve
 from gearopt.physics.gears import SERIES_I

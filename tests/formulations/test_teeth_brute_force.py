@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from brute_force import ONE, SAME, every_train, log_uniform, some_drive
 
+from gearopt.formulations.gear_train import FaceWidth, Stage, Train
 from gearopt.formulations.strength.k_factor import K_FACTOR
 from gearopt.formulations.teeth import pairs, problem
-from gearopt.formulations.train import FaceWidth, Stage, Train
 from gearopt.optimise.solve import run
 
 

@@ -11,10 +11,10 @@ from small_drives import FACES, OBJECTIVES, drive
 
 from gearopt.errors import SolveError
 from gearopt.formulations import teeth
+from gearopt.formulations.gear_train import FaceWidth
 from gearopt.formulations.teeth import MOST, _in_order, _why, best_point, pairs, problem
 from gearopt.formulations.teeth.progress import MARGIN, TIE, Progress
 from gearopt.formulations.teeth.search import search
-from gearopt.formulations.train import FaceWidth
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import method_of, run

@@ -10,10 +10,10 @@ from brute_force import SAME, best_choice, cost
 from small_drives import FACES, OBJECTIVES, drive
 
 from gearopt.errors import SolveError
+from gearopt.formulations.gear_train import FaceWidth, Stage, Train
 from gearopt.formulations.strength.k_factor import K_FACTOR
 from gearopt.formulations.teeth import stage as staging
 from gearopt.formulations.teeth.stage import ALLOWANCE, table
-from gearopt.formulations.train import FaceWidth, Stage, Train
 
 F = Fraction
 

@@ -9,6 +9,7 @@ import pytest
 
 from gearopt.errors import SolveError
 from gearopt.formulations import layout, teeth, together
+from gearopt.formulations.gear_train import FaceWidth, Stage, Train
 from gearopt.formulations.layout.chain import chain, turns
 from gearopt.formulations.layout.gearbox import Clearances, Gearbox, KeepOut, Shaft
 from gearopt.formulations.layout.slabs import arrangements, clashes, orders
@@ -16,7 +17,6 @@ from gearopt.formulations.strength.k_factor import K_FACTOR
 from gearopt.formulations.together import search
 from gearopt.formulations.together.prepare import rest
 from gearopt.formulations.together.tables import numbers
-from gearopt.formulations.train import FaceWidth, Stage, Train
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.kernels import kernel
 from gearopt.optimise.result import Budget

@@ -9,8 +9,8 @@ import pytest
 
 from gearopt.errors import SolveError
 from gearopt.formulations import sizing, teeth
+from gearopt.formulations.gear_train import FaceWidth, Stage, Train
 from gearopt.formulations.strength.k_factor import K_FACTOR
-from gearopt.formulations.train import FaceWidth, Stage, Train
 from gearopt.optimise import posynomial
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget

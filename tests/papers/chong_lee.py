@@ -9,9 +9,8 @@ from functools import cache
 from pathlib import Path
 
 import gearopt
-from gearopt.formulations import sizing, teeth
+from gearopt.formulations import process, sizing, teeth
 from gearopt.formulations.design import describe
-from gearopt.formulations.process import rules
 from gearopt.optimise.solve import run, solve
 from gearopt.optimise.typed import untyped
 from gearopt.physics.gears import GearPair
@@ -139,7 +138,7 @@ def best_split(stages):
 
 
 def niemann(stages):
-    return rules.niemann_ratios(float(train(stages).ratio), [K] * stages)
+    return process.niemann_ratios(float(train(stages).ratio), [K] * stages)
 
 
 def exact(name):
@@ -216,9 +215,9 @@ def chain(stages, first, proportions, ratios=None, after=None):
     for k in range(stages):
         if k > 0:
             pair = slice(k - 1, k + 1)
-            a = rules.next_centre_distance(a, u[pair], proportions[pair], (K, K))
+            a = process.next_centre_distance(a, u[pair], proportions[pair], (K, K))
         a = (after or {}).get(k, a)
-        found.append(rules.pinion_diameter(a, u[k]))
+        found.append(process.pinion_diameter(a, u[k]))
     return found
 
 

@@ -5,7 +5,7 @@ import math
 import chong_lee as paper
 from chong_lee import DESIGNS, K, chain, modules, niemann, recomputed, sixth, train
 
-from gearopt.formulations.process import rules
+from gearopt.formulations import process
 from gearopt.physics.loads import k_factor, unit_load
 
 SPLIT = (4.96, 4.36)  # as printed for both processes of Table 2
@@ -19,7 +19,7 @@ def from_loads():
     torque, cosine = own.torque, math.cos(own.helix_angle)
     for stage, u, share in zip(own.stages, SPLIT, paper.PROPORTIONS[2], strict=True):
         balanced = paper.U / K * (u + 1) / u * cosine
-        z = rules.balanced_pinion(own.law, stage, u, own.helix_angle)
+        z = process.balanced_pinion(own.law, stage, u, own.helix_angle)
         d = z / cosine
         by_root = math.cbrt(unit_load(torque, d, share * d, 1.0) / paper.U)
         by_contact = math.cbrt(k_factor(torque, d, share * d, u) / K)
@@ -30,10 +30,10 @@ def from_loads():
 
 def centres(first=150.0, square=True):
     """(a2, K2/K1) of the elevator; square: False for eq. (3) with the cube as printed."""
-    f, m = rules.load_share(*SPLIT), 0.6 / 0.75
+    f, m = process.load_share(*SPLIT), 0.6 / 0.75
     growth = f * (SPLIT[1] + 1) / (SPLIT[0] + 1) * m
     a2 = first * growth ** (1 / 3 if square else 1 / 4)
-    d = [rules.pinion_diameter(a, u) for a, u in zip((first, a2), SPLIT, strict=True)]
+    d = [process.pinion_diameter(a, u) for a, u in zip((first, a2), SPLIT, strict=True)]
     torque = train(2).torque
     loads = [
         k_factor(t, one, share * one, u)
@@ -48,8 +48,8 @@ def rule_rows():
     """What the rules give beside what is printed."""
     one, two = from_loads()
     cosine = math.cos(train(2).helix_angle)
-    d1 = rules.pinion_diameter(150.0, SPLIT[0])
-    d2 = rules.pinion_diameter(centres()[0], SPLIT[1])
+    d1 = process.pinion_diameter(150.0, SPLIT[0])
+    d2 = process.pinion_diameter(centres()[0], SPLIT[1])
     small = modules(chain(3, 160.0, paper.PROPORTIONS[3]), TEETH)
     enlarged = modules(chain(3, 160.0, paper.PROPORTIONS[3], after={0: 182.06}), TEETH)
     later = modules(chain(3, 160.0, paper.PROPORTIONS[3], after={1: 223.43}), TEETH)

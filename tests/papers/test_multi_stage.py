@@ -13,7 +13,7 @@ import pytest
 from chong_lee import DESIGNS, K, recomputed, sixth, train
 
 import gearopt
-from gearopt.formulations.process import rules
+from gearopt.formulations import process
 from gearopt.physics.loads import k_factor
 
 PAGE = (Path(__file__).parents[2] / "docs" / "multi_stage.md").read_text(encoding="utf-8")
@@ -147,12 +147,12 @@ def test_niemann_is_the_limit_for_large_ratios():
     two = lambda u1: u1**2 + u1 * (big / u1) ** 2  # noqa: E731
     u1 = 2 ** (-1 / 3) * big ** (2 / 3)
     assert two(u1) < min(two(0.999 * u1), two(1.001 * u1))
-    assert rules.niemann_ratios(big, (K, K))[0] / u1 == pytest.approx(0.8 / 0.794, abs=1e-3)
+    assert process.niemann_ratios(big, (K, K))[0] / u1 == pytest.approx(0.8 / 0.794, abs=1e-3)
     v1, v2 = 2 ** (-5 / 7) * big ** (4 / 7), 2 ** (1 / 7) * big ** (2 / 7)
     three = lambda a, b: a**2 + a * b**2 + big**2 / (a * b)  # noqa: E731
     for a, b in itertools.product((0.999, 1.0, 1.001), repeat=2):
         assert three(v1, v2) <= three(a * v1, b * v2)
-    found = rules.niemann_ratios(big, (K, K, K))
+    found = process.niemann_ratios(big, (K, K, K))
     assert found[0] / v1 == pytest.approx(0.6 / 0.610, abs=1e-3)
     assert found[1] / v2 == pytest.approx(1.1 / 1.104, abs=1e-3)
     for number in (2 ** (-1 / 3), 2 ** (-5 / 7), 2 ** (1 / 7)):
@@ -167,7 +167,7 @@ def test_where_496_comes_from():
     assert low < 119 / 24 < high and f"119/24 = {119 / 24:.3f}" in PLAIN
     ratio = [(u / 0.8) ** 1.5 / TOTALS[0] for u in (4.96, 5.0)]
     assert "s_12 of {:.3f} to {:.3f}".format(*ratio) in PLAIN
-    u1 = rules.niemann_ratios(TOTALS[0], (1.0, 2.0))[0]
+    u1 = process.niemann_ratios(TOTALS[0], (1.0, 2.0))[0]
     assert low < u1 < high and f"u1 = {u1:.3f}" in PLAIN
 
 
@@ -197,7 +197,7 @@ def test_erratum_01_the_square_of_the_centre_distances():
     loads = []
     for torque, u, a, b in ((1e5, u1, a1, b1), (1e5 * u1, u2, a2, b2)):
         loads.append(k_factor(torque, 2 * a / (u + 1), b, u))
-    f = rules.load_share(u1, u2)
+    f = process.load_share(u1, u2)
     assert f == pytest.approx(loads[1] / loads[0] * b2 / b1 * (a2 / a1) ** 2, rel=1e-12)
     assert words.centres()[1] == pytest.approx(1.0, rel=1e-12)
     assert words.centres(square=False)[1] > 1.3
@@ -207,11 +207,11 @@ def test_erratum_01_the_square_of_the_centre_distances():
 def test_erratum_02_the_square_of_the_stresses():
     """Allowed K1 = 2 K2: the corrected chain uses both alike; s for s^2 makes a2^3 too small."""
     split, widths = words.SPLIT, paper.PROPORTIONS[2]
-    a2 = rules.next_centre_distance(150.0, split, widths, (2.0, 1.0))
+    a2 = process.next_centre_distance(150.0, split, widths, (2.0, 1.0))
     torque = train(2).torque
 
     def use(a, torque, u, share, allowed):
-        d = rules.pinion_diameter(a, u)
+        d = process.pinion_diameter(a, u)
         return k_factor(torque, d, share * d, u) / allowed
 
     first = use(150.0, torque, split[0], widths[0], 2.0)
@@ -254,7 +254,7 @@ def test_erratum_05_power_is_proportional():
 
 
 def test_erratum_06_niemann_gives_another_split():
-    u1 = rules.niemann_ratios(TOTALS[0], (K, K))[0]
+    u1 = process.niemann_ratios(TOTALS[0], (K, K))[0]
     assert u1 == pytest.approx(6.2439, abs=5e-5) and f"{u1:.2f}" in row_of(6)
     (stage, _) = DESIGNS["Table 2, process two"]
     assert float(stage.u) == 4.96
@@ -263,7 +263,7 @@ def test_erratum_06_niemann_gives_another_split():
 def test_erratum_07_two_equations_13():
     """Both have their row; the first gives the widths of the tables."""
     assert len(re.findall(r"^\| \(13\)", PAGE, re.M)) == 2
-    width = 0.6 * rules.pinion_diameter(one(0)["centre_distance_mm"], one(0)["ratio"])
+    width = 0.6 * process.pinion_diameter(one(0)["centre_distance_mm"], one(0)["ratio"])
     assert width == pytest.approx(one(0)["face_width_mm"], rel=1e-3)
     row_of(7)
 
@@ -315,7 +315,7 @@ def test_erratum_12_a_figure_for_a_ratio_of_2():
 
 def test_erratum_13_one_material_hides_1_and_2():
     split, widths = words.SPLIT, paper.PROPORTIONS[2]
-    a2 = rules.next_centre_distance(150.0, split, widths, (K, K))
+    a2 = process.next_centre_distance(150.0, split, widths, (K, K))
     u1, u2 = split
     f = u1 * (u2 + 1) ** 3 / (u2 * (u1 + 1) ** 3) * u1
     printed = 150.0 * (f * 1.0 * (u2 + 1) / (u1 + 1) * 0.6 / 0.75) ** (1 / 3)

@@ -4,8 +4,8 @@ import math
 
 import gearopt
 from gearopt.formulations.design import describe
+from gearopt.formulations.gear_train import FaceWidth, Stage, Train
 from gearopt.formulations.strength.k_factor import K_FACTOR
-from gearopt.formulations.train import FaceWidth, Stage, Train
 from gearopt.optimise.typed import untyped
 
 HELIX = 25.0

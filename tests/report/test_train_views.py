@@ -11,8 +11,8 @@ from svg_reader import drawings, extents, marks, numbers
 
 import gearopt
 from gearopt.formulations.design import describe
+from gearopt.formulations.gear_train import FaceWidth, Stage, Train
 from gearopt.formulations.strength.k_factor import K_FACTOR
-from gearopt.formulations.train import FaceWidth, Stage, Train
 from gearopt.optimise.typed import untyped
 from gearopt.report.pages.result import page
 from gearopt.report.pages.train_views import PITCH, WIDE

@@ -10,8 +10,8 @@ from typing import Any
 
 from gearopt.bench.drive import CASES, train_of
 from gearopt.formulations import sizing, teeth
+from gearopt.formulations.gear_train import FaceWidth, Stage, Train
 from gearopt.formulations.strength.k_factor import K_FACTOR
-from gearopt.formulations.train import FaceWidth, Stage, Train
 from gearopt.optimise.comparing.compare import Plan, compare
 from gearopt.optimise.comparing.comparison import Comparison
 from gearopt.optimise.comparing.trial import Model

@@ -8,7 +8,7 @@ import statistics
 from typing import Any
 
 from gearopt.formulations import sizing, teeth
-from gearopt.formulations.train import Train
+from gearopt.formulations.gear_train import Train
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.solve import solve
 from gearopt.scenes.reading.load import read

@@ -5,8 +5,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from gearopt.formulations.gear_train import Train
 from gearopt.formulations.layout.layout_design import LayoutDesign
-from gearopt.formulations.train import Train
 from gearopt.optimise.typed import INLINE, typed
 from gearopt.physics.gears import GearPair
 from gearopt.physics.loads import pitch_line_velocity

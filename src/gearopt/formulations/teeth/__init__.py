@@ -11,11 +11,10 @@ from typing import Any
 import numpy as np
 
 from gearopt.errors import SolveError
+from gearopt.formulations.gear_train import Stage, Train, terms
 from gearopt.formulations.teeth.progress import MARGIN, TIE, Progress, Teeth
-from gearopt.formulations.teeth.search import BEAM, search
+from gearopt.formulations.teeth.search import BEAM, narrowed, search, trimmed
 from gearopt.formulations.teeth.stage import table
-from gearopt.formulations.teeth.wide import narrowed, trimmed
-from gearopt.formulations.train import Stage, Train, terms
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch

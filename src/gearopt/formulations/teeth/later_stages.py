@@ -16,8 +16,8 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from gearopt.errors import SolveError
+from gearopt.formulations.gear_train import Train
 from gearopt.formulations.teeth.stage import Table
-from gearopt.formulations.train import Train
 from gearopt.optimise.terms import Array
 
 ENTRIES = 10_000_000  # of the last stage's table

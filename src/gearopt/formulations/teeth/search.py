@@ -8,22 +8,23 @@ down to complete trains at once. The search ends when no open bound is below the
 import heapq
 import itertools
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gearopt.errors import SolveError
+from gearopt.formulations.gear_train import Stage, Train, share
 from gearopt.formulations.teeth.later_stages import EDGE, SLICE, Bound, bound, ragged
-from gearopt.formulations.teeth.progress import TIE, Progress, Spent, Teeth
-from gearopt.formulations.teeth.stage import Table, table
-from gearopt.formulations.train import Stage, Train, share
+from gearopt.formulations.teeth.progress import MARGIN, TIE, Progress, Spent, Teeth
+from gearopt.formulations.teeth.stage import Table, spans, table
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget, Event, Watch
 from gearopt.optimise.terms import Array
-from gearopt.physics.gears import GearPair
+from gearopt.physics.gears import GearPair, reference_diameter
 
+FEW = 200_000  # tooth pairs of a stage that are searched at once
 BEAM = 4  # nodes followed down at once; measured best for two to four stages
 LEAVES = 256  # nodes completed at once
 FIRST_LOOK = 20_000  # pairs looked at for a first train
@@ -302,3 +303,43 @@ def any_train(train: Train, seconds: float, watch: Watch | None) -> Teeth | None
     if progress.found:
         return progress.found[0][1]
     return None if progress.clock.stopped else ()
+
+
+def narrowed(train: Train) -> Train:
+    """The drive with so few of its least pinion teeth that no stage has more than FEW pairs.
+
+    A pinion alone may have more. The drive itself where its ranges are not wide.
+    """
+    stages = []
+    for k, stage in enumerate(train.stages):
+        low, _ = stage.pinion_teeth
+        found = spans(train, k, first_cut(train))
+        pairs = np.cumsum([stop - start + 1 for _, start, stop in found])
+        few = int(np.searchsorted(pairs, FEW, side="right"))
+        stages.append(replace(stage, pinion_teeth=(low, low + max(few - 1, 0))))
+    return replace(train, stages=tuple(stages))
+
+
+def trimmed(train: Train, most: float) -> Train:
+    """The drive without pinions whose stage alone costs more than `most`, whatever its module.
+
+    Exact: of a train of at most that objective nothing is left out.
+    """
+    stages = []
+    for k, stage in enumerate(train.stages):
+        low, high = stage.pinion_teeth
+        assert high is not None
+        teeth = np.arange(low, high + 1)
+        useful = np.flatnonzero(_least(train, k, teeth) <= most * (1.0 + MARGIN))
+        stages.append(replace(stage, pinion_teeth=(low, low + int(useful.max(initial=0)))))
+    return replace(train, stages=tuple(stages))
+
+
+def _least(train: Train, k: int, teeth: NDArray[np.int64]) -> Array:
+    """Least share (n,) of a stage (counted from 0) with pinions of so many teeth."""
+    stage = train.stages[k]
+    module, face = float(stage.modules[0]), stage.face_width
+    d = reference_diameter(module, teeth, train.helix_angle)
+    width = float(face.low) * d if face.fixed is None else np.full(len(d), float(face.fixed))
+    pair = train.pair(module, teeth, teeth * float(stage.ratio[0]), width)
+    return np.asarray(share(train, k, pair))

@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearopt.errors import SolveError
+from gearopt.formulations.gear_train import Stage, Train, share
 from gearopt.formulations.strength import ALLOWANCE, HALVINGS
-from gearopt.formulations.train import Stage, Train, share
 from gearopt.optimise.terms import Array
 from gearopt.physics.gears import GearPair
 

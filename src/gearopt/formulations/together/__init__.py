@@ -10,6 +10,7 @@ from functools import cache
 from typing import Any
 
 from gearopt.formulations import teeth
+from gearopt.formulations.gear_train import FaceWidth, Stage, Train
 from gearopt.formulations.layout.gearbox import Gearbox, Shaft
 from gearopt.formulations.layout.slabs import Arrangement
 from gearopt.formulations.strength.k_factor import K_FACTOR
@@ -18,7 +19,6 @@ from gearopt.formulations.together.continuous import angles_of, continuous
 from gearopt.formulations.together.search import MARGINS, Search, keep, lay, prepare, prove
 from gearopt.formulations.together.tables import Make, numbers
 from gearopt.formulations.together.text import laid_out, pairs, point, slabs_of, text
-from gearopt.formulations.train import FaceWidth, Stage, Train
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch

@@ -12,12 +12,12 @@ import numpy as np
 
 from gearopt.errors import SolveError
 from gearopt.formulations import sizing
+from gearopt.formulations.gear_train import Train
 from gearopt.formulations.layout.chain import chain
 from gearopt.formulations.layout.gearbox import ANYWHERE, Gearbox
 from gearopt.formulations.layout.slabs import Body, Slabs, arrange, faces
 from gearopt.formulations.layout.text import given_places, outside, placed_by, sides
 from gearopt.formulations.together.tables import Make
-from gearopt.formulations.train import Train
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Array, Terms, Var, each
 from gearopt.physics.gears import GearPair

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearopt.formulations import layout
+from gearopt.formulations.gear_train import Train
 from gearopt.formulations.layout.chain import Chain, chain, turns
 from gearopt.formulations.layout.gearbox import Gearbox
 from gearopt.formulations.layout.slabs import TOUCH, Arrangement, arrangements, clashes
@@ -19,7 +20,6 @@ from gearopt.formulations.teeth.search import within
 from gearopt.formulations.teeth.stage import table
 from gearopt.formulations.together.prepare import chains, rest, useful
 from gearopt.formulations.together.tables import Drive, Make, Rest
-from gearopt.formulations.train import Train
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.kernels import kernel
 from gearopt.optimise.result import Budget

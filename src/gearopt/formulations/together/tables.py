@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearopt.errors import SolveError
+from gearopt.formulations.gear_train import Train
 from gearopt.formulations.layout.gearbox import ANYWHERE, Gearbox, Shaft
 from gearopt.formulations.layout.slabs import TOUCH, Slabs, arrange, orders
 from gearopt.formulations.teeth.stage import Table, table
-from gearopt.formulations.train import Train
 from gearopt.optimise.terms import Array
 from gearopt.physics.gears import GearPair
 

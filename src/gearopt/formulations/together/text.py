@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 
 from gearopt.formulations import teeth
+from gearopt.formulations.gear_train import Train
 from gearopt.formulations.layout.chain import chain
 from gearopt.formulations.layout.gearbox import Gearbox
 from gearopt.formulations.layout.slabs import Arrangement, Slabs, arrange, orders
 from gearopt.formulations.layout.text import given_places, positions, sides
 from gearopt.formulations.together.tables import Make
-from gearopt.formulations.train import Train
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Array, Terms, Var, each
 from gearopt.physics.gears import GearPair

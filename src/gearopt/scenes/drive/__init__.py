@@ -10,7 +10,7 @@ from typing import Any
 
 from gearopt.errors import SolveError
 from gearopt.formulations import sizing, teeth
-from gearopt.formulations.train import Train
+from gearopt.formulations.gear_train import Train
 from gearopt.optimise.certificate import reconcile
 from gearopt.optimise.clock import Clock, in_part, of_others
 from gearopt.optimise.comparing.trial import Model

@@ -8,9 +8,9 @@ from typing import Annotated, Any
 from pydantic import Field, model_validator
 
 from gearopt.formulations.design import DriveDesign, describe
+from gearopt.formulations.gear_train import FaceWidth, Stage, Train
 from gearopt.formulations.layout.gearbox import Gearbox
 from gearopt.formulations.process import methods
-from gearopt.formulations.train import FaceWidth, Stage, Train
 from gearopt.optimise.result import Outcome
 from gearopt.physics.gears import GearPair, Rack
 from gearopt.physics.loads import torque

@@ -15,8 +15,8 @@ from gearopt.formulations.layout.layout_design import (
     MotorDesign,
     ShaftDesign,
 )
-from gearopt.formulations.layout.placed import Placed, placed
 from gearopt.formulations.layout.slabs import Arrangement
+from gearopt.formulations.layout.text import Placed, placed
 
 
 def described(

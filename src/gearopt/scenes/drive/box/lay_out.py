@@ -9,8 +9,8 @@ from gearopt.formulations.design import drive_design
 from gearopt.formulations.layout.exact import GAP
 from gearopt.formulations.layout.gearbox import Gearbox
 from gearopt.formulations.layout.layout_design import LayoutDesign
-from gearopt.formulations.layout.placed import placed, read
 from gearopt.formulations.layout.slabs import Arrangement, arrangements
+from gearopt.formulations.layout.text import placed, read
 from gearopt.optimise.clock import following, in_part
 from gearopt.optimise.comparing.trial import Model
 from gearopt.optimise.result import Result

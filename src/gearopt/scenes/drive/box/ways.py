@@ -7,8 +7,8 @@ from itertools import combinations
 from typing import Any
 
 from gearopt.formulations import layout
+from gearopt.formulations.layout.faults import possible
 from gearopt.formulations.layout.gearbox import Gearbox
-from gearopt.formulations.layout.possible import possible
 from gearopt.optimise.clock import Clock, of_others
 from gearopt.optimise.explaining.explanation import Change, Remedy
 from gearopt.physics.gears import GearPair

@@ -12,8 +12,8 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
+from gearopt.formulations.gear_train import Train
 from gearopt.formulations.teeth import best_point, pairs
-from gearopt.formulations.train import Train
 from gearopt.scenes.drive.explaining.levers import Lever, Moves, steps
 from gearopt.scenes.drive.explaining.tried import Case
 from gearopt.scenes.drive.scene import Scene

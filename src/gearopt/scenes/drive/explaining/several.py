@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from gearopt.formulations import sizing
-from gearopt.formulations.train import Train
+from gearopt.formulations.gear_train import Train
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.handles import Handle, handles
 from gearopt.optimise.explaining.repair import FARTHEST, SAME, least_factors

@@ -7,6 +7,7 @@ from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from gearopt import units
+from gearopt.formulations.gear_train import Train
 from gearopt.formulations.layout.gearbox import (
     ANYWHERE,
     OBJECTIVES,
@@ -17,7 +18,6 @@ from gearopt.formulations.layout.gearbox import (
     Range,
     Shaft,
 )
-from gearopt.formulations.train import Train
 from gearopt.physics.gears import GearPair
 from gearopt.physics.loads import torsion_diameter
 from gearopt.scenes.reading.fields import (

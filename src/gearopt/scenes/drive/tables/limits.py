@@ -6,9 +6,9 @@ from typing import Annotated, ClassVar
 from pydantic import Field, model_validator
 
 from gearopt import units
+from gearopt.formulations.gear_train import OBJECTIVES
 from gearopt.formulations.strength import Law
 from gearopt.formulations.strength.k_factor import K_FACTOR
-from gearopt.formulations.train import OBJECTIVES
 from gearopt.physics.gears import MODULES
 from gearopt.scenes.drive.tables.stages import (
     K_IS,
