@@ -331,10 +331,11 @@ def test_version_and_ascii_terminals():
     assert done.returncode == 0 and "Traceback" not in done.stderr
 
 
-def test_six_stages_fit_a_terminal_of_80_columns(here, monkeypatch):
+def test_six_stages_fit_a_terminal_of_80_columns(here, solved, tmp_path, monkeypatch):
+    (kept := tmp_path / "kept.json").write_text(solved("six_stages").to_json(), encoding="utf-8")
     for name, value in (("COLUMNS", "80"), ("FORCE_COLOR", "1"), ("TERM", "xterm")):
         monkeypatch.setenv(name, value)
-    done = here("solve", ROOT / "problems" / "six_stages.toml")
+    done = here("report", kept)
     assert "224,034.1" in done.stdout and "20,941.64" in done.stdout  # no digit is cut
 
 

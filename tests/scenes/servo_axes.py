@@ -7,6 +7,7 @@ import math
 from dataclasses import dataclass
 from decimal import Context, Decimal
 from fractions import Fraction as F
+from functools import cached_property
 from itertools import product
 
 import numpy as np
@@ -15,6 +16,8 @@ SERIES = [F(k, 100) for k in (20, 25, 30, 40, 50, 60, 80, 100, 125, 150, 200, 30
 TAN = math.tan(math.radians(20.0))
 GOALS = ("inertia", "mass", "error")
 NEAR = 1e-9  # relative: limits in doubles
+SAME = 1e-9  # of an objective, by two texts
+LOOKED_AT = 40  # better trains that are laid out on a grid
 
 
 @dataclass(frozen=True)
@@ -49,6 +52,13 @@ class Axis:
         if self.box is not None:
             return self.hub
         return self.shaft[0] if self.output is None else self.output
+
+    @cached_property
+    def whole(self):
+        """Modules, and half of shaft, output and motor, in a unit that makes them whole numbers."""
+        bodies = [F(v) for v in (self.shaft[0], self.thick, self.motor)]
+        unit = 4 * math.lcm(*(v.denominator for v in (*self.modules, *bodies)))
+        return {m: int(m * unit) for m in self.modules}, [int(v * unit) // 2 for v in bodies]
 
     @property
     def half_sweep(self):
@@ -198,11 +208,12 @@ def chosen(result):
 
 def room(axis, train):
     """Bodies that overlap in a plane, by name; touching is no overlap."""
-    z1, z2, z3, z4, m1, m2 = train
-    a12, a34 = m1 * (z1 + z2) / 2, m2 * (z3 + z4) / 2
-    tip = [m * (z + 2) / 2 for m, z in ((m1, z1), (m1, z2), (m2, z3), (m2, z4))]
-    root = [t - F(9, 4) * m for t, m in zip(tip, (m1, m1, m2, m2), strict=True)]
-    middle, output, motor = axis.shaft[0] / 2, axis.thick / 2, axis.motor / 2
+    modules, (middle, output, motor) = axis.whole
+    z1, z2, z3, z4, *exact = train
+    m1, m2 = (modules[m] for m in exact)
+    a12, a34 = m1 * (z1 + z2) // 2, m2 * (z3 + z4) // 2
+    tip = [m * (z + 2) // 2 for m, z in ((m1, z1), (m1, z2), (m2, z3), (m2, z4))]
+    root = [t - 9 * m // 4 for t, m in zip(tip, (m1, m1, m2, m2), strict=True)]
     pairs = {
         "gear 1, middle shaft": (tip[0] + middle, a12),
         "gear 2, output shaft": (tip[1] + output, a34),
@@ -224,10 +235,11 @@ def room(axis, train):
 
 def worth(axis, train):
     """Inertia [t mm2], mass [kg], error [rad] in the axis's own goal."""
-    z1, z2, z3, z4, m1, m2 = train
-    d1, d2, d3, d4 = (float(d) for d in (m1 * z1, m1 * z2, m2 * z3, m2 * z4))
     if axis.goal == "error":
         return error_of(axis, train)
+    z1, z2, z3, z4, *modules = train
+    m1, m2 = map(float, modules)
+    d1, d2, d3, d4 = m1 * z1, m1 * z2, m2 * z3, m2 * z4
     area = math.pi / 4 * axis.density * 1e-9 * float(axis.width)
     discs = [area * d * d for d in (d1, d2, d3, d4)]
     discs[3] *= float(axis.sector)
@@ -244,7 +256,7 @@ def error_of(axis, train):
     """Lost motion of both stages at the output [rad]."""
     _, z2, z3, z4, m1, m2 = train
     lost = [4 * TAN * float(r) + 2 * float(p) for r, p in zip(axis.radial, axis.pitch, strict=True)]
-    return lost[0] / float(m1 * z2) * z3 / z4 + lost[1] / float(m2 * z4)
+    return lost[0] / (float(m1) * z2) * z3 / z4 + lost[1] / (float(m2) * z4)
 
 
 def trains(axis, clear=True):
@@ -266,16 +278,15 @@ def trains(axis, clear=True):
 
 
 def sound(axis, train):
-    """Tips, error and stress."""
-    z1, z2, z3, z4, m1, m2 = train
-    if m1 * (z2 + 2) > axis.tips[0] or m2 * (z4 + 2) > axis.tips[1]:
-        return False
+    """Error and stress."""
+    z1, z2, z3, z4, *modules = train
+    m1, m2 = map(float, modules)
     if error_of(axis, train) > math.radians(axis.error) * (1 + NEAR):
         return False
     torque, width = axis.torque, float(axis.width)
     stresses = (
-        2 * torque / float(m2 * z4) / (width * float(m2) * lewis(z3)),
-        2 * torque * z3 / z4 / float(m1 * z2) / (width * float(m1) * lewis(z1)),
+        2 * torque / (m2 * z4) / (width * m2 * lewis(z3)),
+        2 * torque * z3 / z4 / (m1 * z2) / (width * m1 * lewis(z1)),
     )
     return max(stresses) <= axis.bending * (1 + NEAR)
 
@@ -323,3 +334,22 @@ def fits_on_a_grid(axis, train, degrees=3.0):
     slack = last * (1.0 - math.cos(half / 180.0))  # the sector's rim between its points
     good &= (width + 2 * slack <= axis.box[0]) & (height + 2 * slack <= axis.box[1])
     return bool(good.any())
+
+
+def held_against(axis, result, known, value):
+    """Return the chosen train, None where none is said to exist, held against all known ones.
+
+    known: trains that clear all bodies, the best first; value(train) is what is minimised.
+    """
+    held = axis.box is not None and axis.required
+    if result.status == "infeasible":
+        assert not known or held
+        assert not any(fits_on_a_grid(axis, train) for train in known[:LOOKED_AT])
+        return None
+    assert result.status == "optimal", result.message
+    train = chosen(result)
+    assert train in known and not room(axis, train)
+    better = [other for other in known if value(other) < value(train) * (1.0 - SAME)]
+    assert held or not better
+    assert not any(fits_on_a_grid(axis, other) for other in better[:LOOKED_AT])
+    return train

@@ -43,63 +43,46 @@ def test_no_factor_is_made_up_where_none_is_known_to_do():
     assert least_value(1.0, WIDEST, lambda value, back=0.0: False) is None
 
 
-TWO_GIVEN = """
+def drive_file(duty, stages, limits, power="1 kW", teeth="[teeth]"):
+    """A drive's file with the loads of the elevator drive; stages: a number, or their tables."""
+    count = isinstance(stages, int)
+    return f"""
 gearopt = 1
 kind = "drive"
+{f"stages = {stages}" if count else ""}
 [duty]
-power = "7.5 kW"
+power = "{power}"
 input_speed = "1450 rpm"
-ratio = 20
-[[stage]]
-face_width_over_diameter = 0.6
-pinion_teeth = 20
-[[stage]]
-face_width_over_diameter = 0.6
-pinion_teeth = 20
-wheel_teeth = 60
+{duty}
+{"[gears]" + WIDTH if count else stages}
 [limits]
 k_factor = "2.07 MPa"
 unit_load = "48 MPa"
-pinion_teeth = [20, 40]
-wheel_teeth = [20, 100]
-[teeth]
+{limits}
+{teeth}
 """
-NEITHER_ALONE = """
-gearopt = 1
-kind = "drive"
-[duty]
-power = "1 kW"
-input_speed = "1450 rpm"
-ratio = 3.17
-ratio_tolerance = "0.05 %"
-[[stage]]
-face_width_over_diameter = 0.6
-pinion_teeth = 20
-wheel_teeth = 60
-[limits]
-k_factor = "2.07 MPa"
-unit_load = "48 MPa"
-pinion_teeth = [20, 40]
-[teeth]
-"""
-SHORT_LIST = """
-gearopt = 1
-kind = "drive"
-stages = 1
-[duty]
-power = "7.5 kW"
-input_speed = "1450 rpm"
-ratio = 4
-[gears]
-face_width_over_diameter = 0.6
-[limits]
-k_factor = "2.07 MPa"
-unit_load = "48 MPa"
-pinion_teeth = [20, 22]
-wheel_diameter = "300 mm"
-[teeth]
-modules = ["1 mm", "8 mm"]
-"""
+
+
+WIDTH = "\nface_width_over_diameter = 0.6\n"
+STAGE = f"[[stage]]{WIDTH}pinion_teeth = 20\n"
+TWO_GIVEN = drive_file(
+    "ratio = 20",
+    STAGE + STAGE + "wheel_teeth = 60",
+    "pinion_teeth = [20, 40]\nwheel_teeth = [20, 100]",
+    "7.5 kW",
+)
+NEITHER_ALONE = drive_file(
+    'ratio = 3.17\nratio_tolerance = "0.05 %"',
+    STAGE + "wheel_teeth = 60",
+    "pinion_teeth = [20, 40]",
+)
+SHORT_LIST = drive_file(
+    "ratio = 4",
+    1,
+    'pinion_teeth = [20, 22]\nwheel_diameter = "300 mm"',
+    "7.5 kW",
+    '[teeth]\nmodules = ["1 mm", "8 mm"]',
+)
 
 
 def explained(text, seconds=100.0):
@@ -165,40 +148,13 @@ def test_ways_out_of_drives_with_given_numbers(seed):
 
 
 GIVEN_PAIR = NEITHER_ALONE.replace("3.17", "3").replace("0.05 %", "0.5 %").replace("= 60", "= 63")
-FEW_PINIONS = """
-gearopt = 1
-kind = "drive"
-stages = 1
-[duty]
-power = "1 kW"
-input_speed = "1450 rpm"
-ratio = 5.123
-ratio_tolerance = "0.01 %"
-[gears]
-face_width_over_diameter = 0.6
-[limits]
-k_factor = "2.07 MPa"
-unit_load = "48 MPa"
-pinion_teeth = [17, 30]
-[teeth]
-"""
-TWO_OF_TEN = """
-gearopt = 1
-kind = "drive"
-stages = 2
-[duty]
-power = "1 kW"
-input_speed = "1450 rpm"
-output_speed = "1.45 rpm"
-ratio_tolerance = "0 %"
-[gears]
-face_width_over_diameter = 0.6
-[limits]
-k_factor = "2.07 MPa"
-unit_load = "48 MPa"
-stage_ratio = [1, 10]
-pinion_teeth = [17, 40]
-"""
+FEW_PINIONS = drive_file('ratio = 5.123\nratio_tolerance = "0.01 %"', 1, "pinion_teeth = [17, 30]")
+TWO_OF_TEN = drive_file(
+    'output_speed = "1.45 rpm"\nratio_tolerance = "0 %"',
+    2,
+    "stage_ratio = [1, 10]\npinion_teeth = [17, 40]",
+    teeth="",
+)
 
 
 def ratio_chosen(text, found):

@@ -215,6 +215,7 @@ def test_a_shaft_adds_its_inertia_and_nothing_else():
     assert two["inertia_kg_m2"] - one["inertia_kg_m2"] == pytest.approx(more, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_an_error_without_a_limit_is_told_and_not_held():
     free, held = (gearopt.solve(scene(QUICK, train=FEW, **one)) for one in ({"accuracy": None}, {}))
     assert "error" not in free.limits and held.limits["error"] <= 1.0
