@@ -253,6 +253,16 @@ class DrawnErrors:
     histogram: Histogram
 
 
+def train_figures(train: TrainDesign, springs: StiffnessDesign | None) -> dict[str, float]:
+    """Return what trains are compared by: ratio, inertia, mass, error, stiffness, where known."""
+    keys = ("ratio", "inertia_kg_m2", "mass_kg", "error_deg")
+    found = {key: getattr(train, key) for key in keys}
+    if springs is not None:
+        found["output_stiffness_Nm_per_rad"] = springs.output_Nm_per_rad
+        found |= {key: getattr(springs, key) for key in ("frequency_Hz", "windup_deg")}
+    return {key: value for key, value in found.items() if value is not None}
+
+
 @dataclass(frozen=True)
 class ServoDesign:
     """The design of a servo axis: what its file asks for."""

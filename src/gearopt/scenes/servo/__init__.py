@@ -10,7 +10,7 @@ from typing import Any
 
 from gearopt.formulations.servo.choice import SHOWN, train_problem
 from gearopt.formulations.servo.ratio.duty import UNITS
-from gearopt.formulations.servo.servo_design import ServoDesign, ServoReport
+from gearopt.formulations.servo.servo_design import ServoDesign, ServoReport, train_figures
 from gearopt.formulations.servo.split.bodies import Pairs
 from gearopt.optimise.clock import Clock, of_others
 from gearopt.optimise.comparing.trial import Model
@@ -60,7 +60,7 @@ def solve(scene: Scene, ask: Ask) -> Result:
     if gears is not None:
         found += _geared(scene, _part(ask, clock, found), gears)
     if scene.lightest is not None:
-        found += _lightest(scene, _part(ask, clock, found))
+        found += lightest_part(scene, _part(ask, clock, found))
     found += Found(report=_key_figures(scene, found))
     answer, *parts = found.results
     told: dict[str, Any] = {"assumptions": assumptions(scene)}
@@ -121,15 +121,6 @@ def _geared(scene: Scene, ask: Ask, gears: Pairs) -> Found:
     return found
 
 
-def _lightest(scene: Scene, ask: Ask) -> Found:
-    """The lightest real-valued train, by the names of docs/servo.md too."""
-    result = lightest_part(scene, ask)
-    if result.value is None:
-        return Found((result,))
-    mass = {"lightest_mass_kg": result.value}
-    return Found((result,), report=ServoReport(lightest_train=result.design, figures=mass))
-
-
 def _key_figures(scene: Scene, found: Found) -> ServoReport:
     """The chosen and the given train, least values and room, by the names of docs/servo.md."""
     design, figures = found.design, {}
@@ -139,14 +130,15 @@ def _key_figures(scene: Scene, found: Found) -> ServoReport:
     if design.box is not None:
         figures["needed_width_mm"] = design.box.needed_width_mm
         figures["needed_height_mm"] = design.box.needed_height_mm
-    if scene.train is not None:
-        figures |= _of_train("chosen", design)
+    if scene.train is not None and design.train is not None:
+        chosen = train_figures(design.train, design.stiffness)
+        figures |= {f"chosen_{key}": value for key, value in chosen.items()}
     if (gears := given_gears(scene)) is None:
         return ServoReport(figures=figures)
     springs = scene.springs
     train = described(scene, gears)
     stiffness = None if springs is None else springs.design(to_point(gears))
-    figures |= _of_train("given", ServoDesign(train=train, stiffness=stiffness))
+    figures |= {f"given_{key}": v for key, v in train_figures(train, stiffness).items()}
     if scene.sources:
         figures |= of_given(scene, gears)
     if scene.lightest is not None and springs is not None and train.mass_kg is not None:
@@ -154,28 +146,6 @@ def _key_figures(scene: Scene, found: Found) -> ServoReport:
         shaft = 1000.0 * float(disc_mass(scene.servo_train().density, long, thick))
         figures["given_mass_with_shaft_kg"] = train.mass_kg + shaft
     return ServoReport(given_train=train, given_stiffness=stiffness, figures=figures)
-
-
-def _of_train(whose: str, design: ServoDesign) -> dict[str, float]:
-    """A train and its stiffness as key figures."""
-    train, springs = design.train, design.stiffness
-    found = (
-        {}
-        if train is None
-        else {
-            "ratio": train.ratio,
-            "inertia_kg_m2": train.inertia_kg_m2,
-            "mass_kg": train.mass_kg,
-            "error_deg": train.error_deg,
-        }
-    )
-    if springs is not None:
-        found |= {
-            "output_stiffness_Nm_per_rad": springs.output_Nm_per_rad,
-            "frequency_Hz": springs.frequency_Hz,
-            "windup_deg": springs.windup_deg,
-        }
-    return {f"{whose}_{name}": v for name, v in found.items() if v is not None}
 
 
 def explain(scene: Scene, ask: Ask) -> Explanation:

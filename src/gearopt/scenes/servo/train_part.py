@@ -319,11 +319,15 @@ def scaled(result: Result, factor: float, unit: str) -> Result:
     return replace(result, objective=result.objective | {"value": found, "unit": unit}, bound=bound)
 
 
-def lightest_part(scene: Scene, ask: Ask) -> Result:
+def lightest_part(scene: Scene, ask: Ask) -> Found:
     """The lightest real-valued train that is stiff enough, in plain units."""
     watch = in_part(ask.watch, "kg", "stiff")
     result = solve(split.stiff(scene.stiff_train()), None, ask.budget, ask.seed, watch, ask.gap)
-    return replace(scaled(result, 1.0, "kg"), name="stiff")
+    result = replace(scaled(result, 1.0, "kg"), name="stiff")
+    if result.value is None:
+        return Found((result,))
+    mass = {"lightest_mass_kg": result.value}
+    return Found((result,), report=ServoReport(lightest_train=result.design, figures=mass))
 
 
 def box_part(scene: Scene, gears: Pairs, ask: Ask) -> Found:

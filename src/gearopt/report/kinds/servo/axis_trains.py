@@ -10,11 +10,11 @@ from gearopt.formulations.servo.servo_design import (
     ServoDesign,
     ServoReport,
     TrainDesign,
+    train_figures,
 )
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import untyped
 from gearopt.report.kinds.servo.axis_words import (
-    UNITS,
     arc_minutes,
     degrees,
     design_of,
@@ -96,11 +96,11 @@ def best(result: Result, measures: Measures) -> Section | None:
     trains = [t for t in report_of(result).trains or () if t.best_of]
     if not trains:
         return None
-    keys = [key for key in UNITS if getattr(trains[0], key) is not None]
+    keys = [key for key, _ in GOALS.values() if getattr(trains[0], key) is not None]
     heads = ["best", "teeth", *(heading(key, measures) for key in keys)]
     rows = [
         [t.best_of, teeth_words(t.stages)]
-        + [float(measures.of(getattr(t, key), UNITS[key])) for key in keys]
+        + [float(measures.of(getattr(t, key), parted(key)[1])) for key in keys]
         for t in trains
     ]
     return Section("Best trains", terminal=(Table("best", heads, rows),))
@@ -128,28 +128,17 @@ def _beside(design: ServoDesign, report: ServoReport, measures: Measures) -> lis
     chosen, given, ratio = design.train, report.given_train, design.ratio
     if chosen is None or given is None or chosen.mass_kg is None:
         return []
-    pairs: list[tuple[str, float | None, float | None]] = [
-        ("ratio", chosen.ratio, given.ratio),
-        ("inertia_kg_m2", chosen.inertia_kg_m2, given.inertia_kg_m2),
-        ("mass_kg", chosen.mass_kg, given.mass_kg),
-        ("error_deg", chosen.error_deg, given.error_deg),
-    ]
-    if (own := design.stiffness) is not None and (other := report.given_stiffness) is not None:
-        pairs += [
-            ("output_stiffness_Nm_per_rad", own.output_Nm_per_rad, other.output_Nm_per_rad),
-            ("frequency_Hz", own.frequency_Hz, other.frequency_Hz),
-            ("windup_deg", own.windup_deg, other.windup_deg),
-        ]
+    own = train_figures(chosen, design.stiffness)
+    other = train_figures(given, report.given_stiffness)
     if ratio is not None:
-        values = [None if one is None else one.value for one in (ratio.chosen, ratio.given_train)]
-        pairs.append((_key(ratio), values[0], values[1]))
+        for figures, one in ((own, ratio.chosen), (other, ratio.given_train)):
+            figures |= {} if one is None else {_key(ratio): one.value}
     rows = []
-    for key, *known in pairs:
-        if any(v is not None for v in known):
-            known.append(report.figures.get(f"real_valued_bound_{key}"))
-            unit = parted(key)[1]
-            cells = [None if v is None else float(measures.of(v, unit)) for v in known]
-            rows.append([heading(key, measures), *cells])
+    for key in own | other:
+        bound, unit = report.figures.get(f"real_valued_bound_{key}"), parted(key)[1]
+        values = (own.get(key), other.get(key), bound)
+        shown = [None if v is None else float(measures.of(v, unit)) for v in values]
+        rows.append([heading(key, measures), *shown])
     return rows
 
 
@@ -220,9 +209,9 @@ def _front(result: Result, measures: Measures, goal: str, other: str) -> Section
         if train is not None and train.mass_kg is not None:
             groups.append((name, [_listed(train, ratio, name)], mark))
     groups = [g for g in groups if all(getattr(g[1][0], k) is not None for k in (key, high))]
-    values = [measures.of(getattr(t, key), UNITS[key]) for _, some, _ in groups for t in some]
+    values = [measures.of(getattr(t, key), parted(key)[1]) for _, some, _ in groups for t in some]
     wide = max(values) > 10.0 * min(values)
-    across, up = (axis(f"{name} [{measures.unit(UNITS[k])}]") for k, name in pair)
+    across, up = (axis(f"{name} [{measures.unit(parted(k)[1])}]") for k, name in pair)
     if wide:
         across |= {"type": "log", "dtick": "D2", "tickformat": "~g"}
     else:
@@ -248,11 +237,11 @@ def _listed(train: TrainDesign, ratio: RatioDesign | None, who: str) -> ListedTr
 def _table(trains: Sequence[ListedTrain], measures: Measures) -> Table:
     """Return all points with their teeth and modules."""
     known = [one for one in GOALS.values() if getattr(trains[0], one[0]) is not None]
-    heads = [f"{name} [{measures.unit(UNITS[key])}]" for key, name in known]
+    heads = [f"{name} [{measures.unit(parted(key)[1])}]" for key, name in known]
     heads += [f"{what} of stage {k}" for k in (1, 2) for what in ("module [mm]", "z1", "z2")]
     rows = [
         [
-            *(measures.of(getattr(t, key), UNITS[key]) for key, _ in known),
+            *(measures.of(getattr(t, key), parted(key)[1]) for key, _ in known),
             *(getattr(s, k) for s in t.stages for k in STAGE),
             t.best_of,
         ]
@@ -288,7 +277,7 @@ def _points(
 ) -> dict[str, Any]:
     """Return trains as points; mark: size, symbol and colour; keys: across and up."""
     size, symbol, colour = mark
-    x, y = ([measures.of(getattr(t, k), UNITS[k]) for t in trains] for k in keys)
+    x, y = ([measures.of(getattr(t, k), parted(k)[1]) for t in trains] for k in keys)
     edge = {"width": 2.6} if symbol.endswith("open") else {"width": 0}
     return {
         "type": "scatter",
@@ -308,7 +297,7 @@ def _told(train: ListedTrain, measures: Measures) -> str:
     for goal, (key, _) in GOALS.items():
         value = getattr(train, key)
         if value is not None:
-            told = degrees(value) if goal == "error" else amount(value, UNITS[key], measures)
+            told = degrees(value) if goal == "error" else amount(value, parted(key)[1], measures)
             lines.append(f"{goal} {told}")
     return "<br>".join(lines)
 

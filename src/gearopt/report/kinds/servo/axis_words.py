@@ -8,14 +8,6 @@ from gearopt.optimise.typed import typed
 from gearopt.report.words import number
 
 ARCMIN = 60.0  # a degree
-UNITS = {  # of what trains are compared by
-    "load_acceleration_rad_per_s2": "rad_per_s2",
-    "move_time_s": "s",
-    "rms_torque_Nm": "Nm",
-    "inertia_kg_m2": "kg_m2",
-    "mass_kg": "kg",
-    "error_deg": "deg",
-}
 
 
 def design_of(result: Result) -> ServoDesign:
