@@ -12,7 +12,7 @@ from small_drives import FACES, OBJECTIVES, drive
 from gearopt.errors import SolveError
 from gearopt.formulations import teeth
 from gearopt.formulations.gear_train import FaceWidth
-from gearopt.formulations.teeth import MOST, _in_order, _why, best_point, pairs, problem
+from gearopt.formulations.teeth import MOST, _in_order, _why, best_pairs, pairs, point, problem
 from gearopt.formulations.teeth.progress import MARGIN, TIE, Progress
 from gearopt.formulations.teeth.search import search
 from gearopt.optimise.clock import Clock
@@ -25,6 +25,11 @@ WIDTH = {  # of the variables of a face width: name, ends of both stages
     "fixed alone": ("face_width", (24.0, 24.0), (24.0, 24.0)),
     "stepped": ("width_steps", (1.0, 1.0), (MOST, MOST)),
 }
+
+
+def point_of(train, teeth):
+    """The point of the best pairs of these teeth."""
+    return point(train, best_pairs(train, teeth))
 
 
 def bounds_of(train):
@@ -100,7 +105,7 @@ def test_stages_of_unlike_widths_share_the_variables():
     found = bounds_of(train)
     assert found["width_steps"] == ([1.0] * 3, [MOST, 1.0, 1.0])
     assert found["face_width"] == ([1.0, 1.0, 24.0], [1.0, 1.0, 24.0])
-    x = best_point(train, ((16, 40), (17, 48), (18, 52)))
+    x = point_of(train, ((16, 40), (17, 48), (18, 52)))
     low, high, _ = problem(train).bounds()
     assert (low <= x).all() and (x <= high).all()
     first, second, third = pairs(train, x)
@@ -120,7 +125,7 @@ def test_the_point_of_teeth_is_the_brute_forces_and_keeps_every_row(face, object
     trains, posed = every_train(train), problem(train)
     assert len(trains.values) > 10
     for k in range(0, len(trains.values), max(1, len(trains.values) // 8)):
-        x = best_point(train, tuple(map(tuple, trains.teeth[k].tolist())))
+        x = point_of(train, tuple(map(tuple, trains.teeth[k].tolist())))
         batch = posed.batch(x[None])
         assert batch.F[0, 0] == pytest.approx(trains.values[k], rel=1e-12)
         assert (batch.G <= 1.0 + 1e-11).all()
@@ -136,7 +141,7 @@ def test_widths_are_whole_steps_whatever_rounding_makes_of_them():
     train = replace(train, stages=tuple(replace(s, face_width=face) for s in train.stages))
     trains, below = every_train(train), 0
     for k in range(0, len(trains.values), 15):
-        x = best_point(train, tuple(map(tuple, trains.teeth[k].tolist())))
+        x = point_of(train, tuple(map(tuple, trains.teeth[k].tolist())))
         widths = [p.face_width for p in pairs(train, x)]
         assert widths == pytest.approx(trains.widths[k], rel=1e-12)
         below += (trains.widths[k] / 0.7 < np.rint(trains.widths[k] / 0.7)).any()
@@ -150,12 +155,12 @@ def test_ends_of_the_set_of_modules_are_no_limits_and_hunting_teeth_are():
     hunting = problem(replace(train, coprime=True))
     names = [row.name for row in hunting.rows.inequalities]
     assert names[-2:] == ["common_divisor[1]", "common_divisor[2]"]
-    x = best_point(train, ((16, 52), (18, 63)))
+    x = point_of(train, ((16, 52), (18, 63)))
     assert hunting.batch(x[None]).G[0, -2:].tolist() == [4.0, 9.0]
     for near in (-1e-7, 1e-7):  # whole teeth, as a solver of real numbers returns them
         assert hunting.batch(x[None] + near).G[0, -2:].tolist() == [4.0, 9.0]
     one = problem(replace(drive(1, total=3), coprime=True))
-    assert one.batch(best_point(drive(1, total=3), ((15, 45),))[None]).G[0, -1] == 15.0
+    assert one.batch(point_of(drive(1, total=3), ((15, 45),))[None]).G[0, -1] == 15.0
     with pytest.raises(SolveError, match="hunting teeth"):
         hunting.traced()
 

@@ -14,21 +14,20 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-import numpy as np
-
 from gearopt.errors import SolveError
 from gearopt.formulations.gear_train import Stage, Train
 from gearopt.formulations.strength import Law
+from gearopt.formulations.teeth import point
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch
-from gearopt.physics.gears import GearPair, reference_diameter
+from gearopt.physics.gears import GearPair
 
 ROUNDING = 1e-12  # relative; a whole number or module missed by so little is met
 RANDOM = False
 COUNTS = "train made by the rules"
 
 Ratios = tuple[Fraction, ...]
-Gears = tuple[float, int, int]  # of a stage: module [mm], pinion teeth, wheel teeth
+Pairs = tuple[GearPair, ...]
 
 
 @dataclass(frozen=True)
@@ -76,14 +75,14 @@ def methods(
         if one is None:
             raise _missing("one", "stage_ratios")
         _check("one", train, one)
-        return _outcome(problem, *_first(train, one))
+        return _outcome(train, *_first(train, one))
 
     def process_two(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
         """Ratios after Niemann; sizes from the first centre distance."""
         if two is None:
             raise _missing("two", "first_centre_distance, and modules or pinion_teeth")
         _check("two", train, two)
-        return _outcome(problem, *_second(train, two))
+        return _outcome(train, *_second(train, two))
 
     return {"process-one": process_one, "process-two": process_two}
 
@@ -111,9 +110,15 @@ def _check(which: str, train: Train, inputs: ProcessOne | ProcessTwo) -> None:
             raise SolveError(f"process {which} has {len(given)} entries, not one for each stage")
 
 
-def _first(train: Train, inputs: ProcessOne) -> tuple[list[Gears], str]:
+def _pair(train: Train, stage: Stage, module: Fraction, z1: int, z2: int) -> GearPair:
+    """The pair of a stage whose face width is tied to d1."""
+    one = train.pair(float(module), z1, z2, 1.0)
+    return one.of_width(float(stage.face_width.high or 0) * one.pinion.reference_diameter)
+
+
+def _first(train: Train, inputs: ProcessOne) -> tuple[Pairs, str]:
     """The gears of process one; none, and why, where no module carries the load."""
-    gears: list[Gears] = []
+    pairs: list[GearPair] = []
     torque, angle = train.torque, train.helix_angle
     for k, (stage, u) in enumerate(zip(train.stages, inputs.ratios, strict=True)):
         if inputs.pinion_teeth is not None:
@@ -127,21 +132,21 @@ def _first(train: Train, inputs: ProcessOne) -> tuple[list[Gears], str]:
             least = needed_module(train.law, stage, torque, (z1, z2), angle)
             module = next_module(stage, least)
             if module is None:
-                return [], _no_module(k, least, stage)
+                return (), _no_module(k, least, stage)
         assert module is not None
-        gears.append((float(module), z1, z2))
+        pairs.append(_pair(train, stage, module, z1, z2))
         torque *= z2 / z1
-    return gears, ""
+    return tuple(pairs), ""
 
 
-def _second(train: Train, inputs: ProcessTwo) -> tuple[list[Gears], str]:
+def _second(train: Train, inputs: ProcessTwo) -> tuple[Pairs, str]:
     """The gears of process two; none, and why, where no module is large enough.
 
     A given pinion that is smaller than its centre distance asks for is told.
     """
     limits = [stage.allowable[0] for stage in train.stages]
     ratios = inputs.ratios or niemann_ratios(float(train.ratio), limits)
-    gears: list[Gears] = []
+    pairs: list[GearPair] = []
     small = []
     diameters = _diameters(train, inputs.first_centre_distance, [float(u) for u in ratios])
     for k, (stage, d1) in enumerate(zip(train.stages, diameters, strict=True)):
@@ -153,14 +158,14 @@ def _second(train: Train, inputs: ProcessTwo) -> tuple[list[Gears], str]:
             assert z1 is not None
             module = next_module(stage, across / z1)
             if module is None:
-                return [], _no_module(k, across / z1, stage)
+                return (), _no_module(k, across / z1, stage)
         assert module is not None
         z1 = z1 or math.ceil(across / float(module) * (1.0 - ROUNDING))
-        made = reference_diameter(float(module), z1, train.helix_angle)
+        pairs.append(_pair(train, stage, module, z1, wheel_teeth(z1, ratios[k])))
+        made = pairs[-1].pinion.reference_diameter
         if made < d1 * (1.0 - ROUNDING):
             small.append(f"pinion {k + 1} is given {made:.2f} mm, its centres ask for {d1:.2f} mm")
-        gears.append((float(module), z1, wheel_teeth(z1, ratios[k])))
-    return gears, "; ".join(small)
+    return tuple(pairs), "; ".join(small)
 
 
 def _diameters(train: Train, centre_distance: float, u: list[float]) -> list[float]:
@@ -188,14 +193,9 @@ def _no_module(position: int, least: float, stage: Stage) -> str:
     )
 
 
-def _outcome(problem: Problem, gears: list[Gears], message: str) -> Outcome:
+def _outcome(train: Train, pairs: Pairs, message: str) -> Outcome:
     """The point of the problem `teeth` that has these gears."""
-    if not gears:
-        return Outcome(None, evaluations=1, message=message)
-    columns = dict(
-        zip(("module", "pinion_teeth", "wheel_teeth"), zip(*gears, strict=True), strict=True)
-    )
-    x = np.array([float(v) for variable in problem.variables for v in columns[variable.name]])
+    x = point(train, pairs) if pairs else None
     return Outcome(x, evaluations=1, message=message)
 
 

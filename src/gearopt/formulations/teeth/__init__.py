@@ -5,6 +5,7 @@ tied, free or on a step. `exact` proves its answer by exhausting all other train
 """
 
 import math
+from collections.abc import Iterable
 from types import SimpleNamespace
 from typing import Any
 
@@ -73,9 +74,9 @@ def problem(train: Train, count: int = 1, floor: float = -math.inf) -> Problem:
     return Problem("teeth", _variables(train), (), evaluate, methods=methods, vectorised=True)
 
 
-def pairs(train: Train, point: Array) -> tuple[GearPair, ...]:
+def pairs(train: Train, x: Array) -> tuple[GearPair, ...]:
     """Return the gear pairs of a point of `problem`."""
-    return _pairs(train, namespace(_variables(train), [float(v) for v in point]))
+    return _pairs(train, namespace(_variables(train), [float(v) for v in x]))
 
 
 def _pairs(train: Train, x: Any) -> tuple[GearPair, ...]:
@@ -154,7 +155,7 @@ def _outcome(
         progress.nodes += more.nodes
         if more.clock.stopped:
             found = found[:1]
-    points = [best_point(train, teeth) for teeth in found]
+    points = [point(train, best_pairs(train, teeth)) for teeth in found]
     proof = {
         "method": "exhausted",
         "arithmetic": "ratios, teeth, diameters and width steps rational; loads and volumes double",
@@ -244,19 +245,27 @@ def _in_order(progress: Progress) -> list[Teeth]:
     return [t for _, ties in groups for t in sorted(ties, key=lambda t: (sum(map(sum, t)), t))]
 
 
-def best_point(train: Train, teeth: Teeth) -> Array:
-    """The point of a train: best module and width of every stage for its teeth."""
-    columns: dict[str, list[float]] = {name: [] for name in VARIABLES}
-    torque = train.torque
+def best_pairs(train: Train, teeth: Teeth) -> tuple[GearPair, ...]:
+    """Return the gear pairs of a train: the best module and face width for its teeth."""
+    torque, found = train.torque, []
     for k, (z1, z2) in enumerate(teeth):
         only = table(train.fixed_teeth(k, z1, z2), k, train.highest_ratio)
         module, width = only.choose(torque, 0)
-        face = train.stages[k].face_width
-        given = face.tied or face.step is not None  # by d1 or as width_steps
-        columns["module"].append(module)
-        columns["pinion_teeth"].append(z1)
-        columns["wheel_teeth"].append(z2)
-        columns["face_width"].append(1.0 if given else width)
-        columns["width_steps"].append(round(width / float(face.step)) if face.step else 1)
+        found.append(train.pair(module, z1, z2, width))
         torque *= z2 / z1
-    return np.array([value for v in _variables(train) for value in columns[v.name]])
+    return tuple(found)
+
+
+def point(train: Train, pairs: Iterable[GearPair]) -> Array:
+    """Return the point of `problem` of gear pairs; what ties their face widths is not looked at."""
+    columns: dict[str, list[float]] = {name: [] for name in VARIABLES}
+    for pair, stage in zip(pairs, train.stages, strict=True):
+        face = stage.face_width
+        given = face.tied or face.step is not None  # by d1 or as width_steps
+        columns["module"].append(pair.normal_module)
+        columns["pinion_teeth"].append(pair.pinion_teeth)
+        columns["wheel_teeth"].append(pair.wheel_teeth)
+        columns["face_width"].append(1.0 if given else pair.face_width)
+        steps = round(pair.face_width / float(face.step)) if face.step else 1
+        columns["width_steps"].append(steps)
+    return np.array([float(value) for v in _variables(train) for value in columns[v.name]])

@@ -92,7 +92,7 @@ def _first(search: Search) -> bool:
     for _, one in progress.found[:FIRST]:
         if search.clock.stopped:
             break
-        lay(search, teeth.pairs(search.train, teeth.best_point(search.train, one)), MARGINS[3])
+        lay(search, teeth.best_pairs(search.train, one), MARGINS[3])
     return bool(progress.found) or progress.clock.stopped
 
 

@@ -110,17 +110,8 @@ def point(
     train: Train, pairs: tuple[GearPair, ...], slabs: int, several: bool, angles: Array
 ) -> Array:
     """The point of a train with its layout."""
-    columns: dict[str, list[float]] = {name: [] for name in teeth.VARIABLES}
-    for pair, face in zip(pairs, (s.face_width for s in train.stages), strict=True):
-        free = not face.tied and face.step is None and face.fixed is None
-        columns["module"].append(pair.normal_module)
-        columns["pinion_teeth"].append(pair.pinion_teeth)
-        columns["wheel_teeth"].append(pair.wheel_teeth)
-        columns["face_width"].append(pair.face_width if free else float(face.fixed or 1))
-        steps = round(pair.face_width / float(face.step)) if face.step else 1
-        columns["width_steps"].append(steps)
-    found = [float(v) for var in teeth.problem(train).variables for v in columns[var.name]]
-    return np.array([*found, *angles, *([float(slabs)] if several else [])])
+    order = [float(slabs)] if several else []
+    return np.concatenate([teeth.point(train, pairs), angles, order])
 
 
 def pairs(train: Train, x: Array) -> tuple[GearPair, ...]:

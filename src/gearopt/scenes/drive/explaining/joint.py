@@ -13,7 +13,7 @@ from fractions import Fraction
 from typing import Any
 
 from gearopt.formulations.gear_train import Train
-from gearopt.formulations.teeth import best_point, pairs
+from gearopt.formulations.teeth import best_pairs
 from gearopt.scenes.drive.explaining.levers import Lever, Moves, steps
 from gearopt.scenes.drive.explaining.tried import Case
 from gearopt.scenes.drive.scene import Scene
@@ -76,7 +76,7 @@ def _met(case: Case, train: Train, choices: list[Choice], box: Box) -> Box | boo
     teeth = case.teeth(train)
     if not teeth:
         return False if teeth == () else None
-    made = pairs(train, best_point(train, teeth))
+    made = best_pairs(train, teeth)
     places = []
     for choice in choices:
         pinion, wheel = teeth[choice.stage]
