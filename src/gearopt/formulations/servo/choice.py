@@ -47,36 +47,36 @@ class Choice:
 
     @property
     def least(self) -> float | None:
-        """Stiffness that the output must have [N mm/rad]; None where none is asked for."""
+        """Return the minimum stiffness of the output [N mm/rad]; None where none is asked for."""
         return None if self.springs is None else self.springs.least
 
     @property
     def apart(self) -> tuple[str, ...]:
-        """Limits that an enumeration does not look at."""
+        """Return the limits that an enumeration does not look at."""
         return ("stiffness",) * (self.least is not None) + ("box",) * (self.room is not None)
 
     @property
     def weighed(self) -> tuple[str, ...]:
-        """What trains are held against each other by: inertia, or the goal of the duty, first."""
+        """Return the objectives of the Pareto front: inertia, or the goal of the duty, first."""
         first = self.goal if self.goal in UNITS else "inertia"
         return (first, "mass", *(("error",) if self.train.lost_motion is not None else ()))
 
     def stiff(self, points: Array) -> Array:
-        """Those of some points (N, 6) that are stiff enough."""
+        """Return those of some points (N, 6) that are stiff enough."""
         if self.springs is None or self.springs.least is None:
             return points
         found: Array = points[self.springs.output_stiffness(points.T) >= self.springs.least]
         return found
 
     def keeps(self, point: Array) -> bool:
-        """Whether a train is stiff enough and fits."""
+        """Return whether a train is stiff enough and fits."""
         if not len(self.stiff(point[None])):
             return False
         return self.room is None or servo_box.first_that_fits([self.room(point)]) is not None
 
 
 def train_problem(choice: Choice) -> Problem:
-    """The problem of a train in the units of `SHOWN`; its own methods keep a box, which is no row.
+    """Return the problem of a train in the units of `SHOWN`; a box is kept by its own methods.
 
     Variables as in `split.problem`.
     """
@@ -93,7 +93,7 @@ def train_problem(choice: Choice) -> Problem:
 
     def method(name: str) -> Callable[..., Outcome]:
         def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
-            """The best train; where it breaks a limit, all trains in order until one keeps it."""
+            """Return the best train, or of all in order the first that keeps the limits apart."""
             clock = Clock(budget, watch)
             # a train may be better than the answer where limits are looked at apart
             shown = of_others(watch, "") if choice.apart else in_part(watch, factor=factor)
@@ -116,7 +116,7 @@ def train_problem(choice: Choice) -> Problem:
 
 
 def _counted(found: Outcome, proof: Mapping[str, Any] | None, apart: tuple[str, ...]) -> Outcome:
-    """An outcome with the counts of an enumeration; apart: limits that these do not look at."""
+    """Return an outcome with the counts of an enumeration; apart: limits they leave aside."""
     if proof is None or "feasible_trains" not in proof:
         return found
     counts = {k: proof[k] for k in ("trains_looked_at", "feasible_trains")}
@@ -127,7 +127,7 @@ def _counted(found: Outcome, proof: Mapping[str, Any] | None, apart: tuple[str, 
 
 
 def _in_order(choice: Choice, base: Problem, best: float, clock: Clock) -> Outcome:
-    """All feasible trains, the best first, until one is stiff and fits; TimeoutError if late.
+    """Look at all feasible trains, the best first, until one is stiff and fits.
 
     best: the objective of the best train, whether it is stiff and fits or not.
     """
@@ -162,7 +162,7 @@ def _in_order(choice: Choice, base: Problem, best: float, clock: Clock) -> Outco
 
 
 def _looked(count: int, stiff: int | None, infeasible: bool) -> dict[str, Any]:
-    """How an order of trains is proven; stiff: how many of them are, where that is asked for."""
+    """Return how an order of trains is proven; stiff: how many of them are, where asked for."""
     found: dict[str, Any] = {
         "method": "exhausted",
         "arithmetic": "ratios and diameters in whole numbers; the rest in double",
@@ -173,7 +173,7 @@ def _looked(count: int, stiff: int | None, infeasible: bool) -> dict[str, Any]:
 
 
 def front(choice: Choice, clock: Clock) -> tuple[Array, Array] | None:
-    """Points and worth (by `weighed`) of all trains that no other is better than in all of it.
+    """Return points and objectives (`weighed`) of the Pareto front of trains.
 
     Stiffness is kept, a box not looked at; None where the feasible trains are too many, or time is
     up.

@@ -66,7 +66,7 @@ class Numbers(NamedTuple):
 
 
 def numbers(box: ServoBox) -> Numbers:
-    """The numbers of the kernel."""
+    """Return the numbers of the kernel."""
     arrays = (np.array(v, float) for v in (box.radii, box.links, box.box))
     radius, link, sides = arrays
     return Numbers(radius, link, float(box.hub), float(box.half_sweep), sides)
@@ -84,7 +84,7 @@ def of_train(
 
 
 def extents(box: ServoBox, motor: Any, output: Any) -> tuple[Any, Any]:
-    """Width and height [mm] of a layout.
+    """Return width and height [mm] of a layout.
 
     motor: angle of the link from gear 2 to the motor, output: from the output shaft to gear 2
     [rad]. A sector of half angle g reaches R where its mesh line is at most g off a direction, else
@@ -105,7 +105,7 @@ def extents(box: ServoBox, motor: Any, output: Any) -> tuple[Any, Any]:
 
 
 def problem(box: ServoBox) -> Problem:
-    """Least scale of the box: max(width/W, height/H), with the motor clear of the hub.
+    """Minimise the scale of the box, max(width/W, height/H), with the motor clear of the hub.
 
     Variables: motor_angle, output_angle [rad]. A scale up to 1 fits.
     """
@@ -120,7 +120,7 @@ def problem(box: ServoBox) -> Problem:
         return Terms({"scale": scale}, {"motor_clear_of_hub": clear}, report=report)
 
     def exact(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
-        """Intervals of the output link; the seed changes nothing."""
+        """Search intervals of the output link; the seed changes nothing."""
         return _searched(box, budget, watch)
 
     angles = tuple(Var(f"{n}_angle", "rad", -math.pi, math.pi, 0.0) for n in ("motor", "output"))
@@ -162,7 +162,7 @@ def _searched(box: ServoBox, budget: Budget, watch: Watch | None) -> Outcome:
 
 
 def first_that_fits(boxes: Iterable[ServoBox], limit: int = 10_000) -> tuple[int, Array] | None:
-    """Place of the first box of scale 1 that has a layout, and its angles; None if none has.
+    """Return the place of the first box of scale 1 with a layout, and its angles; None for none.
 
     A layout that meets the box exactly fits: the box is TIE larger than it is. Every box before the
     found one is proven to have none. SolveError where `limit` intervals do not decide.
@@ -181,7 +181,7 @@ def first_that_fits(boxes: Iterable[ServoBox], limit: int = 10_000) -> tuple[int
 def box_design(
     box: ServoBox, result: Result, x: Array, motor_mm: float, shaft_mm: float
 ) -> BoxDesign:
-    """The layout x of a certified result, decided again within the gap of a box of about its size.
+    """Return the layout x of a certified result; where the gap leaves it open, decide if it fits.
 
     motor_mm, shaft_mm: radii of the motor and of the shaft between the stages.
     """

@@ -277,7 +277,7 @@ class ServoDesign:
     drawn: DrawnErrors | None = None
 
     def __or__(self, other: "ServoDesign") -> "ServoDesign":
-        """Both together; what the other has counts."""
+        """Return both together; what the other has counts."""
         return replace(self, **_given(other))
 
 
@@ -296,18 +296,18 @@ class ServoReport:
     figures: Mapping[str, float] = field(default_factory=dict)
 
     def __or__(self, other: "ServoReport") -> "ServoReport":
-        """Both together; what the other has counts."""
+        """Return both together; what the other has counts."""
         return replace(self, **_given(other) | {"figures": {**self.figures, **other.figures}})
 
     def to_dict(self) -> dict[str, Any]:
-        """Plain data, the figures at its top."""
+        """Return plain data, the figures at its top."""
         found: dict[str, Any] = untyped(self)
         figures: dict[str, Any] = found.pop("figures", {})
         return found | figures
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> "ServoReport":
-        """What is known of it in the report of a result."""
+        """Read what is known of it in the report of a result."""
         own = {f.name for f in fields(cls)}
         figures = {k: v for k, v in data.items() if isinstance(v, float)}
         found: ServoReport = typed(cls, {k: v for k, v in data.items() if k in own})
@@ -315,5 +315,5 @@ class ServoReport:
 
 
 def _given(found: Any) -> dict[str, Any]:
-    """The fields of a dataclass that do not hold their default."""
+    """Return the fields of a dataclass that do not hold their default."""
     return {f.name: v for f in fields(found) if (v := getattr(found, f.name)) != f.default}

@@ -40,9 +40,9 @@ class Springs:
     least: float | None = None
 
     def compliances(self, point: Iterable[Any]) -> tuple[Any, Any, Any]:
-        """Compliances [rad/(N mm)] at the output, as NAMES has them, of a point of `split.problem`.
+        """Return compliances [rad/(N mm)] at the output, in the order of NAMES.
 
-        The six numbers of the point may be arrays.
+        point: of `split.problem`; its six numbers may be arrays.
         """
         first, second = pairs(point, self.face_width)
         twist = shaft_compliance(self.shear_modulus, *self.shaft)
@@ -53,7 +53,7 @@ class Springs:
         )
 
     def _mesh(self, pair: GearPair) -> Any:
-        """Compliance [rad/(N mm)] of a mesh, its line stiffness given or by Lewis's form."""
+        """Return the compliance [rad/(N mm)] of a mesh, its line stiffness given or by Lewis."""
         stiffness: Any = self.line_stiffness
         if self.line_stiffness is None:
             one, two = (tooth_factor(lewis_form_factor(g.teeth) / math.pi) for g in pair.gears)
@@ -61,11 +61,11 @@ class Springs:
         return mesh_compliance(stiffness, pair.face_width, pair.wheel.reference_diameter)
 
     def output_stiffness(self, point: Iterable[Any]) -> Any:
-        """Stiffness at the output [N mm/rad] of a point of `split.problem`."""
+        """Return the stiffness at the output [N mm/rad] of a point of `split.problem`."""
         return 1.0 / output_compliance(self.compliances(point), (1.0, 1.0, 1.0))
 
     def design(self, point: Iterable[Any]) -> StiffnessDesign:
-        """Stiffness, frequency and wind-up of a train, with the share of every spring."""
+        """Return stiffness, frequency and wind-up of a train, with the share of every spring."""
         parts = [float(c) for c in self.compliances(point)]
         total = math.fsum(parts)
         inertia, torque = self.load_inertia, self.load_torque

@@ -47,7 +47,7 @@ COUNTS = {"combinations": "trains_looked_at", "feasible_trains": "feasible_train
 
 
 def solve(scene: Scene, ask: Ask) -> Result:
-    """Every part that the file asks for; the answer is the train, else the ratio, else tolerances.
+    """Solve every part of the file; the answer is the train, else the ratio, else the tolerances.
 
     A method that is asked for is that of the answer; parts are solved by their own.
     """
@@ -83,13 +83,13 @@ def solve(scene: Scene, ask: Ask) -> Result:
 
 
 def _part(ask: Ask, clock: Clock, found: Found) -> Ask:
-    """What is asked of the next part: the method, if nothing was solved yet, and the time left."""
+    """Return what is asked of the next part: the method if it is the first, and the time left."""
     method = None if found.results else ask.method
     return replace(ask, method=method, budget=clock.left)
 
 
 def _trained(scene: Scene, ask: Ask, clock: Clock) -> tuple[Pairs | None, Found]:
-    """The train, what is known beside it, and its neighbours."""
+    """Solve the train; add what is known beside it and the trains of its Pareto front."""
     result, gears = train_part(scene, ask)
     report = beside(scene, gears)
     counts = {k: result.proof[v] for k, v in COUNTS.items() if "feasible_trains" in result.proof}
@@ -101,7 +101,7 @@ def _trained(scene: Scene, ask: Ask, clock: Clock) -> tuple[Pairs | None, Found]
 
 
 def _geared(scene: Scene, ask: Ask, gears: Pairs) -> Found:
-    """What follows from the gears, chosen or given: errors, stiffness, box, tolerances."""
+    """Compute what follows from chosen or given gears: errors, stiffness, box, tolerances."""
     rows, springs = errors(scene, gears), scene.springs
     sums = {
         f"{kind}_deg": sum(row.error_deg for row in rows if row.kind == kind)
@@ -122,7 +122,7 @@ def _geared(scene: Scene, ask: Ask, gears: Pairs) -> Found:
 
 
 def _key_figures(scene: Scene, found: Found) -> ServoReport:
-    """The chosen and the given train, least values and room, by the names of docs/servo.md."""
+    """Return chosen and given train, minimum values and room by the names of docs/servo.md."""
     design, figures = found.design, {}
     for one in found.report.trains or ():
         if key := GOALS.get(one.best_of):
@@ -149,7 +149,7 @@ def _key_figures(scene: Scene, found: Found) -> ServoReport:
 
 
 def explain(scene: Scene, ask: Ask) -> Explanation:
-    """What every number does to the answer; what would make an impossible one possible."""
+    """Return what every number does to the answer; what would make an impossible one possible."""
     clock = Clock(ask.budget, of_others(ask.watch))
     result = solve(scene, ask.half)
     if "ways_out" in result.report:
@@ -165,7 +165,7 @@ def explain(scene: Scene, ask: Ask) -> Explanation:
 
 
 def compared(scene: Scene) -> tuple[str, ...]:
-    """The methods of a comparison that names none."""
+    """Return the methods of a comparison that names none."""
     if scene.train is not None:
         return ("exact", "annealing", "nsga2")
     if scene.duty is None and scene.tolerances is not None and scene.tolerances.grades is not None:
@@ -174,12 +174,12 @@ def compared(scene: Scene) -> tuple[str, ...]:
 
 
 def model(scene: Scene, method: str) -> Model:
-    """The problem of the answer; that of a train without its box, which is no row of it."""
+    """Return the problem of the answer; a train's without its box, which is no row of it."""
     return Model(*_posed(scene, boxed=False))
 
 
 def _posed(scene: Scene, boxed: bool) -> tuple[Problem, str, str]:
-    """The problem of the answer, what it is called, and the unit of its objective."""
+    """Return the problem of the answer, what it is called, and the unit of its objective."""
     if scene.train is not None:
         problem = train_problem(scene.choice(boxed=boxed))
         return problem, "Whole teeth and modules, without a box", SHOWN[scene.train.goal][1]

@@ -26,7 +26,7 @@ FRICTION = {
 
 
 def assumptions(scene: Scene) -> list[str]:
-    """All that holds for this file."""
+    """Return all assumptions that hold for this file."""
     found = []
     if scene.duty is not None:
         found.append(FRICTION[scene.duty.motion])
@@ -84,13 +84,13 @@ def _of_train(scene: Scene) -> list[str]:
 
 
 def _sector(train: Train) -> tuple[str, ...]:
-    """What part of a disc the last wheel is, where it is no whole one."""
+    """Say what part of a disc the last wheel is, where it is no whole one."""
     share = 100.0 * float(train.sector)
     return () if share == 100.0 else (f"The last wheel is {share:g} % of a disc.",)
 
 
 def _counted(scene: Scene) -> str:
-    """What mass and inertia hold."""
+    """Say what mass and inertia count."""
     if scene.shaft is None:
         return "Mass and inertia of a train are those of its gears; no shaft is counted."
     lightest = ", and so has the mass of [lightest]" if scene.lightest is not None else ""
@@ -101,7 +101,7 @@ def _counted(scene: Scene) -> str:
 
 
 def _of_bodies(scene: Scene) -> list[str]:
-    """What keeps clear of what, and how thick the output shaft is taken to be."""
+    """Say what keeps clear of what, and how thick the output shaft is taken to be."""
     assert scene.train is not None
     bodies = scene.servo_train().bodies
     assert bodies is not None
@@ -131,7 +131,7 @@ WHAT = {
 
 
 def given_overlap(scene: Scene) -> str:
-    """What of the gears of [[mesh]] is in the way of something; empty where nothing is."""
+    """Say which gears of [[mesh]] overlap something; empty where none do."""
     gears = given_gears(scene)
     if scene.train is None or gears is None:
         return ""
@@ -141,7 +141,7 @@ def given_overlap(scene: Scene) -> str:
 
 
 def _overlaps(scene: Scene, results: tuple[Result, ...]) -> str:
-    """The same of the lightest train, whose limits are relaxed: its mass then is a floor alone."""
+    """Say the same of the lightest train, whose limits are relaxed: its mass is a lower bound."""
     found = [r for r in results if r.name == "stiff" and r.value is not None]
     if not found:
         return ""
@@ -168,7 +168,7 @@ UNLISTED = "Other trains are not shown beside this one: there are too many, or t
 def notes(
     scene: Scene, results: tuple[Result, ...], design: ServoDesign, report: ServoReport
 ) -> list[str]:
-    """What a reader should know beside the numbers."""
+    """Return what a reader should know beside the numbers."""
     duty, found = scene.servo_duty(), []
     if duty is not None and design.ratio is not None:
         judged = candidates(scene, design.train).values()

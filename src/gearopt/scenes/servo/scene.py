@@ -108,7 +108,7 @@ class Scene(Table):
                 raise refuse(rule, at=("mesh", 0, "module"))
 
     def _check_deviations(self) -> None:
-        """Both meshes have deviations, or neither has; what counts errors needs them."""
+        """Check that both meshes have deviations or neither has; what counts errors needs them."""
         told = [mesh.deviates for mesh in self.mesh]
         if not self.mesh or all(told):
             return
@@ -123,7 +123,7 @@ class Scene(Table):
                 raise refuse(rule, at=("mesh", told.index(False), "pitch"))
 
     def _check_aim(self, train: Train) -> None:
-        """What the train is chosen for is known: an error of deviations, a motion of [duty]."""
+        """Check that the objective is known: an error needs deviations, a motion needs [duty]."""
         key = "minimise" if train.maximise is None else "maximise"
         aim = f'{key} = "{train.aim}"'
         needs = f"{aim} needs"
@@ -186,7 +186,7 @@ class Scene(Table):
         self._check_weights()
 
     def _check_weights(self) -> None:
-        """Every deviation counts in a budget, or an upper end: kappa = 0 leaves run-outs out."""
+        """Check that something holds every deviation: kappa = 0 leaves out run-outs."""
         assert self.tolerances is not None
         unheard = {s.name for s in self.sources if s.law.mean == 0.0}
         blind = [b.rule == "mean_plus_sd" and b.kappa == 0 for b in self.budget]
@@ -201,25 +201,25 @@ class Scene(Table):
 
     @property
     def prices(self) -> tuple[Price, ...]:
-        """What every one of `sources` costs."""
+        """Return what every one of `sources` costs."""
         assert self.tolerances is not None
         return tuple(price(source, self.tolerances, self.cost) for source in self.sources)
 
     @property
     def sources(self) -> tuple[Source, ...]:
-        """All deviations above zero, stage by stage."""
+        """Return all deviations above zero, stage by stage."""
         angle = self.accuracy.pressure_angle.value
         found = [mesh.sources(k, angle) for k, mesh in enumerate(self.mesh, 1)]
         return tuple(source for stage in found for source in stage)
 
     def servo_duty(self) -> ServoDuty | None:
-        """What the load does and what drives it, in plain numbers; None where nothing is said."""
+        """Return the motion of the load and its drive, in plain numbers; None for none."""
         if self.duty is None or self.motor is None or self.load is None:
             return None
         return servo_duty(self.duty, self.motor, self.load)
 
     def servo_train(self) -> ServoTrain:
-        """The train to be chosen, in plain numbers."""
+        """Return the train to be chosen, in plain numbers."""
         table, shaft, error = self.train, self.shaft, self.accuracy.error
         assert table is not None
         ratio, tolerance = table.ratios
@@ -247,7 +247,7 @@ class Scene(Table):
 
     @property
     def springs(self) -> Springs | None:
-        """Meshes and shaft as springs, in plain numbers; None without [stiffness]."""
+        """Return meshes and shaft as springs, in plain numbers; None without [stiffness]."""
         table, shaft, train, load = self.stiffness, self.shaft, self.train, self.load
         if table is None or shaft is None or train is None:
             return None
@@ -269,14 +269,14 @@ class Scene(Table):
         )
 
     def choice(self, boxed: bool = True) -> Choice:
-        """The train to be chosen, and what it must keep; boxed: a required box too."""
+        """Return the train to be chosen, and what it must keep; boxed: a required box too."""
         assert self.train is not None
         held = boxed and self.space is not None and self.space.required
         room = self.box if held else None
         return Choice(self.servo_train(), self.train.goal, self.springs, room)
 
     def box(self, point: Array) -> servo_box.ServoBox:
-        """The box of a train, as its layout sees it; point: of `split.problem`."""
+        """Return the box of a train, as its layout sees it; point: of `split.problem`."""
         space, train = self.space, self.train
         assert space is not None and train is not None
         return servo_box.of_train(
@@ -288,7 +288,7 @@ class Scene(Table):
         )
 
     def stiff_train(self) -> StiffTrain:
-        """The lightest train to be sized, in plain numbers."""
+        """Return the lightest train to be sized, in plain numbers."""
         own, table, springs = self.servo_train(), self.lightest, self.springs
         assert table and springs and springs.least and springs.line_stiffness
         assert own.bodies is not None

@@ -38,7 +38,7 @@ RULES: tuple[tuple[str, Any, float], ...] = (  # name, rule and kappa
 
 
 def stack(scene: Scene, gears: Pairs) -> Stack:
-    """The deviations of a file as a tolerance stack of given gears; errors in degrees."""
+    """Return the deviations of a file as a tolerance stack of given gears; errors in degrees."""
     table = scene.tolerances
     assert table is not None
     low = 0.0 if table.least_factor is None else float(table.least_factor)
@@ -63,7 +63,7 @@ def stack(scene: Scene, gears: Pairs) -> Stack:
 
 
 def old(scene: Scene) -> Array:
-    """The tolerances of the file [mm]."""
+    """Return the tolerances of the file [mm]."""
     import numpy as np
 
     return np.array([s.tolerance for s in scene.sources])
@@ -72,7 +72,7 @@ def old(scene: Scene) -> Array:
 def _budget(
     table: BudgetTable, parts: tuple[Component, ...], t: Array, limit: float | None, key: str
 ) -> ErrorBudget:
-    """A budget in degrees; its default limit is that of the file, else what t uses."""
+    """Return a budget in degrees; its default limit is that of the file, else what t uses."""
     rule: Any = table.rule
     kappa = float(table.kappa)
     if table.limit is not None:
@@ -86,7 +86,7 @@ def _budget(
 
 
 def problem(scene: Scene, gears: Pairs) -> Problem:
-    """The problem of a file's tolerances: real ones, or grades."""
+    """Return the problem of a file's tolerances: real-valued ones, or grades."""
     own = stack(scene, gears)
     table = scene.tolerances
     assert table is not None
@@ -107,7 +107,7 @@ def problem(scene: Scene, gears: Pairs) -> Problem:
 
 
 def tolerance_part(scene: Scene, gears: Pairs, ask: Ask) -> Found:
-    """The certified tolerances, what they cost and what they give."""
+    """Solve the tolerances; add what they cost and what they give."""
     import numpy as np
 
     posed, own, table = problem(scene, gears), stack(scene, gears), scene.tolerances
@@ -139,7 +139,7 @@ def tolerance_part(scene: Scene, gears: Pairs, ask: Ask) -> Found:
 
 
 def named(limit: str, parts: Sequence[Component | Source]) -> str:
-    """`least[3]` as "least of centre distance of stage 1"."""
+    """Return `least[3]` as "least of centre distance of stage 1"."""
     stem, _, index = limit.rstrip("]").partition("[")
     return f"{stem} of {parts[int(index) - 1].name}" if index else limit
 
@@ -187,7 +187,7 @@ def _allocation(own: Stack, t: Array, result: Result, scene: Scene) -> Allocatio
 
 
 def by_every_rule(parts: tuple[Component, ...], t: Array, whose: str) -> dict[str, float]:
-    """What tolerances t give by every rule [deg], named after whose they are."""
+    """Return the error of tolerances t by every rule [deg], named after whose they are."""
     budgets = tuple(ErrorBudget(rule, 1.0, kappa, name) for name, rule, kappa in RULES)
     used = Stack(parts, budgets).used(t).tolist()
     found = {f"{whose}_{name}_deg": v for (name, _, _), v in zip(RULES, used, strict=True)}
@@ -198,7 +198,7 @@ def by_every_rule(parts: tuple[Component, ...], t: Array, whose: str) -> dict[st
 
 
 def of_given(scene: Scene, gears: Pairs) -> dict[str, float]:
-    """What the tolerances of the file give on given gears, by every rule [deg]."""
+    """Return the error of the file's tolerances on given gears, by every rule [deg]."""
     parts = tuple(
         Component(s.name, math.degrees(sensitivity(gears, s)), 1.0, 1.0, 0.0, math.inf, s.law)
         for s in scene.sources

@@ -94,7 +94,7 @@ def given_gears(scene: Scene) -> Pairs | None:
 
 
 def errors(scene: Scene, gears: Pairs) -> tuple[ErrorSource, ...]:
-    """Every source of error at the output, all at their worst; they add up."""
+    """Return every source of error at the output, all at their worst; they add up."""
     return tuple(
         ErrorSource(
             source=s.name,
@@ -108,7 +108,7 @@ def errors(scene: Scene, gears: Pairs) -> tuple[ErrorSource, ...]:
 
 
 def _stage(pair: GearPair, stress: float | None) -> Stage:
-    """A stage in the words of a drawing; stress and width where the train is known."""
+    """Return a stage in the words of a drawing; stress and width where the train is known."""
     pinion, wheel = pair.gears
     return Stage(
         normal_module_mm=pair.normal_module,
@@ -126,7 +126,7 @@ def _stage(pair: GearPair, stress: float | None) -> Stage:
 
 
 def described(scene: Scene, gears: Pairs) -> TrainDesign:
-    """The train of a result."""
+    """Return the train of a result."""
     first, second = gears
     n, table = first.ratio * second.ratio, scene.train
     train = None if table is None else scene.servo_train()
@@ -155,7 +155,7 @@ def described(scene: Scene, gears: Pairs) -> TrainDesign:
 
 
 def train_part(scene: Scene, ask: Ask) -> tuple[Result, Pairs | None]:
-    """The certified best train."""
+    """Solve the train; return the result and its gears."""
     choice = scene.choice()
     unit = SHOWN[choice.goal][1]
     problem, watch = train_problem(choice), in_part(ask.watch, unit)
@@ -169,7 +169,7 @@ def train_part(scene: Scene, ask: Ask) -> tuple[Result, Pairs | None]:
 
 
 def neighbours(scene: Scene, clock: Clock) -> tuple[ListedTrain, ...]:
-    """The trains that no other is better than in all that is weighed; none if time is up.
+    """Return the Pareto front of trains; nothing where time is up or they are too many.
 
     Thinned if many. One that is the best by two goals stands there twice, each time named by one
     of them.
@@ -192,7 +192,7 @@ def neighbours(scene: Scene, clock: Clock) -> tuple[ListedTrain, ...]:
 
 
 def _neighbour(scene: Scene, gears: Pairs, first: float, best_of: str) -> ListedTrain:
-    """A train as the list shows it; first: what it is weighed by first."""
+    """Return a train as the list shows it; first: its first objective."""
     train, duty = described(scene, gears), scene.servo_duty()
     assert scene.train is not None and train.inertia_kg_m2 and train.mass_kg
     judged_by = {}
@@ -210,13 +210,13 @@ def _neighbour(scene: Scene, gears: Pairs, first: float, best_of: str) -> Listed
 
 
 def _judged(duty: ServoDuty, goal: float) -> float:
-    """What a duty is judged by, from what is made least by it."""
+    """Return what a duty is judged by, from what it minimises."""
     value = SHOWN[duty.goal][0] * goal
     return 1.0 / value if duty.motion == "acceleration" else value
 
 
 def beside(scene: Scene, chosen: Pairs | None) -> ServoReport:
-    """What else is known of a train: real-valued bounds, and other numbers of stages.
+    """Return real-valued bounds, and what other numbers of stages would bring.
 
     These are of the ratio that is asked for, or of the chosen train where a range is.
     """
@@ -245,7 +245,7 @@ def beside(scene: Scene, chosen: Pairs | None) -> ServoReport:
 
 
 def _counts(ratio: float) -> tuple[StageCount, ...]:
-    """Inertia and mass of the bare train in pinions, by number of stages."""
+    """Return inertia and mass of the bare train in pinions, by number of stages."""
     rows = []
     pairs = (split.stage_counts(ratio, STAGES, goal) for goal in ("inertia", "mass"))
     for count, (inertia, mass) in enumerate(zip(*pairs, strict=True), 1):
@@ -257,7 +257,7 @@ def _counts(ratio: float) -> tuple[StageCount, ...]:
 
 
 def candidates(scene: Scene, chosen: TrainDesign | None) -> dict[str, Candidate]:
-    """The ratio of [duty], the chosen train, and the given one beside it."""
+    """Return the ratio of [duty], the chosen and the given train, to be judged."""
     found = {}
     if scene.duty is not None and scene.duty.ratio is not None:
         asked = float(scene.duty.ratio)
@@ -273,7 +273,7 @@ def candidates(scene: Scene, chosen: TrainDesign | None) -> dict[str, Candidate]
 
 
 def ratio_part(scene: Scene, chosen: TrainDesign | None, ask: Ask) -> Found:
-    """The certified best total ratio; the train of the answer and what is given beside it."""
+    """Solve the best total ratio; judge the chosen train and what is given beside it."""
     duty = scene.servo_duty()
     assert duty is not None
     factor, shown = SHOWN[duty.goal]
@@ -313,14 +313,14 @@ def ratio_part(scene: Scene, chosen: TrainDesign | None, ask: Ask) -> Found:
 
 
 def scaled(result: Result, factor: float, unit: str) -> Result:
-    """A result whose objective and bound are shown in another unit."""
+    """Return a result whose objective and bound are in another unit."""
     found = None if result.value is None else factor * result.value
     bound = None if result.bound is None else factor * result.bound
     return replace(result, objective=result.objective | {"value": found, "unit": unit}, bound=bound)
 
 
 def lightest_part(scene: Scene, ask: Ask) -> Found:
-    """The lightest real-valued train that is stiff enough, in plain units."""
+    """Solve the lightest real-valued train that is stiff enough."""
     watch = in_part(ask.watch, "kg", "stiff")
     result = solve(split.stiff(scene.stiff_train()), None, ask.budget, ask.seed, watch, ask.gap)
     result = replace(scaled(result, 1.0, "kg"), name="stiff")
@@ -331,7 +331,7 @@ def lightest_part(scene: Scene, ask: Ask) -> Found:
 
 
 def box_part(scene: Scene, gears: Pairs, ask: Ask) -> Found:
-    """The smallest box of the train's proportions."""
+    """Solve the smallest box of the train, of the proportions that are asked for."""
     box, bodies = scene.box(to_point(gears)), scene.servo_train().bodies
     assert bodies is not None
     watch, gap = in_part(ask.watch, part="box"), max(ask.gap, servo_box.GAP)

@@ -50,7 +50,7 @@ class Blocked:
 def ways_out(
     scene: Scene, clock: Clock, told: str = NO_TEETH
 ) -> tuple[tuple[str, ...], tuple[Remedy, ...], str]:
-    """Limits in conflict, remedies and a message for a train that is impossible.
+    """Return limits in conflict, remedies and a message for a train that is impossible.
 
     told: what the search said of it.
     """
@@ -91,14 +91,14 @@ def ways_out(
 
 
 def _aiming(scene: Scene, aim: str) -> Scene:
-    """The scene with another objective; those of the train alone leave the duty aside."""
+    """Return the scene with another objective; those of the train alone leave the duty aside."""
     assert scene.train is not None
     train = scene.train.model_copy(update={"minimise": aim, "maximise": None})
     return scene.model_copy(update={"train": train})
 
 
 def _other(scene: Scene, told: str, clock: Clock) -> tuple[tuple[str, ...], str]:
-    """What makes a train impossible whatever its error: limits in conflict, and a sentence.
+    """Return why a train is impossible whatever its error: limits in conflict, and a sentence.
 
     told: what the search said.
     """
@@ -119,7 +119,7 @@ def _other(scene: Scene, told: str, clock: Clock) -> tuple[tuple[str, ...], str]
 
 
 def _span(scene: Scene, train: split.ServoTrain) -> str:
-    """The ratios of a train as its file gives them: about a number, or from one to another."""
+    """Return the ratios of a train as its file gives them: about a number, or a range."""
     assert scene.train is not None
     if scene.train.ratio[0] == scene.train.ratio[1]:
         return f"within {100.0 * float(train.tolerance):g} %"
@@ -128,7 +128,7 @@ def _span(scene: Scene, train: split.ServoTrain) -> str:
 
 
 def _of_duty(scene: Scene, clock: Clock) -> tuple[tuple[str, ...], str]:
-    """What of the duty no train keeps, where some keep all else: limits, and a sentence."""
+    """Return what of the duty no train keeps, where some keep all else: limits, a sentence."""
     train = scene.servo_train()
     duty = train.duty
     assert duty is not None
@@ -146,7 +146,7 @@ def _of_duty(scene: Scene, clock: Clock) -> tuple[tuple[str, ...], str]:
 
 
 def with_error(scene: Scene, error: Quantity) -> Scene:
-    """The scene with another largest error."""
+    """Return the scene with another maximum error."""
     accuracy = scene.accuracy.model_copy(update={"error": error})
     return scene.model_copy(update={"accuracy": accuracy})
 
@@ -176,7 +176,7 @@ def _rounded(value: float, up: bool) -> str:
 
 
 def _wider(scene: Scene, best: Quantity, bound: float, clock: Clock) -> Remedy:
-    """The least error that can be asked for."""
+    """Return the minimum error that can be asked for."""
     asked = scene.accuracy.error
     assert asked is not None
     scale = asked.value / float(asked.number)
@@ -198,7 +198,7 @@ def _wider(scene: Scene, best: Quantity, bound: float, clock: Clock) -> Remedy:
 
 
 def _finer(scene: Scene, best: Quantity, bound: float, clock: Clock) -> Remedy:
-    """All deviations smaller by one factor: the error of every train is in proportion to them."""
+    """Return all deviations smaller by one factor: every train's error is in proportion to it."""
     asked = scene.accuracy.error
     assert asked is not None
     part = asked.value / best.value * (1.0 - ROOM)
@@ -237,7 +237,7 @@ def _status(scene: Scene, clock: Clock) -> str:
 
 
 def blocked(scene: Scene, clock: Clock) -> Blocked | None:
-    """What stands in the way; None where a train is impossible without it too."""
+    """Return what stands in the way; None where a train is impossible without it too."""
     blamed = impossible.in_the_way(scene.servo_train(), clock)
     if blamed is None:
         return None
@@ -256,13 +256,13 @@ def blocked(scene: Scene, clock: Clock) -> Blocked | None:
 
 
 def _diameters(scene: Scene) -> dict[Place, Quantity]:
-    """The diameters that a file gives, above zero."""
+    """Return the diameters above zero that a file gives."""
     given = {p: getattr(getattr(scene, p[0]), p[1], None) for p in PLACES}
     return {p: q for p, q in given.items() if q is not None and q.number > 0}
 
 
 def _ways(scene: Scene, clock: Clock) -> tuple[Remedy, ...]:
-    """Each diameter alone, the least change first; all of them alike where none alone helps."""
+    """Return each diameter alone, the least change first; all alike where none alone helps."""
     given = [p for p in _diameters(scene) if p != PLACES[3] or scene.space is None]
     found = [_smaller(scene, (place,), clock) for place in given]
     alone = sorted((way for way in found if way is not None), key=lambda way: way.factor)
@@ -273,7 +273,7 @@ def _ways(scene: Scene, clock: Clock) -> tuple[Remedy, ...]:
 
 
 def _smaller(scene: Scene, places: tuple[Place, ...], clock: Clock) -> Remedy | None:
-    """The largest part of some diameters that leaves a train; None where none does."""
+    """Return the largest part of some diameters that leaves a train; None where none does."""
 
     def thinner(part: float) -> Scene:
         return _thinner(scene, places, part)
@@ -292,7 +292,7 @@ def _smaller(scene: Scene, places: tuple[Place, ...], clock: Clock) -> Remedy | 
 
 
 def _thinner(scene: Scene, places: tuple[Place, ...], part: float) -> Scene:
-    """The scene with a part of some diameters, rounded down; a hub stays around its shaft."""
+    """Return the scene with a part of some diameters, rounded down; a hub surrounds its shaft."""
     for place in places:
         was = _diameters(scene)[place]
         number = Fraction(_rounded(float(was.number) * part, False))

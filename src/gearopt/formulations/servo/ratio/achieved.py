@@ -35,7 +35,7 @@ class Candidate:
 
 
 def judged(duty: ServoDuty, ratio: Any) -> Any:
-    """What a duty is judged by, at ratios: rad/s2, s or N m; NaN where the load does not move."""
+    """Return the value of a duty at ratios: rad/s2, s or N m; NaN where the load does not move."""
     n = np.asarray(ratio, float)
     value = duty.value(n)
     if duty.motion == "swing":
@@ -45,7 +45,7 @@ def judged(duty: ServoDuty, ratio: Any) -> Any:
 
 
 def achieved(bare: ServoDuty, one: Candidate, best: float) -> Achieved | None:
-    """What a candidate gives, beside the best value of all; None where the motor fails."""
+    """Return what a candidate achieves beside the best value; None where the motor fails."""
     if why_not(bare, one):
         return None
     duty, ratio = bare.with_gears(one.inertia or 0.0), one.ratio
@@ -63,7 +63,7 @@ def achieved(bare: ServoDuty, one: Candidate, best: float) -> Achieved | None:
 
 
 def _speeds(duty: ServoDuty, ratio: float) -> dict[str, float]:
-    """Largest speed of the motor, and how far it uses its limit; nothing at standstill."""
+    """Return the maximum motor speed, and how far it uses its limit; nothing at standstill."""
     speed, axis = duty.speed, duty.drive
     if duty.motion == "move":
         peak = math.sqrt(float(duty.acceleration(ratio)) * duty.angle)
@@ -78,7 +78,7 @@ def _speeds(duty: ServoDuty, ratio: float) -> dict[str, float]:
 
 
 def _torques(duty: ServoDuty, ratio: float, value: float) -> dict[str, float]:
-    """What the motor's torque is spent on while it accelerates; of a swing, rms and peak."""
+    """Return what the motor's torque is spent on while it accelerates; of a swing, the peak."""
     axis = duty.drive
     to_load = axis.load_inertia / (axis.efficiency * ratio)
     friction = axis.motor_friction + axis.load_friction / (axis.efficiency * ratio)
@@ -97,7 +97,7 @@ def _torques(duty: ServoDuty, ratio: float, value: float) -> dict[str, float]:
 
 
 def why_not(bare: ServoDuty, one: Candidate) -> str:
-    """Why the motor does not do its duty with a candidate; empty where it does."""
+    """Say why the motor does not do its duty with a candidate; empty where it does."""
     duty, ratio, axis = bare.with_gears(one.inertia or 0.0), one.ratio, bare.drive
     if ratio > axis.ratios(duty.speed)[1] * (1.0 + TIE):
         return (
@@ -116,13 +116,13 @@ def why_not(bare: ServoDuty, one: Candidate) -> str:
 
 
 def best_ratio_of(duty: ServoDuty) -> float | None:
-    """The best ratio of a duty; None where nothing moves."""
+    """Return the best ratio of a duty; None where nothing moves."""
     outcome = run(duty.problem())[1]
     return None if outcome.x is None else float(outcome.x[0])
 
 
 def landmarks(duty: ServoDuty) -> dict[str, float]:
-    """The ratio of equal inertias, and what less friction would give at standstill.
+    """Return the ratio of equal inertias, and what less friction would give at standstill.
 
     Losses of the train count: J_L/eta in the place of J_L, as a = T/(2 sqrt(J_L J_M/eta)) at
     N = sqrt(J_L/(eta J_M)).
@@ -144,7 +144,7 @@ def landmarks(duty: ServoDuty) -> dict[str, float]:
 
 
 def curve(duty: ServoDuty, best: float, gears: float | None) -> RatioCurve:
-    """The value about the best ratio, where the load moves and the motor's speed allows it.
+    """Return the value about the best ratio, where the load moves and the motor can turn.
 
     gears: inertia of a train [t mm2]; what it leaves of the value stands there too.
     """

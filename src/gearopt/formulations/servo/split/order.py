@@ -41,13 +41,13 @@ def feasible(
     most: int = LOT,
     check: Callable[[], None] = unchecked,
 ) -> Array | None:
-    """All feasible trains; None for more than `most`. The motor's limits hold if a duty is goal."""
+    """Return all feasible trains; None for more than `most`. A duty as goal adds its limits."""
     given, aim = _posed(train, goal)
     return _listed(given, aim, -math.inf, math.inf, most, check)
 
 
 def trains(train: ServoTrain, error: float) -> Array:
-    """All feasible trains with an error [rad] of at most `error`, the least error first."""
+    """Return all feasible trains with an error [rad] up to `error`, the minimum first."""
     given, aim = _posed(train, "error")
     found = _listed(given, aim, -math.inf, error, 0, unchecked)
     assert found is not None
@@ -57,7 +57,7 @@ def trains(train: ServoTrain, error: float) -> Array:
 def in_order(
     train: ServoTrain, goal: str, best: float, check: Callable[[], None]
 ) -> Iterator[Array]:
-    """Lots of trains, the best first; together all. best: the least objective, > 0."""
+    """Yield lots of trains, the best first; together all. best: the minimum objective, > 0."""
     (given, aim), posed = _posed(train, goal), problem(train, goal)
     above, reached, step = -math.inf, best, FIRST
     while True:
@@ -76,14 +76,14 @@ def in_order(
 
 
 def _posed(train: ServoTrain, goal: str) -> tuple[Numbers, int]:
-    """A train and its goal as the kernel reads them."""
+    """Return a train and its goal as the kernel reads them."""
     return numbers(train, goal in UNITS), (*OBJECTIVES, *UNITS).index(goal)
 
 
 def _listed(
     given: Numbers, aim: int, above: float, most: float, limit: int, check: Callable[[], None]
 ) -> Array | None:
-    """Trains between two values; None where they are more than a limit above 0."""
+    """Return trains between two values; None where they are more than a limit above 0."""
     parts, total, first = [], 0, 0
     rows, count = np.empty((ROOM, 6), np.int64), kernel(TEETH).first_stages(given)[0]
     while first < count:
@@ -101,7 +101,7 @@ def _listed(
 
 
 def unbeaten(worth: Array) -> list[int]:
-    """Rows of worth (N, 2 or 3) that no other row is as good as in all columns; less is better.
+    """Return the Pareto front of rows of worth (N, 2 or 3), all columns minimised.
 
     In the order of the first column; of equal rows the first one counts.
     """
@@ -112,7 +112,7 @@ def unbeaten(worth: Array) -> list[int]:
 
 
 def _rest(worth: Array) -> Any:
-    """Rows that are left once those that a few good ones beat are dropped, all at once."""
+    """Return the rows that are left once those that a few good ones beat are dropped."""
     low, rows, idle = worth.min(0), np.arange(len(worth)), 0
     columns = np.ascontiguousarray(worth.T)
     width = np.maximum(worth.max(0) - low, np.finfo(float).tiny)
@@ -131,7 +131,7 @@ def _rest(worth: Array) -> Any:
 
 
 def _one_by_one(worth: Array) -> list[int]:
-    """The rows themselves: in the order of the first column, each against a stair of the rest."""
+    """Return the front, row by row in the order of column 1, each against a stair of the rest."""
     kept: list[int] = []
     stairs: list[tuple[float, float]] = []  # of columns 2 and 3: one rising, the other falling
     for k in np.lexsort(worth.T[::-1]):

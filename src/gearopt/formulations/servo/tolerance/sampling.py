@@ -63,7 +63,7 @@ def drawn(
 
 
 def errors(stack: Stack, t: Array, count: int, seed: int) -> Array:
-    """Errors of `count` draws, (count,): one component after the other, from one generator."""
+    """Draw `count` errors, (count,): one component after the other, from one generator."""
     generator = np.random.default_rng(seed)
     total = np.zeros(count)
     for one, width in zip(stack.components, t, strict=True):
@@ -72,7 +72,7 @@ def errors(stack: Stack, t: Array, count: int, seed: int) -> Array:
 
 
 def order_interval(count: int, probability: float, confidence: float) -> tuple[int, int]:
-    """Ranks r < s, from 1, of X_(r) <= Q_p <= X_(s); 0 and count + 1 where there are none."""
+    """Return ranks r < s, from 1, of X_(r) <= Q_p <= X_(s); 0 and count + 1 for none."""
     from scipy.stats import binom
 
     tail = 0.5 * (1.0 - confidence)
@@ -80,7 +80,7 @@ def order_interval(count: int, probability: float, confidence: float) -> tuple[i
 
 
 def binomial_interval(good: int, count: int, confidence: float) -> tuple[float, float]:
-    """Ends of the share whose draws would be as few, or as many, with half of 1 - confidence."""
+    """Return the ends of the share whose draws are as few, or as many, by half 1 - confidence."""
     from scipy.stats import beta
 
     tail = 0.5 * (1.0 - confidence)

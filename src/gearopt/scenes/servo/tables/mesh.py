@@ -129,7 +129,7 @@ class Mesh(Table):
         return self
 
     def _check_scope(self) -> None:
-        """Gears within the scope of ISO 1328-1, which does not allow extrapolation."""
+        """Check that the gears are in the scope of ISO 1328-1, which forbids extrapolation."""
         if not self.given:
             rule = "needs given gears: it depends on their diameters"
             raise refuse(rule, at=("grade",), action="remove")
@@ -148,12 +148,12 @@ class Mesh(Table):
 
     @property
     def deviates(self) -> bool:
-        """Whether any deviation is told."""
+        """Return whether any deviation is given."""
         return self.grade is not None or any(self._length(name) for name in WORDS)
 
     @property
     def given(self) -> bool:
-        """Whether the gears are given."""
+        """Return whether the gears are given."""
         return any(getattr(self, name) is not None for name in GEARS)
 
     def pair(self, face_width: float = 1.0) -> GearPair:
@@ -163,7 +163,7 @@ class Mesh(Table):
         return GearPair.of_teeth(self.module.value, *teeth, face_width)
 
     def sources(self, stage: int, pressure_angle: float) -> tuple[Source, ...]:
-        """The deviations above zero of a stage (from 1); pressure_angle [rad]."""
+        """Return the deviations above zero of a stage (from 1); pressure_angle [rad]."""
         laws = {
             **dict.fromkeys(RADIAL, backlash_angle(radial_backlash(1.0, pressure_angle), 1.0)),
             **dict.fromkeys(

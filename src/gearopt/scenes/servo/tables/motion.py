@@ -91,7 +91,7 @@ class Duty(Table):
         return self
 
     def check(self, motor: Motor, load: Load) -> None:
-        """Whether motor and load suit the motion; refusals are placed below the file."""
+        """Check that motor and load suit the motion; refusals are placed below the file."""
         if self.motion == "swing":
             if load.efficiency != 1:
                 rule = "is below 1: a swing is computed for a train without losses"
@@ -106,7 +106,7 @@ class Duty(Table):
 
 
 def servo_duty(duty: Duty, motor: Motor, load: Load) -> ServoDuty:
-    """Motion, motor and load as plain numbers; without gears."""
+    """Return motion, motor and load as plain numbers, without gears."""
     free, limit = motor.no_load_speed, motor.speed_limit
     own = Drive(
         load_inertia=load.inertia.value,
@@ -129,7 +129,7 @@ def servo_duty(duty: Duty, motor: Motor, load: Load) -> ServoDuty:
 
 
 def _most_ratio(duty: Duty, motor: Motor) -> Fraction | None:
-    """Ratio at which the motor turns at its limit; exact where pi cancels."""
+    """Return the ratio at which the motor turns at its limit; exact where pi cancels."""
     if motor.speed_limit is None:
         return None
     if duty.load_speed is not None:

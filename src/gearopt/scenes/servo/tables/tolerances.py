@@ -73,12 +73,12 @@ class CostTable(Table):
         return self
 
     def meets(self, source: Source) -> bool:
-        """Whether a deviation is the one that this table is about."""
+        """Return whether this table is about a deviation."""
         return source.key == self.deviation and self.stage in (None, source.stage)
 
 
 def check_costs(costs: tuple[CostTable, ...], sources: tuple[Source, ...]) -> None:
-    """Each [[cost]] is about deviations of the file, and about none that another is about."""
+    """Check that each [[cost]] is about deviations of the file that no other one is about."""
     seen: set[str] = set()
     for k, table in enumerate(costs):
         names = {s.name for s in sources if table.meets(s)}
@@ -99,7 +99,7 @@ class Price:
 
 
 def price(source: Source, table: Tolerances, costs: tuple[CostTable, ...]) -> Price:
-    """What a deviation costs, by its own table where it has one."""
+    """Return what a deviation costs, by its own table where it has one."""
     cost, k = (table.pitch_cost if source.kind == "pitch" else Fraction(1)), table.exponent
     for own in costs:
         if own.meets(source):

@@ -114,17 +114,17 @@ class Train(Table):
 
     @property
     def aim(self) -> str:
-        """What is asked for, as the file calls it."""
+        """Return the objective as the file calls it."""
         return self.maximise or self.minimise
 
     @property
     def goal(self) -> str:
-        """What is made least: an objective of a `ServoTrain`."""
+        """Return what is minimised: an objective of a `ServoTrain`."""
         return MADE_LEAST[self.aim][0]
 
     @property
     def ratios(self) -> tuple[Fraction, Fraction]:
-        """Middle of the allowed total ratios, and relative tolerance about it."""
+        """Return the middle of the allowed total ratios, and the relative tolerance about it."""
         low, high = self.ratio
         if low == high:
             tolerance = self.ratio_tolerance
@@ -218,7 +218,7 @@ class Space(Table):
 
 
 def bodies(train: Train, shaft: Shaft | None, space: Space | None) -> Bodies:
-    """Diameters that gears keep clear of; the output shaft is no thinner than the middle one."""
+    """Return diameters that gears keep clear of; the output shaft is the middle one's at least."""
     thick = shaft.diameter.exact[0] if shaft is not None else Fraction(0)
     output = train.output_shaft_diameter
     outer = space.hub_diameter if space is not None else output
@@ -230,7 +230,7 @@ def bodies(train: Train, shaft: Shaft | None, space: Space | None) -> Bodies:
 
 
 def half_sweep(train: Train, space: Space) -> float:
-    """Angle [rad] that the last wheel sweeps to either side of its mesh line."""
+    """Return the angle [rad] that the last wheel sweeps to either side of its mesh line."""
     if space.swept_angle is None:
         return min(2.0 * math.pi * float(train.sector), math.pi)
     return min(0.5 * space.swept_angle.value, math.pi)
@@ -239,7 +239,7 @@ def half_sweep(train: Train, space: Space) -> float:
 def check_shafts(
     train: Train, shaft: Shaft | None, space: Space | None, meshes: tuple[Mesh, ...]
 ) -> None:
-    """Shafts are not thicker than the gears around them; refusals are placed below the file."""
+    """Check that shafts fit into their gears; refusals are placed below the file."""
     output = train.output_shaft_diameter
     if space is not None and output is not None and space.hub_diameter.value < output.value:
         rule = f"is below the {output} of output_shaft_diameter in [train], which it surrounds"
@@ -268,7 +268,7 @@ def check_shafts(
 
 
 def check_sector(train: Train, space: Space | None, duty: Duty | None) -> None:
-    """The last wheel's sector covers its travel, and its sweep both; placed below the file."""
+    """Check that sector and sweep of the last wheel cover its travel; placed below the file."""
     own, turned = train.sector, Fraction(0)
     if duty is not None and duty.motion in TURNED:
         name, times = TURNED[duty.motion]
@@ -307,12 +307,12 @@ def _turns(angle: Quantity) -> Fraction:
 
 
 def _degrees(part: Fraction) -> str:
-    """Part of a turn as an angle, rounded up where it must be."""
+    """Return part of a turn as an angle, rounded up where it must be."""
     return f"{_decimal(360 * part)} deg"
 
 
 def _above(length: Fraction, like: Quantity) -> str:
-    """A length [mm] in the unit of another one, rounded up where it must be."""
+    """Return a length [mm] in the unit of another one, rounded up where it must be."""
     return f"{_decimal(length / units.UNITS['length'][like.unit][0])} {like.unit}"
 
 
