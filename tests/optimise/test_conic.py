@@ -13,8 +13,8 @@ from scipy.optimize import linprog
 import gearopt
 from gearopt.errors import SolveError
 from gearopt.optimise.conic.canonical import canonical
+from gearopt.optimise.conic.cone_bound import propagate
 from gearopt.optimise.conic.problem import Conic
-from gearopt.optimise.conic.propagate import propagate
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import solve

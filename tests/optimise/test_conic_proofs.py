@@ -12,10 +12,9 @@ from conic_cases import catalogue, disc
 from gearopt.errors import CertificateError, SolveError
 from gearopt.optimise.conic.canonical import canonical
 from gearopt.optimise.conic.certificate import certify, covers
-from gearopt.optimise.conic.cone_bound import Leaf, inside, lagrangian
+from gearopt.optimise.conic.cone_bound import Leaf, inside, lagrangian, propagate
+from gearopt.optimise.conic.interior import after, equal, scaled
 from gearopt.optimise.conic.problem import Conic
-from gearopt.optimise.conic.propagate import propagate
-from gearopt.optimise.conic.scaling import after, equal, scaled
 from gearopt.optimise.result import Budget, Outcome
 from gearopt.optimise.solve import run, solve
 from gearopt.optimise.terms import Terms, Var

@@ -7,7 +7,7 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from gearopt.optimise import epigraph, nonlinear, tape
+from gearopt.optimise import nonlinear, tape
 from gearopt.optimise.form import form
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget
@@ -47,11 +47,11 @@ def wide(name, size):
 @pytest.mark.parametrize("name", ["budget", "norm", "product", "shared", "nested", "equal"])
 def test_split_and_unsplit_programs_have_one_optimum(name, monkeypatch):
     unsplit = solve(wide(name, 12))
-    monkeypatch.setattr(epigraph, "WIDE", 2)
-    monkeypatch.setattr(epigraph, "GROUP", 3)
+    monkeypatch.setattr(nonlinear, "WIDE", 2)
+    monkeypatch.setattr(nonlinear, "GROUP", 3)
     problem = wide(name, 12)
     shape = form(problem)
-    assert epigraph.split(shape, tape.kinds(problem)).levels.numel() > 0
+    assert nonlinear.split(shape, tape.kinds(problem)).levels.numel() > 0
     split = solve(problem)
     assert split.status == unsplit.status == "optimal"
     assert split.value == pytest.approx(unsplit.value, rel=1e-9)
@@ -64,7 +64,7 @@ def test_split_and_unsplit_programs_have_one_optimum(name, monkeypatch):
 @pytest.mark.parametrize("name", ["budget", "norm", "product", "shared", "nested", "equal"])
 def test_a_split_program_is_sparse_and_starts_on_its_levels(name):
     problem = wide(name, 120)
-    parts = epigraph.split(form(problem), tape.kinds(problem))
+    parts = nonlinear.split(form(problem), tape.kinds(problem))
     y, p = np.zeros(120), problem.parameter_values()
     z = np.concatenate([y, np.array(parts.start(y, p)).ravel()])
     given = [parts.z, parts.p]
@@ -118,7 +118,7 @@ def test_rows_of_a_repeat_are_split_too():
         lambda x, p: Terms({"cost": 0.5 * x.total}),
         (Repeat("row", (own,), {"a": data}, row_text),),
     )
-    assert epigraph.split(form(problem), tape.kinds(problem)).levels.numel() > 0
+    assert nonlinear.split(form(problem), tape.kinds(problem)).levels.numel() > 0
     result = solve(problem)  # sum a/t + t/2 is least at t = sqrt(2 sum a)
     assert result.status == "optimal"
     assert result.value == pytest.approx(math.sqrt(2.0 * data.sum()), rel=1e-9)

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from gearopt.optimise.feasibility import runaway, violation
 from gearopt.optimise.problem import Problem
+from gearopt.optimise.scale import runaway, violation
 from gearopt.optimise.terms import Terms, Var
 
 INF = np.inf

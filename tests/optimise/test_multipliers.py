@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from gearopt.optimise.certificate import certify
+from gearopt.optimise.dual import NEAR, multipliers
 from gearopt.optimise.form import form
-from gearopt.optimise.multipliers import NEAR, multipliers
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Outcome
 from gearopt.optimise.terms import Terms, Var
@@ -66,8 +66,8 @@ def test_no_multiplier_is_negative():
 def either(request, monkeypatch):
     """Solve dense systems, or all as large sparse ones."""
     if request.param == "sparse":
-        monkeypatch.setattr("gearopt.optimise.multipliers.SMALL", -1)
-        monkeypatch.setattr("gearopt.optimise.multipliers.SPARSE", 1.0)
+        monkeypatch.setattr("gearopt.optimise.dual.SMALL", -1)
+        monkeypatch.setattr("gearopt.optimise.dual.SPARSE", 1.0)
 
 
 def given(gradient, g=(), of_g=(), of_h=(), y=None, low=None, high=None):
@@ -153,8 +153,8 @@ def test_large_systems_of_few_entries_are_solved_as_sparse_ones(monkeypatch):
     monkeypatch.setattr(linalg, "splu", lambda matrix: seen.append(1) or solve(matrix))
     rows = {"g": [0.0, -1.0, 0.0], "of_g": [[1.0, 0, 0], [0, 0, 0], [0, 1, 0]], "of_h": [[0, 0, 1]]}
     for small, share, sparse in ((9, 1.0, 0), (8, 0.3333, 0), (8, 0.33334, 1)):
-        monkeypatch.setattr("gearopt.optimise.multipliers.SMALL", small)
-        monkeypatch.setattr("gearopt.optimise.multipliers.SPARSE", share)
+        monkeypatch.setattr("gearopt.optimise.dual.SMALL", small)
+        monkeypatch.setattr("gearopt.optimise.dual.SPARSE", share)
         seen.clear()
         lam_g, lam_h = given([-1.0, -2.0, 3.0], **rows)
         assert lam_g == pytest.approx([1.0, 0.0, 2.0]) and lam_h == pytest.approx([-3.0])
@@ -232,8 +232,8 @@ def test_slopes_that_are_no_numbers_have_no_multipliers():
 
 
 def test_systems_that_are_too_large_are_left_alone(monkeypatch):
-    monkeypatch.setattr("gearopt.optimise.multipliers.MOST", 6)
+    monkeypatch.setattr("gearopt.optimise.dual.MOST", 6)
     rows = {"g": [0.0], "of_g": [[1.0, 0.0]], "of_h": [[0.0, 1.0], [0.0, 1.0]]}
     assert given([-1.0, 2.0], **rows) is not None
-    monkeypatch.setattr("gearopt.optimise.multipliers.MOST", 5)
+    monkeypatch.setattr("gearopt.optimise.dual.MOST", 5)
     assert given([-1.0, 2.0], **rows) is None

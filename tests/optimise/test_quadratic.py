@@ -7,9 +7,18 @@ import pytest
 
 from gearopt.errors import SolveError
 from gearopt.optimise.certificate import certify
-from gearopt.optimise.degree import AFFINE, CONSTANT, OTHER, QUADRATIC, degrees
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.quadratic import Curvature, box, curvature, least
+from gearopt.optimise.quadratic import (
+    AFFINE,
+    CONSTANT,
+    OTHER,
+    QUADRATIC,
+    Curvature,
+    box,
+    curvature,
+    degrees,
+    least,
+)
 from gearopt.optimise.result import Budget, Outcome
 from gearopt.optimise.solve import solve
 from gearopt.optimise.solvers import qp

@@ -4,10 +4,9 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from gearopt.optimise.epigraph import split
 from gearopt.optimise.form import form
+from gearopt.optimise.nonlinear import scaled, split, unit_at
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.scaled_form import scaled, unit_at
 from gearopt.optimise.tape import kinds
 from gearopt.optimise.terms import Terms, Var
 
@@ -89,8 +88,8 @@ def test_terms_are_those_of_the_natural_variables():
 
 
 def test_epigraphs_stay_as_they_are(monkeypatch):
-    monkeypatch.setattr("gearopt.optimise.epigraph.WIDE", 1)
-    monkeypatch.setattr("gearopt.optimise.epigraph.GROUP", 2)
+    monkeypatch.setattr("gearopt.optimise.nonlinear.WIDE", 1)
+    monkeypatch.setattr("gearopt.optimise.nonlinear.GROUP", 2)
     logs = Var("c", "", 0.1, 9.0, 2.0, 4, log=True)
 
     def text(x, p):

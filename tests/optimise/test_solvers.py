@@ -11,10 +11,10 @@ from gearopt.errors import SolveError
 from gearopt.formulations import sizing, teeth
 from gearopt.formulations.gear_train import FaceWidth, Stage, Train
 from gearopt.formulations.strength.k_factor import K_FACTOR
-from gearopt.optimise import posynomial
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import back_ends, solve
+from gearopt.optimise.solvers import scip
 from gearopt.optimise.terms import Param, Terms, Var
 from gearopt.physics.gears import SERIES_I
 
@@ -161,7 +161,7 @@ def test_scip_under_its_tolerance_is_refused():
 def test_posynomials_of_the_tape_are_the_text():
     rng = np.random.default_rng(2)
     problem = sizing.problem(drive(ratio=(F(2), F(9)), wheel_diameter=F(400)))
-    model = posynomial.read(problem)
+    model = scip.read(problem)
     points = np.exp(rng.uniform(0.0, 2.0, (20, len(problem.columns))))
     batch = problem.batch(points)
     rows = [(model.objective, batch.F[:, 0])]

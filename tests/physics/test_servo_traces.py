@@ -4,7 +4,7 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from gearopt.optimise.trace import legacy_numpy
+from gearopt.optimise.tape import legacy_numpy
 from gearopt.physics import (
     backlash,
     gears,

@@ -1,16 +1,65 @@
-"""The box that samplers move in: logarithms of positive variables, indices of finite sets.
+"""The values of discrete variables, and the box that samplers move in.
 
-Coordinates are in [0, 1]; `points` maps them to natural points whose discrete variables are exact.
+In it are logarithms of positive variables and indices of finite sets. Coordinates are in [0, 1];
+`points` maps them to natural points whose discrete variables are exact.
 """
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NoReturn
 
 import numpy as np
 
 from gearopt.errors import SolveError
-from gearopt.optimise import discrete
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Array
+
+ROUNDING = 1e-12  # relative; a bound that is computed (3 x 0.1) still holds the value it stands for
+
+
+def allowed_values(problem: Problem, column: int) -> Sequence[float]:
+    """Values of one component of a point in order: those of its set, or its whole numbers.
+
+    SolveError where its bounds hold none, or where an integer has no finite bounds.
+    """
+    variable, name = problem.columns[column]
+    if variable.values is None:
+        least, most = whole_ends(problem, column)
+        if not (math.isfinite(least) and math.isfinite(most)):
+            raise SolveError(f"{problem.name}: the integer {name} needs finite bounds")
+        return range(int(least), int(most) + 1)
+    low, high = _widened(problem, column)
+    found = tuple(sorted({float(v) for v in variable.values if low <= v <= high}))
+    return found or _nothing(problem, column, "value of its set")
+
+
+def check_discrete(problem: Problem) -> None:
+    """Raise SolveError where the bounds of a discrete variable hold none of its values."""
+    for column, (variable, _) in enumerate(problem.columns):
+        if variable.values is not None:
+            allowed_values(problem, column)
+        elif variable.integer:
+            whole_ends(problem, column)
+
+
+def whole_ends(problem: Problem, column: int) -> tuple[float, float]:
+    """Least and most whole number between the bounds of an integer, infinite where they are."""
+    low, high = _widened(problem, column)
+    least = float(math.ceil(low)) if math.isfinite(low) else low
+    most = float(math.floor(high)) if math.isfinite(high) else high
+    return (least, most) if least <= most else _nothing(problem, column, "whole number")
+
+
+def _widened(problem: Problem, column: int) -> tuple[float, float]:
+    low, high = (float(b[column]) for b in problem.bounds()[:2])
+    return low - ROUNDING * abs(low), high + ROUNDING * abs(high)
+
+
+def _nothing(problem: Problem, column: int, what: str) -> NoReturn:
+    low, high = (float(b[column]) for b in problem.bounds()[:2])
+    name = problem.columns[column][1]
+    raise SolveError(f"{problem.name}: no {what} lies between {low:g} and {high:g} for {name}")
 
 
 @dataclass(frozen=True)
@@ -63,11 +112,11 @@ def box(problem: Problem) -> Box:
                 f"a sampler needs finite bounds; {name} has {least[k]:g} and {most[k]:g}"
             )
         if variable.values is not None:
-            sets[k] = np.array(discrete.values(problem, k))
+            sets[k] = np.array(allowed_values(problem, k))
             low[k], high[k] = 0.0, len(sets[k]) - 1.0
             continue
         if variable.integer:
-            whole[k], (least[k], most[k]) = True, discrete.ends(problem, k)
+            whole[k], (least[k], most[k]) = True, whole_ends(problem, k)
         logarithmic[k] = variable.log or (least[k] > 0 and most[k] > 10.0 * least[k])
         low[k], high[k] = least[k], most[k]
         if logarithmic[k]:

@@ -15,16 +15,14 @@ import numpy as np
 
 from gearopt.errors import CertificateError, SolveError
 from gearopt.optimise.conic.problem import Conic
-from gearopt.optimise.dual import ROUNDING, farkas
+from gearopt.optimise.dual import ROUNDING, farkas, multipliers
 from gearopt.optimise.dual import bound as dual_bound
-from gearopt.optimise.feasibility import runaway, violation
 from gearopt.optimise.form import Form, form
-from gearopt.optimise.multipliers import multipliers
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.quadratic import natural
 from gearopt.optimise.result import CONVEX, FEASIBLE, Outcome, Result
 from gearopt.optimise.scale import gap as gap_of
-from gearopt.optimise.scale import is_known, measured, way
+from gearopt.optimise.scale import is_known, measured, runaway, violation, way
 from gearopt.optimise.second_order import no_minimum
 from gearopt.optimise.stationarity import STATIONARY, Point, evaluated, residuals
 from gearopt.optimise.terms import Array

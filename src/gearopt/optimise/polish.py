@@ -13,12 +13,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gearopt.errors import SolveError
+from gearopt.optimise.box import allowed_values
 from gearopt.optimise.clock import Clock
-from gearopt.optimise.discrete import values
-from gearopt.optimise.feasibility import violation
 from gearopt.optimise.form import form
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import FEASIBLE, Budget, Outcome
+from gearopt.optimise.scale import violation
 from gearopt.optimise.solvers import ipopt
 from gearopt.optimise.terms import Array
 
@@ -128,7 +128,7 @@ def _beside(problem: Problem, x: Array) -> list[Array]:
     """The points with one discrete variable at its next value up or down."""
     found = []
     for k in np.flatnonzero([v.discrete for v, _ in problem.columns]):
-        given = values(problem, int(k))
+        given = allowed_values(problem, int(k))
         at = given.index(float(x[k]))
         for place in (at - 1, at + 1):
             if 0 <= place <= given.index(given[-1]):

@@ -29,7 +29,7 @@ from gearopt.optimise.terms import (
 )
 
 if TYPE_CHECKING:
-    from gearopt.optimise.trace import Compiled, Traced
+    from gearopt.optimise.tape import Compiled, Traced
 
 
 class Row(NamedTuple):
@@ -246,7 +246,7 @@ class Problem:
 
     def traced(self) -> "Traced":
         """The text as casadi functions, traced once."""
-        from gearopt.optimise.trace import trace
+        from gearopt.optimise.tape import trace
 
         if "traced" not in self.memo:
             self.memo["traced"] = trace(self)
@@ -255,7 +255,7 @@ class Problem:
 
     def compiled(self) -> "Compiled":
         """A fast callable for one point at a time, on the traced text."""
-        from gearopt.optimise.trace import Compiled
+        from gearopt.optimise.tape import Compiled
 
         return Compiled(self)
 

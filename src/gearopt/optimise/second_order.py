@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from gearopt.optimise.multipliers import NEAR
+from gearopt.optimise.dual import NEAR
 from gearopt.optimise.quadratic import dense
 from gearopt.optimise.stationarity import STATIONARY, WEAK, Point, acting, hessian, own_scales
 from gearopt.optimise.terms import Array

@@ -10,13 +10,14 @@ from typing import Any
 import numpy as np
 
 from gearopt.errors import SolveError
-from gearopt.optimise import discrete, solvers
+from gearopt.optimise import solvers
+from gearopt.optimise.box import check_discrete
 from gearopt.optimise.certificate import Verdict, certify
 from gearopt.optimise.clock import Clock, of_problem
 from gearopt.optimise.conic.problem import Conic
-from gearopt.optimise.feasibility import violation
 from gearopt.optimise.problem import Problem, one_objective
 from gearopt.optimise.result import FEASIBLE, Budget, Outcome, Result, Watch, versions
+from gearopt.optimise.scale import violation
 from gearopt.optimise.terms import Array, Var
 
 LIBRARIES = {Problem: ("casadi",), Conic: ("cvxpy", "clarabel")}  # what an answer rests on
@@ -131,7 +132,7 @@ def method_of(problem: Problem | Conic, name: str) -> Callable[..., Outcome]:
             kind = type(problem).__name__
             raise SolveError(f"{name} takes {takes}; {problem.name} is a {kind}")
         if isinstance(problem, Problem):
-            discrete.checked(problem)
+            check_discrete(problem)
         run: Callable[..., Outcome] = import_module(f"gearopt.optimise.solvers.{name}").run
         return run
     conic_only = isinstance(problem, Conic)

@@ -12,11 +12,17 @@ import numpy as np
 
 from gearopt.optimise.certificate import FARKAS, Verdict, bounded
 from gearopt.optimise.conic.canonical import Canonical, canonical
-from gearopt.optimise.conic.cone_bound import Leaf, emptiness, lagrangian
+from gearopt.optimise.conic.cone_bound import (
+    Leaf,
+    cutoff,
+    emptiness,
+    lagrangian,
+    narrowed,
+    propagate,
+)
 from gearopt.optimise.conic.problem import Conic
-from gearopt.optimise.conic.propagate import cutoff, narrowed, propagate
-from gearopt.optimise.feasibility import runaway, violation
 from gearopt.optimise.result import CONVEX, FEASIBLE, Outcome
+from gearopt.optimise.scale import runaway, violation
 from gearopt.optimise.terms import Array
 
 EXCLUDED = "the bounds of the variables exclude every point"

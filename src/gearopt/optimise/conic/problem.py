@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from gearopt.errors import SolveError
-from gearopt.optimise.blame import blaming
+from gearopt.optimise.evaluation import blaming
 from gearopt.optimise.problem import Batch, Problem, Row, Rows, one_objective
 from gearopt.optimise.terms import Array, Named, Number, Param, Terms, Var, checked, flat, spread
 

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from gearopt.errors import SolveError
+from gearopt.optimise.dual import multipliers
 from gearopt.optimise.form import Form, form
-from gearopt.optimise.multipliers import multipliers
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Array
 

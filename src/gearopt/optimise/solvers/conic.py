@@ -7,11 +7,10 @@ and bound where variables are discrete.
 from dataclasses import replace
 
 from gearopt.optimise.clock import Clock
-from gearopt.optimise.conic.branch import branch
+from gearopt.optimise.conic.branch import branch, solved
 from gearopt.optimise.conic.canonical import canonical
 from gearopt.optimise.conic.interior import TOLERANCES
 from gearopt.optimise.conic.problem import Conic
-from gearopt.optimise.conic.relaxation import solved
 from gearopt.optimise.result import Budget, Outcome, Watch
 
 RANDOM = False

@@ -11,9 +11,8 @@ from typing import Any
 import numpy as np
 
 from gearopt.errors import SolveError
-from gearopt.optimise.blame import blaming, quiet
 from gearopt.optimise.clock import Clock
-from gearopt.optimise.evaluation import called
+from gearopt.optimise.evaluation import blaming, called, quiet
 from gearopt.optimise.problem import Problem, one_objective
 from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.terms import Array, checked, flatten

@@ -1,6 +1,6 @@
 """Ipopt through CasADi, on the form of a problem (logarithms of variables and proven rows).
 
-Wide logarithms are split up first (`epigraph`); y is then followed by the u of their epigraphs.
+Wide logarithms are split up first (`nonlinear`); y is then followed by the u of their epigraphs.
 Ipopt's tolerances are absolute, so it is given natural variables and objectives in units of their
 own scale. Where that of the objective is far smaller in the end than at first, it goes on from
 there in the units found there.
@@ -19,12 +19,10 @@ import numpy as np
 from gearopt.errors import SolveError
 from gearopt.optimise import tape
 from gearopt.optimise.clock import Clock
-from gearopt.optimise.epigraph import Split, split
 from gearopt.optimise.form import Form, form, values, violation
-from gearopt.optimise.nonlinear import OPTIONS, program
+from gearopt.optimise.nonlinear import OPTIONS, Split, Unit, program, scaled, split, unit_at
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import FEASIBLE, Budget, Outcome, Watch
-from gearopt.optimise.scaled_form import Unit, scaled, unit_at
 from gearopt.optimise.terms import Array
 
 ACCEPTED = 1e-9  # an iterate that violates no row by more is kept as the best so far

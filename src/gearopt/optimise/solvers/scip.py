@@ -1,5 +1,6 @@
-"""SCIP on the logarithms of a problem's variables, built from its tape.
+"""SCIP on the logarithms of a problem's variables, built from the posynomials of its tape.
 
+Every variable that is positive by its bounds counts as a factor, whether declared log or not.
 Integers with few values and finite sets become binaries, so that their logarithms are affine; the
 posynomial rows are then convex sums of exponentials, and only exp(log z) = z of a wide integer is
 not. (The polynomial form of the same drive leaves a gap of 97 % after 90 s.) SCIP's bound and its
@@ -9,16 +10,148 @@ tolerance is refused, because SCIP then calls anything optimal.
 """
 
 import math
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from gearopt.errors import SolveError
-from gearopt.optimise import discrete, posynomial
+from gearopt.optimise.box import allowed_values, whole_ends
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch
+from gearopt.optimise.tape import walk
 from gearopt.optimise.terms import Array
+
+MOST_TERMS = 200  # of one expanded row; beyond it the text should name an intermediate variable
+
+
+@dataclass(frozen=True)
+class Posynomial:
+    """sum_k coefficients[k] * prod_j x_j**exponents[k, j]; coefficients (t,) > 0 unless empty."""
+
+    coefficients: Array
+    exponents: Array
+
+
+@dataclass(frozen=True)
+class Posynomials:
+    """Objective, inequalities (<= 1) and equalities (monomials, = 1) of a problem."""
+
+    objective: Posynomial
+    inequalities: tuple[Posynomial, ...]
+    equalities: tuple[Posynomial, ...]
+
+
+def read(problem: Problem) -> Posynomials:
+    """Expand every row of a problem's tape; SolveError names the row that is no posynomial."""
+    if problem.repeats:
+        raise SolveError(f"{problem.name} has repeats, which this reader does not expand")
+    rows = problem.rows
+    (block,) = problem.traced().blocks
+    f, g, h = _outputs(problem, block.function)
+    names = [*rows.objectives, *(r.name for r in rows.inequalities), *rows.equalities]
+    for name, term in zip(names, [*f, *g, *h], strict=True):
+        if term is None or not (term.coefficients > 0).all() or not len(term.coefficients):
+            raise SolveError(f"{problem.name}: {name} is no posynomial")
+        if not (np.isfinite(term.coefficients).all() and np.isfinite(term.exponents).all()):
+            raise SolveError(f"{problem.name}: {name} has an infinite coefficient or exponent")
+    for name, term in zip(rows.equalities, h, strict=True):
+        if len(term.coefficients) != 1:
+            raise SolveError(f"{problem.name}: the equality {name} is no monomial")
+    return Posynomials(f[0], tuple(g), tuple(h))
+
+
+def _outputs(problem: Problem, function: Any) -> list[list[Any]]:
+    lower, _, _ = problem.bounds()
+    count = len(lower)
+    inputs: list[list[Any]] = [
+        [_variable(k, lower) for k in range(count)],
+        [],
+        [_constant(value, count) for value in problem.parameter_values()],
+        [],
+    ]
+    return walk(function, inputs, lambda value: _constant(value, count), _apply)
+
+
+def _constant(value: float, count: int) -> Posynomial:
+    return Posynomial(np.array([float(value)]), np.zeros((1, count)))
+
+
+def _variable(index: int, lower: Array) -> Posynomial | None:
+    if not lower[index] > 0:
+        return None
+    exponents = np.zeros((1, len(lower)))
+    exponents[0, index] = 1.0
+    return Posynomial(np.ones(1), exponents)
+
+
+def _apply(operation: int, terms: list[Posynomial | None]) -> Posynomial | None:
+    import casadi as ca
+
+    if any(t is None for t in terms):
+        return None
+    a, b = terms[0], terms[-1]
+    assert a is not None and b is not None
+    if operation == ca.OP_ADD:
+        return _sum(a, b)
+    if operation == ca.OP_SUB:
+        return _sum(a, Posynomial(-b.coefficients, b.exponents))
+    if operation == ca.OP_NEG:
+        return Posynomial(-a.coefficients, a.exponents)
+    if operation == ca.OP_TWICE:
+        return Posynomial(2.0 * a.coefficients, a.exponents)
+    if operation == ca.OP_MUL:
+        return _product(a, b)
+    if operation == ca.OP_SQ:
+        return _product(a, a)
+    if operation == ca.OP_DIV:
+        inverse = _power(b, -1.0)
+        return None if inverse is None else _product(a, inverse)
+    if operation == ca.OP_INV:
+        return _power(a, -1.0)
+    if operation == ca.OP_SQRT:
+        return _power(a, 0.5)
+    if operation in (ca.OP_POW, ca.OP_CONSTPOW):
+        constant = len(b.coefficients) == 1 and not b.exponents.any()
+        return _power(a, float(b.coefficients[0])) if constant else None
+    return a if operation == ca.OP_ASSIGN else None
+
+
+def _sum(a: Posynomial, b: Posynomial) -> Posynomial | None:
+    return _collected(
+        np.concatenate([a.coefficients, b.coefficients]), np.concatenate([a.exponents, b.exponents])
+    )
+
+
+def _product(a: Posynomial, b: Posynomial) -> Posynomial | None:
+    coefficients = np.outer(a.coefficients, b.coefficients).ravel()
+    exponents = (a.exponents[:, None, :] + b.exponents[None, :, :]).reshape(
+        len(coefficients), a.exponents.shape[1]
+    )
+    return _collected(coefficients, exponents)
+
+
+def _power(a: Posynomial, exponent: float) -> Posynomial | None:
+    if len(a.coefficients) == 1 and a.coefficients[0] > 0:
+        return Posynomial(a.coefficients**exponent, exponent * a.exponents)
+    if exponent == int(exponent) and 1 <= exponent <= 8:
+        result: Posynomial | None = a
+        for _ in range(int(exponent) - 1):
+            result = None if result is None else _product(result, a)
+        return result
+    return None
+
+
+def _collected(coefficients: Array, exponents: Array) -> Posynomial | None:
+    """Equal monomials added up; zeros dropped."""
+    unique, place = np.unique(np.round(exponents, 12), axis=0, return_inverse=True)
+    total = np.bincount(place.ravel(), weights=coefficients, minlength=len(unique))
+    keep = total != 0
+    if keep.sum() > MOST_TERMS:
+        return None
+    return Posynomial(total[keep], unique[keep])
+
 
 FEW = 300  # values of an integer that are worth a binary each
 FEASIBILITY = 1e-9
@@ -33,7 +166,7 @@ SETTINGS = {"limits/gap": GAP, "numerics/feastol": FEASIBILITY, "binaries up to"
 def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
     """Solve by SCIP; SolveError where the text is no posynomial or pyscipopt is not installed."""
     clock = Clock(budget, watch)
-    model = posynomial.read(problem)
+    model = read(problem)
     scip, logs = _model(problem, model, budget, seed)
     if (left := clock.left.seconds) is not None:
         scip.setParam("limits/time", left)
@@ -69,7 +202,7 @@ def _scale(problem: Problem) -> float:
 
 
 def _model(
-    problem: Problem, model: posynomial.Model, budget: Budget, seed: int
+    problem: Problem, model: Posynomials, budget: Budget, seed: int
 ) -> tuple[Any, list[Any]]:
     """The SCIP model and the logarithm of every variable in it."""
     try:
@@ -90,7 +223,7 @@ def _model(
         scip.setParam("limits/totalnodes", budget.evaluations)
     logs = [_logarithm(scip, problem, k) for k in range(len(problem.columns))]
 
-    def monomials(term: posynomial.Posynomial, scale: float = 1.0) -> Any:
+    def monomials(term: Posynomial, scale: float = 1.0) -> Any:
         return quicksum(
             exp(math.log(c / scale) + quicksum(e * v for e, v in zip(row, logs, strict=True) if e))
             for c, row in zip(term.coefficients, term.exponents, strict=True)
@@ -108,14 +241,14 @@ def _model(
     scale = _scale(problem)
     for c, exponents in zip(model.objective.coefficients, model.objective.exponents, strict=True):
         part = scip.addVar(lb=0.0)
-        one = posynomial.Posynomial(np.array([c]), exponents[None])
+        one = Posynomial(np.array([c]), exponents[None])
         scip.addCons(monomials(one, scale) <= part)
         parts.append(part)
     scip.setObjective(quicksum(parts))
     return scip, logs
 
 
-def _affine(row: posynomial.Posynomial, logs: list[Any]) -> Any:
+def _affine(row: Posynomial, logs: list[Any]) -> Any:
     from pyscipopt import quicksum
 
     terms = (float(e) * v for e, v in zip(row.exponents[0], logs, strict=True) if e)
@@ -134,12 +267,12 @@ def _logarithm(scip: Any, problem: Problem, index: int) -> Any:
     if not variable.discrete:
         return log
     if variable.integer:
-        low, high = discrete.ends(problem, index)
+        low, high = whole_ends(problem, index)
         if not high - low < FEW:
             most = high if math.isfinite(high) else None
             scip.addCons(exp(log) == scip.addVar(vtype="I", lb=low, ub=most))
             return log
-    values = discrete.values(problem, index)
+    values = allowed_values(problem, index)
     picks = [scip.addVar(vtype="B") for _ in values]
     scip.addCons(quicksum(picks) == 1)
     scip.addCons(quicksum(math.log(v) * w for v, w in zip(values, picks, strict=True)) == log)
