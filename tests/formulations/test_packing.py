@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from gearopt.formulations import packing
-from gearopt.formulations.packing import hop, sa, state, text
+from gearopt.formulations.packing import hop, sa, text
 from gearopt.formulations.packing.design import describe
 from gearopt.formulations.packing.plan import Cylinder, Places, Plan, colours, overlap, row
-from gearopt.formulations.packing.state import KERNEL, held, numbers, scattered
+from gearopt.formulations.packing.sa import KERNEL, held, numbers, scattered
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.kernels import kernel
 from gearopt.optimise.result import Budget
@@ -304,8 +304,8 @@ def test_what_is_compiled_before_is_what_a_search_calls(plan, monkeypatch):
         seen.append(tuple(map(numba.typeof, given)))
         return compiled(*given)
 
-    monkeypatch.setattr(state, "kernel", lambda name: SimpleNamespace(anneal=spy))
-    state.ready.__wrapped__()
+    monkeypatch.setattr(sa, "kernel", lambda name: SimpleNamespace(anneal=spy))
+    sa.ready.__wrapped__()
     assert len(seen) == 1
     run(packing.problem(plan), "sa", Budget(evaluations=100))
     run(packing.problem(plan), "hop", Budget(evaluations=100))

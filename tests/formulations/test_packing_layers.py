@@ -11,7 +11,7 @@ from gearopt.formulations.packing import text
 from gearopt.formulations.packing.container_bound import bound
 from gearopt.formulations.packing.design import describe
 from gearopt.formulations.packing.plan import Cylinder, Plan, row
-from gearopt.formulations.packing.state import KERNEL, lateness, numbers
+from gearopt.formulations.packing.sa import KERNEL, lateness, numbers
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.kernels import kernel
 from gearopt.optimise.result import Budget

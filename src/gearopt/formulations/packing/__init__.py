@@ -10,7 +10,7 @@ from typing import Any
 from gearopt.formulations.packing import hop, sa, text
 from gearopt.formulations.packing.container_bound import Bound, bound
 from gearopt.formulations.packing.plan import Plan
-from gearopt.formulations.packing.state import Spent
+from gearopt.formulations.packing.sa import Spent
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Outcome
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from gearopt.formulations.packing import text
 from gearopt.formulations.packing.plan import Places, Plan, row
-from gearopt.formulations.packing.state import Finish, Floor, Spent, anneal, ready, scattered
+from gearopt.formulations.packing.sa import Finish, Floor, Spent, anneal, ready, scattered
 from gearopt.optimise.box import violation
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.problem import Problem

@@ -1,16 +1,32 @@
-"""`sa`: one long annealing run of the kernel alone, without a local method."""
+"""Simulated annealing of packings: the kernel in slices of time, and `sa`, one long run of it.
 
+`hop` anneals shortly between its local solutions.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cache
 from typing import Any
 
 import numpy as np
 
 from gearopt.formulations.packing import text
-from gearopt.formulations.packing.plan import Plan, row
-from gearopt.formulations.packing.state import LOOKS, Finish, Floor, Spent, anneal, ready, scattered
+from gearopt.formulations.packing.container_bound import Bound
+from gearopt.formulations.packing.depth import Late
+from gearopt.formulations.packing.plan import Places, Plan, row
 from gearopt.optimise.clock import Clock
+from gearopt.optimise.kernels import kernel
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch
+from gearopt.optimise.terms import Array
 
+KERNEL = "gearopt.formulations.packing.anneal_kernel"
+SLICE = 100_000  # moves times cylinders of one call: some hundredths of a second
+LOOKS = 100  # parts of a long annealing run, after each of which its best so far is told
+SHARE = 0.2  # of the seconds of a run may go into its bound
+LOOK = 0.05  # seconds between two questions to the watcher while the bound is computed
+CODES = {"rectangle": 0, "square": 1, "circle": 2}
 MOVES = 300_000  # for each cylinder, where the budget names no evaluations
 HOT, COLD = 0.3, 1e-6  # temperatures, in units of the objective's logarithm
 
@@ -18,6 +34,147 @@ RANDOM = True
 PACED = True  # the cooling is stretched over the evaluations it is given
 COUNTS = "annealing move"
 SETTINGS = {"temperatures": (HOT, COLD), "moves, each cylinder, where none are given": MOVES}
+
+
+@dataclass
+class Spent:
+    """What a search has spent and found; it has state because it is filled as the search goes.
+
+    clock: has its count, the least objective found, and a bound below which nothing lies. x: its
+    point of `direct`.
+    """
+
+    clock: Clock
+    x: Array = field(default_factory=lambda: np.empty(0))
+
+    def keep(self, value: float, x: Array) -> None:
+        """Remember a packing that meets all limits, if it is the best."""
+        if value < self.clock.best:
+            self.clock.best, self.x = value, x
+
+    def late(self) -> Late:
+        """Whether the bound has had its share of the time, or the search is to end."""
+        seconds = self.clock.budget.seconds
+        return lateness(self.clock, None if seconds is None else SHARE * seconds)
+
+    def close(self, gap: float) -> bool:
+        """Whether the best found is within a relative gap of the bound."""
+        best, gap = self.clock.best, max(gap, self.clock.budget.gap)
+        return best - self.clock.bound <= gap * abs(best)
+
+
+def lateness(clock: Clock, seconds: float | None) -> Late:
+    """Whether so many seconds of a clock are over, or the clock, told every LOOK seconds, is."""
+    last, over = -math.inf, False
+
+    def late() -> bool:
+        nonlocal last, over
+        now = clock.seconds
+        over = over or (seconds is not None and now > seconds)
+        if not over and now - last > LOOK:
+            last, over = now, not clock.tell()
+        return over
+
+    return late
+
+
+Floor = Callable[[Problem, Spent], Bound]
+Finish = Callable[[Outcome, Spent, Bound], Outcome]  # the outcome with bound and proof
+
+
+@cache
+def ready() -> None:
+    """Have the kernel compiled, once on a machine, before a clock runs: by one move of a disc."""
+    x, y, radius, height = np.zeros(1), np.zeros(1), np.ones(1), np.ones(1)
+    layer, free = np.ones(1, np.int64), np.zeros(1, np.int64)
+    plain = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0])
+    best = np.append(np.zeros(5), np.inf)
+    kernel(KERNEL).anneal(
+        0, 0, 1, 1, 1.0, 0.1, x, y, layer, np.zeros(2), radius, height, free, plain, best
+    )
+
+
+def numbers(plan: Plan, most: int) -> Array:
+    """The scalars of the kernel, for `most` layers."""
+    code = 3 if plan.width is not None else CODES[plan.shape]
+    volume = float(plan.objective == "volume")
+    anchored, least = float(bool(plan.fixed)), plan.filled if plan.filled > 1 else 0
+    return np.array([plan.gap, plan.wall, plan.width or 0.0, code, volume, least, most, anchored])
+
+
+def held(plan: Plan) -> Any:
+    """What is fixed of each cylinder: 1 its place, 2 its layer."""
+    lifted = set(plan.lifted)
+    return np.array(
+        [(c.at is not None) + 2 * (k not in lifted) for k, c in enumerate(plan.cylinders)],
+        dtype=np.int64,
+    )
+
+
+def scattered(plan: Plan, most: int, rng: np.random.Generator) -> Places:
+    """Free cylinders at random in `most` layers on a plan of 4/pi times their discs."""
+    first = row(plan)
+    area = 4.0 * float(((plan.radius + 0.5 * plan.gap) ** 2).sum()) / most
+    across, low, near = math.sqrt(area), 0.0, 0.0
+    along = across
+    if plan.fixed:
+        low, high, near, far = plan.held_box
+        across, along = max(across, high - low), max(along, far - near)
+    if plan.width is not None:
+        across, along = min(across, plan.width), area / min(across, plan.width)
+    x, y, layer = first.x.copy(), first.y.copy(), first.layer.copy()
+    free, lifted = list(plan.free), list(plan.lifted)
+    x[free] = low + across * rng.random(len(free))
+    y[free] = near + along * rng.random(len(free))
+    layer[lifted] = rng.integers(1, most + 1, len(lifted))
+    centre = np.zeros(2)
+    if plan.shape == "circle":
+        middle = np.array([low + 0.5 * across, near + 0.5 * along])
+        if plan.fixed:
+            centre = middle
+        else:
+            x, y = x - middle[0], y - middle[1]
+    return Places(x, y, layer, centre)
+
+
+def anneal(
+    plan: Plan,
+    problem: Problem,
+    begin: Places,
+    most: int,
+    moves: int,
+    temperatures: tuple[float, float],
+    rng: np.random.Generator,
+    spent: Spent,
+    looks: int = 1,
+) -> Places:
+    """Anneal from a packing; the last state. The best one that meets all limits is kept in `spent`.
+
+    most: layers of this run. moves: of the whole run, which ends early where the budget does.
+    looks: parts of it, after each of which the best is told.
+    """
+    anneal_slice = kernel(KERNEL).anneal
+    n = len(plan.radius)
+    x, y, layer, centre = begin.copied()
+    best = np.append(np.zeros(3 * n + 2), np.inf)
+    size = max(1, min(SLICE // n, -(-moves // looks)))
+    done, least = 0, spent.clock.best
+    while done < moves:
+        last = min(moves, done + size)
+        seed = int(rng.integers(2**31))
+        anneal_slice(
+            seed, done, last, moves, *temperatures, x, y, layer, centre,
+            plan.radius, plan.height, held(plan), numbers(plan, most), best,
+        )  # fmt: skip
+        spent.clock.evaluations += last - done
+        done = last
+        if best[-1] < least:
+            levels, least = best[2 * n : 3 * n].astype(np.int64), float(best[-1])
+            found = text.point(plan, Places(best[:n], best[n : 2 * n], levels, best[3 * n : -1]))
+            spent.keep(float(problem.batch(found[None]).F[0, 0]), found)
+        if done < moves and not spent.clock.tell():
+            break
+    return Places(x, y, layer, centre)
 
 
 def method(plan: Plan, floor: Floor, finish: Finish) -> Any:

@@ -12,7 +12,7 @@ from gearopt.formulations.packing import text
 from gearopt.formulations.packing.container_bound import bound
 from gearopt.formulations.packing.design import describe
 from gearopt.formulations.packing.plan import Places, Plan
-from gearopt.formulations.packing.state import lateness, ready
+from gearopt.formulations.packing.sa import lateness, ready
 from gearopt.optimise.certificate import reconcile
 from gearopt.optimise.clock import Clock, in_part, of_others
 from gearopt.optimise.comparing.trial import Model
