@@ -111,15 +111,23 @@ def cost(train, k, d, b, u):
     return length
 
 
-def best_choice(train, k, torque, z1, z2):
-    """Least cost (inf: impossible) with its module and width, the smallest module of equal ones."""
+def k_factor_width(stage, torque, d, m, u):
+    """Face width that K-factor and unit load need."""
+    contact = 2 * torque / (d**2 * stage.allowable[0]) * (1 + 1 / u)
+    return np.maximum(contact, 2 * torque / (d * m * stage.allowable[1]))
+
+
+def best_choice(train, k, torque, z1, z2, needed=k_factor_width):
+    """Least cost (inf: impossible) with its module and width, the smallest module of equal ones.
+
+    needed(stage, torque, d, m, u): the face width that the load needs.
+    """
     stage, u = train.stages[k], z2 / z1
     best, with_module, with_width = np.full(len(z1), np.inf), np.zeros(len(z1)), np.zeros(len(z1))
     for module in stage.modules:
         d = float(module) * z1 / math.cos(train.helix_angle)
-        contact = 2 * torque / (d**2 * stage.allowable[0]) * (1 + 1 / u)
-        bending = 2 * torque / (d * float(module) * stage.allowable[1])
-        b = width(train, stage.face_width, module, z1, np.maximum(contact, bending))
+        load = needed(stage, torque, d, float(module), u)
+        b = width(train, stage.face_width, module, z1, load)
         if stage.wheel_diameter is not None:
             b[side(train, module, z2, stage.wheel_diameter) > 0] = np.inf
         value = np.where(np.isfinite(b), cost(train, k, d, b, u), np.inf)
@@ -129,14 +137,14 @@ def best_choice(train, k, torque, z1, z2):
     return best, with_module, with_width
 
 
-def every_train(train):
+def every_train(train, needed=k_factor_width):
     """All trains that meet every limit."""
     teeth = np.empty((1, 0, 2), np.int64)
     modules = widths = np.empty((1, 0))
     values, torque = np.zeros(1), np.array([train.torque])
     for k in range(len(train.stages)):
         owner, z1, z2 = pairs(train, k, teeth[:, :, 0].prod(axis=1), teeth[:, :, 1].prod(axis=1))
-        value, module, b = best_choice(train, k, torque[owner], z1, z2)
+        value, module, b = best_choice(train, k, torque[owner], z1, z2, needed)
         good = np.isfinite(value)
         owner, z1, z2 = owner[good], z1[good], z2[good]
         teeth = np.concatenate([teeth[owner], np.stack([z1, z2], axis=1)[:, None]], axis=1)

@@ -1,4 +1,4 @@
-"""Load indices of a gear pair: torque, K-factor and unit load (external cylindrical gears).
+"""Load indices of a gear pair: torque, K-factor, unit load, Lewis stress (external gears).
 
 Arguments are floats, arrays of one shape, or casadi scalars.
 """
@@ -31,6 +31,15 @@ def unit_load(pinion_torque: Any, pinion_diameter: Any, face_width: Any, normal_
     Source: Chong and Lee, eq. (11).
     """
     return 2.0 * pinion_torque / (pinion_diameter * face_width * normal_module)
+
+
+def lewis_stress(torque: Any, diameter: Any, face_width: Any, module: Any, form_factor: Any) -> Any:
+    """Lewis stress 2 T/(d b m Y) [MPa] at the root of a gear.
+
+    torque T [N mm] on the gear of pitch diameter d, face_width b, module m [mm]; form_factor Y on
+    the module. No dynamic nor stress concentration factor.
+    """
+    return 2.0 * torque / (diameter * face_width * module * form_factor)
 
 
 def pitch_line_velocity(angular_speed: Any, diameter: Any) -> Any:

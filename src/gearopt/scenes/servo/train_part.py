@@ -28,8 +28,7 @@ from gearopt.formulations.servo.servo_design import (
     TrainDesign,
 )
 from gearopt.formulations.servo.split.bodies import Pairs
-from gearopt.formulations.servo.split.servo_train import objectives, pairs
-from gearopt.formulations.servo.split.teeth import bending_stress
+from gearopt.formulations.servo.split.servo_train import bending_stress, objectives, pairs
 from gearopt.optimise.clock import Clock, in_part
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run, solve

@@ -8,9 +8,9 @@ import numpy as np
 from gearopt.formulations.servo.ratio.duty import GOALS, ServoDuty
 from gearopt.formulations.servo.split.bodies import TIP, least
 from gearopt.formulations.servo.split.servo_train import ServoTrain
+from gearopt.formulations.strength.lewis import LEWIS
 from gearopt.optimise.terms import Array
-from gearopt.physics.gears import disc_inertia, disc_mass
-from gearopt.physics.stiffness import lewis_form_factor
+from gearopt.physics.gears import GearPair, disc_inertia, disc_mass
 
 
 class Numbers(NamedTuple):
@@ -21,7 +21,7 @@ class Numbers(NamedTuple):
     least of gear 3 by the bore and around its shaft. clear_1, clear_2, stage_1 (K,): least teeth of
     gear 2, of gear 4, of gears 1 and 2 together; unit (K,), output: what keeps gear 2 clear of the
     output shaft (`bodies.Least`). low, high: total ratio. bore; tip: largest pitch diameter of gear
-    4 [mm]. load: 2 T/(b sigma) [mm2]. lewis: form factors by teeth. disc_mass [kg/mm2] and
+    4 [mm]. load: minimum d m [mm2] of gear 4, by the teeth of its pinion. disc_mass [kg/mm2] and
     disc_inertia [t/mm2]: per d^2 and per d^4. duty: see `duty_numbers`.
     """
 
@@ -38,10 +38,9 @@ class Numbers(NamedTuple):
     unit: Any
     output: int
     module: Array
-    lewis: Array
     lost: Array
     error: float
-    load: float
+    load: Array
     low: float
     high: float
     bore: float
@@ -82,7 +81,8 @@ def numbers(train: ServoTrain, moved: bool = False) -> Numbers:
     tips = [[math.floor(tip / m - TIP) for m in train.modules] for tip in train.wheel_tips]
     wheel = train.wheel_teeth
     products = range(most**2 + 1)
-    teeth = np.arange(most + 1, dtype=float)
+    known = np.maximum(np.arange(most + 1, dtype=float), train.pinion_teeth[0])
+    pinions = GearPair.of_teeth(1.0, known, known, train.face_width)
     thick, long = train.shaft or (0.0, 0.0)
     clear = least(train.bodies, train.modules, wheel)
     return Numbers(
@@ -104,10 +104,9 @@ def numbers(train: ServoTrain, moved: bool = False) -> Numbers:
         unit=np.array(clear.units, np.int64),
         output=clear.output,
         module=np.array([float(m) for m in train.modules]),
-        lewis=np.array(lewis_form_factor(np.maximum(teeth, train.pinion_teeth[0]))),
         lost=np.array(train.lost_motion or (0.0, 0.0)),
         error=float(train.error),
-        load=2.0 * train.output_torque / (train.face_width * train.bending),
+        load=LEWIS.load(pinions, train.output_torque * known, 0.0, (train.bending,)),
         low=float(low),
         high=float(high) * (1.0 + 1e-15),
         bore=float(train.bore),

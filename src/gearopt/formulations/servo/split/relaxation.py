@@ -8,15 +8,15 @@ from typing import Any
 from gearopt.formulations.servo.split.bodies import clear_rows
 from gearopt.formulations.servo.split.servo_train import (
     ServoTrain,
-    lewis_stress,
+    bending_stress,
     objectives,
     ratio_parameters,
     ratio_rows,
 )
+from gearopt.formulations.strength.lewis import lewis
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Param, Terms, Var
 from gearopt.physics.gears import GearPair, disc_inertia
-from gearopt.physics.stiffness import lewis_form_factor
 
 TIPS = ("train.wheel_tip_diameters[1]", "train.wheel_tip_diameters[2]")  # in a problem file
 BEYOND = 1e3  # factor between the lengths of a train and the ends of the search
@@ -65,7 +65,7 @@ def _moved(train: ServoTrain, goal: str) -> Problem | None:
 
 
 def _terms(train: ServoTrain, goal: str, moved: Problem | None, x: Any, p: Any) -> Terms:
-    most = lewis_form_factor(float(train.pinion_teeth[1]))
+    law = lewis(float(train.pinion_teeth[1]))
     ends = _modules(train)
     (d1, d3), (n1, n2), modules = x.pinion_diameter, x.ratio, x.module
     first, second = both = tuple(
@@ -82,8 +82,8 @@ def _terms(train: ServoTrain, goal: str, moved: Problem | None, x: Any, p: Any) 
     limits |= {
         "stage_ratio_low": (1.0 / n1, 1.0 / n2),
         "bending_stress": tuple(
-            lewis_stress(t, d, train.face_width, m, most) / p.bending_stress
-            for t, d, m in zip(torques, wheels, modules, strict=True)
+            bending_stress(t, pair, law) / p.bending_stress
+            for t, pair in zip(torques, both, strict=True)
         ),
         "bore": p.bore / d3,
         "wheel_tip": tuple(

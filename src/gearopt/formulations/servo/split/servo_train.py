@@ -12,6 +12,8 @@ from typing import Any
 
 from gearopt.formulations.servo.ratio.duty import ServoDuty
 from gearopt.formulations.servo.split.bodies import TIP, Bodies, Pairs
+from gearopt.formulations.strength import Law
+from gearopt.formulations.strength.lewis import LEWIS
 from gearopt.optimise.terms import Param
 from gearopt.physics.backlash import output_error
 from gearopt.physics.gears import GearPair, disc_inertia
@@ -164,10 +166,10 @@ def ratio_rows(p: Any, tied: bool, ratio: Any) -> tuple[dict[str, Any], dict[str
     return {"ratio_low": p.ratio_low / ratio, "ratio_high": ratio / p.ratio_high}, {}
 
 
-def lewis_stress(torque: Any, diameter: Any, face_width: Any, module: Any, form_factor: Any) -> Any:
-    """Lewis stress 2 T/(d b m Y) [MPa] at the root of a gear.
+def bending_stress(wheel_torque: Any, pair: GearPair, law: Law = LEWIS) -> Any:
+    """Return the Lewis stress [MPa] at the pinion of a pair; wheel_torque [N mm].
 
-    torque T [N mm] on the gear of pitch diameter d, face_width b, module m [mm]; form_factor Y on
-    the module. No dynamic nor stress concentration factor.
+    law: another of `lewis`, where teeth are no variables or are bounded.
     """
-    return 2.0 * torque / (diameter * face_width * module * form_factor)
+    (found,) = law.indices(pair, wheel_torque / pair.ratio, 0.0)
+    return found

@@ -6,18 +6,18 @@ from typing import Any
 
 from gearopt.formulations.servo.split.bodies import clear_rows
 from gearopt.formulations.servo.split.servo_train import (
+    bending_stress,
     gear_mass,
-    lewis_stress,
     ratio_parameters,
     ratio_rows,
     train_error,
     train_inertia,
 )
+from gearopt.formulations.strength.lewis import lewis
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Param, Terms, Var
 from gearopt.physics.gears import Gear, GearPair, disc_mass
 from gearopt.physics.stiffness import (
-    lewis_form_factor,
     mesh_compliance,
     output_compliance,
     shaft_compliance,
@@ -97,7 +97,7 @@ def _terms(train: StiffTrain, x: Any, p: Any) -> Terms:
         shaft_compliance(train.shear_modulus, x.shaft_diameter, train.shaft_length),
         _mesh_compliance(train, wheels[0]),
     )
-    factors = [lewis_form_factor(float(z)) for z in train.pinion_teeth]
+    laws = [lewis(float(z)) for z in train.pinion_teeth]
     torques = train.output_torque / n2, train.output_torque
     tied = train.ratio[0] == train.ratio[1]
     ratio, equal = ratio_rows(p, tied, n1 * n2)
@@ -106,8 +106,8 @@ def _terms(train: StiffTrain, x: Any, p: Any) -> Terms:
         "inertia": inertia / p.inertia,
         "stage_ratio_low": (1.0 / n1, 1.0 / n2),
         "bending_stress": tuple(
-            lewis_stress(torque, wheel.reference_diameter, wheel.face_width, m, y) / p.bending
-            for torque, wheel, y in zip(torques, wheels, factors, strict=True)
+            bending_stress(torque, pair, law) / p.bending
+            for torque, pair, law in zip(torques, both, laws, strict=True)
         ),
         "pinion_teeth_low": tuple(
             z * m / d for z, d in zip(train.pinion_teeth, (d1, d3), strict=True)

@@ -7,14 +7,12 @@ from gearopt.formulations.servo.split import exact
 from gearopt.formulations.servo.split.bodies import rows
 from gearopt.formulations.servo.split.servo_train import (
     ServoTrain,
-    lewis_stress,
+    bending_stress,
     objectives,
     pairs,
 )
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Terms, Var
-from gearopt.physics.gears import GearPair
-from gearopt.physics.stiffness import lewis_form_factor
 
 
 def problem(train: ServoTrain, *goals: str) -> Problem:
@@ -57,14 +55,6 @@ def problem(train: ServoTrain, *goals: str) -> Problem:
             "enumeration": exact.method(train, goals[0], whole=True),
         }
     return Problem("split", _variables(train), (), evaluate, methods=methods)
-
-
-def bending_stress(wheel_torque: Any, pair: GearPair) -> Any:
-    """Return the Lewis stress [MPa] of a pair by the form of its pinion; wheel_torque [N mm]."""
-    form, wheel = lewis_form_factor(pair.pinion.teeth), pair.wheel
-    return lewis_stress(
-        wheel_torque, wheel.reference_diameter, pair.face_width, pair.normal_module, form
-    )
 
 
 def _variables(train: ServoTrain) -> tuple[Var, ...]:

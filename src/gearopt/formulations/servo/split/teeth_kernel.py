@@ -62,9 +62,9 @@ def sound(s, m1, z1, z2, m2, z3, z4):
     d2, d4 = m1 * z2, m2 * z4
     if s.lost[0] * z3 / (d2 * z4) + s.lost[1] / d4 > s.error * ALLOWANCE:
         return False
-    if s.load > d4 * m2 * s.lewis[z3] * ALLOWANCE:
+    if s.load[z3] > d4 * m2 * ALLOWANCE:
         return False
-    return s.load * z3 <= z4 * d2 * m1 * s.lewis[z1] * ALLOWANCE
+    return s.load[z1] * z3 <= z4 * d2 * m1 * ALLOWANCE
 
 
 @njit(cache=True)
@@ -198,8 +198,8 @@ def useful(s, goal, first, most, best, found):
                 if goal != 2:
                     least = max(
                         (s.lost[0] * z3 / (m1 * z2) + s.lost[1] / m2) / s.error,
-                        s.load / (m2 * m2 * s.lewis[z3]),
-                        s.load * z3 / (m1 * m1 * z2 * s.lewis[z1]),
+                        s.load[z3] / (m2 * m2),
+                        s.load[z1] * z3 / (m1 * m1 * z2),
                     )
                     if least > high + 1:
                         continue

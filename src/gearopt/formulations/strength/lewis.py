@@ -1,0 +1,25 @@
+"""Lewis stress: bending at the root of the pinion's teeth, without dynamic factors."""
+
+from typing import Any
+
+from gearopt.formulations.strength import Law, Limit
+from gearopt.physics.gears import GearPair
+from gearopt.physics.loads import lewis_stress
+from gearopt.physics.stiffness import lewis_form_factor
+
+
+def lewis(teeth: float | None = None) -> Law:
+    """Return the law; teeth: their form factor is taken for all numbers of teeth of a pinion.
+
+    With the most teeth of a range it is a lower bound and a monomial.
+    """
+
+    def indices(pair: GearPair, torque: Any, speed: Any) -> tuple[Any, ...]:
+        form = lewis_form_factor(pair.pinion_teeth if teeth is None else teeth)
+        d = pair.pinion.reference_diameter
+        return (lewis_stress(torque, d, pair.face_width, pair.normal_module, form),)
+
+    return Law("Lewis stress", (Limit("bending_stress"),), indices, proportional=True)
+
+
+LEWIS = lewis()
