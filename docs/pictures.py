@@ -13,8 +13,9 @@ from pathlib import Path
 
 import gearopt
 from gearopt.optimise.result import Result
+from gearopt.report.kinds import packing
 from gearopt.report.measures import METRIC, Measures
-from gearopt.report.pages import layout_views, packing_views, sheet, train_views
+from gearopt.report.pages import layout_views, sheet, train_views
 from gearopt.report.pages.sheet import Drawing
 from gearopt.report.section import Section
 
@@ -43,9 +44,9 @@ PICTURES = {  # by the name of the problem file
     "elevator_box": Picture(layout_views.section, seed=1),
     "table4_process_one_layout": Picture(layout_views.section, (0, 1), seed=1),
     "four_stage_box": Picture(layout_views.section, (0, 1)),
-    "six_cylinders": Picture(packing_views.section),
-    "six_cylinders_two_layers": Picture(packing_views.section, (0, 1), down=True),
-    "seven_points": Picture(packing_views.section),
+    "six_cylinders": Picture(packing.plans),
+    "six_cylinders_two_layers": Picture(packing.plans, (0, 1), down=True),
+    "seven_points": Picture(packing.plans),
 }
 
 

@@ -264,7 +264,7 @@ runpy.run_module("gearopt", run_name="__main__", alter_sys=True)
         ("typer", 1, 130, "gearopt: interrupted\n"),
         ("casadi", 1, 4, ""),
         ("casadi", 2, 130, "gearopt: interrupted\n"),
-        ("gearopt.report.terminal.result", 1, 130, "gearopt: interrupted\n"),
+        ("gearopt.report.terminal", 1, 130, "gearopt: interrupted\n"),
     ],
 )
 def test_ctrl_c_while_a_module_is_read_is_no_traceback(module, times, code, words):

@@ -13,7 +13,7 @@ from gearopt import Conic, Param, Problem, Repeat, Result, Terms, Var, evaluate
 from gearopt.cli import app
 from gearopt.cli.app import exit_code
 from gearopt.report.pages.result import page
-from gearopt.report.result_words import certainty
+from gearopt.report.words import certainty
 
 
 def beam():

@@ -5,7 +5,7 @@ import xml.etree.ElementTree as ET
 
 import numpy as np
 
-from gearopt.report.pages.labels import LETTER, SIZE
+from gearopt.report.pages.sheet import LETTER, SIZE
 
 
 def drawings(html):

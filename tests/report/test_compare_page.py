@@ -18,7 +18,7 @@ from gearopt.optimise.result import Outcome
 from gearopt.report import comparison_words as words
 from gearopt.report.pages import frame
 from gearopt.report.pages.comparison import colours, page
-from gearopt.report.terminal.comparison import show
+from gearopt.report.terminal import show_comparison
 
 ROOM = Path(frame.__file__).parent
 
@@ -124,7 +124,7 @@ def test_dark_colours_are_those_of_the_light_page():
 
 def printed(found, width=110):
     out = StringIO()
-    show(found, Console(file=out, width=width, highlight=False))
+    show_comparison(found, Console(file=out, width=width, highlight=False))
     return out.getvalue()
 
 

@@ -12,7 +12,7 @@ import gearopt
 from gearopt.report import kinds
 from gearopt.report.kinds import generic, kind_named
 from gearopt.report.pages.result import sections
-from gearopt.report.terminal.result import show
+from gearopt.report.terminal import show
 from gearopt.scenes.reading import load
 
 SHOWN = {  # a problem file of every kind

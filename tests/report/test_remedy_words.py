@@ -2,7 +2,7 @@
 
 import pytest
 
-from gearopt.report.pages.ways_out import remedy_words
+from gearopt.report.explained import remedy_words
 
 
 @pytest.mark.parametrize(

@@ -19,9 +19,9 @@ from gearopt.optimise.typed import typed
 from gearopt.physics.gears import Gear
 from gearopt.report.pages import frame
 from gearopt.report.pages.bodies import keep_outs, layout_of, nearest
-from gearopt.report.pages.labels import SIZE
 from gearopt.report.pages.layout_solid import MOST
 from gearopt.report.pages.result import page
+from gearopt.report.pages.sheet import SIZE
 from gearopt.report.pages.solid import Toothed, block, gear_mesh, rod, upright
 from gearopt.report.section import SHEET
 

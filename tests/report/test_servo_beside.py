@@ -9,9 +9,9 @@ import pytest
 from rich.console import Console
 
 import gearopt
+from gearopt.report.answer import proof
 from gearopt.report.pages.result import page, sections, tables
-from gearopt.report.proof_words import proof
-from gearopt.report.terminal.result import show
+from gearopt.report.terminal import show
 
 FILE = Path(__file__).parents[2] / "problems" / "servo_gimbal.toml"
 

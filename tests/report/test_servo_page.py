@@ -20,7 +20,7 @@ from gearopt.optimise.typed import typed
 from gearopt.report.kinds.servo.axis_housing import axes
 from gearopt.report.measures import INCH, METRIC
 from gearopt.report.pages.result import page, sections, tables
-from gearopt.report.terminal.result import show
+from gearopt.report.terminal import show
 
 HEADINGS = (
     "Result",

@@ -9,10 +9,10 @@ from html_reader import Reader
 from rich.console import Console
 
 import gearopt
+from gearopt.report.kinds.drive import processes
 from gearopt.report.measures import METRIC
 from gearopt.report.pages.result import page
-from gearopt.report.pages.side_by_side import section
-from gearopt.report.terminal.result import show
+from gearopt.report.terminal import show
 from gearopt.report.words import number
 from gearopt.scenes.reading.load import read
 
@@ -26,7 +26,7 @@ def three():
 
 def side_by_side(result):
     """Heads, rows and sentences about missing designs; nothing without processes."""
-    found = section(result, METRIC)
+    found = processes(result, METRIC)
     return (
         ([], [], [])
         if found is None
@@ -65,7 +65,7 @@ def test_terminal_and_page_show_the_same_cells(three):
 
 def test_without_processes_nothing_is_added():
     plain = gearopt.solve(PROBLEMS / "elevator.toml")
-    assert section(plain, METRIC) is None and side_by_side(plain) == ([], [], [])
+    assert processes(plain, METRIC) is None and side_by_side(plain) == ([], [], [])
     assert "over the bound" not in printed(plain)
 
 

@@ -16,7 +16,7 @@ import gearopt
 from gearopt.report.measures import INCH, METRIC, SYSTEMS
 from gearopt.report.pages.result import page, sections, tables
 from gearopt.report.section import Table, percent, shown
-from gearopt.report.terminal.result import show
+from gearopt.report.terminal import show
 from gearopt.report.words import heading, parted
 
 UNITS = {

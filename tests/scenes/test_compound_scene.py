@@ -8,7 +8,7 @@ from rich.console import Console
 
 import gearopt
 from gearopt.report.pages.result import page
-from gearopt.report.terminal.result import show
+from gearopt.report.terminal import show
 from gearopt.scenes.reading.load import read
 
 

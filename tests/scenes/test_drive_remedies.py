@@ -9,7 +9,7 @@ from given_drives import every_train, faults, feasible, given_drive, readable, w
 from gearopt import Budget
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.repair import WIDEST, least_value
-from gearopt.report.pages.ways_out import remedy_words
+from gearopt.report.explained import remedy_words
 from gearopt.scenes import drive
 from gearopt.scenes.drive.explaining.nearest import nearest_ratio
 from gearopt.scenes.drive.explaining.tried import Case

@@ -16,7 +16,7 @@ from gearopt.formulations.layout.faults import possible
 from gearopt.formulations.layout.gearbox import KeepOut, Place
 from gearopt.formulations.layout.slabs import orders
 from gearopt.optimise.result import Budget
-from gearopt.report.pages.ways_out import remedy_words
+from gearopt.report.explained import remedy_words
 from gearopt.scenes.drive import Scene
 from gearopt.scenes.drive.box import ways
 from gearopt.scenes.drive.box.moves import LARGER, SMALLER

@@ -16,7 +16,7 @@ import gearopt
 from gearopt.errors import SceneError, SolveError
 from gearopt.formulations import packing
 from gearopt.formulations.packing.container_bound import Bound
-from gearopt.report.proof_words import proof
+from gearopt.report.answer import proof
 from gearopt.scenes.packing import EXAMPLE
 from gearopt.scenes.reading.load import read
 

@@ -15,7 +15,7 @@ from gearopt.errors import SceneError
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget
 from gearopt.report.pages.result import page, sections, tables
-from gearopt.report.terminal.result import show
+from gearopt.report.terminal import show
 from gearopt.scenes.reading.load import read
 from gearopt.scenes.servo.ways_out import blocked, ways_out
 

@@ -14,7 +14,7 @@ from gearopt.formulations.servo import choice
 from gearopt.formulations.servo.servo_design import ServoDesign, ServoReport
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget
-from gearopt.report.proof_words import proof
+from gearopt.report.answer import proof
 from gearopt.scenes.servo import EXAMPLE
 from gearopt.scenes.servo.assumptions import notes
 from gearopt.scenes.servo.ways_out import ways_out

@@ -11,7 +11,7 @@ import gearopt
 from gearopt.formulations.servo.servo_design import ServoDesign, ServoReport
 from gearopt.optimise.result import Budget
 from gearopt.optimise.typed import typed, untyped
-from gearopt.report.proof_words import proof
+from gearopt.report.answer import proof
 from gearopt.scenes.reading.load import read
 from gearopt.scenes.servo import model
 

@@ -27,8 +27,8 @@ from gearopt.formulations.servo.servo_design import RatioDesign
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget
 from gearopt.optimise.typed import typed
+from gearopt.report.explained import remedy_words
 from gearopt.report.kinds.servo.axis_motion import best_words
-from gearopt.report.pages.ways_out import remedy_words
 from gearopt.scenes.reading.load import read
 from gearopt.scenes.servo import EXAMPLE
 from gearopt.scenes.servo.assumptions import UNLISTED, assumptions, given_overlap

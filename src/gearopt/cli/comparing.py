@@ -69,9 +69,9 @@ def _show(found: Comparison, as_json: bool) -> None:
     if as_json:
         print_whole(found.to_json())
         return
-    from gearopt.report.terminal.comparison import show
+    from gearopt.report.terminal import show_comparison
 
-    show(found, console())
+    show_comparison(found, console())
 
 
 def _announced(watch: Callable[[Progress], bool]) -> Callable[[Progress], bool]:

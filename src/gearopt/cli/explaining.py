@@ -25,7 +25,7 @@ def explain(
     if as_json:
         print_whole(found.to_json())
     elif found.result.value is None:
-        from gearopt.report.terminal.result import show as show_result
+        from gearopt.report.terminal import show as show_result
 
         ways = {k: getattr(found, k) for k in ("conflict", "message")}
         ways |= {"remedies": [asdict(r) for r in found.remedies]}
@@ -35,7 +35,7 @@ def explain(
         report = found.result.report | ({"ways_out": ways} if ways else {})
         show_result(replace(found.result, report=report), console())
     else:
-        from gearopt.report.terminal.result import show_explanation
+        from gearopt.report.terminal import show_explanation
 
         show_explanation(found, console())
     raise typer.Exit(exit_code(found.result))

@@ -71,6 +71,6 @@ def bench(
     if as_json:
         print_whole(json.dumps(rows, indent=2))
         return
-    from gearopt.report.terminal.result import rows_table
+    from gearopt.report.terminal import rows_table
 
     console().print(rows_table(rows))

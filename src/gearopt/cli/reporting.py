@@ -70,14 +70,14 @@ def _again(kept: Result | Comparison, screen: Console, files: Files) -> list[str
     if kept.file is not None:
         checked(files.html, files.csv, files.measures.name, Path(kept.file))
     if isinstance(kept, Result):
-        from gearopt.report.terminal.result import show
+        from gearopt.report.terminal import show
 
         show(kept, screen, files.measures)
         return written(kept, files)
     if files.csv is not None or files.measures.name != "metric":
         raise GearoptError("--csv and --units are for results; this file holds a comparison")
     from gearopt.report.pages.comparison import page
-    from gearopt.report.terminal.comparison import show as show_comparison
+    from gearopt.report.terminal import show_comparison as show_comparison
 
     show_comparison(kept, screen)
     if files.html is None:

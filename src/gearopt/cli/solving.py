@@ -72,7 +72,7 @@ def _show(result: Result, files: Files, lines: list[str], as_json: bool) -> None
     if as_json:
         print_whole(result.to_json())
         return
-    from gearopt.report.terminal.result import show
+    from gearopt.report.terminal import show
 
     show(result, console(), files.measures)
     for line in lines:

@@ -4,9 +4,9 @@ from dataclasses import replace
 
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import typed
+from gearopt.report.design_tables import ratio_tile
 from gearopt.report.kinds import generic
 from gearopt.report.measures import Measures
-from gearopt.report.pages.design_tables import ratio_tile
 from gearopt.report.section import Tile
 from gearopt.scenes.compound import CompoundDesign
 

@@ -1,25 +1,200 @@
 """Drives of cylindrical gears, laid out or not: drawings, stages, processes, next best trains."""
 
+from collections.abc import Sequence
 from functools import partial
+from typing import Any
 
 from gearopt.formulations.design import drive_design
 from gearopt.optimise.result import Result
+from gearopt.report.answer import limits
+from gearopt.report.design_tables import ratio_tile, tables, trains
 from gearopt.report.kinds import Kind
 from gearopt.report.kinds.generic import ASKED, FIRST, LAST, TOLD
 from gearopt.report.measures import Measures
-from gearopt.report.pages import (
-    design_tables,
-    layout_solid,
-    layout_tables,
-    layout_views,
-    outcome,
-    side_by_side,
-    trade_off,
-    train_views,
-)
-from gearopt.report.result_words import objective
-from gearopt.report.section import Tile
-from gearopt.report.words import amount
+from gearopt.report.pages import layout_solid, layout_views, train_views
+from gearopt.report.pages.bodies import layout_of
+from gearopt.report.section import Cell, Figure, Section, Table, Tile, axis, layout
+from gearopt.report.words import RULED, amount, heading, limit_words, number, objective, parted
+
+NARROWEST = 3  # gaps that are named
+OF_STAGE = {"ratio": "ratio u", "centre_distance_mm": "a", "face_width_mm": "b"}
+OF_DRIVE = ("ratio", "ratio_error_percent", "gear_volume_mm3")
+LINES = 6  # of equal area
+
+
+def places(result: Result, measures: Measures) -> Section | None:
+    """Box, shafts and narrowest gaps; None where there is no layout."""
+    if result.value is None or (found := layout_of(result)) is None:
+        return None
+    box, unit = found.box, measures.unit("mm")
+    sides = " x ".join(map(measures.length, (box.width_mm, box.height_mm, box.length_mm)))
+    volume = amount(box.volume_mm3, "mm3", measures)
+    rows = [
+        [f"{words} [{unit}]", *(Cell(v, measures.length(v)) for v in values)]
+        for words, values in (
+            ("right of the input y", [s.y_mm for s in found.shafts]),
+            ("above the input z", [s.z_mm for s in found.shafts]),
+            ("diameter", [s.diameter_mm for s in found.shafts]),
+        )
+    ]
+    table = Table("places of shafts", ["", *(f"shaft {s.shaft}" for s in found.shafts)], rows)
+    slabs = ", ".join(" and ".join(map(str, slab)) for slab in found.slabs)
+    gaps = [
+        f"{' to '.join(gap.between)}: {measures.length(gap.gap_mm)} {unit} clear, "
+        f"{measures.of(gap.needed_mm, 'mm'):.4g} {unit} needed"
+        for gap in found.gaps[:NARROWEST]
+    ]
+    last = "\n".join([f"Stages along the shafts: {slabs}.", *gaps])
+    size = f"box {sides} {unit} (width, height, length), {volume}"
+    return Section("Layout", terminal=(size, table, last))
+
+
+def processes(result: Result, measures: Measures) -> Section | None:
+    """Designs as columns; None where the file asks for no process.
+
+    The first column is the result itself, or the gears that its layout is of.
+    """
+    best = next((part for part in result.parts if part.name == "gears"), result)
+    ruled = [part for part in best.parts if part.name in RULED]
+    if best.value is None or not ruled:
+        return None
+    missing = [_missing(part) for part in ruled if part.value is None]
+    designs = [best, *(part for part in ruled if part.design)]
+    heads = ["", best.method, *(part.name for part in designs[1:])]
+    rows = [*_stages(designs, measures), *_totals(designs, best.bound, measures)]
+    words = "The processes choose by rules, without a search; limits and bound are those of all."
+    table = Table("processes and optimum", heads, rows)
+    told = (table, *missing) if result.value is not None else ()
+    return Section("Processes and optimum", words=(words, *missing), tables=(table,), terminal=told)
+
+
+def _stages(designs: Sequence[Result], measures: Measures) -> list[list[Any]]:
+    rows: list[list[Any]] = []
+    for k in range(len(designs[0].design["stages"])):
+        stages = [one.design["stages"][k] for one in designs]
+        teeth = [
+            f"{number(s['normal_module_mm'])}, {s['pinion_teeth']}/{s['wheel_teeth']}"
+            for s in stages
+        ]
+        rows.append([f"stage {k + 1}: m_n, z1/z2", *teeth])
+        for key, label in OF_STAGE.items():
+            unit = parted(key)[1]
+            sign = f" [{measures.unit(unit)}]" if unit else ""
+            values = (measures.of(s[key], unit) for s in stages)
+            rows.append([f"stage {k + 1}: {label}{sign}", *values])
+    return rows
+
+
+def _totals(designs: Sequence[Result], bound: float | None, measures: Measures) -> list[list[Any]]:
+    rows: list[list[Any]] = []
+    for key in OF_DRIVE:
+        values = (measures.of(one.design[key], parted(key)[1]) for one in designs)
+        rows.append([heading(key, measures), *values])
+    name, unit = objective(designs[0])
+    if name != "gear volume":
+        shown = (None if one.value is None else measures.of(one.value, unit) for one in designs)
+        rows.append([f"{name} [{measures.unit(unit)}]", *shown])
+    if bound is not None and bound > 0.0:
+        rows.append(["over the bound [%]", *(_over(one, bound) for one in designs)])
+    return rows
+
+
+def _over(one: Result, bound: float) -> float | None:
+    """By how much a design is above the bound [%]; None where it meets not all limits."""
+    return None if one.value is None else max(100.0 * (one.value / bound - 1.0), 0.0)
+
+
+def _missing(part: Result) -> str:
+    """Why a process has no design that counts, with the violated limit in words."""
+    first, _, rest = part.message.partition(" ")
+    shown = "The design" if part.design else "No design"
+    return f"{shown} by {part.name}: {limit_words(first)} {rest}".rstrip(". ") + "."
+
+
+def trade_off(result: Result, measures: Measures) -> Section | None:
+    """The front of a run that looked for one; None without it."""
+    front = result.report.get("front") or []
+    if not front:
+        return None
+    points = sorted(
+        (
+            measures.of(p["width_mm"], "mm"),
+            measures.of(p["height_mm"], "mm"),
+            measures.of(p["volume_mm3"], "mm3"),
+        )
+        for p in front
+    )
+    unit, volume = measures.unit("mm"), measures.unit("mm3")
+    widths, heights, volumes = zip(*points, strict=True)
+    x0, x1 = _ends(widths)
+    y0, y1 = _ends(heights)
+    low, high = x0 * y0, x1 * y1
+    areas = [low * (high / low) ** ((k + 0.5) / LINES) for k in range(LINES)]
+    traces = [_equal(area, (x0, x1), (y0, y1), measures) for area in areas]
+    traces.append(
+        {
+            "type": "scatter",
+            "mode": "markers",
+            "name": "boxes",
+            "x": widths,
+            "y": heights,
+            "text": [f"{number(v)} {volume}" for v in volumes],
+            "hovertemplate": f"%{{x:.2f}} x %{{y:.2f}} {unit}, %{{text}}<extra></extra>",
+            "marker": {"color": "--series-1", "size": 8},
+            "showlegend": False,
+        }
+    )
+    best = min(points, key=lambda p: p[2])
+    traces.append(
+        {
+            "type": "scatter",
+            "mode": "markers",
+            "name": "least volume",
+            "x": [best[0]],
+            "y": [best[1]],
+            "hovertemplate": f"least volume: {number(best[2])} {volume}<extra></extra>",
+            "marker": {"color": "--series-2", "size": 13, "symbol": "star"},
+        }
+    )
+    across, up = (
+        axis(f"width [{unit}]", range=[x0, x1]),
+        axis(f"height [{unit}]", range=[y0, y1]),
+    )
+    words = (
+        f"Boxes of which none is better in both width and height ({len(points)}). "
+        "Thin lines: equal area of the face."
+    )
+    return Section(
+        "Width against height", figures=(Figure(traces, layout(across, up, 420), words),)
+    )
+
+
+def _ends(values: tuple[float, ...]) -> tuple[float, float]:
+    room = 0.08 * (max(values) - min(values)) or 0.05 * max(values)
+    return max(min(values) - room, 0.5 * min(values)), max(values) + room
+
+
+def _equal(
+    area: float, across: tuple[float, float], up: tuple[float, float], measures: Measures
+) -> dict[str, Any]:
+    """A line of equal area through the plot, named near its upper end."""
+    start, end = max(across[0], area / up[1]), min(across[1], area / up[0])
+    x = [start * (end / start) ** (k / 40) for k in range(41)]
+    metric = measures.unit("mm2") == "mm²"
+    shown, unit = (area / 100.0, "cm²") if metric else (area, measures.unit("mm2"))
+    name = f"{shown:,.{0 if shown > 100.0 else 1}f} {unit}"
+    return {
+        "type": "scatter",
+        "mode": "lines+text",
+        "x": x,
+        "y": [area / v for v in x],
+        "text": [name if k == 2 else "" for k in range(41)],
+        "textposition": "top right",
+        "textfont": {"size": 11, "color": "--soft"},
+        "line": {"color": "--axis", "width": 1, "dash": "dot"},
+        "hoverinfo": "skip",
+        "showlegend": False,
+    }
 
 
 def tiles(result: Result, measures: Measures) -> list[Tile]:
@@ -28,8 +203,10 @@ def tiles(result: Result, measures: Measures) -> list[Tile]:
         return []
     design = drive_design(result.design)
     torque = amount(design.output_torque_Nm, "Nm", measures)
-    found = [design_tables.ratio_tile(design.ratio, design.ratio_error_percent)]
-    found.append(Tile("output torque", torque))
+    found = [
+        ratio_tile(design.ratio, design.ratio_error_percent),
+        Tile("output torque", torque),
+    ]
     if objective(result)[0] != "mass":
         found.append(Tile("mass of the gears", amount(design.mass_kg, "kg", measures)))
     if design.layout is not None:
@@ -85,19 +262,19 @@ KIND = Kind(
         layout_views.section,
         layout_solid.section,
         train_views.section,
-        side_by_side.section,
-        design_tables.section,
+        processes,
+        tables,
         *ASKED,
-        design_tables.trains,
-        trade_off.section,
+        trains,
+        trade_off,
         *LAST,
     ),
     terminal=(
-        design_tables.section,
-        layout_tables.section,
-        partial(outcome.limits, whole="drive"),
-        design_tables.trains,
-        side_by_side.section,
+        tables,
+        places,
+        partial(limits, whole="drive"),
+        trains,
+        processes,
         *TOLD,
     ),
     tiles=tiles,

@@ -31,8 +31,7 @@ from gearopt.report.pages.solid import (
     rod,
     space,
 )
-from gearopt.report.plot import Figure
-from gearopt.report.section import Section
+from gearopt.report.section import Figure, Section
 
 MOST = 50_000  # triangles of all gears together, for a page that turns smoothly without a GPU
 DETAIL = ((3, 0.12), (3, 0.3), (2, 0.6), (2, 10.0))  # points on a flank, twist a section [rad]

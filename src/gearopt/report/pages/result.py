@@ -4,9 +4,8 @@ from gearopt.optimise.result import Result
 from gearopt.report.kinds import kind_of
 from gearopt.report.measures import METRIC, Measures
 from gearopt.report.pages.frame import render
-from gearopt.report.result_words import goal, title, verdict
 from gearopt.report.section import Section
-from gearopt.report.words import amount
+from gearopt.report.words import amount, goal, title, verdict
 
 
 def sections(result: Result, measures: Measures = METRIC) -> list[Section]:

@@ -10,10 +10,15 @@ from gearopt.optimise.result import Result
 from gearopt.optimise.typed import typed
 from gearopt.report.measures import Measures
 from gearopt.report.pages.bodies import Bodies
-from gearopt.report.pages.labels import Place
-from gearopt.report.pages.layout_front import gear_circles, gear_names
-from gearopt.report.pages.layout_side import LEVEL, face_widths, gears_on, side_name
-from gearopt.report.pages.sheet import Drawing, Sheet, Window
+from gearopt.report.pages.layout_views import (
+    LEVEL,
+    face_widths,
+    gear_circles,
+    gear_names,
+    gears_on,
+    side_name,
+)
+from gearopt.report.pages.sheet import Drawing, Place, Sheet, Window
 from gearopt.report.section import Section
 from gearopt.report.words import number
 

@@ -4,21 +4,20 @@ from dataclasses import replace
 
 from gearopt.formulations.servo.servo_design import RatioDesign, TrainDesign
 from gearopt.optimise.result import Result
+from gearopt.report import answer, explained
+from gearopt.report.answer import bound_words
 from gearopt.report.kinds import Kind, MakeSection
 from gearopt.report.kinds.generic import ASKED, LAST, TOLD
 from gearopt.report.kinds.servo import axis_accuracy, axis_housing, axis_motion, axis_trains
 from gearopt.report.kinds.servo.axis_words import arc_minutes, degrees, design_of
 from gearopt.report.measures import Measures
-from gearopt.report.pages import outcome, ways_out
-from gearopt.report.proof_words import bound_words
-from gearopt.report.result_words import goal
 from gearopt.report.section import Section, Tile
-from gearopt.report.words import amount, number
+from gearopt.report.words import amount, goal, number
 
 
 def summary(result: Result, measures: Measures) -> Section:
     """Return key figures and what is certain; the bound, a key figure, is not said again."""
-    found, bound = outcome.summary(result, measures), bound_words(result, measures)
+    found, bound = answer.summary(result, measures), bound_words(result, measures)
     return replace(found, words=[words for words in found.words if words not in bound])
 
 
@@ -87,7 +86,7 @@ def _answered(make: MakeSection) -> MakeSection:
 KIND = Kind(
     sections=(
         summary,
-        ways_out.section,
+        explained.ways_out,
         axis_motion.section,
         axis_trains.section,
         axis_housing.box,
@@ -113,7 +112,7 @@ KIND = Kind(
         _answered(axis_accuracy.drawn),
         _answered(axis_housing.stiffness),
         _answered(axis_housing.box),
-        outcome.limits,
+        answer.limits,
         *TOLD,
     ),
     tiles=tiles,

@@ -24,8 +24,7 @@ from gearopt.report.kinds.servo.axis_words import (
 )
 from gearopt.report.measures import Measures
 from gearopt.report.pages.sheet import series
-from gearopt.report.plot import Figure, axis, layout
-from gearopt.report.section import Cell, Section, Table, percent
+from gearopt.report.section import Cell, Figure, Section, Table, axis, layout, percent
 from gearopt.report.words import number
 
 ROW = 23.0  # px of a source

@@ -20,11 +20,9 @@ from gearopt.formulations.servo.servo_design import (
 from gearopt.optimise.result import Result
 from gearopt.report.kinds.servo.axis_words import arc_minutes, degrees, design_of
 from gearopt.report.measures import Measures
-from gearopt.report.pages.labels import Place, around
-from gearopt.report.pages.layout_front import centre_distance
-from gearopt.report.pages.sheet import Drawing, Point, Sheet, Window
-from gearopt.report.plot import Figure, axis, layout
-from gearopt.report.section import Section, Table, Tile, percent
+from gearopt.report.pages.layout_views import centre_distance
+from gearopt.report.pages.sheet import Drawing, Place, Point, Sheet, Window, around
+from gearopt.report.section import Figure, Section, Table, Tile, axis, layout, percent
 from gearopt.report.words import amount, number
 
 ROW, REST = 44.0, 70.0  # px of a spring, and of the axis

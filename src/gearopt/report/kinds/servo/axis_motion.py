@@ -7,8 +7,7 @@ from gearopt.formulations.servo.servo_design import Achieved, RatioDesign, Servo
 from gearopt.optimise.result import Result
 from gearopt.report.kinds.servo.axis_words import design_of, report_of
 from gearopt.report.measures import METRIC, Measures
-from gearopt.report.plot import Figure, axis, layout
-from gearopt.report.section import Cell, Section, Table, shown
+from gearopt.report.section import Cell, Figure, Section, Table, axis, layout, shown
 from gearopt.report.words import amount, number
 
 LARGEST = "acceleration"  # the duty whose value is made largest

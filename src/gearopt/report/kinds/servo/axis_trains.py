@@ -14,6 +14,7 @@ from gearopt.formulations.servo.servo_design import (
 )
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import untyped
+from gearopt.report.design_tables import STAGE_ROWS, stage_table
 from gearopt.report.kinds.servo.axis_words import (
     arc_minutes,
     degrees,
@@ -24,9 +25,7 @@ from gearopt.report.kinds.servo.axis_words import (
 )
 from gearopt.report.measures import Measures
 from gearopt.report.pages import train_views
-from gearopt.report.pages.design_tables import STAGE_ROWS, stage_table
-from gearopt.report.plot import Figure, axis, layout
-from gearopt.report.section import Section, Table
+from gearopt.report.section import Figure, Section, Table, axis, layout
 from gearopt.report.words import amount, heading, parted
 
 ROWS = STAGE_ROWS | {"bending_stress_MPa": ("bending stress", "MPa")}

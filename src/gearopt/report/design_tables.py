@@ -5,9 +5,8 @@ from typing import Any
 
 from gearopt.optimise.result import Result
 from gearopt.report.measures import INCH, Measures, diametral_pitch
-from gearopt.report.result_words import EXACT, objective
 from gearopt.report.section import Cell, Section, Table, Tile, percent
-from gearopt.report.words import MODULE, heading, number, parted
+from gearopt.report.words import EXACT, MODULE, heading, number, objective, parted
 
 STAGE_ROWS = {  # what a key is called, and its unit (modules are metric in any system)
     "normal_module_mm": ("module m_n [mm]", ""),
@@ -41,7 +40,7 @@ PAGE_ONLY = {
 }
 
 
-def section(result: Result, measures: Measures) -> Section | None:
+def tables(result: Result, measures: Measures) -> Section | None:
     """All tables of the design, on the terminal stages and totals; None without one."""
     design = dict(result.design)
     if not design:

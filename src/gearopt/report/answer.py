@@ -1,0 +1,293 @@
+"""What every kind of result shows: key figures, limits, the file, progress, what is proven."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from gearopt.optimise.result import Result
+from gearopt.optimise.scale import gap
+from gearopt.report.kinds import kind_of
+from gearopt.report.measures import METRIC, Measures
+from gearopt.report.section import Cell, Figure, Section, Table, Tile, axis, layout, percent
+from gearopt.report.words import (
+    RULED,
+    amount,
+    certainty,
+    goal,
+    leading,
+    limit_rows,
+    limit_words,
+    number,
+    objective,
+    verdict,
+)
+
+PARTS = {  # of a result: what their names mean
+    "sizing": "real-valued sizes",
+    "apart": "gears first, then the box",
+    "real-valued": "real-valued teeth",
+}
+ROWS = ("status", "objective", "value", "bound", "gap, %", "method", "proof", "seconds")
+TOLD = ("method", "arithmetic", "sentence")  # of a proof: told elsewhere
+CHECKS = {  # of a certificate: what each number is
+    "feasibility": "largest excess over a limit",
+    "stationarity": "largest slope left over",
+    "complementarity": "largest multiplier times room",
+    "scale": "of the objective, which is zero: the gap is relative to it",
+}
+SENTENCES = ("title", "source")  # keys of a file that are sentences
+EARLIEST = 1e-4  # s; the logarithmic axis begins here at the earliest
+
+
+def summary(result: Result, measures: Measures) -> Section:
+    """Key figures, and in words what is certain."""
+    words = proof(result, measures)
+    tiles = [*_tiles(result, measures), *kind_of(result).tiles(result, measures)]
+    return Section("Result", tiles, [*leading(result), *words], terminal=("\n".join(words),))
+
+
+def _tiles(result: Result, measures: Measures) -> list[Tile]:
+    """Objective and bound."""
+    name, unit, value, bound, _ = goal(result)
+    tiles = []
+    if value is not None:
+        tiles.append(Tile(name, amount(value, unit, measures), certainty(result)[0]))
+    if bound is not None:
+        title = f"proven bound{scope(result)}"
+        tiles.append(Tile(title, amount(bound, unit, measures), gap_words(result)))
+    return tiles
+
+
+def limits(result: Result, measures: Measures, whole: str = "whole") -> Section | None:
+    """Utilisation of every limit; None without limits. whole: what is no stage, on the terminal."""
+    if not result.limits or (result.value is None and result.status != "evaluated"):
+        return None
+    stages, rows = limit_rows(result.limits)
+    heads = ["limit used, %", *(f"stage {k}" for k in range(1, stages + 1)), "whole"]
+    cells = [[words, *map(percent, values)] for words, values in rows]
+    table = Table("limits", heads, cells, short={"whole": whole})
+    words = ("At 100 a limit is reached.",)
+    return Section("Limits", words=words, tables=(table,), half=True, terminal=(table,))
+
+
+def proof(result: Result, measures: Measures = METRIC) -> list[str]:
+    """What is certain: the bound, how it is known, what other ways give, what to keep in mind."""
+    lines = bound_words(result, measures) + _method(result)
+    lines += kind_of(result).beside(result, measures)
+    lines += result.report.get("notes", []) if result.status != "infeasible" else []
+    if result.message and result.status != "infeasible" and not leading(result):
+        lines.append(result.message[0].upper() + result.message[1:].rstrip(".") + ".")
+    lines.append(f"{result.method}, {result.evaluations:,} evaluations, {result.seconds:.3g} s.")
+    return lines
+
+
+def bound_words(result: Result, measures: Measures) -> list[str]:
+    """The bound in a sentence; nothing without one."""
+    name, unit, _, bound, side = goal(result)
+    if bound is None or result.gap is None:
+        return []
+    least = f"no {name} {side} {amount(bound, unit, measures)} is possible"
+    return [f"Bound: {least}{scope(result)}; {gap_words(result)}."]
+
+
+def gap_words(result: Result) -> str:
+    """The gap of a result, and what it is relative to where that is not the objective's value."""
+    if result.gap is None:
+        return ""
+    of = " of the objective's scale (its value is zero)" if "scale" in result.certificate else ""
+    return f"gap {100 * result.gap:.3g} %{of}"
+
+
+def scope(result: Result) -> str:
+    """Of what a bound is true: of all designs, or of the gears that were laid out."""
+    return " with these gears" if any(part.name == "gears" for part in result.parts) else ""
+
+
+def _method(result: Result) -> list[str]:
+    """What the method itself tells of its proof, and which limits cannot hold together."""
+    known, found = result.bound is not None or result.status == "infeasible", result.proof
+    lines = [found["sentence"]] if known and "sentence" in found else []
+    if result.status == "infeasible" and found.get("conflict") and "least_violation" in found:
+        names = ", ".join(limit_words(n) for n in found["conflict"])
+        least = 100 * found["least_violation"]
+        missed = f"{least:.2g}" if least < 100 else f"{least:,.0f}"
+        lines.append(
+            "Proof: whatever the sizes, even with real-valued teeth and modules, one of these "
+            f"limits is missed by at least {missed} %: {names}."
+        )
+    return lines
+
+
+def meaning(result: Result) -> str:
+    """What the status of a result says, and what it does not say."""
+    known, status = result.bound is not None, result.status
+    if status == "optimal":
+        return (
+            f"No design{scope(result)} that meets the limits is better by more than the gap: the "
+            "bound was computed by gearopt itself, not taken from a solver."
+        )
+    if status == "infeasible":
+        return "Proven: no design meets all limits."
+    if status == "evaluated":
+        met = "meets all limits" if result.feasible else "does not meet all limits"
+        return f"Nothing was minimised: the design given was evaluated, and {met}."
+    if status == "stationary":
+        return "No small change improves the design; a better one elsewhere is not excluded."
+    if result.value is None:
+        return "No design was found; that is no proof that there is none."
+    early = "The run ended early. " if status == "limit" else ""
+    below = f", but none{scope(result)} is below the bound" if known else ""
+    return f"{early}The design meets all limits; a better one may exist{below}."
+
+
+def proven(result: Result, measures: Measures) -> Section:
+    """What the status means, and the numbers of the proof, of every part too."""
+    parts = (result, *result.parts)
+    heads = ("", *(PARTS.get(part.name, part.name.replace("_", " ")) for part in parts))
+    rows = [list(row) for row in zip(*(_column(part, measures) for part in parts), strict=True)]
+    tables = [Table("proof", heads, [[n, *row] for n, row in zip(ROWS, rows, strict=True)])]
+    if checks := _checks(result):
+        tables.append(Table("checks", ("", ""), checks))
+    words = [meaning(result)]
+    if arithmetic := result.proof.get("arithmetic"):
+        words.append(f"Arithmetic: {arithmetic}.")
+    return Section("What is proven, and how", words=words, tables=tables, half=len(parts) < 3)
+
+
+def _column(part: Result, measures: Measures) -> list[Any]:
+    """Of a result or one of its parts, what ROWS names."""
+    name, unit = objective(part)
+    return [
+        verdict(part)[0],
+        f"{name} [{measures.unit(unit)}]" if unit else name,
+        _amount(part.value, unit, measures),
+        _amount(part.bound, unit, measures),
+        "" if part.gap is None else Cell(100.0 * part.gap, f"{100.0 * part.gap:.3g}"),
+        part.method,
+        "by rules" if part.name in RULED else str(part.proof.get("method", "")),
+        Cell(part.seconds, f"{part.seconds:.3g}"),
+    ]
+
+
+def _amount(value: float | None, unit: str, measures: Measures) -> Cell:
+    """A value in the unit that is shown, which its text names."""
+    if value is None:
+        return Cell(None, "")
+    return Cell(measures.of(value, unit), amount(value, unit, measures))
+
+
+def _checks(result: Result) -> list[tuple[str, Any]]:
+    """The certificate, then what else the proof says."""
+    found: list[tuple[str, Any]] = [
+        (f"{name}: {CHECKS.get(name, '')}", Cell(value, "" if value is None else f"{value:.2g}"))
+        for name, value in result.certificate.items()
+    ]
+    for key, value in result.proof.items():
+        if key not in TOLD and not isinstance(value, Mapping | list):
+            shown = Cell(value, f"{value:.3g}") if isinstance(value, float) else value
+            found.append((key.replace("_", " "), shown))
+    return found
+
+
+def assumptions(result: Result, measures: Measures) -> Section | None:
+    """What the numbers rest on beside the file; None where the kind tells nothing."""
+    told = result.report.get("assumptions") or []
+    return Section("Assumptions and unverified data", words=told, half=True) if told else None
+
+
+def asked(result: Result, measures: Measures) -> Section | None:
+    """The file's tables as it has them; None where there was no file."""
+    asked = {key: value for key, value in result.asked.items() if key not in SENTENCES}
+    if not asked:
+        return None
+    source = result.asked.get("source")
+    words = [f"Source: {source}."] if source else []
+    single = {key: value for key, value in asked.items() if not _is_table(value)}
+    tables = [_asked_table(key, value) for key, value in asked.items() if _is_table(value)]
+    if single:
+        tables.insert(0, _asked_table("", single))
+    return Section("What was asked", words=words, tables=tables)
+
+
+def _is_table(value: Any) -> bool:
+    several = isinstance(value, list) and bool(value) and isinstance(value[0], Mapping)
+    return several or isinstance(value, Mapping)
+
+
+def _asked_table(key: str, value: Any) -> Table:
+    """A table of the file, one column a table where the file has several of a name."""
+    several = isinstance(value, list)
+    columns: Sequence[Mapping[str, Any]] = value if several else (value,)
+    names = list(dict.fromkeys(name for column in columns for name in column))
+    heads = [f"[[{key}]]", *(str(k + 1) for k in range(len(columns)))]
+    heads = heads if several else [f"[{key}]" if key else "", ""]
+    rows = [[name, *(_ends(column.get(name)) for column in columns)] for name in names]
+    return Table(f"asked {key}".strip(), heads, rows)
+
+
+def _ends(value: Any) -> Any:
+    """A value as the file writes it."""
+    if isinstance(value, list):
+        return Cell(value, f"[{', '.join(str(v) for v in value)}]")
+    number = isinstance(value, int | float) and not isinstance(value, bool)
+    return Cell(value, f"{value:.15g}") if number else value
+
+
+def progress(result: Result, measures: Measures) -> Section | None:
+    """The progress of the run; None where it was not recorded."""
+    name, unit = objective(result)
+    steps = [_converted(s, unit, measures) for s in result.report.get("progress") or []]
+    best = [s for s in steps if s.get("best") is not None]
+    if not best:
+        return None
+    bound = [s for s in steps if s.get("bound") is not None]
+    end = max(result.seconds, steps[-1]["seconds"])
+    times = [max(EARLIEST, s["seconds"]) for s in steps]
+    wide = max(times) > 30.0 * min(times)
+    sign = measures.unit(unit)
+    traces = [_line("best", best, "best", "--series-1", sign, end)]
+    if bound:
+        traces.append(_line("bound", bound, "bound", "--series-2", sign, end))
+    plot = layout(
+        axis("wall time [s]", type="log" if wide else "linear"),
+        axis(f"{name} [{sign}]" if sign else name, tickformat="," if _large(best) else ""),
+        340,
+    )
+    words = "Best value found so far" + (" and the bound below it" if bound else "")
+    return Section("Progress", figures=(Figure(traces, plot, f"{words}, against wall time."),))
+
+
+def _converted(step: dict[str, Any], unit: str, measures: Measures) -> dict[str, Any]:
+    """A step with its best value and bound in the unit that is shown."""
+    values = {k: measures.of(step[k], unit) for k in ("best", "bound") if step.get(k) is not None}
+    return step | values
+
+
+def _line(
+    name: str, steps: list[dict[str, Any]], key: str, colour: str, unit: str, end: float
+) -> dict[str, Any]:
+    """Steps that hold to the end of the run."""
+    last = [*steps, steps[-1] | {"seconds": end}]
+    return {
+        "type": "scatter",
+        "mode": "lines+markers",
+        "name": name,
+        "x": [max(EARLIEST, s["seconds"]) for s in last],
+        "y": [s[key] for s in last],
+        "text": [_hover(s, key, unit) for s in last],
+        "hovertemplate": "%{text}<extra></extra>",
+        "line": {"color": colour, "width": 2.2, "shape": "hv"},
+        "marker": {"color": colour, "size": [6] * len(steps) + [0]},
+    }
+
+
+def _hover(step: dict[str, Any], key: str, unit: str) -> str:
+    words = f"{key} {number(step[key])} {unit} at {step['seconds']:.3g} s"
+    words += f", {step['evaluations']:,} evaluations"
+    best, bound = step.get("best"), step.get("bound")
+    if best and bound is not None:
+        words += f"; gap {100.0 * gap(best, bound):.3g} %"
+    return words
+
+
+def _large(steps: list[dict[str, Any]]) -> bool:
+    return any(abs(s["best"]) >= 1e5 for s in steps)

@@ -1,0 +1,148 @@
+"""The terminal: sections of a result, explanations and comparisons, in words and tables."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from rich.console import Console, RenderableType
+from rich.markup import escape
+from rich.table import Table as Grid
+from rich.text import Text
+
+from gearopt.optimise.comparing.comparison import Comparison, Group
+from gearopt.optimise.explaining.explanation import Explanation
+from gearopt.optimise.result import Result
+from gearopt.report import comparison_words as words
+from gearopt.report.explained import of_influences
+from gearopt.report.kinds import kind_of
+from gearopt.report.measures import METRIC, Measures
+from gearopt.report.section import Cell, Table
+from gearopt.report.words import (
+    REACHED,
+    VERDICTS,
+    amount,
+    goal,
+    heading,
+    leading,
+    limit_words,
+    number,
+    title,
+    verdict,
+)
+
+
+def aligned(heads: list[str], left: int, wrap: int) -> Grid:
+    """A plain table; left, wrap: columns that stand on the left, and that may break over lines."""
+    table = Grid(*map(escape, heads), box=None, header_style="bold", pad_edge=False)
+    for k, column in enumerate(table.columns):
+        column.justify, column.no_wrap = "left" if k < left else "right", k >= wrap
+    return table
+
+
+def grid(table: Table) -> Grid:
+    """A table of a section as the terminal shows it; without heads a list of names and values."""
+    heads, rows = table.without(table.page_only)
+    if any(heads):
+        shown = aligned([table.short.get(head, head) for head in heads], table.left, table.wrap)
+    else:
+        shown = Grid.grid(padding=(0, 2))
+    for row in rows:
+        shown.add_row(*map(_cell, row))
+    return shown
+
+
+def _cell(value: Any) -> Text:
+    if isinstance(value, Cell):
+        full = value.share is not None and value.share > 1.0 - REACHED
+        text = value.text if value.short is None else value.short
+        return Text(text, style="bold" if full else "")
+    return Text("" if value is None else number(value))
+
+
+def show(result: Result, console: Console, measures: Measures = METRIC) -> None:
+    """Print a result."""
+    words, colour = verdict(result)
+    console.print(Text.assemble((title(result), "bold"), ": ", (words, f"bold {colour}")))
+    _print(leading(result), console)
+    for make in kind_of(result).terminal:
+        if (section := make(result, measures)) is not None:
+            _print(section.terminal, console)
+
+
+def show_explanation(explanation: Explanation, console: Console) -> None:
+    """Print the explanation of a possible request (an impossible one is shown by its result)."""
+    result = explanation.result
+    name, unit, reached, _, _ = goal(result)
+    words, colour = VERDICTS[result.status]
+    value = amount(reached, unit)
+    console.print(
+        Text.assemble((title(result), "bold"), f": {name} {value}, ", (words, f"bold {colour}"))
+    )
+    full = ", ".join(limit_words(n) for n in explanation.binding)
+    console.print(Text(f"Used to the full: {full}." if full else "No limit is used to the full."))
+    _print(of_influences(explanation.prices, result).terminal, console)
+
+
+def _print(blocks: Sequence[Any], console: Console) -> None:
+    """Print sentences and tables with a blank line before each."""
+    for block in blocks:
+        console.print()
+        console.print(_shown(block))
+
+
+def _shown(block: Any) -> RenderableType:
+    if isinstance(block, str):
+        return Text(block)
+    return grid(block) if isinstance(block, Table) else block
+
+
+def rows_table(rows: list[dict[str, Any]]) -> RenderableType:
+    """Rows of a bench as a table."""
+    heads = [escape(heading(k)) for k in rows[0]]
+    table = Grid(*heads, box=None, header_style="bold", pad_edge=False)
+    for row in rows:
+        table.add_row(*["" if v is None else number(v) for v in row.values()])
+    return table
+
+
+def show_comparison(found: Comparison, console: Console) -> None:
+    """Print a comparison."""
+    console.print(Text.assemble((found.title, "bold"), ": methods compared"))
+    if found.message:
+        console.print(Text(found.message[0].upper() + found.message[1:] + ".", style="yellow"))
+    if len(found.groups) > 1:
+        console.print("Methods of different models answer different questions: they stand apart.")
+    for group in found.groups:
+        _group(found, group, console)
+    console.print()
+    for row in (row for group in found.groups for row in group.rows if not row.refused):
+        kind = f"{len(found.seeds)} seeds" if row.random else "deterministic, one run"
+        line = (
+            f"{row.method}: {kind}; evaluation = {row.counts}; "
+            f"start-up {row.start_up_seconds:.2g} s; {words.settings(found.settings[row.method])}"
+        )
+        console.print(Text(line, style="dim"), no_wrap=True, overflow="ellipsis")
+    console.print(Text(f"{found.machine['cpus']} cores. {words.command(found)}", style="dim"))
+
+
+def _group(found: Comparison, group: Group, console: Console) -> None:
+    console.print()
+    console.print(Text(group.words or group.model, style="bold"))
+    console.print(Text(words.reference(group)))
+    for row in group.rows:
+        console.print(Text(f"- {row.method}: {words.verdict(group, row)}"))
+    for field, name, budget in words.kinds(found):
+        heads = [f"{head}\n{unit}" for head, unit, _ in words.COLUMNS]
+        table = Grid("method", *heads, box=None, header_style="bold", pad_edge=False)
+        for column in table.columns[1:]:
+            column.justify = "right"
+        for row in group.rows:
+            sample = getattr(row, field)
+            if sample is not None:
+                table.add_row(row.method, *words.cells(sample))
+        if table.row_count:
+            console.print()
+            console.print(Text(f"{name}: {budget}", style="bold"))
+            console.print(table)
+    for row in group.rows:
+        if late := words.ended(found, row):
+            console.print(Text(f"Equal evaluations: {late}.", style="yellow"))

@@ -1,1 +1,0 @@
-"""Results, explanations and comparisons on a terminal."""
