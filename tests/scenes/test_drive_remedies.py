@@ -11,7 +11,7 @@ from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.repair import WIDEST, least_value
 from gearopt.report.explained import remedy_words
 from gearopt.scenes import drive
-from gearopt.scenes.drive.explaining.nearest import nearest_ratio
+from gearopt.scenes.drive.explaining.choices import nearest_ratio
 from gearopt.scenes.drive.explaining.tried import Case
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.load import read

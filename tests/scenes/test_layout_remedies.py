@@ -18,9 +18,9 @@ from gearopt.formulations.layout.slabs import orders
 from gearopt.optimise.result import Budget
 from gearopt.report.explained import remedy_words
 from gearopt.scenes.drive import Scene
-from gearopt.scenes.drive.box import ways
-from gearopt.scenes.drive.box.moves import LARGER, SMALLER
-from gearopt.scenes.drive.box.ways import BRIEF
+from gearopt.scenes.drive.box import remedies as ways
+from gearopt.scenes.drive.box.edits import LARGER, SMALLER
+from gearopt.scenes.drive.box.remedies import BRIEF
 
 PROBLEMS = Path(__file__).parents[2] / "problems"
 TABLE4 = (PROBLEMS / "table4_process_one_layout.toml").read_text(encoding="utf-8")
@@ -163,7 +163,7 @@ def ways_by(monkeypatch, text, answer):
         asked.append(seconds)
         return answer(box)
 
-    monkeypatch.setattr("gearopt.scenes.drive.box.ways.possible", possible_)
+    monkeypatch.setattr("gearopt.scenes.drive.box.remedies.possible", possible_)
     scene, _ = scene_of(text)
     return gearopt.solve(scene).report["ways_out"], asked
 

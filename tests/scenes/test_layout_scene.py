@@ -9,6 +9,7 @@ from edits import scene_of
 
 import gearopt
 from gearopt.errors import SceneError, SolveError
+from gearopt.optimise.explaining.explanation import Remedies
 from gearopt.scenes.reading.load import read
 
 PROBLEMS = Path(__file__).parents[2] / "problems"
@@ -166,9 +167,10 @@ def test_a_shaft_through_a_wheel_is_told_with_cures_that_work():
 
 def test_a_search_and_the_ways_out_of_it_share_a_budget(monkeypatch):
     given = []
-    none = {"conflict": [], "remedies": [], "message": ""}
+    none = Remedies()
     monkeypatch.setattr(
-        "gearopt.scenes.drive.box.ways.ways", lambda *asked: given.append(asked[-1].budget) or none
+        "gearopt.scenes.drive.box.remedies.remedies",
+        lambda *asked: given.append(asked[-1].budget) or none,
     )
     tight = scene(with_layout(largest_height='"415 mm"', largest_width='"600 mm"'))
     result = gearopt.solve(tight, budget=gearopt.Budget(50.0))

@@ -17,7 +17,7 @@ from gearopt.optimise.result import Budget
 from gearopt.report.pages.result import page, sections, tables
 from gearopt.report.terminal import show
 from gearopt.scenes.reading.load import read
-from gearopt.scenes.servo.ways_out import blocked, ways_out
+from gearopt.scenes.servo.remedies import blocked, remedies
 
 PROBLEMS = Path(__file__).parents[2] / "problems"
 FAST = (PROBLEMS / "servo_gimbal_fast.toml").read_text(encoding="utf-8")
@@ -340,8 +340,11 @@ def test_an_output_shaft_in_the_way_is_named_without_an_error_to_hold(aim):
 def test_no_reason_is_given_where_time_ran_out_before_it_was_known():
     """Not even that real-valued teeth keep all limits, which nobody had the time to look at."""
     asked = scene(QUICK, accuracy=None, train=FEW | {"minimise": "inertia"})
-    names, remedies, message = ways_out(asked, Clock(gearopt.Budget(0.0)))
-    assert (names, remedies) == ((), ()) and message == "time ran out before it was known why"
+    found = remedies(asked, Clock(gearopt.Budget(0.0)))
+    assert (found.conflict, found.remedies) == (
+        (),
+        (),
+    ) and found.message == "time ran out before it was known why"
 
 
 def test_a_diameter_that_was_not_tried_in_time_is_not_called_out_of_reach(monkeypatch):

@@ -17,7 +17,7 @@ from gearopt.optimise.result import Budget
 from gearopt.report.answer import proof
 from gearopt.scenes.servo import EXAMPLE
 from gearopt.scenes.servo.assumptions import notes
-from gearopt.scenes.servo.ways_out import ways_out
+from gearopt.scenes.servo.remedies import remedies
 
 
 def test_a_stiff_train_with_wheel_tips_below_a_tooth_is_impossible():
@@ -119,8 +119,9 @@ def test_a_run_out_of_time_says_so():
 def test_time_that_ran_out_is_no_reason_of_its_own():
     scene = changed(text("gimbal_impossible"))
     for clock in (Clock(Budget(seconds=0.0)), Clock(Budget(), lambda event: False)):
-        conflict, remedies, message = ways_out(scene, clock)
-        assert (conflict, remedies) == ((), ()) and message.startswith("time ran out")
+        found = remedies(scene, clock)
+        assert (found.conflict, found.remedies) == ((), ())
+        assert found.message.startswith("time ran out")
 
 
 def test_a_stop_ends_the_look_for_ways_out():
@@ -132,9 +133,9 @@ def test_a_stop_ends_the_look_for_ways_out():
         return len(seen) < 8
 
     clock = Clock(Budget(), watch)
-    found = ways_out(changed(text("gimbal_impossible")), clock)
-    assert clock.stopped and all(r.verified["with"] == "optimal" for r in found[1])
-    assert len(found[1]) < 2
+    found = remedies(changed(text("gimbal_impossible")), clock)
+    assert clock.stopped and all(r.verified["with"] == "optimal" for r in found.remedies)
+    assert len(found.remedies) < 2
 
 
 def test_a_message_with_a_stop_gets_no_second_one():

@@ -46,6 +46,18 @@ class Remedy:
 
 
 @dataclass(frozen=True)
+class Remedies:
+    """What is told of an impossible request.
+
+    conflict: names of limits that cannot hold together; message: what is missing.
+    """
+
+    conflict: tuple[str, ...] = ()
+    remedies: tuple[Remedy, ...] = ()
+    message: str = ""
+
+
+@dataclass(frozen=True)
 class Influence:
     """What one input does to the objective.
 

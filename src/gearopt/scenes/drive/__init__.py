@@ -19,8 +19,7 @@ from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import GAP, run
 from gearopt.optimise.typed import untyped
-from gearopt.scenes.drive.explaining.assumptions import assumptions, notes
-from gearopt.scenes.drive.explaining.undercut import undercut
+from gearopt.scenes.drive.explaining.assumptions import assumptions, notes, undercut
 from gearopt.scenes.drive.scene import EXAMPLE, Scene
 from gearopt.scenes.explaining.default import of_report
 from gearopt.scenes.reading.ask import Ask
@@ -92,7 +91,7 @@ def _others(ask: Ask, spent: float = 0.0) -> Clock:
 def _explained(scene: Scene, ask: Ask, result: Result, clock: Clock) -> Explanation:
     """What every number of the file does to a design that was found."""
     if scene.layout is not None:
-        from gearopt.scenes.drive.box.explain import explained as box_explained
+        from gearopt.scenes.drive.box.remedies import explained as box_explained
 
         return box_explained(scene, result, clock)
     from gearopt.scenes.drive.explaining.influences import explained

@@ -1,25 +1,39 @@
 """`explain` of a kind that has none of its own: by its `solve`, and by its `model`'s problem."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
 from gearopt.errors import SolveError
 from gearopt.optimise.clock import Clock, of_others
 from gearopt.optimise.conic.problem import Conic
-from gearopt.optimise.explaining.explain import binding
-from gearopt.optimise.explaining.explanation import Change, Explanation, Influence, Remedy
-from gearopt.optimise.explaining.handles import handles
-from gearopt.optimise.explaining.repair import CERTAIN
+from gearopt.optimise.explaining.explain import THERE, binding
+from gearopt.optimise.explaining.explanation import (
+    Change,
+    Explanation,
+    Influence,
+    Remedies,
+    Remedy,
+)
+from gearopt.optimise.explaining.handles import Handle, handles
+from gearopt.optimise.explaining.repair import BEYOND, CERTAIN, TAKEN_BACK, conflict, least_value
 from gearopt.optimise.explaining.sensitivity import of_fixed, sensitivities
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run
 from gearopt.optimise.terms import Array
 from gearopt.scenes.explaining.influences import Basis, Solved, influences, stepped
-from gearopt.scenes.explaining.numbers import Number, numbers
-from gearopt.scenes.explaining.remedies import remedies
+from gearopt.scenes.explaining.numbers import (
+    Number,
+    apart,
+    eased,
+    moved,
+    numbers,
+    taken_back,
+    written,
+)
 from gearopt.scenes.reading.ask import Ask
+from gearopt.scenes.reading.toml import toml_text
 
 BASIS = (
     " by multipliers, checked by solving again. What easing a limit or a step brings: solved again"
@@ -99,6 +113,79 @@ def _impossible(
         return Explanation(result, names, message=result.message, seconds=clock.seconds)
     found = remedies(scene, problem, clock, lambda other: answer(other).status)
     return Explanation(result, **vars(found), seconds=clock.seconds)
+
+
+def remedies(scene: Any, problem: Problem, clock: Clock, status: Callable[[Any], str]) -> Remedies:
+    """The conflict of an impossible file, and each of its numbers that alone makes it possible.
+
+    problem: what is solved for the file; its handles say by their keys which numbers are limits or
+    given, and which way is easier. status(scene): of a changed file, solved. A remedy is told only
+    if the file with it, read anew, has a design.
+    """
+    known = handles(problem)
+    found = [r for n, h in _keyed(scene, known) if (r := _alone(scene, n, h, clock, status))]
+    own = sorted((r for r in found if r.kind != "less"), key=lambda r: r.factor)
+    if own:
+        tried = "not all known" if clock.over else "need more"
+        least = replace(own[0], kind="least", verified={**own[0].verified, "others": tried})
+        own = [least, *own[1:]]
+    late = "time ran out before all ways out were tried" if clock.over else ""
+    return Remedies(
+        _conflict(problem, known, clock),
+        (*own, *(r for r in found if r.kind == "less")),
+        late,
+    )
+
+
+def _conflict(problem: Problem, known: Sequence[Handle], clock: Clock) -> tuple[str, ...]:
+    """Limits that cannot hold together; with what is given where limits alone can."""
+    if any(variable.discrete for variable, _ in problem.columns):
+        return ()
+    limits = [h for h in known if not h.given]
+    return tuple(
+        h.name for h in conflict(problem, limits, clock) or conflict(problem, known, clock)
+    )
+
+
+def _keyed(scene: Any, known: Sequence[Handle]) -> Iterator[tuple[Number, Handle]]:
+    """The numbers of a file that handles name, once each way."""
+    places = {n.key: n for n in numbers(scene, defaults=True)}
+    named = {(h.key, h.direction): h for h in known if h.key in places}
+    for (key, _), handle in named.items():
+        yield places[key], handle
+
+
+def _alone(
+    scene: Any, number: Number, handle: Handle, clock: Clock, status: Callable[[Any], str]
+) -> Remedy | None:
+    """A number moved alone as little as that takes; None where it does not help."""
+    way = handle.direction
+    words: dict[str, bool] = dict.fromkeys(THERE, True) | {"infeasible": False}
+
+    def at(factor: float, back: float = 0.0) -> Any:
+        value = eased(number.value, factor, way)
+        return moved(scene, number.path, taken_back(value, number.value, back) if back else value)
+
+    def tried(factor: float, back: float = 0.0) -> str:
+        other = None if clock.over else at(factor, back)
+        return "undecided" if other is None else status(other)
+
+    def works(factor: float, back: float = 0.0) -> bool | None:
+        return words.get(tried(factor, back))
+
+    wider = [f for f in BEYOND if at(f) is not None]
+    if not getattr(number.value, "number", number.value) or not wider:
+        return None
+    least = least_value(1.0, tuple(wider), works)
+    if least is None:
+        return None
+    value = eased(number.value, least, way)
+    was, write = (toml_text(written(v, number.path)) for v in (number.value, value))
+    change = Change(number.key, was, write, apart(number.value, value))
+    verified = {"with": tried(least), "with_less": tried(least, TAKEN_BACK)}
+    verified = {k: "feasible" if w in THERE else w for k, w in verified.items()}
+    kind, what = "less" if handle.given else "alone", number.key
+    return Remedy(kind, what, (change,), change.factor, None, verified)
 
 
 def eases(problem: Problem | Conic) -> dict[str, int]:

@@ -189,3 +189,29 @@ def exact(value: Fraction) -> Decimal | int:
     if value.denominator == 1:
         return value.numerator
     return Context(prec=40).divide(Decimal(value.numerator), Decimal(value.denominator))
+
+
+def taken_back(now: Any, before: Any, part: float) -> Any:
+    """A value moved back by a part of its size; integers by one."""
+    if isinstance(now, tuple):
+        old = before if isinstance(before, tuple) else (before, before)
+        return tuple(taken_back(a, b, part) for a, b in zip(now, old, strict=True))
+    number, target = (v.number if isinstance(v, Quantity) else v for v in (now, before))
+    if number == target:
+        return now
+    if isinstance(now, int):
+        return now + (1 if target > number else -1)
+    return times(now, 1.0 - part if number > target else 1.0 + part)
+
+
+def apart(before: Any, after: Any) -> float:
+    """How far two values are apart, as a factor >= 1; of ranges, the product of both ends'.
+
+    Ends that were equal and are equal are one number.
+    """
+    if isinstance(before, tuple):
+        if before[0] == before[1] and after[0] == after[1]:
+            return apart(before[0], after[0])
+        return math.prod(apart(a, b) for a, b in zip(before, after, strict=True))
+    a, b = (float(v.number if isinstance(v, Quantity) else v) for v in (before, after))
+    return max(a, b) / min(a, b) if min(a, b) > 0.0 else math.inf

@@ -22,6 +22,7 @@ from gearopt.physics.gears import disc_mass
 from gearopt.scenes.explaining.default import explained, of_report
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.servo.assumptions import assumptions, notes
+from gearopt.scenes.servo.remedies import remedies
 from gearopt.scenes.servo.scene import EXAMPLE, Scene
 from gearopt.scenes.servo.tolerance_part import named, of_given, tolerance_part
 from gearopt.scenes.servo.tolerance_part import problem as tolerance_problem
@@ -38,7 +39,6 @@ from gearopt.scenes.servo.train_part import (
     to_point,
     train_part,
 )
-from gearopt.scenes.servo.ways_out import ways_out
 
 __all__ = ["EXAMPLE", "Scene", "compared", "explain", "model", "solve"]
 
@@ -67,12 +67,7 @@ def solve(scene: Scene, ask: Ask) -> Result:
     if said := notes(scene, found.results, found.design, found.report):
         told["notes"] = said
     if answer.status == "infeasible" and scene.train is not None:
-        conflict, remedies, message = ways_out(scene, clock, answer.message)
-        told["ways_out"] = {
-            "conflict": list(conflict),
-            "remedies": [asdict(r) for r in remedies],
-            "message": message,
-        }
+        told["ways_out"] = asdict(remedies(scene, clock, answer.message))
     return replace(
         answer,
         design=untyped(found.design),

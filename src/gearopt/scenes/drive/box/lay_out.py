@@ -1,6 +1,6 @@
 """The box of a drive whose gears are sized: data checks, then the layout by any method."""
 
-from dataclasses import replace
+from dataclasses import asdict, replace
 from typing import Any
 
 from gearopt.errors import SolveError
@@ -115,7 +115,7 @@ def _impossible(
     notes: list[str],
     result: Result | None = None,
 ) -> Result:
-    from gearopt.scenes.drive.box.ways import ways
+    from gearopt.scenes.drive.box.remedies import remedies
 
     spent = sized.seconds + (0.0 if result is None else result.seconds)
     left = replace(ask, budget=ask.budget.less(spent))
@@ -124,13 +124,13 @@ def _impossible(
         objective = {"name": str(scene.layout and scene.layout.minimise), "value": None}
         result = replace(sized, method="data check", objective=objective, bound=None, gap=None)
         result = replace(result, status="infeasible", proof=proof, certificate={}, limits={})
-    found = ways(scene, pairs_of(scene, sized), left)
+    found = remedies(scene, pairs_of(scene, sized), left)
     return replace(
         result,
         design={},
         parts=parts,
         message=" ".join(notes),
-        report={"notes": notes, "ways_out": found},
+        report={"notes": notes, "ways_out": asdict(found)},
     )
 
 

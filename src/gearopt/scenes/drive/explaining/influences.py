@@ -13,8 +13,7 @@ from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run
 from gearopt.physics.gears import MODULES
-from gearopt.scenes.drive.explaining.cures import next_module
-from gearopt.scenes.drive.explaining.levers import fields
+from gearopt.scenes.drive.explaining.movable import fields, next_module
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.explaining.influences import Basis, influences
 from gearopt.scenes.explaining.numbers import Number, eased, moved, numbers

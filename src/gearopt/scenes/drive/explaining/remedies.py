@@ -1,4 +1,4 @@
-"""Ways out of an impossible drive, as edits of its file that were tried before they are told."""
+"""Remedies of an impossible drive, as edits of its file that were tried before they are told."""
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
@@ -7,22 +7,27 @@ from fractions import Fraction
 from typing import Any
 
 from gearopt.optimise.clock import Clock
-from gearopt.optimise.explaining.explanation import Remedy
+from gearopt.optimise.explaining.explanation import Remedies, Remedy
 from gearopt.optimise.explaining.handles import Handle
 from gearopt.optimise.explaining.repair import FARTHEST, SAME, TAKEN_BACK, conflict, even
 from gearopt.optimise.problem import Problem
-from gearopt.scenes.drive.explaining.cures import less
-from gearopt.scenes.drive.explaining.joint import least_together
-from gearopt.scenes.drive.explaining.levers import (
-    Lever,
+from gearopt.scenes.drive.explaining.choices import eased_tolerance, nearest_ratio, switches
+from gearopt.scenes.drive.explaining.movable import (
+    Movable,
     Moves,
     applied,
     bound_of,
     comparable,
+    less,
 )
-from gearopt.scenes.drive.explaining.nearest import nearest_ratio
-from gearopt.scenes.drive.explaining.several import is_real, is_stepped, posed, together, widest
-from gearopt.scenes.drive.explaining.switches import eased_tolerance, switches
+from gearopt.scenes.drive.explaining.together import (
+    is_real,
+    is_stepped,
+    least_together,
+    posed,
+    together,
+    widest,
+)
 from gearopt.scenes.drive.explaining.tried import (
     Case,
     enlarged,
@@ -33,11 +38,10 @@ from gearopt.scenes.drive.explaining.tried import (
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.tables.duty import Duty
 from gearopt.scenes.explaining.numbers import read
-from gearopt.scenes.explaining.remedies import Remedies
 
 
 def remedies(scene: Scene, clock: Clock) -> Remedies:
-    """The conflict and the ways out of an impossible drive, the least change first.
+    """The conflict and the remedies of an impossible drive, the least change first.
 
     Every remedy was tried: a design exists with it.
     """
@@ -71,7 +75,7 @@ def _conflict(base: Problem, known: Sequence[Handle], clock: Clock) -> tuple[Han
 
 
 @dataclass(frozen=True)
-class Way:
+class Proposal:
     """Moves that suffice, what they are called, and the proven least factor.
 
     sure: every smaller change of the same numbers is known to be impossible; None: try a step less.
@@ -84,8 +88,8 @@ class Way:
 
 
 def _singles(
-    case: Case, base: Problem | None, movable: Sequence[Lever], blamed: Sequence[Handle]
-) -> Iterator[Way]:
+    case: Case, base: Problem | None, movable: Sequence[Movable], blamed: Sequence[Handle]
+) -> Iterator[Proposal]:
     """Every number that suffices alone, moved as little as that takes.
 
     base: the problem with real-valued sizes where that is impossible too; only what moves a limit
@@ -94,46 +98,46 @@ def _singles(
     places = {(h.kind, h.place) for h in blamed if not h.given}
     conflicting = places and all(not h.given for h in blamed)
     common: dict[tuple[str, int], float] = {}  # least factors of all stages: one needs no less
-    for lever in movable:
+    for number in movable:
         start, bound = 1.0, None
         if base is not None:
-            own = {(h.kind, h.place) for h in lever.handles}
-            given = any(h.given for h in lever.handles)
+            own = {(h.kind, h.place) for h in number.handles}
+            given = any(h.given for h in number.handles)
             if conflicting and not given and not own & places:
                 continue
-            alike = even(base, lever.handles, case.clock)
+            alike = even(base, number.handles, case.clock)
             if alike is None:
                 continue
-            start, bound = alike.factor, bound_of(case.scene, lever, alike.bound)
+            start, bound = alike.factor, bound_of(case.scene, number, alike.bound)
         if case.clock.over:
             return
-        kind = "less" if lever.sort == "duty" else ("even" if lever.shared else "one")
-        if is_stepped(case.scene, lever):
-            alone = least_together(case, [lever], FARTHEST * start)
+        kind = "less" if number.sort == "duty" else ("even" if number.shared else "one")
+        if is_stepped(case.scene, number):
+            alone = least_together(case, [number], FARTHEST * start)
             if alone is not None:
-                yield Way(kind, alone[0], bound, alone[1] or None)
-        elif lever.path[-1] == "module" and case.scene.teeth is not None:
-            stepped = least_step(case, lever, FARTHEST * start)
+                yield Proposal(kind, alone[0], bound, alone[1] or None)
+        elif number.path[-1] == "module" and case.scene.teeth is not None:
+            stepped = least_step(case, number, FARTHEST * start)
             if stepped is not None:
-                yield Way(kind, ((lever, stepped[0]),), bound, stepped[1])
+                yield Proposal(kind, ((number, stepped[0]),), bound, stepped[1])
         else:
-            start = max(start, common.get((lever.family, lever.direction), 1.0))
+            start = max(start, common.get((number.family, number.direction), 1.0))
             doubts = len(case.open)
-            moves = None if math.isinf(start) else least_alike(case, ((lever, start),))
-            if lever.shared and len(case.open) == doubts:  # else a smaller one may do
+            moves = None if math.isinf(start) else least_alike(case, ((number, start),))
+            if number.shared and len(case.open) == doubts:  # else a smaller one may do
                 least = math.inf if moves is None else moves[0][1]
-                common[lever.family, lever.direction] = least
+                common[number.family, number.direction] = least
             if moves is not None:
-                yield Way(kind, moves, bound)
+                yield Proposal(kind, moves, bound)
     yield from _alike(case, base, movable)
 
 
-def _tried(case: Case, ways: Iterable[Way]) -> list[tuple[Way, Remedy]]:
-    """Ways with their edits, each as it is found: those that were found before time ran out."""
-    return [(way, r) for way in ways if (r := _remedy(case, way)) is not None]
+def _tried(case: Case, proposals: Iterable[Proposal]) -> list[tuple[Proposal, Remedy]]:
+    """Proposals with their edits, each as it is found, until time runs out."""
+    return [(proposal, r) for proposal in proposals if (r := _remedy(case, proposal)) is not None]
 
 
-def _alike(case: Case, base: Problem | None, movable: Sequence[Lever]) -> Iterator[Way]:
+def _alike(case: Case, base: Problem | None, movable: Sequence[Movable]) -> Iterator[Proposal]:
     """One factor for a kind of limit that every stage has for itself, and for all load limits."""
     limits = [m for m in movable if m.sort == "limit"]
     common = {m.family for m in limits if m.shared}
@@ -156,28 +160,32 @@ def _alike(case: Case, base: Problem | None, movable: Sequence[Lever]) -> Iterat
             bound = alike.bound if comparable(case.scene, group) else None
         moves = least_alike(case, tuple((m, start) for m in group))
         if moves is not None:
-            yield Way("even", moves, bound)
+            yield Proposal("even", moves, bound)
 
 
 def _changes(
     case: Case,
-    movable: list[Lever],
-    singles: list[tuple[Way, Remedy]],
+    movable: list[Movable],
+    singles: list[tuple[Proposal, Remedy]],
     beside: Moves | None,
     floor: float | None,
 ) -> list[Remedy]:
     """The remedies of limits and sizes, the least first, then those that ask for less."""
-    ways = []
+    proposals = []
     if beside is not None and len(beside) > 1:
-        ways.append(Way("least", beside, floor))
-    for way, _ in singles:
-        several = way.kind == "even" and len(way.moves) > 1 and case.scene.teeth is not None
+        proposals.append(Proposal("least", beside, floor))
+    for proposal, _ in singles:
+        several = (
+            proposal.kind == "even" and len(proposal.moves) > 1 and case.scene.teeth is not None
+        )
         if several:
-            ways.append(Way("least", trimmed(case, way.moves), floor))
-    told = [r for _, r in (*singles, *_tried(case, ways))]
+            proposals.append(Proposal("least", trimmed(case, proposal.moves), floor))
+    told = [r for _, r in (*singles, *_tried(case, proposals))]
     best = min((_product(r) for r in told if r.kind != "less"), default=FARTHEST)
     joint = least_together(case, movable, best * (1.0 - SAME))
-    if joint is not None and (r := _remedy(case, Way("least", joint[0], floor, joint[1] or None))):
+    if joint is not None and (
+        r := _remedy(case, Proposal("least", joint[0], floor, joint[1] or None))
+    ):
         told.append(r)
     if not any(r.kind != "less" for r in told) and (r := _all_limits(case, movable)):
         told.append(r)
@@ -206,11 +214,11 @@ def _worth_telling(found: Any) -> Iterator[Remedy]:
         seen.add(remedy.what if remedy.kind == "one" else "")
 
 
-def _all_limits(case: Case, movable: list[Lever]) -> Remedy | None:
+def _all_limits(case: Case, movable: list[Movable]) -> Remedy | None:
     """All limits enlarged alike, then each made as small as the others allow."""
     moves = tuple((m, 1.0) for m in widest(movable))
     larger = enlarged(case, moves) if moves and case.scene.teeth is not None else None
-    return None if larger is None else _remedy(case, Way("least", trimmed(case, larger), None))
+    return None if larger is None else _remedy(case, Proposal("least", trimmed(case, larger), None))
 
 
 def _product(remedy: Remedy) -> float:
@@ -227,23 +235,23 @@ def _distinct(found: Sequence[Remedy]) -> list[Remedy]:
     return list(best.values())
 
 
-def _remedy(case: Case, way: Way) -> Remedy | None:
-    """A way out as edits, tried as they are written; None if it is none."""
-    cured = applied(case.scene, way.moves)
-    if cured is None or case.status(cured.scene) != "feasible":
+def _remedy(case: Case, proposal: Proposal) -> Remedy | None:
+    """A remedy as edits, tried as they are written; None if it is none."""
+    edited = applied(case.scene, proposal.moves)
+    if edited is None or case.status(edited.scene) != "feasible":
         return None
-    if way.sure is not None:
-        word = "infeasible" if way.sure else "undecided"
+    if proposal.sure is not None:
+        word = "infeasible" if proposal.sure else "undecided"
     else:
-        each = (None,) if way.kind == "even" else range(len(cured.changes))
-        words = {case.status(less(case.scene, cured, TAKEN_BACK, k)) for k in each}
+        each = (None,) if proposal.kind == "even" else range(len(edited.changes))
+        words = {case.status(less(case.scene, edited, TAKEN_BACK, k)) for k in each}
         word = words.pop() if len(words) == 1 else "mixed"
-    factors = [c.factor for c in cured.changes]
+    factors = [c.factor for c in edited.changes]
     return Remedy(
-        way.kind,
-        ", ".join(dict.fromkeys(lever.family for lever, _ in way.moves)),
-        cured.changes,
-        max(factors) if way.kind == "even" else math.prod(factors),
-        way.bound,
+        proposal.kind,
+        ", ".join(dict.fromkeys(number.family for number, _ in proposal.moves)),
+        edited.changes,
+        max(factors) if proposal.kind == "even" else math.prod(factors),
+        proposal.bound,
         {"with": "feasible", "with_less": word},
     )

@@ -11,8 +11,7 @@ from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.explain import THERE
 from gearopt.optimise.explaining.repair import WIDEST, Works, least_between, least_value
 from gearopt.optimise.solve import solve_within
-from gearopt.scenes.drive.explaining.cures import less
-from gearopt.scenes.drive.explaining.levers import Lever, Moves, applied, steps
+from gearopt.scenes.drive.explaining.movable import Movable, Moves, applied, less, steps
 from gearopt.scenes.drive.scene import Scene
 
 SECONDS = 2.0  # at most, for one question whether whole teeth are possible
@@ -20,7 +19,7 @@ SECONDS = 2.0  # at most, for one question whether whole teeth are possible
 
 @dataclass(frozen=True)
 class Case:
-    """A drive that is impossible, and the time to look for ways out.
+    """A drive that is impossible, and the time to look for remedies.
 
     open: questions that no answer was found to in time; a list, to be added to.
     """
@@ -66,25 +65,25 @@ class Case:
         found = self.possible(scene.train())
         return "undecided" if found is None else ("feasible" if found else "infeasible")
 
-    def works(self, moves: Sequence[tuple[Lever, float]], back: float = 0.0) -> bool | None:
+    def works(self, moves: Sequence[tuple[Movable, float]], back: float = 0.0) -> bool | None:
         """Whether moves suffice (less a part `back` of each); None: not known, or refused."""
-        cured = applied(self.scene, moves)
-        if cured is None:
+        edited = applied(self.scene, moves)
+        if edited is None:
             return None
-        return self.possible((less(self.scene, cured, back) if back else cured.scene).train())
+        return self.possible((less(self.scene, edited, back) if back else edited.scene).train())
 
 
-def least_step(case: Case, lever: Lever, most: float) -> tuple[float, bool] | None:
+def least_step(case: Case, number: Movable, most: float) -> tuple[float, bool] | None:
     """The least factor, at most `most`, of a number that may only take steps.
 
     And whether every smaller one is known to be impossible.
     """
     sure = True
-    for factor in steps(case.scene, lever):
-        cured = applied(case.scene, [(lever, factor)])
-        if cured is None or factor > most or case.clock.over:
+    for factor in steps(case.scene, number):
+        edited = applied(case.scene, [(number, factor)])
+        if edited is None or factor > most or case.clock.over:
             break
-        found = case.possible(cured.scene.train())
+        found = case.possible(edited.scene.train())
         if found:
             return factor, sure
         sure = sure and found is False
@@ -105,12 +104,12 @@ def enlarged(case: Case, moves: Moves, fixed: Moves = ()) -> Moves | None:
     """
 
     def larger(extra: float) -> Moves:
-        return tuple((lever, min(f * extra, max(f, lever.reach))) for lever, f in moves)
+        return tuple((number, min(f * extra, max(f, number.reach))) for number, f in moves)
 
     def works(extra: float, back: float = 0.0) -> bool | None:
         return case.works((*larger(extra), *fixed), back)
 
-    hopeless = all(lever.eases for lever, _ in moves) and works(WIDEST[-1]) is False
+    hopeless = all(number.eases for number, _ in moves) and works(WIDEST[-1]) is False
     extra = None if hopeless else least_value(1.0, WIDEST, works)
     return None if extra is None else larger(extra)
 
@@ -118,26 +117,26 @@ def enlarged(case: Case, moves: Moves, fixed: Moves = ()) -> Moves | None:
 def trimmed(case: Case, moves: Moves, fixed: Moves = ()) -> Moves:
     """Moves of which each is needed, and as small as the others and those fixed allow."""
     kept = moves
-    for lever, factor in reversed(moves):
-        beside = tuple(m for m in kept if m[0] is not lever)
+    for number, factor in reversed(moves):
+        beside = tuple(m for m in kept if m[0] is not number)
         others = (*beside, *fixed)
         if others and case.works(others):
             kept = beside
             continue
-        least = least_between(1.0, factor, _alone(case, others, lever))
-        kept = tuple((m, least if m is lever else f) for m, f in kept)
+        least = least_between(1.0, factor, _alone(case, others, number))
+        kept = tuple((m, least if m is number else f) for m, f in kept)
     return kept
 
 
-def _alone(case: Case, others: Moves, lever: Lever) -> Works:
+def _alone(case: Case, others: Moves, number: Movable) -> Works:
     """Whether a factor of one move will do beside the others: works(factor, back)."""
 
     def works(factor: float, back: float = 0.0) -> bool | None:
-        moves = (*others, (lever, factor))
-        cured = applied(case.scene, moves)
-        if cured is None or not back:
+        moves = (*others, (number, factor))
+        edited = applied(case.scene, moves)
+        if edited is None or not back:
             return case.works(moves)
-        one = less(case.scene, cured, back, cured.paths.index(lever.path))
+        one = less(case.scene, edited, back, edited.paths.index(number.path))
         return case.possible(one.train())
 
     return works

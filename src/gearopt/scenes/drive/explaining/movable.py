@@ -1,4 +1,4 @@
-"""The numbers of a drive's file that a way out may move, and the file with some of them moved."""
+"""The numbers of a drive's file that a remedy may move, and the file with some of them moved."""
 
 import math
 from collections.abc import Sequence
@@ -8,12 +8,20 @@ from typing import Any
 
 from gearopt.optimise.explaining.explanation import Change
 from gearopt.optimise.explaining.handles import Handle
-from gearopt.scenes.drive.explaining.cures import Cure, inherited, next_module
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.tables.stages import StageTable
-from gearopt.scenes.explaining.numbers import Path, allowed, eased, put, written
-from gearopt.scenes.explaining.remedies import apart
+from gearopt.scenes.explaining.numbers import (
+    Path,
+    allowed,
+    apart,
+    at,
+    eased,
+    put,
+    taken_back,
+    written,
+)
 from gearopt.scenes.reading.toml import dotted, toml_text
+from gearopt.units import Quantity
 
 FIELDS: dict[str, tuple[str, int | None]] = {
     # name of a limit or of a given size -> key in the file, and its end of a range; limits of the
@@ -41,7 +49,7 @@ CLOSE = 1.0005  # ratio of a refused to an allowed factor that ends a search
 
 
 @dataclass(frozen=True)
-class Lever:
+class Movable:
     """A number of the file, moved one way.
 
     family: the limits or sizes it sets; path: where it is written; end: of a range (None: the
@@ -72,16 +80,25 @@ class Lever:
         return min(h.reach for h in self.handles)
 
 
-Moves = tuple[tuple[Lever, float], ...]
+Moves = tuple[tuple[Movable, float], ...]
 
 
-def levers(scene: Scene, handles: Sequence[Handle]) -> list[Lever]:
-    """Every number that a way out may move, with the handles of the problem behind it.
+@dataclass(frozen=True)
+class Edited:
+    """A changed scene, the edits that lead to it and the places they concern."""
+
+    scene: Scene
+    changes: tuple[Change, ...]
+    paths: tuple[Path, ...]
+
+
+def movables(scene: Scene, handles: Sequence[Handle]) -> list[Movable]:
+    """Every number that a remedy may move, with the handles of the problem behind it.
 
     A number of [limits] or [gears] for all stages that have none of their own, and that of each
     stage alone; where a single stage takes it from there, once.
     """
-    found: list[Lever] = []
+    found: list[Movable] = []
     groups: dict[tuple[str, int], list[Handle]] = {}
     for handle in handles:
         groups.setdefault((handle.family, handle.direction), []).append(handle)
@@ -90,13 +107,15 @@ def levers(scene: Scene, handles: Sequence[Handle]) -> list[Lever]:
             path: Path = ("duty", DUTY[family])
             if inherited(scene, path):  # a tolerance of zero has no factor
                 end = {"ratio_low": 0, "ratio_high": 1}.get(family)
-                found.append(Lever(family, path, end, direction, "duty", tuple(group)))
+                found.append(Movable(family, path, end, direction, "duty", tuple(group)))
         elif family in fields(scene):
             found += _of_stages(scene, family, direction, {stage_of(h): h for h in group})
     return found
 
 
-def _of_stages(scene: Scene, family: str, direction: int, group: dict[int, Handle]) -> list[Lever]:
+def _of_stages(
+    scene: Scene, family: str, direction: int, group: dict[int, Handle]
+) -> list[Movable]:
     field, own_end = fields(scene)[family]
     table = "gears" if field == WIDTH else "limits"
     shared = getattr(getattr(scene, table), field, None)
@@ -109,16 +128,16 @@ def _of_stages(scene: Scene, family: str, direction: int, group: dict[int, Handl
     found = []
     if shared is not None and takers:
         behind = tuple(group[k] for k in takers)
-        found.append(Lever(family, (table, field), end, direction, taken, behind))
+        found.append(Movable(family, (table, field), end, direction, taken, behind))
     for k, handle in group.items():
         path = ("stage", k, field)
         if k not in takers:
             sort = "size" if given else "limit"
-            found.append(Lever(family, path, own_end, direction, sort, (handle,)))
+            found.append(Movable(family, path, own_end, direction, sort, (handle,)))
         elif shared is not None and takers != [k]:
-            found.append(Lever(family, path, end, direction, taken, (handle,)))
+            found.append(Movable(family, path, end, direction, taken, (handle,)))
         elif shared is None and inherited(scene, path) is not None:  # a load limit of a preset
-            found.append(Lever(family, path, own_end, direction, "limit", (handle,)))
+            found.append(Movable(family, path, own_end, direction, "limit", (handle,)))
     return found
 
 
@@ -139,27 +158,27 @@ def staged(scene: Scene) -> Scene:
     return scene.model_copy(update={"stage": (StageTable(),) * int(scene.stages or 0)})
 
 
-def applied(scene: Scene, moves: Sequence[tuple[Lever, float]]) -> Cure | None:
+def applied(scene: Scene, moves: Sequence[tuple[Movable, float]]) -> Edited | None:
     """The scene with numbers moved by factors >= 1; None where the file's rules refuse it."""
     found = staged(scene)
     paths: list[Path] = []
-    for lever, factor in sorted(moves, key=lambda move: not move[0].shared):
-        value = _value(found, lever, factor)
+    for number, factor in sorted(moves, key=lambda move: not move[0].shared):
+        value = _value(found, number, factor)
         if value is None:
             return None
-        found = put(found, lever.path, value)
-        paths += [lever.path] if lever.path not in paths else []
-    return edits(scene, found, paths) if allowed(found) else None
+        found = put(found, number.path, value)
+        paths += [number.path] if number.path not in paths else []
+    return edited_from(scene, found, paths) if allowed(found) else None
 
 
-def edits(scene: Scene, found: Scene, paths: Sequence[Path]) -> Cure:
+def edited_from(scene: Scene, found: Scene, paths: Sequence[Path]) -> Edited:
     """What leads from a scene to another that differs at some places."""
     changes = []
     for path in paths:
         was, now = inherited(scene, path), inherited(found, path)
         old, new = (toml_text(_raw(v, path)) for v in (was, now))
         changes.append(Change(dotted(path), old, new, apart(was, now)))
-    return Cure(found, tuple(changes), tuple(paths))
+    return Edited(found, tuple(changes), tuple(paths))
 
 
 def _raw(value: Any, path: Path) -> Any:
@@ -169,33 +188,33 @@ def _raw(value: Any, path: Path) -> Any:
     return [raw, raw] if pair else raw
 
 
-def _value(scene: Scene, lever: Lever, factor: float) -> Any:
+def _value(scene: Scene, number: Movable, factor: float) -> Any:
     """What to write for a factor; None where no module of [teeth] is left."""
-    now = inherited(scene, lever.path)
-    if lever.path[-1] == "ratio_tolerance":
-        return max(now, eased(tolerance(now, lever.end, factor), 1.0, 1))
+    now = inherited(scene, number.path)
+    if number.path[-1] == "ratio_tolerance":
+        return max(now, eased(tolerance(now, number.end, factor), 1.0, 1))
     if not isinstance(now, tuple):
-        return eased(now, factor, lever.direction)
+        return eased(now, factor, number.direction)
     ends = list(now)
-    for k in (0, 1) if lever.end is None else (lever.end,):
-        ends[k] = eased(ends[k], factor, lever.direction)
-        if lever.path[-1] == "module" and scene.teeth is not None:
-            ends[k] = next_module(scene, ends[k], lever.direction, beyond=False)
+    for k in (0, 1) if number.end is None else (number.end,):
+        ends[k] = eased(ends[k], factor, number.direction)
+        if number.path[-1] == "module" and scene.teeth is not None:
+            ends[k] = next_module(scene, ends[k], number.direction, beyond=False)
     return None if None in ends else tuple(ends)
 
 
-def steps(scene: Scene, lever: Lever) -> list[float]:
+def steps(scene: Scene, number: Movable) -> list[float]:
     """The factors of all values of a whole number or module, from near to far; else empty."""
-    now = inherited(scene, lever.path)
-    now = now[lever.end or 0] if isinstance(now, tuple) else now
-    if lever.path[-1] == "module" and scene.teeth is not None:
+    now = inherited(scene, number.path)
+    now = now[number.end or 0] if isinstance(now, tuple) else now
+    if number.path[-1] == "module" and scene.teeth is not None:
         size = now.exact[0]
-        beyond = [m for m in scene.teeth.modules if (m - size) * lever.direction > 0]
+        beyond = [m for m in scene.teeth.modules if (m - size) * number.direction > 0]
         return sorted(float(max(m, size) / min(m, size)) for m in beyond)
     if not isinstance(now, int):
         return []
-    far = 4 * now if lever.direction > 0 else max(1, now // 4)
-    values = range(now + lever.direction, far + lever.direction, lever.direction)
+    far = 4 * now if number.direction > 0 else max(1, now // 4)
+    values = range(now + number.direction, far + number.direction, number.direction)
     return [max(v, now) / min(v, now) for v in values]
 
 
@@ -205,36 +224,94 @@ def tolerance(now: Fraction, end: int | None, factor: float) -> Fraction:
     return 1 - (1 - now) / f if end == 0 else (1 + now) * f - 1
 
 
-def bound_of(scene: Scene, lever: Lever, bound: float | None) -> float | None:
+def bound_of(scene: Scene, number: Movable, bound: float | None) -> float | None:
     """The proven least factor of a number as the file has it, from that of its handles."""
     if bound is None:
         return None
-    if lever.path[-1] == "ratio_tolerance":
+    if number.path[-1] == "ratio_tolerance":
         now = scene.duty.ratio_tolerance
-        return float(tolerance(now, lever.end, bound) / now)
-    return None if _mismatched(scene, lever) else bound
+        return float(tolerance(now, number.end, bound) / now)
+    return None if _mismatched(scene, number) else bound
 
 
-def _mismatched(scene: Scene, lever: Lever) -> bool:
+def _mismatched(scene: Scene, number: Movable) -> bool:
     """Whether the problem has another number than the file: an end between two modules."""
-    now = inherited(scene, lever.path)
-    if lever.path[-1] != "module" or scene.teeth is None or lever.end is None:
+    now = inherited(scene, number.path)
+    if number.path[-1] != "module" or scene.teeth is None or number.end is None:
         return False
-    return any(float(now[lever.end].exact[0]) != h.value for h in lever.handles)
+    return any(float(now[number.end].exact[0]) != h.value for h in number.handles)
 
 
-def comparable(scene: Scene, found: Sequence[Lever]) -> bool:
+def comparable(scene: Scene, found: Sequence[Movable]) -> bool:
     """Whether a proven least product of handles is one of the file's numbers."""
-    return not any(_mismatched(scene, lever) for lever in found)
+    return not any(_mismatched(scene, number) for number in found)
 
 
-def reachable(scene: Scene, lever: Lever) -> Lever:
-    """The lever with its handles' reach cut to what the file's rules allow (1: no move)."""
-    low, high = 1.0, max((h.reach for h in lever.handles), default=1.0)
-    if applied(scene, [(lever, high)]) is not None:
-        return lever
+def reachable(scene: Scene, number: Movable) -> Movable:
+    """The number with its handles' reach cut to what the file's rules allow (1: no move)."""
+    low, high = 1.0, max((h.reach for h in number.handles), default=1.0)
+    if applied(scene, [(number, high)]) is not None:
+        return number
     while high > low * CLOSE:
         middle = math.sqrt(low * high)
-        refused = applied(scene, [(lever, middle)]) is None
+        refused = applied(scene, [(number, middle)]) is None
         low, high = (low, middle) if refused else (middle, high)
-    return replace(lever, handles=tuple(replace(h, reach=low) for h in lever.handles))
+    return replace(number, handles=tuple(replace(h, reach=low) for h in number.handles))
+
+
+def less(scene: Scene, edited: Edited, part: float, only: int | None = None) -> Scene:
+    """The edited scene with its changes (or one of them) taken back by a part of their size.
+
+    Whole numbers go back by one, modules of [teeth] to the one before.
+    """
+    found = edited.scene
+    for k, path in enumerate(edited.paths):
+        if only is not None and k != only:
+            continue
+        now, before = at(found, path), inherited(scene, path)
+        series = path[-1] == "module" and scene.teeth is not None
+        back = _module_back(scene, now, before) if series else taken_back(now, before, part)
+        found = put(found, path, back)
+    return found
+
+
+def _module_back(scene: Scene, now: Any, before: Any) -> Any:
+    """A range of modules with its moved ends one module nearer to where they were."""
+    ends = list(now)
+    for k, (new, old) in enumerate(zip(now, before, strict=True)):
+        sizes = new.exact[0], old.exact[0]
+        if sizes[0] != sizes[1]:
+            way = 1 if sizes[1] > sizes[0] else -1
+            one = next_module(scene, new, way)
+            ends[k] = old if one is None or (one.exact[0] - sizes[1]) * way > 0 else one
+    return tuple(ends)
+
+
+def inherited(scene: Scene, path: Path) -> Any:
+    """What holds at a place of the file: its own value, or that of the table for all stages."""
+    field = str(path[-1])
+    own = scene.stage[path[1]] if path[0] == "stage" and scene.stage else None  # type: ignore[index]
+    if own is not None and getattr(own, field) is not None:
+        return getattr(own, field)
+    if path[0] == "duty":
+        return getattr(scene.duty, field)
+    if field == "face_width_over_diameter":
+        return scene.gears.face_width_over_diameter
+    if field in scene.limits.LAW.names:
+        return scene.limits.load(field)
+    return getattr(scene.limits, field, None)
+
+
+def next_module(
+    scene: Scene, module: Quantity, direction: int, beyond: bool = True
+) -> Quantity | None:
+    """The next module of [teeth] up (+1) or down (-1), beyond or at a module; in its unit."""
+    assert scene.teeth is not None
+    size = module.exact[0]
+    found = [
+        m for m in scene.teeth.modules if (m - size) * direction > 0 or (m == size and not beyond)
+    ]
+    if not found:
+        return None
+    nearest = min(found, key=lambda m: abs(m - size))
+    return replace(module, number=nearest * module.number / size)

@@ -58,7 +58,7 @@ class Without:
 
 
 @dataclass(frozen=True)
-class Move:
+class Edit:
     """One change of the file, its size from 0 (none) to 1 (the farthest that is proposed).
 
     path: its place. searched(size): the value with which to search; monotone, a larger size never
@@ -83,7 +83,7 @@ class Move:
         return str(next(p for p in reversed(self.path) if isinstance(p, str)))
 
     def put(self, scene: Scene, value: Any) -> Scene:
-        """The scene with a value at the place of this move."""
+        """The scene with a value at the place of this edit."""
         path = self.path
         if isinstance(value, Without):
             path = path[:-1]
@@ -106,8 +106,8 @@ class Move:
         return self.texts[2] if self.texts else toml_text(written(value, self.path))
 
 
-def moves(scene: Scene, pairs: tuple[GearPair, ...]) -> tuple[Move, ...]:
-    """Every move of one number of [layout], [[place]] and [[keep_out]]."""
+def edits(scene: Scene, pairs: tuple[GearPair, ...]) -> tuple[Edit, ...]:
+    """Every edit of one number of [layout], [[place]] and [[keep_out]]."""
     reach = sum(pair.centre_distance for pair in pairs)
     found = [m for n in numbers(scene) for m in _factors(n)]
     for k, place in enumerate(scene.place):
@@ -122,12 +122,12 @@ def moves(scene: Scene, pairs: tuple[GearPair, ...]) -> tuple[Move, ...]:
     return tuple(found)
 
 
-def limits_of(tried: tuple[Move, ...]) -> tuple[str, ...]:
+def limits_of(tried: tuple[Edit, ...]) -> tuple[str, ...]:
     """How far moves go, each said once."""
-    return tuple(dict.fromkeys(move.limit for move in tried))
+    return tuple(dict.fromkeys(edit.limit for edit in tried))
 
 
-def _factors(number: Number) -> Iterator[Move]:
+def _factors(number: Number) -> Iterator[Edit]:
     """The moves of a length or stress by a factor."""
     value, path = number.value, number.path
     inside = path[0] in ("layout", "place") and isinstance(value, Quantity)
@@ -137,8 +137,8 @@ def _factors(number: Number) -> Iterator[Move]:
             yield _factor(path, value, farthest, sign, named)
 
 
-def _factor(path: Path, value: Quantity, farthest: float, sign: int, named: str) -> Move:
-    return Move(
+def _factor(path: Path, value: Quantity, farthest: float, sign: int, named: str) -> Edit:
+    return Edit(
         path,
         lambda size: times(value, farthest ** (sign * size)),
         lambda size: (eased(value, farthest**size, sign),),
@@ -151,7 +151,7 @@ def _factor(path: Path, value: Quantity, farthest: float, sign: int, named: str)
 
 def _wider(
     path: Path, ends: tuple[Quantity, Quantity], farthest: float, reach: float
-) -> Iterator[Move]:
+) -> Iterator[Edit]:
     """The moves of a place: its range is widened at either end, a point is moved there."""
     point = ends[0] == ends[1]
     for end, sign in ((0, -1), (1, 1)):
@@ -169,7 +169,7 @@ def _wider(
 
 def _narrower(
     path: Path, ends: tuple[Quantity, Quantity], farthest: float, reach: float
-) -> Iterator[Move]:
+) -> Iterator[Edit]:
     """The moves of a side of a keep-out, inwards."""
     for end, sign in ((0, 1), (1, -1)) if farthest > 0.0 else ():
 
@@ -190,8 +190,8 @@ def _shift(
     home: int,
     farthest: float,
     reach: float,
-) -> Move:
-    """The move of one end by a distance; home: the direction back to where it was."""
+) -> Edit:
+    """The edit of one end by a distance; home: the direction back to where it was."""
 
     def back(new: Any) -> Any:
         part = max(BACK * abs(new[end].value), 2.0 * GRID)
@@ -204,7 +204,7 @@ def _shift(
         part = f" (and {100.0 * (1.0 - LEFT):g} % of its width)"
         what = "a side of a keep-out inwards"
     limit = f"{what} by up to {REACHES * reach:.0f} mm{part}"
-    return Move(path, *values, back, lambda size: farthest * size / reach, steps, limit)
+    return Edit(path, *values, back, lambda size: farthest * size / reach, steps, limit)
 
 
 def _with(ends: tuple[Quantity, Quantity], end: int, new: Quantity) -> tuple[Quantity, Quantity]:
@@ -222,7 +222,7 @@ def _shifted(value: Quantity, distance: float, rounded: bool = False) -> Quantit
     return replace(value, number=number)
 
 
-def switches(scene: Scene) -> tuple[Move, ...]:
+def switches(scene: Scene) -> tuple[Edit, ...]:
     """Every place or keep-out left out, slabs left free, no split line, partial span."""
     table = scene.layout
     assert table is not None
@@ -248,8 +248,8 @@ def switches(scene: Scene) -> tuple[Move, ...]:
     return tuple(found)
 
 
-def _switch(path: Path, value: Any, texts: tuple[str, str, str], limit: str) -> Move:
-    return Move(
+def _switch(path: Path, value: Any, texts: tuple[str, str, str], limit: str) -> Edit:
+    return Edit(
         path,
         lambda size: value,
         lambda size: (value,),

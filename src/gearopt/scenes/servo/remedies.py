@@ -1,6 +1,6 @@
 """What to write instead where no train is accurate enough: found by solving, and solved again."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 from fractions import Fraction
 
@@ -10,7 +10,7 @@ from gearopt.formulations.servo.choice import train_problem
 from gearopt.formulations.servo.ratio.duty import UNITS
 from gearopt.formulations.servo.split.exact import NO_TEETH
 from gearopt.optimise.clock import Clock
-from gearopt.optimise.explaining.explanation import Change, Remedy
+from gearopt.optimise.explaining.explanation import Change, Remedies, Remedy
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import solve, solve_within
 from gearopt.scenes.servo.scene import Scene
@@ -24,6 +24,14 @@ BACK = 1e-3  # a remedy that much smaller must be impossible
 LOOSE = "90 deg"  # an error that no train misses
 LATE = "time ran out before it was known why"
 NAMED = 3  # sources of error that the message names
+WHOLE = (
+    "real-valued teeth and modules keep all other limits, whole teeth and the modules of the list "
+    "do not"
+)
+MOTOR = (
+    "it is for the duty: trains keep all other limits, but the motor does not do what [duty] asks "
+    "with any of them"
+)
 COVERED = (
     "in all trains that keep all other limits the first wheel covers the output shaft, however "
     "thin that is: allow a larger last wheel, or smaller modules"
@@ -38,19 +46,8 @@ PLACES: tuple[Place, ...] = (
 )
 
 
-@dataclass(frozen=True)
-class Blocked:
-    """Bodies that leave no train room, the diameters that would, and a message."""
-
-    conflict: tuple[str, ...]
-    remedies: tuple[Remedy, ...]
-    message: str
-
-
-def ways_out(
-    scene: Scene, clock: Clock, told: str = NO_TEETH
-) -> tuple[tuple[str, ...], tuple[Remedy, ...], str]:
-    """Return limits in conflict, remedies and a message for a train that is impossible.
+def remedies(scene: Scene, clock: Clock, told: str = NO_TEETH) -> Remedies:
+    """Return the conflict of a train that is impossible, and what to write instead.
 
     told: what the search said of it.
     """
@@ -59,35 +56,33 @@ def ways_out(
     if scene.train.goal in UNITS:
         still = solve_within(clock, train_problem(_aiming(scene, "inertia").choice()))
         if still.status == "optimal":
-            names, message = _of_duty(scene, clock)
-            return names, (), message
+            return _of_duty(scene, clock)
         if still.status != "infeasible":
-            return (), (), LATE
+            return Remedies(message=LATE)
         told = still.message
     rooms = blocked(scene, clock)
     if asked is None and rooms is not None:
-        return rooms.conflict, rooms.remedies, rooms.message
+        return rooms
     if asked is None:
-        names, message = _other(scene, told, clock)
-        return names, (), message
+        return _other(scene, told, clock)
     free = with_error(scene, units.parse(LOOSE, "angle"))
     least = solve_within(clock, train_problem(_aiming(free, "error").choice()))
     if least.status == "infeasible":
         if rooms is not None:
-            return rooms.conflict, rooms.remedies, rooms.message
-        names, message = _other(free, least.message, clock)
-        return names, (), f"it is not for the accuracy: {message}"
+            return rooms
+        other = _other(free, least.message, clock)
+        return replace(other, message=f"it is not for the accuracy: {other.message}")
     if least.status != "optimal":
-        return (), (), "time ran out before the least possible error was proven"
+        return Remedies(message="time ran out before the least possible error was proven")
     best = units.parse(f"{least.value!r} deg", "angle")
     names = impossible.in_conflict(scene.servo_train(), clock)
     floor = impossible.minimum_error(scene.servo_train(), clock) if names else None
     bound = (floor or best.value) / asked.value
-    found = [ways(scene, best, bound, clock) for ways in (_wider, _finer)]
+    found = [one(scene, best, bound, clock) for one in (_wider, _finer)]
     proven = tuple(r for r in found if r.verified["with"] == "optimal")
     if rooms is not None:
-        return rooms.conflict, (*rooms.remedies, *proven), rooms.message
-    return names, proven, _message(free, least)
+        return replace(rooms, remedies=(*rooms.remedies, *proven))
+    return Remedies(names, proven, _message(free, least))
 
 
 def _aiming(scene: Scene, aim: str) -> Scene:
@@ -97,25 +92,21 @@ def _aiming(scene: Scene, aim: str) -> Scene:
     return scene.model_copy(update={"train": train})
 
 
-def _other(scene: Scene, told: str, clock: Clock) -> tuple[tuple[str, ...], str]:
+def _other(scene: Scene, told: str, clock: Clock) -> Remedies:
     """Return why a train is impossible whatever its error: limits in conflict, and a sentence.
 
     told: what the search said.
     """
     train = scene.servo_train()
     if names := impossible.in_conflict(train, clock):
-        return names, "real-valued teeth and modules do not keep all other limits either"
+        why = "real-valued teeth and modules do not keep all other limits either"
+        return Remedies(names, message=why)
     if told != NO_TEETH:  # it names the box, or the stiffness
-        return (), told
+        return Remedies(message=told)
     if (other := impossible.with_wider_ratio(train, clock)) is not None:
         own, ends = (_span(scene, one) for one in (train, other))
-        return (), f"no whole teeth make the ratio {own}; {ends} some do"
-    if clock.over:
-        return (), LATE
-    return (), (
-        "real-valued teeth and modules keep all other limits, whole teeth and the modules of the "
-        "list do not"
-    )
+        return Remedies(message=f"no whole teeth make the ratio {own}; {ends} some do")
+    return Remedies(message=LATE if clock.over else WHOLE)
 
 
 def _span(scene: Scene, train: split.ServoTrain) -> str:
@@ -127,7 +118,7 @@ def _span(scene: Scene, train: split.ServoTrain) -> str:
     return f"between {low} and {high}"
 
 
-def _of_duty(scene: Scene, clock: Clock) -> tuple[tuple[str, ...], str]:
+def _of_duty(scene: Scene, clock: Clock) -> Remedies:
     """Return what of the duty no train keeps, where some keep all else: limits, a sentence."""
     train = scene.servo_train()
     duty = train.duty
@@ -135,14 +126,11 @@ def _of_duty(scene: Scene, clock: Clock) -> tuple[tuple[str, ...], str]:
     names = impossible.in_conflict(train, clock, duty.goal)
     if duty.most_ratio is not None and duty.most_ratio < train.ratios[0]:
         why = f"the motor's speed limit allows a total ratio of {float(duty.most_ratio):.6g}"
-        return names, f"it is for the duty: {why} at the most"
+        return Remedies(names, message=f"it is for the duty: {why} at the most")
     alone = solve(duty.problem())
     if alone.status == "infeasible":
-        return names, f"it is for the duty, whatever the train: {alone.message}"
-    return names, (
-        "it is for the duty: trains keep all other limits, but the motor does not do what [duty] "
-        "asks with any of them"
-    )
+        return Remedies(names, message=f"it is for the duty, whatever the train: {alone.message}")
+    return Remedies(names, message=MOTOR)
 
 
 def with_error(scene: Scene, error: Quantity) -> Scene:
@@ -236,23 +224,23 @@ def _status(scene: Scene, clock: Clock) -> str:
     return "limit" if clock.over else solve_within(clock, train_problem(scene.choice())).status
 
 
-def blocked(scene: Scene, clock: Clock) -> Blocked | None:
+def blocked(scene: Scene, clock: Clock) -> Remedies | None:
     """Return what stands in the way; None where a train is impossible without it too."""
     blamed = impossible.in_the_way(scene.servo_train(), clock)
     if blamed is None:
         return None
     names = tuple(name for name, diameter in vars(blamed).items() if diameter > 0)
     if not names:
-        return Blocked(("output_shaft",), (), COVERED)
+        return Remedies(("output_shaft",), (), COVERED)
     what = " and ".join(name.replace("_", " ") for name in names)
     message = f"no train that keeps all other limits leaves room for the {what}"
-    ways = _ways(scene, clock)
+    ways = _bodies(scene, clock)
     proven = tuple(way for way in ways if way.verified["with"] == "optimal")
     if clock.over:
         message += "; time ran out before all ways out were tried"
     elif ways and not proven:
         message += "; with less in the way, box, stiffness or duty stay out of reach"
-    return Blocked(names, proven, message)
+    return Remedies(names, proven, message)
 
 
 def _diameters(scene: Scene) -> dict[Place, Quantity]:
@@ -261,7 +249,7 @@ def _diameters(scene: Scene) -> dict[Place, Quantity]:
     return {p: q for p, q in given.items() if q is not None and q.number > 0}
 
 
-def _ways(scene: Scene, clock: Clock) -> tuple[Remedy, ...]:
+def _bodies(scene: Scene, clock: Clock) -> tuple[Remedy, ...]:
     """Return each diameter alone, the least change first; all alike where none alone helps."""
     given = [p for p in _diameters(scene) if p != PLACES[3] or scene.space is None]
     found = [_smaller(scene, (place,), clock) for place in given]

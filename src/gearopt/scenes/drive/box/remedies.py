@@ -1,8 +1,8 @@
-"""Ways out of an impossible layout, as edits of its file that were tried before they are told."""
+"""Remedies of an impossible layout, tried before they are told; slopes of a possible one."""
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import asdict
+from dataclasses import replace
 from itertools import combinations
 from typing import Any
 
@@ -10,11 +10,17 @@ from gearopt.formulations import layout
 from gearopt.formulations.layout.faults import possible
 from gearopt.formulations.layout.gearbox import Gearbox
 from gearopt.optimise.clock import Clock, of_others
-from gearopt.optimise.explaining.explanation import Change, Remedy
+from gearopt.optimise.explaining.explain import STEP
+from gearopt.optimise.explaining.explanation import Change, Explanation, Remedies, Remedy
+from gearopt.optimise.explaining.repair import CERTAIN
+from gearopt.optimise.result import Result
+from gearopt.optimise.solve import solve
 from gearopt.physics.gears import GearPair
-from gearopt.scenes.drive.box.moves import Move, limits_of, moves, switches
+from gearopt.scenes.drive.box.edits import Edit, edits, limits_of, switches
+from gearopt.scenes.drive.box.lay_out import pairs_of
 from gearopt.scenes.drive.scene import Scene
-from gearopt.scenes.explaining.numbers import allowed
+from gearopt.scenes.explaining.influences import Basis, influences, smooth
+from gearopt.scenes.explaining.numbers import allowed, numbers
 from gearopt.scenes.reading.ask import Ask
 from gearopt.units import Quantity
 
@@ -24,8 +30,11 @@ BRIEF = 0.2  # and beyond a size that stayed undecided
 COARSE = 8  # halvings of the common size of two moves, by which pairs are compared
 PAIRS = 6  # that are worked out
 HALVINGS = 20  # of the size within which the file's own rules hold
+SLOPE_GAP = 0.01  # gap of the proof behind a slope: the polished layout is far better than that
+SAME = 1e-7  # relative, of boxes that are equal
+TABLES = ("layout", "place", "keep_out")
 
-Pair = tuple[Move, Move]
+Pair = tuple[Edit, Edit]
 Asks = Callable[[float, float], bool | None]  # size and seconds: whether a layout is possible
 
 
@@ -81,12 +90,12 @@ class Questions:
         return low
 
     def proposal(
-        self, scene: Callable[[Any], Scene], move: Move, sizes: Sequence[float]
+        self, scene: Callable[[Any], Scene], edit: Edit, sizes: Sequence[float]
     ) -> tuple[float, Any] | None:
         """Size and what to write for it: the first that a layout is known to exist with."""
         seconds = SECONDS
         for size in sizes:
-            for value in move.proposed(size):
+            for value in edit.proposed(size):
                 found = self.fits(scene(value), seconds)
                 if found:
                     return size, value
@@ -94,28 +103,28 @@ class Questions:
         return None
 
 
-def ways(scene: Scene, pairs: tuple[GearPair, ...], ask: Ask) -> dict[str, Any]:
+def remedies(scene: Scene, pairs: tuple[GearPair, ...], ask: Ask) -> Remedies:
     """Each change that alone makes these gears possible to lay out; else pairs of changes."""
     clock = Clock(ask.budget, of_others(ask.watch))
     asked = Questions(pairs, clock)
-    single, choices = moves(scene, pairs), switches(scene)
+    single, choices = edits(scene, pairs), switches(scene)
     chosen = [c for m in choices if (c := _chosen(scene, m, asked)) is not None]
-    found = [r for m in single if (r := _moved(scene, m, asked)) is not None]
-    remedies = [r for _, r in sorted(found, key=_size)] + chosen
+    moved = [r for m in single if (r := _moved(scene, m, asked)) is not None]
+    found = [r for _, r in sorted(moved, key=_size)] + chosen
     message = ""
-    if remedies and asked.open:
+    if found and asked.open:
         message = f"it is not known whether a change of {', '.join(asked.open)} alone does"
-    elif not remedies:
+    elif not found:
         both = _pairs(scene, single + choices[::-1], asked)  # of two tables the last goes first
-        remedies = [r for _, r in sorted(both, key=_size)]
-        if asked.open and not remedies:
+        found = [r for _, r in sorted(both, key=_size)]
+        if asked.open and not found:
             message = "no way out was found, and not every change could be decided"
-        elif not remedies:
+        elif not found:
             none = "no change of one number or of two makes a layout possible within what is tried"
             message = f"{none}: {', '.join(limits_of(single + choices))}"
     if clock.over:
         message = "time ran out before all ways out were tried"
-    return {"conflict": [], "remedies": [asdict(r) for r in remedies], "message": message}
+    return Remedies((), tuple(found), message)
 
 
 def _size(found: tuple[float, Remedy]) -> float:
@@ -145,48 +154,48 @@ def _halved(asks: Asks, high: float, steps: int) -> list[float]:
     return known
 
 
-def _moved(scene: Scene, move: Move, asked: Questions) -> tuple[float, Remedy] | None:
-    """The least known size of one move and its remedy; None where none is known."""
+def _moved(scene: Scene, edit: Edit, asked: Questions) -> tuple[float, Remedy] | None:
+    """The least known size of one edit and its remedy; None where none is known."""
     known = asked.smallest(
-        lambda size: move.put(scene, move.searched(size)), move.steps, move.key()
+        lambda size: edit.put(scene, edit.searched(size)), edit.steps, edit.key()
     )
-    found = asked.proposal(lambda value: move.put(scene, value), move, known)
+    found = asked.proposal(lambda value: edit.put(scene, value), edit, known)
     if found is None:
         if known:
-            asked.open.append(move.key())
+            asked.open.append(edit.key())
         return None
     size, value = found
-    less = asked.fits(move.put(scene, move.back(value)))
+    less = asked.fits(edit.put(scene, edit.back(value)))
     verified = {"with": "feasible", "with_less": _word(less)}
-    change = _change(scene, move, value)
-    return move.change(size), Remedy("least", move.what, (change,), change.factor, None, verified)
+    change = _change(scene, edit, value)
+    return edit.change(size), Remedy("least", edit.what, (change,), change.factor, None, verified)
 
 
 def _word(found: bool | None) -> str:
     return "undecided" if found is None else ("feasible" if found else "infeasible")
 
 
-def _change(scene: Scene, move: Move, value: Any) -> Change:
-    """The edit of a move; its factor where a number is multiplied, else infinite (not told)."""
+def _change(scene: Scene, edit: Edit, value: Any) -> Change:
+    """The edit of a edit; its factor where a number is multiplied, else infinite (not told)."""
     factor = math.inf
-    if move.texts:
+    if edit.texts:
         factor = 1.0
     elif isinstance(value, Quantity):
-        now = move.searched(0.0)
+        now = edit.searched(0.0)
         factor = max(value.value / now.value, now.value / value.value)
-    return Change(move.key(), move.was(scene), move.write(value), factor)
+    return Change(edit.key(), edit.was(scene), edit.write(value), factor)
 
 
-def _chosen(scene: Scene, move: Move, asked: Questions) -> Remedy | None:
+def _chosen(scene: Scene, edit: Edit, asked: Questions) -> Remedy | None:
     """A switch that suffices alone."""
-    value = move.searched(1.0)
-    if not asked.smallest(lambda _: move.put(scene, value), 0, move.key()):
+    value = edit.searched(1.0)
+    if not asked.smallest(lambda _: edit.put(scene, value), 0, edit.key()):
         return None
-    change = _change(scene, move, value)
-    return Remedy("choice", move.what, (change,), 1.0, None, {"with": "feasible"})
+    change = _change(scene, edit, value)
+    return Remedy("choice", edit.what, (change,), 1.0, None, {"with": "feasible"})
 
 
-def _pairs(scene: Scene, single: tuple[Move, ...], asked: Questions) -> list[tuple[float, Remedy]]:
+def _pairs(scene: Scene, single: tuple[Edit, ...], asked: Questions) -> list[tuple[float, Remedy]]:
     """Two changes that do together, each as small as the other allows; the smallest of them."""
     rough: list[tuple[float, float, Pair]] = []
     for pair in combinations(single, 2):
@@ -209,7 +218,7 @@ def _pairs(scene: Scene, single: tuple[Move, ...], asked: Questions) -> list[tup
     return found
 
 
-def _same(one: Move, other: Move) -> bool:
+def _same(one: Edit, other: Edit) -> bool:
     """Whether two moves change the same table or number, so that one undoes the other."""
     shared = min(len(one.path), len(other.path))
     return one.path[:shared] == other.path[:shared]
@@ -220,16 +229,16 @@ def _together(
 ) -> tuple[float, Remedy] | None:
     """The remedy of two moves that do with a common size: one made smaller, then the other."""
     sizes, values = [size, size], [m.searched(size) for m in pair]
-    for k, move in enumerate(pair):
+    for k, edit in enumerate(pair):
 
         def one(value: Any, k: int = k) -> Scene:
             return _put(scene, pair, [value if i == k else v for i, v in enumerate(values)])
 
-        def searched(own: float, move: Move = move, one: Callable[[Any], Scene] = one) -> Scene:
-            return one(move.searched(own))
+        def searched(own: float, edit: Edit = edit, one: Callable[[Any], Scene] = one) -> Scene:
+            return one(edit.searched(own))
 
-        known = asked.smallest(searched, move.steps, move.key(), sizes[k])
-        found = asked.proposal(one, move, known)
+        known = asked.smallest(searched, edit.steps, edit.key(), sizes[k])
+        found = asked.proposal(one, edit, known)
         if found is None:
             return None
         sizes[k], values[k] = found
@@ -250,6 +259,35 @@ def _together(
 
 def _put(scene: Scene, pair: Pair, values: list[Any]) -> Scene:
     """Both changes, in the order of `moves` and `switches`: a table goes after others changed."""
-    for move, value in zip(pair, values, strict=True):
-        scene = move.put(scene, value)
+    for edit, value in zip(pair, values, strict=True):
+        scene = edit.put(scene, value)
     return scene
+
+
+def explained(scene: Scene, result: Result, clock: Clock) -> Explanation:
+    """The answer of a layout with the slope of the box over every number of its tables."""
+    if result.status not in CERTAIN or result.value is None:
+        return Explanation(result, message="slopes need a proven layout", seconds=clock.seconds)
+    pairs = pairs_of(scene, next((p for p in result.parts if p.name == "gears"), result))
+
+    def solved(other: Scene) -> float | None:
+        box = gearbox_of(other, pairs)
+        if box is None or layout.faults(box):
+            return None
+        left = replace(clock.left, gap=SLOPE_GAP)
+        return solve(layout.problem(box), None, left, watch=clock.watch, gap=SLOPE_GAP).value
+
+    wanted = [
+        n
+        for n in numbers(scene)
+        if n.path[0] in TABLES and isinstance(n.value, Quantity) and smooth(n)
+    ]
+    found = tuple(influences(scene, Basis(result.value, solved, step=STEP), clock, wanted))
+    late = ", and time ran out" if clock.over else ""
+    return Explanation(
+        result,
+        binding=tuple(n for n, v in result.limits.items() if v > 1.0 - SAME),
+        influences=found,
+        message=f"slopes are those of the box around these gears{late}",
+        seconds=result.seconds + clock.seconds,
+    )

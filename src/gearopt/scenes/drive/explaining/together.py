@@ -1,0 +1,308 @@
+"""Several numbers of an impossible drive moved together: the minimum product of factors.
+
+Real-valued numbers by the elastic form; given tooth numbers and modules by bisection of boxes. A
+box is a range of each number; where a drive that may choose within the box is impossible, so is
+every choice of its numbers. Boxes are taken by the least product they hold, so that the first
+single choice that is possible is the least one.
+"""
+
+import heapq
+import itertools
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Any
+
+from gearopt.formulations import sizing
+from gearopt.formulations.gear_train import Train
+from gearopt.formulations.teeth import best_pairs
+from gearopt.optimise.clock import Clock
+from gearopt.optimise.explaining.handles import Handle, handles
+from gearopt.optimise.explaining.repair import FARTHEST, SAME, least_factors
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.solve import solve_within
+from gearopt.scenes.drive.explaining.movable import (
+    WIDTH,
+    Movable,
+    Moves,
+    applied,
+    comparable,
+    movables,
+    reachable,
+    stage_of,
+    steps,
+)
+from gearopt.scenes.drive.explaining.tried import Case, enlarged, trimmed
+from gearopt.scenes.drive.scene import Scene
+
+EDGE = 1.001  # a reach is known this closely; it ends between two values
+QUESTIONS = 60  # at most, whether the drives of a box are possible
+NEAR = 1.0 - 1e-6  # a value this close to what is needed is that one
+MOST = 3  # whole numbers of which both neighbours are tried
+Box = tuple[tuple[int, int], ...]
+
+
+@dataclass(frozen=True)
+class Choice:
+    """A given number: its stage (from 0), and the factors (n,) and movables of its values, by size.
+
+    Where the file's own value stands, the factor is 1 and the number None.
+    """
+
+    stage: int
+    field: str
+    values: tuple[Any, ...]
+    factors: tuple[float, ...]
+    movables: tuple[Movable | None, ...]
+
+
+def least_together(case: Case, movables: list[Movable], most: float) -> tuple[Moves, bool] | None:
+    """Moves of given numbers with the least product below `most`; and whether none has less.
+
+    None where there are none. After so many questions, the best that was met on the way.
+    """
+    choices = _choices(case, movables, most)
+    if not choices:
+        return None
+    sure, order, train = True, itertools.count(), case.scene.train()
+    whole: Box = tuple((0, len(c.values) - 1) for c in choices)
+    best: Box | None = None
+    heap = [(1.0, next(order), whole)]
+    for _ in range(QUESTIONS):
+        if not heap or heap[0][0] >= most:
+            return None if best is None else (_moves(choices, best), sure)
+        _, _, box = heapq.heappop(heap)
+        one = all(i == j for i, j in box)
+        found = _met(case, _within(train, choices, box), choices, box)
+        sure = sure and found is not None
+        if isinstance(found, tuple) and _product(choices, found) < most:
+            best, most = found, _product(choices, found)
+        if found is not False and not one:
+            for part in _parts(choices, box):
+                if (product := _product(choices, part)) < most:
+                    heapq.heappush(heap, (product, next(order), part))
+    return None if best is None else (_moves(choices, best), False)
+
+
+def _met(case: Case, train: Train, choices: list[Choice], box: Box) -> Box | bool | None:
+    """A single choice of a box that is possible; False where none is, None where it is not known.
+
+    Where it is known to be possible, but not with which numbers, True for a box of several.
+    """
+    if case.scene.teeth is None:
+        found = case.possible(train)
+        return box if found and all(i == j for i, j in box) else found
+    teeth = case.teeth(train)
+    if not teeth:
+        return False if teeth == () else None
+    made = best_pairs(train, teeth)
+    places = []
+    for choice in choices:
+        pinion, wheel = teeth[choice.stage]
+        module = Fraction(made[choice.stage].normal_module).limit_denominator(10**6)
+        value = {"pinion_teeth": pinion, "wheel_teeth": wheel, "module": module}[choice.field]
+        places.append(choice.values.index(value))
+    return tuple((j, j) for j in places)
+
+
+def _choices(case: Case, movables: list[Movable], most: float) -> list[Choice]:
+    """The numbers that may be moved together, with their values of a factor below `most`."""
+    numbers: dict[tuple[Any, ...], list[tuple[Any, float, Movable | None]]] = {}
+    for number in movables:
+        if number.sort == "size":
+            reach = EDGE * number.reach
+            for factor in steps(case.scene, number):
+                if factor < most and factor <= reach:
+                    row = (
+                        _plain(case.scene, number.path, factor, number.direction),
+                        factor,
+                        number,
+                    )
+                    numbers.setdefault(number.path, []).append(row)
+    found = []
+    for path, known in numbers.items():
+        rows = sorted([*known, (_plain(case.scene, path), 1.0, None)], key=lambda row: row[0])
+        values, factors, moved = zip(*rows, strict=True)
+        found.append(Choice(int(path[1]), str(path[2]), values, factors, moved))
+    return found
+
+
+def _plain(scene: Scene, path: tuple[Any, ...], factor: float = 1.0, direction: int = 1) -> Any:
+    """A given number of a stage as the train has it, moved: teeth, or a module in mm."""
+    stage = scene.train().stages[path[1]]
+    if path[2] != "module":
+        return round(getattr(stage, path[2])[0] * factor**direction)
+    now = stage.modules[0]
+    known = (now,) if factor == 1.0 or scene.teeth is None else scene.teeth.modules
+    return min(known, key=lambda m: abs(float(m) - float(now) * factor**direction))
+
+
+def _within(train: Train, choices: list[Choice], box: Box) -> Train:
+    """The drive that may choose its given numbers from a box."""
+    stages = list(train.stages)
+    for choice, (i, j) in zip(choices, box, strict=True):
+        ends: Any = (choice.values[i], choice.values[j])
+        if choice.field == "module":
+            ends = tuple(Fraction(v) for v in choice.values[i : j + 1])
+        name = "modules" if choice.field == "module" else choice.field
+        stages[choice.stage] = replace(stages[choice.stage], **{name: ends})
+    return replace(train, stages=tuple(stages))
+
+
+def _parts(choices: list[Choice], box: Box) -> list[Box]:
+    """A box cut along its widest range: at the file's own value, else in halves."""
+    spread = [
+        math.log(max(c.factors[i : j + 1])) + (i < j) * 1e-9
+        for c, (i, j) in zip(choices, box, strict=True)
+    ]
+    spread = [s if i < j else -1.0 for s, (i, j) in zip(spread, box, strict=True)]
+    k = spread.index(max(spread))
+    (i, j), factors = box[k], choices[k].factors
+    own = factors.index(1.0)
+    if i <= own <= j:
+        ranges = [(i, own - 1), (own, own), (own + 1, j)]
+    else:
+        ranges = [(i, (i + j) // 2), ((i + j) // 2 + 1, j)]
+    return [(*box[:k], r, *box[k + 1 :]) for r in ranges if r[0] <= r[1]]
+
+
+def _product(choices: list[Choice], box: Box) -> float:
+    """The least product of factors in a box."""
+    return math.prod(min(c.factors[i : j + 1]) for c, (i, j) in zip(choices, box, strict=True))
+
+
+def _moves(choices: list[Choice], box: Box) -> Moves:
+    moved = []
+    for choice, (i, _) in zip(choices, box, strict=True):
+        number = choice.movables[i]
+        if number is not None:
+            moved.append((number, choice.factors[i]))
+    return tuple(moved)
+
+
+def is_real(scene: Scene, clock: Clock) -> bool:
+    """Whether real-valued sizes are impossible too."""
+    return solve_within(clock, sizing.problem(scene.train())).status == "infeasible"
+
+
+def posed(scene: Scene) -> tuple[Problem, list[Handle], list[Movable]]:
+    """The problem with real-valued sizes, what may be relaxed in it, and the file's numbers."""
+    train = scene.train()
+    base = sizing.movable(train)
+    known = [_named(h, train, scene.teeth is None) for h in handles(base)]
+    movable = [reachable(scene, number) for number in movables(scene, known)]
+    return base, known, [m for m in movable if m.reach > 1.0]
+
+
+def _named(handle: Handle, train: Train, whole: bool) -> Handle:
+    """A handle named as in the file, with its stage; whole: limits of teeth are rounded.
+
+    Given teeth are not: they are set first, and the others follow.
+    """
+    name = handle.name
+    if handle.family == "wheel_teeth":
+        name = f"wheel_teeth[{sizing.given_wheels(train)[stage_of(handle)] + 1}]"
+    if handle.family == "width_high" and handle.given:
+        name = f"{WIDTH}[{stage_of(handle) + 1}]"
+    return replace(handle, name=name, whole=whole and not handle.given and "teeth" in handle.family)
+
+
+def together(
+    case: Case, base: Problem, movable: list[Movable]
+) -> tuple[float | None, Moves | None]:
+    """The proven least product over all limits and given sizes, and moves that need about that.
+
+    Whole numbers that are given are set first: the others follow them.
+    """
+    found = _least_moves(case, base, movable)
+    if found is None:
+        return None, None
+    moves, bound = found
+    stepped = tuple(m for m in moves if is_stepped(case.scene, m[0]))
+    others = tuple(m for m in moves if m not in stepped)
+    for whole in _rounded(case.scene, stepped):
+        edited = applied(case.scene, whole) if whole else None
+        rest = others if edited is None else _after(case, edited.scene)
+        made = None if rest is None else _beside(case, whole, rest)
+        if made is not None:
+            return bound, made
+    return bound, _from_sizes(case, movable, tuple(m for m in others if m[0].sort == "size"))
+
+
+def _rounded(scene: Scene, moves: Moves) -> list[Moves]:
+    """Moves of whole numbers at the value beyond or before what real-valued sizes need."""
+    ways = []
+    for number, factor in moves:
+        known = [1.0, *steps(scene, number)]
+        beyond = next((k for k, f in enumerate(known) if f >= factor * NEAR), len(known) - 1)
+        exact = known[beyond] <= factor / NEAR
+        ways.append([(number, f) for f in known[beyond - (not exact) : beyond + 1][::-1]])
+    if len(ways) > MOST:  # too many to try all: all beyond
+        ways = [way[:1] for way in ways]
+    return [tuple(m for m in way if m[1] > 1.0) for way in itertools.product(*ways)]
+
+
+def _beside(case: Case, fixed: Moves, rest: Moves) -> Moves | None:
+    """Moves that are made as they are, and the least of others beside them that suffice."""
+    if fixed and case.works(fixed):
+        return fixed
+    if case.scene.teeth is None and case.works((*fixed, *rest)):
+        return (*fixed, *rest)
+    limits = tuple(m for m in rest if m[0].sort == "limit")
+    given = tuple(m for m in rest if m not in limits)
+    for still, alike in ((given, limits), ((), rest)):  # what is given need not be easier further
+        beside = (*fixed, *still)
+        larger = enlarged(case, alike, beside) if alike else None
+        if larger is not None:
+            return (*beside, *trimmed(case, larger, beside))
+    return None
+
+
+def _from_sizes(case: Case, movable: list[Movable], real: Moves) -> Moves | None:
+    """Given whole numbers moved least under wide limits, then limits as little as it takes.
+
+    real: given real-valued sizes that move too.
+    """
+    limits = widest(movable)
+    wide = [(m, min(FARTHEST, m.reach)) for m in limits]
+    edited = applied(case.scene, (*wide, *real))
+    if edited is None:
+        return None
+    there = least_together(Case(edited.scene, case.clock), movable, FARTHEST)
+    rest = (*real, *((m, 1.0) for m in limits))
+    return None if there is None else _beside(case, there[0], rest)
+
+
+def _least_moves(
+    case: Case, base: Problem, movable: Sequence[Movable]
+) -> tuple[Moves, float | None] | None:
+    """The moves of limits and given sizes with the least product, for real sizes; its bound."""
+    groups = [m for m in movable if m.sort != "duty"]
+    found = least_factors(base, [m.handles for m in groups], case.clock) if groups else None
+    if found is None:
+        return None
+    factors, _, bound = found
+    moves = tuple((m, float(f)) for m, f in zip(groups, factors, strict=True) if f > 1.0 + SAME)
+    return moves, bound if comparable(case.scene, groups) else None
+
+
+def _after(case: Case, scene: Scene) -> Moves | None:
+    """The moves of limits and real-valued sizes that a changed scene needs; None: none do."""
+    if not is_real(scene, case.clock):
+        return ()
+    base, _, movable = posed(scene)
+    found = _least_moves(case, base, [m for m in movable if not is_stepped(scene, m)])
+    return None if found is None else found[0]
+
+
+def is_stepped(scene: Scene, number: Movable) -> bool:
+    """Whether a number is given and may only take steps."""
+    return number.sort == "size" and bool(steps(scene, number))
+
+
+def widest(movable: Sequence[Movable]) -> list[Movable]:
+    """All limits, where they stand for most stages."""
+    limits = [m for m in movable if m.sort == "limit"]
+    shared = {m.family for m in limits if m.shared}
+    return [m for m in limits if m.shared or m.family not in shared]
