@@ -4,8 +4,13 @@ import math
 
 import numpy as np
 
-from gearopt.formulations.servo.tolerance.distributions import RUN_OUT, UNIFORM
-from gearopt.formulations.servo.tolerance.stack import Component, ErrorBudget, Stack
+from gearopt.formulations.servo.tolerance.stack import (
+    RUN_OUT,
+    UNIFORM,
+    Component,
+    ErrorBudget,
+    Stack,
+)
 
 TERMS = {  # baseline tolerances [um], stages 12 and 34; the zero ones are left out
     "pinion reading": (18.0, 20.0),

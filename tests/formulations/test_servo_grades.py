@@ -11,8 +11,7 @@ from servo_tolerances import BASE, E_RSS, E_WC, components
 from gearopt.errors import SolveError
 from gearopt.formulations.servo.tolerance import problem as allocation
 from gearopt.formulations.servo.tolerance.conic import milp
-from gearopt.formulations.servo.tolerance.grades import Choice, Graded, problem
-from gearopt.formulations.servo.tolerance.knapsack import whole
+from gearopt.formulations.servo.tolerance.grades import Choice, Graded, problem, whole
 from gearopt.formulations.servo.tolerance.stack import ErrorBudget, Stack
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import solve

@@ -9,9 +9,16 @@ from servo_tolerances import BASE, E_WC, PRESSURE_ANGLE, S, stack
 
 from gearopt.formulations.servo.tolerance import problem
 from gearopt.formulations.servo.tolerance.backlash import Mesh, bilateral, offset_of
-from gearopt.formulations.servo.tolerance.distributions import NORMAL, RUN_OUT, UNIFORM, offset
 from gearopt.formulations.servo.tolerance.sampling import binomial_interval, drawn, order_interval
-from gearopt.formulations.servo.tolerance.stack import Component, ErrorBudget, Stack
+from gearopt.formulations.servo.tolerance.stack import (
+    NORMAL,
+    RUN_OUT,
+    UNIFORM,
+    Component,
+    ErrorBudget,
+    Stack,
+    offset,
+)
 from gearopt.optimise.solve import solve
 
 LAWS = (UNIFORM, RUN_OUT, NORMAL, offset(RUN_OUT), offset(NORMAL))

@@ -10,7 +10,6 @@ from servo_tolerances import BASE, E_RSS, E_WC, S, components, stack
 from gearopt.errors import SolveError
 from gearopt.formulations.servo.tolerance import problem, search
 from gearopt.formulations.servo.tolerance.conic import continuous
-from gearopt.formulations.servo.tolerance.distributions import NORMAL, RUN_OUT, UNIFORM
 from gearopt.formulations.servo.tolerance.roots import (
     cheapest,
     closed_form,
@@ -18,7 +17,14 @@ from gearopt.formulations.servo.tolerance.roots import (
     lower_bound,
     roots,
 )
-from gearopt.formulations.servo.tolerance.stack import Component, ErrorBudget, Stack
+from gearopt.formulations.servo.tolerance.stack import (
+    NORMAL,
+    RUN_OUT,
+    UNIFORM,
+    Component,
+    ErrorBudget,
+    Stack,
+)
 from gearopt.optimise import tape
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget

@@ -7,9 +7,14 @@ import pytest
 
 from gearopt.formulations.servo.tolerance import problem
 from gearopt.formulations.servo.tolerance.conic import continuous
-from gearopt.formulations.servo.tolerance.distributions import NORMAL, RUN_OUT
 from gearopt.formulations.servo.tolerance.sampling import THREE_SD, drawn, order_interval
-from gearopt.formulations.servo.tolerance.stack import Component, ErrorBudget, Stack
+from gearopt.formulations.servo.tolerance.stack import (
+    NORMAL,
+    RUN_OUT,
+    Component,
+    ErrorBudget,
+    Stack,
+)
 from gearopt.optimise.solve import solve
 
 RULES = ("worst_case", "rss")

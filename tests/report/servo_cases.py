@@ -13,9 +13,14 @@ from gearopt.formulations.servo import ratio, servo_box, split, tolerance
 from gearopt.formulations.servo.ratio import Drive, best_ratio
 from gearopt.formulations.servo.servo_design import Achieved
 from gearopt.formulations.servo.split.servo_train import objectives, pairs
-from gearopt.formulations.servo.tolerance.distributions import RUN_OUT, UNIFORM
 from gearopt.formulations.servo.tolerance.sampling import drawn
-from gearopt.formulations.servo.tolerance.stack import Component, ErrorBudget, Stack
+from gearopt.formulations.servo.tolerance.stack import (
+    RUN_OUT,
+    UNIFORM,
+    Component,
+    ErrorBudget,
+    Stack,
+)
 from gearopt.optimise.solve import solve
 from gearopt.optimise.typed import untyped
 from gearopt.physics import stiffness

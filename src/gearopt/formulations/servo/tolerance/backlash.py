@@ -9,8 +9,7 @@ tolerances double, and the error of j itself comes off the budget.
 import math
 from dataclasses import dataclass, replace
 
-from gearopt.formulations.servo.tolerance.distributions import UNIFORM, offset
-from gearopt.formulations.servo.tolerance.stack import Component, Stack
+from gearopt.formulations.servo.tolerance.stack import UNIFORM, Component, Stack, offset
 from gearopt.optimise.terms import Array
 
 

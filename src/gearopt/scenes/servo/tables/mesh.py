@@ -7,7 +7,7 @@ from typing import Annotated
 from pydantic import Field, model_validator
 
 from gearopt import units
-from gearopt.formulations.servo.tolerance.distributions import RUN_OUT, UNIFORM, Distribution
+from gearopt.formulations.servo.tolerance.stack import RUN_OUT, UNIFORM, Distribution
 from gearopt.physics.backlash import (
     backlash_angle,
     pitch_error_angle,
