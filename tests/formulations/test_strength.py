@@ -17,7 +17,7 @@ from gearopt.formulations import process, sizing, teeth, together
 from gearopt.formulations.gear_train import FaceWidth
 from gearopt.formulations.layout.gearbox import Gearbox, Shaft
 from gearopt.formulations.process import ProcessOne
-from gearopt.formulations.strength import Law, Limit
+from gearopt.formulations.strength import Law, Limit, laws
 from gearopt.formulations.strength.k_factor import K_FACTOR
 from gearopt.formulations.strength.lewis import LEWIS
 from gearopt.optimise import tape
@@ -52,6 +52,10 @@ def faster(pair, torque, speed):
 FASTER = Law("dynamic contact pressure", (Limit("pressure"),), faster)
 
 
+def test_every_file_of_a_law_is_known():
+    assert [law.title for law in laws()] == ["K-factor and unit load", "Lewis stress"]
+
+
 def pressed(law=CONTACT, stages=2, face="tied", allowable=1.5, **changes):
     """A small drive with a law of one limit."""
     train = drive(stages, face, **changes)
@@ -76,7 +80,7 @@ def faster_width(train):
     return needed
 
 
-@pytest.mark.parametrize("law", [K_FACTOR, LEWIS, CONTACT, FASTER], ids=lambda law: law.title)
+@pytest.mark.parametrize("law", [*laws(), CONTACT, FASTER], ids=lambda law: law.title)
 def test_a_law_keeps_its_promises(law):
     draw = np.random.default_rng(1)
     for _ in range(200):

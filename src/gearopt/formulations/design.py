@@ -115,8 +115,7 @@ def _stage(train: Train, pair: GearPair, torque: float, speed: float) -> StageDe
         pinion_torque_Nm=1e-3 * torque,
         pitch_line_velocity_m_per_s=float(1e-3 * pitch_line_velocity(speed, d)),
         indices={
-            f"{limit.name}_{limit.unit}": float(load)
-            for limit, load in zip(law.limits, loads, strict=True)
+            limit.design_key: float(load) for limit, load in zip(law.limits, loads, strict=True)
         },
         gear_volume_mm3=float(pair.volume),
         pinion_mass_kg=masses[0],

@@ -3,6 +3,7 @@
 from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
+from gearopt.formulations.strength import laws
 from gearopt.optimise.result import Result
 from gearopt.report.measures import INCH, Measures, diametral_pitch
 from gearopt.report.section import Cell, Section, Table, Tile, percent
@@ -25,8 +26,7 @@ STAGE_ROWS = {  # what a key is called, and its unit (modules are metric in any 
     "overlap_ratio": ("overlap ratio ε_β", ""),
     "pinion_torque_Nm": ("torque T1", "Nm"),
     "pitch_line_velocity_m_per_s": ("pitch-line velocity v", "m_per_s"),
-    "k_factor_MPa": ("K-factor", "MPa"),
-    "unit_load_MPa": ("unit load", "MPa"),
+    **{limit.design_key: (limit.label, limit.unit) for law in laws() for limit in law.limits},
     "gear_volume_mm3": ("volume", "cm3"),
     "pinion_mass_kg": ("pinion mass", "kg"),
     "wheel_mass_kg": ("wheel mass", "kg"),
@@ -59,13 +59,12 @@ def tables(result: Result, measures: Measures) -> Section | None:
 def stage_table(
     stages: Sequence[Mapping[str, Any]],
     measures: Measures,
-    rows: Mapping[str, tuple[str, str]] = STAGE_ROWS,
     page_only: Collection[str] = PAGE_ONLY,
 ) -> Table:
     """Return the stages side by side; page_only: keys of rows that only the page shows."""
     heads = ["", *(f"stage {k}" for k in range(1, len(stages) + 1))]
     found, hidden = [], []
-    for key, (words, unit) in rows.items():
+    for key, (words, unit) in STAGE_ROWS.items():
         if not all(key in s for s in stages):
             continue
         label = f"{words} [{measures.unit(unit)}]" if unit else words

@@ -5,6 +5,7 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
+from gearopt.formulations.strength import laws
 from gearopt.optimise.result import Result
 from gearopt.report.measures import METRIC, Measures
 
@@ -28,7 +29,8 @@ INVERSE = {"inverse acceleration": ("acceleration", "rad/s²")}  # name and unit
 def limit_words(name: str) -> str:
     """`k_factor[2]` as "K-factor of stage 2"."""
     stem, _, index = name.rstrip("]").partition("[")
-    words = stem.replace("_", " ").replace("k factor", "K-factor")
+    known = {limit.name: limit.label for law in laws() for limit in law.limits}
+    words = known.get(stem, stem.replace("_", " "))
     return f"{words} of stage {index}" if index else words
 
 

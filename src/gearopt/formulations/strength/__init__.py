@@ -4,8 +4,11 @@ A law gives indices (stresses, load factors) of a loaded pair, each with a limit
 Whoever sizes gears asks it for utilisations or for the minimum face width and knows no formula.
 """
 
+import pkgutil
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cache
+from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -20,10 +23,24 @@ NARROW = 1e-6  # of the widest face width: nothing narrower is looked for
 
 @dataclass(frozen=True)
 class Limit:
-    """The limit of one index: its name, which is also its key in a file, and its unit."""
+    """The limit of one index: its name, which is also its key in a file, and its unit.
+
+    words: what reports call it, by default its name.
+    """
 
     name: str
     unit: str = "MPa"
+    words: str = ""
+
+    @property
+    def design_key(self) -> str:
+        """What the index is called in a design: its name with its unit."""
+        return f"{self.name}_{self.unit}"
+
+    @property
+    def label(self) -> str:
+        """What reports call it."""
+        return self.words or self.name.replace("_", " ")
 
 
 @dataclass(frozen=True)
@@ -91,3 +108,11 @@ class Law:
                 good = carries(middle)
                 low, found = np.where(good, low, middle), np.where(good, middle, found)
             return np.where(carries(narrowest), narrowest, found)
+
+
+@cache
+def laws() -> tuple[Law, ...]:
+    """Return the laws that the files of this folder hold."""
+    names = [f"{__name__}.{module.name}" for module in pkgutil.iter_modules(__path__)]
+    held = [value for name in names for value in vars(import_module(name)).values()]
+    return tuple(value for value in held if isinstance(value, Law))

@@ -5,7 +5,7 @@ from gearopt.physics.loads import k_factor, unit_load
 
 K_FACTOR = Law(
     "K-factor and unit load",
-    (Limit("k_factor"), Limit("unit_load")),
+    (Limit("k_factor", words="K-factor"), Limit("unit_load")),
     lambda pair, torque, speed: (
         k_factor(torque, pair.pinion.reference_diameter, pair.face_width, pair.ratio),
         unit_load(torque, pair.pinion.reference_diameter, pair.face_width, pair.normal_module),

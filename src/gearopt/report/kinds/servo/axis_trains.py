@@ -14,7 +14,7 @@ from gearopt.formulations.servo.servo_design import (
 )
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import untyped
-from gearopt.report.design_tables import STAGE_ROWS, stage_table
+from gearopt.report.design_tables import stage_table
 from gearopt.report.kinds.servo.axis_words import (
     arc_minutes,
     degrees,
@@ -28,7 +28,6 @@ from gearopt.report.pages import train_views
 from gearopt.report.section import Figure, Section, Table, axis, layout
 from gearopt.report.words import amount, heading, parted
 
-ROWS = STAGE_ROWS | {"bending_stress_MPa": ("bending stress", "MPa")}
 BARE = (
     "A bare train of the same ratio by its number of stages: all pinions alike, all gears full "
     "discs of one width, no limit but the ratio; inertia at the motor and mass in those of a "
@@ -77,7 +76,7 @@ def section(result: Result, measures: Measures) -> Section | None:
             "All shafts are drawn in one line, wheels as full discs; reference circles are "
             f"dash-dotted. Dimensions in {measures.lengths}."
         )
-    side_by_side = replace(stage_table(stages, measures, ROWS, ()), short={"": "train"})
+    side_by_side = replace(stage_table(stages, measures, page_only=()), short={"": "train"})
     tables = (side_by_side, Table("train", ("", ""), totals))
     half = not drawn
     return Section("Train", words=words, drawings=drawn, tables=tables, half=half, terminal=tables)
