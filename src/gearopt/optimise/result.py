@@ -107,7 +107,7 @@ class Result:
     limits), infeasible (proven), limit (stopped early), failed. objective: {name, value, unit}; of
     status evaluated it may be empty.
     bound: nothing feasible is better; gap: (objective - bound)/|objective|, of an objective of zero
-    relative to certificate["scale"], its own scale. proof: {method, ...}. certificate:
+    relative to certificate["scale"], its own scale. proof: {method, sentence, ...}. certificate:
     {feasibility, stationarity, complementarity}. limits: utilisations by name.
     asked: the tables of the problem file; options: what was asked for beside it (method, seconds,
     gap, seed, top, prices).

@@ -1,1 +1,1 @@
-"""Results for people: the terminal now."""
+"""Results for people: sections of tables, sentences and drawings, on pages and the terminal."""

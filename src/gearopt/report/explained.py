@@ -125,7 +125,7 @@ def ways_out(result: Result, measures: Measures) -> Section | None:
     if not found["conflict"] and result.message not in ("", found["message"]):
         why.insert(0, result.message)
     tables = [Table("ways out", REMEDY_HEADS, rows, words=True, left=3)] if rows else []
-    told = (*why, *tables, *tried)
+    told: list[str | Table] = [*why, *tables, *tried]
     return Section("Ways out", words=[*why, *tried], tables=tables, terminal=told)
 
 

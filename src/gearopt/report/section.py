@@ -11,6 +11,8 @@ from dataclasses import dataclass, field
 from typing import Any
 from urllib.parse import quote
 
+from rich.text import Text
+
 from gearopt.report.pages.sheet import Drawing
 from gearopt.report.words import number, share
 
@@ -165,7 +167,7 @@ class Section:
     figures: Sequence[Figure] = ()
     tables: Sequence[Table] = ()
     half: bool = False
-    terminal: Sequence[Any] = ()
+    terminal: Sequence[str | Text | Table] = ()
 
     @property
     def widest(self) -> float:

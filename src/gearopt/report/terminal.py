@@ -82,17 +82,11 @@ def show_explanation(explanation: Explanation, console: Console) -> None:
     _print(of_influences(explanation.prices, result).terminal, console)
 
 
-def _print(blocks: Sequence[Any], console: Console) -> None:
+def _print(blocks: Sequence[str | Text | Table], console: Console) -> None:
     """Print sentences and tables with a blank line before each."""
     for block in blocks:
         console.print()
-        console.print(_shown(block))
-
-
-def _shown(block: Any) -> RenderableType:
-    if isinstance(block, str):
-        return Text(block)
-    return grid(block) if isinstance(block, Table) else block
+        console.print(grid(block) if isinstance(block, Table) else Text.assemble(block))
 
 
 def rows_table(rows: list[dict[str, Any]]) -> RenderableType:

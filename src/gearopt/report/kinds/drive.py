@@ -64,7 +64,7 @@ def processes(result: Result, measures: Measures) -> Section | None:
     rows = [*_stages(designs, measures), *_totals(designs, best.bound, measures)]
     words = "The processes choose by rules, without a search; limits and bound are those of all."
     table = Table("processes and optimum", heads, rows)
-    told = (table, *missing) if result.value is not None else ()
+    told: list[str | Table] = [table, *missing] if result.value is not None else []
     return Section("Processes and optimum", words=(words, *missing), tables=(table,), terminal=told)
 
 
