@@ -12,10 +12,9 @@ from pydantic import BaseModel
 
 from gearopt.errors import CertificateError, GearoptError, SceneError, SolveError  # noqa: F401
 from gearopt.optimise.clock import whole
-from gearopt.optimise.comparing.compare import EVALUATIONS, SECONDS, SEEDS, Follow, Plan
+from gearopt.optimise.comparing.compare import EVALUATIONS, SECONDS, SEEDS, Follow, Model, Plan
 from gearopt.optimise.comparing.compare import compare as compare_methods
 from gearopt.optimise.comparing.comparison import Comparison
-from gearopt.optimise.comparing.trial import Model
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.explaining.explanation import Explanation
 from gearopt.optimise.problem import Problem, one_objective

@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from gearopt.api import solve
-from gearopt.cli.comparing import compare
+from gearopt.cli.answering import compare
+from gearopt.cli.answering import solve as solve_command
 from gearopt.cli.reporting import checked, report
-from gearopt.cli.solving import solve as solve_command
 from gearopt.cli.writing import check_csv, check_html, write
 from gearopt.errors import GearoptError
 

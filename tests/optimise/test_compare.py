@@ -12,9 +12,8 @@ import pytest
 import gearopt
 from gearopt import Comparison, Problem, SolveError, Terms, Var
 from gearopt.errors import CertificateError
-from gearopt.optimise.comparing.compare import KINDS, PATIENCE
+from gearopt.optimise.comparing.compare import KINDS, PATIENCE, WARM
 from gearopt.optimise.comparing.comparison import excess, quantile
-from gearopt.optimise.comparing.trial import WARM
 from gearopt.optimise.result import Event, Outcome
 from gearopt.optimise.solve import back_ends
 

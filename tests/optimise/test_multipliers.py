@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 
 from gearopt.optimise.certificate import certify
-from gearopt.optimise.dual import NEAR, multipliers
+from gearopt.optimise.dual import multipliers
 from gearopt.optimise.form import form
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Outcome
+from gearopt.optimise.stationarity import NEAR
 from gearopt.optimise.terms import Terms, Var
 
 

@@ -5,8 +5,7 @@ import pytest
 
 from gearopt.optimise.form import form
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.second_order import no_minimum
-from gearopt.optimise.stationarity import evaluated
+from gearopt.optimise.stationarity import evaluated, no_minimum
 from gearopt.optimise.terms import Terms, Var
 
 NAMES = "abcd"
@@ -244,7 +243,7 @@ def test_valleys_are_followed_along_their_floor(name, turn):
 @pytest.mark.parametrize("name", [n for n in BENT if "force" in n])
 def test_what_is_left_of_a_limit_hardly_changes_the_lagrangian(name, monkeypatch):
     """One step towards the curve leaves a cube of the step's length, and it falls by its fourth."""
-    monkeypatch.setattr("gearopt.optimise.second_order.NEWTON", 1)
+    monkeypatch.setattr("gearopt.optimise.stationarity.NEWTON", 1)
     test_valleys_are_followed_along_their_floor(name, 0.4)
     sign = -1.0 if "falls" in name else 1.0
 

@@ -14,7 +14,7 @@ from pydantic import Field
 
 import gearopt
 from gearopt import Param, Problem, Terms, Var
-from gearopt.optimise.comparing.trial import Model
+from gearopt.optimise.comparing.compare import Model
 from gearopt.optimise.result import Outcome
 from gearopt.optimise.solve import solve as solve_problem
 from gearopt.scenes.explaining.default import explain

@@ -1,8 +1,25 @@
 """Speed against error: each module is a bench, `run(repeat) -> rows`; `gearopt bench NAME`."""
 
+import statistics
+from collections.abc import Callable
 from pkgutil import iter_modules
+
+from gearopt.optimise.clock import Clock
+from gearopt.optimise.result import Result
 
 
 def names() -> tuple[str, ...]:
     """Names of the benches: the modules of this folder."""
     return tuple(sorted(m.name for m in iter_modules(__path__)))
+
+
+def timed(call: Callable[[], Result], repeat: int) -> tuple[Result, dict[str, float]]:
+    """The last result and the times [ms] of so many calls; the first, which compiles, is apart."""
+    times = []
+    for _ in range(repeat + 1):
+        clock = Clock()
+        result = call()
+        times.append(1000.0 * clock.seconds)
+    times = times[1:]
+    found = {"median_ms": statistics.median(times), "least_ms": min(times), "most_ms": max(times)}
+    return result, {name: round(ms, 2) for name, ms in found.items()}

@@ -12,9 +12,8 @@ from gearopt.bench.drive import CASES, train_of
 from gearopt.formulations import sizing, teeth
 from gearopt.formulations.gear_train import FaceWidth, Stage, Train
 from gearopt.formulations.strength.k_factor import K_FACTOR
-from gearopt.optimise.comparing.compare import Plan, compare
+from gearopt.optimise.comparing.compare import Model, Plan, compare
 from gearopt.optimise.comparing.comparison import Comparison
-from gearopt.optimise.comparing.trial import Model
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Param, Terms, Var
 from gearopt.physics.gears import SERIES_I

@@ -4,12 +4,11 @@ Known: the two drives of Chong and Lee, solved by SCIP and by brute force in the
 and more stages have no published optimum, so their error is the proven gap.
 """
 
-import statistics
 from typing import Any
 
+from gearopt.bench import timed
 from gearopt.formulations import sizing, teeth
 from gearopt.formulations.gear_train import Train
-from gearopt.optimise.clock import Clock
 from gearopt.optimise.solve import solve
 from gearopt.scenes.reading.load import read
 
@@ -63,18 +62,11 @@ def train_of(duty: str, widths: list[float]) -> Train:
 
 
 def _row(name: str, method: str, call: Any, known: float | None, repeat: int) -> dict[str, Any]:
-    times = []
-    for _ in range(repeat + 1):
-        clock = Clock()
-        result = call()
-        times.append(1000.0 * clock.seconds)
-    times = times[1:]  # the first call imports
+    result, times = timed(call, repeat)
     return {
         "case": name,
         "method": method,
-        "median_ms": round(statistics.median(times), 2),
-        "least_ms": round(min(times), 2),
-        "most_ms": round(max(times), 2),
+        **times,
         "objective": result.value,
         "status": result.status,
         "gap": result.gap,

@@ -5,13 +5,12 @@ problems/servo_gimbal_light.toml; 62,054 and 247,948 of its 6,326,052 trains are
 """
 
 import math
-import statistics
 from fractions import Fraction
 from typing import Any
 
+from gearopt.bench import timed
 from gearopt.formulations.servo import split
 from gearopt.formulations.servo.split import OBJECTIVES, ServoTrain
-from gearopt.optimise.clock import Clock
 from gearopt.optimise.solve import solve
 from gearopt.physics.backlash import radial_backlash
 
@@ -64,18 +63,12 @@ def train_of(error: float) -> ServoTrain:
 def _row(
     case: str, train: ServoTrain, goal: str, method: str, bound: float, repeat: int
 ) -> dict[str, Any]:
-    problem, times = split.problem(train, goal), []
-    for _ in range(repeat + 1):
-        clock = Clock()
-        result = solve(problem, method)
-        times.append(1000.0 * clock.seconds)
-    times = times[1:]  # the first call compiles
+    problem = split.problem(train, goal)
+    result, times = timed(lambda: solve(problem, method), repeat)
     return {
         "case": case,
         "method": method,
-        "median_ms": round(statistics.median(times), 2),
-        "least_ms": round(min(times), 2),
-        "most_ms": round(max(times), 2),
+        **times,
         "trains_looked_at": result.proof["trains_looked_at"],
         "feasible_trains": result.proof.get("feasible_trains"),
         "objective": result.value,

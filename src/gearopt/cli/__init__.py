@@ -3,15 +3,12 @@
 import sys
 
 # Importing registers the commands, in the order of --help.
-from gearopt.cli import solving  # noqa: F401
+from gearopt.cli import answering  # noqa: F401
 
 # isort: split
-from gearopt.cli import explaining  # noqa: F401
-
-# isort: split
-from gearopt.cli import comparing, files, machine, reporting  # noqa: F401
+from gearopt.cli import files, machine, reporting  # noqa: F401
 from gearopt.cli.app import app
-from gearopt.cli.streams import patient
+from gearopt.cli.writing import patient
 from gearopt.errors import GearoptError
 
 

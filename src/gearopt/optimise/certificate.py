@@ -23,8 +23,7 @@ from gearopt.optimise.quadratic import natural
 from gearopt.optimise.result import CONVEX, FEASIBLE, Outcome, Result
 from gearopt.optimise.scale import gap as gap_of
 from gearopt.optimise.scale import is_known, measured, runaway, violation, way
-from gearopt.optimise.second_order import no_minimum
-from gearopt.optimise.stationarity import STATIONARY, Point, evaluated, residuals
+from gearopt.optimise.stationarity import STATIONARY, Point, evaluated, no_minimum, residuals
 from gearopt.optimise.terms import Array
 
 LOOSE = 1e-2  # a gap above which no point of a convex problem is said to be a minimum

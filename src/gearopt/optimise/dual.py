@@ -18,10 +18,9 @@ from gearopt.optimise.form import Form
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.quadratic import box, curvature, hessian_of, least
 from gearopt.optimise.result import Outcome
-from gearopt.optimise.stationarity import Point, evaluated
+from gearopt.optimise.stationarity import NEAR, Point, evaluated
 from gearopt.optimise.terms import Array
 
-NEAR = 1e-6  # a row this close to its limit, a variable this close to its bound, is active
 MOST = 2_000_000  # entries of the dense system; larger problems keep their method's multipliers
 SMALL = 100_000  # entries of the dense system, which takes milliseconds
 SPARSE = 0.05  # share of entries up to which a larger system is solved as a sparse one

@@ -1,9 +1,15 @@
-"""Whether a point is stationary: the first-order conditions, in the form's variables.
+"""Whether a point is stationary, and whether it is a local minimum: conditions of both orders.
 
-No variable promises a decrease, by its slope over its own scale, that is more than STATIONARY of
-what acts on it: the slopes of the objective and of the limits, which cancel in a solution, and the
-curvature. Neither a unit nor a factor of the objective changes that. (For the second-order
-conditions see `second_order`.)
+First order, in the form's variables: no variable promises a decrease, by its slope over its own
+scale, that is more than STATIONARY of what acts on it: the slopes of the objective and of the
+limits, which cancel in a solution, and the curvature. Neither a unit nor a factor of the objective
+changes that.
+
+Second order, and a look further: the Lagrangian must not fall along any direction that the limits
+which hold leave free. Its Hessian is reduced to the directions along limits and bounds with a
+price; those that hold without a price block one side of a direction. Directions without curvature
+are followed for some steps, on the curve along which the limits go on to hold and the Lagrangian is
+least across the direction.
 """
 
 from dataclasses import dataclass
@@ -13,9 +19,11 @@ import numpy as np
 
 from gearopt.optimise.form import Form
 from gearopt.optimise.problem import Problem
+from gearopt.optimise.quadratic import dense
 from gearopt.optimise.scale import sizes
 from gearopt.optimise.terms import Array
 
+NEAR = 1e-6  # a row this close to its limit, a variable this close to its bound, is active
 STATIONARY = 1e-6  # of what acts on a variable; of the objective itself where the form is convex
 WEAK = 1e-8  # of the variable that is acted on most: less is rounding of the multipliers
 ALONE = 1e-14  # the same without multipliers
@@ -111,3 +119,193 @@ def hessian(point: Point) -> Any:
         outputs = [ca.hessian(lagrangian, y)[0]]
         problem.memo[key] = ca.Function("hessian", [y, p, lam_g, lam_h], outputs)
     return problem.memo[key](point.y, problem.parameter_values(), point.lam_g, point.lam_h)
+
+
+FLAT = 1e-6  # of what acts on a direction: curvature below it is none
+RANK = 1e-9  # of the largest singular value: a row that depends on others
+ALONG = 1e-6  # of a direction's length: less does not leave a limit
+STEPS = (1e-3, 1e-2, 1e-1)  # of the variables' scale, by which flat directions are followed
+BOX = 0.1  # of its box is another scale of a variable: one near zero is small for no reason
+NOISE = 1e-12  # of all terms that are added up, in these steps
+MOST = 1000  # variables off their bounds; the reduced Hessian is dense
+ROUNDS = 20  # of making the entries of a matrix equal
+NEWTON = 10  # steps from a straight line to a curve, by the Hessian at the point
+
+
+@dataclass(frozen=True)
+class _Cone:
+    """Directions d (k,) of the free variables, in units of `unit`, along what holds.
+
+    free (n,): which variables have no price on their bound. curved (k, k): Hessian. firm: rows of
+    limits with a price and of equalities, loose: of all limits that hold, and of bounds without a
+    price; d must meet firm d = 0 and loose d <= 0. priced: which limits are firm. length: of firm
+    rows before they were made 1.
+    """
+
+    free: Any
+    unit: Array
+    curved: Array
+    firm: Array
+    loose: Array
+    priced: Any
+    length: Array
+
+    def across(self, d: Array) -> Array:
+        """Of a slope and an excess of the firm rows, the Newton step across d that undoes both.
+
+        (k, k and one for each firm row).
+        """
+        rows = np.vstack([self.firm, d])
+        size, count = len(self.curved), len(rows)
+        system = np.block([[self.curved, rows.T], [rows, np.zeros((count, count))]])
+        values, vectors = np.linalg.eigh(system)
+        some = np.abs(values) > FLAT
+        inverse: Array = (vectors[:size, some] / values[some]) @ vectors[:-1, some].T
+        return inverse
+
+
+def no_minimum(point: Point) -> str:
+    """Why a stationary point is not known to be a local minimum, in words; "" where it is."""
+    if point.shape.convex:
+        return ""
+    free = _free(point)
+    if free.sum() > MOST:
+        return f"its curvature is not looked at: {free.sum()} variables are off their bounds"
+    cone = _cone(point, free)
+    if not np.isfinite(cone.curved).all():
+        return "its curvature is not a number"
+    blocked = False
+    for value, direction in _eigen(cone.curved, cone.firm):
+        for d in (direction, -direction):
+            if not (cone.loose @ d <= ALONG).all():
+                blocked = blocked or value <= -FLAT
+            elif value <= -FLAT or _sinks(point, cone, d):
+                return _words(point, cone, d)
+    if not blocked:
+        return ""
+    for value, d in _eigen(cone.curved, np.vstack([cone.firm, cone.loose])):
+        if value <= -FLAT:
+            return _words(point, cone, d)
+    return "whether it is a minimum is open: limits hold that have no price"
+
+
+def _free(point: Point) -> Any:
+    """Variables that no bound with a price holds, (n,)."""
+    own, slope = own_scales(point), point.gradient
+    price = np.abs(slope) * own > STATIONARY * acting(point)
+    low, high = _ends(point)
+    return ~((low & high) | (low & price & (slope > 0.0)) | (high & price & (slope < 0.0)))
+
+
+def _ends(point: Point) -> tuple[Any, Any]:
+    """Which variables sit on their lower, and which on their upper bound."""
+    near = NEAR * own_scales(point)
+    return point.y - point.low <= near, point.high - point.y <= near
+
+
+def _cone(point: Point, free: Any) -> _Cone:
+    """The free directions, in units in which the Hessian has entries of up to 1."""
+    own = own_scales(point)
+    p = point.problem.parameter_values()
+    of_g, of_h = (dense(j) for j in point.shape.jacobians(point.y, p))
+    priced = point.lam_g[:, None] * np.abs(of_g) * own > STATIONARY * acting(point)
+    firm = priced.any(axis=1)
+    loose = point.g >= -NEAR
+    low, high = (end[free] for end in _ends(point))
+    bounds = np.eye(int(free.sum()))
+    curved = dense(hessian(point))[np.ix_(free, free)] * np.outer(own[free], own[free])
+    size = _equal(curved) + (point.pull * own)[free]
+    size = size + WEAK * size.max(initial=0.0)
+    root = np.sqrt(np.where(size > 0.0, size, 1.0))
+    unit = own[free] / root
+    held, length = _normal(np.vstack([of_g[firm], of_h])[:, free] * unit)
+    sides = np.vstack([_normal(of_g[loose][:, free] * unit)[0], -bounds[low], bounds[high]])
+    return _Cone(free, unit, curved / np.outer(root, root), held, sides, firm, length)
+
+
+def _normal(rows: Array) -> tuple[Array, Array]:
+    """Rows of length 1, and their lengths before."""
+    length = np.linalg.norm(rows, axis=1)
+    length = np.where(length > 0.0, length, 1.0)
+    return rows / length[:, None], length
+
+
+def _equal(matrix: Array) -> Array:
+    """The s (k,) for which the largest entry of each row of M_ij/sqrt(s_i s_j) is 1, or 0."""
+    found = np.ones(len(matrix))
+    for _ in range(ROUNDS):
+        root = np.sqrt(found)
+        largest = (np.abs(matrix) / np.outer(root, root)).max(axis=1, initial=0.0)
+        found = found * np.where(largest == 0.0, 1.0, largest)
+    return np.where(largest == 0.0, 0.0, found)
+
+
+def _eigen(curved: Array, rows: Array) -> list[tuple[float, Array]]:
+    """Curvatures below FLAT along rows d = 0, least first, with their directions of length 1."""
+    _, sizes, turned = np.linalg.svd(rows)
+    across = turned[int((sizes > RANK).sum()) :].T
+    values, vectors = np.linalg.eigh(across.T @ curved @ across)
+    found = zip(values, (across @ vectors).T, strict=True)
+    return [(float(value), d) for value, d in found if value < FLAT]
+
+
+def _sinks(point: Point, cone: _Cone, d: Array) -> bool:
+    """Whether the Lagrangian falls along d, by steps of the variables' scales or of their box."""
+    own, width = own_scales(point), point.high - point.low
+    wide = np.where(np.isfinite(width), np.maximum(own, BOX * width), own)
+    step = np.zeros(len(point.y))
+    step[cone.free] = cone.unit * d
+    across = cone.across(d)
+    return any(_falls(point, cone, step / (np.abs(step) / s).max(), across) for s in (own, wide))
+
+
+def _falls(point: Point, cone: _Cone, step: Array, across: Array) -> bool:
+    """Whether the Lagrangian falls by more than its slope and curvature say, at all STEPS.
+
+    It need not be seen at the shortest step; but nowhere may it rise.
+    """
+    curved = dense(hessian(point))
+    pull, pulls = curved @ step, np.abs(curved) @ np.abs(step)
+    here, size, _ = _lagrangian(point, cone, point.y)
+    fell = []
+    for t in STEPS:
+        moved = _curve(point, cone, t * step, across)
+        there, more, _ = _lagrangian(point, cone, point.y + moved)
+        bent = t * pull @ (moved - 0.5 * t * step)
+        further = there - here - point.gradient @ moved - bent
+        noise = NOISE * (size + more + t * pulls @ np.abs(moved))
+        fell.append(0 if not abs(further) > noise else np.sign(further))
+    return bool(max(fell) <= 0 and fell[-2] < 0)
+
+
+def _curve(point: Point, cone: _Cone, step: Array, across: Array) -> Array:
+    """A step along a flat direction and, across it, to what the Lagrangian and firm rows ask for.
+
+    They ask for slopes and rows as they are at the point; what these are there counts as none.
+    """
+    moved = step.copy()
+    _, _, off = _lagrangian(point, cone, point.y)
+    for _ in range(NEWTON):
+        _, _, now = _lagrangian(point, cone, point.y + moved)
+        moved[cone.free] -= cone.unit * (across @ (now - off))
+        moved = np.clip(moved, point.low - point.y, point.high - point.y)
+    return moved
+
+
+def _lagrangian(point: Point, cone: _Cone, y: Array) -> tuple[float, float, Array]:
+    """Value of the Lagrangian at y, the sizes of its terms, and its slope and the firm rows."""
+    p = point.problem.parameter_values()
+    parts = point.shape.derivatives(y, p, point.lam_g, point.lam_h)
+    f, g, h, _, slope = (np.array(part).ravel() for part in parts)
+    value = f[0] + point.lam_g @ g + point.lam_h @ h
+    sizes = abs(f[0]) + point.lam_g.sum() + np.abs(point.lam_h).sum()  # the unit of a row is 1
+    held = np.concatenate([g[cone.priced], h]) / cone.length
+    return float(value), float(sizes), np.concatenate([slope[cone.free] * cone.unit, held])
+
+
+def _words(point: Point, cone: _Cone, d: Array) -> str:
+    """Along which variables the objective falls."""
+    names = [name for (_, name), at in zip(point.problem.columns, cone.free, strict=True) if at]
+    share = np.abs(cone.unit * d) / own_scales(point)[cone.free]
+    most = [names[k] for k in np.argsort(-share, kind="stable")[:3] if share[k] > 0.3 * share.max()]
+    return f"no minimum: slopes vanish there, but the objective falls along {', '.join(most)}"

@@ -13,7 +13,7 @@ from gearopt.formulations import sizing, teeth
 from gearopt.formulations.gear_train import Train
 from gearopt.optimise.certificate import reconcile
 from gearopt.optimise.clock import Clock, in_part, of_others
-from gearopt.optimise.comparing.trial import Model
+from gearopt.optimise.comparing.compare import Model
 from gearopt.optimise.explaining.explanation import Explanation
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result

@@ -13,7 +13,7 @@ from gearopt.formulations.servo.ratio.duty import UNITS
 from gearopt.formulations.servo.servo_design import ServoDesign, ServoReport, train_figures
 from gearopt.formulations.servo.split.bodies import Pairs
 from gearopt.optimise.clock import Clock, of_others
-from gearopt.optimise.comparing.trial import Model
+from gearopt.optimise.comparing.compare import Model
 from gearopt.optimise.explaining.explanation import Explanation
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result

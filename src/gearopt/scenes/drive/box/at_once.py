@@ -9,7 +9,7 @@ from gearopt.formulations import sizing, teeth, together
 from gearopt.formulations.design import drive_design
 from gearopt.formulations.layout.slabs import Slabs, arrange
 from gearopt.optimise.clock import following, in_part
-from gearopt.optimise.comparing.trial import Model
+from gearopt.optimise.comparing.compare import Model
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Outcome, Result
 from gearopt.optimise.solve import limits, run

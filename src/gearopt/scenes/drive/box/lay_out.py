@@ -12,7 +12,7 @@ from gearopt.formulations.layout.layout_design import LayoutDesign
 from gearopt.formulations.layout.slabs import Arrangement, arrangements
 from gearopt.formulations.layout.text import placed, read
 from gearopt.optimise.clock import following, in_part
-from gearopt.optimise.comparing.trial import Model
+from gearopt.optimise.comparing.compare import Model
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run
 from gearopt.optimise.terms import Array

@@ -1,0 +1,205 @@
+"""`solve`, `explain`, `compare`: the best design, why it is what it is, methods side by side."""
+
+from collections.abc import Callable
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from gearopt.cli.app import Csv, File, Html, Json, Units, app, console, exit_code, print_whole
+from gearopt.cli.reporting import SECONDS, TOP_ON_PAGE, Files, checked, written
+from gearopt.cli.watching import following, reached, watching
+from gearopt.cli.writing import check_html, write
+from gearopt.optimise.comparing.compare import EVALUATIONS, SEEDS, Progress
+from gearopt.optimise.comparing.compare import SECONDS as EACH
+from gearopt.optimise.comparing.comparison import Comparison
+from gearopt.optimise.result import Budget, Result
+
+
+@app.command()
+def solve(
+    file: File,
+    method: Annotated[
+        str | None,
+        typer.Option(
+            help="By default, for a drive, exact where the file has a \\[teeth] table, else ipopt; "
+            "for a packing hop; docs/methods.md lists all."
+        ),
+    ] = None,
+    top: Annotated[
+        int | None,
+        typer.Option(
+            min=1,
+            max=1000,
+            help="Show so many of the best distinct trains, in proven order; by default 1, on a "
+            "page 10.",
+        ),
+    ] = None,
+    prices: Annotated[
+        bool,
+        typer.Option("--prices", help="Say too what every number costs, as a page always does."),
+    ] = False,
+    seconds: Annotated[float, typer.Option(min=0.0, help="Stop after this time.")] = SECONDS,
+    gap: Annotated[
+        float | None,
+        typer.Option(min=0.0, max=1.0, help="Stop when this relative gap to the bound is reached."),
+    ] = None,
+    seed: Annotated[int, typer.Option(help="Seed of random methods.")] = 0,
+    html: Html = None,
+    csv: Csv = None,
+    units: Units = "metric",
+    as_json: Json = False,
+) -> None:
+    """Find the best design and prove how good it is. Ctrl-C keeps the best found so far."""
+    from gearopt.api import solve as solve_file
+
+    files = checked(html, csv, units, file)
+    full = html is not None or csv is not None
+    with watching(seconds, quiet=as_json) as watch:
+        result = solve_file(
+            file,
+            method,
+            budget=Budget(seconds),
+            seed=seed,
+            watch=watch,
+            gap=gap,
+            top=top or (TOP_ON_PAGE if full else 1),
+            prices=prices or full,
+        )
+    lines: list[str] = []
+    try:
+        lines = written(result, files)
+    finally:  # what took long to find is shown even where no file can be written
+        _show_result(result, files, lines, as_json)
+    raise typer.Exit(exit_code(result))
+
+
+def _show_result(result: Result, files: Files, lines: list[str], as_json: bool) -> None:
+    if as_json:
+        print_whole(result.to_json())
+        return
+    from gearopt.report.terminal import show
+
+    show(result, console(), files.measures)
+    for line in lines:
+        print(line)
+
+
+@app.command()
+def explain(
+    file: File,
+    seconds: Annotated[float, typer.Option(min=0.0, help="Stop after this time.")] = 60.0,
+    as_json: Json = False,
+) -> None:
+    """Say what each number of the file costs; for an impossible request, what to write instead."""
+    from dataclasses import asdict, replace
+
+    from gearopt.api import explain as explain_file
+
+    with watching(seconds, quiet=as_json) as watch:
+        found = explain_file(file, budget=Budget(seconds), watch=watch)
+    if as_json:
+        print_whole(found.to_json())
+    elif found.result.value is None:
+        from gearopt.report.terminal import show as show_result
+
+        ways = {k: getattr(found, k) for k in ("conflict", "message")}
+        ways |= {"remedies": [asdict(r) for r in found.remedies]}
+        told = found.conflict or found.remedies or found.message != found.result.message
+        if found.result.status != "infeasible" or not told:  # the proof says why, once
+            ways = {}
+        report = found.result.report | ({"ways_out": ways} if ways else {})
+        show_result(replace(found.result, report=report), console())
+    else:
+        from gearopt.report.terminal import show_explanation
+
+        show_explanation(found, console())
+    raise typer.Exit(exit_code(found.result))
+
+
+@app.command()
+def compare(
+    file: File,
+    methods: Annotated[
+        str | None,
+        typer.Option(
+            help="Methods by name, with commas between; docs/methods.md lists all. By default a "
+            "choice for the kind of the file."
+        ),
+    ] = None,
+    seeds: Annotated[int, typer.Option(min=1, help="Runs of every random method.")] = SEEDS,
+    evaluations: Annotated[
+        int, typer.Option(min=1, help="Evaluations of a run, where these are held equal.")
+    ] = EVALUATIONS,
+    seconds: Annotated[
+        float, typer.Option(min=0.01, help="Time of a run, where that is held equal.")
+    ] = EACH,
+    bound_from: Annotated[
+        str | None,
+        typer.Option(help="A method that is run once, up to a minute, to prove a bound."),
+    ] = None,
+    html: Html = None,
+    as_json: Json = False,
+) -> None:
+    """Compare methods by their gap to what is proven. Ctrl-C reports the runs that are finished."""
+    from gearopt.api import compare as compare_file
+
+    check_html(html, file)
+    named = None
+    if methods is not None:
+        named = [name.strip() for name in methods.split(",") if name.strip()]
+    with following(_words, quiet=as_json) as watch:
+        found = compare_file(
+            file,
+            named,
+            seeds=seeds,
+            evaluations=evaluations,
+            seconds=seconds,
+            bound_from=bound_from,
+            watch=watch if as_json else _announced(watch),
+        )
+    try:
+        if html is not None:
+            from gearopt.report.pages.comparison import page
+
+            write("--html", html, page(found))
+    finally:  # what took long to find is shown even where no page can be written
+        _show(found, as_json)
+    if html is not None and not as_json:
+        print(f"\nPage: {html}")
+
+
+def _show(found: Comparison, as_json: bool) -> None:
+    if as_json:
+        print_whole(found.to_json())
+        return
+    from gearopt.report.terminal import show_comparison
+
+    show_comparison(found, console())
+
+
+def _announced(watch: Callable[[Progress], bool]) -> Callable[[Progress], bool]:
+    """The watcher, which says first how long all will take."""
+    told = False
+
+    def announcing(progress: Progress) -> bool:
+        nonlocal told
+        if progress.total and not told:
+            told = True
+            words = f"{progress.total} runs, about {_time(progress.left)}"
+            Console(stderr=True, highlight=False).print(words, style="dim")
+        return watch(progress)
+
+    return announcing
+
+
+def _words(now: Progress) -> str:
+    if not now.total:
+        return f"a bound from {now.method}"
+    parts = [f"run {now.done + 1} of {now.total}: {now.method}, seed {now.seed}"]
+    parts += [] if now.event is None else reached(now.event)
+    return ", ".join([*parts, f"about {_time(now.left)} left"])
+
+
+def _time(seconds: float) -> str:
+    return f"{seconds:.0f} s" if seconds < 100 else f"{seconds / 60:.0f} min"
