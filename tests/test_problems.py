@@ -19,7 +19,7 @@ KEYS = {  # of [x-expected], as the tests below read them
         *("status", "objective", "least_factor", "report"),
     },
 }
-LONG = ("thousand_in_two_stages", "three_stage_small_wheels")  # impossible ones
+LONG = ("thousand_in_two_stages", "three_stage_small_wheels", "elevator_small_wheels")
 DIGIT = {"objective": 0.06, "sizing": 0.006}  # the values are printed to tenths and hundredths
 
 

@@ -74,7 +74,9 @@ def test_samplers_are_polished_and_the_bound_is_ours(method):
     assert result.bound <= 1.0 and result.value == pytest.approx(1.0, rel=1e-9)
 
 
-@pytest.mark.parametrize("method", [*SAMPLERS, "scip"])
+@pytest.mark.parametrize(
+    "method", ["annealing", pytest.param("nsga2", marks=pytest.mark.slow), "scip"]
+)
 def test_integers_and_finite_sets(method):
     result = solve(catalogue(), method, Budget(evaluations=20_000), seed=1)
     assert result.status == "feasible"

@@ -399,6 +399,7 @@ def test_a_plain_drive_gives_a_light_page_without_plots():
         assert words in shown, words
 
 
+@pytest.mark.slow
 def test_an_impossible_request_says_what_to_write(solved):
     result = solved("elevator_small_wheels")
     shown = text(page(result, "x"))

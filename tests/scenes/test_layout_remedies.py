@@ -88,6 +88,7 @@ def test_a_range_of_places_is_widened():
     assert_least(found, content)
 
 
+@pytest.mark.slow
 def test_two_faults_at_once_are_both_told_and_get_pairs_of_edits():
     found, content = told(THICK + FAR)
     for said in ("Wheel 1 and shaft 3 are 2.19 mm too close", "reach 680.23 mm"):
