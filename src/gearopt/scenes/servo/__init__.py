@@ -24,7 +24,7 @@ from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.servo.assumptions import assumptions, notes
 from gearopt.scenes.servo.remedies import remedies
 from gearopt.scenes.servo.scene import EXAMPLE, Scene
-from gearopt.scenes.servo.tolerance_part import named, of_given, tolerance_part
+from gearopt.scenes.servo.tolerance_part import by_every_rule, named, old, tolerance_part
 from gearopt.scenes.servo.tolerance_part import problem as tolerance_problem
 from gearopt.scenes.servo.train_part import (
     Found,
@@ -135,7 +135,7 @@ def _key_figures(scene: Scene, found: Found) -> ServoReport:
     stiffness = None if springs is None else springs.design(to_point(gears))
     figures |= {f"given_{key}": v for key, v in train_figures(train, stiffness).items()}
     if scene.sources:
-        figures |= of_given(scene, gears)
+        figures |= by_every_rule(scene, gears, old(scene), "given")
     if scene.lightest is not None and springs is not None and train.mass_kg is not None:
         thick, long = springs.shaft
         shaft = 1000.0 * float(disc_mass(scene.servo_train().density, long, thick))

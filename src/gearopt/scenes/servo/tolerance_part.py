@@ -115,7 +115,7 @@ def tolerance_part(scene: Scene, gears: Pairs, ask: Ask) -> Found:
     watch = in_part(ask.watch, part="tolerances")
     result, outcome = run(posed, ask.method, ask.budget, ask.seed, watch, ask.gap)
     result = replace(result, name="tolerances", objective=result.objective | {"unit": ""})
-    figures: dict[str, Any] = by_every_rule(own.components, old(scene), "old")
+    figures: dict[str, Any] = by_every_rule(scene, gears, old(scene), "old")
     if result.value is None or outcome.x is None:
         proof = {k: v for k, v in result.proof.items() if k != "conflict"}
         return Found((replace(result, proof=proof),), report=ServoReport(figures=figures))
@@ -125,7 +125,7 @@ def tolerance_part(scene: Scene, gears: Pairs, ask: Ask) -> Found:
     allotted = _allocation(own, t, result, scene)
     draws = drawn(own, t, own.budgets[0].error, seed=table.seed)
     design = ServoDesign(tolerances=_rows(scene, own, t), allocation=allotted, drawn=draws)
-    figures |= by_every_rule(own.components, t, "new")
+    figures |= by_every_rule(scene, gears, t, "new")
     figures |= {
         "new_quantile_deg": draws.quantile_deg,
         "new_quantile_low_deg": draws.quantile_low_deg,
@@ -186,21 +186,14 @@ def _allocation(own: Stack, t: Array, result: Result, scene: Scene) -> Allocatio
     return Allocation(budgets, result.value, before, method)
 
 
-def by_every_rule(parts: tuple[Component, ...], t: Array, whose: str) -> dict[str, float]:
+def by_every_rule(scene: Scene, gears: Pairs, t: Array, whose: str) -> dict[str, float]:
     """Return the error of tolerances t by every rule [deg], named after whose they are."""
+    parts = tuple(
+        Component(s.name, math.degrees(sensitivity(gears, s)), 1.0, distribution=s.law)
+        for s in scene.sources
+    )
     budgets = tuple(ErrorBudget(rule, 1.0, kappa, name) for name, rule, kappa in RULES)
     used = Stack(parts, budgets).used(t).tolist()
     found = {f"{whose}_{name}_deg": v for (name, _, _), v in zip(RULES, used, strict=True)}
-    found[f"{whose}_sd_deg"] = (
-        found[f"{whose}_mean_plus_3_sd_deg"] - found[f"{whose}_mean_deg"]
-    ) / 3.0
-    return found
-
-
-def of_given(scene: Scene, gears: Pairs) -> dict[str, float]:
-    """Return the error of the file's tolerances on given gears, by every rule [deg]."""
-    parts = tuple(
-        Component(s.name, math.degrees(sensitivity(gears, s)), 1.0, 1.0, 0.0, math.inf, s.law)
-        for s in scene.sources
-    )
-    return by_every_rule(parts, old(scene), "given")
+    mean, three = (found[f"{whose}_{name}_deg"] for name in ("mean", "mean_plus_3_sd"))
+    return found | {f"{whose}_sd_deg": (three - mean) / 3.0}
