@@ -75,11 +75,12 @@ def explain(
     budget: Budget | None = None,
     watch: Watch | None = None,
 ) -> Explanation:
-    """Why the answer to a file, a scene or a continuous problem is what it is.
+    """Why the answer to a file, a scene or a problem is what it is.
 
     Possible: the limits that bind, and the sensitivity and price of every number of the file (of
-    every parameter of a problem). Impossible: the limits that cannot hold together, and proven
-    remedies: what to write instead. SceneError and SolveError as in `solve`.
+    every parameter, and bound with a key, of a problem). Impossible: the limits that cannot hold
+    together, and remedies that were tried: what to write instead. SceneError and SolveError as in
+    `solve`; a problem with discrete variables needs an exact method of its own.
     """
     from gearopt.optimise.explaining.explain import explain as explain_problem
 

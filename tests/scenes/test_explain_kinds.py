@@ -1,6 +1,7 @@
 """`explain` of every kind: slopes equal to solving again, edits that do what is said of them."""
 
 import math
+import re
 from decimal import Decimal
 from fractions import Fraction
 from pathlib import Path
@@ -15,12 +16,14 @@ from pydantic import Field
 import gearopt
 from gearopt import Param, Problem, Terms, Var
 from gearopt.optimise.comparing.compare import Model
+from gearopt.optimise.explaining.handles import each_word, handles
 from gearopt.optimise.result import Outcome
 from gearopt.optimise.solve import solve as solve_problem
 from gearopt.scenes.explaining.default import explain
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.fields import Table, number, quantity, whole
-from gearopt.scenes.reading.load import read, scene_module
+from gearopt.scenes.reading.load import kind_of, read, scene_module
+from gearopt.scenes.reading.remedy import table_of
 from gearopt.units import Quantity
 
 PROBLEMS = Path(__file__).parents[2] / "problems"
@@ -300,3 +303,28 @@ def test_tolerances_that_no_budget_holds():
         other = edited(content, remedy, model=type(own))
         assert gearopt.solve(other).status == "optimal"
         assert gearopt.solve(edited(content, remedy, remedy.changes, type(own))).value is None
+
+
+METHODS = {"drive": "ipopt", "packing": "multistart"}
+
+
+@pytest.mark.parametrize("path", sorted(PROBLEMS.glob("*.toml")), ids=lambda p: p.stem)
+def test_every_key_of_a_problem_is_a_place_of_its_file(path):
+    """Of the problem that is explained, with one layer of a packing; every kind names some."""
+    text = path.read_text()
+    own = scene(re.sub(r"(?s)\[layers\].*?(?=\n\[|$)", "", text))
+    kind = kind_of(own)
+    if getattr(own, "layout", None) is not None or "layer = " in text:
+        pytest.skip("a layout has no numbers of its own")
+    if "grades" in path.stem:
+        pytest.skip("grades are looked up in tables")
+    problem = scene_module(kind).model(own, METHODS.get(kind, "")).problem
+    keys = {k for q in problem.parameters for k in each_word(q.key, q.size)}
+    keys = {k for k in keys | {h.key for h in handles(problem)} if k}
+    for key in keys:
+        table = type(own)
+        *tables, field = re.sub(r"\[\d+\]", "", key).split(".")
+        for name in tables:
+            table = table_of(table.model_fields[name].annotation)
+        assert field in table.model_fields
+    assert keys

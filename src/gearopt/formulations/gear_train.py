@@ -5,6 +5,7 @@ fractions; the rest are floats in mm, N, rad, MPa.
 """
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any
@@ -95,7 +96,8 @@ class Train:
 
     helix_angle [rad] and basic rack of every stage. coprime: z1 and z2 without common divisor
     (hunting teeth). objective: a key of OBJECTIVES; mass needs density [t/mm3]. law: what limits
-    the stages. speed: that of the input [rad/s], for laws that depend on it.
+    the stages. speed: that of the input [rad/s], for laws that depend on it. keys: places of
+    `numbers` in a problem file, one a stage for the limits of a stage.
     """
 
     torque: float
@@ -109,6 +111,7 @@ class Train:
     density: float | None = None
     law: Law = field(kw_only=True)
     speed: float = 0.0
+    keys: Mapping[str, str | tuple[str, ...]] = field(default_factory=dict, compare=False)
 
     def __post_init__(self) -> None:
         numbers = [self.torque, *(x for s in self.stages for x in s.allowable)]

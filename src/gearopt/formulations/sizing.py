@@ -47,6 +47,7 @@ def problem(train: Train) -> Problem:
             units.get(name, ""),
             value,
             count if isinstance(value, tuple) else 1,
+            train.keys.get(name, ""),
             role=_role(train, name, "data"),
         )
         for name, value in numbers.items()

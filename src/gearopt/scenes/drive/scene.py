@@ -62,6 +62,27 @@ minimise = "gear_volume"       # or mass, sum_of_centre_distances, total_length
 # first_centre_distance = "150 mm"
 # modules = ["2 mm", "3 mm"]   # or: pinion_teeth = [23, 25]
 """
+KEYS: dict[
+    str, str | tuple[str, ...]
+] = {  # of `Train.numbers`, those of the whole drive: their places in a file
+    "torque": "duty.power",
+    "speed": "duty.input_speed",
+    **dict.fromkeys(("lowest_ratio", "highest_ratio"), "duty.ratio_tolerance"),
+    "helix_cosine": "gears.helix_angle",
+    "density": "objective.density",
+}
+RANGES = {  # stem of the two limits of a stage: the key of their range
+    "width": "face_width_over_diameter",
+    "module": "module",
+    "pinion": "pinion_teeth",
+    "wheel": "wheel_teeth",
+    "ratio": "stage_ratio",
+}
+ENDS: dict[str, tuple[str, int | None]] = {
+    **{f"{stem}_low": (key, 1) for stem, key in RANGES.items()},
+    **{f"{stem}_high": (key, 2) for stem, key in RANGES.items()},
+    "wheel_diameter": ("wheel_diameter", None),
+}
 
 
 class Scene(Table):
@@ -204,7 +225,22 @@ class Scene(Table):
             density=density.value if density else None,
             law=self.limits.LAW,
             speed=speed,
+            keys=KEYS | self._keys(stages),
         )
+
+    def _keys(self, stages: tuple[StageTable, ...]) -> dict[str, str | tuple[str, ...]]:
+        """The places of the limits of every stage; "" where the file has none."""
+
+        def place(k: int, field: str, end: int | None) -> str:
+            tables = ("limits", self.limits), ("gears", self.gears)
+            for name, table in ((f"stage[{k + 1}]", stages[k]), *tables):
+                if (value := getattr(table, field, None)) is not None:
+                    one = end is None or value[0] == value[1]
+                    return f"{name}.{field}" if one else f"{name}.{field}[{end}]"
+            return f"limits.{field}" if field in self.limits.LAW.names else ""  # of a preset
+
+        ends = {name: (name, None) for name in self.limits.LAW.names} | ENDS
+        return {n: tuple(place(k, *ends[n]) for k in range(len(stages))) for n in ends}
 
     def design(self, pairs: tuple[GearPair, ...]) -> DriveDesign:
         """Return the drive of these gear pairs in the words of its drawing."""

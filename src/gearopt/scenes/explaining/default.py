@@ -122,7 +122,7 @@ def remedies(scene: Any, problem: Problem, clock: Clock, status: Callable[[Any],
     given, and which way is easier. status(scene): of a changed file, solved. A remedy is told only
     if the file with it, read anew, has a design.
     """
-    known = handles(problem)
+    known = _handles(problem)
     found = [r for n, h in _keyed(scene, known) if (r := _alone(scene, n, h, clock, status))]
     own = sorted((r for r in found if r.kind != "less"), key=lambda r: r.factor)
     if own:
@@ -190,9 +190,15 @@ def _alone(
 
 def eases(problem: Problem | Conic) -> dict[str, int]:
     """By the keys of a problem's limits: the direction in which they are easier."""
-    if isinstance(problem, Conic):
-        return {}
-    return {h.key: h.direction for h in handles(problem) if h.key and not h.given}
+    return {h.key: h.direction for h in _handles(problem) if h.key and not h.given}
+
+
+def _handles(problem: Problem | Conic) -> tuple[Handle, ...]:
+    """The handles of a problem; none where its text cannot be traced."""
+    try:
+        return () if isinstance(problem, Conic) else handles(problem)
+    except SolveError:
+        return ()
 
 
 def priced(
