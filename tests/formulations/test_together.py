@@ -15,8 +15,7 @@ from gearopt.formulations.layout.gearbox import Clearances, Gearbox, KeepOut, Sh
 from gearopt.formulations.layout.slabs import arrangements, clashes, orders
 from gearopt.formulations.strength.k_factor import K_FACTOR
 from gearopt.formulations.together import search
-from gearopt.formulations.together.prepare import rest
-from gearopt.formulations.together.tables import numbers
+from gearopt.formulations.together.tables import numbers, rest
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.kernels import kernel
 from gearopt.optimise.result import Budget

@@ -18,15 +18,21 @@ from gearopt.formulations.layout.gearbox import Gearbox
 from gearopt.formulations.layout.slabs import TOUCH, Arrangement, arrangements, clashes
 from gearopt.formulations.teeth.search import within
 from gearopt.formulations.teeth.stage import table
-from gearopt.formulations.together.prepare import chains, rest, useful
-from gearopt.formulations.together.tables import Drive, Make, Rest
+from gearopt.formulations.together.tables import (
+    KERNELS,
+    Drive,
+    Make,
+    Rest,
+    chains,
+    rest,
+    useful,
+)
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.kernels import kernel
 from gearopt.optimise.result import Budget
 from gearopt.optimise.terms import Array
 from gearopt.physics.gears import GearPair
 
-SEARCH = "gearopt.formulations.together.together_kernel"
 MARGINS = (0.3, 0.1, 0.03, 0.01, 3e-3, 1e-3, 3e-4, 1e-4)  # of the passes
 CHOICES = 50_000  # pairs looked at in a slice of an expansion
 CELLS = 100_000  # cells of angles in a slice of a sift
@@ -223,7 +229,7 @@ def _children(
     levels: tuple[float, float],
 ) -> tuple[Nodes, Array]:
     """Children of some nodes that may lead below a cut, the best first."""
-    kernels = kernel(SEARCH)
+    kernels = kernel(KERNELS)
     count = work.drive.kind.size
     nodes, bounds = np.zeros((CHILDREN, count, 2), np.int64), np.zeros(CHILDREN)
     made, looked = kernels.expand(
