@@ -39,14 +39,14 @@ EARLIEST = 1e-4  # s; the logarithmic axis begins here at the earliest
 
 
 def summary(result: Result, measures: Measures) -> Section:
-    """Key figures, and in words what is certain."""
+    """Return key figures, and in words what is certain."""
     words = proof(result, measures)
     tiles = [*_tiles(result, measures), *kind_of(result).tiles(result, measures)]
     return Section("Result", tiles, [*leading(result), *words], terminal=("\n".join(words),))
 
 
 def _tiles(result: Result, measures: Measures) -> list[Tile]:
-    """Objective and bound."""
+    """Return objective and bound as key figures."""
     name, unit, value, bound, _ = goal(result)
     tiles = []
     if value is not None:
@@ -58,7 +58,10 @@ def _tiles(result: Result, measures: Measures) -> list[Tile]:
 
 
 def limits(result: Result, measures: Measures, whole: str = "whole") -> Section | None:
-    """Utilisation of every limit; None without limits. whole: what is no stage, on the terminal."""
+    """Return the utilisation of every limit; None without limits.
+
+    whole: the head of what belongs to no stage, on the terminal.
+    """
     if not result.limits or (result.value is None and result.status != "evaluated"):
         return None
     stages, rows = limit_rows(result.limits)
@@ -70,7 +73,7 @@ def limits(result: Result, measures: Measures, whole: str = "whole") -> Section 
 
 
 def proof(result: Result, measures: Measures = METRIC) -> list[str]:
-    """What is certain: the bound, how it is known, what other ways give, what to keep in mind."""
+    """Say what is certain: the bound, its proof, what other ways give, what to keep in mind."""
     lines = bound_words(result, measures) + _method(result)
     lines += kind_of(result).beside(result, measures)
     lines += result.report.get("notes", []) if result.status != "infeasible" else []
@@ -81,7 +84,7 @@ def proof(result: Result, measures: Measures = METRIC) -> list[str]:
 
 
 def bound_words(result: Result, measures: Measures) -> list[str]:
-    """The bound in a sentence; nothing without one."""
+    """Say the bound in a sentence; nothing without one."""
     name, unit, _, bound, side = goal(result)
     if bound is None or result.gap is None:
         return []
@@ -90,7 +93,7 @@ def bound_words(result: Result, measures: Measures) -> list[str]:
 
 
 def gap_words(result: Result) -> str:
-    """The gap of a result, and what it is relative to where that is not the objective's value."""
+    """Say the gap, and what it is relative to where that is not the objective's value."""
     if result.gap is None:
         return ""
     of = " of the objective's scale (its value is zero)" if "scale" in result.certificate else ""
@@ -98,12 +101,12 @@ def gap_words(result: Result) -> str:
 
 
 def scope(result: Result) -> str:
-    """Of what a bound is true: of all designs, or of the gears that were laid out."""
+    """Say of what a bound is true: of all designs, or of the gears that were laid out."""
     return " with these gears" if any(part.name == "gears" for part in result.parts) else ""
 
 
 def _method(result: Result) -> list[str]:
-    """What the method itself tells of its proof, and which limits cannot hold together."""
+    """Return what the method says of its proof, and which limits cannot hold together."""
     known, found = result.bound is not None or result.status == "infeasible", result.proof
     lines = [found["sentence"]] if known and "sentence" in found else []
     if result.status == "infeasible" and found.get("conflict") and "least_violation" in found:
@@ -118,7 +121,7 @@ def _method(result: Result) -> list[str]:
 
 
 def meaning(result: Result) -> str:
-    """What the status of a result says, and what it does not say."""
+    """Say what the status of a result means, and what it does not mean."""
     known, status = result.bound is not None, result.status
     if status == "optimal":
         return (
@@ -140,7 +143,7 @@ def meaning(result: Result) -> str:
 
 
 def proven(result: Result, measures: Measures) -> Section:
-    """What the status means, and the numbers of the proof, of every part too."""
+    """Say what the status means, with the numbers of the proof of every part."""
     parts = (result, *result.parts)
     heads = ("", *(PARTS.get(part.name, part.name.replace("_", " ")) for part in parts))
     rows = [list(row) for row in zip(*(_column(part, measures) for part in parts), strict=True)]
@@ -154,7 +157,7 @@ def proven(result: Result, measures: Measures) -> Section:
 
 
 def _column(part: Result, measures: Measures) -> list[Any]:
-    """Of a result or one of its parts, what ROWS names."""
+    """Return what ROWS names, of a result or one of its parts."""
     name, unit = objective(part)
     return [
         verdict(part)[0],
@@ -169,14 +172,14 @@ def _column(part: Result, measures: Measures) -> list[Any]:
 
 
 def _amount(value: float | None, unit: str, measures: Measures) -> Cell:
-    """A value in the unit that is shown, which its text names."""
+    """Return a value in the unit that is shown, which its text names."""
     if value is None:
         return Cell(None, "")
     return Cell(measures.of(value, unit), amount(value, unit, measures))
 
 
 def _checks(result: Result) -> list[tuple[str, Any]]:
-    """The certificate, then what else the proof says."""
+    """Return the certificate, then what else the proof says."""
     found: list[tuple[str, Any]] = [
         (f"{name}: {CHECKS.get(name, '')}", Cell(value, "" if value is None else f"{value:.2g}"))
         for name, value in result.certificate.items()
@@ -189,13 +192,13 @@ def _checks(result: Result) -> list[tuple[str, Any]]:
 
 
 def assumptions(result: Result, measures: Measures) -> Section | None:
-    """What the numbers rest on beside the file; None where the kind tells nothing."""
+    """Say what the numbers rest on beside the file; None where the kind tells nothing."""
     told = result.report.get("assumptions") or []
     return Section("Assumptions and unverified data", words=told, half=True) if told else None
 
 
 def asked(result: Result, measures: Measures) -> Section | None:
-    """The file's tables as it has them; None where there was no file."""
+    """Return the file's tables as it has them; None where there was no file."""
     asked = {key: value for key, value in result.asked.items() if key not in SENTENCES}
     if not asked:
         return None
@@ -214,7 +217,7 @@ def _is_table(value: Any) -> bool:
 
 
 def _asked_table(key: str, value: Any) -> Table:
-    """A table of the file, one column a table where the file has several of a name."""
+    """Return a table of the file, one column per table where several have one name."""
     several = isinstance(value, list)
     columns: Sequence[Mapping[str, Any]] = value if several else (value,)
     names = list(dict.fromkeys(name for column in columns for name in column))
@@ -225,7 +228,7 @@ def _asked_table(key: str, value: Any) -> Table:
 
 
 def _ends(value: Any) -> Any:
-    """A value as the file writes it."""
+    """Return a value as the file writes it."""
     if isinstance(value, list):
         return Cell(value, f"[{', '.join(str(v) for v in value)}]")
     number = isinstance(value, int | float) and not isinstance(value, bool)
@@ -233,7 +236,7 @@ def _ends(value: Any) -> Any:
 
 
 def progress(result: Result, measures: Measures) -> Section | None:
-    """The progress of the run; None where it was not recorded."""
+    """Plot the progress of the run; None where it was not recorded."""
     name, unit = objective(result)
     steps = [_converted(s, unit, measures) for s in result.report.get("progress") or []]
     best = [s for s in steps if s.get("best") is not None]
@@ -257,7 +260,7 @@ def progress(result: Result, measures: Measures) -> Section | None:
 
 
 def _converted(step: dict[str, Any], unit: str, measures: Measures) -> dict[str, Any]:
-    """A step with its best value and bound in the unit that is shown."""
+    """Return a step with its best value and bound in the unit that is shown."""
     values = {k: measures.of(step[k], unit) for k in ("best", "bound") if step.get(k) is not None}
     return step | values
 
@@ -265,7 +268,7 @@ def _converted(step: dict[str, Any], unit: str, measures: Measures) -> dict[str,
 def _line(
     name: str, steps: list[dict[str, Any]], key: str, colour: str, unit: str, end: float
 ) -> dict[str, Any]:
-    """Steps that hold to the end of the run."""
+    """Return steps that hold to the end of the run."""
     last = [*steps, steps[-1] | {"seconds": end}]
     return {
         "type": "scatter",

@@ -41,7 +41,7 @@ PAGE_ONLY = {
 
 
 def tables(result: Result, measures: Measures) -> Section | None:
-    """All tables of the design, on the terminal stages and totals; None without one."""
+    """Return all tables of the design, on the terminal stages and totals; None without one."""
     design = dict(result.design)
     if not design:
         return None
@@ -78,12 +78,12 @@ def stage_table(
 
 
 def ratio_tile(ratio: float, error_percent: float) -> Tile:
-    """The total ratio, and how far it is off the one that is asked for."""
+    """Return the total ratio, and how far it is off the one that is asked for."""
     return Tile("total ratio", number(ratio), f"{error_percent:+.3f} % off")
 
 
 def _shares(stages: Sequence[Mapping[str, Any]], measures: Measures) -> list[Table]:
-    """Volume and mass by stage; nothing to share out for one stage."""
+    """Return volume and mass per stage; nothing to share out for one stage."""
     if len(stages) < 2 or not all("gear_volume_mm3" in s for s in stages):
         return []
     volumes = [s["gear_volume_mm3"] for s in stages]
@@ -100,7 +100,7 @@ def _shares(stages: Sequence[Mapping[str, Any]], measures: Measures) -> list[Tab
 
 
 def trains(result: Result, measures: Measures) -> Section | None:
-    """The best distinct trains in proven order; None where only one was asked for."""
+    """Return the best distinct trains in proven order; None where only one was asked for."""
     if (best := ranked(result)) is None:
         return None
     found, (name, unit), length = best.report["trains"], objective(best), measures.unit("mm")
@@ -122,7 +122,7 @@ def trains(result: Result, measures: Measures) -> Section | None:
 
 
 def ranked(result: Result) -> Result | None:
-    """The answer whose next best trains are known: itself, or the gears that were laid out."""
+    """Return the answer whose next best trains are known: itself, or the gears laid out."""
     gears = (part for part in result.parts if part.name == "gears")
     return next((one for one in (result, *gears) if len(one.report.get("trains", ())) > 1), None)
 
@@ -144,7 +144,7 @@ def _train_row(
 
 
 def tables_of(name: str, group: Mapping[str, Any], measures: Measures) -> list[Table]:
-    """A table of the single values, then one for every list of records and every group."""
+    """Return a table of the single values, then one for every list of records and every group."""
     found, single = [], []
     for key, value in group.items():
         if isinstance(value, Mapping):
@@ -161,14 +161,14 @@ def _records(value: Any) -> bool:
 
 
 def records(name: str, rows: Sequence[Mapping[str, Any]], measures: Measures) -> Table:
-    """A row for every record, a column for every key."""
+    """Return a row for every record, a column for every key."""
     keys = list(dict.fromkeys(key for row in rows for key in row))
     cells = [[_converted(key, row.get(key), measures) for key in keys] for row in rows]
     return Table(name, [heading(key, measures) for key in keys], cells, name)
 
 
 def _converted(key: str, value: Any, measures: Measures) -> Any:
-    """A value of a design in the unit that is shown."""
+    """Return a value of a design in the unit that is shown."""
     unit = parted(key, measures)[1]
     if unit and isinstance(value, list):
         return [measures.of(v, unit) for v in value]

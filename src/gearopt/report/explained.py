@@ -33,13 +33,13 @@ REMEDY_HEADS = (
 
 
 def prices(result: Result, measures: Measures) -> Section | None:
-    """Slopes and prices of the numbers of the file; None where none were asked for."""
+    """Return sensitivities and shadow prices of the file's numbers; None if not asked for."""
     found = result.report.get("prices")
     return of_influences(found, result) if found and result.value is not None else None
 
 
 def of_influences(found: Mapping[str, Any], result: Result) -> Section:
-    """What every number does to the objective, and what that means.
+    """Return what every number does to the objective, and what that means.
 
     found: influences, message and basis, see `optimise.explaining.explanation`.
     """
@@ -51,7 +51,7 @@ def of_influences(found: Mapping[str, Any], result: Result) -> Section:
 
 
 def _row(one: Mapping[str, Any]) -> list[Any]:
-    """Of a number: key, value, slopes, easing and its price; then these two as a page has them."""
+    """Return key, value, slopes, easing and its price; then these two as a page has them."""
     slope, both, brings = _percent(one["sensitivity"]), _sides(one["resolved"]), price(one["price"])
     change = None if one["price"] is None else 100.0 * clean(one["price"])
     return [
@@ -61,7 +61,7 @@ def _row(one: Mapping[str, Any]) -> list[Any]:
 
 
 def _slope(influence: Mapping[str, Any]) -> Any:
-    """By multipliers; without them by solving again, from below and above where they differ."""
+    """Return the slope by multipliers, else by solving again, both sides where they differ."""
     slope = influence["sensitivity"]
     if slope is not None:
         return clean(slope)
@@ -72,7 +72,7 @@ def _slope(influence: Mapping[str, Any]) -> Any:
 
 
 def influence_words(found: Mapping[str, Any], result: Result) -> list[str]:
-    """What the columns mean, and what is missing."""
+    """Say what the columns mean, and what is missing."""
     name = objective(result)[0]
     lines = [found["message"][0].upper() + found["message"][1:] + "."] if found["message"] else []
     if not found["influences"]:
@@ -84,17 +84,17 @@ def influence_words(found: Mapping[str, Any], result: Result) -> list[str]:
 
 
 def clean(change: float) -> float:
-    """A change without the noise of solvers."""
+    """Return a change without the noise of solvers."""
     return 0.0 if abs(change) < NOTHING else change
 
 
 def alike(below: float, above: float) -> bool:
-    """Whether slopes from both sides are shown as one."""
+    """Return whether slopes from both sides are shown as one."""
     return abs(above - below) < ALIKE * max(1.0, abs(below), abs(above))
 
 
 def price(change: float | None) -> str:
-    """A relative change of the objective."""
+    """Return a relative change of the objective in words."""
     if change is None:
         return ""
     return "none" if abs(change) < NOTHING else f"{change:+.3%}"
@@ -107,7 +107,7 @@ def _percent(slope: float | None) -> str:
 
 
 def _sides(resolved: Sequence[float | None]) -> str:
-    """One number where both sides agree, both where a limit is about to bind."""
+    """Return one number where both sides agree, both where a limit is about to bind."""
     below, above = resolved
     if below is None or above is None:
         return _percent(above if below is None else below)
@@ -117,7 +117,7 @@ def _sides(resolved: Sequence[float | None]) -> str:
 
 
 def ways_out(result: Result, measures: Measures) -> Section | None:
-    """Why nothing meets the limits, and what to write instead; None elsewhere."""
+    """Say why nothing meets the limits, and what to write instead; None elsewhere."""
     found: Mapping[str, Any] = result.report.get("ways_out") or {}
     if not found:
         return None
@@ -132,7 +132,7 @@ def ways_out(result: Result, measures: Measures) -> Section | None:
 def remedy_words(
     found: Mapping[str, Any],
 ) -> tuple[list[str], list[tuple[str, ...]], list[str]]:
-    """Why it is impossible, rows of edits below REMEDY_HEADS, and how sure these are.
+    """Return why it is impossible, rows of edits below REMEDY_HEADS, and how sure these are.
 
     found: conflict, remedies and message, as `explain` and `solve` have them.
     """
@@ -166,7 +166,7 @@ def remedy_words(
 
 
 def _less(ways: Sequence[Mapping[str, Any]]) -> str:
-    """What is known of smaller changes."""
+    """Say what is known of smaller changes."""
     moved = [way for way in ways if way["kind"] != "choice"]
     doubtful = [
         way["changes"][0]["key"]
@@ -181,12 +181,12 @@ def _less(ways: Sequence[Mapping[str, Any]]) -> str:
 
 
 def _doubtful(way: Mapping[str, Any]) -> bool:
-    """Whether it stayed undecided if less would do."""
+    """Return whether it stayed undecided if less would do."""
     return bool(way["verified"].get("with_less") == "undecided")
 
 
 def _rows(way: Mapping[str, Any]) -> list[tuple[str, ...]]:
-    """A row for every edit of a way out."""
+    """Return a row for every edit of a remedy."""
     alike = ", all alike" if way["kind"] == "even" else ", one stage"
     label = KINDS.get(way["kind"], f"{way['what'].replace('_', ' ')}{alike}")
     if way["kind"] == "least" and _doubtful(way):
@@ -208,5 +208,5 @@ def _rows(way: Mapping[str, Any]) -> list[tuple[str, ...]]:
 
 
 def _factor(factor: float | None) -> str:
-    """A factor; nothing where a number is shifted, or a switch is set."""
+    """Return a factor in words; nothing where a number is shifted, or a switch is set."""
     return "" if factor is None or factor == 1.0 or math.isinf(factor) else f"{factor:.4f}"

@@ -32,7 +32,7 @@ class Figure:
 
 
 def axis(title: str, **more: Any) -> dict[str, Any]:
-    """A plot's axis in the page's look."""
+    """Return a plot's axis in the page's look."""
     look = {
         "title": {"text": title, "standoff": 10, "font": {"size": 13}},
         "gridcolor": "--grid",
@@ -48,7 +48,7 @@ def axis(title: str, **more: Any) -> dict[str, Any]:
 
 
 def layout(x: dict[str, Any], y: dict[str, Any], height: int = 360, **more: Any) -> dict[str, Any]:
-    """A plot's layout in the page's look."""
+    """Return a plot's layout in the page's look."""
     look = {
         "height": height,
         "margin": {"l": 8, "r": 12, "t": 8, "b": 8},
@@ -186,7 +186,7 @@ class Section:
 
 
 def shown(value: Any) -> Cell:
-    """A value as it is read; the items of a list with commas between."""
+    """Return a value as it is read; the items of a list with commas between."""
     if isinstance(value, Cell):
         return value
     if value is None:
@@ -201,14 +201,14 @@ def shown(value: Any) -> Cell:
 
 
 def percent(used: float | None) -> Cell:
-    """A part of a whole in per cent, with its bar."""
+    """Return a part of a whole in per cent, with its bar."""
     if used is None:
         return Cell(None, "")
     return Cell(100.0 * used, share(used), min(1.0, max(0.0, used)))
 
 
 def _plain(value: Any) -> Any:
-    """A value as CSV holds it."""
+    """Return a value as CSV holds it."""
     if isinstance(value, Cell):
         return _plain(value.value)
     if isinstance(value, list | tuple):

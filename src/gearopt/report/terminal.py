@@ -31,7 +31,7 @@ from gearopt.report.words import (
 
 
 def aligned(heads: list[str], left: int, wrap: int) -> Grid:
-    """A plain table; left, wrap: columns that stand on the left, and that may break over lines."""
+    """Return a plain table; left, wrap: how many columns stand left, and may break over lines."""
     table = Grid(*map(escape, heads), box=None, header_style="bold", pad_edge=False)
     for k, column in enumerate(table.columns):
         column.justify, column.no_wrap = "left" if k < left else "right", k >= wrap
@@ -39,7 +39,7 @@ def aligned(heads: list[str], left: int, wrap: int) -> Grid:
 
 
 def grid(table: Table) -> Grid:
-    """A table of a section as the terminal shows it; without heads a list of names and values."""
+    """Return a section's table for the terminal; without heads a list of names and values."""
     heads, rows = table.without(table.page_only)
     if any(heads):
         shown = aligned([table.short.get(head, head) for head in heads], table.left, table.wrap)
@@ -90,7 +90,7 @@ def _print(blocks: Sequence[str | Text | Table], console: Console) -> None:
 
 
 def rows_table(rows: list[dict[str, Any]]) -> RenderableType:
-    """Rows of a bench as a table."""
+    """Return rows of a bench as a table."""
     heads = [escape(heading(k)) for k in rows[0]]
     table = Grid(*heads, box=None, header_style="bold", pad_edge=False)
     for row in rows:

@@ -12,7 +12,7 @@ from gearopt.scenes.compound import CompoundDesign
 
 
 def tiles(result: Result, measures: Measures) -> list[Tile]:
-    """The ratio."""
+    """Return the ratio as a key figure."""
     if not result.design:
         return []
     design: CompoundDesign = typed(CompoundDesign, result.design, "design")

@@ -23,7 +23,7 @@ LINES = 6  # of equal area
 
 
 def places(result: Result, measures: Measures) -> Section | None:
-    """Box, shafts and narrowest gaps; None where there is no layout."""
+    """Return box, shafts and narrowest gaps; None where there is no layout."""
     if result.value is None or (found := layout_of(result)) is None:
         return None
     box, unit = found.box, measures.unit("mm")
@@ -50,7 +50,7 @@ def places(result: Result, measures: Measures) -> Section | None:
 
 
 def processes(result: Result, measures: Measures) -> Section | None:
-    """Designs as columns; None where the file asks for no process.
+    """Return the designs as columns; None where the file asks for no process.
 
     The first column is the result itself, or the gears that its layout is of.
     """
@@ -100,19 +100,19 @@ def _totals(designs: Sequence[Result], bound: float | None, measures: Measures) 
 
 
 def _over(one: Result, bound: float) -> float | None:
-    """By how much a design is above the bound [%]; None where it meets not all limits."""
+    """Return by how much a design exceeds the bound [%]; None where it breaks a limit."""
     return None if one.value is None else max(100.0 * (one.value / bound - 1.0), 0.0)
 
 
 def _missing(part: Result) -> str:
-    """Why a process has no design that counts, with the violated limit in words."""
+    """Say why a process has no design that counts, and which limit is violated."""
     first, _, rest = part.message.partition(" ")
     shown = "The design" if part.design else "No design"
     return f"{shown} by {part.name}: {limit_words(first)} {rest}".rstrip(". ") + "."
 
 
 def trade_off(result: Result, measures: Measures) -> Section | None:
-    """The front of a run that looked for one; None without it."""
+    """Plot the Pareto front of a run that looked for one; None without it."""
     front = result.report.get("front") or []
     if not front:
         return None
@@ -177,7 +177,7 @@ def _ends(values: tuple[float, ...]) -> tuple[float, float]:
 def _equal(
     area: float, across: tuple[float, float], up: tuple[float, float], measures: Measures
 ) -> dict[str, Any]:
-    """A line of equal area through the plot, named near its upper end."""
+    """Return a line of equal area through the plot, named near its upper end."""
     start, end = max(across[0], area / up[1]), min(across[1], area / up[0])
     x = [start * (end / start) ** (k / 40) for k in range(41)]
     metric = measures.unit("mm2") == "mm²"
@@ -198,7 +198,7 @@ def _equal(
 
 
 def tiles(result: Result, measures: Measures) -> list[Tile]:
-    """Ratio, torque, mass and box."""
+    """Return ratio, torque, mass and box as key figures."""
     if not result.design:
         return []
     design = drive_design(result.design)
@@ -218,7 +218,7 @@ def tiles(result: Result, measures: Measures) -> list[Tile]:
 
 
 def beside(result: Result, measures: Measures) -> list[str]:
-    """What other ways to the same objective give: real-valued sizes, or gears chosen first."""
+    """Say what other ways to the same objective give: real-valued sizes, or gears chosen first."""
     found = []
     for part in result.parts:
         alike = part.objective["name"] == result.objective["name"]
@@ -245,7 +245,7 @@ def _other_way(result: Result, part: Result, measures: Measures) -> list[str]:
 
 
 def _instead(part: Result, measures: Measures) -> list[str]:
-    """What is known where no whole teeth were found: the answer with real-valued ones."""
+    """Say what is known where no whole teeth were found: the answer with real-valued ones."""
     name, unit = objective(part)
     if part.value is None or part.bound is None:
         return []

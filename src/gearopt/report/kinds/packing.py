@@ -27,7 +27,7 @@ CAPTION = "Drag to turn, scroll to come nearer, click a name to hide or show it.
 
 
 def plans(result: Result, measures: Measures) -> Section | None:
-    """A plan of every layer, all at one scale; None where there is no packing."""
+    """Draw a plan of every layer, all at one scale; None where there is no packing."""
     if not result.design:
         return None
     design = packing_design(result.design)
@@ -43,20 +43,20 @@ def plans(result: Result, measures: Measures) -> Section | None:
 
 
 def _colours(cylinders: Sequence[CylinderDesign]) -> dict[float, str]:
-    """One colour for every diameter, from the largest."""
+    """Return one colour for every diameter, from the largest."""
     found = sorted({c.diameter_mm for c in cylinders}, reverse=True)
     return {d: series(k) for k, d in enumerate(found, 1)}
 
 
 def _span(container: ContainerDesign) -> tuple[float, float, float, float]:
-    """Ends of a container in x and y: left, right, front, back [mm]."""
+    """Return the ends of a container in x and y: left, right, front, back [mm]."""
     left, front = container.left_mm, container.front_mm
     width, depth = container.sides
     return left, left + width, front, front + depth
 
 
 def words(cylinder: CylinderDesign, measures: Measures) -> str:
-    """A cylinder in a line."""
+    """Describe a cylinder in a line."""
     diameter, height = (measures.of(v, "mm") for v in (cylinder.diameter_mm, cylinder.height_mm))
     x, y = (measures.length(v, 3) for v in (cylinder.x_mm, cylinder.y_mm))
     unit = measures.unit("mm")
@@ -117,7 +117,7 @@ def _name(sheet: Sheet, it: CylinderDesign, colour: str) -> None:
 
 
 def solid(result: Result, measures: Measures) -> Section | None:
-    """The packing to turn; None where there is none."""
+    """Draw the packing in space; None where there is none."""
     if not result.design:
         return None
     design = packing_design(result.design)
@@ -154,7 +154,7 @@ def _outline(container: ContainerDesign) -> list[Point | None]:
 
 
 def places(result: Result, measures: Measures) -> Section | None:
-    """Container, layers and cylinders; cylinders and then the rest on the terminal."""
+    """Return container, layers and cylinders; on the terminal cylinders first."""
     if not result.design:
         return None
     design = packing_design(result.design)
@@ -166,7 +166,7 @@ def places(result: Result, measures: Measures) -> Section | None:
 
 
 def _cylinders(design: PackingDesign, measures: Measures) -> Table:
-    """A cylinder a line, on the terminal to a micrometre."""
+    """Return one row per cylinder, on the terminal to a micrometre."""
     keys = [f.name for f in fields(CylinderDesign)]
     rows = []
     for one in design.cylinders:
@@ -185,7 +185,7 @@ def _cell(key: str, value: float, measures: Measures) -> Cell:
 
 
 def _container(design: PackingDesign, sizes: Table, measures: Measures) -> Table:
-    """The container, its corner where that is not the origin, and its layers."""
+    """Return the container, its corner where that is not the origin, and its layers."""
     corner = [heading(key, measures) for key in ("left_mm", "front_mm")]
     at_origin = design.container.left_mm == 0.0 == design.container.front_mm
     rows = [

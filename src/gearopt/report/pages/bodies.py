@@ -39,34 +39,34 @@ def layout_of(result: Result) -> LayoutDesign | None:
 
 
 def box_corners(found: LayoutDesign) -> tuple[Corner, Corner]:
-    """Two corners of the box."""
+    """Return two corners of the box."""
     box = found.box
     y, z = box.left_mm, box.bottom_mm
     return (0.0, y, z), (box.length_mm, y + box.width_mm, z + box.height_mm)
 
 
 def along(ends: tuple[Corner, Corner], axis: str) -> tuple[float, float]:
-    """Of two corners, the ends along x, y or z."""
+    """Return the ends of two corners along x, y or z."""
     k = "xyz".index(axis)
     return ends[0][k], ends[1][k]
 
 
 def motor(found: LayoutDesign) -> tuple[float, float, float] | None:
-    """Radius, start and end of the motor, which is drawn as long as it is wide."""
+    """Return radius, start and end of the motor, which is drawn as long as it is wide."""
     if found.motor is None:
         return None
     return 0.5 * found.motor.diameter_mm, -found.motor.diameter_mm, 0.0
 
 
 def sides(it: KeepOutDesign, axis: str) -> tuple[float, float]:
-    """Both ends of a keep-out along x, y or z [mm]."""
+    """Return both ends of a keep-out along x, y or z [mm]."""
     if axis == "x":
         return it.from_mm, it.to_mm
     return (it.left_mm, it.right_mm) if axis == "y" else (it.bottom_mm, it.top_mm)
 
 
 def keep_outs(found: LayoutDesign) -> list[KeepOutDesign]:
-    """The keep-outs near the box, cut off where they reach far beyond it."""
+    """Return the keep-outs near the box, cut off where they reach far beyond it."""
     low, high = _with_motor(found)
     room = AROUND * max(b - a for a, b in zip(low[1:], high[1:], strict=True))
     near = []
@@ -86,7 +86,7 @@ def keep_outs(found: LayoutDesign) -> list[KeepOutDesign]:
 
 
 def drawn_corners(found: LayoutDesign) -> tuple[Corner, Corner]:
-    """Two corners of all that is drawn."""
+    """Return two corners of all that is drawn."""
     low, high = (list(corner) for corner in _with_motor(found))
     for it in keep_outs(found):
         for k, axis in enumerate("xyz"):
@@ -115,7 +115,7 @@ class Disc:
 
 
 def meaning(gear: GearDesign, measures: Measures) -> str:
-    """A gear in a line, as drawings tell it where the pointer rests."""
+    """Describe a gear in a line, as drawings do where the pointer rests."""
     unit = measures.unit("mm")
     return (
         f"{gear.name}: z {gear.teeth:.6g}, m_n {gear.normal_module_mm:g} mm, "
@@ -126,13 +126,13 @@ def meaning(gear: GearDesign, measures: Measures) -> str:
 
 
 def gear_disc(found: Turning, gear: GearDesign) -> Disc:
-    """The tip circle of a gear."""
+    """Return the tip circle of a gear."""
     shaft = next(s for s in found.shafts if s.shaft == gear.shaft)
     return Disc((shaft.y_mm, shaft.z_mm), 0.5 * gear.tip_diameter_mm, gear.from_mm, gear.to_mm)
 
 
 def disc(found: LayoutDesign, name: str, beside: KeepOutDesign | None = None) -> Disc | None:
-    """A gear (its tip circle), shaft, bearing or the motor by name; None for anything else.
+    """Return a gear (its tip circle), shaft, bearing or the motor by name; None for others.
 
     "shaft 2 with its gears" is the largest body there of those that a keep-out stands beside.
     """
@@ -162,7 +162,7 @@ def _overlap(a: Disc, b: KeepOutDesign) -> bool:
 
 
 def nearest(found: LayoutDesign, one: str, other: str) -> tuple[Corner, Corner] | None:
-    """The ends of the gap between two bodies, of one x; None where one is not found."""
+    """Return the ends of the gap between two bodies, of one x; None where one is not found."""
     boxes = {it.name: it for it in found.obstacles}
     if one in boxes:
         swapped = nearest(found, other, one) if other not in boxes else None

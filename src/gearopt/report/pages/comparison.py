@@ -7,10 +7,10 @@ from typing import Any
 from gearopt.optimise.comparing.comparison import Comparison, Group, Sample
 from gearopt.report import comparison_words as words
 from gearopt.report.pages.frame import render
+from gearopt.report.pages.sheet import COLOURS
 from gearopt.report.section import Figure, axis, layout
 
 KNOWN = ("exact", "ipopt", "annealing", "nsga2", "scip", "gp", "multistart")
-COLOURS = 8  # --series-1 ... in frame.css, told apart by the colour-blind
 LEAST = 1e-9  # gaps below it are drawn as none
 HIGHEST = 10.0  # the curves' beginnings may lie above the plot, where no final gap does
 SYMBOLS = ("circle", "square", "diamond", "triangle-up", "cross", "x", "star", "pentagon")

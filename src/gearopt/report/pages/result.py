@@ -9,14 +9,14 @@ from gearopt.report.words import amount, goal, title, verdict
 
 
 def sections(result: Result, measures: Measures = METRIC) -> list[Section]:
-    """What a result has to show, in the order of its page."""
+    """Return what a result has to show, in the order of its page."""
     result = Result.from_dict(result.to_dict())  # plain numbers, as a file of it has them
     made = (section(result, measures) for section in kind_of(result).sections)
     return [section for section in made if section is not None]
 
 
 def page(result: Result, command: str, measures: Measures = METRIC) -> str:
-    """One self-contained HTML page; command: what makes it again."""
+    """Return one self-contained HTML page; command: what makes it again."""
     found = sections(result, measures)
     return render(
         "result.html",
@@ -31,7 +31,7 @@ def page(result: Result, command: str, measures: Measures = METRIC) -> str:
 
 
 def tables(result: Result, measures: Measures = METRIC) -> dict[str, str]:
-    """The CSV of every table by the name of its file, such as `stages.csv`."""
+    """Return the CSV of every table by the name of its file, such as `stages.csv`."""
     found: dict[str, str] = {}
     for section in sections(result, measures):
         for table in section.tables:
