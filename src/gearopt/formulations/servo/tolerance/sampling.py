@@ -36,10 +36,11 @@ def drawn(
     counts, edges = np.histogram(e, BINS)
     first, last = order_interval(count, probability, confidence)
     middle = min(max(int(np.ceil(probability * count)), 1), count)
-    inside = [k for k in (first, middle, last) if 1 <= k <= count]
-    e.partition([k - 1 for k in inside])
+    e.partition([k - 1 for k in (first, middle, last) if 1 <= k <= count])
+    ends = [float(e[k - 1]) if 1 <= k <= count else None for k in (first, last)]
     good = int((e <= limit).sum())
     low, high = binomial_interval(good, count, confidence)
+    worst = sum(c.sensitivity * w for c, w in zip(stack.components, t, strict=True))
     return DrawnErrors(
         count=count,
         seed=seed,
@@ -51,13 +52,11 @@ def drawn(
         mean_deg=float(e.mean()),
         sd_deg=float(e.std(ddof=1)),
         quantile_deg=float(e[middle - 1]),
-        quantile_low_deg=float(e[first - 1]) if first >= 1 else None,
-        quantile_high_deg=float(e[last - 1]) if last <= count else None,
+        quantile_low_deg=ends[0],
+        quantile_high_deg=ends[1],
         limit_deg=limit,
         largest_deg=float(e.max()),
-        worst_case_deg=float(
-            sum(c.sensitivity * w for c, w in zip(stack.components, t, strict=True))
-        ),
+        worst_case_deg=float(worst),
         histogram=Histogram(tuple(edges.tolist()), tuple(counts.tolist())),
     )
 
