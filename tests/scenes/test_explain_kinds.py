@@ -86,6 +86,7 @@ def test_compound_slope_is_that_of_the_same_teeth(train):
 def test_compound_says_where_other_teeth_are_nearest(train):
     words, low, _, high = train.message.rsplit(" ", 3)
     assert words.endswith("best with train.ratio from")
+    assert (low, high) == ("6.930845496", "6.931674648")  # as docs/explain.md tells them
     teeth = train.result.design["driver_teeth"], train.result.design["driven_teeth"]
     for value, same in ((float(low), 1), (float(high), 1), (float(low) - 1e-6, 0)):
         other = gearopt.solve(scene(TRAIN.replace("6.931  ", f"{value:.10f}  "))).design
@@ -94,6 +95,7 @@ def test_compound_says_where_other_teeth_are_nearest(train):
 
 def test_compound_prices_the_first_wider_range_that_gains(train):
     most = by_key(train)["train.teeth[2]"]
+    assert most.price == pytest.approx(-0.80923, abs=1e-5)  # as docs/explain.md tells it
     assert most.step == "+7" and by_key(train)["train.teeth[1]"].price == 0.0
     wider, narrower = (
         gearopt.solve(scene(TRAIN.replace("[12, 60]", f"[12, {z}]"))).value for z in (67, 66)

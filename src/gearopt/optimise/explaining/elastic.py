@@ -15,7 +15,7 @@ from gearopt.optimise.terms import Repeat, Terms, Var, flat, namespace
 
 
 def elastic(problem: Problem, groups: Sequence[Sequence[Handle]]) -> Problem:
-    """The problem of the least relaxation: minimise the product of the factors.
+    """Return the problem of the least relaxation: minimise the product of the factors.
 
     Variable `relaxation`: a factor >= 1 for each group, shared by its handles and within the reach
     of all of them; a handle in several groups moves by the product of their factors, limits in no
@@ -37,7 +37,7 @@ def elastic(problem: Problem, groups: Sequence[Sequence[Handle]]) -> Problem:
         return x.relaxation if isinstance(x.relaxation, tuple) else (x.relaxation,)
 
     def factors(x: Any) -> dict[tuple[str, int], Any]:
-        """The factor of every handle."""
+        """Return the factor of every handle."""
         found = {}
         for which, own in owners.items():
             found[which] = parts(x)[own[0]]
@@ -53,7 +53,7 @@ def elastic(problem: Problem, groups: Sequence[Sequence[Handle]]) -> Problem:
         return namespace(problem.parameters, scalars)
 
     def hardened(x: Any, terms: Terms, prefix: str = "") -> dict[str, Any]:
-        """All inequality rows, those with a factor of their own divided by it."""
+        """Return all inequality rows, those with a factor of their own divided by it."""
         own, found = factors(x), {}
         for name, value in flat(terms.limits) + flat(terms.defines):
             which = rows.get(prefix + name)
@@ -89,7 +89,7 @@ def _tuple(value: Any) -> tuple[Any, ...]:
 
 
 def _bound_rows(problem: Problem, factors: dict[tuple[str, int], Any], x: Any) -> dict[str, Any]:
-    """Bounds that may move, as rows <= 1."""
+    """Return bounds that may move, as rows <= 1."""
     lower, upper, _ = problem.bounds()
     flat_x = [s for v in problem.variables for s in _tuple(getattr(x, v.name))]
     found = {}
@@ -108,7 +108,7 @@ def _bound_rows(problem: Problem, factors: dict[tuple[str, int], Any], x: Any) -
 
 
 def _wider(problem: Problem, movable: Sequence[tuple[str, int]]) -> tuple[Var, ...]:
-    """The variables, with room where their bounds may move."""
+    """Return the variables, with room where their bounds may move."""
     lower, upper, _ = (a.copy() for a in problem.bounds())
     for kind, k in movable:
         if kind == LOWER:

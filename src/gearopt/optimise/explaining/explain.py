@@ -81,12 +81,12 @@ def explain(
 
 
 def binding(result: Result) -> tuple[str, ...]:
-    """Names of the limits that are used to the full."""
+    """Return names of the limits that are used to the full."""
     return tuple(name for name, used in result.limits.items() if used >= 1.0 - BINDS)
 
 
 def slope(value: float, solve_at: Callable[[float], float | None], factor: float) -> float | None:
-    """D ln objective / d ln input by re-solving with the input times a factor near 1."""
+    """Return d ln objective / d ln input by re-solving with the input times a factor near 1."""
     other = solve_at(factor)
     if other is None or value == 0.0:
         return None
@@ -132,13 +132,13 @@ def _influences(
 
 
 def _nonzero(problem: Problem, value: float) -> float:
-    """An objective, or 0 where it is rounding beside that of the guess."""
+    """Return an objective, or 0 where it is rounding beside that of the guess."""
     there = float(problem.batch(problem.bounds()[2][None]).F[0, 0])
     return 0.0 if math.isfinite(there) and abs(value) <= ZERO * abs(there) else value
 
 
 def _inputs(problem: Problem) -> Iterator[Handle]:
-    """Every parameter component that acts, and every bound with a key; direction 0: no limit."""
+    """Yield every parameter component that acts, and bound with a key; direction 0: no limit."""
     limits = {(h.kind, h.place): h.direction for h in handles(problem) if not h.given}
     used, place = effective(problem), 0
     for q in problem.parameters:
@@ -160,7 +160,7 @@ def _inputs(problem: Problem) -> Iterator[Handle]:
 
 
 def _moved(problem: Problem, handle: Handle, factor: float) -> Problem:
-    """The problem with the number of a handle relaxed by a factor; below 1 made stricter."""
+    """Return the problem with the number of a handle relaxed by a factor; below 1 made stricter."""
     if handle.kind == PARAM:
         values = problem.parameter_values()
         values[handle.place] = handle.relaxed(factor)
@@ -177,7 +177,7 @@ def _moved(problem: Problem, handle: Handle, factor: float) -> Problem:
 
 
 def _alone(problem: Problem, handle: Handle, method: str, clock: Clock) -> Remedy | None:
-    """A number that alone makes a problem possible, moved as little as that takes, by solving."""
+    """Return a number that alone makes a problem possible, moved as little as it takes."""
     if handle.kind == ROW or handle.value <= 0.0:
         return None
     words = dict.fromkeys(THERE, True) | {"infeasible": False}
@@ -217,7 +217,7 @@ def _with(problem: Problem, values: Array) -> Problem:
 
 
 def _remedy(problem: Problem, repair: Repair, clock: Clock) -> Remedy:
-    """A repair as edits of parameters and bounds, verified by solving with them and with less."""
+    """Return a repair as edits of parameters and bounds, solved with them and with less."""
     handles_, factors = zip(*repair.moves, strict=True)
     asked = np.array([_asked(h, f) for h, f in repair.moves])
     form = elastic(problem, [[h] for h in handles_])
@@ -243,7 +243,7 @@ def _remedy(problem: Problem, repair: Repair, clock: Clock) -> Remedy:
 
 
 def _asked(handle: Handle, factor: float) -> float:
-    """The factor that leads to a number of DIGITS digits, on the easy side of what is needed."""
+    """Return the factor of a number of DIGITS digits, on the easy side of what is needed."""
     needed = handle.relaxed(factor * (1.0 + ROOM))
     rounding = ROUND_CEILING if handle.direction > 0 else ROUND_FLOOR
     number = float(Context(prec=DIGITS, rounding=rounding).plus(Decimal(needed)))

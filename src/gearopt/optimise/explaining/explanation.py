@@ -95,15 +95,15 @@ class Explanation:
 
     @property
     def prices(self) -> dict[str, Any]:
-        """Influences, and what to say of them, as the report of a result holds them."""
+        """Return influences, and what to say of them, as the report of a result holds them."""
         influences = [asdict(i) for i in self.influences]
         return {"influences": influences, "message": self.message, "basis": self.basis}
 
     def to_dict(self) -> dict[str, Any]:
-        """Plain dicts, lists and numbers; no NaN and no infinity (None instead)."""
+        """Return plain dicts, lists and numbers; no NaN and no infinity (None instead)."""
         found: dict[str, Any] = plain(asdict(self))
         return {"explanation": FORMAT, **found}
 
     def to_json(self) -> str:
-        """One JSON object."""
+        """Return one JSON object."""
         return json.dumps(self.to_dict(), indent=2, allow_nan=False)

@@ -44,22 +44,22 @@ class Handle:
 
     @property
     def family(self) -> str:
-        """What the limits of all stages or components have in common: the name before [k]."""
+        """Return the name before [k], common to the limits of all stages or components."""
         return self.name.split("[")[0]
 
     @property
     def label(self) -> str:
-        """Where it is written: its key, else its name."""
+        """Return where it is written: its key, else its name."""
         return self.key or self.name
 
     def relaxed(self, factor: float) -> float:
-        """The value to write for a factor >= 1."""
+        """Return the value to write for a factor >= 1."""
         if self.kind in (LOWER, UPPER) and self.value <= 0:
             return self.value + self.direction * (factor - 1.0) * scale(self.value)
         return self.value * factor**self.direction
 
     def eased(self, factor: float) -> float:
-        """The factor that is asked for a needed one: of a whole number, that of the next easier."""
+        """Return the factor that is asked for a needed one: of a whole number the next easier."""
         if not self.whole:
             return factor
         number = self.relaxed(factor)
@@ -69,14 +69,14 @@ class Handle:
         return float((near / self.value) ** self.direction)
 
     def one_back(self, factor: float) -> float:
-        """The factor of the next harder whole number."""
+        """Return the factor of the next harder whole number."""
         return float(
             ((round(self.relaxed(factor)) - self.direction) / self.value) ** self.direction
         )
 
 
 def handles(problem: Problem) -> tuple[Handle, ...]:
-    """Every number that a repair may move: limits first, then values that are given."""
+    """Return every number that a repair may move: limits first, then values that are given."""
     found, governed = _parameters(problem)
     own: dict[str, list[int]] = {}  # rows of a repeat are one limit
     for k, row in enumerate(problem.rows.inequalities):
@@ -90,13 +90,13 @@ def handles(problem: Problem) -> tuple[Handle, ...]:
 
 
 def _limit(problem: Problem, row: str) -> str:
-    """The name of the limit a row belongs to: without its number if it is a repeat's."""
+    """Return the name of the limit a row belongs to: without its number if it is a repeat's."""
     repeated = any(row.startswith(f"{r.name}.") for r in problem.repeats)
     return row.rsplit("[", 1)[0] if repeated else row
 
 
 def _parameters(problem: Problem) -> tuple[list[Handle], set[int]]:
-    """Parameters that may move, and the rows they govern."""
+    """Return parameters that may move, and the rows they govern."""
     acts, signs, elsewhere = _slopes(problem)
     rows = problem.rows.inequalities
     roles = [each_word(q.role, q.size) for q in problem.parameters]
@@ -128,12 +128,12 @@ def _parameters(problem: Problem) -> tuple[list[Handle], set[int]]:
 
 
 def each_word(words: str | tuple[str, ...], size: int) -> tuple[str, ...]:
-    """A word of a parameter for each of its components."""
+    """Return a word of a parameter for each of its components."""
     return tuple(map(str, np.broadcast_to(np.asarray(words), (size,))))
 
 
 def _slopes(problem: Problem) -> tuple[Array, Array, Array]:
-    """How rows depend on parameters: acts (ng, np), signs (ng, np), elsewhere (np,).
+    """Return how rows depend on parameters: acts (ng, np), signs (ng, np), elsewhere (np,).
 
     acts: a parameter stands in the row; signs: the one sign of its derivative at points of the box,
     0 where it changes; elsewhere: it acts on the objective or an equality.
@@ -161,7 +161,7 @@ def _slopes(problem: Problem) -> tuple[Array, Array, Array]:
 
 
 def effective(problem: Problem) -> Array:
-    """Which parameter components (np,) the text uses at all."""
+    """Return which parameter components (np,) the text uses at all."""
     import casadi as ca
 
     x, p, outputs = _symbols(problem)
@@ -170,14 +170,14 @@ def effective(problem: Problem) -> Array:
 
 
 def _symbols(problem: Problem) -> tuple[Any, Any, Any]:
-    """Symbols of point and parameters, and the terms f, g, h of them."""
+    """Return symbols of point and parameters, and the terms f, g, h of them."""
     terms = problem.traced().terms
     x, p = terms.sx_in() if terms.is_a("SXFunction") else terms.mx_in()
     return x, p, terms(x, p)
 
 
 def _bounds(problem: Problem) -> list[Handle]:
-    """Bounds that the user wrote, and values that are given by equal ones."""
+    """Return bounds that the user wrote, and values that are given by equal ones."""
     import casadi as ca
 
     lower, upper, _ = problem.bounds()
@@ -201,12 +201,12 @@ def _bounds(problem: Problem) -> list[Handle]:
 
 
 def _end(key: str | tuple[str, str], kind: str, given: bool) -> str:
-    """The place of a bound: its own, or an end of its range's, or that of one number for both."""
+    """Return the place of a bound: its own, an end of its range, or one number."""
     if not isinstance(key, str):
         return key[0 if kind == LOWER else 1]
     return key if given or not key else f"{key}[{1 if kind == LOWER else 2}]"
 
 
 def scale(value: float) -> float:
-    """The unit in which a bound at or below zero moves."""
+    """Return the unit in which a bound at or below zero moves."""
     return max(abs(value), 1.0)

@@ -48,13 +48,13 @@ class Repair:
 
 
 def value_within(clock: Clock, problem: Problem, method: str = "ipopt") -> float | None:
-    """The optimal value of a problem; None where it is not certain that it is one."""
+    """Return the optimal value of a problem; None where it is not certain that it is one."""
     result = solve_within(clock, problem, method)
     return result.value if result.status in CERTAIN else None
 
 
 def least(problem: Problem, movable: Sequence[Handle], clock: Clock) -> Repair | None:
-    """The repair of the smallest product of factors, with as few moves as that product allows.
+    """Return the repair of the smallest product of factors, with as few moves as it allows.
 
     None where no factors within reach suffice, or time ran out.
     """
@@ -69,7 +69,7 @@ def least(problem: Problem, movable: Sequence[Handle], clock: Clock) -> Repair |
 def least_factors(
     problem: Problem, groups: Sequence[Sequence[Handle]], clock: Clock
 ) -> tuple[Array, float, float | None] | None:
-    """Factors of groups of limits of the smallest product, that product, and its bound.
+    """Return factors of groups of limits of the smallest product, that product, and its bound.
 
     As few factors are above 1 as that product allows; whole numbers are at whole values. None
     where no factors within reach suffice, or time ran out.
@@ -100,7 +100,7 @@ def least_factors(
 def _whole(
     form: Problem, movable: Sequence[Handle], factors: Array, allowed: Array, clock: Clock
 ) -> Array:
-    """The factors with whole numbers at whole values, none of which is easier than it must be.
+    """Return the factors with whole numbers at whole values, none easier than it must be.
 
     One after the other is moved to the next easier value and the others follow; then each is taken
     back one by one as long as a design exists.
@@ -130,7 +130,7 @@ def _whole(
 
 
 def even(problem: Problem, family: Sequence[Handle], clock: Clock) -> Repair | None:
-    """The repair of one common factor for a family of limits; None where it cannot suffice."""
+    """Return the repair of one common factor for a family of limits; None: it cannot suffice."""
     found = solve_within(clock, elastic(problem, [family]), "ipopt")
     if found.value is None or found.status not in CERTAIN:
         return None
@@ -145,7 +145,7 @@ def impossible(
     limits: Sequence[Handle],
     together: Sequence[Sequence[Handle]] = (),
 ) -> tuple[tuple[Handle, ...], list[Repair]]:
-    """The conflict of an impossible problem and its repairs: the least one, then the even ones.
+    """Return the conflict of an impossible problem and its repairs: the least, then the even ones.
 
     movable: what a repair may move; limits: what may be named in the conflict; together: further
     groups of limits to move alike.
@@ -175,7 +175,7 @@ def impossible(
 
 
 def families(movable: Sequence[Handle]) -> dict[str, list[Handle]]:
-    """Handles by family, in their order; values that are given apart for up and down."""
+    """Return handles by family, in their order; values that are given apart for up and down."""
     found: dict[str, list[Handle]] = {}
     for handle in movable:
         way = f" {handle.direction:+d}" if handle.given else ""
@@ -184,7 +184,7 @@ def families(movable: Sequence[Handle]) -> dict[str, list[Handle]]:
 
 
 def conflict(problem: Problem, movable: Sequence[Handle], clock: Clock) -> tuple[Handle, ...]:
-    """Limits that cannot hold together although all others are dropped, and none is to spare.
+    """Return limits that cannot hold together with all others dropped, and none to spare.
 
     A deletion filter: a limit that can be dropped without making a design possible is dropped for
     good; for each that stays, a design exists without it. Empty where that is not proven: time ran
@@ -217,13 +217,13 @@ def _verdict(form: Problem, kept: Sequence[int], movable: Sequence[Handle], cloc
 
 
 def _blamed(verdict: Result, kept: Sequence[int], movable: Sequence[Handle]) -> list[int]:
-    """Those of the kept limits that the proof of impossibility uses."""
+    """Return those of the kept limits that the proof of impossibility uses."""
     rows = set(verdict.proof.get("conflict", ()))
     return [k for k in kept if rows & set(movable[k].rows)] or list(kept)
 
 
 def least_value(low: float, wider: Sequence[float], works: Works) -> float | None:
-    """The least value from `low` on that will do, looked for below the first of `wider` that does.
+    """Return the least value from `low` that will do, below the first of `wider` that does.
 
     works(value, back): whether a value will do, also with its edits taken back by a part; None:
     not known, so that the widest is tried. None where none is known to do.
@@ -241,7 +241,7 @@ def least_value(low: float, wider: Sequence[float], works: Works) -> float | Non
 
 
 def least_between(low: float, high: float, works: Works) -> float:
-    """The least factor known to do, between an impossible and a possible one.
+    """Return the least factor known to do, between an impossible and a possible one.
 
     works(factor, back): whether a factor will do, also with its edits taken back by a part. One
     that stays undecided is not known to do.

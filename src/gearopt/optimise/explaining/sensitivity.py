@@ -38,7 +38,7 @@ class Sensitivities:
     def along(
         self, problem: Problem, x: Array, ends: tuple[Problem, Problem], step: float
     ) -> float | None:
-        """D ln objective / d ln number, of a number on which the problem depends in any way.
+        """Return d ln objective / d ln number, of a number on which the problem depends in any way.
 
         ends: the problem with the number times exp(-step) and exp(step). The Lagrangian of both is
         taken at the same x; of variables that their bounds hold, the bounds' moves are added. None
@@ -55,7 +55,7 @@ class Sensitivities:
         return (below + above) / (2.0 * step) + 0.0
 
     def _change(self, x: Array, before: Problem, after: Problem) -> float | None:
-        """Relative change of the Lagrangian at x from one problem to another; None: other rows."""
+        """Return the change of the Lagrangian at x between two problems; None: other rows."""
         one, other = before.batch(x[None]), after.batch(x[None])
         if one.G.shape != other.G.shape or one.H.shape != other.H.shape:
             return None
@@ -70,21 +70,21 @@ class Sensitivities:
         return change + float(self.columns @ _moved(before, after, x))
 
     def stationary(self, problem: Problem, x: Array) -> bool:
-        """Whether no slope is left in a variable that is off its bounds: x may be a kink."""
+        """Return whether no slope is left in a variable that is off its bounds: x may be a kink."""
         free = ~(_held(problem, x, 0) | _held(problem, x, 1))
         left = np.abs(self.columns[free]).max(initial=0.0)
         return bool(left <= STATIONARY * (1.0 + self.multipliers.max(initial=0.0)))
 
 
 def _held(problem: Problem, x: Array, side: int) -> Any:
-    """Which variables (n,) their lower (0) or upper (1) bound holds; equal ones are lower."""
+    """Return which variables (n,) their lower (0) or upper (1) bound holds; if equal the lower."""
     lower, upper, _ = problem.bounds()
     near = np.abs(x - (lower, upper)[side]) <= HOLDS * np.maximum(np.abs(x), HOLDS)
     return near if side == 0 else near & (lower < upper)
 
 
 def _moved(before: Problem, after: Problem, x: Array) -> Array:
-    """Relative moves (n,) of the bounds that hold x, from one problem to another near it."""
+    """Return relative moves (n,) of the bounds that hold x, from one problem to another near it."""
     found = np.zeros(len(x))
     for side in (0, 1):
         held = (_held(before, x, side) | _held(after, x, side)) & (x != 0.0)
@@ -93,7 +93,7 @@ def _moved(before: Problem, after: Problem, x: Array) -> Array:
 
 
 def of_fixed(problem: Problem) -> Sensitivities:
-    """Those of a point whose variables are all fixed: no row has a price."""
+    """Return those of a point whose variables are all fixed: no row has a price."""
     rows = problem.rows
     no_g, no_h = np.zeros(len(rows.inequalities)), np.zeros(len(rows.equalities))
     none = np.zeros(len(problem.parameter_values())), np.zeros(len(problem.columns))
@@ -101,7 +101,7 @@ def of_fixed(problem: Problem) -> Sensitivities:
 
 
 def sensitivities(problem: Problem, x: Array) -> Sensitivities:
-    """Sensitivities of a continuous problem at its optimum x (n,).
+    """Return sensitivities of a continuous problem at its optimum x (n,).
 
     Where an input is infinite, or is a parameter without effect, the sensitivity is 0; at the end
     of what a text takes (a square root of 0) it may be infinite. SolveError
@@ -132,7 +132,7 @@ def sensitivities(problem: Problem, x: Array) -> Sensitivities:
 def _by_parameter(
     problem: Problem, shape: Form, y: Array, p: Array, lam_g: Array, lam_h: Array
 ) -> Array:
-    """dL/dp (np,)."""
+    """Return dL/dp (np,)."""
     import casadi as ca
 
     key = ("sensitivity", id(shape))

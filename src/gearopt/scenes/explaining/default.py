@@ -45,7 +45,7 @@ UNPROVEN = "numbers are not solved again, because the answer is not proven to th
 
 
 def explain(kind: Any, scene: Any, ask: Ask) -> Explanation:
-    """What every number of a file does to its answer, or which would make it possible.
+    """Return what every number of a file does to its answer, or which would make it possible.
 
     kind: the module, with `solve` and `model`.
     """
@@ -63,7 +63,7 @@ def explain(kind: Any, scene: Any, ask: Ask) -> Explanation:
 
 
 def of_report(result: Result) -> Explanation:
-    """The explanation of an impossible request that its result brings along as `ways_out`."""
+    """Return the explanation that an impossible result brings along as `ways_out`."""
     told: dict[str, Any] = result.report.get("ways_out", {})
     found = tuple(
         Remedy(**{**r, "changes": tuple(Change(**c) for c in r["changes"])})
@@ -80,7 +80,7 @@ def explained(
     answer: Callable[[Any], Result],
     posed: Callable[[Any], Problem | Conic],
 ) -> Explanation:
-    """The explanation of a result; answer(scene) solves a changed file, posed(scene) states it."""
+    """Return the explanation of a result; answer(scene) solves a file, posed(scene) states it."""
     if result.status == "infeasible":
         return _impossible(scene, result, clock, answer, posed(scene))
     if result.value is None:
@@ -116,7 +116,7 @@ def _impossible(
 
 
 def remedies(scene: Any, problem: Problem, clock: Clock, status: Callable[[Any], str]) -> Remedies:
-    """The conflict of an impossible file, and each of its numbers that alone makes it possible.
+    """Return the conflict of an impossible file, and each number that alone makes it possible.
 
     problem: what is solved for the file; its handles say by their keys which numbers are limits or
     given, and which way is easier. status(scene): of a changed file, solved. A remedy is told only
@@ -138,7 +138,7 @@ def remedies(scene: Any, problem: Problem, clock: Clock, status: Callable[[Any],
 
 
 def _conflict(problem: Problem, known: Sequence[Handle], clock: Clock) -> tuple[str, ...]:
-    """Limits that cannot hold together; with what is given where limits alone can."""
+    """Return limits that cannot hold together; with what is given where limits alone can."""
     if any(variable.discrete for variable, _ in problem.columns):
         return ()
     limits = [h for h in known if not h.given]
@@ -148,7 +148,7 @@ def _conflict(problem: Problem, known: Sequence[Handle], clock: Clock) -> tuple[
 
 
 def _keyed(scene: Any, known: Sequence[Handle]) -> Iterator[tuple[Number, Handle]]:
-    """The numbers of a file that handles name, once each way."""
+    """Yield the numbers of a file that handles name, once each way."""
     places = {n.key: n for n in numbers(scene, defaults=True)}
     named = {(h.key, h.direction): h for h in known if h.key in places}
     for (key, _), handle in named.items():
@@ -158,7 +158,7 @@ def _keyed(scene: Any, known: Sequence[Handle]) -> Iterator[tuple[Number, Handle
 def _alone(
     scene: Any, number: Number, handle: Handle, clock: Clock, status: Callable[[Any], str]
 ) -> Remedy | None:
-    """A number moved alone as little as that takes; None where it does not help."""
+    """Return a number moved alone as little as that takes; None where it does not help."""
     way = handle.direction
     words: dict[str, bool] = dict.fromkeys(THERE, True) | {"infeasible": False}
 
@@ -189,12 +189,12 @@ def _alone(
 
 
 def eases(problem: Problem | Conic) -> dict[str, int]:
-    """By the keys of a problem's limits: the direction in which they are easier."""
+    """Return by the keys of a problem's limits: the direction in which they are easier."""
     return {h.key: h.direction for h in _handles(problem) if h.key and not h.given}
 
 
 def _handles(problem: Problem | Conic) -> tuple[Handle, ...]:
-    """The handles of a problem; none where its text cannot be traced."""
+    """Return the handles of a problem; none where its text cannot be traced."""
     try:
         return () if isinstance(problem, Conic) else handles(problem)
     except SolveError:
@@ -211,7 +211,7 @@ def priced(
     directions: dict[str, int],
     held: bool = False,
 ) -> Explanation:
-    """The explanation of a design: solved(scene), the objective with changed whole numbers.
+    """Return the explanation of a design: solved(scene), the objective with changed whole numbers.
 
     directions: that ease a limit, by key; held: the basis holds whole numbers and choices.
     """
@@ -242,7 +242,7 @@ def priced(
 
 
 def _sure(found: Influence) -> Influence:
-    """Without a slope by multipliers that is neither side's: there they are not unique."""
+    """Return without a slope by multipliers that is neither side's: there they are not unique."""
     sides = [s for s in found.resolved if s is not None]
     own = found.sensitivity
     if own is None or not sides or any(abs(own - s) <= UNSURE * max(1.0, abs(s)) for s in sides):
@@ -258,7 +258,7 @@ def _held(problem: Problem | Conic, x: Array) -> Problem:
 def at_point(
     value: float, solved: Solved, posed: Callable[[Any], Problem], scene: Any, x: Array
 ) -> Basis:
-    """The basis of a point x of posed(scene); without slopes by multipliers where x has none."""
+    """Return the basis of a point x of posed(scene); without multipliers where x has none."""
     held = posed(scene)
     lower, upper, _ = held.bounds()
     if (lower == upper).all():

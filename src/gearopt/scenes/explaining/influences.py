@@ -44,7 +44,7 @@ class Basis:
     memo: dict[tuple[Path, float], float | None] = field(default_factory=dict)
 
     def chained(self, scene: Any, number: Number, step: float) -> float | None:
-        """D ln objective / d ln number by multipliers, through all that follows from the number.
+        """Return d ln objective / d ln number by multipliers, through all that follows from it.
 
         None where the rules of the file allow one side alone: there multipliers are not unique.
         """
@@ -60,14 +60,14 @@ class Basis:
         return self.known.along(self.posed(scene), self.point, (below, above), step)
 
     def at(self, scene: Any, number: Number, factor: float) -> float | None:
-        """The objective with the number times a factor, by solving again."""
+        """Return the objective with the number times a factor, by solving again."""
         if (number.path, factor) not in self.memo:
             other = _times(scene, number, factor)
             self.memo[number.path, factor] = None if other is None else self.solved(other)
         return self.memo[number.path, factor]
 
     def kept(self, scene: Any, number: Number) -> tuple[float, float]:
-        """How far a number may fall and rise, relative and up to `step`, until the point changes.
+        """Return how far a number may fall and rise, up to a part `step`, until the point changes.
 
         That is where whole numbers or choices are others; of a point that is held. 0: at once.
         """
@@ -99,7 +99,7 @@ def _times(scene: Any, number: Number, factor: float) -> Any:
 
 
 def smooth(number: Number) -> bool:
-    """Whether a small relative change of a number means anything: not of zero, nor whole ones."""
+    """Return whether a small change of a number means anything: not of zero or whole ones."""
     return bool(getattr(number.value, "number", number.value)) and not isinstance(number.value, int)
 
 
@@ -112,7 +112,7 @@ def influences(
     sloped: Callable[[Number], bool] = smooth,
     near: Callable[[Number], tuple[float, float]] | None = None,
 ) -> Iterator[Influence]:
-    """What every wanted number does to the objective, as long as the clock allows.
+    """Yield what every wanted number does to the objective, as long as the clock allows.
 
     price(number): the step that eases it and what that brings. sloped: whether it has a slope.
     near(number): the relative steps of its re-solves down and up, by default those of the basis;
@@ -138,7 +138,7 @@ def influences(
 def stepped(
     scene: Any, number: Number, direction: int, value: float, solved: Solved, whole: Solved
 ) -> tuple[str, float | None]:
-    """The step of a number whose price is told, and the relative change that it brings.
+    """Return the step of a number whose price is told, and the relative change that it brings.
 
     direction: that eases it, 0 where none is known: then 1 % of no number is priced, a whole number
     is tried both ways. solved: of changed quantities; whole: of changed whole numbers.
@@ -176,7 +176,7 @@ def _brings(
 def _whole(
     scene: Any, number: Number, direction: int, value: float, solved: Solved
 ) -> tuple[str, float | None]:
-    """The first step of a whole number that makes the objective better; else what one step does."""
+    """Return the first step of a whole number that improves the objective; else what one does."""
 
     def brings(step: int) -> float | None:
         other = moved(scene, number.path, number.value + step)

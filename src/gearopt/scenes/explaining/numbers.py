@@ -31,17 +31,17 @@ class Number:
 
     @property
     def key(self) -> str:
-        """Its place as messages write it: `stage[2].face_width_over_diameter`."""
+        """Return its place as messages write it: `stage[2].face_width_over_diameter`."""
         return dotted(self.path)
 
     @property
     def text(self) -> str:
-        """The number as the file writes it."""
+        """Return the number as the file writes it."""
         return toml_text(written(self.value, self.path)).strip('"')
 
 
 def numbers(scene: BaseModel, defaults: bool = False) -> tuple[Number, ...]:
-    """Every number that the file gives, in the order of the file's tables; counts are left out.
+    """Return every number that the file gives, in the order of its tables; counts are left out.
 
     defaults: those too that the file leaves out.
     """
@@ -64,14 +64,14 @@ def _walk(value: Any, path: Path, defaults: bool) -> Iterator[Number]:
 
 
 def at(scene: Any, path: Path) -> Any:
-    """What stands at a place."""
+    """Return what stands at a place."""
     for step in path:
         scene = scene[step] if isinstance(step, int) else getattr(scene, step)
     return scene
 
 
 def put(scene: Any, path: Path, value: Any) -> Any:
-    """The scene with another value at a place; not checked against the file's rules."""
+    """Return the scene with another value at a place; not checked against the file's rules."""
     if not path:
         return value
     step, rest = path[0], path[1:]
@@ -84,7 +84,7 @@ def put(scene: Any, path: Path, value: Any) -> Any:
 
 
 def moved(scene: BaseModel, path: Path, value: Any) -> Any:
-    """The scene with another value at a place; None where the rules of the file refuse it.
+    """Return the scene with another value at a place; None where the rules of the file refuse it.
 
     A fraction where a whole number stands (real-valued teeth) is judged by the next whole number
     beyond it.
@@ -98,7 +98,7 @@ def moved(scene: BaseModel, path: Path, value: Any) -> Any:
 
 
 def allowed(scene: BaseModel) -> bool:
-    """Whether a scene is one that its file's own rules take."""
+    """Return whether a scene is one that its file's own rules take."""
     try:
         type(scene).model_validate(content(scene))
     except ValidationError:
@@ -107,7 +107,7 @@ def allowed(scene: BaseModel) -> bool:
 
 
 def content(scene: BaseModel) -> dict[str, Any]:
-    """What the file of a scene holds, to be read anew by its own rules."""
+    """Return what the file of a scene holds, to be read anew by its own rules."""
     found: dict[str, Any] = _content(scene, ())
     return found
 
@@ -125,20 +125,20 @@ def _content(value: Any, path: Path) -> Any:
 
 
 def times(value: Any, factor: float) -> Any:
-    """A number of a file times a factor, unrounded."""
+    """Return a number of a file times a factor, unrounded."""
     if isinstance(value, Quantity):
         return replace(value, number=value.number * Fraction(factor))
     return value * Fraction(factor)
 
 
 def read(model: type[BaseModel], field: str, raw: Any) -> Any:
-    """A raw value through the reader of a field; PydanticCustomError where a file is refused."""
+    """Return a raw value through the reader of a field; PydanticCustomError: it is refused."""
     (reads,) = (m for m in model.model_fields[field].metadata if isinstance(m, Reads))
     return reads.reader(raw, reads.example)
 
 
 def written(value: Any, path: Path) -> Any:
-    """A value as a file holds it at a place: texts for quantities, decimals, integers, lists."""
+    """Return a value as a file holds it at a place: quantities as texts, decimals, lists."""
     if path[1:2] == ("modules",) and isinstance(value, Fraction):
         return f"{exact(value)} mm"
     if path[-1:] == ("ratio_tolerance",):
@@ -154,7 +154,7 @@ def written(value: Any, path: Path) -> Any:
 
 
 def eased(value: Any, factor: float, direction: int) -> Any:
-    """A number moved by a factor >= 1 up (+1) or down (-1), rounded to its easy side.
+    """Return a number moved by a factor >= 1 up (+1) or down (-1), rounded to its easy side.
 
     Integers stay integers (one that is meant but for rounding is taken); others keep DIGITS digits
     and get ROOM, to be feasible in doubles.
@@ -171,7 +171,7 @@ def eased(value: Any, factor: float, direction: int) -> Any:
 
 
 def _rounded(value: Fraction, direction: int) -> Fraction:
-    """A number with room, of DIGITS digits, on the easy side; a short one that is met is kept."""
+    """Return a number with room, of DIGITS digits, on the easy side; a short one is kept."""
 
     def decimal(number: Fraction, digits: int, rounding: str) -> Fraction:
         context = Context(prec=digits, rounding=rounding)
@@ -185,14 +185,14 @@ def _rounded(value: Fraction, direction: int) -> Fraction:
 
 
 def exact(value: Fraction) -> Decimal | int:
-    """A fraction of a file as the decimal number it was."""
+    """Return a fraction of a file as the decimal number it was."""
     if value.denominator == 1:
         return value.numerator
     return Context(prec=40).divide(Decimal(value.numerator), Decimal(value.denominator))
 
 
 def taken_back(now: Any, before: Any, part: float) -> Any:
-    """A value moved back by a part of its size; integers by one."""
+    """Return a value moved back by a part of its size; integers by one."""
     if isinstance(now, tuple):
         old = before if isinstance(before, tuple) else (before, before)
         return tuple(taken_back(a, b, part) for a, b in zip(now, old, strict=True))
@@ -205,7 +205,7 @@ def taken_back(now: Any, before: Any, part: float) -> Any:
 
 
 def apart(before: Any, after: Any) -> float:
-    """How far two values are apart, as a factor >= 1; of ranges, the product of both ends'.
+    """Return how far two values are apart, as a factor >= 1; of ranges, the product of both ends'.
 
     Ends that were equal and are equal are one number.
     """

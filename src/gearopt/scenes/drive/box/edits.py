@@ -79,11 +79,11 @@ class Edit:
 
     @property
     def what(self) -> str:
-        """The key that moves, without its table."""
+        """Return the key that moves, without its table."""
         return str(next(p for p in reversed(self.path) if isinstance(p, str)))
 
     def put(self, scene: Scene, value: Any) -> Scene:
-        """The scene with a value at the place of this edit."""
+        """Return the scene with a value at the place of this edit."""
         path = self.path
         if isinstance(value, Without):
             path = path[:-1]
@@ -92,22 +92,22 @@ class Edit:
         return found
 
     def key(self) -> str:
-        """Its place as messages write it."""
+        """Return its place as messages write it."""
         return self.texts[0] if self.texts else dotted(self.path)
 
     def was(self, scene: Scene) -> str:
-        """What stands there, as the file writes it."""
+        """Return what stands there, as the file writes it."""
         if self.texts:
             return self.texts[1]
         return toml_text(written(at(scene, self.path), self.path)).strip('"')
 
     def write(self, value: Any) -> str:
-        """A value as the file writes it."""
+        """Return a value as the file writes it."""
         return self.texts[2] if self.texts else toml_text(written(value, self.path))
 
 
 def edits(scene: Scene, pairs: tuple[GearPair, ...]) -> tuple[Edit, ...]:
-    """Every edit of one number of [layout], [[place]] and [[keep_out]]."""
+    """Return every edit of one number of [layout], [[place]] and [[keep_out]]."""
     reach = sum(pair.centre_distance for pair in pairs)
     found = [m for n in numbers(scene) for m in _factors(n)]
     for k, place in enumerate(scene.place):
@@ -123,12 +123,12 @@ def edits(scene: Scene, pairs: tuple[GearPair, ...]) -> tuple[Edit, ...]:
 
 
 def limits_of(tried: tuple[Edit, ...]) -> tuple[str, ...]:
-    """How far moves go, each said once."""
+    """Return how far moves go, each said once."""
     return tuple(dict.fromkeys(edit.limit for edit in tried))
 
 
 def _factors(number: Number) -> Iterator[Edit]:
-    """The moves of a length or stress by a factor."""
+    """Yield the moves of a length or stress by a factor."""
     value, path = number.value, number.path
     inside = path[0] in ("layout", "place") and isinstance(value, Quantity)
     named = str(next(p for p in reversed(path) if isinstance(p, str)))
@@ -152,7 +152,7 @@ def _factor(path: Path, value: Quantity, farthest: float, sign: int, named: str)
 def _wider(
     path: Path, ends: tuple[Quantity, Quantity], farthest: float, reach: float
 ) -> Iterator[Edit]:
-    """The moves of a place: its range is widened at either end, a point is moved there."""
+    """Yield the moves of a place: its range is widened at either end, a point is moved there."""
     point = ends[0] == ends[1]
     for end, sign in ((0, -1), (1, 1)):
 
@@ -170,7 +170,7 @@ def _wider(
 def _narrower(
     path: Path, ends: tuple[Quantity, Quantity], farthest: float, reach: float
 ) -> Iterator[Edit]:
-    """The moves of a side of a keep-out, inwards."""
+    """Yield the moves of a side of a keep-out, inwards."""
     for end, sign in ((0, 1), (1, -1)) if farthest > 0.0 else ():
 
         def searched(size: float, end: int = end, sign: int = sign) -> Any:
@@ -191,7 +191,7 @@ def _shift(
     farthest: float,
     reach: float,
 ) -> Edit:
-    """The edit of one end by a distance; home: the direction back to where it was."""
+    """Return the edit of one end by a distance; home: the direction back to where it was."""
 
     def back(new: Any) -> Any:
         part = max(BACK * abs(new[end].value), 2.0 * GRID)
@@ -212,7 +212,7 @@ def _with(ends: tuple[Quantity, Quantity], end: int, new: Quantity) -> tuple[Qua
 
 
 def _shifted(value: Quantity, distance: float, rounded: bool = False) -> Quantity:
-    """A length moved by a distance [mm]; rounded: to GRID, away from where it was."""
+    """Return a length moved by a distance [mm]; rounded: to GRID, away from where it was."""
     unit = UNITS["length"][value.unit][0]
     number = value.number + Fraction(distance) / unit
     if rounded:
@@ -223,7 +223,7 @@ def _shifted(value: Quantity, distance: float, rounded: bool = False) -> Quantit
 
 
 def switches(scene: Scene) -> tuple[Edit, ...]:
-    """Every place or keep-out left out, slabs left free, no split line, partial span."""
+    """Return every place or keep-out left out, slabs left free, no split line, partial span."""
     table = scene.layout
     assert table is not None
     found = []

@@ -48,7 +48,7 @@ class Questions:
         self._pairs, self._clock, self.open = pairs, clock, list[str]()
 
     def fits(self, scene: Scene, seconds: float = SECONDS) -> bool | None:
-        """Whether these gears can be laid out; None where that is not known in time."""
+        """Return whether these gears can be laid out; None where that is not known in time."""
         if self._clock.over:
             return None
         box = self.read(scene)
@@ -57,13 +57,13 @@ class Questions:
         return possible(box, self._clock.within(seconds), self._clock.watch)
 
     def read(self, scene: Scene) -> Gearbox | None:
-        """The gearbox of a changed file; None where its own rules refuse it."""
+        """Return the gearbox of a changed file; None where its own rules refuse it."""
         return gearbox_of(scene, self._pairs) if allowed(scene) else None
 
     def smallest(
         self, scene: Callable[[float], Scene], steps: int, key: str, high: float | None = None
     ) -> list[float]:
-        """Sizes of a change known to fit, the smallest first; none where there is none.
+        """Return sizes of a change known to fit, the smallest first; none where there is none.
 
         scene: the file with the change of some size. high: a size known to fit. A size that stays
         undecided is not known to fit; it is noted in `open` where no size is known to fit.
@@ -80,7 +80,7 @@ class Questions:
         return _halved(lambda size, seconds: self.fits(scene(size), seconds), high, steps)
 
     def _farthest(self, scene: Callable[[float], Scene]) -> float:
-        """The largest size, up to 1, with which the rules of the file hold."""
+        """Return the largest size, up to 1, with which the rules of the file hold."""
         low, high = 0.0, 1.0
         if self.read(scene(high)) is not None:
             return high
@@ -104,7 +104,7 @@ class Questions:
 
 
 def remedies(scene: Scene, pairs: tuple[GearPair, ...], ask: Ask) -> Remedies:
-    """Each change that alone makes these gears possible to lay out; else pairs of changes."""
+    """Return each change that alone lets these gears be laid out; else pairs of changes."""
     clock = Clock(ask.budget, of_others(ask.watch))
     asked = Questions(pairs, clock)
     single, choices = edits(scene, pairs), switches(scene)
@@ -132,7 +132,7 @@ def _size(found: tuple[float, Remedy]) -> float:
 
 
 def gearbox_of(scene: Scene, pairs: tuple[GearPair, ...]) -> Gearbox | None:
-    """The gearbox of a scene; None where numbers that were moved contradict each other."""
+    """Return the gearbox of a scene; None where numbers that were moved contradict each other."""
     try:
         return scene.gearbox(pairs)
     except ValueError:
@@ -140,7 +140,7 @@ def gearbox_of(scene: Scene, pairs: tuple[GearPair, ...]) -> Gearbox | None:
 
 
 def _halved(asks: Asks, high: float, steps: int) -> list[float]:
-    """Sizes that fit, the smallest first, by halving from `high`, which fits."""
+    """Return sizes that fit, the smallest first, by halving from `high`, which fits."""
     low, known, seconds = 0.0, [high], HALF
     for _ in range(steps):
         middle = 0.5 * (low + known[0])
@@ -155,7 +155,7 @@ def _halved(asks: Asks, high: float, steps: int) -> list[float]:
 
 
 def _moved(scene: Scene, edit: Edit, asked: Questions) -> tuple[float, Remedy] | None:
-    """The least known size of one edit and its remedy; None where none is known."""
+    """Return the least known size of one edit and its remedy; None where none is known."""
     known = asked.smallest(
         lambda size: edit.put(scene, edit.searched(size)), edit.steps, edit.key()
     )
@@ -176,7 +176,7 @@ def _word(found: bool | None) -> str:
 
 
 def _change(scene: Scene, edit: Edit, value: Any) -> Change:
-    """The edit of a edit; its factor where a number is multiplied, else infinite (not told)."""
+    """Return an edit as it is told; its factor is infinite where a number is shifted."""
     factor = math.inf
     if edit.texts:
         factor = 1.0
@@ -187,7 +187,7 @@ def _change(scene: Scene, edit: Edit, value: Any) -> Change:
 
 
 def _chosen(scene: Scene, edit: Edit, asked: Questions) -> Remedy | None:
-    """A switch that suffices alone."""
+    """Return a switch that suffices alone."""
     value = edit.searched(1.0)
     if not asked.smallest(lambda _: edit.put(scene, value), 0, edit.key()):
         return None
@@ -196,7 +196,7 @@ def _chosen(scene: Scene, edit: Edit, asked: Questions) -> Remedy | None:
 
 
 def _pairs(scene: Scene, single: tuple[Edit, ...], asked: Questions) -> list[tuple[float, Remedy]]:
-    """Two changes that do together, each as small as the other allows; the smallest of them."""
+    """Return two changes that do together, each as small as the other allows."""
     rough: list[tuple[float, float, Pair]] = []
     for pair in combinations(single, 2):
         if _same(*pair):
@@ -219,7 +219,7 @@ def _pairs(scene: Scene, single: tuple[Edit, ...], asked: Questions) -> list[tup
 
 
 def _same(one: Edit, other: Edit) -> bool:
-    """Whether two moves change the same table or number, so that one undoes the other."""
+    """Return whether two moves change the same table or number, so that one undoes the other."""
     shared = min(len(one.path), len(other.path))
     return one.path[:shared] == other.path[:shared]
 
@@ -227,7 +227,7 @@ def _same(one: Edit, other: Edit) -> bool:
 def _together(
     scene: Scene, pair: Pair, size: float, asked: Questions
 ) -> tuple[float, Remedy] | None:
-    """The remedy of two moves that do with a common size: one made smaller, then the other."""
+    """Return the remedy of two moves of a common size: one made smaller, then the other."""
     sizes, values = [size, size], [m.searched(size) for m in pair]
     for k, edit in enumerate(pair):
 
@@ -258,14 +258,14 @@ def _together(
 
 
 def _put(scene: Scene, pair: Pair, values: list[Any]) -> Scene:
-    """Both changes, in the order of `moves` and `switches`: a table goes after others changed."""
+    """Return both changes, in order: a table goes after others changed."""
     for edit, value in zip(pair, values, strict=True):
         scene = edit.put(scene, value)
     return scene
 
 
 def explained(scene: Scene, result: Result, clock: Clock) -> Explanation:
-    """The answer of a layout with the slope of the box over every number of its tables."""
+    """Return the answer of a layout with the slope of the box over every number of its tables."""
     if result.status not in CERTAIN or result.value is None:
         return Explanation(result, message="slopes need a proven layout", seconds=clock.seconds)
     pairs = pairs_of(scene, next((p for p in result.parts if p.name == "gears"), result))

@@ -19,7 +19,7 @@ CLEARANCES = {
 
 
 def notes(scene: Scene, exact: bool) -> list[str]:
-    """What a reader of the result should know beside the numbers."""
+    """Return what a reader of the result should know beside the numbers."""
     found = []
     limits, stages = scene.limits, scene.stage
     if limits.preset is not None:
@@ -35,7 +35,7 @@ def notes(scene: Scene, exact: bool) -> list[str]:
 
 
 def assumptions(scene: Scene) -> list[str]:
-    """What a design takes for granted, in sentences."""
+    """Return what a design takes for granted, in sentences."""
     angle, density = scene.gears.pressure_angle, scene.objective.density
     assumed = "" if "pressure_angle" in scene.gears.model_fields_set else " (default)"
     mass = (
@@ -61,7 +61,7 @@ def assumptions(scene: Scene) -> list[str]:
 
 
 def _layout_assumptions(layout: Layout) -> list[str]:
-    """Of a layout: clearances, shafts, bearings, walls."""
+    """Return of a layout: clearances, shafts, bearings, walls."""
     clear = [
         f"{words} {getattr(layout, name)}{'' if name in layout.model_fields_set else ' (default)'}"
         for name, words in CLEARANCES.items()
@@ -88,7 +88,7 @@ def _layout_assumptions(layout: Layout) -> list[str]:
 def undercut(
     stages: Sequence[Mapping[str, Any]], rack: Rack, helix_angle: float, more: str = ""
 ) -> Iterator[str]:
-    """A sentence for every pinion of a design that is noticeably undercut; more: what follows it.
+    """Yield a sentence for every pinion of a design that is undercut; more: what follows it.
 
     At 20 degrees 17 spur teeth are not: the rack reaches 0.006 modules too deep.
     """

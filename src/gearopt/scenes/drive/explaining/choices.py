@@ -44,7 +44,7 @@ class Reached:
 
 
 def nearest_ratio(case: Case, away: Fraction | None) -> Remedy | None:
-    """The ratio next to the one asked for that a design exists for, written into the duty.
+    """Return the ratio next to the one asked for that a design exists for, written into the duty.
 
     away: the least tolerance known to suffice, None where the file can hold none.
     """
@@ -63,7 +63,7 @@ def nearest_ratio(case: Case, away: Fraction | None) -> Remedy | None:
 
 
 def _nearest(case: Case, best: Reached) -> tuple[Reached, str]:
-    """What is reached next to the ratio asked for; and whether all that is nearer is impossible.
+    """Return what is reached next to the ratio asked for; and whether nothing is nearer.
 
     Whole teeth are known to be next in exact numbers, real-valued ones but for TAKEN_BACK of the
     distance, as limits are met in doubles.
@@ -91,7 +91,7 @@ def _nearest(case: Case, best: Reached) -> tuple[Reached, str]:
 
 
 def _met(case: Case, away: Fraction) -> Reached | str:
-    """A ratio within a distance, or else what is known: infeasible or undecided."""
+    """Return a ratio within a distance, or else what is known: infeasible or undecided."""
     asked, within = case.scene.duty.total_ratio, _within(case.scene, away)
     if case.scene.teeth is None:
         word, below, above = case.status(within), asked * (1 - away), asked * (1 + away)
@@ -111,7 +111,7 @@ def _within(scene: Scene, tolerance: Fraction) -> Scene:
 
 
 def _written(scene: Scene, ratio: Fraction) -> Iterator[Scene]:
-    """The scene that asks for a ratio, as a file can write it; the output speed where it has that.
+    """Yield the scene that asks for a ratio, as a file can write it, or its output speed.
 
     Whole teeth: exactly, or so that the ratio is within the tolerance. Real-valued ones: a short
     number that is as near, or else one rounded away from the ratio asked for.
@@ -143,7 +143,7 @@ def _short(number: Fraction, digits: int) -> Fraction:
 
 
 def eased_tolerance(case: Case) -> Remedy | None:
-    """The least ratio tolerance with which a drive of none is possible."""
+    """Return the least ratio tolerance with which a drive of none is possible."""
     path = ("duty", "ratio_tolerance")
 
     def works(value: float, back: float = 0.0) -> bool | None:
@@ -165,7 +165,7 @@ def eased_tolerance(case: Case) -> Remedy | None:
 
 
 def switches(case: Case) -> Iterator[Remedy]:
-    """Switches of [teeth] that suffice alone: hunting teeth off, a module more, both series."""
+    """Yield switches of [teeth] that suffice alone: not hunting, one module more, both series."""
     teeth = case.scene.teeth
     assert teeth is not None
     ways: list[tuple[str, str, str, dict[str, Any]]] = []
@@ -192,7 +192,7 @@ def switches(case: Case) -> Iterator[Remedy]:
 
 
 def _one_more(modules: tuple[Fraction, ...]) -> list[tuple[Fraction, ...]]:
-    """The list with one module of ISO 54 more: series I first, those near the list's first."""
+    """Return the list with one module of ISO 54 more: series I first, the near ones first."""
 
     def far(module: Fraction) -> float:
         return min(float(max(m, module) / min(m, module)) for m in modules)

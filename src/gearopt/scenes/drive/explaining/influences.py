@@ -28,7 +28,7 @@ SAME = 1e-6  # gap of an answer that may be compared with another
 def explained(
     scene: Scene, result: Result, clock: Clock, answer: Callable[[Scene], Result]
 ) -> Explanation:
-    """The result with the influence of every number; answer(scene) solves a changed drive.
+    """Return the result with the influence of every number; answer(scene) solves a changed drive.
 
     Slopes are those of real-valued sizes, prices are of the drive as it is.
     """
@@ -68,7 +68,7 @@ def explained(
 
 
 def _basis(scene: Scene, clock: Clock) -> Basis | None:
-    """The optimum of real-valued sizes; None where it is not known."""
+    """Return the optimum of real-valued sizes; None where it is not known."""
 
     def posed(other: Scene) -> Problem:
         return sizing.problem(other.train())
@@ -85,7 +85,7 @@ def _basis(scene: Scene, clock: Clock) -> Basis | None:
 
 
 def _smooth(scene: Scene, number: Number) -> bool:
-    """Whether a small relative change of a number means anything.
+    """Return whether a small relative change of a number means anything.
 
     Zero has none, and of a series the next module counts.
     """
@@ -94,7 +94,7 @@ def _smooth(scene: Scene, number: Number) -> bool:
 
 
 def _spelt(scene: Scene) -> Scene:
-    """The scene with the load limits that a preset sets written out."""
+    """Return the scene with the load limits that a preset sets written out."""
     limits = scene.limits
     if limits.preset is None:
         return scene
@@ -111,7 +111,7 @@ def _is_series(scene: Scene) -> bool:
 
 
 def _price(scene: Scene, number: Number, result: Result, solved: Any) -> tuple[str, float | None]:
-    """The step that eases a limit of the file, and what it brings; "" for what is no limit."""
+    """Return the step that eases a limit of the file, and what it brings; "" for no limit."""
     direction = _eases(scene, number)
     if direction == 0 or result.value is None:
         return "", None

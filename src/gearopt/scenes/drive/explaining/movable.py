@@ -66,17 +66,17 @@ class Movable:
 
     @property
     def shared(self) -> bool:
-        """Whether it holds for more than one stage."""
+        """Return whether it holds for more than one stage."""
         return self.path[0] != "stage"
 
     @property
     def eases(self) -> bool:
-        """Whether more of it is never harder: so with limits, the duty, and b/d1."""
+        """Return whether more of it is never harder: so with limits, the duty, and b/d1."""
         return self.sort != "size" or self.family == WIDTH
 
     @property
     def reach(self) -> float:
-        """The largest factor by which it may move."""
+        """Return the largest factor by which it may move."""
         return min(h.reach for h in self.handles)
 
 
@@ -93,7 +93,7 @@ class Edited:
 
 
 def movables(scene: Scene, handles: Sequence[Handle]) -> list[Movable]:
-    """Every number that a remedy may move, with the handles of the problem behind it.
+    """Return every number that a remedy may move, with the handles of the problem behind it.
 
     A number of [limits] or [gears] for all stages that have none of their own, and that of each
     stage alone; where a single stage takes it from there, once.
@@ -142,24 +142,24 @@ def _of_stages(
 
 
 def fields(scene: Scene) -> dict[str, tuple[str, int | None]]:
-    """FIELDS with the limits of the strength law before them."""
+    """Return FIELDS with the limits of the strength law before them."""
     return {name: (name, None) for name in scene.limits.LAW.names} | FIELDS
 
 
 def stage_of(handle: Handle) -> int:
-    """The stage (from 0) that a handle belongs to."""
+    """Return the stage (from 0) that a handle belongs to."""
     return int(handle.name.split("[")[1].rstrip("]")) - 1 if "[" in handle.name else 0
 
 
 def staged(scene: Scene) -> Scene:
-    """The scene with one table a stage."""
+    """Return the scene with one table a stage."""
     if scene.stage:
         return scene
     return scene.model_copy(update={"stage": (StageTable(),) * int(scene.stages or 0)})
 
 
 def applied(scene: Scene, moves: Sequence[tuple[Movable, float]]) -> Edited | None:
-    """The scene with numbers moved by factors >= 1; None where the file's rules refuse it."""
+    """Return the scene with numbers moved by factors >= 1; None: the file's rules refuse it."""
     found = staged(scene)
     paths: list[Path] = []
     for number, factor in sorted(moves, key=lambda move: not move[0].shared):
@@ -172,7 +172,7 @@ def applied(scene: Scene, moves: Sequence[tuple[Movable, float]]) -> Edited | No
 
 
 def edited_from(scene: Scene, found: Scene, paths: Sequence[Path]) -> Edited:
-    """What leads from a scene to another that differs at some places."""
+    """Return what leads from a scene to another that differs at some places."""
     changes = []
     for path in paths:
         was, now = inherited(scene, path), inherited(found, path)
@@ -182,14 +182,14 @@ def edited_from(scene: Scene, found: Scene, paths: Sequence[Path]) -> Edited:
 
 
 def _raw(value: Any, path: Path) -> Any:
-    """A value as its table writes it: in [limits] a range stays one where its ends are equal."""
+    """Return a value as its table writes it: in [limits] a range stays one with equal ends."""
     raw = written(value, path)
     pair = isinstance(value, tuple) and path[0] == "limits" and not isinstance(raw, list)
     return [raw, raw] if pair else raw
 
 
 def _value(scene: Scene, number: Movable, factor: float) -> Any:
-    """What to write for a factor; None where no module of [teeth] is left."""
+    """Return what to write for a factor; None where no module of [teeth] is left."""
     now = inherited(scene, number.path)
     if number.path[-1] == "ratio_tolerance":
         return max(now, eased(tolerance(now, number.end, factor), 1.0, 1))
@@ -204,7 +204,7 @@ def _value(scene: Scene, number: Movable, factor: float) -> Any:
 
 
 def steps(scene: Scene, number: Movable) -> list[float]:
-    """The factors of all values of a whole number or module, from near to far; else empty."""
+    """Return the factors of all values of a whole number or module, near ones first; else empty."""
     now = inherited(scene, number.path)
     now = now[number.end or 0] if isinstance(now, tuple) else now
     if number.path[-1] == "module" and scene.teeth is not None:
@@ -219,13 +219,13 @@ def steps(scene: Scene, number: Movable) -> list[float]:
 
 
 def tolerance(now: Fraction, end: int | None, factor: float) -> Fraction:
-    """The ratio tolerance at which the lowest (0) or highest (1) ratio is a factor further out."""
+    """Return the ratio tolerance at which the lowest (0) or highest (1) ratio is a factor out."""
     f = Fraction(factor)
     return 1 - (1 - now) / f if end == 0 else (1 + now) * f - 1
 
 
 def bound_of(scene: Scene, number: Movable, bound: float | None) -> float | None:
-    """The proven least factor of a number as the file has it, from that of its handles."""
+    """Return the proven least factor of a number as the file has it, from that of its handles."""
     if bound is None:
         return None
     if number.path[-1] == "ratio_tolerance":
@@ -235,7 +235,7 @@ def bound_of(scene: Scene, number: Movable, bound: float | None) -> float | None
 
 
 def _mismatched(scene: Scene, number: Movable) -> bool:
-    """Whether the problem has another number than the file: an end between two modules."""
+    """Return whether the problem has another number than the file: an end between two modules."""
     now = inherited(scene, number.path)
     if number.path[-1] != "module" or scene.teeth is None or number.end is None:
         return False
@@ -243,12 +243,12 @@ def _mismatched(scene: Scene, number: Movable) -> bool:
 
 
 def comparable(scene: Scene, found: Sequence[Movable]) -> bool:
-    """Whether a proven least product of handles is one of the file's numbers."""
+    """Return whether a proven least product of handles is one of the file's numbers."""
     return not any(_mismatched(scene, number) for number in found)
 
 
 def reachable(scene: Scene, number: Movable) -> Movable:
-    """The number with its handles' reach cut to what the file's rules allow (1: no move)."""
+    """Return the number with its handles' reach cut to what the file's rules allow (1: no move)."""
     low, high = 1.0, max((h.reach for h in number.handles), default=1.0)
     if applied(scene, [(number, high)]) is not None:
         return number
@@ -260,7 +260,7 @@ def reachable(scene: Scene, number: Movable) -> Movable:
 
 
 def less(scene: Scene, edited: Edited, part: float, only: int | None = None) -> Scene:
-    """The edited scene with its changes (or one of them) taken back by a part of their size.
+    """Return the edited scene with its changes (or one of them) taken back by a part of their size.
 
     Whole numbers go back by one, modules of [teeth] to the one before.
     """
@@ -276,7 +276,7 @@ def less(scene: Scene, edited: Edited, part: float, only: int | None = None) -> 
 
 
 def _module_back(scene: Scene, now: Any, before: Any) -> Any:
-    """A range of modules with its moved ends one module nearer to where they were."""
+    """Return a range of modules with its moved ends one module nearer to where they were."""
     ends = list(now)
     for k, (new, old) in enumerate(zip(now, before, strict=True)):
         sizes = new.exact[0], old.exact[0]
@@ -288,7 +288,7 @@ def _module_back(scene: Scene, now: Any, before: Any) -> Any:
 
 
 def inherited(scene: Scene, path: Path) -> Any:
-    """What holds at a place of the file: its own value, or that of the table for all stages."""
+    """Return what holds at a place of the file: its own, or that for all stages."""
     field = str(path[-1])
     own = scene.stage[path[1]] if path[0] == "stage" and scene.stage else None  # type: ignore[index]
     if own is not None and getattr(own, field) is not None:
@@ -305,7 +305,7 @@ def inherited(scene: Scene, path: Path) -> Any:
 def next_module(
     scene: Scene, module: Quantity, direction: int, beyond: bool = True
 ) -> Quantity | None:
-    """The next module of [teeth] up (+1) or down (-1), beyond or at a module; in its unit."""
+    """Return the next module of [teeth] up (+1) or down (-1), beyond or at one; in its unit."""
     assert scene.teeth is not None
     size = module.exact[0]
     found = [

@@ -41,7 +41,7 @@ from gearopt.scenes.explaining.numbers import read
 
 
 def remedies(scene: Scene, clock: Clock) -> Remedies:
-    """The conflict and the remedies of an impossible drive, the least change first.
+    """Return the conflict and the remedies of an impossible drive, the least change first.
 
     Every remedy was tried: a design exists with it.
     """
@@ -62,14 +62,14 @@ def remedies(scene: Scene, clock: Clock) -> Remedies:
 
 
 def _tolerance(found: Sequence[Remedy]) -> Fraction | None:
-    """The ratio tolerance that one of the remedies writes."""
+    """Return the ratio tolerance that one of the remedies writes."""
     written = [c.write for r in found for c in r.changes if c.key == "duty.ratio_tolerance"]
     value = read(Duty, "ratio_tolerance", written[0].strip('"')) if written else None
     return None if value is None else Fraction(value)
 
 
 def _conflict(base: Problem, known: Sequence[Handle], clock: Clock) -> tuple[Handle, ...]:
-    """The limits that cannot hold together; with what is given where limits alone can."""
+    """Return the limits that cannot hold together; with what is given where limits alone can."""
     limits = [h for h in known if not h.given]
     return conflict(base, limits, clock) or conflict(base, known, clock)
 
@@ -90,7 +90,7 @@ class Proposal:
 def _singles(
     case: Case, base: Problem | None, movable: Sequence[Movable], blamed: Sequence[Handle]
 ) -> Iterator[Proposal]:
-    """Every number that suffices alone, moved as little as that takes.
+    """Yield every number that suffices alone, moved as little as that takes.
 
     base: the problem with real-valued sizes where that is impossible too; only what moves a limit
     of the conflict helps it.
@@ -133,12 +133,12 @@ def _singles(
 
 
 def _tried(case: Case, proposals: Iterable[Proposal]) -> list[tuple[Proposal, Remedy]]:
-    """Proposals with their edits, each as it is found, until time runs out."""
+    """Return proposals with their edits, each as it is found, until time runs out."""
     return [(proposal, r) for proposal in proposals if (r := _remedy(case, proposal)) is not None]
 
 
 def _alike(case: Case, base: Problem | None, movable: Sequence[Movable]) -> Iterator[Proposal]:
-    """One factor for a kind of limit that every stage has for itself, and for all load limits."""
+    """Yield one factor for a kind of limit that every stage has for itself, and for load limits."""
     limits = [m for m in movable if m.sort == "limit"]
     common = {m.family for m in limits if m.shared}
     groups = [
@@ -170,7 +170,7 @@ def _changes(
     beside: Moves | None,
     floor: float | None,
 ) -> list[Remedy]:
-    """The remedies of limits and sizes, the least first, then those that ask for less."""
+    """Return the remedies of limits and sizes, the least first, then those that ask for less."""
     proposals = []
     if beside is not None and len(beside) > 1:
         proposals.append(Proposal("least", beside, floor))
@@ -206,7 +206,7 @@ def _changes(
 
 
 def _worth_telling(found: Any) -> Iterator[Remedy]:
-    """Of the numbers of single stages the least one of each kind."""
+    """Yield of the numbers of single stages the least one of each kind."""
     seen = set()
     for remedy in found:
         if remedy.kind != "one" or remedy.what not in seen:
@@ -215,7 +215,7 @@ def _worth_telling(found: Any) -> Iterator[Remedy]:
 
 
 def _all_limits(case: Case, movable: list[Movable]) -> Remedy | None:
-    """All limits enlarged alike, then each made as small as the others allow."""
+    """Return all limits enlarged alike, then each made as small as the others allow."""
     moves = tuple((m, 1.0) for m in widest(movable))
     larger = enlarged(case, moves) if moves and case.scene.teeth is not None else None
     return None if larger is None else _remedy(case, Proposal("least", trimmed(case, larger), None))
@@ -226,7 +226,7 @@ def _product(remedy: Remedy) -> float:
 
 
 def _distinct(found: Sequence[Remedy]) -> list[Remedy]:
-    """Of remedies that edit the same keys, the one of the smallest factor."""
+    """Return of remedies that edit the same keys, the one of the smallest factor."""
     best: dict[tuple[str, ...], Remedy] = {}
     for remedy in found:
         keys = tuple(sorted(c.key for c in remedy.changes))
@@ -236,7 +236,7 @@ def _distinct(found: Sequence[Remedy]) -> list[Remedy]:
 
 
 def _remedy(case: Case, proposal: Proposal) -> Remedy | None:
-    """A remedy as edits, tried as they are written; None if it is none."""
+    """Return a remedy as edits, tried as they are written; None if it is none."""
     edited = applied(case.scene, proposal.moves)
     if edited is None or case.status(edited.scene) != "feasible":
         return None

@@ -58,7 +58,7 @@ class Choice:
 
 
 def least_together(case: Case, movables: list[Movable], most: float) -> tuple[Moves, bool] | None:
-    """Moves of given numbers with the least product below `most`; and whether none has less.
+    """Return moves of given numbers with the least product below `most`; and whether none has less.
 
     None where there are none. After so many questions, the best that was met on the way.
     """
@@ -86,7 +86,7 @@ def least_together(case: Case, movables: list[Movable], most: float) -> tuple[Mo
 
 
 def _met(case: Case, train: Train, choices: list[Choice], box: Box) -> Box | bool | None:
-    """A single choice of a box that is possible; False where none is, None where it is not known.
+    """Return a single choice of a box that is possible; False: none is; None: not known.
 
     Where it is known to be possible, but not with which numbers, True for a box of several.
     """
@@ -107,7 +107,7 @@ def _met(case: Case, train: Train, choices: list[Choice], box: Box) -> Box | boo
 
 
 def _choices(case: Case, movables: list[Movable], most: float) -> list[Choice]:
-    """The numbers that may be moved together, with their values of a factor below `most`."""
+    """Return the numbers that may be moved together, with their values of a factor below `most`."""
     numbers: dict[tuple[Any, ...], list[tuple[Any, float, Movable | None]]] = {}
     for number in movables:
         if number.sort == "size":
@@ -129,7 +129,7 @@ def _choices(case: Case, movables: list[Movable], most: float) -> list[Choice]:
 
 
 def _plain(scene: Scene, path: tuple[Any, ...], factor: float = 1.0, direction: int = 1) -> Any:
-    """A given number of a stage as the train has it, moved: teeth, or a module in mm."""
+    """Return a given number of a stage as the train has it, moved: teeth, or a module in mm."""
     stage = scene.train().stages[path[1]]
     if path[2] != "module":
         return round(getattr(stage, path[2])[0] * factor**direction)
@@ -139,7 +139,7 @@ def _plain(scene: Scene, path: tuple[Any, ...], factor: float = 1.0, direction: 
 
 
 def _within(train: Train, choices: list[Choice], box: Box) -> Train:
-    """The drive that may choose its given numbers from a box."""
+    """Return the drive that may choose its given numbers from a box."""
     stages = list(train.stages)
     for choice, (i, j) in zip(choices, box, strict=True):
         ends: Any = (choice.values[i], choice.values[j])
@@ -151,7 +151,7 @@ def _within(train: Train, choices: list[Choice], box: Box) -> Train:
 
 
 def _parts(choices: list[Choice], box: Box) -> list[Box]:
-    """A box cut along its widest range: at the file's own value, else in halves."""
+    """Return a box cut along its widest range: at the file's own value, else in halves."""
     spread = [
         math.log(max(c.factors[i : j + 1])) + (i < j) * 1e-9
         for c, (i, j) in zip(choices, box, strict=True)
@@ -168,7 +168,7 @@ def _parts(choices: list[Choice], box: Box) -> list[Box]:
 
 
 def _product(choices: list[Choice], box: Box) -> float:
-    """The least product of factors in a box."""
+    """Return the least product of factors in a box."""
     return math.prod(min(c.factors[i : j + 1]) for c, (i, j) in zip(choices, box, strict=True))
 
 
@@ -182,12 +182,12 @@ def _moves(choices: list[Choice], box: Box) -> Moves:
 
 
 def is_real(scene: Scene, clock: Clock) -> bool:
-    """Whether real-valued sizes are impossible too."""
+    """Return whether real-valued sizes are impossible too."""
     return solve_within(clock, sizing.problem(scene.train())).status == "infeasible"
 
 
 def posed(scene: Scene) -> tuple[Problem, list[Handle], list[Movable]]:
-    """The problem with real-valued sizes, what may be relaxed in it, and the file's numbers."""
+    """Return the problem with real-valued sizes, what may be relaxed, and the file's numbers."""
     train = scene.train()
     base = sizing.movable(train)
     known = [_named(h, train, scene.teeth is None) for h in handles(base)]
@@ -196,7 +196,7 @@ def posed(scene: Scene) -> tuple[Problem, list[Handle], list[Movable]]:
 
 
 def _named(handle: Handle, train: Train, whole: bool) -> Handle:
-    """A handle named as in the file, with its stage; whole: limits of teeth are rounded.
+    """Return a handle named as in the file, with its stage; whole: limits of teeth are rounded.
 
     Given teeth are not: they are set first, and the others follow.
     """
@@ -211,7 +211,7 @@ def _named(handle: Handle, train: Train, whole: bool) -> Handle:
 def together(
     case: Case, base: Problem, movable: list[Movable]
 ) -> tuple[float | None, Moves | None]:
-    """The proven least product over all limits and given sizes, and moves that need about that.
+    """Return the proven least product over all limits and given sizes, and moves of about that.
 
     Whole numbers that are given are set first: the others follow them.
     """
@@ -231,7 +231,7 @@ def together(
 
 
 def _rounded(scene: Scene, moves: Moves) -> list[Moves]:
-    """Moves of whole numbers at the value beyond or before what real-valued sizes need."""
+    """Return moves of whole numbers at the value beyond or before what real-valued sizes need."""
     ways = []
     for number, factor in moves:
         known = [1.0, *steps(scene, number)]
@@ -244,7 +244,7 @@ def _rounded(scene: Scene, moves: Moves) -> list[Moves]:
 
 
 def _beside(case: Case, fixed: Moves, rest: Moves) -> Moves | None:
-    """Moves that are made as they are, and the least of others beside them that suffice."""
+    """Return moves that are made as they are, and the least of others beside them that suffice."""
     if fixed and case.works(fixed):
         return fixed
     if case.scene.teeth is None and case.works((*fixed, *rest)):
@@ -260,7 +260,7 @@ def _beside(case: Case, fixed: Moves, rest: Moves) -> Moves | None:
 
 
 def _from_sizes(case: Case, movable: list[Movable], real: Moves) -> Moves | None:
-    """Given whole numbers moved least under wide limits, then limits as little as it takes.
+    """Return given whole numbers moved least under wide limits, then limits as little as it takes.
 
     real: given real-valued sizes that move too.
     """
@@ -277,7 +277,7 @@ def _from_sizes(case: Case, movable: list[Movable], real: Moves) -> Moves | None
 def _least_moves(
     case: Case, base: Problem, movable: Sequence[Movable]
 ) -> tuple[Moves, float | None] | None:
-    """The moves of limits and given sizes with the least product, for real sizes; its bound."""
+    """Return the moves of limits and given sizes of the least product, and its bound."""
     groups = [m for m in movable if m.sort != "duty"]
     found = least_factors(base, [m.handles for m in groups], case.clock) if groups else None
     if found is None:
@@ -288,7 +288,7 @@ def _least_moves(
 
 
 def _after(case: Case, scene: Scene) -> Moves | None:
-    """The moves of limits and real-valued sizes that a changed scene needs; None: none do."""
+    """Return the moves of limits and real-valued sizes that a scene needs; None: none do."""
     if not is_real(scene, case.clock):
         return ()
     base, _, movable = posed(scene)
@@ -297,12 +297,12 @@ def _after(case: Case, scene: Scene) -> Moves | None:
 
 
 def is_stepped(scene: Scene, number: Movable) -> bool:
-    """Whether a number is given and may only take steps."""
+    """Return whether a number is given and may only take steps."""
     return number.sort == "size" and bool(steps(scene, number))
 
 
 def widest(movable: Sequence[Movable]) -> list[Movable]:
-    """All limits, where they stand for most stages."""
+    """Return all limits, where they stand for most stages."""
     limits = [m for m in movable if m.sort == "limit"]
     shared = {m.family for m in limits if m.shared}
     return [m for m in limits if m.shared or m.family not in shared]

@@ -29,7 +29,7 @@ class Case:
     open: list[Train] = field(default_factory=list)
 
     def possible(self, train: Train) -> bool | None:
-        """Whether a drive has a design, with whole teeth where the file asks for them.
+        """Return whether a drive has a design, with whole teeth where the file asks for them.
 
         None where that is not known in time.
         """
@@ -47,13 +47,13 @@ class Case:
         return found
 
     def teeth(self, train: Train) -> Teeth | None:
-        """The teeth of some train of a drive, () where there is none; None: not known in time."""
+        """Return the teeth of some train of a drive, (): there is none; None: not known."""
         if self.clock.over:
             return None
         return any_train(train, self.clock.within(SECONDS), self.clock.watch)
 
     def status(self, scene: Scene) -> str:
-        """What is known of a changed drive: feasible, infeasible or undecided.
+        """Return what is known of a changed drive: feasible, infeasible or undecided.
 
         Real-valued sizes are asked first: where they are impossible, whole teeth are.
         """
@@ -66,7 +66,7 @@ class Case:
         return "undecided" if found is None else ("feasible" if found else "infeasible")
 
     def works(self, moves: Sequence[tuple[Movable, float]], back: float = 0.0) -> bool | None:
-        """Whether moves suffice (less a part `back` of each); None: not known, or refused."""
+        """Return whether moves suffice (less a part `back` of each); None: not known."""
         edited = applied(self.scene, moves)
         if edited is None:
             return None
@@ -74,7 +74,7 @@ class Case:
 
 
 def least_step(case: Case, number: Movable, most: float) -> tuple[float, bool] | None:
-    """The least factor, at most `most`, of a number that may only take steps.
+    """Return the least factor, at most `most`, of a number that may only take steps.
 
     And whether every smaller one is known to be impossible.
     """
@@ -91,14 +91,14 @@ def least_step(case: Case, number: Movable, most: float) -> tuple[float, bool] |
 
 
 def least_alike(case: Case, moves: Moves) -> Moves | None:
-    """The least moves that suffice, all alike: as given, or enlarged for whole teeth."""
+    """Return the least moves that suffice, all alike: as given, or enlarged for whole teeth."""
     if case.scene.teeth is None:
         return moves
     return enlarged(case, moves)
 
 
 def enlarged(case: Case, moves: Moves, fixed: Moves = ()) -> Moves | None:
-    """Moves with the least common factor beyond their own with which a design exists.
+    """Return moves with the least common factor beyond their own with which a design exists.
 
     fixed: moves that are made beside them, as they are.
     """
@@ -115,7 +115,7 @@ def enlarged(case: Case, moves: Moves, fixed: Moves = ()) -> Moves | None:
 
 
 def trimmed(case: Case, moves: Moves, fixed: Moves = ()) -> Moves:
-    """Moves of which each is needed, and as small as the others and those fixed allow."""
+    """Return moves of which each is needed, and as small as the others and those fixed allow."""
     kept = moves
     for number, factor in reversed(moves):
         beside = tuple(m for m in kept if m[0] is not number)
@@ -129,7 +129,7 @@ def trimmed(case: Case, moves: Moves, fixed: Moves = ()) -> Moves:
 
 
 def _alone(case: Case, others: Moves, number: Movable) -> Works:
-    """Whether a factor of one move will do beside the others: works(factor, back)."""
+    """Return whether a factor of one move will do beside the others: works(factor, back)."""
 
     def works(factor: float, back: float = 0.0) -> bool | None:
         moves = (*others, (number, factor))
