@@ -24,6 +24,7 @@ from gearopt.errors import SceneError
 from gearopt.formulations.servo import choice, servo_box, split
 from gearopt.formulations.servo.choice import front
 from gearopt.formulations.servo.servo_design import RatioDesign
+from gearopt.formulations.servo.split.servo_train import pairs
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget
 from gearopt.optimise.typed import typed
@@ -168,8 +169,8 @@ def test_a_box_that_is_required_changes_the_train():
     assert any("does not fit" in note for note in loose.report["notes"])
     points, worth = front(scene.choice(), Clock(Budget()))
     better = [x for x, row in zip(points, worth, strict=True) if 1e-3 * row[0] < result.value]
-    assert better and servo_box.first_that_fits([scene.box(x) for x in better]) is None
-    found = scene.box(gears_point(result))
+    assert better and servo_box.first_that_fits([scene.box(pairs(x)) for x in better]) is None
+    found = scene.box(pairs(gears_point(result)))
     assert servo_box.first_that_fits([found]) is not None
 
 
@@ -179,7 +180,7 @@ def test_a_sweep_that_is_not_given_is_twice_the_sector():
         edits = (("train", "sector"), sector), *NARROW[:1], (("space", "required"), False)
         scene = changed(EXAMPLE, *edits, drop=[*BARE, ("space", "swept_angle")])
         x = np.array([17, 23, 91, 207, 0.3, 0.5])
-        assert math.degrees(scene.box(x).half_sweep) == pytest.approx(half)
+        assert math.degrees(scene.box(pairs(x)).half_sweep) == pytest.approx(half)
     tied = changed(EXAMPLE, (("duty",), {"motion": "move", "angle": "90 deg"}), drop=BARE)
     assert tied.space.swept_angle.value == pytest.approx(math.pi)  # 90 of sector, 90 of travel
 

@@ -10,7 +10,9 @@ import numpy as np
 from gearopt.formulations.servo import servo_box, split
 from gearopt.formulations.servo.ratio.duty import UNITS
 from gearopt.formulations.servo.servo_design import KG_M2
+from gearopt.formulations.servo.split.bodies import Pairs
 from gearopt.formulations.servo.split.exact import sentence
+from gearopt.formulations.servo.split.servo_train import pairs
 from gearopt.formulations.servo.springs import Springs
 from gearopt.optimise.clock import Clock, in_part, of_others
 from gearopt.optimise.problem import Problem
@@ -43,7 +45,7 @@ class Choice:
     train: split.ServoTrain
     goal: str = "inertia"
     springs: Springs | None = None
-    room: Callable[[Array], servo_box.ServoBox] | None = None
+    room: Callable[[Pairs], servo_box.ServoBox] | None = None
 
     @property
     def least(self) -> float | None:
@@ -65,14 +67,15 @@ class Choice:
         """Return those of some points (N, 6) that are stiff enough."""
         if self.springs is None or self.springs.least is None:
             return points
-        found: Array = points[self.springs.output_stiffness(points.T) >= self.springs.least]
+        made = pairs(points.T, self.train.face_width)
+        found: Array = points[self.springs.output_stiffness(made) >= self.springs.least]
         return found
 
     def keeps(self, point: Array) -> bool:
         """Return whether a train is stiff enough and fits."""
         if not len(self.stiff(point[None])):
             return False
-        return self.room is None or servo_box.first_that_fits([self.room(point)]) is not None
+        return self.room is None or servo_box.first_that_fits([self.room(pairs(point))]) is not None
 
 
 def train_problem(choice: Choice) -> Problem:
@@ -86,8 +89,8 @@ def train_problem(choice: Choice) -> Problem:
         found = base.evaluate(x, p)
         limits = dict(found.limits)
         if choice.springs is not None and choice.springs.least is not None:
-            point = (*x.pinion_teeth, *x.wheel_teeth, *x.module)
-            limits["stiffness"] = choice.springs.least / choice.springs.output_stiffness(point)
+            made = pairs((*x.pinion_teeth, *x.wheel_teeth, *x.module), choice.train.face_width)
+            limits["stiffness"] = choice.springs.least / choice.springs.output_stiffness(made)
         goal = {choice.goal: factor * found.minimise[choice.goal]}
         return replace(found, minimise=goal, limits=limits)
 
@@ -140,10 +143,10 @@ def _in_order(choice: Choice, base: Problem, best: float, clock: Clock) -> Outco
             none = f"none of which {' and '.join(asked)}"
             raise TimeoutError(f"stopped after {count:,} trains, {none}")
 
-    def boxes(points: Array, room: Callable[[Array], Any]) -> Iterator[servo_box.ServoBox]:
+    def boxes(points: Array, room: Callable[[Pairs], Any]) -> Iterator[servo_box.ServoBox]:
         for tried, point in enumerate(points):
             check(tried)
-            yield room(point)
+            yield room(pairs(point))
 
     for lot in split.in_order(choice.train, choice.goal, best, check):
         points, room = choice.stiff(lot), choice.room

@@ -16,7 +16,7 @@ import numpy as np
 
 from gearopt.errors import SolveError
 from gearopt.formulations.servo.servo_design import BoxDesign
-from gearopt.formulations.servo.split.servo_train import pairs
+from gearopt.formulations.servo.split.bodies import Pairs
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.kernels import kernel
 from gearopt.optimise.problem import Problem
@@ -73,13 +73,12 @@ def numbers(box: ServoBox) -> Numbers:
 
 
 def of_train(
-    point: Array, motor_radius: float, hub: float, half_sweep: float, box: tuple[float, float]
+    pairs: Pairs, motor_radius: float, hub: float, half_sweep: float, box: tuple[float, float]
 ) -> ServoBox:
-    """Return the box of a point of `split.problem`."""
-    both = pairs(float(v) for v in point)
-    tips = [0.5 * gear.tip_diameter for pair in both for gear in pair.gears]
+    """Return the box of a train."""
+    tips = [float(0.5 * gear.tip_diameter) for pair in pairs for gear in pair.gears]
     radii = max(motor_radius, tips[0]), max(tips[1], tips[2]), tips[3]
-    first, second = (float(pair.centre_distance) for pair in both)
+    first, second = (float(pair.centre_distance) for pair in pairs)
     return ServoBox(radii, (first, second), hub, half_sweep, box)
 
 

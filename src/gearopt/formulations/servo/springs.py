@@ -1,12 +1,11 @@
 """How stiff a servo train is at its output: meshes and shaft in series, motor locked."""
 
 import math
-from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
 from gearopt.formulations.servo.servo_design import Spring, StiffnessDesign
-from gearopt.formulations.servo.split.servo_train import pairs
+from gearopt.formulations.servo.split.bodies import Pairs
 from gearopt.physics.gears import GearPair
 from gearopt.physics.stiffness import (
     lewis_form_factor,
@@ -30,7 +29,6 @@ class Springs:
     stiffness that the output must have [N mm/rad], None where none is asked for.
     """
 
-    face_width: float
     shear_modulus: float
     shaft: tuple[float, float]
     line_stiffness: float | None = None
@@ -39,12 +37,9 @@ class Springs:
     load_torque: float | None = None
     least: float | None = None
 
-    def compliances(self, point: Iterable[Any]) -> tuple[Any, Any, Any]:
-        """Return compliances [rad/(N mm)] at the output, in the order of NAMES.
-
-        point: of `split.problem`; its six numbers may be arrays.
-        """
-        first, second = pairs(point, self.face_width)
+    def compliances(self, pairs: Pairs) -> tuple[Any, Any, Any]:
+        """Return compliances [rad/(N mm)] at the output, in the order of NAMES."""
+        first, second = pairs
         twist = shaft_compliance(self.shear_modulus, *self.shaft)
         return (
             self._mesh(second),
@@ -60,13 +55,13 @@ class Springs:
             stiffness = line_stiffness(self.youngs_modulus, one, self.youngs_modulus, two)
         return mesh_compliance(stiffness, pair.face_width, pair.wheel.reference_diameter)
 
-    def output_stiffness(self, point: Iterable[Any]) -> Any:
-        """Return the stiffness at the output [N mm/rad] of a point of `split.problem`."""
-        return 1.0 / output_compliance(self.compliances(point), (1.0, 1.0, 1.0))
+    def output_stiffness(self, pairs: Pairs) -> Any:
+        """Return the stiffness at the output [N mm/rad]."""
+        return 1.0 / output_compliance(self.compliances(pairs), (1.0, 1.0, 1.0))
 
-    def design(self, point: Iterable[Any]) -> StiffnessDesign:
+    def design(self, pairs: Pairs) -> StiffnessDesign:
         """Return stiffness, frequency and wind-up of a train, with the share of every spring."""
-        parts = [float(c) for c in self.compliances(point)]
+        parts = [float(c) for c in self.compliances(pairs)]
         total = math.fsum(parts)
         inertia, torque = self.load_inertia, self.load_torque
         return StiffnessDesign(

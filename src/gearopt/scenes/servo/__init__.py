@@ -36,7 +36,6 @@ from gearopt.scenes.servo.train_part import (
     lightest_part,
     neighbours,
     ratio_part,
-    to_point,
     train_part,
 )
 
@@ -106,7 +105,7 @@ def _geared(scene: Scene, ask: Ask, gears: Pairs) -> Found:
     design = ServoDesign(
         train=described(scene, gears),
         errors=rows,
-        stiffness=None if springs is None else springs.design(to_point(gears)),
+        stiffness=None if springs is None else springs.design(gears),
     )
     found = Found((), design, ServoReport(figures=sums))
     if scene.space is not None:
@@ -132,7 +131,7 @@ def _key_figures(scene: Scene, found: Found) -> ServoReport:
         return ServoReport(figures=figures)
     springs = scene.springs
     train = described(scene, gears)
-    stiffness = None if springs is None else springs.design(to_point(gears))
+    stiffness = None if springs is None else springs.design(gears)
     figures |= {f"given_{key}": v for key, v in train_figures(train, stiffness).items()}
     if scene.sources:
         figures |= by_every_rule(scene, gears, old(scene), "given")

@@ -9,8 +9,8 @@ from gearopt.formulations.servo import servo_box
 from gearopt.formulations.servo.choice import Choice
 from gearopt.formulations.servo.ratio import ServoDuty
 from gearopt.formulations.servo.split import ServoTrain, StiffTrain
+from gearopt.formulations.servo.split.bodies import Pairs
 from gearopt.formulations.servo.springs import Springs
-from gearopt.optimise.terms import Array
 from gearopt.physics.stiffness import stiffness_of_frequency
 from gearopt.scenes.reading.fields import Table, refuse, words
 from gearopt.scenes.servo.example import EXAMPLE
@@ -258,7 +258,6 @@ class Scene(Table):
         if table.windup is not None and torque is not None:
             least.append(torque.value / table.windup.value)
         return Springs(
-            face_width=train.face_width.value,
             shear_modulus=table.shear_modulus.value,
             shaft=(shaft.diameter.value, shaft.length.value),
             line_stiffness=None if line is None else line.value,
@@ -275,12 +274,12 @@ class Scene(Table):
         room = self.box if held else None
         return Choice(self.servo_train(), self.train.goal, self.springs, room)
 
-    def box(self, point: Array) -> servo_box.ServoBox:
-        """Return the box of a train, as its layout sees it; point: of `split.problem`."""
+    def box(self, pairs: Pairs) -> servo_box.ServoBox:
+        """Return the box of a train, as its layout sees it."""
         space, train = self.space, self.train
         assert space is not None and train is not None
         return servo_box.of_train(
-            point,
+            pairs,
             0.5 * space.motor_diameter.value,
             0.5 * space.hub_diameter.value,
             half_sweep(train, space),

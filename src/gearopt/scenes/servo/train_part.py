@@ -75,14 +75,6 @@ def of_point(scene: Scene, x: Array) -> Pairs:
     return pairs((*(round(float(z)) for z in x[:4]), float(x[4]), float(x[5])), width)
 
 
-def to_point(pairs: Pairs) -> Array:
-    """Return the point of `split.problem` of gear pairs."""
-    import numpy as np
-
-    names = ("pinion_teeth", "wheel_teeth", "normal_module")
-    return np.array([getattr(pair, name) for name in names for pair in pairs], float)
-
-
 def given_gears(scene: Scene) -> Pairs | None:
     """Return the gear pairs that a file gives in its [[mesh]] tables."""
     if not scene.mesh or not scene.mesh[0].given:
@@ -331,7 +323,7 @@ def lightest_part(scene: Scene, ask: Ask) -> Found:
 
 def box_part(scene: Scene, gears: Pairs, ask: Ask) -> Found:
     """Solve the smallest box of the train, of the proportions that are asked for."""
-    box, bodies = scene.box(to_point(gears)), scene.servo_train().bodies
+    box, bodies = scene.box(gears), scene.servo_train().bodies
     assert bodies is not None
     watch, gap = in_part(ask.watch, part="box"), max(ask.gap, servo_box.GAP)
     result, outcome = run(servo_box.problem(box), None, ask.budget, ask.seed, watch, gap)
