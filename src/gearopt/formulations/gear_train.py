@@ -105,12 +105,12 @@ class Train:
     tolerance: Fraction
     stages: tuple[Stage, ...]
     helix_angle: float = 0.0
-    rack: Rack = ISO_53_A
     coprime: bool = False
     objective: str = "gear_volume"
     density: float | None = None
     law: Law = field(kw_only=True)
     speed: float = 0.0
+    rack: Rack = ISO_53_A
     keys: Mapping[str, str | tuple[str, ...]] = field(default_factory=dict, compare=False)
 
     def __post_init__(self) -> None:
