@@ -184,4 +184,5 @@ def test_a_stop_while_real_valued_sizes_are_sought_is_heard(tmp_path):
 
 
 def test_the_table_of_stages_has_a_row_for_every_key(result):
-    assert set(STAGE_ROWS) == set(result.design["stages"][0]) and set(STAGE_ROWS) > PAGE_ONLY
+    """And for those of other strength laws."""
+    assert PAGE_ONLY < set(result.design["stages"][0]) <= set(STAGE_ROWS)
