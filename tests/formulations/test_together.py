@@ -82,7 +82,8 @@ def some_train(rng, stages=2):
         found.append(stage)
     ratio = F(int(rng.choice([40, 60, 85] if stages == 2 else [60, 90])), 10)
     torque, helix = float(rng.choice([2e4, 5e4])), math.radians(float(rng.choice([0, 15, 25])))
-    return Train(torque, ratio, F(1, 100), tuple(found), helix, rng.random() < 0.2, law=K_FACTOR)
+    coprime = bool(rng.random() < 0.2)
+    return Train(torque, ratio, F(1, 100), tuple(found), helix, coprime=coprime, law=K_FACTOR)
 
 
 def some_frame(rng, train):
