@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 from fractions import Fraction
+from importlib import import_module
 
 import pytest
 from brute_force import some_drive
@@ -10,8 +11,7 @@ from brute_force import some_drive
 from gearopt.formulations import sizing, teeth
 from gearopt.formulations.gear_train import OBJECTIVES, FaceWidth, Stage, Train
 from gearopt.formulations.strength.k_factor import K_FACTOR
-from gearopt.formulations.teeth import wide
-from gearopt.formulations.teeth.search import possible
+from gearopt.formulations.teeth.search import narrowed, possible
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import run, solve
 from gearopt.physics.gears import SERIES_I
@@ -103,8 +103,9 @@ def test_wide_ranges_are_searched_like_narrow_ones(number, monkeypatch):
     """Pinions left out for their cost change nothing: of random drives and their ten best."""
     train = some_drive(number, 2)
     expected = [run(teeth.problem(train, n))[1] for n in (1, 10)]
-    monkeypatch.setattr(wide, "FEW", 150)
-    assert wide.narrowed(train) != train
+    module = import_module("gearopt.formulations.teeth.search")  # `teeth.search` is its function
+    monkeypatch.setattr(module, "FEW", 150)
+    assert narrowed(train) != train
     for n, whole in zip((1, 10), expected, strict=True):
         found = run(teeth.problem(train, n))[1]
         assert found.infeasible == whole.infeasible and found.bound == whole.bound
