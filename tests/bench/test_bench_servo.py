@@ -8,7 +8,7 @@ from servo_trains import PAPER
 
 from gearopt.bench import names
 from gearopt.bench.servo import METHODS, _row, run, train_of
-from gearopt.formulations.servo.split import OBJECTIVES
+from gearopt.formulations.servo.servo_design import OBJECTIVES
 
 
 def test_the_train_is_that_of_the_tests():

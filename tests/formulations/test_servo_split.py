@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from servo_trains import PAPER
 
+from gearopt.formulations.servo.servo_design import OBJECTIVES
 from gearopt.formulations.servo.split import (
     core,
-    exact,
     feasible,
     first_ratio,
     lightest_stage_ratio,
@@ -19,13 +19,13 @@ from gearopt.formulations.servo.split import (
     problem,
     relaxation,
     stage_counts,
+    teeth,
     trains,
     unbeaten,
 )
-from gearopt.formulations.servo.split.exact import KERNEL
 from gearopt.formulations.servo.split.numbers import numbers
 from gearopt.formulations.servo.split.order import _one_by_one
-from gearopt.formulations.servo.split.servo_train import OBJECTIVES
+from gearopt.formulations.servo.split.teeth import KERNEL
 from gearopt.optimise import tape
 from gearopt.optimise.kernels import kernel
 from gearopt.optimise.result import Budget
@@ -309,7 +309,7 @@ def test_looks_at_the_clock_change_nothing(goal, method, monkeypatch):
     """A search that pauses after every first stage finds, counts and lists the same."""
     train = replace(PAPER, pinion_teeth=(16, 22), modules=PAPER.modules[2:4])
     whole, listed = solve(problem(train, goal), method), feasible(train, goal)
-    monkeypatch.setattr(exact, "STEPS", (1, 1))
+    monkeypatch.setattr(teeth, "STEPS", (1, 1))
     monkeypatch.setattr(order, "STEPS", 1)
     monkeypatch.setattr(order, "ROOM", 1)
     seen, checks = [], []

@@ -11,8 +11,8 @@ from servo_trains import PAPER
 
 from gearopt.formulations.servo.ratio import Drive, ServoDuty, best_ratio
 from gearopt.formulations.servo.split import feasible, in_order, order, problem, relaxation
-from gearopt.formulations.servo.split.exact import KERNEL
 from gearopt.formulations.servo.split.numbers import numbers
+from gearopt.formulations.servo.split.teeth import KERNEL
 from gearopt.optimise import tape
 from gearopt.optimise.kernels import kernel
 from gearopt.optimise.result import Budget

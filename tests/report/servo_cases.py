@@ -11,7 +11,7 @@ from servo_trains import PAPER
 import gearopt
 from gearopt.formulations.servo import ratio, servo_box, split, tolerance
 from gearopt.formulations.servo.ratio import Drive, best_ratio
-from gearopt.formulations.servo.servo_design import Achieved
+from gearopt.formulations.servo.servo_design import OBJECTIVES, Achieved
 from gearopt.formulations.servo.split.servo_train import objectives, pairs
 from gearopt.formulations.servo.tolerance.sampling import drawn
 from gearopt.formulations.servo.tolerance.stack import (
@@ -74,7 +74,7 @@ def train_part():
 
 def goals(point):
     gears = pairs([float(v) for v in point], WIDE.face_width)
-    found = objectives(WIDE, tuple(split.OBJECTIVES), gears)
+    found = objectives(WIDE, OBJECTIVES, gears)
     return {
         "inertia_kg_m2": 1e-3 * found["inertia"],
         "mass_kg": found["mass"],
@@ -119,7 +119,7 @@ def train(point):
 def front():
     """Trains of which none is better in inertia, mass and error, from neighbours of the best."""
     rows = [*split.trains(WIDE, math.radians(0.1))[::40]] + [
-        solve(split.problem(WIDE, goal)).design for goal in split.OBJECTIVES
+        solve(split.problem(WIDE, goal)).design for goal in OBJECTIVES
     ]
     points = [row if isinstance(row, np.ndarray) else point_of(row) for row in rows]
     told = [goals(p) for p in points]

@@ -10,7 +10,8 @@ from typing import Any
 
 from gearopt.bench import timed
 from gearopt.formulations.servo import split
-from gearopt.formulations.servo.split import OBJECTIVES, ServoTrain
+from gearopt.formulations.servo.servo_design import GOALS, OBJECTIVES
+from gearopt.formulations.servo.split import ServoTrain
 from gearopt.optimise.solve import solve
 from gearopt.physics.backlash import radial_backlash
 
@@ -72,7 +73,7 @@ def _row(
         "trains_looked_at": result.proof["trains_looked_at"],
         "feasible_trains": result.proof.get("feasible_trains"),
         "objective": result.value,
-        "unit": OBJECTIVES[goal],
+        "unit": GOALS[goal].unit,
         "status": result.status,
         "above_bound_percent": None
         if result.value is None

@@ -1,6 +1,5 @@
 """The whole teeth and modules of a servo train: the formulation, held to stiffness and box too."""
 
-import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
@@ -8,10 +7,9 @@ from typing import Any
 import numpy as np
 
 from gearopt.formulations.servo import servo_box, split
-from gearopt.formulations.servo.ratio.duty import UNITS
-from gearopt.formulations.servo.servo_design import KG_M2
+from gearopt.formulations.servo.servo_design import GOALS
+from gearopt.formulations.servo.split import teeth
 from gearopt.formulations.servo.split.bodies import Pairs
-from gearopt.formulations.servo.split.exact import sentence
 from gearopt.formulations.servo.split.servo_train import pairs
 from gearopt.formulations.servo.springs import Springs
 from gearopt.optimise.clock import Clock, in_part, of_others
@@ -19,16 +17,8 @@ from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.terms import Array, Terms
 
-RANDOM, COUNTS = split.exact.RANDOM, split.exact.COUNTS  # of the methods that are passed on here
+RANDOM, COUNTS = teeth.RANDOM, teeth.COUNTS  # of the methods that are passed on here
 ROUNDING = 1e-12  # of an objective
-SHOWN = {  # objective: factor to the unit that is shown, the unit
-    "inertia": (KG_M2, "kg_m2"),
-    "mass": (1.0, "kg"),
-    "error": (180.0 / math.pi, "deg"),
-    "inverse_acceleration": (1.0, "s2/rad"),
-    "move_time": (1.0, "s"),
-    "rms_torque": (1e-3, "Nm"),
-}
 WANTED = {"stiffness": "is stiff enough", "box": "fits the box"}
 LISTED = 1_000_000  # trains that a front is taken from, at the most
 PART = 50_000  # trains that are weighed between two looks at the clock
@@ -60,7 +50,7 @@ class Choice:
     @property
     def weighed(self) -> tuple[str, ...]:
         """Return the objectives of the Pareto front: inertia, or the goal of the duty, first."""
-        first = self.goal if self.goal in UNITS else "inertia"
+        first = self.goal if GOALS[self.goal].motion else "inertia"
         return (first, "mass", *(("error",) if self.train.lost_motion is not None else ()))
 
     def stiff(self, points: Array) -> Array:
@@ -79,11 +69,11 @@ class Choice:
 
 
 def train_problem(choice: Choice) -> Problem:
-    """Return the problem of a train in the units of `SHOWN`; a box is kept by its own methods.
+    """Return the problem of a train in the unit that is shown; a box is kept by its own methods.
 
     Variables as in `split.problem`.
     """
-    base, factor = split.problem(choice.train, choice.goal), SHOWN[choice.goal][0]
+    base, factor = split.problem(choice.train, choice.goal), GOALS[choice.goal].factor
 
     def evaluate(x: Any, p: Any) -> Terms:
         found = base.evaluate(x, p)
@@ -125,7 +115,7 @@ def _counted(found: Outcome, proof: Mapping[str, Any] | None, apart: tuple[str, 
     counts = {k: proof[k] for k in ("trains_looked_at", "feasible_trains")}
     made = {**(found.proof or {}), **counts, "not_counted": list(apart)}
     if "sentence" in made:
-        made["sentence"] = sentence(made, found.infeasible)
+        made["sentence"] = teeth.sentence(made, found.infeasible)
     return replace(found, proof=made)
 
 
@@ -171,7 +161,7 @@ def _looked(count: int, stiff: int | None, infeasible: bool) -> dict[str, Any]:
         "arithmetic": "ratios and diameters in whole numbers; the rest in double",
         "trains_looked_at": count,
     }
-    found["sentence"] = sentence(found, infeasible)
+    found["sentence"] = teeth.sentence(found, infeasible)
     return found if stiff is None else found | {"trains_stiff_enough": stiff}
 
 

@@ -8,9 +8,14 @@ asks for of train, ratio and tolerances is the answer, the others are its parts.
 from dataclasses import asdict, replace
 from typing import Any
 
-from gearopt.formulations.servo.choice import SHOWN, train_problem
-from gearopt.formulations.servo.ratio.duty import UNITS
-from gearopt.formulations.servo.servo_design import ServoDesign, ServoReport, train_figures
+from gearopt.formulations.servo.choice import train_problem
+from gearopt.formulations.servo.servo_design import (
+    GOALS,
+    OBJECTIVES,
+    ServoDesign,
+    ServoReport,
+    train_figures,
+)
 from gearopt.formulations.servo.split.bodies import Pairs
 from gearopt.optimise.clock import Clock, of_others
 from gearopt.optimise.comparing.compare import Model
@@ -41,7 +46,6 @@ from gearopt.scenes.servo.train_part import (
 
 __all__ = ["EXAMPLE", "Scene", "compared", "explain", "model", "solve"]
 
-GOALS = {"inertia": "inertia_kg_m2", "mass": "mass_kg", "error": "error_deg"}
 COUNTS = {"combinations": "trains_looked_at", "feasible_trains": "feasible_trains"}
 
 
@@ -119,7 +123,8 @@ def _key_figures(scene: Scene, found: Found) -> ServoReport:
     """Return chosen and given train, minimum values and room by the names of docs/servo.md."""
     design, figures = found.design, {}
     for one in found.report.trains or ():
-        if key := GOALS.get(one.best_of):
+        if one.best_of in OBJECTIVES:
+            key = GOALS[one.best_of].key
             figures[f"least_{key}"] = getattr(one, key)
     if design.box is not None:
         figures["needed_width_mm"] = design.box.needed_width_mm
@@ -176,9 +181,9 @@ def _posed(scene: Scene, boxed: bool) -> tuple[Problem, str, str]:
     """Return the problem of the answer, what it is called, and the unit of its objective."""
     if scene.train is not None:
         problem = train_problem(scene.choice(boxed=boxed))
-        return problem, "Whole teeth and modules, without a box", SHOWN[scene.train.goal][1]
+        return problem, "Whole teeth and modules, without a box", GOALS[scene.train.goal].shown
     if (duty := scene.servo_duty()) is not None:
-        return duty.problem(), "Total ratio", UNITS[duty.goal]
+        return duty.problem(), "Total ratio", GOALS[duty.goal].unit
     gears = given_gears(scene)
     assert gears is not None
     return tolerance_problem(scene, gears), "Tolerances of given gears", ""

@@ -7,8 +7,8 @@ from fractions import Fraction
 from gearopt import units
 from gearopt.formulations.servo import impossible, split
 from gearopt.formulations.servo.choice import train_problem
-from gearopt.formulations.servo.ratio.duty import UNITS
-from gearopt.formulations.servo.split.exact import NO_TEETH
+from gearopt.formulations.servo.servo_design import GOALS
+from gearopt.formulations.servo.split.teeth import NO_TEETH
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.explanation import Change, Remedies, Remedy
 from gearopt.optimise.result import Result
@@ -53,7 +53,7 @@ def remedies(scene: Scene, clock: Clock, told: str = NO_TEETH) -> Remedies:
     """
     asked = scene.accuracy.error
     assert scene.train is not None
-    if scene.train.goal in UNITS:
+    if GOALS[scene.train.goal].motion:
         still = solve_within(clock, train_problem(_aiming(scene, "inertia").choice()))
         if still.status == "optimal":
             return _of_duty(scene, clock)

@@ -14,18 +14,20 @@ from gearopt.formulations.servo.springs import Springs
 from gearopt.physics.stiffness import stiffness_of_frequency
 from gearopt.scenes.reading.fields import Table, refuse, words
 from gearopt.scenes.servo.example import EXAMPLE
-from gearopt.scenes.servo.tables.mesh import Accuracy, Mesh, Source
-from gearopt.scenes.servo.tables.motion import Duty, Load, Motor, servo_duty
-from gearopt.scenes.servo.tables.tolerances import (
+from gearopt.scenes.servo.tables.mesh import (
+    Accuracy,
     BudgetTable,
     CostTable,
+    Mesh,
     Price,
+    Source,
     Tolerances,
     check_costs,
     price,
 )
+from gearopt.scenes.servo.tables.motion import Duty, Load, Motor, servo_duty
 from gearopt.scenes.servo.tables.trains import (
-    MADE_LEAST,
+    AIMS,
     Lightest,
     Shaft,
     Space,
@@ -131,8 +133,8 @@ class Scene(Table):
             if not self.mesh:
                 raise refuse(f"is missing: {needs} one a stage", at=("mesh",))
             raise refuse(f"is missing, as is any deviation: {needs} one", at=("mesh", 0, "pitch"))
-        motion = MADE_LEAST[train.aim][1]
-        if motion is None:
+        motion = AIMS[train.aim].motion
+        if not motion:
             return
         if self.duty is None:
             raise refuse(f"is missing: {needs} it", at=("duty",))

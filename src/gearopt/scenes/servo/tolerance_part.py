@@ -25,8 +25,7 @@ from gearopt.optimise.terms import Array
 from gearopt.optimise.typed import untyped
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.servo.scene import Scene
-from gearopt.scenes.servo.tables.mesh import Source
-from gearopt.scenes.servo.tables.tolerances import BudgetTable
+from gearopt.scenes.servo.tables.mesh import BudgetTable, Source
 from gearopt.scenes.servo.train_part import Found, sensitivity
 
 RULES: tuple[tuple[str, Any, float], ...] = (  # name, rule and kappa

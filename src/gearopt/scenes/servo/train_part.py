@@ -4,10 +4,8 @@ import math
 from dataclasses import dataclass, replace
 
 from gearopt.formulations.servo import servo_box, split
-from gearopt.formulations.servo.choice import SHOWN, front, train_problem
-from gearopt.formulations.servo.ratio import ServoDuty
+from gearopt.formulations.servo.choice import front, train_problem
 from gearopt.formulations.servo.ratio.achieved import (
-    NAMES,
     Candidate,
     achieved,
     best_ratio_of,
@@ -16,6 +14,7 @@ from gearopt.formulations.servo.ratio.achieved import (
     landmarks,
 )
 from gearopt.formulations.servo.servo_design import (
+    GOALS,
     KG_M2,
     ErrorSource,
     ListedTrain,
@@ -39,11 +38,6 @@ from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.servo.scene import Scene
 from gearopt.scenes.servo.tables.mesh import Source
 
-WORDS = {  # objectives as a list of trains calls them
-    "inverse_acceleration": "acceleration",
-    "move_time": "move time",
-    "rms_torque": "rms torque",
-}
 STAGES = 6  # that a ratio is split into, at the most, for comparison
 LISTED = 400  # trains that are shown
 
@@ -148,7 +142,7 @@ def described(scene: Scene, gears: Pairs) -> TrainDesign:
 def train_part(scene: Scene, ask: Ask) -> tuple[Result, Pairs | None]:
     """Solve the train; return the result and its gears."""
     choice = scene.choice()
-    unit = SHOWN[choice.goal][1]
+    unit = GOALS[choice.goal].shown
     problem, watch = train_problem(choice), in_part(ask.watch, unit)
     result, outcome = run(problem, ask.method, ask.budget, ask.seed, watch, ask.gap)
     result = replace(result, objective=result.objective | {"unit": unit})
@@ -188,22 +182,16 @@ def _neighbour(scene: Scene, gears: Pairs, first: float, best_of: str) -> Listed
     assert scene.train is not None and train.inertia_kg_m2 and train.mass_kg
     judged_by = {}
     if duty is not None and scene.train.goal == duty.goal:
-        judged_by = {NAMES[duty.motion][2]: _judged(duty, first)}
+        judged_by = {GOALS[duty.goal].key: GOALS[duty.goal].value(first)}
     return ListedTrain(
         stages=tuple(Teeth(p.normal_module, p.pinion_teeth, p.wheel_teeth) for p in gears),
         ratio=train.ratio,
-        best_of=WORDS.get(best_of, best_of),
+        best_of=GOALS[best_of].word if best_of else "",
         inertia_kg_m2=train.inertia_kg_m2,
         mass_kg=train.mass_kg,
         error_deg=train.error_deg,
         **judged_by,
     )
-
-
-def _judged(duty: ServoDuty, goal: float) -> float:
-    """Return what a duty is judged by, from what it minimises."""
-    value = SHOWN[duty.goal][0] * goal
-    return 1.0 / value if duty.motion == "acceleration" else value
 
 
 def beside(scene: Scene, chosen: Pairs | None) -> ServoReport:
@@ -213,16 +201,11 @@ def beside(scene: Scene, chosen: Pairs | None) -> ServoReport:
     """
     assert scene.train is not None
     choice, figures = scene.choice(), {}
-    duty = choice.train.duty
     for goal in dict.fromkeys(("inertia", *choice.weighed)):
         bound = solve(split.relaxation(choice.train, goal)).bound
         if bound is None:
             continue
-        factor, unit = SHOWN[goal]
-        name, value = f"{goal}_{unit}", factor * bound
-        if duty is not None and goal == duty.goal:
-            name, value = NAMES[duty.motion][2], _judged(duty, bound)
-        figures[f"real_valued_bound_{name}"] = value
+        figures[f"real_valued_bound_{GOALS[goal].key}"] = GOALS[goal].value(bound)
     low, high = scene.train.ratio
     ratio = (
         float(low)
@@ -267,16 +250,15 @@ def ratio_part(scene: Scene, chosen: TrainDesign | None, ask: Ask) -> Found:
     """Solve the best total ratio; judge the chosen train and what is given beside it."""
     duty = scene.servo_duty()
     assert duty is not None
-    factor, shown = SHOWN[duty.goal]
-    watch = in_part(ask.watch, shown, factor=factor)
+    goal = GOALS[duty.goal]
+    watch = in_part(ask.watch, goal.shown, factor=goal.factor)
     result, outcome = run(duty.problem(), ask.method, ask.budget, ask.seed, watch, ask.gap)
-    result = scaled(result, factor, shown)
+    result = scaled(result, goal.factor, goal.shown)
     if result.value is None or outcome.x is None:
         return Found((result,))
     best = float(outcome.x[0])
-    name, unit, key = NAMES[duty.motion]
     reached, own = float(judged(duty, best)), candidates(scene, chosen)
-    figures = {"best_total_ratio": best, f"best_{key}": reached} | landmarks(duty)
+    figures = {"best_total_ratio": best, f"best_{goal.key}": reached} | landmarks(duty)
     with_train = None if "chosen" not in own else own["chosen"].inertia
     if with_train is not None:
         other = best_ratio_of(duty.with_gears(with_train))
@@ -285,15 +267,15 @@ def ratio_part(scene: Scene, chosen: TrainDesign | None, ask: Ask) -> Found:
             figures["best_total_ratio_with_train"] = other
     others = {who: achieved(duty, one, reached) for who, one in own.items()}
     for who, found in others.items():
-        stem, _, end = f"{who}_{key}".partition("_with_train_")
+        stem, _, end = f"{who}_{goal.key}".partition("_with_train_")
         if found is not None:
             figures[f"{stem}_{end}_with_train" if end else stem] = found.value
     ratio = RatioDesign(
         duty=duty.motion,
         total_ratio=best,
         value=reached,
-        name=name,
-        unit=unit,
+        name=goal.title,
+        unit=goal.value_unit,
         best=achieved(duty, Candidate("", best), reached),
         curve=curve(duty, best, with_train),
         **({"given": None} | others),

@@ -11,11 +11,6 @@ from gearopt.formulations.servo.servo_design import KG_M2, Achieved, RatioCurve
 from gearopt.optimise.solve import run
 from gearopt.physics.servo_drive import largest_acceleration
 
-NAMES = {  # of the value that a duty is judged by, its unit, and as a key
-    "acceleration": ("load acceleration", "rad/s²", "load_acceleration_rad_per_s2"),
-    "move": ("move time", "s", "move_time_s"),
-    "swing": ("rms torque", "Nm", "rms_torque_Nm"),
-}
 RPM = 30.0 / math.pi  # of a rad/s
 TIE = 1e-12  # relative: a motor that is used to the full is not overloaded by rounding
 POINTS = 200  # of the curve

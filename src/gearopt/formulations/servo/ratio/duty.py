@@ -11,6 +11,7 @@ from gearopt.formulations.servo.ratio.acceleration import acceleration
 from gearopt.formulations.servo.ratio.drive import FAINT, Drive
 from gearopt.formulations.servo.ratio.move import move
 from gearopt.formulations.servo.ratio.swing import swing
+from gearopt.formulations.servo.servo_design import MOTIONS
 from gearopt.optimise.problem import Problem
 from gearopt.physics.servo_drive import (
     load_acceleration,
@@ -18,13 +19,6 @@ from gearopt.physics.servo_drive import (
     shortest_move_time,
     torque_slope,
 )
-
-GOALS = {  # motion: what is made least by the ratio or the train
-    "acceleration": "inverse_acceleration",
-    "move": "move_time",
-    "swing": "rms_torque",
-}
-UNITS = {"inverse_acceleration": "s2/rad", "move_time": "s", "rms_torque": "N mm"}
 
 
 @dataclass(frozen=True)
@@ -46,8 +40,8 @@ class ServoDuty:
 
     @property
     def goal(self) -> str:
-        """What is made least: a key of UNITS."""
-        return GOALS[self.motion]
+        """Return what is minimised: the name of a `Goal`."""
+        return MOTIONS[self.motion].name
 
     @property
     def speed(self) -> float:

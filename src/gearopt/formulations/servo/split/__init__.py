@@ -15,12 +15,11 @@ from gearopt.formulations.servo.split.core import (
 )
 from gearopt.formulations.servo.split.order import feasible, in_order, trains, unbeaten
 from gearopt.formulations.servo.split.relaxation import relaxation
-from gearopt.formulations.servo.split.servo_train import OBJECTIVES, ServoTrain
+from gearopt.formulations.servo.split.servo_train import ServoTrain
 from gearopt.formulations.servo.split.stiff import StiffTrain, stiff
 from gearopt.formulations.servo.split.teeth import problem
 
 __all__ = [
-    "OBJECTIVES",
     "Bodies",
     "ServoTrain",
     "StiffTrain",

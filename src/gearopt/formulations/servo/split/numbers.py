@@ -5,7 +5,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from gearopt.formulations.servo.ratio.duty import GOALS, ServoDuty
+from gearopt.formulations.servo.ratio.duty import ServoDuty
+from gearopt.formulations.servo.servo_design import GOALS, MOTIONS
 from gearopt.formulations.servo.split.bodies import TIP, least
 from gearopt.formulations.servo.split.servo_train import ServoTrain
 from gearopt.formulations.strength.lewis import LEWIS
@@ -65,44 +66,33 @@ def duty_numbers(duty: ServoDuty | None) -> Array:
     loads = own.load_inertia, own.inertia, own.net_torque, own.load_friction
     motor = own.efficiency, duty.slope, duty.angle, own.speed_limit, own.motor_friction
     most = own.torque if duty.motion == "swing" and own.torque else math.inf
-    kind = list(GOALS).index(duty.motion)
+    kind = list(MOTIONS).index(duty.motion)
     return np.array([kind, *loads, *motor, duty.peak_acceleration, most])
 
 
+def posed(train: ServoTrain, goal: str) -> tuple[Numbers, int]:
+    """Return a train and its goal as the kernels read them; a duty as goal adds its limits."""
+    return numbers(train, bool(GOALS[goal].motion)), list(GOALS).index(goal)
+
+
 def numbers(train: ServoTrain, moved: bool = False) -> Numbers:
-    """The numbers of a train; every tie is decided here, in fractions.
+    """Return the numbers of a train; every tie is decided here, in fractions.
 
     moved: the motor's speed limit holds too.
     """
     low, high = train.ratios
     if moved and train.duty is not None and train.duty.most_ratio is not None:
         high = min(high, train.duty.most_ratio)
-    most = train.pinion_teeth[1]
-    tips = [[math.floor(tip / m - TIP) for m in train.modules] for tip in train.wheel_tips]
-    wheel = train.wheel_teeth
+    most, width, density = train.pinion_teeth[1], train.face_width, train.density
     products = range(most**2 + 1)
     known = np.maximum(np.arange(most + 1, dtype=float), train.pinion_teeth[0])
-    pinions = GearPair.of_teeth(1.0, known, known, train.face_width)
+    pinions = GearPair.of_teeth(1.0, known, known, width)
     thick, long = train.shaft or (0.0, 0.0)
-    clear = least(train.bodies, train.modules, wheel)
     return Numbers(
         least=np.array([-(-low.numerator * p // low.denominator) for p in products], np.int64),
         most=np.array([high.numerator * p // high.denominator for p in products], np.int64),
         pinion=np.array(train.pinion_teeth, np.int64),
-        wheel=wheel,
-        wheel_1=np.minimum(tips[0], wheel),
-        wheel_2=np.minimum(tips[1], wheel),
-        bored=np.array(
-            [
-                max(math.ceil(train.bore / m), around, train.pinion_teeth[0])
-                for m, around in zip(train.modules, clear.pinion_2, strict=True)
-            ]
-        ),
-        clear_1=np.array(clear.wheel_1, np.int64),
-        clear_2=np.array(clear.wheel_2, np.int64),
-        stage_1=np.array(clear.stage_1, np.int64),
-        unit=np.array(clear.units, np.int64),
-        output=clear.output,
+        **_teeth(train),
         module=np.array([float(m) for m in train.modules]),
         lost=np.array(train.lost_motion or (0.0, 0.0)),
         error=float(train.error),
@@ -111,9 +101,31 @@ def numbers(train: ServoTrain, moved: bool = False) -> Numbers:
         high=float(high) * (1.0 + 1e-15),
         bore=float(train.bore),
         tip=float(train.wheel_tips[1]),
-        disc_mass=1000.0 * float(disc_mass(train.density, train.face_width, 1.0)),
-        disc_inertia=float(disc_inertia(train.density, train.face_width, 1.0)),
-        shaft_inertia=float(disc_inertia(train.density, long, thick)),
+        disc_mass=1000.0 * float(disc_mass(density, width, 1.0)),
+        disc_inertia=float(disc_inertia(density, width, 1.0)),
+        shaft_inertia=float(disc_inertia(density, long, thick)),
         sector=float(train.sector),
         duty=duty_numbers(train.duty),
     )
+
+
+def _teeth(train: ServoTrain) -> dict[str, Any]:
+    """Return the limits of numbers of teeth, by module."""
+    tips = [[math.floor(tip / m - TIP) for m in train.modules] for tip in train.wheel_tips]
+    wheel = train.wheel_teeth
+    clear = least(train.bodies, train.modules, wheel)
+    bored = [
+        max(math.ceil(train.bore / m), around, train.pinion_teeth[0])
+        for m, around in zip(train.modules, clear.pinion_2, strict=True)
+    ]
+    return {
+        "wheel": wheel,
+        "wheel_1": np.minimum(tips[0], wheel),
+        "wheel_2": np.minimum(tips[1], wheel),
+        "bored": np.array(bored),
+        "clear_1": np.array(clear.wheel_1, np.int64),
+        "clear_2": np.array(clear.wheel_2, np.int64),
+        "stage_1": np.array(clear.stage_1, np.int64),
+        "unit": np.array(clear.units, np.int64),
+        "output": clear.output,
+    }

@@ -11,9 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from gearopt.formulations.servo.ratio.duty import UNITS
-from gearopt.formulations.servo.split.numbers import Numbers, numbers
-from gearopt.formulations.servo.split.servo_train import OBJECTIVES, ServoTrain
+from gearopt.formulations.servo.split.numbers import Numbers, posed
+from gearopt.formulations.servo.split.servo_train import ServoTrain
 from gearopt.formulations.servo.split.teeth import problem
 from gearopt.optimise.kernels import kernel
 from gearopt.optimise.terms import Array
@@ -42,14 +41,12 @@ def feasible(
     check: Callable[[], None] = unchecked,
 ) -> Array | None:
     """Return all feasible trains; None for more than `most`. A duty as goal adds its limits."""
-    given, aim = _posed(train, goal)
-    return _listed(given, aim, -math.inf, math.inf, most, check)
+    return _listed(*posed(train, goal), -math.inf, math.inf, most, check)
 
 
 def trains(train: ServoTrain, error: float) -> Array:
     """Return all feasible trains with an error [rad] up to `error`, the minimum first."""
-    given, aim = _posed(train, "error")
-    found = _listed(given, aim, -math.inf, error, 0, unchecked)
+    found = _listed(*posed(train, "error"), -math.inf, error, 0, unchecked)
     assert found is not None
     return found[problem(train, "error").batch(found).F[:, 0].argsort(kind="stable")]
 
@@ -58,7 +55,7 @@ def in_order(
     train: ServoTrain, goal: str, best: float, check: Callable[[], None]
 ) -> Iterator[Array]:
     """Yield lots of trains, the best first; together all. best: the minimum objective, > 0."""
-    (given, aim), posed = _posed(train, goal), problem(train, goal)
+    (given, aim), text = posed(train, goal), problem(train, goal)
     above, reached, step = -math.inf, best, FIRST
     while True:
         most = reached + step * best
@@ -68,16 +65,11 @@ def in_order(
             step /= WIDER
             continue
         if len(found):
-            yield found[posed.batch(found).F[:, 0].argsort(kind="stable")]
+            yield found[text.batch(found).F[:, 0].argsort(kind="stable")]
         if math.isinf(most):
             return
         above = reached = most
         step *= WIDER if len(found) < LOT / WIDER else 1.0
-
-
-def _posed(train: ServoTrain, goal: str) -> tuple[Numbers, int]:
-    """Return a train and its goal as the kernel reads them."""
-    return numbers(train, goal in UNITS), (*OBJECTIVES, *UNITS).index(goal)
 
 
 def _listed(

@@ -5,7 +5,7 @@ from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
-from gearopt.formulations.servo.split.bodies import clear_rows
+from gearopt.formulations.servo.split.bodies import Pairs, clear_rows
 from gearopt.formulations.servo.split.servo_train import (
     ServoTrain,
     bending_stress,
@@ -65,55 +65,58 @@ def _moved(train: ServoTrain, goal: str) -> Problem | None:
 
 
 def _terms(train: ServoTrain, goal: str, moved: Problem | None, x: Any, p: Any) -> Terms:
-    law = lewis(float(train.pinion_teeth[1]))
-    ends = _modules(train)
-    (d1, d3), (n1, n2), modules = x.pinion_diameter, x.ratio, x.module
-    first, second = both = tuple(
+    n1, n2 = x.ratio
+    first, second = (
         GearPair.of_diameter(m, d / m, d, n, train.face_width)
-        for m, d, n in zip(modules, (d1, d3), (n1, n2), strict=True)
+        for m, d, n in zip(x.module, x.pinion_diameter, x.ratio, strict=True)
     )
-    wheels = [pair.wheel.reference_diameter for pair in both]
+    both = first, second
     bounded = ("error",) if math.isfinite(train.error) else ()
     plain = (goal,) if moved is None else ("inertia",)
-    found = objectives(train, (*plain, *bounded), (first, second))
-    torques = (train.output_torque / n2, train.output_torque)
-    ratio, equal = ratio_rows(p, train.tolerance == 0, n1 * n2)
-    limits = ratio | {name: found[name] / p.error for name in bounded}
-    limits |= {
-        "stage_ratio_low": (1.0 / n1, 1.0 / n2),
+    worth = objectives(train, (*plain, *bounded), both)
+    limits, equal = ratio_rows(p, train.tolerance == 0, n1 * n2)
+    limits |= {name: worth[name] / p.error for name in bounded}
+    limits |= _limits(train, both, x, p)
+    if (known := train.bodies) is not None:
+        shaft, output, motor = (
+            float(d) or None for d in (known.shaft, known.output_shaft, known.motor)
+        )
+        limits |= clear_rows(shaft, output, motor, both)
+    if moved is None:
+        return Terms({goal: worth[goal]}, limits, equal=equal)
+    numbers = SimpleNamespace(**vars(p) | {"gear_inertia": worth["inertia"], "ratio_low": 1.0})
+    duty = moved.evaluate(SimpleNamespace(**vars(x) | {"ratio": n1 * n2}), numbers)
+    limits |= {name: v for name, v in duty.limits.items() if name != "ratio_low"}
+    return Terms(duty.minimise, limits, equal=equal)
+
+
+def _limits(train: ServoTrain, both: Pairs, x: Any, p: Any) -> dict[str, Any]:
+    """Return the limits of either stage: stress, diameters, numbers of teeth and modules."""
+    law, ends = lewis(float(train.pinion_teeth[1])), _modules(train)
+    torques = train.output_torque / x.ratio[1], train.output_torque
+    low, high = train.pinion_teeth
+    sizes = list(zip(x.pinion_diameter, x.module, strict=True))
+    found = {
+        "stage_ratio_low": tuple(1.0 / n for n in x.ratio),
         "bending_stress": tuple(
             bending_stress(t, pair, law) / p.bending_stress
             for t, pair in zip(torques, both, strict=True)
         ),
-        "bore": p.bore / d3,
+        "bore": p.bore / x.pinion_diameter[1],
         "wheel_tip": tuple(
             pair.wheel.tip_diameter / t for pair, t in zip(both, p.wheel_tip, strict=True)
         ),
-        "pinion_teeth_low": tuple(
-            train.pinion_teeth[0] * m / d for d, m in zip((d1, d3), modules, strict=True)
-        ),
-        "pinion_teeth_high": tuple(
-            d / (train.pinion_teeth[1] * m) for d, m in zip((d1, d3), modules, strict=True)
-        ),
-        "module_low": tuple(ends[0] / m for m in modules),
-        "module_high": tuple(m / ends[1] for m in modules),
+        "pinion_teeth_low": tuple(low * m / d for d, m in sizes),
+        "pinion_teeth_high": tuple(d / (high * m) for d, m in sizes),
+        "module_low": tuple(ends[0] / m for m in x.module),
+        "module_high": tuple(m / ends[1] for m in x.module),
     }
-    if train.most_wheel_teeth is not None:
-        limits["wheel_teeth_high"] = tuple(
-            d / (train.most_wheel_teeth * m) for d, m in zip(wheels, modules, strict=True)
+    if (most := train.most_wheel_teeth) is not None:
+        wheels = [pair.wheel.reference_diameter for pair in both]
+        found["wheel_teeth_high"] = tuple(
+            d / (most * m) for d, m in zip(wheels, x.module, strict=True)
         )
-    if train.bodies is not None:
-        known = train.bodies
-        shaft, output, motor = (
-            float(d) or None for d in (known.shaft, known.output_shaft, known.motor)
-        )
-        limits |= clear_rows(shaft, output, motor, (first, second))
-    if moved is None:
-        return Terms({goal: found[goal]}, limits, equal=equal)
-    own = SimpleNamespace(**vars(p) | {"gear_inertia": found["inertia"], "ratio_low": 1.0})
-    duty = moved.evaluate(SimpleNamespace(**vars(x) | {"ratio": n1 * n2}), own)
-    limits |= {name: v for name, v in duty.limits.items() if name != "ratio_low"}
-    return Terms(duty.minimise, limits, equal=equal)
+    return found
 
 
 def _modules(train: ServoTrain) -> tuple[float, float]:

@@ -18,8 +18,6 @@ from gearopt.optimise.terms import Param
 from gearopt.physics.backlash import output_error
 from gearopt.physics.gears import GearPair, disc_inertia
 
-OBJECTIVES = {"inertia": "t mm2", "mass": "kg", "error": "rad"}  # beside that of a duty
-
 
 @dataclass(frozen=True)
 class ServoTrain:

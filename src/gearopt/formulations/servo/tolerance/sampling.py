@@ -5,6 +5,8 @@ interval between two order statistics: X_(r) <= Q_p unless fewer than r of the d
 a binomial chance. The yield has the interval of Clopper and Pearson (Biometrika 26, 1934).
 """
 
+from typing import Any
+
 import numpy as np
 
 from gearopt.formulations.servo.servo_design import DrawnErrors, Histogram
@@ -34,13 +36,8 @@ def drawn(
         raise ValueError("needs two draws or more, and probabilities between 0 and 1")
     e = errors(stack, t, count, seed)
     counts, edges = np.histogram(e, BINS)
-    first, last = order_interval(count, probability, confidence)
-    middle = min(max(int(np.ceil(probability * count)), 1), count)
-    e.partition([k - 1 for k in (first, middle, last) if 1 <= k <= count])
-    ends = [float(e[k - 1]) if 1 <= k <= count else None for k in (first, last)]
     good = int((e <= limit).sum())
     low, high = binomial_interval(good, count, confidence)
-    worst = sum(c.sensitivity * w for c, w in zip(stack.components, t, strict=True))
     return DrawnErrors(
         count=count,
         seed=seed,
@@ -51,14 +48,25 @@ def drawn(
         yield_high=high,
         mean_deg=float(e.mean()),
         sd_deg=float(e.std(ddof=1)),
-        quantile_deg=float(e[middle - 1]),
-        quantile_low_deg=ends[0],
-        quantile_high_deg=ends[1],
+        **_quantile(e, probability, confidence),
         limit_deg=limit,
         largest_deg=float(e.max()),
-        worst_case_deg=float(worst),
+        worst_case_deg=float(
+            sum(c.sensitivity * w for c, w in zip(stack.components, t, strict=True))
+        ),
         histogram=Histogram(tuple(edges.tolist()), tuple(counts.tolist())),
     )
+
+
+def _quantile(e: Array, probability: float, confidence: float) -> dict[str, Any]:
+    """Return a quantile of drawn errors with the ends of its interval, None beyond the draws."""
+    count = len(e)
+    first, last = order_interval(count, probability, confidence)
+    middle = min(max(int(np.ceil(probability * count)), 1), count)
+    ranks = {"_low": first, "": middle, "_high": last}
+    inside = {name: k for name, k in ranks.items() if 1 <= k <= count}
+    e = np.partition(e, [k - 1 for k in inside.values()])
+    return {f"quantile{n}_deg": float(e[k - 1]) if n in inside else None for n, k in ranks.items()}
 
 
 def errors(stack: Stack, t: Array, count: int, seed: int) -> Array:

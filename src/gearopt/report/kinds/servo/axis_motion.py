@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import Any
 
-from gearopt.formulations.servo.servo_design import Achieved, RatioDesign, ServoReport
+from gearopt.formulations.servo.servo_design import MOTIONS, Achieved, RatioDesign, ServoReport
 from gearopt.optimise.result import Result
 from gearopt.report.kinds.servo.axis_words import design_of, report_of
 from gearopt.report.measures import METRIC, Measures
@@ -31,10 +31,6 @@ ROWS = {  # field of `Achieved`: its name, and its unit
     "torque_to_gears_percent": ("torque to the train", "percent"),
     "torque_to_friction_percent": ("torque to friction", "percent"),
 }
-REAL_VALUED = tuple(
-    f"real_valued_bound_{key}"
-    for key in ("load_acceleration_rad_per_s2", "move_time_s", "rms_torque_Nm")
-)
 NOTE = (
     "Inertias are seen at the motor; their ratio is that of the load to rotor and train together."
 )
@@ -95,7 +91,8 @@ def train_words(report: ServoReport, found: RatioDesign, measures: Measures) -> 
             f"With the chosen train's inertia the best total ratio is {number(one.total_ratio)}, "
             f"with {amount(one.value, found.unit, measures)}."
         )
-    for bound in [v for k, v in report.figures.items() if k in REAL_VALUED][:1]:
+    bound = report.figures.get(f"real_valued_bound_{MOTIONS[found.duty].key}")
+    if bound is not None:
         better = "more" if found.duty == LARGEST else "less"
         words.append(
             "Not even real-valued teeth and modules within the limits give "

@@ -5,6 +5,10 @@ from dataclasses import replace
 from typing import Any
 
 from gearopt.formulations.servo.servo_design import (
+    GOALS,
+    MOTIONS,
+    OBJECTIVES,
+    Goal,
     ListedTrain,
     RatioDesign,
     ServoDesign,
@@ -33,20 +37,14 @@ BARE = (
     "discs of one width, no limit but the ratio; inertia at the motor and mass in those of a "
     "pinion."
 )
-GOALS = {  # what trains are compared by: the field of a train, what it is called
-    "acceleration": ("load_acceleration_rad_per_s2", "load acceleration"),
-    "move time": ("move_time_s", "move time"),
-    "rms torque": ("rms_torque_Nm", "rms torque"),
-    "inertia": ("inertia_kg_m2", "inertia at the motor"),
-    "mass": ("mass_kg", "mass of the gears"),
-    "error": ("error_deg", "error at the output"),
-}
+COMPARED = (*MOTIONS.values(), *(GOALS[name] for name in OBJECTIVES))  # the duty first
+LARGEST = GOALS["inverse_acceleration"]  # whose value is maximised
 STAGE = ("normal_module_mm", "pinion_teeth", "wheel_teeth")
 BEST = {  # symbol and colour of the best by a goal
     "inertia": ("diamond", "--series-4"),
     "mass": ("square", "--series-3"),
     "error": ("triangle-up", "--series-5"),
-    **dict.fromkeys(("acceleration", "move time", "rms torque"), ("diamond", "--series-4")),
+    **{goal.word: ("diamond", "--series-4") for goal in MOTIONS.values()},
 }
 
 
@@ -94,7 +92,7 @@ def best(result: Result, measures: Measures) -> Section | None:
     trains = [t for t in report_of(result).trains or () if t.best_of]
     if not trains:
         return None
-    keys = [key for key, _ in GOALS.values() if getattr(trains[0], key) is not None]
+    keys = [goal.key for goal in _known(trains[0])]
     heads = ["best", "teeth", *(heading(key, measures) for key in keys)]
     rows = [
         [t.best_of, teeth_words(t.stages)]
@@ -130,7 +128,7 @@ def _beside(design: ServoDesign, report: ServoReport, measures: Measures) -> lis
     other = train_figures(given, report.given_stiffness)
     if ratio is not None:
         for figures, one in ((own, ratio.chosen), (other, ratio.given_train)):
-            figures |= {} if one is None else {_key(ratio): one.value}
+            figures |= {} if one is None else {MOTIONS[ratio.duty].key: one.value}
     rows = []
     for key in own | other:
         bound, unit = report.figures.get(f"real_valued_bound_{key}"), parted(key)[1]
@@ -140,9 +138,9 @@ def _beside(design: ServoDesign, report: ServoReport, measures: Measures) -> lis
     return rows
 
 
-def _key(ratio: RatioDesign) -> str:
-    """Return the field of a `ListedTrain` that has what a duty is judged by."""
-    return next(key for key, name in GOALS.values() if name == ratio.name)
+def _known(train: ListedTrain) -> list[Goal]:
+    """Return what is known of a train."""
+    return [goal for goal in COMPARED if getattr(train, goal.key) is not None]
 
 
 def stage_counts(result: Result, measures: Measures) -> Section | None:
@@ -175,30 +173,30 @@ def by_inertia(result: Result, measures: Measures) -> Section | None:
 
 def by_mass(result: Result, measures: Measures) -> Section | None:
     """Plot error over mass of the trains; None where none are told."""
-    return _front(result, measures, "mass", "error") if "error" in _weighed(result) else None
+    known = GOALS["error"] in _weighed(result)
+    return _front(result, measures, GOALS["mass"], GOALS["error"]) if known else None
 
 
-def _weighed(result: Result) -> list[str]:
+def _weighed(result: Result) -> list[Goal]:
     """Return what the trains are held against each other by; nothing where none are told."""
     found = report_of(result).trains
     if not found:
         return []
-    goals = [goal for goal, (key, _) in GOALS.items() if getattr(found[0], key) is not None]
-    return goals if goals[0] == "inertia" else [g for g in goals if g != "inertia"]
+    goals = _known(found[0])
+    return goals if not goals[0].motion else [g for g in goals if g.name != "inertia"]
 
 
-def _front(result: Result, measures: Measures, goal: str, other: str) -> Section:
+def _front(result: Result, measures: Measures, goal: Goal, other: Goal) -> Section:
     """Plot trains by two goals."""
     design, report = design_of(result), report_of(result)
     found, ratio = report.trains or (), design.ratio
-    pair = GOALS[goal], GOALS[other]
-    (key, _), (high, _) = pair
+    key, high = goal.key, other.key
     groups: list[tuple[str, Sequence[ListedTrain], tuple[int, str, str]]] = []
     if rest := [t for t in found if not t.best_of]:
         groups.append(("other trains", rest, (8, "circle", "--series-1")))
     for name, (symbol, colour) in BEST.items():
         if few := [t for t in found if t.best_of == name]:
-            most = "largest" if name == "acceleration" else "least"
+            most = "largest" if name == LARGEST.word else "least"
             groups.append((f"{most} {name}", few, (12, symbol, colour)))
     for name, train, mark in (
         ("chosen", design.train, (20, "circle-open", "--series-2")),
@@ -209,37 +207,38 @@ def _front(result: Result, measures: Measures, goal: str, other: str) -> Section
     groups = [g for g in groups if all(getattr(g[1][0], k) is not None for k in (key, high))]
     values = [measures.of(getattr(t, key), parted(key)[1]) for _, some, _ in groups for t in some]
     wide = max(values) > 10.0 * min(values)
-    across, up = (axis(f"{name} [{measures.unit(parted(k)[1])}]") for k, name in pair)
+    across, up = (axis(_head(one, measures)) for one in (goal, other))
     if wide:
         across |= {"type": "log", "dtick": "D2", "tickformat": "~g"}
     else:
         across["type"] = "linear"
     known = replace(design, allocation=None)  # its own limit, not that of tolerances
-    limit = error_limit(known, result.limits) if other == "error" else None
+    limit = error_limit(known, result.limits) if other.name == "error" else None
     shapes = [] if limit is None else [_level(limit)]
     traces = [_points(*group, (key, high), measures) for group in groups]
     figure = Figure(traces, layout(across, up, 400, shapes=shapes), _caption(result, found))
-    tables = (_table(found, measures),) if goal != "mass" else ()
-    return Section(f"{other.capitalize()} and {goal}", figures=(figure,), tables=tables, half=True)
+    tables = (_table(found, measures),) if goal.name != "mass" else ()
+    title = f"{other.word.capitalize()} and {goal.word}"
+    return Section(title, figures=(figure,), tables=tables, half=True)
 
 
 def _listed(train: TrainDesign, ratio: RatioDesign | None, who: str) -> ListedTrain:
     """Return the chosen or the given train as the list of trains has it."""
     assert train.inertia_kg_m2 is not None and train.mass_kg is not None
     one = ratio and (ratio.chosen if who == "chosen" else ratio.given_train)
-    judged = {} if ratio is None or one is None else {_key(ratio): one.value}
+    judged = {} if ratio is None or one is None else {MOTIONS[ratio.duty].key: one.value}
     own = train.inertia_kg_m2, train.mass_kg, train.error_deg
     return ListedTrain(train.stages, train.ratio, "", *own, **judged)
 
 
 def _table(trains: Sequence[ListedTrain], measures: Measures) -> Table:
     """Return all points with their teeth and modules."""
-    known = [one for one in GOALS.values() if getattr(trains[0], one[0]) is not None]
-    heads = [f"{name} [{measures.unit(parted(key)[1])}]" for key, name in known]
+    known = _known(trains[0])
+    heads = [_head(goal, measures) for goal in known]
     heads += [f"{what} of stage {k}" for k in (1, 2) for what in ("module [mm]", "z1", "z2")]
     rows = [
         [
-            *(measures.of(getattr(t, key), parted(key)[1]) for key, _ in known),
+            *(measures.of(getattr(t, goal.key), parted(goal.key)[1]) for goal in known),
             *(getattr(s, k) for s in t.stages for k in STAGE),
             t.best_of,
         ]
@@ -248,21 +247,25 @@ def _table(trains: Sequence[ListedTrain], measures: Measures) -> Table:
     return Table("trains", [*heads, "best"], rows, folded=True)
 
 
+def _head(goal: Goal, measures: Measures) -> str:
+    """Return the head of a column, or the title of an axis."""
+    return f"{goal.title} [{measures.unit(parted(goal.key)[1])}]"
+
+
 def _caption(result: Result, trains: Sequence[ListedTrain]) -> str:
     """Say what the points are."""
     goals = _weighed(result)
-    signs = [-1.0 if goal == "acceleration" else 1.0 for goal in goals]
-    keys = [GOALS[goal][0] for goal in goals]
     worth = [
-        tuple(sign * getattr(t, k) for k, sign in zip(keys, signs, strict=True)) for t in trains
+        tuple((-1.0 if g is LARGEST else 1.0) * getattr(t, g.key) for g in goals) for t in trains
     ]
     beaten = any(
         a != b and all(x <= y for x, y in zip(a, b, strict=True)) for a in worth for b in worth
     )
     which = f"{len(trains)} of the best trains"
     if not beaten:
-        names = f"{', '.join(goals[:-1])} and {goals[-1]}"
-        which = f"{len(trains)} trains, none better than another in {names} at once"
+        *names, last = (goal.word for goal in goals)
+        several = f"{', '.join(names)} and {last}"
+        which = f"{len(trains)} trains, none better than another in {several} at once"
     return f"{which}; the pointer tells their teeth.".capitalize()
 
 
@@ -292,11 +295,10 @@ def _points(
 def _told(train: ListedTrain, measures: Measures) -> str:
     """Return a train in lines: teeth and modules, then what it is worth."""
     lines = teeth_words(train.stages).split("; ")
-    for goal, (key, _) in GOALS.items():
-        value = getattr(train, key)
-        if value is not None:
-            told = degrees(value) if goal == "error" else amount(value, parted(key)[1], measures)
-            lines.append(f"{goal} {told}")
+    for goal in _known(train):
+        value, unit = getattr(train, goal.key), parted(goal.key)[1]
+        shown = degrees(value) if goal.name == "error" else amount(value, unit, measures)
+        lines.append(f"{goal.word} {shown}")
     return "<br>".join(lines)
 
 

@@ -8,6 +8,7 @@ from typing import Annotated
 from pydantic import Field, model_validator
 
 from gearopt import units
+from gearopt.formulations.servo.servo_design import GOALS
 from gearopt.formulations.servo.split import Bodies
 from gearopt.formulations.servo.split.bodies import ROOT
 from gearopt.physics.gears import MODULES
@@ -29,14 +30,7 @@ TURN = units.parse("360 deg", "angle")
 DIGITS = 12  # of a number that is to be written
 TURNED = {"move": ("angle", 1), "swing": ("amplitude", 2)}  # key of the duty, times how often
 LENGTH = quantity("length", "6 mm")
-MADE_LEAST = {  # by the word of a file: the objective, and the motion of [duty] that it needs
-    "inertia": ("inertia", None),
-    "mass": ("mass", None),
-    "error": ("error", None),
-    "acceleration": ("inverse_acceleration", "acceleration"),
-    "move_time": ("move_time", "move"),
-    "rms_torque": ("rms_torque", "swing"),
-}
+AIMS = {goal.word.replace(" ", "_"): goal for goal in GOALS.values()}  # by the word of a file
 
 
 class Train(Table):
@@ -87,7 +81,7 @@ class Train(Table):
     bending_stress: Annotated[Quantity, quantity("stress", "150 MPa")] = Field(
         description="Allowed bending stress after Lewis, without any factor"
     )
-    minimise: Annotated[str, choice(*MADE_LEAST)] = Field(
+    minimise: Annotated[str, choice(*AIMS)] = Field(
         "inertia",
         description="inertia (of the train at the motor), mass or error; move_time or rms_torque "
         "of [duty], with ratio and train chosen together",
@@ -120,7 +114,7 @@ class Train(Table):
     @property
     def goal(self) -> str:
         """Return what is minimised: an objective of a `ServoTrain`."""
-        return MADE_LEAST[self.aim][0]
+        return AIMS[self.aim].name
 
     @property
     def ratios(self) -> tuple[Fraction, Fraction]:
