@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from html_reader import ATTACK, Reader
+from page_reader import ATTACK, Reader
 from rich.console import Console
 
 import gearopt

@@ -1,19 +1,25 @@
-"""What each kind of result shows is found by its name, and so is what any other kind shows."""
+"""What each kind of result shows, found by its name; every problem file makes a page."""
 
 import io
 from dataclasses import replace
+from pathlib import Path
 from pkgutil import iter_modules
 
 import layout_cases as cases
 import pytest
+from page_reader import Reader
 from rich.console import Console
 
 import gearopt
 from gearopt.report import kinds
+from gearopt.report.explained import remedy_words
 from gearopt.report.kinds import generic, kind_named
-from gearopt.report.pages.result import sections
+from gearopt.report.measures import INCH
+from gearopt.report.pages.result import page, sections, tables
 from gearopt.report.terminal import show
 from gearopt.scenes.reading import load
+
+PROBLEMS = sorted((Path(__file__).parents[2] / "problems").glob("*.toml"))
 
 
 def test_every_module_is_a_kind_of_problem_file():
@@ -42,3 +48,31 @@ def test_other_kinds_are_shown_by_what_their_design_holds(scene):
     show(result, Console(file=out, width=99))
     for words in ("face width b [mm]", "shift [mm]", "limit used, %"):
         assert words in out.getvalue()
+
+
+@pytest.mark.parametrize(
+    ("conflict", "said"),
+    [
+        (["ratio_low"], "This limit cannot be kept, even if all others are dropped: ratio low"),
+        (
+            ["ratio_low", "wheel_diameter[1]"],
+            "These cannot hold together, and none of them is to spare: ratio low",
+        ),
+    ],
+)
+def test_one_limit_is_not_told_as_several(conflict, said):
+    why, rows, _ = remedy_words({"conflict": conflict, "remedies": [], "message": ""})
+    assert why[0].startswith(said) and not rows
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("path", PROBLEMS, ids=lambda p: p.stem)
+def test_a_problem_file_makes_a_page(path):
+    result = gearopt.solve(path, top=3, budget=gearopt.Budget(1.0))
+    again = gearopt.Result.from_json(result.to_json())
+    html = page(again, "gearopt solve x.toml")
+    words = "".join(Reader(html).text)
+    assert result.asked["title"] in words and "What is proven, and how" in words
+    assert "None" not in words and "nan" not in words.split()
+    assert "What is proven, and how" in page(again, "gearopt solve x.toml", INCH)
+    assert all(text.strip() for text in tables(again).values())

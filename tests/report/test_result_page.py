@@ -10,8 +10,7 @@ from pathlib import Path
 import layout_cases as cases
 import numpy as np
 import pytest
-from html_reader import ATTACK, Reader
-from svg_reader import drawings, extents, marks, numbers, ours
+from page_reader import ATTACK, Reader, drawings, extents, marks, numbers, ours
 
 import gearopt
 from gearopt.formulations.layout.layout_design import LayoutDesign

@@ -10,9 +10,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import servo_cases as cases
-from html_reader import ATTACK, Reader
+from page_reader import ATTACK, Reader, drawings, extents, marks, numbers, ours
 from rich.console import Console
-from svg_reader import drawings, extents, marks, numbers, ours
 
 import gearopt
 from gearopt.formulations.servo.servo_design import BoxDesign

@@ -5,7 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from html_reader import Reader
+from page_reader import Reader
 from rich.console import Console
 
 import gearopt

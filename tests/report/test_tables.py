@@ -9,7 +9,7 @@ from urllib.parse import unquote
 import layout_cases as cases
 import pint
 import pytest
-from html_reader import Reader
+from page_reader import Reader
 from rich.console import Console
 
 import gearopt

@@ -6,8 +6,7 @@ from functools import cache
 import layout_cases as cases
 import numpy as np
 import pytest
-from html_reader import Reader
-from svg_reader import drawings, extents, marks, numbers
+from page_reader import Reader, drawings, extents, marks, numbers
 
 import gearopt
 from gearopt.formulations.design import describe

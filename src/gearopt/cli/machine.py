@@ -71,6 +71,9 @@ def bench(
     if as_json:
         print_whole(json.dumps(rows, indent=2))
         return
-    from gearopt.report.terminal import rows_table
+    from gearopt.report.section import Table
+    from gearopt.report.terminal import grid
+    from gearopt.report.words import heading
 
-    console().print(rows_table(rows))
+    cells, wide = [list(row.values()) for row in rows], len(rows[0])
+    console().print(grid(Table(name, [heading(key) for key in rows[0]], cells, wrap=wide)))

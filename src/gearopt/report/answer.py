@@ -246,13 +246,13 @@ def progress(result: Result, measures: Measures) -> Section | None:
     end = max(result.seconds, steps[-1]["seconds"])
     times = [max(EARLIEST, s["seconds"]) for s in steps]
     wide = max(times) > 30.0 * min(times)
-    sign = measures.unit(unit)
-    traces = [_line("best", best, "best", "--series-1", sign, end)]
+    sign, large = measures.unit(unit), any(abs(s["best"]) >= 1e5 for s in best)
+    traces = [_line("best", best, "--series-1", sign, end)]
     if bound:
-        traces.append(_line("bound", bound, "bound", "--series-2", sign, end))
+        traces.append(_line("bound", bound, "--series-2", sign, end))
     plot = layout(
         axis("wall time [s]", type="log" if wide else "linear"),
-        axis(f"{name} [{sign}]" if sign else name, tickformat="," if _large(best) else ""),
+        axis(f"{name} [{sign}]" if sign else name, tickformat="," if large else ""),
         340,
     )
     words = "Best value found so far" + (" and the bound below it" if bound else "")
@@ -266,14 +266,14 @@ def _converted(step: dict[str, Any], unit: str, measures: Measures) -> dict[str,
 
 
 def _line(
-    name: str, steps: list[dict[str, Any]], key: str, colour: str, unit: str, end: float
+    key: str, steps: list[dict[str, Any]], colour: str, unit: str, end: float
 ) -> dict[str, Any]:
     """Return steps that hold to the end of the run."""
     last = [*steps, steps[-1] | {"seconds": end}]
     return {
         "type": "scatter",
         "mode": "lines+markers",
-        "name": name,
+        "name": key,
         "x": [max(EARLIEST, s["seconds"]) for s in last],
         "y": [s[key] for s in last],
         "text": [_hover(s, key, unit) for s in last],
@@ -290,7 +290,3 @@ def _hover(step: dict[str, Any], key: str, unit: str) -> str:
     if best and bound is not None:
         words += f"; gap {100.0 * gap(best, bound):.3g} %"
     return words
-
-
-def _large(steps: list[dict[str, Any]]) -> bool:
-    return any(abs(s["best"]) >= 1e5 for s in steps)

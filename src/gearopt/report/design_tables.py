@@ -101,7 +101,9 @@ def _shares(stages: Sequence[Mapping[str, Any]], measures: Measures) -> list[Tab
 
 def trains(result: Result, measures: Measures) -> Section | None:
     """Return the best distinct trains in proven order; None where only one was asked for."""
-    if (best := ranked(result)) is None:
+    gears = (part for part in result.parts if part.name == "gears")
+    best = next((one for one in (result, *gears) if len(one.report.get("trains", ())) > 1), None)
+    if best is None:
         return None
     found, (name, unit), length = best.report["trains"], objective(best), measures.unit("mm")
     least = found[0]["objective"]
@@ -119,12 +121,6 @@ def trains(result: Result, measures: Measures) -> Section | None:
     words = words if whole else "The best of the trains that were found; others may be better."
     told = (table,) if result.value is not None else ()
     return Section("Next best trains", words=(words,), tables=(table,), terminal=told)
-
-
-def ranked(result: Result) -> Result | None:
-    """Return the answer whose next best trains are known: itself, or the gears laid out."""
-    gears = (part for part in result.parts if part.name == "gears")
-    return next((one for one in (result, *gears) if len(one.report.get("trains", ())) > 1), None)
 
 
 def _train_row(

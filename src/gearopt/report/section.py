@@ -31,6 +31,13 @@ class Figure:
     caption: str
 
 
+LOOK = {  # of any plot
+    "paper_bgcolor": "--card",
+    "font": {"family": "--font", "size": 13, "color": "--ink"},
+    "hoverlabel": {"bgcolor": "--card", "bordercolor": "--axis", "font": {"color": "--ink"}},
+}
+
+
 def axis(title: str, **more: Any) -> dict[str, Any]:
     """Return a plot's axis in the page's look."""
     look = {
@@ -52,10 +59,7 @@ def layout(x: dict[str, Any], y: dict[str, Any], height: int = 360, **more: Any)
     look = {
         "height": height,
         "margin": {"l": 8, "r": 12, "t": 8, "b": 8},
-        "paper_bgcolor": "--card",
         "plot_bgcolor": "--card",
-        "font": {"family": "--font", "size": 13, "color": "--ink"},
-        "hoverlabel": {"bgcolor": "--card", "bordercolor": "--axis", "font": {"color": "--ink"}},
         "legend": {
             "orientation": "h",
             "traceorder": "normal",
@@ -67,7 +71,7 @@ def layout(x: dict[str, Any], y: dict[str, Any], height: int = 360, **more: Any)
         "xaxis": x,
         "yaxis": y,
     }
-    return look | more
+    return LOOK | look | more
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import Any
 
-from rich.console import Console, RenderableType
+from rich.console import Console
 from rich.markup import escape
 from rich.table import Table as Grid
 from rich.text import Text
@@ -21,7 +21,6 @@ from gearopt.report.words import (
     VERDICTS,
     amount,
     goal,
-    heading,
     leading,
     limit_words,
     number,
@@ -30,19 +29,15 @@ from gearopt.report.words import (
 )
 
 
-def aligned(heads: list[str], left: int, wrap: int) -> Grid:
-    """Return a plain table; left, wrap: how many columns stand left, and may break over lines."""
-    table = Grid(*map(escape, heads), box=None, header_style="bold", pad_edge=False)
-    for k, column in enumerate(table.columns):
-        column.justify, column.no_wrap = "left" if k < left else "right", k >= wrap
-    return table
-
-
 def grid(table: Table) -> Grid:
     """Return a section's table for the terminal; without heads a list of names and values."""
     heads, rows = table.without(table.page_only)
     if any(heads):
-        shown = aligned([table.short.get(head, head) for head in heads], table.left, table.wrap)
+        names = (escape(table.short.get(head, head)) for head in heads)
+        shown = Grid(*names, box=None, header_style="bold", pad_edge=False)
+        for k, column in enumerate(shown.columns):
+            column.justify = "left" if k < table.left else "right"
+            column.no_wrap = k >= table.wrap
     else:
         shown = Grid.grid(padding=(0, 2))
     for row in rows:
@@ -89,15 +84,6 @@ def _print(blocks: Sequence[str | Text | Table], console: Console) -> None:
         console.print(grid(block) if isinstance(block, Table) else Text.assemble(block))
 
 
-def rows_table(rows: list[dict[str, Any]]) -> RenderableType:
-    """Return rows of a bench as a table."""
-    heads = [escape(heading(k)) for k in rows[0]]
-    table = Grid(*heads, box=None, header_style="bold", pad_edge=False)
-    for row in rows:
-        table.add_row(*["" if v is None else number(v) for v in row.values()])
-    return table
-
-
 def show_comparison(found: Comparison, console: Console) -> None:
     """Print a comparison."""
     console.print(Text.assemble((found.title, "bold"), ": methods compared"))
@@ -126,17 +112,12 @@ def _group(found: Comparison, group: Group, console: Console) -> None:
         console.print(Text(f"- {row.method}: {words.verdict(group, row)}"))
     for field, name, budget in words.kinds(found):
         heads = [f"{head}\n{unit}" for head, unit, _ in words.COLUMNS]
-        table = Grid("method", *heads, box=None, header_style="bold", pad_edge=False)
-        for column in table.columns[1:]:
-            column.justify = "right"
-        for row in group.rows:
-            sample = getattr(row, field)
-            if sample is not None:
-                table.add_row(row.method, *words.cells(sample))
-        if table.row_count:
+        samples = ((row.method, getattr(row, field)) for row in group.rows)
+        rows = [(method, *words.cells(sample)) for method, sample in samples if sample is not None]
+        if rows:
             console.print()
             console.print(Text(f"{name}: {budget}", style="bold"))
-            console.print(table)
+            console.print(grid(Table(name, ("method", *heads), rows, wrap=1 + len(heads))))
     for row in group.rows:
         if late := words.ended(found, row):
             console.print(Text(f"Equal evaluations: {late}.", style="yellow"))

@@ -20,6 +20,11 @@ class BoxDesign:
     plan_area_mm2: float
     face_area_mm2: float
 
+    @property
+    def sides(self) -> tuple[float, float, float]:
+        """Return width, height and length [mm]."""
+        return self.width_mm, self.height_mm, self.length_mm
+
 
 @dataclass(frozen=True, kw_only=True)
 class ShaftDesign:

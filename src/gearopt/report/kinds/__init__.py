@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from pkgutil import iter_modules
+from typing import Any
 
 from gearopt.optimise.result import Result
 from gearopt.report.measures import Measures
@@ -16,11 +17,7 @@ from gearopt.report.section import Section, Tile
 MakeSection = Callable[[Result, Measures], Section | None]  # None: nothing to show of it
 
 
-def _nothing(result: Result, measures: Measures) -> Sequence[str]:
-    return ()
-
-
-def _no_tiles(result: Result, measures: Measures) -> Sequence[Tile]:
+def _nothing(result: Result, measures: Measures) -> Sequence[Any]:
     return ()
 
 
@@ -34,7 +31,7 @@ class Kind:
 
     sections: tuple[MakeSection, ...]
     terminal: tuple[MakeSection, ...]
-    tiles: Callable[[Result, Measures], Sequence[Tile]] = _no_tiles
+    tiles: Callable[[Result, Measures], Sequence[Tile]] = _nothing
     beside: Callable[[Result, Measures], Sequence[str]] = _nothing
     drawn: bool = True
 

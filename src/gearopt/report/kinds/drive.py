@@ -27,7 +27,7 @@ def places(result: Result, measures: Measures) -> Section | None:
     if result.value is None or (found := layout_of(result)) is None:
         return None
     box, unit = found.box, measures.unit("mm")
-    sides = " x ".join(map(measures.length, (box.width_mm, box.height_mm, box.length_mm)))
+    sides = " x ".join(map(measures.length, box.sides))
     volume = amount(box.volume_mm3, "mm3", measures)
     rows = [
         [f"{words} [{unit}]", *(Cell(v, measures.length(v)) for v in values)]
@@ -116,14 +116,8 @@ def trade_off(result: Result, measures: Measures) -> Section | None:
     front = result.report.get("front") or []
     if not front:
         return None
-    points = sorted(
-        (
-            measures.of(p["width_mm"], "mm"),
-            measures.of(p["height_mm"], "mm"),
-            measures.of(p["volume_mm3"], "mm3"),
-        )
-        for p in front
-    )
+    keys = ("width_mm", "height_mm", "volume_mm3")
+    points = sorted([measures.of(p[key], parted(key)[1]) for key in keys] for p in front)
     unit, volume = measures.unit("mm"), measures.unit("mm3")
     widths, heights, volumes = zip(*points, strict=True)
     x0, x1 = _ends(widths)
@@ -156,17 +150,14 @@ def trade_off(result: Result, measures: Measures) -> Section | None:
             "marker": {"color": "--series-2", "size": 13, "symbol": "star"},
         }
     )
-    across, up = (
-        axis(f"width [{unit}]", range=[x0, x1]),
-        axis(f"height [{unit}]", range=[y0, y1]),
+    plot = layout(
+        axis(f"width [{unit}]", range=[x0, x1]), axis(f"height [{unit}]", range=[y0, y1]), 420
     )
     words = (
         f"Boxes of which none is better in both width and height ({len(points)}). "
         "Thin lines: equal area of the face."
     )
-    return Section(
-        "Width against height", figures=(Figure(traces, layout(across, up, 420), words),)
-    )
+    return Section("Width against height", figures=(Figure(traces, plot, words),))
 
 
 def _ends(values: tuple[float, ...]) -> tuple[float, float]:
@@ -210,9 +201,8 @@ def tiles(result: Result, measures: Measures) -> list[Tile]:
     if objective(result)[0] != "mass":
         found.append(Tile("mass of the gears", amount(design.mass_kg, "kg", measures)))
     if design.layout is not None:
-        box = design.layout.box
-        sides = (measures.length(v, 1) for v in (box.width_mm, box.height_mm, box.length_mm))
-        size = f"{' x '.join(sides)} {measures.unit('mm')}"
+        sides = " x ".join(measures.length(side, 1) for side in design.layout.box.sides)
+        size = f"{sides} {measures.unit('mm')}"
         found.append(Tile("box", size, "width, height, length"))
     return found
 

@@ -31,7 +31,7 @@ def plans(result: Result, measures: Measures) -> Section | None:
     if not result.design:
         return None
     design = packing_design(result.design)
-    window = _window(design.container)
+    window = Window(*_span(design.container), (52.0, 20.0, 48.0, 20.0))
     scale = window.scale(WIDE, HIGH)
     colours = _colours(design.cylinders)
     layers = design.layers
@@ -63,10 +63,6 @@ def words(cylinder: CylinderDesign, measures: Measures) -> str:
     return (
         f"{cylinder.name}: diameter {diameter:.4g} {unit}, height {height:.4g} {unit}, x {x}, y {y}"
     )
-
-
-def _window(container: ContainerDesign) -> Window:
-    return Window(*_span(container), (52.0, 20.0, 48.0, 20.0))
 
 
 def _plan(

@@ -14,8 +14,8 @@ from gearopt.formulations.layout.layout_design import (
 )
 from gearopt.optimise.result import Result
 from gearopt.report.measures import Measures
+from gearopt.report.pages.sheet import Point
 
-Point = tuple[float, float]
 Corner = tuple[float, float, float]  # x, y, z
 AROUND = 0.12  # of the box's larger side: keep-outs are drawn so far beyond box and motor
 

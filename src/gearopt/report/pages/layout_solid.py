@@ -65,9 +65,9 @@ def _traces(found: LayoutDesign, measures: Measures) -> list[dict[str, Any]]:
         mesh = rod(places[shaft.shaft], shaft.diameter_mm / 2, *span)
         words = f"shaft {shaft.shaft}: diameter {measures.length(shaft.diameter_mm)} {unit}"
         traces.append(mesh_trace(mesh, words, "--metal", "shafts", showlegend=k == 0))
+    bores = {s.shaft: s.diameter_mm / 2 for s in found.shafts}
     for k, it in enumerate(found.bearings):
-        bore = next(s.diameter_mm for s in found.shafts if s.shaft == it.shaft) / 2
-        mesh = rod(places[it.shaft], it.diameter_mm / 2, it.from_mm, it.to_mm, bore)
+        mesh = rod(places[it.shaft], it.diameter_mm / 2, it.from_mm, it.to_mm, bores[it.shaft])
         words = f"bearing of shaft {it.shaft}"
         traces.append(mesh_trace(mesh, words, "--soft", "bearings", showlegend=k == 0))
     traces += _housing(found, measures)
@@ -130,9 +130,7 @@ def _housing(found: LayoutDesign, measures: Measures) -> list[dict[str, Any]]:
     """Walls as lines, the motor, keep-outs."""
     box = found.box
     low, high = box_corners(found)
-    size = " x ".join(
-        measures.length(side) for side in (box.width_mm, box.height_mm, box.length_mm)
-    )
+    size = " x ".join(map(measures.length, box.sides))
     traces = [line_trace(edges(low, high), f"box {size} {measures.unit('mm')}", "--ink", 3.0)]
     if told := motor(found):
         mesh = rod((0.0, 0.0), *told)

@@ -182,9 +182,11 @@ def _centre_distances(
     measures: Measures,
 ) -> None:
     """Between the shafts of every stage, along the line of centres."""
-    for a, b, stage in _meshes(found):
-        text = f"a{stage} = {measures.length(math.dist(places[a], places[b]))}"
-        centre_distance(sheet, places[a], places[b], text)
+    for stage in sorted({gear.stage for gear in found.gears}):
+        ends = [places[gear.shaft] for gear in found.gears if gear.stage == stage]
+        if len(ends) == 2:
+            text = f"a{stage} = {measures.length(math.dist(*ends))}"
+            centre_distance(sheet, ends[0], ends[1], text)
 
 
 def centre_distance(sheet: Sheet, a: Point, b: Point, text: str) -> None:
@@ -203,24 +205,10 @@ def centre_distance(sheet: Sheet, a: Point, b: Point, text: str) -> None:
     sheet.label(text, spots, "size")
 
 
-def _meshes(found: LayoutDesign) -> list[tuple[int, int, int]]:
-    """Shaft of the pinion, shaft of the wheel, stage."""
-    on = {(g.stage, g.member): g.shaft for g in found.gears}
-    stages = sorted({g.stage for g in found.gears})
-    return [
-        (on[s, "pinion"], on[s, "wheel"], s)
-        for s in stages
-        if (s, "pinion") in on and (s, "wheel") in on
-    ]
-
-
 def _narrowest(sheet: Sheet, found: LayoutDesign, measures: Measures) -> None:
     """The narrowest gap between two bodies, with its value."""
-    if not found.gaps:
-        return
-    gap = found.gaps[0]
-    ends = nearest(found, *gap.between)
-    if ends is None:
+    gap = next(iter(found.gaps), None)
+    if gap is None or (ends := nearest(found, *gap.between)) is None:
         return
     start, end = sheet.at(*ends[0][1:]), sheet.at(*ends[1][1:])
     sheet.arrows(start, end, "gap")

@@ -9,6 +9,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from html import escape
+from itertools import pairwise
 
 SIZE = 12.0  # of a text, px; drawing.css has the same
 LETTER = 0.56  # mean width of a letter over the size, sans serif
@@ -174,7 +175,7 @@ class Sheet:
         corners = f'x="{x:.2f}" y="{y:.2f}" width="{width:.2f}" height="{height:.2f}"'
         self._add("rect", f'{corners} rx="{round_:g}"', style, colour, title)
         ends = ((x, y), (x + width, y), (x + width, y + height), (x, y + height), (x, y))
-        for start, end in zip(ends, ends[1:], strict=False):
+        for start, end in pairwise(ends):
             self._ink.add(_along(start, end))
 
     def slice(
@@ -241,10 +242,7 @@ class Sheet:
         start, end = (x0 + dx, y0 + dy), (x1 + dx, y1 + dy)
         self.arrows(start, end)
         x, y = (start[0] + end[0]) / 2, (start[1] + end[1]) / 2
-        if upright:
-            self.label(text, [Place(x - 9.0, y, -90.0)], "size")
-        else:
-            self.label(text, [Place(x, y - 9.0 if away > 0 else y - 9.0)], "size")
+        self.label(text, [Place(x - 9.0, y, -90.0) if upright else Place(x, y - 9.0)], "size")
 
     def tick(self, start: Point, end: Point) -> None:
         """A thin line [px], as those that lead from a body to its dimension."""
@@ -330,10 +328,7 @@ def _along(start: Point, end: Point) -> Iterable[Point]:
     count = _count(math.dist(start, end) / 4.0, 1)
     for k in range(count + 1):
         share = k / count
-        yield (
-            start[0] + share * (end[0] - start[0]),
-            start[1] + share * (end[1] - start[1]),
-        )
+        yield start[0] + share * (end[0] - start[0]), start[1] + share * (end[1] - start[1])
 
 
 def series(k: int) -> str:

@@ -13,6 +13,7 @@ from typing import Any
 
 from gearopt.physics.gears import Gear
 from gearopt.report.measures import Measures
+from gearopt.report.section import LOOK
 
 Point = tuple[float, float, float]
 Face = tuple[int, int, int]
@@ -210,24 +211,16 @@ def space(low: Point, high: Point, measures: Measures, height: int = 640) -> dic
         "tickfont": {"size": 11, "color": "--soft"},
         "showspikes": False,
     }
-    names = {}
+    scene: dict[str, Any] = {"aspectmode": "data", "dragmode": "orbit"}
+    scene["camera"] = {"eye": eye, "center": {"x": 0.0, "y": 0.0, "z": -0.1}}  # axes are below
     for a, start, end in zip("xyz", low, high, strict=True):
         title = {"text": f"{a} [{measures.unit('mm')}]", "font": {"size": 12}}
-        names[f"{a}axis"] = ax | {"title": title} | _ticks(start, end, measures)
-    camera = {"eye": eye, "center": {"x": 0.0, "y": 0.0, "z": -0.1}}  # room for the axes below
-    return {
+        scene[f"{a}axis"] = ax | {"title": title} | _ticks(start, end, measures)
+    return LOOK | {
         "height": height,
         "margin": {"l": 0, "r": 0, "t": 0, "b": 0},
-        "paper_bgcolor": "--card",
-        "font": {"family": "--font", "size": 13, "color": "--ink"},
-        "hoverlabel": {"bgcolor": "--card", "bordercolor": "--axis", "font": {"color": "--ink"}},
         "legend": {"orientation": "h", "x": 0, "y": 1.0, "yanchor": "bottom"},
-        "scene": names
-        | {
-            "aspectmode": "data",
-            "camera": camera,
-            "dragmode": "orbit",
-        },
+        "scene": scene,
         "uirevision": "kept",  # the reader's view survives a change from light to dark
     }
 

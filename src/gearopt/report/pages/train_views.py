@@ -96,39 +96,24 @@ def in_one_line(stages: Sequence[DrawnStage]) -> tuple[Bodies, float]:
             stage=k,
             member=member,
             shaft=shaft,
-            teeth=teeth,
+            teeth=getattr(stage, f"{member}_teeth"),
             normal_module_mm=stage.normal_module_mm,
-            reference_diameter_mm=reference,
-            tip_diameter_mm=tip,
+            reference_diameter_mm=getattr(stage, f"{member}_diameter_mm"),
+            tip_diameter_mm=getattr(stage, f"{member}_tip_diameter_mm"),
             root_diameter_mm=0.0,
             helix_angle_deg=0.0,
             from_mm=start,
             to_mm=start + stage.face_width_mm,
         )
         for k, (stage, start) in enumerate(zip(stages, starts, strict=True), 1)
-        for member, shaft, teeth, reference, tip in (
-            (
-                "pinion",
-                k,
-                stage.pinion_teeth,
-                stage.pinion_diameter_mm,
-                stage.pinion_tip_diameter_mm,
-            ),
-            (
-                "wheel",
-                k + 1,
-                stage.wheel_teeth,
-                stage.wheel_diameter_mm,
-                stage.wheel_tip_diameter_mm,
-            ),
-        )
+        for member, shaft in (("pinion", k), ("wheel", k + 1))
     ]
     shafts = []
     for k, y in enumerate(axes, 1):
         on = [g for g in gears if g.shaft == k]
-        ends = min(g.from_mm for g in on), max(g.to_mm for g in on)
+        start, end = min(g.from_mm for g in on), max(g.to_mm for g in on)
         shafts.append(
-            ShaftDesign(shaft=k, y_mm=y, z_mm=0.0, diameter_mm=0.0, from_mm=ends[0], to_mm=ends[1])
+            ShaftDesign(shaft=k, y_mm=y, z_mm=0.0, diameter_mm=0.0, from_mm=start, to_mm=end)
         )
     slabs = tuple((k,) for k in range(1, len(stages) + 1))
     return Bodies(tuple(shafts), tuple(gears), slabs), scale
