@@ -25,9 +25,8 @@ from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import run, solve
 from gearopt.physics.gears import GearPair
 from gearopt.scenes import drive as drives
+from gearopt.scenes.drive.drive_tables import Limits, StageTable
 from gearopt.scenes.drive.scene import Scene
-from gearopt.scenes.drive.tables.limits import Limits
-from gearopt.scenes.drive.tables.stages import StageTable
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.fields import quantity
 from gearopt.units import Quantity

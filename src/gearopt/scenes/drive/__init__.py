@@ -19,7 +19,7 @@ from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import GAP, run
 from gearopt.optimise.typed import untyped
-from gearopt.scenes.drive.explaining.assumptions import assumptions, notes, undercut
+from gearopt.scenes.drive.assumptions import assumptions, notes, undercut
 from gearopt.scenes.drive.scene import EXAMPLE, Scene
 from gearopt.scenes.explaining.default import of_report
 from gearopt.scenes.reading.ask import Ask

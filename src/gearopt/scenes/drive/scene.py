@@ -14,11 +14,17 @@ from gearopt.formulations.process import methods
 from gearopt.optimise.result import Outcome
 from gearopt.physics.gears import GearPair, Rack
 from gearopt.physics.loads import torque
-from gearopt.scenes.drive.tables.duty import Duty
-from gearopt.scenes.drive.tables.layout import KeepOutTable, Layout, PlaceTable, gearbox
-from gearopt.scenes.drive.tables.limits import Limits, Objective, Teeth
-from gearopt.scenes.drive.tables.process import ProcessOneTable, ProcessTwoTable
-from gearopt.scenes.drive.tables.stages import Gears, StageTable
+from gearopt.scenes.drive.drive_tables import (
+    Duty,
+    Gears,
+    Limits,
+    Objective,
+    ProcessOneTable,
+    ProcessTwoTable,
+    StageTable,
+    Teeth,
+)
+from gearopt.scenes.drive.layout_tables import KeepOutTable, Layout, PlaceTable, gearbox
 from gearopt.scenes.reading.fields import Table, refuse, whole, words
 
 EXAMPLE = """\

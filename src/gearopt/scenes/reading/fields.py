@@ -6,23 +6,27 @@ exactly as written (int or Decimal).
 """
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from decimal import Decimal
+from difflib import get_close_matches
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
+from unicodedata import normalize
 
 from pydantic import BaseModel, ConfigDict
 from pydantic_core import PydanticCustomError, core_schema
 
 from gearopt import units
-from gearopt.scenes.reading.spelling import meant, near
 from gearopt.units import Quantity
 
 LARGEST = Fraction(10) ** 30  # of any number in a file: beyond it lies a slip, not a gear
 SMALLEST = 1 / LARGEST
 BEYOND = "is out of any sensible range (1e-30 to 1e30)"
+# A comma before three digits may separate thousands, so it is not taken for a decimal one.
+_NUMBER = r"(\+?[0-9]*(?:\.|,(?![0-9]{3}(?![0-9])))?[0-9]+(?:[eE][+-]?[0-9]{1,3})?)"
+_SLIP = re.compile(rf"\s*{_NUMBER}\s*((?![eE][+-]?[0-9])[^\s\d.,].*?|1/\S+)?\s*")
 
 
 class Table(BaseModel):
@@ -242,3 +246,30 @@ def words() -> Reads:
         return value
 
     return Reads(read, "a text", {"type": "string", "maxLength": 1000})
+
+
+def near(word: str, names: Iterable[str]) -> str | None:
+    """The name that a word was probably meant to be, in whatever case; None if none is close."""
+    plain = {name.lower(): name for name in names}
+    found = get_close_matches(re.sub(r"[-\s]+", "_", word[:80].lower()), plain, n=1)
+    return plain[found[0]] if found else None
+
+
+def meant(text: str, dimension: str, usual: str) -> str:
+    """A text whose decimal comma, missing unit or misspelt unit is mended; "" if it has none."""
+    match = _SLIP.fullmatch(text[:80])
+    unit = _spelt(match[2], units.UNITS[dimension]) if match and match[2] else usual
+    return f"{match[1].replace(',', '.')} {unit}" if match and unit else ""
+
+
+def _spelt(word: str, names: Iterable[str]) -> str | None:
+    """The unit that differs from a word in case or punctuation only.
+
+    Not mW for MW: that is another unit, and the number would be wrong.
+    """
+
+    def plain(unit: str) -> str:
+        return re.sub(r"[^a-z0-9/%]", "", normalize("NFKC", unit).lower())  # also of a raised 2
+
+    found = next((n for n in names if plain(n) == plain(word)), None)
+    return None if found and found[0] != word[0] and found[1:] == word[1:] else found

@@ -5,8 +5,7 @@ from typing import Any
 
 from pydantic_core import PydanticCustomError
 
-from gearopt.scenes.reading.fields import Reads, refuse
-from gearopt.scenes.reading.spelling import near
+from gearopt.scenes.reading.fields import Reads, near, refuse
 from gearopt.units import Quantity
 
 

@@ -15,9 +15,8 @@ from pydantic import BaseModel, ValidationError
 
 import gearopt.scenes
 from gearopt.errors import Fix, SceneError
-from gearopt.scenes.reading.fields import Opened
+from gearopt.scenes.reading.fields import Opened, near
 from gearopt.scenes.reading.remedy import translate, wrong_name, wrong_value
-from gearopt.scenes.reading.spelling import near
 from gearopt.scenes.reading.toml import cut, dotted
 
 FORMAT = 1

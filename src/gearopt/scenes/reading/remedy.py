@@ -8,8 +8,7 @@ from typing import Any, get_args, get_origin
 from pydantic import BaseModel, ValidationError
 
 from gearopt.errors import Fix, SceneError
-from gearopt.scenes.reading.fields import Reads
-from gearopt.scenes.reading.spelling import near
+from gearopt.scenes.reading.fields import Reads, near
 from gearopt.scenes.reading.toml import cut, dotted, short, toml_text
 
 

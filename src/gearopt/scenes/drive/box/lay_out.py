@@ -1,16 +1,27 @@
-"""The box of a drive whose gears are sized: data checks, then the layout by any method."""
+"""The box of a drive whose gears are sized: data checks, the layout by any method, its words."""
 
+import math
 from dataclasses import asdict, replace
 from typing import Any
 
 from gearopt.errors import SolveError
 from gearopt.formulations import layout
-from gearopt.formulations.design import drive_design
+from gearopt.formulations.design import DriveDesign, drive_design
 from gearopt.formulations.layout.exact import GAP
-from gearopt.formulations.layout.gearbox import Gearbox
-from gearopt.formulations.layout.layout_design import LayoutDesign
+from gearopt.formulations.layout.gearbox import Gearbox, KeepOut
+from gearopt.formulations.layout.layout_design import (
+    BearingDesign,
+    BoxDesign,
+    ClearanceDesign,
+    GapDesign,
+    GearDesign,
+    KeepOutDesign,
+    LayoutDesign,
+    MotorDesign,
+    ShaftDesign,
+)
 from gearopt.formulations.layout.slabs import Arrangement, arrangements
-from gearopt.formulations.layout.text import placed, read
+from gearopt.formulations.layout.text import Placed, placed, read
 from gearopt.optimise.clock import following, in_part
 from gearopt.optimise.comparing.compare import Model
 from gearopt.optimise.result import Result
@@ -18,7 +29,6 @@ from gearopt.optimise.solve import run
 from gearopt.optimise.terms import Array
 from gearopt.optimise.typed import untyped
 from gearopt.physics.gears import GearPair
-from gearopt.scenes.drive.box.describe import described, used
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.reading.ask import Ask
 
@@ -165,3 +175,135 @@ def _sides(box: Gearbox, orders: tuple[Arrangement, ...], x: Array) -> dict[str,
     found = placed(box, one, angles)
     volume = found.width * found.height * found.length
     return {"width_mm": found.width, "height_mm": found.height, "volume_mm3": volume}
+
+
+def described(
+    box: Gearbox, one: Arrangement, angles: tuple[float, ...], sized: DriveDesign
+) -> LayoutDesign:
+    """Describe the layout of a sized drive as a result holds it."""
+    found = placed(box, one, angles)
+    shafts = [body for own in one.bodies for body in own if body.name.startswith("shaft")]
+    return LayoutDesign(
+        box=_box(found),
+        shafts=tuple(
+            ShaftDesign(
+                shaft=k,
+                y_mm=y,
+                z_mm=z,
+                diameter_mm=2 * body.radius,
+                from_mm=body.x[0],
+                to_mm=body.x[1],
+            )
+            for k, ((y, z), body) in enumerate(zip(found.axes, shafts, strict=True), 1)
+        ),
+        gears=_gears(box, one, sized),
+        bearings=tuple(
+            BearingDesign(shaft=k, diameter_mm=2 * body.radius, from_mm=body.x[0], to_mm=body.x[1])
+            for k, own in enumerate(one.bodies, 1)
+            for body in own
+            if body.name.startswith("bearing")
+        ),
+        link_angles_deg=tuple(math.degrees(t) for t in angles),
+        slabs=tuple(tuple(s + 1 for s in slab) for slab in one.slabs),
+        gaps=_gaps(box, one, found),
+        clearances=_clearances(box),
+        obstacles=tuple(_keep_out(k, found) for k in box.keep_outs),
+        motor=MotorDesign(diameter_mm=2 * box.motor) if box.motor else None,
+        split=tuple(k + 1 for k in box.level),
+    )
+
+
+def used(found: LayoutDesign) -> dict[str, float]:
+    """Return, of every two axes that must keep apart, the part of their distance that is needed."""
+    return {
+        " to ".join(gap.between).replace(" ", "_"): 1.0 - (gap.gap_mm - gap.needed_mm) / gap.axes_mm
+        for gap in found.gaps
+    }
+
+
+def _box(found: Placed) -> BoxDesign:
+    width, height, length = found.width, found.height, found.length
+    return BoxDesign(
+        width_mm=width,
+        height_mm=height,
+        length_mm=length,
+        left_mm=found.left,
+        bottom_mm=found.bottom,
+        volume_mm3=width * height * length,
+        plan_area_mm2=width * length,
+        face_area_mm2=width * height,
+    )
+
+
+def _gears(box: Gearbox, one: Arrangement, sized: DriveDesign) -> tuple[GearDesign, ...]:
+    gears = []
+    for k, own in enumerate(one.bodies, 1):
+        for body in (b for b in own if b.gear):
+            member, stage = body.name.split()[0], sized.stages[body.stage]
+            wheel, pair = member == "wheel", box.pairs[body.stage]
+            gear = pair.wheel if wheel else pair.pinion
+            gears.append(
+                GearDesign(
+                    name=body.name,
+                    stage=body.stage + 1,
+                    member=member,
+                    shaft=k,
+                    teeth=stage.wheel_teeth if wheel else stage.pinion_teeth,
+                    normal_module_mm=float(gear.normal_module),
+                    reference_diameter_mm=float(gear.reference_diameter),
+                    tip_diameter_mm=float(gear.tip_diameter),
+                    root_diameter_mm=float(gear.root_diameter),
+                    helix_angle_deg=math.degrees(gear.helix_angle),
+                    from_mm=body.x[0],
+                    to_mm=body.x[1],
+                )
+            )
+    return tuple(gears)
+
+
+def _gaps(box: Gearbox, one: Arrangement, found: Placed) -> tuple[GapDesign, ...]:
+    """Clear distances of bodies that must keep apart, the narrowest over its need first."""
+    gaps = []
+    for (i, j), need in one.needs.items():
+        (ya, za), (yb, zb) = found.axes[i], found.axes[j]
+        there = math.hypot(yb - ya, zb - za)
+        gap = there - (need.distance - need.clearance)
+        gaps.append(
+            GapDesign(between=need.between, gap_mm=gap, needed_mm=need.clearance, axes_mm=there)
+        )
+    for k, keep in enumerate(box.keep_outs):
+        for i, (y, z) in enumerate(found.axes):
+            if (needed := float(one.keep_apart[k, i])) > 0.0:
+                dy = max(keep.y[0] - y, y - keep.y[1], 0.0)
+                dz = max(keep.z[0] - z, z - keep.z[1], 0.0)
+                gaps.append(
+                    GapDesign(
+                        between=(f"shaft {i + 1} with its gears", keep.name),
+                        gap_mm=math.hypot(dy, dz) - needed + box.clearances.shafts,
+                        needed_mm=box.clearances.shafts,
+                        axes_mm=math.hypot(dy, dz),
+                    )
+                )
+    return tuple(sorted(gaps, key=lambda g: float(g.gap_mm) - float(g.needed_mm)))
+
+
+def _clearances(box: Gearbox) -> ClearanceDesign:
+    found = box.clearances
+    return ClearanceDesign(
+        gear_to_gear_mm=found.gears,
+        gear_to_shaft_mm=found.shafts,
+        wall_mm=found.wall,
+        axial_mm=found.axial,
+    )
+
+
+def _keep_out(keep: KeepOut, found: Placed) -> KeepOutDesign:
+    return KeepOutDesign(
+        name=keep.name,
+        left_mm=keep.y[0],
+        right_mm=keep.y[1],
+        bottom_mm=keep.z[0],
+        top_mm=keep.z[1],
+        from_mm=max(keep.x[0], -0.1 * found.length),
+        to_mm=min(keep.x[1], 1.1 * found.length),
+    )

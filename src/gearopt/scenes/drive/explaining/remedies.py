@@ -11,6 +11,7 @@ from gearopt.optimise.explaining.explanation import Remedies, Remedy
 from gearopt.optimise.explaining.handles import Handle
 from gearopt.optimise.explaining.repair import FARTHEST, SAME, TAKEN_BACK, conflict, even
 from gearopt.optimise.problem import Problem
+from gearopt.scenes.drive.drive_tables import Duty
 from gearopt.scenes.drive.explaining.choices import eased_tolerance, nearest_ratio, switches
 from gearopt.scenes.drive.explaining.movable import (
     Movable,
@@ -36,7 +37,6 @@ from gearopt.scenes.drive.explaining.tried import (
     trimmed,
 )
 from gearopt.scenes.drive.scene import Scene
-from gearopt.scenes.drive.tables.duty import Duty
 from gearopt.scenes.explaining.numbers import read
 
 

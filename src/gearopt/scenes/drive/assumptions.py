@@ -6,9 +6,9 @@ from typing import Any
 
 from gearopt.formulations.design import STEEL_DENSITY
 from gearopt.physics.gears import ISO_53_A, NEGLIGIBLE, Rack, teeth_without_undercut
+from gearopt.scenes.drive.drive_tables import ORIGINS
+from gearopt.scenes.drive.layout_tables import Layout
 from gearopt.scenes.drive.scene import Scene
-from gearopt.scenes.drive.tables.layout import Layout
-from gearopt.scenes.drive.tables.limits import ORIGINS
 
 CLEARANCES = {
     "gear_clearance": "between gears that do not mesh",

@@ -1,0 +1,317 @@
+"""What a drive must do, its stages and limits, what is best, and design processes beside it."""
+
+from fractions import Fraction
+from typing import Annotated, ClassVar
+
+from pydantic import Field, model_validator
+
+from gearopt import units
+from gearopt.formulations.gear_train import OBJECTIVES
+from gearopt.formulations.process import ProcessOne, ProcessTwo
+from gearopt.formulations.strength import Law
+from gearopt.formulations.strength.k_factor import K_FACTOR
+from gearopt.physics.gears import MODULES
+from gearopt.scenes.reading.fields import Table, choice, number, quantity, refuse, truth, whole
+from gearopt.scenes.reading.lists import either, several, span
+from gearopt.units import Quantity
+
+LENGTH = quantity("length", "400 mm")
+CONTACT = quantity("stress", "2.07 MPa")
+ROOT = quantity("stress", "48 MPa")
+STEP = quantity("length", "1 mm")
+TOOTH_COUNT = whole(21, 5, 1000)
+WHEEL_TEETH = whole(100, 5, 100_000)
+MODULE = quantity("length", "2 mm")
+PROPORTION = span(number(0.6, 0, 10), [0.3, 0.6], single=True)
+RATIOS = span(number(5, 1, 10**6), [1, 10])
+
+Proportion = Annotated[tuple[Fraction, Fraction] | None, PROPORTION]
+Ratios = Annotated[tuple[Fraction, Fraction] | None, RATIOS]
+Length = Annotated[Quantity | None, LENGTH]
+Contact = Annotated[Quantity | None, CONTACT]
+Root = Annotated[Quantity | None, ROOT]
+Step = Annotated[Quantity | None, STEP]
+Lengths = tuple[Quantity, Quantity]
+
+PROPORTION_IS = (
+    "Face width over pinion diameter b/d1: a number ties b to d1, a range leaves it free within it"
+)
+STEP_IS = "Face widths are whole multiples of this"
+K_IS = "Largest K-factor W_t/(d1 b) (u + 1)/u, the index of contact stress"
+U_IS = "Largest unit load W_t/(b m_n), the index of tooth-root stress"
+WHEEL_IS = "Largest reference diameter of a wheel"
+
+
+class Gears(Table):
+    """What all stages share."""
+
+    helix_angle: Annotated[Quantity, quantity("angle", "25 deg", "45 deg", zero=True)] = Field(
+        default_factory=lambda: units.parse("0 deg", "angle"),
+        description="Helix angle at the reference cylinder",
+        json_schema_extra={"default": "0 deg"},
+    )
+    pressure_angle: Annotated[Quantity, quantity("angle", "20 deg", "45 deg")] = Field(
+        default_factory=lambda: units.parse("20 deg", "angle"),
+        description="Normal pressure angle: it gives the contact ratio; "
+        "K-factor and unit load do not depend on it",
+        json_schema_extra={"default": "20 deg"},
+    )
+    face_width_over_diameter: Proportion = Field(None, description=PROPORTION_IS)
+    face_width_step: Step = Field(None, description=STEP_IS)
+
+
+class StageTable(Table):
+    """One stage: what differs from the other tables, and what is fixed."""
+
+    module: Annotated[Lengths | None, span(MODULE, "2 mm", single=True)] = Field(
+        None, description="Normal module: fixed, or a range"
+    )
+    pinion_teeth: Annotated[tuple[int, int] | None, span(TOOTH_COUNT, 21, single=True)] = Field(
+        None, description="Pinion teeth: fixed, or a range"
+    )
+    wheel_teeth: Annotated[tuple[int, int] | None, span(WHEEL_TEETH, 100, single=True)] = Field(
+        None, description="Wheel teeth: fixed, or a range"
+    )
+    face_width: Annotated[Quantity | None, quantity("length", "40 mm")] = Field(
+        None, description="Face width, fixed"
+    )
+    face_width_over_diameter: Proportion = Field(None, description=PROPORTION_IS)
+    face_width_step: Step = Field(None, description=STEP_IS)
+    stage_ratio: Ratios = Field(None, description="Range of the stage's ratio")
+    k_factor: Contact = Field(None, description=K_IS)
+    unit_load: Root = Field(None, description=U_IS)
+    wheel_diameter: Length = Field(None, description=WHEEL_IS)
+
+
+class Duty(Table):
+    """What the drive must do."""
+
+    power: Annotated[Quantity, quantity("power", "7.5 kW")] = Field(
+        description="Power at the input shaft; gears are taken as loss-free"
+    )
+    input_speed: Annotated[Quantity, quantity("speed", "1450 rpm")] = Field(
+        description="Speed of the input shaft"
+    )
+    output_speed: Annotated[Quantity | None, quantity("speed", "66.5 rpm")] = Field(
+        None, description="Speed of the output shaft (or give ratio)"
+    )
+    ratio: Annotated[Fraction | None, number(20, 1, 10**6)] = Field(
+        None, description="Total ratio, input over output speed"
+    )
+    ratio_tolerance: Annotated[Fraction, number("1 %", 0, Fraction(1, 2), True, True)] = Field(
+        default_factory=lambda: Fraction(1, 100),
+        description="Allowed relative deviation of the total ratio",
+        json_schema_extra={"default": "1 %"},
+    )
+
+    @model_validator(mode="after")
+    def _one_ratio(self) -> "Duty":
+        if self.output_speed is not None and self.ratio is not None:
+            raise refuse(
+                "stands beside output_speed; one is enough", at=("ratio",), action="remove"
+            )
+        if self.output_speed is None and self.ratio is None:
+            raise refuse("is missing (or give ratio)", self._slow(), ("output_speed",), "sample")
+        if self.total_ratio < 1:
+            raise refuse(
+                "is above the input speed: gearopt sizes reducers, and a loss-free speed increaser "
+                "has the same gears with input and output exchanged",
+                "input_speed",
+                ("output_speed",),
+                "swap",
+            )
+        if self.total_ratio > 10**6:
+            raise refuse(
+                "asks for a ratio above 1000000", self._slow(), ("output_speed",), "sample"
+            )
+        return self
+
+    def _slow(self) -> str:
+        """An output speed that suits the input speed: a ratio of 20."""
+        return f"{float(self.input_speed.number / 20):.4g} {self.input_speed.unit}"
+
+    @property
+    def total_ratio(self) -> Fraction:
+        """Input over output speed, exactly."""
+        if self.ratio is not None:
+            return self.ratio
+        assert self.output_speed is not None
+        return units.quotient(self.input_speed, self.output_speed)
+
+
+# Load limits a source states for its own drive (Chong and Lee print 2.07 MPa and 48 MPa).
+PRESETS = {"chong-lee-elevator": {"k_factor": "300 psi", "unit_load": "7000 psi"}}
+ORIGINS = {
+    "chong-lee-elevator": "300 psi (2.07 MPa) and 7000 psi (48 MPa), as Chong and Lee state them "
+    "for their elevator drive"
+}
+
+
+class Limits(Table):
+    """Limits of every stage, unless its own table says otherwise."""
+
+    LAW: ClassVar[Law] = K_FACTOR  # each of its limits is a key, here and of a stage
+
+    preset: Annotated[str | None, choice(*PRESETS)] = Field(
+        None,
+        description="K-factor and unit load that a source states: chong-lee-elevator is 300 psi "
+        "and 7000 psi",
+    )
+    k_factor: Contact = Field(None, description=K_IS)
+    unit_load: Root = Field(None, description=U_IS)
+    pinion_teeth: Annotated[tuple[int, int], span(TOOTH_COUNT, [20, 40])] = Field(
+        description="Range of pinion teeth"
+    )
+    wheel_teeth: Annotated[tuple[int, int] | None, span(WHEEL_TEETH, [20, 400])] = Field(
+        None, description="Range of wheel teeth"
+    )
+    module: Annotated[Lengths | None, span(MODULE, ["1 mm", "10 mm"])] = Field(
+        None, description="Range of the normal module"
+    )
+    stage_ratio: Ratios = Field(
+        None, description="Range of every stage's ratio (without it: 1 and up)"
+    )
+    wheel_diameter: Length = Field(None, description=WHEEL_IS)
+
+    @model_validator(mode="after")
+    def _loads(self) -> "Limits":
+        given = [name for name in self.LAW.names if getattr(self, name) is not None]
+        if self.preset is None and not given:
+            raise refuse(f"is missing (or give {' and '.join(self.LAW.names)})", at=("preset",))
+        for name in self.LAW.names:
+            if name in given and self.preset is not None:
+                raise refuse("stands beside preset, which sets it", at=(name,), action="remove")
+            if name not in given and self.preset is None:
+                raise refuse("is missing (or give preset)", at=(name,))
+        return self
+
+    def load(self, name: str) -> Quantity:
+        """A limit of the strength law, from the file or the preset."""
+        own: Quantity | None = getattr(self, name)
+        return own or units.parse(PRESETS[str(self.preset)][name], "stress")
+
+
+class Teeth(Table):
+    """Whole teeth and standard modules; without this table sizes are continuous."""
+
+    modules: Annotated[tuple[Fraction, ...], either(MODULES, MODULE)] = Field(
+        default_factory=lambda: MODULES["ISO 54 I"],
+        description='"ISO 54 I", "ISO 54 I+II", or a list of modules',
+        json_schema_extra={"default": "ISO 54 I"},
+    )
+    coprime: Annotated[bool, truth()] = Field(
+        False, description="Hunting teeth: z1 and z2 without a common divisor"
+    )
+
+
+class Objective(Table):
+    """What to minimise."""
+
+    minimise: Annotated[str, choice(*OBJECTIVES)] = Field(
+        "gear_volume",
+        description="gear_volume (solid reference cylinders), mass, sum_of_centre_distances, or "
+        "total_length (shafts in one line, over reference circles)",
+    )
+    density: Annotated[Quantity | None, quantity("density", "7.85 kg/dm^3")] = Field(
+        None, description="Density of the gears; mass needs it"
+    )
+
+    @model_validator(mode="after")
+    def _mass_needs_density(self) -> "Objective":
+        if self.minimise == "mass" and self.density is None:
+            raise refuse("is missing: mass needs it", at=("density",))
+        return self
+
+
+EACH_RATIO = several(number(5, 1, 10**6), [4.96, 4.36])
+EACH_PINION = several(TOOTH_COUNT, [23, 25])
+EACH_MODULE = several(MODULE, ["2 mm", "3 mm"])
+
+Pinions = Annotated[tuple[int, ...] | None, EACH_PINION]
+Modules = Annotated[tuple[Quantity, ...] | None, EACH_MODULE]
+
+
+class ProcessOneTable(Table):
+    """Design by K-factor and unit load (Chong and Lee, process one), shown beside the best.
+
+    Lists have one entry a stage.
+    """
+
+    stage_ratios: Annotated[tuple[Fraction, ...], EACH_RATIO] = Field(
+        description="Ratios of the stages; wheel teeth are u z1, cut. The paper's rule for them is "
+        "not known"
+    )
+    pinion_teeth: Pinions = Field(
+        None, description="Pinion teeth, instead of those balanced between K-factor and unit load"
+    )
+    modules: Modules = Field(
+        None, description="Normal modules, instead of the least that carry the load"
+    )
+
+    def check(self, stages: int, name: str) -> None:
+        """Whether every list fits a drive of so many stages; refusals are placed below the file."""
+        _check_lists(self, stages, name)
+
+    def inputs(self) -> ProcessOne:
+        """The table as plain numbers."""
+        return ProcessOne(self.stage_ratios, self.pinion_teeth, _plain(self.modules))
+
+
+class ProcessTwoTable(Table):
+    """Design from the first centre distance (Chong and Lee, process two, after Niemann).
+
+    It is shown beside the best. Lists have one entry a stage; modules or pinion_teeth, or both, are
+    needed, and what is not given is rounded up from the centre distance.
+    """
+
+    first_centre_distance: Annotated[Quantity, quantity("length", "150 mm")] = Field(
+        description="Centre distance of the first stage, before teeth or modules are rounded up"
+    )
+    stage_ratios: Annotated[tuple[Fraction, ...] | None, EACH_RATIO] = Field(
+        None, description="Ratios of the stages, instead of Niemann's for two and three stages"
+    )
+    pinion_teeth: Pinions = Field(
+        None, description="Pinion teeth (or give modules); wheel teeth are u z1, cut"
+    )
+    modules: Modules = Field(None, description="Normal modules (or give pinion_teeth)")
+
+    @model_validator(mode="after")
+    def _complete(self) -> "ProcessTwoTable":
+        if self.modules is None and self.pinion_teeth is None:
+            raise refuse("is missing (or give pinion_teeth)", at=("modules",))
+        return self
+
+    def check(self, stages: int, name: str) -> None:
+        """Whether every list fits a drive of so many stages; refusals are placed below the file."""
+        _check_lists(self, stages, name)
+        if self.stage_ratios is None and stages not in (2, 3):
+            rule = f"is missing: Niemann's ratios are for two and three stages, not for {stages}"
+            raise refuse(rule, [5] * stages, (name, "stage_ratios"), "sample")
+
+    def inputs(self) -> ProcessTwo:
+        """The table as plain numbers."""
+        return ProcessTwo(
+            self.first_centre_distance.value,
+            self.stage_ratios,
+            self.pinion_teeth,
+            _plain(self.modules),
+        )
+
+
+def _check_lists(table: Table, stages: int, name: str) -> None:
+    for key in ("stage_ratios", "pinion_teeth", "modules"):
+        found = getattr(table, key)
+        if found is not None and len(found) != stages:
+            fit = [_written(v) for v in (*found, *found[-1:] * stages)[:stages]]
+            rule = f"does not have one entry for each of the {stages} stages"
+            raise refuse(rule, fit, (name, key), "sample")
+
+
+def _written(value: Quantity | Fraction | int) -> str | float | int:
+    if isinstance(value, Fraction):
+        return float(value)
+    return value if isinstance(value, int) else str(value)
+
+
+def _plain(modules: tuple[Quantity, ...] | None) -> tuple[Fraction, ...] | None:
+    return tuple(m.exact[0] for m in modules) if modules else None

@@ -1,1 +1,0 @@
-"""Tables of problem files that a kind may use: their keys, checks and meaning."""
