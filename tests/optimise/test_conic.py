@@ -32,7 +32,8 @@ def test_result_has_everything_a_result_has():
     assert result.limits == {"disc": pytest.approx(1.0, abs=1e-11)}
     assert result.report["square"] == pytest.approx([9.0, 6.25], abs=1e-5)
     assert result.report["sum"] == pytest.approx(5.5, abs=1e-6)
-    assert result.proof["method"] == "dual"
+    words = "Proof: a convex conic problem; the bound is a dual one, computed from its data"
+    assert result.proof["method"] == "dual" and result.proof["sentence"] == f"{words}."
     assert set(result.certificate) == {"feasibility", "stationarity", "complementarity"}
     assert max(result.certificate.values()) < 1e-10
     assert {"cvxpy", "clarabel"} <= set(result.versions)
@@ -243,7 +244,8 @@ def test_finite_sets_in_a_cone_program():
         assert result.status == "optimal" and result.gap < 1e-8
         assert result.value == pytest.approx(value, rel=1e-12)
         assert set(result.design["t_mm"]) <= set(problem.variables[0].values)
-        assert result.proof["nodes"] > 1
+        parts = f"{result.proof['nodes']:,} parts of its box."
+        assert result.proof["nodes"] > 1 and result.proof["sentence"].endswith(parts)
     impossible = solve(problem.at(budget=0.03))
     assert impossible.status == "infeasible" and impossible.proof["conflict"] == ["rss"]
 

@@ -9,6 +9,7 @@ import pytest
 from gearopt.errors import SolveError
 from gearopt.optimise import tape
 from gearopt.optimise.conic.problem import Conic
+from gearopt.optimise.form import form
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import back_ends, method_of, run, solve
@@ -179,8 +180,8 @@ def test_log_form_of_a_repeat_is_proven_convex():
         lambda x, p: Terms({"cost": 0.1 * x.total}),
         (Repeat("part", (Var("part", "", 1e-6, 1e6, 1.0, log=True),), {"w": weights}, own),),
     )
-    kinds = tape.kinds(problem)
-    assert kinds.log_convex and kinds.objective == tape.POSYNOMIAL
+    assert tape.kinds(problem) == tape.Kinds(tape.POSYNOMIAL, 3 * (tape.MONOMIAL,), ())
+    assert form(problem).convex
     result = solve(problem)
     # sum w/s + 0.1 s is least at s = sqrt(10 sum w)
     assert result.status == "optimal"

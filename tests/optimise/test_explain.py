@@ -8,9 +8,8 @@ import pytest
 
 from gearopt import Param, Problem, Repeat, SolveError, Terms, Var, explain
 from gearopt.optimise.clock import Clock
-from gearopt.optimise.explaining.elastic import elastic
 from gearopt.optimise.explaining.handles import handles
-from gearopt.optimise.explaining.repair import least
+from gearopt.optimise.explaining.repair import elastic, least
 from gearopt.optimise.result import Budget, Outcome
 
 # A bar of diameter d under a force F: least d^2 with 4 F S/(pi d^2 s) <= 1 and d <= D.

@@ -96,7 +96,9 @@ def test_load_sharing_is_the_closed_form(pairs):
 def test_ipopt_proves_it_too_and_a_wrong_point_is_not_optimal():
     k, e, load = np.array([10.0, 20.0, 5.0]), np.array([0.0, 5.0, 500.0]), 1000.0
     problem = sharing(3).at(k=tuple(k), e=tuple(e), W=load)
-    assert solve(problem, "ipopt").status == "optimal"
+    result = solve(problem, "ipopt")
+    assert result.status == "optimal"
+    assert result.proof["sentence"].startswith("Proof: a convex quadratic program; ")
     right = shared(k, e, load)
     for shift in (1e-3, 0.1):
         verdict = certify(problem, Outcome(right + shift * load * np.array([1, -1, 0])), 1e-6)

@@ -11,7 +11,8 @@ from page_reader import Reader
 from rich.console import Console
 
 import gearopt
-from gearopt.report import kinds
+from gearopt.optimise.result import Result
+from gearopt.report import answer, kinds
 from gearopt.report.explained import remedy_words
 from gearopt.report.kinds import generic, kind_named
 from gearopt.report.measures import INCH
@@ -24,6 +25,15 @@ PROBLEMS = sorted((Path(__file__).parents[2] / "problems").glob("*.toml"))
 
 def test_every_module_is_a_kind_of_problem_file():
     assert {m.name for m in iter_modules(kinds.__path__)} - {"generic"} <= set(load.kinds())
+
+
+def test_only_a_drive_is_proven_impossible_with_real_valued_teeth():
+    rows = {"method": "dual", "conflict": ["span"], "least_violation": 0.5}
+    own = Result("bridge", "infeasible", "ipopt", {"name": "mass"}, proof=rows)
+    words = "Proof: whatever the design, one of these limits is missed by at least 50 %: span."
+    assert answer.proof(own)[0] == words and "teeth" not in " ".join(answer.proof(own))
+    drive = answer.proof(replace(own, scene="drive"))
+    assert drive[:2] == [words, "This holds even with real-valued teeth and modules."]
 
 
 @pytest.mark.parametrize("kind", load.kinds())

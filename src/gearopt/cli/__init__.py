@@ -6,7 +6,7 @@ import sys
 from gearopt.cli import answering  # noqa: F401
 
 # isort: split
-from gearopt.cli import files, machine, reporting  # noqa: F401
+from gearopt.cli import files, reporting  # noqa: F401
 from gearopt.cli.app import app
 from gearopt.cli.writing import patient
 from gearopt.errors import GearoptError

@@ -20,7 +20,7 @@ from gearopt.optimise.dual import bound as dual_bound
 from gearopt.optimise.form import Form, form
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.quadratic import natural
-from gearopt.optimise.result import CONVEX, FEASIBLE, Outcome, Result
+from gearopt.optimise.result import FEASIBLE, Outcome, Result
 from gearopt.optimise.scale import gap as gap_of
 from gearopt.optimise.scale import is_known, measured, runaway, violation, way
 from gearopt.optimise.stationarity import STATIONARY, Point, evaluated, no_minimum, residuals
@@ -28,6 +28,10 @@ from gearopt.optimise.terms import Array
 
 LOOSE = 1e-2  # a gap above which no point of a convex problem is said to be a minimum
 FARKAS = 1e-9  # an infeasibility proof must show at least this violation
+CONVEX_IN_LOGARITHMS, CONVEX_QUADRATIC = (
+    f"Proof: {shape}; the bound is a dual one, computed from our own derivatives."
+    for shape in ("the problem is convex in logarithms", "a convex quadratic program")
+)
 
 
 @dataclass(frozen=True)
@@ -182,7 +186,8 @@ def _local(
         return before
     least = max(known)[0]
     arithmetic = "double, with a rounding allowance"
-    proof = {"method": "dual", "arithmetic": arithmetic, "sentence": CONVEX}
+    sentence = CONVEX_IN_LOGARITHMS if shape.hessian is None else CONVEX_QUADRATIC
+    proof = {"method": "dual", "arithmetic": arithmetic, "sentence": sentence}
     value = shape.objective(least)
     judged = bounded(problem, outcome.x, replace(before, proof=proof), value, tolerance, worst)
     return _doubted(problem, outcome.x, judged)

@@ -84,7 +84,9 @@ def _build(problem: Problem, found: tape.Kinds) -> Form:
     objective = ca.log(f) if log_objective else f
     inequalities = _rows(g, [k <= tape.POSYNOMIAL for k in found.inequalities])
     equalities = _rows(h, [k <= tape.MONOMIAL for k in found.equalities])
-    convex = bool(found.log_convex and logarithmic.all())
+    posynomial = max((found.objective, *found.inequalities)) <= tape.POSYNOMIAL
+    convex = posynomial and max(found.equalities, default=0) <= tape.MONOMIAL
+    convex = bool(convex and logarithmic.all())
     return assembled(
         (y, p, objective, inequalities, equalities), logarithmic, log_objective, convex
     )

@@ -101,15 +101,19 @@ class Problem:
         if not names:
             raise ValueError(f"problem {self.name} has no variables")
 
+    def _sharing(self, **changes: Any) -> "Problem":
+        """Return the problem with other fields; what was traced and built is kept."""
+        other = replace(self, **changes)
+        object.__setattr__(other, "memo", self.memo)
+        return other
+
     def at(self, **values: Number) -> "Problem":
         """The same problem with other parameter values; what was traced and built is kept."""
         known = {q.name for q in self.parameters}
         if unknown := set(values) - known:
             raise ValueError(f"problem {self.name} has no parameter {unknown.pop()!r}")
         parameters = tuple(replace(q, value=values.get(q.name, q.value)) for q in self.parameters)
-        other = replace(self, parameters=parameters)
-        object.__setattr__(other, "memo", self.memo)
-        return other
+        return self._sharing(parameters=parameters)
 
     @cached_property
     def columns(self) -> tuple[tuple[Var, str], ...]:
@@ -134,14 +138,11 @@ class Problem:
             else v
             for v in self.variables
         )
-        other = replace(self, variables=variables)
-        object.__setattr__(other, "memo", self.memo)
-        return other
+        return self._sharing(variables=variables)
 
     def starting(self, point: Array) -> "Problem":
         """The same problem, of shared variables alone, with a point of its box as the guess."""
-        other = replace(self)
-        object.__setattr__(other, "memo", self.memo)
+        other = self._sharing()
         lower, upper, _ = self.bounds()
         other.__dict__["_bounds"] = lower, upper, np.clip(point, lower, upper)
         return other
@@ -150,8 +151,7 @@ class Problem:
         """The same problem with its discrete variables fixed at a point's, as continuous ones."""
         discrete = np.array([v.discrete for v, _ in self.columns])
         repeats = tuple(replace(r, variables=_continuous(r.variables)) for r in self.repeats)
-        other = replace(self, variables=_continuous(self.variables), repeats=repeats)
-        object.__setattr__(other, "memo", self.memo)
+        other = self._sharing(variables=_continuous(self.variables), repeats=repeats)
         lower, upper, guess = (np.where(discrete, point, b) for b in self.bounds())
         other.__dict__["_bounds"] = lower, upper, guess
         return other

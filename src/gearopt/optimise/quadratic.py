@@ -16,85 +16,48 @@ import numpy as np
 
 from gearopt.optimise.form import Form, assembled
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.tape import Block, fold, walk
+from gearopt.optimise.tape import Kinds, Term, fold, read
 from gearopt.optimise.terms import Array
 
 CONSTANT, AFFINE, QUADRATIC, OTHER = range(4)
 
 
-@dataclass(frozen=True)
-class Degrees:
-    """Degree of the objective and of every inequality and equality row, in the problem's order."""
-
-    objective: int
-    inequalities: tuple[int, ...]
-    equalities: tuple[int, ...]
-
-
-@dataclass(frozen=True)
-class _Term:
-    degree: int
-    value: Any = None  # of a constant, where it is known
-
-
-def degrees(problem: Problem) -> Degrees:
-    """Read the tapes of a problem at its present parameter values, once for each."""
+def degrees(problem: Problem) -> Kinds:
+    """Return the degrees of all terms, read at the present parameter values, once for each."""
     key = ("degrees", problem.parameter_values().tobytes())
     if key not in problem.memo:
-        problem.memo[key] = _degrees(problem)
-    found: Degrees = problem.memo[key]
+        objective, *rows = (
+            tuple(term.kind for term in terms)
+            for terms in read(problem, lambda v: Term(AFFINE), _apply)
+        )
+        problem.memo[key] = Kinds(max(objective), *rows)
+    found: Kinds = problem.memo[key]
     return found
 
 
-def _degrees(problem: Problem) -> Degrees:
-    objective: list[int] = []
-    rows: tuple[list[int], list[int]] = ([], [])
-    for block in problem.traced().blocks:
-        read = walk(
-            block.function, _inputs(problem, block), lambda value: _Term(CONSTANT, value), _apply
-        )
-        f, g, h = ([term.degree for term in out] for out in read)
-        times = block.repeat.count if block.repeat else 1
-        objective += f
-        rows[0].extend(g * times)
-        rows[1].extend(h * times)
-    return Degrees(max(objective), tuple(rows[0]), tuple(rows[1]))
-
-
-def _inputs(problem: Problem, block: Block) -> list[list[_Term]]:
-    repeat = block.repeat
-    data: list[Array] = [np.asarray(v, float) for v in repeat.data.values()] if repeat else []
-    return [
-        [_Term(AFFINE)] * sum(v.size for v in problem.variables),
-        [_Term(AFFINE)] * (repeat.width if repeat else 0),
-        [_Term(CONSTANT, float(v)) for v in problem.parameter_values()],
-        [_Term(CONSTANT, v) for v in data],
-    ]
-
-
-def _apply(operation: int, terms: list[_Term]) -> _Term:
+def _apply(operation: int, terms: list[Term]) -> Term:
     """The degree of `operation(terms)`."""
     import casadi as ca
 
     first, last = terms[0], terms[-1]
-    if all(t.degree == CONSTANT for t in terms):
+    if all(t.kind == CONSTANT for t in terms):
         known = all(t.value is not None for t in terms)
-        return _Term(CONSTANT, fold(operation, [t.value for t in terms]) if known else None)
+        return Term(CONSTANT, fold(operation, [t.value for t in terms]) if known else None)
     if operation in (ca.OP_ADD, ca.OP_SUB):
-        return _Term(max(first.degree, last.degree))
+        return Term(max(first.kind, last.kind))
     if operation in (ca.OP_NEG, ca.OP_TWICE, ca.OP_ASSIGN):
         return first
     if operation == ca.OP_MUL:
-        return _Term(min(first.degree + last.degree, OTHER))
+        return Term(min(first.kind + last.kind, OTHER))
     if operation == ca.OP_DIV:
-        return _Term(first.degree if last.degree == CONSTANT else OTHER)
+        return Term(first.kind if last.kind == CONSTANT else OTHER)
     if operation == ca.OP_SQ:
-        return _Term(min(2 * first.degree, OTHER))
-    if operation in (ca.OP_POW, ca.OP_CONSTPOW) and last.degree == CONSTANT:
+        return Term(min(2 * first.kind, OTHER))
+    if operation in (ca.OP_POW, ca.OP_CONSTPOW) and last.kind == CONSTANT:
         for power in (0, 1, 2):
             if last.value is not None and np.all(last.value == power):
-                return _Term(min(power * first.degree, OTHER))
-    return _Term(OTHER)
+                return Term(min(power * first.kind, OTHER))
+    return Term(OTHER)
 
 
 ROUNDING = 1e-14  # 50 units in the last place, of a matrix scaled to unit diagonal, times its size

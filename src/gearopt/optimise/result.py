@@ -18,10 +18,6 @@ if TYPE_CHECKING:
 
 FORMAT = 1
 _version = cache(version)  # reading package metadata takes a millisecond
-CONVEX = (  # sentences of proofs that several methods share
-    "Proof: the problem is convex in logarithms; the bound is a dual one, computed from our own "
-    "derivatives."
-)
 CLOSED_FORM = "Proof: a closed form, and a bound that follows from convexity alone."
 STATUSES = ("optimal", "stationary", "feasible", "evaluated", "infeasible", "limit", "failed")
 FEASIBLE = 1e-8  # of its own scale a variable, of 1 a row is off; that is below any data error
@@ -152,12 +148,11 @@ class Result:
 
     def to_dict(self) -> dict[str, Any]:
         """Plain dicts, lists and numbers; no NaN and no infinity (None instead)."""
-        found: dict[str, Any] = plain(asdict(self))
-        return found
+        return as_dict(self)
 
     def to_json(self) -> str:
         """One JSON object."""
-        return json.dumps(self.to_dict(), indent=2, allow_nan=False)
+        return as_json(self)
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> "Result":
@@ -183,6 +178,17 @@ class Result:
     def from_json(cls, text: str) -> "Result":
         """The inverse of `to_json`."""
         return cls.from_dict(loads(text))
+
+
+def as_dict(record: Any) -> dict[str, Any]:
+    """Return the fields of a dataclass as JSON holds them."""
+    found: dict[str, Any] = plain(asdict(record))
+    return found
+
+
+def as_json(record: Any) -> str:
+    """Return the JSON text of what has a `to_dict`."""
+    return json.dumps(record.to_dict(), indent=2, allow_nan=False)
 
 
 def loads(text: str) -> Any:

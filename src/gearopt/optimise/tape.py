@@ -8,7 +8,7 @@ values.
 """
 
 import threading
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache
@@ -19,7 +19,7 @@ import numpy as np
 from gearopt.errors import SolveError
 from gearopt.optimise.evaluation import blaming, called, quiet, remedy, sample, text_of
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.terms import SECTIONS, Array, Repeat, Terms, checked, flat, flatten
+from gearopt.optimise.terms import SECTIONS, Array, Repeat, Terms, Var, checked, flat, flatten
 
 _NUMPY_MODE = threading.Lock()
 POINTS = 4  # at which a tape is held against the text: the guess and random ones
@@ -205,20 +205,13 @@ class Kinds:
     inequalities: tuple[int, ...]
     equalities: tuple[int, ...]
 
-    @property
-    def log_convex(self) -> bool:
-        """Whether the whole problem is convex in the logarithms of its variables."""
-        return (
-            self.objective <= POSYNOMIAL
-            and all(k <= POSYNOMIAL for k in self.inequalities)
-            and all(k <= MONOMIAL for k in self.equalities)
-        )
-
 
 @dataclass(frozen=True)
-class _Term:
+class Term:
+    """The kind of a term; value: of a constant, a float or an array over the rows of a repeat."""
+
     kind: int
-    value: Any = None  # of a constant: a float, or an array over the rows of a repeat
+    value: Any = None
 
     @property
     def positive(self) -> bool:
@@ -228,40 +221,53 @@ class _Term:
         return self.kind != OTHER
 
 
-_UNKNOWN = _Term(OTHER)
+_UNKNOWN = Term(OTHER)
 
 
 def kinds(problem: Problem) -> Kinds:
-    """Read the tapes of a problem at its present parameter values, once for each."""
+    """Return which terms are log-convex, read at the present parameter values, once for each."""
     key = ("kinds", problem.parameter_values().tobytes())
     if key not in problem.memo:
-        problem.memo[key] = _kinds(problem)
+        objective, inequalities, equalities = (
+            # a row is used through its logarithm, so a constant counts only when positive
+            [term.kind if term.positive else OTHER for term in terms]
+            for terms in read(problem, lambda v: Term(MONOMIAL) if v.log else _UNKNOWN, _apply)
+        )
+        total = max(objective)
+        if len(objective) > 1 and total == MONOMIAL:
+            total = POSYNOMIAL  # a sum over blocks
+        problem.memo[key] = Kinds(total, tuple(inequalities), tuple(equalities))
     found: Kinds = problem.memo[key]
     return found
 
 
-def _kinds(problem: Problem) -> Kinds:
-    objective: list[int] = []
-    inequalities: list[int] = []
-    equalities: list[int] = []
+def read(
+    problem: Problem,
+    variable: Callable[[Var], Term],
+    apply: Callable[[int, list[Term]], Term],
+) -> tuple[list[Term], list[Term], list[Term]]:
+    """Return what a reader makes of the objectives of all blocks, and of all rows of f, g and h.
+
+    variable(v): its reading of a component of v; apply: see `walk`.
+    """
+    found: tuple[list[Term], list[Term], list[Term]] = ([], [], [])
     for block in problem.traced().blocks:
-        f, g, h = _read(problem, block)
-        times = block.repeat.count if block.repeat else 1
-        objective += f
-        inequalities += g * times
-        equalities += h * times
-    total = max(objective)
-    if len(objective) > 1 and total == MONOMIAL:
-        total = POSYNOMIAL  # a sum over blocks
-    return Kinds(total, tuple(inequalities), tuple(equalities))
-
-
-def _read(problem: Problem, block: Block) -> tuple[list[int], list[int], list[int]]:
-    rows = walk(
-        block.function, _inputs(problem, block), lambda value: _Term(CONSTANT, value), _apply
-    )
-    f, g, h = ([_as_row(term) for term in out] for out in rows)
-    return f, g, h
+        repeat = block.repeat
+        own, data = (repeat.variables, repeat.data.values()) if repeat else ((), ())
+        inputs = [
+            *(
+                [variable(v) for v in some for _ in range(v.size)]
+                for some in (problem.variables, own)
+            ),
+            [Term(CONSTANT, float(v)) for v in problem.parameter_values()],
+            [Term(CONSTANT, np.asarray(v, float)) for v in data],
+        ]
+        terms = walk(block.function, inputs, lambda value: Term(CONSTANT, value), apply)
+        for part, more, times in zip(
+            found, terms, (1, *2 * [repeat.count if repeat else 1]), strict=True
+        ):
+            part += more * times
+    return found
 
 
 def walk(function: Any, inputs: list[list[Any]], constant: Any, apply: Any) -> list[list[Any]]:
@@ -289,32 +295,13 @@ def walk(function: Any, inputs: list[list[Any]], constant: Any, apply: Any) -> l
     return found
 
 
-def _as_row(term: _Term) -> int:
-    """A row is used through its logarithm, so a constant counts only when positive."""
-    return term.kind if term.positive else OTHER
-
-
-def _inputs(problem: Problem, block: Block) -> list[list[_Term]]:
-    def variables(declared: tuple[Any, ...]) -> list[_Term]:
-        return [_Term(MONOMIAL) if v.log else _UNKNOWN for v in declared for _ in range(v.size)]
-
-    repeat = block.repeat
-    data: list[Array] = [np.asarray(v, float) for v in repeat.data.values()] if repeat else []
-    return [
-        variables(problem.variables),
-        variables(repeat.variables) if repeat else [],
-        [_Term(CONSTANT, float(v)) for v in problem.parameter_values()],
-        [_Term(CONSTANT, v) for v in data],
-    ]
-
-
-def _apply(operation: int, terms: list[_Term]) -> _Term:
+def _apply(operation: int, terms: list[Term]) -> Term:
     """The kind of `operation(terms)`."""
     import casadi as ca
 
     if all(t.kind == CONSTANT for t in terms):
         value = fold(operation, [t.value for t in terms])
-        return _UNKNOWN if value is None else _Term(CONSTANT, value)
+        return _UNKNOWN if value is None else Term(CONSTANT, value)
     first, last = terms[0], terms[-1]
     if operation in (ca.OP_CONSTPOW, ca.OP_POW):
         return _power(first, last)
@@ -323,24 +310,24 @@ def _apply(operation: int, terms: list[_Term]) -> _Term:
     if not all(t.positive for t in terms):
         return _UNKNOWN
     if operation in (ca.OP_ADD, ca.OP_FMAX):
-        return _Term(POSYNOMIAL)
+        return Term(POSYNOMIAL)
     if operation == ca.OP_MUL:
-        return _Term(max(MONOMIAL, first.kind, last.kind))
+        return Term(max(MONOMIAL, first.kind, last.kind))
     if operation == ca.OP_DIV:
-        return _Term(max(MONOMIAL, first.kind)) if last.kind <= MONOMIAL else _UNKNOWN
+        return Term(max(MONOMIAL, first.kind)) if last.kind <= MONOMIAL else _UNKNOWN
     if operation == ca.OP_INV:
-        return _Term(MONOMIAL) if first.kind <= MONOMIAL else _UNKNOWN
+        return Term(MONOMIAL) if first.kind <= MONOMIAL else _UNKNOWN
     if operation in (ca.OP_SQ, ca.OP_SQRT, ca.OP_TWICE, ca.OP_ASSIGN, ca.OP_FABS):
-        return _Term(max(MONOMIAL, first.kind))
+        return Term(max(MONOMIAL, first.kind))
     return _UNKNOWN
 
 
-def _power(base: _Term, exponent: _Term) -> _Term:
+def _power(base: Term, exponent: Term) -> Term:
     if exponent.kind != CONSTANT or not base.positive:
         return _UNKNOWN
     if base.kind == POSYNOMIAL and not np.all(exponent.value > 0):
         return _UNKNOWN
-    return _Term(max(MONOMIAL, base.kind))
+    return Term(max(MONOMIAL, base.kind))
 
 
 def fold(operation: int, values: list[Any]) -> Any:

@@ -114,8 +114,8 @@ def _method(result: Result) -> list[str]:
         least = 100 * found["least_violation"]
         missed = f"{least:.2g}" if least < 100 else f"{least:,.0f}"
         lines.append(
-            "Proof: whatever the sizes, even with real-valued teeth and modules, one of these "
-            f"limits is missed by at least {missed} %: {names}."
+            f"Proof: whatever the design, one of these limits is missed by at least {missed} %: "
+            f"{names}."
         )
     return lines
 

@@ -6,17 +6,16 @@ that we proved in any run, or, where none is proven, the best feasible objective
 not feasible by our own check has no objective and no gap, and counts as worse than any that is.
 """
 
-import json
 import math
 import os
 import platform
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import dataclass, field, replace
 from datetime import date
 from typing import Any
 
 from gearopt.errors import CertificateError
-from gearopt.optimise.result import loads, plain, versions
+from gearopt.optimise.result import as_dict, as_json, loads, versions
 from gearopt.optimise.scale import unit
 from gearopt.optimise.typed import typed
 
@@ -152,12 +151,11 @@ class Comparison:
 
     def to_dict(self) -> dict[str, Any]:
         """Plain dicts, lists and numbers; no NaN and no infinity (None instead)."""
-        found: dict[str, Any] = plain(asdict(self))
-        return found
+        return as_dict(self)
 
     def to_json(self) -> str:
         """One JSON object."""
-        return json.dumps(self.to_dict(), indent=2, allow_nan=False)
+        return as_json(self)
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> "Comparison":

@@ -21,12 +21,13 @@ from gearopt.optimise.conic.cone_bound import (
     propagate,
 )
 from gearopt.optimise.conic.problem import Conic
-from gearopt.optimise.result import CONVEX, FEASIBLE, Outcome
+from gearopt.optimise.result import FEASIBLE, Outcome
 from gearopt.optimise.scale import runaway, violation
 from gearopt.optimise.terms import Array
 
 EXCLUDED = "the bounds of the variables exclude every point"
 MOST = 2000  # proofs tried to name the fewest rows of a conflict
+CONVEX_CONIC = "Proof: a convex conic problem; the bound is a dual one, computed from its data"
 ARITHMETIC = "double, with a rounding allowance"
 
 
@@ -57,7 +58,9 @@ def certify(problem: Conic, outcome: Outcome, gap: float) -> Verdict:
         message = f"{loose} {outcome.message}".strip()
         return Verdict(status, value, certificate=certificate, message=message)
     nodes = len(outcome.leaves)
-    proof = {"method": "dual", "arithmetic": ARITHMETIC, "nodes": nodes, "sentence": CONVEX}
+    parts = f", the minimum of those of {nodes:,} parts of its box" if nodes > 1 else ""
+    sentence = f"{CONVEX_CONIC}{parts}."
+    proof = {"method": "dual", "arithmetic": ARITHMETIC, "nodes": nodes, "sentence": sentence}
     before = Verdict(status, value, certificate=certificate, proof=proof, message=outcome.message)
     verdict = bounded(problem, outcome.x, before, bound, gap, worst)
     unit = verdict.certificate.get("scale") or abs(value) or 1.0

@@ -8,7 +8,6 @@ from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 import numpy as np
 
 from gearopt.optimise.clock import Clock, of_others
-from gearopt.optimise.explaining.elastic import elastic
 from gearopt.optimise.explaining.explanation import Change, Explanation, Influence, Remedy
 from gearopt.optimise.explaining.handles import (
     LOWER,
@@ -24,6 +23,7 @@ from gearopt.optimise.explaining.repair import (
     BEYOND,
     TAKEN_BACK,
     Repair,
+    elastic,
     impossible,
     least_value,
     value_within,

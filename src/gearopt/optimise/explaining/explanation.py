@@ -1,10 +1,9 @@
 """What `explain` answers: remedies for an impossible request, influences on a possible one."""
 
-import json
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
-from gearopt.optimise.result import Result, plain
+from gearopt.optimise.result import Result, as_dict, as_json
 
 FORMAT = 1
 
@@ -101,9 +100,8 @@ class Explanation:
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain dicts, lists and numbers; no NaN and no infinity (None instead)."""
-        found: dict[str, Any] = plain(asdict(self))
-        return {"explanation": FORMAT, **found}
+        return {"explanation": FORMAT, **as_dict(self)}
 
     def to_json(self) -> str:
         """Return one JSON object."""
-        return json.dumps(self.to_dict(), indent=2, allow_nan=False)
+        return as_json(self)

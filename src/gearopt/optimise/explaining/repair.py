@@ -6,18 +6,20 @@ kind of limit, the even repair (one factor for that kind alone).
 """
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any
 
 import numpy as np
 
+from gearopt.errors import SolveError
 from gearopt.optimise.clock import Clock
-from gearopt.optimise.explaining.elastic import elastic
-from gearopt.optimise.explaining.handles import REACH, Handle
+from gearopt.optimise.explaining.handles import LOWER, PARAM, REACH, ROW, UPPER, Handle, scale
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import solve_within
-from gearopt.optimise.terms import Array
+from gearopt.optimise.terms import Array, Repeat, Terms, Var, each, inequalities, namespace
 
 CERTAIN = ("optimal", "stationary")
 SAME = 1e-7  # relative: two repairs as small as each other; a factor below 1 + SAME is none
@@ -255,3 +257,118 @@ def least_between(low: float, high: float, works: Works) -> float:
         doubts += found is None
         low, high = (low, middle) if found else (middle, high)
     return high
+
+
+_Place = tuple[str, int]  # kind and place of a handle
+
+
+def elastic(problem: Problem, groups: Sequence[Sequence[Handle]]) -> Problem:
+    """Return the elastic form of a problem: its limits may be relaxed, at the smallest product.
+
+    Variable `relaxation`: a factor >= 1 for each group, shared by its handles and within the reach
+    of all of them; a handle in several groups moves by the product of their factors, limits in no
+    group stay as they are. Minimised is the product of the factors; the objective is left out.
+    Where a problem is convex in logarithms, its elastic form is too. SolveError for discrete
+    variables.
+    """
+    for variable, name in problem.columns:
+        if variable.discrete:
+            raise SolveError(f"limits are relaxed in continuous problems; {name} is discrete")
+    owners: dict[_Place, list[int]] = {}
+    for k, group in enumerate(groups):
+        for h in group:
+            owners.setdefault((h.kind, h.place), []).append(k)
+    reach = tuple(min(h.reach for h in group) for group in groups)
+    factor = Var("relaxation", "", 1.0, reach, 1.0, len(groups), log=True)
+    relaxed = _Relaxed(problem, owners, {(h.kind, h.place): h for g in groups for h in g})
+    return Problem(
+        f"{problem.name}, relaxed",
+        (*_wider(problem, list(owners)), factor),
+        problem.parameters,
+        relaxed.evaluate,
+        tuple(replace(r, evaluate=partial(relaxed.repeated, r)) for r in problem.repeats),
+    )
+
+
+@dataclass(frozen=True)
+class _Relaxed:
+    """The texts of an elastic form; owners: the groups that a handle is in."""
+
+    problem: Problem
+    owners: Mapping[_Place, list[int]]
+    handles: Mapping[_Place, Handle]
+
+    def evaluate(self, x: Any, p: Any) -> Terms:
+        """Return the terms of the problem's own text."""
+        factors = self._factors(x)
+        terms = self.problem.evaluate(x, self._parameters(factors, p))
+        product = {"relaxation": math.prod(each(x.relaxation))}
+        bounds = _bound_rows(self.problem, factors, x)
+        return Terms(product, self._rows(factors, terms), defines=bounds, equal=terms.equal)
+
+    def repeated(self, repeat: Repeat, x: Any, p: Any, row: Any) -> Terms:
+        """Return the terms of one row of a repeat."""
+        factors = self._factors(x)
+        terms = repeat.evaluate(x, self._parameters(factors, p), row)
+        return Terms({}, self._rows(factors, terms, f"{repeat.name}."), equal=terms.equal)
+
+    def _factors(self, x: Any) -> dict[_Place, Any]:
+        """Return the factor of every handle."""
+        parts = each(x.relaxation)
+        return {place: math.prod(parts[k] for k in own) for place, own in self.owners.items()}
+
+    def _parameters(self, factors: Mapping[_Place, Any], p: Any) -> Any:
+        scalars = [s for q in self.problem.parameters for s in each(getattr(p, q.name))]
+        for (kind, place), factor in factors.items():
+            if kind == PARAM:
+                direction = self.handles[kind, place].direction
+                scalars[place] = scalars[place] * factor**direction
+        return namespace(self.problem.parameters, scalars)
+
+    def _rows(
+        self, factors: Mapping[_Place, Any], terms: Terms, prefix: str = ""
+    ) -> dict[str, Any]:
+        """Return all inequality rows, those with a factor of their own divided by it."""
+        own = {h.name: factors[place] for place, h in self.handles.items() if h.kind == ROW}
+        return {
+            n: v / own[prefix + n] if prefix + n in own else v for n, v, _ in inequalities(terms)
+        }
+
+
+def _bound_rows(problem: Problem, factors: dict[tuple[str, int], Any], x: Any) -> dict[str, Any]:
+    """Return bounds that may move, as rows <= 1."""
+    lower, upper, _ = problem.bounds()
+    flat_x = [s for v in problem.variables for s in each(getattr(x, v.name))]
+    found = {}
+    for (kind, k), factor in factors.items():
+        if kind not in (LOWER, UPPER):
+            continue
+        value = float(lower[k] if kind == LOWER else upper[k])
+        here = flat_x[k]
+        name = f"{problem.columns[k][1]} {kind}"
+        if value > 0:
+            found[name] = value / (here * factor) if kind == LOWER else here / (value * factor)
+        else:
+            excess = value - here if kind == LOWER else here - value
+            found[name] = (1.0 + excess / scale(value)) / factor
+    return found
+
+
+def _wider(problem: Problem, movable: Sequence[tuple[str, int]]) -> tuple[Var, ...]:
+    """Return the variables, with room where their bounds may move."""
+    lower, upper, _ = (a.copy() for a in problem.bounds())
+    for kind, k in movable:
+        if kind == LOWER:
+            value = lower[k]
+            lower[k] = value / REACH if value > 0 else value - REACH * scale(value)
+        if kind == UPPER:
+            value = upper[k]
+            upper[k] = value * REACH if value > 0 else value + REACH * scale(value)
+    found = []
+    start = 0
+    for v in problem.variables:
+        part = slice(start, start + v.size)
+        ends = (tuple(map(float, a[part])) for a in (lower, upper))
+        found.append(replace(v, lower=next(ends), upper=next(ends)))
+        start += v.size
+    return tuple(found)

@@ -210,6 +210,8 @@ def tiles(result: Result, measures: Measures) -> list[Tile]:
 def beside(result: Result, measures: Measures) -> list[str]:
     """Say what other ways to the same objective give: real-valued sizes, or gears chosen first."""
     found = []
+    if result.status == "infeasible" and "least_violation" in result.proof:
+        found.append("This holds even with real-valued teeth and modules.")
     for part in result.parts:
         alike = part.objective["name"] == result.objective["name"]
         if part.name in ("sizing", "apart") and alike and result.status == "optimal":
