@@ -29,7 +29,7 @@ from gearopt.scenes.reading.load import load as load_file
 
 
 def load(path: str | Path) -> BaseModel:
-    """The scene of a problem file; SceneError says where it is wrong and what to write."""
+    """Return the scene of a problem file; SceneError says where it is wrong and what to write."""
     return load_file(path).scene
 
 
@@ -44,14 +44,14 @@ def solve(
     top: int = 1,
     prices: bool = False,
 ) -> Result:
-    """The certified answer to a problem file, to a loaded scene, or to a problem of your own.
+    """Return the certified answer to a problem file, a loaded scene, or a problem of your own.
 
     method: by default the scene's or problem's own. budget: seconds and evaluations. watch(event)
-    is told of progress; returning False stops the run. gap: relative gap to our bound that is
-    enough, so that a search may end there; None: none is, and 1e-6 is called optimal. top: so many
-    next best answers too (scenes with an exact method). prices: report["prices"] says what every
-    number of a drive's file costs, as `explain` does. SceneError for a wrong file, SolveError
-    where the method does not fit, ValueError for gap < 0 or top < 1. Not thread-safe.
+    returns False to stop the run. gap: relative gap to our bound that is enough, so that a search
+    may end there; None: none is, and 1e-6 is called optimal. top: so many next best answers too
+    (scenes with an exact method). prices: report["prices"] holds the sensitivities to every number
+    of the file, as `explain` does. SceneError for a wrong file, SolveError where the method does
+    not fit, ValueError for gap < 0 or top < 1. Not thread-safe.
     """
     if (gap is not None and gap < 0.0) or top < 1:
         raise ValueError(f"needs gap >= 0 and top >= 1, not gap = {gap}, top = {top}")
@@ -75,11 +75,11 @@ def explain(
     budget: Budget | None = None,
     watch: Watch | None = None,
 ) -> Explanation:
-    """Why the answer to a file, a scene or a problem is what it is.
+    """Explain why the answer to a file, a scene or a problem is what it is.
 
-    Possible: the limits that bind, and the sensitivity and price of every number of the file (of
-    every parameter, and bound with a key, of a problem). Impossible: the limits that cannot hold
-    together, and remedies that were tried: what to write instead. SceneError and SolveError as in
+    Possible: the limits that bind, and the sensitivity to every number of the file (to every
+    parameter, and bound with a key, of a problem). Impossible: the limits in conflict, and
+    remedies that were tried: what to write instead. SceneError and SolveError as in
     `solve`; a problem with discrete variables needs an exact method of its own.
     """
     from gearopt.optimise.explaining.explain import explain as explain_problem
@@ -115,7 +115,7 @@ def compare(
     bound_from: str | None = None,
     watch: Follow | None = None,
 ) -> Comparison:
-    """Methods compared on a problem file, a loaded scene, or a problem of your own.
+    """Compare methods on a problem file, a loaded scene, or a problem of your own.
 
     methods: by default those of the file's kind; of a problem its own exact ones, ipopt, annealing
     and nsga2 (of a Conic: conic).
@@ -142,7 +142,7 @@ def compare(
 
 
 def _opened(what: str | Path | BaseModel) -> tuple[BaseModel, Any, dict[str, Any]]:
-    """The scene of a file (or the scene itself), the module of its kind, and what it is called."""
+    """Return the scene of a file (or the scene itself), the module of its kind, and its names."""
     if isinstance(what, BaseModel):
         kind = kind_of(what)
         title = {"title": getattr(what, "title", "")}

@@ -336,7 +336,7 @@ def test_where_slopes_vanish_but_the_objective_falls_is_said(name):
     problem = line(minimise, low, high, x)
     verdict = certify(problem, Outcome(np.array([x]), message="Ended."), 1e-6)
     assert verdict.status == "feasible"
-    words = "no minimum: slopes vanish there, but the objective falls along x. Ended."
+    words = "no minimum: gradients vanish there, but the objective falls along x. Ended."
     assert verdict.message == words
     if name == "parabola":
         assert solve(problem).status == "feasible"  # Ipopt's guess is the maximum
@@ -379,7 +379,8 @@ def test_limits_without_a_price_leave_a_minimum_open():
     problem = plane(lambda a, b: a * b, 0.0, 3.0, (0.0, 0.0))
     verdict = certify(problem, Outcome(np.zeros(2)), 1e-6)
     assert (
-        verdict.status == "feasible" and "open: limits hold that have no price" in verdict.message
+        verdict.status == "feasible"
+        and "open: limits are active with zero multipliers" in verdict.message
     )
     blocked = plane(lambda a, b: -a * b, -3.0, 3.0, (0.0, 0.0), lambda a, b: 1.0 + a + b)
     verdict = certify(blocked, Outcome(np.zeros(2)), 1e-6)
@@ -397,7 +398,7 @@ def test_too_many_variables_for_a_look_at_the_curvature_is_said(monkeypatch):
     problem, result, outcome = solved("rosenbrock")
     verdict = certify(problem, outcome, 1e-6)
     assert verdict.status == "feasible"
-    assert "curvature is not looked at: 2 variables are off their bounds" in verdict.message
+    assert "curvature was not examined: 2 variables are off their bounds" in verdict.message
     monkeypatch.setattr("gearopt.optimise.stationarity.MOST", 2)
     assert certify(problem, outcome, 1e-6).status == "stationary"
     monkeypatch.setattr("gearopt.optimise.stationarity.MOST", 1)

@@ -9,12 +9,12 @@ from gearopt.optimise.result import Result
 
 
 def names() -> tuple[str, ...]:
-    """Names of the benches: the modules of this folder."""
+    """Return names of the benches: the modules of this folder."""
     return tuple(sorted(m.name for m in iter_modules(__path__)))
 
 
 def timed(call: Callable[[], Result], repeat: int) -> tuple[Result, dict[str, float]]:
-    """The last result and the times [ms] of so many calls; the first, which compiles, is apart."""
+    """Return the last result and the times [ms] of so many calls, without the first."""
     times = []
     for _ in range(repeat + 1):
         clock = Clock()

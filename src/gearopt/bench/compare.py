@@ -25,12 +25,12 @@ RANDOM_DRIVES = 5
 
 
 def run(repeat: int) -> list[dict[str, Any]]:
-    """Rows: case, method, what is equal; medians over `repeat` seeds, worst gap and violation."""
+    """Return rows: case, method, what is equal; medians over `repeat` seeds, worst gap."""
     return [row for name, found in comparisons(repeat) for row in _rows(name, found)]
 
 
 def comparisons(seeds: int) -> Iterator[tuple[str, Comparison]]:
-    """Name and comparison of every case."""
+    """Yield name and comparison of every case."""
     plan = Plan(seconds=SECONDS, seeds=seeds)
     drives = {name: train_of(*CASES[name][:2]) for name in ("elevator", "three_stage")}
     drives |= {f"random drive {k}": random_drive(k) for k in range(RANDOM_DRIVES)}
@@ -50,12 +50,12 @@ def _posed(train: Train) -> Callable[[str], Model]:
 
 
 def random_drive(number: int) -> Train:
-    """A drive of two or three stages; `number` is the seed."""
+    """Return A drive of two or three stages; `number` is the seed."""
     import numpy as np
 
     rng = np.random.default_rng([2026, number])
     count = int(rng.integers(2, 4))
-    even = rng.uniform(3.0, 5.5)  # ratio of a stage
+    even = rng.uniform(3.0, 5.5)  # ratio of each stage
     stages = []
     for _ in range(count):
         width = Fraction(int(rng.integers(40, 111)), 100)
@@ -74,7 +74,7 @@ def random_drive(number: int) -> Train:
 
 
 def reducer() -> Problem:
-    """The Golinski speed reducer, A = 7.477, B = 16.9e6, x5 >= 7.3: optimum 2994.341315684."""
+    """Return the Golinski reducer, A = 7.477, B = 16.9e6, x5 >= 7.3: optimum 2994.341315684."""
 
     def evaluate(x: Any, p: Any) -> Terms:
         b, m, z, l1, l2, d1, d2 = x.b, x.m, x.z, x.l1, x.l2, x.d1, x.d2

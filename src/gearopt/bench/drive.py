@@ -35,7 +35,7 @@ CASES: dict[str, tuple[str, list[float], float | None]] = {
 
 
 def run(repeat: int) -> list[dict[str, Any]]:
-    """Rows: case, method, ms (median, least, most), objective, error to the known, gap."""
+    """Return rows: case, method, ms (median, minimum, maximum), objective, error, gap."""
     rows = []
     for name, (duty, widths, known) in CASES.items():
         train = train_of(duty, widths)
@@ -49,7 +49,7 @@ def run(repeat: int) -> list[dict[str, Any]]:
 
 
 def train_of(duty: str, widths: list[float]) -> Train:
-    """The drive of a case."""
+    """Return the drive of a case."""
     stages = "".join(f"[[stage]]\nface_width_over_diameter = {w}\n" for w in widths)
     if duty[0] == '"':
         power, first, last = duty.split(", ")

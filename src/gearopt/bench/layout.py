@@ -48,7 +48,7 @@ CASES: dict[str, tuple[Any, tuple[float, ...], bool, float, float]] = {
 
 
 def gearbox(name: str) -> Gearbox:
-    """The gearbox of a case."""
+    """Return the gearbox of a case."""
     train, shafts, partial, room, _ = CASES[name]
     pairs = tuple(GearPair.of_teeth(m, z1, z2, b, HELIX) for m, z1, z2, b in train)
     clearances = Clearances(5.0 * room, 2.0 * room, 10.0 * room, 10.0 * room)
@@ -56,7 +56,7 @@ def gearbox(name: str) -> Gearbox:
 
 
 def run(repeat: int) -> list[dict[str, Any]]:
-    """Rows: case, method, evaluations, ms (median), objective, gap to our bound, error."""
+    """Return rows: case, method, evaluations, ms (median), objective, gap to our bound, error."""
     rows = []
     for name in CASES:
         box, known = gearbox(name), CASES[name][-1]
@@ -70,7 +70,7 @@ def run(repeat: int) -> list[dict[str, Any]]:
 
 
 def _timed(box: Gearbox, method: str, seeds: list[int], budget: Budget) -> tuple[list[Any], float]:
-    """Results of some seeds and the median time [ms]; the first run, which compiles, is apart."""
+    """Return results of some seeds and the median time [ms], without the first run."""
     problem, results, times = layout.problem(box, method), [], []
     solved(problem, method, budget, seeds[0])
     for seed in seeds:

@@ -1,4 +1,4 @@
-"""Whole teeth of a servo train: every train looked at against the pruned search, beside the bound.
+"""Whole teeth of a servo train: every train evaluated against the pruned search, beside the bound.
 
 The train is that of Youn's gimbal drive with assumed limits, as in problems/servo_gimbal.toml and
 problems/servo_gimbal_light.toml; 62,054 and 247,948 of its 6,326,052 trains are feasible.
@@ -21,7 +21,7 @@ RADIAL, PITCH = (0.0512, 0.0649), (0.029, 0.033)  # mm, sums of tables 2 and 3 o
 
 
 def run(repeat: int) -> list[dict[str, Any]]:
-    """Rows: case, method, ms (median, least, most), trains looked at, feasible, gap to the bound.
+    """Return rows: case, method, ms, trains evaluated, feasible ones, gap to the bound.
 
     above_bound_percent: how far the optimum is above the bound with real-valued teeth and modules.
     """
@@ -37,7 +37,7 @@ def run(repeat: int) -> list[dict[str, Any]]:
 
 
 def train_of(error: float) -> ServoTrain:
-    """The gimbal's train with a largest error [deg]."""
+    """Return the gimbal's train with a largest error [deg]."""
     lost = [
         2.0 * (radial_backlash(r, math.radians(20.0)) + p)
         for r, p in zip(RADIAL, PITCH, strict=True)

@@ -22,7 +22,7 @@ def run() -> None:
         try:
             app()
         finally:
-            print(end="", flush=True)  # a full disk is told here, not at the end of Python
+            print(end="", flush=True)  # a full disk is reported here, not at the end of Python
     except GearoptError as wrong:
         print(f"gearopt: {wrong}", file=sys.stderr)
         sys.exit(2)

@@ -23,7 +23,7 @@ def solve(
         str | None,
         typer.Option(
             help="By default, for a drive, exact where the file has a \\[teeth] table, else ipopt; "
-            "for a packing hop; docs/methods.md lists all."
+            "for a packing hop (basin hopping); docs/methods.md lists all."
         ),
     ] = None,
     top: Annotated[
@@ -37,7 +37,10 @@ def solve(
     ] = None,
     prices: Annotated[
         bool,
-        typer.Option("--prices", help="Say too what every number costs, as a page always does."),
+        typer.Option(
+            "--prices",
+            help="Show sensitivities to every number of the file, as a page always does.",
+        ),
     ] = False,
     seconds: Annotated[float, typer.Option(min=0.0, help="Stop after this time.")] = SECONDS,
     gap: Annotated[
@@ -91,7 +94,7 @@ def explain(
     seconds: Annotated[float, typer.Option(min=0.0, help="Stop after this time.")] = 60.0,
     as_json: Json = False,
 ) -> None:
-    """Say what each number of the file costs; for an impossible request, what to write instead."""
+    """Show what each number of the file costs; of an impossible request, what to write instead."""
     from dataclasses import asdict, replace
 
     from gearopt.api import explain as explain_file
@@ -141,7 +144,7 @@ def compare(
     html: Html = None,
     as_json: Json = False,
 ) -> None:
-    """Compare methods by their gap to what is proven. Ctrl-C reports the runs that are finished."""
+    """Compare methods by their gap to the proven bound. Ctrl-C reports finished runs."""
     from gearopt.api import compare as compare_file
 
     check_html(html, file)
@@ -179,7 +182,7 @@ def _show(found: Comparison, as_json: bool) -> None:
 
 
 def _announced(watch: Callable[[Progress], bool]) -> Callable[[Progress], bool]:
-    """The watcher, which says first how long all will take."""
+    """Return the watcher, which first prints how long all will take."""
     told = False
 
     def announcing(progress: Progress) -> bool:

@@ -52,7 +52,7 @@ def options(
 
 
 def exit_code(result: Result) -> int:
-    """Exit code of a result."""
+    """Return exit code of a result."""
     if result.status == "limit":
         return 4 if result.value is None else 0
     if result.status == "evaluated":
@@ -61,12 +61,12 @@ def exit_code(result: Result) -> int:
 
 
 def print_whole(text: str, end: str = "\n") -> None:
-    """Print what a file may be made of: all of it, even if Ctrl-C comes."""
+    """Print all of what a file may be made of, even if Ctrl-C comes."""
     with unbroken():
         print(text, end=end, flush=True)
 
 
 def console() -> Console:
-    """The terminal; wide where it is a pipe."""
+    """Return the terminal; wide where it is a pipe."""
     found = Console(highlight=False)
     return found if found.is_terminal else Console(highlight=False, width=110)

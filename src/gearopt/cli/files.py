@@ -23,7 +23,7 @@ def check(
     files: Annotated[list[Path], typer.Argument(help="Problem files (TOML).", show_default=False)],
     as_json: Json = False,
 ) -> None:
-    """Read problem files and say what is wrong with them, without solving."""
+    """Read problem files and report their mistakes, without solving."""
     from gearopt.errors import SceneError
     from gearopt.scenes.reading.load import load
 

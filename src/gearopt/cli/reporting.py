@@ -18,9 +18,9 @@ from gearopt.optimise.result import Result, loads
 from gearopt.report.measures import SYSTEMS, Measures
 
 SECONDS = 60.0  # that a run may take by default
-LONGEST = 200  # characters that are told of what is wrong with a file
+LONGEST = 200  # characters shown of what is wrong with a file
 HOW = "write one with `gearopt solve FILE --json > result.json`"
-TOP_ON_PAGE = 10  # trains that a page lists unless told otherwise
+TOP_ON_PAGE = 10  # trains that a page lists by default
 DEFAULTS = {"seconds": SECONDS, "seed": 0, "top": TOP_ON_PAGE}
 
 
@@ -66,7 +66,7 @@ def report(
 
 
 def _again(kept: Result | Comparison, screen: Console, files: Files) -> list[str]:
-    """Show what was kept, write its files (never over what it was made of); lines about these."""
+    """Show what was kept, write its files (never over its source); return lines about them."""
     if kept.file is not None:
         checked(files.html, files.csv, files.measures.name, Path(kept.file))
     if isinstance(kept, Result):
@@ -87,7 +87,7 @@ def _again(kept: Result | Comparison, screen: Console, files: Files) -> list[str
 
 
 def checked(html: Path | None, csv: Path | None, units: str, *given: Path) -> Files:
-    """Where to write; GearoptError for what cannot be, said before long work, not after it.
+    """Return where to write; GearoptError for what cannot be, before long work begins.
 
     given: the files that the run reads, which it never writes.
     """
@@ -99,7 +99,7 @@ def checked(html: Path | None, csv: Path | None, units: str, *given: Path) -> Fi
 
 
 def written(result: Result, files: Files) -> list[str]:
-    """Write the page and the tables, once all are made; a line for each to tell the user."""
+    """Write the page and the tables, once all are made; return a line for each."""
     page, found = _page(result, files), _tables(result, files)
     lines = []
     if files.html is not None:
@@ -114,7 +114,7 @@ def written(result: Result, files: Files) -> list[str]:
 
 
 def again(result: Result, files: Files) -> str:
-    """The command that makes a page again, without options that are the defaults; "" if none.
+    """Return the command that makes a page again, without default options; "" if none.
 
     A run from Python without a limit of time had more of it than any command.
     """
@@ -156,7 +156,7 @@ def _make(folder: Path) -> None:
 
 
 def _read(file: Path) -> Result | Comparison:
-    """A result or a comparison from its file; GearoptError says what else the file is."""
+    """Return a result or a comparison from its file; GearoptError for anything else."""
     try:
         data = loads(file.read_text(encoding="utf-8"))
         if isinstance(data, dict) and "comparison" in data:

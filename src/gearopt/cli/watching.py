@@ -19,7 +19,7 @@ SHOW_CURSOR = b"\r\x1b[K\x1b[?25h"  # and clear the line of the progress that hi
 
 @contextmanager
 def watching(seconds: float, quiet: bool) -> Iterator[Watch]:
-    """A watcher of one run that ends it at Ctrl-C and shows long work."""
+    """Yield a watcher of one run that ends it at Ctrl-C and shows long work."""
     clock = Clock(Budget(seconds))
 
     def words(event: Event) -> str:
@@ -31,7 +31,7 @@ def watching(seconds: float, quiet: bool) -> Iterator[Watch]:
 
 @contextmanager
 def following(words: Callable[[Any], str], quiet: bool) -> Iterator[Callable[[Any], bool]]:
-    """A watcher, False after Ctrl-C (the second one kills), that shows words(progress)."""
+    """Yield a watcher, False after Ctrl-C (the second one kills), that shows words(progress)."""
     stopped = False
     screen = Console(stderr=True, highlight=False)
     status = screen.status("") if screen.is_terminal and not quiet else None
@@ -98,13 +98,13 @@ class _News(logging.Handler):
 
 
 def progress(event: Event, left: float) -> str:
-    """Part, evaluations, best value and gap of a run, and the seconds it has left."""
+    """Return part, evaluations, best value and gap of a run, and the seconds it has left."""
     words = [f"{event.evaluations:,} evaluations", *reached(event), f"{max(left, 0.0):.0f} s left"]
     return ": ".join(filter(None, (event.part, ", ".join(words))))
 
 
 def reached(event: Event) -> list[str]:
-    """The best value and the bound of an event in words."""
+    """Return the best value and the bound of an event in words."""
     from gearopt.report.words import amount
 
     unit, best, bound = event.unit, event.best, event.bound

@@ -14,7 +14,7 @@ from gearopt.errors import GearoptError
 class _Patient(io.FileIO):
     """A raw stream that drops what nobody reads; an interface of `io`.
 
-    It has state because a disk that is full is told once: what is written after that is dropped.
+    It has state because a full disk is reported once: what is written after that is dropped.
     """
 
     refused = False
@@ -33,7 +33,7 @@ class _Patient(io.FileIO):
 
 
 def patient(stream: TextIO) -> TextIO:
-    """A standard stream that a closed pipe does not disturb; other streams as they are."""
+    """Return a standard stream that a closed pipe does not disturb; other streams as they are."""
     buffer = getattr(stream, "buffer", None)
     raw = getattr(buffer, "raw", buffer)
     if not isinstance(stream, io.TextIOWrapper) or not isinstance(raw, io.FileIO):
@@ -51,7 +51,7 @@ PROBLEM, TABLE = ".toml", ".csv"  # endings: of files that are never written, an
 
 
 def check_html(path: Path | None, *given: Path) -> None:
-    """GearoptError where a page cannot be written there: said before long work, not after it.
+    """Raise GearoptError where a page cannot be written, before long work begins.
 
     given: the files that the run reads. A link counts as the file that it leads to.
     """
@@ -69,7 +69,7 @@ def check_html(path: Path | None, *given: Path) -> None:
 
 
 def check_csv(folder: Path | None, html: Path | None, *given: Path) -> None:
-    """GearoptError where tables cannot be written, or would replace what the run reads or writes.
+    """Raise GearoptError where tables cannot be written, or would replace a file in use.
 
     The names of the tables are not known before: any file of the folder that ends in .csv counts.
     """
@@ -118,7 +118,7 @@ def _write(path: Path, text: str, encoding: str) -> None:
 
 
 def _spare(what: str, target: Path, given: tuple[Path, ...], instead: str) -> None:
-    """GearoptError where a target is a file that the run reads, or a problem file."""
+    """Raise GearoptError where a target is a file that the run reads, or a problem file."""
     if (read := next((g for g in given if _same(target, g)), None)) is not None:
         raise GearoptError(f"{what}: would replace {read}, which is read; {instead}")
     if PROBLEM in (target.suffix.lower(), _place(target).suffix.lower()):
@@ -126,14 +126,14 @@ def _spare(what: str, target: Path, given: tuple[Path, ...], instead: str) -> No
 
 
 def _same(one: Path, other: Path) -> bool:
-    """Whether two paths are one file, in whatever spelling, by links of either sort."""
+    """Return whether two paths are one file, in whatever spelling, by links of either sort."""
     if one.exists() and other.exists():
         return one.samefile(other)
     return _place(one) == _place(other)
 
 
 def _place(path: Path) -> Path:
-    """Where a path leads to; a loop of links is left as it is."""
+    """Return where a path leads to; a loop of links is left as it is."""
     return Path(os.path.realpath(path))
 
 

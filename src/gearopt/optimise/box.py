@@ -19,7 +19,7 @@ ROUNDING = 1e-12  # relative; a bound that is computed (3 x 0.1) still holds the
 
 
 def allowed_values(problem: Problem, column: int) -> Sequence[float]:
-    """Values of one component of a point in order: those of its set, or its whole numbers.
+    """Return values of one component of a point in order: those of its set, or its whole numbers.
 
     SolveError where its bounds hold none, or where an integer has no finite bounds.
     """
@@ -44,7 +44,7 @@ def check_discrete(problem: Problem) -> None:
 
 
 def whole_ends(problem: Problem, column: int) -> tuple[float, float]:
-    """Least and most whole number between the bounds of an integer, infinite where they are."""
+    """Return minimum and maximum whole number within the bounds of an integer, or infinities."""
     low, high = _widened(problem, column)
     least = float(math.ceil(low)) if math.isfinite(low) else low
     most = float(math.floor(high)) if math.isfinite(high) else high
@@ -78,7 +78,7 @@ class Box:
     sets: dict[int, Array]
 
     def points(self, unit: Array) -> Array:
-        """Natural points (N, n) of coordinates (N, n) in [0, 1]."""
+        """Return natural points (N, n) of coordinates (N, n) in [0, 1]."""
         y = self.low + np.clip(unit, 0.0, 1.0) * (self.high - self.low)
         x = np.where(self.logarithmic, np.exp(np.where(self.logarithmic, y, 0.0)), y)
         x = np.where(self.whole, np.clip(np.rint(x), self.least, self.most), x)
@@ -87,7 +87,7 @@ class Box:
         return x
 
     def unit(self, points: Array) -> Array:
-        """Coordinates (N, n) of natural points (N, n)."""
+        """Return coordinates (N, n) of natural points (N, n)."""
         x = np.asarray(points, float)
         y = np.where(self.logarithmic, np.log(np.where(self.logarithmic, x, 1.0)), x)
         for k, values in self.sets.items():
@@ -97,7 +97,7 @@ class Box:
 
 
 def box(problem: Problem) -> Box:
-    """The search box of a problem; SolveError names a variable without finite bounds or values.
+    """Return the search box of a problem; SolveError names a variable without finite bounds.
 
     A positive variable whose ends differ by more than a factor of 10 is searched by its logarithm,
     whether declared log or not.
@@ -125,7 +125,7 @@ def box(problem: Problem) -> Box:
 
 
 def violation(problem: Problem, points: Array) -> tuple[Array, Array]:
-    """First objective (N,) and total violation (N,) >= 0 of points; NaN counts as inf."""
+    """Return first objective (N,) and total violation (N,) >= 0 of points; NaN counts as inf."""
     with np.errstate(all="ignore"):
         batch = problem.batch(points)
         excess = np.maximum(batch.G - 1.0, 0.0).sum(axis=1) + np.abs(batch.H - 1.0).sum(axis=1)

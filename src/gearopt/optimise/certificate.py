@@ -49,7 +49,7 @@ class Verdict:
 
 @np.errstate(all="ignore")  # numbers beyond doubles become NaN, and NaN proves nothing
 def certify(problem: Problem, outcome: Outcome, gap: float, exact: bool = False) -> Verdict:
-    """Status, bound and residuals of an outcome; `gap` is the largest one called optimal.
+    """Return status, bound and residuals of an outcome; `gap`: the largest called optimal.
 
     exact: the outcome is that of the formulation's own exact algorithm, whose bound and exhaustion
     count; of any other method they do not. CertificateError where a bound contradicts a feasible
@@ -90,7 +90,7 @@ def certify(problem: Problem, outcome: Outcome, gap: float, exact: bool = False)
 
 
 def _shape(problem: Problem) -> Form:
-    """The form of a problem, or where only that is proven convex, the one in natural variables."""
+    """Return the form of a problem; where only that is proven convex, in natural variables."""
     shape = form(problem)
     plain = None if shape.convex else natural(problem)
     return plain if plain is not None and plain.convex else shape
@@ -124,9 +124,9 @@ def bounded(
     """Judge a point by a bound that we computed ourselves; before: the verdict without one.
 
     worst: the name of what has the largest violation. CertificateError where the value lies below
-    the bound though no limit is exceeded: an excess gains its price, which may be any (of limits
-    that contradict each other by a little), but within ROUNDING that is less than the rounding
-    taken off the bound.
+    the bound though no limit is exceeded: an excess gains by its shadow price, which may be any (of
+    limits that contradict each other by a little), but within ROUNDING that is less than the
+    rounding taken off the bound.
     """
     value, excess = before.objective, before.certificate["feasibility"]
     assert value is not None and excess is not None
@@ -150,7 +150,7 @@ def bounded(
 
 
 def told(gap: float) -> float | None:
-    """A gap as results hold it: at least 0; None where it is infinite, or below a bound."""
+    """Return a gap as results hold it, at least 0; None where infinite or below a bound."""
     return max(gap, 0.0) if -100 * FEASIBLE <= gap < math.inf else None
 
 
@@ -194,7 +194,7 @@ def _local(
 
 
 def _doubted(problem: Problem, x: Array, before: Verdict) -> Verdict:
-    """No point of a convex form is a minimum if its bound leaves much of it and of the way there.
+    """Call no point of a convex form a minimum if its bound is far below it.
 
     The way is that of the objective from the guess: what is less of it may be rounding alone.
     """
@@ -208,7 +208,7 @@ def _doubted(problem: Problem, x: Array, before: Verdict) -> Verdict:
 
 
 def _points(problem: Problem, shape: Form, outcome: Outcome) -> list[Point]:
-    """The point with our multipliers, and with those of its method where it brings any."""
+    """Return the point with our multipliers, and with those of its method if it has any."""
     assert outcome.x is not None
     low, high, y = (shape.to_y(a) for a in (*problem.bounds()[:2], outcome.x))
     candidates = [multipliers(shape, y, problem.parameter_values(), low, high)]

@@ -17,7 +17,7 @@ OTHERS = "other numbers"  # the part of events of changed problems
 
 @dataclass
 class Clock:
-    """A budget as it is spent; it has state because time passes and the run goes on.
+    """A budget as it is spent; it has state because time passes and the run continues.
 
     start: when the run began (`time.perf_counter`). evaluations, best, bound: spent and reached so
     far (inf and -inf: nothing yet). stopped: `tell` said so once; refused: because of the watcher.
@@ -34,17 +34,17 @@ class Clock:
 
     @property
     def seconds(self) -> float:
-        """Seconds since the run began."""
+        """Return seconds since the run began."""
         return time.perf_counter() - self.start
 
     @property
     def left(self) -> Budget:
-        """What is left of the budget."""
+        """Return what is left of the budget."""
         return self.budget.less(self.seconds, self.evaluations)
 
     @property
     def over(self) -> bool:
-        """Whether the run was stopped, or nothing is left of its budget."""
+        """Return whether the run was stopped, or nothing is left of its budget."""
         return self.stopped or self._spent(self.evaluations)
 
     def _spent(self, evaluations: int) -> bool:
@@ -53,12 +53,12 @@ class Clock:
         return late or (most is not None and evaluations >= most)
 
     def within(self, seconds: float) -> float:
-        """So many seconds, or what is left if that is less."""
+        """Return so many seconds, or what is left if that is less."""
         left = self.left.seconds
         return seconds if left is None else min(seconds, left)
 
     def tell(self, more: int = 0) -> bool:
-        """Tell the watcher what is reached; whether watcher and budget let the run go on.
+        """Report to the watcher what is reached; return whether the run continues.
 
         more: evaluations under way that are not counted yet.
         """
@@ -73,7 +73,7 @@ class Clock:
         return not self.stopped
 
     def inner(self, values: bool = True) -> Watch:
-        """A watcher of a run within this one, whose evaluations and best value count in it.
+        """Return a watcher of a run within this one, whose evaluations and best value count.
 
         values: False where its values are not this run's.
         """
@@ -95,7 +95,7 @@ def _known(value: float) -> float | None:
 def in_part(
     watch: Watch | None, unit: str = "", part: str = "", factor: float = 1.0
 ) -> Watch | None:
-    """A watcher of one part of a run: its events say which, and in what unit their values are.
+    """Return a watcher of one part of a run, whose events name the part and its unit.
 
     part: "" keeps the name that an event has. factor: from the values of the method to that unit.
     """
@@ -111,7 +111,7 @@ def in_part(
 
 
 def of_problem(watch: Watch | None, problem: "Problem | Conic") -> Watch | None:
-    """A watcher whose events say what problem they are of, and what is minimised."""
+    """Return a watcher whose events name their problem and what is minimised."""
     if watch is None:
         return None
     name, objective = problem.name, problem.rows.objectives[0]
@@ -123,7 +123,7 @@ def of_problem(watch: Watch | None, problem: "Problem | Conic") -> Watch | None:
 
 
 def of_others(watch: Watch | None, part: str = OTHERS) -> Watch | None:
-    """A watcher of other problems than the run's, whose values are not its own: left out."""
+    """Return a watcher of other problems than the run's, whose values are left out."""
     if watch is None:
         return None
 
@@ -134,7 +134,7 @@ def of_others(watch: Watch | None, part: str = OTHERS) -> Watch | None:
 
 
 def whole(watch: Watch | None) -> Watch | None:
-    """A watcher of a run of many parts, told on one clock.
+    """Return a watcher of a run of many parts, on one clock.
 
     Seconds are those since it was made; evaluations go on where another search begins to count;
     best and bound are those reached so far in their part.
@@ -160,7 +160,7 @@ def whole(watch: Watch | None) -> Watch | None:
 
 
 def following(watch: Watch | None) -> tuple[Watch, list[dict[str, Any]]]:
-    """A watcher that passes events on, and the list it fills with those that bring something new.
+    """Return a watcher that passes events on, and the list it fills with those that are better.
 
     An entry holds NEWS of an event; best falls, or bound rises, from each to the next.
     """

@@ -30,7 +30,7 @@ DAMPING, STEPS = 1e-11, 4  # of a sparse system; each step divides the damping's
 def multipliers(
     shape: Form, y: Array, p: Array, low: Array, high: Array
 ) -> tuple[Array, Array] | None:
-    """(lam_g, lam_h) of a feasible point, or None.
+    """Return (lam_g, lam_h) of a feasible point, or None.
 
     None where the system is too large, or a slope is no number.
     """
@@ -51,7 +51,7 @@ def multipliers(
 
 
 def _signed(columns: Any, target: Array, count: int) -> Array:
-    """The x of least |columns x - target| whose first `count` entries are not below 0.
+    """Return the x of minimum |columns x - target| whose first `count` entries are >= 0.
 
     Entries below 0 are left out together. That is too many where columns depend on each other, as
     at a corner where more limits meet than there are variables: of a dense system those stay that
@@ -70,7 +70,7 @@ def _signed(columns: Any, target: Array, count: int) -> Array:
 
 
 def _needed(columns: Array, target: Array, count: int) -> Any:
-    """Which of the first `count` entries are above 0 in the least squares where they are >= 0."""
+    """Return which of the first `count` entries are above 0 in the signed least squares."""
     from scipy.optimize import nnls
 
     other = columns[:, count:]
@@ -84,7 +84,7 @@ def _needed(columns: Array, target: Array, count: int) -> Any:
 
 
 def _rows(shape: Form, y: Array, p: Array, active: Any) -> Any:
-    """Gradients of the active inequalities and of all equalities, a row each."""
+    """Return gradients of the active inequalities and of all equalities, one per row."""
     of_g, of_h = shape.jacobians(y, p)
     size = (len(active) + of_h.shape[0]) * len(y)
     if size <= SMALL or of_g.nnz() + of_h.nnz() > SPARSE * size:
@@ -97,7 +97,7 @@ def _rows(shape: Form, y: Array, p: Array, active: Any) -> Any:
 
 
 def _least_squares(columns: Any, target: Array) -> Array:
-    """The x of least |columns x - target|.
+    """Return the x of minimum |columns x - target|.
 
     Sparse: of [[1, A], [A', -d]] (r, x) = (b, 0), which is regular whatever A is, with the damping
     d taken out again step by step.
@@ -121,7 +121,7 @@ ROUNDING = 1e-14  # 50 units in the last place of every term that is added up in
 
 
 def bound(point: Point) -> tuple[float, float]:
-    """The least value of the Lagrangian on the box, and the rounding that was taken off it."""
+    """Return the minimum of the Lagrangian on the box, and the rounding taken off it."""
     lam_g, lam_h, shape, y = point.lam_g, point.lam_h, point.shape, point.y
     lagrangian = point.f + lam_g @ point.g + lam_h @ point.h
     rows = lam_g * (1.0 + np.abs(point.g)), lam_h * (1.0 + np.abs(point.h))
@@ -141,7 +141,7 @@ def bound(point: Point) -> tuple[float, float]:
 def farkas(
     problem: Problem, shape: Form, outcome: Outcome, low: Array, high: Array
 ) -> tuple[float, Array, Array]:
-    """The largest violation that every point of the box has at least, and normalised multipliers.
+    """Return the violation that every point of the box has at least, and its multipliers.
 
     With l >= 0, sum l + sum |v| = 1 and a convex form, max(G, |H|) >= l.G + v.H >= its linear
     lower bound on the box.
@@ -161,5 +161,5 @@ def farkas(
 
 
 def _allowance(*terms: Array | float) -> float:
-    """Rounding of a sum of terms, by their sizes."""
+    """Return rounding of a sum of terms, by their sizes."""
     return ROUNDING * sum(float(np.abs(t).sum()) for t in terms)

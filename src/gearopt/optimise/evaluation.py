@@ -66,19 +66,19 @@ def blaming(text: Callable[..., Any], where: str, doing: str) -> Iterator[None]:
 
 @contextmanager
 def quiet() -> Iterator[None]:
-    """Keep what back ends warn of from the standard error: their errors are told as SolveError."""
+    """Keep warnings of back ends from the standard error; their errors are SolveErrors."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         yield
 
 
 def remedy(broken: BaseException | None) -> str:
-    """What to write instead of what a symbol does not know."""
+    """Return what to write instead of what a symbol does not know."""
     return next(words for part, words in SYMBOLS if part in str(broken))
 
 
 def _line(broken: BaseException, text: Callable[..., Any]) -> str:
-    """The last line of the text's own file that the exception passed."""
+    """Return the last line of the text's own file that the exception passed."""
     while isinstance(text, functools.partial):
         text = text.func
     code = getattr(text, "__code__", None) or getattr(type(text).__call__, "__code__", None)
@@ -91,7 +91,7 @@ def _line(broken: BaseException, text: Callable[..., Any]) -> str:
 
 
 def _told(broken: BaseException) -> str:
-    """An exception in one line, without the places of compiled code."""
+    """Return an exception in one line, without the places of compiled code."""
     lines = [line.strip() for line in str(broken).splitlines() if line.strip()]
     words = lines[-1] if lines and lines[0].startswith("Error in") else " ".join(lines)
     if ".cpp:" in words:
@@ -142,7 +142,7 @@ def _is_scalar(value: Any) -> bool:
 
 
 def text_of(problem: "Problem", repeat: Repeat | None) -> tuple[Any, str]:
-    """The text of a problem or of one of its repeats, and what messages call it."""
+    """Return the text of a problem or of one of its repeats, and what messages call it."""
     if repeat is None:
         return problem.evaluate, problem.name
     return repeat.evaluate, f"{problem.name}.{repeat.name}"
@@ -156,7 +156,7 @@ def called(
     row: dict[str, Any],
     parameters: Any = None,
 ) -> Any:
-    """What a text returns for scalars of any kind: shared and own variables, data, parameters."""
+    """Return the terms of a text for scalars of any kind: variables, data, parameters."""
     x = namespace(problem.variables, list(shared))
     given = problem.parameter_values() if parameters is None else parameters
     p = namespace(problem.parameters, list(given))
@@ -167,7 +167,7 @@ def called(
 
 
 def at(problem: "Problem", repeat: Repeat | None, shared: Any, own: Any, row: int) -> Terms:
-    """The terms of a text on floats; SolveError says what is wrong with it."""
+    """Return the terms of a text on floats; SolveError says what is wrong with it."""
     data = {k: np.float64(v[row]) for k, v in repeat.data.items()} if repeat else {}
     with blaming(*text_of(problem, repeat), "evaluated"):
         terms = called(problem, repeat, shared, own, data)
@@ -175,7 +175,7 @@ def at(problem: "Problem", repeat: Repeat | None, shared: Any, own: Any, row: in
 
 
 def terms_of(problem: "Problem", repeat: Repeat | None, shared: Array, own: Array) -> Terms:
-    """The terms of N points: arrays (N,), those of a repeat (N, rows).
+    """Return the terms of N points: arrays (N,), those of a repeat (N, rows).
 
     shared: (N, n); own: (N, rows, width), without entries where there is no repeat.
     """
@@ -195,7 +195,7 @@ def _at_once(problem: "Problem", repeat: Repeat | None, shared: Array, own: Arra
 
 
 def elementwise(problem: "Problem", repeat: Repeat | None) -> bool:
-    """Whether a text is proven to compute every point by itself, at the present parameters."""
+    """Return whether a text is proven to compute every point by itself, at these parameters."""
     key = ("elementwise", repeat and repeat.name, problem.parameter_values().tobytes())
     if key not in problem.memo:
         problem.memo[key] = reason = _obstacle(problem, repeat) or _surprise(problem, repeat)
@@ -207,7 +207,7 @@ def elementwise(problem: "Problem", repeat: Repeat | None) -> bool:
 
 
 def _obstacle(problem: "Problem", repeat: Repeat | None) -> str:
-    """What in a text is not elementwise; "" for nothing."""
+    """Return what in a text is not elementwise; "" for nothing."""
     shared, own = (
         [Scalar() for v in variables for _ in range(v.size)]
         for variables in (problem.variables, repeat.variables if repeat else ())
@@ -223,7 +223,7 @@ def _obstacle(problem: "Problem", repeat: Repeat | None) -> str:
 
 
 def _surprise(problem: "Problem", repeat: Repeat | None) -> str:
-    """How a text that asks for the types of its scalars betrays itself; "" where it does not."""
+    """Return how a text that asks for types of its scalars betrays itself; "": it does not."""
     start = sum(v.size for v in problem.variables)
     shared, own = sample(problem, 2)[:, :start], np.empty((2, 1, 0))
     if repeat is not None:
@@ -242,7 +242,7 @@ def _surprise(problem: "Problem", repeat: Repeat | None) -> str:
 
 
 def sample(problem: "Problem", count: int) -> Array:
-    """The guess and random points between the bounds, (count, n); always the same ones."""
+    """Return the guess and random points between the bounds, (count, n), always the same."""
     lower, upper, guess = problem.bounds()
     reach = np.maximum(1.0, np.abs(guess))
     low, high = (
@@ -263,7 +263,7 @@ def sample(problem: "Problem", count: int) -> Array:
 
 
 def _one_by_one(problem: "Problem", repeat: Repeat | None, shared: Array, own: Array) -> Terms:
-    """The terms of N points, each computed by itself; NaN where the text raises on numbers."""
+    """Return the terms of N points, each computed alone; NaN where the text raises."""
     rows = range(repeat.count if repeat else 1)
     names = problem.names(repeat)
     values = np.array(
@@ -285,7 +285,7 @@ def _numbers(
     row: int,
     names: dict[str, list[str]],
 ) -> list[float]:
-    """All values of a text at one point."""
+    """Return all values of a text at one point."""
     try:
         terms = at(problem, repeat, shared, own.ravel(), row)
     except SolveError as refused:

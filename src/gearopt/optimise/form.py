@@ -38,21 +38,21 @@ class Form:
     hessian: Any = None
 
     def to_y(self, x: Array) -> Array:
-        """The y of a natural point."""
+        """Return the y of a natural point."""
         with np.errstate(divide="ignore"):
             return np.where(self.logarithmic, np.log(np.where(self.logarithmic, x, 1.0)), x)
 
     def to_x(self, y: Array) -> Array:
-        """Natural point of a y."""
+        """Return the natural point of a y."""
         return np.where(self.logarithmic, np.exp(np.where(self.logarithmic, y, 0.0)), y)
 
     def objective(self, value: float) -> float:
-        """Value of F to the unit of the objective."""
+        """Return the objective of a value of F."""
         return float(np.exp(value)) if self.log_objective else value
 
 
 def form(problem: Problem) -> Form:
-    """The form of a problem at its present parameters; built once a set of proven kinds.
+    """Return the form of a problem at its present parameters, built once per set of kinds.
 
     SolveError where the problem has no single objective.
     """
@@ -84,9 +84,7 @@ def _build(problem: Problem, found: tape.Kinds) -> Form:
     objective = ca.log(f) if log_objective else f
     inequalities = _rows(g, [k <= tape.POSYNOMIAL for k in found.inequalities])
     equalities = _rows(h, [k <= tape.MONOMIAL for k in found.equalities])
-    posynomial = max((found.objective, *found.inequalities)) <= tape.POSYNOMIAL
-    convex = posynomial and max(found.equalities, default=0) <= tape.MONOMIAL
-    convex = bool(convex and logarithmic.all())
+    convex = bool(found.log_convex and logarithmic.all())
     return assembled(
         (y, p, objective, inequalities, equalities), logarithmic, log_objective, convex
     )
@@ -99,7 +97,7 @@ def assembled(
     convex: bool,
     hessian: Any = None,
 ) -> Form:
-    """A form of casadi expressions (y, p, F, G, H), with their derivatives."""
+    """Return A form of casadi expressions (y, p, F, G, H), with their derivatives."""
     import casadi as ca
 
     y, p, objective, inequalities, equalities = expressions
@@ -136,13 +134,13 @@ def _rows(values: Any, logarithmic: list[bool]) -> Any:
 
 
 def values(problem: Problem, shape: Form, y: Array) -> tuple[float, Array]:
-    """F, and G and H together, at a point."""
+    """Return F, and G and H together, at a point."""
     found = np.array(shape.terms(y, problem.parameter_values())).ravel()
     return float(found[0]), found[1:]
 
 
 def violation(problem: Problem, shape: Form, y: Array) -> float:
-    """Largest violation of a row at a point; inf where one is not a number."""
+    """Return largest violation of a row at a point; inf where one is not a number."""
     count = shape.derivatives.numel_out(1)
     rows = values(problem, shape, y)[1]
     worst = np.concatenate([rows[:count], np.abs(rows[count:]), [0.0]])

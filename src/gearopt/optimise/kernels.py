@@ -27,7 +27,7 @@ def kernel(module: str) -> ModuleType:
     numba.config.CACHE_DIR = str(folder)
     if not any(folder.rglob(f"{module.rsplit('.', 1)[-1]}.*.nbi")):
         told = "compiling kernels, once on this machine: this may take a minute"
-        logger.info("%s (Ctrl-C twice gives up)", told)
+        logger.info("%s (Ctrl-C twice ends it)", told)
     return import_module(module)
 
 
@@ -41,7 +41,7 @@ def _folder() -> Path:
 
 @cache
 def _key() -> str:
-    """A name that changes with the text of any kernel and with numba's version."""
+    """Return A name that changes with the text of any kernel and with numba's version."""
     text = hashlib.sha256(version("numba").encode())
     for path in sorted(_SOURCES.rglob("*_kernel.py")):
         text.update(path.name.encode() + path.read_bytes())

@@ -52,7 +52,7 @@ class _Pair(NamedTuple):
 
 
 def split(shape: Form, kinds: Kinds) -> Split:
-    """The program of a form; without u where no logarithm is wide."""
+    """Return the program of a form; without u where no logarithm is wide."""
     import casadi as ca
 
     y, p, f, g, h = shape.expressions
@@ -85,7 +85,7 @@ def split(shape: Form, kinds: Kinds) -> Split:
 
 
 def _widths(sparsity: Any) -> Any:
-    """Number of variables of every row."""
+    """Return number of variables of every row."""
     return np.bincount(np.array(sparsity.row(), int), minlength=sparsity.size1())
 
 
@@ -105,7 +105,7 @@ class _Levels:
         self._sums: dict[int, list[_Pair]] = {}  # split already, by node: other rows may share them
 
     def rows_of(self, part: Any, wide: list[bool]) -> Any:
-        """Rows of the form, those that are wide logarithms split."""
+        """Return rows of the form, those that are wide logarithms split."""
         import casadi as ca
 
         rows = ca.vertsplit(part) if part.numel() else []
@@ -116,13 +116,13 @@ class _Levels:
         return ca.vertcat(ca.SX(0, 1), *found)
 
     def _width(self, expression: Any) -> int:
-        """Number of variables of an expression."""
+        """Return number of variables of an expression."""
         import casadi as ca
 
         return len(self._own & {s.element_hash() for s in ca.symvar(expression)})
 
     def _above(self, logarithm: _Pair) -> _Pair:
-        """A new u that is at least a logarithm, as a term exp(u) of a sum."""
+        """Return a new u that is at least a logarithm, as a term exp(u) of a sum."""
         import casadi as ca
 
         u = ca.SX.sym("u")
@@ -132,7 +132,7 @@ class _Levels:
         return _Pair(ca.exp(u), ca.exp(logarithm.exact))
 
     def _log(self, expression: Any, depth: int) -> _Pair:
-        """The logarithm of a positive expression, as a sum over its factors."""
+        """Return the logarithm of a positive expression, as a sum over its factors."""
         import casadi as ca
 
         total = _Pair(ca.SX(0), ca.SX(0))
@@ -169,7 +169,7 @@ class _Levels:
         return _log_of(terms)
 
     def _summands(self, expression: Any) -> list[Any]:
-        """The terms of a sum; of a sum inside it that is split already, its exp(u)."""
+        """Return the terms of a sum; of a sum inside it that is split already, its exp(u)."""
         import casadi as ca
 
         found, waiting = [], [expression]
@@ -193,7 +193,7 @@ def _log_of(terms: list[_Pair]) -> _Pair:
 
 
 def _factors(expression: Any) -> list[tuple[Any, float]]:
-    """[(factor, power)] of a product, of which the form has proven that all are positive."""
+    """Return [(factor, power)] of a product, all proven to be positive."""
     import casadi as ca
 
     found: list[tuple[Any, float]] = []
@@ -232,7 +232,7 @@ class Unit:
 
 
 def scaled(shape: Form, parts: Split, units: Any) -> tuple[Any, Any, Any, Any, Any]:
-    """The variables that a solver sees, and F, G, H and levels of them; logarithms stay."""
+    """Return the variables that a solver sees, and F, G, H and levels of them."""
     import casadi as ca
 
     terms = [parts.objective, parts.inequalities, parts.equalities, parts.levels]
@@ -244,7 +244,7 @@ def scaled(shape: Form, parts: Split, units: Any) -> tuple[Any, Any, Any, Any, A
 
 
 def unit_at(problem: Problem, shape: Form, y: Array) -> Unit:
-    """Units in which natural variables have a scale of about 1 at y, natural objectives of 100."""
+    """Return units in which natural variables have a scale of about 1 at y, objectives of 100."""
     x = shape.to_x(y)
     own = np.where(shape.logarithmic, 1.0, sizes(problem, x))
     objective = 1.0 if shape.log_objective else SHARE * objective_scale(problem, x, SWING)
@@ -252,7 +252,7 @@ def unit_at(problem: Problem, shape: Form, y: Array) -> Unit:
 
 
 def _power(size: Array) -> Array:
-    """The power of two next to each size, exact to multiply by; 1 where it is none."""
+    """Return the power of two next to each size, exact to multiply by; 1 where it is none."""
     known = np.isfinite(size) & (size > 0.0)
     found: Array = np.exp2(np.clip(np.round(np.log2(np.where(known, size, 1.0))), -900, 900))
     return found
@@ -273,7 +273,7 @@ OPTIONS = {
 
 
 def program(z: Any, p: Any, f: Any, g: Any, size: int) -> tuple[Any, Any]:
-    """Ipopt for a program in z, and its monitor, which is told the first `size` of z."""
+    """Return Ipopt for a program in z, and its monitor, which sees the first `size` of z."""
     import casadi as ca
 
     monitor = _monitor_class()(z.numel(), g.numel(), size)
@@ -291,7 +291,7 @@ def program(z: Any, p: Any, f: Any, g: Any, size: int) -> tuple[Any, Any]:
 
 
 def dense_hessian(z: Any, p: Any, f: Any, g: Any) -> dict[str, Any]:
-    """The option that spares casadi the colouring of a dense Hessian, which takes n^3 steps."""
+    """Return the option that spares casadi the colouring of a dense Hessian (n^3 steps)."""
     import casadi as ca
 
     given = [z, p, type(z).sym("lam_f"), type(z).sym("lam_g", g.numel())]
@@ -304,11 +304,11 @@ def dense_hessian(z: Any, p: Any, f: Any, g: Any) -> dict[str, Any]:
 
 @cache
 def _monitor_class() -> Any:
-    """The class of casadi's iteration callback (casadi is imported late)."""
+    """Return the class of casadi's iteration callback (casadi is imported late)."""
     import casadi as ca
 
     class Monitor(ca.Callback):  # type: ignore[misc]
-        """It has state because casadi calls it: follow(y) says whether the run goes on."""
+        """It has state because casadi calls it: follow(y) returns whether the run continues."""
 
         def __init__(self, n: int, m: int, size: int) -> None:
             super().__init__()

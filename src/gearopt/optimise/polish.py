@@ -26,10 +26,10 @@ SHARE, MOST = 0.1, 500  # of a budget is kept; evaluations at the most
 STARTS = 5  # points of the sampler to polish, of different discrete values
 RUNS = 60  # of Ipopt at the most
 ITERATIONS = 2000  # of all runs at the most, where the budget names no evaluations
-KEPT = {"kept for it": f"{SHARE:.0%} of the budget, {MOST} evaluations at the most"}
+KEPT = {"kept for it": f"{SHARE:.0%} of the budget, at most {MOST} evaluations"}
 SETTINGS = {
     "polished by": "ipopt, discrete variables held; then with one at its next value",
-    "points polished": f"{STARTS}, by {RUNS} runs and {ITERATIONS} iterations at the most",
+    "points polished": f"{STARTS}, by at most {RUNS} runs and {ITERATIONS} iterations",
     **KEPT,
 }
 
@@ -47,7 +47,7 @@ class Polish:
 
 
 def sampling(clock: Clock, polished: bool) -> tuple[Clock, int | None]:
-    """The clock of the sampling in a run, and the evaluations that are its own end.
+    """Return the clock of the sampling in a run, and the evaluations at which it ends.
 
     polished: a polish follows, for which a part of the run's budget is kept.
     """
@@ -59,12 +59,12 @@ def sampling(clock: Clock, polished: bool) -> tuple[Clock, int | None]:
 
 
 def prepared(problem: Problem, clock: Clock) -> Polish:
-    """The polish of a run: the text is traced here, within its budget."""
+    """Return the polish of a run: the text is traced here, within its budget."""
     return Polish(problem, clock, _obstacle(problem))
 
 
 def _obstacle(problem: Problem) -> str | None:
-    """Why a problem cannot be polished, None if it can; "" goes without saying."""
+    """Return why a problem cannot be polished, None if it can; "" goes without saying."""
     lower, upper, guess = problem.bounds()
     variables = [v for v, _ in problem.columns]
     free = [not v.discrete and a < b for v, a, b in zip(variables, lower, upper, strict=True)]
@@ -78,7 +78,7 @@ def _obstacle(problem: Problem) -> str | None:
 
 
 def polished(polish: Polish, sampled: Outcome, starts: Array) -> Outcome:
-    """The sampler's outcome, or a better one that Ipopt reaches from one of `starts` (N, n).
+    """Return the sampler's outcome, or a better one of Ipopt from one of `starts` (N, n).
 
     starts: in order of promise; the first of each choice of discrete values counts, and the
     sampler's own point. The iterations that are planned are its own end; clock and watcher are not.
@@ -112,12 +112,12 @@ def polished(polish: Polish, sampled: Outcome, starts: Array) -> Outcome:
 
 
 def _choice(problem: Problem, x: Array) -> tuple[float, ...]:
-    """The discrete values of a point."""
+    """Return the discrete values of a point."""
     return tuple(float(a) for a, (v, _) in zip(x, problem.columns, strict=True) if v.discrete)
 
 
 def _chosen(problem: Problem, best: Array | None, starts: Array) -> list[Array]:
-    """The best point, and the starts that differ from one another in a discrete value."""
+    """Return the best point, and the starts that differ from one another in a discrete value."""
     firsts: dict[tuple[float, ...], Array] = {}
     for x in starts:
         firsts.setdefault(_choice(problem, x), x)
@@ -125,7 +125,7 @@ def _chosen(problem: Problem, best: Array | None, starts: Array) -> list[Array]:
 
 
 def _beside(problem: Problem, x: Array) -> list[Array]:
-    """The points with one discrete variable at its next value up or down."""
+    """Return the points with one discrete variable at its next value up or down."""
     found = []
     for k in np.flatnonzero([v.discrete for v, _ in problem.columns]):
         given = allowed_values(problem, int(k))
@@ -138,7 +138,7 @@ def _beside(problem: Problem, x: Array) -> list[Array]:
 
 
 def _solved(polish: Polish, start: Array, most: int) -> Outcome:
-    """Ipopt from a start, `most` iterations; nothing, unfinished, where no time is left."""
+    """Run Ipopt from a start, `most` iterations; nothing, unfinished, without time left."""
     left = replace(polish.clock.left, evaluations=most)
     if left.seconds == 0.0:
         return Outcome(None, finished=False)
@@ -147,7 +147,7 @@ def _solved(polish: Polish, start: Array, most: int) -> Outcome:
 
 
 def _value(problem: Problem, x: Array | None) -> float:
-    """The objective of a point by the certificate's measure; inf where it is not feasible."""
+    """Return the objective of a point by the certificate's measure; inf: not feasible."""
     if x is None:
         return math.inf
     with np.errstate(all="ignore"):

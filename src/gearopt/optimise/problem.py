@@ -108,7 +108,7 @@ class Problem:
         return other
 
     def at(self, **values: Number) -> "Problem":
-        """The same problem with other parameter values; what was traced and built is kept."""
+        """Return the problem with other parameter values; what was traced and built is kept."""
         known = {q.name for q in self.parameters}
         if unknown := set(values) - known:
             raise ValueError(f"problem {self.name} has no parameter {unknown.pop()!r}")
@@ -117,7 +117,7 @@ class Problem:
 
     @cached_property
     def columns(self) -> tuple[tuple[Var, str], ...]:
-        """Variable and printed name of every component of a point, in order."""
+        """Return variable and printed name of every component of a point, in order."""
         found = [(v, _name(v.name, v.size, k)) for v in self.variables for k in range(v.size)]
         for r in self.repeats:
             found += [
@@ -129,7 +129,7 @@ class Problem:
         return tuple(found)
 
     def within(self, name: str, lower: Number, upper: Number) -> "Problem":
-        """The same problem with other bounds of one shared variable; what was built is kept."""
+        """Return the problem with other bounds of one shared variable; what was built is kept."""
         if name not in {v.name for v in self.variables}:
             raise ValueError(f"problem {self.name} has no variable {name!r}")
         variables = tuple(
@@ -141,14 +141,14 @@ class Problem:
         return self._sharing(variables=variables)
 
     def starting(self, point: Array) -> "Problem":
-        """The same problem, of shared variables alone, with a point of its box as the guess."""
+        """Return the same problem, of shared variables alone, with another guess."""
         other = self._sharing()
         lower, upper, _ = self.bounds()
         other.__dict__["_bounds"] = lower, upper, np.clip(point, lower, upper)
         return other
 
     def holding(self, point: Array) -> "Problem":
-        """The same problem with its discrete variables fixed at a point's, as continuous ones."""
+        """Return the same problem with its discrete variables fixed at a point's."""
         discrete = np.array([v.discrete for v, _ in self.columns])
         repeats = tuple(replace(r, variables=_continuous(r.variables)) for r in self.repeats)
         other = self._sharing(variables=_continuous(self.variables), repeats=repeats)
@@ -157,7 +157,7 @@ class Problem:
         return other
 
     def bounds(self) -> tuple[Array, Array, Array]:
-        """Lower bounds, upper bounds and guess of a point, each (n,); not to be written to."""
+        """Return lower bounds, upper bounds and guess of a point (n,); not to be written to."""
         return self._bounds
 
     @cached_property
@@ -170,7 +170,7 @@ class Problem:
         return lower, upper, guess
 
     def parameter_values(self) -> Array:
-        """All parameter values in order, (np,)."""
+        """Return all parameter values in order, (np,)."""
         return np.concatenate([spread(q.value, q.size) for q in self.parameters] or [np.empty(0)])
 
     def batch(self, points: Array) -> Batch:
@@ -205,14 +205,14 @@ class Problem:
 
     @property
     def rows(self) -> Rows:
-        """Names of objectives, inequalities and equalities, in the order of `batch`."""
+        """Return names of objectives, inequalities and equalities, in the order of `batch`."""
         if "rows" not in self.memo:
             self.memo["rows"] = self._read_rows()
         found: Rows = self.memo["rows"]
         return found
 
     def names(self, repeat: Repeat | None) -> dict[str, list[str]]:
-        """Names of all terms of a text, as it gives them at the guess."""
+        """Return names of all terms of a text, as it gives them at the guess."""
         key = ("names", repeat and repeat.name)
         if key not in self.memo:
             own = _bounds(repeat.variables)[2] if repeat else np.empty(0)
@@ -245,7 +245,7 @@ class Problem:
         return Rows(tuple(objectives), tuple(limits), tuple(equal))
 
     def traced(self) -> "Traced":
-        """The text as casadi functions, traced once."""
+        """Return the text as casadi functions, traced once."""
         from gearopt.optimise.tape import trace
 
         if "traced" not in self.memo:
@@ -254,14 +254,14 @@ class Problem:
         return found
 
     def compiled(self) -> "Compiled":
-        """A fast callable for one point at a time, on the traced text."""
+        """Return A fast callable for one point at a time, on the traced text."""
         from gearopt.optimise.tape import Compiled
 
         return Compiled(self)
 
 
 def one_objective(name: str, objectives: tuple[str, ...]) -> None:
-    """SolveError where a problem has several objectives."""
+    """Raise SolveError where a problem has several objectives."""
     if len(objectives) != 1:
         first, second = objectives[:2]
         raise SolveError(
@@ -272,12 +272,12 @@ def one_objective(name: str, objectives: tuple[str, ...]) -> None:
 
 
 def _twice(names: list[str]) -> str | None:
-    """A name that stands twice in a list."""
+    """Return A name that stands twice in a list."""
     return next((name for name, times in Counter(names).items() if times > 1), None)
 
 
 def _matrix(values: list[Any], count: int, rows: int) -> Array:
-    """Values of a block (each (count,) or (count, rows)) as (count, rows*len(values))."""
+    """Return a block of values ((count,) or (count, rows)) as (count, rows*len(values))."""
     if not values:
         return np.empty((count, 0))
     shape = (count,) if rows == 1 else (count, rows)
@@ -299,7 +299,7 @@ def _continuous(variables: tuple[Var, ...]) -> tuple[Var, ...]:
 
 
 def _between(variable: Var, lower: Number, upper: Number) -> Number:
-    """The guess of a variable, moved into other bounds."""
+    """Return the guess of a variable, moved into other bounds."""
     ends = (spread(v, variable.size) for v in (variable.guess, lower, upper))
     return tuple(float(v) for v in np.clip(*ends))
 

@@ -36,7 +36,7 @@ def degrees(problem: Problem) -> Kinds:
 
 
 def _apply(operation: int, terms: list[Term]) -> Term:
-    """The degree of `operation(terms)`."""
+    """Return the degree of `operation(terms)`."""
     import casadi as ca
 
     first, last = terms[0], terms[-1]
@@ -75,12 +75,12 @@ class Curvature:
 
     @property
     def convex(self) -> bool:
-        """Whether Q is positive semidefinite, within the rounding of its eigenvalues."""
+        """Return whether Q is positive semidefinite, within the rounding of its eigenvalues."""
         return self.floor >= -2.0 * self.rounding
 
 
 def curvature(hessian: Array) -> Curvature:
-    """The curvature of a symmetric Q (n, n), from the eigenvalues of D^-1/2 Q D^-1/2."""
+    """Return the curvature of a symmetric Q (n, n), from the eigenvalues of D^-1/2 Q D^-1/2."""
     diagonal = np.diag(hessian).copy()
     used = np.abs(hessian).max(axis=1, initial=0.0) > 0.0
     rounding = ROUNDING * max(1, int(used.sum()))
@@ -89,13 +89,13 @@ def curvature(hessian: Array) -> Curvature:
     root = np.sqrt(diagonal[used])
     scaled = hessian[np.ix_(used, used)] / np.outer(root, root)
     least = 2.0 - float(np.abs(scaled).sum(axis=1).max(initial=1.0))  # Gershgorin's circles
-    if least < 0.5:  # else good enough, and cheap
+    if least < 0.5:  # else good enough, at low cost
         least = float(np.linalg.eigvalsh(scaled)[0])
     return Curvature(diagonal, least - rounding, rounding)
 
 
 def natural(problem: Problem) -> Form | None:
-    """The form in the natural variables, where a problem is proven quadratic; else None.
+    """Return the form in the natural variables, where a problem is proven quadratic; else None.
 
     `convex` says whether it is a convex quadratic program at the present parameters.
     """
@@ -109,19 +109,19 @@ def natural(problem: Problem) -> Form | None:
 
 
 def hessian_of(problem: Problem, shape: Form) -> Array:
-    """Q (n, n) at the present parameters."""
+    """Return Q (n, n) at the present parameters."""
     return dense(shape.hessian(problem.parameter_values()))
 
 
 def dense(matrix: Any) -> Array:
-    """A casadi matrix as a dense array; casadi's own way is slow."""
+    """Return A casadi matrix as a dense array; casadi's own way is slow."""
     found = np.zeros(matrix.shape)
     found[matrix.sparsity().get_triplet()] = matrix.nonzeros()
     return found
 
 
 def misfit(problem: Problem) -> str:
-    """The term that is of too high a degree for a quadratic program, in words; "" if none is."""
+    """Name the term that a quadratic program cannot have, in words; "" if there is none."""
     found, rows = degrees(problem), problem.rows
     if len(problem.columns) > MOST:
         return f"it has {len(problem.columns)} variables, more than {MOST}"
@@ -153,7 +153,7 @@ def _build(problem: Problem) -> Form:
 
 
 def box(gradient: Array, doubt: Array, y: Array, low: Array, high: Array) -> Array:
-    """Least of t (z - y) over low <= z <= high and |t - gradient| <= doubt, of each variable."""
+    """Return the minimum of t (z - y), low <= z <= high, |t - gradient| <= doubt, by variable."""
     slopes = np.array([gradient - doubt, gradient + doubt])[:, None, :]
     with np.errstate(invalid="ignore"):
         ends = slopes * np.array([low - y, high - y])[None, :, :]
@@ -164,7 +164,7 @@ def box(gradient: Array, doubt: Array, y: Array, low: Array, high: Array) -> Arr
 def least(
     gradient: Array, doubt: Array, y: Array, low: Array, high: Array, curved: Curvature
 ) -> float:
-    """Lower bound of gradient.(z - y) + 1/2 (z - y)'Q(z - y) over the box.
+    """Return a lower bound of gradient.(z - y) + 1/2 (z - y)'Q(z - y) over the box.
 
     Every variable is charged the less of its linear part over its bounds and, where Q is definite,
     of slope^2/(2 floor Q_jj), which needs no bounds. Q below 0 by rounding is charged over the box.

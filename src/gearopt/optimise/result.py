@@ -35,7 +35,7 @@ class Budget:
     gap: float = 0.0
 
     def less(self, seconds: float, evaluations: int = 0) -> "Budget":
-        """What is left of it after so much is spent."""
+        """Return what is left of it after so much is spent."""
         return replace(
             self,
             seconds=None if self.seconds is None else max(0.0, self.seconds - seconds),
@@ -52,7 +52,7 @@ class Event:
     seconds: since the run began. evaluations: of all its parts so far, as their methods count.
     best, bound: reached so far in the part; None where nothing is. part: what is solved now, such
     as "sizing" or "layout"; "other numbers" where `explain` and prices solve changed problems, or
-    other trains of a servo axis are listed, whose values are not told. objective, unit: of best and
+    other trains of a servo axis are listed, whose values are left out. objective, unit: of best and
     bound; unit "" for a plain number.
     """
 
@@ -75,9 +75,9 @@ class Outcome:
     x: the best point (n,), or None. finished: it ran to its own end, not out of budget.
     lam_g, lam_h: multipliers of the form's rows. infeasible: it claims there is no feasible point,
     by lam_g, lam_h (a Farkas certificate) or by `proof`. bound and proof: of an exact algorithm;
-    proof["sentence"] is what a reader is told of it, beside a bound or an impossibility.
+    proof["sentence"] states it for a reader, beside a bound or an impossibility.
     others: further points, of an exact algorithm in proven order, of several objectives the rest of
-    the front. leaves: of a conic problem, the parts of its box with
+    the Pareto front. leaves: of a conic problem, the parts of its box with
     their multipliers. message: what it has to say.
     """
 
@@ -136,27 +136,27 @@ class Result:
 
     @property
     def value(self) -> float | None:
-        """The objective's value, None without a feasible design."""
+        """Return the objective's value, None without a feasible design."""
         found = self.objective.get("value")
         return None if found is None else float(found)
 
     @property
     def feasible(self) -> bool:
-        """Whether there is a design that meets all limits, as the certificate says."""
+        """Return whether there is a design that meets all limits, as the certificate says."""
         excess = self.certificate.get("feasibility")
         return bool(self.design) and excess is not None and excess <= FEASIBLE
 
     def to_dict(self) -> dict[str, Any]:
-        """Plain dicts, lists and numbers; no NaN and no infinity (None instead)."""
+        """Return plain dicts, lists and numbers; no NaN and no infinity (None instead)."""
         return as_dict(self)
 
     def to_json(self) -> str:
-        """One JSON object."""
+        """Return one JSON object."""
         return as_json(self)
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> "Result":
-        """The inverse of `to_dict`; ValueError for what is none, or of another format version."""
+        """Return the inverse of `to_dict`; ValueError for what is none, or of another format."""
         if not isinstance(data, Mapping) or "result" not in data:
             raise ValueError("is not a result of `gearopt solve --json`: it has no key `result`")
         if isinstance(data["result"], Mapping):
@@ -176,7 +176,7 @@ class Result:
 
     @classmethod
     def from_json(cls, text: str) -> "Result":
-        """The inverse of `to_json`."""
+        """Return the inverse of `to_json`."""
         return cls.from_dict(loads(text))
 
 
@@ -192,7 +192,7 @@ def as_json(record: Any) -> str:
 
 
 def loads(text: str) -> Any:
-    """Plain data from JSON text; ValueError for NaN, for infinities, and for endless depth."""
+    """Return plain data from JSON text; ValueError for NaN, infinities, and endless depth."""
 
     def none(word: str) -> None:
         raise ValueError(f"holds {word}, which is no number of JSON")
@@ -218,7 +218,7 @@ _SORTS: dict[str, Any] = {  # of what a result's keys hold
 
 
 def _check_sorts(data: Mapping[str, Any]) -> None:
-    """ValueError where a key of a result holds another sort of value than it can."""
+    """Raise ValueError where a key of a result holds another sort of value than it can."""
     if data["status"] not in STATUSES:
         raise ValueError(f"has the status {str(data['status'])[:40]!r}, which no result has")
     for key, sort in _SORTS.items():
@@ -234,12 +234,12 @@ def _check_sorts(data: Mapping[str, Any]) -> None:
 
 
 def versions(*packages: str) -> dict[str, str]:
-    """Versions of Python and of the packages a result rests on."""
+    """Return versions of Python and of the packages a result rests on."""
     return {"python": platform.python_version()} | {name: _version(name) for name in packages}
 
 
 def plain(value: Any) -> Any:
-    """A value as JSON holds it: dicts, lists, numbers; None for NaN and infinities."""
+    """Return A value as JSON holds it: dicts, lists, numbers; None for NaN and infinities."""
     if isinstance(value, Mapping):
         return {str(k): plain(v) for k, v in value.items()}
     if isinstance(value, list | tuple):

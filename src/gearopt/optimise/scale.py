@@ -15,13 +15,13 @@ from gearopt.optimise.result import FEASIBLE
 from gearopt.optimise.terms import Array
 
 PART = 1e-3  # of its box is the least scale of a variable, so that one at zero has a scale too
-COARSE, FINE = 1e-2, 1e-10  # steps that see curvature, and slopes alone
+COARSE, FINE = 1e-2, 1e-10  # steps that see curvature, and gradients alone
 NOTHING = 1e-28  # the square of a rounding
 ENTRIES = 1_000_000  # of the points that are evaluated at once
 
 
 def sizes(problem: Problem | Conic, x: Array) -> Array:
-    """Own scale of every variable at a point (n,): what it would have to move by to matter.
+    """Return the own scale of every variable at a point (n,): what it must move by to matter.
 
     Itself for a log variable; else the largest of |x|, |guess| and PART of its box, at most the
     width of its box. 1 where all of these are zero or infinite.
@@ -38,7 +38,7 @@ def sizes(problem: Problem | Conic, x: Array) -> Array:
 def objective_scale(
     problem: Problem | Conic, x: Array, step: float = FEASIBLE, own: Array | None = None
 ) -> float:
-    """How far the objective moves, in all, where each variable moves by its own scale.
+    """Return how far the objective moves, in all, where variables move by their own scales.
 
     Measured with steps of `step` of each scale (`own`, by default `sizes`), inside the box, and
     divided by it. Discrete variables of a Problem stay where they are: its text may know no values
@@ -62,12 +62,12 @@ def objective_scale(
 
 
 def _fixed(problem: Problem | Conic) -> Any:
-    """Which variables may only have certain values, (n,)."""
+    """Return which variables may only have certain values, (n,)."""
     return np.array([v.discrete and isinstance(problem, Problem) for v, _ in problem.columns])
 
 
 def way(problem: Problem | Conic, x: Array) -> float:
-    """How far the objective has come from that of the guess; NaN where that is no number."""
+    """Return how far the objective has come from that of the guess; NaN where it is none."""
     begin = np.where(_fixed(problem), x, problem.bounds()[2])
     with np.errstate(all="ignore"):
         first, here = (float(v) for v in problem.batch(np.stack([begin, x])).F[:, 0])
@@ -75,7 +75,7 @@ def way(problem: Problem | Conic, x: Array) -> float:
 
 
 def zero_scale(problem: Problem | Conic, x: Array) -> float:
-    """What an objective of zero is measured by: the `way` from the guess.
+    """Return what an objective of zero is measured by: the `way` from the guess.
 
     0 where the objective at x is no zero: where it moves by less than itself as every variable
     moves by FEASIBLE of its magnitude. A width of the box plays no part, as it may be any. From a
@@ -99,7 +99,7 @@ def zero_scale(problem: Problem | Conic, x: Array) -> float:
 
 
 def gap(value: float, bound: float, scale: float = 0.0) -> float:
-    """How far a value lies above a bound, relative to |value|.
+    """Return how far a value lies above a bound, relative to |value|.
 
     A value below FEASIBLE of the objective's scale is zero, as far as it can be known: then the gap
     is relative to the scale. Above a bound that is positive no optimum is zero.
@@ -110,19 +110,19 @@ def gap(value: float, bound: float, scale: float = 0.0) -> float:
 
 
 def unit(value: float, scale: float) -> float:
-    """What differences of the objective are relative to: |value|, or of zero its scale."""
+    """Return what differences of the objective are relative to: |value|, or of zero its scale."""
     return abs(value) if is_known(value, scale) else scale
 
 
 def is_known(value: float, scale: float) -> bool:
-    """Whether a value of the objective can be told from zero."""
+    """Return whether a value of the objective differs from zero."""
     return abs(value) > FEASIBLE * scale
 
 
 def measured(
     problem: Problem | Conic, x: Array, value: float, bound: float, enough: float
 ) -> tuple[float, dict[str, float]]:
-    """The gap of a point, and {"scale": ...} where it is relative to the objective's own scale.
+    """Return the gap of a point, and {"scale": ...} where it is relative to that.
 
     enough: a gap relative to |value| up to it needs no scale.
     """
@@ -137,7 +137,7 @@ RUNAWAY = 1e9  # a variable without a bound that moves this factor from its gues
 
 
 def violation(problem: Problem | Conic, x: Array, batch: Batch) -> tuple[float, str]:
-    """Largest violation of rows, bounds and discreteness, and the name of what has it.
+    """Return the largest violation of rows, bounds and discreteness, and the name of its row.
 
     That of a bound is relative to the variable's own scale, of a value to that or to 1.
     """
@@ -161,7 +161,7 @@ def violation(problem: Problem | Conic, x: Array, batch: Batch) -> tuple[float, 
 
 
 def _distance(variable: Any, value: float, unit: float) -> float:
-    """Distance of a discrete variable from its nearest allowed value, in a unit of listed ones."""
+    """Return the distance of a discrete variable from its nearest value, in a unit of it."""
     if variable.values is not None:
         return float(min(abs(value - v) for v in variable.values)) / unit
     return abs(value - round(value)) if variable.integer else 0.0

@@ -32,7 +32,7 @@ def solve(
     watch: Watch | None = None,
     gap: float = GAP,
 ) -> Result:
-    """The certified answer of one method to one problem.
+    """Return the certified answer of one method to one problem.
 
     method: a name of `problem.methods` or of a back end in `optimise/solvers`; by default the
     problem's own exact algorithm, else ipopt for a Problem and conic for a Conic. gap: relative gap
@@ -51,9 +51,10 @@ def run(
     watch: Watch | None = None,
     gap: float = GAP,
 ) -> tuple[Result, Outcome]:
-    """Like `solve`, with the method's raw outcome beside the result.
+    """Solve like `solve`, and return the method's raw outcome beside the result.
 
-    Of several objectives the first counts; the outcome's other points are those of the front.
+    Of several objectives the first counts; the outcome's other points are the rest of the Pareto
+    front.
     """
     name = method or next(iter(problem.methods), _default(problem))
     clock = Clock()
@@ -64,7 +65,7 @@ def run(
 
 
 def evaluate(problem: Problem | Conic, point: Mapping[str, Any] | Array) -> Result:
-    """What a problem's text gives at a point: objective, report, utilisation of every limit.
+    """Evaluate a problem's text at a point: objective, report, utilisation of every limit.
 
     Nothing is minimised; `Result.feasible` says whether the point meets all limits, its message
     what it exceeds most. point: values by name of the variable (a list for one of size above 1), or
@@ -84,7 +85,7 @@ def evaluate(problem: Problem | Conic, point: Mapping[str, Any] | Array) -> Resu
 
 
 def _given(problem: Problem | Conic, point: Mapping[str, Any] | Array) -> Array:
-    """The point (n,) of values by name."""
+    """Return the point (n,) of values by name."""
     if isinstance(point, Mapping):
         names = list(dict.fromkeys(_head(*column) for column in problem.columns))
         if odd := sorted(set(point) ^ set(names)):
@@ -105,7 +106,7 @@ def solve_within(clock: Clock, problem: Problem | Conic, method: str | None = No
 
 
 def back_ends() -> tuple[str, ...]:
-    """Names of the back ends for any problem: the modules of `optimise/solvers`."""
+    """Return names of the back ends for any problem: the modules of `optimise/solvers`."""
     return tuple(sorted(m.name for m in iter_modules(solvers.__path__)))
 
 
@@ -114,7 +115,7 @@ def _default(problem: Problem | Conic) -> str:
 
 
 def judge(problem: Problem | Conic, method: str, outcome: Outcome, gap: float) -> Verdict:
-    """What is certain of a method's outcome, by the certificate of the problem's kind."""
+    """Return what is certain of a method's outcome, by the certificate of the problem's kind."""
     if isinstance(problem, Conic):
         from gearopt.optimise.conic import certificate as conic
 
@@ -123,7 +124,7 @@ def judge(problem: Problem | Conic, method: str, outcome: Outcome, gap: float) -
 
 
 def method_of(problem: Problem | Conic, name: str) -> Callable[..., Outcome]:
-    """The `run` of a method for a problem; SolveError lists the methods where there is none."""
+    """Return the `run` of a method for a problem; SolveError lists the methods there are."""
     if name in problem.methods:
         return problem.methods[name]
     if name in back_ends():
@@ -173,7 +174,7 @@ def _result(
 
 
 def design(problem: Problem | Conic, x: Array) -> dict[str, Any]:
-    """Every variable by name and unit (`face_width_mm`); lists for blocks."""
+    """Return every variable by name and unit (`face_width_mm`); lists for blocks."""
     found: dict[str, Any] = {}
     for (variable, name), value in zip(problem.columns, x, strict=True):
         head = _head(variable, name)
@@ -187,19 +188,19 @@ def design(problem: Problem | Conic, x: Array) -> dict[str, Any]:
 
 
 def _head(variable: Var, name: str) -> str:
-    """The name of the variable that a column is of."""
+    """Return the name of the variable that a column is of."""
     return name.rsplit("[", 1)[0] if variable.size > 1 else name
 
 
 def limits(problem: Problem | Conic, x: Array) -> dict[str, float]:
-    """Utilisation of every user limit at a point."""
+    """Return utilisation of every user limit at a point."""
     rows = problem.batch(x[None]).G[0]
     named = zip(problem.rows.inequalities, rows, strict=True)
     return {row.name: float(v) for row, v in named if row.kind == "limits"}
 
 
 def report(problem: Problem | Conic, x: Array) -> dict[str, Any]:
-    """The problem's report terms at a point; lists for the rows of a repeat."""
+    """Return the problem's report terms at a point; lists for the rows of a repeat."""
     values = problem.batch(x[None]).report
     return {
         name: np.asarray(v).reshape(-1).tolist() if np.size(v) > 1 else float(np.ravel(v)[0])

@@ -1,7 +1,7 @@
 """Whether a point is stationary, and whether it is a local minimum: conditions of both orders.
 
 First order, in the form's variables: no variable promises a decrease, by its slope over its own
-scale, that is more than STATIONARY of what acts on it: the slopes of the objective and of the
+scale, that is more than STATIONARY of what acts on it: the gradients of the objective and of the
 limits, which cancel in a solution, and the curvature. Neither a unit nor a factor of the objective
 changes that.
 
@@ -69,7 +69,7 @@ def evaluated(
 
 
 def residuals(point: Point) -> dict[str, float]:
-    """Stationarity and complementarity of a point, both relative, hence without units."""
+    """Return stationarity and complementarity of a point, both relative, without units."""
     own, unit = own_scales(point), acting(point)
     slope = point.gradient
     room = np.clip(np.where(slope > 0.0, point.y - point.low, point.high - point.y), 0.0, own)
@@ -81,13 +81,13 @@ def residuals(point: Point) -> dict[str, float]:
 
 
 def own_scales(point: Point) -> Array:
-    """Own scale of every y: 1 of a logarithm."""
+    """Return own scale of every y: 1 of a logarithm."""
     natural = sizes(point.problem, point.shape.to_x(point.y))
     return np.where(point.shape.logarithmic, 1.0, natural)
 
 
 def acting(point: Point) -> Array:
-    """What acts on each variable over its own scale: slopes, and the curvature, (n,).
+    """Return what acts on each variable over its own scale (n,): gradients and curvature.
 
     A logarithm that is proven convex has the unit 1: there a promise bounds the gap.
     """
@@ -105,7 +105,7 @@ def acting(point: Point) -> Array:
 
 
 def hessian(point: Point) -> Any:
-    """Second derivatives of the Lagrangian, a sparse casadi matrix (n, n)."""
+    """Return second derivatives of the Lagrangian, a sparse casadi matrix (n, n)."""
     import casadi as ca
 
     problem, shape = point.problem, point.shape
@@ -151,7 +151,7 @@ class _Cone:
     length: Array
 
     def across(self, d: Array) -> Array:
-        """Of a slope and an excess of the firm rows, the Newton step across d that undoes both.
+        """Return the Newton step across d that undoes a gradient and an excess of the firm rows.
 
         (k, k and one for each firm row).
         """
@@ -165,12 +165,12 @@ class _Cone:
 
 
 def no_minimum(point: Point) -> str:
-    """Why a stationary point is not known to be a local minimum, in words; "" where it is."""
+    """Return why a stationary point may be no local minimum, in words; "" where it is one."""
     if point.shape.convex:
         return ""
     free = _free(point)
     if free.sum() > MOST:
-        return f"its curvature is not looked at: {free.sum()} variables are off their bounds"
+        return f"its curvature was not examined: {free.sum()} variables are off their bounds"
     cone = _cone(point, free)
     if not np.isfinite(cone.curved).all():
         return "its curvature is not a number"
@@ -186,11 +186,11 @@ def no_minimum(point: Point) -> str:
     for value, d in _eigen(cone.curved, np.vstack([cone.firm, cone.loose])):
         if value <= -FLAT:
             return _words(point, cone, d)
-    return "whether it is a minimum is open: limits hold that have no price"
+    return "whether it is a minimum is open: limits are active with zero multipliers"
 
 
 def _free(point: Point) -> Any:
-    """Variables that no bound with a price holds, (n,)."""
+    """Return variables that no bound with a price holds, (n,)."""
     own, slope = own_scales(point), point.gradient
     price = np.abs(slope) * own > STATIONARY * acting(point)
     low, high = _ends(point)
@@ -198,13 +198,13 @@ def _free(point: Point) -> Any:
 
 
 def _ends(point: Point) -> tuple[Any, Any]:
-    """Which variables sit on their lower, and which on their upper bound."""
+    """Return which variables sit on their lower, and which on their upper bound."""
     near = NEAR * own_scales(point)
     return point.y - point.low <= near, point.high - point.y <= near
 
 
 def _cone(point: Point, free: Any) -> _Cone:
-    """The free directions, in units in which the Hessian has entries of up to 1."""
+    """Return the free directions, in units in which the Hessian has entries of up to 1."""
     own = own_scales(point)
     p = point.problem.parameter_values()
     of_g, of_h = (dense(j) for j in point.shape.jacobians(point.y, p))
@@ -224,14 +224,14 @@ def _cone(point: Point, free: Any) -> _Cone:
 
 
 def _normal(rows: Array) -> tuple[Array, Array]:
-    """Rows of length 1, and their lengths before."""
+    """Return rows of length 1, and their lengths before."""
     length = np.linalg.norm(rows, axis=1)
     length = np.where(length > 0.0, length, 1.0)
     return rows / length[:, None], length
 
 
 def _equal(matrix: Array) -> Array:
-    """The s (k,) for which the largest entry of each row of M_ij/sqrt(s_i s_j) is 1, or 0."""
+    """Return the s (k,) that makes the largest entry of each row of M_ij/sqrt(s_i s_j) 1, or 0."""
     found = np.ones(len(matrix))
     for _ in range(ROUNDS):
         root = np.sqrt(found)
@@ -241,7 +241,7 @@ def _equal(matrix: Array) -> Array:
 
 
 def _eigen(curved: Array, rows: Array) -> list[tuple[float, Array]]:
-    """Curvatures below FLAT along rows d = 0, least first, with their directions of length 1."""
+    """Return curvatures below FLAT along rows d = 0, smallest first, and their directions."""
     _, sizes, turned = np.linalg.svd(rows)
     across = turned[int((sizes > RANK).sum()) :].T
     values, vectors = np.linalg.eigh(across.T @ curved @ across)
@@ -250,7 +250,7 @@ def _eigen(curved: Array, rows: Array) -> list[tuple[float, Array]]:
 
 
 def _sinks(point: Point, cone: _Cone, d: Array) -> bool:
-    """Whether the Lagrangian falls along d, by steps of the variables' scales or of their box."""
+    """Return whether the Lagrangian falls along d, by steps of the own scales or of the box."""
     own, width = own_scales(point), point.high - point.low
     wide = np.where(np.isfinite(width), np.maximum(own, BOX * width), own)
     step = np.zeros(len(point.y))
@@ -260,7 +260,7 @@ def _sinks(point: Point, cone: _Cone, d: Array) -> bool:
 
 
 def _falls(point: Point, cone: _Cone, step: Array, across: Array) -> bool:
-    """Whether the Lagrangian falls by more than its slope and curvature say, at all STEPS.
+    """Return whether the Lagrangian falls by more than gradient and curvature give, at STEPS.
 
     It need not be seen at the shortest step; but nowhere may it rise.
     """
@@ -279,7 +279,7 @@ def _falls(point: Point, cone: _Cone, step: Array, across: Array) -> bool:
 
 
 def _curve(point: Point, cone: _Cone, step: Array, across: Array) -> Array:
-    """A step along a flat direction and, across it, to what the Lagrangian and firm rows ask for.
+    """Return a step along a flat direction and, across it, back to Lagrangian and firm rows.
 
     They ask for slopes and rows as they are at the point; what these are there counts as none.
     """
@@ -293,7 +293,7 @@ def _curve(point: Point, cone: _Cone, step: Array, across: Array) -> Array:
 
 
 def _lagrangian(point: Point, cone: _Cone, y: Array) -> tuple[float, float, Array]:
-    """Value of the Lagrangian at y, the sizes of its terms, and its slope and the firm rows."""
+    """Return the Lagrangian at y, the sizes of its terms, and its gradient with firm rows."""
     p = point.problem.parameter_values()
     parts = point.shape.derivatives(y, p, point.lam_g, point.lam_h)
     f, g, h, _, slope = (np.array(part).ravel() for part in parts)
@@ -304,8 +304,8 @@ def _lagrangian(point: Point, cone: _Cone, y: Array) -> tuple[float, float, Arra
 
 
 def _words(point: Point, cone: _Cone, d: Array) -> str:
-    """Along which variables the objective falls."""
+    """Return along which variables the objective falls."""
     names = [name for (_, name), at in zip(point.problem.columns, cone.free, strict=True) if at]
     share = np.abs(cone.unit * d) / own_scales(point)[cone.free]
     most = [names[k] for k in np.argsort(-share, kind="stable")[:3] if share[k] > 0.3 * share.max()]
-    return f"no minimum: slopes vanish there, but the objective falls along {', '.join(most)}"
+    return f"no minimum: gradients vanish there, but the objective falls along {', '.join(most)}"

@@ -99,7 +99,7 @@ def trace(problem: Problem) -> Traced:
 
 
 def _compare(problem: Problem, terms: Any) -> None:
-    """SolveError names a term whose tape is not what the text gives on floats."""
+    """Raise SolveError for a term whose tape is not what the text gives on floats."""
     points, p = sample(problem, POINTS), problem.parameter_values()
     batch, rows = problem.batch(points), problem.rows
     ours = np.hstack([batch.F, batch.G, batch.H])
@@ -148,7 +148,7 @@ def _block(problem: Problem, repeat: Repeat | None) -> Block:
 
 
 def _split(terms: Any) -> Any:
-    """Columns of symbols, which are what arrays become, as tuples."""
+    """Return columns of symbols, which are what arrays become, as tuples."""
     import casadi as ca
 
     def tuples(block: Any) -> Any:
@@ -188,7 +188,7 @@ class Compiled:
             self._buffer.set_res(k, out.data)
 
     def __call__(self, point: Array) -> tuple[Array, Array, Array]:
-        """f, g, h of one point."""
+        """Return f, g, h of one point."""
         self._x[:] = point
         self._run()
         return self._out  # type: ignore[return-value]
@@ -205,6 +205,12 @@ class Kinds:
     inequalities: tuple[int, ...]
     equalities: tuple[int, ...]
 
+    @property
+    def log_convex(self) -> bool:
+        """Return whether a problem of these kinds (not degrees) is convex in logarithms."""
+        rows = max((self.objective, *self.inequalities))
+        return rows <= POSYNOMIAL and max(self.equalities, default=0) <= MONOMIAL
+
 
 @dataclass(frozen=True)
 class Term:
@@ -215,7 +221,7 @@ class Term:
 
     @property
     def positive(self) -> bool:
-        """Whether the term is known to be > 0."""
+        """Return whether the term is known to be > 0."""
         if self.kind == CONSTANT:
             return bool(np.all(self.value > 0))
         return self.kind != OTHER
@@ -296,7 +302,7 @@ def walk(function: Any, inputs: list[list[Any]], constant: Any, apply: Any) -> l
 
 
 def _apply(operation: int, terms: list[Term]) -> Term:
-    """The kind of `operation(terms)`."""
+    """Return the kind of `operation(terms)`."""
     import casadi as ca
 
     if all(t.kind == CONSTANT for t in terms):
@@ -331,14 +337,14 @@ def _power(base: Term, exponent: Term) -> Term:
 
 
 def fold(operation: int, values: list[Any]) -> Any:
-    """What an operation makes of numbers, or None where this reader does not know it."""
+    """Return what an operation makes of numbers; None where this reader does not know it."""
     known = _folds().get(operation)
     return known(*values) if known else None
 
 
 @cache
 def _folds() -> dict[int, Any]:
-    """How casadi's operations act on numbers."""
+    """Return how casadi's operations act on numbers."""
     import casadi as ca
 
     return {

@@ -94,7 +94,7 @@ class Var:
 
     @property
     def discrete(self) -> bool:
-        """Whether only some values are allowed."""
+        """Return whether only some values are allowed."""
         return self.integer or self.values is not None
 
 
@@ -145,17 +145,17 @@ class Repeat:
 
     @property
     def count(self) -> int:
-        """Number of rows."""
+        """Return number of rows."""
         return len(next(iter(self.data.values())))
 
     @property
     def width(self) -> int:
-        """Number of scalar variables of one row."""
+        """Return number of scalar variables of one row."""
         return sum(v.size for v in self.variables)
 
 
 def _numbers(value: Any) -> Array | None:
-    """A value as an array of floats, None where it is no real number or block of them."""
+    """Return a value as an array of floats; None where it is no real number or block."""
     try:
         found = np.asarray(value)
     except ValueError:  # of unequal lengths
@@ -169,7 +169,7 @@ def _check_name(what: str, name: Any) -> None:
 
 
 def _check_numbers(what: str, item: Any, keys: tuple[str, ...]) -> None:
-    """ValueError where a declared name, size or number is none."""
+    """Raise ValueError where a declared name, size or number is none."""
     _check_name(what, item.name)
     size = item.size
     if not isinstance(size, int | np.integer) or isinstance(size, bool) or size < 1:
@@ -186,7 +186,7 @@ def _check_numbers(what: str, item: Any, keys: tuple[str, ...]) -> None:
 
 
 def check_text(what: str, variables: Any, evaluate: Any) -> None:
-    """ValueError where variables or text of a problem or repeat are none."""
+    """Raise ValueError where variables or text of a problem or repeat are none."""
     if not isinstance(variables, tuple) or not all(isinstance(v, Var) for v in variables):
         raise ValueError(f"{what}: variables are a tuple of Var(...), such as (Var(...),)")
     if not callable(evaluate):
@@ -194,12 +194,12 @@ def check_text(what: str, variables: Any, evaluate: Any) -> None:
 
 
 def spread(value: Number, size: int) -> Array:
-    """One float, or `size` floats, as an array (size,)."""
+    """Return one float, or `size` floats, as an array (size,)."""
     return np.full(size, value, float)
 
 
 def each(value: Any) -> tuple[Any, ...]:
-    """A block of scalars as a tuple, whatever its size."""
+    """Return a block of scalars as a tuple, whatever its size."""
     return value if isinstance(value, tuple) else (value,)
 
 
@@ -211,7 +211,7 @@ class Named(SimpleNamespace):
 
 
 def namespace(declared: tuple[Any, ...], scalars: list[Any]) -> Named:
-    """Scalars by name: one for size 1, a tuple for more."""
+    """Return scalars by name: one for size 1, a tuple for more."""
     found: dict[str, Any] = {}
     start = 0
     for item in declared:
@@ -222,7 +222,7 @@ def namespace(declared: tuple[Any, ...], scalars: list[Any]) -> Named:
 
 
 def flat(block: Mapping[str, Any]) -> list[tuple[str, Any]]:
-    """[(name or name[k], scalar)] of a block of terms; k counts from 1, as stages do."""
+    """Return [(name or name[k], scalar)] of a block of terms; k counts from 1, as stages do."""
     found: list[tuple[str, Any]] = []
     for name, value in block.items():
         if isinstance(value, tuple | list):
@@ -233,14 +233,14 @@ def flat(block: Mapping[str, Any]) -> list[tuple[str, Any]]:
 
 
 def inequalities(terms: Terms) -> list[tuple[str, Any, str]]:
-    """Name, value and kind of every inequality: limits first, then defines."""
+    """Return name, value and kind of every inequality: limits first, then defines."""
     return [(n, v, "limits") for n, v in flat(terms.limits)] + [
         (n, v, "defines") for n, v in flat(terms.defines)
     ]
 
 
 def checked(terms: Any, where: str, numbers: bool = False) -> Terms:
-    """The terms of a text with arrays as blocks; SolveError says what a text must not return.
+    """Return the terms of a text with arrays as blocks; SolveError for what is no term.
 
     numbers: the text was run on floats, so every term is a real number.
     """
@@ -263,7 +263,7 @@ def checked(terms: Any, where: str, numbers: bool = False) -> Terms:
 
 
 def _block(value: Any) -> Any:
-    """A list or an array of one dimension as a tuple; arrays of none, as np.where's, as scalars."""
+    """Return a list or array of one dimension as a tuple; arrays of none as scalars."""
     if isinstance(value, np.ndarray) and value.ndim == 0:
         return value[()]
     if isinstance(value, tuple | list) or (isinstance(value, np.ndarray) and value.ndim == 1):
@@ -272,7 +272,7 @@ def _block(value: Any) -> Any:
 
 
 def _wrong(value: Any, numbers: bool) -> str:
-    """What a term is that it must not be; "" for a scalar."""
+    """Return what a term is that it must not be; "" for a scalar."""
     if isinstance(value, bool | np.bool_):
         return "a comparison; write a quotient that must not exceed 1, such as needed/allowed"
     if isinstance(value, tuple | list | np.ndarray | Mapping | set):
@@ -285,5 +285,5 @@ def _wrong(value: Any, numbers: bool) -> str:
 
 
 def flatten(terms: Terms) -> tuple[list[Any], list[Any]]:
-    """Values of the inequalities and of the equalities, in order."""
+    """Return values of the inequalities and of the equalities, in order."""
     return [v for _, v, _ in inequalities(terms)], [v for _, v in flat(terms.equal)]

@@ -15,7 +15,7 @@ NUMBERS: dict[Any, tuple[type, ...]] = {
 
 
 def typed(kind: Any, data: Any, where: str = "") -> Any:
-    """A value of a type from plain data; ValueError names the place that holds something else.
+    """Return a value of a type from plain data; ValueError names the place that differs.
 
     kind: a dataclass, a tuple, a mapping, a plain type, any of them or None.
     """
@@ -42,7 +42,7 @@ def typed(kind: Any, data: Any, where: str = "") -> Any:
 
 
 def untyped(value: Any) -> Any:
-    """Plain data of dataclasses, for `typed`: a field that holds its default is left out."""
+    """Return plain data of dataclasses, for `typed`, without fields that hold their default."""
     if is_dataclass(value) and not isinstance(value, type):
         held = ((f, getattr(value, f.name)) for f in fields(value))
         each = (
@@ -55,7 +55,7 @@ def untyped(value: Any) -> Any:
 
 
 def _filled(kind: Any, data: Any, where: str) -> Any:
-    """A dataclass with all its fields and no other."""
+    """Return A dataclass with all its fields and no other."""
     hints, held = get_type_hints(kind), _mapping(data, where)
     needed = {f.name for f in fields(kind) if f.default is f.default_factory is MISSING}
     for inline in (f.name for f in fields(kind) if f.metadata):

@@ -96,13 +96,13 @@ def enter(method: str, model: Callable[[str], Model]) -> Entry:
 
 
 def _own(method: str, declared: Any) -> Any:
-    """What a module declares of a method: the same of all its methods, or by their names."""
+    """Return what a module declares of a method: the same for all of them, or by name."""
     by_name = isinstance(declared, Mapping) and method in declared
     return declared[method] if by_name else declared
 
 
 def attempt(entry: Entry, seed: int, budget: Budget, told: Callable[[Event], bool]) -> Run | None:
-    """One run; None where `told` ended it. What is wrong with an answer is the run's message."""
+    """Make one run; None where `told` ended it. An error of the method is the run's message."""
     problem, method = entry.problem, entry.method
     assert problem is not None
     clock = Clock()
@@ -144,12 +144,12 @@ def attempt(entry: Entry, seed: int, budget: Budget, told: Callable[[Event], boo
 
 
 def _scale(problem: Problem | Conic, x: Array, verdict: Verdict) -> float:
-    """What a gap of this point is measured by, if its objective is zero."""
+    """Return what a gap of this point is measured by, if its objective is zero."""
     return verdict.certificate.get("scale") or zero_scale(problem, x)
 
 
 def _clipped(run: Run) -> Run:
-    """No step may be better than the point that was checked, and that point ends the steps."""
+    """Make no step better than the point that was checked, which ends the steps."""
     value = run.objective
     if value is None:
         return replace(run, steps=())
@@ -255,7 +255,7 @@ def compare(
 def _bound(
     method: str, model: Callable[[str], Model], watch: Follow | None
 ) -> tuple[str, str, float] | None:
-    """Name of the model, the method, and the bound that one long run of a method proves for it."""
+    """Return model, method, and the bound that one long run of the method proves."""
     posed = model(method)
     problem = replace(posed.problem)
 
@@ -271,7 +271,7 @@ def _bound(
 def _work(
     jobs: Sequence[_Job], plan: Plan, watch: Follow | None, runs: dict[tuple[str, str], list[Run]]
 ) -> int:
-    """Make the runs in turn, so that a drift of the machine meets all methods alike; how many."""
+    """Make the runs in turn, so that a drift of the machine meets all methods; return how many."""
     expected = {(j.entry.method, j.kind): _expected(j, plan) for j in jobs}
     for done, job in enumerate(jobs):
         left = sum(expected[j.entry.method, j.kind] for j in jobs[done:])
@@ -290,7 +290,7 @@ def _work(
 
 
 def _expected(job: _Job, plan: Plan) -> float:
-    """A guess of the seconds of a run, from its warm-up; runs that are made correct it."""
+    """Estimate the seconds of a run from its warm-up and the runs made so far."""
     entry = job.entry
     if entry.finished and not entry.paced:
         return entry.seconds
@@ -301,7 +301,7 @@ def _expected(job: _Job, plan: Plan) -> float:
 
 
 def _budget(job: _Job, plan: Plan, before: Sequence[Run]) -> Budget:
-    """A method that plans ahead is told how many evaluations its time will allow."""
+    """Return the budget of a run, with evaluations for a method that plans ahead."""
     if job.kind == KINDS[0]:
         return Budget(PATIENCE * plan.seconds, plan.evaluations)
     if not job.entry.paced or not before:
@@ -315,7 +315,7 @@ def _groups(
     runs: Mapping[tuple[str, str], list[Run]],
     bound: tuple[str, str, float] | None,
 ) -> tuple[Group, ...]:
-    """One group a model; a method without a model stands in the first one, with its reason."""
+    """Return one group per model; a method without a model stands in the first one."""
     names = list(dict.fromkeys(e.model.problem.name for e in entries if e.model is not None))
     groups = []
     for name in names:

@@ -31,7 +31,7 @@ class Run:
 
     objective and gap: None without a feasible point. violation: of the point it returned, None
     where it returned none. seconds: of the method alone. steps: (seconds, evaluations, best so far)
-    as the method told, no better than the objective it ended with; clipped: it told of better.
+    as the method reported, no better than the objective it ended with; clipped: it reported better.
     scale: the objective's own at the point, see `scale`.
     """
 
@@ -150,16 +150,16 @@ class Comparison:
     gearopt: str = field(default_factory=lambda: versions("gearopt")["gearopt"])
 
     def to_dict(self) -> dict[str, Any]:
-        """Plain dicts, lists and numbers; no NaN and no infinity (None instead)."""
+        """Return plain dicts, lists and numbers; no NaN and no infinity (None instead)."""
         return as_dict(self)
 
     def to_json(self) -> str:
-        """One JSON object."""
+        """Return one JSON object."""
         return as_json(self)
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> "Comparison":
-        """The inverse of `to_dict`; ValueError for what is none, or of another format version."""
+        """Return the inverse of `to_dict`; ValueError for what is none, or of another format."""
         if not isinstance(data, Mapping) or "comparison" not in data:
             raise ValueError("is no comparison: it has no key `comparison`")
         if data["comparison"] != FORMAT:
@@ -170,12 +170,12 @@ class Comparison:
 
     @classmethod
     def from_json(cls, text: str) -> "Comparison":
-        """The inverse of `to_json`."""
+        """Return the inverse of `to_json`."""
         return cls.from_dict(loads(text))
 
 
 def _check(found: Comparison) -> None:
-    """ValueError where the parts of a comparison do not go together."""
+    """Raise ValueError where the parts of a comparison do not go together."""
     needed = {"evaluations", "seconds", "patience_seconds"}
     if missing := sorted(needed - set(found.budget)):
         raise ValueError(f"lacks in budget: {', '.join(missing)}")
@@ -191,12 +191,12 @@ def _check(found: Comparison) -> None:
 
 
 def machine() -> dict[str, Any]:
-    """Where it was measured."""
+    """Return where it was measured."""
     return {"cpus": os.cpu_count(), "platform": platform.platform()}
 
 
 def excess(value: float, reference: float, scale: float = 0.0) -> float:
-    """The gap of a value above a reference, at least 0; absolute where no scale is known.
+    """Return the gap of a value above a reference, at least 0; absolute without a scale.
 
     CertificateError where it lies below by more than rounding: then the bound is wrong.
     """
@@ -209,7 +209,7 @@ def excess(value: float, reference: float, scale: float = 0.0) -> float:
 def sample(
     runs: Sequence[Run], reference: float | None, scale: float, by_time: bool
 ) -> Sample | None:
-    """The runs of a method with their gaps, statistics and curve; None without a run."""
+    """Return the runs of a method with their gaps, statistics and curve; None without a run."""
     if not runs:
         return None
     judged = tuple(_judged(run, reference, scale) for run in runs)
@@ -223,7 +223,7 @@ def _judged(run: Run, reference: float | None, scale: float) -> Run:
 
 
 def quantile(values: Sequence[float], share: float) -> float | None:
-    """The value that `share` of the sorted values lie below, the worse of two; None for inf."""
+    """Return the value that `share` of the values lie below, the worse of two; None for inf."""
     found = sorted(values)[min(int(share * len(values)), len(values) - 1)]
     return found if math.isfinite(found) else None
 
@@ -247,7 +247,7 @@ def _summary(runs: Sequence[Run]) -> Summary:
 
 
 def _curve(runs: Sequence[Run], reference: float | None, scale: float, by_time: bool) -> Curve:
-    """Quantiles of the gap so far wherever a run improved; a finished run keeps what it has."""
+    """Return quantiles of the gap so far wherever a run improved; a finished run keeps its own."""
     if reference is None:
         return Curve((), (), (), ())
     traces = [[(s[0] if by_time else float(s[1]), s[2]) for s in run.steps] for run in runs]

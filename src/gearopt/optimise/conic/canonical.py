@@ -27,7 +27,7 @@ class Block:
 
     @property
     def rows(self) -> slice:
-        """Its rows."""
+        """Return its rows."""
         return slice(self.start, self.start + self.size)
 
 
@@ -57,14 +57,14 @@ class Canonical:
 
     @cached_property
     def entries(self) -> tuple[Any, Any, Array]:
-        """Row, column and value of every entry of A that is not zero."""
+        """Return row, column and value of every entry of A that is not zero."""
         table = self.A.tocoo()
         there = table.data != 0.0  # a parameter that is zero leaves an entry
         return table.row[there], table.col[there], table.data[there]
 
     @cached_property
     def convexity(self) -> tuple[float, Array]:
-        """(shortfall, unit (n,)): x.P x + shortfall sum (x/unit)^2 >= 0, rounding included."""
+        """Return (shortfall, unit (n,)): x.P x + shortfall sum (x/unit)^2 >= 0, with rounding."""
         size = len(self.c)
         diagonal = self.P.diagonal()
         support = np.flatnonzero(abs(self.P).sum(axis=0))
@@ -86,7 +86,7 @@ class Canonical:
         return max(0.0, -least), unit
 
     def turned(self, y: Array) -> Array:
-        """Multipliers of cvxpy's rows (y_0, y_1, ...) as multipliers of ours."""
+        """Return multipliers of cvxpy's rows (y_0, y_1, ...) as multipliers of ours."""
         y = np.array(y, float)
         for block in self.blocks:
             if block.rotated:
@@ -96,7 +96,7 @@ class Canonical:
 
 
 def canonical(problem: Conic) -> Canonical:
-    """The data at the problem's parameter values, remembered for the last values.
+    """Return the data at the problem's parameter values, remembered for the last values.
 
     SolveError for cones other than zero, nonnegative and second order.
     """
@@ -109,7 +109,7 @@ def canonical(problem: Conic) -> Canonical:
 
 
 def shifted(problem: Conic, data: Canonical, margin: float) -> Canonical:
-    """The same data with every limit and define held to 1 - margin."""
+    """Return the same data with every limit and define held to 1 - margin."""
     model = problem.model()
     count = len(model.rows.inequalities)
     model.shifts.value = np.where(np.arange(model.shifts.size) < count, margin, 0.0)
@@ -169,7 +169,7 @@ def _canonical(problem: Conic) -> Canonical:
 
 
 def _data(name: str, problem: Any) -> tuple[dict[str, Any], float]:
-    """Cvxpy's data for Clarabel, and the constant of the objective."""
+    """Return Cvxpy's data for Clarabel, and the constant of the objective."""
     import cvxpy as cp
 
     try:
@@ -186,7 +186,7 @@ def _data(name: str, problem: Any) -> tuple[dict[str, Any], float]:
 
 
 def _product(A: Any, b: Array, start: int) -> bool:
-    """Whether s_0 + s_1 and s_0 - s_1 are sparser than s_0 and s_1, and exact in doubles."""
+    """Return whether s_0 + s_1 and s_0 - s_1 are sparser than s_0 and s_1, and exact."""
     first, second = (
         dict(zip(A.indices[lo:hi], A.data[lo:hi], strict=True))
         for lo, hi in (A.indptr[start : start + 2], A.indptr[start + 1 : start + 3])
@@ -216,7 +216,7 @@ def _turn(count: int, blocks: list[Block]) -> Any:
 
 
 def _allowed(problem: Conic, user: list[int]) -> dict[int, Array]:
-    """Values of the discrete columns within their bounds; SolveError where there are too many."""
+    """Return values of the discrete columns within their bounds; SolveError: too many."""
     found = {}
     lower, upper, _ = problem.bounds()
     for (variable, name), column, low, high in zip(

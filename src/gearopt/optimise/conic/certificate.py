@@ -33,7 +33,7 @@ ARITHMETIC = "double, with a rounding allowance"
 
 @np.errstate(all="ignore")
 def certify(problem: Conic, outcome: Outcome, gap: float) -> Verdict:
-    """Status, bound and residuals of an outcome; `gap` is the largest one called optimal.
+    """Return status, bound and residuals of an outcome; `gap`: the largest called optimal.
 
     CertificateError where a bound contradicts a feasible point.
     """
@@ -69,7 +69,7 @@ def certify(problem: Conic, outcome: Outcome, gap: float) -> Verdict:
 
 
 def _bound(problem: Conic, outcome: Outcome, value: float) -> tuple[float, float, float, str]:
-    """The least cost over all leaves, what it lost (see `Proof`), and what nothing holds."""
+    """Return the least cost over all leaves, what it lost (see `Proof`), and what nothing holds."""
     data = canonical(problem)
     if not covers(data, outcome.leaves):
         return -math.inf, 0.0, 0.0, ""
@@ -119,7 +119,7 @@ def _infeasible(problem: Conic, outcome: Outcome) -> Verdict:
 
 
 def _empty(data: Canonical, leaf: Leaf) -> bool:
-    """Whether intervals or a leaf's multipliers prove that no point of it is feasible."""
+    """Return whether intervals or a leaf's multipliers prove that no point of it is feasible."""
     low, high, crossed = narrowed(data, leaf.lower, leaf.upper)
     if crossed or leaf.y is None:
         return crossed
@@ -130,7 +130,7 @@ def _empty(data: Canonical, leaf: Leaf) -> bool:
 
 
 def _weights(data: Canonical, leaf: Leaf) -> dict[int, float]:
-    """Multipliers of the user's rows by number."""
+    """Return multipliers of the user's rows by number."""
     found = dict.fromkeys((int(k) for k in data.label if k >= 0), 0.0)
     for k in np.flatnonzero(data.label >= 0):
         found[int(data.label[k])] += 0.0 if leaf.y is None else abs(float(leaf.y[k]))
@@ -138,7 +138,7 @@ def _weights(data: Canonical, leaf: Leaf) -> dict[int, float]:
 
 
 def _only(data: Canonical, leaf: Leaf, numbers: set[int]) -> tuple[Canonical, Leaf]:
-    """Data and leaf with these of the user's rows alone; they are linear rows of the data."""
+    """Return data and leaf with these of the user's rows alone, which are linear rows."""
     keep = np.isin(data.label, [-1, *numbers])
     gone = ~keep
     front = data.zero + data.nonneg
@@ -155,7 +155,7 @@ def _only(data: Canonical, leaf: Leaf, numbers: set[int]) -> tuple[Canonical, Le
 
 
 def covers(data: Canonical, leaves: tuple[Leaf, ...]) -> bool:
-    """Whether the leaves are a partition of the box by cuts between allowed values.
+    """Return whether the leaves are a partition of the box by cuts between allowed values.
 
     The box is cut where no leaf straddles, again and again, until each part is one leaf's.
     """
@@ -192,6 +192,6 @@ def covers(data: Canonical, leaves: tuple[Leaf, ...]) -> bool:
 
 
 def _positions(data: Canonical, columns: list[int], ends: Array, side: Any) -> Any:
-    """Positions of ends (leaves, n) among the allowed values of discrete columns."""
+    """Return positions of ends (leaves, n) among the allowed values of discrete columns."""
     found = [np.searchsorted(data.allowed[k], ends[:, k], side) for k in columns]
     return np.stack(found, axis=1) if found else np.zeros((len(ends), 0), int)

@@ -25,14 +25,14 @@ ENOUGH = 0.01  # a pass that narrows no column by this share is the last
 
 
 def cutoff(value: float) -> float:
-    """A cost a little above that of a known point, whose rows may be violated a little."""
+    """Return A cost a little above that of a known point, whose rows may be violated a little."""
     return value + MARGIN * abs(value)
 
 
 def propagate(
     data: Canonical, lower: Array, upper: Array, most: float = np.inf
 ) -> tuple[Array, Array] | None:
-    """Bounds (n,), (n,) of all points of the box that are feasible and cost at most `most`.
+    """Return bounds (n,), (n,) of all feasible points of the box that cost at most `most`.
 
     None: there are none.
     """
@@ -44,7 +44,7 @@ def propagate(
 def narrowed(
     data: Canonical, lower: Array, upper: Array, most: float = np.inf
 ) -> tuple[Array, Array, bool]:
-    """The same bounds, and whether they cross; then they are those before, which still hold.
+    """Return the same bounds, and whether they cross; then they are the previous ones.
 
     Interval evaluation of A x + s = b, s in K, c.x + d <= most.
     """
@@ -108,7 +108,7 @@ def _to_allowed(data: Canonical, low: Array, high: Array) -> bool:
 
 
 def _sums(row: Any, terms: Array, count: int) -> tuple[Any, Any, Any]:
-    """Sum of the finite terms of each row, number of infinite ones, sum of magnitudes."""
+    """Return sum of the finite terms of each row, number of infinite ones, sum of magnitudes."""
     finite = np.isfinite(terms)
     kept = np.where(finite, terms, 0.0)
     return (
@@ -119,7 +119,7 @@ def _sums(row: Any, terms: Array, count: int) -> tuple[Any, Any, Any]:
 
 
 def _rest(row: Any, terms: Array, total: Array, infinite: Any, bad: float) -> Array:
-    """Each row's sum without the entry itself; `bad` where another entry is infinite."""
+    """Return each row's sum without the entry itself; `bad` where another entry is infinite."""
     finite = np.isfinite(terms)
     others = infinite[row] - ~finite
     return np.where(others > 0, bad, total[row] - np.where(finite, terms, 0.0))
@@ -132,7 +132,7 @@ def _tighten(better: np.ufunc, bound: Array, column: Any, found: Array, out: flo
 
 
 def _cones(data: Canonical, low: Array, high: Array) -> None:
-    """Tighten the intervals of the slacks, in place, by what the cones say of them."""
+    """Tighten the intervals of the slacks, in place, by the cones."""
     low[: data.zero] = np.maximum(low[: data.zero], 0.0)
     high[: data.zero] = np.minimum(high[: data.zero], 0.0)
     end = data.zero + data.nonneg
@@ -179,8 +179,9 @@ class Leaf:
 class Proof:
     """What multipliers prove on a box.
 
-    least: no feasible point of the box is cheaper. charge, slack: what it lost to the gradient that
-    is left and to rows off their limit, in units of the cost. weights (m,): the multipliers used.
+    least: no feasible point of the box has a lower cost. charge, slack: what it lost to the
+    gradient that is left and to rows off their limit, in units of the cost. weights (m,): the
+    multipliers used.
     """
 
     least: float
@@ -190,7 +191,7 @@ class Proof:
 
 
 def inside(data: Canonical, y: Array) -> Array:
-    """Multipliers moved into the dual cone, strictly; NaN becomes 0.
+    """Return multipliers moved into the dual cone, strictly; NaN becomes 0.
 
     Of p q >= |w|^2 the dual is 4 y_p y_q >= |y_w|^2.
     """
@@ -215,7 +216,7 @@ def inside(data: Canonical, y: Array) -> Array:
 def lagrangian(
     data: Canonical, low: Array, high: Array, x: Array, y: Array, priced: bool = True
 ) -> Proof:
-    """The least value of cost(x) + y.(A x - b) on the box; priced=False leaves the cost out.
+    """Return the minimum of cost(x) + y.(A x - b) on the box; priced=False: without cost.
 
     low, high (n,): finite where the gradient is not zero, else the bound is -inf.
     """
@@ -246,7 +247,7 @@ def lagrangian(
 
 @np.errstate(all="ignore")
 def emptiness(data: Canonical, low: Array, high: Array, x: Array, y: Array) -> float:
-    """How far the user's rows would have to be widened together, at least, for a point to exist.
+    """Return by how much the user's rows must be widened together for a point to exist.
 
     Proven where it is positive; -inf where nothing is known.
     """

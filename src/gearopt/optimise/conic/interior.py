@@ -51,7 +51,7 @@ class Scaled:
     scale: Scale
 
     def within(self, lower: Array, upper: Array) -> "Scaled":
-        """The same data with other bounds of the columns."""
+        """Return the same data with other bounds of the columns."""
         column, sign, factor = self.ends
         b = self.b.copy()
         rows = slice(self.zero + self.nonneg - len(column), self.zero + self.nonneg)
@@ -61,7 +61,7 @@ class Scaled:
 
 
 def equal(data: Canonical) -> Scale:
-    """The first scale: the least squares of log|entry| + its column's + its row's exponent."""
+    """Return the first scale: least squares of log|entry| + its column's + its row's exponent."""
     import scipy.sparse as sp
     from scipy.sparse.linalg import lsqr
 
@@ -86,7 +86,7 @@ def equal(data: Canonical) -> Scale:
 
 
 def after(data: Canonical, scale: Scale, x: Array) -> Scale:
-    """The scale in which the solution x, the largest entry of a row and the cost are about 1."""
+    """Return the scale in which x, the largest entry of a row and the cost are about 1."""
     size = np.abs(x) / scale.column
     step = np.clip(np.log2(np.maximum(size, 1e-300)), -STEP, STEP)
     column = scale.column * np.exp2(np.rint(step))
@@ -106,7 +106,7 @@ def after(data: Canonical, scale: Scale, x: Array) -> Scale:
 
 
 def scaled(data: Canonical, scale: Scale) -> Scaled:
-    """The data in a scale, with rows for the bounds of the columns that have some."""
+    """Return the data in a scale, with rows for the bounds of the columns that have some."""
     import scipy.sparse as sp
 
     n, m = len(data.c), len(data.b)
@@ -139,7 +139,7 @@ def scaled(data: Canonical, scale: Scale) -> Scaled:
 
 
 def _picks(columns: Any, width: int, values: Array | None = None) -> Any:
-    """A sparse matrix with one entry a row."""
+    """Return A sparse matrix with one entry a row."""
     import scipy.sparse as sp
 
     count = len(columns)
@@ -148,7 +148,7 @@ def _picks(columns: Any, width: int, values: Array | None = None) -> Any:
 
 
 def _plain(data: Canonical) -> Any:
-    """Our slacks to Clarabel's: s_0 = (p + q)/2, s_1 = (p - q)/2 in rotated blocks."""
+    """Return the map of our slacks to Clarabel's: s_0 = (p + q)/2, s_1 = (p - q)/2 if rotated."""
     import scipy.sparse as sp
 
     plain = sp.eye_array(len(data.b), format="lil")
@@ -161,7 +161,7 @@ def _plain(data: Canonical) -> Any:
 
 
 def _leaders(data: Canonical) -> Any:
-    """Number of the exponent that a row asks for; -1 for the w rows of rotated blocks."""
+    """Return number of the exponent that a row asks for; -1 for the w rows of rotated blocks."""
     front = data.zero + data.nonneg
     member = np.full(len(data.b), -1)
     member[:front] = np.arange(front)
@@ -176,7 +176,7 @@ def _leaders(data: Canonical) -> Any:
 
 
 def _groups(data: Canonical) -> Any:
-    """Rows' exponents from the free ones: (rows, exponents); w takes the mean of p and q."""
+    """Return rows' exponents from the free ones (rows, exponents); w: the mean of p and q."""
     import scipy.sparse as sp
 
     member = _leaders(data)
@@ -192,7 +192,7 @@ def _groups(data: Canonical) -> Any:
 
 
 def _whole(data: Canonical, exponents: Array) -> Array:
-    """Exponents rounded so that the mean of a rotated block's two is whole too."""
+    """Round exponents so that the mean of a rotated block's two is whole too."""
     whole = np.rint(exponents)
     number = data.zero + data.nonneg
     for block in data.blocks:
@@ -221,7 +221,7 @@ class Point:
 
 
 def interior(scaled: Scaled, seconds: float | None = None) -> Point:
-    """Clarabel on scaled data."""
+    """Solve scaled data by Clarabel."""
     import clarabel
     import scipy.sparse as sp
 
@@ -249,7 +249,7 @@ def interior(scaled: Scaled, seconds: float | None = None) -> Point:
 
 @np.errstate(all="ignore")
 def polished(scaled: Scaled, point: Point) -> Point | None:
-    """The point where the rows that seem to hold do so exactly; None where Newton fails."""
+    """Return the point where the rows that seem to hold do so exactly; None: Newton fails."""
     import scipy.sparse as sp
     from scipy.sparse.linalg import splu
 
@@ -293,7 +293,7 @@ def polished(scaled: Scaled, point: Point) -> Point | None:
 
 
 def _holding(scaled: Scaled, point: Point) -> tuple[Any, list[slice], Any]:
-    """Linear rows at their limit, cones on their surface, rows of cones at their tip."""
+    """Return linear rows at their limit, cones on their surface, rows of cones at their tip."""
     front = scaled.zero + scaled.nonneg
     s, y = point.s, point.y
     linear = np.arange(scaled.zero)
@@ -313,7 +313,7 @@ def _holding(scaled: Scaled, point: Point) -> tuple[Any, list[slice], Any]:
 
 
 def _surfaces(A: Any, s: Array, surface: list[slice], factors: Array) -> tuple[Any, Any, Array]:
-    """Second derivative of sum factor (|s_1| - s_0) in x, gradients of |s_1| - s_0, values."""
+    """Return second derivative of sum factor (|s_1| - s_0) in x, its gradients and values."""
     import scipy.sparse as sp
 
     if not surface:

@@ -44,10 +44,10 @@ class Conic:
     """A convex problem in cvxpy text: minimise one term, limits <= 1, equal rows = 1.
 
     evaluate(x, p) -> Terms: x.name are cvxpy variables made from `Var` (vectors for size > 1),
-    p.name cvxpy parameters, p.per.name their inverses (cvxpy lets no text divide by a parameter and
-    keep its canonical form). The objective, limits and defines are convex by cvxpy's rules, equal
-    rows affine; a vector expression is a block name[1], name[2], ... Variables with `integer` or
-    `values` are branched on. ValueError for names declared twice.
+    p.name cvxpy parameters, p.per.name their inverses (a cvxpy text that divides by a parameter
+    cannot keep its canonical form). The objective, limits and defines are convex by cvxpy's rules,
+    equal rows affine; a vector expression is a block name[1], name[2], ... Variables with `integer`
+    or `values` are branched on. ValueError for names declared twice.
     """
 
     name: str
@@ -61,40 +61,40 @@ class Conic:
 
     @cached_property
     def _declared(self) -> Problem:
-        """The same declarations; its text is never run."""
+        """Return the same declarations; its text is never run."""
         return Problem(self.name, self.variables, self.parameters, self.evaluate)
 
     @property
     def methods(self) -> Mapping[str, Callable[..., Any]]:
-        """Algorithms of its own: none."""
+        """Return algorithms of its own: none."""
         return {}
 
     def at(self, **values: Number) -> "Conic":
-        """The same problem with other parameter values; what was canonicalised is kept."""
+        """Return the same problem with other parameter values; what was canonicalised is kept."""
         other = replace(self, parameters=self._declared.at(**values).parameters)
         object.__setattr__(other, "memo", self.memo)
         return other
 
     @property
     def columns(self) -> tuple[tuple[Var, str], ...]:
-        """Variable and printed name of every component of a point, in order."""
+        """Return variable and printed name of every component of a point, in order."""
         return self._declared.columns
 
     @property
     def rows(self) -> Rows:
-        """Names of objectives, inequalities and equalities, in the order of `batch`."""
+        """Return names of objectives, inequalities and equalities, in the order of `batch`."""
         return self.model().rows
 
     def bounds(self) -> tuple[Array, Array, Array]:
-        """Lower bounds, upper bounds and guess of a point, each (n,); not to be written to."""
+        """Return lower bounds, upper bounds and guess of a point (n,); not to be written to."""
         return self._declared.bounds()
 
     def parameter_values(self) -> Array:
-        """All parameter values in order, (np,)."""
+        """Return all parameter values in order, (np,)."""
         return self._declared.parameter_values()
 
     def model(self) -> Model:
-        """The text on cvxpy variables, with the parameter values set.
+        """Return the text on cvxpy variables, with the parameter values set.
 
         cvxpy's rules rest on signs, so values of another sign are another model.
         """
@@ -112,7 +112,7 @@ class Conic:
         return found
 
     def batch(self, points: Array) -> Batch:
-        """The user's own expressions at points (N, n), evaluated by cvxpy one after the other."""
+        """Evaluate the user's own expressions at points (N, n) by cvxpy, one after the other."""
         model = self.model()
         found = [self._at(model, x) for x in np.asarray(points, float)]
         f, g, h, reports = zip(*found, strict=True)
@@ -197,7 +197,7 @@ def _build(problem: Conic, signs: tuple[str, ...]) -> Model:
 
 
 def _known_sign(variable: Var) -> dict[str, bool]:
-    """What cvxpy may conclude curvature from."""
+    """Return what cvxpy may conclude curvature from."""
     lower, upper = spread(variable.lower, variable.size), spread(variable.upper, variable.size)
     if (lower >= 0).all():
         return {"nonneg": True}
@@ -205,7 +205,7 @@ def _known_sign(variable: Var) -> dict[str, bool]:
 
 
 def _expression(value: Any, where: str, label: str) -> Any:
-    """A term as a cvxpy expression (k,)."""
+    """Return A term as a cvxpy expression (k,)."""
     import cvxpy as cp
 
     if isinstance(value, cp.constraints.constraint.Constraint):
@@ -217,7 +217,7 @@ def _expression(value: Any, where: str, label: str) -> Any:
 
 
 def _refuse(where: str, kind: str, label: str, expression: Any) -> None:
-    """SolveError unless cvxpy proves the curvature, for any values of the parameters."""
+    """Raise SolveError unless cvxpy proves the curvature, for any values of the parameters."""
     wanted = "affine" if kind == "equal" else "convex"
     if not getattr(expression, f"is_{wanted}")():
         raise SolveError(f"{where}: {kind} {label} is not {wanted} by cvxpy's rules")

@@ -37,7 +37,7 @@ from gearopt.optimise.terms import Array, spread
 THERE = ("optimal", "stationary", "feasible")  # a design exists
 STEP = 1e-3  # relative, of the re-solves that check a sensitivity
 ZERO = 1e-9  # of the objective at the guess
-EASE = 0.01  # relative, of the step whose price is told
+EASE = 0.01  # relative, of the step whose effect is reported
 DIGITS = 6  # of a number that is proposed; rounded to the easy side
 ROOM = 2e-7  # a proposal asks for this much more than the least factor, to be feasible in doubles
 
@@ -49,7 +49,7 @@ def explain(
 
     Impossible: the conflict and its remedies; with discrete variables, each number that alone
     suffices. Possible: the limits that bind, and for every parameter and every bound with a key its
-    sensitivity (discrete variables held), checked by re-solving, and the price of easing it by 1 %
+    sensitivity (discrete variables held), checked by re-solving, and the gain of easing it by 1 %
     if it is a limit. SolveError for discrete variables without an exact method.
     """
     clock = Clock(budget or Budget(), of_others(watch))
@@ -69,14 +69,14 @@ def explain(
             result,
             tuple(h.name for h in blamed),
             tuple(r for r in found_ if r.verified["with"] in THERE),
-            message="time ran out before all ways out were tried" if clock.over else "",
+            message="time ran out before all remedies were tried" if clock.over else "",
         )
     elif result.value is None or outcome.x is None:
         found = Explanation(result, message="no design was found in time")
     else:
         influences = tuple(_influences(problem, result, outcome.x, method, clock))
-        late = "stopped before all numbers were looked at" if clock.over else ""
-        found = Explanation(result, (), (), binding(result), influences, late)
+        message = "stopped before all numbers were examined" if clock.over else ""
+        found = Explanation(result, (), (), binding(result), influences, message)
     return replace(found, seconds=clock.seconds)
 
 
@@ -177,7 +177,7 @@ def _moved(problem: Problem, handle: Handle, factor: float) -> Problem:
 
 
 def _alone(problem: Problem, handle: Handle, method: str, clock: Clock) -> Remedy | None:
-    """Return a number that alone makes a problem possible, moved as little as it takes."""
+    """Return the smallest change of one number that makes a problem possible; None: none does."""
     if handle.kind == ROW or handle.value <= 0.0:
         return None
     words = dict.fromkeys(THERE, True) | {"infeasible": False}

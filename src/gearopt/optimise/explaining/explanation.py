@@ -25,15 +25,14 @@ class Change:
 class Remedy:
     """Edits that make a design possible, applied together.
 
-    kind: "least" (smallest product of factors over all limits), "even" (one factor for one kind of
-    limit), "one" (a number of one stage), "alone" (a number of the file), "pair" (two changes, each
-    as small as the other allows), "less" (the duty), or "choice" (a switch of the file, or the
-    nearest ratio that the limits reach). what: the limits that move. factor: that product or common
-    factor, as written (infinite where a number is shifted). bound: a smaller one is proven
-    impossible (None: not proven).
-    verified: status with the edits, and with each taken back by 0.1 %, one tooth or one module
-    ({"with": ..., "with_less": ...}); "nearer": of ratios nearer to the one asked for; "others":
-    what all other single numbers need.
+    kind: "least" (smallest change: product of factors over all limits), "even" (one factor for one
+    kind of limit), "one" (a number of one stage), "alone" (a number of the file), "pair" (two
+    changes, each as small as the other allows), "less" (the duty), or "choice" (a switch of the
+    file, or the nearest ratio that the limits reach). what: the limits that move. factor: that
+    product or common factor, as written (infinite where a number is shifted). bound: a smaller one
+    is proven impossible (None: not proven). verified: status with the edits, and with each taken
+    back by 0.1 %, one tooth or one module ({"with": ..., "with_less": ...}); "nearer": of ratios
+    nearer to the one asked for; "others": what all other single numbers need.
     """
 
     kind: str
@@ -46,9 +45,9 @@ class Remedy:
 
 @dataclass(frozen=True)
 class Remedies:
-    """What is told of an impossible request.
+    """What is reported of an impossible request.
 
-    conflict: names of limits that cannot hold together; message: what is missing.
+    conflict: names of limits in conflict; message: what is missing.
     """
 
     conflict: tuple[str, ...] = ()
@@ -78,9 +77,9 @@ class Influence:
 class Explanation:
     """Why an answer is what it is.
 
-    result: the answer itself. conflict: limits that cannot hold together, none of them to spare.
-    remedies: proven ones, least first. binding: limits used to the full. influences: one an
-    input. basis: of which problem the slopes and prices are, the end of a sentence.
+    result: the answer itself. conflict: limits in conflict, dropping any one of which resolves it.
+    remedies: proven ones, smallest first. binding: limits used to the full. influences: one per
+    input. basis: of which problem the sensitivities are, the end of a sentence.
     """
 
     result: Result

@@ -15,7 +15,7 @@ from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Array, spread
 
 REACH = 1e6  # the largest factor by which a limit may be relaxed; finite, for the dual bound
-POINTS = 8  # around the guess at which the direction of a parameter is looked at
+POINTS = 8  # around the guess at which the direction of a parameter is sampled
 PARAM, ROW, LOWER, UPPER = "parameter", "row", "lower bound", "upper bound"
 
 

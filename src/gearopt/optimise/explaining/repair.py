@@ -1,8 +1,8 @@
-"""Why a request is impossible, and the least change of its limits that makes it possible.
+"""Why a request is impossible, and the smallest change of its limits that makes it possible.
 
-Three answers, each proven by our own bound: the conflict (limits that cannot hold together, none of
-them to spare), the least repair (the smallest product of factors over all limits) and, for every
-kind of limit, the even repair (one factor for that kind alone).
+Three answers, each proven by our own bound: the conflict (limits that exclude each other, so that
+dropping any one resolves it), the least repair (the smallest product of factors over all limits)
+and, for every kind of limit, the even repair (one factor for that kind alone).
 """
 
 import math
@@ -186,7 +186,7 @@ def families(movable: Sequence[Handle]) -> dict[str, list[Handle]]:
 
 
 def conflict(problem: Problem, movable: Sequence[Handle], clock: Clock) -> tuple[Handle, ...]:
-    """Return limits that cannot hold together with all others dropped, and none to spare.
+    """Return limits in conflict with all others dropped: dropping any one of them resolves it.
 
     A deletion filter: a limit that can be dropped without making a design possible is dropped for
     good; for each that stays, a design exists without it. Empty where that is not proven: time ran

@@ -18,8 +18,8 @@ from gearopt.optimise.terms import Array
 
 BINDS = 1e-6  # a row this close to its limit binds
 HOLDS = 1e-4  # relative: a bound this near to a variable holds it, or did with another number
-KINK = 0.02  # relative difference of slopes from both sides that do not belong to one
-STATIONARY = 1e-4  # largest slope that may be left in a variable off its bounds, of all slopes
+KINK = 0.02  # relative difference of sensitivities from both sides that do not belong to one
+STATIONARY = 1e-4  # largest gradient left in a variable off its bounds, of the multipliers
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ class Sensitivities:
 
         ends: the problem with the number times exp(-step) and exp(step). The Lagrangian of both is
         taken at the same x; of variables that their bounds hold, the bounds' moves are added. None
-        where one of them has no value, or other rows, or the slopes from both sides differ.
+        where one of them has no value, or other rows, or both sides differ.
         """
         below, above = (
             self._change(x, *pair)
@@ -70,7 +70,7 @@ class Sensitivities:
         return change + float(self.columns @ _moved(before, after, x))
 
     def stationary(self, problem: Problem, x: Array) -> bool:
-        """Return whether no slope is left in a variable that is off its bounds: x may be a kink."""
+        """Return whether no gradient is left in a variable off its bounds: x may be a kink."""
         free = ~(_held(problem, x, 0) | _held(problem, x, 1))
         left = np.abs(self.columns[free]).max(initial=0.0)
         return bool(left <= STATIONARY * (1.0 + self.multipliers.max(initial=0.0)))
@@ -93,7 +93,7 @@ def _moved(before: Problem, after: Problem, x: Array) -> Array:
 
 
 def of_fixed(problem: Problem) -> Sensitivities:
-    """Return those of a point whose variables are all fixed: no row has a price."""
+    """Return those of a point whose variables are all fixed: no multipliers."""
     rows = problem.rows
     no_g, no_h = np.zeros(len(rows.inequalities)), np.zeros(len(rows.equalities))
     none = np.zeros(len(problem.parameter_values())), np.zeros(len(problem.columns))
@@ -114,7 +114,7 @@ def sensitivities(problem: Problem, x: Array) -> Sensitivities:
     lam = multipliers(shape, y, p, low, high)
     if lam is None:
         raise SolveError(
-            f"{problem.name} has no sensitivities: too large, or slopes are no numbers"
+            f"{problem.name} has no sensitivities: too large, or gradients are not numbers"
         )
     f, _, _, _, slope = (np.array(v).ravel() for v in shape.derivatives(y, p, *lam))
     unit = 1.0 if shape.log_objective else max(abs(float(f[0])), 1e-300)

@@ -87,7 +87,7 @@ def _moved(rng: np.random.Generator, space: Box, unit: Array, step: float) -> Ar
 
 
 def _smallest_steps(space: Box) -> dict[int, float]:
-    """Of discrete coordinates, the step that reaches a neighbour."""
+    """Return the step of discrete coordinates that reaches a neighbour."""
     steps = {k: 1.0 / max(len(v) - 1, 1) for k, v in space.sets.items()}
     for k in np.flatnonzero(space.whole):
         width = space.high[k] - space.low[k]

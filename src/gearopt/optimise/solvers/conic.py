@@ -66,14 +66,14 @@ class Found:
 
     @property
     def gap(self) -> float:
-        """Relative distance of value and bound."""
+        """Return relative distance of value and bound."""
         return gap(self.value, self.least)
 
 
 def solved(problem: Conic, data: Canonical, clock: Clock) -> Found:
-    """The continuous relaxation of the whole box, in as many scales as help.
+    """Solve the continuous relaxation of the whole box, in as many scales as help.
 
-    The clock is told between rounds.
+    The clock reports between rounds.
     """
     start = Leaf(data.lower, data.upper, np.zeros(len(data.c)), None)
     best = Found(start, equal(data), start.x)
@@ -98,7 +98,7 @@ def solved(problem: Conic, data: Canonical, clock: Clock) -> Found:
 def _round(
     problem: Conic, data: Canonical, one: Scaled, best: Found, clock: Clock
 ) -> tuple[Found, Array]:
-    """One solve in one scale; the best so far, and the last canonical point, wrong as it may be."""
+    """Solve once in one scale; return the best so far, and the last canonical point."""
     point = interior(one, clock.left.seconds)
     best = replace(best, steps=best.steps + point.steps, words=point.words)
     z = one.scale.column * point.x
@@ -115,14 +115,14 @@ def _round(
 
 
 def candidates(one: Scaled, point: Point) -> Iterator[Point]:
-    """The interior point, then the one that Newton makes of it."""
+    """Return the interior point, then the one that Newton makes of it."""
     yield point
     if (sharper := polished(one, point)) is not None:
         yield sharper
 
 
 def multipliers(one: Scaled, point: Point) -> Array:
-    """Multipliers of the canonical rows (m,); those of bounds are left to the box."""
+    """Return multipliers of the canonical rows (m,); those of bounds are left to the box."""
     found: Array = (one.back @ point.y) * one.scale.row / one.scale.cost
     return found
 
@@ -147,12 +147,12 @@ def _better(
 
 
 def _rank(value: float, excess: float) -> tuple[float, float]:
-    """Points that need no repair by their cost, others by their violation."""
+    """Rank points that need no repair by their cost, others by their violation."""
     return (0.0, value) if excess <= TIGHT else (max(excess, TIGHT), value)
 
 
 def judged(problem: Conic, x: Array) -> tuple[float, float]:
-    """Cost and largest violation of the rows at a user's point, inf where not a number."""
+    """Return cost and largest violation of the rows at a user's point, inf: not a number."""
     batch = problem.batch(x[None])
     amounts = np.concatenate([batch.G[0] - 1.0, np.abs(batch.H[0] - 1.0), [0.0]])
     worst = float(np.nan_to_num(amounts, nan=np.inf).max())
@@ -209,7 +209,7 @@ class _Search:
 
     @property
     def value(self) -> float:
-        """The cost of the best design, inf without one."""
+        """Return the cost of the best design, inf without one."""
         return self.clock.best
 
 
@@ -252,12 +252,12 @@ def branch(problem: Conic, data: Canonical, root: Found, clock: Clock) -> Outcom
 
 
 def _inherited(child: Leaf, parent: Leaf) -> Leaf:
-    """A child whose own multipliers failed keeps its parent's."""
+    """Give a child whose own multipliers failed its parent's."""
     return replace(child, x=parent.x, y=parent.y, ray=parent.ray) if child.y is None else child
 
 
 def _closed(search: _Search, lower: Array, upper: Array) -> tuple[Leaf, float]:
-    """A node's relaxation: its leaf, with the best multipliers found, and the bound they prove."""
+    """Solve a node's relaxation: return its leaf with the best multipliers, and their bound."""
     data = search.data
     leaf, bound = Leaf(lower, upper, np.zeros(len(lower)), None), -np.inf
     box = propagate(data, lower, upper, cutoff(search.value))
@@ -290,7 +290,7 @@ def _closed(search: _Search, lower: Array, upper: Array) -> tuple[Leaf, float]:
 
 
 def _worst(search: _Search, z: Array) -> float:
-    """Of dearer points a node's bound says nothing: the best design's cost, or the relaxed one."""
+    """Return the cost above which a node needs no bound: of the best design, or relaxed."""
     if np.isfinite(search.value):
         return cutoff(search.value)
     value, excess = judged(
@@ -339,7 +339,7 @@ def _take(search: _Search, z: Array) -> None:
 
 
 def _halves(data: Canonical, leaf: Leaf) -> list[tuple[Array, Array]]:
-    """The two parts of a node, cut where its point is farthest from allowed values."""
+    """Return the two parts of a node, cut where its point is farthest from allowed values."""
     cut, worst = None, -1.0
     for column, allowed in data.allowed.items():
         here = allowed[(allowed >= leaf.lower[column]) & (allowed <= leaf.upper[column])]

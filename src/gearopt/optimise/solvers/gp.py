@@ -143,6 +143,6 @@ def _point(problem: Problem, model: _Model) -> Array | None:
 
 
 def _duals(rows: tuple[Any, ...]) -> Array:
-    """Multipliers of the logarithms of the rows, as `form` states them."""
+    """Return multipliers of the logarithms of the rows, as `form` states them."""
     values = (0.0 if row.dual_value is None else float(row.dual_value) for row in rows)
     return np.array([np.nan_to_num(value) for value in values], float)

@@ -2,7 +2,7 @@
 
 Wide logarithms are split up first (`nonlinear`); y is then followed by the u of their epigraphs.
 Ipopt's tolerances are absolute, so it is given natural variables and objectives in units of their
-own scale. Where that of the objective is far smaller in the end than at first, it goes on from
+own scale. Where that of the objective is far smaller in the end than at first, it continues from
 there in the units found there.
 
 Claims infeasibility only with the multipliers of the least-violation problem, which `certify`
@@ -27,7 +27,7 @@ from gearopt.optimise.terms import Array
 
 ACCEPTED = 1e-9  # an iterate that violates no row by more is kept as the best so far
 ROUNDING = 1e-12  # of two values of the objective
-SMALLER = 1e-2  # of the objective's scale at first: less, and Ipopt goes on from where it ended
+SMALLER = 1e-2  # of the objective's scale at first: less, and Ipopt continues from where it ended
 AGAIN = 6  # times at most
 STUCK = 1e-6  # violation at which Ipopt's end point counts as not solved
 
@@ -38,7 +38,7 @@ SETTINGS = {k: v for k, v in OPTIONS.items() if k not in ("print_level", "sb")}
 
 @dataclass(frozen=True)
 class _Point:
-    """Where Ipopt stopped: y, row multipliers, and its word for why."""
+    """Where Ipopt stopped: y, row multipliers, and its reason."""
 
     y: Array
     lam_g: Array
@@ -68,10 +68,10 @@ class _Run:
         self.raised: BaseException | None = None
 
     def note(self, y: Array) -> bool:
-        """Take an iterate, in Ipopt's units; whether the run goes on."""
+        """Take an iterate, in Ipopt's units; return whether the run continues."""
         self.clock.evaluations += 1
         self.keep(y if self.scale is None else y * self.scale.variables)
-        return self.goes_on()
+        return self.continues()
 
     def keep(self, y: Array) -> None:
         """Remember a point that is feasible and lower than those before."""
@@ -81,8 +81,8 @@ class _Run:
             self.least, self.best = value, y
             self.clock.best = self.unit(value)
 
-    def goes_on(self) -> bool:
-        """Whether budget and watcher let the run go on."""
+    def continues(self) -> bool:
+        """Return whether budget and watcher let the run continue."""
         try:
             return self.clock.tell()
         except BaseException as raised:
@@ -124,7 +124,7 @@ def run(
                 lam_h=point.lam_h,
                 infeasible=True,
                 evaluations=clock.evaluations,
-                message=f"Ipopt: {point.status}; the least violation found is {least:.3g}",
+                message=f"Ipopt: {point.status}; the smallest violation reached is {least:.3g}",
             )
         point = _ipopt(problem, shape, point.y, low, high, following)
     for _ in range(AGAIN):
@@ -157,7 +157,7 @@ def _split(problem: Problem, shape: Form) -> Split:
 
 
 def _built(problem: Problem, shape: Form) -> tuple[Any, Any]:
-    """The solver of a form in units of its own scale, and its monitor, built once."""
+    """Return the solver of a form in units of its own scale, and its monitor, built once."""
     import casadi as ca
 
     key = ("ipopt", id(shape))
@@ -197,7 +197,7 @@ def _ipopt(
 
 
 def _lost(problem: Problem, shape: Form, point: _Point, following: _Run) -> bool:
-    """Whether the end point is worse than the best one passed, by more than tolerance buys.
+    """Return whether the end point is worse than the best passed, by more than tolerance.
 
     A violation of ACCEPTED lowers the objective of a solved problem by at most its multipliers
     times it. An end point that is not feasible is worse than any that is.
@@ -230,11 +230,11 @@ def _least_violation(
         problem.memo[key] = program(ca.vertcat(y, t), ca.vertcat(parts.p, units), t, rows, size)
     solver, monitor = problem.memo[key]
 
-    def goes_on(_: Array) -> bool:
+    def follow(_: Array) -> bool:
         outer.clock.evaluations += 1
-        return outer.goes_on()
+        return outer.continues()
 
-    monitor.follow = goes_on
+    monitor.follow = follow
     start = np.where(np.isfinite(point.y), point.y, 0.0)
     unit = unit_at(problem, shape, start).variables
     start_levels = np.array(parts.start(start, problem.parameter_values())).ravel()

@@ -1,8 +1,8 @@
 """NSGA-II of pymoo on whole populations (`Problem.batch`), integers and finite sets included.
 
 One objective is searched like several: the answer is the best feasible individual in the first
-objective, polished (`polish`); where there are several, the rest of the front comes with it, and
-nothing is polished.
+objective, polished (`polish`); where there are several, the rest of the Pareto front comes with it,
+and nothing is polished.
 """
 
 import math
@@ -75,7 +75,7 @@ def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Out
 
 
 def _front(algorithm: Any, space: Box, several: bool, finished: bool) -> Outcome:
-    """The best feasible individual of the first objective; of several, the others beside it."""
+    """Return the best feasible individual of the first objective; of several, the others too."""
     spent = int(algorithm.evaluator.n_eval)
     good = [one for one in algorithm.opt if one.feas]
     if not good:

@@ -54,7 +54,7 @@ class _Program:
     own: Array
 
     def violation(self, x: Array) -> float:
-        """Largest violation of a row."""
+        """Return largest violation of a row."""
         value = self.rows @ x
         return float(np.maximum(self.least - value, value - self.most).max(initial=0.0))
 
@@ -89,7 +89,7 @@ def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Out
 
 
 def _checked(problem: Problem) -> tuple[Form, Curvature]:
-    """The natural form and its curvature, or a SolveError."""
+    """Return the natural form and its curvature, or raise SolveError."""
     for variable, name in problem.columns:
         if variable.discrete:
             raise SolveError(f"qp takes continuous variables only; {name} is discrete")
@@ -109,7 +109,7 @@ def _checked(problem: Problem) -> tuple[Form, Curvature]:
 
 
 def _program(problem: Problem, shape: Form) -> _Program:
-    """The numbers of a quadratic program at the present parameters, from its values at x = 0."""
+    """Return the quadratic program at the present parameters, from its values at x = 0."""
     p, origin = problem.parameter_values(), np.zeros(len(problem.columns))
     no_g, no_h = (np.zeros(shape.derivatives.numel_out(k)) for k in (1, 2))
     _, g, h, linear, _ = (np.array(v).ravel() for v in shape.derivatives(origin, p, no_g, no_h))
@@ -141,7 +141,7 @@ def _program(problem: Problem, shape: Form) -> _Program:
 def _solved(
     problem: Problem, name: str, program: _Program, curved: Curvature, given: Any
 ) -> tuple[Array, Array, str]:
-    """Point, multipliers of the rows, and what the solver complains of ("" for nothing).
+    """Return point, multipliers of the rows, and the complaint of the solver ("" for none).
 
     given: which rows the solver is given. The solvers' tolerances are absolute: the objective is
     divided by its largest term over the variables' own scale, variables are scaled to a Hessian of
@@ -180,7 +180,7 @@ def _solved(
 
 
 def _independent(program: _Program) -> Any:
-    """All limits, and those equalities that are no combination of equalities before them."""
+    """Return all limits, and the equalities that are no combination of those before them."""
     basis = np.empty((0, len(program.linear)))
     kept = list(range(program.count))
     for k in range(program.count, len(program.most)):
@@ -192,7 +192,7 @@ def _independent(program: _Program) -> Any:
 
 
 def _nearest(problem: Problem, program: _Program, runs: int, words: str) -> Outcome:
-    """The point of least squared violation; its residuals s are multipliers that prove a conflict.
+    """Return the point of least squared violation, whose residuals s prove a conflict.
 
     minimise 1/2 s's  subject to  least <= A x - s <= most,  low <= x <= high
     """
@@ -220,5 +220,5 @@ def _nearest(problem: Problem, program: _Program, runs: int, words: str) -> Outc
         lam_h=s[program.count :],
         infeasible=True,
         evaluations=runs + 1,
-        message=f"the least violation found is {worst:.3g}",
+        message=f"the smallest violation reached is {worst:.3g}",
     )

@@ -144,7 +144,7 @@ def _power(a: Posynomial, exponent: float) -> Posynomial | None:
 
 
 def _collected(coefficients: Array, exponents: Array) -> Posynomial | None:
-    """Equal monomials added up; zeros dropped."""
+    """Add up equal monomials and drop zeros."""
     unique, place = np.unique(np.round(exponents, 12), axis=0, return_inverse=True)
     total = np.bincount(place.ravel(), weights=coefficients, minlength=len(unique))
     keep = total != 0
@@ -194,7 +194,7 @@ def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Out
 
 
 def _scale(problem: Problem) -> float:
-    """The objective at the guess, the unit of SCIP's objective."""
+    """Return the objective at the guess, the unit of SCIP's objective."""
     scale = float(problem.batch(problem.bounds()[2][None]).F[0, 0])
     if not 0.0 < scale < math.inf:
         raise SolveError(f"scip on {problem.name}: the objective is {scale:g} at the guess")
@@ -204,7 +204,7 @@ def _scale(problem: Problem) -> float:
 def _model(
     problem: Problem, model: Posynomials, budget: Budget, seed: int
 ) -> tuple[Any, list[Any]]:
-    """The SCIP model and the logarithm of every variable in it."""
+    """Return the SCIP model and the logarithm of every variable in it."""
     try:
         from pyscipopt import Model, exp, quicksum
     except ImportError as missing:
@@ -256,7 +256,7 @@ def _affine(row: Posynomial, logs: list[Any]) -> Any:
 
 
 def _logarithm(scip: Any, problem: Problem, index: int) -> Any:
-    """A SCIP variable that is the logarithm of one variable of the problem."""
+    """Return A SCIP variable that is the logarithm of one variable of the problem."""
     from pyscipopt import exp, quicksum
 
     variable, name = problem.columns[index]
@@ -280,7 +280,7 @@ def _logarithm(scip: Any, problem: Problem, index: int) -> Any:
 
 
 def _point(problem: Problem, logs: Array) -> Array:
-    """The natural point, discrete variables set to the value they mean."""
+    """Return the natural point, discrete variables set to the value they mean."""
     lower, upper, _ = problem.bounds()
     point = np.clip(np.exp(logs), lower, upper)
     for k, (variable, _) in enumerate(problem.columns):
@@ -293,7 +293,7 @@ def _point(problem: Problem, logs: Array) -> Array:
 
 
 def _follow(scip: Any, clock: Clock, scale: float) -> None:
-    """Have SCIP tell a clock of its progress, and stop where its watcher wants no more."""
+    """Have SCIP report its progress to a clock, and stop where its watcher refuses."""
     from pyscipopt import SCIP_EVENTTYPE, Eventhdlr
 
     kinds = (SCIP_EVENTTYPE.NODESOLVED, SCIP_EVENTTYPE.BESTSOLFOUND)
