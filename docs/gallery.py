@@ -79,11 +79,11 @@ GROUPS = {  # heading: {file: what it shows, in a line}
         "servo_axis": "A turntable on a motor of a data sheet, every table in use.",
         "servo_gimbal_ratio": "The best ratio with friction, and how little 48 loses.",
         "servo_gimbal_move": "A move from rest to rest, at the motor's speed limit.",
-        "servo_gimbal_fast": "Ratio and train together for the largest acceleration; no errors "
+        "servo_gimbal_fast": "Ratio and train together for maximum acceleration; no errors "
         "and no shaft asked for.",
         "servo_gimbal_quick": "Ratio and train together for the quickest move, accurate enough.",
-        "servo_gimbal_swing": "A sine with the least rms torque.",
-        "servo_gimbal_light": "The least mass instead of the least inertia.",
+        "servo_gimbal_swing": "A sine at minimum rms torque.",
+        "servo_gimbal_light": "Minimum mass instead of minimum inertia.",
         "servo_gimbal_fine": "Only trains that fit the box are chosen.",
         "servo_gimbal_stiff": "Stiff enough for 200 Hz; real-valued sizes beside whole teeth.",
         "servo_gimbal_tolerances": "Given gears: the same error for 29 % less cost.",

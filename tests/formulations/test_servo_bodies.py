@@ -10,7 +10,7 @@ from servo_trains import PAPER, STIFF
 
 from gearopt.errors import SolveError
 from gearopt.formulations.servo.split import Bodies, problem, relaxation, stiff
-from gearopt.formulations.servo.split.bodies import clear_rows, least, rows
+from gearopt.formulations.servo.split.bodies import clear_rows, minimum_teeth, rows
 from gearopt.formulations.servo.split.servo_train import pairs
 from gearopt.optimise.solve import solve
 from gearopt.physics.gears import GearPair
@@ -77,7 +77,7 @@ def test_bodies_in_the_way_change_the_train_and_raise_the_bound(bodies):
 def test_numbers_too_long_for_whole_numbers_are_refused():
     fine = Bodies(F(0), F(1, 10**17), F(0))
     with pytest.raises(SolveError, match="fewer digits"):
-        least(fine, PAPER.modules, 300)
+        minimum_teeth(fine, PAPER.modules, 300)
     with pytest.raises(ValueError, match="not below zero"):
         Bodies(F(-1))
 

@@ -1,4 +1,4 @@
-"""The split of a servo train: stage count, whole teethand relaxation."""
+"""The split of a servo train: stage count, whole teeth and relaxation."""
 
 import math
 from dataclasses import replace
@@ -16,12 +16,12 @@ from gearopt.formulations.servo.split import (
     first_ratio,
     lightest_stage_ratio,
     order,
+    pareto_front,
     problem,
     relaxation,
     stage_counts,
     teeth,
     trains,
-    unbeaten,
 )
 from gearopt.formulations.servo.split.numbers import numbers
 from gearopt.formulations.servo.split.order import _one_by_one
@@ -153,7 +153,7 @@ def test_all_trains_are_counted_in_whole_numbers(error, feasible):
     ],
 )
 def test_bounds_of_the_relaxation(error, wheel, goal, bound):
-    train = replace(with_error(error), most_wheel_teeth=wheel)
+    train = replace(with_error(error), max_wheel_teeth=wheel)
     text = relaxation(train, goal)
     assert tape.kinds(text).log_convex
     result = solve(text)
@@ -167,7 +167,7 @@ def brute_force(train, goal):
     """Feasible trains and the best of them: whole numbers as fractions, all else plain."""
     low, high = train.ratios
     pinions = range(train.pinion_teeth[0], train.pinion_teeth[1] + 1)
-    wheels = range(train.pinion_teeth[0], train.most_wheel_teeth + 1)
+    wheels = range(train.pinion_teeth[0], train.max_wheel_teeth + 1)
     best, count = math.inf, 0
     for z1, z2, z3, z4 in product(pinions, wheels, pinions, wheels):
         if z2 < z1 or z4 < z3 or not low <= F(z2 * z4, z1 * z3) <= high:
@@ -212,7 +212,7 @@ def test_it_is_what_full_enumeration_in_plain_python_finds(seed):
         tolerance=F(int(rng.integers(0, 40)), 1000),
         modules=modules,
         pinion_teeth=(14, 18),
-        most_wheel_teeth=44,
+        max_wheel_teeth=44,
         bore=F(int(rng.integers(16, 36)), 2) * modules[0],
         wheel_tips=(40 * modules[1], F(int(rng.integers(35, 47))) * modules[1]),
         error=math.radians(float(rng.uniform(0.3, 1.2))),
@@ -268,27 +268,27 @@ def test_all_feasible_trains_keep_all_limits():
     batch = problem(PAPER).batch(points)
     assert (batch.G <= 1.0 + 1e-12).all()
     assert batch.F.min() == solve(problem(PAPER)).value
-    assert feasible(PAPER, most=62053) is None
+    assert feasible(PAPER, maximum=62053) is None
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_unbeaten_rows_are_those_of_a_look_at_all_pairs(seed):
+def test_the_pareto_front_is_that_of_all_pairs(seed):
     worth = np.random.default_rng(seed).integers(0, 12, (200, 3)).astype(float)
     unique = np.unique(worth, axis=0)
     best = [row for row in unique if not ((unique <= row).all(1) & (unique < row).any(1)).any()]
-    found = worth[unbeaten(worth)]
+    found = worth[pareto_front(worth)]
     assert np.array_equal(found[np.lexsort(found.T[::-1])], np.array(best))
 
 
-def test_many_rows_are_thinned_to_the_same_unbeaten_ones():
+def test_many_rows_are_thinned_to_the_same_front():
     """A row is dropped early only where another beats it; of equal rows the first one stays."""
     rng = np.random.default_rng(9)
     worth = np.exp(rng.normal(size=(20_000, 3)))
     worth[::3] = np.round(worth[::3])
     worth[5000:6000] = worth[:1000]
-    assert unbeaten(worth) == _one_by_one(worth)
+    assert pareto_front(worth) == _one_by_one(worth)
     pairs = np.column_stack([worth[:, :2], np.zeros(len(worth))])
-    assert unbeaten(worth[:, :2]) == _one_by_one(pairs)
+    assert pareto_front(worth[:, :2]) == _one_by_one(pairs)
 
 
 def test_a_run_stops_when_told():
@@ -326,7 +326,7 @@ def test_a_list_of_all_trains_stops_when_told():
 
     with pytest.raises(TimeoutError):
         feasible(PAPER, check=check)
-    assert feasible(PAPER, most=10) is None
+    assert feasible(PAPER, maximum=10) is None
 
 
 def test_annealing_takes_the_same_problem():

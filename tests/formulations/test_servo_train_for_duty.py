@@ -30,7 +30,7 @@ FASTEST = ServoDuty(DRIVE, "acceleration")
 SMALL = replace(
     PAPER,
     pinion_teeth=(14, 18),
-    most_wheel_teeth=44,
+    max_wheel_teeth=44,
     shaft=None,
     lost_motion=None,
     error=math.inf,
@@ -88,7 +88,7 @@ def full_enumeration(train):
     """Feasible trains that move the load, and the best value of all; whole numbers as fractions."""
     low, high = train.ratios
     pinions = range(train.pinion_teeth[0], train.pinion_teeth[1] + 1)
-    wheels = range(train.pinion_teeth[0], train.most_wheel_teeth + 1)
+    wheels = range(train.pinion_teeth[0], train.max_wheel_teeth + 1)
     best, count = math.inf, 0
     for z1, z2, z3, z4 in product(pinions, wheels, pinions, wheels):
         if z2 < z1 or z4 < z3 or not low <= F(z2 * z4, z1 * z3) <= high:
@@ -182,8 +182,8 @@ def test_the_speed_limit_of_the_motor_is_kept_exactly():
     """A train of ratio 4 and no other: allowed at just 4, impossible below."""
     train = replace(SMALL, ratio=F(4), tolerance=F(0), modules=(F(1, 2),), bore=F(7))
     drive = replace(DRIVE, speed_limit=4.0, load_friction=0.0)
-    at = ServoDuty(drive, "acceleration", load_speed=1.0, most_ratio=F(4))
-    below = replace(at, most_ratio=F(4) - F(1, 10**20))
+    at = ServoDuty(drive, "acceleration", load_speed=1.0, max_ratio=F(4))
+    below = replace(at, max_ratio=F(4) - F(1, 10**20))
     for method in ("exact", "enumeration"):
         found = solve(problem(replace(train, duty=at), at.goal), method)
         assert found.status == "optimal" and found.limits["motor_speed"] == 1.0

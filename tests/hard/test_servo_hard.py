@@ -140,7 +140,7 @@ LOOSE = replace(  # nothing but the ratio binds
     PAPER,
     modules=(Fraction(1),),
     pinion_teeth=(16, 40),
-    most_wheel_teeth=208,
+    max_wheel_teeth=208,
     bore=Fraction(1),
     wheel_tips=(Fraction(1000), Fraction(1000)),
     error=1.0,

@@ -170,7 +170,7 @@ def test_the_two_stage_examples_share_what_the_page_says_once():
 
 
 COUNTED = (
-    "Of 6,326,052 trains of the right ratio 62,054 keep all limits with 0.1082 degrees and "
+    "Of 6,326,052 trains of the right ratio 62,054 meet all limits with 0.1082 degrees and "
     "247,948 with 0.12."
 )
 FITTING = "has less E than 18/94, 23/210 teeth of 0.3 and 0.5 mm: 0.11707 degrees"
@@ -181,7 +181,7 @@ def test_all_trains_are_counted():
     (tight, looked), (wide, again) = (beside.counted(error) for error in (0.1082, 0.12))
     assert looked == again
     assert COUNTED == (
-        f"Of {looked:,} trains of the right ratio {tight:,} keep all limits with 0.1082 degrees "
+        f"Of {looked:,} trains of the right ratio {tight:,} meet all limits with 0.1082 degrees "
         f"and {wide:,} with 0.12."
     )
 

@@ -35,10 +35,10 @@ CASES = (
 )
 OWN = ((16, 26, 96, 208), (0.5, 0.5))
 GOALS = (  # error limit [degrees], goal, how it reads
-    (0.1082, "inertia", "least J (and least mass), E <= 0.1082"),
-    (0.12, "inertia", "least J, E <= 0.12"),
-    (0.12, "mass", "least mass, E <= 0.12"),
-    (0.12, "error", "least E"),
+    (0.1082, "inertia", "minimum J (and minimum mass), E <= 0.1082"),
+    (0.12, "inertia", "minimum J, E <= 0.12"),
+    (0.12, "mass", "minimum mass, E <= 0.12"),
+    (0.12, "error", "minimum E"),
 )
 SWEEPS = (45, 60, 65, 90)
 EXPONENTS = (0.5, 1.0, 2.0)
@@ -48,7 +48,7 @@ FREQUENCIES = (150.0, 200.0, 250.0, 300.0)
 
 @cache
 def best(problem_of, *given):
-    """A proven optimum, within 1e-6 of its bound at the least."""
+    """A proven optimum, within 1e-6 of its bound at least."""
     result = solve(problem_of(*given))
     assert result.status == "optimal" and result.gap < 1e-6
     return result
@@ -71,7 +71,7 @@ def ratio_rows():
 
 
 def move_time_at(ratio, turn):
-    """Least time [s] of a turn [rad] at a ratio, motor at 800 rad/s at the most."""
+    """Return the minimum time [s] of a turn [rad] at a ratio, motor at 800 rad/s at most."""
     return shortest_move_time(turn, 800.0 / ratio, at(LIMITED, 0.0, ratio))
 
 
@@ -122,7 +122,7 @@ def design_rows():
         (z1, z3), (z2, z4) = result.design["pinion_teeth"], result.design["wheel_teeth"]
         m = result.design["module_mm"]
         made = values(np.array([z1, z3, z2, z4, *m], float))
-        if "(and least mass)" in name:
+        if "(and minimum mass)" in name:
             lightest = best(split.problem, with_error(error), "mass")
             assert lightest.design["wheel_teeth"] == [z2, z4]
             assert 1e3 * lightest.value == pytest.approx(made[1], rel=1e-12)
@@ -145,7 +145,7 @@ def swept(half_sweep, tip=52.5):
 
 
 def short_side(half_sweep):
-    """Short side [mm] of the least box of 80:130."""
+    """Short side [mm] of the smallest box of 80:130."""
     return 80.0 * best(servo_box.problem, swept(half_sweep)).value
 
 
@@ -161,7 +161,7 @@ def box_rows():
 
 @cache
 def cost(*budgets, **given):
-    """Least cost of tolerances within budgets; each of the paper's costs 1."""
+    """Return the minimum cost of tolerances within budgets; each of the paper's costs 1."""
     return best(tolerance.problem, stack(*budgets, **given))
 
 
@@ -183,7 +183,7 @@ def cost_rows():
 
 @cache
 def graded(rule, error):
-    """Least cost of grades t0 sqrt(2)^(-4..4) that cost t0/t."""
+    """Return the minimum cost of grades t0 sqrt(2)^(-4..4) that cost t0/t."""
     parts = tuple(
         grades.Graded(c.name, c.sensitivity, tuple((float(t0 * g), float(1 / g)) for g in STEPS))
         for c, t0 in zip(components(), BASE, strict=True)

@@ -81,7 +81,8 @@ def about_box():
     return [
         "fits up to 63.0 degrees to either side and not at 63.1: a travel of 45 degrees to "
         f"either side leaves a sector of {2 * (63.0 - 45.0):.0f} degrees",
-        f"of least J within 0.12 degrees fits, in {small['width']:.1f} x {small['height']:.1f} mm",
+        "of minimum J within 0.12 degrees fits, in "
+        f"{small['width']:.1f} x {small['height']:.1f} mm",
     ]
 
 
@@ -129,16 +130,16 @@ def assumptions():
     return [
         f"steel of {1e9 * PAPER.density:g} g/cm³, modules {modules} mm, pinions of "
         f"{PAPER.pinion_teeth[0]} to {PAPER.pinion_teeth[1]} teeth, wheels up to "
-        f"{PAPER.most_wheel_teeth}, gear 4 a quarter of a disc, {1e-3 * PAPER.output_torque:g} N m "
+        f"{PAPER.max_wheel_teeth}, gear 4 a quarter of a disc, {1e-3 * PAPER.output_torque:g} N m "
         f"peak at the output, {PAPER.bending:g} MPa by Lewis, D3 of {float(PAPER.bore):g} mm at "
-        f"the least, tip diameters of {tips} mm at the most, N within "
+        f"least, tip diameters of {tips} mm at most, N within "
         f"{100 * float(PAPER.tolerance):g} % of {float(PAPER.ratio):g}",
-        "D2 and D4 of {:g} and {:g} mm at the most".format(
+        "D2 and D4 of {:g} and {:g} mm at most".format(
             *(tip - 2.0 * STIFF.module for tip in STIFF.wheel_tips)
         ),
-        f"D1 of {STIFF.module * STIFF.pinion_teeth[0]:g} mm at the least",
+        f"D1 of {STIFF.module * STIFF.pinion_teeth[0]:g} mm at least",
         "D3 at least {:g} mm and {:g} mm above shaft 2".format(*STIFF.bore),
-        f"widths of {STIFF.face_width:g} and shaft of {STIFF.shaft_diameter:g} mm at the least",
+        f"widths of {STIFF.face_width:g} and shaft of {STIFF.shaft_diameter:g} mm at least",
         "N of {:g} to {:g}, Lewis factors of {} and {} teeth".format(
             *STIFF.ratio, *STIFF.pinion_teeth
         ),
@@ -146,7 +147,7 @@ def assumptions():
         f"motor of radius {box.radii[0]:g}, hub of {box.hub:g} mm",
         "in {:g} x {:g} |".format(*box.box),
         f"With {math.degrees(box.half_sweep):g} degrees to either side",
-        f"motor at {LIMITED.speed_limit:g} rad/s at the most",
+        f"motor at {LIMITED.speed_limit:g} rad/s at most",
         f"The {len(components())} tolerances above 0 of",
         f"each costs (t0/t)^k, {len(components())} together as in the paper",
         f"solid discs of one width, N = {48:g}, in terms of one pinion",
@@ -162,7 +163,7 @@ def counted(error):
 
 
 def fitting():
-    """The train of least error that fits the box with 90 degrees to either side."""
+    """The train of minimum error that fits the box with 90 degrees to either side."""
     wide = with_error(0.1172)
     found = split.trains(wide, wide.error)
     boxes = (servo_box.of_train(pairs(x), 12.0, 8.0, math.pi / 2, (80.0, 130.0)) for x in found)

@@ -81,7 +81,7 @@ def mesh_rows():
 
 
 def ratios_of(gears):
-    """Least and most K_s34/K_s12 of all forms of the Lewis factor."""
+    """Return the minimum and maximum K_s34/K_s12 of all forms of the Lewis factor."""
     kinds = ("y", "Y")
     found = [rule(1.0, gears, p, w) for p in kinds for w in kinds]
     return min(b / a for a, b in found), max(b / a for a, b in found)

@@ -101,7 +101,7 @@ def test_a_move_is_shortest_at_its_optimum():
     ratio |= {"curve": {"total_ratio": ratios, "value": [1.5, 1.0, 1.4]}}
     result = cases.servo()
     made = sections(replace(result, design={"ratio": ratio}, parts=()))[1]
-    assert made.words[0] == "Least move time: 1 s at a total ratio of 20."
+    assert made.words[0] == "Minimum move time: 1 s at a total ratio of 20."
     assert [t["name"] for t in made.figures[0].data] == ["move time", "best 20: 1 s"]
 
 
@@ -170,9 +170,9 @@ def test_trains_are_where_they_belong_and_the_chosen_one_is_marked(result, found
         chosen = result.design["train"]
         assert drawn["chosen"]["x"] == [pytest.approx(factor * chosen[key])]
         assert drawn["chosen"]["y"] == [chosen["error_deg"]]
-        told = drawn["least error"]["text"][0]
+        told = drawn["minimum error"]["text"][0]
         assert "50/264, m_n 0.3 mm" in told and "29/263, m_n 0.4 mm" in told
-        assert "none better than another" in figure.caption
+        assert "none dominates another" in figure.caption
     trains = result.report["trains"]
     worse = trains[0] | {"error_deg": 2.0 * trains[0]["error_deg"], "best_of": ""}
     made = sections(replace(result, report={"trains": [*trains, worse]}))
@@ -191,7 +191,7 @@ def test_tolerance_table_and_its_sums(result, found):
     assert sum(r[6].value for r in rows) == pytest.approx(100.0)
     bars = np.array([(r[8].share, r[8].value) for r in rows])
     assert np.ptp(bars[:, 0] / bars[:, 1]) < 1e-9 and bars[:, 0].max() < 0.9995
-    at_end = [r[0] for r in rows if r[4].text.startswith("most")]
+    at_end = [r[0] for r in rows if r[4].text.startswith("max")]
     assert at_end and all("stage 1" in name for name in at_end)
 
 
@@ -282,7 +282,7 @@ def test_what_does_not_fit_is_said_so():
 def test_generic_sections_look_right(result):
     shown = text(page(result, "x"))
     for phrase in (
-        "31,877 choices of teeth and modules looked at",
+        "31,877 choices of teeth and modules examined",
         "17/91, 23/207, +0.368 %",
         "inverse acceleration",
         "bending stress",
@@ -388,7 +388,7 @@ def test_the_terminal_tells_all_below_100_columns(result):
     show(result, console)
     shown = console.export_text()
     for phrase in (
-        "Largest load acceleration: 47.287 rad/s² at a total ratio of 57.786.",
+        "Maximum load acceleration: 47.287 rad/s² at a total ratio of 57.786.",
         "inertia [g cm²]",
         "tolerance [µm]",
         "0.11975  7.185  100.0",

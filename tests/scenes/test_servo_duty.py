@@ -231,10 +231,10 @@ IMPOSSIBLE = [
     (
         {"duty": {"motion": "acceleration", "load_speed": "50 rad/s"},
          "motor": {"speed_limit": "800 rad/s"}},
-        "the motor's speed limit allows a total ratio of 16 at the most",
+        "the motor's speed limit allows a total ratio of at most 16",
         {"speed_limit", "ratio_low"},
     ),
-    ({"load": {"friction": "10 N m"}, "train": {"ratio": [20, 50]}}, "with any of them", set()),
+    ({"load": {"friction": "10 N m"}, "train": {"ratio": [20, 50]}}, "with none of them", set()),
     (
         {"duty": SWING, "motor": {"torque": "0.02 N m"},
          "train": {"maximise": None, "minimise": "rms_torque"}},
@@ -322,7 +322,7 @@ def test_a_box_that_no_train_keeps_is_told_once():
     few |= {"pinion_teeth": [20, 24]}
     result = gearopt.solve(scene(FAST, space=narrow, train=few))
     assert result.status == "infeasible"
-    assert " ".join(shown(result).split()).count("that keep all other limits keeps the box") == 1
+    assert " ".join(shown(result).split()).count("that meet all other limits fits the box") == 1
 
 
 @pytest.mark.parametrize("aim", [{}, {"maximise": None, "minimise": "inertia"}])
@@ -344,7 +344,7 @@ def test_no_reason_is_given_where_time_ran_out_before_it_was_known():
     assert (found.conflict, found.remedies) == (
         (),
         (),
-    ) and found.message == "time ran out before it was known why"
+    ) and found.message == "the budget ended before the cause was known"
 
 
 def test_a_diameter_that_was_not_tried_in_time_is_not_called_out_of_reach(monkeypatch):
@@ -360,4 +360,4 @@ def test_a_diameter_that_was_not_tried_in_time_is_not_called_out_of_reach(monkey
     monkeypatch.setattr("gearopt.formulations.servo.impossible.status", answer)
     rooms = blocked(asked, clock)
     assert not rooms.remedies and "out of reach" not in rooms.message
-    assert rooms.message.endswith("; time ran out before all ways out were tried")
+    assert rooms.message.endswith("; the budget ended before all remedies were tried")

@@ -74,7 +74,7 @@ def test_the_wider_error_that_is_proposed_is_the_least():
 def test_what_is_impossible_for_another_reason_is_said(edits, blamed, words):
     explained = gearopt.explain(changed(text("gimbal_light"), *edits))
     assert explained.result.status == "infeasible" and explained.remedies == ()
-    assert "not for the accuracy" in explained.message and words in explained.message
+    assert "the cause is not the accuracy" in explained.message and words in explained.message
     assert blamed <= set(explained.conflict) and "error" not in explained.conflict
     assert bool(blamed) == bool(explained.conflict)
 
@@ -82,8 +82,8 @@ def test_what_is_impossible_for_another_reason_is_said(edits, blamed, words):
 @pytest.mark.parametrize(
     ("edit", "words"),
     [
-        ((("space", "width"), "40 mm"), "keeps the box"),
-        ((("stiffness", "frequency"), "5 kHz"), "keeps the stiffness"),
+        ((("space", "width"), "40 mm"), "fits the box"),
+        ((("stiffness", "frequency"), "5 kHz"), "has the stiffness that is required"),
     ],
 )
 def test_a_box_or_stiffness_that_no_train_keeps_is_named(edit, words):
@@ -111,7 +111,7 @@ def test_the_reason_of_an_impossible_duty_is_told_once(tmp_path):
 def test_a_run_out_of_time_says_so():
     result = gearopt.solve(changed(EXAMPLE), budget=Budget(seconds=0.0))
     assert result.status == "limit" and result.value is None and result.bound is None
-    assert result.message == "stopped before the end" and "ways_out" not in result.report
+    assert result.message == "stopped by the budget" and "ways_out" not in result.report
     assert {p.name: p.status for p in result.parts} == {"ratio": "optimal", "stiff": "limit"}
     assert gearopt.Result.from_json(result.to_json()).status == "limit"
 
@@ -121,7 +121,7 @@ def test_time_that_ran_out_is_no_reason_of_its_own():
     for clock in (Clock(Budget(seconds=0.0)), Clock(Budget(), lambda event: False)):
         found = remedies(scene, clock)
         assert (found.conflict, found.remedies) == ((), ())
-        assert found.message.startswith("time ran out")
+        assert found.message.startswith("the budget ended")
 
 
 def test_a_stop_ends_the_look_for_ways_out():

@@ -43,7 +43,7 @@ REFUSED = [  # edits, dropped, key, words
     ([(("duty", "motion"), "swing")], [], "duty.amplitude", "needs it"),
     ([(("duty", "angle"), "90 deg")], [], "duty.angle", 'for motion = "move"'),
     ([], [("mesh", 1)], "mesh", "each of the two stages"),
-    ([], [("mesh",)], "mesh", "needs one a stage"),
+    ([], [("mesh",)], "mesh", "needs one per stage"),
     ([], [("shaft",)], "shaft", "twists"),
     (
         [(("train", "minimise"), "move_time")],
@@ -86,7 +86,7 @@ REFUSED = [  # edits, dropped, key, words
         [(("train", "minimise"), "error")],
         [("mesh",), ("tolerances",), ("cost",), ("budget",), ("accuracy",)],
         "mesh",
-        'minimise = "error" needs one a stage',
+        'minimise = "error" needs one per stage',
     ),
     ([], [("stiffness",)], "lightest", "needs a table"),
     ([], [("tolerances",)], "budget", "needs a table"),

@@ -38,7 +38,7 @@ def test_enumeration_counts_every_train(name, feasible):
     assert result.status == "optimal" and result.method == "enumeration"
     report = told(result)
     assert (report["combinations"], report["feasible_trains"]) == (6_326_052, feasible)
-    words = f"6,326,052 choices of teeth and modules looked at, {feasible:,} meet all limits;"
+    words = f"6,326,052 choices of teeth and modules examined, {feasible:,} meet all limits;"
     assert words in " ".join(proof(result))
     assert result.value == pytest.approx(gearopt.solve(scene(name)).value, rel=1e-12)
 

@@ -31,13 +31,13 @@ def run(repeat: int) -> list[dict[str, Any]]:
         for goal in OBJECTIVES:
             bound = solve(split.relaxation(train, goal)).bound
             assert bound is not None
-            name = f"least {goal}, {error:g} deg"
+            name = f"minimum {goal}, {error:g} deg"
             rows += [_row(name, train, goal, method, bound, repeat) for method in METHODS]
     return rows
 
 
 def train_of(error: float) -> ServoTrain:
-    """Return the gimbal's train with a largest error [deg]."""
+    """Return the gimbal's train with a maximum error [deg]."""
     lost = [
         2.0 * (radial_backlash(r, math.radians(20.0)) + p)
         for r, p in zip(RADIAL, PITCH, strict=True)
@@ -47,7 +47,7 @@ def train_of(error: float) -> ServoTrain:
         tolerance=Fraction(1, 100),
         modules=tuple(Fraction(m, 10) for m in (3, 4, 5, 6, 8, 10)),
         pinion_teeth=(16, 60),
-        most_wheel_teeth=300,
+        max_wheel_teeth=300,
         face_width=6.0,
         density=7.75e-9,
         output_torque=2400.0,

@@ -13,7 +13,7 @@ from gearopt.physics.gears import transverse_pressure_angle
 
 
 def radial_backlash(radial_displacement: Any, pressure_angle: Any, helix_angle: Any = 0.0) -> Any:
-    """Circumferential backlash j_t = 2 tan(alpha_t) Delta_r [mm] of gears moved apart.
+    """Return the circumferential backlash j_t = 2 tan(alpha_t) Delta_r [mm] of gears moved apart.
 
     radial_displacement Delta_r [mm] >= 0, small against the module, the sum of one-sided terms;
     normal pressure_angle, helix_angle [rad]. Source: Youn, eq. (9), there for spur gears.
@@ -30,11 +30,11 @@ def thickness_backlash(
     pressure_angle: Any,
     helix_angle: Any = 0.0,
 ) -> Any:
-    """Circumferential backlash j_t = -(A_sn1 + A_sn2)/cos(beta) + 2 A_a tan(alpha_t) [mm].
+    """Return the backlash j_t = -(A_sn1 + A_sn2)/cos(beta) + 2 A_a tan(alpha_t) [mm].
 
     allowances A_sn of the normal tooth thickness (negative: thinner) and A_a of the centre distance
     [mm], small against the module; normal pressure_angle, helix_angle [rad]. Upper allowances of
-    the teeth and the lower one of the distance give the least backlash, the others the largest.
+    the teeth and the lower one of the distance give the minimum backlash, the others the largest.
     Source: ISO 21771 and DIN 3967 as j_bn = -(A_sn1 + A_sn2) cos(alpha_n)
     + 2 A_a sin(alpha_t) cos(beta_b), see `normal_backlash`.
     """
@@ -43,7 +43,7 @@ def thickness_backlash(
 
 
 def normal_backlash(backlash: Any, pressure_angle: Any, helix_angle: Any = 0.0) -> Any:
-    """Normal backlash j_bn = j_t cos(alpha_t) cos(beta_b) = j_t cos(alpha_n) cos(beta) [mm].
+    """Return the normal backlash j_t cos(alpha_t) cos(beta_b) = j_t cos(alpha_n) cos(beta) [mm].
 
     circumferential backlash j_t [mm]; normal pressure_angle, helix_angle [rad]. Source: ISO 21771.
     """
@@ -51,24 +51,24 @@ def normal_backlash(backlash: Any, pressure_angle: Any, helix_angle: Any = 0.0) 
 
 
 def backlash_angle(backlash: Any, diameter: Any) -> Any:
-    """Angle 2 j_t/D [rad] by which backlash lets a wheel turn.
+    """Return the angle 2 j_t/D [rad] by which a wheel can turn within its backlash.
 
-    circumferential backlash j_t, pitch diameter D of the wheel [mm]. Source: Youn, eq. (9).
+    circumferential backlash j_t, reference diameter D of the wheel [mm]. Source: Youn, eq. (9).
     """
     return 2.0 * backlash / diameter
 
 
 def pitch_error_angle(pitch_deviation: Any, diameter: Any) -> Any:
-    """Angle 2 delta_p/D [rad] of a cumulative pitch deviation.
+    """Return the angle 2 delta_p/D [rad] of a cumulative pitch deviation.
 
     pitch_deviation delta_p [mm], of both gears of a mesh at the worst (the source counts one);
-    pitch diameter D of the wheel [mm]. Source: Youn, eq. (10).
+    reference diameter D of the wheel [mm]. Source: Youn, eq. (10).
     """
     return 2.0 * pitch_deviation / diameter
 
 
 def output_error(angles: Iterable[Any], downstream_ratios: Iterable[Any]) -> Any:
-    """Error sum_i e_i/n_i [rad] at the output of angles at other shafts, all at their worst.
+    """Return the error sum_i e_i/n_i [rad] at the output of angles at other shafts, all at worst.
 
     angles e_i [rad] at the wheel of stage i; downstream_ratios n_i: product of the ratios of the
     stages after it, 1 for the last. Source: used but not printed by Youn.

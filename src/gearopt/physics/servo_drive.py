@@ -15,7 +15,7 @@ import numpy as np
 def reflected_inertia(
     load_inertia: Any, motor_inertia: Any, ratio: Any, efficiency: Any = 1.0
 ) -> Any:
-    """Inertia J_L + eta N^2 J_M [t mm2] that a driving motor's torque accelerates at the load.
+    """Return the inertia J_L + eta N^2 J_M [t mm2] that the motor's torque accelerates.
 
     load_inertia J_L, motor_inertia J_M [t mm2] >= 0; ratio N > 0, motor over load speed; efficiency
     0 < eta <= 1 of the train. Source: Youn, eq. (3), with efficiency.
@@ -32,7 +32,7 @@ def load_acceleration(
     efficiency: Any = 1.0,
     torque_slope: Any = 0.0,
 ) -> Any:
-    """Acceleration a = (eta N (T - b N) - F_L)/(J_L + eta N^2 J_M) [rad/s2] of the load.
+    """Return the load's acceleration (eta N (T - b N) - F_L)/(J_L + eta N^2 J_M) [rad/s2].
 
     ratio N > 0; load_inertia J_L, motor_inertia J_M [t mm2], not both 0; torque T = T_M - F_M, the
     motor's at standstill less its friction, load_friction F_L >= 0 [N mm]; efficiency 0 < eta <= 1;
@@ -44,7 +44,7 @@ def load_acceleration(
 
 
 def torque_slope(stall_torque: Any, load_speed: Any, no_load_speed: Any) -> Any:
-    """Torque b = T_s omega_L/omega_0 [N mm] that a motor loses per unit of ratio at a load speed.
+    """Return the torque b = T_s omega_L/omega_0 [N mm] that a motor loses per unit of ratio.
 
     The motor's line is T_s (1 - omega/omega_0): stall_torque T_s [N mm], no_load_speed omega_0 > 0
     of the motor and load_speed omega_L [rad/s].
@@ -53,16 +53,16 @@ def torque_slope(stall_torque: Any, load_speed: Any, no_load_speed: Any) -> Any:
 
 
 def move_time(angle: Any, peak_speed: Any, acceleration: Any) -> Any:
-    """Time t = Theta/v + v/a [s] from rest to rest with ramps of acceleration a and top speed v.
+    """Return the time Theta/v + v/a [s] from rest to rest: ramps of acceleration a, top speed v.
 
     angle Theta [rad], peak_speed v [rad/s], acceleration a [rad/s2] of the load, all > 0, with
-    v^2 <= a Theta; at equality the speed has no flat part and t = 2 sqrt(Theta/a) is least.
+    v^2 <= a Theta; at equality the speed has no flat part and t = 2 sqrt(Theta/a) is minimum.
     """
     return angle / peak_speed + peak_speed / acceleration
 
 
 def shortest_move_time(angle: Any, speed_limit: Any, acceleration: Any) -> Any:
-    """Least time [s] from rest to rest where the load's speed is limited.
+    """Return the minimum time [s] from rest to rest where the load's speed is limited.
 
     angle Theta [rad], speed_limit [rad/s], acceleration a [rad/s2] of the load, all > 0.
     """
@@ -78,7 +78,7 @@ def rms_torque(
     load_friction: Any = 0.0,
     motor_friction: Any = 0.0,
 ) -> Any:
-    """Root mean square of the motor's torque [N mm] where the load swings as A sin(w t).
+    """Return the root mean square of the motor's torque [N mm] where the load swings as A sin(w t).
 
     T^2 = (A w^2)^2/2 (J_L/N + N J_M)^2 + (F_L/N + F_M)^2: Coulomb friction is in phase with the
     speed, inertia with the acceleration, so the mean of their product is 0. ratio N > 0;
@@ -91,7 +91,7 @@ def rms_torque(
 
 
 def largest_acceleration(load_inertia: float, motor_inertia: float, torque: float) -> float:
-    """Acceleration T/(2 sqrt(J_L J_M)) [rad/s2] at the best ratio N = sqrt(J_L/J_M), no friction.
+    """Return the acceleration T/(2 sqrt(J_L J_M)) [rad/s2] at N = sqrt(J_L/J_M), no friction.
 
     load_inertia J_L, motor_inertia J_M [t mm2] > 0; torque T [N mm]. Source: Youn, eq. (6).
     """

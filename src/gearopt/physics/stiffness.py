@@ -10,7 +10,7 @@ from typing import Any
 
 
 def shaft_compliance(shear_modulus: Any, diameter: Any, length: Any) -> Any:
-    """Torsional compliance 32 L/(pi G d^4) [rad/(N mm)] of a solid round shaft.
+    """Return the torsional compliance 32 L/(pi G d^4) [rad/(N mm)] of a solid round shaft.
 
     shear_modulus G [MPa], diameter d [mm] > 0; length L [mm] >= 0. Source: Youn, eq. (13),
     corrected: the print has 2 for 32 with d called a diameter, which holds for the radius.
@@ -19,7 +19,7 @@ def shaft_compliance(shear_modulus: Any, diameter: Any, length: Any) -> Any:
 
 
 def tooth_factor(form_factor: Any) -> Any:
-    """Buckingham's factor Z = y/(0.242 + 7.25 y) of a tooth's stiffness.
+    """Return Buckingham's factor Z = y/(0.242 + 7.25 y) of a tooth's stiffness.
 
     form_factor y: Lewis factor on the circular pitch, y = Y/pi (0.094 to 0.15 from 16 teeth up).
     Source: Youn, eq. (12); recalled there from Buckingham, whose mean is 0.111 for 20 degrees.
@@ -28,7 +28,7 @@ def tooth_factor(form_factor: Any) -> Any:
 
 
 def lewis_form_factor(teeth: Any) -> Any:
-    """Lewis factor Y = pi (0.154 - 0.912/z) on the module, 20 degree full depth, load at the tip.
+    """Return Lewis's Y = pi (0.154 - 0.912/z) on the module, 20 degrees full depth, tip load.
 
     teeth z >= 12. The usual textbook fit; from 16 to 300 teeth it lies 0 to 9 % above the table of
     Shigley (0.296 at 16, 0.359 at 30, 0.422 at 60, 0.472 at 300): stresses come out that much less.
@@ -39,7 +39,7 @@ def lewis_form_factor(teeth: Any) -> Any:
 def line_stiffness(
     pinion_modulus: Any, pinion_factor: Any, wheel_modulus: Any, wheel_factor: Any
 ) -> Any:
-    """Stiffness k' [N/mm per mm of face width] of one pair of teeth, E_1 Z_1 and E_2 Z_2 in series.
+    """Return the stiffness k' [N/mm per mm of face width] of a pair of teeth, E Z in series.
 
     moduli E [MPa] > 0; factors Z of `tooth_factor`. About 10e3 MPa for steel spur gears. Source:
     Youn, eq. (12), corrected: without the factor 4, with y, not Y (see `mesh_compliance`).
@@ -48,7 +48,7 @@ def line_stiffness(
 
 
 def mesh_compliance(line_stiffness: Any, face_width: Any, diameter: Any) -> Any:
-    """Compliance 4/(k' b d^2) [rad/(N mm)] of a mesh, seen at the shaft of pitch diameter d.
+    """Return the compliance 4/(k' b d^2) [rad/(N mm)] of a mesh, at its gear of diameter d.
 
     line_stiffness k' [MPa], face_width b, diameter d [mm] > 0. Source: Youn, eq. (12), corrected:
     the torque on a tangential spring has the lever r = d/2, so k' b r^2; the print's 4 D^2 with
@@ -58,7 +58,7 @@ def mesh_compliance(line_stiffness: Any, face_width: Any, diameter: Any) -> Any:
 
 
 def output_compliance(compliances: Iterable[Any], downstream_ratios: Iterable[Any]) -> Any:
-    """Compliance sum_i c_i/n_i^2 [rad/(N mm)] of springs in series, seen at the output.
+    """Return the compliance sum_i c_i/n_i^2 [rad/(N mm)] of springs in series, at the output.
 
     compliances c_i [rad/(N mm)] >= 0, each at its own shaft; downstream_ratios n_i: speed of that
     shaft over speed of the output. Source: Youn, eq. (11), with the reciprocal its print omits.
@@ -67,7 +67,7 @@ def output_compliance(compliances: Iterable[Any], downstream_ratios: Iterable[An
 
 
 def locked_frequency(stiffness: Any, load_inertia: Any) -> Any:
-    """Frequency sqrt(K/J_L)/(2 pi) [Hz] of the load on the train's stiffness, motor locked.
+    """Return the frequency sqrt(K/J_L)/(2 pi) [Hz] of the load on the train, motor locked.
 
     stiffness K [N mm/rad] at the load, load_inertia J_L [t mm2] > 0.
     """
@@ -75,7 +75,7 @@ def locked_frequency(stiffness: Any, load_inertia: Any) -> Any:
 
 
 def stiffness_of_frequency(frequency_Hz: Any, load_inertia: Any) -> Any:
-    """Stiffness K = (2 pi f)^2 J_L [N mm/rad] at which the load swings at f, motor locked.
+    """Return the stiffness (2 pi f)^2 J_L [N mm/rad] for a frequency f, motor locked.
 
     frequency_Hz f [Hz], load_inertia J_L [t mm2].
     """

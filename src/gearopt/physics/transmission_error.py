@@ -12,16 +12,16 @@ import numpy as np
 
 
 def eccentricity_error(eccentricity: Any, diameter: Any, pressure_angle: Any) -> Any:
-    """Amplitude e/r_b = 2 e/(d cos(alpha)) [rad] that an eccentric wheel adds to its own turning.
+    """Return the amplitude e/r_b = 2 e/(d cos(alpha)) [rad] of an eccentric wheel.
 
-    eccentricity e, pitch diameter d [mm] > 0; transverse pressure_angle alpha [rad]. Its frequency
-    is once per turn of that gear. Derived: e is the amplitude along the line of action.
+    eccentricity e, reference diameter d [mm] > 0; transverse pressure_angle alpha [rad]. Its
+    frequency is once per turn of that gear. Derived: e is the amplitude along the line of action.
     """
     return 2.0 * eccentricity / (diameter * np.cos(pressure_angle))
 
 
 def in_phase_amplitude(amplitudes: Iterable[float], phases: Iterable[float]) -> float:
-    """Amplitude of the vector sum of errors of one frequency, as of gears on one shaft.
+    """Return the amplitude of the vector sum of errors of one frequency, as on one shaft.
 
     amplitudes, all of one unit, and phases [rad]. Turning one gear on its shaft by pi cancels two
     equal ones.
@@ -33,7 +33,7 @@ def in_phase_amplitude(amplitudes: Iterable[float], phases: Iterable[float]) -> 
 
 
 def unrelated_amplitude(amplitudes: Iterable[float]) -> float:
-    """Root of the sum of squares: the typical amplitude of errors whose phases are unrelated.
+    """Return the root of the sum of squares: typical of errors whose phases are unrelated.
 
     It is sqrt(2) times the root mean square of their sum over all phases; the worst case is the
     plain sum.

@@ -1,5 +1,9 @@
-"""The whole teeth and modules of a servo train: the formulation, held to stiffness and box too."""
+"""The whole teeth and modules of a servo train: the formulation, held to stiffness and box too.
 
+Stiffness is that of meshes and shaft in series at the output, motor locked.
+"""
+
+import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
@@ -7,21 +11,86 @@ from typing import Any
 import numpy as np
 
 from gearopt.formulations.servo import servo_box, split
-from gearopt.formulations.servo.servo_design import GOALS
+from gearopt.formulations.servo.servo_design import GOALS, Spring, StiffnessDesign
 from gearopt.formulations.servo.split import teeth
 from gearopt.formulations.servo.split.bodies import Pairs
 from gearopt.formulations.servo.split.servo_train import pairs
-from gearopt.formulations.servo.springs import Springs
 from gearopt.optimise.clock import Clock, in_part, of_others
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.terms import Array, Terms
+from gearopt.physics.gears import GearPair
+from gearopt.physics.stiffness import (
+    lewis_form_factor,
+    line_stiffness,
+    locked_frequency,
+    mesh_compliance,
+    output_compliance,
+    shaft_compliance,
+    tooth_factor,
+)
 
 RANDOM, COUNTS = teeth.RANDOM, teeth.COUNTS  # of the methods that are passed on here
 ROUNDING = 1e-12  # of an objective
 WANTED = {"stiffness": "is stiff enough", "box": "fits the box"}
-LISTED = 1_000_000  # trains that a front is taken from, at the most
-PART = 50_000  # trains that are weighed between two looks at the clock
+LISTED = 1_000_000  # trains that a Pareto front is taken from, at most
+SPRINGS = ("mesh of stage 2", "shaft between the stages", "mesh of stage 1")
+PART = 50_000  # trains that are evaluated between two checks of the clock
+
+
+@dataclass(frozen=True)
+class Springs:
+    """What is given of meshes and shaft between the stages; lengths in mm, moduli in MPa.
+
+    shaft: diameter and length. line_stiffness: of a mesh; None where it follows from the gears'
+    youngs_modulus and teeth. load_inertia [t mm2] and load_torque [N mm]: None for none. minimum:
+    stiffness of the output [N mm/rad], None where none is required.
+    """
+
+    shear_modulus: float
+    shaft: tuple[float, float]
+    line_stiffness: float | None = None
+    youngs_modulus: float = math.nan
+    load_inertia: float | None = None
+    load_torque: float | None = None
+    minimum: float | None = None
+
+    def compliances(self, pairs: Pairs) -> tuple[Any, Any, Any]:
+        """Return compliances [rad/(N mm)] at the output, in the order of SPRINGS."""
+        first, second = pairs
+        twist = shaft_compliance(self.shear_modulus, *self.shaft)
+        return (
+            self._mesh(second),
+            twist / second.ratio**2,
+            self._mesh(first) / second.ratio**2,
+        )
+
+    def _mesh(self, pair: GearPair) -> Any:
+        """Return the compliance [rad/(N mm)] of a mesh, its line stiffness given or by Lewis."""
+        stiffness: Any = self.line_stiffness
+        if self.line_stiffness is None:
+            one, two = (tooth_factor(lewis_form_factor(g.teeth) / math.pi) for g in pair.gears)
+            stiffness = line_stiffness(self.youngs_modulus, one, self.youngs_modulus, two)
+        return mesh_compliance(stiffness, pair.face_width, pair.wheel.reference_diameter)
+
+    def output_stiffness(self, pairs: Pairs) -> Any:
+        """Return the stiffness at the output [N mm/rad]."""
+        return 1.0 / output_compliance(self.compliances(pairs), (1.0, 1.0, 1.0))
+
+    def design(self, pairs: Pairs) -> StiffnessDesign:
+        """Return stiffness, frequency and wind-up of a train, with the share of every spring."""
+        parts = [float(c) for c in self.compliances(pairs)]
+        total = math.fsum(parts)
+        inertia, torque = self.load_inertia, self.load_torque
+        return StiffnessDesign(
+            output_Nm_per_rad=1e-3 / total,
+            springs=tuple(
+                Spring(name, part / total, 1e-3 / part)
+                for name, part in zip(SPRINGS, parts, strict=True)
+            ),
+            frequency_Hz=None if inertia is None else float(locked_frequency(1.0 / total, inertia)),
+            windup_deg=None if torque is None else math.degrees(torque * total),
+        )
 
 
 @dataclass(frozen=True)
@@ -38,14 +107,16 @@ class Choice:
     room: Callable[[Pairs], servo_box.ServoBox] | None = None
 
     @property
-    def least(self) -> float | None:
+    def minimum_stiffness(self) -> float | None:
         """Return the minimum stiffness of the output [N mm/rad]; None where none is asked for."""
-        return None if self.springs is None else self.springs.least
+        return None if self.springs is None else self.springs.minimum
 
     @property
     def apart(self) -> tuple[str, ...]:
-        """Return the limits that an enumeration does not look at."""
-        return ("stiffness",) * (self.least is not None) + ("box",) * (self.room is not None)
+        """Return the limits that an enumeration leaves aside."""
+        return ("stiffness",) * (self.minimum_stiffness is not None) + ("box",) * (
+            self.room is not None
+        )
 
     @property
     def weighed(self) -> tuple[str, ...]:
@@ -55,10 +126,10 @@ class Choice:
 
     def stiff(self, points: Array) -> Array:
         """Return those of some points (N, 6) that are stiff enough."""
-        if self.springs is None or self.springs.least is None:
+        if self.springs is None or self.springs.minimum is None:
             return points
         made = pairs(points.T, self.train.face_width)
-        found: Array = points[self.springs.output_stiffness(made) >= self.springs.least]
+        found: Array = points[self.springs.output_stiffness(made) >= self.springs.minimum]
         return found
 
     def keeps(self, point: Array) -> bool:
@@ -78,9 +149,9 @@ def train_problem(choice: Choice) -> Problem:
     def evaluate(x: Any, p: Any) -> Terms:
         found = base.evaluate(x, p)
         limits = dict(found.limits)
-        if choice.springs is not None and choice.springs.least is not None:
+        if choice.springs is not None and choice.springs.minimum is not None:
             made = pairs((*x.pinion_teeth, *x.wheel_teeth, *x.module), choice.train.face_width)
-            limits["stiffness"] = choice.springs.least / choice.springs.output_stiffness(made)
+            limits["stiffness"] = choice.springs.minimum / choice.springs.output_stiffness(made)
         goal = {choice.goal: factor * found.minimise[choice.goal]}
         return replace(found, minimise=goal, limits=limits)
 
@@ -88,7 +159,7 @@ def train_problem(choice: Choice) -> Problem:
         def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
             """Return the best train, or of all in order the first that keeps the limits apart."""
             clock = Clock(budget, watch)
-            # a train may be better than the answer where limits are looked at apart
+            # a train may be better than the answer where limits are checked apart
             shown = of_others(watch, "") if choice.apart else in_part(watch, factor=factor)
             found: Outcome = base.methods[name](base, budget, seed, shown)
             found = _counted(found, found.proof, choice.apart)
@@ -120,11 +191,11 @@ def _counted(found: Outcome, proof: Mapping[str, Any] | None, apart: tuple[str, 
 
 
 def _in_order(choice: Choice, base: Problem, best: float, clock: Clock) -> Outcome:
-    """Look at all feasible trains, the best first, until one is stiff and fits.
+    """Examine all feasible trains, the best first, until one is stiff and fits.
 
     best: the objective of the best train, whether it is stiff and fits or not.
     """
-    looked, stiff, counted = 0, 0, choice.least is not None
+    looked, stiff, counted = 0, 0, choice.minimum_stiffness is not None
     asked = [WANTED[name] for name in choice.apart]
 
     def check(tried: int = 0) -> None:
@@ -148,27 +219,23 @@ def _in_order(choice: Choice, base: Problem, best: float, clock: Clock) -> Outco
             proof = _looked(count, stiff + len(points) if counted else None, False)
             return Outcome(point, bound=bound, proof=proof, evaluations=count)
         looked, stiff = looked + len(lot), stiff + len(points)
-    what = "the box" if stiff else "the stiffness that is asked for"
-    text = f"none of the {looked:,} trains that keep all other limits keeps {what}"
+    what = "fits the box" if stiff else "has the stiffness that is required"
+    text = f"none of the {looked:,} trains that meet all other limits {what}"
     proof = _looked(looked, stiff if counted else None, True)
     return Outcome(None, infeasible=True, proof=proof, evaluations=looked, message=text)
 
 
 def _looked(count: int, stiff: int | None, infeasible: bool) -> dict[str, Any]:
     """Return how an order of trains is proven; stiff: how many of them are, where asked for."""
-    found: dict[str, Any] = {
-        "method": "exhausted",
-        "arithmetic": "ratios and diameters in whole numbers; the rest in double",
-        "trains_looked_at": count,
-    }
-    found["sentence"] = teeth.sentence(found, infeasible)
-    return found if stiff is None else found | {"trains_stiff_enough": stiff}
+    proof = teeth.exhaustion(count, None, True)
+    proof["sentence"] = teeth.sentence(proof, infeasible)
+    return proof if stiff is None else proof | {"trains_stiff_enough": stiff}
 
 
 def front(choice: Choice, clock: Clock) -> tuple[Array, Array] | None:
     """Return points and objectives (`weighed`) of the Pareto front of trains.
 
-    Stiffness is kept, a box not looked at; None where the feasible trains are too many, or time is
+    Stiffness is kept, a box left aside; None where the feasible trains are too many, or time is
     up.
     """
 
@@ -188,7 +255,7 @@ def front(choice: Choice, clock: Clock) -> tuple[Array, Array] | None:
             part = choice.stiff(points[start : start + PART])
             if len(part):
                 best, worth = np.vstack([best, part]), np.vstack([worth, posed.batch(part).F])
-                kept = split.unbeaten(worth)
+                kept = split.pareto_front(worth)
                 best, worth = best[kept], worth[kept]
     except TimeoutError:
         return None

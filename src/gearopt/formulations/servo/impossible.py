@@ -14,8 +14,8 @@ from gearopt.optimise.explaining.repair import conflict
 from gearopt.optimise.solve import solve_within
 
 WIDER = tuple(Fraction(1, 10**k) for k in range(6, 0, -1))  # ratio tolerances that are tried
-CLOSE = 1e-7  # relative: between the largest part that leaves a train, and the least that none
-THIN = 1e-6  # part of a diameter below which it is no way out
+CLOSE = 1e-7  # relative: between the largest part that leaves a train and the smallest without
+THIN = 1e-6  # part of a diameter below which it is no remedy
 
 
 def status(train: ServoTrain, clock: Clock) -> str:
@@ -24,7 +24,7 @@ def status(train: ServoTrain, clock: Clock) -> str:
 
 
 def in_conflict(train: ServoTrain, clock: Clock, goal: str = "") -> tuple[str, ...]:
-    """Return limits that no real-valued teeth and modules keep together, none of them to spare."""
+    """Return limits in conflict for real-valued teeth and modules; dropping any one resolves it."""
     known = "error" if train.lost_motion is not None else "inertia"
     relaxed = split.relaxation(train, goal or known)
     if solve_within(clock, relaxed).status != "infeasible":
@@ -39,7 +39,7 @@ def minimum_error(train: ServoTrain, clock: Clock) -> float | None:
 
 
 def with_wider_ratio(train: ServoTrain, clock: Clock) -> ServoTrain | None:
-    """Return the train with the least tolerance of `WIDER` that whole teeth keep; None for none."""
+    """Return the train with the smallest tolerance of `WIDER` that whole teeth meet, or None."""
     for tolerance in WIDER:
         other = replace(train, tolerance=tolerance)
         if tolerance > train.tolerance and status(other, clock) == "optimal":

@@ -337,7 +337,7 @@ class ServoDesign:
 
 @dataclass(frozen=True)
 class ServoReport:
-    """What is told beside the design. figures: by the names that docs/servo.md lists.
+    """What is reported beside the design. figures: by the names that docs/servo.md lists.
 
     trains: none of them where they are too many, None where no train was chosen.
     """

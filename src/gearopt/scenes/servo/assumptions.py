@@ -15,7 +15,7 @@ from gearopt.scenes.servo.scene import Scene
 from gearopt.scenes.servo.tables.trains import Train
 from gearopt.scenes.servo.train_part import candidates, given_gears
 
-SLOWEST = "acceleration"  # what nobody wants least
+SLOWEST = "acceleration"  # what nobody minimises
 FRICTION = {
     "acceleration": "The motor speeds the load up; friction is Coulomb's and opposes the motion.",
     "move": "Ramps up and down are alike, though friction helps to brake; the motor's torque is "
@@ -36,7 +36,7 @@ def assumptions(scene: Scene) -> list[str]:
     if scene.mesh:
         found.append(
             "Error: lost motion between both flanks at the output, by small angles; every "
-            "deviation is one-sided and at its worst at once."
+            "deviation is one-sided and at its limit at the same time."
         )
     if any(mesh.grade is not None for mesh in scene.mesh):
         found.append(
@@ -162,7 +162,7 @@ def _told(whose: str, broken: list[str]) -> str:
     return f"{whose} {' and '.join(WHAT[name] for name in broken)}." if broken else ""
 
 
-UNLISTED = "Other trains are not shown beside this one: there are too many, or the time was up."
+UNLISTED = "Other trains are not shown beside this one: there are too many, or the budget ended."
 
 
 def notes(
@@ -174,9 +174,7 @@ def notes(
         judged = candidates(scene, design.train).values()
         found = [said for one in judged if (said := why_not(duty, one))]
     if scene.train is not None and scene.train.maximise is None and scene.train.aim == SLOWEST:
-        found.append(
-            f'minimise = "{SLOWEST}" was read as maximise: the largest one was looked for.'
-        )
+        found.append(f'minimise = "{SLOWEST}" was read as maximise: the maximum was searched for.')
     if design.box is not None and not design.box.fits:
         found.append("The best train does not fit the box of [space].")
     asked, drawn = scene.accuracy.error, design.drawn
@@ -192,7 +190,7 @@ def notes(
     found += undercut(untyped(stages), Rack(scene.accuracy.pressure_angle.value), 0.0)
     if scene.lightest is not None:
         found.append(
-            "The lightest train has real-valued sizes: it is a floor for gears with whole teeth."
+            "The lightest train has real-valued sizes: its mass is a lower bound for whole teeth."
         )
     found += [said for said in (_overlaps(scene, results), given_overlap(scene)) if said]
     if report.trains == ():

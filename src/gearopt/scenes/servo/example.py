@@ -56,7 +56,7 @@ pitch = "0.033 mm"
 [accuracy]
 error = "0.12 deg"             # of the output, all deviations at their worst
 
-[tolerances]                   # the same deviations made anew, at least cost
+[tolerances]                   # the same deviations reallocated at minimum cost
 exponent = 1
 
 [[cost]]                       # of one deviation, where it is another
@@ -73,7 +73,7 @@ line_stiffness = "10300 MPa"
 frequency = "200 Hz"
 load_torque = "4.3 kgf cm"
 
-[lightest]                     # real-valued sizes of least mass, stiff enough
+[lightest]                     # real-valued sizes of minimum mass, stiff enough
 face_width = "2 mm"
 shaft_diameter = "3 mm"
 shaft_wall = "3.5 mm"

@@ -22,18 +22,18 @@ DIGITS = 5  # of a number that is proposed; rounded to the easy side
 ROOM = 1e-9  # by which a proposal is easier, to be feasible in doubles
 BACK = 1e-3  # a remedy that much smaller must be impossible
 LOOSE = "90 deg"  # an error that no train misses
-LATE = "time ran out before it was known why"
+LATE = "the budget ended before the cause was known"
 NAMED = 3  # sources of error that the message names
 WHOLE = (
-    "real-valued teeth and modules keep all other limits, whole teeth and the modules of the list "
+    "real-valued teeth and modules meet all other limits, whole teeth and the modules of the list "
     "do not"
 )
 MOTOR = (
-    "it is for the duty: trains keep all other limits, but the motor does not do what [duty] asks "
-    "with any of them"
+    "the cause is the duty: trains meet all other limits, but with none of them does the motor do "
+    "what [duty] asks"
 )
 COVERED = (
-    "in all trains that keep all other limits the first wheel covers the output shaft, however "
+    "in all trains that meet all other limits the first wheel covers the output shaft, however "
     "thin that is: allow a larger last wheel, or smaller modules"
 )
 
@@ -46,10 +46,10 @@ PLACES: tuple[Place, ...] = (
 )
 
 
-def remedies(scene: Scene, clock: Clock, told: str = NO_TEETH) -> Remedies:
+def remedies(scene: Scene, clock: Clock, message: str = NO_TEETH) -> Remedies:
     """Return the conflict of a train that is impossible, and what to write instead.
 
-    told: what the search said of it.
+    message: of the search.
     """
     asked = scene.accuracy.error
     assert scene.train is not None
@@ -59,21 +59,21 @@ def remedies(scene: Scene, clock: Clock, told: str = NO_TEETH) -> Remedies:
             return _of_duty(scene, clock)
         if still.status != "infeasible":
             return Remedies(message=LATE)
-        told = still.message
+        message = still.message
     rooms = blocked(scene, clock)
     if asked is None and rooms is not None:
         return rooms
     if asked is None:
-        return _other(scene, told, clock)
+        return _other(scene, message, clock)
     free = with_error(scene, units.parse(LOOSE, "angle"))
     least = solve_within(clock, train_problem(_aiming(free, "error").choice()))
     if least.status == "infeasible":
         if rooms is not None:
             return rooms
         other = _other(free, least.message, clock)
-        return replace(other, message=f"it is not for the accuracy: {other.message}")
+        return replace(other, message=f"the cause is not the accuracy: {other.message}")
     if least.status != "optimal":
-        return Remedies(message="time ran out before the least possible error was proven")
+        return Remedies(message="the budget ended before the minimum possible error was proven")
     best = units.parse(f"{least.value!r} deg", "angle")
     names = impossible.in_conflict(scene.servo_train(), clock)
     floor = impossible.minimum_error(scene.servo_train(), clock) if names else None
@@ -92,17 +92,17 @@ def _aiming(scene: Scene, aim: str) -> Scene:
     return scene.model_copy(update={"train": train})
 
 
-def _other(scene: Scene, told: str, clock: Clock) -> Remedies:
+def _other(scene: Scene, message: str, clock: Clock) -> Remedies:
     """Return why a train is impossible whatever its error: limits in conflict, and a sentence.
 
-    told: what the search said.
+    message: of the search.
     """
     train = scene.servo_train()
     if names := impossible.in_conflict(train, clock):
-        why = "real-valued teeth and modules do not keep all other limits either"
+        why = "real-valued teeth and modules do not meet all other limits either"
         return Remedies(names, message=why)
-    if told != NO_TEETH:  # it names the box, or the stiffness
-        return Remedies(message=told)
+    if message != NO_TEETH:  # it names the box, or the stiffness
+        return Remedies(message=message)
     if (other := impossible.with_wider_ratio(train, clock)) is not None:
         own, ends = (_span(scene, one) for one in (train, other))
         return Remedies(message=f"no whole teeth make the ratio {own}; {ends} some do")
@@ -124,12 +124,14 @@ def _of_duty(scene: Scene, clock: Clock) -> Remedies:
     duty = train.duty
     assert duty is not None
     names = impossible.in_conflict(train, clock, duty.goal)
-    if duty.most_ratio is not None and duty.most_ratio < train.ratios[0]:
-        why = f"the motor's speed limit allows a total ratio of {float(duty.most_ratio):.6g}"
-        return Remedies(names, message=f"it is for the duty: {why} at the most")
+    if duty.max_ratio is not None and duty.max_ratio < train.ratios[0]:
+        why = f"the motor's speed limit allows a total ratio of at most {float(duty.max_ratio):.6g}"
+        return Remedies(names, message=f"the cause is the duty: {why}")
     alone = solve(duty.problem())
     if alone.status == "infeasible":
-        return Remedies(names, message=f"it is for the duty, whatever the train: {alone.message}")
+        return Remedies(
+            names, message=f"the cause is the duty, whatever the train: {alone.message}"
+        )
     return Remedies(names, message=MOTOR)
 
 
@@ -233,13 +235,13 @@ def blocked(scene: Scene, clock: Clock) -> Remedies | None:
     if not names:
         return Remedies(("output_shaft",), (), COVERED)
     what = " and ".join(name.replace("_", " ") for name in names)
-    message = f"no train that keeps all other limits leaves room for the {what}"
+    message = f"no train that meets all other limits leaves room for the {what}"
     ways = _bodies(scene, clock)
     proven = tuple(way for way in ways if way.verified["with"] == "optimal")
     if clock.over:
-        message += "; time ran out before all ways out were tried"
+        message += "; the budget ended before all remedies were tried"
     elif ways and not proven:
-        message += "; with less in the way, box, stiffness or duty stay out of reach"
+        message += "; with smaller bodies, the box, the stiffness or the duty is still not met"
     return Remedies(names, proven, message)
 
 
@@ -250,7 +252,7 @@ def _diameters(scene: Scene) -> dict[Place, Quantity]:
 
 
 def _bodies(scene: Scene, clock: Clock) -> tuple[Remedy, ...]:
-    """Return each diameter alone, the least change first; all alike where none alone helps."""
+    """Return each diameter alone, the smallest change first; all alike where none alone helps."""
     given = [p for p in _diameters(scene) if p != PLACES[3] or scene.space is None]
     found = [_smaller(scene, (place,), clock) for place in given]
     alone = sorted((way for way in found if way is not None), key=lambda way: way.factor)

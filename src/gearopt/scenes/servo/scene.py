@@ -6,11 +6,10 @@ from typing import Annotated, Any
 from pydantic import Field, model_validator
 
 from gearopt.formulations.servo import servo_box
-from gearopt.formulations.servo.choice import Choice
+from gearopt.formulations.servo.choice import Choice, Springs
 from gearopt.formulations.servo.ratio import ServoDuty
 from gearopt.formulations.servo.split import ServoTrain, StiffTrain
 from gearopt.formulations.servo.split.bodies import Pairs
-from gearopt.formulations.servo.springs import Springs
 from gearopt.physics.stiffness import stiffness_of_frequency
 from gearopt.scenes.reading.fields import Table, refuse, words
 from gearopt.scenes.servo.example import EXAMPLE
@@ -54,11 +53,11 @@ class Scene(Table):
     duty: Duty | None = None
     train: Train | None = None
     shaft: Shaft | None = None
-    mesh: tuple[Mesh, ...] = Field((), description="One table a stage, from the motor on")
+    mesh: tuple[Mesh, ...] = Field((), description="One table per stage, from the motor on")
     accuracy: Accuracy = Field(default_factory=Accuracy)
     tolerances: Tolerances | None = None
-    cost: tuple[CostTable, ...] = Field((), description="One table a deviation")
-    budget: tuple[BudgetTable, ...] = Field((), description="One table a budget")
+    cost: tuple[CostTable, ...] = Field((), description="One table per deviation")
+    budget: tuple[BudgetTable, ...] = Field((), description="One table per budget")
     stiffness: Stiffness | None = None
     lightest: Lightest | None = None
     space: Space | None = None
@@ -90,7 +89,7 @@ class Scene(Table):
         if len(self.mesh) == 1:
             raise refuse("is missing: one table [[mesh]] for each of the two stages", at=("mesh",))
         if not self.mesh and self.tolerances:
-            raise refuse("is missing: [tolerances] needs one a stage", at=("mesh",))
+            raise refuse("is missing: [tolerances] needs one per stage", at=("mesh",))
         if not self.mesh and "accuracy" in self.model_fields_set:
             raise refuse("needs tables [[mesh]]", at=("accuracy",), action="remove")
         given = [mesh.given for mesh in self.mesh]
@@ -131,7 +130,7 @@ class Scene(Table):
         needs = f"{aim} needs"
         if train.goal == "error" and not self.sources:
             if not self.mesh:
-                raise refuse(f"is missing: {needs} one a stage", at=("mesh",))
+                raise refuse(f"is missing: {needs} one per stage", at=("mesh",))
             raise refuse(f"is missing, as is any deviation: {needs} one", at=("mesh", 0, "pitch"))
         motion = AIMS[train.aim].motion
         if not motion:
@@ -232,7 +231,7 @@ class Scene(Table):
             tolerance=tolerance,
             modules=table.modules,
             pinion_teeth=table.pinion_teeth,
-            most_wheel_teeth=table.wheel_teeth,
+            max_wheel_teeth=table.wheel_teeth,
             face_width=table.face_width.value,
             density=table.density.value,
             output_torque=table.output_torque.value,
@@ -254,11 +253,11 @@ class Scene(Table):
         if table is None or shaft is None or train is None:
             return None
         line, elastic, torque = table.line_stiffness, table.youngs_modulus, table.load_torque
-        inertia, least = None if load is None else load.inertia.value, []
+        inertia, needed = None if load is None else load.inertia.value, []
         if table.frequency is not None and inertia is not None:
-            least.append(float(stiffness_of_frequency(table.frequency.value, inertia)))
+            needed.append(float(stiffness_of_frequency(table.frequency.value, inertia)))
         if table.windup is not None and torque is not None:
-            least.append(torque.value / table.windup.value)
+            needed.append(torque.value / table.windup.value)
         return Springs(
             shear_modulus=table.shear_modulus.value,
             shaft=(shaft.diameter.value, shaft.length.value),
@@ -266,7 +265,7 @@ class Scene(Table):
             youngs_modulus=math.nan if elastic is None else elastic.value,
             load_inertia=inertia,
             load_torque=None if torque is None else torque.value,
-            least=max(least, default=None),
+            minimum=max(needed, default=None),
         )
 
     def choice(self, boxed: bool = True) -> Choice:
@@ -291,7 +290,7 @@ class Scene(Table):
     def stiff_train(self) -> StiffTrain:
         """Return the lightest train to be sized, in plain numbers."""
         own, table, springs = self.servo_train(), self.lightest, self.springs
-        assert table and springs and springs.least and springs.line_stiffness
+        assert table and springs and springs.minimum and springs.line_stiffness
         assert own.bodies is not None
         module = float(own.modules[0])
         teeth = own.pinion_teeth[0]
@@ -301,7 +300,7 @@ class Scene(Table):
             for name in ("density", "output_torque", "bending", "lost_motion", "error", "sector")
         }
         return StiffTrain(
-            stiffness=springs.least,
+            stiffness=springs.minimum,
             line_stiffness=springs.line_stiffness,
             shear_modulus=springs.shear_modulus,
             ratio=(float(own.ratios[0]), float(own.ratios[1])),

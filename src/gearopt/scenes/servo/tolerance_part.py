@@ -1,4 +1,4 @@
-"""The tolerances of a servo train at least cost, and what they give in fact."""
+"""The tolerances of a servo train at minimum cost, and what they give in fact."""
 
 import math
 from collections.abc import Sequence

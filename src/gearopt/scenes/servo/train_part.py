@@ -38,7 +38,7 @@ from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.servo.scene import Scene
 from gearopt.scenes.servo.tables.mesh import Source
 
-STAGES = 6  # that a ratio is split into, at the most, for comparison
+STAGES = 6  # that a ratio is split into, at most, for comparison
 LISTED = 400  # trains that are shown
 
 

@@ -43,7 +43,7 @@ def acceleration(drive: Drive, load_speed: float = 0.0) -> Problem:
     variables = (ratio, acceleration_variable(drive, float(np.max(ratio.upper))))
 
     def exact(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
-        """The closed form; budget and seed change nothing."""
+        """Return the closed form; budget and seed change nothing."""
         values = present(problem)
         return _exact(drive.of(values), values.get("load_speed", 0.0))
 
@@ -62,13 +62,13 @@ def _speeds(drive: Drive) -> tuple[float, float]:
 
 
 def ratio_scales(drive: Drive) -> tuple[float, float]:
-    """Ratios of equal inertias, and at which the torque just overcomes the load's friction."""
+    """Return the ratios of equal inertias and of a torque that just overcomes load friction."""
     match = math.sqrt(quotient(drive.load_inertia, drive.inertia))
     return match, quotient(drive.load_friction, drive.efficiency * drive.net_torque)
 
 
 def acceleration_variable(drive: Drive, largest_ratio: float) -> Var:
-    """The variable of the load's acceleration [rad/s2]; no ratio up to the largest gives more."""
+    """Return the variable of the load's acceleration [rad/s2] up to the largest ratio."""
     product = math.sqrt(drive.load_inertia) * math.sqrt(drive.inertia)
     most = drive.torque * quotient(1.0, product)
     if drive.load_inertia:
@@ -82,7 +82,7 @@ def acceleration_variable(drive: Drive, largest_ratio: float) -> Var:
 
 
 def best_ratio(drive: Drive, load_speed: float = 0.0) -> tuple[float, float]:
-    """Ratio of the largest acceleration, and that acceleration [rad/s2], in closed form.
+    """Return the ratio of maximum acceleration, and that acceleration [rad/s2]: closed form.
 
     N^2 - 2 c N - q = 0, c = F_L/(eta T) - b J_L/(eta T J), q = J_L/(eta J), J of motor and gears,
     then held within the drive's ratios, as 1/a is convex in log N. Where nothing moves, the
@@ -94,7 +94,7 @@ def best_ratio(drive: Drive, load_speed: float = 0.0) -> tuple[float, float]:
 
 
 def _stationary(drive: Drive, load_speed: float) -> float:
-    """The positive root, multiplied out by J, without cancellation and without a quotient by J."""
+    """Return the positive root, multiplied out by J: no cancellation, no quotient by J."""
     torque, inertia, eta = drive.net_torque, drive.inertia, drive.efficiency
     if torque <= 0.0:
         return drive.ratio[0]
@@ -108,7 +108,7 @@ def _stationary(drive: Drive, load_speed: float) -> float:
 
 
 def law_of(drive: Drive, load_speed: float, ratio: float) -> float:
-    """Acceleration [rad/s2] of the drive's load at a load speed [rad/s] and a ratio."""
+    """Return the acceleration [rad/s2] of the drive's load at a load speed [rad/s] and ratio."""
     slope = torque_slope(drive.torque, load_speed, drive.no_load_speed)
     found: float = load_acceleration(
         ratio,
@@ -123,10 +123,10 @@ def law_of(drive: Drive, load_speed: float, ratio: float) -> float:
 
 
 def _exact(drive: Drive, load_speed: float) -> Outcome:
-    """The closed form; its bound follows from convexity alone."""
+    """Return the closed form; its bound follows from convexity alone."""
     low, high = drive.ratios(load_speed)
     if low > high:
-        return impossible(f"the motor's speed limit allows a ratio of {high:.6g} at the most")
+        return impossible(f"the motor's speed limit allows a ratio of at most {high:.6g}")
     ratio, best = best_ratio(drive, load_speed)
     if math.isinf(ratio):
         return unbounded("acceleration", "a motor inertia, a largest ratio or a speed limit")
@@ -142,7 +142,7 @@ def _exact(drive: Drive, load_speed: float) -> Outcome:
 
 
 def standstill(drive: Drive, load_speed: float, ratio: float, best: float) -> str:
-    """Why the load does not move at its best ratio; empty where it does."""
+    """Say why the load does not move at its best ratio; empty where it does."""
     if drive.net_torque <= 0.0:
         return "the motor's own friction takes all its torque"
     if best > STANDING * unopposed(drive, ratio):
@@ -156,7 +156,7 @@ def standstill(drive: Drive, load_speed: float, ratio: float, best: float) -> st
 
 
 def unopposed(drive: Drive, ratio: float) -> float:
-    """Acceleration [rad/s2] that the torque would give at a ratio without friction and line."""
+    """Return the acceleration [rad/s2] at a ratio without friction and falling line."""
     found: float = load_acceleration(
         ratio, drive.load_inertia, drive.inertia, drive.net_torque, 0.0, drive.efficiency
     )
@@ -164,18 +164,18 @@ def unopposed(drive: Drive, ratio: float) -> float:
 
 
 def proof() -> dict[str, Any]:
-    """How a closed form is proven: the law beside it, and convexity."""
+    """Return how a closed form is proven: the law beside it, and convexity."""
     found = {"method": "closed form", "arithmetic": "double", "bound": "log-log convexity"}
     return found | {"sentence": CLOSED_FORM}
 
 
 def impossible(reason: str) -> Outcome:
-    """An outcome for a drive that cannot do what is asked."""
+    """Return an outcome for a drive that cannot do what is asked."""
     found = proof() | {"reason": reason, "sentence": f"Proof: {reason}."}
     return Outcome(None, infeasible=True, proof=found, message=reason, evaluations=1)
 
 
 def unbounded(what: str, remedy: str) -> Outcome:
-    """An outcome for a duty without a best ratio."""
+    """Return an outcome for a duty without a best ratio."""
     text = f"unbounded: the {what} is better the larger the ratio; give {remedy}"
     return Outcome(None, message=text, evaluations=1)

@@ -28,7 +28,8 @@ class Drive:
 
     gear_inertia: of the train, seen at the motor. torque: of the motor at standstill, falling to 0
     at no_load_speed. Frictions are Coulomb torques, each at its own shaft. efficiency: of the train
-    while the motor drives. ratio: least and most (inf: none) total ratio, motor over load speed.
+    while the motor drives. ratio: minimum and maximum (inf: none) total ratio, motor over load
+    speed.
     """
 
     load_inertia: float
@@ -51,30 +52,32 @@ class Drive:
         if self.load_inertia + self.inertia == 0.0:
             raise ValueError("a drive without any inertia has no finite acceleration")
         if not 0.0 < self.ratio[0] <= self.ratio[1] or self.ratio[0] == math.inf:
-            raise ValueError(f"ratio {self.ratio!r}: needs 0 < least <= most, the least finite")
+            raise ValueError(
+                f"ratio {self.ratio!r}: needs 0 < minimum <= maximum, the minimum finite"
+            )
 
     @property
     def inertia(self) -> float:
-        """Inertia of motor and gears [t mm2] at the motor."""
+        """Return the inertia of motor and gears [t mm2] at the motor."""
         return self.motor_inertia + self.gear_inertia
 
     @property
     def net_torque(self) -> float:
-        """Torque [N mm] at standstill that the motor's friction leaves."""
+        """Return the torque [N mm] at standstill that the motor's friction leaves."""
         return self.torque - self.motor_friction
 
     def needs(self, **numbers: float) -> None:
-        """ValueError where a number that a duty needs is not positive and finite."""
+        """Raise ValueError where a number that a duty needs is not positive and finite."""
         for name, value in numbers.items():
             if not 0.0 < value < math.inf:
                 raise ValueError(f"{name} = {value!r}: this duty needs a positive number")
 
     def ratios(self, load_speed: float = 0.0) -> tuple[float, float]:
-        """Least and most ratio, the motor's speed limit at a load speed [rad/s] included."""
+        """Return the minimum and maximum ratio, within the motor's speed limit at a load speed."""
         return self.ratio[0], min(self.ratio[1], quotient(self.speed_limit, load_speed))
 
     def parameters(self, *unused: str) -> tuple[Param, ...]:
-        """The drive's positive, finite numbers, without those that a duty has no use for.
+        """Return the drive's positive, finite numbers, without those that a duty has no use for.
 
         What is 0 or infinite has no place in a text.
         """
@@ -90,14 +93,14 @@ class Drive:
         )
 
     def of(self, values: dict[str, float]) -> "Drive":
-        """The drive with other values of its `parameters`."""
+        """Return the drive with other values of its `parameters`."""
         given = values.get("ratio")
         low, high = values.get("ratio_low", given), values.get("ratio_high", given or math.inf)
         own: dict[str, Any] = {f.name: values[f.name] for f in fields(self) if f.name in values}
         return replace(self, **own | {"ratio": (low, high)})
 
     def ratio_variable(self, scales: tuple[float, ...], free: bool) -> Var:
-        """The variable of the total ratio; free: nothing holds it from above.
+        """Return the variable of the total ratio; free: nothing holds it from above.
 
         scales: ratios at which something of the duty changes, infinite and zero ones not counted.
         """
@@ -108,12 +111,12 @@ class Drive:
         return Var("ratio", "", min(known) / BEYOND, high, guess, log=True, search=True)
 
     def torque_needed(self, p: Any, ratio: Any, acceleration: Any) -> Any:
-        """Text of the motor's torque while it accelerates the load, without a falling line."""
+        """Return the text of the motor's torque while it accelerates the load, no falling line."""
         inertia = inertia_at_motor(self, p, ratio, p.efficiency)
         return friction_torque(self, p, ratio, p.efficiency) + acceleration * inertia
 
     def ratio_rows(self, p: Any, ratio: Any) -> tuple[dict[str, Any], dict[str, Any]]:
-        """Text of the user's ratios: limits, or an equality where there is only one."""
+        """Return the text of the user's ratios: limits, or an equality where there is only one."""
         if self.ratio[0] == self.ratio[1]:
             return {}, {"ratio": ratio / p.ratio}
         limits = {"ratio_low": p.ratio_low / ratio}
@@ -123,7 +126,7 @@ class Drive:
 
 
 def friction_torque(drive: Drive, p: Any, ratio: Any, efficiency: Any) -> Any:
-    """Text of the motor's torque that friction takes at a ratio: F_M + F_L/(eta N) [N mm]."""
+    """Return the text of the motor torque lost to friction: F_M + F_L/(eta N) [N mm]."""
     found = p.motor_friction if drive.motor_friction else 0.0
     if drive.load_friction:
         found = found + p.load_friction / (efficiency * ratio)
@@ -131,7 +134,7 @@ def friction_torque(drive: Drive, p: Any, ratio: Any, efficiency: Any) -> Any:
 
 
 def inertia_at_motor(drive: Drive, p: Any, ratio: Any, efficiency: Any) -> Any:
-    """Text of the motor's torque per acceleration of the load: J_L/(eta N) + N J [t mm2]."""
+    """Return the text of motor torque per load acceleration: J_L/(eta N) + N J [t mm2]."""
     found = p.load_inertia / (efficiency * ratio) if drive.load_inertia else 0.0
     for name in ("motor_inertia", "gear_inertia"):
         if getattr(drive, name):
@@ -140,13 +143,13 @@ def inertia_at_motor(drive: Drive, p: Any, ratio: Any, efficiency: Any) -> Any:
 
 
 def present(problem: Problem) -> dict[str, float]:
-    """The present values of a problem's parameters, all of size 1."""
+    """Return the present values of a problem's parameters, all of size 1."""
     names = [q.name for q in problem.parameters]
     return dict(zip(names, map(float, problem.parameter_values()), strict=True))
 
 
 def quotient(a: float, b: float) -> float:
-    """Quotient a/b of numbers >= 0; infinite where b is 0."""
+    """Return the quotient a/b of numbers >= 0; infinite where b is 0."""
     return a / b if b > 0.0 else math.inf
 
 

@@ -26,7 +26,7 @@ class ServoDuty:
     """A motion of the load and the drive that makes it; angles in rad, speeds in rad/s.
 
     motion: acceleration, at load_speed; move, through angle from rest to rest; swing, as
-    amplitude sin(angular_frequency t). most_ratio: that the motor's speed limit allows, exactly;
+    amplitude sin(angular_frequency t). max_ratio: that the motor's speed limit allows, exactly;
     None where it allows any.
     """
 
@@ -36,7 +36,7 @@ class ServoDuty:
     angle: float = 0.0
     amplitude: float = 0.0
     angular_frequency: float = 0.0
-    most_ratio: Fraction | None = None
+    max_ratio: Fraction | None = None
 
     @property
     def goal(self) -> str:
@@ -45,28 +45,28 @@ class ServoDuty:
 
     @property
     def speed(self) -> float:
-        """Speed of the load [rad/s] at which the motor must keep to its limit."""
+        """Return the speed of the load [rad/s] at which the motor must keep to its limit."""
         if self.motion == "swing":
             return self.amplitude * self.angular_frequency
         return self.load_speed
 
     @property
     def slope(self) -> float:
-        """Torque [N mm] that the motor loses per unit of ratio at the load's speed."""
+        """Return the torque [N mm] that the motor loses per unit of ratio at the load's speed."""
         found: float = torque_slope(self.drive.torque, self.speed, self.drive.no_load_speed)
         return found if self.motion == "acceleration" else 0.0
 
     @property
     def peak_acceleration(self) -> float:
-        """Largest acceleration of a swing [rad/s2]."""
+        """Return the largest acceleration of a swing [rad/s2]."""
         return self.amplitude * self.angular_frequency**2
 
     def with_gears(self, inertia: Any) -> "ServoDuty":
-        """The duty of a train with this inertia [t mm2] at the motor."""
+        """Return the duty of a train with this inertia [t mm2] at the motor."""
         return replace(self, drive=replace(self.drive, gear_inertia=inertia))
 
     def problem(self) -> Problem:
-        """The problem of the best ratio."""
+        """Return the problem of the best ratio."""
         if self.motion == "move":
             return move(self.drive, self.angle)
         if self.motion == "swing":
@@ -74,7 +74,7 @@ class ServoDuty:
         return acceleration(self.drive, self.load_speed)
 
     def acceleration(self, ratio: Any, gears: Any = 0.0) -> Any:
-        """Acceleration [rad/s2] of the load at its speed; not above 0 where it does not move.
+        """Return the load's acceleration [rad/s2] at its speed; at most 0 where it does not move.
 
         gears: inertia of the train at the motor [t mm2], beside that of the drive.
         """
@@ -84,21 +84,21 @@ class ServoDuty:
         return load_acceleration(ratio, *numbers, self.slope)
 
     def value(self, ratio: Any, gears: Any = 0.0) -> Any:
-        """What is made least [s2/rad, s or N mm]; where the load does not move, very large."""
+        """Return what is minimised [s2/rad, s or N mm]; very large where the load does not move."""
         own = self.drive
         if self.motion == "swing":
             inertias = own.load_inertia, own.inertia + gears
             frictions = own.load_friction, own.motor_friction
             return rms_torque(ratio, *inertias, self.peak_acceleration, *frictions)
         # no ratio gives 1/FAINT times less than the torque on the load alone
-        least = FAINT * own.torque / max(own.load_inertia, own.inertia)
-        found = np.maximum(self.acceleration(ratio, gears), least)
+        slowest = FAINT * own.torque / max(own.load_inertia, own.inertia)
+        found = np.maximum(self.acceleration(ratio, gears), slowest)
         if self.motion == "acceleration":
             return 1.0 / found
         return shortest_move_time(self.angle, own.speed_limit / ratio, found)
 
     def limits(self, ratio: Any, value: Any) -> dict[str, Any]:
-        """What a ratio uses of the motor; value: that of the duty there.
+        """Return the utilisations of the motor at a ratio; value: that of the duty there.
 
         friction_torque: torque that friction takes over that which the motor has at its speed.
         """

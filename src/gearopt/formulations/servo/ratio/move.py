@@ -1,4 +1,4 @@
-"""The ratio at which a load makes a move from rest to rest in the least time."""
+"""The ratio at which a load makes a move from rest to rest in minimum time."""
 
 import math
 from typing import Any
@@ -56,7 +56,7 @@ def move(drive: Drive, angle: float) -> Problem:
     variables = (ratio, ramp, _peak(ramp, angle))
 
     def exact(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
-        """The closed form, or root; budget and seed change nothing."""
+        """Return the closed form, or root; budget and seed change nothing."""
         values = present(problem)
         return _exact(drive.of(values), values["angle"])
 
@@ -72,13 +72,13 @@ def _peak(ramp: Var, angle: float) -> Var:
 
 
 def _cubic(drive: Drive, angle: float) -> float:
-    """Ratio (2 w^2 J_L/(eta Theta T))^(1/3) of a move whose speed is limited, without friction."""
+    """Return the ratio (2 w^2 J_L/(eta Theta T))^(1/3) at the speed limit, without friction."""
     work = drive.efficiency * drive.net_torque * angle
     return float(quotient(2.0 * drive.speed_limit**2 * drive.load_inertia, work) ** (1.0 / 3.0))
 
 
 def _limited(drive: Drive, angle: float) -> float:
-    """Ratio of least time where the motor runs at its speed limit w.
+    """Return the ratio of minimum time where the motor runs at its speed limit w.
 
     With load friction the root above F_L/(eta T) of the stationarity of Theta N/w + w/(N a(N)):
     (Theta/w^2) N^2 (eta T N - F)^2 - eta J F N^2 - 2 eta J_L T N + J_L F = 0.
@@ -102,7 +102,7 @@ def _limited(drive: Drive, angle: float) -> float:
 
 
 def _exact(drive: Drive, angle: float) -> Outcome:
-    """The best of the two regimes; the bound follows from convexity alone."""
+    """Return the best of the two regimes; the bound follows from convexity alone."""
     low, high = drive.ratio
     ratio, best = best_ratio(drive)
     if math.isinf(ratio) and math.isinf(drive.speed_limit):

@@ -19,7 +19,7 @@ def convex_bound(
     room: float = 1.0,
     share: float = 1.0,
 ) -> float | None:
-    """Lower bound of law > 0 on [low, high], or None where the point is no minimum.
+    """Return a lower bound of law > 0 on [low, high]; None where the point is no minimum.
 
     law: convex in log-log on its domain, infinite or NaN outside; at: the point. room: its relative
     distance from the end of the domain, at most 1, which makes steps as much shorter; what vanishes
@@ -27,12 +27,12 @@ def convex_bound(
     """
 
     def rise(steps: float) -> float:
-        """log(law/value) some steps beside the point; infinite outside the domain."""
+        """Return log(law/value) some steps beside the point; infinite outside the domain."""
         there = law(at * math.exp(steps * STEP * room))
         return math.log(there / value) if 0.0 < there < math.inf else math.inf
 
     def side(sign: float, width: float) -> float:
-        """Least rise on one side that reaches to a factor `width`; -inf: not known."""
+        """Return the minimum rise on one side within a factor `width`; -inf: not known."""
         if width <= 1.0:
             return math.inf
         back, one, two = (rise(sign * k) for k in (-1.0, 1.0, 2.0))

@@ -1,4 +1,4 @@
-"""The ratio at which a load swings as A sin(w t) with the least rms torque of the motor."""
+"""The ratio at which a load swings as A sin(w t) at minimum rms torque of the motor."""
 
 import math
 from typing import Any
@@ -52,7 +52,7 @@ def swing(drive: Drive, amplitude: float, angular_frequency: float) -> Problem:
     )
 
     def exact(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
-        """The root; budget and seed change nothing."""
+        """Return the root; budget and seed change nothing."""
         values = present(problem)
         return _exact(drive.of(values), values["amplitude"], values["angular_frequency"])
 
@@ -61,7 +61,7 @@ def swing(drive: Drive, amplitude: float, angular_frequency: float) -> Problem:
 
 
 def _stationary(drive: Drive, peak: float) -> float:
-    """The positive root of P^2 J^2 N^4 - 2 F_L F_M N - (P^2 J_L^2 + 2 F_L^2) = 0, P = A w^2.
+    """Return the positive root of P^2 J^2 N^4 - 2 F_L F_M N = P^2 J_L^2 + 2 F_L^2, P = A w^2.
 
     It is the only one; for F_M = 0 it is ((J_L/J)^2 + 2 F_L^2/(J P)^2)^(1/4).
     """
@@ -83,7 +83,7 @@ def _exact(drive: Drive, amplitude: float, angular_frequency: float) -> Outcome:
     peak = amplitude * angular_frequency**2
     low, high = drive.ratios(amplitude * angular_frequency)
     if low > high:
-        return impossible(f"the motor's speed limit allows a ratio of {high:.6g} at the most")
+        return impossible(f"the motor's speed limit allows a ratio of at most {high:.6g}")
     ratio = min(max(_stationary(drive, peak), low), high)
     if math.isinf(ratio):
         return unbounded("rms torque", "a motor inertia, a largest ratio or a speed limit")

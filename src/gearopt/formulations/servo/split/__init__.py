@@ -1,7 +1,7 @@
 """How a servo train's ratio is split: stages, whole teeth, modules, widths and the middle shaft.
 
 `core`: number of stages and ratios alone. `problem`: whole teeth and modules of two stages, proven
-by enumeration; `relaxation`: its bound as a geometric program. `stiff`: real sizes of least mass
+by enumeration; `relaxation`: its bound as a geometric program. `stiff`: real sizes of minimum mass
 under a frequency or stiffness. `staged`: total ratio and its split at once, of real-valued gears.
 """
 
@@ -13,7 +13,7 @@ from gearopt.formulations.servo.split.core import (
     stage_counts,
     staged,
 )
-from gearopt.formulations.servo.split.order import feasible, in_order, trains, unbeaten
+from gearopt.formulations.servo.split.order import feasible, in_order, pareto_front, trains
 from gearopt.formulations.servo.split.relaxation import relaxation
 from gearopt.formulations.servo.split.servo_train import ServoTrain
 from gearopt.formulations.servo.split.stiff import StiffTrain, stiff
@@ -34,5 +34,5 @@ __all__ = [
     "staged",
     "stiff",
     "trains",
-    "unbeaten",
+    "pareto_front",
 ]

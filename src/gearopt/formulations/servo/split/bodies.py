@@ -43,7 +43,7 @@ class Bodies:
 
 
 def rows(bodies: Bodies, pairs: Pairs) -> dict[str, Any]:
-    """Limits of real gears: what must fit over the room that is there."""
+    """Return limits of real gears: what must fit over the room that is there."""
     shaft, output, motor = (float(d) for d in (bodies.shaft, bodies.output_shaft, bodies.motor))
     first, second = pairs
     d1, d2, d3, d4 = (gear.reference_diameter for pair in pairs for gear in pair.gears)
@@ -58,15 +58,15 @@ def rows(bodies: Bodies, pairs: Pairs) -> dict[str, Any]:
 
 
 def broken(bodies: Bodies, pairs: Pairs) -> list[str]:
-    """Names of the `rows` that a train breaks; a tie is no overlap."""
+    """Return names of the `rows` that a train breaks; a tie is no overlap."""
     values = {name: v if isinstance(v, tuple) else (v,) for name, v in rows(bodies, pairs).items()}
     return [name for name, parts in values.items() if not all(0.0 <= v <= TIGHT for v in parts)]
 
 
 def clear_rows(shaft: Any, output: Any, motor: Any, pairs: Pairs) -> dict[str, Any]:
-    """`rows` as posynomials of real gears, none of them above it where both ratios are >= 1.
+    """Return `rows` relaxed to posynomials of real gears; valid where both ratios are >= 1.
 
-    A sum of pitch diameters is at most twice that of the wheel. None: not known.
+    A sum of reference diameters is at most twice that of the wheel. None: not known.
     """
     first, second = pairs
     m1, m2, root = first.normal_module, second.normal_module, float(ROOT)
@@ -83,11 +83,11 @@ def clear_rows(shaft: Any, output: Any, motor: Any, pairs: Pairs) -> dict[str, A
 
 
 @dataclass(frozen=True)
-class Least:
+class MinimumTeeth:
     """The limits of `rows` in whole numbers, by module of the stage.
 
-    wheel_1, pinion_2, wheel_2: least teeth. stage_1: least z1 + z2. Gear 2 keeps clear of the
-    output shaft where units[i] (z2 + 2) + output <= units[j] (z3 + z4).
+    wheel_1, pinion_2, wheel_2: minimum numbers of teeth. stage_1: minimum z1 + z2. Gear 2 keeps
+    clear of the output shaft where units[i] (z2 + 2) + output <= units[j] (z3 + z4).
     """
 
     wheel_1: list[int]
@@ -98,14 +98,15 @@ class Least:
     output: int
 
 
-def least(bodies: Bodies | None, modules: tuple[Fraction, ...], wheel: int) -> Least:
-    """Those numbers, decided in fractions; nothing is asked for without bodies.
+def minimum_teeth(bodies: Bodies | None, modules: tuple[Fraction, ...], wheel: int) -> MinimumTeeth:
+    """Return these limits, decided in fractions; no limits without bodies.
 
-    wheel: most teeth of a wheel. SolveError where 64 bits do not hold the whole numbers.
+    wheel: maximum number of teeth of a wheel. SolveError where 64 bits do not hold the whole
+    numbers.
     """
     none = [0] * len(modules)
     if bodies is None:
-        return Least(none, none, none, none, none, 0)
+        return MinimumTeeth(none, none, none, none, none, 0)
     unit = Fraction(1, lcm(*(d.denominator for d in (bodies.output_shaft, *modules))))
     units, output = [int(m / unit) for m in modules], int(bodies.output_shaft / unit)
     if max(units) * (wheel + 2) + output > LARGEST:
@@ -114,7 +115,7 @@ def least(bodies: Bodies | None, modules: tuple[Fraction, ...], wheel: int) -> L
             "digits"
         )
     beside = bodies.motor + bodies.shaft
-    return Least(
+    return MinimumTeeth(
         wheel_1=_around(bodies.shaft, modules),
         pinion_2=_around(bodies.shaft, modules),
         wheel_2=_around(bodies.output_shaft, modules),
@@ -125,5 +126,5 @@ def least(bodies: Bodies | None, modules: tuple[Fraction, ...], wheel: int) -> L
 
 
 def _around(diameter: Fraction, modules: tuple[Fraction, ...]) -> list[int]:
-    """Least teeth of a gear whose root circle is not inside a shaft."""
+    """Return the minimum number of teeth of a gear whose root circle is not inside a shaft."""
     return [-(-(diameter / m + ROOT) // 1) for m in modules]

@@ -27,16 +27,16 @@ NEWTON = 100  # steps at most: from above the root of a convex function they fal
 
 
 def core(ratio: float, stages: int, goal: str = "inertia") -> Problem:
-    """Least train inertia or mass in units of one pinion's, over the stage ratios.
+    """Minimise train inertia or mass, in those of one pinion, over the stage ratios.
 
     inertia: sum_i (1 + n_i^2)/prod_{j<i} n_j^2, seen at the motor. mass: sum_i (1 + n_i^2).
-    Variable: ratio, one a stage, each at least 1. ratio: the total one, > 1. `exact` is a closed
+    Variable: ratio, one per stage, each at least 1. ratio: the total one, > 1. `exact` is a closed
     form, for mass and for up to two stages.
     """
     if goal not in ("inertia", "mass"):
         raise ValueError(f"no goal {goal!r}; inertia or mass")
     if not ratio > 1.0 or stages < 1:
-        raise ValueError("a split needs a ratio above 1 and a stage at least")
+        raise ValueError("a split needs a ratio above 1 and at least one stage")
 
     def evaluate(x: Any, p: Any) -> Terms:
         ratios = each(x.ratio)
@@ -45,7 +45,7 @@ def core(ratio: float, stages: int, goal: str = "inertia") -> Problem:
         return Terms({goal: index}, equal={"ratio": math.prod(ratios) / p.total})
 
     def exact(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
-        """Equal ratios for mass; for inertia of two stages the root of a cubic."""
+        """Return equal ratios for mass; for inertia of two stages the root of a cubic."""
         total = float(problem.parameter_values()[0])
         x = np.full(stages, total ** (1.0 / stages))
         if goal == "inertia" and stages == 2:
@@ -64,7 +64,7 @@ def core(ratio: float, stages: int, goal: str = "inertia") -> Problem:
 
 
 def inertia_index(ratios: tuple[Any, ...]) -> Any:
-    """Inertia sum_i (1 + n_i^2)/prod_{j<i} n_j^2 of a train at the motor, a pinion's being 1."""
+    """Return the inertia sum_i (1 + n_i^2)/prod_{j<i} n_j^2 at the motor, in that of a pinion."""
     found, through = 0.0, 1.0
     for n in ratios:
         found = found + (1.0 + n**2) / through**2
@@ -72,13 +72,13 @@ def inertia_index(ratios: tuple[Any, ...]) -> Any:
     return found
 
 
-def stage_counts(ratio: float, most: int = 4, goal: str = "inertia") -> tuple[Result, ...]:
-    """The best split into 1, 2 ... `most` stages, each certified; `min` by value is the best."""
-    return tuple(solve(core(ratio, k, goal)) for k in range(1, most + 1))
+def stage_counts(ratio: float, maximum: int = 4, goal: str = "inertia") -> tuple[Result, ...]:
+    """Return the best split into 1, 2 ... `maximum` stages, each certified."""
+    return tuple(solve(core(ratio, k, goal)) for k in range(1, maximum + 1))
 
 
 def first_ratio(ratio: float, scale: float = 1.0) -> float:
-    """Ratio n_1 of the first of two stages of least inertia.
+    """Return the ratio n_1 of the first of two stages of minimum inertia.
 
     x^3 - rho x - 2 rho N^2 = 0 with x = n_1^2; ratio N > 1; scale rho > 0: inertia of the second
     pinion, and scale of its wheel, in terms of the first. About (sqrt(2 rho) N)^(1/3).
@@ -95,7 +95,7 @@ def first_ratio(ratio: float, scale: float = 1.0) -> float:
 
 
 def lightest_stage_ratio() -> float:
-    """Stage ratio n of least mass where the number of stages is free: n^2 ln n^2 = n^2 + 1."""
+    """Return the ratio n of all stages at minimum mass, their number free: n^2 ln n^2 = n^2 + 1."""
     x = 4.0
     for _ in range(NEWTON):
         step = (x * math.log(x) - x - 1.0) / math.log(x)
@@ -114,8 +114,10 @@ def staged(drive: Drive, pinion_inertia: float, stages: int, load_speed: float =
     """
     drive.needs(pinion_inertia=pinion_inertia, stages=stages)
     plain = acceleration(drive, load_speed)
-    least = replace(drive, gear_inertia=drive.gear_inertia + pinion_inertia)  # any train adds more
-    ratio, ramp = acceleration(least, load_speed).variables
+    lightest = replace(
+        drive, gear_inertia=drive.gear_inertia + pinion_inertia
+    )  # any train adds more
+    ratio, ramp = acceleration(lightest, load_speed).variables
 
     def evaluate(x: Any, p: Any) -> Terms:
         ratios = each(x.stage_ratio)

@@ -7,7 +7,7 @@ import numpy as np
 
 from gearopt.formulations.servo.ratio.duty import ServoDuty
 from gearopt.formulations.servo.servo_design import GOALS, MOTIONS
-from gearopt.formulations.servo.split.bodies import TIP, least
+from gearopt.formulations.servo.split.bodies import TIP, minimum_teeth
 from gearopt.formulations.servo.split.servo_train import ServoTrain
 from gearopt.formulations.strength.lewis import LEWIS
 from gearopt.optimise.terms import Array
@@ -17,13 +17,14 @@ from gearopt.physics.gears import GearPair, disc_inertia, disc_mass
 class Numbers(NamedTuple):
     """Limits as whole numbers of teeth, the rest as plain numbers.
 
-    least, most (P + 1,): z2 z4 is between least[z1 z3] and most[z1 z3]. wheel: most teeth of a
-    wheel. wheel_1, wheel_2, bored (K,), for each module: most teeth of wheel 1 and 2 by their tips,
-    least of gear 3 by the bore and around its shaft. clear_1, clear_2, stage_1 (K,): least teeth of
-    gear 2, of gear 4, of gears 1 and 2 together; unit (K,), output: what keeps gear 2 clear of the
-    output shaft (`bodies.Least`). low, high: total ratio. bore; tip: largest pitch diameter of gear
-    4 [mm]. load: minimum d m [mm2] of gear 4, by the teeth of its pinion. disc_mass [kg/mm2] and
-    disc_inertia [t/mm2]: per d^2 and per d^4. duty: see `duty_numbers`.
+    least, most (P + 1,): z2 z4 is between least[z1 z3] and most[z1 z3]. wheel: maximum number of
+    teeth of a wheel. wheel_1, wheel_2, bored (K,), for each module: maximum numbers of teeth of
+    wheel 1 and 2 by their tips, minimum of gear 3 by the bore and around its shaft. clear_1,
+    clear_2, stage_1 (K,): minimum numbers of teeth of gear 2, of gear 4, of gears 1 and 2 together;
+    unit (K,), output: what keeps gear 2 clear of the output shaft (`bodies.MinimumTeeth`). low,
+    high: total ratio. bore; tip: largest reference diameter of gear 4 [mm]. load: minimum d m [mm2]
+    of gear 4, by the teeth of its pinion. disc_mass [kg/mm2] and disc_inertia [t/mm2]: per d^2 and
+    per d^4. duty: see `duty_numbers`.
     """
 
     least: Any
@@ -54,7 +55,7 @@ class Numbers(NamedTuple):
 
 
 def duty_numbers(duty: ServoDuty | None) -> Array:
-    """Motion (0 acceleration, 1 move, 2 swing), then numbers in the order of the kernel's `duty`.
+    """Return the motion (0 acceleration, 1 move, 2 swing) and the numbers of the kernel's `duty`.
 
     Load and motor inertia [t mm2], torque less the motor's friction, load friction [N mm],
     efficiency, slope of the torque [N mm], angle [rad], speed limit [rad/s], friction of the motor
@@ -81,8 +82,8 @@ def numbers(train: ServoTrain, moved: bool = False) -> Numbers:
     moved: the motor's speed limit holds too.
     """
     low, high = train.ratios
-    if moved and train.duty is not None and train.duty.most_ratio is not None:
-        high = min(high, train.duty.most_ratio)
+    if moved and train.duty is not None and train.duty.max_ratio is not None:
+        high = min(high, train.duty.max_ratio)
     most, width, density = train.pinion_teeth[1], train.face_width, train.density
     products = range(most**2 + 1)
     known = np.maximum(np.arange(most + 1, dtype=float), train.pinion_teeth[0])
@@ -113,7 +114,7 @@ def _teeth(train: ServoTrain) -> dict[str, Any]:
     """Return the limits of numbers of teeth, by module."""
     tips = [[math.floor(tip / m - TIP) for m in train.modules] for tip in train.wheel_tips]
     wheel = train.wheel_teeth
-    clear = least(train.bodies, train.modules, wheel)
+    clear = minimum_teeth(train.bodies, train.modules, wheel)
     bored = [
         max(math.ceil(train.bore / m), around, train.pinion_teeth[0])
         for m, around in zip(train.modules, clear.pinion_2, strict=True)

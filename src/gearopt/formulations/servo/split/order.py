@@ -1,4 +1,4 @@
-"""All feasible trains: at once, in lots in the order of an objective, or those unbeaten in several.
+"""All feasible trains: at once, in lots in the order of an objective, or a Pareto front.
 
 Trains are points of `split.problem`, (trains, 6). `check` is called several times a second and may
 raise, to stop.
@@ -19,9 +19,9 @@ from gearopt.optimise.terms import Array
 
 KERNEL = "gearopt.formulations.servo.split.order_kernel"
 TEETH = "gearopt.formulations.servo.split.teeth_kernel"
-FIRST = 1e-3  # by which the trains of the first lot are worse than the best one, at the most
+FIRST = 1e-3  # by which the trains of the first lot are worse than the best one, at most
 WIDER = 4.0  # from a lot of few trains to the next one
-LOT = 1_000_000  # trains of a lot, at the most; more where they are as good as each other
+LOT = 1_000_000  # trains of a lot, at most; more where they are as good as each other
 ALIKE = 1e-9  # relative: no lot is split further
 STEPS = 1_000_000  # of the kernel between two checks
 FEW = 60  # rows that are tried against all others
@@ -37,11 +37,11 @@ def unchecked() -> None:
 def feasible(
     train: ServoTrain,
     goal: str = "inertia",
-    most: int = LOT,
+    maximum: int = LOT,
     check: Callable[[], None] = unchecked,
 ) -> Array | None:
-    """Return all feasible trains; None for more than `most`. A duty as goal adds its limits."""
-    return _listed(*posed(train, goal), -math.inf, math.inf, most, check)
+    """Return all feasible trains; None for more than `maximum`. A duty as goal adds its limits."""
+    return _listed(*posed(train, goal), -math.inf, math.inf, maximum, check)
 
 
 def trains(train: ServoTrain, error: float) -> Array:
@@ -58,29 +58,29 @@ def in_order(
     (given, aim), text = posed(train, goal), problem(train, goal)
     above, reached, step = -math.inf, best, FIRST
     while True:
-        most = reached + step * best
-        most = most if math.isfinite(most) and step < 1.0 / ALIKE else math.inf
-        found = _listed(given, aim, above, most, LOT if step > ALIKE else 0, check)
+        maximum = reached + step * best
+        maximum = maximum if math.isfinite(maximum) and step < 1.0 / ALIKE else math.inf
+        found = _listed(given, aim, above, maximum, LOT if step > ALIKE else 0, check)
         if found is None:
             step /= WIDER
             continue
         if len(found):
             yield found[text.batch(found).F[:, 0].argsort(kind="stable")]
-        if math.isinf(most):
+        if math.isinf(maximum):
             return
-        above = reached = most
+        above = reached = maximum
         step *= WIDER if len(found) < LOT / WIDER else 1.0
 
 
 def _listed(
-    given: Numbers, aim: int, above: float, most: float, limit: int, check: Callable[[], None]
+    given: Numbers, aim: int, above: float, maximum: float, limit: int, check: Callable[[], None]
 ) -> Array | None:
     """Return trains between two values; None where they are more than a limit above 0."""
     parts, total, first = [], 0, 0
     rows, count = np.empty((ROOM, 6), np.int64), kernel(TEETH).first_stages(given)[0]
     while first < count:
         check()
-        good, last = kernel(KERNEL).between(given, aim, first, STEPS, above, most, rows)
+        good, last = kernel(KERNEL).between(given, aim, first, STEPS, above, maximum, rows)
         if good > len(rows):
             rows = np.empty((2 * good, 6), np.int64)
             continue
@@ -92,7 +92,7 @@ def _listed(
     return np.column_stack([z1, z3, z2, z4, given.module[i], given.module[j]]).astype(float)
 
 
-def unbeaten(worth: Array) -> list[int]:
+def pareto_front(worth: Array) -> list[int]:
     """Return the Pareto front of rows of worth (N, 2 or 3), all columns minimised.
 
     In the order of the first column; of equal rows the first one counts.
@@ -104,7 +104,7 @@ def unbeaten(worth: Array) -> list[int]:
 
 
 def _rest(worth: Array) -> Any:
-    """Return the rows that are left once those that a few good ones beat are dropped."""
+    """Return the rows that are left once those that a few good ones dominate are dropped."""
     low, rows, idle = worth.min(0), np.arange(len(worth)), 0
     columns = np.ascontiguousarray(worth.T)
     width = np.maximum(worth.max(0) - low, np.finfo(float).tiny)
@@ -123,7 +123,7 @@ def _rest(worth: Array) -> Any:
 
 
 def _one_by_one(worth: Array) -> list[int]:
-    """Return the front, row by row in the order of column 1, each against a stair of the rest."""
+    """Return the Pareto front, by column 1, each row compared with a stair of the rest."""
     kept: list[int] = []
     stairs: list[tuple[float, float]] = []  # of columns 2 and 3: one rising, the other falling
     for k in np.lexsort(worth.T[::-1]):

@@ -23,11 +23,11 @@ BEYOND = 1e3  # factor between the lengths of a train and the ends of the search
 
 
 def relaxation(train: ServoTrain, goal: str = "inertia") -> Problem:
-    """Least goal of a train with real teeth and modules; no train of whole teeth is below it.
+    """Minimise a goal over real-valued teeth and modules: a lower bound for whole teeth.
 
     Variables, of both stages: pinion_diameter [mm], ratio, module [mm]; those of the duty's own
-    problem where its goal is asked for. The form factor of either pinion is that of the most teeth,
-    which no pinion exceeds; `clear_rows` relax what gears keep clear of.
+    problem where its goal is asked for. The form factor of either pinion is that of the maximum
+    number of teeth, which no pinion exceeds; `clear_rows` relax what gears keep clear of.
     """
     low, high = (float(r) for r in train.ratios)
     moved = _moved(train, goal)
@@ -53,7 +53,7 @@ def relaxation(train: ServoTrain, goal: str = "inertia") -> Problem:
 
 
 def _moved(train: ServoTrain, goal: str) -> Problem | None:
-    """The duty's own problem for trains of the ratios asked for; None where it is not the goal.
+    """Return the duty's own problem for trains of these ratios; None where it is not the goal.
 
     The gears' inertia is a number there, which any train exceeds and the text below replaces.
     """
@@ -111,7 +111,7 @@ def _limits(train: ServoTrain, both: Pairs, x: Any, p: Any) -> dict[str, Any]:
         "module_low": tuple(ends[0] / m for m in x.module),
         "module_high": tuple(m / ends[1] for m in x.module),
     }
-    if (most := train.most_wheel_teeth) is not None:
+    if (most := train.max_wheel_teeth) is not None:
         wheels = [pair.wheel.reference_diameter for pair in both]
         found["wheel_teeth_high"] = tuple(
             d / (most * m) for d, m in zip(wheels, x.module, strict=True)
@@ -124,7 +124,7 @@ def _modules(train: ServoTrain) -> tuple[float, float]:
 
 
 def _size(train: ServoTrain) -> tuple[float, float]:
-    """Pitch diameter of the smallest pinion, and the largest tip of a wheel [mm]."""
+    """Return the reference diameter of the smallest pinion, and the largest tip of a wheel [mm]."""
     return train.pinion_teeth[0] * _modules(train)[0], float(max(train.wheel_tips))
 
 

@@ -23,22 +23,22 @@ from gearopt.physics.gears import GearPair, disc_inertia
 class ServoTrain:
     """A two-stage train from a motor to a load; lengths in mm, the rest in N, rad, MPa, t.
 
-    ratio: total, within a relative tolerance. modules: those to choose from. pinion_teeth: least
-    and most. most_wheel_teeth: None for no limit. face_width: of all gears. sector: part of a full
-    disc that the last wheel is. output_torque: peak at the load [N mm]. bending: allowable Lewis
-    stress [MPa]. bore: least pitch diameter of gear 3. wheel_tips: largest tip diameters of gears 2
-    and 4. shaft: diameter and length of the middle one; None: its inertia is not counted.
-    lost_motion: 2 j_t + 2 delta_p of each stage [mm], so that its error at the wheel is that over
-    the wheel's diameter; None: the error is not looked at. error: largest at the output [rad].
-    duty: what the train's inertia and ratio are judged by, if its goal is asked for. bodies:
-    shafts, hub and motor that gears keep clear of; None: not looked at.
+    ratio: total, within a relative tolerance. modules: those to choose from. pinion_teeth: minimum
+    and maximum. max_wheel_teeth: None for no limit. face_width: of all gears. sector: part of a
+    full disc that the last wheel is. output_torque: peak at the load [N mm]. bending: allowable
+    Lewis stress [MPa]. bore: minimum reference diameter of gear 3. wheel_tips: largest tip
+    diameters of gears 2 and 4. shaft: diameter and length of the middle one; None: its inertia is
+    not counted. lost_motion: 2 j_t + 2 delta_p of each stage [mm], so that its error at the wheel
+    is that over the wheel's diameter; None: the error is not known. error: largest at the output
+    [rad]. duty: what the train's inertia and ratio are judged by, if its goal is asked for. bodies:
+    shafts, hub and motor that gears keep clear of; None: not checked.
     """
 
     ratio: Fraction
     tolerance: Fraction
     modules: tuple[Fraction, ...]
     pinion_teeth: tuple[int, int]
-    most_wheel_teeth: int | None
+    max_wheel_teeth: int | None
     face_width: float
     density: float
     output_torque: float
@@ -58,7 +58,7 @@ class ServoTrain:
         if not self.modules or min(self.modules) <= 0:
             raise ValueError("a train needs modules > 0 to choose from")
         if not 12 <= self.pinion_teeth[0] <= self.pinion_teeth[1]:
-            raise ValueError("pinion_teeth: needs 12 (for the Lewis factor) <= least <= most")
+            raise ValueError("pinion_teeth: needs 12 (for the Lewis factor) <= minimum <= maximum")
         positive = (self.face_width, self.density, self.output_torque, self.bending, self.error)
         lengths = (*(self.lost_motion or ()), *(self.shaft or ()), *self.wheel_tips, self.bore)
         if not all(value > 0 for value in (*positive, *lengths)):
@@ -70,26 +70,26 @@ class ServoTrain:
 
     @property
     def goals(self) -> tuple[str, ...]:
-        """The objectives that are known of it."""
+        """Return the objectives that are known of it."""
         error = ("error",) if self.lost_motion is not None else ()
         return ("inertia", "mass", *error, *((self.duty.goal,) if self.duty else ()))
 
     @property
     def wheel_teeth(self) -> int:
-        """Most teeth of a wheel: what is given, or what the tips leave."""
+        """Return the maximum number of teeth of a wheel: as given, or as the tips allow."""
         left = max(self.wheel_tips) / min(self.modules) - TIP
-        return max(int(left), 1) if self.most_wheel_teeth is None else self.most_wheel_teeth
+        return max(int(left), 1) if self.max_wheel_teeth is None else self.max_wheel_teeth
 
     @property
     def ratios(self) -> tuple[Fraction, Fraction]:
-        """Least and most total ratio."""
+        """Return the minimum and maximum total ratio."""
         return self.ratio * (1 - self.tolerance), self.ratio * (1 + self.tolerance)
 
 
 def pairs(point: Iterable[Any], face_width: float = 1.0) -> Pairs:
     """Return the gear pairs of a point of `split.problem`, whose six numbers may be arrays.
 
-    face_width [mm]; where it is not given, it is not looked at.
+    face_width [mm]; irrelevant where it is not given.
     """
     z1, z3, z2, z4, m1, m2 = point
     return (
@@ -137,7 +137,7 @@ def train_error(lost_motion: tuple[Any, Any], pairs: Pairs) -> Any:
 
 
 def objectives(train: ServoTrain, names: tuple[str, ...], pairs: Pairs) -> dict[str, Any]:
-    """The named objectives of a train of one face width; ValueError for one it has not."""
+    """Return the named objectives of a train of one face width; ValueError for an unknown one."""
     if unknown := set(names) - set(train.goals):
         raise ValueError(f"no objective {unknown.pop()!r}; known: {', '.join(train.goals)}")
     inertia = train_inertia(train.density, pairs, train.shaft, train.sector)
@@ -150,7 +150,7 @@ def objectives(train: ServoTrain, names: tuple[str, ...], pairs: Pairs) -> dict[
 
 
 def ratio_parameters(low: float, high: float) -> tuple[Param, ...]:
-    """The ends of the total ratio, one where they are equal."""
+    """Return the ends of the total ratio, one where they are equal."""
     if low == high:
         return (Param("ratio", "", low, role="given"),)
     ends = (("ratio_low", low), ("ratio_high", high))
@@ -158,7 +158,7 @@ def ratio_parameters(low: float, high: float) -> tuple[Param, ...]:
 
 
 def ratio_rows(p: Any, tied: bool, ratio: Any) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Rows of the total ratio: limits, or an equality (tied), for which no two limits can stand."""
+    """Return the rows of the total ratio: two limits, or one equality where they are tied."""
     if tied:
         return {}, {"ratio": ratio / p.ratio}
     return {"ratio_low": p.ratio_low / ratio, "ratio_high": ratio / p.ratio_high}, {}

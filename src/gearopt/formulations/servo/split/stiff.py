@@ -1,4 +1,4 @@
-"""The lightest two-stage servo train of a least stiffness, with real sizes: a geometric program."""
+"""The lightest two-stage servo train of minimum stiffness, with real sizes: a geometric program."""
 
 import math
 from dataclasses import dataclass
@@ -30,13 +30,13 @@ BEYOND = 1e3  # factor between the lengths of a train and the ends of the search
 class StiffTrain:
     """A two-stage train whose output must be stiff; lengths in mm, the rest in N, rad, MPa, t.
 
-    stiffness: least at the output, motor locked [N mm/rad]: (2 pi f)^2 J_L or a load torque over an
-    angle. line_stiffness: of a mesh; shear_modulus: of the middle shaft. ratio: least and most.
-    module: of both stages; pinion_teeth: least, of both pinions, which also give the form factors.
-    bore: least pitch diameter of gear 3, and by how much it must exceed the shaft's. wheel_tips:
-    largest tip diameters of gears 2 and 4. output, motor: diameters of the output shaft with its
-    hub and of the motor, kept clear as in `bodies.clear_rows`. face_width, shaft_diameter: least.
-    inertia: largest at the motor [t mm2]. The rest is as in `ServoTrain`.
+    stiffness: minimum at the output, motor locked [N mm/rad]: (2 pi f)^2 J_L or a load torque over
+    an angle. line_stiffness: of a mesh; shear_modulus: of the middle shaft. ratio: minimum and
+    maximum. module: of both stages; pinion_teeth: minimum, of both pinions, which also give the
+    form factors. bore: minimum reference diameter of gear 3, and by how much it must exceed the
+    shaft's. wheel_tips: largest tip diameters of gears 2 and 4. output, motor: diameters of the
+    output shaft with its hub and of the motor, kept clear as in `bodies.clear_rows`. face_width,
+    shaft_diameter: minimum. inertia: maximum at the motor [t mm2]. The rest is as in `ServoTrain`.
     """
 
     stiffness: float
@@ -62,7 +62,7 @@ class StiffTrain:
 
 
 def stiff(train: StiffTrain) -> Problem:
-    """Least mass [kg] of gears and middle shaft, with a stiff output.
+    """Minimise the mass [kg] of gears and middle shaft under a minimum stiffness of the output.
 
     Variables: pinion_diameter, face_width [mm] and ratio of both stages, shaft_diameter [mm]. The
     compliance at the output is that of both meshes and of the shaft between them.

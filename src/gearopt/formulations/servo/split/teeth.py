@@ -26,7 +26,7 @@ from gearopt.optimise.terms import Array, Terms, Var
 
 RANDOM = False
 COUNTS = "choice of teeth and modules"
-STEPS = 2_000, 1_000_000  # of the kernel between two looks at the budget: at first, at the most
+STEPS = 2_000, 1_000_000  # of the kernel between two checks of the budget: at first, maximum
 ROUNDING = 1e-12  # of an objective, between the kernel's text and the problem's
 FLAT = 1e-11  # of a duty's: along a row of wheel teeth rounding may hide a better train
 NO_TEETH = "no teeth and modules meet all limits"
@@ -35,12 +35,12 @@ DUTY = "gearopt.formulations.servo.split.duty_kernel"
 
 
 def problem(train: ServoTrain, *goals: str) -> Problem:
-    """Least inertia [t mm2] at the motor, mass [kg] or error [rad] of a train, or that of its duty.
+    """Minimise inertia [t mm2] at the motor, mass [kg], error [rad] or the goal of the duty.
 
-    goals: of `ServoTrain.goals`, by default inertia; several for a front (`nsga2`). The limits of
-    the duty stand where its goal does: the motor then moves the load. Variables, of both
-    stages: pinion_teeth, wheel_teeth, module [mm]. With one goal, `exact` looks at every train that
-    can be the best, `enumeration` at all of them and counts the feasible ones.
+    goals: of `ServoTrain.goals`, by default inertia; several for a Pareto front (`nsga2`). The
+    limits of the duty stand where its goal does: the motor then moves the load. Variables, of both
+    stages: pinion_teeth, wheel_teeth, module [mm]. With one goal, `exact` evaluates every train
+    that can be the best, `enumeration` at all of them and counts the feasible ones.
     """
     goals = goals or ("inertia",)
     low, high = (float(r) for r in train.ratios)
@@ -88,10 +88,10 @@ def _variables(train: ServoTrain) -> tuple[Var, ...]:
 
 
 def method(train: ServoTrain, goal: str, whole: bool) -> Any:
-    """A run(problem, budget, seed, watch) for the best train; whole: every train is looked at."""
+    """Return a run(problem, budget, seed, watch) for the best train; whole: of every train."""
 
     def run(problem: Any, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
-        """All first stages in turn, by the kernel; the seed changes nothing."""
+        """Evaluate all first stages in turn, by the kernel; the seed changes nothing."""
         (given, aim), moved = posed(train, goal), bool(GOALS[goal].motion)
         code = kernel(DUTY if moved and not whole else KERNEL)
         look = code.every if whole else code.useful
@@ -106,7 +106,7 @@ def method(train: ServoTrain, goal: str, whole: bool) -> Any:
             if first < count and not clock.tell():
                 break
         looked = clock.evaluations
-        proof = _proof(looked, feasible if whole else None, first == count)
+        proof = exhaustion(looked, feasible if whole else None, first == count)
         if moved and best > given.duty[-1] * (1.0 + ROUNDING):  # of a swing, rms torque
             best = math.inf
         slack = FLAT if moved else ROUNDING
@@ -115,7 +115,8 @@ def method(train: ServoTrain, goal: str, whole: bool) -> Any:
     return run
 
 
-def _proof(looked: int, feasible: int | None, done: bool) -> dict[str, Any]:
+def exhaustion(looked: int, feasible: int | None, done: bool) -> dict[str, Any]:
+    """Return how an enumeration is proven, or how far it came; feasible: where counted."""
     found: dict[str, Any] = {
         "method": "exhausted" if done else "enumeration, stopped early",
         "arithmetic": "ratios and diameters in whole numbers; the rest in double",
@@ -125,14 +126,14 @@ def _proof(looked: int, feasible: int | None, done: bool) -> dict[str, Any]:
 
 
 def sentence(proof: Mapping[str, Any], infeasible: bool) -> str:
-    """Return what a reader is told of an enumeration, by the counts of its proof."""
+    """Return the sentence of an enumeration, by the counts of its proof."""
     apart = " and ".join(proof.get("not_counted", ()))
     but = f" but {apart}" if apart else ""
     feasible = proof.get("feasible_trains")
     counted = "" if feasible is None else f", {feasible:,} meet all limits{but}"
     rest = "meets all limits" if infeasible else "can be better"
     return (
-        f"Proof: {proof['trains_looked_at']:,} choices of teeth and modules looked at{counted}; "
+        f"Proof: {proof['trains_looked_at']:,} choices of teeth and modules examined{counted}; "
         f"no other {rest}."
     )
 
@@ -148,7 +149,7 @@ def _outcome(
 ) -> Outcome:
     x = point(given, found) if math.isfinite(best) else None
     if not done:
-        return Outcome(x, finished=False, evaluations=looked, message="stopped before the end")
+        return Outcome(x, finished=False, evaluations=looked, message="stopped by the budget")
     proof["sentence"] = sentence(proof, x is None)
     if x is None:
         return Outcome(None, infeasible=True, proof=proof, evaluations=looked, message=NO_TEETH)
@@ -156,6 +157,6 @@ def _outcome(
 
 
 def point(given: Numbers, row: Any) -> Array:
-    """The point of a kernel's row: pinion teeth, wheel teeth, modules, of both stages."""
+    """Return the point of a kernel's row: pinion teeth, wheel teeth, modules, of both stages."""
     z1, z2, z3, z4, i, j = (int(v) for v in row)
     return np.array([z1, z3, z2, z4, given.module[i], given.module[j]], float)

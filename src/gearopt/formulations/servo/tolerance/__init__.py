@@ -1,4 +1,4 @@
-"""Tolerances at least cost within budgets of the error: which parts should be made how accurately.
+"""Tolerances at minimum cost within budgets of the error: how accurate should which part be.
 
     minimise    sum a_i t_i^-k_i                  (-a_i ln t_i where k_i = 0)
     subject to  sum_i l_bi t_i + (sum_i (q_bi t_i)^2)^(1/2) <= 1        for every budget b
@@ -8,7 +8,7 @@
 budgets are log-convex, so `ipopt` and `gp` find the optimum and the dual bound proves it.
 `exact` is the closed form, or the roots of the optimality conditions, with a bound of its own.
 `conic` states the same as cones, `grades` chooses among few tolerances a component, `backlash`
-turns tolerances with a least backlash into this form, `sampling` draws what comes out.
+turns tolerances with a minimum backlash into this form, `sampling` draws what comes out.
 """
 
 from collections.abc import Mapping
@@ -28,15 +28,15 @@ RANDOM = False
 COUNTS = "solution in closed form or by roots"
 LEVELS = 4  # roots inside each other that `exact` takes on: some 0.3 s for 14 components
 DUAL = "Proof: costs and budgets are convex; the bound is that of the multipliers of the budgets."
-TIE = 1e-12  # by which least tolerances may exceed a budget
+TIE = 1e-12  # by which minimum tolerances may exceed a budget
 ENDS = {"least": "tolerances.least_factor", "most": "tolerances.largest_factor"}  # keys in a file
 SMALLEST = 1e-290  # mm, the end of a search
 
 
 def problem(stack: Stack) -> Problem:
-    """The stack as a problem: variables t [mm], limits the budgets by name, least and most.
+    """Pose the stack: variables t [mm]; limits the budgets by name, minimum and maximum t.
 
-    Parameters: error of every budget, least and most of the components that have them.
+    Parameters: error of every budget, minimum and maximum of the components that have them.
     """
     components = stack.components
 
@@ -59,7 +59,7 @@ def problem(stack: Stack) -> Problem:
 
 
 def _parameters(stack: Stack) -> tuple[Param, ...]:
-    """Errors allowed, and least and most tolerances that were given."""
+    """Return the errors allowed, and minimum and maximum tolerances that were given."""
     errors, keys = (tuple(getattr(b, n) for b in stack.budgets) for n in ("error", "key"))
     found = [Param("error", "", errors, len(errors), keys, "limit")]
     for name, given in zip(ENDS, _given(stack), strict=True):
@@ -70,13 +70,13 @@ def _parameters(stack: Stack) -> tuple[Param, ...]:
 
 
 def _given(stack: Stack) -> tuple[list[int], list[int]]:
-    """The components that have a least, and those that have a most tolerance."""
+    """Return the components with a minimum, and those with a maximum tolerance."""
     parts = list(enumerate(stack.components))
     return [k for k, c in parts if c.least > 0.0], [k for k, c in parts if c.most < np.inf]
 
 
 def _at(stack: Stack, problem: Problem) -> Stack:
-    """The stack with the parameters of its problem."""
+    """Return the stack with the parameters of its problem."""
     values = {q.name: spread(q.value, q.size).tolist() for q in problem.parameters}
     parts = list(stack.components)
     for name, given in zip(ENDS, _given(stack), strict=True):
@@ -87,14 +87,14 @@ def _at(stack: Stack, problem: Problem) -> Stack:
 
 
 def _used(weights: list[tuple[float, float]], t: tuple[Any, ...]) -> Any:
-    """Utilisation of a budget: sum l t + (sum (q t)^2)^(1/2)."""
+    """Return the utilisation of a budget: sum l t + (sum (q t)^2)^(1/2)."""
     linear = [weight * width for (weight, _), width in zip(weights, t, strict=True) if weight > 0]
     square = [weight * width for (_, weight), width in zip(weights, t, strict=True) if weight > 0]
     return sum(linear) + (sum(part**2 for part in square) ** 0.5 if square else 0.0)
 
 
 def _ends(stack: Stack, t: tuple[Any, ...], p: Any) -> Mapping[str, Any]:
-    """The least and most tolerances that were given."""
+    """Return the limits of minimum and maximum tolerances that were given."""
     least, most = _given(stack)
     low = {k: q / t[k] for k, q in zip(least, each(p.least) if least else (), strict=True)}
     high = {k: t[k] / q for k, q in zip(most, each(p.most) if most else (), strict=True)}
@@ -106,10 +106,10 @@ def _ends(stack: Stack, t: tuple[Any, ...], p: Any) -> Mapping[str, Any]:
 
 
 def search(stack: Stack) -> tuple[Array, Array, Array]:
-    """Ends that no cheapest t [mm] comes near, and a t that keeps the limits where one exists.
+    """Return ends far from any cheapest t [mm], and a t that keeps the limits where one exists.
 
     A t is no more than what alone uses up a budget, and costs no more than the guess does less the
-    least that all others cost; the ends are twice as far.
+    minimum cost of all others; the ends are twice as far.
     """
     low, high = stack.least, stack.most
     used, loose = stack.used(low).max(), stack.used(high).max()
@@ -118,15 +118,15 @@ def search(stack: Stack) -> tuple[Array, Array, Array]:
     k = stack.exponent
     with np.errstate(all="ignore"):  # a cost beyond doubles leaves the end of the search far away
         own, total = stack.costs(high), float(stack.costs(guess).sum())
-        dearest = np.fmax(total - (own.sum() - own), own)
-        power = np.where(k > 0.0, np.log(stack.cost / dearest) / k, -dearest / stack.cost)
+        highest = np.fmax(total - (own.sum() - own), own)
+        power = np.where(k > 0.0, np.log(stack.cost / highest) / k, -highest / stack.cost)
     narrowest = np.exp(np.clip(power, np.log(SMALLEST), np.log(guess)))
     return 0.5 * np.maximum(np.minimum(narrowest, guess), low), 2.0 * high, guess
 
 
 def _exact(stack: Stack) -> Any:
     def exact(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
-        """The closed form where there is one, else roots; proven by the bound of its multipliers.
+        """Return the closed form if there is one, else roots, with the bound of the multipliers.
 
         Nothing here is random.
         """
@@ -145,7 +145,7 @@ def _exact(stack: Stack) -> Any:
 
 
 def _proven(stack: Stack, clock: Clock) -> Outcome:
-    """The cheapest tolerances with the bound of their multipliers."""
+    """Return the cheapest tolerances with the bound of their multipliers."""
     found = closed_form(stack)
     t, lam = found or roots(stack, clock)
     proof = {
@@ -158,7 +158,7 @@ def _proven(stack: Stack, clock: Clock) -> Outcome:
 
 
 def impossible(stack: Stack) -> Outcome | None:
-    """The claim that least tolerances break a budget, with the largest that do; None if none do."""
+    """Return the claim that minimum tolerances break a budget; None where they do not."""
     free = stack.least == 0.0
     for row, (budget, used) in enumerate(zip(stack.budgets, stack.used(stack.least), strict=True)):
         weight = stack.linear[row] + stack.square[row]
@@ -173,14 +173,14 @@ def impossible(stack: Stack) -> Outcome | None:
             "components": [stack.components[k].name for k in chosen],
             "least_utilisation": float(used),
         }
-        message = f"the least tolerances of {names} alone use up the budget {budget.label}"
+        message = f"the minimum tolerances of {names} alone use up the budget {budget.label}"
         proof["sentence"] = f"Proof: {message}."
         return Outcome(None, infeasible=True, proof=proof, message=message)
     return None
 
 
 def _largest(stack: Stack, row: int, shares: Array) -> list[int]:
-    """Components, the largest first, until their least tolerances use up a budget."""
+    """Return components, the largest first, until their minimum tolerances use up a budget."""
     order = np.argsort(-shares, kind="stable")
     for count in range(1, len(order)):
         some = np.isin(np.arange(len(order)), order[:count])

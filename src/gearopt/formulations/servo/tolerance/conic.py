@@ -40,7 +40,7 @@ def continuous(stack: Stack) -> Conic:
 
 
 def milp(choice: Choice) -> Conic:
-    """The cheapest grades with a 0-1 variable for every grade, component after component."""
+    """Pose the cheapest grades with one 0-1 variable per grade."""
     weights, costs = (np.concatenate(rows).astype(float) for rows in (choice.weights, choice.costs))
     counts = [len(row) for row in choice.costs]
     own = np.repeat(np.eye(len(counts)), counts, axis=1)

@@ -1,12 +1,12 @@
-"""One of several grades (tolerance, cost) for every component, at least cost within one budget.
+"""One of several grades (tolerance, cost) for every component, at minimum cost within one budget.
 
     minimise  sum cost_i   subject to   sum s_i t_i <= E   or   (sum (s_i t_i)^2)^(1/2) <= E
 
 Both rules add up weights, s t/E or (s t/E)^2, to 1 at most: the multiple-choice knapsack. `exact`
 solves it by dynamic programming, in whole numbers where all that is given are whole numbers and
 fractions: after every component, the pairs of sums are kept that no other pair is better than in
-both; the least weight of the components still to come prunes. `conic.milp` states the same with one
-0-1 variable a grade.
+both; the minimum weight of the components still to come prunes. `conic.milp` states the same with
+one 0-1 variable a grade.
 """
 
 import math
@@ -60,14 +60,14 @@ class Choice:
 
     @property
     def rational(self) -> bool:
-        """Whether every number is a whole number or a fraction."""
+        """Return whether every number is a whole number or a fraction."""
         numbers = [self.error, *(c.sensitivity for c in self.components)]
         numbers += [v for c in self.components for grade in c.grades for v in grade]
         return all(isinstance(v, Rational) for v in numbers)
 
     @property
     def weights(self) -> list[list[Any]]:
-        """Weight of every grade of every component; fractions where all numbers are rational."""
+        """Return the weight of every grade of every component; fractions where all is rational."""
         number: Any = Fraction if self.rational else float
         power = 1 if self.rule == "worst_case" else 2
         return [
@@ -77,13 +77,13 @@ class Choice:
 
     @property
     def costs(self) -> list[list[Any]]:
-        """Cost of every grade of every component; fractions where all numbers are rational."""
+        """Return the cost of every grade of every component; fractions where all is rational."""
         number: Any = Fraction if self.rational else float
         return [[number(cost) for _, cost in c.grades] for c in self.components]
 
 
 def problem(choice: Choice) -> Problem:
-    """Variables: the grade of every component, counted from 1; `exact` proves the cheapest."""
+    """Pose the choice: variables are grades, counted from 1; `exact` proves the cheapest."""
     weights, costs = (
         [np.array(row, float) for row in rows] for rows in (choice.weights, choice.costs)
     )
@@ -112,13 +112,13 @@ def _position(grade: Any) -> Any:
 
 def _exact(choice: Choice) -> Any:
     def exact(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
-        """Dynamic programming over all picks; the seed changes nothing."""
+        """Run a dynamic program over all picks; the seed changes nothing."""
         clock = Clock(budget, watch)
         rows, limit, arithmetic = _numbers(choice)
         found = picked(*rows, limit, clock)
         if not found.finished:
             finest = np.array([min(range(len(w)), key=w.__getitem__) for w in choice.weights])
-            words = "stopped early: the finest grades"
+            words = "stopped by the budget: the finest grades"
             return Outcome(finest + 1.0, False, evaluations=clock.evaluations, message=words)
         proof = {
             "method": "exhausted",
@@ -141,7 +141,7 @@ def _exact(choice: Choice) -> Any:
 
 
 def _numbers(choice: Choice) -> tuple[tuple[list[Any], list[Any]], Any, str]:
-    """Weights and costs to be added up, the limit of the weights, and the arithmetic."""
+    """Return weights and costs to be added up, the limit of the weights, and the arithmetic."""
     if choice.rational:
         weights, limit = whole(choice.weights)
         return (weights, whole(choice.costs)[0]), limit, "rational"
@@ -150,8 +150,8 @@ def _numbers(choice: Choice) -> tuple[tuple[list[Any], list[Any]], Any, str]:
 
 
 def _impossible(choice: Choice, proof: dict[str, Any], limit: Any) -> Outcome:
-    """The claim that the finest grades break the budget, with the fewest components that do."""
-    finest = [min(row) for row in choice.weights]  # the least weight
+    """Return the claim that the finest grades break the budget, with the fewest that do."""
+    finest = [min(row) for row in choice.weights]  # the minimum weight
     allowed = 1 if choice.rational else limit
     order = sorted(range(len(finest)), key=lambda k: -finest[k])
     sums = [sum(finest[k] for k in order[:count]) for count in range(len(order))]
@@ -166,7 +166,7 @@ def _impossible(choice: Choice, proof: dict[str, Any], limit: Any) -> Outcome:
 class Picked:
     """Positions picked, from 0; None where nothing is within the weight, or it was stopped.
 
-    finished: all was looked at. largest: most pairs kept.
+    finished: all was examined. largest: number of pairs kept at once.
     """
 
     positions: tuple[int, ...] | None
@@ -180,10 +180,10 @@ def picked(
     limit: Any,
     clock: Clock,
 ) -> Picked:
-    """Least sum of costs with a sum of weights <= limit; of equals, the least weight.
+    """Return the minimum sum of costs with weights <= limit; of equals, the minimum weight.
 
-    weights, costs: an array a component, of doubles or whole numbers; the clock counts pairs and is
-    told before each component.
+    weights, costs: one array per component, of doubles or whole numbers; the clock counts pairs and
+    is asked before each component.
     """
     lightest = [w.min() for w in weights]
     later = [sum(lightest[k + 1 :]) for k in range(len(weights))]
@@ -209,7 +209,7 @@ def picked(
 
 
 def _best(weight: Array, cost: Array, inside: Any) -> Any:
-    """Places, by rising weight, of the pairs that are cheaper than every lighter one."""
+    """Return the places, by rising weight, of the pairs that are cheaper than every lighter one."""
     order = inside[np.argsort(cost[inside], kind="stable")]
     order = order[np.argsort(weight[order], kind="stable")]
     lowest = np.minimum.accumulate(cost[order])
@@ -219,7 +219,7 @@ def _best(weight: Array, cost: Array, inside: Any) -> Any:
 
 
 def whole(rows: Sequence[Sequence[Fraction]]) -> tuple[list[Any], int]:
-    """Rows of fractions as whole numbers of their common denominator, and that denominator."""
+    """Return rows of fractions as whole numbers of their common denominator, and that."""
     unit = math.lcm(*(v.denominator for row in rows for v in row))
     numbers = [[int(v * unit) for v in row] for row in rows]
     most = unit + sum(max(map(abs, row)) for row in numbers)

@@ -1,4 +1,4 @@
-"""Least cost of a stack by the roots of its optimality conditions: water filling.
+"""Minimum cost of a stack by the roots of its optimality conditions: water filling.
 
 At the optimum w_i t_i^-(k_i + 1) = A_i + B_i t_i within the ends of t_i, where
 
@@ -29,7 +29,7 @@ Solution = tuple[Array, Array]  # tolerances t (components,) and multipliers lam
 
 
 def closed_form(stack: Stack) -> Solution | None:
-    """T = E w/|s w|_p with w = (a/s^p)^(1/(k + p)); p = 1 worst case, 2 RSS. Lam = sum w t^-k.
+    """Return T = E w/|s w|_p, w = (a/s^p)^(1/(k + p)), p = 1 worst case, 2 RSS; lam = sum w t^-k.
 
     None unless there is one such budget, one exponent, and t within its ends.
     """
@@ -51,38 +51,38 @@ def closed_form(stack: Stack) -> Solution | None:
 
 
 def roots(stack: Stack, clock: Clock) -> Solution:
-    """Tolerances and multipliers of a stack whose least tolerances keep its budgets.
+    """Return tolerances and multipliers of a stack whose minimum tolerances keep its budgets.
 
-    TimeoutError when the clock, told before each step of the outermost root, says no.
+    TimeoutError when the clock, asked before each step of the outermost root, is over.
     ArithmeticError for costs or multipliers beyond doubles.
     """
-    one, unit, price = scaled(stack)
+    one, unit, cost = scaled(stack)
     lam, u = _settled(one, (), (), dict.fromkeys(range(len(stack.budgets)), 0.0), clock)
     over = float((one.used(u) / np.maximum(1.0, one.used(one.least))).max())
     t = np.maximum(stack.least, unit * u / max(1.0, over))
-    return t, price * np.array(lam)
+    return t, cost * np.array(lam)
 
 
 def scaled(stack: Stack) -> tuple[Stack, Array, float]:
-    """The stack in u = t/unit, as 1 uses up a budget or is the upper end, and costs over price."""
+    """Return the stack in u = t/unit, 1 being a budget used up or the upper end; scaled costs."""
     unit, k = stack.most, stack.exponent
     with np.errstate(over="raise"):
         costs = stack.cost * unit**-k
-        price = float((costs * len(unit) ** k).sum())  # with k, lam of n equal components
+        scale = float((costs * len(unit) ** k).sum())  # with k, lam of n equal components
     parts = tuple(
-        replace(c, sensitivity=c.sensitivity * t, cost=a / price, least=c.least / t, most=1.0)
+        replace(c, sensitivity=c.sensitivity * t, cost=a / scale, least=c.least / t, most=1.0)
         for c, t, a in zip(stack.components, unit.tolist(), costs.tolist(), strict=True)
     )
-    return Stack(parts, stack.budgets), unit, price
+    return Stack(parts, stack.budgets), unit, scale
 
 
 def levels(stack: Stack) -> int:
-    """How many roots lie inside each other: the time grows tenfold with each."""
+    """Return how many roots lie inside each other: the time grows tenfold with each."""
     return len(stack.budgets) + len(_mixed(stack))
 
 
 def _mixed(stack: Stack) -> list[int]:
-    """Budgets whose radius is unknown: |q t| alone is 1 where it is used up."""
+    """Return budgets whose radius is unknown: |q t| alone is 1 where it is used up."""
     return [int(b) for b in np.flatnonzero(stack.linear.any(1) & stack.square.any(1))]
 
 
@@ -93,7 +93,7 @@ def _settled(
     last: dict[int, float],
     clock: Clock | None = None,
 ) -> tuple[tuple[float, ...], Array]:
-    """All multipliers and the tolerances where the first multipliers and radii are given.
+    """Return multipliers and tolerances where the first multipliers and radii are given.
 
     last: the root last found at each depth, near which the next one is. clock: see `roots`.
     """
@@ -106,7 +106,7 @@ def _settled(
 
         def used(x: float) -> float:
             if clock is not None and not clock.tell():
-                raise TimeoutError("stopped early")
+                raise TimeoutError("stopped by the budget")
             t = _settled(stack, (*lam, math.exp(x)), radii, last)[1]
             return math.log(stack.used(t)[budget] / target)
 
@@ -130,7 +130,7 @@ def _settled(
 
 @np.errstate(divide="ignore", invalid="ignore")  # what nothing holds goes to its upper end
 def cheapest(stack: Stack, linear: Array, square: Array) -> Array:
-    """The t that minimises cost + A t + B t^2/2 within the ends; A, B (components,) >= 0."""
+    """Return the t that minimises cost + A t + B t^2/2 within the ends; A, B (components,) >= 0."""
     k = stack.exponent
     log_a, log_b = np.log(linear / stack.slope), np.log(square / stack.slope)
     y = np.minimum(-log_a / (k + 1.0), -log_b / (k + 2.0))  # each alone would go beyond the root
@@ -144,7 +144,7 @@ def cheapest(stack: Stack, linear: Array, square: Array) -> Array:
 
 
 def _root(falling: Callable[[float], float], near: float) -> float:
-    """Where a falling function is zero; ArithmeticError where that is beyond `REACH`."""
+    """Return the zero of a falling function; ArithmeticError where it is beyond `REACH`."""
     from scipy.optimize import brentq
 
     start, step = near, 0.01 if falling(near) > 0.0 else -0.01
@@ -162,8 +162,8 @@ def lower_bound(stack: Stack, lam: Array, t: Array) -> float:
 
     t: a point [mm]. For lam >= 0 and |v| <= 1, |q t| >= v.(q t), so that every allowed t costs at
     least sum_i min over t_i of (cost_i(t_i) + c_i t_i) - sum lam, c = sum_b lam_b (l_b + q_b v_b);
-    that least is at t_i = (w_i/c_i)^(1/(k_i + 1)), or at the end of the range before it. ValueError
-    for a negative multiplier.
+    that minimum is at t_i = (w_i/c_i)^(1/(k_i + 1)), or at the end of the range before it.
+    ValueError for a negative multiplier.
     """
     if not (np.asarray(lam) >= 0.0).all():
         raise ValueError("multipliers are >= 0")

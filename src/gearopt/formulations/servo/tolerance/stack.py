@@ -53,7 +53,7 @@ NORMAL = Distribution("normal, 3 sd = t", 0.0, 1.0 / 3.0, _normal)
 
 
 def offset(law: Distribution) -> Distribution:
-    """X on [-t, t] seen from the offset t that it needs, as a part of 2 t: (1 + X)/2."""
+    """Return X on [-t, t] about the offset t that it needs, as a part of 2 t: (1 + X)/2."""
     return Distribution(
         f"{law.name}, offset by t",
         0.5 * (1.0 + law.mean),
@@ -110,11 +110,11 @@ class ErrorBudget:
 
     @property
     def label(self) -> str:
-        """The name of the limit."""
+        """Return the name of the limit."""
         return self.name or self.rule
 
     def weights(self, one: Component) -> tuple[float, float]:
-        """Weights l, q [1/mm] of a component."""
+        """Return weights l, q [1/mm] of a component."""
         share = one.sensitivity / self.error
         if self.rule == "worst_case":
             return share, 0.0
@@ -147,37 +147,37 @@ class Stack:
 
     @cached_property
     def linear(self) -> Array:
-        """Weights l [1/mm], (budgets, components)."""
+        """Return weights l [1/mm], (budgets, components)."""
         return np.array([[b.weights(c)[0] for c in self.components] for b in self.budgets])
 
     @cached_property
     def square(self) -> Array:
-        """Weights q [1/mm], (budgets, components)."""
+        """Return weights q [1/mm], (budgets, components)."""
         return np.array([[b.weights(c)[1] for c in self.components] for b in self.budgets])
 
     @cached_property
     def cost(self) -> Array:
-        """Coefficients a, (components,)."""
+        """Return coefficients a, (components,)."""
         return np.array([c.cost for c in self.components])
 
     @cached_property
     def exponent(self) -> Array:
-        """Exponents k, (components,)."""
+        """Return exponents k, (components,)."""
         return np.array([c.exponent for c in self.components])
 
     @cached_property
     def slope(self) -> Array:
-        """The w of -d cost/d t = w t^-(k + 1): k a, or a for k = 0; (components,)."""
+        """Return the w of -d cost/d t = w t^-(k + 1): k a, or a for k = 0; (components,)."""
         return np.where(self.exponent > 0.0, self.exponent, 1.0) * self.cost
 
     @cached_property
     def least(self) -> Array:
-        """Lower ends [mm], (components,)."""
+        """Return lower ends [mm], (components,)."""
         return np.array([c.least for c in self.components])
 
     @cached_property
     def most(self) -> Array:
-        """Upper ends [mm], (components,): given, or what alone uses up a budget; none below least.
+        """Return upper ends [mm], (components,): as given, or what alone uses up a budget.
 
         No t that keeps the limits is beyond them.
         """
@@ -187,12 +187,12 @@ class Stack:
         return np.asarray(np.maximum(self.least, np.minimum(alone, given)))
 
     def used(self, t: Array) -> Array:
-        """Utilisation of every budget at tolerances t [mm], (budgets,)."""
+        """Return the utilisation of every budget at tolerances t [mm], (budgets,)."""
         total: Array = self.linear @ t + np.linalg.norm(self.square * t, axis=1)
         return total
 
     def costs(self, t: Array) -> Array:
-        """Cost of every component at tolerances t [mm], (components,)."""
+        """Return the cost of every component at tolerances t [mm], (components,)."""
         log = self.exponent == 0.0
         found: Array = np.where(log, -self.cost * np.log(t), self.cost * t**-self.exponent)
         return found

@@ -22,7 +22,7 @@ def summary(result: Result, measures: Measures) -> Section:
 
 
 def tiles(result: Result, measures: Measures) -> list[Tile]:
-    """Return what a glance shall tell beside the objective."""
+    """Return key figures beside the objective."""
     design, name = design_of(result), goal(result)[0]
     found = []
     if design.ratio is not None:

@@ -193,18 +193,18 @@ def tolerances(result: Result, measures: Measures) -> Section | None:
     heads = ["tolerance", "stage", "kind", f"old [{unit}]", f"new [{unit}]", "new/old"]
     heads += ["of the error, %", "cost, old", "cost, new"]
     total = sum(r.sensitivity_deg_per_mm * r.new_mm for r in rows)
-    dearest = max(max(r.old_cost, r.new_cost) for r in rows)
+    highest = max(max(r.old_cost, r.new_cost) for r in rows)
     table = Table(
         "tolerances",
         heads,
-        [*(_row(r, total, dearest, measures) for r in rows), _sums(rows, measures)],
+        [*(_row(r, total, highest, measures) for r in rows), _sums(rows, measures)],
         page_only=("stage", "kind", "of the error, %"),
         short={"cost, old": "cost", "cost, new": "new cost"},
     )
     words = _cost_words(cost)
     ends = (
-        "Of the error: sensitivity times new tolerance, of their sum. The words least and most: "
-        "the new tolerance is the least or the most that the file allows."
+        "Of the error: sensitivity times new tolerance, of their sum. Min and max: the new "
+        "tolerance is the minimum or the maximum that the file allows."
     )
     told = (table, "\n".join(words))
     return Section("Tolerances", words=[*words, ends], tables=(table,), terminal=told)
@@ -227,7 +227,7 @@ def _rule(budget: BudgetUse) -> str:
     return RULES[budget.rule].format(kappa=kappa)
 
 
-def _row(row: ToleranceRow, total: float, dearest: float, measures: Measures) -> list[Any]:
+def _row(row: ToleranceRow, total: float, highest: float, measures: Measures) -> list[Any]:
     old, new = (measures.of(t, "um") for t in (row.old_mm, row.new_mm))
     ratio = row.new_mm / row.old_mm
     return [
@@ -238,21 +238,21 @@ def _row(row: ToleranceRow, total: float, dearest: float, measures: Measures) ->
         Cell(new, f"{_end(row)} {new:.2f}".strip(), short=f"{new:.2f}"),
         Cell(ratio, f"{ratio:.3f}"),
         percent(row.sensitivity_deg_per_mm * row.new_mm / total if total else None),
-        *(_cost(cost, dearest) for cost in (row.old_cost, row.new_cost)),
+        *(_cost(cost, highest) for cost in (row.old_cost, row.new_cost)),
     ]
 
 
 def _end(row: ToleranceRow) -> str:
-    """Return whether a new tolerance is the least or the most allowed."""
-    for name, end in (("least", row.lower_mm), ("most", row.upper_mm)):
+    """Return whether a new tolerance is the minimum or the maximum allowed."""
+    for name, end in (("min", row.lower_mm), ("max", row.upper_mm)):
         if end and abs(row.new_mm / end - 1.0) < ENDS:
             return name
     return ""
 
 
-def _cost(cost: float, dearest: float) -> Cell:
+def _cost(cost: float, highest: float) -> Cell:
     """Return a cost with its bar; all bars of the table have one scale."""
-    share = SHORT * max(0.0, cost) / dearest if dearest > 0.0 else None
+    share = SHORT * max(0.0, cost) / highest if highest > 0.0 else None
     return Cell(cost, f"{cost:.3f}", share)
 
 
@@ -319,7 +319,7 @@ def _drawn_words(found: DrawnErrors) -> list[str]:
         interval = f"between {' and '.join(map(degrees, ends))}"
         between = f" (this quantile lies {interval} with {sure} confidence)"
     quantile = f"{share} of them have an error of at most {degrees(found.quantile_deg)}"
-    words.append(f"{quantile}{between}; the largest drawn is {degrees(found.largest_deg)}.")
+    words.append(f"{quantile}{between}; the maximum drawn is {degrees(found.largest_deg)}.")
     return words
 
 

@@ -22,7 +22,7 @@ ROWS = {  # field of `Achieved`: its name, and its unit
     "loss_percent": ("worse than the best", "percent"),
     "gear_inertia_kg_m2": ("inertia of the train", "kg_m2"),
     "inertia_ratio": ("inertia ratio, load to motor", ""),
-    "motor_speed_rpm": ("largest motor speed", "rpm"),
+    "motor_speed_rpm": ("maximum motor speed", "rpm"),
     "motor_speed_used_percent": ("motor speed used", "percent"),
     "motor_torque_used_percent": ("motor torque used", "percent"),
     "peak_motor_torque_Nm": ("peak motor torque", "Nm"),
@@ -64,7 +64,7 @@ def section(result: Result, measures: Measures) -> Section | None:
 
 def best_words(found: RatioDesign, measures: Measures = METRIC) -> list[str]:
     """Say what the best total ratio is, and what the given one loses."""
-    best = "Largest" if found.duty == LARGEST else "Least"
+    best = "Maximum" if found.duty == LARGEST else "Minimum"
     without = ", if gears had no inertia" if found.chosen else ""
     words = [
         f"{best} {found.name}: {amount(found.value, found.unit, measures)} at a total ratio "
@@ -187,7 +187,7 @@ def _figure(found: RatioDesign, curve: Table, measures: Measures) -> Figure:
 def _mark(
     name: str, ratio: float, value: float, unit: str, colour: str, symbol: str, size: int
 ) -> dict[str, Any]:
-    """Mark a ratio with its value, which its name in the legend tells too."""
+    """Mark a ratio with its value, which its name in the legend shows too."""
     told = f"{name} {number(ratio)}: {number(float(value))} {unit}"
     return {
         "type": "scatter",

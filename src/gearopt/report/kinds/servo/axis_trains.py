@@ -88,7 +88,7 @@ def _sector(share: float) -> str:
 
 
 def best(result: Result, measures: Measures) -> Section | None:
-    """Show the best train by every goal; None where no trains are told."""
+    """Show the best train by every goal; None where no trains are listed."""
     trains = [t for t in report_of(result).trains or () if t.best_of]
     if not trains:
         return None
@@ -157,7 +157,7 @@ def stage_counts(result: Result, measures: Measures) -> Section | None:
     ]
     if not rows:
         return None
-    table = Table("stage counts", ("stages", "least inertia", "at ratios", "least mass"), rows)
+    table = Table("stage counts", ("stages", "minimum inertia", "at ratios", "minimum mass"), rows)
     half = bool(_beside(design, report, measures))
     words = (BARE,)
     return Section(
@@ -172,13 +172,13 @@ def by_inertia(result: Result, measures: Measures) -> Section | None:
 
 
 def by_mass(result: Result, measures: Measures) -> Section | None:
-    """Plot error over mass of the trains; None where none are told."""
+    """Plot error over mass of the trains; None where none are listed."""
     known = GOALS["error"] in _weighed(result)
     return _front(result, measures, GOALS["mass"], GOALS["error"]) if known else None
 
 
 def _weighed(result: Result) -> list[Goal]:
-    """Return what the trains are held against each other by; nothing where none are told."""
+    """Return what the trains are compared by; nothing where none are listed."""
     found = report_of(result).trains
     if not found:
         return []
@@ -196,8 +196,8 @@ def _front(result: Result, measures: Measures, goal: Goal, other: Goal) -> Secti
         groups.append(("other trains", rest, (8, "circle", "--series-1")))
     for name, (symbol, colour) in BEST.items():
         if few := [t for t in found if t.best_of == name]:
-            most = "largest" if name == LARGEST.word else "least"
-            groups.append((f"{most} {name}", few, (12, symbol, colour)))
+            end = "maximum" if name == LARGEST.word else "minimum"
+            groups.append((f"{end} {name}", few, (12, symbol, colour)))
     for name, train, mark in (
         ("chosen", design.train, (20, "circle-open", "--series-2")),
         ("given", report.given_train, (12, "x", "--series-8")),
@@ -258,15 +258,15 @@ def _caption(result: Result, trains: Sequence[ListedTrain]) -> str:
     worth = [
         tuple((-1.0 if g is LARGEST else 1.0) * getattr(t, g.key) for g in goals) for t in trains
     ]
-    beaten = any(
+    dominated = any(
         a != b and all(x <= y for x, y in zip(a, b, strict=True)) for a in worth for b in worth
     )
     which = f"{len(trains)} of the best trains"
-    if not beaten:
+    if not dominated:
         *names, last = (goal.word for goal in goals)
         several = f"{', '.join(names)} and {last}"
-        which = f"{len(trains)} trains, none better than another in {several} at once"
-    return f"{which}; the pointer tells their teeth.".capitalize()
+        which = f"Pareto front of {len(trains)} trains: none dominates another in {several}"
+    return f"{which}; the pointer shows their teeth.".capitalize()
 
 
 def _points(

@@ -17,7 +17,7 @@ def design_of(result: Result) -> ServoDesign:
 
 
 def report_of(result: Result) -> ServoReport:
-    """Return what is told beside the design, typed."""
+    """Return what is reported beside the design, typed."""
     return ServoReport.from_dict(result.report)
 
 

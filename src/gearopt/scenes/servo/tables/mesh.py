@@ -70,7 +70,7 @@ class Source:
 
 
 class Mesh(Table):
-    """The deviations of a gear pair, one table a stage, from the motor on; all count at once.
+    """The deviations of a gear pair, one table per stage, from the motor on; all count at once.
 
     Radial deviations open the backlash 2 tan(alpha) times, thinner teeth once. With module,
     pinion_teeth and wheel_teeth the gears are given: beside [train] they are compared with the best
@@ -86,9 +86,15 @@ class Mesh(Table):
     wheel_teeth: Annotated[int | None, whole(120, 12, 1000)] = Field(
         None, description="Teeth of a given wheel"
     )
-    pinion_reading: Deviation = _deviation("Test radius of the pinion, below nominal at the most")
-    wheel_reading: Deviation = _deviation("Test radius of the wheel, below nominal at the most")
-    centre_distance: Deviation = _deviation("Centre distance, above nominal at the most")
+    pinion_reading: Deviation = _deviation(
+        "Maximum deviation of the pinion's test radius below nominal"
+    )
+    wheel_reading: Deviation = _deviation(
+        "Maximum deviation of the wheel's test radius below nominal"
+    )
+    centre_distance: Deviation = _deviation(
+        "Maximum deviation of the centre distance above nominal"
+    )
     pinion_bearing_clearance: Deviation = _deviation(
         "Half the radial clearance of the pinion's bearings"
     )
@@ -98,12 +104,12 @@ class Mesh(Table):
     pinion_bearing_run_out: Deviation = _deviation("Half the run-out of the pinion's bearings")
     wheel_bearing_run_out: Deviation = _deviation("Half the run-out of the wheel's bearings")
     pinion_thickness: Deviation = _deviation(
-        "Tooth thickness of the pinion, below nominal at the most (its lower allowance)"
+        "Maximum deviation of the pinion's tooth thickness below nominal (lower allowance)"
     )
     wheel_thickness: Deviation = _deviation(
-        "Tooth thickness of the wheel, below nominal at the most (its lower allowance)"
+        "Maximum deviation of the wheel's tooth thickness below nominal (lower allowance)"
     )
-    pitch: Deviation = _deviation("Cumulative pitch deviation of the pair (or one for each gear)")
+    pitch: Deviation = _deviation("Cumulative pitch deviation of the pair (or one per gear)")
     pinion_pitch: Deviation = _deviation("Cumulative pitch deviation of the pinion")
     wheel_pitch: Deviation = _deviation("Cumulative pitch deviation of the wheel")
     grade: Annotated[Fraction | None, number(7, 1, 11)] = Field(
@@ -198,7 +204,9 @@ class Accuracy(Table):
     """How far the output may be off, whatever deviations within tolerance come together."""
 
     error: Annotated[Quantity | None, quantity("angle", "0.1082 deg", most="90 deg")] = Field(
-        None, description="Largest error of the output, both flanks; told but not held without it"
+        None,
+        description="Maximum error of the output, both flanks; without it the error is shown, not "
+        "limited",
     )
     pressure_angle: Annotated[Quantity, quantity("angle", "20 deg", most="45 deg")] = Field(
         default_factory=lambda: units.parse("20 deg", "angle"),
@@ -208,7 +216,7 @@ class Accuracy(Table):
 
 
 class Tolerances(Table):
-    """Every deviation of [[mesh]] as a tolerance, at least total cost."""
+    """Every deviation of [[mesh]] as a tolerance, at minimum total cost."""
 
     exponent: Annotated[Fraction, number(1, 0, 4)] = Field(
         default_factory=lambda: Fraction(1),
@@ -221,10 +229,10 @@ class Tolerances(Table):
         json_schema_extra={"default": 1},
     )
     least_factor: Annotated[Fraction | None, number(0.25, 0, 1)] = Field(
-        None, description="No tolerance below so many times its old value"
+        None, description="Minimum of every tolerance, as a factor of its old value"
     )
     largest_factor: Annotated[Fraction | None, number(4, 1, MOST)] = Field(
-        None, description="No tolerance above so many times its old value"
+        None, description="Maximum of every tolerance, as a factor of its old value"
     )
     grades: Annotated[int | None, whole(4, 1, 8)] = Field(
         None,
@@ -244,7 +252,7 @@ class Tolerances(Table):
 
 
 class CostTable(Table):
-    """What one deviation costs, where it is not what [tolerances] says; one table a deviation."""
+    """What one deviation costs, where it is not what [tolerances] says; one table per deviation."""
 
     deviation: Annotated[str, choice(*WORDS)] = Field(
         description="The deviation, as [[mesh]] calls it"
@@ -311,7 +319,7 @@ class BudgetTable(Table):
     )
     limit: Annotated[Quantity | None, quantity("angle", "0.1082 deg", most="90 deg")] = Field(
         None,
-        description="Largest error by this rule; by default that of [accuracy], without it what "
+        description="Maximum error by this rule; by default that of [accuracy], without it what "
         "the old tolerances use",
     )
     kappa: Annotated[Fraction, number(3, 0, 10, zero=True)] = Field(

@@ -18,7 +18,7 @@ OWN = {"load_speed": "acceleration", "angle": "move", "amplitude": "swing", "fre
 
 
 class Motor(Table):
-    """The motor, at its own shaft; with [load] and [duty] the best total ratio is found."""
+    """The motor, at its own shaft; with [load] and [duty] the best total ratio is computed."""
 
     inertia: Annotated[Quantity, quantity("inertia", "8.6e-6 kg m^2")] = Field(
         description="Rotor inertia, with all that turns with the motor's shaft"
@@ -26,7 +26,7 @@ class Motor(Table):
     torque: Annotated[Quantity | None, quantity("torque", "0.05 N m")] = Field(
         None,
         description="Torque at standstill; the same up to speed_limit without no_load_speed; of a "
-        "swing the largest rms torque",
+        "swing the maximum rms torque",
     )
     friction: Annotated[Quantity, FRICTION] = Field(
         NONE, description="Coulomb friction torque", json_schema_extra={"default": "0 N m"}
@@ -35,7 +35,7 @@ class Motor(Table):
         None, description="Speed at which the torque has fallen to zero, in a straight line"
     )
     speed_limit: Annotated[Quantity | None, quantity("speed", "800 rad/s")] = Field(
-        None, description="Largest speed of the motor"
+        None, description="Maximum speed of the motor"
     )
 
 
@@ -60,8 +60,8 @@ class Duty(Table):
 
     motion: Annotated[str, choice(*NEEDS)] = Field(
         "acceleration",
-        description="acceleration: the largest, at standstill or at load_speed; move: through "
-        "angle from rest to rest in the least time; swing: a sine with the least rms torque",
+        description="acceleration: the maximum, at standstill or at load_speed; move: through "
+        "angle from rest to rest in minimum time; swing: a sine at minimum rms torque",
     )
     load_speed: Annotated[Quantity | None, quantity("speed", "5 rad/s")] = Field(
         None, description="Speed of the load at which it is accelerated; at rest without it"
@@ -124,11 +124,11 @@ def servo_duty(duty: Duty, motor: Motor, load: Load) -> ServoDuty:
         if (found := getattr(duty, name)) is not None
     }
     turns = 2.0 * math.pi * duty.frequency.value if duty.frequency else 0.0
-    most = _most_ratio(duty, motor)
-    return ServoDuty(own, duty.motion, **numbers, angular_frequency=turns, most_ratio=most)
+    most = _max_ratio(duty, motor)
+    return ServoDuty(own, duty.motion, **numbers, angular_frequency=turns, max_ratio=most)
 
 
-def _most_ratio(duty: Duty, motor: Motor) -> Fraction | None:
+def _max_ratio(duty: Duty, motor: Motor) -> Fraction | None:
     """Return the ratio at which the motor turns at its limit; exact where pi cancels."""
     if motor.speed_limit is None:
         return None

@@ -37,7 +37,7 @@ class Train(Table):
     """Two stages of spur gears whose teeth and modules are chosen."""
 
     ratio: Annotated[tuple[Fraction, Fraction], span(number(48, 1, 10**6), 48, single=True)] = (
-        Field(description="Total ratio, motor over load speed; a range [least, most] too")
+        Field(description="Total ratio, motor over load speed; or a range [minimum, maximum]")
     )
     ratio_tolerance: Annotated[
         Fraction | None, number("1 %", 0, Fraction(1, 2), percent=True, zero=True)
@@ -50,10 +50,10 @@ class Train(Table):
         tuple[Fraction, ...], either(MODULES, quantity("length", "0.5 mm", most="50 mm"))
     ] = Field(description="Modules to choose from: a series or a list")
     pinion_teeth: Annotated[tuple[int, int], span(whole(16, 12, 200), [16, 60])] = Field(
-        description="Least and most teeth of both pinions"
+        description="Minimum and maximum number of teeth of both pinions"
     )
     wheel_teeth: Annotated[int | None, whole(300, 12, 1000)] = Field(
-        None, description="Most teeth of a wheel"
+        None, description="Maximum number of teeth of a wheel"
     )
     face_width: Annotated[Quantity, LENGTH] = Field(description="Face width of all gears")
     density: Annotated[Quantity, quantity("density", "7.75 g/cm^3")] = Field(
@@ -65,7 +65,7 @@ class Train(Table):
         json_schema_extra={"default": "100 %"},
     )
     second_pinion_diameter: Annotated[Quantity, quantity("length", "11.5 mm")] = Field(
-        description="Least pitch diameter of the second pinion, around its shaft"
+        description="Minimum reference diameter of the second pinion, around its shaft"
     )
     output_shaft_diameter: Annotated[Quantity | None, quantity("length", "10 mm")] = Field(
         None,
@@ -74,7 +74,7 @@ class Train(Table):
     )
     wheel_tip_diameters: Annotated[
         tuple[Quantity, ...], several(quantity("length", "80 mm"), ["80 mm", "106 mm"])
-    ] = Field(description="Largest tip diameters of the wheels of stage 1 and 2")
+    ] = Field(description="Maximum tip diameters of the wheels of stage 1 and 2")
     output_torque: Annotated[Quantity, quantity("torque", "2.4 N m")] = Field(
         description="Peak torque at the output"
     )
@@ -148,13 +148,13 @@ class Stiffness(Table):
         None, description="Young's modulus of the gears: a mesh's stiffness then follows from teeth"
     )
     frequency: Annotated[Quantity | None, quantity("frequency", "200 Hz")] = Field(
-        None, description="Least natural frequency of the load, motor locked; needs [load]"
+        None, description="Minimum natural frequency of the load, motor locked; needs [load]"
     )
     load_torque: Annotated[Quantity | None, quantity("torque", "4.3 kgf cm")] = Field(
         None, description="Torque at the output under which the train winds up"
     )
     windup: Annotated[Quantity | None, quantity("angle", "0.001 deg", most="90 deg")] = Field(
-        None, description="Largest angle by which it does; with load_torque"
+        None, description="Maximum wind-up angle; needs load_torque"
     )
 
     @model_validator(mode="after")
@@ -176,16 +176,16 @@ class Lightest(Table):
     """
 
     face_width: Annotated[Quantity, quantity("length", "2 mm")] = Field(
-        description="Least face width of either stage"
+        description="Minimum face width of either stage"
     )
     shaft_diameter: Annotated[Quantity, quantity("length", "3 mm")] = Field(
-        description="Least diameter of the shaft between the stages"
+        description="Minimum diameter of the shaft between the stages"
     )
     shaft_wall: Annotated[Quantity, quantity("length", "3.5 mm", zero=True)] = Field(
-        description="By how much the second pinion's pitch diameter exceeds the shaft's"
+        description="Minimum difference of the second pinion's reference diameter and the shaft's"
     )
     inertia: Annotated[Quantity, quantity("inertia", "8e-7 kg m^2")] = Field(
-        description="Largest inertia of the train at the motor"
+        description="Maximum inertia of the train at the motor"
     )
 
 
@@ -204,15 +204,16 @@ class Space(Table):
     swept_angle: Annotated[Quantity | None, quantity("angle", "180 deg", most="360 deg")] = Field(
         None,
         description="Angle that the last wheel sweeps, its own sector and its travel together; by "
-        "default twice its sector, as far as its teeth reach, and 360 deg at the most",
+        "default twice its sector, as far as its teeth reach, at most 360 deg",
     )
     required: Annotated[bool, truth()] = Field(
-        True, description="Only trains that fit are chosen; false: told whether the best one does"
+        True,
+        description="Only trains that fit are chosen; false: the best one, whether it fits or not",
     )
 
 
 def bodies(train: Train, shaft: Shaft | None, space: Space | None) -> Bodies:
-    """Return diameters that gears keep clear of; the output shaft is the middle one's at least."""
+    """Return diameters that gears keep clear of; the output shaft is at least the middle one's."""
     thick = shaft.diameter.exact[0] if shaft is not None else Fraction(0)
     output = train.output_shaft_diameter
     outer = space.hub_diameter if space is not None else output
