@@ -13,8 +13,8 @@ from gearopt.errors import SolveError
 from gearopt.formulations.layout import problem
 from gearopt.formulations.layout.chain import chain, turns
 from gearopt.formulations.layout.gearbox import Clearances, Gearbox, KeepOut, Place, Shaft
+from gearopt.formulations.layout.layout_text import positions, sides, smooth
 from gearopt.formulations.layout.slabs import arrange, arrangements, clashes, in_order
-from gearopt.formulations.layout.text import positions, sides, smooth
 from gearopt.optimise.box import violation
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import run, solve

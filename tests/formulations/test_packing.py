@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from gearopt.formulations import packing
-from gearopt.formulations.packing import hop, sa, text
+from gearopt.formulations.packing import hop, packing_text, sa
 from gearopt.formulations.packing.design import describe
 from gearopt.formulations.packing.plan import Cylinder, Places, Plan, colours, overlap, row
 from gearopt.formulations.packing.sa import KERNEL, held, numbers, scattered
@@ -58,7 +58,7 @@ def test_kernel_computes_what_the_text_does(plan):
     gap, wall, width, shape, volume, least, most, _ = numbers(plan, plan.most)
     for _ in range(40):
         found = shaken(plan, rng)
-        batch = problem.batch(text.point(plan, found)[None])
+        batch = problem.batch(packing_text.point(plan, found)[None])
         area, excess = law.plan_area(*found[:2], found.centre, plan.radius, int(shape), wall, width)
         tall, missing = law.stack(found.layer, plan.height, int(least), int(most))
         assert area * (tall if volume else 1.0) == pytest.approx(batch.F[0, 0], rel=1e-12)
@@ -83,16 +83,16 @@ def test_kernel_computes_what_the_text_does(plan):
 def test_both_texts_say_the_same_of_the_row(plan):
     """The row is feasible; epigraphs and extents agree there, in numpy and in casadi."""
     found = row(plan)
-    direct, smooth = packing.problem(plan), text.smooth(plan, found.layer)
-    one = direct.batch(text.point(plan, found)[None])
-    at = text.start(plan, found)
+    direct, smooth = packing.problem(plan), packing_text.smooth(plan, found.layer)
+    one = direct.batch(packing_text.point(plan, found)[None])
+    at = packing_text.start(plan, found)
     other = smooth.batch(at[None])
     assert one.F[0, 0] == pytest.approx(other.F[0, 0], rel=1e-12)
     assert one.G.max(initial=0.0) <= 1.0 + 1e-12 and other.G.max() <= 1.0 + 1e-12
     f, g, _ = (np.array(v).ravel() for v in smooth.traced().terms(at, smooth.parameter_values()))
     assert f[0] == pytest.approx(other.F[0, 0], rel=1e-12)
     assert g == pytest.approx(other.G[0], abs=1e-12)
-    back = text.places(plan, smooth, at, found.layer)
+    back = packing_text.places(plan, smooth, at, found.layer)
     assert np.ptp(back.x - found.x) < 1e-12 and np.ptp(back.y - found.y) < 1e-12
 
 
@@ -104,9 +104,9 @@ def test_a_short_run_is_feasible_never_below_its_bound_and_repeatable(plan):
     again, _ = run(packing.problem(plan), "hop", budget, seed=3)
     assert first.status in ("limit", "optimal") and first.certificate["feasibility"] < 1e-9
     assert first.value == again.value >= first.bound
-    assert first.value <= problem.batch(text.point(plan, row(plan))[None]).F[0, 0]
+    assert first.value <= problem.batch(packing_text.point(plan, row(plan))[None]).F[0, 0]
     assert first.evaluations < 11_000
-    design = untyped(describe(plan, text.places(plan, problem, outcome.x)))
+    design = untyped(describe(plan, packing_text.places(plan, problem, outcome.x)))
     volume, area = (design["container"][k] for k in ("volume_mm3", "area_mm2"))
     assert first.value == pytest.approx(volume if plan.objective == "volume" else area, rel=1e-12)
     check_drawing(plan, design)

@@ -6,8 +6,14 @@ from itertools import permutations
 import numpy as np
 import pytest
 
-from gearopt.formulations.packing.container_bound import bound
-from gearopt.formulations.packing.depth import _pair, _triple, depth, orders, orders_of
+from gearopt.formulations.packing.container_bound import (
+    _pair,
+    _triple,
+    bound,
+    depth,
+    orders,
+    orders_of,
+)
 from gearopt.formulations.packing.plan import Cylinder, Plan
 
 

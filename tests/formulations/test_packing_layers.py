@@ -7,7 +7,7 @@ import pytest
 from packing_brute_force import drawn_fault, least_at_random, least_of_two, random_plan
 
 from gearopt.formulations import packing
-from gearopt.formulations.packing import text
+from gearopt.formulations.packing import packing_text
 from gearopt.formulations.packing.container_bound import bound
 from gearopt.formulations.packing.design import describe
 from gearopt.formulations.packing.plan import Cylinder, Plan, row
@@ -32,7 +32,7 @@ def test_below_a_named_layer_none_is_empty(method):
     result, outcome = run(problem, method, Budget(evaluations=200_000))
     assert result.value == pytest.approx(16_000.0, rel=1e-5) and result.bound <= result.value
     assert result.bound == pytest.approx(16_000.0, rel=1e-8)
-    design = untyped(describe(plan, text.places(plan, problem, outcome.x)))
+    design = untyped(describe(plan, packing_text.places(plan, problem, outcome.x)))
     assert design["cylinders"][0]["layer"] == 2 and design["cylinders"][0]["from_mm"] == 10.0
     assert sorted(v["layer"] for v in design["layers"]) == [1, 2]
 
@@ -46,7 +46,9 @@ def test_text_kernel_and_bound_ask_for_the_same_layers():
     first = row(plan)
     for free in ((1, 1), (2, 1), (2, 4), (4, 4), (3, 2)):
         layer = np.array([3, 1, *free])
-        held = problem.batch(text.point(plan, first._replace(layer=layer))[None]).G[0, columns]
+        held = problem.batch(packing_text.point(plan, first._replace(layer=layer))[None]).G[
+            0, columns
+        ]
         _, missing = kernel(KERNEL).stack(layer, plan.height, int(least), int(most))
         assert (missing == 0) == bool((held <= 1.0).all()) == (2 in free)
     assert plan.filled == 3 and sorted(set(first.layer.tolist())) == [1, 2, 3]
@@ -80,7 +82,7 @@ def check(seed):
     proven = False
     for method in ("hop", "sa"):
         result, outcome = run(problem, method, Budget(evaluations=20_000), seed=seed)
-        design = untyped(describe(plan, text.places(plan, problem, outcome.x)))
+        design = untyped(describe(plan, packing_text.places(plan, problem, outcome.x)))
         assert drawn_fault(plan, design, result.value) is None
         assert result.bound <= min(known, two) * (1.0 + 1e-9)
         if len(plan.cylinders) == 2 and not plan.fixed:

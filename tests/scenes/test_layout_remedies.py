@@ -11,8 +11,7 @@ from edits import edited, scene_of
 
 import gearopt
 from gearopt.formulations import layout
-from gearopt.formulations.layout import faults
-from gearopt.formulations.layout.faults import possible
+from gearopt.formulations.layout.faults import faults, possible
 from gearopt.formulations.layout.gearbox import KeepOut, Place
 from gearopt.formulations.layout.slabs import orders
 from gearopt.optimise.result import Budget

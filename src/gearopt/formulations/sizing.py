@@ -126,7 +126,7 @@ def text_pairs(train: Train, x: Any, numbers: Any) -> tuple[GearPair, ...]:
         m, z, u = each(x.module)[k], each(x.pinion_teeth)[k], each(x.ratio)[k]
         d = reference_diameter(m / numbers.helix_cosine, z)
         if stage.face_width.tied:
-            width = each(numbers.width_high)[k] * reference_diameter(m / numbers.helix_cosine, z)
+            width = each(numbers.width_high)[k] * d
         else:
             width = each(x.face_width)[k]
         found.append(GearPair.of_diameter(m, z, d, u, width, train.helix_angle, train.rack))
@@ -139,11 +139,10 @@ def _variables(train: Train) -> tuple[Var, ...]:
     numbers = SimpleNamespace(**train.numbers())
     torque = train.torque
     for k, stage in enumerate(train.stages):
-        z_fixed = stage.pinion_fixed
-        z2_fixed = stage.wheel_fixed
+        given = stage.pinion_fixed and stage.wheel_fixed
         z = max(1.0, numbers.pinion_low[k])
         u = float(train.ratio) ** (1.0 / len(train.stages))
-        if z_fixed and z2_fixed:
+        if given:
             u = numbers.wheel_low[k] / z
         proportion = min(numbers.width_high[k], 1.0)
         unit = GearPair.of_diameter(numbers.helix_cosine / z, z, 1.0, u, proportion)
@@ -153,8 +152,8 @@ def _variables(train: Train) -> tuple[Var, ...]:
         m = numbers.module_low[k] if m_fixed else d * math.cos(train.helix_angle) / z
         b_fixed = stage.face_width.fixed
         columns["module"].append(_column(lengths, m, m_fixed))
-        columns["pinion_teeth"].append(_column(TEETH, z, z_fixed))
-        columns["ratio"].append(_column(RATIO, u, z_fixed and z2_fixed))
+        columns["pinion_teeth"].append(_column(TEETH, z, stage.pinion_fixed))
+        columns["ratio"].append(_column(RATIO, u, given))
         width = proportion * d if b_fixed is None else float(b_fixed)
         columns["face_width"].append(
             _column(lengths, width, b_fixed is not None or stage.face_width.tied)
@@ -162,12 +161,13 @@ def _variables(train: Train) -> tuple[Var, ...]:
         torque *= u
     if all(s.face_width.tied for s in train.stages):
         del columns["face_width"]
-    count = len(train.stages)
-    return tuple(
-        Var(name, unit, *_transposed(columns[name]), count, log=True, search=True)
-        for name, unit in VARIABLES.items()
-        if name in columns
-    )
+    variables = []
+    for name, rows in columns.items():
+        low, high, guess = zip(*rows, strict=True)
+        variables.append(
+            Var(name, VARIABLES[name], low, high, guess, len(rows), log=True, search=True)
+        )
+    return tuple(variables)
 
 
 def _lengths(train: Train) -> tuple[float, float]:
@@ -192,10 +192,3 @@ def _column(bounds: tuple[float, float], guess: float, fixed: bool) -> tuple[flo
     if fixed:
         return guess, guess, guess
     return bounds[0], bounds[1], min(max(guess, bounds[0]), bounds[1])
-
-
-def _transposed(
-    rows: list[tuple[float, float, float]],
-) -> tuple[tuple[float, ...], tuple[float, ...], tuple[float, ...]]:
-    """Lower bounds, upper bounds and guesses of a block."""
-    return tuple(r[0] for r in rows), tuple(r[1] for r in rows), tuple(r[2] for r in rows)

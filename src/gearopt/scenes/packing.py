@@ -13,7 +13,7 @@ from pydantic import Field, model_validator
 
 from gearopt import units
 from gearopt.formulations import packing
-from gearopt.formulations.packing import text
+from gearopt.formulations.packing import packing_text
 from gearopt.formulations.packing.container_bound import bound
 from gearopt.formulations.packing.design import describe
 from gearopt.formulations.packing.plan import (
@@ -335,7 +335,7 @@ def _solved(scene: Scene, ask: Ask) -> tuple[Result, Places | None]:
     report = {"assumptions": [ASSUMED]}
     if result.status != "optimal":
         report["notes"] = [UNPROVEN]
-    found = text.places(plan, problem, outcome.x)
+    found = packing_text.places(plan, problem, outcome.x)
     return replace(result, design=untyped(describe(plan, found)), report=report), found
 
 
@@ -359,10 +359,10 @@ def explain(scene: Scene, ask: Ask) -> Explanation:
     result, found = _solved(scene, ask.half)
     if result.value is None or found is None:
         return Explanation(result, message="no packing was found in time", seconds=clock.seconds)
-    layers, x = found.layer, text.start(scene.plan(), found)
+    layers, x = found.layer, packing_text.start(scene.plan(), found)
 
     def posed(other: Scene) -> Problem:
-        return text.smooth(other.plan(), layers).starting(x)
+        return packing_text.smooth(other.plan(), layers).starting(x)
 
     def packed(other: Scene) -> float | None:
         if result.status not in CERTAIN:  # a difference to what is not the best means nothing
@@ -392,5 +392,5 @@ def model(scene: Scene, method: str) -> Model:
 
 def _problem(plan: Plan, method: str | None, loose: bool = True) -> Problem:
     if method in SMOOTH:
-        return text.smooth(plan)
+        return packing_text.smooth(plan)
     return packing.problem(plan, loose)

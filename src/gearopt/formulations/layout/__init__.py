@@ -13,18 +13,15 @@ import numpy as np
 from gearopt.errors import SolveError
 from gearopt.formulations.layout import annealing, exact
 from gearopt.formulations.layout.chain import Chain, chain, turns
-from gearopt.formulations.layout.faults import faults
 from gearopt.formulations.layout.gearbox import Gearbox, Shaft
+from gearopt.formulations.layout.layout_text import direct, positions, sides, smooth
 from gearopt.formulations.layout.slabs import Arrangement, arrangements
-from gearopt.formulations.layout.text import direct, positions, sides, smooth
 from gearopt.optimise.box import violation
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Watch
 from gearopt.optimise.solvers import ipopt
 from gearopt.optimise.terms import Array
 from gearopt.physics.gears import GearPair
-
-__all__ = ["GRADIENT", "faults", "problem", "ready"]
 
 GRADIENT = ("ipopt", "multistart")  # methods that take the smooth text
 CLOSE = 1e-9  # what a polished layout may violate

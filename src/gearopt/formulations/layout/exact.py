@@ -140,6 +140,17 @@ def _take(search: Search, x: Array, value: float) -> None:
         search.clock.best, search.x = value, x
 
 
+def first_cell(links: int, turns: tuple[float, float]) -> tuple[Array, Array]:
+    """Return room for DEEP cells (DEEP, 2, links) and their bounds, with that of all angles first.
+
+    turns: range of the first angle [rad].
+    """
+    cells = np.zeros((DEEP, 2, links))
+    cells[0, 0], cells[0, 1] = -math.pi, math.pi
+    cells[0, :, 0] = turns
+    return cells, np.zeros(DEEP)
+
+
 def _prove(
     search: Search,
     chain: Chain,
@@ -149,13 +160,9 @@ def _prove(
 ) -> float | None:
     """A bound within `rel` of the best layout, which may improve; None if stopped before."""
     kernels = kernel("gearopt.formulations.layout.branch_kernel")
-    links, floor = chain.link.size, math.inf
-    theta = np.zeros(links)
-    cells, bounds = np.zeros((DEEP, 2, links)), np.zeros(DEEP)
+    floor, theta = math.inf, np.zeros(chain.link.size)
     for m in range(chain.factor.size):
-        cells[0, 0], cells[0, 1] = -math.pi, math.pi
-        cells[0, :, 0] = turns
-        bounds[0], count = 0.0, 1
+        (cells, bounds), count = first_cell(theta.size, turns), 1
         while count:
             start = search.clock.best
             count, best, floor, nodes, near = kernels.branch(

@@ -8,7 +8,7 @@ import numpy as np
 
 from gearopt.formulations.layout.annealing import anneal
 from gearopt.formulations.layout.chain import chain, turns
-from gearopt.formulations.layout.exact import DEEP, NODES
+from gearopt.formulations.layout.exact import NODES, first_cell
 from gearopt.formulations.layout.gearbox import ANYWHERE, Gearbox, KeepOut, Place
 from gearopt.formulations.layout.slabs import (
     Arrangement,
@@ -178,12 +178,9 @@ def possible(box: Gearbox, seconds: float, watch: Watch | None = None) -> bool |
     if any(np.isfinite(anneal(shape, k, STEPS, goes)[0][0]) for k in range(STARTS)):
         return True
     kernels: Any = kernel("gearopt.formulations.layout.branch_kernel")
-    links = shape.link.size
-    cells, bounds, theta = np.zeros((DEEP, 2, links)), np.zeros(DEEP), np.zeros(links)
+    theta = np.zeros(shape.link.size)
     for m in range(len(orders)):
-        cells[0, 0], cells[0, 1] = -math.pi, math.pi
-        cells[0, :, 0] = turns(box)
-        bounds[0], count, floor = 0.0, 1, math.inf
+        (cells, bounds), count, floor = first_cell(theta.size, turns(box)), 1, math.inf
         while count:
             state = (count, math.inf, floor)
             count, best, floor, fresh, _ = kernels.branch(

@@ -149,7 +149,9 @@ def arrange(box: Gearbox, slabs: Slabs) -> Arrangement:
     apart, needs = np.zeros((count, count)), {}
     for i in range(count):
         for j in range(i + 1, count):
-            causes = [_need(box, p, q) for p in bodies[i] for q in bodies[j] if faces(p, q)]
+            causes = [
+                _need(box, p, q) for p in bodies[i] for q in bodies[j] if face_each_other(p, q)
+            ]
             if i == 0 and j == count - 1 and box.motor > 0:
                 gap, output = box.clearances.shafts, box.shafts[-1].radius
                 between = ("motor", f"shaft {count}")
@@ -203,7 +205,7 @@ def _on(box: Gearbox, k: int, start: dict[int, float], length: float) -> tuple[B
     return tuple(found)
 
 
-def faces(p: Body, q: Body) -> bool:
+def face_each_other(p: Body, q: Body) -> bool:
     """Whether two bodies stand side by side and do not mesh."""
     return not (p.gear and q.gear and p.stage == q.stage) and _overlap(p.x, q.x)
 

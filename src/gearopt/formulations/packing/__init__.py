@@ -1,14 +1,15 @@
 """Packing: cylinders with upright axes in layers, in the smallest container.
 
 `problem` is the packing for samplers, with two methods of its own (`hop`, `sa`) that bring the
-computed bound; `text.smooth` is the same packing for gradient methods.
+computed bound; `packing_text.smooth` is the same packing for gradient methods.
 """
 
 from dataclasses import replace
 from typing import Any
 
-from gearopt.formulations.packing import hop, sa, text
+from gearopt.formulations.packing import hop, sa
 from gearopt.formulations.packing.container_bound import Bound, bound
+from gearopt.formulations.packing.packing_text import direct
 from gearopt.formulations.packing.plan import Plan
 from gearopt.formulations.packing.sa import Spent
 from gearopt.optimise.problem import Problem
@@ -36,7 +37,7 @@ def problem(plan: Plan, loose: bool = True) -> Problem:
         return replace(outcome, bound=floor.value, proof=proof(floor))
 
     methods = {"hop": hop.method(plan, floor, finish), "sa": sa.method(plan, floor, finish)}
-    return text.direct(plan, **methods)
+    return direct(plan, **methods)
 
 
 def proof(floor: Bound) -> dict[str, Any]:

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from gearopt.formulations.packing import text
+from gearopt.formulations.packing.packing_text import of_layers, places, point, smooth, start
 from gearopt.formulations.packing.plan import Places, Plan, row
 from gearopt.formulations.packing.sa import Finish, Floor, Spent, anneal, ready, scattered
 from gearopt.optimise.box import violation
@@ -62,7 +62,7 @@ def method(plan: Plan, floor: Floor, finish: Finish) -> Any:
         """Hop until the bound is reached, rounds end alike, or the budget is spent."""
         ready()
         spent, rng = Spent(clock := Clock(budget, watch)), np.random.default_rng(seed)
-        first = text.point(plan, row(plan))
+        first = point(plan, row(plan))
         spent.keep(float(problem.batch(first[None]).F[0, 0]), first)
         least = floor(problem, spent)
         clock.bound = least.value
@@ -92,13 +92,13 @@ def _round(plan: Plan, problem: Problem, rng: np.random.Generator, spent: Spent)
             begin = scattered(plan, most, rng)
         else:
             moves, hot = MOVES_COLD, WARM
-            begin = _changed(plan, text.places(plan, problem, own), rng)
+            begin = _changed(plan, places(plan, problem, own), rng)
             most = max(plan.fewest, int(begin.layer.max()))
         left, moves = spent.clock.left.evaluations, moves * len(plan.radius)
         moves = moves if left is None else min(moves, left)
         last = anneal(plan, problem, begin, most, moves, (hot, COLD), rng, spent)
         value, found = math.inf, own
-        if float(problem.batch(text.point(plan, last)[None]).F[0, 0]) < HOPEFUL * best:
+        if float(problem.batch(point(plan, last)[None]).F[0, 0]) < HOPEFUL * best:
             value, found = polished(plan, problem, last, spent)
         idle, hops = 0 if value < best * (1.0 - BETTER) else idle + 1, hops + 1
         if value < best:
@@ -140,19 +140,19 @@ def _partners(plan: Plan, k: int) -> list[int]:
 def polished(plan: Plan, problem: Problem, begin: Places, spent: Spent) -> tuple[float, Array]:
     """Objective and point of the packing that Ipopt makes of one; infinite where it fails."""
     if "smooth" not in problem.memo:
-        problem.memo["smooth"] = text.smooth(plan, begin.layer)
-    needed, height = text.of_layers(plan, begin.layer)
+        problem.memo["smooth"] = smooth(plan, begin.layer)
+    needed, height = of_layers(plan, begin.layer)
     local = problem.memo["smooth"].at(height=height, **({"needed": needed} if needed else {}))
     ended = ipopt.run(
         local,
         Budget(),
         0,
         lambda event: spent.clock.tell(event.evaluations),
-        start=text.start(plan, begin),
+        start=start(plan, begin),
     )
     spent.clock.evaluations += ended.evaluations
     if ended.x is None or ended.infeasible:
         return math.inf, np.empty(0)
-    found = text.point(plan, text.places(plan, local, ended.x, begin.layer))
+    found = point(plan, places(plan, local, ended.x, begin.layer))
     value, excess = violation(problem, found[None])
     return (float(value[0]) if excess[0] <= FEASIBLE else math.inf), found

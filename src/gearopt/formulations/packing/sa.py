@@ -11,9 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from gearopt.formulations.packing import text
-from gearopt.formulations.packing.container_bound import Bound
-from gearopt.formulations.packing.depth import Late
+from gearopt.formulations.packing.container_bound import Bound, Late
+from gearopt.formulations.packing.packing_text import point
 from gearopt.formulations.packing.plan import Places, Plan, row
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.kernels import kernel
@@ -170,7 +169,7 @@ def anneal(
         done = last
         if best[-1] < least:
             levels, least = best[2 * n : 3 * n].astype(np.int64), float(best[-1])
-            found = text.point(plan, Places(best[:n], best[n : 2 * n], levels, best[3 * n : -1]))
+            found = point(plan, Places(best[:n], best[n : 2 * n], levels, best[3 * n : -1]))
             spent.keep(float(problem.batch(found[None]).F[0, 0]), found)
         if done < moves and not spent.clock.tell():
             break
@@ -184,7 +183,7 @@ def method(plan: Plan, floor: Floor, finish: Finish) -> Any:
         """Anneal once; the best state that meets all limits, or else the row of all, is kept."""
         ready()
         spent, rng = Spent(clock := Clock(budget, watch)), np.random.default_rng(seed)
-        first = text.point(plan, row(plan))
+        first = point(plan, row(plan))
         spent.keep(float(problem.batch(first[None]).F[0, 0]), first)
         least = floor(problem, spent)
         clock.bound = least.value

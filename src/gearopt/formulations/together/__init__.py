@@ -16,11 +16,10 @@ from gearopt.formulations import teeth
 from gearopt.formulations.gear_train import FaceWidth, Stage, Train
 from gearopt.formulations.layout.chain import chain
 from gearopt.formulations.layout.gearbox import Gearbox, Shaft
+from gearopt.formulations.layout.layout_text import given_places, largest, positions, sides, value
 from gearopt.formulations.layout.slabs import Arrangement, Slabs, arrange, orders
-from gearopt.formulations.layout.text import given_places, positions, sides
 from gearopt.formulations.strength.k_factor import K_FACTOR
 from gearopt.formulations.teeth.search import search as sizing
-from gearopt.formulations.together.continuous import angles_of, continuous
 from gearopt.formulations.together.search import MARGINS, Search, keep, lay, prepare, prove
 from gearopt.formulations.together.tables import Make, numbers
 from gearopt.optimise.clock import Clock
@@ -28,8 +27,6 @@ from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.terms import Array, Terms, Var, each
 from gearopt.physics.gears import GearPair
-
-__all__ = ["GAP", "angles_of", "continuous", "laid_out", "pairs", "problem", "ready"]
 
 Start = tuple[tuple[GearPair, ...], Arrangement, Array]
 GAP = 1e-3  # proven where the budget asks for none
@@ -186,11 +183,6 @@ def _terms(
     y, z = positions(shape, tuple(float(a) for a in angles))
     side = sides(shape, y, z)
     width, height = side["width"], side["height"]
-    factor = float(shape.factor[0])
-    if shape.longest:
-        value = max(width, height, factor)
-    else:
-        value = factor * width ** float(shape.power[0]) * height ** float(shape.power[1])
     limits: dict[str, float] = {}
     for i in range(len(y)):
         for j in range(i + 1, len(y)):
@@ -200,15 +192,9 @@ def _terms(
         for k, (left, right, bottom, top) in enumerate(shape.keep):
             dy, dz = max(left - y[i], y[i] - right, 0.0), max(bottom - z[i], z[i] - top, 0.0)
             limits[f"clear_of_keep_out[{k + 1},{i + 1}]"] = _clear(order.keep_apart[k, i], dy, dz)
-    for name, there, most in (
-        ("width", width, shape.most[0]),
-        ("height", height, shape.most[1]),
-        ("length", order.length, box.largest[2]),
-    ):
-        if math.isfinite(most):
-            limits[f"largest_{name}"] = there / float(most)
+    limits |= largest(shape, width, height, order.length)
     given, equal = given_places(shape, y, z)
-    return {box.objective: value}, limits | given, equal
+    return {box.objective: value(shape, 0, width, height)}, limits | given, equal
 
 
 def _clear(need: float, dy: float, dz: float) -> float:

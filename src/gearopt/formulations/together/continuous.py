@@ -6,6 +6,7 @@ is the difference to `exact`; being nonconvex it has local optima and no bound.
 
 import math
 from dataclasses import replace
+from itertools import combinations
 from typing import Any
 
 import numpy as np
@@ -15,8 +16,8 @@ from gearopt.formulations import sizing
 from gearopt.formulations.gear_train import Train
 from gearopt.formulations.layout.chain import chain
 from gearopt.formulations.layout.gearbox import ANYWHERE, Gearbox
-from gearopt.formulations.layout.slabs import Body, Slabs, arrange, faces
-from gearopt.formulations.layout.text import given_places, outside, placed_by, sides
+from gearopt.formulations.layout.layout_text import given_places, outside, placed_by, sides
+from gearopt.formulations.layout.slabs import Arrangement, Body, Slabs, arrange, face_each_other
 from gearopt.formulations.together.tables import Make
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Array, Terms, Var, each
@@ -40,15 +41,7 @@ def continuous(
         raise SolveError("a keep-out with a range x along the shafts is for exact alone")
     order = arrange(box, slabs)
     shape = chain(box, (order,))
-    shafts = range(len(order.bodies))
-    facing: Facing = [
-        (i, j, p, q)
-        for i in shafts
-        for j in shafts[i + 1 :]
-        for p in order.bodies[i]
-        for q in order.bodies[j]
-        if faces(p, q)
-    ]
+    facing = _facing(order)
     sized = sizing.problem(train)
     round_it = sides(shape, *placed_by([p.centre_distance for p in box.pairs], start[1]))
     variables = _variables(sized, box, slabs, start[1], round_it)
@@ -83,6 +76,17 @@ def continuous(
         )
 
     return Problem("together", variables, sized.parameters, evaluate)
+
+
+def _facing(order: Arrangement) -> Facing:
+    """Return the bodies of different shafts that face each other, with their shafts."""
+    return [
+        (i, j, p, q)
+        for (i, own), (j, other) in combinations(enumerate(order.bodies), 2)
+        for p in own
+        for q in other
+        if face_each_other(p, q)
+    ]
 
 
 def _variables(

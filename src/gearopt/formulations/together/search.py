@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from gearopt.formulations import layout
 from gearopt.formulations.gear_train import Train
 from gearopt.formulations.layout.chain import Chain, chain, turns
+from gearopt.formulations.layout.exact import first_cell
 from gearopt.formulations.layout.gearbox import Gearbox
 from gearopt.formulations.layout.slabs import TOUCH, Arrangement, arrangements, clashes
 from gearopt.formulations.teeth.search import within
@@ -144,10 +145,8 @@ def _below(search: Search, box: Gearbox, order: Arrangement, margin: float) -> b
         return True
     cut, aim = cuts(search.value, margin)
     kernels = kernel("gearopt.formulations.layout.branch_kernel")
-    shape, links = chain(box, (order,)), len(box.pairs)
-    cells, bounds, theta = np.zeros((4000, 2, links)), np.zeros(4000), np.zeros(links)
-    cells[0, 0], cells[0, 1] = -math.pi, math.pi
-    cells[0, :, 0] = turns(box)
+    shape, theta = chain(box, (order,)), np.zeros(len(box.pairs))
+    cells, bounds = first_cell(theta.size, turns(box))
     count, best, floor = 1, aim, math.inf
     while count and best == aim and search.clock.tell():
         count, best, floor, nodes, _ = kernels.branch(

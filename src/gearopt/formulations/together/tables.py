@@ -17,7 +17,7 @@ from gearopt.errors import SolveError
 from gearopt.formulations.gear_train import Train
 from gearopt.formulations.layout.chain import Chain
 from gearopt.formulations.layout.gearbox import ANYWHERE, Gearbox, Shaft
-from gearopt.formulations.layout.slabs import TOUCH, Slabs, arrange, orders
+from gearopt.formulations.layout.slabs import Slabs, arrange, face_each_other, orders
 from gearopt.formulations.teeth.stage import Table, table
 from gearopt.optimise.kernels import kernel
 from gearopt.optimise.terms import Array
@@ -209,9 +209,7 @@ def _faces(box: Gearbox, slabs: Slabs) -> NDArray[np.uint8]:
         for y, other in enumerate(bodies):
             for p in own:
                 for q in other:
-                    side = min(p.x[1], q.x[1]) - max(p.x[0], q.x[0]) > TOUCH
-                    mesh = p.gear and q.gear and p.stage == q.stage
-                    if x != y and side and not mesh:
+                    if x != y and face_each_other(p, q):
                         found[x, _kind(p.name), y, _kind(q.name)] = 1
     return found
 

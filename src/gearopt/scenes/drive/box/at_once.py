@@ -8,6 +8,7 @@ from gearopt.errors import SolveError
 from gearopt.formulations import sizing, teeth, together
 from gearopt.formulations.design import drive_design
 from gearopt.formulations.layout.slabs import Slabs, arrange
+from gearopt.formulations.together.continuous import angles_of, continuous
 from gearopt.optimise.clock import following, in_part
 from gearopt.optimise.comparing.compare import Model
 from gearopt.optimise.problem import Problem
@@ -81,7 +82,7 @@ def posed(scene: Scene, method: str, apart: Result) -> Model:
     if apart.value is None:
         raise SolveError(f"{method} needs a start: {apart.message}")
     slabs, pairs, angles = _start(scene, apart)
-    smooth = together.continuous(train, scene.gearbox, slabs, (pairs, angles))
+    smooth = continuous(train, scene.gearbox, slabs, (pairs, angles))
     return Model(smooth, "Gears and box at once, real-valued teeth", unit)
 
 
@@ -96,7 +97,7 @@ def _start(scene: Scene, apart: Result) -> Start:
 def _from(scene: Scene, start: Start, ask: Ask) -> tuple[Result, ...]:
     """The part with real-valued sizes from an exact answer; none where Ipopt finds no better."""
     slabs, pairs, angles = start
-    problem = together.continuous(scene.train(), scene.gearbox, slabs, (pairs, angles))
+    problem = continuous(scene.train(), scene.gearbox, slabs, (pairs, angles))
     unit = scene.gearbox(pairs).unit
     watch = in_part(ask.watch, unit, REAL_VALUED)
     result, _ = run(problem, "ipopt", ask.budget, watch=watch)
@@ -124,5 +125,5 @@ def _real(
         sized, design=untyped(scene.design(pairs)), limits=limits(own, point), report={}
     )
     box = scene.gearbox(pairs)
-    angles = together.angles_of(problem, outcome.x)
+    angles = angles_of(problem, outcome.x)
     return told(scene, result, events, gears, box, angles, arrange(box, slabs))

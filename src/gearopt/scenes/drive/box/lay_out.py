@@ -8,6 +8,7 @@ from gearopt.errors import SolveError
 from gearopt.formulations import layout
 from gearopt.formulations.design import DriveDesign, drive_design
 from gearopt.formulations.layout.exact import GAP
+from gearopt.formulations.layout.faults import faults
 from gearopt.formulations.layout.gearbox import Gearbox, KeepOut
 from gearopt.formulations.layout.layout_design import (
     BearingDesign,
@@ -20,8 +21,8 @@ from gearopt.formulations.layout.layout_design import (
     MotorDesign,
     ShaftDesign,
 )
+from gearopt.formulations.layout.layout_text import Placed, placed, read
 from gearopt.formulations.layout.slabs import Arrangement, arrangements
-from gearopt.formulations.layout.text import Placed, placed, read
 from gearopt.optimise.clock import following, in_part
 from gearopt.optimise.comparing.compare import Model
 from gearopt.optimise.result import Result
@@ -46,7 +47,7 @@ def lay_out(scene: Scene, ask: Ask, sized: Result) -> Result:
     """The layout of a sized drive; the sizing is kept as its part `gears`."""
     box = scene.gearbox(pairs_of(scene, sized))
     orders = arrangements(box)
-    wrong = layout.faults(box)
+    wrong = faults(box)
     layout.ready()
     parts = (replace(sized, name="gears"),)
     if wrong:
@@ -111,7 +112,7 @@ def posed(scene: Scene, method: str, sized: Result) -> Model:
     if sized.value is None:
         raise SolveError("there are no gears to lay out: gearopt explain says why")
     box = scene.gearbox(pairs_of(scene, sized))
-    if wrong := layout.faults(box):
+    if wrong := faults(box):
         raise SolveError(" ".join(wrong))
     words = "Layout by four sides" if method in layout.GRADIENT else "Layout by link angles"
     return Model(layout.problem(box, method), words, box.unit)

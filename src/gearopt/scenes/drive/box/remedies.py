@@ -7,7 +7,7 @@ from itertools import combinations
 from typing import Any
 
 from gearopt.formulations import layout
-from gearopt.formulations.layout.faults import possible
+from gearopt.formulations.layout.faults import faults, possible
 from gearopt.formulations.layout.gearbox import Gearbox
 from gearopt.optimise.clock import Clock, of_others
 from gearopt.optimise.explaining.explain import STEP
@@ -52,7 +52,7 @@ class Questions:
         if self._clock.over:
             return None
         box = self.read(scene)
-        if box is None or layout.faults(box):
+        if box is None or faults(box):
             return False
         return possible(box, self._clock.within(seconds), self._clock.watch)
 
@@ -272,7 +272,7 @@ def explained(scene: Scene, result: Result, clock: Clock) -> Explanation:
 
     def solved(other: Scene) -> float | None:
         box = gearbox_of(other, pairs)
-        if box is None or layout.faults(box):
+        if box is None or faults(box):
             return None
         left = replace(clock.left, gap=SLOPE_GAP)
         return solve(layout.problem(box), None, left, watch=clock.watch, gap=SLOPE_GAP).value

@@ -40,12 +40,12 @@ def direct(
         m = np.rint(x.arrangement).astype(int) if len(orders) > 1 else 0
         y, z = positions(shape, each(x.angle))
         width, height = _side(shape, y), _side(shape, z)
-        objective = {box.objective: _value(shape, m, width, height)}
+        objective = {box.objective: value(shape, m, width, height)}
         if front:
             objective |= {"width": width, "height": height}
         limits, equal = _rows(shape, m, (y, z))
         return Terms(
-            objective, limits | _largest(shape, width, height, _of(shape.length, m)), equal=equal
+            objective, limits | largest(shape, width, height, _of(shape.length, m)), equal=equal
         )
 
     return Problem("layout", tuple(variables), (), evaluate, methods=methods, vectorised=True)
@@ -78,9 +78,9 @@ def smooth(box: Gearbox, order: Arrangement) -> Problem:
             rows |= {f"{n}_below": 1.0 + (v - x.longest) / span for n, v in sides.items()}
             objective = x.longest
         else:
-            objective = _value(shape, 0, x.width, x.height)
+            objective = value(shape, 0, x.width, x.height)
         limits, equal = _rows(shape, 0, (y, z))
-        limits |= _largest(shape, x.width, x.height, float(shape.length[0]))
+        limits |= largest(shape, x.width, x.height, float(shape.length[0]))
         return Terms({box.objective: objective}, limits, rows, equal)
 
     return Problem("layout", variables, (), evaluate)
@@ -104,7 +104,7 @@ def sides(shape: Chain, y: list[Any], z: list[Any]) -> dict[str, float]:
     """Left, bottom, width and height of the box around shafts at y, z [mm]."""
     left, bottom = (min(v - r for v, r in zip(c, shape.reach, strict=True)) for c in (y, z))
     found = {"left": left, "bottom": bottom, "width": _side(shape, y), "height": _side(shape, z)}
-    return {name: float(value) for name, value in found.items()}
+    return {name: float(side) for name, side in found.items()}
 
 
 def _side(shape: Chain, c: list[Any]) -> Any:
@@ -114,7 +114,8 @@ def _side(shape: Chain, c: list[Any]) -> Any:
     return high - low
 
 
-def _value(shape: Chain, m: Any, width: Any, height: Any) -> Any:
+def value(shape: Chain, m: Any, width: Any, height: Any) -> Any:
+    """Return the objective of boxes of these sides [mm] around arrangement m."""
     factor = _of(shape.factor, m)
     if shape.longest:
         return np.maximum(np.maximum(width, height), factor)
@@ -126,11 +127,12 @@ def _of(values: Array, m: Any) -> Any:
     return float(values[m]) if isinstance(m, int) else values[m]
 
 
-def _largest(shape: Chain, width: Any, height: Any, length: Any) -> dict[str, Any]:
+def largest(shape: Chain, width: Any, height: Any, length: Any) -> dict[str, Any]:
+    """Return the sides [mm] of a box over their limits, where there are any."""
     found = dict(zip(("width", "height", "length"), (width, height, length), strict=True))
     return {
-        f"largest_{name}": value / float(most)
-        for (name, value), most in zip(found.items(), shape.most, strict=True)
+        f"largest_{name}": side / float(most)
+        for (name, side), most in zip(found.items(), shape.most, strict=True)
         if math.isfinite(most)
     }
 
