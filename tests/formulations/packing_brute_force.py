@@ -60,7 +60,7 @@ def ways(cylinders, least, most):
 
 def allowed_ways(plan):
     """Those of `ways` in which fixed cylinders do not overlap."""
-    for layers in ways(plan.cylinders, plan.least, plan.most):
+    for layers in ways(plan.cylinders, plan.min_layers, plan.max_layers):
         if not any(
             a.at is not None
             and b.at is not None
@@ -163,7 +163,7 @@ def drawn_fault(plan, design, value):
 def fault(plan, at, layers):
     """What is not allowed of places and layers, or None."""
     used = set(layers)
-    if used != set(range(1, len(used) + 1)) or not plan.least <= len(used) <= plan.most:
+    if used != set(range(1, len(used) + 1)) or not plan.min_layers <= len(used) <= plan.max_layers:
         return f"layers {sorted(used)}"
     for i, a in enumerate(plan.cylinders):
         if a.layer is not None and layers[i] != a.layer:

@@ -29,20 +29,20 @@ ANCHORED = LARGE + SIX[3:]
 TALL = (Cylinder("a", 10.0, 30.0), Cylinder("b", 7.0, 5.0), Cylinder("c", 4.0, 12.0, layer=1))
 PLANS = {
     "one layer": Plan(SIX),
-    "layers": Plan(SIX, least=2, most=3),
+    "layers": Plan(SIX, min_layers=2, max_layers=3),
     "square": Plan(SIX, shape="square", objective="area", gap=1.0, wall=2.0),
     "circle": Plan(SIX, shape="circle", wall=0.5),
     "circle around fixed": Plan((LARGE[0], LARGE[2], *SIX[2:]), shape="circle", gap=0.5),
     "width": Plan(SIX, width=45.0, wall=1.0),
-    "fixed": Plan(ANCHORED, most=2),
-    "unlike heights": Plan(TALL, most=2),
+    "fixed": Plan(ANCHORED, max_layers=2),
+    "unlike heights": Plan(TALL, max_layers=2),
     "unlike sizes": Plan(cylinders(*np.random.default_rng(1).uniform(4, 16, 12)), wall=0.3),
 }
 
 
 def shaken(plan, rng):
     """A packing at random, around its row."""
-    x, y, layer, centre = scattered(plan, plan.most, rng)
+    x, y, layer, centre = scattered(plan, plan.max_layers, rng)
     free = list(plan.free)
     x[free] += rng.normal(size=len(free))
     if plan.shape == "circle" and plan.fixed:
@@ -55,7 +55,7 @@ def test_kernel_computes_what_the_text_does(plan):
     """Objective, crowding of all pairs that may move, empty layers, excess of a given width."""
     law, rng = kernel(KERNEL), np.random.default_rng(7)
     problem = packing.problem(plan)
-    gap, wall, width, shape, volume, least, most, _ = numbers(plan, plan.most)
+    gap, wall, width, shape, volume, least, most, _ = numbers(plan, plan.max_layers)
     for _ in range(40):
         found = shaken(plan, rng)
         batch = problem.batch(packing_text.point(plan, found)[None])
@@ -71,7 +71,7 @@ def test_kernel_computes_what_the_text_does(plan):
             for b in fixed[:k]
         ]
         crowding = law.crowding_of_all(*found[:3], plan.radius, gap)
-        if plan.most == 1:
+        if plan.max_layers == 1:
             apart += sum(held_apart)
         assert crowding == pytest.approx(apart, abs=1e-9)
         assert excess == pytest.approx(max(0.0, rows.get("width", 0.0)), abs=1e-12)
@@ -142,7 +142,10 @@ def best(plan, **kind):
 
 def test_layers_of_six_cylinders_are_proven():
     """Two layers 40 x 20 x 20, three 20 x (15 + sqrt 200) x 30."""
-    two, three = best(Plan(SIX, least=2, most=2)), best(Plan(SIX, least=3, most=3))
+    two, three = (
+        best(Plan(SIX, min_layers=2, max_layers=2)),
+        best(Plan(SIX, min_layers=3, max_layers=3)),
+    )
     assert (two.status, three.status) == ("optimal", "optimal")
     assert two.value == pytest.approx(16_000, rel=1e-9)
     assert three.value == pytest.approx(600 * (15 + math.sqrt(200)), rel=1e-9)
@@ -150,7 +153,7 @@ def test_layers_of_six_cylinders_are_proven():
 
 
 def test_a_fixed_row_and_a_second_layer_are_proven():
-    found = best(Plan(ANCHORED, least=2, most=2))
+    found = best(Plan(ANCHORED, min_layers=2, max_layers=2))
     assert found.status == "optimal" and found.value == pytest.approx(24_000, rel=1e-9)
 
 
@@ -163,7 +166,7 @@ def test_the_best_known_of_six_cylinders_is_found_by_every_seed(most):
         "budget": Budget(evaluations=2_000_000),
         "watch": lambda e: e.best > known * (1 + 1e-9),
     }
-    found = [best(Plan(SIX, most=most), seed=k, **until) for k in range(25)]
+    found = [best(Plan(SIX, max_layers=most), seed=k, **until) for k in range(25)]
     assert all(r.bound > 15_109 for r in found)
     hits = [r.value <= known * (1 + 1e-6) for r in found]
     assert np.mean(hits) >= 0.9
@@ -212,7 +215,7 @@ def test_tall_ones_share_a_layer():
         Cylinder("t", 10, 30),
         Cylinder("f", 10, 5),
     )
-    problem = packing.problem(Plan(tall, least=2, most=2))
+    problem = packing.problem(Plan(tall, min_layers=2, max_layers=2))
     result, outcome = run(problem, "hop")
     assert result.status == "optimal" and result.value == pytest.approx(800 * 35, rel=1e-9)
     layer = outcome.x[-4:]
@@ -220,7 +223,7 @@ def test_tall_ones_share_a_layer():
 
 
 def test_layers_are_renamed_from_the_floor_unless_one_is_fixed():
-    plan = Plan(TALL[:2], most=3)
+    plan = Plan(TALL[:2], max_layers=3)
     found = Places(np.zeros(2), np.zeros(2), np.array([3, 2]), np.zeros(2))
     design = untyped(describe(plan, found))
     assert [c["layer"] for c in design["cylinders"]] == [2, 1]
@@ -229,7 +232,7 @@ def test_layers_are_renamed_from_the_floor_unless_one_is_fixed():
 
 def test_fixed_cylinders_over_one_another_need_layers():
     at = [Cylinder(f"f{k}", 10.0, 10.0, at=(k, 0.0)) for k in range(3)]
-    plan = Plan((*at, *cylinders(4)), most=3)
+    plan = Plan((*at, *cylinders(4)), max_layers=3)
     assert overlap(plan, 0, 2) == pytest.approx(18.0)
     assert colours(plan, 2) is None and sorted(colours(plan, 3)[:3]) == [1, 2, 3]
     assert plan.fewest == 3
@@ -262,7 +265,7 @@ def test_a_loose_bound_is_not_claimed_in_comparisons():
     short = Budget(evaluations=5_000)
     assert solve(packing.problem(Plan(SIX)), "sa", short).bound > 15_000
     assert solve(packing.problem(Plan(SIX), loose=False), "sa", short).bound is None
-    two = packing.problem(Plan(SIX, least=2, most=2), loose=False)
+    two = packing.problem(Plan(SIX, min_layers=2, max_layers=2), loose=False)
     assert solve(two, "hop").status == "optimal"
 
 
@@ -281,7 +284,7 @@ def test_fixed_ones_that_overlap_are_refused():
 
 
 def test_held_names_what_is_fixed():
-    plan = Plan((*LARGE[:1], Cylinder("l", 1.0, 1.0, layer=2), *SIX[:1]), most=2)
+    plan = Plan((*LARGE[:1], Cylinder("l", 1.0, 1.0, layer=2), *SIX[:1]), max_layers=2)
     assert held(plan).tolist() == [1, 2, 0]
 
 

@@ -52,24 +52,26 @@ def test_layers_share_out_every_way():
     """Six cylinders: 16,000 in two layers, 17,485.28 in three, 16,000 again in four."""
     six = (20, 20, 20, 10, 10, 10)
     for most, volume in ((2, 16_000.0), (3, 600 * (15 + math.sqrt(200))), (4, 16_000.0)):
-        found = bound(plan(*six, least=most, most=most, objective="volume"))
+        found = bound(plan(*six, min_layers=most, max_layers=most, objective="volume"))
         assert found.value == pytest.approx(volume, rel=2e-9) and found.value <= volume
         assert found.choices > 1
 
 
 def test_too_many_ways_fall_back_to_the_volume():
     sizes = np.linspace(5, 15, 12)
-    found = bound(plan(*sizes, least=1, most=4, objective="volume"))
+    found = bound(plan(*sizes, min_layers=1, max_layers=4, objective="volume"))
     assert found.choices == 0
     assert found.value == pytest.approx(10 * math.pi / 4 * (sizes**2).sum(), rel=1e-9)
-    flat = bound(plan(*sizes, least=1, most=4))
+    flat = bound(plan(*sizes, min_layers=1, max_layers=4))
     assert flat.value == pytest.approx(math.pi / 16 * (sizes**2).sum(), rel=1e-9)
 
 
 def test_fixed_layers_and_places_are_kept():
     at = tuple(Cylinder(f"f{k}", 10.0, 10.0, at=(20.0 * k, 0.0)) for k in range(3))
     assert bound(Plan((*at, Cylinder("s", 1.0, 10.0)))).value == pytest.approx(12_000, rel=1e-9)
-    apart = Plan((Cylinder("a", 10.0, 10.0, layer=1), Cylinder("b", 10.0, 10.0, layer=2)), most=2)
+    apart = Plan(
+        (Cylinder("a", 10.0, 10.0, layer=1), Cylinder("b", 10.0, 10.0, layer=2)), max_layers=2
+    )
     assert bound(apart).value == pytest.approx(8_000, rel=1e-9)
 
 

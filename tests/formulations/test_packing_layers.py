@@ -27,7 +27,7 @@ def alike(*layers, **kind):
 @pytest.mark.parametrize("method", ["hop", "sa"])
 def test_below_a_named_layer_none_is_empty(method):
     """One in layer 2 of 2, two free: one of them lies below, 40 x 20 x 20; side by side is less."""
-    plan = alike(2, None, None, most=2)
+    plan = alike(2, None, None, max_layers=2)
     problem = packing.problem(plan)
     result, outcome = run(problem, method, Budget(evaluations=200_000))
     assert result.value == pytest.approx(16_000.0, rel=1e-5) and result.bound <= result.value
@@ -38,9 +38,9 @@ def test_below_a_named_layer_none_is_empty(method):
 
 
 def test_text_kernel_and_bound_ask_for_the_same_layers():
-    plan = alike(3, 1, None, None, most=4)
+    plan = alike(3, 1, None, None, max_layers=4)
     problem = packing.problem(plan)
-    _, _, _, _, _, least, most, _ = numbers(plan, plan.most)
+    _, _, _, _, _, least, most, _ = numbers(plan, plan.max_layers)
     names = [r.name for r in problem.rows.inequalities]
     columns = [k for k, name in enumerate(names) if name.startswith("occupied")]
     first = row(plan)
@@ -53,21 +53,21 @@ def test_text_kernel_and_bound_ask_for_the_same_layers():
         assert (missing == 0) == bool((held <= 1.0).all()) == (2 in free)
     assert plan.filled == 3 and sorted(set(first.layer.tolist())) == [1, 2, 3]
     assert bound(plan).value == pytest.approx(400.0 * 40.0, rel=1e-8)
-    three = alike(3, 1, None, None, most=3)  # one of them holds two side by side
+    three = alike(3, 1, None, None, max_layers=3)  # one of them holds two side by side
     assert bound(three).value == pytest.approx(800.0 * 30.0, rel=1e-8)
 
 
 def test_layers_above_the_named_ones_are_counted_without_gaps():
-    plan = alike(1, None, None, most=4)
+    plan = alike(1, None, None, max_layers=4)
     places = row(plan)._replace(layer=np.array([1, 4, 3]))
     assert [c.layer for c in describe(plan, places).cylinders] == [1, 3, 2]
 
 
 def test_layers_that_must_stay_empty_are_refused():
     with pytest.raises(ValueError, match="3 layers cannot each hold"):
-        alike(3, None, most=3)
+        alike(3, None, max_layers=3)
     with pytest.raises(ValueError, match="3 layers cannot each hold"):
-        alike(3, None, None, most=2)
+        alike(3, None, None, max_layers=2)
 
 
 def check(seed):
@@ -112,7 +112,7 @@ EIGHT = tuple(
 
 @pytest.mark.parametrize("kind", [{}, {"shape": "square"}, {"width": 25.0}, {"shape": "circle"}])
 def test_a_bound_that_is_late_is_weaker_and_valid(kind):
-    plan = Plan(EIGHT[:4], most=2, **kind)
+    plan = Plan(EIGHT[:4], max_layers=2, **kind)
     whole = bound(plan)
     assert whole.complete
     asked = []
@@ -131,7 +131,7 @@ def test_a_bound_that_is_late_is_weaker_and_valid(kind):
 
 def test_the_bound_looks_at_clock_and_watcher():
     """Ended while the bound is computed: the row, a valid bound, and nothing is remembered."""
-    plan = Plan(EIGHT, most=2, shape="square")
+    plan = Plan(EIGHT, max_layers=2, shape="square")
     problem, seen = packing.problem(plan), []
     result = solve(problem, "hop", watch=lambda event: bool(seen.append(event)))
     assert result.status == "limit" and len(seen) == 1 and seen[0].bound is None

@@ -155,7 +155,7 @@ def test_process_two_rounds_modules_of_given_teeth_up():
 def test_a_given_pinion_that_is_too_small_is_told():
     own = ProcessTwo(160.0, None, (27, 26, 27), (Fraction("1"), Fraction(3), Fraction(4)))
     result, _ = made(THREE, "process-two", two=own)
-    assert "pinion 1 is given 29.79 mm, its centres ask for 32.64 mm" in result.message
+    assert "pinion 1 has 29.79 mm, its centre distance requires 32.64 mm" in result.message
 
 
 def test_a_train_beyond_the_series_is_told():

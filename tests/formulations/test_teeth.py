@@ -173,7 +173,7 @@ def test_a_gap_that_is_enough_ends_the_search():
     result = solve(teeth.problem(train, floor=bound), budget=budget, gap=1e-3)
     assert result.status == "optimal" and result.gap <= 1e-3
     assert result.bound >= bound and result.evaluations < 2_000_000
-    assert result.message == "the gap asked for is reached"
+    assert result.message == "the requested gap is reached"
 
 
 @pytest.mark.parametrize(

@@ -82,11 +82,11 @@ def test_the_bound_is_its_definition(stages, objective, total, face, edge, torqu
     tables, delta = tables_of(train), 0.07
     found = bound(train, tables, delta, lambda: None)
     to_go, least = naive(train, tables, delta)
-    assert found.delta == delta and len(found.to_go) == len(found.least) == stages
+    assert found.delta == delta and len(found.to_go) == len(found.minimum) == stages
     for k, expected in to_go.items():
         assert found.to_go[k] == pytest.approx(expected, rel=1e-12)
     for k, expected in least.items():
-        assert found.least[k] == pytest.approx(expected, rel=1e-12)
+        assert found.minimum[k] == pytest.approx(expected, rel=1e-12)
         cell = np.arange(len(expected))
         beyond = np.minimum(to_go[k + 1][:-1], to_go[k + 1][1:])
         ahead = np.array([beyond[x : x + expected.shape[1]] for x in cell])

@@ -187,7 +187,7 @@ def test_why_a_search_ended_is_told():
     assert _why(progress, 1) == "stopped before it was exhausted"
     assert _why(progress, 5).endswith("so only the best train so far is listed, not 5")
     progress.enough = True
-    assert _why(progress, 1) == "the gap asked for is reached"
+    assert _why(progress, 1) == "the requested gap is reached"
 
 
 def outcome(train, count=1, floor=-math.inf, watch=None, **budget):

@@ -79,9 +79,9 @@ def test_budgets_end_a_search(budget, looked, seconds, over, monkeypatch):
     seen = []
     progress = Progress(1, Clock(budget, seen.append, 100.0, looked))
     monkeypatch.setattr(time, "perf_counter", lambda: 100.0 + seconds)
-    assert progress.goes_on() is not over and progress.clock.stopped is over
+    assert progress.continues() is not over and progress.clock.stopped is over
     assert seen == [Event(seconds, looked, None, None)]
-    assert Progress(1, Clock()).goes_on()
+    assert Progress(1, Clock()).continues()
 
 
 def test_a_watcher_is_told_and_stops_a_search():
@@ -89,7 +89,7 @@ def test_a_watcher_is_told_and_stops_a_search():
     progress = filled(1, fake(3.0, 7))
     clock, progress.floor = progress.clock, 2.0
     clock.watch, clock.evaluations = lambda e: seen.append(e), 5
-    assert progress.goes_on() and not progress.clock.stopped  # None is not False
+    assert progress.continues() and not progress.clock.stopped  # None is not False
     progress.tick()
     assert [(e.evaluations, e.best, e.bound) for e in seen] == [(5, 3.0, 2.0)] * 2
     progress.add(np.array([3.0 * (1.0 + 0.5 * TIE)]), iter([((8, 16),)]))
@@ -103,19 +103,19 @@ def test_a_watcher_is_told_and_stops_a_search():
         progress.tick()
     assert progress.clock.stopped and not progress.enough
     clock.watch = None
-    assert not progress.goes_on()
+    assert not progress.continues()
 
 
 def test_a_gap_that_is_reached_is_enough():
     for gap, enough in ((0.5, True), (0.25, True), (0.24, False), (0.0, False)):
         progress = filled(1, fake(4.0, 7))
         progress.clock.budget, progress.floor = Budget(gap=gap), 3.0
-        assert progress.goes_on() is not enough and progress.enough is enough
+        assert progress.continues() is not enough and progress.enough is enough
         assert not progress.clock.stopped
     listed = filled(2, fake(4.0, 7), fake(4.0, 8))
     listed.clock.budget, listed.floor = Budget(gap=0.5), 3.0
-    assert listed.goes_on()
-    assert Progress(1, Clock(Budget(gap=0.5)), floor=3.0).goes_on()
+    assert listed.continues()
+    assert Progress(1, Clock(Budget(gap=0.5)), floor=3.0).continues()
     none = filled(1, fake(4.0, 7))
     none.clock.budget, none.floor = Budget(gap=0.0), 4.0
-    assert none.goes_on()  # a gap of nothing is not asked for
+    assert none.continues()  # a gap of nothing is not asked for

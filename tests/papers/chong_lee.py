@@ -130,7 +130,7 @@ def volume(stages, ratios):
 
 @cache
 def best_split(stages):
-    """Ratios and volume of least gear volume at the exact total ratio, by the sizing problem."""
+    """Ratios and volume of minimum gear volume at the exact total ratio, by the sizing problem."""
     own = replace(train(stages), tolerance=0)
     result, outcome = run(sizing.problem(own), "ipopt")
     assert result.status == "optimal"
@@ -149,9 +149,9 @@ def exact(name):
 
 
 def split_rows():
-    cases = [("u = 21.80, least volume", 2, best_split(2)[0]), ("Niemann, eq. (7)", 2, niemann(2))]
+    cases = [("u = 21.80, minimum volume", 2, best_split(2)[0]), ("Niemann, eq. (7)", 2, niemann(2))]
     cases += [(name, 2, exact(name)) for name in list(DESIGNS)[:3]]
-    cases += [("u = 110, least volume", 3, best_split(3)[0]), ("Niemann, eq. (8)", 3, niemann(3))]
+    cases += [("u = 110, minimum volume", 3, best_split(3)[0]), ("Niemann, eq. (8)", 3, niemann(3))]
     cases += [(name, 3, exact(name)) for name in list(DESIGNS)[3:]]
     found = []
     for name, stages, ratios in cases:
@@ -181,7 +181,7 @@ def bracket(ratios):
 
 @cache
 def optimum(stages, contact=K, root=U):
-    """Least gear volume [mm3] of whole teeth and standard modules under two load limits."""
+    """Minimum gear volume [mm3] of whole teeth and standard modules under two load limits."""
     own = train(stages)
     limited = tuple(replace(s, allowable=(contact, root)) for s in own.stages)
     result = solve(teeth.problem(replace(own, stages=limited)))

@@ -282,6 +282,6 @@ def loads(text):
 def test_words_of_a_bound_say_where_its_time_ended_it():
     result = gearopt.solve(read(NAMED.encode())[1], budget=gearopt.Budget(evaluations=50_000))
     words = " ".join(proof(result))
-    assert "Bound: 2 ways to share the cylinders out" in words and "Its time ended it" not in words
+    assert "Bound: 2 ways to assign the cylinders" in words and "Stopped early" not in words
     early = dataclasses.replace(result, proof=packing.proof(Bound(1.0, 2, complete=False)))
-    assert "Its time ended it: it is weaker than it could be." in " ".join(proof(early))
+    assert "Stopped early: the bound is weaker than it could be." in " ".join(proof(early))

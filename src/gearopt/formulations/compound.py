@@ -19,20 +19,20 @@ from gearopt.optimise.terms import Terms, Var
 
 RANDOM = False
 COUNTS = "pair of tooth numbers matched"
-LOOK = 500  # pairs between two looks at clock and watcher: some 10 ms
+LOOK = 500  # pairs between two checks of clock and watcher: some 10 ms
 BASE = 2**24  # a digit of the ratio times two tooth numbers is a whole number that doubles hold
 
 
 @dataclass(frozen=True)
 class Compound:
-    """The ratio u > 0 to come near to, and the least and most teeth of any gear."""
+    """The ratio u > 0 to come near to, and the minimum and maximum number of teeth of any gear."""
 
     ratio: Fraction
     teeth: tuple[int, int]
 
     @property
     def reach(self) -> tuple[Fraction, Fraction]:
-        """The least and the largest ratio that its teeth make."""
+        """The minimum and maximum ratio of these numbers of teeth."""
         low, high = self.teeth
         return Fraction(low, high) ** 2, Fraction(high, low) ** 2
 
@@ -43,7 +43,7 @@ class Compound:
 
 
 def problem(train: Compound) -> Problem:
-    """Variables: teeth of the drivers z1, z2 and of the driven z3, z4; `exact` proves the best.
+    """Return the problem of a train; variables: teeth of the drivers z1, z2 and the driven z3, z4.
 
     With u = p/q the text is ((q z3 z4 - p z1 z2)/(p z3 z4))^2, its whole numerator summed by the
     digits of p and q, the highest first: no digit is lost where the two products nearly cancel.
@@ -60,14 +60,14 @@ def problem(train: Compound) -> Problem:
         return Terms({"squared_error": (rest / (float(p) * driven)) ** 2})
 
     def exact(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
-        """Every pair with the two that miss least with it; no other can be nearer."""
+        """Match every pair with the two nearest ratios of the other pair; no other is nearer."""
         error, best, looked, done = nearest(train, budget, watch)
         x = np.array(best, float)
         if not done:
             return Outcome(x, finished=False, evaluations=looked, message="stopped early")
         words = (
-            f"Proof: {looked:,} ratios of a pair, each with the two that miss least with it, in "
-            "rational arithmetic."
+            f"Proof: {looked:,} ratios of one pair, each with the two nearest of the other pair, "
+            "in rational arithmetic."
         )
         proof = {"method": "exhausted", "arithmetic": "rational", "pairs_matched": looked}
         proof |= {"sentence": words}
@@ -78,7 +78,7 @@ def problem(train: Compound) -> Problem:
 
 
 def _digits(*numbers: int) -> list[list[float]]:
-    """The digits of whole numbers in BASE, the highest first, as many of each."""
+    """Return the digits of whole numbers in BASE, the highest first, as many of each."""
     count = max(1, *(-(-n.bit_length() // 24) for n in numbers))
     return [[float(n >> 24 * k & BASE - 1) for k in reversed(range(count))] for n in numbers]
 
@@ -86,7 +86,7 @@ def _digits(*numbers: int) -> list[list[float]]:
 def nearest(
     train: Compound, budget: Budget | None = None, watch: Watch | None = None
 ) -> tuple[Fraction, tuple[int, ...], int, bool]:
-    """Least |1/u - z1 z2/(z3 z4)|, exactly, its teeth, the pairs looked at, and whether all were.
+    """Return the exact minimum of |1/u - z1 z2/(z3 z4)|, its teeth, the pairs matched, whether all.
 
     The ratios of one pair are sorted once; of the other pair's, only the neighbours of what is
     missing count. Ties go to the fewest teeth, then to the smallest numbers.
@@ -110,7 +110,7 @@ def nearest(
 
 
 def _pairs(train: Compound, clock: Clock) -> tuple[dict[Fraction, tuple[int, int]], bool]:
-    """The ratios of one pair with their smallest teeth; False: the time was over before."""
+    """Return the ratios of one pair with their smallest teeth; False: stopped before the end."""
     low, high = train.teeth
     pairs: dict[Fraction, tuple[int, int]] = {}
     for a in range(low, high + 1):
@@ -121,8 +121,8 @@ def _pairs(train: Compound, clock: Clock) -> tuple[dict[Fraction, tuple[int, int
     return pairs, True
 
 
-def wider(train: Compound, least: int, most: int) -> list[tuple[int, int]]:
-    """Ranges of teeth within least and most that reach the ratio, each by the smallest change.
+def wider(train: Compound, minimum: int, maximum: int) -> list[tuple[int, int]]:
+    """Return ranges of teeth from minimum to maximum that reach the ratio by the smallest change.
 
     More teeth or fewer, and both only where neither alone suffices; none where nothing does.
     """
@@ -130,12 +130,12 @@ def wider(train: Compound, least: int, most: int) -> list[tuple[int, int]]:
     ratio = max(train.ratio, 1 / train.ratio)
     more = low, _root(ratio * low**2)
     fewer = math.isqrt(math.floor(high**2 / ratio)), high
-    both = least, _root(ratio * least**2)
-    alone = [r for r in (more, fewer) if least <= r[0] and r[1] <= most]
-    return alone or [r for r in (both,) if r[1] <= most]
+    both = minimum, _root(ratio * minimum**2)
+    alone = [r for r in (more, fewer) if minimum <= r[0] and r[1] <= maximum]
+    return alone or [r for r in (both,) if r[1] <= maximum]
 
 
 def _root(square: Fraction) -> int:
-    """The least whole number whose square is at least so much."""
+    """Return the smallest whole number with at least this square."""
     root = math.isqrt(math.floor(square))
     return root if root**2 >= square else root + 1

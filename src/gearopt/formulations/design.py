@@ -1,4 +1,4 @@
-"""A drive's design in the words of its drawing: diameters, distances, loads of every stage."""
+"""The design of a drive for its drawing: diameters, distances and loads of every stage."""
 
 import math
 from collections.abc import Mapping
@@ -57,7 +57,7 @@ class DriveDesign:
 
 
 def drive_design(data: Mapping[str, Any]) -> DriveDesign:
-    """Return the design that a result of a drive holds; ValueError names what is none of it."""
+    """Return the design that a result of a drive holds; ValueError names what does not belong."""
     found: DriveDesign = typed(DriveDesign, data, "design")
     return found
 
@@ -125,5 +125,5 @@ def _stage(train: Train, pair: GearPair, torque: float, speed: float) -> StageDe
 
 
 def _whole(teeth: float) -> float | int:
-    """A tooth number as an integer where it is one."""
+    """Return a number of teeth as an integer where it is one."""
     return round(teeth) if abs(teeth - round(teeth)) < 1e-9 else float(teeth)

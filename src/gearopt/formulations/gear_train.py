@@ -67,8 +67,8 @@ class Stage:
 
     allowable: the limits of the train's strength law, in its order. modules: allowed normal modules
     [mm], increasing (for the continuous form its first and last are limits; empty: any).
-    pinion_teeth, wheel_teeth: least and most, ratio: least and most of u = z2/z1 >= 1 (None: no
-    limit). wheel_diameter: most [mm] of the wheel's reference diameter.
+    pinion_teeth, wheel_teeth, ratio u = z2/z1 >= 1: minimum and maximum (None: no
+    limit). wheel_diameter: maximum [mm] of the wheel's reference diameter.
     """
 
     allowable: tuple[float, ...]
@@ -97,7 +97,7 @@ class Train:
     helix_angle [rad] and basic rack of every stage. coprime: z1 and z2 without common divisor
     (hunting teeth). objective: a key of OBJECTIVES; mass needs density [t/mm3]. law: what limits
     the stages. speed: that of the input [rad/s], for laws that depend on it. keys: places of
-    `numbers` in a problem file, one a stage for the limits of a stage.
+    `numbers` in a problem file, one per stage for the limits of a stage.
     """
 
     torque: float
@@ -126,16 +126,16 @@ class Train:
 
     @property
     def lowest_ratio(self) -> Fraction:
-        """Least total ratio allowed."""
+        """Minimum total ratio."""
         return self.ratio * (1 - self.tolerance)
 
     @property
     def highest_ratio(self) -> Fraction:
-        """Largest total ratio allowed."""
+        """Maximum total ratio."""
         return self.ratio * (1 + self.tolerance)
 
     def fixed_teeth(self, stage: int, pinion: int, wheel: int) -> "Train":
-        """The same drive with the teeth of one stage (counted from 0) given."""
+        """Return the drive with the teeth of one stage (counted from 0) given."""
         one = replace(self.stages[stage], pinion_teeth=(pinion, pinion), wheel_teeth=(wheel, wheel))
         return replace(self, stages=self.stages[:stage] + (one,) + self.stages[stage + 1 :])
 
@@ -167,7 +167,7 @@ class Train:
         return OBJECTIVES[self.objective]
 
     def numbers(self) -> dict[str, float | tuple[float, ...]]:
-        """Every number of the drive as floats, by name; one a stage for the limits of a stage."""
+        """Return every number of the drive by name, a float; one per stage for limits of stages."""
         stages = self.stages
         return {
             "torque": self.torque,
@@ -215,7 +215,7 @@ def share(train: Train, stage: int, pair: GearPair, density: Any = None) -> Any:
 
 
 def terms(train: Train, numbers: Any, pairs: tuple[GearPair, ...]) -> Terms:
-    """Return objective and limits of a drive made of these pairs, in geometric-programming text.
+    """Return objective and limits of a drive made of these pairs, as terms of a geometric program.
 
     numbers: `train.numbers()` as attributes, floats or parameters. A limit is left out where the
     drive leaves it open or fixes the quantity.
@@ -227,11 +227,11 @@ def terms(train: Train, numbers: Any, pairs: tuple[GearPair, ...]) -> Terms:
         own = {name: each(getattr(numbers, name))[k] for name in train.by_stage}
         total = total + share(train, k, pair, numbers.density)
         allowable = [own[name] for name in train.law.names]
-        found = train.law.utilisations(pair, torque, numbers.speed / product, allowable)
-        found |= _choices(train.stages[k], own, pair)
+        rows = train.law.utilisations(pair, torque, numbers.speed / product, allowable)
+        rows |= _choices(train.stages[k], own, pair)
         if train.stages[k].wheel_fixed and not train.stages[k].pinion_fixed:
             equal[f"wheel_teeth[{k + 1}]"] = pair.wheel_teeth / own["wheel_low"]
-        limits |= {f"{name}[{k + 1}]": value for name, value in found.items()}
+        limits |= {f"{name}[{k + 1}]": value for name, value in rows.items()}
         torque = torque * pair.ratio
         product = product * pair.ratio
     if train.tolerance > 0:
@@ -243,13 +243,13 @@ def terms(train: Train, numbers: Any, pairs: tuple[GearPair, ...]) -> Terms:
 
 
 def _choices(stage: Stage, own: dict[str, Any], pair: GearPair) -> dict[str, Any]:
-    """Limits on what a stage may choose: its module, teeth, ratio, face width and wheel."""
-    found: dict[str, Any] = {}
+    """Return the limits of a stage on its module, teeth, ratio, face width and wheel."""
+    limits: dict[str, Any] = {}
 
     def between(name: str, value: Any, low: Any, high: Any) -> None:
-        """Ends of a range; None where there is none."""
-        found.update({} if low is None else {f"{name}_low": low / value})
-        found.update({} if high is None else {f"{name}_high": value / high})
+        """Add the ends of a range; None where there is none."""
+        limits.update({} if low is None else {f"{name}_low": low / value})
+        limits.update({} if high is None else {f"{name}_high": value / high})
 
     face, d = stage.face_width, pair.pinion.reference_diameter
     if not face.tied:
@@ -269,5 +269,5 @@ def _choices(stage: Stage, own: dict[str, Any], pair: GearPair) -> dict[str, Any
     low = own["ratio_low"] if stage.ratio[0] > 1 or given else None
     between("stage_ratio", pair.ratio, low, None if stage.ratio[1] is None else own["ratio_high"])
     if stage.wheel_diameter is not None:
-        found["wheel_diameter"] = pair.wheel.reference_diameter / own["wheel_diameter"]
-    return found
+        limits["wheel_diameter"] = pair.wheel.reference_diameter / own["wheel_diameter"]
+    return limits

@@ -32,10 +32,10 @@ Pairs = tuple[GearPair, ...]
 
 @dataclass(frozen=True)
 class ProcessOne:
-    """What process one is told: one entry a stage.
+    """Inputs of process one: one entry per stage.
 
     ratios: the rule behind them is not known (docs/multi_stage.md). pinion_teeth: None for those
-    balanced between both load limits. modules [mm]: None for the least that carries the load.
+    balanced between both load limits. modules [mm]: None for the smallest that carry the load.
     """
 
     ratios: Ratios
@@ -45,7 +45,7 @@ class ProcessOne:
 
 @dataclass(frozen=True)
 class ProcessTwo:
-    """What process two (after Niemann) is told: one entry a stage, and the first centre distance.
+    """Inputs of process two (after Niemann): one entry per stage, and the first centre distance.
 
     first_centre_distance [mm]. ratios: None for Niemann's. pinion_teeth or modules [mm], or both:
     the designer's last step; what is not given is rounded up from the centre distance.
@@ -64,7 +64,7 @@ class ProcessTwo:
 def methods(
     train: Train, one: ProcessOne | None = None, two: ProcessTwo | None = None
 ) -> dict[str, Callable[..., Outcome]]:
-    """The methods process-one and process-two for the problem `teeth` of a drive.
+    """Return the methods process-one and process-two for the problem `teeth` of a drive.
 
     SolveError when run: without inputs, with other numbers of entries than stages, or where a face
     width is not tied to d1.
@@ -94,7 +94,7 @@ def _missing(which: str, keys: str) -> SolveError:
 
 
 def _check(which: str, train: Train, inputs: ProcessOne | ProcessTwo) -> None:
-    """SolveError where the inputs do not fit the drive."""
+    """Raise SolveError where the inputs do not fit the drive."""
     if not train.law.proportional or len(train.law.limits) != 2:
         raise SolveError(
             f"the method process-{which} needs two limits in proportion to the load, of contact "
@@ -102,7 +102,7 @@ def _check(which: str, train: Train, inputs: ProcessOne | ProcessTwo) -> None:
         )
     if not all(stage.face_width.tied for stage in train.stages):
         raise SolveError(
-            f"the method process-{which} makes face widths b = m_a d1: write "
+            f"the method process-{which} needs face widths b = m_a d1: write "
             "face_width_over_diameter as one number for every stage"
         )
     for given in (inputs.ratios, inputs.pinion_teeth, inputs.modules):
@@ -111,13 +111,13 @@ def _check(which: str, train: Train, inputs: ProcessOne | ProcessTwo) -> None:
 
 
 def _pair(train: Train, stage: Stage, module: Fraction, z1: int, z2: int) -> GearPair:
-    """The pair of a stage whose face width is tied to d1."""
+    """Return the pair of a stage whose face width is tied to d1."""
     one = train.pair(float(module), z1, z2, 1.0)
     return one.of_width(float(stage.face_width.high or 0) * one.pinion.reference_diameter)
 
 
 def _first(train: Train, inputs: ProcessOne) -> tuple[Pairs, str]:
-    """The gears of process one; none, and why, where no module carries the load."""
+    """Return the gears of process one; none, and why, where no module carries the load."""
     pairs: list[GearPair] = []
     torque, angle = train.torque, train.helix_angle
     for k, (stage, u) in enumerate(zip(train.stages, inputs.ratios, strict=True)):
@@ -129,10 +129,10 @@ def _first(train: Train, inputs: ProcessOne) -> tuple[Pairs, str]:
         if inputs.modules is not None:
             module: Fraction | None = inputs.modules[k]
         else:
-            least = needed_module(train.law, stage, torque, (z1, z2), angle)
-            module = next_module(stage, least)
+            minimum = needed_module(train.law, stage, torque, (z1, z2), angle)
+            module = next_module(stage, minimum)
             if module is None:
-                return (), _no_module(k, least, stage)
+                return (), _no_module(k, minimum, stage)
         assert module is not None
         pairs.append(_pair(train, stage, module, z1, z2))
         torque *= z2 / z1
@@ -140,9 +140,9 @@ def _first(train: Train, inputs: ProcessOne) -> tuple[Pairs, str]:
 
 
 def _second(train: Train, inputs: ProcessTwo) -> tuple[Pairs, str]:
-    """The gears of process two; none, and why, where no module is large enough.
+    """Return the gears of process two; none, and why, where no module is large enough.
 
-    A given pinion that is smaller than its centre distance asks for is told.
+    The message names a given pinion that is smaller than its centre distance requires.
     """
     limits = [stage.allowable[0] for stage in train.stages]
     ratios = inputs.ratios or niemann_ratios(float(train.ratio), limits)
@@ -164,12 +164,14 @@ def _second(train: Train, inputs: ProcessTwo) -> tuple[Pairs, str]:
         pairs.append(_pair(train, stage, module, z1, wheel_teeth(z1, ratios[k])))
         made = pairs[-1].pinion.reference_diameter
         if made < d1 * (1.0 - ROUNDING):
-            small.append(f"pinion {k + 1} is given {made:.2f} mm, its centres ask for {d1:.2f} mm")
+            small.append(
+                f"pinion {k + 1} has {made:.2f} mm, its centre distance requires {d1:.2f} mm"
+            )
     return tuple(pairs), "; ".join(small)
 
 
 def _diameters(train: Train, centre_distance: float, u: list[float]) -> list[float]:
-    """Pinion diameters [mm] of all stages, before any rounding of teeth or modules.
+    """Return the pinion diameters [mm] of all stages, before any rounding of teeth or modules.
 
     Of the chains that Table 4 could come from, only this one rounds up to it in every stage.
     """
@@ -186,25 +188,25 @@ def _diameters(train: Train, centre_distance: float, u: list[float]) -> list[flo
     return found
 
 
-def _no_module(position: int, least: float, stage: Stage) -> str:
+def _no_module(position: int, minimum: float, stage: Stage) -> str:
     return (
-        f"stage {position + 1} needs a module of {least:.4g} mm or more; the largest allowed is "
+        f"stage {position + 1} needs a module of {minimum:.4g} mm or more; the largest allowed is "
         f"{float(stage.modules[-1]):g} mm"
     )
 
 
 def _outcome(train: Train, pairs: Pairs, message: str) -> Outcome:
-    """The point of the problem `teeth` that has these gears."""
+    """Return the point of the problem `teeth` that has these gears."""
     x = point(train, pairs) if pairs else None
     return Outcome(x, evaluations=1, message=message)
 
 
 def niemann_ratios(total: float, contact: Sequence[float]) -> tuple[float, ...]:
-    """Ratios of two or three stages after Niemann, as printed.
+    """Return the ratios of two or three stages after Niemann, as printed.
 
     Two: u1 = 0.8 (u s_12)^(2/3). Three: u1 = 0.6 u^(4/7) s_12^(2/7) s_13^(4/7),
     u2 = 1.1 u^(2/7) s_21^(4/7) s_23^(2/7). total: u >= 1; contact: K of every stage [MPa].
-    These are the leading terms, for u_i >> 1, of the split of least gear volume. SolveError for
+    These are the leading terms, for u_i >> 1, of the split of minimum gear volume. SolveError for
     other numbers of stages. Source: Chong and Lee, eqs. (7) and (8).
     """
     k = tuple(contact)
@@ -276,7 +278,7 @@ def wheel_teeth(pinion_teeth: int, ratio: Fraction | float) -> int:
 def needed_module(
     law: Law, stage: Stage, torque: float, teeth: tuple[int, int], helix_angle: float
 ) -> float:
-    """Minimum normal module [mm] for both load limits with b = m_a d1: the larger of two.
+    """Return the minimum normal module [mm] for both load limits with b = m_a d1.
 
     From U: m^3 = 2 T cos^2(beta)/(m_a z1^2 U). From K: m = d1 cos(beta)/z1 with
     d1^3 = 2 T (u + 1)/(u K m_a). torque [N mm] of the pinion; teeth of pinion and wheel, so that
@@ -287,6 +289,6 @@ def needed_module(
     return math.cbrt(law.load(tied, torque, 0.0, stage.allowable))
 
 
-def next_module(stage: Stage, least: float) -> Fraction | None:
-    """The first allowed module not below `least` [mm]; None where there is none."""
-    return next((m for m in stage.modules if m >= least * (1.0 - ROUNDING)), None)
+def next_module(stage: Stage, minimum: float) -> Fraction | None:
+    """Return the first allowed module not below `minimum` [mm]; None where there is none."""
+    return next((m for m in stage.modules if m >= minimum * (1.0 - ROUNDING)), None)

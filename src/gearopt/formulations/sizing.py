@@ -33,10 +33,10 @@ _PARAMETER_UNITS = {
 
 
 def problem(train: Train) -> Problem:
-    """The continuous problem of a drive.
+    """Return the continuous problem of a drive.
 
-    Variables, one component a stage: module [mm], pinion_teeth, ratio and, where it is not tied to
-    d1, face_width [mm].
+    Variables, one component per stage: module [mm], pinion_teeth, ratio and, where it is not tied
+    to d1, face_width [mm].
     """
     count = len(train.stages)
     numbers = train.numbers()
@@ -60,10 +60,10 @@ def problem(train: Train) -> Problem:
 
 
 def movable(train: Train) -> Problem:
-    """The limits of `problem` with all that is given as a number of its own, to be moved.
+    """Return the limits of `problem` with every given number as one that may be moved.
 
-    Wheel teeth that are given are variables, one component a stage that gives them; the proportion
-    b/d1 of tied widths is a given parameter. The objective means nothing.
+    Wheel teeth that are given are variables, one component per stage that gives them; the
+    proportion b/d1 of tied widths is a given parameter. The objective means nothing.
     """
     own = problem(train)
     wheels = given_wheels(train)
@@ -83,12 +83,12 @@ def movable(train: Train) -> Problem:
 
 
 def given_wheels(train: Train) -> tuple[int, ...]:
-    """The stages (from 0) whose wheel teeth are given."""
+    """Return the stages (from 0) whose wheel teeth are given."""
     return tuple(k for k, stage in enumerate(train.stages) if stage.wheel_fixed)
 
 
 def _with_wheels(train: Train) -> tuple[Var, ...]:
-    """The variables with ratios free and given wheel teeth as a block of their own."""
+    """Return the variables with ratios free and given wheel teeth as a block of their own."""
     count = len(train.stages)
     teeth = tuple(float(train.stages[k].wheel_teeth[0]) for k in given_wheels(train))
     low, high = ((end,) * count for end in RATIO)
@@ -102,7 +102,7 @@ def _with_wheels(train: Train) -> tuple[Var, ...]:
 
 
 def _role(train: Train, name: str, tied: str) -> str | tuple[str, ...]:
-    """The role of a parameter: the ratio is a duty; `tied`: that of a width tied to d1."""
+    """Return the role of a parameter: the ratio is a duty; `tied`: that of a width tied to d1."""
     if name.startswith("width"):
         return tuple(tied if s.face_width.tied else "limit" for s in train.stages)
     if name in ("lowest_ratio", "highest_ratio", "torque"):
@@ -171,7 +171,7 @@ def _variables(train: Train) -> tuple[Var, ...]:
 
 
 def _lengths(train: Train) -> tuple[float, float]:
-    """Ends [mm] of the search for modules and widths, far beyond all that load and file ask for.
+    """Return the ends [mm] of searched modules and widths, far beyond what the file requires.
 
     Finite, for the dual bound. A stage's size follows (T/s)^(1/3) at its torque, for a limit s.
     """

@@ -22,7 +22,7 @@ from gearopt.formulations.packing.plan import (
     Cylinder,
     Places,
     Plan,
-    least_layers,
+    minimum_layers,
     overlap,
 )
 from gearopt.formulations.packing.sa import lateness, ready
@@ -249,14 +249,17 @@ class Scene(Table):
         plan = self.plan()
         where = [k for k, own in enumerate(self.cylinder) for _ in range(own.count)]
         for i, j in combinations(plan.fixed, 2):
-            same = plan.most == 1 or plan.cylinders[i].layer == plan.cylinders[j].layer is not None
+            same = (
+                plan.max_layers == 1
+                or plan.cylinders[i].layer == plan.cylinders[j].layer is not None
+            )
             missing = overlap(plan, i, j)
             if same and missing:
                 names = [plan.cylinders[k].name for k in (j, i)]
                 rule = f"is too near: {missing:.4g} mm are missing between {' and '.join(names)}"
                 raise refuse(rule, _away(plan, i, j), ("cylinder", where[j], "at"))
-        need = least_layers(plan)
-        if need > plan.most:
+        need = minimum_layers(plan)
+        if need > plan.max_layers:
             key = "most" if self.layers.exactly is None else "exactly"
             rule = f"is too few: fixed cylinders lie over one another and need {need} layers"
             raise refuse(rule, need, ("layers", key))
@@ -278,8 +281,8 @@ class Scene(Table):
             width=None if width is None else width.value,
             gap=self.container.gap.value,
             wall=self.container.wall.value,
-            least=self.layers.exactly or 1,
-            most=self._most,
+            min_layers=self.layers.exactly or 1,
+            max_layers=self._most,
             objective=self.objective.minimise,
         )
 

@@ -36,7 +36,7 @@ SETTINGS = {  # by method
 STEPS = 128_701  # where the budget names no evaluations: what the paper reports
 SLICE = 20_000  # steps between two looks at clock and watcher: some milliseconds
 
-LOOKS = 100  # parts of a run at the least, after each of which its best is told
+LOOKS = 100  # parts of a run at least, after each of which its best is told
 
 Goes = Callable[[int, float], bool]
 
@@ -59,7 +59,7 @@ def anneal(
     """Anneal; best value, arrangement and angles (N + 2,), inf if none is feasible, and steps made.
 
     free: positions instead of angles, the paper's way. goes(steps, best): whether to go on; it is
-    asked after SLICE steps, and `looks` times at the least.
+    asked after SLICE steps, and `looks` times at least.
     """
     kernels = kernel("gearopt.formulations.layout.anneal_kernel")
     links = chain.link.size
@@ -90,13 +90,13 @@ def method(chain: Chain, free: bool, polish: Polish | None = None) -> Any:
 
     def run(problem: Any, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
         clock = Clock(budget, watch)
-        own, most = sampling(clock, polish is not None)
+        own, maximum = sampling(clock, polish is not None)
 
         def goes(steps: int, best: float) -> bool:
             own.evaluations, own.best = steps, best
             return own.tell()
 
-        steps = STEPS if most is None else max(1, most)
+        steps = STEPS if maximum is None else max(1, maximum)
         found, made = anneal(chain, seed, steps, goes, free, LOOKS)
         x = point(chain, found)
         message = "" if x is not None else "no feasible layout was visited"

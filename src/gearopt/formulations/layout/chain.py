@@ -1,4 +1,4 @@
-"""Shafts as a chain of links in the plane across them: what kernels and texts of a layout share."""
+"""Shafts as a chain of links in the plane across them: what its kernels and problems share."""
 
 import math
 from typing import NamedTuple
@@ -14,16 +14,16 @@ from gearopt.optimise.terms import Array
 class Chain(NamedTuple):
     """A layout in numbers, for M arrangements of the slabs; lengths in mm, N links, K keep-outs.
 
-    link (N,): centre distances. reach (N+1,): from each axis to the box. apart (M, N+1, N+1): least
-    distances of axes, 0 where there is none or, of neighbours, the centre distance is enough. keep
-    (K, 4): left, right, bottom, top of keep-outs; keep_apart (M, K, N+1): least distance of each
-    axis from them. place (N+1, 4): range of y, then of z, of each axis. level: shafts of equal z
-    (empty: none). close (N,): 0 for a free link, 1 for one that ends at a given height, 2 and 3 for
-    two that end at a given place, 4 for one that ends at a given y; goal (N, 3): shaft that a
-    height is measured from, y, z. most (3,): largest width, height, length. power (2,): exponents
-    of width and height in the objective, factor (M,) times it (its lengths and constants). longest:
-    the objective is the longest side instead, and factor the third side. length (M,): of the box.
-    The first axis is the origin.
+    link (N,): centre distances. reach (N+1,): from each axis to the box. apart (M, N+1, N+1):
+    minimum distances of axes, 0 where there is none or, of neighbours, the centre distance is
+    enough. keep (K, 4): left, right, bottom, top of keep-outs; keep_apart (M, K, N+1): minimum
+    distance of each axis from them. place (N+1, 4): range of y, then of z, of each axis. level:
+    shafts of equal z (empty: none). close (N,): 0 for a free link, 1 for one that ends at a given
+    height, 2 and 3 for two that end at a given place, 4 for one that ends at a given y; goal (N,
+    3): shaft that a height is measured from, y, z. most (3,): largest width, height, length. power
+    (2,): exponents of width and height in the objective, factor (M,) times it (its lengths and
+    constants). longest: the objective is the longest side instead, and factor the third side.
+    length (M,): of the box. The first axis is the origin.
     """
 
     link: Array

@@ -46,10 +46,10 @@ class Search:
     nodes: int = 0
     empty: bool = False
 
-    def left(self, most: int) -> int:
-        """How much of `most` the budget's evaluations allow."""
+    def left(self, maximum: int) -> int:
+        """How much of `maximum` the budget's evaluations allow."""
         left = self.clock.left.evaluations
-        return most if left is None else min(most, left)
+        return maximum if left is None else min(maximum, left)
 
 
 def method(chain: Chain, turns: tuple[float, float], polish: Polish) -> Any:

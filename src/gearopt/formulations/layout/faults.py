@@ -1,4 +1,4 @@
-"""Whether a gearbox can be laid out at all: data checks told in numbers, then a search."""
+"""Whether a gearbox can be laid out at all: checks of the data in numbers, then a search."""
 
 import math
 from collections.abc import Iterator
@@ -28,12 +28,12 @@ STEPS, STARTS = 5_000, 4  # short runs of annealing: most layouts that exist are
 
 
 def faults(box: Gearbox) -> list[str]:
-    """Sentences about what is too close, too long, or out of reach; empty if nothing is."""
+    """Return sentences about what is too close, too long or out of reach; none if nothing is."""
     return [*_axial(box), *_blocked(box), *_reach(box), *_level(box), *_sides(box)]
 
 
 def _axial(box: Gearbox) -> Iterator[str]:
-    """What every order of slabs lacks: that of the order which lacks least."""
+    """Yield what every order of slabs lacks: that of the order with the smallest clash."""
     one = arrangements(box)[0]
     longest = box.largest[2] * (1.0 + 1e-9)
     if not clashes(box, one) and one.length <= longest:
@@ -52,12 +52,12 @@ def _axial(box: Gearbox) -> Iterator[str]:
 
 
 def _every(box: Gearbox) -> list[Arrangement]:
-    """All orders of slabs, whatever they lack."""
+    """Return all orders of slabs, whatever they lack."""
     return [arrange(box, s) for s in ([box.slabs] if box.slabs is not None else orders(box))]
 
 
 def _blocked(box: Gearbox) -> Iterator[str]:
-    """What stands on the input shaft, or on one at a given place, against keep-outs."""
+    """Yield what is too close to keep-outs on the input shaft or a shaft at a given place."""
     tried = arrangements(box)
     if clashes(box, tried[0]):  # it stands for all orders
         tried = tuple(_every(box)) if box.keep_outs else tried
@@ -66,11 +66,11 @@ def _blocked(box: Gearbox) -> Iterator[str]:
             there = max(_distance(keep, y, z) for y in given.y for z in given.z)
             need = min(float(one.keep_apart[k, given.shaft]) for one in tried)
             if need - there > TOUCH:
-                most = "" if given is INPUT else "at most "
+                hedge = "" if given is INPUT else "at most "
                 who = "the input shaft" if given is INPUT else f"shaft {given.shaft + 1}"
                 yield (
                     f"What stands on {who} is {need - there:.2f} mm too close to {keep.name}: its "
-                    f"axis is {most}{there:.2f} mm from it and needs {need:.2f} mm."
+                    f"axis is {hedge}{there:.2f} mm from it and needs {need:.2f} mm."
                 )
         there = _distance(keep, 0.0, 0.0)
         if keep.x == ANYWHERE and box.motor - there > TOUCH:
@@ -78,22 +78,22 @@ def _blocked(box: Gearbox) -> Iterator[str]:
 
 
 def _sides(box: Gearbox) -> Iterator[str]:
-    """Bodies that are wider with their walls than the box may be, wide or high."""
+    """Yield where the largest body with its wall clearances exceeds the width or height."""
     bodies = [body for own in arrangements(box)[0].bodies for body in own]
     largest = max(bodies, key=lambda body: body.radius)
     need = 2.0 * (largest.radius + box.clearances.wall)
     wide = min(box.largest[0], math.inf if box.width is None else box.width)
-    for side, most in (("wide", wide), ("high", box.largest[1])):
-        if need > most + TOUCH:
+    for side, maximum in (("wide", wide), ("high", box.largest[1])):
+        if need > maximum + TOUCH:
             yield (
                 f"The box is at least {need:.2f} mm {side} ({2.0 * largest.radius:.2f} for "
                 f"{largest.name}, twice {box.clearances.wall:g} to the walls), and may be "
-                f"{most:.7g} mm."
+                f"{maximum:.7g} mm."
             )
 
 
 def _distance(keep: KeepOut, y: float, z: float) -> float:
-    """Of a point from a keep-out."""
+    """Return the distance of a point from a keep-out."""
     return math.hypot(
         max(keep.y[0] - y, y - keep.y[1], 0.0),
         max(keep.z[0] - z, z - keep.z[1], 0.0),
@@ -101,7 +101,7 @@ def _distance(keep: KeepOut, y: float, z: float) -> float:
 
 
 def _reach(box: Gearbox) -> Iterator[str]:
-    """Places that the links between two shafts cannot span, or that exclude each other."""
+    """Yield places that the links between two shafts cannot span, or that exclude each other."""
     given = [INPUT, *box.places]
     for n, b in enumerate(given):
         for a in given[:n]:
@@ -109,7 +109,7 @@ def _reach(box: Gearbox) -> Iterator[str]:
             links = [p.centre_distance for p in box.pairs[first:last]]
             near, far = _between(a, b)
             reach = sum(links)
-            least = max(0.0, 2.0 * max(links, default=0.0) - reach)
+            minimum = max(0.0, 2.0 * max(links, default=0.0) - reach)
             who = f"The places of shafts {a.shaft + 1} and {b.shaft + 1}"
             if a.shaft == b.shaft and near > TOUCH:
                 yield f"Two places of shaft {a.shaft + 1} are {near:.2f} mm apart."
@@ -118,15 +118,15 @@ def _reach(box: Gearbox) -> Iterator[str]:
                     f"{who} are at least {near:.2f} mm apart; the centre distances between them "
                     f"reach {reach:.2f} mm."
                 )
-            elif far < least - TOUCH:
+            elif far < minimum - TOUCH:
                 yield (
                     f"{who} are at most {far:.2f} mm apart; the centre distances between them "
-                    f"keep them {least:.2f} mm apart."
+                    f"keep them {minimum:.2f} mm apart."
                 )
 
 
 def _level(box: Gearbox) -> Iterator[str]:
-    """Places of shafts on the split line that cannot be of one height."""
+    """Yield places of shafts on the split line that cannot be of one height."""
     given = [p for p in (INPUT, *box.places) if p.shaft in box.level]
     above = max(given, key=lambda p: p.z[0], default=INPUT)
     below = min(given, key=lambda p: p.z[1], default=INPUT)
@@ -134,13 +134,13 @@ def _level(box: Gearbox) -> Iterator[str]:
         first, last = sorted((above.shaft + 1, below.shaft + 1))
         yield (
             f"Shafts {first} and {last} are on the split line, but shaft "
-            f"{above.shaft + 1} is at a height z of {above.z[0]:.2f} mm at least and shaft "
-            f"{below.shaft + 1} of {below.z[1]:.2f} mm at most."
+            f"{above.shaft + 1} is at a height z of at least {above.z[0]:.2f} mm and shaft "
+            f"{below.shaft + 1} of at most {below.z[1]:.2f} mm."
         )
 
 
 def _between(a: Place, b: Place) -> tuple[float, float]:
-    """Least and largest distance of two places."""
+    """Return the minimum and maximum distance of two places."""
     near, far = [], []
     for p, q in ((a.y, b.y), (a.z, b.z)):
         near.append(max(p[0] - q[1], q[0] - p[1], 0.0))
@@ -149,7 +149,7 @@ def _between(a: Place, b: Place) -> tuple[float, float]:
 
 
 def _sentence(clash: Clash) -> str:
-    """What two axes lack, in numbers: `wheel 1 and shaft 3 ...`."""
+    """Return what two axes lack, in numbers: `Wheel 1 and shaft 3 ...`."""
     first, last = clash.need.between
     a, b = (k + 1 for k in clash.shafts)
     between = f"stage {a}" if b == a + 1 else f"stages {a} to {b - 1} in one line"
@@ -163,7 +163,7 @@ def _sentence(clash: Clash) -> str:
 
 
 def possible(box: Gearbox, seconds: float, watch: Watch | None = None) -> bool | None:
-    """Whether there is a layout; None where that is not known in time.
+    """Return whether there is a layout; None where that is not known in time.
 
     True with a layout in hand, False because distances clash or every cell of angles is excluded.
     """

@@ -32,7 +32,7 @@ class Shaft:
 
 @dataclass(frozen=True)
 class Clearances:
-    """Least distances: of gears, of a gear (or shaft) and another shaft, to the walls, along x."""
+    """Minimum distances: of gears, of a gear or shaft and another shaft, to the walls, along x."""
 
     gears: float = 5.0
     shafts: float = 2.0
@@ -66,7 +66,7 @@ class Gearbox:
     partial: shafts end beside their gears instead of passing the whole box. slabs: the stages of
     each axial slab in order (None: the best). motor: radius of a motor on the input shaft at the
     face where the output shaft leaves (0: none in its way). level: shafts on the split line of the
-    housing, of equal z. width: the box is made as wide as this. largest: most width, height and
+    housing, of equal z. width: the box is made as wide as this. largest: maximum width, height and
     length.
     """
 

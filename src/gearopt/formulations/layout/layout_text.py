@@ -55,14 +55,14 @@ def smooth(box: Gearbox, order: Arrangement) -> Problem:
     """Variables: angle [rad] of each link; left, bottom, width and height of the box [mm]."""
     shape = chain(box, (order,))
     links, span = len(box.pairs), 2.0 * float(shape.link.sum() + shape.reach.max())
-    least = 2.0 * float(shape.reach.max())
+    minimum = 2.0 * float(shape.reach.max())
     variables = (
         Var("angle", "rad", -2.0 * math.pi, 2.0 * math.pi, 0.1, links, search=True),
         Var("left", "mm", -span, 0.0, -0.5 * span, search=True),
         Var("bottom", "mm", -span, 0.0, -0.5 * span, search=True),
-        Var("width", "mm", 0.5 * least, 2.0 * span, span, search=True),
-        Var("height", "mm", 0.5 * least, 2.0 * span, span, search=True),
-        Var("longest", "mm", 0.5 * least, 4.0 * span + shape.factor[0], span, search=True),
+        Var("width", "mm", 0.5 * minimum, 2.0 * span, span, search=True),
+        Var("height", "mm", 0.5 * minimum, 2.0 * span, span, search=True),
+        Var("longest", "mm", 0.5 * minimum, 4.0 * span + shape.factor[0], span, search=True),
     )[: 6 if shape.longest else 5]
 
     def evaluate(x: Any, p: Any) -> Terms:
@@ -131,9 +131,9 @@ def largest(shape: Chain, width: Any, height: Any, length: Any) -> dict[str, Any
     """Return the sides [mm] of a box over their limits, where there are any."""
     found = dict(zip(("width", "height", "length"), (width, height, length), strict=True))
     return {
-        f"largest_{name}": side / float(most)
-        for (name, side), most in zip(found.items(), shape.most, strict=True)
-        if math.isfinite(most)
+        f"largest_{name}": side / float(maximum)
+        for (name, side), maximum in zip(found.items(), shape.most, strict=True)
+        if math.isfinite(maximum)
     }
 
 

@@ -35,10 +35,10 @@ class Need:
 
 @dataclass(frozen=True)
 class Arrangement:
-    """One order of slabs: its length, the bodies of each shaft, least distances and their causes.
+    """One order of slabs: its length, the bodies of each shaft, minimum distances and their causes.
 
-    apart (N+1, N+1): least distance of two axes, of neighbours too. needs: its causes. keep_apart
-    (K, N+1): least distance of an axis from a keep-out.
+    apart (N+1, N+1): minimum distance of two axes, of neighbours too. needs: its causes. keep_apart
+    (K, N+1): minimum distance of an axis from a keep-out.
     """
 
     slabs: Slabs

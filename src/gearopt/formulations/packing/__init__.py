@@ -19,7 +19,7 @@ CERTAIN = 1e-6  # relative gap to the bound within which a packing counts as pro
 
 
 def problem(plan: Plan, loose: bool = True) -> Problem:
-    """The packing of a plan: places of the free cylinders [mm], and layers where they are free.
+    """Return the packing of a plan: places of the free cylinders [mm] and their free layers.
 
     loose: methods also claim a bound that does not prove their packing. A comparison must not, as
     it measures gaps to the best bound: a distant one hides the differences between methods.
@@ -41,15 +41,15 @@ def problem(plan: Plan, loose: bool = True) -> Problem:
 
 
 def proof(floor: Bound) -> dict[str, Any]:
-    """How a bound was proven, as a result says it."""
+    """Return how a bound was proven, for a result."""
     method = "subdivision" if floor.choices else "volume"
-    shared = f"{floor.choices:,} ways" if floor.choices > 1 else "one way"
+    ways = f"{floor.choices:,} ways" if floor.choices > 1 else "one way"
     words = (
-        f"Bound: {shared} to share the cylinders out among layers; for each the least plan that "
+        f"Bound: {ways} to assign the cylinders to layers; for each the minimum plan area that "
         "discs, pairs and triples in any order need, by subdivision of the width."
     )
     if not floor.complete:
-        words += " Its time ended it: it is weaker than it could be."
+        words += " Stopped early: the bound is weaker than it could be."
     if floor.complete and not floor.choices:
         words = "Bound: the volume of the cylinders, and the widest with the highest of them."
     return {

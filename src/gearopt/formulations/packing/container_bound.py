@@ -1,8 +1,8 @@
 """A lower bound on the objective of any packing, computed here and valid for every choice.
 
-Every way to share the cylinders out among the layers is looked at, by the counts of each kind. Its
-height is exact; the plan must hold each layer, so its area is at least the least of w d(w) with
-d(w) the most that any layer needs (`depth`), found by subdivision: on [a, b] w d(w) >= a d(b).
+Every way to assign the cylinders to layers is examined, by the counts of each kind. Its
+height is exact; the plan must hold each layer, so its area is at least the minimum of w d(w) with
+d(w) the maximum that any layer needs (`depth`), found by subdivision: on [a, b] w d(w) >= a d(b).
 
 The depth of a rectangle of width w that holds discs of radius rho, y across it, is bounded by
 `depth`; each of its bounds falls as w grows:
@@ -15,7 +15,7 @@ The depth of a rectangle of width w that holds discs of radius rho, y across it,
 
 Discs are grown by half the gap, so that the container's inside is its size less 2 wall - gap.
 
-Every step leaves a bound that is valid: one that is late ends with what it has proven.
+The bound is valid after every step: a stopped computation returns what it has proven.
 """
 
 import heapq
@@ -26,10 +26,10 @@ from itertools import combinations, product
 
 import numpy as np
 
-from gearopt.formulations.packing.plan import Plan, least_layers
+from gearopt.formulations.packing.plan import Plan, minimum_layers
 from gearopt.optimise.terms import Array
 
-CHOICES = 3000  # ways to share out; beyond it the bound is the volume of the cylinders
+CHOICES = 3000  # ways to assign the cylinders; beyond them the bound is the volume of the cylinders
 TIGHT = 1e-9  # relative; how near to its infimum the subdivision takes the bound
 ROUNDING = 1e-12  # relative, taken off every bound: some thousand roundings
 CELLS = 20_000  # of a subdivision, which then ends with what it has proven
@@ -54,9 +54,9 @@ def always() -> bool:
 
 @dataclass(frozen=True)
 class Bound:
-    """value: no objective is below. choices: ways to share out that there are; 0: too many.
+    """value: a lower bound. choices: number of ways to assign the cylinders; 0: too many.
 
-    complete: all that can be best were looked at, to the end.
+    complete: all that can be best were examined to the end.
     """
 
     value: float
@@ -65,25 +65,25 @@ class Bound:
 
 
 def bound(plan: Plan, late: Late = never) -> Bound:
-    """The bound of a plan; late: asked all the time, it ends the work with a weaker bound."""
+    """Return the bound of a plan; late, asked often, stops the work with a weaker bound."""
     kinds = _kinds(plan)
     free = [n for (_, _, layer), n in kinds.items() if not layer]
-    if math.prod(math.comb(n + plan.most - 1, plan.most - 1) for n in free) > CHOICES:
+    if math.prod(math.comb(n + plan.max_layers - 1, plan.max_layers - 1) for n in free) > CHOICES:
         return Bound(_coarse(plan) * (1.0 - ROUNDING), 0)
     ways = [_described(plan, layers) for layers in set(_ways(plan, kinds))]
     heap = [(tall * _quick(plan, discs), 0, k) for k, (tall, discs) in enumerate(ways)]
     heapq.heapify(heap)
-    least = math.inf
-    while heap[0][1] < 2:  # the way with the least bound is looked at, ever more closely
+    best = math.inf
+    while heap[0][1] < 2:  # the way with the lowest bound is examined ever more closely
         value, looked, k = heap[0]
         if late():
             known = max(value, _coarse(plan)) * (1.0 - ROUNDING)
             return Bound(known, len(ways), complete=False)
         tall, discs = ways[k]
         last = looked == 1 or not _ordered(plan, discs)
-        area = _area(plan, discs, least / tall, late, thorough=last)
+        area = _area(plan, discs, best / tall, late, thorough=last)
         value = max(value, tall * area)
-        least = min(least, value) if last else least
+        best = min(best, value) if last else best
         heapq.heapreplace(heap, (value, 2 if last else 1, k))
     return Bound(heap[0][0] * (1.0 - ROUNDING), len(ways))
 
@@ -91,23 +91,23 @@ def bound(plan: Plan, late: Late = never) -> Bound:
 def _described(
     plan: Plan, layers: tuple[tuple[tuple[float, float], ...], ...]
 ) -> tuple[float, tuple[Layer, ...]]:
-    """Height that counts, and the different layers of discs, of a way to share out."""
+    """Return the height that counts and the different layers of discs of an assignment."""
     tall = sum(max((h for _, h in layer), default=0.0) for layer in layers)
     discs = {tuple(sorted(r for r, _ in layer)) for layer in layers if layer}
     return tall if plan.objective == "volume" else 1.0, tuple(sorted(discs))
 
 
 def _ordered(plan: Plan, discs: tuple[Layer, ...]) -> bool:
-    """Whether a closer look says more: orders of discs count in some layer."""
+    """Return whether orders of discs count in some layer, so that examining them helps."""
     few = any(len(layer) > 1 and orders_of(np.array(layer)) <= ORDERS for layer in discs)
     return plan.shape != "circle" and few
 
 
 def _kinds(plan: Plan) -> dict[tuple[float, float, int], int]:
-    """Number of cylinders of each grown radius, height and layer (0: free)."""
+    """Return the number of cylinders of each grown radius, height and layer (0: free)."""
     found: dict[tuple[float, float, int], int] = {}
     for c in plan.cylinders:
-        layer = 0 if plan.most > 1 and c.layer is None else c.layer or 1
+        layer = 0 if plan.max_layers > 1 and c.layer is None else c.layer or 1
         kind = (c.radius + 0.5 * plan.gap, c.height, layer)
         found[kind] = found.get(kind, 0) + 1
     return found
@@ -116,15 +116,15 @@ def _kinds(plan: Plan) -> dict[tuple[float, float, int], int]:
 def _ways(
     plan: Plan, kinds: dict[tuple[float, float, int], int]
 ) -> Iterator[tuple[tuple[tuple[float, float], ...], ...]]:
-    """Every way to share out: (radius, height) of the cylinders of each layer, in any order.
+    """Yield every assignment: (radius, height) of the cylinders of each layer, in any order.
 
     Layers that need not hold one may be taken in any order, so that the first one always does.
     """
-    needed = least_layers(plan)  # by fixed places that overlap
+    needed = minimum_layers(plan)  # by fixed places that overlap
     shares = [
-        [tuple(n * (k == layer) for k in range(1, plan.most + 1))]
+        [tuple(n * (k == layer) for k in range(1, plan.max_layers + 1))]
         if layer
-        else list(_shares(n, plan.most))
+        else list(_shares(n, plan.max_layers))
         for (_, _, layer), n in kinds.items()
     ]
     for chosen in product(*shares):
@@ -134,45 +134,45 @@ def _ways(
                 for (r, h, _), share in zip(kinds, chosen, strict=True)
                 for _ in range(share[k])
             )
-            for k in range(plan.most)
+            for k in range(plan.max_layers)
         ]
         if all(layers[: plan.filled]) and sum(map(bool, layers)) >= needed:
             yield tuple(sorted(layers))
 
 
-def _shares(count: int, most: int) -> Iterator[tuple[int, ...]]:
-    """Every way to write a count as a sum over layers."""
-    if most == 1:
+def _shares(count: int, layers: int) -> Iterator[tuple[int, ...]]:
+    """Yield every way to write a count as a sum over layers."""
+    if layers == 1:
         yield (count,)
         return
     for own in range(count + 1):
-        for rest in _shares(count - own, most - 1):
+        for rest in _shares(count - own, layers - 1):
             yield (own, *rest)
 
 
 def _coarse(plan: Plan) -> float:
-    """The bound that needs no sharing out: all volumes, and the widest and highest cylinder."""
+    """Return the bound without assignments: all volumes, and the widest and highest cylinder."""
     area = math.pi * plan.radius**2
     widest = _quick(plan, ((float(plan.radius.max() + 0.5 * plan.gap),),))
     if plan.objective == "area":
-        return max(float(area.sum()) / plan.most, widest)
+        return max(float(area.sum()) / plan.max_layers, widest)
     return max(float((area * plan.height).sum()), widest * float(plan.height.max()))
 
 
 def _spare(plan: Plan) -> float:
-    """Size of the container less that of the inside of grown discs."""
+    """Return the size of the container less that of the inside of grown discs."""
     return 2.0 * plan.wall - plan.gap
 
 
 def _held(plan: Plan) -> tuple[float, float]:
-    """Inside width and depth that the fixed cylinders take."""
+    """Return the inside width and depth that the fixed cylinders take."""
     low, high, near, far = plan.held_box
     grown = plan.gap if plan.fixed else 0.0
     return high - low + grown, far - near + grown
 
 
 def _quick(plan: Plan, layers: tuple[Layer, ...]) -> float:
-    """Area of the container around the largest disc."""
+    """Return the area of the container around the largest disc."""
     size = 2.0 * max(max(layer) for layer in layers) + _spare(plan)
     if plan.shape == "circle":
         return 0.25 * math.pi * size**2
@@ -182,9 +182,9 @@ def _quick(plan: Plan, layers: tuple[Layer, ...]) -> float:
 def _area(
     plan: Plan, layers: tuple[Layer, ...], enough: float, late: Late, thorough: bool
 ) -> float:
-    """Least area of the container of some layers (any of them alone needs no more).
+    """Return the minimum area of the container of some layers (any of them alone needs no more).
 
-    enough: an area beyond which the answer need not be told from it. thorough: orders count too.
+    enough: an area beyond which the answer need not be exact. thorough: orders count too.
     """
     if plan.shape == "circle":
         return math.pi * _circle(plan, layers) ** 2
@@ -206,11 +206,11 @@ def _area(
     )
 
 
-def _square(need: Need, least: float, late: Late) -> float:
-    """Lower end of the side at which a square is deep enough."""
-    low, high = least, max(least, float(need(np.array([least]))[0]))
-    if high <= least:
-        return least
+def _square(need: Need, minimum: float, late: Late) -> float:
+    """Return a lower bound on the side at which a square is deep enough."""
+    low, high = minimum, max(minimum, float(need(np.array([minimum]))[0]))
+    if high <= minimum:
+        return minimum
     while high - low > TIGHT * high and not late():
         middle = 0.5 * (low + high)
         enough = float(need(np.array([middle]))[0]) <= middle
@@ -221,56 +221,56 @@ def _square(need: Need, least: float, late: Late) -> float:
 def _rectangle(
     need: Need, across: float, along: float, spare: float, enough: float, late: Late
 ) -> float:
-    """Least area of a rectangle not wider than deep, `across` by `along` at the least."""
+    """Return the minimum area of a rectangle, not wider than deep, of across by along or more."""
 
     def deep(w: Array) -> Array:
         return np.asarray(np.maximum(np.maximum(need(w), along), w) + spare)
 
     first = np.array([across])
-    least = float((first + spare)[0] * deep(first)[0])
-    edge = np.linspace(across, max(across, math.sqrt(least) - spare), 65)
+    minimum = float((first + spare)[0] * deep(first)[0])
+    edge = np.linspace(across, max(across, math.sqrt(minimum) - spare), 65)
     low, high = edge[:-1], edge[1:]
     proven = math.inf
     while len(low):
         deepest = np.maximum(need(high), along)  # these fall as w grows, w itself rises
         values = np.maximum(deepest, high) + spare
-        least = min(least, float(((high + spare) * values).min()))
+        minimum = min(minimum, float(((high + spare) * values).min()))
         floor = (low + spare) * (np.maximum(deepest, low) + spare)
-        open_ = floor < min(enough, least * (1.0 - TIGHT))
+        open_ = floor < min(enough, minimum * (1.0 - TIGHT))
         proven = min(proven, float(floor[~open_].min(initial=math.inf)))
         low, high, floor = low[open_], high[open_], floor[open_]
         if len(low) > CELLS or late():
-            return min(proven, least, float(floor.min(initial=math.inf)))
+            return min(proven, minimum, float(floor.min(initial=math.inf)))
         middle = 0.5 * (low + high)
         low, high = np.concatenate([low, middle]), np.concatenate([middle, high])
-    return min(proven, least)
+    return min(proven, minimum)
 
 
 def _circle(plan: Plan, layers: tuple[Layer, ...]) -> float:
-    """Least radius of a circular container: discs, pairs, Oler's inequality, what is fixed."""
+    """Return the minimum radius of a circle: discs, pairs, Oler's inequality, what is fixed."""
     inside = 0.0
     for layer in layers:
         rho = np.sort(np.array(layer))[::-1]
         inside = max(inside, float(rho[:2].sum()), math.sqrt(float((rho**2).sum())))
-        for least in np.unique(rho):
-            count = int((rho >= least).sum())
+        for smallest in np.unique(rho):
+            count = int((rho >= smallest).sum())
             # 2 pi q^2/sqrt(3) + pi q + 1 >= count with q = (R - rho)/(2 rho)
             a = 2.0 * math.pi / math.sqrt(3.0)
             q = (-math.pi + math.sqrt(math.pi**2 + 4.0 * a * (count - 1))) / (2.0 * a)
-            inside = max(inside, float(least * (1.0 + 2.0 * q)))
+            inside = max(inside, float(smallest * (1.0 + 2.0 * q)))
     inside = max(inside, 0.5 * max(_held(plan)))
     return inside + 0.5 * _spare(plan)
 
 
 def depth(radii: Sequence[float], w: Array, late: Late = never) -> Array:
-    """Lower bound on the depth that discs of these radii need at widths w >= 2 max(radii), (m,).
+    """Return a lower bound on the depth of discs of these radii at widths w >= 2 max(radii), (m,).
 
-    late: asked while the orders are looked at; once it says so the bound is the one without them.
+    late: asked while the orders are examined; once it is true the bound is the one without them.
     """
     rho = np.sort(np.asarray(radii, float))[::-1]
     found = np.maximum(2.0 * rho[0], math.pi * float((rho**2).sum()) / w)
-    for least in np.unique(rho):
-        found = np.maximum(found, _oler(2.0 * least, int((rho >= least).sum()), w))
+    for smallest in np.unique(rho):
+        found = np.maximum(found, _oler(2.0 * smallest, int((rho >= smallest).sum()), w))
     by_order = _by_order(rho, w, late) if orders_of(rho) <= ORDERS else None
     if by_order is not None:
         return np.asarray(np.maximum(found, by_order))
@@ -280,7 +280,7 @@ def depth(radii: Sequence[float], w: Array, late: Late = never) -> Array:
 
 
 def orders_of(rho: Array) -> float:
-    """Number of different orders of discs."""
+    """Return the number of different orders of discs."""
     counts = np.unique(rho, return_counts=True)[1]
     if len(rho) > 20:
         return math.inf
@@ -298,12 +298,12 @@ def _oler(apart: float, count: int, w: Array) -> Array:
 
 
 def _along(apart: float, across: Array) -> Array:
-    """Distance along of two axes `apart` from each other and `across` apart across; rounded down.
+    """Return the distance along of two axes, `apart` in all and `across` across; rounded down.
 
     The root is steep where the two are equal: an error of 1e-16 there would be 1e-8 along.
     """
-    least = apart - across - SLIPS * (apart + across)
-    return np.asarray(np.sqrt(np.maximum(least * (apart + across), 0.0)))
+    difference = apart - across - SLIPS * (apart + across)
+    return np.asarray(np.sqrt(np.maximum(difference * (apart + across), 0.0)))
 
 
 def _pair(a: float, b: float, w: Array) -> Array:
@@ -311,9 +311,9 @@ def _pair(a: float, b: float, w: Array) -> Array:
 
 
 def _triple(a: float, b: float, c: float, w: Array) -> Array:
-    """Least distance along from the first to the last of three discs in this order.
+    """Return the minimum distance along from the first to the last of three discs in this order.
 
-    Across, the middle one lies between the others (u + v <= their most), or beside both.
+    Across, the middle one lies between the others (u + v <= their maximum), or beside both.
     """
     ab, bc, ac = w - a - b, w - b - c, w - a - c
     between = np.full(w.shape, np.inf)
@@ -325,25 +325,26 @@ def _triple(a: float, b: float, c: float, w: Array) -> Array:
     return np.asarray(np.minimum(between, beside))
 
 
-def _beside(outer: float, first: float, second: float, most: Array, other: Array) -> Array:
-    """The same where the middle one is `most` across from one and at most `other` from the other.
+def _beside(outer: float, first: float, second: float, maximum: Array, other: Array) -> Array:
+    """Return the same with the middle one `maximum` across from one, up to `other` from another.
 
-    With v from 0 to the less of them, the outer distance grows and the sum of the inner ones falls.
+    With v from 0 to the smaller of them, the outer distance grows and the sum of the inner ones
+    falls.
     """
-    low, high = np.zeros(most.shape), np.minimum(most, other)
-    fixed = _along(first, most)
+    low, high = np.zeros(maximum.shape), np.minimum(maximum, other)
+    fixed = _along(first, maximum)
     for _ in range(HALVINGS):
         v = 0.5 * (low + high)
-        rising = _along(outer, most - v) < fixed + _along(second, v)
+        rising = _along(outer, maximum - v) < fixed + _along(second, v)
         low, high = np.where(rising, v, low), np.where(rising, high, v)
-    return np.asarray(np.maximum(_along(outer, most - low), fixed + _along(second, high)))
+    return np.asarray(np.maximum(_along(outer, maximum - low), fixed + _along(second, high)))
 
 
 def _by_order(rho: Array, w: Array, late: Late) -> Array | None:
-    """The least over all orders of the longest chain of distances along; None once it is late."""
+    """Return the minimum over all orders of the longest chain of distances along; None if late."""
     pair: Callable[..., Array] = _kept(_pair, w)
     triple: Callable[..., Array] = _kept(_triple, w)
-    least = np.full(w.shape, np.inf)
+    minimum = np.full(w.shape, np.inf)
     for order in orders(sorted(rho.tolist())):
         if order > order[::-1]:
             continue  # the mirror image
@@ -359,12 +360,12 @@ def _by_order(rho: Array, w: Array, late: Late) -> Array | None:
                 at = np.maximum(at, ends[j] + step)
             ends.append(at)
         deepest = np.max([e + c for e, c in zip(ends, order, strict=True)], axis=0)
-        least = np.minimum(least, deepest)
-    return least
+        minimum = np.minimum(minimum, deepest)
+    return minimum
 
 
 def _kept(law: Callable[..., Array], w: Array) -> Callable[..., Array]:
-    """A law at fixed widths, each of its values computed once."""
+    """Return a law at fixed widths, each of its values computed once."""
     known: dict[tuple[float, ...], Array] = {}
 
     def value(*radii: float) -> Array:
@@ -376,7 +377,7 @@ def _kept(law: Callable[..., Array], w: Array) -> Callable[..., Array]:
 
 
 def orders(items: list[float]) -> Iterator[tuple[float, ...]]:
-    """Every different order of some items, each once."""
+    """Yield every different order of some items, each once."""
     if not items:
         yield ()
     for item in dict.fromkeys(items):

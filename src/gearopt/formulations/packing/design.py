@@ -64,13 +64,13 @@ class PackingDesign:
 
 
 def packing_design(data: Mapping[str, Any]) -> PackingDesign:
-    """Return the design that a result of a packing holds; ValueError names what is none of it."""
+    """Return the design that a result of a packing holds; ValueError names what does not belong."""
     found: PackingDesign = typed(PackingDesign, data, "design")
     return found
 
 
 def describe(plan: Plan, found: Places) -> PackingDesign:
-    """Container, layers from the floor up, and cylinders in the order of the plan.
+    """Return container, layers from the floor up, and cylinders in the order of the plan.
 
     Where no place is fixed, the container's left front corner is the origin. Layers are counted
     without gaps from the floor, which keeps those that have a name: all below them hold a cylinder.
@@ -104,7 +104,7 @@ def describe(plan: Plan, found: Places) -> PackingDesign:
 
 
 def _container(plan: Plan, found: Places) -> tuple[dict[str, Any], Any, Any]:
-    """The container's plan, and the axes in its coordinates."""
+    """Return the container's plan, and the axes in its coordinates."""
     r, x, y = plan.radius, found.x, found.y
     if plan.shape == "circle":
         far = max(

@@ -1,10 +1,10 @@
-"""`hop`: rounds of short annealing runs, each polished by Ipopt; the best packing is never lost.
+"""Basin hopping (`hop`): rounds of short annealing runs, each polished by Ipopt.
 
-A round starts from random scatters in a random number of layers, then changes its own best packing:
-two cylinders of about one size change places, or one is thrown elsewhere. A share of the hops
-starts from a scatter all the same: changes seldom lead to another number of layers. The kernel
-anneals the start (a changed packing cold, to keep what is good in it), its layers are kept, and
-Ipopt solves the smooth text for the places. A round ends after so many hops without a better
+A round starts from random placements in a random number of layers, then changes its own best
+packing: two cylinders of about one size change places, or one is thrown elsewhere. A share of the
+hops starts from a random placement all the same: changes seldom alter the number of layers. The
+kernel anneals the start (a changed packing cold, to keep what is good in it), its layers are kept,
+and Ipopt solves the smooth text for the places. A round ends after so many hops without a better
 packing of its own; the next one starts afresh, while the budget lasts, until several have ended
 alike.
 """
@@ -24,17 +24,23 @@ from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.solvers import ipopt
 from gearopt.optimise.terms import Array
 
-SCATTERS = 5  # first hops of a round
-FRESH, FRESH_LAYERS = 0.15, 0.5  # share of scatters among the later hops; where layers are free
-PATIENCE = 100  # hops without a better packing of its own end a round
+SCATTERS = 5  # random starts of a round
+FRESH, FRESH_LAYERS = (
+    0.15,
+    0.5,
+)  # share of random starts among the later hops; where layers are free
+PATIENCE = 100  # hops without a better packing end a round
 ALIKE = 5  # rounds that end with the best packing found end the search
 ROUNDS = 10  # at the most, where the budget has no end
-MOVES, MOVES_COLD = 1500, 300  # of an annealing run, for each cylinder: of a scatter, of a change
+MOVES, MOVES_COLD = (
+    1500,
+    300,
+)  # of an annealing run, per cylinder: from a random start, from a change
 HOT, COLD = 0.1, 1e-4  # temperatures, in units of the objective's logarithm
 WARM = 1e-3  # where a hop starts from the best packing of its round
 SWAPS = 0.5  # share of changes in which two cylinders change places
 RANKS = 3  # two that do are at most so far from one another in the order of sizes
-HOPEFUL = 1.05  # times the round's best: what annealing leaves above is not polished: that is dear
+HOPEFUL = 1.05  # times the round's best: what annealing leaves above is not polished, at high cost
 BETTER = 1e-10  # relative; a smaller improvement is rounding and counts as none
 SAME = 1e-7  # relative; rounds that end so near are alike
 FEASIBLE = 1e-9  # largest violation of all rows together
@@ -43,12 +49,12 @@ PROVEN = 1e-8  # relative gap to the bound that ends the search; the bound is 1e
 RANDOM = True
 COUNTS = "annealing move or Ipopt iteration"
 SETTINGS = {
-    "hops without a better packing that end a round": PATIENCE,
+    "basin hops without a better packing that end a round": PATIENCE,
     "rounds that end alike end the search": ALIKE,
-    "scatters that begin a round": SCATTERS,
-    "share of scatters later, and where the number of layers is free": (FRESH, FRESH_LAYERS),
-    "moves of a hop, each cylinder, from a scatter and from the best": (MOVES, MOVES_COLD),
-    "temperatures from a scatter": (HOT, COLD),
+    "random starts of a round": SCATTERS,
+    "share of random starts later, and where the number of layers is free": (FRESH, FRESH_LAYERS),
+    "annealing moves per cylinder, from a random start and from the best": (MOVES, MOVES_COLD),
+    "temperatures from a random start": (HOT, COLD),
     "temperatures from the best": (WARM, COLD),
     "polished": f"below {HOPEFUL} times the round's best",
     "local method": "ipopt",
@@ -56,7 +62,7 @@ SETTINGS = {
 
 
 def method(plan: Plan, floor: Floor, finish: Finish) -> Any:
-    """The run of `hop` for a plan: it stops at the bound; `finish` adds bound and proof."""
+    """Return the run of `hop` for a plan; it stops at the bound, `finish` adds bound and proof."""
 
     def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
         """Hop until the bound is reached, rounds end alike, or the budget is spent."""
@@ -64,8 +70,8 @@ def method(plan: Plan, floor: Floor, finish: Finish) -> Any:
         spent, rng = Spent(clock := Clock(budget, watch)), np.random.default_rng(seed)
         first = point(plan, row(plan))
         spent.keep(float(problem.batch(first[None]).F[0, 0]), first)
-        least = floor(problem, spent)
-        clock.bound = least.value
+        lower = floor(problem, spent)
+        clock.bound = lower.value
         endless = budget.seconds is None and budget.evaluations is None
         ends: list[float] = []
         while clock.tell() and not spent.close(PROVEN):
@@ -77,26 +83,26 @@ def method(plan: Plan, floor: Floor, finish: Finish) -> Any:
                 break
         finished = not clock.stopped or (bool(ends) and not clock.refused)
         outcome = Outcome(spent.x, finished, evaluations=clock.evaluations)
-        return finish(outcome, spent, least)
+        return finish(outcome, spent, lower)
 
     return run
 
 
 def _round(plan: Plan, problem: Problem, rng: np.random.Generator, spent: Spent) -> float:
-    """One round; the objective of its best packing, infinite where none met all limits."""
+    """Run one round; return the objective of its best packing, inf where none met all limits."""
     best, own, idle, hops = math.inf, np.empty(0), 0, 0
-    fresh = FRESH_LAYERS if plan.most > plan.fewest else FRESH
+    fresh = FRESH_LAYERS if plan.max_layers > plan.fewest else FRESH
     while idle < PATIENCE and spent.clock.tell() and not spent.close(PROVEN):
         if hops < SCATTERS or not len(own) or rng.random() < fresh:
-            most, moves, hot = int(rng.integers(plan.fewest, plan.most + 1)), MOVES, HOT
-            begin = scattered(plan, most, rng)
+            max_layers, moves, hot = int(rng.integers(plan.fewest, plan.max_layers + 1)), MOVES, HOT
+            begin = scattered(plan, max_layers, rng)
         else:
             moves, hot = MOVES_COLD, WARM
             begin = _changed(plan, places(plan, problem, own), rng)
-            most = max(plan.fewest, int(begin.layer.max()))
+            max_layers = max(plan.fewest, int(begin.layer.max()))
         left, moves = spent.clock.left.evaluations, moves * len(plan.radius)
         moves = moves if left is None else min(moves, left)
-        last = anneal(plan, problem, begin, most, moves, (hot, COLD), rng, spent)
+        last = anneal(plan, problem, begin, max_layers, moves, (hot, COLD), rng, spent)
         value, found = math.inf, own
         if float(problem.batch(point(plan, last)[None]).F[0, 0]) < HOPEFUL * best:
             value, found = polished(plan, problem, last, spent)
@@ -108,7 +114,7 @@ def _round(plan: Plan, problem: Problem, rng: np.random.Generator, spent: Spent)
 
 
 def _changed(plan: Plan, best: Places, rng: np.random.Generator) -> Places:
-    """A packing with two cylinders in one another's place, or one where another one is."""
+    """Return a packing with two cylinders exchanged, or one of them thrown elsewhere."""
     x, y, layer, centre = best.copied()
     k = int(rng.choice(plan.free))
     partners = _partners(plan, k) if rng.random() < SWAPS else []
@@ -125,7 +131,7 @@ def _changed(plan: Plan, best: Places, rng: np.random.Generator) -> Places:
 
 
 def _partners(plan: Plan, k: int) -> list[int]:
-    """The free cylinders of about the size of k that may change places with it, and are unlike."""
+    """Return the free cylinders of about the size of k, but not equal, that may change places."""
     lifted, order = set(plan.lifted), np.argsort(plan.radius, kind="stable").tolist()
     rank = order.index(k)
     near = order[max(0, rank - RANKS) : rank + RANKS + 1]
@@ -138,7 +144,7 @@ def _partners(plan: Plan, k: int) -> list[int]:
 
 
 def polished(plan: Plan, problem: Problem, begin: Places, spent: Spent) -> tuple[float, Array]:
-    """Objective and point of the packing that Ipopt makes of one; infinite where it fails."""
+    """Return objective (inf where Ipopt fails) and point of the polished packing."""
     if "smooth" not in problem.memo:
         problem.memo["smooth"] = smooth(plan, begin.layer)
     needed, height = of_layers(plan, begin.layer)

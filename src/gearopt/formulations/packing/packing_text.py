@@ -1,7 +1,7 @@
-"""The text of a packing, twice: with largest extents for samplers, with epigraphs for gradients.
+"""The problem of a packing, twice: with largest extents for samplers, with epigraphs for gradients.
 
 Both have x, y [mm] of the free cylinders. Pairs of one layer keep 2 - d^2/D^2 <= 1 (d: distance,
-D: least distance of the axes), so nothing is divided by a distance that may vanish.
+D: minimum distance of the axes), so nothing is divided by a distance that may vanish.
 """
 
 import math
@@ -28,7 +28,7 @@ def direct(plan: Plan, **methods: Any) -> Problem:
     variables = [*_axes(plan, guess), *_centre(plan, guess)]
     if plan.lifted:
         start = tuple(float(guess.layer[k]) for k in plan.lifted)
-        layers = Var("layer", "", 1, plan.most, start, len(plan.lifted), integer=True)
+        layers = Var("layer", "", 1, plan.max_layers, start, len(plan.lifted), integer=True)
         variables.append(layers)
 
     def evaluate(x: Any, p: Any) -> Terms:
@@ -51,12 +51,12 @@ def smooth(plan: Plan, layer: Any = None) -> Problem:
     """The packing for gradient methods: sizes of the container are variables; layers are data.
 
     layer: that of every cylinder (n,), by default the fixed ones; parameters `needed` (pairs; the
-    square of least distance over D, or NEVER) and `height` of the stack let other layers be solved
-    without tracing again. SolveError where layers are free and not given.
+    square of minimum distance over D, or NEVER) and `height` of the stack let other layers be
+    solved without tracing again. SolveError where layers are free and not given.
     """
     if layer is None and plan.lifted:
         raise SolveError(
-            "gradient methods take no free layers: give every [[cylinder]] its layer, or take hop"
+            "gradient methods need fixed layers: give every [[cylinder]] its layer, or use hop"
         )
     guess = row(plan)
     levels = guess.layer if layer is None else layer
@@ -77,7 +77,7 @@ def smooth(plan: Plan, layer: Any = None) -> Problem:
         if pairs:
             squares = [_square(plan, axes, i, j, p.gap) for i, j in pairs]
             walls["apart"] = tuple(
-                1.0 + (least - there) for least, there in zip(each(p.needed), squares, strict=True)
+                1.0 + (need - there) for need, there in zip(each(p.needed), squares, strict=True)
             )
         return Terms(_objective(plan, _area(plan, x, width), p.height), defines=walls)
 
@@ -98,12 +98,12 @@ def stack(plan: Plan, layer: Any) -> Any:
             np.maximum,
             [np.where(at == k, h, 0.0) for at, h in zip(layer, height, strict=True)],
         )
-        for k in _levels(plan.most)
+        for k in _levels(plan.max_layers)
     )
 
 
-def _levels(most: int) -> range:
-    return range(1, most + 1)
+def _levels(layers: int) -> range:
+    return range(1, layers + 1)
 
 
 def _ends(plan: Plan) -> tuple[float, float, float, float]:
@@ -121,9 +121,9 @@ def _axes(plan: Plan, guess: Places) -> tuple[Var, ...]:
     if plan.fixed or plan.shape == "circle":
         across, along = ((low,) * count, (high,) * count), ((near,) * count, (far,) * count)
     else:  # the container's corner is the origin
-        least = tuple(float(v) for v in r[free] + wall)
-        most = tuple(float(v) for v in plan.reach - r[free] - wall)
-        across = along = (least, tuple(max(a, b) for a, b in zip(least, most, strict=True)))
+        minimum = tuple(float(v) for v in r[free] + wall)
+        maximum = tuple(float(v) for v in plan.reach - r[free] - wall)
+        across = along = (minimum, tuple(max(a, b) for a, b in zip(minimum, maximum, strict=True)))
     gx, gy = guess.x[free], guess.y[free]
     if not (plan.fixed or plan.shape == "circle"):
         gx, gy = gx + wall, gy + wall
@@ -147,17 +147,17 @@ def _sides(plan: Plan, guess: Places) -> tuple[Var, ...]:
     """The container's variables; a corner or centre only where something is fixed."""
     at = start(plan, guess)[2 * len(plan.free) :]
     low, high, near, far = _ends(plan)
-    most = 2.0 * max(high - low, far - near)
-    least = 2.0 * float(plan.radius.max() + plan.wall)
+    maximum = 2.0 * max(high - low, far - near)
+    minimum = 2.0 * float(plan.radius.max() + plan.wall)
     names: dict[str, tuple[float, float]] = {}
     if plan.shape == "circle":
         names = {"centre_x": (low, high), "centre_y": (near, far)} if plan.fixed else {}
-        names |= {"container_radius": (0.5 * least, most)}
+        names |= {"container_radius": (0.5 * minimum, maximum)}
     else:
         if plan.fixed:
-            names = {"left": (low - most, high), "front": (near - most, far)}
+            names = {"left": (low - maximum, high), "front": (near - maximum, far)}
         sides = ("side",) if plan.shape == "square" else ("width", "depth")
-        names |= {n: (least, most) for n in (sides if plan.width is None else ("depth",))}
+        names |= {n: (minimum, maximum) for n in (sides if plan.width is None else ("depth",))}
     return tuple(
         Var(name, "mm", *ends, float(np.clip(v, *ends)), search=True)  # a rounding may be outside
         for (name, ends), v in zip(names.items(), at, strict=True)

@@ -36,8 +36,8 @@ class Plan:
     """A packing that is asked for.
 
     width: of the rectangle [mm], None where free. gap: between cylinders, wall: to the container,
-    both sideways [mm]. least, most: number of layers, of which
-    `least` hold a cylinder. objective: volume or area (of the plan).
+    both sideways [mm]. min_layers, max_layers: ends of the number of layers, of which the first
+    min_layers hold a cylinder. objective: volume or area (of the plan).
     """
 
     cylinders: tuple[Cylinder, ...]
@@ -45,14 +45,14 @@ class Plan:
     width: float | None = None
     gap: float = 0.0
     wall: float = 0.0
-    least: int = 1
-    most: int = 1
+    min_layers: int = 1
+    max_layers: int = 1
     objective: str = "volume"
 
     def __post_init__(self) -> None:
         if not self.free:
             raise ValueError("every cylinder is fixed: nothing is left to place")
-        if self.filled > min(self.most, len(self.named) + len(self.lifted)):
+        if self.filled > min(self.max_layers, len(self.named) + len(self.lifted)):
             raise ValueError(f"{self.filled} layers cannot each hold a cylinder")
 
     @cached_property
@@ -78,7 +78,7 @@ class Plan:
     @cached_property
     def lifted(self) -> tuple[int, ...]:
         """The cylinders whose layer is to be chosen."""
-        one = self.most == 1
+        one = self.max_layers == 1
         return tuple(k for k, c in enumerate(self.cylinders) if c.layer is None and not one)
 
     @cached_property
@@ -90,12 +90,12 @@ class Plan:
     @cached_property
     def filled(self) -> int:
         """Layers from the floor that each hold one: those asked for, all up to a named one."""
-        return max(self.least, *self.named, 1)
+        return max(self.min_layers, *self.named, 1)
 
     @cached_property
     def fewest(self) -> int:
         """Layers without which fixed places and layers cannot be kept."""
-        return max(self.filled, least_layers(self))
+        return max(self.filled, minimum_layers(self))
 
     @property
     def pairs(self) -> Iterator[tuple[int, int]]:
@@ -104,7 +104,7 @@ class Plan:
         return (p for p in combinations(range(len(self.cylinders)), 2) if not held.issuperset(p))
 
     def apart(self, i: int, j: int) -> float:
-        """Least distance of two axes in one layer [mm]."""
+        """Minimum distance of two axes in one layer [mm]."""
         return self.cylinders[i].radius + self.cylinders[j].radius + self.gap
 
     @cached_property
@@ -159,7 +159,7 @@ def row(plan: Plan) -> Places:
         end += plan.gap if end > 0 or plan.fixed else 0.0
         x[k], y[k] = left + c.radius, end + c.radius
         end = y[k] + c.radius
-    coloured = colours(plan, plan.most)
+    coloured = colours(plan, plan.max_layers)
     if coloured is None:
         raise ValueError("fixed cylinders overlap in more layers than there are")
     layer = np.array(coloured, dtype=np.int64)
@@ -184,14 +184,14 @@ def overlap(plan: Plan, i: int, j: int) -> float:
     return missing if missing > TOUCHING else 0.0
 
 
-def least_layers(plan: Plan) -> int:
-    """The least number of layers in which no two fixed cylinders overlap."""
+def minimum_layers(plan: Plan) -> int:
+    """Return the minimum number of layers in which no two fixed cylinders overlap."""
     given = max(c.layer or 1 for c in plan.cylinders)
     return next(k for k in range(given, len(plan.cylinders) + given) if colours(plan, k))
 
 
-def colours(plan: Plan, most: int) -> list[int] | None:
-    """A layer from 1 to `most` for every cylinder in which no fixed ones overlap; None if none."""
+def colours(plan: Plan, layers: int) -> list[int] | None:
+    """Return a layer from 1 to `layers` of each cylinder so that no fixed ones overlap, or None."""
     found = [c.layer or 0 for c in plan.cylinders]
     open_ = [k for k in plan.fixed if not found[k]]
     settled = [k for k in plan.fixed if found[k]]
@@ -201,7 +201,7 @@ def colours(plan: Plan, most: int) -> list[int] | None:
             return True
         k = open_[rank]
         before = settled + open_[:rank]
-        for level in range(1, most + 1):
+        for level in range(1, layers + 1):
             if all(found[o] != level or not overlap(plan, k, o) for o in before):
                 found[k] = level
                 if fill(rank + 1):

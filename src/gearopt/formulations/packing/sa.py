@@ -22,7 +22,7 @@ from gearopt.optimise.terms import Array
 
 KERNEL = "gearopt.formulations.packing.anneal_kernel"
 SLICE = 100_000  # moves times cylinders of one call: some hundredths of a second
-LOOKS = 100  # parts of a long annealing run, after each of which its best so far is told
+LOOKS = 100  # parts of a long annealing run, after each of which its best so far is reported
 SHARE = 0.2  # of the seconds of a run may go into its bound
 LOOK = 0.05  # seconds between two questions to the watcher while the bound is computed
 CODES = {"rectangle": 0, "square": 1, "circle": 2}
@@ -32,14 +32,14 @@ HOT, COLD = 0.3, 1e-6  # temperatures, in units of the objective's logarithm
 RANDOM = True
 PACED = True  # the cooling is stretched over the evaluations it is given
 COUNTS = "annealing move"
-SETTINGS = {"temperatures": (HOT, COLD), "moves, each cylinder, where none are given": MOVES}
+SETTINGS = {"temperatures": (HOT, COLD), "moves per cylinder, by default": MOVES}
 
 
 @dataclass
 class Spent:
-    """What a search has spent and found; it has state because it is filled as the search goes.
+    """Effort and best packing of a search; it has state because the search fills it.
 
-    clock: has its count, the least objective found, and a bound below which nothing lies. x: its
+    clock: has the count of moves, the best objective and its lower bound. x: the best
     point of `direct`.
     """
 
@@ -52,18 +52,18 @@ class Spent:
             self.clock.best, self.x = value, x
 
     def late(self) -> Late:
-        """Whether the bound has had its share of the time, or the search is to end."""
+        """Return the test whether the bound has used its share of time or the search is over."""
         seconds = self.clock.budget.seconds
         return lateness(self.clock, None if seconds is None else SHARE * seconds)
 
     def close(self, gap: float) -> bool:
-        """Whether the best found is within a relative gap of the bound."""
+        """Return whether the best value is within a relative gap of the bound."""
         best, gap = self.clock.best, max(gap, self.clock.budget.gap)
         return best - self.clock.bound <= gap * abs(best)
 
 
 def lateness(clock: Clock, seconds: float | None) -> Late:
-    """Whether so many seconds of a clock are over, or the clock, told every LOOK seconds, is."""
+    """Return the test whether a clock is past some seconds or, asked every LOOK s, is over."""
     last, over = -math.inf, False
 
     def late() -> bool:
@@ -83,7 +83,7 @@ Finish = Callable[[Outcome, Spent, Bound], Outcome]  # the outcome with bound an
 
 @cache
 def ready() -> None:
-    """Have the kernel compiled, once on a machine, before a clock runs: by one move of a disc."""
+    """Compile the kernel, once on a machine, before a clock runs: by one move of a disc."""
     x, y, radius, height = np.zeros(1), np.zeros(1), np.ones(1), np.ones(1)
     layer, free = np.ones(1, np.int64), np.zeros(1, np.int64)
     plain = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0])
@@ -93,16 +93,18 @@ def ready() -> None:
     )
 
 
-def numbers(plan: Plan, most: int) -> Array:
-    """The scalars of the kernel, for `most` layers."""
+def numbers(plan: Plan, max_layers: int) -> Array:
+    """Return the scalars of the kernel, for up to max_layers layers."""
     code = 3 if plan.width is not None else CODES[plan.shape]
     volume = float(plan.objective == "volume")
-    anchored, least = float(bool(plan.fixed)), plan.filled if plan.filled > 1 else 0
-    return np.array([plan.gap, plan.wall, plan.width or 0.0, code, volume, least, most, anchored])
+    anchored, minimum = float(bool(plan.fixed)), plan.filled if plan.filled > 1 else 0
+    return np.array(
+        [plan.gap, plan.wall, plan.width or 0.0, code, volume, minimum, max_layers, anchored]
+    )
 
 
 def held(plan: Plan) -> Any:
-    """What is fixed of each cylinder: 1 its place, 2 its layer."""
+    """Return what is fixed of each cylinder: 1 its place, 2 its layer."""
     lifted = set(plan.lifted)
     return np.array(
         [(c.at is not None) + 2 * (k not in lifted) for k, c in enumerate(plan.cylinders)],
@@ -110,10 +112,10 @@ def held(plan: Plan) -> Any:
     )
 
 
-def scattered(plan: Plan, most: int, rng: np.random.Generator) -> Places:
-    """Free cylinders at random in `most` layers on a plan of 4/pi times their discs."""
+def scattered(plan: Plan, max_layers: int, rng: np.random.Generator) -> Places:
+    """Place the free cylinders at random in max_layers layers on 4/pi times their discs' area."""
     first = row(plan)
-    area = 4.0 * float(((plan.radius + 0.5 * plan.gap) ** 2).sum()) / most
+    area = 4.0 * float(((plan.radius + 0.5 * plan.gap) ** 2).sum()) / max_layers
     across, low, near = math.sqrt(area), 0.0, 0.0
     along = across
     if plan.fixed:
@@ -125,7 +127,7 @@ def scattered(plan: Plan, most: int, rng: np.random.Generator) -> Places:
     free, lifted = list(plan.free), list(plan.lifted)
     x[free] = low + across * rng.random(len(free))
     y[free] = near + along * rng.random(len(free))
-    layer[lifted] = rng.integers(1, most + 1, len(lifted))
+    layer[lifted] = rng.integers(1, max_layers + 1, len(lifted))
     centre = np.zeros(2)
     if plan.shape == "circle":
         middle = np.array([low + 0.5 * across, near + 0.5 * along])
@@ -140,35 +142,35 @@ def anneal(
     plan: Plan,
     problem: Problem,
     begin: Places,
-    most: int,
+    max_layers: int,
     moves: int,
     temperatures: tuple[float, float],
     rng: np.random.Generator,
     spent: Spent,
     looks: int = 1,
 ) -> Places:
-    """Anneal from a packing; the last state. The best one that meets all limits is kept in `spent`.
+    """Anneal from a packing and return the last state; keep the best feasible one in `spent`.
 
-    most: layers of this run. moves: of the whole run, which ends early where the budget does.
-    looks: parts of it, after each of which the best is told.
+    max_layers: of this run. moves: of the whole run, which the budget may stop early.
+    looks: parts of it, after each of which the best is reported.
     """
     anneal_slice = kernel(KERNEL).anneal
     n = len(plan.radius)
     x, y, layer, centre = begin.copied()
     best = np.append(np.zeros(3 * n + 2), np.inf)
     size = max(1, min(SLICE // n, -(-moves // looks)))
-    done, least = 0, spent.clock.best
+    done, best_value = 0, spent.clock.best
     while done < moves:
         last = min(moves, done + size)
         seed = int(rng.integers(2**31))
         anneal_slice(
             seed, done, last, moves, *temperatures, x, y, layer, centre,
-            plan.radius, plan.height, held(plan), numbers(plan, most), best,
+            plan.radius, plan.height, held(plan), numbers(plan, max_layers), best,
         )  # fmt: skip
         spent.clock.evaluations += last - done
         done = last
-        if best[-1] < least:
-            levels, least = best[2 * n : 3 * n].astype(np.int64), float(best[-1])
+        if best[-1] < best_value:
+            levels, best_value = best[2 * n : 3 * n].astype(np.int64), float(best[-1])
             found = point(plan, Places(best[:n], best[n : 2 * n], levels, best[3 * n : -1]))
             spent.keep(float(problem.batch(found[None]).F[0, 0]), found)
         if done < moves and not spent.clock.tell():
@@ -177,22 +179,22 @@ def anneal(
 
 
 def method(plan: Plan, floor: Floor, finish: Finish) -> Any:
-    """The run of `sa` for a plan: `finish` adds bound and proof."""
+    """Return the run of `sa` for a plan; `finish` adds bound and proof."""
 
     def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
-        """Anneal once; the best state that meets all limits, or else the row of all, is kept."""
+        """Anneal once; keep the best feasible state, or else all cylinders in a row."""
         ready()
         spent, rng = Spent(clock := Clock(budget, watch)), np.random.default_rng(seed)
         first = point(plan, row(plan))
         spent.keep(float(problem.batch(first[None]).F[0, 0]), first)
-        least = floor(problem, spent)
-        clock.bound = least.value
-        most = budget.evaluations
-        moves = MOVES * len(plan.radius) if most is None else most
-        begin = scattered(plan, plan.most, rng)
+        lower = floor(problem, spent)
+        clock.bound = lower.value
+        asked = budget.evaluations
+        moves = MOVES * len(plan.radius) if asked is None else asked
+        begin = scattered(plan, plan.max_layers, rng)
         if clock.tell():
-            anneal(plan, problem, begin, plan.most, moves, (HOT, COLD), rng, spent, LOOKS)
+            anneal(plan, problem, begin, plan.max_layers, moves, (HOT, COLD), rng, spent, LOOKS)
         outcome = Outcome(spent.x, not clock.stopped, evaluations=clock.evaluations)
-        return finish(outcome, spent, least)
+        return finish(outcome, spent, lower)
 
     return run

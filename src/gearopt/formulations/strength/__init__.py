@@ -1,7 +1,7 @@
-"""What limits a gear pair at a torque and a speed: one file a law, and what they all can be asked.
+"""What limits a gear pair at a torque and a speed: one file per law, and what all of them compute.
 
 A law gives indices (stresses, load factors) of a loaded pair, each with a limit that a stage sets.
-Whoever sizes gears asks it for utilisations or for the minimum face width and knows no formula.
+Searches ask it for utilisations or minimum face widths and know no formula.
 """
 
 import pkgutil
@@ -18,7 +18,7 @@ from gearopt.physics.gears import GearPair
 
 ALLOWANCE = 1e-12  # a utilisation this little above 1 is rounding, not a violation
 HALVINGS = 50  # of a bisection over 14 units of log width: to rounding
-NARROW = 1e-6  # of the widest face width: nothing narrower is looked for
+NARROW = 1e-6  # of the widest face width: nothing narrower is considered
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ class Law:
 
     Promised of every law: an index falls as the face width grows, and at one power (torque times
     speed) it rises with the torque. proportional: for given teeth it is c T/(b m_n^2), and for a
-    given pinion diameter it does not fall as the teeth get more and smaller: then minimum widths
+    given pinion diameter it does not fall as the teeth become more and smaller: then minimum widths
     and modules have closed forms, which are bisected otherwise.
     """
 
@@ -73,16 +73,16 @@ class Law:
     def utilisations(
         self, pair: GearPair, torque: Any, speed: Any, allowable: Sequence[Any]
     ) -> dict[str, Any]:
-        """Every index over its limit, by name; allowable: the limits."""
+        """Return every index over its limit, by name; allowable: the limits."""
         found = self.indices(pair, torque, speed)
         return {n: i / a for n, i, a in zip(self.names, found, allowable, strict=True)}
 
     def load(self, pair: GearPair, torque: Any, speed: Any, allowable: Sequence[float]) -> Array:
-        """The largest utilisation; of a proportional law at unit width, the minimum width [mm]."""
+        """Return the largest utilisation, at unit width the minimum width of a proportional law."""
         found = tuple(self.utilisations(pair, torque, speed, allowable).values())
         return np.asarray(np.maximum.reduce(np.broadcast_arrays(*found)))
 
-    def least_width(
+    def minimum_width(
         self,
         pair: GearPair,
         torque: Any,
@@ -90,7 +90,7 @@ class Law:
         allowable: Sequence[float],
         ends: tuple[Array, Array],
     ) -> Array:
-        """Minimum face width [mm] (n,) between two ends that carries; inf where none does.
+        """Return the minimum face width [mm] (n,) that carries, between two ends; inf: none.
 
         pair: of any face width; ends (n,): the narrowest and the widest.
         """

@@ -11,7 +11,7 @@ from gearopt.physics.stiffness import lewis_form_factor
 def lewis(teeth: float | None = None) -> Law:
     """Return the law; teeth: their form factor is taken for all numbers of teeth of a pinion.
 
-    With the most teeth of a range it is a lower bound and a monomial.
+    With the largest number of teeth of a range it is a lower bound and a monomial.
     """
 
     def indices(pair: GearPair, torque: Any, speed: Any) -> tuple[Any, ...]:

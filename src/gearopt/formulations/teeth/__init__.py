@@ -40,14 +40,14 @@ SETTINGS = {"nodes followed at once": BEAM, "pruning margin": MARGIN}
 
 
 def problem(train: Train, count: int = 1, floor: float = -math.inf) -> Problem:
-    """The discrete problem of a drive; `exact` finds its `count` best trains in proven order.
+    """Return the discrete problem of a drive; `exact` proves its `count` best trains in order.
 
-    floor: a lower bound on the objective known from elsewhere (`sizing`), which lets `exact` stop
-    early where its budget allows a gap.
+    floor: a lower bound on the objective known from elsewhere (`sizing`), with which `exact` may
+    stop early where its budget allows a gap.
 
     Trains are distinct when a tooth number differs; each has its best modules and face widths.
-    Variables, one component a stage: module [mm], pinion_teeth, wheel_teeth, and face_width [mm] or
-    width_steps where the width is not tied to d1.
+    Variables, one component per stage: module [mm], pinion_teeth, wheel_teeth, and face_width [mm]
+    or width_steps where the width is not tied to d1.
     """
     numbers = SimpleNamespace(**train.numbers())
 
@@ -103,9 +103,9 @@ def _variables(train: Train) -> tuple[Var, ...]:
         face = stage.face_width
         ranges["module"].append((float(stage.modules[0]), float(stage.modules[-1])))
         ranges["pinion_teeth"].append(_ends(stage.pinion_teeth))
-        least, most = _ends(stage.wheel_teeth)
+        minimum, maximum = _ends(stage.wheel_teeth)
         reach = math.floor(train.highest_ratio * ranges["pinion_teeth"][-1][1])
-        ranges["wheel_teeth"].append((least, max(least, min(most, float(reach)))))
+        ranges["wheel_teeth"].append((minimum, max(minimum, min(maximum, float(reach)))))
         given = float(face.fixed or 1)
         free = not face.tied and face.step is None and face.fixed is None
         ranges["face_width"].append(_widths(train, stage) if free else (given, given))
@@ -130,12 +130,12 @@ def _variables(train: Train) -> tuple[Var, ...]:
 
 
 def _widths(train: Train, stage: Stage) -> tuple[float, float]:
-    """Every free face width [mm] lies in here, by the diameters that teeth and modules allow."""
+    """Return a range of every free face width [mm], by the diameters of its teeth and modules."""
     ends = zip((stage.modules[0], stage.modules[-1]), _ends(stage.pinion_teeth), strict=True)
-    least, most = (reference_diameter(float(m), z, train.helix_angle) for m, z in ends)
+    minimum, maximum = (reference_diameter(float(m), z, train.helix_angle) for m, z in ends)
     face = stage.face_width
     low = float(face.low) or 1e-6 * face.widest  # thinner than paper
-    return 0.999 * low * least, 1.001 * face.widest * most
+    return 0.999 * low * minimum, 1.001 * face.widest * maximum
 
 
 def _ends(span: tuple[int, int | None]) -> tuple[float, float]:
@@ -167,7 +167,7 @@ def _outcome(
     opened = f"(nodes opened: {progress.nodes:,})."
     if progress.clock.stopped or progress.enough:
         lower = progress.bound if math.isfinite(progress.bound) else None
-        words = f"{compared} those not looked at are bounded from below {opened}"
+        words = f"{compared} those not examined are bounded from below {opened}"
         partial = {**proof, "method": "branch and bound, stopped early", "sentence": words}
         return Outcome(
             points[0] if points else None,
@@ -196,7 +196,7 @@ def _outcome(
 def _searched(
     train: Train, count: int, floor: float, budget: Budget, watch: Watch | None
 ) -> tuple[Train, Progress, str]:
-    """A search for the best train, the drive that holds all of use, and what was not searched.
+    """Search for the best train; return the drive that holds all of use and what was not searched.
 
     Wide ranges are searched among few pinions first, which leaves out pinions of no use. If there
     still are more pairs than memory takes, the search among few pinions is all there is.
@@ -216,8 +216,8 @@ def _searched(
         progress = search(useful, 1, first.clock.left, watch, floor)
     except SolveError as reason:
         first.clock.stopped = True
-        most = max(_ends(s.pinion_teeth)[1] for s in few.stages)
-        return train, first, f"{reason}. Only pinions of up to {most:.0f} teeth were searched"
+        maximum = max(_ends(s.pinion_teeth)[1] for s in few.stages)
+        return train, first, f"{reason}. Only pinions of up to {maximum:.0f} teeth were searched"
     progress.clock.start, progress.clock.budget = first.clock.start, budget
     progress.clock.evaluations += first.clock.evaluations
     progress.nodes += first.nodes
@@ -227,15 +227,15 @@ def _searched(
 
 
 def _why(progress: Progress, count: int) -> str:
-    """Why a search ended before it was exhausted, and what that means for the list."""
+    """Return why a search ended before it was exhausted, and what that means for the list."""
     if not progress.found:
-        return "stopped before a train was found: give it more time"
-    why = "the gap asked for is reached" if progress.enough else "stopped before it was exhausted"
+        return "stopped before a train was found: allow more time"
+    why = "the requested gap is reached" if progress.enough else "stopped before it was exhausted"
     return why if count == 1 else f"{why}, so only the best train so far is listed, not {count}"
 
 
 def _in_order(progress: Progress) -> list[Teeth]:
-    """Trains by objective; ties by fewest teeth, then by the teeth themselves."""
+    """Return trains by objective; ties by fewest teeth, then by the teeth themselves."""
     groups: list[tuple[float, list[Teeth]]] = []
     for value, teeth in progress.found:
         if groups and value <= groups[-1][0] * (1.0 + TIE):
@@ -257,7 +257,7 @@ def best_pairs(train: Train, teeth: Teeth) -> tuple[GearPair, ...]:
 
 
 def point(train: Train, pairs: Iterable[GearPair]) -> Array:
-    """Return the point of `problem` of gear pairs; what ties their face widths is not looked at."""
+    """Return the point of `problem` of gear pairs; what ties their face widths is ignored."""
     columns: dict[str, list[float]] = {name: [] for name in VARIABLES}
     for pair, stage in zip(pairs, train.stages, strict=True):
         face = stage.face_width

@@ -21,32 +21,32 @@ from gearopt.formulations.teeth.stage import Table
 from gearopt.optimise.terms import Array
 
 ENTRIES = 10_000_000  # of the last stage's table
-SLICE = 500_000  # of them, between two looks at the clock
+SLICE = 500_000  # of them, between two checks of the clock
 EDGE = 1e-9  # cells overlap by this much in log ratio, so that rounding never misses a neighbour
 
 
 @dataclass(frozen=True)
 class Bound:
-    """to_go[k] (cells,): least cost of stages k..N-1 from a cell of log cumulative ratio.
+    """to_go[k] (cells,): minimum cost of stages k..N-1 from a cell of log cumulative ratio.
 
-    least[k] (cells, ratio cells): least cost of stage k alone. starts[k]: first pair of each ratio
-    cell, so that pairs of cell r are starts[k][r] : starts[k][r + 1].
+    minimum[k] (cells, ratio cells): minimum cost of stage k alone. starts[k]: first pair of each
+    ratio cell, so that pairs of cell r are starts[k][r] : starts[k][r + 1].
     """
 
     delta: float
     to_go: list[Array]
-    least: list[Array | None]
+    minimum: list[Array | None]
     starts: list[NDArray[np.int64]]
 
     def cell(self, log_ratio: Array) -> NDArray[np.int64]:
-        """Cell of a log ratio."""
+        """Return the cell of a log ratio."""
         return _cell(log_ratio, self.delta)
 
     def onward(self, stage: int, cell: NDArray[np.int64]) -> Array:
-        """Least cost of stages `stage`.. from each cell by each ratio cell of `stage`."""
-        least = self.least[stage]
-        assert least is not None
-        return np.asarray(least[cell] + _ahead(self.to_go[stage + 1], least.shape[1])[cell])
+        """Return the minimum cost of stages `stage`.. by cell and by ratio cell of `stage`."""
+        minimum = self.minimum[stage]
+        assert minimum is not None
+        return np.asarray(minimum[cell] + _ahead(self.to_go[stage + 1], minimum.shape[1])[cell])
 
 
 def _cell(log_ratio: Array, delta: float) -> NDArray[np.int64]:
@@ -54,7 +54,7 @@ def _cell(log_ratio: Array, delta: float) -> NDArray[np.int64]:
 
 
 def bound(train: Train, tables: list[Table], delta: float, tick: Callable[[], None]) -> Bound:
-    """The bound of all stages but the first, on cells of `delta` in log ratio.
+    """Return the bound of all stages but the first, on cells of `delta` in log ratio.
 
     Every table has a pair. tick: called several times a second; what it raises ends the work.
     """
@@ -62,22 +62,22 @@ def bound(train: Train, tables: list[Table], delta: float, tick: Callable[[], No
     widest = max(float(t.log_ratio[-1]) for t in tables)
     ratio_cells = int(widest / delta) + 1
     count = len(tables)
-    least: list[Array | None] = [None] * count
+    minimum: list[Array | None] = [None] * count
     for k in range(1, count - 1):
         alike = k > 1 and train.stages[k] == train.stages[k - 1]
-        least[k] = least[k - 1] if alike else _least(tables[k], cells, ratio_cells, delta, tick)
+        minimum[k] = minimum[k - 1] if alike else _least(tables[k], cells, ratio_cells, delta, tick)
     to_go = [np.full(cells + ratio_cells + 2, np.inf) for _ in range(count)]
     to_go[-1][:cells] = _last(train, tables[-1], cells, delta, tick)
     for k in range(count - 2, 0, -1):
         ahead = _ahead(to_go[k + 1], ratio_cells)[:cells]
-        now = least[k]
+        now = minimum[k]
         assert now is not None
         tick()
         to_go[k][:cells] = (now + ahead).min(axis=1)
     columns = [_cell(t.log_ratio, delta) for t in tables]
     edges = np.arange(ratio_cells)
     starts = [np.append(np.searchsorted(c, edges), len(c)) for c in columns]
-    return Bound(delta, to_go, least, starts)
+    return Bound(delta, to_go, minimum, starts)
 
 
 def _ahead(to_go: Array, ratio_cells: int) -> Array:
@@ -88,7 +88,7 @@ def _ahead(to_go: Array, ratio_cells: int) -> Array:
 def _least(
     table: Table, cells: int, ratio_cells: int, delta: float, tick: Callable[[], None]
 ) -> Array:
-    """Least cost of one stage for every torque cell and ratio cell."""
+    """Return the minimum cost of one stage for every torque cell and ratio cell."""
     column = _cell(table.log_ratio, delta)
     found = np.full(cells * ratio_cells, np.inf)
     for k in range(len(table.modules)):
@@ -110,7 +110,7 @@ def _least(
 
 
 def _last(train: Train, table: Table, cells: int, delta: float, tick: Callable[[], None]) -> Array:
-    """Least cost of the last stage from every cell: exact pairs, least possible torque."""
+    """Return the last stage's minimum cost from every cell: exact pairs, lowest possible torque."""
     low, high = math.log(train.lowest_ratio), math.log(train.highest_ratio)
     edge = np.arange(cells) * delta
     start = np.searchsorted(table.log_ratio, low - edge - delta - EDGE)
@@ -131,12 +131,12 @@ def _last(train: Train, table: Table, cells: int, delta: float, tick: Callable[[
     return found
 
 
-def slices(count: NDArray[np.int64], most: int) -> Iterator[slice]:
-    """Slices of what is counted whose sums are at most `most`, or of one entry; none is empty."""
+def slices(count: NDArray[np.int64], maximum: int) -> Iterator[slice]:
+    """Yield slices of counts that sum up to `maximum` or less, or of one entry; none is empty."""
     done = np.cumsum(count)
     first = before = 0
     while first < len(count):
-        last = max(first + 1, int(np.searchsorted(done, before + most, side="right")))
+        last = max(first + 1, int(np.searchsorted(done, before + maximum, side="right")))
         yield slice(first, last)
         first, before = last, int(done[last - 1])
 
@@ -144,7 +144,7 @@ def slices(count: NDArray[np.int64], most: int) -> Iterator[slice]:
 def ragged(
     start: NDArray[np.int64], count: NDArray[np.int64]
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Owner and index of all start[i] .. start[i] + count[i] - 1, one after the other."""
+    """Return owner and index of all start[i] .. start[i] + count[i] - 1, one after the other."""
     owner = np.repeat(np.arange(len(count)), count)
     ends = np.cumsum(count)
     return owner, np.arange(len(owner)) - np.repeat(ends - count, count) + np.repeat(start, count)

@@ -1,4 +1,4 @@
-"""What a search over trains has found and spent so far, and when it must stop."""
+"""The best trains and the effort of a search so far, and when it must stop."""
 
 import math
 from collections.abc import Iterator
@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.terms import Array
 
-TIE = 1e-12  # trains whose objectives differ by less are ties: fewest teeth win
+TIE = 1e-12  # trains whose objectives differ by less are ties: the fewest teeth are kept
 MARGIN = 1e-11  # a node is dropped only when its bound exceeds the best by this, so ties survive
 
 Teeth = tuple[tuple[int, int], ...]
@@ -61,17 +61,17 @@ class Progress:
             self.found = best[: self.wanted]
 
     def raise_lower(self, bound: float) -> None:
-        """Note the least open bound of a search, if that search covers all trains."""
+        """Raise the bound to the lowest open one of a search, if that search covers all trains."""
         if self.whole:
             self.lower = max(self.lower, bound)
 
     def tick(self) -> None:
-        """Raise Spent where budget and watcher do not let the search go on."""
-        if not self.goes_on():
+        """Raise Spent where budget and watcher stop the search."""
+        if not self.continues():
             raise Spent
 
-    def goes_on(self) -> bool:
-        """Whether budget and watcher let the search go on."""
+    def continues(self) -> bool:
+        """Return whether budget and watcher let the search continue."""
         clock, gap = self.clock, self.clock.budget.gap
         clock.bound = self.bound
         if self.found:

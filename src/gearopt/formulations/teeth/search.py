@@ -1,8 +1,9 @@
 """Best-first branch and bound over the tooth pairs of the stages, with dives.
 
 A node is a choice of the first k pairs; its bound is what they cost plus `bound` on the rest. Nodes
-wait in chunks sorted by bound; the chunk with the least bound is taken, its best nodes are followed
-down to complete trains at once. The search ends when no open bound is below the best train.
+wait in chunks sorted by bound; the chunk with the minimum bound is taken, its best nodes are
+followed down to complete trains at once. The search ends when no open bound is below the best
+train.
 """
 
 import heapq
@@ -27,8 +28,8 @@ from gearopt.physics.gears import GearPair, reference_diameter
 FEW = 200_000  # tooth pairs of a stage that are searched at once
 BEAM = 4  # nodes followed down at once; measured best for two to four stages
 LEAVES = 256  # nodes completed at once
-FIRST_LOOK = 20_000  # pairs looked at for a first train
-PATIENCE = 2_000_000  # pairs looked at before a finer grid is worth its making
+FIRST_LOOK = 20_000  # pairs examined for a first train
+PATIENCE = 2_000_000  # pairs examined before a finer grid pays
 CELLS = 10_000_000  # largest grid of a stage, 80 MB
 
 
@@ -57,18 +58,18 @@ def search(
     floor: float = -math.inf,
     whole: bool = True,
 ) -> Progress:
-    """The `wanted` best trains; `stopped` or `enough` where the search was not exhausted.
+    """Return the `wanted` best trains; `stopped` or `enough` where the search was not exhausted.
 
     A first look at stage ratios near the even split gives a train; what it does not exclude by
     the ratio of a single stage is then searched to the end. floor: a bound known from elsewhere.
     whole: False where its own bound is of no use, as that of a part of the caller's drive.
     """
     progress = Progress(wanted, Clock(budget, watch), floor)
-    most, cut = train.highest_ratio, first_cut(train)
-    progress.whole = whole and cut == most
+    maximum, cut = train.highest_ratio, first_cut(train)
+    progress.whole = whole and cut == maximum
     try:
         closed = _look(train, cut, progress, FIRST_LOOK)
-        reach = _reach(train, cut, most, progress.threshold)
+        reach = _reach(train, cut, maximum, progress.threshold)
         progress.whole = whole
         if not (closed and reach <= cut):
             _look(train, max(cut, reach), progress, math.inf)
@@ -78,7 +79,7 @@ def search(
 
 
 def first_cut(train: Train) -> Fraction:
-    """Largest stage ratio of a first look: three times that of an even split."""
+    """Return the largest stage ratio of a first look: three times that of an even split."""
     even = float(train.ratio) ** (1.0 / len(train.stages))
     return min(train.highest_ratio, Fraction(3.0 * even))
 
@@ -102,7 +103,7 @@ def _look(train: Train, cut: Fraction, progress: Progress, patience: float) -> b
 
 
 def _tables(train: Train, cut: Fraction, progress: Progress) -> list[Table]:
-    """The tables of all stages; equal inner stages share one."""
+    """Return the tables of all stages; equal inner stages share one."""
     tables: list[Table] = []
     for k in range(len(train.stages)):
         inner = 1 < k < len(train.stages) - 1
@@ -114,7 +115,7 @@ def _tables(train: Train, cut: Fraction, progress: Progress) -> list[Table]:
 def _closed(
     train: Train, tables: list[Table], rest: Bound, progress: Progress, patience: float
 ) -> bool:
-    """Run one search; False when it should go on with a finer grid."""
+    """Run one search; return False when it should continue on a finer grid."""
     order = itertools.count()
     heap: list[tuple[float, int, Chunk]] = []
 
@@ -141,7 +142,7 @@ def _closed(
 def _expand(
     train: Train, tables: list[Table], rest: Bound, chunk: Chunk, progress: Progress
 ) -> Chunk | None:
-    """The children of some nodes that may still be of use, or None (complete trains are kept)."""
+    """Return the useful children of some nodes, or None (complete trains are kept)."""
     chunk = chunk.part(chunk.bound <= progress.threshold)
     level, stage = chunk.level, tables[chunk.level]
     if level == len(tables) - 1:
@@ -158,7 +159,7 @@ def _expand(
     progress.clock.evaluations += len(pair)
     own = _costs(train, stage, chunk, node, pair, progress)
     if progress.wanted == 1:
-        keep = _cheapest_of_ratio(node, stage.ratio[pair], own)
+        keep = _best_of_ratio(node, stage.ratio[pair], own)
         node, pair, own = node[keep], pair[keep], own[keep]
     cost = chunk.cost[node] + own
     log_ratio = chunk.log_ratio[node] + stage.log_ratio[pair]
@@ -179,7 +180,7 @@ def _costs(
     pair: NDArray[np.int64],
     progress: Progress,
 ) -> Array:
-    """What pairs of a stage cost behind nodes of a chunk."""
+    """Return the cost of pairs of a stage behind nodes of a chunk."""
     torque = train.torque * np.exp(chunk.log_ratio)
     found = np.empty(len(pair))
     for start in range(0, len(pair), SLICE):
@@ -190,8 +191,8 @@ def _costs(
     return found
 
 
-def _cheapest_of_ratio(node: NDArray[np.int64], ratio: Array, cost: Array) -> NDArray[np.bool_]:
-    """Of a node's pairs with equal ratio the cheapest, of equal ones that with fewest teeth.
+def _best_of_ratio(node: NDArray[np.int64], ratio: Array, cost: Array) -> NDArray[np.bool_]:
+    """Mark of a node's pairs of equal ratio the one of lowest cost, then of fewest teeth.
 
     What follows depends on the ratio alone. Pairs come by ratio, then by teeth.
     """
@@ -199,8 +200,8 @@ def _cheapest_of_ratio(node: NDArray[np.int64], ratio: Array, cost: Array) -> ND
         return np.empty(0, dtype=bool)
     new = np.concatenate([[True], (np.diff(node) != 0) | (np.diff(ratio) != 0)])
     group = np.cumsum(new) - 1
-    least = np.minimum.reduceat(cost, np.flatnonzero(new))
-    good = np.flatnonzero(np.isfinite(cost) & (cost <= least[group] * (1.0 + TIE)))
+    minimum = np.minimum.reduceat(cost, np.flatnonzero(new))
+    good = np.flatnonzero(np.isfinite(cost) & (cost <= minimum[group] * (1.0 + TIE)))
     keep = np.zeros(len(node), dtype=bool)
     keep[good[np.unique(group[good], return_index=True)[1]]] = True
     return keep
@@ -224,20 +225,20 @@ def _complete(train: Train, tables: list[Table], chunk: Chunk, progress: Progres
         return tuple((int(t.z1[j]), int(t.z2[j])) for t, j in zip(tables, path, strict=True))
 
     kept: list[tuple[float, Teeth]] = []
-    most = math.inf
+    maximum = math.inf
     for k in use:
-        if total[k] > most:
+        if total[k] > maximum:
             break
         candidate = teeth(k)
         if within(train, candidate):
             kept.append((float(total[k]), candidate))
             if len(kept) == progress.wanted:
-                most = float(total[k]) * (1.0 + TIE)
+                maximum = float(total[k]) * (1.0 + TIE)
     progress.add(np.array([v for v, _ in kept]), iter([t for _, t in kept]))
 
 
 def within(train: Train, teeth: Teeth) -> bool:
-    """Whether the total ratio lies within its limits, in integers."""
+    """Return whether the total ratio lies within its limits, in integers."""
     wheels, pinions = math.prod(z2 for _, z2 in teeth), math.prod(z1 for z1, _ in teeth)
     low, high = train.lowest_ratio, train.highest_ratio
     return (
@@ -246,15 +247,15 @@ def within(train: Train, teeth: Teeth) -> bool:
     )
 
 
-def _reach(train: Train, cut: Fraction, most: Fraction, threshold: float) -> Fraction:
-    """Largest stage ratio that a train at least as good as `threshold` may have.
+def _reach(train: Train, cut: Fraction, maximum: Fraction, threshold: float) -> Fraction:
+    """Return the largest stage ratio that a train at least as good as `threshold` may have.
 
     Any stage carries at least the input torque; its share alone then grows with its ratio, where
     its law is proportional.
     """
     if not train.law.proportional:
-        return most
-    ratios = np.geomspace(float(cut), float(most), 2000)
+        return maximum
+    ratios = np.geomspace(float(cut), float(maximum), 2000)
     useful = np.zeros(len(ratios), dtype=bool)
     for k, stage in enumerate(train.stages):
         load = _least_size(train, stage, ratios)
@@ -271,34 +272,34 @@ def _reach(train: Train, cut: Fraction, most: Fraction, threshold: float) -> Fra
                 train, k, GearPair.of_teeth(d, 1.0, ratios, math.nan)
             )  # a length, whatever the width
         useful |= np.asarray(lower) <= threshold
-    beyond = [*ratios[1:], most]  # the next of the grid; at its end `most` itself, unrounded
+    beyond = [*ratios[1:], maximum]  # the next of the grid; at its end `maximum` itself, unrounded
     last = np.flatnonzero(useful)
     return Fraction(beyond[last[-1]]) if len(last) else cut
 
 
 def _least_size(train: Train, stage: Stage, ratios: Array) -> Array:
-    """Minimum b d1^2 [mm3] that carries the input torque at given ratios: of the fewest teeth."""
+    """Return the minimum b d1^2 [mm3] for the input torque at given ratios, of the fewest teeth."""
     z = float(stage.pinion_teeth[0])
     unit = GearPair.of_diameter(math.cos(train.helix_angle) / z, z, 1.0, ratios, 1.0)
     return train.law.load(unit, train.torque, train.speed, stage.allowable)
 
 
 def possible(train: Train, seconds: float, watch: Watch | None) -> bool | None:
-    """Whether any train meets all limits; None where that is not known in time."""
+    """Return whether any train meets all limits; None where that is not known in time."""
     found = any_train(train, seconds, watch)
     return found if found is None else bool(found)
 
 
 def any_train(train: Train, seconds: float, watch: Watch | None) -> Teeth | None:
-    """The teeth of some train that meets all limits, () where there is none; None: not known."""
+    """Return the teeth of a train that meets all limits, () if there is none; None: not known."""
 
     def first(event: Event) -> bool:
-        told = watch is None or watch(event) is not False
-        return event.best is None and told  # one train is enough
+        wanted = watch is None or watch(event) is not False
+        return event.best is None and wanted  # one train is enough
 
     try:
         progress = search(train, 1, Budget(seconds=seconds), first)
-    except SolveError:  # too many pairs to look at
+    except SolveError:  # too many pairs to examine
         return None
     if progress.found:
         return progress.found[0][1]
@@ -306,7 +307,7 @@ def any_train(train: Train, seconds: float, watch: Watch | None) -> Teeth | None
 
 
 def narrowed(train: Train) -> Train:
-    """The drive with so few of its least pinion teeth that no stage has more than FEW pairs.
+    """Return the drive with so few of its smallest pinions that no stage has more than FEW pairs.
 
     A pinion alone may have more. The drive itself where its ranges are not wide.
     """
@@ -320,8 +321,8 @@ def narrowed(train: Train) -> Train:
     return replace(train, stages=tuple(stages))
 
 
-def trimmed(train: Train, most: float) -> Train:
-    """The drive without pinions whose stage alone costs more than `most`, whatever its module.
+def trimmed(train: Train, maximum: float) -> Train:
+    """Return the drive without pinions whose stage alone costs more than `maximum`.
 
     Exact: of a train of at most that objective nothing is left out.
     """
@@ -330,13 +331,13 @@ def trimmed(train: Train, most: float) -> Train:
         low, high = stage.pinion_teeth
         assert high is not None
         teeth = np.arange(low, high + 1)
-        useful = np.flatnonzero(_least(train, k, teeth) <= most * (1.0 + MARGIN))
+        useful = np.flatnonzero(_least(train, k, teeth) <= maximum * (1.0 + MARGIN))
         stages.append(replace(stage, pinion_teeth=(low, low + int(useful.max(initial=0)))))
     return replace(train, stages=tuple(stages))
 
 
 def _least(train: Train, k: int, teeth: NDArray[np.int64]) -> Array:
-    """Least share (n,) of a stage (counted from 0) with pinions of so many teeth."""
+    """Return the minimum share (n,) of a stage (counted from 0) with pinions of so many teeth."""
     stage = train.stages[k]
     module, face = float(stage.modules[0]), stage.face_width
     d = reference_diameter(module, teeth, train.helix_angle)

@@ -29,10 +29,11 @@ PAIRS = 3_000_000  # tooth pairs of one stage: about 1 GB of tables
 class Table:
     """Tooth pairs (n,) of one stage with ratios up to a cut, increasing.
 
-    first, last: indices of the modules that diameter and width limits allow. steps: least and most
-    number of width steps, (modules, n), or None. load: of a proportional law the minimum width is
-    load T/m^2 [mm]; the minimum module for torque T is need T**exponent; slope: least objective per
-    torque, from the load limits alone. Of other laws load is None, need and slope are 0.
+    first, last: indices of the modules that diameter and width limits allow. steps: minimum and
+    maximum number of width steps, (modules, n), or None. load: of a proportional law the minimum
+    width is load T/m^2 [mm]; the minimum module for torque T is need T**exponent; slope: minimum
+    objective per torque, from the load limits alone. Of other laws load is None, need and slope are
+    0.
     """
 
     train: Train
@@ -66,16 +67,16 @@ class Table:
         return self.train.pair(module, self.z1[pair], self.z2[pair], 1.0)
 
     def cost(self, torque: Array, pair: Index) -> Array:
-        """Least objective share of pairs at torques [N mm]; inf where nothing carries them."""
+        """Return the minimum share of pairs at torques [N mm]; inf where nothing carries them."""
         return self._best(torque, pair)[0]
 
     def choose(self, torque: float, pair: int) -> tuple[float, float]:
-        """Module and face width [mm] behind `cost`."""
+        """Return the module and face width [mm] behind `cost`."""
         _, module, width = self._best(np.array([torque]), np.array([pair]))
         return module.item(), width.item()
 
     def capacity(self, module: int) -> Array:
-        """Largest torque [N mm] each pair carries with a module (index); 0 where not allowed.
+        """Return the largest torque [N mm] of each pair with a module (index); 0 where not allowed.
 
         Where it is bisected, it is inf above the largest torque of the drive.
         """
@@ -83,33 +84,33 @@ class Table:
         if self.load is None:
             return np.where(allowed, self._bisected_capacity(module), 0.0)
         with np.errstate(divide="ignore"):
-            most = (self.modules[module] / self.need) ** (1.0 / self.exponent)
-        return np.where(allowed, most * (1.0 + 3.0 * ALLOWANCE), 0.0)
+            maximum = (self.modules[module] / self.need) ** (1.0 / self.exponent)
+        return np.where(allowed, maximum * (1.0 + 3.0 * ALLOWANCE), 0.0)
 
     def floor(self, module: int) -> Array:
-        """Least objective share of each pair with a module (index), whatever the torque."""
+        """Return the minimum share of each pair with a module (index), whatever the torque."""
         every = np.arange(len(self.ratio))
         one = self.made(self.modules[module], every)
         return self._share(one, self._widths(one, module, every)[0])
 
     def width(self, torque: Array, pair: Index, module: int) -> Array:
-        """Minimum face width [mm] of pairs with a module (index) at torques; inf: none allowed."""
+        """Return the minimum face width [mm] of pairs of a module (index) at torques; inf: none."""
         return self._width(torque, pair, module, self.made(self.modules[module], pair))
 
     def _best(self, torque: Array, pair: Index) -> tuple[Array, Array, Array]:
         if self.load is None or self.steps is not None:
             return self._best_of_all(torque, pair)
         # The smallest module that carries the torque is the best one: every objective grows
-        # with it, for a tied width, and for a free one once the width has its least value.
+        # with it, for a tied width, and for a free one once the width is at its minimum.
         needed = self.need[pair] * (torque * (1.0 - ALLOWANCE)) ** self.exponent
         k = np.maximum(np.searchsorted(self.modules, needed), self.first[pair])
         possible = k <= self.last[pair]
         k = np.minimum(k, len(self.modules) - 1)
         module = self.modules[k]
         one = self.made(module, pair)
-        width, most = self._widths(one)
+        width, maximum = self._widths(one)
         if self.stage.face_width.fixed is None:
-            width = np.clip(self.load[pair] * torque / module**2, width, most)
+            width = np.clip(self.load[pair] * torque / module**2, width, maximum)
         value = self._share(one, width)
         return np.where(possible, value, np.inf), module, width
 
@@ -127,30 +128,30 @@ class Table:
         return best, best_module, best_width
 
     def _width(self, torque: Array, pair: Index, module: int, one: GearPair) -> Array:
-        """Minimum face width [mm] of the pairs `one`, which are `pair` with a module."""
+        """Return the minimum face width [mm] of the pairs `one`, which are `pair` with a module."""
         ends = self._widths(one, module, pair)
         if self.load is not None:
             needed = self.load[pair] * torque / self.modules[module] ** 2
         else:
             law, speed = self.train.law, self.train.speed_at(torque)
-            needed = law.least_width(one, torque, speed, self.stage.allowable, ends)
+            needed = law.minimum_width(one, torque, speed, self.stage.allowable, ends)
         if self.steps is None:
             width, possible = np.clip(needed, *ends), needed <= ends[1] * (1.0 + ALLOWANCE)
         else:
-            least, most = (count[module][pair] for count in self.steps)
-            steps = np.maximum(np.ceil(needed / self.step * (1.0 - ALLOWANCE)), least)
-            width, possible = steps * self.step, steps <= most
+            minimum, maximum = (count[module][pair] for count in self.steps)
+            steps = np.maximum(np.ceil(needed / self.step * (1.0 - ALLOWANCE)), minimum)
+            width, possible = steps * self.step, steps <= maximum
         possible = possible & (self.first[pair] <= module) & (module <= self.last[pair])
         return np.where(possible, width, np.inf)
 
     def _widths(
         self, one: GearPair, module: int = 0, pair: Index | slice = slice(None)
     ) -> tuple[Array, Array]:
-        """Least and most face width [mm] that the file allows pairs; by module where on steps."""
+        """Return the minimum and maximum face width [mm] of the file; by module where on steps."""
         face, d = self.stage.face_width, one.pinion.reference_diameter
         if self.steps is not None:
-            least, most = (count[module][pair] * self.step for count in self.steps)
-            return least, most
+            minimum, maximum = (count[module][pair] * self.step for count in self.steps)
+            return minimum, maximum
         if face.fixed is not None:
             fixed = np.full_like(d, float(face.fixed))
             return fixed, fixed
@@ -161,7 +162,7 @@ class Table:
         return np.asarray(share(self.train, self.position, pair.of_width(width)))
 
     def _bisected_capacity(self, module: int) -> Array:
-        """Largest torque [N mm] of every pair with a module (index), from above."""
+        """Return the largest torque [N mm] of every pair with a module (index), from above."""
         train, every = self.train, np.arange(len(self.ratio))
         one = self.made(self.modules[module], every)
         widest = one.of_width(self._widths(one, module, every)[1])
@@ -184,7 +185,7 @@ class Table:
 def table(
     train: Train, position: int, cut: Fraction, tick: Callable[[], None] = lambda: None
 ) -> Table:
-    """The table of a stage (counted from 0) for ratios up to `cut`.
+    """Return the table of a stage (counted from 0) for ratios up to `cut`.
 
     tick: called several times a second; what it raises ends the work.
     """
@@ -218,7 +219,7 @@ def table(
 def _closed(
     train: Train, position: int, z1: Index, ratio: Array
 ) -> tuple[Array | None, Array, float, Array]:
-    """Load, need, exponent and slope of a `Table`."""
+    """Return load, need, exponent and slope of a `Table`."""
     stage, cosine = train.stages[position], math.cos(train.helix_angle)
     if not train.law.proportional:
         return None, np.zeros_like(ratio), 1.0, np.zeros_like(ratio)
@@ -235,9 +236,9 @@ def _closed(
 
 
 def _pairs(train: Train, position: int, cut: Fraction) -> tuple[Index, Index]:
-    """All (z1, z2) of a stage with ratios up to cut, by ratio, then by teeth.
+    """Return all (z1, z2) of a stage with ratios up to cut, by ratio, then by teeth.
 
-    SolveError where they are more than memory is worth.
+    SolveError where there are too many for the memory.
     """
     ranges = spans(train, position, cut)
     count = sum(stop - start + 1 for _, start, stop in ranges)
@@ -257,9 +258,9 @@ def _pairs(train: Train, position: int, cut: Fraction) -> tuple[Index, Index]:
 
 
 def spans(train: Train, position: int, cut: Fraction) -> list[tuple[int, int, int]]:
-    """Of every pinion z1 of a stage its least and most wheel teeth for ratios up to cut.
+    """Return every pinion z1 of a stage with its minimum and maximum wheel teeth up to a ratio.
 
-    The most is one below the least where there are none.
+    The maximum is one below the minimum where there are none.
     """
     stage = train.stages[position]
     low = max(stage.ratio[0], train.lowest_ratio) if len(train.stages) == 1 else stage.ratio[0]
@@ -277,30 +278,30 @@ def spans(train: Train, position: int, cut: Fraction) -> list[tuple[int, int, in
 
 
 def _allowed(stage: Stage, z1: Index, z2: Index, cosine: float) -> tuple[Index, Index]:
-    """First and last module index that wheel diameter and fixed-width proportions allow."""
+    """Return the first and last module index by wheel diameter and fixed-width proportions."""
     first = np.zeros(len(z1), dtype=np.int64)
     last = np.full(len(z1), len(stage.modules) - 1, dtype=np.int64)
     exact_cosine = Fraction(cosine)
 
     def most_teeth(length: Fraction) -> Index:
-        """Most teeth of a wheel of that diameter, for every module (decreasing)."""
+        """Return the most teeth of a wheel of a diameter, for every module (decreasing)."""
         return np.array([math.floor(length * exact_cosine / m) for m in stage.modules])
 
     if stage.wheel_diameter is not None:
-        most = most_teeth(stage.wheel_diameter)
-        last = np.minimum(last, (most[:, None] >= z2).sum(axis=0) - 1)
+        maximum = most_teeth(stage.wheel_diameter)
+        last = np.minimum(last, (maximum[:, None] >= z2).sum(axis=0) - 1)
     face = stage.face_width
     if face.fixed is not None and face.low > 0:
         last = np.minimum(last, (most_teeth(face.fixed / face.low)[:, None] >= z1).sum(axis=0) - 1)
     if face.fixed is not None and face.high is not None:
         length = face.fixed / face.high
-        least = np.array([math.ceil(length * exact_cosine / m) for m in stage.modules])
-        first = (least[:, None] > z1).sum(axis=0)
+        minimum = np.array([math.ceil(length * exact_cosine / m) for m in stage.modules])
+        first = (minimum[:, None] > z1).sum(axis=0)
     return first, last
 
 
 def _steps(stage: Stage, z1: Index, cosine: float) -> tuple[Array, Array] | None:
-    """Least and most number of width steps for every module and pair."""
+    """Return the minimum and maximum number of width steps for every module and pair."""
     face = stage.face_width
     if face.step is None:
         return None
@@ -308,11 +309,11 @@ def _steps(stage: Stage, z1: Index, cosine: float) -> tuple[Array, Array] | None
     exact_cosine = Fraction(cosine)
     teeth = np.unique(z1)
     place = np.searchsorted(teeth, z1)
-    least = np.empty((len(stage.modules), len(teeth)))
-    most = np.empty_like(least)
+    minimum = np.empty((len(stage.modules), len(teeth)))
+    maximum = np.empty_like(minimum)
     for k, module in enumerate(stage.modules):
         for i, z in enumerate(teeth):
             diameter = module * int(z) / exact_cosine
-            least[k, i] = max(1, math.ceil(face.low * diameter / face.step))
-            most[k, i] = math.floor(face.high * diameter / face.step)
-    return least[:, place], most[:, place]
+            minimum[k, i] = max(1, math.ceil(face.low * diameter / face.step))
+            maximum[k, i] = math.floor(face.high * diameter / face.step)
+    return minimum[:, place], maximum[:, place]

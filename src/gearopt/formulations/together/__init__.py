@@ -198,7 +198,7 @@ def _terms(
 
 
 def _clear(need: float, dy: float, dz: float) -> float:
-    """Utilisation of a least distance: at most 1 where it is kept."""
+    """Utilisation of a minimum distance: at most 1 where it is kept."""
     there = dy**2 + dz**2
     return 1.0 + (need**2 - there) / max(need**2, there, 1.0)
 

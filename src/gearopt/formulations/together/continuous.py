@@ -61,9 +61,9 @@ def continuous(
         edges = {"width": x.width, "height": x.height, "length": length}
         limits, equal = given_places(shape, y, z)
         limits |= _apart(there, facing, (y, z)) | _clear(there, order.bodies, (y, z))
-        for (name, side), most in zip(edges.items(), there.largest, strict=True):
-            if math.isfinite(most):
-                limits[f"largest_{name}"] = side / most
+        for (name, side), maximum in zip(edges.items(), there.largest, strict=True):
+            if math.isfinite(maximum):
+                limits[f"largest_{name}"] = side / maximum
         if there.width is not None:
             limits["given_width"] = x.width / there.width
         if there.objective == "longest_side":

@@ -239,7 +239,7 @@ def _children(
     order = np.argsort(bounds[:made], kind="stable")
     nodes, bounds = nodes[order], bounds[order]
     alive, found = np.zeros(made, np.int64), np.zeros((made, 2 + count - stage))
-    start, most = 0, LOOKS[0] if stage > 0 else LOOKS[1]
+    start, maximum = 0, LOOKS[0] if stage > 0 else LOOKS[1]
     shape = work.chains[stage]
     while start < made:
         start, cells = kernels.sift(
@@ -251,7 +251,7 @@ def _children(
             nodes,
             start,
             levels,
-            (most, CELLS),
+            (maximum, CELLS),
             alive,
             found,
         )

@@ -1,7 +1,7 @@
-"""A drive and its gearbox as the arrays that the kernels search, and what the rest at least costs.
+"""A drive and its gearbox as the arrays that the kernels search, and the minimum cost of the rest.
 
 Gears follow from the teeth (`pairs`); shafts may depend on the torque they carry, and count with
-the least radius in a cell of it. Facing bodies follow from the order of the slabs alone, but for
+the minimum radius in a cell of it. Facing bodies follow from the order of the slabs alone, but for
 short bearings beside gears: those are left to the last look at a train.
 """
 
@@ -30,7 +30,7 @@ Index = NDArray[np.int64]
 DELTA = 0.01  # cells of log ratio: a third of it in sizes, below the usual ratio tolerance
 ENTRIES = 20_000_000  # of bisected widths, 160 MB
 KERNELS = "gearopt.formulations.together.together_kernel"
-ROUNDS = 3  # of dropping pairs; each knows the least widths of the one before
+ROUNDS = 3  # of dropping pairs; each knows the minimum widths of the one before
 SLICE = 2_000_000  # pairs sized between two looks at clock and watcher
 BINS = 48  # of wheel radii, for what a larger wheel saves in width
 
@@ -40,11 +40,11 @@ class Drive(NamedTuple):
 
     kind: of face widths, 0 tied, 1 free, 2 given, 3 on steps (given: the width or the step). load:
     as in `teeth.stage.Table`; for a law without one (size 0), bisected holds minimum widths (cells,
-    modules, pairs) by log ratio reached, in cells of `step`. shaft, bearing (N+1, cells): least
+    modules, pairs) by log ratio reached, in cells of `step`. shaft, bearing (N+1, cells): minimum
     radius by log ratio reached. gap: between gears, from shafts, to the wall, along the axis. faces
     (M, N+1, 4, N+1, 4): whether bodies of two shafts face each other: wheel, pinion, shaft,
-    bearing. widths: least of each stage, others (M, N): least length that the stages before one
-    add. aim (8,): most width, height and length; constant of the objective and its factor of the
+    bearing. widths: minimum of each stage, others (M, N): minimum length that the stages before one
+    add. aim (8,): maximum width, height and length; constant of the objective and its factor of the
     length; exponents of width and height; 1 for the longest side.
     """
 
@@ -87,10 +87,10 @@ class Drive(NamedTuple):
 
 
 class Rest(NamedTuple):
-    """What stages 0..k-1 at least cost, by cell of their log ratio; filled in by the kernel.
+    """Minimum cost of stages 0..k-1, by cell of their log ratio; filled in by the kernel.
 
-    least (N, N, cells): width of each stage. edge (N, bins): tip radii of wheel k - 1. front
-    (N, M, cells, bins): length that is added in slabs of their own.
+    least (N, N, cells): minimum width of each stage. edge (N, bins): tip radii of wheel k - 1.
+    front (N, M, cells, bins): length that is added in slabs of their own.
     """
 
     least: Array
@@ -117,7 +117,7 @@ def numbers(train: Train, make: Make) -> tuple[Drive, Gearbox]:
     gap = box.clearances
     end = max(gap.axial, wide) if box.partial else gap.axial + wide
     power, factor = _objective(box)
-    most = (min(box.largest[0], box.width or math.inf), *box.largest[1:])
+    maximum = (min(box.largest[0], box.width or math.inf), *box.largest[1:])
     before = [math.prod(float(s.ratio[0]) for s in stages[:k]) for k in range(len(stages))]
     columns: tuple[Any, ...] = (
         train.torque,
@@ -140,7 +140,7 @@ def numbers(train: Train, make: Make) -> tuple[Drive, Gearbox]:
         np.array([[_slab(s, k) for k in range(len(stages))] for s in slabs]),
         np.zeros(len(stages)),
         np.zeros((len(slabs), len(stages))),
-        np.array([*most, *factor, *power, float(box.objective == "longest_side")]),
+        np.array([*maximum, *factor, *power, float(box.objective == "longest_side")]),
     )
     return Drive(*columns), box
 
@@ -232,9 +232,11 @@ def _pairs(tables: list[Table]) -> tuple[Any, ...]:
             ("last", np.int64),
         )
     ]
-    most = max(len(t.modules) for t in tables)
+    maximum = max(len(t.modules) for t in tables)
     stepped = any(t.steps is not None for t in tables)
-    steps = [np.zeros((most if stepped else 1, int(start[-1]) if stepped else 1)) for _ in range(2)]
+    steps = [
+        np.zeros((maximum if stepped else 1, int(start[-1]) if stepped else 1)) for _ in range(2)
+    ]
     for k, t in enumerate(tables):
         if t.steps is not None:
             for own, values in zip(steps, t.steps, strict=True):
@@ -262,7 +264,7 @@ def _stages(train: Train, tables: list[Table]) -> tuple[Array, ...]:
 
 
 def _loads(train: Train, tables: list[Table]) -> tuple[Array, Array, float]:
-    """Loads of all pairs, or least widths by cells of torque, as small as ENTRIES allows."""
+    """Loads of all pairs, or minimum widths by cells of torque, as small as ENTRIES allows."""
     loads = [t.load for t in tables if t.load is not None]
     span = math.log(train.highest_ratio) + 2.0 * DELTA
     if loads:
@@ -303,7 +305,7 @@ def useful(drive: Drive, cut: float) -> Drive:
 
 
 def _others(drive: Drive, widths: Array) -> Array:
-    """Least length that the stages before each one add in slabs of their own, (M, N)."""
+    """Minimum length that the stages before each one add in slabs of their own, (M, N)."""
     found = np.zeros_like(drive.others)
     for m, slab in enumerate(drive.slab_of):
         for j in range(1, widths.size):
