@@ -1,11 +1,15 @@
 """Gearboxes for the layout tests: published trains, random ones, and the plain law of a layout."""
 
 import math
+from fractions import Fraction as F
 
 import numpy as np
+from brute_force import k_factor_width, width
 
+from gearopt.formulations.layout.chain import chain, turns
 from gearopt.formulations.layout.gearbox import Clearances, Gearbox, Shaft
 from gearopt.formulations.layout.slabs import arrangements, clashes
+from gearopt.optimise.kernels import kernel
 from gearopt.physics.gears import GearPair
 
 HELIX = math.radians(25.0)
@@ -83,3 +87,62 @@ def law(chain, m, y, z):
     if chain.longest:
         return np.maximum(np.maximum(width, height), chain.factor[m]), short
     return chain.factor[m] * width ** chain.power[0] * height ** chain.power[1], short
+
+
+def face_width(train, stage, torque, module, teeth, needed=k_factor_width):
+    """Minimum face width [mm] of one choice; None where a limit forbids it."""
+    d, u = float(module) * teeth[0] / math.cos(train.helix_angle), teeth[1] / teeth[0]
+    if stage.wheel_diameter is not None and d * u > float(stage.wheel_diameter):
+        return None
+    load = needed(stage, torque, d, float(module), u)
+    b = width(train, stage.face_width, F(module), np.array([teeth[0]]), load).item()
+    return b if b < math.inf else None
+
+
+def every(train, needed=k_factor_width):
+    """Gear pairs of all trains with every module that carries the load.
+
+    needed(stage, torque, d, m, u): the face width that the load needs.
+    """
+    found = []
+
+    def go(k, torque, ratio, rows):
+        if k == len(train.stages):
+            found.append(tuple(rows))
+            return
+        stage, last = train.stages[k], k == len(train.stages) - 1
+        for z1 in range(stage.pinion_teeth[0], stage.pinion_teeth[1] + 1):
+            for z2 in range(z1, stage.wheel_teeth[1] + 1):
+                u = F(z2, z1)
+                if ratio * u > train.highest_ratio or (last and ratio * u < train.lowest_ratio):
+                    continue
+                if u > (stage.ratio[1] or u) or (train.coprime and math.gcd(z1, z2) > 1):
+                    continue
+                for module in stage.modules:
+                    b = face_width(train, stage, torque, module, (z1, z2), needed)
+                    if b is not None:
+                        row = train.pair(float(module), float(z1), float(z2), b)
+                        go(k + 1, torque * z2 / z1, ratio * u, [*rows, row])
+
+    go(0, train.torque, F(1), [])
+    return found
+
+
+def smallest_box(train, make, rel, needed=k_factor_width):
+    """The minimum objective of all trains in all arrangements, within rel; inf if none fits."""
+    branch = kernel("gearopt.formulations.layout.branch_kernel").branch
+    best, links = math.inf, len(train.stages)
+    theta, cells, bounds = np.zeros(links), np.zeros((4000, 2, links)), np.zeros(4000)
+    for pairs in every(train, needed):
+        box = make(pairs)
+        for order in arrangements(box):
+            if clashes(box, order):
+                continue
+            shape, count, bounds[0] = chain(box, (order,)), 1, 0.0
+            cells[0, 0], cells[0, 1], cells[0, :, 0] = -math.pi, math.pi, turns(box)
+            while count:
+                count, best, _, nodes, _ = branch(
+                    shape, 0, cells, bounds, count, best, math.inf, rel, 100_000, theta
+                )
+                assert nodes
+    return best

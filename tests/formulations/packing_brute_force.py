@@ -37,14 +37,14 @@ def random_plan(rng, most_cylinders=5, fixed=True):
         "shape": shape,
         "gap": float(rng.choice([0.0, 0.0, 1.0])),
         "wall": float(rng.choice([0.0, 0.0, 0.7])),
-        "least": most if rng.random() < 0.3 else 1,
-        "most": most,
+        "min_layers": most if rng.random() < 0.3 else 1,
+        "max_layers": most,
         "objective": str(rng.choice(["volume", "area"])),
     }
     try:
         plan = Plan(cylinders, **kind)
     except ValueError:
-        assert not any(True for _ in ways(cylinders, kind["least"], most))
+        assert not any(True for _ in ways(cylinders, kind["min_layers"], most))
         return None
     return plan if any(True for _ in allowed_ways(plan)) else None
 

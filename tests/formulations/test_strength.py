@@ -9,6 +9,7 @@ from typing import Annotated, ClassVar
 import numpy as np
 import pytest
 from brute_force import every_train
+from gearboxes import smallest_box
 from pydantic import Field
 from small_drives import FACES, OBJECTIVES, drive
 
@@ -169,21 +170,23 @@ def test_a_law_that_is_no_posynomial_goes_to_ipopt_as_it_is():
     assert result.value == pytest.approx(math.pi / 4 * 0.6 * cube * (1 + 16), rel=1e-7)
 
 
+def on_shafts(pairs):
+    return Gearbox(pairs, (Shaft(6.0), Shaft(9.0), Shaft(14.0)))
+
+
 def boxed(train, gap=3e-3):
-    def make(pairs):
-        return Gearbox(pairs, (Shaft(6.0), Shaft(9.0), Shaft(14.0)))
-
-    return run(together.problem(train, make), "exact", Budget(gap=gap), 0, None, gap)[0]
+    return run(together.problem(train, on_shafts), "exact", Budget(gap=gap), 0, None, gap)[0]
 
 
+FEW = {"modules": (F(2), F(3)), "pinion_teeth": (17, 17), "wheel_teeth": (40, 44)}
 SLOW = [pytest.param(face, marks=pytest.mark.slow) for face in ("tied", "stepped")]
+SLOWER = [pytest.param(face, marks=pytest.mark.slow) for face in ("free", "stepped")]
 
 
 @pytest.mark.parametrize("face", ["free", "fixed", *SLOW])
 def test_laws_in_gears_and_box_at_once(face):
     """A pressure is a K-factor without its ratio; unpromised, its widths are bounds in cells."""
-    few = {"modules": (F(2), F(3)), "pinion_teeth": (17, 17), "wheel_teeth": (40, 44)}
-    train = pressed(face=face, total=6, allowable=2.5, **few)
+    train = pressed(face=face, total=6, allowable=2.5, **FEW)
     found = boxed(train)
     assert found.status == "optimal"
     assert max(found.limits["pressure[1]"], found.limits["pressure[2]"]) <= 1.0 + 1e-11
@@ -193,6 +196,18 @@ def test_laws_in_gears_and_box_at_once(face):
     assert max(other.bound, found.bound) <= min(other.value, found.value) * (1 + 1e-9)
     dynamic = boxed(replace(train, law=FASTER, speed=10.0))
     assert dynamic.status == "optimal" and dynamic.value >= found.bound
+
+
+@pytest.mark.parametrize("face", ["tied", "fixed", *SLOWER])
+@pytest.mark.parametrize("allowable", [2.5, 4.0])
+def test_a_law_without_closed_form_in_gears_and_box_as_by_brute_force(face, allowable):
+    train = pressed(FASTER, face=face, total=6, allowable=allowable, **FEW)
+    best = smallest_box(train, on_shafts, 1e-5, faster_width(train))
+    result = boxed(train, 1e-3)
+    assert (result.status == "optimal") == math.isfinite(best)
+    if math.isfinite(best):
+        assert result.value == pytest.approx(best, rel=1.1e-3)
+        assert result.bound <= best * (1 + 1e-9) and best <= result.value * (1 + 1.1e-5)
 
 
 def test_a_process_refuses_a_law_it_has_no_rule_for():

@@ -44,7 +44,7 @@ def test_the_cheapest_of_equal_ratios_and_of_those_the_first(number):
     node = np.sort(rng.integers(0, 4, 60))
     ratio = np.concatenate([np.sort(rng.integers(1, 5, (node == n).sum())) for n in range(4)])
     price = rng.choice([1.0, 1.0 + 0.5 * TIE, 1.0 + 5.0 * TIE, 2.0, np.inf], 60)
-    keep = searching._cheapest_of_ratio(node, ratio.astype(float), price)
+    keep = searching._best_of_ratio(node, ratio.astype(float), price)
     expected = np.zeros(60, bool)
     for n, r in product(range(4), range(1, 5)):
         group = np.flatnonzero((node == n) & (ratio == r))
@@ -52,9 +52,9 @@ def test_the_cheapest_of_equal_ratios_and_of_those_the_first(number):
             good = [g for g in group if price[g] <= price[group].min() * (1.0 + TIE)]
             expected[good[0]] = True
     assert (keep == expected).all()
-    none = searching._cheapest_of_ratio(np.empty(0, int), np.empty(0), np.empty(0))
+    none = searching._best_of_ratio(np.empty(0, int), np.empty(0), np.empty(0))
     assert none.tolist() == [] and none.dtype == bool
-    one = searching._cheapest_of_ratio(np.zeros(1, int), np.ones(1), np.array([np.inf]))
+    one = searching._best_of_ratio(np.zeros(1, int), np.ones(1), np.array([np.inf]))
     assert one.tolist() == [False]
 
 

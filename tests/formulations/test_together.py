@@ -6,11 +6,11 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from gearboxes import face_width, smallest_box
 
 from gearopt.errors import SolveError
 from gearopt.formulations import layout, teeth, together
 from gearopt.formulations.gear_train import FaceWidth, Stage, Train
-from gearopt.formulations.layout.chain import chain, turns
 from gearopt.formulations.layout.gearbox import Clearances, Gearbox, KeepOut, Shaft
 from gearopt.formulations.layout.slabs import arrangements, clashes, orders
 from gearopt.formulations.strength.k_factor import K_FACTOR
@@ -112,76 +112,11 @@ def some_frame(rng, train):
     return make
 
 
-def widths(train, stage, torque, m, z1, z2):
-    """Least face width [mm] of one choice, by the formulas; None where a limit forbids it."""
-    d = m * z1 / math.cos(train.helix_angle)
-    if stage.wheel_diameter is not None and d * z2 / z1 > float(stage.wheel_diameter):
-        return None
-    contact = 2 * torque / d**2 * (1 + z1 / z2) / stage.allowable[0]
-    load, face = max(contact, 2 * torque / (d * m) / stage.allowable[1]), stage.face_width
-    low, high = float(face.low) * d, float(face.high) * d
-    if face.fixed is not None:
-        b = float(face.fixed)
-    elif face.step is not None:
-        step = float(face.step)
-        b = step * max(math.ceil(load / step * (1 - 1e-12)), math.ceil(low / step), 1)
-    else:
-        b = high if face.tied else max(load, low)
-    tolerance = 1 + 1e-12
-    return b if load <= b * tolerance and low <= b * tolerance and b <= high * tolerance else None
-
-
-def every(train):
-    """Gear pairs of all trains with every module that carries the load."""
-    found = []
-
-    def go(k, torque, ratio, rows):
-        if k == len(train.stages):
-            found.append(tuple(rows))
-            return
-        stage, last = train.stages[k], k == len(train.stages) - 1
-        for z1 in range(stage.pinion_teeth[0], stage.pinion_teeth[1] + 1):
-            for z2 in range(z1, stage.wheel_teeth[1] + 1):
-                u = F(z2, z1)
-                if ratio * u > train.highest_ratio or (last and ratio * u < train.lowest_ratio):
-                    continue
-                if u > (stage.ratio[1] or u) or (train.coprime and math.gcd(z1, z2) > 1):
-                    continue
-                for module in stage.modules:
-                    b = widths(train, stage, torque, float(module), z1, z2)
-                    if b is not None:
-                        row = train.pair(float(module), float(z1), float(z2), b)
-                        go(k + 1, torque * z2 / z1, ratio * u, [*rows, row])
-
-    go(0, train.torque, F(1), [])
-    return found
-
-
-def least_box(train, make, rel):
-    """The least objective of all trains in all arrangements, within rel; inf if none fits."""
-    branch = kernel("gearopt.formulations.layout.branch_kernel").branch
-    best, links = math.inf, len(train.stages)
-    theta, cells, bounds = np.zeros(links), np.zeros((4000, 2, links)), np.zeros(4000)
-    for pairs in every(train):
-        box = make(pairs)
-        for order in arrangements(box):
-            if clashes(box, order):
-                continue
-            shape, count, bounds[0] = chain(box, (order,)), 1, 0.0
-            cells[0, 0], cells[0, 1], cells[0, :, 0] = -math.pi, math.pi, turns(box)
-            while count:
-                count, best, _, nodes, _ = branch(
-                    shape, 0, cells, bounds, count, best, math.inf, rel, 100_000, theta
-                )
-                assert nodes
-    return best
-
-
 def same_as_brute_force(seed, stages, gap):
     rng = np.random.default_rng([stages, seed])
     train = some_train(rng, stages)
     make = some_frame(rng, train)
-    best = least_box(train, make, 0.2 * gap)
+    best = smallest_box(train, make, 0.2 * gap)
     result = certified(train, make, gap)
     if math.isinf(best):
         assert result.status == "infeasible"
@@ -401,7 +336,7 @@ def test_kernels_bound_what_they_measure():
             torque = float(rng.choice([1e3, 1e4, 3e4]))
             for k in range(drive.first[p], drive.last[p] + 1):
                 z1, z2, m = int(drive.z1[p]), int(drive.z2[p]), float(drive.modules[0, k])
-                wanted = widths(train, train.stages[0], torque, m, z1, z2)
+                wanted = face_width(train, train.stages[0], torque, m, (z1, z2))
                 enough = k >= nodes.module(drive, 0, p, torque)
                 b = nodes.width(drive, 0, p, k, torque) if enough else math.inf
                 assert b == pytest.approx(math.inf if wanted is None else wanted, rel=1e-12)

@@ -149,7 +149,10 @@ def exact(name):
 
 
 def split_rows():
-    cases = [("u = 21.80, minimum volume", 2, best_split(2)[0]), ("Niemann, eq. (7)", 2, niemann(2))]
+    cases = [
+        ("u = 21.80, minimum volume", 2, best_split(2)[0]),
+        ("Niemann, eq. (7)", 2, niemann(2)),
+    ]
     cases += [(name, 2, exact(name)) for name in list(DESIGNS)[:3]]
     cases += [("u = 110, minimum volume", 3, best_split(3)[0]), ("Niemann, eq. (8)", 3, niemann(3))]
     cases += [(name, 3, exact(name)) for name in list(DESIGNS)[3:]]
