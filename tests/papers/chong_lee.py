@@ -161,7 +161,7 @@ def split_rows():
         v = volume(stages, ratios)
         over = 100.0 * (v / best_split(stages)[1] - 1.0)
         shown = " x ".join(f"{u:.4f}" for u in ratios)
-        excess = "0" if "least" in name else f"+{over:.2f} %"
+        excess = "0" if "minimum" in name else f"+{over:.2f} %"
         found.append(f"| {name} | {shown} | {v:,.0f} | {excess} |")
     return found
 
