@@ -17,20 +17,27 @@ KG_M2 = 1e-3  # of a t mm2
 class Goal:
     """What trains are judged by: an objective of the train or of the motion that it is for.
 
-    unit: of the objective. factor: from it to `shown`, the unit that is shown. word: in lists of
-    trains. key: of a `ListedTrain`, whose value has a title. motion: that of [duty], empty for an
-    objective of any train; the value of a motion has a unit of its own.
+    unit: of the objective. factor: from it to `shown`, the unit that is shown. key: of a
+    `ListedTrain`, whose value has a title. motion: that of [duty]; empty for any train's objective.
     """
 
     name: str
     unit: str
     factor: float
     shown: str
-    word: str
     key: str
     title: str
     motion: str = ""
-    value_unit: str = ""
+
+    @property
+    def word(self) -> str:
+        """Return what lists of trains call it."""
+        return self.name.removeprefix("inverse_").replace("_", " ")
+
+    @property
+    def value_unit(self) -> str:
+        """Return the unit of its `value`."""
+        return "rad/s²" if self.motion == "acceleration" else self.shown
 
     def value(self, objective: Any) -> Any:
         """Return the value that is shown: of an inverse acceleration, the acceleration."""
@@ -38,28 +45,16 @@ class Goal:
         return 1.0 / shown if self.motion == "acceleration" else shown
 
 
-_ACCELERATION = "load_acceleration_rad_per_s2", "load acceleration", "acceleration", "rad/s²"
+_ACCELERATION = "load_acceleration_rad_per_s2", "load acceleration", "acceleration"
 GOALS = {  # by name; kernels number goals and motions in this order
     goal.name: goal
     for goal in (
-        Goal(
-            "inertia", "t mm2", KG_M2, "kg_m2", "inertia", "inertia_kg_m2", "inertia at the motor"
-        ),
-        Goal("mass", "kg", 1.0, "kg", "mass", "mass_kg", "mass of the gears"),
-        Goal("error", "rad", math.degrees(1.0), "deg", "error", "error_deg", "error at the output"),
-        Goal("inverse_acceleration", "s2/rad", 1.0, "s2/rad", "acceleration", *_ACCELERATION),
-        Goal("move_time", "s", 1.0, "s", "move time", "move_time_s", "move time", "move", "s"),
-        Goal(
-            "rms_torque",
-            "N mm",
-            1e-3,
-            "Nm",
-            "rms torque",
-            "rms_torque_Nm",
-            "rms torque",
-            "swing",
-            "Nm",
-        ),
+        Goal("inertia", "t mm2", KG_M2, "kg_m2", "inertia_kg_m2", "inertia at the motor"),
+        Goal("mass", "kg", 1.0, "kg", "mass_kg", "mass of the gears"),
+        Goal("error", "rad", math.degrees(1.0), "deg", "error_deg", "error at the output"),
+        Goal("inverse_acceleration", "s2/rad", 1.0, "s2/rad", *_ACCELERATION),
+        Goal("move_time", "s", 1.0, "s", "move_time_s", "move time", "move"),
+        Goal("rms_torque", "N mm", 1e-3, "Nm", "rms_torque_Nm", "rms torque", "swing"),
     )
 }
 MOTIONS = {goal.motion: goal for goal in GOALS.values() if goal.motion}

@@ -66,15 +66,15 @@ def solve(scene: Scene, ask: Ask) -> Result:
         found += lightest_part(scene, _part(ask, clock, found))
     found += Found(report=_key_figures(scene, found))
     answer, *parts = found.results
-    told: dict[str, Any] = {"assumptions": assumptions(scene)}
+    texts: dict[str, Any] = {"assumptions": assumptions(scene)}
     if said := notes(scene, found.results, found.design, found.report):
-        told["notes"] = said
+        texts["notes"] = said
     if answer.status == "infeasible" and scene.train is not None:
-        told["ways_out"] = asdict(remedies(scene, clock, answer.message))
+        texts["ways_out"] = asdict(remedies(scene, clock, answer.message))
     return replace(
         answer,
         design=untyped(found.design),
-        report=found.report.to_dict() | told,
+        report=found.report.to_dict() | texts,
         parts=tuple(parts),
         seconds=clock.seconds,
     )

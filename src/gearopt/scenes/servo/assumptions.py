@@ -21,7 +21,7 @@ FRICTION = {
     "move": "Ramps up and down are alike, though friction helps to brake; the motor's torque is "
     "the same up to its speed limit.",
     "swing": "Coulomb friction is in phase with the speed, inertia with the acceleration; no "
-    "losses in the train. Where [motor] has a torque, it is the largest rms torque.",
+    "losses in the train. Where [motor] has a torque, it is the maximum rms torque.",
 }
 
 

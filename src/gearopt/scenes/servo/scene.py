@@ -110,18 +110,18 @@ class Scene(Table):
 
     def _check_deviations(self) -> None:
         """Check that both meshes have deviations or neither has; what counts errors needs them."""
-        told = [mesh.deviates for mesh in self.mesh]
-        if not self.mesh or all(told):
+        deviates = [mesh.deviates for mesh in self.mesh]
+        if not self.mesh or all(deviates):
             return
         needs = {
-            "the other [[mesh]] has one": any(told),
+            "the other [[mesh]] has one": any(deviates),
             "[tolerances] are made of them": self.tolerances is not None,
             "[accuracy] holds their error": self.accuracy.error is not None,
         }
         for why, needed in needs.items():
             if needed:
                 rule = f"is missing, as is any deviation: {why}"
-                raise refuse(rule, at=("mesh", told.index(False), "pitch"))
+                raise refuse(rule, at=("mesh", deviates.index(False), "pitch"))
 
     def _check_aim(self, train: Train) -> None:
         """Check that the objective is known: an error needs deviations, a motion needs [duty]."""

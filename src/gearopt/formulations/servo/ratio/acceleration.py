@@ -129,7 +129,7 @@ def _exact(drive: Drive, load_speed: float) -> Outcome:
         return impossible(f"the motor's speed limit allows a ratio of at most {high:.6g}")
     ratio, best = best_ratio(drive, load_speed)
     if math.isinf(ratio):
-        return unbounded("acceleration", "a motor inertia, a largest ratio or a speed limit")
+        return unbounded("acceleration", "a motor inertia, a maximum ratio or a speed limit")
     if reason := standstill(drive, load_speed, ratio, best):
         return impossible(reason)
 

@@ -106,7 +106,7 @@ def _exact(drive: Drive, angle: float) -> Outcome:
     low, high = drive.ratio
     ratio, best = best_ratio(drive)
     if math.isinf(ratio) and math.isinf(drive.speed_limit):
-        return unbounded("time", "a motor inertia, a largest ratio or a speed limit")
+        return unbounded("time", "a motor inertia, a maximum ratio or a speed limit")
     if math.isfinite(ratio) and (reason := standstill(drive, 0.0, ratio, best)):
         return impossible(reason)
     if math.isinf(ratio) or best * angle > (drive.speed_limit / ratio) ** 2:

@@ -86,7 +86,7 @@ def _exact(drive: Drive, amplitude: float, angular_frequency: float) -> Outcome:
         return impossible(f"the motor's speed limit allows a ratio of at most {high:.6g}")
     ratio = min(max(_stationary(drive, peak), low), high)
     if math.isinf(ratio):
-        return unbounded("rms torque", "a motor inertia, a largest ratio or a speed limit")
+        return unbounded("rms torque", "a motor inertia, a maximum ratio or a speed limit")
 
     def law(n: float) -> float:
         numbers = drive.load_inertia, drive.inertia, peak

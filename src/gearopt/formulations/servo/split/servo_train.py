@@ -66,7 +66,7 @@ class ServoTrain:
         if not 0.0 < self.sector <= 1.0:
             raise ValueError("the sector is a part of a disc: above 0 and at most 1")
         if self.lost_motion is None and self.error < math.inf:
-            raise ValueError("a largest error needs lost_motion")
+            raise ValueError("a maximum error needs lost_motion")
 
     @property
     def goals(self) -> tuple[str, ...]:

@@ -1,6 +1,7 @@
 """The lightest two-stage servo train of minimum stiffness, with real sizes: a geometric program."""
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -71,10 +72,11 @@ def stiff(train: StiffTrain) -> Problem:
     def evaluate(x: Any, p: Any) -> Terms:
         return _terms(train, x, p)
 
+    bounded = math.isfinite(train.error)
     parameters = (
         Param("stiffness", "N mm/rad", train.stiffness, role="limit"),
         Param("inertia", "t mm2", train.inertia, role="limit"),
-        *((Param("error", "rad", train.error, role="limit"),) if _bounded(train) else ()),
+        *((Param("error", "rad", train.error, role="limit"),) if bounded else ()),
         Param("bending", "MPa", train.bending, role="limit"),
         *ratio_parameters(*train.ratio),
         Param("wheel_tip", "mm", train.wheel_tips, 2, role="limit"),
@@ -92,17 +94,12 @@ def _terms(train: StiffTrain, x: Any, p: Any) -> Terms:
     gears = gear_mass(train.density, both, train.sector)
     long = disc_mass(train.density, train.shaft_length, x.shaft_diameter)
     inertia = train_inertia(train.density, both, shaft, train.sector)
-    springs = (
-        _mesh_compliance(train, wheels[1]),
-        shaft_compliance(train.shear_modulus, x.shaft_diameter, train.shaft_length),
-        _mesh_compliance(train, wheels[0]),
-    )
     laws = [lewis(float(z)) for z in train.pinion_teeth]
     torques = train.output_torque / n2, train.output_torque
     tied = train.ratio[0] == train.ratio[1]
     ratio, equal = ratio_rows(p, tied, n1 * n2)
     limits = ratio | {
-        "stiffness": p.stiffness * output_compliance(springs, (1.0, n2, n2)),
+        "stiffness": p.stiffness * _compliance(train, x, wheels),
         "inertia": inertia / p.inertia,
         "stage_ratio_low": (1.0 / n1, 1.0 / n2),
         "bending_stress": tuple(
@@ -120,18 +117,20 @@ def _terms(train: StiffTrain, x: Any, p: Any) -> Terms:
         "face_width_low": tuple(train.face_width / wheel.face_width for wheel in wheels),
         "shaft_diameter_low": train.shaft_diameter / x.shaft_diameter,
     }
-    if train.lost_motion is not None and _bounded(train):
+    if train.lost_motion is not None and math.isfinite(train.error):
         limits["error"] = train_error(train.lost_motion, both) / p.error
     limits |= clear_rows(x.shaft_diameter, train.output or None, train.motor or None, both)
     return Terms({"mass": gears + 1000.0 * long}, limits, equal=equal)
 
 
-def _mesh_compliance(train: StiffTrain, wheel: Gear) -> Any:
-    return mesh_compliance(train.line_stiffness, wheel.face_width, wheel.reference_diameter)
-
-
-def _bounded(train: StiffTrain) -> bool:
-    return math.isfinite(train.error)
+def _compliance(train: StiffTrain, x: Any, wheels: Iterable[Gear]) -> Any:
+    """Return the compliance [rad/(N mm)] of meshes and shaft, seen at the output."""
+    first, last = (
+        mesh_compliance(train.line_stiffness, wheel.face_width, wheel.reference_diameter)
+        for wheel in wheels
+    )
+    middle = shaft_compliance(train.shear_modulus, x.shaft_diameter, train.shaft_length)
+    return output_compliance((last, middle, first), (1.0, x.ratio[1], x.ratio[1]))
 
 
 def _variables(train: StiffTrain) -> tuple[Var, ...]:

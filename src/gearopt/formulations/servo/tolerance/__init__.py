@@ -1,4 +1,4 @@
-"""Tolerances at minimum cost within budgets of the error: how accurate should which part be.
+"""Tolerances at minimum cost within budgets of the error.
 
     minimise    sum a_i t_i^-k_i                  (-a_i ln t_i where k_i = 0)
     subject to  sum_i l_bi t_i + (sum_i (q_bi t_i)^2)^(1/2) <= 1        for every budget b
@@ -7,7 +7,7 @@
 `stack` has what l and q are for the worst case, RSS, and mean + kappa sd. Where all k > 0 cost and
 budgets are log-convex, so `ipopt` and `gp` find the optimum and the dual bound proves it.
 `exact` is the closed form, or the roots of the optimality conditions, with a bound of its own.
-`conic` states the same as cones, `grades` chooses among few tolerances a component, `backlash`
+`conic` states the same as cones, `grades` chooses among few tolerances per component, `backlash`
 turns tolerances with a minimum backlash into this form, `sampling` draws what comes out.
 """
 

@@ -55,8 +55,8 @@ def _ratio(ratio: RatioDesign, name: str, measures: Measures) -> list[Tile]:
         made.append(Tile(f"{ratio.name} of the train", value, worse))
     value = amount(ratio.value, ratio.unit, measures)
     without = ", no gears" if chosen is not None else ""
-    told = f"{ratio.name} {value}{without}"
-    return [*made, Tile("best total ratio", number(ratio.total_ratio), told)]
+    remark = f"{ratio.name} {value}{without}"
+    return [*made, Tile("best total ratio", number(ratio.total_ratio), remark)]
 
 
 def _train(train: TrainDesign, name: str, measures: Measures) -> list[Tile]:

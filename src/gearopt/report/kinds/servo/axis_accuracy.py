@@ -21,6 +21,7 @@ from gearopt.report.kinds.servo.axis_words import (
     degrees,
     design_of,
     error_limit,
+    limit_line,
 )
 from gearopt.report.measures import Measures
 from gearopt.report.pages.sheet import series
@@ -61,7 +62,7 @@ def errors(result: Result, measures: Measures) -> Section | None:
             "showlegend": False,
         }
     )
-    shapes = [] if limit is None else [_limit(limit)]
+    shapes = [] if limit is None else [limit_line("limit", limit, "y", 2.0)]
     across = axis("error at the output [°]", range=[0.0, ROOM * max(total, limit or 0.0)])
     up = axis("", type="category", categoryorder="array", categoryarray=order, ticks="")
     up["showgrid"] = False
@@ -157,21 +158,6 @@ def _told(one: ErrorSource, measures: Measures) -> str:
     )
 
 
-def _limit(limit: float) -> dict[str, Any]:
-    """Return the limit as a line over all bars."""
-    return {
-        "type": "line",
-        "yref": "paper",
-        "x0": limit,
-        "x1": limit,
-        "y0": 0,
-        "y1": 1,
-        "line": {"color": "--warn", "width": 2.0, "dash": "dash"},
-        "name": f"limit {degrees(limit)}",
-        "showlegend": True,
-    }
-
-
 def _by_kind(found: Sequence[ErrorSource], total: float) -> tuple[str, ...]:
     """Say how much each kind has of the sum."""
     sums: dict[str, float] = {}
@@ -206,8 +192,8 @@ def tolerances(result: Result, measures: Measures) -> Section | None:
         "Of the error: sensitivity times new tolerance, of their sum. Min and max: the new "
         "tolerance is the minimum or the maximum that the file allows."
     )
-    told = (table, "\n".join(words))
-    return Section("Tolerances", words=[*words, ends], tables=(table,), terminal=told)
+    terminal = (table, "\n".join(words))
+    return Section("Tolerances", words=[*words, ends], tables=(table,), terminal=terminal)
 
 
 def _cost_words(found: Allocation) -> list[str]:
@@ -336,14 +322,14 @@ def _bins(histogram: Histogram) -> list[tuple[float, float, int]]:
 
 
 def _bars(bins: list[tuple[float, float, int]], count: int) -> dict[str, Any]:
-    told = [f"{a:.4f} to {b:.4f}°: {n:,} ({100.0 * n / count:.3g} %)" for a, b, n in bins]
+    texts = [f"{a:.4f} to {b:.4f}°: {n:,} ({100.0 * n / count:.3g} %)" for a, b, n in bins]
     return {
         "type": "bar",
         "name": "drawn",
         "x": [0.5 * (a + b) for a, b, _ in bins],
         "width": [b - a for a, b, _ in bins],
         "y": [n for _, _, n in bins],
-        "text": told,
+        "text": texts,
         "textposition": "none",
         "hovertemplate": "%{text}<extra></extra>",
         "marker": {"color": "--series-1/0.55", "line": {"color": "--series-1", "width": 0.6}},

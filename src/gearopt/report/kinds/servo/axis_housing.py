@@ -141,13 +141,13 @@ def box(result: Result, measures: Measures) -> Section | None:
         f"from the output shaft to wheel 1 {degrees(found.output_angle_deg)}, from wheel 1 to the "
         f"motor {degrees(found.motor_angle_deg)}"
     )
-    told = Text.assemble(
+    terminal = Text.assemble(
         (words[0], "" if found.fits else "yellow"),
         f"\nAngles of the lines of centres, from the width: {angles}.",
     )
     drawing = _drawing(found, train, measures)
     half = train is not None
-    return Section("In the box", words=words, drawings=(drawing,), half=half, terminal=(told,))
+    return Section("In the box", words=words, drawings=(drawing,), half=half, terminal=(terminal,))
 
 
 def _box_words(found: BoxDesign, measures: Measures) -> str:
@@ -239,8 +239,8 @@ def _discs(
 ) -> None:
     """Draw wheel 1, motor, hub and middle shaft, and the pinions on the first two shafts."""
 
-    def circle(place: Point, radius: float, style: str, told: str, colour: str = "") -> None:
-        title = f"{told}: radius {measures.length(radius)} {measures.unit('mm')}"
+    def circle(place: Point, radius: float, style: str, label: str, colour: str = "") -> None:
+        title = f"{label}: radius {measures.length(radius)} {measures.unit('mm')}"
         sheet.circle(*place, radius, style, colour, title)
 
     circle(at.middle, wheel_1, "tip", "wheel 1", FIRST)
@@ -288,15 +288,15 @@ def _sector(sheet: Sheet, found: BoxDesign, train: TrainDesign | None, measures:
     """Draw the swept area, and the sector in the middle of its travel where its size is known."""
     radius, half = found.radii_mm[2], found.half_sweep_deg
     size = f"radius {measures.length(radius)} {measures.unit('mm')}"
-    told = f"swept area of the last wheel: {size}, ±{number(half)}°"
+    label = f"swept area of the last wheel: {size}, ±{number(half)}°"
     style = "swept" if half < FULL else "tip"
-    sheet.slice(OUTPUT, radius, _ends(found, half), style, LAST, told)
+    sheet.slice(OUTPUT, radius, _ends(found, half), style, LAST, label)
     if train is None:
         return
     own, stage = min(FULL * train.sector, half), train.stages[-1]
-    told = f"wheel 2, z {stage.wheel_teeth}: {size}, sector of {number(2.0 * own)}°"
+    label = f"wheel 2, z {stage.wheel_teeth}: {size}, sector of {number(2.0 * own)}°"
     if own < FULL:
-        sheet.slice(OUTPUT, radius, _ends(found, own), "tip", LAST, told)
+        sheet.slice(OUTPUT, radius, _ends(found, own), "tip", LAST, label)
     reference = 0.5 * stage.wheel_diameter_mm
     sheet.slice(OUTPUT, reference, _ends(found, own), "reference", LAST, rim=True)
 

@@ -128,10 +128,10 @@ def _achieved(found: RatioDesign, measures: Measures) -> Table:
 def _cell(value: float | None, unit: str, measures: Measures) -> Cell | None:
     if value is None:
         return None
+    size = measures.of(value, unit)
     if unit == "percent":
-        return Cell(measures.of(value, unit), f"{measures.of(value, unit):.3g}")
-    told = measures.of(value, unit)
-    return Cell(told, shown(told).text, short=number(float(told)))
+        return Cell(size, f"{size:.3g}")
+    return Cell(size, shown(size).text, short=number(float(size)))
 
 
 def _curve(found: RatioDesign, measures: Measures) -> Table:
@@ -188,14 +188,14 @@ def _mark(
     name: str, ratio: float, value: float, unit: str, colour: str, symbol: str, size: int
 ) -> dict[str, Any]:
     """Mark a ratio with its value, which its name in the legend shows too."""
-    told = f"{name} {number(ratio)}: {number(float(value))} {unit}"
+    label = f"{name} {number(ratio)}: {number(float(value))} {unit}"
     return {
         "type": "scatter",
         "mode": "markers",
-        "name": told,
+        "name": label,
         "x": [ratio],
         "y": [value],
-        "hovertemplate": f"{told}<extra></extra>",
+        "hovertemplate": f"{label}<extra></extra>",
         "marker": {"color": colour, "size": size, "symbol": symbol},
     }
 

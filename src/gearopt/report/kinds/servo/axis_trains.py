@@ -24,6 +24,7 @@ from gearopt.report.kinds.servo.axis_words import (
     degrees,
     design_of,
     error_limit,
+    limit_line,
     report_of,
     teeth_words,
 )
@@ -214,7 +215,7 @@ def _front(result: Result, measures: Measures, goal: Goal, other: Goal) -> Secti
         across["type"] = "linear"
     known = replace(design, allocation=None)  # its own limit, not that of tolerances
     limit = error_limit(known, result.limits) if other.name == "error" else None
-    shapes = [] if limit is None else [_level(limit)]
+    shapes = [] if limit is None else [limit_line("allowed", limit, "x", 1.6)]
     traces = [_points(*group, (key, high), measures) for group in groups]
     figure = Figure(traces, layout(across, up, 400, shapes=shapes), _caption(result, found))
     tables = (_table(found, measures),) if goal.name != "mass" else ()
@@ -300,18 +301,3 @@ def _told(train: ListedTrain, measures: Measures) -> str:
         shown = degrees(value) if goal.name == "error" else amount(value, unit, measures)
         lines.append(f"{goal.word} {shown}")
     return "<br>".join(lines)
-
-
-def _level(limit: float) -> dict[str, Any]:
-    """Return the error allowed as a line across the plot."""
-    return {
-        "type": "line",
-        "name": f"allowed {degrees(limit)}",
-        "showlegend": True,
-        "xref": "paper",
-        "x0": 0,
-        "x1": 1,
-        "y0": limit,
-        "y1": limit,
-        "line": {"color": "--warn", "width": 1.6, "dash": "dash"},
-    }

@@ -1,6 +1,7 @@
 """A servo axis as its result holds it, and words that several of its sections share."""
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 from gearopt.formulations.servo.servo_design import ServoDesign, ServoReport, Teeth
 from gearopt.optimise.result import Result
@@ -46,3 +47,16 @@ def error_limit(design: ServoDesign, limits: Mapping[str, float]) -> float | Non
             return budget.limit_deg
     error = None if design.train is None else design.train.error_deg
     return error / used if used and error is not None else None
+
+
+def limit_line(name: str, limit: float, along: str, width: float) -> dict[str, Any]:
+    """Return the limit of an error [deg] as a line across a plot, along its axis x or y."""
+    across = {"x": "y", "y": "x"}[along]
+    return {
+        "type": "line",
+        f"{along}ref": "paper",
+        **{f"{across}0": limit, f"{across}1": limit, f"{along}0": 0, f"{along}1": 1},
+        "line": {"color": "--warn", "width": width, "dash": "dash"},
+        "name": f"{name} {degrees(limit)}",
+        "showlegend": True,
+    }
