@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from gearopt.errors import CertificateError
-from gearopt.optimise.certificate import FARKAS, Verdict, bounded, certify, reconcile, told
+from gearopt.optimise.certificate import FARKAS, Verdict, bounded, certify, reconcile, reported_gap
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Outcome, Result
@@ -159,8 +159,13 @@ def test_limits_that_contradict_each_other_by_a_little_are_no_error(slope, kind)
     assert verdict.message.startswith(("least is violated by 5e-11", "most is violated by 5e-11"))
     assert verdict.message.endswith("which the objective gains from.")
 
-    assert (told(0.5), told(-0.5), told(np.inf), told(-np.inf)) == (0.5, None, None, None)
-    assert told(-1e-6) == 0.0 and told(-1.1e-6) is None
+    assert (reported_gap(0.5), reported_gap(-0.5), reported_gap(np.inf), reported_gap(-np.inf)) == (
+        0.5,
+        None,
+        None,
+        None,
+    )
+    assert reported_gap(-1e-6) == 0.0 and reported_gap(-1.1e-6) is None
 
 
 @pytest.mark.parametrize(("least", "status"), [(3.0, "infeasible"), (0.3, "failed")])

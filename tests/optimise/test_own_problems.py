@@ -240,3 +240,20 @@ def test_other_rows_at_other_parameters_are_an_error():
     assert solve(problem, "annealing", SHORT["annealing"]).limits
     with pytest.raises(SolveError, match="other rows at other parameters"):
         solve(problem.at(on=-1.0), "annealing")
+
+
+def test_methods_take_whole_numbers_and_finite_sets_or_name_the_first():
+    """As docs/own_problem.md says; nothing proves what the samplers and SCIP answer."""
+    count = Var("count", "", 1, 9, 5, integer=True, log=True)
+    size = Var("size", "mm", 1.0, 2.0, 1.5, values=(1.0, 1.5, 2.0), log=True)
+
+    def text(x, p):
+        return Terms({"sum": x.count + x.size}, {"area": 6.5 / (x.count * x.size)})
+
+    problem = Problem("picked", (count, size), (), text)
+    for method in ("annealing", "nsga2", "scip"):
+        result = solve(problem, method, Budget(evaluations=1000))
+        assert (result.status, result.value, result.bound) == ("feasible", 6.0, None)
+    for method in ("ipopt", "multistart", "gp", "qp"):
+        with pytest.raises(SolveError, match="count is discrete"):
+            solve(problem, method)

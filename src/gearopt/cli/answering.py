@@ -7,13 +7,12 @@ import typer
 from rich.console import Console
 
 from gearopt.cli.app import Csv, File, Html, Json, Units, app, console, exit_code, print_whole
-from gearopt.cli.reporting import SECONDS, TOP_ON_PAGE, Files, checked, written
+from gearopt.cli.reporting import SECONDS, TOP_ON_PAGE, answer, checked, compared, written
 from gearopt.cli.watching import following, reached, watching
-from gearopt.cli.writing import check_html, write
+from gearopt.cli.writing import check_html
 from gearopt.optimise.comparing.compare import EVALUATIONS, SEEDS, Progress
 from gearopt.optimise.comparing.compare import SECONDS as EACH
-from gearopt.optimise.comparing.comparison import Comparison
-from gearopt.optimise.result import Budget, Result
+from gearopt.optimise.result import Budget
 
 
 @app.command()
@@ -73,19 +72,8 @@ def solve(
     try:
         lines = written(result, files)
     finally:  # what took long to find is shown even where no file can be written
-        _show_result(result, files, lines, as_json)
+        answer(result, as_json, lines, files.measures)
     raise typer.Exit(exit_code(result))
-
-
-def _show_result(result: Result, files: Files, lines: list[str], as_json: bool) -> None:
-    if as_json:
-        print_whole(result.to_json())
-        return
-    from gearopt.report.terminal import show
-
-    show(result, console(), files.measures)
-    for line in lines:
-        print(line)
 
 
 @app.command()
@@ -108,8 +96,8 @@ def explain(
 
         ways = {k: getattr(found, k) for k in ("conflict", "message")}
         ways |= {"remedies": [asdict(r) for r in found.remedies]}
-        told = found.conflict or found.remedies or found.message != found.result.message
-        if found.result.status != "infeasible" or not told:  # the proof says why, once
+        reasons = found.conflict or found.remedies or found.message != found.result.message
+        if found.result.status != "infeasible" or not reasons:  # the proof says why, once
             ways = {}
         report = found.result.report | ({"ways_out": ways} if ways else {})
         show_result(replace(found.result, report=report), console())
@@ -161,34 +149,21 @@ def compare(
             bound_from=bound_from,
             watch=watch if as_json else _announced(watch),
         )
+    lines: list[str] = []
     try:
-        if html is not None:
-            from gearopt.report.pages.comparison import page
-
-            write("--html", html, page(found))
+        lines = compared(found, html)
     finally:  # what took long to find is shown even where no page can be written
-        _show(found, as_json)
-    if html is not None and not as_json:
-        print(f"\nPage: {html}")
-
-
-def _show(found: Comparison, as_json: bool) -> None:
-    if as_json:
-        print_whole(found.to_json())
-        return
-    from gearopt.report.terminal import show_comparison
-
-    show_comparison(found, console())
+        answer(found, as_json, lines)
 
 
 def _announced(watch: Callable[[Progress], bool]) -> Callable[[Progress], bool]:
     """Return the watcher, which first prints how long all will take."""
-    told = False
+    announced = False
 
     def announcing(progress: Progress) -> bool:
-        nonlocal told
-        if progress.total and not told:
-            told = True
+        nonlocal announced
+        if progress.total and not announced:
+            announced = True
             words = f"{progress.total} runs, about {_time(progress.left)}"
             Console(stderr=True, highlight=False).print(words, style="dim")
         return watch(progress)

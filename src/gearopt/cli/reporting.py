@@ -10,12 +10,12 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from gearopt.cli.app import Csv, Html, Units, app, console, exit_code
+from gearopt.cli.app import Csv, Html, Units, app, console, exit_code, print_whole
 from gearopt.cli.writing import check_csv, check_html, write
 from gearopt.errors import GearoptError
 from gearopt.optimise.comparing.comparison import Comparison
 from gearopt.optimise.result import Result, loads
-from gearopt.report.measures import SYSTEMS, Measures
+from gearopt.report.measures import METRIC, SYSTEMS, Measures
 
 SECONDS = 60.0  # that a run may take by default
 LONGEST = 200  # characters shown of what is wrong with a file
@@ -69,21 +69,41 @@ def _again(kept: Result | Comparison, screen: Console, files: Files) -> list[str
     """Show what was kept, write its files (never over its source); return lines about them."""
     if kept.file is not None:
         checked(files.html, files.csv, files.measures.name, Path(kept.file))
-    if isinstance(kept, Result):
-        from gearopt.report.terminal import show
-
-        show(kept, screen, files.measures)
-        return written(kept, files)
-    if files.csv is not None or files.measures.name != "metric":
+    if isinstance(kept, Comparison) and (files.csv or files.measures is not METRIC):
         raise GearoptError("--csv and --units are for results; this file holds a comparison")
-    from gearopt.report.pages.comparison import page
-    from gearopt.report.terminal import show_comparison as show_comparison
+    _show(kept, screen, files.measures)
+    return written(kept, files) if isinstance(kept, Result) else compared(kept, files.html)
 
-    show_comparison(kept, screen)
-    if files.html is None:
+
+def _show(found: Result | Comparison, screen: Console, measures: Measures) -> None:
+    from gearopt.report.terminal import show, show_comparison
+
+    if isinstance(found, Result):
+        show(found, screen, measures)
+    else:
+        show_comparison(found, screen)
+
+
+def answer(
+    found: Result | Comparison, as_json: bool, lines: list[str], measures: Measures = METRIC
+) -> None:
+    """Print an answer as JSON, or show it with lines about what was written."""
+    if as_json:
+        print_whole(found.to_json())
+        return
+    _show(found, console(), measures)
+    for line in lines:
+        print(line)
+
+
+def compared(found: Comparison, html: Path | None) -> list[str]:
+    """Write the page of a comparison; return a line about it."""
+    if html is None:
         return []
-    write("--html", files.html, page(kept))
-    return [f"\nPage: {files.html}"]
+    from gearopt.report.pages.comparison import page
+
+    write("--html", html, page(found))
+    return [f"\nPage: {html}"]
 
 
 def checked(html: Path | None, csv: Path | None, units: str, *given: Path) -> Files:

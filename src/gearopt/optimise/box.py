@@ -25,10 +25,10 @@ def allowed_values(problem: Problem, column: int) -> Sequence[float]:
     """
     variable, name = problem.columns[column]
     if variable.values is None:
-        least, most = whole_ends(problem, column)
-        if not (math.isfinite(least) and math.isfinite(most)):
+        minimum, maximum = whole_ends(problem, column)
+        if not (math.isfinite(minimum) and math.isfinite(maximum)):
             raise SolveError(f"{problem.name}: the integer {name} needs finite bounds")
-        return range(int(least), int(most) + 1)
+        return range(int(minimum), int(maximum) + 1)
     low, high = _widened(problem, column)
     found = tuple(sorted({float(v) for v in variable.values if low <= v <= high}))
     return found or _nothing(problem, column, "value of its set")
@@ -46,9 +46,9 @@ def check_discrete(problem: Problem) -> None:
 def whole_ends(problem: Problem, column: int) -> tuple[float, float]:
     """Return minimum and maximum whole number within the bounds of an integer, or infinities."""
     low, high = _widened(problem, column)
-    least = float(math.ceil(low)) if math.isfinite(low) else low
-    most = float(math.floor(high)) if math.isfinite(high) else high
-    return (least, most) if least <= most else _nothing(problem, column, "whole number")
+    minimum = float(math.ceil(low)) if math.isfinite(low) else low
+    maximum = float(math.floor(high)) if math.isfinite(high) else high
+    return (minimum, maximum) if minimum <= maximum else _nothing(problem, column, "whole number")
 
 
 def _widened(problem: Problem, column: int) -> tuple[float, float]:
@@ -66,13 +66,13 @@ def _nothing(problem: Problem, column: int, what: str) -> NoReturn:
 class Box:
     """Lower and upper ends (n,) in search coordinates, and how each coordinate is read.
 
-    least, most: natural ends, those of integers whole.
+    minimum, maximum: natural ends, those of integers whole.
     """
 
     low: Array
     high: Array
-    least: Array
-    most: Array
+    minimum: Array
+    maximum: Array
     logarithmic: Array
     whole: Array
     sets: dict[int, Array]
@@ -81,7 +81,7 @@ class Box:
         """Return natural points (N, n) of coordinates (N, n) in [0, 1]."""
         y = self.low + np.clip(unit, 0.0, 1.0) * (self.high - self.low)
         x = np.where(self.logarithmic, np.exp(np.where(self.logarithmic, y, 0.0)), y)
-        x = np.where(self.whole, np.clip(np.rint(x), self.least, self.most), x)
+        x = np.where(self.whole, np.clip(np.rint(x), self.minimum, self.maximum), x)
         for k, values in self.sets.items():
             x[:, k] = values[np.clip(np.rint(y[:, k]), 0, len(values) - 1).astype(int)]
         return x
@@ -102,26 +102,26 @@ def box(problem: Problem) -> Box:
     A positive variable whose ends differ by more than a factor of 10 is searched by its logarithm,
     whether declared log or not.
     """
-    least, most = (bound.copy() for bound in problem.bounds()[:2])
-    low, high = least.copy(), most.copy()
+    minimum, maximum = (bound.copy() for bound in problem.bounds()[:2])
+    low, high = minimum.copy(), maximum.copy()
     logarithmic, whole = np.zeros(len(low), bool), np.zeros(len(low), bool)
     sets: dict[int, Array] = {}
     for k, (variable, name) in enumerate(problem.columns):
-        if not most[k] / 2.0 - least[k] / 2.0 < np.finfo(float).max / 2.0:
+        if not maximum[k] / 2.0 - minimum[k] / 2.0 < np.finfo(float).max / 2.0:
             raise SolveError(
-                f"a sampler needs finite bounds; {name} has {least[k]:g} and {most[k]:g}"
+                f"a sampler needs finite bounds; {name} has {minimum[k]:g} and {maximum[k]:g}"
             )
         if variable.values is not None:
             sets[k] = np.array(allowed_values(problem, k))
             low[k], high[k] = 0.0, len(sets[k]) - 1.0
             continue
         if variable.integer:
-            whole[k], (least[k], most[k]) = True, whole_ends(problem, k)
-        logarithmic[k] = variable.log or (least[k] > 0 and most[k] > 10.0 * least[k])
-        low[k], high[k] = least[k], most[k]
+            whole[k], (minimum[k], maximum[k]) = True, whole_ends(problem, k)
+        logarithmic[k] = variable.log or (minimum[k] > 0 and maximum[k] > 10.0 * minimum[k])
+        low[k], high[k] = minimum[k], maximum[k]
         if logarithmic[k]:
-            low[k], high[k] = np.log([least[k], most[k]])
-    return Box(low, high, least, most, logarithmic, whole, sets)
+            low[k], high[k] = np.log([minimum[k], maximum[k]])
+    return Box(low, high, minimum, maximum, logarithmic, whole, sets)
 
 
 def violation(problem: Problem, points: Array) -> tuple[Array, Array]:

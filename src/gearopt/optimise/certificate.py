@@ -107,7 +107,7 @@ def _claimed(problem: Problem, outcome: Outcome, before: Verdict, tolerance: flo
         before,
         status="optimal" if found <= tolerance else before.status,
         bound=bound,
-        gap=told(found),
+        gap=reported_gap(found),
         certificate=dict(before.certificate) | scale,
         proof=outcome.proof or {},
     )
@@ -143,13 +143,13 @@ def bounded(
         before,
         status=status,
         bound=bound,
-        gap=told(found),
+        gap=reported_gap(found),
         certificate=dict(before.certificate) | scale,
         message=message.strip(),
     )
 
 
-def told(gap: float) -> float | None:
+def reported_gap(gap: float) -> float | None:
     """Return a gap as results hold it, at least 0; None where infinite or below a bound."""
     return max(gap, 0.0) if -100 * FEASIBLE <= gap < math.inf else None
 
@@ -269,7 +269,7 @@ def reconcile(result: Result, relaxation: Result, tolerance: float) -> Result:
     return replace(
         result,
         bound=bound,
-        gap=told(gap),
+        gap=reported_gap(gap),
         status=status,
         certificate=certificate,
         proof=dict(relaxation.proof),

@@ -79,13 +79,13 @@ class Clock:
         """
         before = self.evaluations
 
-        def told(event: Event) -> bool:
+        def follow(event: Event) -> bool:
             self.evaluations = before + event.evaluations
             if values and event.best is not None:
                 self.best = min(self.best, event.best)
             return self.tell()
 
-        return told
+        return follow
 
 
 def _known(value: float) -> float | None:
@@ -102,12 +102,12 @@ def in_part(
     if watch is None:
         return None
 
-    def told(event: Event) -> bool:
+    def follow(event: Event) -> bool:
         best, bound = (None if v is None else factor * v for v in (event.best, event.bound))
         named = part or event.part
         return watch(replace(event, best=best, bound=bound, part=named, unit=unit)) is not False
 
-    return told
+    return follow
 
 
 def of_problem(watch: Watch | None, problem: "Problem | Conic") -> Watch | None:
@@ -116,10 +116,10 @@ def of_problem(watch: Watch | None, problem: "Problem | Conic") -> Watch | None:
         return None
     name, objective = problem.name, problem.rows.objectives[0]
 
-    def told(event: Event) -> bool:
+    def follow(event: Event) -> bool:
         return watch(replace(event, part=event.part or name, objective=objective)) is not False
 
-    return told
+    return follow
 
 
 def of_others(watch: Watch | None, part: str = OTHERS) -> Watch | None:
@@ -127,10 +127,10 @@ def of_others(watch: Watch | None, part: str = OTHERS) -> Watch | None:
     if watch is None:
         return None
 
-    def told(event: Event) -> bool:
+    def follow(event: Event) -> bool:
         return watch(Event(event.seconds, event.evaluations, part=part)) is not False
 
-    return told
+    return follow
 
 
 def whole(watch: Watch | None) -> Watch | None:
@@ -144,7 +144,7 @@ def whole(watch: Watch | None) -> Watch | None:
     clock, before, last = Clock(), 0, 0
     reached: dict[str, tuple[float | None, float | None]] = {}
 
-    def told(event: Event) -> bool:
+    def follow(event: Event) -> bool:
         nonlocal before, last
         before += last if event.evaluations < last else 0
         last = event.evaluations
@@ -156,7 +156,7 @@ def whole(watch: Watch | None) -> Watch | None:
         spent = before + last
         return watch(replace(values, seconds=clock.seconds, evaluations=spent)) is not False
 
-    return told
+    return follow
 
 
 def following(watch: Watch | None) -> tuple[Watch, list[dict[str, Any]]]:
@@ -166,7 +166,7 @@ def following(watch: Watch | None) -> tuple[Watch, list[dict[str, Any]]]:
     """
     events: list[dict[str, Any]] = []
 
-    def told(event: Event) -> bool:
+    def follow(event: Event) -> bool:
         last = events[-1] if events else {"best": None, "bound": None}
         better = event.best is not None and (last["best"] is None or event.best < last["best"])
         tighter = event.bound is not None and (last["bound"] is None or event.bound > last["bound"])
@@ -174,4 +174,4 @@ def following(watch: Watch | None) -> tuple[Watch, list[dict[str, Any]]]:
             events.append({key: getattr(event, key) for key in NEWS})
         return watch is None or watch(event) is not False
 
-    return told, events
+    return follow, events

@@ -60,7 +60,7 @@ def blaming(text: Callable[..., Any], where: str, doing: str) -> Iterator[None]:
     except Exception as broken:
         line = _line(broken, text)
         raise SolveError(
-            f"the text of {where} cannot be {doing}{line}: {_told(broken)}"
+            f"the text of {where} cannot be {doing}{line}: {_in_words(broken)}"
         ) from broken
 
 
@@ -90,7 +90,7 @@ def _line(broken: BaseException, text: Callable[..., Any]) -> str:
     return f" in line {frames[-1].lineno}{line}"
 
 
-def _told(broken: BaseException) -> str:
+def _in_words(broken: BaseException) -> str:
     """Return an exception in one line, without the places of compiled code."""
     lines = [line.strip() for line in str(broken).splitlines() if line.strip()]
     words = lines[-1] if lines and lines[0].startswith("Error in") else " ".join(lines)
@@ -199,8 +199,8 @@ def elementwise(problem: "Problem", repeat: Repeat | None) -> bool:
     key = ("elementwise", repeat and repeat.name, problem.parameter_values().tobytes())
     if key not in problem.memo:
         problem.memo[key] = reason = _obstacle(problem, repeat) or _surprise(problem, repeat)
-        if reason and ("told", repeat and repeat.name) not in problem.memo:
-            problem.memo["told", repeat and repeat.name] = True
+        if reason and ("reported", repeat and repeat.name) not in problem.memo:
+            problem.memo["reported", repeat and repeat.name] = True
             where = text_of(problem, repeat)[1]
             logger.info("the text of %s is run point by point, which is slower: %s", where, reason)
     return not problem.memo[key]

@@ -26,8 +26,8 @@ def kernel(module: str) -> ModuleType:
     folder = _folder() / _key()
     numba.config.CACHE_DIR = str(folder)
     if not any(folder.rglob(f"{module.rsplit('.', 1)[-1]}.*.nbi")):
-        told = "compiling kernels, once on this machine: this may take a minute"
-        logger.info("%s (Ctrl-C twice ends it)", told)
+        words = "compiling kernels, once on this machine: this may take a minute"
+        logger.info("%s (Ctrl-C twice ends it)", words)
     return import_module(module)
 
 

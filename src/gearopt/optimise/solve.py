@@ -58,8 +58,8 @@ def run(
     """
     name = method or next(iter(problem.methods), _default(problem))
     clock = Clock()
-    told = of_problem(watch, problem)
-    outcome = method_of(problem, name)(problem, budget or Budget(), seed, told)
+    follow = of_problem(watch, problem)
+    outcome = method_of(problem, name)(problem, budget or Budget(), seed, follow)
     verdict = judge(problem, name, outcome, gap)
     return _result(problem, name, outcome, verdict, clock.seconds, seed), outcome
 

@@ -101,19 +101,19 @@ def _own(method: str, declared: Any) -> Any:
     return declared[method] if by_name else declared
 
 
-def attempt(entry: Entry, seed: int, budget: Budget, told: Callable[[Event], bool]) -> Run | None:
-    """Make one run; None where `told` ended it. An error of the method is the run's message."""
+def attempt(entry: Entry, seed: int, budget: Budget, follow: Callable[[Event], bool]) -> Run | None:
+    """Make one run; None where `follow` ended it. An error of the method is the run's message."""
     problem, method = entry.problem, entry.method
     assert problem is not None
     clock = Clock()
     stopped = False
 
-    def goes_on(event: Event) -> bool:
+    def continues(event: Event) -> bool:
         nonlocal stopped
-        stopped = stopped or not told(event)
+        stopped = stopped or not follow(event)
         return not stopped
 
-    followed, events = following(goes_on)
+    followed, events = following(continues)
     unit = "" if entry.model is None else entry.model.unit
     watch = of_problem(in_part(followed, unit), problem)
     try:
@@ -259,10 +259,10 @@ def _bound(
     posed = model(method)
     problem = replace(posed.problem)
 
-    def told(event: Event) -> bool:
+    def continues(event: Event) -> bool:
         return watch is None or watch(Progress(0, 0, method, 0, 0.0, event)) is not False
 
-    follow = of_problem(in_part(told, posed.unit), problem)
+    follow = of_problem(in_part(continues, posed.unit), problem)
     outcome = method_of(problem, method)(problem, Budget(BOUND_SECONDS), 0, follow)
     bound = judge(problem, method, outcome, GAP).bound
     return None if bound is None else (problem.name, method, bound)
@@ -277,11 +277,15 @@ def _work(
         left = sum(expected[j.entry.method, j.kind] for j in jobs[done:])
         now = Progress(done, len(jobs), job.entry.method, job.seed, left)
 
-        def told(event: Event | None, now: Progress = now) -> bool:
+        def follow(event: Event | None, now: Progress = now) -> bool:
             return watch is None or watch(replace(now, event=event)) is not False
 
         before = runs.get((job.entry.method, KINDS[0]), [])
-        run = attempt(job.entry, job.seed, _budget(job, plan, before), told) if told(None) else None
+        run = (
+            attempt(job.entry, job.seed, _budget(job, plan, before), follow)
+            if follow(None)
+            else None
+        )
         if run is None:
             return done
         runs.setdefault((job.entry.method, job.kind), []).append(run)

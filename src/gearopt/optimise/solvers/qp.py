@@ -38,7 +38,7 @@ SETTINGS = {"solvers": ", ".join(SOLVERS), **TOLERANCES}
 
 @dataclass(frozen=True)
 class _Program:
-    """1/2 x'Qx + c'x, least <= A x <= most, low <= x <= high; the first `count` rows are limits.
+    """1/2 x'Qx + c'x, minimum <= A x <= maximum, low <= x <= high; `count` first rows are limits.
 
     own: scale of each variable.
     """
@@ -46,8 +46,8 @@ class _Program:
     hessian: Array
     linear: Array
     rows: Array
-    least: Array
-    most: Array
+    minimum: Array
+    maximum: Array
     low: Array
     high: Array
     count: int
@@ -56,7 +56,7 @@ class _Program:
     def violation(self, x: Array) -> float:
         """Return largest violation of a row."""
         value = self.rows @ x
-        return float(np.maximum(self.least - value, value - self.most).max(initial=0.0))
+        return float(np.maximum(self.minimum - value, value - self.maximum).max(initial=0.0))
 
 
 def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
@@ -72,8 +72,10 @@ def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Out
     for name in (*SOLVERS, "daqp"):
         if not clock.tell():
             return Outcome(None, False, evaluations=len(words), message=EARLY)
-        given = np.arange(len(program.most))
-        if len(words) == len(SOLVERS) and len(given := _independent(program)) == len(program.most):
+        given = np.arange(len(program.maximum))
+        if len(words) == len(SOLVERS) and len(given := _independent(program)) == len(
+            program.maximum
+        ):
             break
         x, lam, status = _solved(problem, name, program, curved, given)
         words.append(f"{name}: {status or 'a row is not met'}")
@@ -100,10 +102,10 @@ def _checked(problem: Problem) -> tuple[Form, Curvature]:
     hessian = hessian_of(problem, shape)
     curved = curvature(hessian)
     if not shape.convex:
-        least = np.linalg.eigvalsh(hessian)[0] if np.isfinite(hessian).all() else np.nan
+        minimum = np.linalg.eigvalsh(hessian)[0] if np.isfinite(hessian).all() else np.nan
         raise SolveError(
             f"{problem.name} is no convex quadratic program: {problem.rows.objectives[0]} has "
-            f"curvature {least:.3g}"
+            f"curvature {minimum:.3g}"
         )
     return shape, curved
 
@@ -166,15 +168,15 @@ def _solved(
         h=program.hessian / cost * np.outer(unit, unit),
         g=program.linear / cost * unit,
         a=program.rows[given] * unit,
-        lba=program.least[given],
-        uba=program.most[given],
+        lba=program.minimum[given],
+        uba=program.maximum[given],
         lbx=program.low / unit,
         ubx=program.high / unit,
     )
     stats = solver.stats()
     x = np.clip(np.array(found["x"]).ravel() * unit, program.low, program.high)
     status = "" if stats["success"] else str(stats["return_status"])
-    lam = np.zeros(len(program.most))
+    lam = np.zeros(len(program.maximum))
     lam[given] = np.array(found["lam_a"]).ravel() * cost
     return x, lam, status
 
@@ -183,7 +185,7 @@ def _independent(program: _Program) -> Any:
     """Return all limits, and the equalities that are no combination of those before them."""
     basis = np.empty((0, len(program.linear)))
     kept = list(range(program.count))
-    for k in range(program.count, len(program.most)):
+    for k in range(program.count, len(program.maximum)):
         row = program.rows[k] / max(float(np.linalg.norm(program.rows[k])), TINY)
         rest = row - basis.T @ (basis @ row)
         if (length := float(np.linalg.norm(rest))) > DEPENDENT:
@@ -194,16 +196,16 @@ def _independent(program: _Program) -> Any:
 def _nearest(problem: Problem, program: _Program, runs: int, words: str) -> Outcome:
     """Return the point of least squared violation, whose residuals s prove a conflict.
 
-    minimise 1/2 s's  subject to  least <= A x - s <= most,  low <= x <= high
+    minimise 1/2 s's  subject to  minimum <= A x - s <= maximum,  low <= x <= high
     """
-    size, rows = len(program.linear), len(program.most)
+    size, rows = len(program.linear), len(program.maximum)
     free = np.full(rows, np.inf)
     wide = _Program(
         np.diag(np.repeat([0.0, 1.0], [size, rows])),
         np.zeros(size + rows),
         np.hstack([program.rows, -np.eye(rows)]),
-        program.least,
-        program.most,
+        program.minimum,
+        program.maximum,
         np.concatenate([program.low, -free]),
         np.concatenate([program.high, free]),
         program.count,
