@@ -43,7 +43,7 @@ ISO_53_A = Rack()
 
 
 def disc_mass(density: Any, length: Any, diameter: Any) -> Any:
-    """Mass (pi/4) rho b d^2 [t] of a solid cylinder.
+    """Return the mass (pi/4) rho b d^2 [t] of a solid cylinder.
 
     density rho [t/mm3]; length b, diameter d [mm] >= 0.
     """
@@ -51,7 +51,7 @@ def disc_mass(density: Any, length: Any, diameter: Any) -> Any:
 
 
 def disc_inertia(density: Any, length: Any, diameter: Any) -> Any:
-    """Moment of inertia (pi/32) rho b d^4 [t mm2] of a solid cylinder about its axis.
+    """Return the moment of inertia (pi/32) rho b d^4 [t mm2] of a solid cylinder about its axis.
 
     density rho [t/mm3]; length b, diameter d [mm] >= 0.
     """
@@ -59,7 +59,7 @@ def disc_inertia(density: Any, length: Any, diameter: Any) -> Any:
 
 
 def reference_diameter(module: Any, teeth: Any, helix_angle: Any = 0.0) -> Any:
-    """Reference (pitch) diameter d = m_n z / cos(beta) [mm].
+    """Return the reference (pitch) diameter d = m_n z / cos(beta) [mm].
 
     module [mm] > 0, the normal one, or the transverse one m_n/cos(beta) without a helix angle;
     teeth > 0; helix_angle [rad], |beta| < pi/2.
@@ -69,7 +69,7 @@ def reference_diameter(module: Any, teeth: Any, helix_angle: Any = 0.0) -> Any:
 
 
 def transverse_pressure_angle(pressure_angle: Any, helix_angle: Any) -> Any:
-    """Transverse pressure angle alpha_t = arctan(tan(alpha_n)/cos(beta)) [rad].
+    """Return the transverse pressure angle alpha_t = arctan(tan(alpha_n)/cos(beta)) [rad].
 
     pressure_angle alpha_n, the normal one, from 0 to below pi/2; helix_angle beta, |beta| < pi/2.
     Source: ISO 21771:2007, transverse pressure angle.
@@ -84,7 +84,7 @@ def transverse_contact_ratio(
     working_angle: Any,
     base_pitch: Any,
 ) -> Any:
-    """Transverse contact ratio eps_alpha = g_alpha/p_bt: how many pairs of teeth touch on average.
+    """Return the transverse contact ratio eps_alpha = g_alpha/p_bt: mean tooth pairs in contact.
 
     g_alpha = (sqrt(d_a1^2 - d_b1^2) + sqrt(d_a2^2 - d_b2^2))/2 - a sin(alpha_wt). Tip diameters
     d_a > base diameters d_b of pinion and wheel; centres: their distance a; base_pitch p_bt, the
@@ -98,7 +98,7 @@ def transverse_contact_ratio(
 
 
 def teeth_without_undercut(rack: Rack, helix_angle: Any) -> Any:
-    """Minimum teeth z = 2 h_aP/m_n cos(beta)/sin(alpha_t)^2 that a rack does not undercut.
+    """Return the minimum teeth z = 2 h_aP/m_n cos(beta)/sin(alpha_t)^2 without undercut by a rack.
 
     helix_angle beta [rad]; for gears without profile shift.
     Source: the rack's tip line passes through the tangent point of the base circle, h = (d/2)

@@ -8,7 +8,7 @@ from typing import Any
 
 
 def torque(power: Any, angular_speed: Any) -> Any:
-    """Torque T = P/omega [N mm] of a shaft that carries power [N mm/s] at angular_speed [rad/s].
+    """Return the torque T = P/omega [N mm] for power [N mm/s] at angular_speed [rad/s].
 
     angular_speed > 0. Equals 30e6 P/(pi n) for P in kW and n in rpm.
     """
@@ -16,7 +16,7 @@ def torque(power: Any, angular_speed: Any) -> Any:
 
 
 def k_factor(pinion_torque: Any, pinion_diameter: Any, face_width: Any, ratio: Any) -> Any:
-    """K-factor K = W_t/(d1 b) (u + 1)/u with W_t = 2 T1/d1 [MPa]: the index of contact stress.
+    """Return the K-factor W_t/(d1 b) (u + 1)/u [MPa], W_t = 2 T1/d1: the index of contact stress.
 
     pinion_torque T1 [N mm]; pinion_diameter d1, face_width b [mm] > 0; ratio u >= 1.
     Source: Chong and Lee, eq. (10); sigma_H = Z_E-like constant times sqrt(K), their eq. (1).
@@ -25,7 +25,7 @@ def k_factor(pinion_torque: Any, pinion_diameter: Any, face_width: Any, ratio: A
 
 
 def unit_load(pinion_torque: Any, pinion_diameter: Any, face_width: Any, normal_module: Any) -> Any:
-    """Unit load U = W_t/(b m_n) with W_t = 2 T1/d1 [MPa]: the index of tooth-root stress.
+    """Return the unit load W_t/(b m_n) [MPa], W_t = 2 T1/d1: the index of tooth-root stress.
 
     pinion_torque T1 [N mm]; pinion_diameter d1, face_width b, normal_module m_n [mm] > 0.
     Source: Chong and Lee, eq. (11).
@@ -34,7 +34,7 @@ def unit_load(pinion_torque: Any, pinion_diameter: Any, face_width: Any, normal_
 
 
 def lewis_stress(torque: Any, diameter: Any, face_width: Any, module: Any, form_factor: Any) -> Any:
-    """Lewis stress 2 T/(d b m Y) [MPa] at the root of a gear.
+    """Return the Lewis stress 2 T/(d b m Y) [MPa] at the root of a gear.
 
     torque T [N mm] on the gear of pitch diameter d, face_width b, module m [mm]; form_factor Y on
     the module. No dynamic nor stress concentration factor.
@@ -43,7 +43,7 @@ def lewis_stress(torque: Any, diameter: Any, face_width: Any, module: Any, form_
 
 
 def pitch_line_velocity(angular_speed: Any, diameter: Any) -> Any:
-    """Speed v = omega d/2 of the reference circles in mesh [mm/s].
+    """Return the speed v = omega d/2 of the reference circles in mesh [mm/s].
 
     angular_speed omega [rad/s] and reference diameter d [mm] of one of the two gears, both > 0.
     """
@@ -51,7 +51,7 @@ def pitch_line_velocity(angular_speed: Any, diameter: Any) -> Any:
 
 
 def torsion_diameter(torque: Any, shear_stress: Any) -> Any:
-    """Diameter d = (16 T/(pi tau))^(1/3) [mm] of a solid shaft twisted to a shear stress.
+    """Return the diameter (16 T/(pi tau))^(1/3) [mm] of a solid shaft twisted to a shear stress.
 
     torque T [N mm], shear_stress tau [MPa] > 0; torsion alone, no bending and no notches.
     Source: polar section modulus pi d^3/16 of a round bar.

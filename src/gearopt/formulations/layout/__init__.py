@@ -1,6 +1,6 @@
 """The layout of a gearbox: where the shafts go, so that the box around the gears is smallest.
 
-Centre distances are given, so a layout is one angle a link and the order of the slabs along the
+Centre distances are given, so a layout is one angle per link and the order of the slabs along the
 shafts; distances are never penalised, because links are exact.
 """
 
@@ -28,10 +28,10 @@ CLOSE = 1e-9  # what a polished layout may violate
 
 
 def problem(box: Gearbox, method: str | None = None) -> Problem:
-    """The layout problem of a gearbox, in the text that suits a method (by default `exact`).
+    """Return the layout problem of a gearbox in the form for a method (by default `exact`).
 
-    Variables are those of `text.direct` or `text.smooth`. SolveError where the arrangement of slabs
-    is open and the method cannot choose one.
+    Variables are those of `layout_text.direct` or `.smooth`. SolveError where the arrangement of
+    slabs is open and the method cannot choose one.
     """
     orders = arrangements(box)
     if method in (*GRADIENT, "sa-paper") and len(orders) > 1:

@@ -34,9 +34,9 @@ SETTINGS = {  # by method
     "sa-paper": POSITIONS,
 }
 STEPS = 128_701  # where the budget names no evaluations: what the paper reports
-SLICE = 20_000  # steps between two looks at clock and watcher: some milliseconds
+SLICE = 20_000  # steps between two checks of clock and watcher: some milliseconds
 
-LOOKS = 100  # parts of a run at least, after each of which its best is told
+LOOKS = 100  # parts of a run at least, after each of which its best is reported
 
 Goes = Callable[[int, float], bool]
 
@@ -56,10 +56,10 @@ Polish = Callable[[Array, Budget, Watch | None], Polished]
 def anneal(
     chain: Chain, seed: int, steps: int, goes: Goes, free: bool = False, looks: int = 1
 ) -> tuple[Array, int]:
-    """Anneal; best value, arrangement and angles (N + 2,), inf if none is feasible, and steps made.
+    """Anneal; return best value, arrangement and angles (N + 2,), inf if none is feasible; steps.
 
-    free: positions instead of angles, the paper's way. goes(steps, best): whether to go on; it is
-    asked after SLICE steps, and `looks` times at least.
+    free: positions instead of angles, the paper's way. goes(steps, best): whether to continue; it
+    is asked after SLICE steps, and `looks` times at least.
     """
     kernels = kernel("gearopt.formulations.layout.anneal_kernel")
     links = chain.link.size
@@ -79,14 +79,14 @@ def anneal(
 
 
 def point(chain: Chain, found: Array) -> Array | None:
-    """The problem's point of what `anneal` found."""
+    """Return the problem's point of what `anneal` found."""
     if not np.isfinite(found[0]):
         return None
     return np.append(found[2:], found[1]) if chain.factor.size > 1 else found[2:].copy()
 
 
 def method(chain: Chain, free: bool, polish: Polish | None = None) -> Any:
-    """A run(problem, budget, seed, watch); polish: a local method that keeps the point."""
+    """Return a run(problem, budget, seed, watch); polish: a local method that keeps the point."""
 
     def run(problem: Any, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
         clock = Clock(budget, watch)

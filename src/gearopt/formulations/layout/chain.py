@@ -46,7 +46,7 @@ NARROW = 0.1  # of a link: a range of places smaller than this is met by closing
 
 
 def chain(box: Gearbox, orders: tuple[Arrangement, ...]) -> Chain:
-    """The numbers of a gearbox with some arrangements of its slabs."""
+    """Return the numbers of a gearbox with some arrangements of its slabs."""
     count = len(box.shafts)
     link = np.array([p.centre_distance for p in box.pairs])
     reach = [max(body.radius for body in own) for own in orders[0].bodies]
@@ -81,7 +81,7 @@ def chain(box: Gearbox, orders: tuple[Arrangement, ...]) -> Chain:
 
 
 def _objective(box: Gearbox, length: Array) -> tuple[tuple[float, float], Array]:
-    """Exponents of width and height, and the factor of each arrangement."""
+    """Return the exponents of width and height, and the factor of each arrangement."""
     if box.objective == "longest_side":
         return (1.0, 1.0), np.maximum(length, box.width or 0.0)
     wide = 1.0 if box.objective in ("box_volume", "plan_area", "face_area") else 0.0
@@ -93,7 +93,7 @@ def _objective(box: Gearbox, length: Array) -> tuple[tuple[float, float], Array]
 
 
 def _closings(box: Gearbox, link: Array, place: Array) -> tuple[NDArray[np.int64], Array]:
-    """Which links follow from given places, so that a search need not find them."""
+    """Return which links follow from given places, so that a search need not find them."""
     close, goal = np.zeros(len(link), np.int64), np.zeros((len(link), 3))
 
     for k, (left, right, bottom, top) in enumerate(place[1:]):

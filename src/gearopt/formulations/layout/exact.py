@@ -1,7 +1,7 @@
 """The exact method: interval branch and bound on the link angles, from a good first layout.
 
 Cells of angles are halved until each is either empty (no point in it keeps the distances) or
-bounded above the best layout by the gap asked for: `branch_kernel.branch`. The gap is narrowed in
+bounded above the best layout by the requested gap: `branch_kernel.branch`. The gap is narrowed in
 steps, so that a search which is stopped has the bound of its last full step.
 """
 
@@ -22,12 +22,12 @@ from gearopt.optimise.terms import Array
 RANDOM = False
 COUNTS = "layout measured or cell bounded"
 GAPS = (0.1, 0.01, 1e-3, 1e-4, 1e-5)  # each is proven before the next is tried
-GAP = 1e-6  # the last one where the budget asks for none
+GAP = 1e-6  # the last one where the budget requests none
 INSIDE = 1e-2  # a gap is proven smaller by this part of it, so that rounding leaves it there
 STARTS, STEPS = 8, 20_000  # annealing runs for the first layout, and their steps
 SETTINGS = {"first layout": f"{STARTS} annealing runs of {STEPS}, the best polished"}
 NODES = 5_000  # of a slice: below 0.1 s
-DEEP = 4_000  # open cells: a depth-first search leaves one a halving, some 60 halvings an angle
+DEEP = 4_000  # open cells: a depth-first search leaves one per halving, some 60 halvings per angle
 NEAR = 1.0  # mm; a layout that lacks no more may be mended by polishing
 
 Polish = Callable[[Array], tuple[Array, float]]
@@ -37,7 +37,7 @@ Polish = Callable[[Array], tuple[Array, float]]
 class Search:
     """A search as it runs; its state is what a stopped one still knows.
 
-    clock: counts layouts measured and cells looked at (nodes); has the best value and what is
+    clock: counts layouts measured and cells examined (nodes); has the best value and what is
     proven. x: the best layout. empty: no layout is feasible.
     """
 
@@ -47,13 +47,13 @@ class Search:
     empty: bool = False
 
     def left(self, maximum: int) -> int:
-        """How much of `maximum` the budget's evaluations allow."""
+        """Return how much of `maximum` the budget's evaluations allow."""
         left = self.clock.left.evaluations
         return maximum if left is None else min(maximum, left)
 
 
 def method(chain: Chain, turns: tuple[float, float], polish: Polish) -> Any:
-    """A run(problem, budget, seed, watch) for the best layout with a proven bound.
+    """Return a run(problem, budget, seed, watch) for the best layout with a proven bound.
 
     turns: range of the first angle. polish(point) -> a point no worse, and its value (inf where
     neither is feasible).
@@ -117,7 +117,7 @@ def _compile(chain: Chain) -> None:
 
 
 def _first(search: Search, chain: Chain, seed: int, polish: Polish) -> None:
-    """A good layout: the best of some annealing runs, polished."""
+    """Keep a good layout: the best of some annealing runs, polished."""
     clock = search.clock
     for k in range(STARTS):
         spent = clock.evaluations
@@ -158,7 +158,7 @@ def _prove(
     rel: float,
     polish: Polish,
 ) -> float | None:
-    """A bound within `rel` of the best layout, which may improve; None if stopped before."""
+    """Return a bound within `rel` of the best layout, which may improve; None if stopped before."""
     kernels = kernel("gearopt.formulations.layout.branch_kernel")
     floor, theta = math.inf, np.zeros(chain.link.size)
     for m in range(chain.factor.size):

@@ -26,7 +26,7 @@ def direct(
     methods: Mapping[str, Callable[..., Any]],
     front: bool = False,
 ) -> Problem:
-    """Variables: angle [rad], one a link, and, where there are several, the arrangement of slabs.
+    """Return the problem in angles [rad] of the links and, if several, the arrangement of slabs.
 
     front: width and height are objectives too, beside the first.
     """
@@ -52,7 +52,7 @@ def direct(
 
 
 def smooth(box: Gearbox, order: Arrangement) -> Problem:
-    """Variables: angle [rad] of each link; left, bottom, width and height of the box [mm]."""
+    """Return the problem in link angles [rad] and left, bottom, width, height of the box [mm]."""
     shape = chain(box, (order,))
     links, span = len(box.pairs), 2.0 * float(shape.link.sum() + shape.reach.max())
     minimum = 2.0 * float(shape.reach.max())
@@ -87,12 +87,12 @@ def smooth(box: Gearbox, order: Arrangement) -> Problem:
 
 
 def positions(shape: Chain, angle: tuple[Any, ...]) -> Point:
-    """Y and z of every shaft [mm] for link angles [rad]."""
+    """Return y and z of every shaft [mm] for link angles [rad]."""
     return placed_by([float(a) for a in shape.link], angle)
 
 
 def placed_by(links: list[Any], angle: tuple[Any, ...]) -> Point:
-    """Y and z of every shaft for lengths and angles of the links between them."""
+    """Return y and z of every shaft for lengths and angles of the links between them."""
     y, z = [0.0 * angle[0]], [0.0 * angle[0]]
     for a, t in zip(links, angle, strict=True):
         y.append(y[-1] + a * np.cos(t))
@@ -123,7 +123,7 @@ def value(shape: Chain, m: Any, width: Any, height: Any) -> Any:
 
 
 def _of(values: Array, m: Any) -> Any:
-    """The value of an arrangement: one, or one for each point of a population."""
+    """Return the value of an arrangement: one, or one for each point of a population."""
     return float(values[m]) if isinstance(m, int) else values[m]
 
 
@@ -138,7 +138,7 @@ def largest(shape: Chain, width: Any, height: Any, length: Any) -> dict[str, Any
 
 
 def _rows(shape: Chain, m: Any, point: Point) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Limits and equalities of a point: distances (squared), keep-outs, places, split line."""
+    """Return limits and equalities of distances (squared), keep-outs, places and split line."""
     y, z = point
     limits: dict[str, Any] = {}
     for i in range(len(y)):
@@ -157,7 +157,7 @@ def _rows(shape: Chain, m: Any, point: Point) -> tuple[dict[str, Any], dict[str,
 
 
 def given_places(shape: Chain, y: list[Any], z: list[Any]) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Limits and equalities of given places and of the split line."""
+    """Return the limits and equalities of given places and of the split line."""
     limits: dict[str, Any] = {}
     equal: dict[str, Any] = {}
     scale = float(shape.link.max())
@@ -178,7 +178,7 @@ def given_places(shape: Chain, y: list[Any], z: list[Any]) -> tuple[dict[str, An
 
 
 def outside(c: Any, low: float, high: float) -> Any:
-    """How far a coordinate is outside a range, either end of which may be infinite."""
+    """Return how far a coordinate is outside a range, either end of which may be infinite."""
     far = 0.0 * c
     for past, end in ((low - c, low), (c - high, high)):
         if math.isfinite(end):
@@ -199,14 +199,14 @@ class Placed:
 
 
 def read(orders: tuple[Arrangement, ...], x: Array) -> tuple[tuple[float, ...], Arrangement]:
-    """Link angles [rad] and the arrangement of slabs that a point of `problem` stands for."""
+    """Return the link angles [rad] and the arrangement of slabs of a point of `direct`."""
     links = len(orders[0].bodies) - 1
     m = round(float(x[links])) if len(orders) > 1 else 0
     return tuple(float(t) for t in x[:links]), orders[m]
 
 
 def placed(box: Gearbox, one: Arrangement, angles: tuple[float, ...]) -> Placed:
-    """Where the shafts are, and the box around them [mm]; as wide as asked, where that is given."""
+    """Return where the shafts are and the box around them [mm], of the given width if any."""
     shape = chain(box, (one,))
     y, z = positions(shape, angles)
     found = sides(shape, y, z)

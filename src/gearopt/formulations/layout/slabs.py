@@ -65,7 +65,7 @@ class Clash:
 
 @lru_cache(maxsize=64)
 def arrangements(box: Gearbox) -> tuple[Arrangement, ...]:
-    """Arrangements worth trying, the shortest first: the given one, or all that none betters.
+    """Return the given arrangement or all undominated ones, the shortest first.
 
     Where none is possible, the stages in order stand for all: no layout of them is feasible.
     """
@@ -81,12 +81,12 @@ def arrangements(box: Gearbox) -> tuple[Arrangement, ...]:
 
 
 def in_order(box: Gearbox) -> Slabs:
-    """Every stage in a slab of its own, from the input on."""
+    """Return every stage in a slab of its own, from the input on."""
     return tuple((k,) for k in range(len(box.pairs)))
 
 
 def clashes(box: Gearbox, one: Arrangement) -> tuple[Clash, ...]:
-    """Axes that the centre distances between them cannot hold apart, the worst first.
+    """Return the axes that the centre distances between them cannot hold apart, the worst first.
 
     Those of neighbours are exactly their centre distance apart, others at most the sum.
     """
@@ -96,7 +96,7 @@ def clashes(box: Gearbox, one: Arrangement) -> tuple[Clash, ...]:
 
 
 def _dominates(a: Arrangement, b: Arrangement) -> bool:
-    """Whether a, which no data forbid, is no worse than b in every respect."""
+    """Return whether a, which no data forbid, is no worse than b in every respect."""
     free = np.triu_indices(len(a.apart), 2)  # neighbours are where their gears mesh
     return bool(
         a.length <= b.length + TOUCH
@@ -106,7 +106,7 @@ def _dominates(a: Arrangement, b: Arrangement) -> bool:
 
 
 def orders(box: Gearbox) -> tuple[Slabs, ...]:
-    """Orders of slabs in which no neighbours share one; of two mirror images that are alike, one.
+    """Return orders of slabs without neighbours in one; of mirror images that are alike, one.
 
     They are not alike to a keep-out at one end of the box, nor for bearings beside gears of a
     shared slab: these gears start together, so that only at the other end bearings may be apart.
@@ -143,7 +143,7 @@ def _subsets(stages: frozenset[int]) -> Iterator[tuple[int, ...]]:
 
 
 def arrange(box: Gearbox, slabs: Slabs) -> Arrangement:
-    """The bodies of an order of slabs, and the distances their axes must keep."""
+    """Return the bodies of an order of slabs, and the distances their axes must keep."""
     bodies, length = _bodies(box, slabs)
     count = len(bodies)
     apart, needs = np.zeros((count, count)), {}
@@ -173,7 +173,7 @@ def arrange(box: Gearbox, slabs: Slabs) -> Arrangement:
 
 
 def _bodies(box: Gearbox, slabs: Slabs) -> tuple[tuple[tuple[Body, ...], ...], float]:
-    """The bodies of every shaft, and the length of the box."""
+    """Return the bodies of every shaft, and the length of the box."""
     gap = box.clearances.axial
     widest = max(s.bearing_width for s in box.shafts)
     end = max(gap, widest) if box.partial else gap + widest
@@ -187,7 +187,7 @@ def _bodies(box: Gearbox, slabs: Slabs) -> tuple[tuple[tuple[Body, ...], ...], f
 
 
 def _on(box: Gearbox, k: int, start: dict[int, float], length: float) -> tuple[Body, ...]:
-    """The gears, shaft and bearings of one shaft."""
+    """Return the gears, shaft and bearings of one shaft."""
     gears = []
     for stage, word in ((k - 1, "wheel"), (k, "pinion")):
         if 0 <= stage < len(box.pairs):
@@ -206,7 +206,7 @@ def _on(box: Gearbox, k: int, start: dict[int, float], length: float) -> tuple[B
 
 
 def face_each_other(p: Body, q: Body) -> bool:
-    """Whether two bodies stand side by side and do not mesh."""
+    """Return whether two bodies stand side by side and do not mesh."""
     return not (p.gear and q.gear and p.stage == q.stage) and _overlap(p.x, q.x)
 
 

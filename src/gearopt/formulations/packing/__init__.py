@@ -1,6 +1,6 @@
 """Packing: cylinders with upright axes in layers, in the smallest container.
 
-`problem` is the packing for samplers, with two methods of its own (`hop`, `sa`) that bring the
+`problem` is the packing for samplers, with two methods of its own (`hop`, `sa`) that add the
 computed bound; `packing_text.smooth` is the same packing for gradient methods.
 """
 

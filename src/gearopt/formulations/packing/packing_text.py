@@ -20,7 +20,7 @@ NEVER = -1.0  # needed d^2/D^2 of a pair in different layers
 
 
 def direct(plan: Plan, **methods: Any) -> Problem:
-    """The packing for samplers: the objective is that of the smallest container around all.
+    """Return the packing for samplers: the objective is that of the smallest container around all.
 
     Variables: x, y, the layers that are free, and the centre of a circle around fixed cylinders.
     """
@@ -48,7 +48,7 @@ def direct(plan: Plan, **methods: Any) -> Problem:
 
 
 def smooth(plan: Plan, layer: Any = None) -> Problem:
-    """The packing for gradient methods: sizes of the container are variables; layers are data.
+    """Return the packing for gradient methods: container sizes are variables, layers are data.
 
     layer: that of every cylinder (n,), by default the fixed ones; parameters `needed` (pairs; the
     square of minimum distance over D, or NEVER) and `height` of the stack let other layers be
@@ -85,13 +85,13 @@ def smooth(plan: Plan, layer: Any = None) -> Problem:
 
 
 def of_layers(plan: Plan, layer: Any) -> tuple[tuple[float, ...], float]:
-    """The parameters of `smooth` for given layers (n,): needed of every pair, height of all."""
+    """Return the parameters of `smooth` for layers (n,): needed of every pair, height of all."""
     needed = tuple(1.0 if layer[i] == layer[j] else NEVER for i, j in plan.pairs)
     return needed, float(stack(plan, layer))
 
 
 def stack(plan: Plan, layer: Any) -> Any:
-    """Sum of the layers' heights [mm]; a layer is as high as its highest cylinder."""
+    """Return the sum of the layers' heights [mm]; a layer is as high as its highest cylinder."""
     height = plan.height
     return sum(
         reduce(
@@ -107,7 +107,7 @@ def _levels(layers: int) -> range:
 
 
 def _ends(plan: Plan) -> tuple[float, float, float, float]:
-    """Ends of a search in x and y [mm]: a row of all beyond what is fixed."""
+    """Return the ends of a search in x and y [mm]: a row of all beyond what is fixed."""
     if plan.fixed:
         low, high, near, far = plan.held_box
         return low - plan.reach, high + plan.reach, near - plan.reach, far + plan.reach
@@ -144,7 +144,7 @@ def _centre(plan: Plan, guess: Places) -> tuple[Var, ...]:
 
 
 def _sides(plan: Plan, guess: Places) -> tuple[Var, ...]:
-    """The container's variables; a corner or centre only where something is fixed."""
+    """Return the container's variables; a corner or centre only where something is fixed."""
     at = start(plan, guess)[2 * len(plan.free) :]
     low, high, near, far = _ends(plan)
     maximum = 2.0 * max(high - low, far - near)
@@ -172,7 +172,7 @@ def _square(plan: Plan, axes: list[tuple[Any, Any]], i: int, j: int, gap: Any) -
 
 
 def _near(plan: Plan) -> list[tuple[int, int]]:
-    """Pairs that may come too close: in layers that are or may be the same, not both fixed."""
+    """Return pairs that may come too close: not both fixed, in layers that may be the same."""
     lifted, cylinders = set(plan.lifted), plan.cylinders
     found = []
     for i, j in combinations(range(len(cylinders)), 2):
@@ -185,7 +185,7 @@ def _near(plan: Plan) -> list[tuple[int, int]]:
 
 
 def _close(plan: Plan, axes: list[tuple[Any, Any]], layer: list[Any], i: int, j: int) -> Any:
-    """The row of a pair: 2 - d^2/D^2 in one layer, 0 in different ones."""
+    """Return the row of a pair: 2 - d^2/D^2 in one layer, 0 in different ones."""
     row_of = 2.0 - _square(plan, axes, i, j, plan.gap)
     return np.where(layer[i] == layer[j], row_of, 0.0) if plan.lifted else row_of
 
@@ -196,7 +196,7 @@ def _extent(values: list[Any], radius: Array) -> Any:
 
 
 def _container(plan: Plan, axes: list[tuple[Any, Any]], x: Any) -> tuple[Any, dict[str, Any]]:
-    """Area of the smallest container around all [mm2], and the limit of a given width."""
+    """Return the area of the smallest container [mm2], and the limit of a given width."""
     if plan.shape == "circle":
         a, b = getattr(x, "centre_x", 0.0), getattr(x, "centre_y", 0.0)
         far = reduce(
@@ -225,7 +225,7 @@ def _area(plan: Plan, x: Any, width: Any) -> Any:
 
 
 def _walls(plan: Plan, axes: list[tuple[Any, Any]], x: Any, width: Any) -> dict[str, Any]:
-    """Rows that keep all inside the container; bounds of x and y hold two sides where they can."""
+    """Return rows that keep all inside the container, except where bounds of x and y do."""
     scale = 2.0 * float(plan.radius.mean())
     if plan.shape == "circle":
         a, b = getattr(x, "centre_x", 0.0), getattr(x, "centre_y", 0.0)
@@ -261,7 +261,7 @@ def _objective(plan: Plan, area: Any, height: Any) -> dict[str, Any]:
 
 
 def places(plan: Plan, problem: Problem, at: Array, layer: Any = None) -> Places:
-    """Where all cylinders are at a point of either text; layer: those given to `smooth`."""
+    """Return where all cylinders are at a point of either text; layer: those given to `smooth`."""
     x = namespace(problem.variables, [float(v) for v in at])
     both = axes_of(plan, x)
     centre = np.array([getattr(x, "centre_x", 0.0), getattr(x, "centre_y", 0.0)], float)
@@ -275,7 +275,7 @@ def places(plan: Plan, problem: Problem, at: Array, layer: Any = None) -> Places
 
 
 def point(plan: Plan, found: Places) -> Array:
-    """The point of `direct` of a packing; where nothing is fixed, its corner is the origin."""
+    """Return the point of `direct` of a packing; if nothing is fixed, its corner is the origin."""
     free, x, y = list(plan.free), found.x, found.y
     if not plan.fixed and plan.shape != "circle":
         x, y = (v - float((v - plan.radius).min()) + plan.wall for v in (x, y))
@@ -287,7 +287,7 @@ def point(plan: Plan, found: Places) -> Array:
 
 
 def start(plan: Plan, found: Places) -> Array:
-    """The point of `smooth` of a packing, whose container just holds it."""
+    """Return the point of `smooth` of a packing, whose container just holds it."""
     r, wall, free = plan.radius, plan.wall, list(plan.free)
     x, y = found.x, found.y
     if plan.shape == "circle":
@@ -306,17 +306,17 @@ def start(plan: Plan, found: Places) -> Array:
 
 
 def axes_of(plan: Plan, x: Any) -> list[tuple[Any, Any]]:
-    """Axes of all cylinders: those of the free ones are variables."""
+    """Return the axes of all cylinders: those of the free ones are variables."""
     free = iter(zip(each(x.x), each(x.y), strict=True))
     return [c.at if c.at is not None else next(free) for c in plan.cylinders]
 
 
 def layers_of(plan: Plan, x: Any) -> list[Any]:
-    """Layers of all cylinders: those that are free are variables."""
+    """Return the layers of all cylinders: those that are free are variables."""
     lifted = dict(zip(plan.lifted, each(x.layer), strict=True)) if plan.lifted else {}
     return [lifted.get(k, c.layer or 1) for k, c in enumerate(plan.cylinders)]
 
 
 def has_centre(plan: Plan) -> bool:
-    """Whether the centre of the container is a variable: of a circle around fixed cylinders."""
+    """Return whether the centre is a variable: that of a circle around fixed cylinders."""
     return plan.shape == "circle" and bool(plan.fixed)

@@ -33,7 +33,7 @@ class Cylinder:
 
 @dataclass(frozen=True)
 class Plan:
-    """A packing that is asked for.
+    """What is to be packed, and into what.
 
     width: of the rectangle [mm], None where free. gap: between cylinders, wall: to the container,
     both sideways [mm]. min_layers, max_layers: ends of the number of layers, of which the first
@@ -89,7 +89,7 @@ class Plan:
 
     @cached_property
     def filled(self) -> int:
-        """Layers from the floor that each hold one: those asked for, all up to a named one."""
+        """Layers from the floor that each hold one: those requested, all up to a named one."""
         return max(self.min_layers, *self.named, 1)
 
     @cached_property
@@ -104,7 +104,7 @@ class Plan:
         return (p for p in combinations(range(len(self.cylinders)), 2) if not held.issuperset(p))
 
     def apart(self, i: int, j: int) -> float:
-        """Minimum distance of two axes in one layer [mm]."""
+        """Return the minimum distance of two axes in one layer [mm]."""
         return self.cylinders[i].radius + self.cylinders[j].radius + self.gap
 
     @cached_property
@@ -128,7 +128,7 @@ class Plan:
         )
 
     def unit(self) -> str:
-        """Unit of the objective."""
+        """Return the unit of the objective."""
         return OBJECTIVES[self.objective]
 
 
@@ -141,12 +141,12 @@ class Places(NamedTuple):
     centre: Array
 
     def copied(self) -> "Places":
-        """The same in arrays of its own."""
+        """Return the same in arrays of its own."""
         return Places(self.x.copy(), self.y.copy(), self.layer.copy(), self.centre.copy())
 
 
 def row(plan: Plan) -> Places:
-    """A packing that meets all limits: the free cylinders in a row behind the fixed ones.
+    """Return a packing that meets all limits: the free cylinders in a row behind the fixed ones.
 
     ValueError where the fixed ones overlap.
     """
@@ -177,7 +177,7 @@ def row(plan: Plan) -> Places:
 
 
 def overlap(plan: Plan, i: int, j: int) -> float:
-    """By how much two fixed cylinders, were they in one layer, are too close [mm]; 0 if not."""
+    """Return how much too close two fixed cylinders would be in one layer [mm]; 0 if not."""
     a, b = plan.cylinders[i].at, plan.cylinders[j].at
     assert a is not None and b is not None
     missing = plan.apart(i, j) - float(np.hypot(a[0] - b[0], a[1] - b[1]))

@@ -19,7 +19,7 @@ class Spent(Exception):
 
 @dataclass
 class Progress:
-    """What a search has found and spent; it has state because it is filled as the search goes.
+    """Best trains and effort of a search; it has state because the search fills it.
 
     found: (objective, teeth) of the best trains; wanted: how many of them. floor: a bound on the
     objective known from elsewhere; lower: that of this search, once it covers all trains (whole).

@@ -74,7 +74,7 @@ def search(
         if not (closed and reach <= cut):
             _look(train, max(cut, reach), progress, math.inf)
     except Spent:
-        pass  # `stopped` or `enough` says why
+        pass  # `stopped` or `enough` holds the reason
     return progress
 
 

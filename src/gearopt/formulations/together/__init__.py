@@ -29,9 +29,9 @@ from gearopt.optimise.terms import Array, Terms, Var, each
 from gearopt.physics.gears import GearPair
 
 Start = tuple[tuple[GearPair, ...], Arrangement, Array]
-GAP = 1e-3  # proven where the budget asks for none
+GAP = 1e-3  # proven where the budget requests none
 FIRST = 40  # best sizings that are laid out before the search
-SLACK = 1e-6  # relative: margins are this much below the gap asked for, for rounding
+SLACK = 1e-6  # relative: margins are this much below the requested gap, for rounding
 
 RANDOM = False
 COUNTS = "tooth pair or cell of angles bounded"
@@ -39,7 +39,7 @@ SETTINGS = {"margins": MARGINS, "sizings laid out first": FIRST}
 
 
 def problem(train: Train, make: Make, start: Start | None = None) -> Problem:
-    """The problem of a drive and its gearbox; `exact` finds the smallest box with its bound.
+    """Return the problem of a drive and its gearbox; `exact` finds the smallest box with its bound.
 
     make(pairs) -> Gearbox of these gear pairs; shaft k may grow with the torque T1 u_1 ... u_k that
     it carries, and nothing else depends on the pairs. The objective is the
@@ -131,7 +131,7 @@ def _outcome(search: Search, known: tuple[Any, ...], possible: bool) -> Outcome:
 
 
 def slabs_of(box: Gearbox) -> tuple[Slabs, ...]:
-    """The orders of slabs that a gearbox leaves open, as the variable `arrangement` counts them."""
+    """Return the orders of slabs that a gearbox leaves open, in the order of `arrangement`."""
     return (box.slabs,) if box.slabs is not None else orders(box)
 
 
@@ -178,7 +178,7 @@ def text(
 def _terms(
     box: Gearbox, order: Arrangement, angles: Array
 ) -> tuple[dict[str, float], dict[str, float], dict[str, float]]:
-    """Objective, limits and equalities of a layout."""
+    """Return the objective, limits and equalities of a layout."""
     shape = chain(box, (order,))
     y, z = positions(shape, tuple(float(a) for a in angles))
     side = sides(shape, y, z)
@@ -198,7 +198,7 @@ def _terms(
 
 
 def _clear(need: float, dy: float, dz: float) -> float:
-    """Utilisation of a minimum distance: at most 1 where it is kept."""
+    """Return the utilisation of a minimum distance: at most 1 where it is kept."""
     there = dy**2 + dz**2
     return 1.0 + (need**2 - there) / max(need**2, there, 1.0)
 
@@ -206,7 +206,7 @@ def _clear(need: float, dy: float, dz: float) -> float:
 def point(
     train: Train, pairs: tuple[GearPair, ...], slabs: int, several: bool, angles: Array
 ) -> Array:
-    """The point of a train with its layout."""
+    """Return the point of a train with its layout."""
     order = [float(slabs)] if several else []
     return np.concatenate([teeth.point(train, pairs), angles, order])
 
@@ -218,7 +218,7 @@ def pairs(train: Train, x: Array) -> tuple[GearPair, ...]:
 
 
 def laid_out(train: Train, make: Make, x: Array) -> tuple[Gearbox, tuple[float, ...], Arrangement]:
-    """The gearbox of a point of `text`, its link angles [rad] and its arrangement of slabs."""
+    """Return the gearbox of a point of `text`, its link angles [rad] and arrangement of slabs."""
     box = make(pairs(train, x))
     known, links = slabs_of(box), len(train.stages)
     start = sum(v.size for v in teeth.problem(train).variables)

@@ -92,7 +92,7 @@ def _facing(order: Arrangement) -> Facing:
 def _variables(
     sized: Problem, box: Gearbox, slabs: Slabs, angles: tuple[float, ...], sides: dict[str, float]
 ) -> tuple[Var, ...]:
-    """The variables with the start, and the box around it, as their guess."""
+    """Return the variables with the start, and the box around it, as their guess."""
     values = {
         "module": [p.normal_module for p in box.pairs],
         "pinion_teeth": [p.pinion_teeth for p in box.pairs],
@@ -117,7 +117,7 @@ def _variables(
 
 
 def _radius(box: Gearbox, body: Body, k: int) -> Any:
-    """The radius of a body of shaft k in a gearbox of other sizes."""
+    """Return the radius of a body of shaft k in a gearbox of other sizes."""
     if body.gear:
         return 0.5 * getattr(box.pairs[body.stage], body.name.split()[0]).tip_diameter
     shaft = box.shafts[k]
@@ -125,7 +125,7 @@ def _radius(box: Gearbox, body: Body, k: int) -> Any:
 
 
 def _walls(box: Gearbox, bodies: Any, point: Any, x: Any) -> dict[str, Any]:
-    """Every body within the four sides."""
+    """Return rows that keep every body within the four sides."""
     rows: dict[str, Any] = {}
     for k, own in enumerate(bodies):
         for n, body in enumerate(own):
@@ -138,7 +138,7 @@ def _walls(box: Gearbox, bodies: Any, point: Any, x: Any) -> dict[str, Any]:
 
 
 def _apart(box: Gearbox, facing: Facing, point: Any) -> dict[str, Any]:
-    """Every two bodies that face each other keep their clearance, and the motor's is kept."""
+    """Return rows that keep the clearances of bodies that face each other and of the motor."""
     y, z = point
     rows: dict[str, Any] = {}
 
@@ -157,7 +157,7 @@ def _apart(box: Gearbox, facing: Facing, point: Any) -> dict[str, Any]:
 
 
 def _clear(box: Gearbox, bodies: Any, point: Any) -> dict[str, Any]:
-    """Every body keeps clear of every keep-out."""
+    """Return rows that keep every body clear of every keep-out."""
     y, z = point
     rows: dict[str, Any] = {}
     for n, keep in enumerate(box.keep_outs):
@@ -183,6 +183,6 @@ def _objective(box: Gearbox, sides: dict[str, Any], x: Any) -> Any:
 
 
 def angles_of(problem: Problem, x: Array) -> tuple[float, ...]:
-    """Link angles [rad] of a point of `continuous`."""
+    """Return the link angles [rad] of a point of `continuous`."""
     names = [variable.name for variable, _ in problem.columns]
     return tuple(float(v) for v, name in zip(x, names, strict=True) if name == "angle")

@@ -1,4 +1,4 @@
-"""The search over whole trains and their layouts: incumbents, depth-first passes, last looks.
+"""The search over whole trains and their layouts: incumbents, depth-first passes, last checks.
 
 A pass drops whatever cannot be below the best value by more than a margin; margins narrow from pass
 to pass, so that a search which is stopped has the bound of its last full pass.
@@ -35,11 +35,11 @@ from gearopt.optimise.terms import Array
 from gearopt.physics.gears import GearPair
 
 MARGINS = (0.3, 0.1, 0.03, 0.01, 3e-3, 1e-3, 3e-4, 1e-4)  # of the passes
-CHOICES = 50_000  # pairs looked at in a slice of an expansion
+CHOICES = 50_000  # pairs examined in a slice of an expansion
 CELLS = 100_000  # cells of angles in a slice of a sift
 CHILDREN = 4096  # nodes that an expansion makes at once
 PARENTS = 256  # nodes expanded together
-STALE = 0.9  # tables are made anew for a best value this much better
+STALE = 0.9  # tables are recomputed for a best value this much better
 CLOSE = 1e-3  # relative gap to which a train is laid out, or the margin where it is smaller
 LOOKS = (400, 20_000)  # cells spent on a node's layout, on a whole train's
 
@@ -60,8 +60,8 @@ class Design:
 class Search:
     """A search as it runs; its state is what a stopped one still knows.
 
-    clock: counts choices and cells looked at; has the best value and what is proven. best: the best
-    design. Nodes by number of stages chosen: made, and left after a look at their layout. trains:
+    clock: counts choices and cells examined; has the best value and what is proven. best: the best
+    design. Nodes by number of stages chosen: made, and left after a check of their layout. trains:
     laid out to the end.
     """
 
@@ -81,7 +81,7 @@ class Search:
 
 
 def cuts(value: float, margin: float) -> tuple[float, float]:
-    """What is not below the first is dropped; what is below the second is looked for.
+    """Return two values: what is not below the first is dropped, what is below the second sought.
 
     Between the two a search may do either: equal, it would resolve their level without end.
     """
@@ -106,13 +106,13 @@ def sized(train: Train, drive: Drive, node: Nodes) -> tuple[GearPair, ...] | Non
 
 
 def orders_of(box: Gearbox) -> list[Arrangement]:
-    """Arrangements in which no shafts clash and the box is not too long."""
+    """Return the arrangements in which no shafts clash and the box is not too long."""
     longest = box.largest[2] + TOUCH
     return [a for a in arrangements(box) if not clashes(box, a) and a.length <= longest]
 
 
 def lay(search: Search, pairs: tuple[GearPair, ...], margin: float) -> bool:
-    """Keep the best layout of a train if it betters the best value by more than a margin.
+    """Keep the best layout of a train if it improves the best value by more than a margin.
 
     False where it is not proven that no other layout of the train does.
     """
@@ -140,7 +140,7 @@ def keep(search: Search, pairs: tuple[GearPair, ...], order: Arrangement, angles
 
 
 def _below(search: Search, box: Gearbox, order: Arrangement, margin: float) -> bool:
-    """Whether an order may have a layout that betters the best value by a margin."""
+    """Return whether an order may have a layout that improves the best value by a margin."""
     if search.best is None:
         return True
     cut, aim = cuts(search.value, margin)
@@ -168,10 +168,10 @@ class Work:
 
 
 def prepare(search: Search, drive: Drive, box: Gearbox, margin: float) -> Work | None:
-    """The tables for all cuts down to a margin; None if stopped. box: one of any sizes."""
+    """Return the tables for all cuts down to a margin; None if stopped. box: one of any sizes."""
     fewer = useful(drive, search.value * (1.0 - margin))
     tables = rest(fewer, search.clock.tell)
-    # Before all shafts are there, nothing but the sides of the box tells the directions apart.
+    # Before all shafts are there, only the sides of the box distinguish the directions.
     bare = turns(replace(box, places=(), keep_outs=(), level=()))
     ranges = [turns(box)] + [bare] * (drive.kind.size - 1)
     made = chains(fewer, box)
@@ -181,8 +181,8 @@ def prepare(search: Search, drive: Drive, box: Gearbox, margin: float) -> Work |
 def prove(search: Search, work: Work, margin: float) -> bool:
     """Drop all that is not below the best value by more than a margin; False if not finished.
 
-    It is not where it was stopped, nor where the best value has become so good that tables made for
-    it are worth their making.
+    It is not finished where it was stopped, nor where the best value has improved so much that new
+    tables pay.
     """
     last = work.drive.kind.size - 1
     stack: list[tuple[int, Nodes, Array, Any]] = [
@@ -227,7 +227,7 @@ def _children(
     stop: int,
     levels: tuple[float, float],
 ) -> tuple[Nodes, Array]:
-    """Children of some nodes that may lead below a cut, the best first."""
+    """Return the children of some nodes that may lead below a cut, the best first."""
     kernels = kernel(KERNELS)
     count = work.drive.kind.size
     nodes, bounds = np.zeros((CHILDREN, count, 2), np.int64), np.zeros(CHILDREN)

@@ -2,7 +2,7 @@
 
 Gears follow from the teeth (`pairs`); shafts may depend on the torque they carry, and count with
 the minimum radius in a cell of it. Facing bodies follow from the order of the slabs alone, but for
-short bearings beside gears: those are left to the last look at a train.
+short bearings beside gears: those are left to the last check of a train.
 """
 
 import math
@@ -30,8 +30,8 @@ Index = NDArray[np.int64]
 DELTA = 0.01  # cells of log ratio: a third of it in sizes, below the usual ratio tolerance
 ENTRIES = 20_000_000  # of bisected widths, 160 MB
 KERNELS = "gearopt.formulations.together.together_kernel"
-ROUNDS = 3  # of dropping pairs; each knows the minimum widths of the one before
-SLICE = 2_000_000  # pairs sized between two looks at clock and watcher
+ROUNDS = 3  # of dropping pairs; each uses the minimum widths of the one before
+SLICE = 2_000_000  # pairs sized between two checks of clock and watcher
 BINS = 48  # of wheel radii, for what a larger wheel saves in width
 
 
@@ -99,7 +99,7 @@ class Rest(NamedTuple):
 
 
 def numbers(train: Train, make: Make) -> tuple[Drive, Gearbox]:
-    """The arrays of a drive, and a gearbox with its constants.
+    """Return the arrays of a drive, and a gearbox with its constants.
 
     SolveError where its pairs are not those it is made of, or where face widths decide which bodies
     face each other.
@@ -174,7 +174,7 @@ def _refuse(train: Train, box: Gearbox) -> None:
 
 
 def _objective(box: Gearbox) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Exponents of width and height; constant and factor of the length."""
+    """Return the exponents of width and height; constant and factor of the length."""
     if box.objective == "longest_side":
         return (1.0, 1.0), (box.width or 0.0, 0.0)
     wide = box.objective in ("box_volume", "plan_area", "face_area")
@@ -185,7 +185,7 @@ def _objective(box: Gearbox) -> tuple[tuple[float, float], tuple[float, float]]:
 
 
 def _facing(box: Gearbox) -> tuple[list[Slabs], NDArray[np.uint8]]:
-    """Orders of slabs that none betters whatever the sizes, and which bodies face each other."""
+    """Return orders of slabs undominated for any sizes, and the bodies that face each other."""
     shafts = tuple(Shaft(1.0, 1.0, 0.0 if box.partial else s.bearing_width) for s in box.shafts)
     alike = replace(box, pairs=(GearPair.of_teeth(1.0, 2, 2, 1.0),) * len(box.pairs), shafts=shafts)
     found: list[tuple[Slabs, NDArray[np.uint8]]] = []
@@ -197,7 +197,7 @@ def _facing(box: Gearbox) -> tuple[list[Slabs], NDArray[np.uint8]]:
 
 
 def _no_worse(a: tuple[Slabs, NDArray[np.uint8]], b: tuple[Slabs, NDArray[np.uint8]]) -> bool:
-    """Whether the same stages share slabs, and a's bodies face each other only where b's do."""
+    """Return whether the same stages share slabs and bodies of a face each other only as in b."""
     return sorted(a[0]) == sorted(b[0]) and bool((a[1] <= b[1]).all())
 
 
@@ -219,7 +219,7 @@ def _kind(name: str) -> int:
 
 
 def _pairs(tables: list[Table]) -> tuple[Any, ...]:
-    """Start of each stage's pairs, and their numbers one after the other."""
+    """Return the start of each stage's pairs, and their numbers one after the other."""
     start = np.concatenate([[0], np.cumsum([len(t.z1) for t in tables])])
     columns = [
         np.concatenate([np.asarray(getattr(t, name), kind) for t in tables])
@@ -245,7 +245,7 @@ def _pairs(tables: list[Table]) -> tuple[Any, ...]:
 
 
 def _stages(train: Train, tables: list[Table]) -> tuple[Array, ...]:
-    """What belongs to a stage as a whole, from modules to its face width."""
+    """Return what belongs to a stage as a whole, from modules to its face width."""
     faces = [s.face_width for s in train.stages]
     modules = np.full((len(tables), max(len(t.modules) for t in tables)), np.inf)
     for k, t in enumerate(tables):
@@ -264,7 +264,7 @@ def _stages(train: Train, tables: list[Table]) -> tuple[Array, ...]:
 
 
 def _loads(train: Train, tables: list[Table]) -> tuple[Array, Array, float]:
-    """Loads of all pairs, or minimum widths by cells of torque, as small as ENTRIES allows."""
+    """Return the loads of all pairs, or minimum widths by cells of torque (up to ENTRIES)."""
     loads = [t.load for t in tables if t.load is not None]
     span = math.log(train.highest_ratio) + 2.0 * DELTA
     if loads:
@@ -284,7 +284,7 @@ def _loads(train: Train, tables: list[Table]) -> tuple[Array, Array, float]:
 
 
 def useful(drive: Drive, cut: float) -> Drive:
-    """The drive with those pairs alone whose stage does not exceed the cut by itself."""
+    """Return the drive with those pairs alone whose stage does not exceed the cut by itself."""
     kernels = kernel(KERNELS)
     for _ in range(ROUNDS):
         keep = np.zeros(drive.z1.size, bool)
@@ -305,7 +305,7 @@ def useful(drive: Drive, cut: float) -> Drive:
 
 
 def _others(drive: Drive, widths: Array) -> Array:
-    """Minimum length that the stages before each one add in slabs of their own, (M, N)."""
+    """Return the minimum length that stages before each one add in own slabs, (M, N)."""
     found = np.zeros_like(drive.others)
     for m, slab in enumerate(drive.slab_of):
         for j in range(1, widths.size):
@@ -315,7 +315,7 @@ def _others(drive: Drive, widths: Array) -> Array:
 
 
 def rest(drive: Drive, goes_on: GoesOn) -> Rest | None:
-    """The tables of the stages before each one; None if stopped."""
+    """Return the tables of the stages before each one; None if stopped."""
     kernels = kernel(KERNELS)
     count, many = drive.kind.size, drive.slabs.size
     cells = int(drive.log_high / drive.delta) + 3
