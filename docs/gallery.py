@@ -22,7 +22,7 @@ of a gearbox or a packing it holds drawings like those below.
 """
 GROUPS = {  # heading: {file: what it shows, in a line}
     "Sizing a drive": {
-        "elevator": "Teeth, modules and face widths of least gear volume, proven.",
+        "elevator": "Teeth, modules and face widths of minimum gear volume, proven.",
         "three_stage": "One stage more.",
         "elevator_both_series": "Modules of both series of ISO 54, not of the first alone.",
         "three_stage_both_series": "Here the second series brings nothing.",
@@ -188,7 +188,7 @@ def _answer(file: Mapping[str, Any]) -> str:
     if "sizing" in expected:
         parts.append(f"with real-valued teeth and modules {number(expected['sizing'])}")
     if expected["status"] == "feasible":
-        parts.append(f"nothing below {number(expected['bound'])} is possible")
+        parts.append(f"lower bound {number(expected['bound'])}")
     if "least_factor" in expected:
-        parts.append(f"limits must move by a factor of {expected['least_factor']:g} at the least")
+        parts.append(f"limits must move by a factor of at least {expected['least_factor']:g}")
     return ", ".join(parts)

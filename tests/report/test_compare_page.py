@@ -133,7 +133,7 @@ def test_terminal_shows_the_same_words(found):
     for group in found.groups:
         for row in group.rows:
             assert f"- {row.method}: {words.verdict(group, row)}" in text
-    assert "Equal evaluations: 640 a run" in text and "Equal time: 0.02 s a run" in text
+    assert "Equal evaluations: 640 per run" in text and "Equal time: 0.02 s per run" in text
     assert ATTACK in text and words.command(found) in text
 
 
@@ -145,7 +145,7 @@ def test_verdicts():
     made = gearopt.compare(problem(), ("ipopt", "wrong"), seeds=3, evaluations=64, seconds=5.0)
     (group,) = made.groups
     ipopt, wrong = group.rows
-    assert words.reference(group).startswith("Gaps are to the proven bound: no inverse below 1")
+    assert words.reference(group).startswith("Gaps are to the proven lower bound of the inverse, 1")
     assert words.verdict(group, ipopt).startswith("reaches the proven optimum in ")
     missed = "0 of 3 seeds within 0.1 %, 2 without a feasible point"
     assert words.verdict(group, wrong) == f"no feasible point in the median seed; {missed}"

@@ -63,14 +63,14 @@ def test_other_kinds_are_shown_by_what_their_design_holds(scene):
 @pytest.mark.parametrize(
     ("conflict", "said"),
     [
-        (["ratio_low"], "This limit cannot be kept, even if all others are dropped: ratio low"),
+        (["ratio_low"], "This limit cannot be met, even if all others are dropped: ratio low"),
         (
             ["ratio_low", "wheel_diameter[1]"],
-            "These cannot hold together, and none of them is to spare: ratio low",
+            "These limits are in conflict; dropping any one of them resolves it: ratio low",
         ),
     ],
 )
-def test_one_limit_is_not_told_as_several(conflict, said):
+def test_one_limit_is_not_reported_as_several(conflict, said):
     why, rows, _ = remedy_words({"conflict": conflict, "remedies": [], "message": ""})
     assert why[0].startswith(said) and not rows
 

@@ -103,7 +103,7 @@ def test_an_acceleration_is_told_as_one():
     """47.287 rad/s2 is the most; its inverse is what is minimised."""
     result = gearopt.solve(FILE.with_name("servo_gimbal_ratio.toml"))
     assert result.objective["name"] == "inverse_acceleration"
-    assert proof(result)[0].startswith("Bound: no acceleration above 47.287 rad/s² is possible")
+    assert proof(result)[0].startswith("Upper bound of the acceleration: 47.287 rad/s²")
     tiles = {t.name: t.value for t in sections(result)[0].tiles}
     assert tiles["acceleration"] == tiles["proven bound"] == "47.287 rad/s²"
     assert "acceleration 47.287 rad/s², proven optimal" in page(result, "x")

@@ -119,7 +119,7 @@ def test_inch_tables_are_the_metric_ones_converted(elevator):
     assert set(metric) == set(inch)
     mm = {row[0]: row[1:] for row in rows(metric["stages.csv"])}
     inches = {row[0]: row[1:] for row in rows(inch["stages.csv"])}
-    for name in ("face width b", "diameter d1", "tip diameter d_a2", "centres a"):
+    for name in ("face width b", "diameter d1", "tip diameter d_a2", "centre distance a"):
         for a, b in zip(mm[f"{name} [mm]"], inches[f"{name} [in]"], strict=True):
             assert math.isclose(float(a), 25.4 * float(b), rel_tol=1e-14)
     assert inches["module m_n [mm]"] == ["2.0", "3.0"]

@@ -183,8 +183,8 @@ def test_the_smallest_size_known_to_fit_is_told_where_less_stays_undecided(monke
     assert 26.0 <= side <= 26.02
     assert way["verified"]["with_less"] == "undecided" and way["bound"] is None
     _, rows, last = remedy_words(ways)
-    assert ("least found", "keep_out[1].y") in {(r[0], r[1].split(" ")[0]) for r in rows}
-    assert "whether less does is not known" in last[0] and "none with" not in last[0]
+    assert ("smallest found", "keep_out[1].y") in {(r[0], r[1].split(" ")[0]) for r in rows}
+    assert "whether less suffices is not known" in last[0] and "none with" not in last[0]
     assert BRIEF in asked
 
 

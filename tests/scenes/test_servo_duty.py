@@ -173,7 +173,7 @@ def test_the_word_of_the_file_is_understood(fast):
     assert same.value == fast.value and same.design["train"] == fast.design["train"]
     assert any("read as maximise" in note for note in same.report["notes"])
     assert "read as maximise" not in str(fast.report)
-    assert "Bound: no acceleration above 46.831 rad/s² is possible" in shown(fast)
+    assert "Upper bound of the acceleration: 46.831 rad/s²; gap" in shown(fast)
 
 
 UNASKED = ("error", "arcmin", "backlash", "shaft between", "tolerance", "stiffness", "nan", "None")

@@ -27,11 +27,11 @@ PARTS = {  # of a result: what their names mean
     "real-valued": "real-valued teeth",
 }
 ROWS = ("status", "objective", "value", "bound", "gap, %", "method", "proof", "seconds")
-TOLD = ("method", "arithmetic", "sentence")  # of a proof: told elsewhere
+SHOWN = ("method", "arithmetic", "sentence")  # of a proof, elsewhere
 CHECKS = {  # of a certificate: what each number is
-    "feasibility": "largest excess over a limit",
-    "stationarity": "largest slope left over",
-    "complementarity": "largest multiplier times room",
+    "feasibility": "largest violation of a limit",
+    "stationarity": "largest gradient left in the Lagrangian, relative",
+    "complementarity": "largest product of multiplier and slack, relative",
     "scale": "of the objective, which is zero: the gap is relative to it",
 }
 SENTENCES = ("title", "source")  # keys of a file that are sentences
@@ -57,23 +57,20 @@ def _tiles(result: Result, measures: Measures) -> list[Tile]:
     return tiles
 
 
-def limits(result: Result, measures: Measures, whole: str = "whole") -> Section | None:
-    """Return the utilisation of every limit; None without limits.
-
-    whole: the head of what belongs to no stage, on the terminal.
-    """
+def limits(result: Result, measures: Measures) -> Section | None:
+    """Return the utilisation of every limit; None without limits."""
     if not result.limits or (result.value is None and result.status != "evaluated"):
         return None
     stages, rows = limit_rows(result.limits)
-    heads = ["limit used, %", *(f"stage {k}" for k in range(1, stages + 1)), "whole"]
+    heads = ["limit used, %", *(f"stage {k}" for k in range(1, stages + 1)), kind_of(result).whole]
     cells = [[words, *map(percent, values)] for words, values in rows]
-    table = Table("limits", heads, cells, short={"whole": whole})
-    words = ("At 100 a limit is reached.",)
+    table = Table("limits", heads, cells)
+    words = ("At 100 % a limit is reached.",)
     return Section("Limits", words=words, tables=(table,), half=True, terminal=(table,))
 
 
 def proof(result: Result, measures: Measures = METRIC) -> list[str]:
-    """Say what is certain: the bound, its proof, what other ways give, what to keep in mind."""
+    """Say what is certain: the bound, its proof, the values of other methods, notes."""
     lines = bound_words(result, measures) + _method(result)
     lines += kind_of(result).beside(result, measures)
     lines += result.report.get("notes", []) if result.status != "infeasible" else []
@@ -88,8 +85,9 @@ def bound_words(result: Result, measures: Measures) -> list[str]:
     name, unit, _, bound, side = goal(result)
     if bound is None or result.gap is None:
         return []
-    least = f"no {name} {side} {amount(bound, unit, measures)} is possible"
-    return [f"Bound: {least}{scope(result)}; {gap_words(result)}."]
+    known = "Lower" if side == "below" else "Upper"
+    words = f"{known} bound of the {name}{scope(result)}: {amount(bound, unit, measures)}"
+    return [f"{words}; {gap_words(result)}."]
 
 
 def gap_words(result: Result) -> str:
@@ -106,15 +104,15 @@ def scope(result: Result) -> str:
 
 
 def _method(result: Result) -> list[str]:
-    """Return what the method says of its proof, and which limits cannot hold together."""
-    known, found = result.bound is not None or result.status == "infeasible", result.proof
-    lines = [found["sentence"]] if known and "sentence" in found else []
-    if result.status == "infeasible" and found.get("conflict") and "least_violation" in found:
-        names = ", ".join(limit_words(n) for n in found["conflict"])
-        least = 100 * found["least_violation"]
-        missed = f"{least:.2g}" if least < 100 else f"{least:,.0f}"
+    """Return the proof in the method's words, and the limits that are in conflict."""
+    known, proof = result.bound is not None or result.status == "infeasible", result.proof
+    lines = [proof["sentence"]] if known and "sentence" in proof else []
+    if result.status == "infeasible" and proof.get("conflict") and "least_violation" in proof:
+        names = ", ".join(limit_words(n) for n in proof["conflict"])
+        minimum = 100 * proof["least_violation"]
+        violation = f"{minimum:.2g}" if minimum < 100 else f"{minimum:,.0f}"
         lines.append(
-            f"Proof: whatever the design, one of these limits is missed by at least {missed} %: "
+            f"Proof: whatever the design, one of these limits is violated by at least {violation} %: "
             f"{names}."
         )
     return lines
@@ -125,16 +123,16 @@ def meaning(result: Result) -> str:
     known, status = result.bound is not None, result.status
     if status == "optimal":
         return (
-            f"No design{scope(result)} that meets the limits is better by more than the gap: the "
-            "bound was computed by gearopt itself, not taken from a solver."
+            f"No feasible design{scope(result)} is better by more than the gap. gearopt computed "
+            "the bound itself; it is not taken from a solver."
         )
     if status == "infeasible":
         return "Proven: no design meets all limits."
     if status == "evaluated":
         met = "meets all limits" if result.feasible else "does not meet all limits"
-        return f"Nothing was minimised: the design given was evaluated, and {met}."
+        return f"The given design was evaluated, not optimised; it {met}."
     if status == "stationary":
-        return "No small change improves the design; a better one elsewhere is not excluded."
+        return "No small change improves the design; a better one may exist elsewhere."
     if result.value is None:
         return "No design was found; that is no proof that there is none."
     early = "The run ended early. " if status == "limit" else ""
@@ -180,21 +178,21 @@ def _amount(value: float | None, unit: str, measures: Measures) -> Cell:
 
 def _checks(result: Result) -> list[tuple[str, Any]]:
     """Return the certificate, then what else the proof says."""
-    found: list[tuple[str, Any]] = [
+    rows: list[tuple[str, Any]] = [
         (f"{name}: {CHECKS.get(name, '')}", Cell(value, "" if value is None else f"{value:.2g}"))
         for name, value in result.certificate.items()
     ]
     for key, value in result.proof.items():
-        if key not in TOLD and not isinstance(value, Mapping | list):
+        if key not in SHOWN and not isinstance(value, Mapping | list):
             shown = Cell(value, f"{value:.3g}") if isinstance(value, float) else value
-            found.append((key.replace("_", " "), shown))
-    return found
+            rows.append((key.replace("_", " "), shown))
+    return rows
 
 
 def assumptions(result: Result, measures: Measures) -> Section | None:
-    """Say what the numbers rest on beside the file; None where the kind tells nothing."""
-    told = result.report.get("assumptions") or []
-    return Section("Assumptions and unverified data", words=told, half=True) if told else None
+    """Return the assumptions beside the file; None where the kind reports none."""
+    words = result.report.get("assumptions") or []
+    return Section("Assumptions and unverified data", words=words, half=True) if words else None
 
 
 def asked(result: Result, measures: Measures) -> Section | None:
@@ -255,8 +253,8 @@ def progress(result: Result, measures: Measures) -> Section | None:
         axis(f"{name} [{sign}]" if sign else name, tickformat="," if large else ""),
         340,
     )
-    words = "Best value found so far" + (" and the bound below it" if bound else "")
-    return Section("Progress", figures=(Figure(traces, plot, f"{words}, against wall time."),))
+    words = "Best value so far" + (" and its lower bound" if bound else "")
+    return Section("Progress", figures=(Figure(traces, plot, f"{words} against wall time."),))
 
 
 def _converted(step: dict[str, Any], unit: str, measures: Measures) -> dict[str, Any]:

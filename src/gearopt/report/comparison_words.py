@@ -9,7 +9,7 @@ from gearopt.report.words import amount
 
 NOTHING = 1e-12  # a gap below it is rounding
 COLUMNS = (  # of a table: heading, unit, what it says
-    ("median gap", "%", "Gap to the reference that half of the seeds are within"),
+    ("median gap", "%", "Median over the seeds of the gap to the reference"),
     ("worst gap", "%", "Gap of the worst seed"),
     ("within 0.1\u00a0%", "seeds", "Seeds whose feasible point is within 0.1 % of the reference"),
     ("within 1e-6", "seeds", "Seeds whose feasible point is within a millionth of it"),
@@ -22,7 +22,7 @@ assert (CLOSE, TIGHT) == (1e-3, 1e-6)  # as the headings say
 
 
 def cells(sample: Sample) -> tuple[str, ...]:
-    """The row of a method, in the order of COLUMNS."""
+    """Return the row of a method, in the order of COLUMNS."""
     s = sample.summary
     return (
         percent(s.median_gap),
@@ -37,7 +37,7 @@ def cells(sample: Sample) -> tuple[str, ...]:
 
 
 def percent(gap: float | None) -> str:
-    """A gap in percent; "none" where there is no feasible point."""
+    """Return a gap in percent; "none" where there is no feasible point."""
     if gap is None:
         return "none"
     if gap <= NOTHING:
@@ -47,16 +47,16 @@ def percent(gap: float | None) -> str:
 
 
 def kinds(found: Comparison) -> tuple[tuple[str, str, str], ...]:
-    """Field of a row, heading and budget of the two ways to be equal."""
+    """Return field of a row, heading and budget of both comparisons."""
     budget = found.budget
     return (
-        ("equal_evaluations", "Equal evaluations", f"{budget['evaluations']:,} a run"),
-        ("equal_time", "Equal time", f"{budget['seconds']:g} s a run"),
+        ("equal_evaluations", "Equal evaluations", f"{budget['evaluations']:,} per run"),
+        ("equal_time", "Equal time", f"{budget['seconds']:g} s per run"),
     )
 
 
 def reference(group: Group) -> str:
-    """What the gaps of a group are measured from."""
+    """Say what the gaps of a group are measured from."""
     name = group.objective.replace("_", " ")
     proving = [row.method for row in group.rows if _impossible(row)]
     if proving:
@@ -69,30 +69,30 @@ def reference(group: Group) -> str:
             f"Nothing is proven here: gaps are to the best {name} known, {value}, which may "
             "itself not be the optimum."
         )
-    words = f"Gaps are to the proven bound: no {name} below {value} is possible ({group.bound_from}"
+    words = f"Gaps are to the proven lower bound of the {name}, {value} ({group.bound_from}"
     if group.best is None:
         return f"{words}). No method found a feasible point."
     apart = group.best / group.reference - 1.0 if group.reference else 0.0
     if _closed(group):
         return f"{words}, and it is reached: the optimum is known)."
-    return f"{words}). The best known is {100 * apart:.2g} % above it, so the optimum is between."
+    return f"{words}). The best known is {100 * apart:.2g} % above it; the optimum lies between."
 
 
 def _closed(group: Group) -> bool:
-    """Whether the reference is the proven optimum."""
+    """Return whether the reference is the proven optimum."""
     if not group.proven or group.best is None or group.reference is None:
         return False
     return group.best - group.reference <= TIGHT * abs(group.reference)
 
 
 def _impossible(row: Row) -> bool:
-    """Whether a method proved that there is no feasible point."""
+    """Return whether a method proved that there is no feasible point."""
     samples = (row.equal_evaluations, row.equal_time)
     return any(run.status == "infeasible" for s in samples if s is not None for run in s.runs)
 
 
 def verdict(group: Group, row: Row) -> str:
-    """What a method came to in equal time, in one sentence without its name."""
+    """Say what a method achieved in equal time, in one sentence without its name."""
     if row.refused:
         return f"cannot take this problem: {row.refused}"
     sample = row.equal_time
@@ -122,7 +122,7 @@ def verdict(group: Group, row: Row) -> str:
 
 
 def ended(found: Comparison, row: Row) -> str:
-    """How many runs by evaluations the clock ended, "" for none."""
+    """Say how many runs by evaluations the clock ended, "" for none."""
     sample = row.equal_evaluations
     most, patience = found.budget["evaluations"], found.budget["patience_seconds"]
     runs = sample.runs if sample else ()
@@ -133,7 +133,7 @@ def ended(found: Comparison, row: Row) -> str:
 
 
 def settings(values: Mapping[str, Any]) -> str:
-    """The settings of a method on one line."""
+    """Return the settings of a method on one line."""
     return ", ".join(f"{name} {_setting(value)}" for name, value in values.items())
 
 
@@ -144,7 +144,7 @@ def _setting(value: Any) -> str:
 
 
 def command(found: Comparison) -> str:
-    """How to make the comparison again."""
+    """Return the command that repeats the comparison."""
     methods = [row.method for group in found.groups for row in group.rows]
     budget = found.budget
     if found.file is None:
@@ -175,5 +175,5 @@ FAIRNESS = (
     "A point counts only if it passes our own check of every limit (within 1e-8). A seed without "
     "one has no gap and ranks behind every other in the median and the worst.",
     "Annealing and NSGA-II plan their run over the evaluations they are given; for equal time they "
-    "are told how many their own speed, measured before, will allow.",
+    "are given as many as their own speed, measured before, allows.",
 )

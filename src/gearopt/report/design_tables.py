@@ -21,7 +21,7 @@ STAGE_ROWS = {  # what a key is called, and its unit (modules are metric in any 
     "wheel_tip_diameter_mm": ("tip diameter d_a2", "mm"),
     "pinion_root_diameter_mm": ("root diameter d_f1", "mm"),
     "wheel_root_diameter_mm": ("root diameter d_f2", "mm"),
-    "centre_distance_mm": ("centres a", "mm"),
+    "centre_distance_mm": ("centre distance a", "mm"),
     "transverse_contact_ratio": ("transverse contact ratio ε_α", ""),
     "overlap_ratio": ("overlap ratio ε_β", ""),
     "pinion_torque_Nm": ("torque T1", "Nm"),
@@ -30,7 +30,7 @@ STAGE_ROWS = {  # what a key is called, and its unit (modules are metric in any 
     "gear_volume_mm3": ("volume", "cm3"),
     "pinion_mass_kg": ("pinion mass", "kg"),
     "wheel_mass_kg": ("wheel mass", "kg"),
-    "mass_kg": ("mass of both", "kg"),
+    "mass_kg": ("mass of the pair", "kg"),
 }
 PAGE_ONLY = {
     *("pinion_tip_diameter_mm", "wheel_tip_diameter_mm"),
@@ -48,11 +48,11 @@ def tables(result: Result, measures: Measures) -> Section | None:
     stages = design.pop("stages", [])
     tables = [stage_table(stages, measures)] if stages else []
     found = tables_of("", design, measures)
-    told = [*tables, *(table for table in found if table.name == "totals")]
+    short = [*tables, *(table for table in found if table.name == "totals")]
     return Section(
         "Design",
         tables=[*tables, *_shares(stages, measures), *found],
-        terminal=told if result.value is not None or result.status == "evaluated" else (),
+        terminal=short if result.value is not None or result.status == "evaluated" else (),
     )
 
 
@@ -78,8 +78,8 @@ def stage_table(
 
 
 def ratio_tile(ratio: float, error_percent: float) -> Tile:
-    """Return the total ratio, and how far it is off the one that is asked for."""
-    return Tile("total ratio", number(ratio), f"{error_percent:+.3f} % off")
+    """Return the total ratio and its error from the one that is asked for."""
+    return Tile("total ratio", number(ratio), f"error {error_percent:+.3f} %")
 
 
 def _shares(stages: Sequence[Mapping[str, Any]], measures: Measures) -> list[Table]:
@@ -106,27 +106,29 @@ def trains(result: Result, measures: Measures) -> Section | None:
     if best is None:
         return None
     found, (name, unit), length = best.report["trains"], objective(best), measures.unit("mm")
-    least = found[0]["objective"]
+    minimum = found[0]["objective"]
     goal, centres = (f"{name}\n{measures.unit(unit)}", f"centre distances\n{length}")
-    short = {head.replace("\n", " "): head for head in (goal, centres)}
-    rows = [_train_row(k, train, least, unit, measures) for k, train in enumerate(found, 1)]
-    first, last = short
-    heads = ("", first, "more, %", "ratio", "m_n, z1/z2", last)
-    table = Table("best trains", heads, rows, page_only=("more, %",), short=short, left=6, wrap=6)
+    names = {head.replace("\n", " "): head for head in (goal, centres)}
+    rows = [_train_row(k, train, minimum, unit, measures) for k, train in enumerate(found, 1)]
+    first, last = names
+    heads = ("", first, "above the best, %", "ratio", "m_n, z1/z2", last)
+    table = Table(
+        "best trains", heads, rows, page_only=("above the best, %",), short=names, left=6, wrap=6
+    )
     words = (
-        "Distinct choices of teeth, each with its best modules and widths: nothing better than the "
-        "last one is left out."
+        "Distinct choices of teeth, each with its best modules and widths. The list is complete: "
+        "no other train is better than the last one."
     )
     whole = best.proof.get("method") == "exhausted" and (best.gap or 0.0) <= EXACT
-    words = words if whole else "The best of the trains that were found; others may be better."
-    told = (table,) if result.value is not None else ()
-    return Section("Next best trains", words=(words,), tables=(table,), terminal=told)
+    words = words if whole else "The best trains of those evaluated; others may be better."
+    short = (table,) if result.value is not None else ()
+    return Section("Next best trains", words=(words,), tables=(table,), terminal=short)
 
 
 def _train_row(
-    rank: int, train: Mapping[str, Any], least: float, unit: str, measures: Measures
+    rank: int, train: Mapping[str, Any], minimum: float, unit: str, measures: Measures
 ) -> list[Any]:
-    stages, extra = train["stages"], 100.0 * (train["objective"] / least - 1.0)
+    stages, extra = train["stages"], 100.0 * (train["objective"] / minimum - 1.0)
     teeth = "  ".join(f"{s[MODULE]:g}, {s['pinion_teeth']}/{s['wheel_teeth']}" for s in stages)
     distances = [s["centre_distance_mm"] for s in stages]
     return [

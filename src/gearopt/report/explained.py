@@ -1,4 +1,4 @@
-"""What every number of a file costs; and ways out of an impossible request."""
+"""Sensitivities of the numbers of a file, and remedies for an impossible request."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -9,59 +9,61 @@ from gearopt.report.measures import Measures
 from gearopt.report.section import Cell, Section, Table
 from gearopt.report.words import edit, limit_words, objective
 
-ALIKE = 0.02  # of slopes from below and above that are shown as one; relative to those above 1
-FLAT = 0.5e-4  # slope that would be shown as 0.0000
+ALIKE = 0.02  # of sensitivities from both sides shown as one; relative to those above 1
+FLAT = 0.5e-4  # sensitivity that would be shown as 0.0000
 NOTHING = 1e-9  # relative: no change
-BOTH = ("number in the file", "now")
-TERMINAL_ONLY = ("+1 % brings", "re-solved", "brings")
-PAGE_ONLY = ("brings, %", "+1 % brings, %")
-HEADS = (*BOTH, *TERMINAL_ONLY[:2], "eased by", TERMINAL_ONLY[2], *PAGE_ONLY)
+BOTH = ("number in the file", "value")
+TERMINAL_ONLY = ("effect of +1 %", "re-solved", "effect")
+PAGE_ONLY = ("effect, %", "effect of +1 %, %")
+HEADS = (*BOTH, *TERMINAL_ONLY[:2], "relaxed by", TERMINAL_ONLY[2], *PAGE_ONLY)
 KINDS = {
-    "least": "least change",
+    "least": "smallest change",
     "alone": "or this alone",
-    "pair": "two together",
+    "pair": "two changes together",
     "less": "or ask for less",
     "choice": "or choose",
 }
 REMEDY_HEADS = (
-    "ways out, one is enough",
+    "remedy, one is enough",
     "write in the file",
     "instead of",
     "factor",
-    "proven least",
+    "proven minimum",
 )
 
 
-def prices(result: Result, measures: Measures) -> Section | None:
-    """Return sensitivities and shadow prices of the file's numbers; None if not asked for."""
+def sensitivities(result: Result, measures: Measures) -> Section | None:
+    """Return the sensitivities of the file's numbers; None if they are not asked for."""
     found = result.report.get("prices")
     return of_influences(found, result) if found and result.value is not None else None
 
 
 def of_influences(found: Mapping[str, Any], result: Result) -> Section:
-    """Return what every number does to the objective, and what that means.
+    """Return the effect of every number on the objective, and what the columns mean.
 
     found: influences, message and basis, see `optimise.explaining.explanation`.
     """
     rows = [_row(one) for one in found["influences"]]
-    table = Table("prices", HEADS, rows, page_only=PAGE_ONLY, terminal_only=TERMINAL_ONLY, wrap=0)
+    table = Table(
+        "sensitivities", HEADS, rows, page_only=PAGE_ONLY, terminal_only=TERMINAL_ONLY, wrap=0
+    )
     words, tables = influence_words(found, result), (table,) if rows else ()
-    told = (*tables, "\n".join(words))
-    return Section("What each limit costs", words=words, tables=tables, half=True, terminal=told)
+    terminal = (*tables, "\n".join(words))
+    return Section("Sensitivities", words=words, tables=tables, half=True, terminal=terminal)
 
 
 def _row(one: Mapping[str, Any]) -> list[Any]:
-    """Return key, value, slopes, easing and its price; then these two as a page has them."""
-    slope, both, brings = _percent(one["sensitivity"]), _sides(one["resolved"]), price(one["price"])
+    """Return key, value, sensitivities, step and its effect; then these two as a page has them."""
+    slope, both, effect = _percent(one["sensitivity"]), _sides(one["resolved"]), price(one["price"])
     change = None if one["price"] is None else 100.0 * clean(one["price"])
     return [
-        *(one["key"], one["value"], slope, both, one["step"], brings),
-        *(Cell(change, brings), Cell(_slope(one), slope or both)),
+        *(one["key"], one["value"], slope, both, one["step"], effect),
+        *(Cell(change, effect), Cell(_slope(one), slope or both)),
     ]
 
 
 def _slope(influence: Mapping[str, Any]) -> Any:
-    """Return the slope by multipliers, else by solving again, both sides where they differ."""
+    """Return the sensitivity by multipliers, else by re-solving, both sides where they differ."""
     slope = influence["sensitivity"]
     if slope is not None:
         return clean(slope)
@@ -76,11 +78,11 @@ def influence_words(found: Mapping[str, Any], result: Result) -> list[str]:
     name = objective(result)[0]
     lines = [found["message"][0].upper() + found["message"][1:] + "."] if found["message"] else []
     if not found["influences"]:
-        return lines or ["No number of the file was looked at."]
-    slope = f"What +1 % brings: slope of the {name} (d ln objective / d ln number)"
+        return lines or ["No number of the file was examined."]
+    slope = f"Effect of +1 %: sensitivity of the {name} (d ln objective / d ln number)"
     if any(i["sensitivity"] is not None for i in found["influences"]):
         return [*lines, f"{slope}{found.get('basis', '')}."]
-    return [*lines, f"{slope}, by solving again."]
+    return [*lines, f"{slope}, by re-solving."]
 
 
 def clean(change: float) -> float:
@@ -89,7 +91,7 @@ def clean(change: float) -> float:
 
 
 def alike(below: float, above: float) -> bool:
-    """Return whether slopes from both sides are shown as one."""
+    """Return whether sensitivities from both sides are shown as one."""
     return abs(above - below) < ALIKE * max(1.0, abs(below), abs(above))
 
 
@@ -116,7 +118,7 @@ def _sides(resolved: Sequence[float | None]) -> str:
     return f"{_percent(below)} | {_percent(above)}"
 
 
-def ways_out(result: Result, measures: Measures) -> Section | None:
+def remedies(result: Result, measures: Measures) -> Section | None:
     """Say why nothing meets the limits, and what to write instead; None elsewhere."""
     found: Mapping[str, Any] = result.report.get("ways_out") or {}
     if not found:
@@ -124,9 +126,9 @@ def ways_out(result: Result, measures: Measures) -> Section | None:
     why, rows, tried = remedy_words(found)
     if not found["conflict"] and result.message not in ("", found["message"]):
         why.insert(0, result.message)
-    tables = [Table("ways out", REMEDY_HEADS, rows, words=True, left=3)] if rows else []
-    told: list[str | Table] = [*why, *tables, *tried]
-    return Section("Ways out", words=[*why, *tried], tables=tables, terminal=told)
+    tables = [Table("remedies", REMEDY_HEADS, rows, words=True, left=3)] if rows else []
+    terminal: list[str | Table] = [*why, *tables, *tried]
+    return Section("Remedies", words=[*why, *tried], tables=tables, terminal=terminal)
 
 
 def remedy_words(
@@ -137,32 +139,32 @@ def remedy_words(
     found: conflict, remedies and message, as `explain` and `solve` have them.
     """
     why = []
-    conflict, ways, late = found["conflict"], found["remedies"], found["message"]
+    conflict, ways, missing = found["conflict"], found["remedies"], found["message"]
     if conflict:
         names = ", ".join(limit_words(n) for n in conflict)
         why.append(
-            f"These cannot hold together, and none of them is to spare: {names}."
+            f"These limits are in conflict; dropping any one of them resolves it: {names}."
             if len(conflict) > 1
-            else f"This limit cannot be kept, even if all others are dropped: {names}."
+            else f"This limit cannot be met, even if all others are dropped: {names}."
         )
-    late = f"{late[0].upper()}{late[1:]}." if late else ""
+    missing = f"{missing[0].upper()}{missing[1:]}." if missing else ""
     if not ways:
-        return [*why, late or "No way out was found by moving limits."], [], []
+        return [*why, missing or "No remedy was found by moving limits."], [], []
     rows = [row for way in ways for row in _rows(way)]
-    words = f"Each was tried: a design exists with it{_less(ways)}."
+    words = f"Each was verified: a design exists with it{_less(ways)}."
     if any(way["verified"].get("others") == "need more" for way in ways):
         words += (
-            " Least change: what is asked for is kept, and no other limit and no given size does "
-            "with less, moved alone."
+            " Smallest change: the duty is kept, and no other limit or given size, moved alone, "
+            "needs a smaller one."
         )
     if any(way["verified"].get("nearer") == "infeasible" for way in ways):
         words += (
-            " The ratio to choose is the nearest that the limits reach (within the tolerance "
-            "around it others do too)."
+            " The ratio to choose is the nearest feasible one (within the tolerance around it "
+            "others are feasible, too)."
         )
     if conflict and any(way["bound"] is not None for way in ways):
-        words += " Proven least: no smaller factor does, even with real-valued teeth and modules."
-    return why, rows, [f"{words} {late}".rstrip()]
+        words += " Proven minimum: no smaller factor suffices, even with real-valued sizes."
+    return why, rows, [f"{words} {missing}".rstrip()]
 
 
 def _less(ways: Sequence[Mapping[str, Any]]) -> str:
@@ -174,14 +176,14 @@ def _less(ways: Sequence[Mapping[str, Any]]) -> str:
         if way["verified"].get("with_less", "infeasible") != "infeasible"
     ]
     if len(doubtful) == len(moved):
-        return "; whether less does is not known" if any(map(_doubtful, moved)) else ""
+        return "; whether less suffices is not known" if any(map(_doubtful, moved)) else ""
     doubtful += [w["changes"][0]["key"] for w in ways if w["verified"].get("nearer") == "undecided"]
     but = f" (not known of {', '.join(doubtful)})" if doubtful else ""
     return f", and none with 0.1 % (or one tooth or module) less{but}"
 
 
 def _doubtful(way: Mapping[str, Any]) -> bool:
-    """Return whether it stayed undecided if less would do."""
+    """Return whether it stayed undecided if less suffices."""
     return bool(way["verified"].get("with_less") == "undecided")
 
 
@@ -190,7 +192,7 @@ def _rows(way: Mapping[str, Any]) -> list[tuple[str, ...]]:
     alike = ", all alike" if way["kind"] == "even" else ", one stage"
     label = KINDS.get(way["kind"], f"{way['what'].replace('_', ' ')}{alike}")
     if way["kind"] == "least" and _doubtful(way):
-        label = "least found"
+        label = "smallest found"
     product = "product " if len(way["changes"]) > 1 and way["kind"] == "least" else ""
     rows: list[tuple[str, ...]] = []
     for k, change in enumerate(way["changes"]):

@@ -27,21 +27,21 @@ class Measures:
     digits: int = 0
 
     def unit(self, suffix: str) -> str:
-        """The sign of a unit, `mm³` for mm3; an unknown suffix as it is."""
+        """Return the sign of a unit, `mm³` for mm3; an unknown suffix as it is."""
         return self.units.get(suffix, (suffix, 1.0))[0]
 
     @property
     def lengths(self) -> str:
-        """What a drawing's dimensions are in, as a word."""
+        """Return what a drawing's dimensions are in, as a word."""
         return "inches" if self.unit("mm") == "in" else self.unit("mm")
 
     def of(self, value: float, suffix: str) -> float:
-        """A value of the result in the unit that is shown."""
+        """Return a value of the result in the unit that is shown."""
         factor = self.units.get(suffix, ("", 1.0))[1]
         return value if factor == 1.0 else value * factor
 
     def length(self, value: float, digits: int = 2) -> str:
-        """A length [mm] with so many decimals, for drawings."""
+        """Return a length [mm] with so many decimals, for drawings."""
         return f"{self.of(value, 'mm'):.{digits + self.digits}f}".replace("-0.00", "0.00")
 
 
@@ -90,5 +90,5 @@ SYSTEMS = {m.name: m for m in (METRIC, INCH)}
 
 
 def diametral_pitch(module: float) -> float:
-    """Normal diametral pitch [1/in] of a normal module [mm]: 25.4/m_n."""
+    """Return the normal diametral pitch [1/in] of a normal module [mm]: 25.4/m_n."""
     return _INCH / module

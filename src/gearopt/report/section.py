@@ -24,7 +24,7 @@ LONG = 24  # rows; a longer table may break between rows when it is printed
 
 @dataclass(frozen=True)
 class Figure:
-    """A plot: its plotly data and layout, and what a reader is told below it."""
+    """A plot: its plotly data and layout, and and its caption."""
 
     data: list[dict[str, Any]]
     layout: dict[str, Any]
@@ -117,22 +117,22 @@ class Table:
 
     @property
     def long(self) -> bool:
-        """Whether it may not fit on a printed page."""
+        """Return whether it may not fit on a printed page."""
         return len(self.rows) > LONG
 
     @property
     def stem(self) -> str:
-        """Its name as that of a file: "gaps [mm]" as "gaps-mm"."""
+        """Return its name as that of a file: "gaps [mm]" as "gaps-mm"."""
         return re.sub(r"[^a-z0-9]+", "-", self.name.lower()).strip("-")
 
     @property
     def shown(self) -> tuple[list[str], list[list[Cell]]]:
-        """Heads and cells as the page shows them."""
+        """Return heads and cells as the page shows them."""
         heads, rows = self.without(self.terminal_only)
         return heads, [[shown(value) for value in row] for row in rows]
 
     def csv(self) -> str:
-        """Heads and values in full precision, as RFC 4180 has it."""
+        """Return heads and values in full precision, as RFC 4180 has it."""
         text = io.StringIO()
         writer = csv.writer(text, lineterminator="\r\n")
         heads, rows = self.without(self.terminal_only)
@@ -143,7 +143,7 @@ class Table:
 
     @property
     def link(self) -> str:
-        """The CSV as an address that needs no network."""
+        """Return the CSV as an address that needs no network."""
         return "data:text/csv;charset=utf-8," + quote("\ufeff" + self.csv())  # for spreadsheets
 
 
@@ -175,12 +175,12 @@ class Section:
 
     @property
     def widest(self) -> float:
-        """Width of the widest drawing [px]: all shrink with it, so that they keep one scale."""
+        """Return the width of the widest drawing [px]; all shrink with it, to keep one scale."""
         return max(drawing.width for drawing in self.drawings)
 
     @property
     def printed(self) -> float:
-        """How much the drawings shrink in print so that the first two stand side by side.
+        """Return how much the drawings shrink in print so that the first two stand side by side.
 
         1 where their text would become too small.
         """

@@ -73,7 +73,7 @@ def show_explanation(explanation: Explanation, console: Console) -> None:
         Text.assemble((title(result), "bold"), f": {name} {value}, ", (words, f"bold {colour}"))
     )
     full = ", ".join(limit_words(n) for n in explanation.binding)
-    console.print(Text(f"Used to the full: {full}." if full else "No limit is used to the full."))
+    console.print(Text(f"Limits reached: {full}." if full else "No limit is reached."))
     _print(of_influences(explanation.prices, result).terminal, console)
 
 
@@ -90,7 +90,9 @@ def show_comparison(found: Comparison, console: Console) -> None:
     if found.message:
         console.print(Text(found.message[0].upper() + found.message[1:] + ".", style="yellow"))
     if len(found.groups) > 1:
-        console.print("Methods of different models answer different questions: they stand apart.")
+        console.print(
+            "Methods of different models answer different questions: compare within a model."
+        )
     for group in found.groups:
         _group(found, group, console)
     console.print()

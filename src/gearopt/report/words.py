@@ -9,7 +9,7 @@ from gearopt.formulations.strength import laws
 from gearopt.optimise.result import Result
 from gearopt.report.measures import METRIC, Measures
 
-REACHED = 1e-6  # below a limit by less than that, it is used to the full
+REACHED = 1e-6  # nearer to a limit than that, it is reached
 MODULE = "normal_module_mm"
 VERDICTS = {
     "optimal": ("proven optimal", "green"),
@@ -27,7 +27,7 @@ INVERSE = {"inverse acceleration": ("acceleration", "rad/s²")}  # name and unit
 
 
 def limit_words(name: str) -> str:
-    """`k_factor[2]` as "K-factor of stage 2"."""
+    """Return `k_factor[2]` as "K-factor of stage 2"."""
     stem, _, index = name.rstrip("]").partition("[")
     known = {limit.name: limit.label for law in laws() for limit in law.limits}
     words = known.get(stem, stem.replace("_", " "))
@@ -35,20 +35,20 @@ def limit_words(name: str) -> str:
 
 
 def edit(change: Mapping[str, Any]) -> str:
-    """A change of a file as one would write it."""
+    """Return a change as it is written in the file."""
     key, write = change["key"], change["write"]
     return f"{key} = {write}" if write else f"remove {key}"
 
 
 def heading(key: str, measures: Measures = METRIC) -> str:
-    """`face_width_mm` as "face width [mm]"."""
+    """Return `face_width_mm` as "face width [mm]"."""
     stem, suffix = parted(key, measures)
     words = stem.replace("_", " ")
     return f"{words} [{measures.unit(suffix)}]" if suffix else words
 
 
 def parted(key: str, measures: Measures = METRIC) -> tuple[str, str]:
-    """Name and unit of a key: `face_width_mm` is ("face_width", "mm")."""
+    """Return name and unit of a key: `face_width_mm` is ("face_width", "mm")."""
     if key == MODULE:  # of a metric series, in any system
         return "normal_module [mm]", ""
     units = [unit for unit in measures.units if key.endswith(f"_{unit}")]
@@ -57,19 +57,19 @@ def parted(key: str, measures: Measures = METRIC) -> tuple[str, str]:
 
 
 def amount(value: Any, unit: str, measures: Measures = METRIC) -> str:
-    """A number of a result with its unit, for reading."""
+    """Return a number of a result with its unit, for reading."""
     return f"{number(measures.of(value, unit))} {measures.unit(unit)}".rstrip()
 
 
 def share(used: float) -> str:
-    """A part of a whole in per cent; 100.0 only where it is reached."""
+    """Return a part of a whole in per cent; 100.0 only where it is reached."""
     text = f"{100.0 * used:.1f}"
     below = text == "100.0" and used < 1.0 - REACHED
     return f"{math.floor(1e4 * used) / 100.0:.2f}" if below else text
 
 
 def number(value: Any) -> str:
-    """A number for reading: thousands apart, six significant digits, tenths of large ones."""
+    """Return a number for reading: thousands apart, six digits, tenths of large ones."""
     if isinstance(value, list):
         return "  ".join(number(v) for v in value)
     if isinstance(value, bool) or not isinstance(value, int | float):
@@ -84,7 +84,7 @@ def number(value: Any) -> str:
 
 
 def certainty(result: Result) -> tuple[str, str]:
-    """The status in words, and its colour."""
+    """Return the status in words, and its colour."""
     words, colour = VERDICTS[result.status]
     if result.status == "evaluated" and not result.feasible:
         words, colour = "evaluated, a limit is exceeded", "red"
@@ -96,33 +96,33 @@ def certainty(result: Result) -> tuple[str, str]:
 
 
 def verdict(result: Result) -> tuple[str, str]:
-    """What a reader must know first, and its colour: what is achieved, and how sure that is."""
+    """Return what is achieved and how certain that is, and its colour."""
     words, colour = certainty(result)
     achieved = result.report.get("achieved")
     return (f"{achieved}; {words}" if achieved else words), "yellow" if leading(result) else colour
 
 
 def leading(result: Result) -> list[str]:
-    """What must be read before the numbers: how far the wanted is out of reach; else nothing."""
+    """Return how far a request is out of reach, to be read before the numbers."""
     reach = result.report.get("reach")
     return [result.message] if reach and not reach["within"] and result.message else []
 
 
 def title(result: Result) -> str:
-    """What a result is called: the title of its file, or the file's name."""
+    """Return the name of a result: the title of its file, or the file's name."""
     return str(result.asked.get("title") or result.file or result.scene or result.name)
 
 
 def objective(result: Result) -> tuple[str, str]:
-    """Name of the objective in words, and its unit as a key has it."""
+    """Return the name of the objective in words, and its unit as a key has it."""
     name, unit = (str(result.objective.get(key, "")) for key in ("name", "unit"))
     return name.replace("_", " "), unit
 
 
 def goal(result: Result) -> tuple[str, str, float | None, float | None, str]:
-    """The objective as a reader asks for it: name, unit, value, bound, on which side none is.
+    """Return name, unit, value and bound of the objective, and on which side no design is.
 
-    An inverse that is made least is told as what is made largest by it.
+    Of an inverse that is minimised, what it maximises is shown.
     """
     name, unit = objective(result)
     if name not in INVERSE:
@@ -132,7 +132,7 @@ def goal(result: Result) -> tuple[str, str, float | None, float | None, str]:
 
 
 def limit_rows(limits: Mapping[str, float]) -> tuple[int, list[tuple[str, list[float | None]]]]:
-    """Number of stages; every limit with its utilisation in each stage, then in the whole."""
+    """Return the number of stages; every limit with its use per stage, then of the whole."""
     rows: dict[str, dict[int, float]] = {}
     for name, value in limits.items():
         match = re.fullmatch(r"(.*)\[(\d+)\]", name)

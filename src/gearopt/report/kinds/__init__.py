@@ -26,7 +26,8 @@ class Kind:
     """Sections in the order of the page, and those that the terminal shows in its own order.
 
     tiles: key figures beside objective and bound. beside: sentences after the proof about what
-    else was solved. drawn: whether there is a drawing of its designs.
+    else was solved. drawn: whether there is a drawing of its designs. whole: what a limit of no
+    single stage belongs to, the head of that column.
     """
 
     sections: tuple[MakeSection, ...]
@@ -34,6 +35,7 @@ class Kind:
     tiles: Callable[[Result, Measures], Sequence[Tile]] = _nothing
     beside: Callable[[Result, Measures], Sequence[str]] = _nothing
     drawn: bool = True
+    whole: str = "design"
 
 
 def kind_of(result: Result) -> Kind:

@@ -1,7 +1,6 @@
 """Drives of cylindrical gears, laid out or not: drawings, stages, processes, next best trains."""
 
 from collections.abc import Sequence
-from functools import partial
 from typing import Any
 
 from gearopt.formulations.design import drive_design
@@ -32,16 +31,16 @@ def places(result: Result, measures: Measures) -> Section | None:
     rows = [
         [f"{words} [{unit}]", *(Cell(v, measures.length(v)) for v in values)]
         for words, values in (
-            ("right of the input y", [s.y_mm for s in found.shafts]),
-            ("above the input z", [s.z_mm for s in found.shafts]),
+            ("y, right of the input", [s.y_mm for s in found.shafts]),
+            ("z, above the input", [s.z_mm for s in found.shafts]),
             ("diameter", [s.diameter_mm for s in found.shafts]),
         )
     ]
     table = Table("places of shafts", ["", *(f"shaft {s.shaft}" for s in found.shafts)], rows)
     slabs = ", ".join(" and ".join(map(str, slab)) for slab in found.slabs)
     gaps = [
-        f"{' to '.join(gap.between)}: {measures.length(gap.gap_mm)} {unit} clear, "
-        f"{measures.of(gap.needed_mm, 'mm'):.4g} {unit} needed"
+        f"Clearance of {' to '.join(gap.between)}: {measures.length(gap.gap_mm)} {unit} "
+        f"(minimum {measures.of(gap.needed_mm, 'mm'):.4g} {unit})"
         for gap in found.gaps[:NARROWEST]
     ]
     last = "\n".join([f"Stages along the shafts: {slabs}.", *gaps])
@@ -62,10 +61,12 @@ def processes(result: Result, measures: Measures) -> Section | None:
     designs = [best, *(part for part in ruled if part.design)]
     heads = ["", best.method, *(part.name for part in designs[1:])]
     rows = [*_stages(designs, measures), *_totals(designs, best.bound, measures)]
-    words = "The processes choose by rules, without a search; limits and bound are those of all."
+    words = "The processes follow design rules, without a search; limits and bound are the same."
     table = Table("processes and optimum", heads, rows)
-    told: list[str | Table] = [table, *missing] if result.value is not None else []
-    return Section("Processes and optimum", words=(words, *missing), tables=(table,), terminal=told)
+    shown: list[str | Table] = [table, *missing] if result.value is not None else []
+    return Section(
+        "Processes and optimum", words=(words, *missing), tables=(table,), terminal=shown
+    )
 
 
 def _stages(designs: Sequence[Result], measures: Measures) -> list[list[Any]]:
@@ -95,7 +96,7 @@ def _totals(designs: Sequence[Result], bound: float | None, measures: Measures) 
         shown = (None if one.value is None else measures.of(one.value, unit) for one in designs)
         rows.append([f"{name} [{measures.unit(unit)}]", *shown])
     if bound is not None and bound > 0.0:
-        rows.append(["over the bound [%]", *(_over(one, bound) for one in designs)])
+        rows.append(["above the bound [%]", *(_over(one, bound) for one in designs)])
     return rows
 
 
@@ -112,7 +113,7 @@ def _missing(part: Result) -> str:
 
 
 def trade_off(result: Result, measures: Measures) -> Section | None:
-    """Plot the Pareto front of a run that looked for one; None without it."""
+    """Plot the Pareto front of box width and height; None where the run computed none."""
     front = result.report.get("front") or []
     if not front:
         return None
@@ -143,10 +144,10 @@ def trade_off(result: Result, measures: Measures) -> Section | None:
         {
             "type": "scatter",
             "mode": "markers",
-            "name": "least volume",
+            "name": "minimum volume",
             "x": [best[0]],
             "y": [best[1]],
-            "hovertemplate": f"least volume: {number(best[2])} {volume}<extra></extra>",
+            "hovertemplate": f"minimum volume: {number(best[2])} {volume}<extra></extra>",
             "marker": {"color": "--series-2", "size": 13, "symbol": "star"},
         }
     )
@@ -154,8 +155,8 @@ def trade_off(result: Result, measures: Measures) -> Section | None:
         axis(f"width [{unit}]", range=[x0, x1]), axis(f"height [{unit}]", range=[y0, y1]), 420
     )
     words = (
-        f"Boxes of which none is better in both width and height ({len(points)}). "
-        "Thin lines: equal area of the face."
+        f"Pareto front: {len(points)} boxes, none of them dominated in width and height. "
+        "Dotted lines: equal area of the front face."
     )
     return Section("Width against height", figures=(Figure(traces, plot, words),))
 
@@ -208,7 +209,7 @@ def tiles(result: Result, measures: Measures) -> list[Tile]:
 
 
 def beside(result: Result, measures: Measures) -> list[str]:
-    """Say what other ways to the same objective give: real-valued sizes, or gears chosen first."""
+    """Compare with other optima: real-valued sizes, or gears first and then the layout."""
     found = []
     if result.status == "infeasible" and "least_violation" in result.proof:
         found.append("This holds even with real-valued teeth and modules.")
@@ -228,23 +229,23 @@ def _other_way(result: Result, part: Result, measures: Measures) -> list[str]:
     value = amount(part.value, objective(result)[1], measures)
     if part.name == "apart":
         less = f"{-more:.2f}".replace("-0.00", "0.00")
-        return [f"Gears chosen first and then laid out: {value} (at once is {less} % smaller)."]
+        words = f"Gears optimised first, then the layout: {value}"
+        return [f"{words} (optimised together: {less} % smaller)."]
     cost = f"{more:.2f}".replace("-0.00", "0.00")
     return [
         f"With real-valued teeth and modules: {value} "
-        f"(whole teeth and standard modules cost {cost} %)."
+        f"(whole teeth and standard modules add {cost} %)."
     ]
 
 
 def _instead(part: Result, measures: Measures) -> list[str]:
-    """Say what is known where no whole teeth were found: the answer with real-valued ones."""
+    """Report the design with real-valued teeth where the run has none with whole teeth."""
     name, unit = objective(part)
     if part.value is None or part.bound is None:
         return []
     return [
-        f"With real-valued teeth and modules there is a {name} of "
-        f"{amount(part.value, unit, measures)}; whole teeth have none below "
-        f"{amount(part.bound, unit, measures)}."
+        f"With real-valued teeth and modules a {name} of {amount(part.value, unit, measures)} is "
+        f"feasible; with whole teeth no design is below {amount(part.bound, unit, measures)}."
     ]
 
 
@@ -264,11 +265,12 @@ KIND = Kind(
     terminal=(
         tables,
         places,
-        partial(limits, whole="drive"),
+        limits,
         trains,
         processes,
         *TOLD,
     ),
     tiles=tiles,
     beside=beside,
+    whole="drive",
 )

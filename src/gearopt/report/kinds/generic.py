@@ -5,14 +5,14 @@ A design with a list of `stages` that has the sizes of gears is drawn, too.
 
 from gearopt.report.answer import asked, assumptions, limits, progress, proven, summary
 from gearopt.report.design_tables import tables
-from gearopt.report.explained import prices, ways_out
+from gearopt.report.explained import remedies, sensitivities
 from gearopt.report.kinds import Kind
 from gearopt.report.pages.train_views import section as gears_in_one_line
 
-FIRST = (summary, ways_out)
-ASKED = (asked, limits, prices)
+FIRST = (summary, remedies)
+ASKED = (asked, limits, sensitivities)
 LAST = (progress, proven, assumptions)
-TOLD = (prices, ways_out, summary)  # on the terminal, after the design
+TOLD = (sensitivities, remedies, summary)  # on the terminal, after the design
 
 KIND = Kind(
     sections=(*FIRST, gears_in_one_line, tables, *ASKED, *LAST),

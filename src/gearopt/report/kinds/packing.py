@@ -18,12 +18,20 @@ from gearopt.report.kinds import Kind
 from gearopt.report.kinds.generic import ASKED, FIRST, LAST, TOLD
 from gearopt.report.measures import Measures
 from gearopt.report.pages.sheet import Drawing, Place, Sheet, Window, around, series
-from gearopt.report.pages.solid import Point, edges, line_trace, mesh_trace, rod, space, upright
+from gearopt.report.pages.solid import (
+    TURN,
+    Point,
+    edges,
+    line_trace,
+    mesh_trace,
+    rod,
+    space,
+    upright,
+)
 from gearopt.report.section import Cell, Figure, Section, Table, shown
 from gearopt.report.words import heading, number, parted
 
 WIDE, HIGH = 640.0, 560.0  # largest drawing [px]
-CAPTION = "Drag to turn, scroll to come nearer, click a name to hide or show it."
 
 
 def plans(result: Result, measures: Measures) -> Section | None:
@@ -130,7 +138,7 @@ def solid(result: Result, measures: Measures) -> Section | None:
         name = escape(words(it, measures))
         traces.append(mesh_trace(mesh, name, colours[d], group, showlegend=first))
     view = space(*corners, measures, 520)
-    return Section("In three dimensions", figures=(Figure(traces, view, CAPTION),))
+    return Section("In three dimensions", figures=(Figure(traces, view, TURN),))
 
 
 def _outline(container: ContainerDesign) -> list[Point | None]:
@@ -157,8 +165,9 @@ def places(result: Result, measures: Measures) -> Section | None:
     sizes = tables_of("container", result.design["container"], measures)
     layers = records("layers", result.design["layers"], measures)
     cylinders = _cylinders(design, measures)
-    told = (cylinders, _container(design, sizes[0], measures)) if result.value is not None else ()
-    return Section("Design", tables=(*sizes, layers, cylinders), terminal=told)
+    known = result.value is not None
+    short = (cylinders, _container(design, sizes[0], measures)) if known else ()
+    return Section("Design", tables=(*sizes, layers, cylinders), terminal=short)
 
 
 def _cylinders(design: PackingDesign, measures: Measures) -> Table:
@@ -175,8 +184,8 @@ def _cylinders(design: PackingDesign, measures: Measures) -> Table:
 
 def _cell(key: str, value: float, measures: Measures) -> Cell:
     if unit := parted(key)[1]:
-        told = measures.of(value, unit)
-        return Cell(told, shown(told).text, short=measures.length(value, 3))
+        size = measures.of(value, unit)
+        return Cell(size, shown(size).text, short=measures.length(value, 3))
     return shown(value)
 
 

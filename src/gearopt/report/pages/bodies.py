@@ -97,9 +97,9 @@ def drawn_corners(found: LayoutDesign) -> tuple[Corner, Corner]:
 
 def _with_motor(found: LayoutDesign) -> tuple[Corner, Corner]:
     low, high = box_corners(found)
-    if (told := motor(found)) is None:
+    if (place := motor(found)) is None:
         return low, high
-    r, start, end = told
+    r, start, end = place
     low = (min(low[0], start), min(low[1], -r), min(low[2], -r))
     return low, (max(high[0], end), max(high[1], r), max(high[2], r))
 
@@ -136,8 +136,8 @@ def disc(found: LayoutDesign, name: str, beside: KeepOutDesign | None = None) ->
 
     "shaft 2 with its gears" is the largest body there of those that a keep-out stands beside.
     """
-    if name == "motor" and (told := motor(found)) is not None:
-        return Disc((0.0, 0.0), *told)
+    if name == "motor" and (place := motor(found)) is not None:
+        return Disc((0.0, 0.0), *place)
     match = re.fullmatch(r"(?:bearing of )?shaft (\d+)( with its gears)?", name)
     number = int(match[1]) if match else None
     for gear in found.gears:
@@ -148,12 +148,12 @@ def disc(found: LayoutDesign, name: str, beside: KeepOutDesign | None = None) ->
     centre = shaft.y_mm, shaft.z_mm
     bodies: list[tuple[str, ShaftDesign | BearingDesign]] = [(f"shaft {number}", shaft)]
     bodies += [(f"bearing of shaft {number}", b) for b in found.bearings if b.shaft == number]
-    discs = [(said, Disc(centre, 0.5 * b.diameter_mm, b.from_mm, b.to_mm)) for said, b in bodies]
+    discs = [(label, Disc(centre, 0.5 * b.diameter_mm, b.from_mm, b.to_mm)) for label, b in bodies]
     discs += [(g.name, gear_disc(found, g)) for g in found.gears if g.shaft == number]
     if match and match[2]:
         meant = [body for _, body in discs if beside is None or _overlap(body, beside)]
     else:
-        meant = [body for said, body in discs if said == name]
+        meant = [body for label, body in discs if label == name]
     return max(meant, key=lambda body: body.radius, default=None)
 
 

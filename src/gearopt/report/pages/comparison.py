@@ -18,7 +18,7 @@ ZERO = "0"  # tick of the floor
 
 
 def page(found: Comparison) -> str:
-    """One self-contained HTML page."""
+    """Return one self-contained HTML page."""
     colour = colours([row.method for group in found.groups for row in group.rows])
     rows = [row for group in found.groups for row in group.rows if not row.refused]
     samples = [s for row in rows for s in (row.equal_evaluations, row.equal_time) if s]
@@ -40,7 +40,7 @@ def page(found: Comparison) -> str:
 
 
 def colours(methods: list[str]) -> dict[str, str]:
-    """The colour of every method: its own for a known one, on every page, else the next free."""
+    """Return the colour of every method: of a known one its own, on every page, else a free one."""
     taken = {name: KNOWN.index(name) + 1 for name in methods if name in KNOWN}
     free = [k for k in range(COLOURS, 0, -1) if k not in taken.values()] or [COLOURS]
     others = (name for name in dict.fromkeys(methods) if name not in KNOWN)
@@ -53,12 +53,12 @@ def _subtitle(found: Comparison) -> str:
     budget = found.budget
     return (
         f"{methods}; {len(found.seeds)} seeds for random methods; "
-        f"{budget['evaluations']:,} evaluations or {budget['seconds']:g} s a run"
+        f"{budget['evaluations']:,} evaluations or {budget['seconds']:g} s per run"
     )
 
 
 def _block(found: Comparison, group: Group, colour: dict[str, str]) -> dict[str, Any]:
-    """What the template shows of a group."""
+    """Return what the template shows of a group."""
     sides = []
     least, worst, top = span(group)
     for field, heading, budget in words.kinds(found):
@@ -83,7 +83,7 @@ def _block(found: Comparison, group: Group, colour: dict[str, str]) -> dict[str,
 
 
 def span(group: Group) -> tuple[float, float, float]:
-    """Ends of the axes of gaps, the same for all plots of a group, relative.
+    """Return the ends of the axes of gaps, the same for all plots of a group, relative.
 
     Where a gap of zero is drawn: a decade below the least gap that is not. The largest final gap.
     The top of the curves, whose beginnings may lie above the plot.
@@ -108,7 +108,7 @@ def anytime(
     most: float,
     by_time: bool,
 ) -> Figure:
-    """Median gap so far and the band of its quartiles, both axes logarithmic."""
+    """Plot the median gap so far and the band of its quartiles, both axes logarithmic."""
     data: list[dict[str, Any]] = []
     for method, sample in samples.items():
         curve, colour = sample.curve, colours[method]
@@ -133,7 +133,7 @@ def anytime(
 def _line(
     method: str, x: Sequence[float], median: Sequence[float], colour: str, unit: str
 ) -> list[dict[str, Any]]:
-    """The curve, and the mark at its end that also stands in the legend."""
+    """Draw the curve, and the mark at its end that also stands in the legend."""
     look: dict[str, Any] = {"type": "scatter", "name": method, "legendgroup": method}
     line = {"color": colour, "width": 2.2, "shape": "hv"}
     y = [100.0 * v for v in median]
@@ -152,7 +152,7 @@ def _band(
     least: float,
     top: float,
 ) -> list[dict[str, Any]]:
-    """Quartiles; where the worse one has no feasible point yet, it is drawn at the curve's top."""
+    """Draw the quartiles; one that has no feasible point yet is at the curve's top."""
     look = {"type": "scatter", "mode": "lines", "x": x, "showlegend": False, "hoverinfo": "skip"}
     line = {"color": colour, "width": 0, "shape": "hv"}
     low = [100.0 * _drawn(sample.curve.low[k], least) for k in known]
@@ -167,7 +167,7 @@ def _band(
 def final(
     samples: Mapping[str, Sample], colours: Mapping[str, str], least: float, most: float
 ) -> Figure:
-    """Every seed's final gap, with a box of median and quartiles."""
+    """Plot every seed's final gap, with a box of median and quartiles."""
     data: list[dict[str, Any]] = []
     notes: list[dict[str, Any]] = []
     for method, sample in samples.items():
@@ -226,7 +226,7 @@ def _marked(least: float) -> str:
 
 
 def _spent(values: Sequence[float], by_time: bool) -> dict[str, Any]:
-    """The logarithmic axis of what was spent."""
+    """Return the logarithmic axis of what was spent."""
     low = math.floor(math.log10(min(values, default=1.0)))
     high = max(low + 1.0, math.log10(max(values, default=10.0)))
     ticks = range(low, math.floor(high) + 1)
@@ -240,7 +240,7 @@ def _spent(values: Sequence[float], by_time: bool) -> dict[str, Any]:
 
 
 def _gaps(least: float, most: float) -> dict[str, Any]:
-    """The logarithmic axis of gaps in percent, with its floor."""
+    """Return the logarithmic axis of gaps in percent, with its floor."""
     low, high = round(math.log10(100 * least)), math.ceil(math.log10(100 * most) + 0.05)
     ticks = list(range(low, high + 1, max(1, (high - low) // 7)))
     words = [ZERO] + [f"{10.0**k:,g}" if -4 < k < 5 else f"10<sup>{k}</sup>" for k in ticks[1:]]

@@ -13,7 +13,7 @@ def render(
     plots: bool = True,
     **content: Any,
 ) -> str:
-    """A page from a template that extends frame.html; everything but our own files is escaped.
+    """Return a page from a template that extends frame.html; all but our own files is escaped.
 
     plots: the page has figures, which need plotly (4.8 MB) inside it.
     """

@@ -20,6 +20,7 @@ from gearopt.report.pages.bodies import (
 )
 from gearopt.report.pages.sheet import series
 from gearopt.report.pages.solid import (
+    TURN,
     Mesh,
     Toothed,
     block,
@@ -37,17 +38,16 @@ MOST = 50_000  # triangles of all gears together, for a page that turns smoothly
 DETAIL = ((3, 0.12), (3, 0.3), (2, 0.6), (2, 10.0))  # points on a flank, twist a section [rad]
 FLUSH = 0.003  # of the box: a shaft is drawn so much longer, to be seen where it ends in a face
 CAPTION = (
-    "Drag to turn, scroll to come nearer, click a name to hide or show it. Tooth numbers, "
-    "diameters and helix angles are those of the design; flanks are involutes of 20 degrees. "
-    "Clearances, hidden at first, are the room that other shafts must leave to each gear, the "
-    "limit within the walls, and the narrowest gap."
+    f"{TURN} Tooth numbers, diameters and helix angles are those of the design; flanks are "
+    "involutes of 20 degrees. Clearances, hidden at first: the space that other shafts leave "
+    "around each gear, the limit inside the walls, and the smallest gap."
 )
 
 ROUNDED = "Teeth are real numbers here: of each gear the nearest whole number is drawn."
 
 
 def section(result: Result, measures: Measures) -> Section | None:
-    """The gearbox to turn; None where there is no layout."""
+    """Draw the gearbox in space; None where there is no layout."""
     if (found := layout_of(result)) is None:
         return None
     view = space(*drawn_corners(found), measures)
@@ -96,7 +96,7 @@ def _gears(
 def _toothed(
     found: LayoutDesign, gear: GearDesign, places: Mapping[int, tuple[float, float]]
 ) -> Toothed:
-    """The gear turned so that it meshes with its mate.
+    """Return the gear turned so that it meshes with its mate.
 
     At the middle of the stage the pinion has a tooth on the line of centres and the wheel a gap.
     The hands of a pair are opposite; those of the two gears on a shaft are equal, so that their
@@ -127,13 +127,13 @@ def _toothed(
 
 
 def _housing(found: LayoutDesign, measures: Measures) -> list[dict[str, Any]]:
-    """Walls as lines, the motor, keep-outs."""
+    """Draw walls as lines, the motor, keep-outs."""
     box = found.box
     low, high = box_corners(found)
     size = " x ".join(map(measures.length, box.sides))
     traces = [line_trace(edges(low, high), f"box {size} {measures.unit('mm')}", "--ink", 3.0)]
-    if told := motor(found):
-        mesh = rod((0.0, 0.0), *told)
+    if place := motor(found):
+        mesh = rod((0.0, 0.0), *place)
         traces.append(mesh_trace(mesh, "motor", "--axis", "motor", opacity=0.6, showlegend=True))
     for k, it in enumerate(keep_outs(found)):
         ends = (it.from_mm, it.left_mm, it.bottom_mm), (it.to_mm, it.right_mm, it.top_mm)
@@ -146,7 +146,7 @@ def _housing(found: LayoutDesign, measures: Measures) -> list[dict[str, Any]]:
 def _clearances(
     found: LayoutDesign, places: Mapping[int, tuple[float, float]]
 ) -> list[dict[str, Any]]:
-    """Shells, the limit within the walls, the narrowest gap; hidden until they are asked for."""
+    """Draw clearances, the limit inside the walls and the smallest gap; hidden at first."""
     room = found.clearances
     hidden: dict[str, Any] = {"visible": "legendonly", "legendgroup": "clearances"}
     wall, axial = room.wall_mm, room.axial_mm

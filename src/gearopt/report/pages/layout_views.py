@@ -34,7 +34,7 @@ LEVEL = 32.0  # px from the upper edge: where face widths stand
 
 
 def section(result: Result, measures: Measures) -> Section | None:
-    """The views of a layout, all at one scale; None where there is no layout."""
+    """Draw the views of a layout, all at one scale; None where there is no layout."""
     if (found := layout_of(result)) is None:
         return None
     windows = [_window(found, axis) for axis in ("", "z", "y")]
@@ -43,10 +43,10 @@ def section(result: Result, measures: Measures) -> Section | None:
         f"Drawn to one scale; dimensions in {measures.lengths}. The axis of shaft 1, the input, "
         f"is y = z = 0; shaft {len(found.shafts)} is the output. Dash-dotted circles are "
         "reference circles, solid ones tip circles; numbers in circles are shafts. The thin dashed "
-        "line is as far from the wall as every gear has to stay."
+        "line marks the wall clearance."
     ]
     if found.obstacles:
-        words.append("Hatched boxes must stay free; those that reach far out are cut off.")
+        words.append("Hatched boxes are keep-outs; those that reach far out are cut off.")
     if found.motor:
         words.append("No length of the motor was given: it is drawn as long as it is wide.")
     views = (
@@ -58,7 +58,7 @@ def section(result: Result, measures: Measures) -> Section | None:
 
 
 def _window(found: LayoutDesign, axis: str) -> Window:
-    """Of the front view, or of the view whose upright axis is given, with all that is drawn."""
+    """Return the window of the front view, or of the view with this upright axis."""
     ends = drawn_corners(found)
     (bottom, top), (left, right) = along(ends, axis or "z"), along(ends, "x" if axis else "y")
     free = (20.0, 44.0, 48.0, 44.0) if axis else (52.0, 20.0, 48.0, 44.0)
@@ -66,12 +66,12 @@ def _window(found: LayoutDesign, axis: str) -> Window:
 
 
 def walls(found: LayoutDesign, axis: str) -> tuple[float, float]:
-    """Both ends of the box along an axis, mm."""
+    """Return both ends of the box along an axis [mm]."""
     return along(box_corners(found), axis)
 
 
 def box_lines(sheet: Sheet, found: LayoutDesign, across: str, upright: str) -> None:
-    """The box, and in the front view how near to it a gear may come."""
+    """Draw the box, and in the front view the wall clearance."""
     (left, right), (bottom, top) = walls(found, across), walls(found, upright)
     sheet.rectangle((left, bottom), (right, top), "box")
     wall = found.clearances.wall_mm
@@ -82,7 +82,7 @@ def box_lines(sheet: Sheet, found: LayoutDesign, across: str, upright: str) -> N
 def across_dimension(
     sheet: Sheet, found: LayoutDesign, across: str, upright: str, measures: Measures
 ) -> None:
-    """The box's dimension across, below all that is drawn."""
+    """Draw the box's dimension across, below all that is drawn."""
     (left, right), bottom = walls(found, across), walls(found, upright)[0]
     away = sheet.height - 18.0 - sheet.at(left, bottom)[1]
     sheet.dimension((left, bottom), (right, bottom), away, measures.length(right - left))
@@ -91,7 +91,7 @@ def across_dimension(
 def keep_out(
     sheet: Sheet, it: KeepOutDesign, across: str, upright: str, hatched: bool = True
 ) -> None:
-    """A rectangle with its name; only its outline where what is behind it must be seen."""
+    """Draw a rectangle with its name; only its outline where what is behind it must be seen."""
     a, b = zip(sides(it, across), sides(it, upright), strict=True)
     title = f"keep-out: {it.name}"
     if not hatched:
@@ -107,11 +107,11 @@ def keep_out(
 
 
 def front_view(found: LayoutDesign, window: Window, scale: float, measures: Measures) -> Drawing:
-    """Along the shafts, y to the right and z up."""
+    """Draw the view along the shafts, y to the right and z up."""
     sheet = Sheet(window, scale)
     box_lines(sheet, found, "y", "z")
-    if told := motor(found):
-        sheet.circle(0.0, 0.0, told[0], "motor", title="motor")
+    if place := motor(found):
+        sheet.circle(0.0, 0.0, place[0], "motor", title="motor")
     for it in keep_outs(found):
         keep_out(sheet, it, "y", "z")
     places = {s.shaft: (s.y_mm, s.z_mm) for s in found.shafts}
@@ -145,7 +145,7 @@ def gear_circles(
     places: Mapping[int, tuple[float, float]],
     measures: Measures,
 ) -> None:
-    """Tip and reference circle of every gear, those behind first; places: (y, z) of the shafts."""
+    """Draw the tip and reference circles, those behind first; places: (y, z) of the shafts."""
     gears = sorted(found.gears, key=lambda g: (g.from_mm, -g.tip_diameter_mm))
     for gear in gears:
         y, z = places[gear.shaft]
@@ -155,13 +155,13 @@ def gear_circles(
 
 
 def gear_names(sheet: Sheet, found: Turning) -> None:
-    """The name of every gear, the largest first."""
+    """Write the name of every gear, the largest first."""
     for gear in sorted(found.gears, key=lambda g: -g.tip_diameter_mm):
         _name(sheet, found, gear)
 
 
 def _split(sheet: Sheet, found: LayoutDesign, places: Mapping[int, tuple[float, float]]) -> None:
-    """The plane in which the housing is parted: through its shafts, level where there is one."""
+    """Draw the split line of the housing: through its shafts, level where there is one."""
     on = [places[k] for k in found.split]
     if not on:
         return
@@ -181,7 +181,7 @@ def _centre_distances(
     places: Mapping[int, tuple[float, float]],
     measures: Measures,
 ) -> None:
-    """Between the shafts of every stage, along the line of centres."""
+    """Draw the centre distance of every stage, along the line of centres."""
     for stage in sorted({gear.stage for gear in found.gears}):
         ends = [places[gear.shaft] for gear in found.gears if gear.stage == stage]
         if len(ends) == 2:
@@ -190,7 +190,7 @@ def _centre_distances(
 
 
 def centre_distance(sheet: Sheet, a: Point, b: Point, text: str) -> None:
-    """A line of centres between two axes [mm], with its text along it."""
+    """Draw a line of centres between two axes [mm], with its text along it."""
     sheet.line(a, b, "centres")
     start, end = sheet.at(*a), sheet.at(*b)
     angle = math.degrees(math.atan2(end[1] - start[1], end[0] - start[0]))
@@ -206,7 +206,7 @@ def centre_distance(sheet: Sheet, a: Point, b: Point, text: str) -> None:
 
 
 def _narrowest(sheet: Sheet, found: LayoutDesign, measures: Measures) -> None:
-    """The narrowest gap between two bodies, with its value."""
+    """Draw the smallest gap between two bodies, with its value."""
     gap = next(iter(found.gaps), None)
     if gap is None or (ends := nearest(found, *gap.between)) is None:
         return
@@ -218,7 +218,7 @@ def _narrowest(sheet: Sheet, found: LayoutDesign, measures: Measures) -> None:
 
 
 def _name(sheet: Sheet, found: Turning, gear: GearDesign) -> None:
-    """The gear's name where it is alone inside it, else outside with a line to it."""
+    """Write the gear's name where it is alone inside it, else outside with a line to it."""
     own, others = gear_disc(found, gear), [g for g in found.gears if g.name != gear.name]
     discs = [gear_disc(found, g) for g in others]
     centre, r = sheet.at(*own.centre), own.radius * sheet.scale
@@ -239,7 +239,7 @@ def _within(sheet: Sheet, spot: Place, one: Disc) -> bool:
 def side_view(
     found: LayoutDesign, window: Window, scale: float, axis: str, measures: Measures
 ) -> Drawing:
-    """Along x to the right and z (from the side) or y (from above) up."""
+    """Draw the view along x to the right and z (from the side) or y (from above) up."""
     sheet = Sheet(window, scale)
     box_lines(sheet, found, "x", axis)
     for it in keep_outs(found):
@@ -277,7 +277,7 @@ def side_view(
 def _shaft(
     sheet: Sheet, found: LayoutDesign, shaft: ShaftDesign, height: float, measures: Measures
 ) -> None:
-    """A shaft with what sits on it, as rectangles."""
+    """Draw a shaft with what sits on it, as rectangles."""
     r = 0.5 * shaft.diameter_mm
     start, end = shaft.from_mm, shaft.to_mm
     sheet.rectangle((start, height - r), (end, height + r), "shaft")
@@ -294,7 +294,7 @@ def _shaft(
 def gears_on(
     sheet: Sheet, found: Turning, shaft: ShaftDesign, height: float, measures: Measures
 ) -> None:
-    """The gears of a shaft as rectangles, and its centre line."""
+    """Draw the gears of a shaft as rectangles, and its centre line."""
     for gear in found.gears:
         if gear.shaft == shaft.shaft:
             half = 0.5 * gear.tip_diameter_mm
@@ -308,9 +308,9 @@ def gears_on(
 
 
 def _motor(sheet: Sheet, found: LayoutDesign, measures: Measures) -> None:
-    if (told := motor(found)) is None:
+    if (place := motor(found)) is None:
         return
-    r, start, end = told
+    r, start, end = place
     sheet.rectangle((start, -r), (end, r), "motor", title="motor", round_=6.0)
     sheet.line((start, 0.0), (end, 0.0), "axis")
     x, y = sheet.at((start + end) / 2, 0.0)
@@ -321,7 +321,7 @@ def _motor(sheet: Sheet, found: LayoutDesign, measures: Measures) -> None:
 def face_widths(
     sheet: Sheet, found: Turning, tops: Mapping[int, float], measures: Measures
 ) -> None:
-    """Face widths above all that is drawn; tops: where the lines to them begin, by stage [mm]."""
+    """Draw face widths above all that is drawn; tops: where their lines begin, by stage [mm]."""
     wheels = {g.stage: g for g in found.gears if g.member == "wheel"}
     for slab in found.slabs:
         for stage in slab:
@@ -340,7 +340,7 @@ def face_widths(
 
 
 def side_name(sheet: Sheet, gear: GearDesign, height: float, text: str) -> None:
-    """What a gear is called in its rectangle, level or upright, else beside it."""
+    """Write the name of a gear in its rectangle, level or upright, else beside it."""
     r = 0.5 * gear.tip_diameter_mm * sheet.scale
     wide = (gear.to_mm - gear.from_mm) * sheet.scale
     x, y = sheet.at(0.5 * (gear.from_mm + gear.to_mm), height)

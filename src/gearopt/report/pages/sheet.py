@@ -17,7 +17,7 @@ CELL = 5.0  # of the grid that counts ink, px
 ARROW = (9.0, 2.6)  # length and half width of an arrow head, px
 HATCH = 9.0  # between the lines of a hatch, px
 MOST = 1_000_000  # points or lines of one mark: more than any drawing has room for
-COLOURS = 8  # --series-1 ... in frame.css, told apart by the colour-blind
+COLOURS = 8  # --series-1 ... in frame.css, distinct for the colour-blind
 Point = tuple[float, float]
 
 
@@ -35,11 +35,11 @@ class Place:
     leader: tuple[float, float] | None = None
 
     def half_width(self, text: str) -> float:
-        """Of the text, px."""
+        """Return half the width of the text [px]."""
         return 0.5 * LETTER * SIZE * len(text) + 2.0
 
     def spots(self, text: str) -> Iterator[tuple[float, float]]:
-        """Points along the middle of the text and a little beyond, half a size apart."""
+        """Return points along the middle of the text and a little beyond, half a size apart."""
         reach = max(0.0, self.half_width(text) - 0.2 * SIZE) if len(text) > 2 else 0.0
         turn = math.radians(self.angle)
         count = math.ceil(2.0 * reach / (0.5 * SIZE))
@@ -58,11 +58,11 @@ class Ink:
     texts: list[tuple[float, float, float]] = field(default_factory=list)  # x, y, reach
 
     def add(self, points: Iterable[tuple[float, float]]) -> None:
-        """Lines, as points along them."""
+        """Add lines, as points along them."""
         self.cells.update((int(x // CELL), int(y // CELL)) for x, y in points)
 
     def cost(self, x: float, y: float, reach: float) -> float:
-        """Of a letter here: other texts and the paper's edge weigh far more than lines."""
+        """Return the cost of a letter here: texts and the edge weigh far more than lines."""
         column, row = int(x // CELL), int(y // CELL)
         lines = sum(
             self.cells.get((column + i, row + j), 0) for i in (-1, 0, 1) for j in (-1, 0, 1)
@@ -74,7 +74,7 @@ class Ink:
 
 
 def best(text: str, places: Sequence[Place], ink: Ink, reach: float = 0.58 * SIZE) -> Place:
-    """The cheapest place; the text, with what is drawn within reach [px] of it, stands there."""
+    """Return the place of lowest cost for the text, which clears what is drawn by reach [px]."""
     found, least = places[0], math.inf
     for place in places:
         inked = 0.0
@@ -94,7 +94,7 @@ def around(
     leader: float | None = None,
     cost: float = 0.0,
 ) -> list[Place]:
-    """Places on circles about a centre [px], nearest first.
+    """Return places on circles about a centre [px], nearest first.
 
     leader: a line leads to the centre, or to the circle of this radius, from places outside it.
     """
@@ -113,7 +113,7 @@ def around(
 
 @dataclass(frozen=True)
 class Drawing:
-    """An SVG (all text in it is escaped), its size at full scale [px], what is told below it."""
+    """An SVG (all text in it is escaped), its size at full scale [px], and its caption."""
 
     svg: str
     width: float
@@ -132,7 +132,7 @@ class Window:
     free: tuple[float, float, float, float] = (24.0, 24.0, 24.0, 24.0)  # left, right, bottom, top
 
     def scale(self, width: float, height: float) -> float:
-        """The largest scale [px/mm] that fits into so many px."""
+        """Return the largest scale [px/mm] that fits into so many px."""
         left, right, bottom, top = self.free
         across = (width - left - right) / (self.right - self.left)
         return min(across, (height - bottom - top) / (self.top - self.bottom))
@@ -152,13 +152,13 @@ class Sheet:
         self._ink = Ink(self.width, self.height)
 
     def at(self, x: float, y: float) -> Point:
-        """A point [mm] in px, y downwards."""
+        """Return a point [mm] in px, y downwards."""
         return self._origin[0] + self.scale * x, self._origin[1] - self.scale * y
 
     def circle(
         self, x: float, y: float, r: float, style: str, colour: str = "", title: str = ""
     ) -> None:
-        """A circle [mm]."""
+        """Draw a circle [mm]."""
         cx, cy = self.at(x, y)
         size = self.scale * r
         self._add("circle", f'cx="{cx:.2f}" cy="{cy:.2f}" r="{size:.2f}"', style, colour, title)
@@ -169,7 +169,7 @@ class Sheet:
     def rectangle(
         self, a: Point, b: Point, style: str, colour: str = "", title: str = "", round_: float = 0
     ) -> None:
-        """A rectangle between two corners [mm]."""
+        """Draw a rectangle between two corners [mm]."""
         (x0, y0), (x1, y1) = self.at(*a), self.at(*b)
         x, y, width, height = min(x0, x1), min(y0, y1), abs(x1 - x0), abs(y1 - y0)
         corners = f'x="{x:.2f}" y="{y:.2f}" width="{width:.2f}" height="{height:.2f}"'
@@ -188,7 +188,7 @@ class Sheet:
         title: str = "",
         rim: bool = False,
     ) -> None:
-        """A slice of a disc about a point [mm], from one angle to a larger one [rad].
+        """Draw a slice of a disc about a point [mm], from one angle to a larger one [rad].
 
         rim: only its arc.
         """
@@ -209,17 +209,17 @@ class Sheet:
             self._ink.add(_along((cx, cy), corner))
 
     def line(self, a: Point, b: Point, style: str, colour: str = "") -> None:
-        """A line [mm]."""
+        """Draw a line [mm]."""
         self._stroke(self.at(*a), self.at(*b), style, colour)
 
     def cross(self, x: float, y: float, r: float) -> None:
-        """The cross of an axis, a little larger than a circle of radius r [mm]."""
+        """Draw the cross of an axis, a little larger than a circle of radius r [mm]."""
         (cx, cy), reach = self.at(x, y), self.scale * r + 6.0
         self._stroke((cx - reach, cy), (cx + reach, cy), "axis")
         self._stroke((cx, cy - reach), (cx, cy + reach), "axis")
 
     def hatch(self, a: Point, b: Point) -> None:
-        """Lines at 45 degrees that fill a rectangle [mm]."""
+        """Draw lines at 45 degrees that fill a rectangle [mm]."""
         (x0, y0), (x1, y1) = self.at(*a), self.at(*b)
         left, right, top, bottom = min(x0, x1), max(x0, x1), min(y0, y1), max(y0, y1)
         start = left + top + HATCH / 2
@@ -229,7 +229,7 @@ class Sheet:
             self._stroke((from_x, total - from_x), (to_x, total - to_x), "hatch")
 
     def dimension(self, a: Point, b: Point, away: float, text: str) -> None:
-        """A dimension between two points [mm] on a level or upright line, `away` px from it.
+        """Draw a dimension between points [mm] on a level or upright line, `away` px from it.
 
         away > 0: below a level line, left of an upright one.
         """
@@ -245,11 +245,11 @@ class Sheet:
         self.label(text, [Place(x - 9.0, y, -90.0) if upright else Place(x, y - 9.0)], "size")
 
     def tick(self, start: Point, end: Point) -> None:
-        """A thin line [px], as those that lead from a body to its dimension."""
+        """Draw a thin line [px], as those that lead from a body to its dimension."""
         self._stroke(start, end, "extension")
 
     def arrows(self, start: Point, end: Point, style: str = "size") -> None:
-        """A line with two heads [px]; heads point inwards from outside where there is no room."""
+        """Draw a line with two heads [px]; outside, pointing inwards, where there is no room."""
         length = math.dist(start, end) or 1.0
         ux, uy = (end[0] - start[0]) / length, (end[1] - start[1]) / length
         inside = length > 2.5 * ARROW[0]
@@ -265,7 +265,7 @@ class Sheet:
                 self._stroke((bx, by), (bx + s * 6.0 * ux, by + s * 6.0 * uy), style)
 
     def label(self, text: str, places: Sequence[Place], style: str, colour: str = "") -> None:
-        """A text at the place, of several, where it meets least; its centre there."""
+        """Write a text centred at the place, of several, where it meets least."""
         place = best(text, places, self._ink)
         if place.leader is not None:
             self._leader(text, place, style)
@@ -275,7 +275,7 @@ class Sheet:
         self._labels.append(f'<text class="{style}" {where}>{escape(text)}</text>')
 
     def balloon(self, text: str, places: Sequence[Place]) -> None:
-        """A short text in a circle."""
+        """Write a short text in a circle."""
         place = best(text, places, self._ink, 0.85 * SIZE)
         if place.leader is not None:
             self._leader(text, place, "balloon")
@@ -285,14 +285,14 @@ class Sheet:
         self._labels.append(f'<text class="balloon" {where}>{escape(text)}</text>')
 
     def drawing(self, name: str, caption: str) -> Drawing:
-        """The SVG."""
+        """Return the drawing as SVG."""
         box = f'viewBox="0 0 {self.width:.3f} {self.height:.3f}"'
         marks = "\n".join(self._marks + self._labels)
         svg = f'<svg {box} role="img" aria-label="{escape(name)}">\n{marks}\n</svg>'
         return Drawing(svg, self.width, self.height, caption)
 
     def _leader(self, text: str, place: Place, style: str) -> None:
-        """A thin line from what a label names to the label's edge."""
+        """Draw a thin line from what a label names to the label's edge."""
         assert place.leader is not None
         x, y = place.leader
         reach = (SIZE, SIZE) if style == "balloon" else (place.half_width(text), SIZE * 0.6)
@@ -313,12 +313,12 @@ class Sheet:
 
 
 def _colour(name: str) -> str:
-    """The colour of a mark, which drawing.css knows as --c."""
+    """Return the colour of a mark, which drawing.css knows as --c."""
     return f' style="--c: var({name})"' if name else ""
 
 
 def _count(wanted: float, least: int) -> int:
-    """A number of points or lines; ValueError where a drawing has no room for so many."""
+    """Return a number of points or lines; ValueError where a drawing has no room for so many."""
     if not wanted <= MOST:
         raise ValueError(f"a drawing of {wanted:.0e} points: a size is far from the others")
     return max(least, int(wanted))
@@ -332,5 +332,5 @@ def _along(start: Point, end: Point) -> Iterable[Point]:
 
 
 def series(k: int) -> str:
-    """The colour of the k-th of a series, from 1; after eight they begin again."""
+    """Return the colour of the k-th of a series, from 1; after eight they begin again."""
     return f"--series-{(k - 1) % COLOURS + 1}"

@@ -25,6 +25,7 @@ ROUND = 48  # sides of a cylinder
 TICKS = 5  # of an axis, about
 EYE = (0.55, -0.75, 0.37)  # direction of the first view: from the output end, the left, above
 AWAY = 1.28  # diagonals between the eye and the middle, so that all is inside the picture
+TURN = "Drag to rotate, scroll to zoom, click a name in the legend to hide or show it."
 LIGHT = {
     "ambient": 0.6,
     "diffuse": 0.8,
@@ -52,7 +53,7 @@ class Toothed:
 
 
 def gear_mesh(placed: Toothed, flank: int, step: float) -> Mesh:
-    """A helical gear with involute flanks; the bore is left out.
+    """Return a helical gear with involute flanks; the bore is left out.
 
     flank: points on a flank, at least 2. step: largest twist between two sections [rad].
     Half the angle of a tooth at radius r is pi/(2 z) + inv(alpha_t) - inv(alpha_r).
@@ -82,7 +83,7 @@ def gear_mesh(placed: Toothed, flank: int, step: float) -> Mesh:
 
 
 def _outline(gear: Gear, flank: int) -> list[tuple[float, float]]:
-    """(angle, radius) once round the gear, a tooth in the middle of angle 0."""
+    """Return (angle, radius) once round the gear, a tooth in the middle of angle 0."""
     transverse = float(gear.transverse_pressure_angle)
     base = float(gear.base_diameter) / 2.0
     teeth = drawn_teeth(gear.teeth)
@@ -101,7 +102,7 @@ def _outline(gear: Gear, flank: int) -> list[tuple[float, float]]:
 
 
 def drawn_teeth(teeth: float) -> int:
-    """How many teeth are drawn of a real number of them: the nearest whole; ValueError for odd."""
+    """Return the nearest whole number of teeth; ValueError for too few or too many."""
     if not 1 <= round(teeth) <= MOST_TEETH:
         raise ValueError(f"a gear of {teeth:g} teeth")
     return round(teeth)
@@ -112,7 +113,7 @@ def _involute(angle: float) -> float:
 
 
 def _skin(around: int, sections: int) -> list[Face]:
-    """Triangles between rings of points that follow each other."""
+    """Return triangles between rings of points that follow each other."""
     faces = []
     for ring in range(sections - 1):
         a = ring * around
@@ -125,7 +126,7 @@ def _skin(around: int, sections: int) -> list[Face]:
 def rod(
     centre: tuple[float, float], radius: float, start: float, end: float, bore: float = 0.0
 ) -> Mesh:
-    """A cylinder along x, with a bore of a radius through it or none [mm]."""
+    """Return a cylinder along x, with a bore of a radius through it or none [mm]."""
     turns = [2.0 * math.pi * k / ROUND for k in range(ROUND)]
     y, z = centre
     rings = ((start, bore), (start, radius), (end, radius), (end, bore), (start, bore))
@@ -134,13 +135,13 @@ def rod(
 
 
 def upright(mesh: Mesh) -> Mesh:
-    """A body along x, turned so that it stands along z: (x, y, z) becomes (y, z, x)."""
+    """Return a body along x turned to stand along z: (x, y, z) becomes (y, z, x)."""
     points, faces = mesh
     return [(y, z, x) for x, y, z in points], faces
 
 
 def block(low: Point, high: Point) -> Mesh:
-    """A box between two corners."""
+    """Return a box between two corners."""
     points = [
         (x, y, z) for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])
     ]
@@ -149,7 +150,7 @@ def block(low: Point, high: Point) -> Mesh:
 
 
 def mesh_trace(mesh: Mesh, name: str, colour: str, group: str, **more: Any) -> dict[str, Any]:
-    """A mesh as plotly draws it, its numbers packed; shown and hidden with its group."""
+    """Return a mesh for plotly, its numbers packed; shown and hidden with its group."""
     points, faces = mesh
     axes = {axis: _packed("f", [p[k] for p in points]) for k, axis in enumerate("xyz")}
     corners = {corner: _packed("I", [f[k] for f in faces]) for k, corner in enumerate("ijk")}
@@ -169,7 +170,7 @@ def mesh_trace(mesh: Mesh, name: str, colour: str, group: str, **more: Any) -> d
 def line_trace(
     points: list[Point | None], name: str, colour: str, width: float, **more: Any
 ) -> dict[str, Any]:
-    """Lines in space; None lifts the pen."""
+    """Return lines in space; None lifts the pen."""
     axes = {axis: [None if p is None else p[k] for p in points] for k, axis in enumerate("xyz")}
     look = {
         "type": "scatter3d",
@@ -183,7 +184,7 @@ def line_trace(
 
 
 def edges(low: Point, high: Point) -> list[Point | None]:
-    """The twelve edges of a box as lines."""
+    """Return the twelve edges of a box as lines."""
     (x0, y0, z0), (x1, y1, z1) = low, high
     found: list[Point | None] = []
     for x in (x0, x1):
@@ -195,7 +196,7 @@ def edges(low: Point, high: Point) -> list[Point | None]:
 
 
 def space(low: Point, high: Point, measures: Measures, height: int = 640) -> dict[str, Any]:
-    """The layout of a plot in three dimensions, in the page's look, one scale on all axes.
+    """Return the layout of a plot in space, in the page's look, one scale on all axes.
 
     low, high: corners of all that is drawn, seen whole at first. Plotly measures where the eye is
     in the cube root of their volume.
@@ -226,7 +227,7 @@ def space(low: Point, high: Point, measures: Measures, height: int = 640) -> dic
 
 
 def _ticks(start: float, end: float, measures: Measures) -> dict[str, Any]:
-    """Where an axis in mm has its ticks so that they are round in another unit."""
+    """Return ticks of an axis in mm that are round in another unit."""
     unit = measures.of(1.0, "mm")
     if unit == 1.0:
         return {}
@@ -239,7 +240,7 @@ def _ticks(start: float, end: float, measures: Measures) -> dict[str, Any]:
 
 
 def _packed(kind: str, values: list[Any]) -> dict[str, str]:
-    """Numbers as plotly reads them from base64: f = 32-bit floats, I = unsigned integers."""
+    """Return numbers in base64 for plotly: f = 32-bit floats, I = unsigned integers."""
     data = array(kind, values)
     if kind == "I" and max(values, default=0) < 2**16:
         data = array("H", values)

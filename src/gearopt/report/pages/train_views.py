@@ -48,7 +48,7 @@ class DrawnStage:
 
 
 def section(result: Result, measures: Measures) -> Section | None:
-    """Both views of the gears, at one scale; None without gears or where they are laid out."""
+    """Draw both views at one scale; None without gears or where they are laid out."""
     drawn = views(result.design.get("stages", ()), measures)
     if not drawn or result.design.get("layout"):
         return None
@@ -75,7 +75,7 @@ def views(stages: Sequence[Mapping[str, Any]], measures: Measures) -> tuple[Draw
 
 
 def in_one_line(stages: Sequence[DrawnStage]) -> tuple[Bodies, float]:
-    """Shafts and gears with every shaft at z = 0; and the scale [px/mm].
+    """Return shafts and gears with every shaft at z = 0; and the scale [px/mm].
 
     Diameters of shafts are 0: they are not known.
     """
@@ -120,7 +120,7 @@ def in_one_line(stages: Sequence[DrawnStage]) -> tuple[Bodies, float]:
 
 
 def _along(widths: Sequence[float], scale: float) -> tuple[float, list[float]]:
-    """Where the gears of every stage begin along the shafts [mm], and a scale at which all fit."""
+    """Return where each stage begins along the shafts [mm], and a scale at which all fit."""
     while True:
         rooms = [max(PITCH, scale * b + GAP) for b in widths]
         if sum(rooms) <= WIDE - SIDE[0] - SIDE[1] or max(rooms) <= PITCH:  # no room to save
@@ -132,14 +132,14 @@ def _along(widths: Sequence[float], scale: float) -> tuple[float, list[float]]:
 
 
 def _ends(found: Bodies) -> tuple[float, float]:
-    """Of the row of gears, over tip circles [mm]."""
+    """Return the ends of the row of gears, over tip circles [mm]."""
     places = {s.shaft: s.y_mm for s in found.shafts}
     rims = [(places[g.shaft], 0.5 * g.tip_diameter_mm) for g in found.gears]
     return min(y - r for y, r in rims), max(y + r for y, r in rims)
 
 
 def _front(found: Bodies, scale: float, measures: Measures) -> Drawing:
-    """Along the shafts: circles in a row, centre distances and the length below them."""
+    """Draw the view along the shafts: circles in a row, centre distances and length below."""
     left, right = _ends(found)
     high = max(0.5 * g.tip_diameter_mm for g in found.gears)
     if scale * high < LOW:
@@ -170,7 +170,7 @@ def _front(found: Bodies, scale: float, measures: Measures) -> Drawing:
 
 
 def _distance(sheet: Sheet, start: float, end: float, level: float, text: str) -> None:
-    """A centre distance between two px; its text above the line, else in a row below it."""
+    """Draw a centre distance between two px, its text above the line or in a row below."""
     sheet.arrows((start, level), (end, level))
     middle = 0.5 * (start + end)
     if _room(text) <= end - start:
@@ -185,12 +185,12 @@ def _distance(sheet: Sheet, start: float, end: float, level: float, text: str) -
 
 
 def _room(text: str) -> float:
-    """Length of a dimension line [px] that a text fits above."""
+    """Return the length of a dimension line [px] that a text fits above."""
     return 2.0 * Place(0, 0).half_width(text) + 4.0
 
 
 def _side(found: Bodies, scale: float, measures: Measures) -> Drawing:
-    """Across the shafts: gears as rectangles, stage after stage, with face width and module."""
+    """Draw the view across the shafts: gears as rectangles, with face width and module."""
     (left, right), shafts = _ends(found), found.shafts
     places = {s.shaft: s.y_mm for s in shafts}
     long = sum(max(PITCH, scale * b + GAP) for b in _widths(found)) / scale

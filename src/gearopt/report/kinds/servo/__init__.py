@@ -84,9 +84,10 @@ def _answered(make: MakeSection) -> MakeSection:
 
 
 KIND = Kind(
+    whole="axis",
     sections=(
         summary,
-        explained.ways_out,
+        explained.remedies,
         axis_motion.section,
         axis_trains.section,
         axis_housing.box,
