@@ -107,7 +107,7 @@ def test_an_acceleration_is_told_as_one():
     tiles = {t.name: t.value for t in sections(result)[0].tiles}
     assert tiles["acceleration"] == tiles["proven bound"] == "47.287 rad/s²"
     assert "acceleration 47.287 rad/s², proven optimal" in page(result, "x")
-    assert "no move time below 1.1965 s" in " ".join(
+    assert "Lower bound of the move time: 1.1965 s" in " ".join(
         proof(gearopt.solve(FILE.with_name("servo_gimbal_move.toml")))
     )
 

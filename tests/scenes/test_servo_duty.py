@@ -266,7 +266,7 @@ def test_a_train_that_the_motor_cannot_drive_is_noted():
     chosen, given = (n for n in result.report["notes"] if n.startswith("With the"))
     assert chosen.startswith("With the chosen train, of ratio 20") and "800 rad/s" in chosen
     assert given.startswith("With the given train, of ratio 48, the motor would turn at 2400")
-    assert "chosen train, of" not in shown(result).split("Bound")[0]
+    assert "chosen train, of" not in shown(result).split("Lower bound")[0]
 
 
 @pytest.mark.slow
