@@ -30,7 +30,7 @@ def test_every_module_is_a_kind_of_problem_file():
 def test_only_a_drive_is_proven_impossible_with_real_valued_teeth():
     rows = {"method": "dual", "conflict": ["span"], "least_violation": 0.5}
     own = Result("bridge", "infeasible", "ipopt", {"name": "mass"}, proof=rows)
-    words = "Proof: whatever the design, one of these limits is missed by at least 50 %: span."
+    words = "Proof: whatever the design, one of these limits is violated by at least 50 %: span."
     assert answer.proof(own)[0] == words and "teeth" not in " ".join(answer.proof(own))
     drive = answer.proof(replace(own, scene="drive"))
     assert drive[:2] == [words, "This holds even with real-valued teeth and modules."]

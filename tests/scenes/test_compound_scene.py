@@ -79,7 +79,7 @@ def test_a_ratio_out_of_reach_is_said_first(ratio, teeth, first, then):
     told = printed(result)
     assert told[0] == f"Two pairs: {first}" and " ".join(told[1].split()) == then
     html = page(result, "")
-    assert html.index(first) < html.index("driver teeth") and "Ways" not in html
+    assert html.index(first) < html.index("driver teeth") and "Remedies" not in html
     said = then.replace('"', "&#34;")
     assert html.count(said) == 1 and html.index(said) < html.index("driver teeth")
 

@@ -112,8 +112,8 @@ def _method(result: Result) -> list[str]:
         minimum = 100 * proof["least_violation"]
         violation = f"{minimum:.2g}" if minimum < 100 else f"{minimum:,.0f}"
         lines.append(
-            f"Proof: whatever the design, one of these limits is violated by at least {violation} %: "
-            f"{names}."
+            "Proof: whatever the design, one of these limits is violated by at least "
+            f"{violation} %: {names}."
         )
     return lines
 

@@ -190,7 +190,7 @@ def _doubtful(way: Mapping[str, Any]) -> bool:
 def _rows(way: Mapping[str, Any]) -> list[tuple[str, ...]]:
     """Return a row for every edit of a remedy."""
     alike = ", all alike" if way["kind"] == "even" else ", one stage"
-    label = KINDS.get(way["kind"], f"{way['what'].replace('_', ' ')}{alike}")
+    label = KINDS.get(way["kind"], f"{', '.join(map(limit_words, way['what'].split(', ')))}{alike}")
     if way["kind"] == "least" and _doubtful(way):
         label = "smallest found"
     product = "product " if len(way["changes"]) > 1 and way["kind"] == "least" else ""
