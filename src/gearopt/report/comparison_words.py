@@ -124,9 +124,9 @@ def verdict(group: Group, row: Row) -> str:
 def ended(found: Comparison, row: Row) -> str:
     """Say how many runs by evaluations the clock ended, "" for none."""
     sample = row.equal_evaluations
-    most, patience = found.budget["evaluations"], found.budget["patience_seconds"]
+    planned, patience = found.budget["evaluations"], found.budget["patience_seconds"]
     runs = sample.runs if sample else ()
-    late = [run for run in runs if run.seconds >= patience and run.evaluations < most]
+    late = [run for run in runs if run.seconds >= patience and run.evaluations < planned]
     if not late:
         return ""
     return f"{len(late)} runs of {row.method} ended by the clock, after {patience:g} s"

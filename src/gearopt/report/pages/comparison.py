@@ -11,7 +11,7 @@ from gearopt.report.pages.sheet import COLOURS
 from gearopt.report.section import Figure, axis, layout
 
 KNOWN = ("exact", "ipopt", "annealing", "nsga2", "scip", "gp", "multistart")
-LEAST = 1e-9  # gaps below it are drawn as none
+SMALLEST = 1e-9  # gaps below it are drawn as none
 HIGHEST = 10.0  # the curves' beginnings may lie above the plot, where no final gap does
 SYMBOLS = ("circle", "square", "diamond", "triangle-up", "cross", "x", "star", "pentagon")
 ZERO = "0"  # tick of the floor
@@ -60,16 +60,16 @@ def _subtitle(found: Comparison) -> str:
 def _block(found: Comparison, group: Group, colour: dict[str, str]) -> dict[str, Any]:
     """Return what the template shows of a group."""
     sides = []
-    least, worst, top = span(group)
+    floor, worst, top = span(group)
     for field, heading, budget in words.kinds(found):
         samples = {row.method: getattr(row, field) for row in group.rows if getattr(row, field)}
         if not samples:
             continue
         figures = []
         if group.reference is not None:
-            figures = [anytime(samples, colour, least, top, by_time=field == "equal_time")]
-        if worst > LEAST:
-            figures.append(final(samples, colour, least, worst))
+            figures = [anytime(samples, colour, floor, top, by_time=field == "equal_time")]
+        if worst > SMALLEST:
+            figures.append(final(samples, colour, floor, worst))
         rows = [(method, words.cells(sample)) for method, sample in samples.items()]
         late = [words.ended(found, row) for row in group.rows if field == "equal_evaluations"]
         side = {"heading": heading, "budget": budget, "rows": rows, "figures": figures}
@@ -85,7 +85,7 @@ def _block(found: Comparison, group: Group, colour: dict[str, str]) -> dict[str,
 def span(group: Group) -> tuple[float, float, float]:
     """Return the ends of the axes of gaps, the same for all plots of a group, relative.
 
-    Where a gap of zero is drawn: a decade below the least gap that is not. The largest final gap.
+    Where a gap of zero is drawn: a decade below the smallest nonzero gap. The largest final gap.
     The top of the curves, whose beginnings may lie above the plot.
     """
     seen: list[float | None] = []
@@ -95,8 +95,8 @@ def span(group: Group) -> tuple[float, float, float]:
             if sample is not None:
                 seen += [run.gap for run in sample.runs] + list(sample.curve.median)
                 final += [run.gap for run in sample.runs if run.gap is not None]
-    least = min((gap for gap in seen if gap is not None and gap > LEAST), default=1e-2)
-    bottom = float(10.0 ** (math.floor(math.log10(min(least, 1e-2))) - 1))
+    smallest = min((gap for gap in seen if gap is not None and gap > SMALLEST), default=1e-2)
+    bottom = float(10.0 ** (math.floor(math.log10(min(smallest, 1e-2))) - 1))
     highest = max([10.0 * bottom, *(gap for gap in seen if gap is not None)])
     return bottom, max(final), min(highest, max(HIGHEST, *final))
 
@@ -104,8 +104,8 @@ def span(group: Group) -> tuple[float, float, float]:
 def anytime(
     samples: Mapping[str, Sample],
     colours: Mapping[str, str],
-    least: float,
-    most: float,
+    floor: float,
+    top: float,
     by_time: bool,
 ) -> Figure:
     """Plot the median gap so far and the band of its quartiles, both axes logarithmic."""
@@ -116,16 +116,16 @@ def anytime(
         if not known:
             continue
         x = [max(curve.spent[k], 1e-6 if by_time else 1.0) for k in known]
-        median = [_drawn(curve.median[k], least) for k in known]
+        median = [_drawn(curve.median[k], floor) for k in known]
         if len(sample.runs) > 1:
-            data += _band(x, known, sample, colour, least, max(median))
+            data += _band(x, known, sample, colour, floor, max(median))
         data += _line(method, x, median, colour, " s" if by_time else "")
     across = [v for trace in data for v in trace["x"]]
-    plot = layout(_spent(across, by_time), _gaps(least, most))
+    plot = layout(_spent(across, by_time), _gaps(floor, top))
     caption = (
         f"Gap so far against {'time' if by_time else 'evaluations'}: line, median of the seeds; "
         "band, their quartiles; a curve begins where half of the seeds have a feasible point and "
-        f"ends with the run. {_marked(least)}"
+        f"ends with the run. {_marked(floor)}"
     )
     return Figure(data, plot, caption)
 
@@ -149,15 +149,15 @@ def _band(
     known: Sequence[int],
     sample: Sample,
     colour: str,
-    least: float,
+    floor: float,
     top: float,
 ) -> list[dict[str, Any]]:
     """Draw the quartiles; one that has no feasible point yet is at the curve's top."""
     look = {"type": "scatter", "mode": "lines", "x": x, "showlegend": False, "hoverinfo": "skip"}
     line = {"color": colour, "width": 0, "shape": "hv"}
-    low = [100.0 * _drawn(sample.curve.low[k], least) for k in known]
+    low = [100.0 * _drawn(sample.curve.low[k], floor) for k in known]
     high = [sample.curve.high[k] for k in known]
-    worse = [100.0 * (top if v is None else _drawn(v, least)) for v in high]
+    worse = [100.0 * (top if v is None else _drawn(v, floor)) for v in high]
     return [
         look | {"y": worse, "line": line},
         look | {"y": low, "line": line, "fill": "tonexty", "fillcolor": f"{colour}/0.16"},
@@ -165,14 +165,14 @@ def _band(
 
 
 def final(
-    samples: Mapping[str, Sample], colours: Mapping[str, str], least: float, most: float
+    samples: Mapping[str, Sample], colours: Mapping[str, str], floor: float, top: float
 ) -> Figure:
     """Plot every seed's final gap, with a box of median and quartiles."""
     data: list[dict[str, Any]] = []
     notes: list[dict[str, Any]] = []
     for method, sample in samples.items():
         colour = colours[method]
-        gaps = [_drawn(run.gap, least) for run in sample.runs if run.gap is not None]
+        gaps = [_drawn(run.gap, floor) for run in sample.runs if run.gap is not None]
         if sample.summary.without:
             text = f"{sample.summary.without} of {sample.summary.seeds}<br>no feasible point"
             notes.append(_note(method, text))
@@ -199,10 +199,10 @@ def final(
         )
     categories = {"categoryorder": "array", "categoryarray": list(samples), "ticks": ""}
     kind = {"type": "category", "range": [-0.5, len(samples) - 0.5]} | categories
-    plot = layout(axis("", **kind), _gaps(least, most), 320, annotations=notes)
+    plot = layout(axis("", **kind), _gaps(floor, top), 320, annotations=notes)
     caption = (
         "Final gap of every seed that has a point; box, their median and quartiles. "
-        f"{_marked(least)}"
+        f"{_marked(floor)}"
     )
     return Figure(data, plot, caption)
 
@@ -212,16 +212,16 @@ def _note(method: str, text: str) -> dict[str, Any]:
     return {**place, "text": text, "showarrow": False, "font": {"size": 11, "color": "--warn"}}
 
 
-def _drawn(gap: float | None, least: float) -> float:
-    return least if gap is None or gap < least else gap
+def _drawn(gap: float | None, floor: float) -> float:
+    return floor if gap is None or gap < floor else gap
 
 
 def _symbol(colour: str) -> str:
     return SYMBOLS[int(colour.rsplit("-", 1)[1]) - 1]
 
 
-def _marked(least: float) -> str:
-    below = f"{100 * least:g}".replace("e-0", "e-")
+def _marked(floor: float) -> str:
+    below = f"{100 * floor:g}".replace("e-0", "e-")
     return f"The lowest line, marked {ZERO}, is a gap below {below} %."
 
 
@@ -239,9 +239,9 @@ def _spent(values: Sequence[float], by_time: bool) -> dict[str, Any]:
     return axis(words, type="log", ticktext=names, **ends)
 
 
-def _gaps(least: float, most: float) -> dict[str, Any]:
+def _gaps(floor: float, top: float) -> dict[str, Any]:
     """Return the logarithmic axis of gaps in percent, with its floor."""
-    low, high = round(math.log10(100 * least)), math.ceil(math.log10(100 * most) + 0.05)
+    low, high = round(math.log10(100 * floor)), math.ceil(math.log10(100 * top) + 0.05)
     ticks = list(range(low, high + 1, max(1, (high - low) // 7)))
     words = [ZERO] + [f"{10.0**k:,g}" if -4 < k < 5 else f"10<sup>{k}</sup>" for k in ticks[1:]]
     ends = {"range": [low - 0.15, high], "tickvals": [10.0**k for k in ticks], "ticktext": words}

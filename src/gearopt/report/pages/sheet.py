@@ -75,15 +75,15 @@ class Ink:
 
 def best(text: str, places: Sequence[Place], ink: Ink, reach: float = 0.58 * SIZE) -> Place:
     """Return the place of lowest cost for the text, which clears what is drawn by reach [px]."""
-    found, least = places[0], math.inf
+    found, lowest = places[0], math.inf
     for place in places:
         inked = 0.0
         for x, y in place.spots(text):
             inked += ink.cost(x, y, reach)
-            if place.cost + inked >= least:
+            if place.cost + inked >= lowest:
                 break  # no letter costs less than nothing
         else:
-            found, least = place, place.cost + inked
+            found, lowest = place, place.cost + inked
     ink.texts += ((x, y, reach) for x, y in found.spots(text))
     return found
 
@@ -317,11 +317,11 @@ def _colour(name: str) -> str:
     return f' style="--c: var({name})"' if name else ""
 
 
-def _count(wanted: float, least: int) -> int:
+def _count(wanted: float, minimum: int) -> int:
     """Return a number of points or lines; ValueError where a drawing has no room for so many."""
     if not wanted <= MOST:
         raise ValueError(f"a drawing of {wanted:.0e} points: a size is far from the others")
-    return max(least, int(wanted))
+    return max(minimum, int(wanted))
 
 
 def _along(start: Point, end: Point) -> Iterable[Point]:
