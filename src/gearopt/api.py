@@ -61,9 +61,13 @@ def solve(
     gap = GAP if gap is None else gap
     if isinstance(what, Problem | Conic):
         return solve_problem(what, method, budget, seed, watch, gap)
-    ask = Ask(method, budget, seed, watch, gap, top, prices)
+    ask = Ask(method, budget, seed, watch, gap, top)
     scene, module, names = _opened(what)
     result: Result = module.solve(scene, ask)
+    if prices and result.value is not None:
+        left = replace(ask, budget=budget.less(result.seconds))
+        found = _explained(module, scene, left, result)
+        result = replace(result, report=result.report | {"prices": found.prices})
     if inputs := inputs_of(scene):
         result = replace(result, report=result.report | {"inputs": inputs})
     return _named(result, options=asked, **names)
@@ -93,13 +97,18 @@ def explain(
         return explain_problem(what, budget, watch)
     ask = Ask(budget=budget, watch=watch)
     scene, module, names = _opened(what)
-    if hasattr(module, "explain"):
-        found: Explanation = module.explain(scene, ask)
-    else:
-        from gearopt.scenes.explaining.default import explain as explain_scene
-
-        found = explain_scene(module, scene, ask)
+    found = _explained(module, scene, ask)
     return replace(found, result=_named(found.result, **names))
+
+
+def _explained(module: Any, scene: Any, ask: Ask, result: Result | None = None) -> Explanation:
+    """Return the explanation by the kind itself, or by its `solve` and `model`."""
+    if hasattr(module, "explain"):
+        found: Explanation = module.explain(scene, ask, result)
+        return found
+    from gearopt.scenes.explaining.default import explain as explain_scene
+
+    return explain_scene(module, scene, ask, result)
 
 
 DEFAULT = ("ipopt", "annealing", "nsga2")  # compared beside exact algorithms where none are named

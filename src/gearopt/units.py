@@ -97,13 +97,13 @@ class Quantity:
 
     @property
     def exact(self) -> tuple[Fraction, int]:
-        """The value in the inside unit as (rational number, power of pi)."""
+        """Return the value in the inside unit as (rational number, power of pi)."""
         factor, power = UNITS[self.dimension][self.unit] if self.unit else (Fraction(1), 0)
         return self.number * factor, power
 
     @property
     def value(self) -> float:
-        """The value in the inside unit."""
+        """Return the value in the inside unit."""
         rational, power = self.exact
         return float(rational) * math.pi**power
 
@@ -112,7 +112,7 @@ class Quantity:
 
 
 def quotient(above: Quantity, below: Quantity) -> Fraction:
-    """above/below of one dimension; exact unless one unit contains pi and the other does not."""
+    """Return above/below of one dimension; exact unless only one unit contains pi."""
     (a, power_a), (b, power_b) = above.exact, below.exact
     if power_a == power_b:
         return a / b

@@ -4,13 +4,11 @@ import math
 from dataclasses import replace
 from decimal import Decimal
 from fractions import Fraction
-from typing import Annotated, ClassVar
 
 import numpy as np
 import pytest
 from brute_force import every_train
 from gearboxes import smallest_box
-from pydantic import Field
 from small_drives import FACES, OBJECTIVES, drive
 
 from gearopt.errors import SolveError
@@ -24,13 +22,11 @@ from gearopt.formulations.strength.lewis import LEWIS
 from gearopt.optimise import tape
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import run, solve
-from gearopt.physics.gears import GearPair
+from gearopt.physics.gears import GearPair, Rack
 from gearopt.scenes import drive as drives
-from gearopt.scenes.drive.drive_tables import Limits, StageTable
+from gearopt.scenes.drive.drive_tables import Limits, StageTable, limited_by
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.reading.ask import Ask
-from gearopt.scenes.reading.fields import quantity
-from gearopt.units import Quantity
 
 F = Fraction
 
@@ -96,6 +92,8 @@ def test_a_law_keeps_its_promises(law):
         now = use(pair, torque)
         assert (use(pair.of_width(f * b), torque) < now).all()
         assert (use(pair, f * torque, speed / f) > now).all()
+        steeper = GearPair.of_teeth(m, z, z * u, b, pair.pinion.helix_angle, Rack(0.4))
+        assert law.pressure_angle or (use(steeper, torque) == now).all()
         if law.proportional:
             larger = GearPair.of_teeth(f * m, z, z * u, f * b, pair.pinion.helix_angle)
             assert use(larger, f**3 * torque, 7 * speed) == pytest.approx(now, rel=1e-12)
@@ -218,20 +216,7 @@ def test_a_process_refuses_a_law_it_has_no_rule_for():
         run(replace(problem, methods=methods), "process-one")
 
 
-Pressure = Annotated[Quantity | None, quantity("stress", "2 MPa")]
-
-
-class PressedLimits(Limits):
-    """Limits of every stage, with the law of this test."""
-
-    LAW: ClassVar[Law] = CONTACT
-    pressure: Pressure = Field(None, description="Largest contact pressure")
-
-
-class PressedStage(StageTable):
-    """A stage with a pressure of its own."""
-
-    pressure: Pressure = Field(None, description="Largest contact pressure")
+PressedLimits, PressedStage = (limited_by(CONTACT)(table) for table in (Limits, StageTable))
 
 
 class PressedScene(Scene):

@@ -104,6 +104,19 @@ def test_compound_prices_the_first_wider_range_that_gains(train):
     assert narrower == train.result.value
 
 
+@pytest.mark.parametrize("text, kind", [(TRAIN, "train"), (ROW, "row")])
+def test_solve_brings_the_sensitivities_of_explain_along(text, kind, request):
+    known = request.getfixturevalue(kind).prices
+    found = gearopt.solve(scene(text), prices=True).report["prices"]
+    assert found["basis"] == known["basis"]
+    for own, other in zip(found["influences"], known["influences"], strict=True):
+        assert [own[k] for k in ("key", "value", "step")] == [
+            other[k] for k in ("key", "value", "step")
+        ]
+        for one, same in zip(own["resolved"], other["resolved"], strict=True):
+            assert one == same or one == pytest.approx(same, rel=1e-6, abs=1e-9)
+
+
 LENGTHS = {
     "container.gap": ('gap = "1 mm"', 'gap = "{} mm"', 1.0),
     "container.wall": ('wall = "2 mm"', 'wall = "{} mm"', 2.0),

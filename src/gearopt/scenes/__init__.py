@@ -1,7 +1,8 @@
 """Problem files: what they may ask for, and how they become formulations.
 
 Each module here is a kind of file and its name is the kind: `Scene` (a pydantic model),
-`solve(scene, ask) -> Result`, `explain(scene, ask) -> Explanation`, `model(scene, method) -> Model`
-for comparisons, `compared(scene)` (the methods compared where none are named), and `EXAMPLE`, the
-text that `gearopt new KIND` prints. How files are read is in `reading`.
+`solve(scene, ask) -> Result`, `model(scene, method) -> Model` for comparisons, `compared(scene)`
+(the methods compared where none are named), and `EXAMPLE`, the text that `gearopt new KIND` prints.
+A kind that knows more than the default of `explaining` has an `explain(scene, ask, result)` of its
+own; result: the answer, None where it is not known. How files are read is in `reading`.
 """

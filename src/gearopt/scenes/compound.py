@@ -62,7 +62,7 @@ class CompoundDesign:
 
 
 def solve(scene: Scene, ask: Ask) -> Result:
-    """The teeth whose ratio is nearest; what is achieved is said first, in `report` and message."""
+    """Return the teeth whose ratio is nearest; `report` and message name the ratio achieved."""
     result, outcome = run(
         model(scene, "").problem, ask.method, ask.budget, ask.seed, ask.watch, ask.gap
     )
@@ -97,7 +97,7 @@ def solve(scene: Scene, ask: Ask) -> Result:
 
 
 def _achieved(train: compound.Compound, ratio: Fraction) -> str:
-    """The ratio that the best teeth make, beside the one that is asked for."""
+    """Return the ratio that the best teeth make, beside the one that is asked for."""
     if ratio == train.ratio:
         return f"ratio {float(ratio):.10g} exactly"
     off = 100.0 * float(ratio / train.ratio - 1)
@@ -109,7 +109,7 @@ def _achieved(train: compound.Compound, ratio: Fraction) -> str:
 
 
 def _out_of_reach(train: compound.Compound, reach: dict[str, Any]) -> str:
-    """What the teeth can make, and which would do; "" where the ratio is within."""
+    """Return what the teeth can make, and which would do; "" where the ratio is within."""
     if reach["within"]:
         return ""
     made = "{} to {} teeth make ratios of {:.6g} to {:.6g} in two pairs".format(
@@ -127,12 +127,12 @@ def _out_of_reach(train: compound.Compound, reach: dict[str, Any]) -> str:
 
 
 def compared(scene: Scene) -> tuple[str, ...]:
-    """The methods of a comparison that names none."""
+    """Return the methods of a comparison that names none."""
     return ("exact", "annealing", "nsga2")
 
 
 def model(scene: Scene, method: str) -> Model:
-    """The problem of every method."""
+    """Return the problem of every method."""
     return Model(compound.problem(_train(scene)), "Four whole tooth numbers")
 
 

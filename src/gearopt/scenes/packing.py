@@ -15,12 +15,11 @@ from gearopt import units
 from gearopt.formulations import packing
 from gearopt.formulations.packing import packing_text
 from gearopt.formulations.packing.container_bound import bound
-from gearopt.formulations.packing.design import describe
+from gearopt.formulations.packing.design import describe, packing_design, places
 from gearopt.formulations.packing.plan import (
     OBJECTIVES,
     SHAPES,
     Cylinder,
-    Places,
     Plan,
     minimum_layers,
     overlap,
@@ -196,7 +195,7 @@ class Scene(Table):
         return self.layers.exactly or self.layers.most or 1
 
     def _layer_for(self, k: int) -> int:
-        """The highest layer for a cylinder that leaves none empty; the top where none does."""
+        """Return the highest layer for a cylinder that leaves none empty; else the top."""
         movable = sum(own.count for own in self.cylinder if own.layer is None)
         others = {own.layer for j, own in enumerate(self.cylinder) if own.layer and j != k}
         for layer in range(self._most, 0, -1):
@@ -206,7 +205,7 @@ class Scene(Table):
         return self._most
 
     def _check_layers(self) -> None:
-        """No layer that must hold a cylinder stays empty."""
+        """Check that no layer that must hold a cylinder stays empty."""
         exactly = self.layers.exactly or 0
         given = {own.layer for own in self.cylinder if own.layer is not None}
         movable = sum(own.count for own in self.cylinder if own.layer is None)
@@ -228,7 +227,7 @@ class Scene(Table):
         raise refuse(rule, write, place, "tell")
 
     def _check_container(self) -> None:
-        """A given width holds the widest cylinder, and all that are fixed."""
+        """Check that a given width holds the widest cylinder, and all that are fixed."""
         width, wall = self.container.width, self.container.wall.value
         if width is None:
             return
@@ -245,7 +244,7 @@ class Scene(Table):
                 raise refuse(rule, f"{need:.10g} mm", ("container", "width"))
 
     def _check_places(self) -> None:
-        """Fixed cylinders that must share a layer do not overlap."""
+        """Check that fixed cylinders that must share a layer do not overlap."""
         plan = self.plan()
         where = [k for k, own in enumerate(self.cylinder) for _ in range(own.count)]
         for i, j in combinations(plan.fixed, 2):
@@ -265,7 +264,7 @@ class Scene(Table):
             raise refuse(rule, need, ("layers", key))
 
     def plan(self) -> Plan:
-        """The packing as plain numbers."""
+        """Return the packing as plain numbers."""
         found: list[Cylinder] = []
         for own in self.cylinder:
             place = None if own.at is None else (own.at[0].value, own.at[1].value)
@@ -288,7 +287,7 @@ class Scene(Table):
 
 
 def _lowered(cylinders: tuple[CylinderTable, ...], most: int) -> dict[tuple[str | int, ...], int]:
-    """Layers to write for cylinders whose own is above `most`: the highest that are still free.
+    """Return the layers to write for cylinders whose own is above `most`: the highest free ones.
 
     Cylinders that share a layer still do, and no others.
     """
@@ -304,7 +303,7 @@ def _lowered(cylinders: tuple[CylinderTable, ...], most: int) -> dict[tuple[str 
 
 
 def _away(plan: Plan, i: int, j: int) -> list[str]:
-    """The nearest place of cylinder j, on the line of both axes, that leaves i its clearance."""
+    """Return the nearest place of cylinder j, on the line of both axes, that is clear of i."""
     (a, b), (c, d) = plan.cylinders[i].at or (0.0, 0.0), plan.cylinders[j].at or (0.0, 0.0)
     far = math.hypot(c - a, d - b)
     u, v = ((c - a) / far, (d - b) / far) if far > 0 else (1.0, 0.0)
@@ -319,11 +318,6 @@ def _away(plan: Plan, i: int, j: int) -> list[str]:
 
 def solve(scene: Scene, ask: Ask) -> Result:
     """Pack the cylinders; a method that brings no bound is held against the same one."""
-    return _solved(scene, ask)[0]
-
-
-def _solved(scene: Scene, ask: Ask) -> tuple[Result, Places | None]:
-    """The result with the places of its cylinders."""
     plan = scene.plan()
     problem = _problem(plan, ask.method)
     watch = in_part(ask.watch, plan.unit())
@@ -332,18 +326,18 @@ def _solved(scene: Scene, ask: Ask) -> tuple[Result, Places | None]:
     result, outcome = run(problem, ask.method, ask.budget, ask.seed, watch, ask.gap)
     result = replace(result, objective=result.objective | {"unit": plan.unit()})
     if result.value is None or outcome.x is None:
-        return result, None
+        return result
     if result.bound is None:
         result = _bounded(plan, result, replace(ask, watch=watch))
     report = {"assumptions": [ASSUMED]}
     if result.status != "optimal":
         report["notes"] = [UNPROVEN]
     found = packing_text.places(plan, problem, outcome.x)
-    return replace(result, design=untyped(describe(plan, found)), report=report), found
+    return replace(result, design=untyped(describe(plan, found)), report=report)
 
 
 def _bounded(plan: Plan, result: Result, ask: Ask) -> Result:
-    """A result with the computed bound of its plan, in what is left of the time, or MOMENT."""
+    """Return a result with the computed bound of its plan, in the time left, or MOMENT."""
     left = ask.budget.less(result.seconds).seconds
     clock = Clock(Budget(), ask.watch)
     clock.evaluations, clock.best = result.evaluations, result.value or math.inf
@@ -353,15 +347,16 @@ def _bounded(plan: Plan, result: Result, ask: Ask) -> Result:
     return reconcile(result, relaxation, ask.gap)
 
 
-def explain(scene: Scene, ask: Ask) -> Explanation:
-    """What every number of the file does to the packing: slopes with its layers and contacts held.
+def explain(scene: Scene, ask: Ask, result: Result | None = None) -> Explanation:
+    """Return the sensitivity of the packing to every number, with its layers and contacts held.
 
-    Solved again from the packing itself, which is followed; whole numbers are packed anew.
+    Solved again from the packing itself, which is followed; whole numbers are packed again.
     """
     clock = Clock(ask.budget, of_others(ask.watch))
-    result, found = _solved(scene, ask.half)
-    if result.value is None or found is None:
+    result = result or solve(scene, ask.half)
+    if result.value is None:
         return Explanation(result, message="no packing was found in time", seconds=clock.seconds)
+    found = places(packing_design(result.design))
     layers, x = found.layer, packing_text.start(scene.plan(), found)
 
     def posed(other: Scene) -> Problem:
@@ -382,12 +377,12 @@ def explain(scene: Scene, ask: Ask) -> Explanation:
 
 
 def compared(scene: Scene) -> tuple[str, ...]:
-    """The methods of a comparison that names none."""
+    """Return the methods of a comparison that names none."""
     return ("hop", "sa", "multistart", "annealing", "nsga2")
 
 
 def model(scene: Scene, method: str) -> Model:
-    """The problem that a method solves for this packing, without a bound that proves nothing."""
+    """Return the problem that a method solves, without a bound that proves nothing."""
     plan = scene.plan()
     words = "Places and layers" if plan.lifted else "Places"
     return Model(_problem(plan, method, loose=False), words, plan.unit())

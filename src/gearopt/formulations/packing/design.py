@@ -5,6 +5,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from gearopt.formulations.packing.plan import Places, Plan
 from gearopt.optimise.typed import typed
 
@@ -67,6 +69,18 @@ def packing_design(data: Mapping[str, Any]) -> PackingDesign:
     """Return the design that a result of a packing holds; ValueError names what does not belong."""
     found: PackingDesign = typed(PackingDesign, data, "design")
     return found
+
+
+def places(design: PackingDesign) -> Places:
+    """Return where the cylinders of a design are."""
+    box, own = design.container, design.cylinders
+    width, depth = box.sides
+    return Places(
+        np.array([c.x_mm for c in own]),
+        np.array([c.y_mm for c in own]),
+        np.array([c.layer for c in own], dtype=np.int64),
+        np.array([box.left_mm + 0.5 * width, box.front_mm + 0.5 * depth]),
+    )
 
 
 def describe(plan: Plan, found: Places) -> PackingDesign:

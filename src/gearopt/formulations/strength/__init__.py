@@ -25,12 +25,15 @@ NARROW = 1e-6  # of the widest face width: nothing narrower is considered
 class Limit:
     """The limit of one index: its name, which is also its key in a file, and its unit.
 
-    words: what reports call it, by default its name.
+    words: what reports call it, by default its name. meaning: of the key, for the reference.
+    example: a value as a file writes it.
     """
 
     name: str
     unit: str = "MPa"
     words: str = ""
+    meaning: str = ""
+    example: str = "1 MPa"
 
     @property
     def design_key(self) -> str:
@@ -56,7 +59,8 @@ class Law:
     Promised of every law: an index falls as the face width grows, and at one power (torque times
     speed) it rises with the torque. proportional: for given teeth it is c T/(b m_n^2), and for a
     given pinion diameter it does not fall as the teeth become more and smaller: then minimum widths
-    and modules have closed forms, which are bisected otherwise.
+    and modules have closed forms, which are bisected otherwise. pressure_angle: whether an index
+    depends on it.
     """
 
     title: str
@@ -64,6 +68,7 @@ class Law:
     indices: Callable[[GearPair, Any, Any], tuple[Any, ...]]
     proportional: bool = False
     kind: str = "index values, not a rating"
+    pressure_angle: bool = False
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -5,7 +5,19 @@ from gearopt.physics.loads import k_factor, unit_load
 
 K_FACTOR = Law(
     "K-factor and unit load",
-    (Limit("k_factor", words="K-factor"), Limit("unit_load")),
+    (
+        Limit(
+            "k_factor",
+            words="K-factor",
+            meaning="Largest K-factor W_t/(d1 b) (u + 1)/u, the index of contact stress",
+            example="2.07 MPa",
+        ),
+        Limit(
+            "unit_load",
+            meaning="Largest unit load W_t/(b m_n), the index of tooth-root stress",
+            example="48 MPa",
+        ),
+    ),
     lambda pair, torque, speed: (
         k_factor(torque, pair.pinion.reference_diameter, pair.face_width, pair.ratio),
         unit_load(torque, pair.pinion.reference_diameter, pair.face_width, pair.normal_module),

@@ -38,15 +38,11 @@ def solve(scene: Scene, ask: Ask) -> Result:
     rules are parts as well. What the design takes for granted is in its report.
     """
     result = _solved(scene, ask)
-    told: dict[str, Any] = {"assumptions": assumptions(scene)}
-    if ask.prices and result.value is not None:
-        found = _explained(_unruled(scene), ask, result, _others(ask, result.seconds))
-        told["prices"] = found.prices
-    return replace(result, report=result.report | told)
+    return replace(result, report=result.report | {"assumptions": assumptions(scene)})
 
 
 def _solved(scene: Scene, ask: Ask) -> Result:
-    """The drive, laid out where the file asks for it; else ways out where there is none."""
+    """Return the drive, laid out where the file asks for it; else ways out where there is none."""
     if scene.layout is not None:
         from gearopt.scenes.drive.box.at_once import at_once
         from gearopt.scenes.drive.box.lay_out import lay_out
@@ -64,9 +60,11 @@ def _solved(scene: Scene, ask: Ask) -> Result:
     return replace(result, report=result.report | {"ways_out": ways})
 
 
-def explain(scene: Scene, ask: Ask) -> Explanation:
-    """Why the drive is as it is, or what would make it possible, in the numbers of its file."""
+def explain(scene: Scene, ask: Ask, result: Result | None = None) -> Explanation:
+    """Return the sensitivities of the drive, or what would make it possible, in its numbers."""
     scene = _unruled(scene)
+    if result is not None:
+        return _explained(scene, ask, result, _others(ask))
     if scene.layout is not None:
         result = _solved(scene, ask)
         if result.status == "infeasible":
@@ -84,12 +82,12 @@ def explain(scene: Scene, ask: Ask) -> Explanation:
 
 
 def _others(ask: Ask, spent: float = 0.0) -> Clock:
-    """The clock of changed problems, for what is left after so many seconds."""
+    """Return the clock of changed problems, for what is left after so many seconds."""
     return Clock(ask.budget.less(spent), of_others(ask.watch))
 
 
 def _explained(scene: Scene, ask: Ask, result: Result, clock: Clock) -> Explanation:
-    """What every number of the file does to a design that was found."""
+    """Return what every number of the file does to a design that was found."""
     if scene.layout is not None:
         from gearopt.scenes.drive.box.remedies import explained as box_explained
 
@@ -100,17 +98,17 @@ def _explained(scene: Scene, ask: Ask, result: Result, clock: Clock) -> Explanat
 
 
 def _exactly(ask: Ask, clock: Clock) -> Ask:
-    """What is asked of a drive that is compared with another: one train, to the end."""
+    """Return what is asked of a drive that is compared with another: one train, to the end."""
     return replace(ask, budget=replace(clock.left, gap=0.0), watch=clock.watch, gap=GAP, top=1)
 
 
 def bare(scene: Scene) -> Scene:
-    """The drive without its layout: what is sized."""
+    """Return the drive without its layout: what is sized."""
     return scene.model_copy(update={"layout": None, "place": (), "keep_out": ()})
 
 
 def _unruled(scene: Scene) -> Scene:
-    """The drive without its design processes, which change nothing of what is best."""
+    """Return the drive without its design processes, which change nothing of what is best."""
     return scene.model_copy(update=dict.fromkeys(PROCESSES))
 
 
@@ -130,13 +128,13 @@ def _answer(scene: Scene, ask: Ask) -> Result:
 
 
 def _discrete(scene: Scene, train: Train, top: int = 1, floor: float = -math.inf) -> Problem:
-    """The problem of whole teeth, with all methods that a drive has for it."""
+    """Return the problem of whole teeth, with all methods that a drive has for it."""
     problem = teeth.problem(train, top, floor)
     return replace(problem, methods={**problem.methods, **scene.processes()})
 
 
 def _with_processes(scene: Scene, ask: Ask, best: Result) -> Result:
-    """The exact answer with what the processes of the file design as parts, under its bound."""
+    """Return the exact answer with the designs of the processes as parts, under its bound."""
     asked = [name for name in PROCESSES if getattr(scene, name) is not None]
     if not asked or ask.method not in (None, "exact"):
         return best
@@ -158,7 +156,7 @@ def _with_processes(scene: Scene, ask: Ask, best: Result) -> Result:
 
 
 def compared(scene: Scene) -> tuple[str, ...]:
-    """The methods of a comparison that names none."""
+    """Return the methods of a comparison that names none."""
     if scene.layout is None:
         asked = (name.replace("_", "-") for name in PROCESSES if getattr(scene, name) is not None)
         return ("exact", *asked, "ipopt", "annealing", "nsga2")
@@ -168,7 +166,7 @@ def compared(scene: Scene) -> tuple[str, ...]:
 
 
 def model(scene: Scene, method: str) -> Model:
-    """The problem that a method solves for this drive; SolveError where there is none for it.
+    """Return the problem that a method solves for this drive; SolveError where it has none.
 
     With a [layout] that is the layout of the gears that are best without it.
     """
@@ -188,7 +186,7 @@ def model(scene: Scene, method: str) -> Model:
 
 
 def _continuous(scene: Scene, method: str | None) -> bool:
-    """Whether a method gets real-valued teeth."""
+    """Return whether a method gets real-valued teeth."""
     if scene.teeth is None and method in ("exact", *(n.replace("_", "-") for n in PROCESSES)):
         raise SolveError(f"the method {method} needs a [teeth] table in the file")
     return scene.teeth is None or method in CONTINUOUS

@@ -44,14 +44,14 @@ def assumptions(scene: Scene) -> list[str]:
         else f"steel of {1e9 * STEEL_DENSITY:g} kg/dm^3, because the file gives no density"
     )
     law = scene.limits.LAW
+    alone = f"and {law.title}" if law.pressure_angle else f"alone; {law.title} do not depend on it"
     found = [
         "External cylindrical gears without profile shift; no losses in mesh and bearings.",
         "Tip and root circles by the basic rack ISO 53 profile A: addendum "
         f"{ISO_53_A.addendum:g} m_n, dedendum {ISO_53_A.dedendum:g} m_n; nominal sizes, "
         "without backlash.",
         f"Loads are limited by {law.title} alone: {law.kind}.",
-        f"The normal pressure angle of {angle}{assumed} enters contact ratio and undercut alone; "
-        f"{law.title} do not depend on it.",
+        f"The normal pressure angle of {angle}{assumed} enters contact ratio and undercut {alone}.",
         f"Volumes and masses are those of solid reference cylinders; masses with {mass}.",
     ]
     if scene.limits.preset is not None:

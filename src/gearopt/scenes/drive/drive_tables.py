@@ -1,9 +1,10 @@
 """What a drive must do, its stages and limits, what is best, and design processes beside it."""
 
+from collections.abc import Callable
 from fractions import Fraction
-from typing import Annotated, ClassVar
+from typing import Annotated, Any, ClassVar, TypeVar, cast
 
-from pydantic import Field, model_validator
+from pydantic import Field, create_model, model_validator
 
 from gearopt import units
 from gearopt.formulations.gear_train import OBJECTIVES
@@ -15,9 +16,8 @@ from gearopt.scenes.reading.fields import Table, choice, number, quantity, refus
 from gearopt.scenes.reading.lists import either, several, span
 from gearopt.units import Quantity
 
+LAW = K_FACTOR  # that limits a drive
 LENGTH = quantity("length", "400 mm")
-CONTACT = quantity("stress", "2.07 MPa")
-ROOT = quantity("stress", "48 MPa")
 STEP = quantity("length", "1 mm")
 TOOTH_COUNT = whole(21, 5, 1000)
 WHEEL_TEETH = whole(100, 5, 100_000)
@@ -28,8 +28,6 @@ RATIOS = span(number(5, 1, 10**6), [1, 10])
 Proportion = Annotated[tuple[Fraction, Fraction] | None, PROPORTION]
 Ratios = Annotated[tuple[Fraction, Fraction] | None, RATIOS]
 Length = Annotated[Quantity | None, LENGTH]
-Contact = Annotated[Quantity | None, CONTACT]
-Root = Annotated[Quantity | None, ROOT]
 Step = Annotated[Quantity | None, STEP]
 Lengths = tuple[Quantity, Quantity]
 
@@ -37,9 +35,33 @@ PROPORTION_IS = (
     "Face width over pinion diameter b/d1: a number ties b to d1, a range leaves it free within it"
 )
 STEP_IS = "Face widths are whole multiples of this"
-K_IS = "Largest K-factor W_t/(d1 b) (u + 1)/u, the index of contact stress"
-U_IS = "Largest unit load W_t/(b m_n), the index of tooth-root stress"
 WHEEL_IS = "Largest reference diameter of a wheel"
+
+
+class Loaded(Table):
+    """A table that has the limits of a strength law as its first keys."""
+
+    LAW: ClassVar[Law]
+
+
+T = TypeVar("T", bound=Loaded)
+
+
+def limited_by(law: Law) -> Callable[[type[T]], type[T]]:
+    """Return the decorator that gives a table the limits of a law as keys."""
+    keys: dict[str, Any] = {}
+    for limit in law.limits:
+        dimension = next(name for name, known in units.UNITS.items() if limit.unit in known)
+        value = Annotated[Quantity | None, quantity(dimension, limit.example)]
+        keys[limit.name] = (value, Field(None, description=limit.meaning))
+    loads = create_model("Loads", __base__=Loaded, **keys)
+
+    def limited(table: type[T]) -> type[T]:
+        inside = {"LAW": law, "__module__": table.__module__, "__doc__": table.__doc__}
+        made: Any = type(table)
+        return cast(type[T], made(table.__name__, (table, loads), inside))
+
+    return limited
 
 
 class Gears(Table):
@@ -52,15 +74,16 @@ class Gears(Table):
     )
     pressure_angle: Annotated[Quantity, quantity("angle", "20 deg", "45 deg")] = Field(
         default_factory=lambda: units.parse("20 deg", "angle"),
-        description="Normal pressure angle: it gives the contact ratio; "
-        "K-factor and unit load do not depend on it",
+        description="Normal pressure angle: it gives the contact ratio"
+        + ("" if LAW.pressure_angle else f"; {LAW.title} do not depend on it"),
         json_schema_extra={"default": "20 deg"},
     )
     face_width_over_diameter: Proportion = Field(None, description=PROPORTION_IS)
     face_width_step: Step = Field(None, description=STEP_IS)
 
 
-class StageTable(Table):
+@limited_by(LAW)
+class StageTable(Loaded):
     """One stage: what differs from the other tables, and what is fixed."""
 
     module: Annotated[Lengths | None, span(MODULE, "2 mm", single=True)] = Field(
@@ -78,8 +101,6 @@ class StageTable(Table):
     face_width_over_diameter: Proportion = Field(None, description=PROPORTION_IS)
     face_width_step: Step = Field(None, description=STEP_IS)
     stage_ratio: Ratios = Field(None, description="Range of the stage's ratio")
-    k_factor: Contact = Field(None, description=K_IS)
-    unit_load: Root = Field(None, description=U_IS)
     wheel_diameter: Length = Field(None, description=WHEEL_IS)
 
 
@@ -127,12 +148,12 @@ class Duty(Table):
         return self
 
     def _slow(self) -> str:
-        """An output speed that suits the input speed: a ratio of 20."""
+        """Return an output speed that suits the input speed: a ratio of 20."""
         return f"{float(self.input_speed.number / 20):.4g} {self.input_speed.unit}"
 
     @property
     def total_ratio(self) -> Fraction:
-        """Input over output speed, exactly."""
+        """Return input over output speed, exactly."""
         if self.ratio is not None:
             return self.ratio
         assert self.output_speed is not None
@@ -147,18 +168,15 @@ ORIGINS = {
 }
 
 
-class Limits(Table):
+@limited_by(LAW)
+class Limits(Loaded):
     """Limits of every stage, unless its own table says otherwise."""
-
-    LAW: ClassVar[Law] = K_FACTOR  # each of its limits is a key, here and of a stage
 
     preset: Annotated[str | None, choice(*PRESETS)] = Field(
         None,
         description="K-factor and unit load that a source states: chong-lee-elevator is 300 psi "
         "and 7000 psi",
     )
-    k_factor: Contact = Field(None, description=K_IS)
-    unit_load: Root = Field(None, description=U_IS)
     pinion_teeth: Annotated[tuple[int, int], span(TOOTH_COUNT, [20, 40])] = Field(
         description="Range of pinion teeth"
     )
@@ -186,7 +204,7 @@ class Limits(Table):
         return self
 
     def load(self, name: str) -> Quantity:
-        """A limit of the strength law, from the file or the preset."""
+        """Return a limit of the strength law, from the file or the preset."""
         own: Quantity | None = getattr(self, name)
         return own or units.parse(PRESETS[str(self.preset)][name], "stress")
 
@@ -249,11 +267,11 @@ class ProcessOneTable(Table):
     )
 
     def check(self, stages: int, name: str) -> None:
-        """Whether every list fits a drive of so many stages; refusals are placed below the file."""
+        """Check that every list fits a drive of so many stages; places count from the file."""
         _check_lists(self, stages, name)
 
     def inputs(self) -> ProcessOne:
-        """The table as plain numbers."""
+        """Return the table as plain numbers."""
         return ProcessOne(self.stage_ratios, self.pinion_teeth, _plain(self.modules))
 
 
@@ -282,14 +300,14 @@ class ProcessTwoTable(Table):
         return self
 
     def check(self, stages: int, name: str) -> None:
-        """Whether every list fits a drive of so many stages; refusals are placed below the file."""
+        """Check that every list fits a drive of so many stages; places count from the file."""
         _check_lists(self, stages, name)
         if self.stage_ratios is None and stages not in (2, 3):
             rule = f"is missing: Niemann's ratios are for two and three stages, not for {stages}"
             raise refuse(rule, [5] * stages, (name, "stage_ratios"), "sample")
 
     def inputs(self) -> ProcessTwo:
-        """The table as plain numbers."""
+        """Return the table as plain numbers."""
         return ProcessTwo(
             self.first_centre_distance.value,
             self.stage_ratios,

@@ -52,7 +52,7 @@ Where = Annotated[tuple[Quantity, Quantity] | None, span(PLACE, "0 mm", single=T
 
 
 def _clear(text: str, description: str) -> Any:
-    """A clearance with its default."""
+    """Return a clearance with its default."""
     return Field(
         default_factory=lambda: units.parse(text, "length"),
         description=description,
@@ -61,7 +61,7 @@ def _clear(text: str, description: str) -> Any:
 
 
 def _whole_lists(reads: Reads, word: str | None = None) -> Reads:
-    """A list that is mended as a whole, because half a mended one means nothing; word: for None."""
+    """Read a list that is corrected as a whole, for half of it means nothing; word: for None."""
 
     def read(value: Any, example: Any) -> Any:
         if word is not None and value == word:
@@ -156,7 +156,7 @@ class Layout(Table):
         return self
 
     def check(self, stages: int) -> None:
-        """Whether every list fits a drive of so many stages; refusals are placed below [layout]."""
+        """Check that every list fits a drive of so many stages; places count from the file."""
         shafts = stages + 1
         for name in ("shaft_diameters", "bearing_diameters", "bearing_widths"):
             found = getattr(self, name)
@@ -201,7 +201,7 @@ class PlaceTable(Table):
         return self
 
     def place(self) -> Place:
-        """The place in plain numbers."""
+        """Return the place in plain numbers."""
         return Place(self.shaft - 1, self._range(self.y), self._range(self.z))
 
     def _range(self, ends: tuple[Quantity, Quantity] | None) -> Range:
@@ -221,7 +221,7 @@ class KeepOutTable(Table):
     )
 
     def keep_out(self, number: int) -> KeepOut:
-        """The keep-out in plain numbers."""
+        """Return the keep-out in plain numbers."""
         y, z = ((side[0].value, side[1].value) for side in (self.y, self.z))
         x = ANYWHERE if self.x is None else (self.x[0].value, self.x[1].value)
         return KeepOut(self.name or f"keep-out {number}", y, z, x)

@@ -140,7 +140,7 @@ class Scene(Table):
         return self
 
     def _check_layout(self, stages: int) -> None:
-        """The tables of a layout, against the drive and each other."""
+        """Check the tables of a layout against the drive and each other."""
         if self.layout is None:
             for name in ("place", "keep_out"):
                 if getattr(self, name):
@@ -155,7 +155,7 @@ class Scene(Table):
             raise refuse("needs a table [teeth]", False, ("layout", "together"))
 
     def _check_width(self, own: StageTable, place: tuple[Any, ...]) -> None:
-        """One rule for the face width, and a range where a range is needed."""
+        """Check that one rule sets the face width, and that it is a range where one is needed."""
         key = (*place, "face_width_over_diameter")
         if own.face_width is not None:
             if own.face_width_step is not None:
@@ -195,7 +195,7 @@ class Scene(Table):
         return tuple(m for m in series if not ends or ends[0] <= m <= ends[1])
 
     def _around(self, own: StageTable) -> list[str]:
-        """The narrowest range of modules of [teeth] around one that holds none of them."""
+        """Return the narrowest range of modules of [teeth] around one that holds none of them."""
         span = own.module or self.limits.module
         assert span is not None and self.teeth is not None
         series = self.teeth.modules
@@ -205,7 +205,7 @@ class Scene(Table):
 
     @property
     def given(self) -> bool:
-        """Whether teeth, modules and face widths are all given, so that nothing is to be sized."""
+        """Return whether teeth, modules and face widths are all given: nothing is to be sized."""
 
         def one(ends: tuple[Any, Any] | None) -> bool:
             return ends is not None and ends[0] == ends[1]
@@ -216,7 +216,7 @@ class Scene(Table):
         )
 
     def train(self) -> Train:
-        """The drive as plain numbers."""
+        """Return the drive as plain numbers."""
         stages = self.stage or (StageTable(),) * int(self.stages or 0)
         density, speed = self.objective.density, self.duty.input_speed.value
         return Train(
@@ -235,7 +235,7 @@ class Scene(Table):
         )
 
     def _keys(self, stages: tuple[StageTable, ...]) -> dict[str, str | tuple[str, ...]]:
-        """The places of the limits of every stage; "" where the file has none."""
+        """Return the places of the limits of every stage; "" where the file has none."""
 
         def place(k: int, field: str, end: int | None) -> str:
             tables = ("limits", self.limits), ("gears", self.gears)
@@ -253,7 +253,7 @@ class Scene(Table):
         return describe(self.train(), pairs)
 
     def processes(self) -> dict[str, Callable[..., Outcome]]:
-        """The two design processes, with what the file tells them, as methods for whole teeth."""
+        """Return the two design processes, with their tables, as methods for whole teeth."""
         one, two = self.process_one, self.process_two
         return methods(self.train(), one.inputs() if one else None, two.inputs() if two else None)
 

@@ -44,10 +44,10 @@ PART = 1e-3  # of the change up to which whole numbers and choices stay: the ste
 UNPROVEN = "numbers are not solved again, because the answer is not proven to the end"
 
 
-def explain(kind: Any, scene: Any, ask: Ask) -> Explanation:
+def explain(kind: Any, scene: Any, ask: Ask, result: Result | None = None) -> Explanation:
     """Return what every number of a file does to its answer, or which would make it possible.
 
-    kind: the module, with `solve` and `model`.
+    kind: the module, with `solve` and `model`. result: the answer, where it is known.
     """
     clock = Clock(ask.budget, of_others(ask.watch))
 
@@ -59,7 +59,7 @@ def explain(kind: Any, scene: Any, ask: Ask) -> Explanation:
         problem: Problem | Conic = kind.model(other, "").problem
         return problem
 
-    return explained(scene, kind.solve(scene, ask.half), clock, answer, posed)
+    return explained(scene, result or kind.solve(scene, ask.half), clock, answer, posed)
 
 
 def of_report(result: Result) -> Explanation:

@@ -8,10 +8,7 @@ from gearopt.optimise.solve import GAP
 
 @dataclass(frozen=True)
 class Ask:
-    """method: None for the scene's own choice. top: answers in proven order. gap: see `solve`.
-
-    prices: also tell what every number of the file costs, where the kind knows.
-    """
+    """method: None for the scene's own choice. top: answers in proven order. gap: see `solve`."""
 
     method: str | None = None
     budget: Budget = field(default_factory=Budget)
@@ -19,10 +16,9 @@ class Ask:
     watch: Watch | None = None
     gap: float = GAP
     top: int = 1
-    prices: bool = False
 
     @property
     def half(self) -> "Ask":
-        """The same in half of its seconds: an answer that leaves time to explain it."""
+        """Return the same in half of its seconds: an answer that leaves time to explain it."""
         seconds = self.budget.seconds and 0.5 * self.budget.seconds
         return replace(self, budget=replace(self.budget, seconds=seconds))

@@ -66,14 +66,14 @@ class Reads:
         )
 
     def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict[str, Any]:
-        """The JSON schema as it stands."""
+        """Return the JSON schema as it stands."""
         return dict(self.schema)
 
 
 def refuse(
     rule: str, write: Any = None, at: tuple[Any, ...] = (), action: str = "set"
 ) -> PydanticCustomError:
-    """The error for a value: what is wrong, and what to do.
+    """Return the error for a value: what is wrong, and what to do.
 
     write: the value to set (None: the field's example), or for `swap` the key to exchange with.
     at: the place below the checked table, for checks of several keys. action: as in
@@ -89,7 +89,7 @@ def _is_number(value: Any) -> bool:
 
 
 def _is_far(value: int | Decimal) -> bool:
-    """Whether a number has so many digits that its fraction should not even be formed."""
+    """Return whether a number has so many digits that its fraction should not even be formed."""
     return value.bit_length() > 200 if isinstance(value, int) else abs(value.adjusted()) > 60
 
 
@@ -100,7 +100,7 @@ def quantity(
     zero: bool = False,
     signed: bool = False,
 ) -> Reads:
-    """A positive quantity such as "7.5 kW"; most: the largest allowed, zero: whether 0 is.
+    """Read a positive quantity such as "7.5 kW"; most: the largest allowed, zero: whether 0 is.
 
     signed: it may be below zero as well (a place).
     """
@@ -148,7 +148,7 @@ def quantity(
 def number(
     example: Any, least: int, most: int | Fraction, percent: bool = False, zero: bool = False
 ) -> Reads:
-    """A pure number, kept exactly as a fraction; percent: "1 %" is read too."""
+    """Read a pure number, kept exactly as a fraction; percent: "1 %" is read too."""
     above = f"between {least} and" if least or zero else "above 0 and at most"
     sort = 'a number or a percentage such as "1 %"' if percent else "a number"
 
@@ -190,7 +190,7 @@ def number(
 
 
 def whole(example: int, least: int, most: int) -> Reads:
-    """A whole number."""
+    """Read a whole number."""
 
     def read(value: Any, example: Any) -> int:
         if isinstance(value, str) and re.fullmatch(r"\s*[0-9]{1,9}\s*", value):
@@ -209,7 +209,7 @@ def whole(example: int, least: int, most: int) -> Reads:
 
 
 def choice(*names: str) -> Reads:
-    """One of some words."""
+    """Read one of some words."""
 
     def read(value: Any, example: Any) -> str:
         if value not in names or not isinstance(value, str):
@@ -222,7 +222,7 @@ def choice(*names: str) -> Reads:
 
 
 def truth() -> Reads:
-    """True or false."""
+    """Read true or false."""
 
     def read(value: Any, example: Any) -> bool:
         if not isinstance(value, bool):
@@ -234,7 +234,7 @@ def truth() -> Reads:
 
 
 def words() -> Reads:
-    """Free text of a line or two."""
+    """Read free text of a line or two."""
 
     def read(value: Any, example: Any) -> str:
         if not isinstance(value, str):
@@ -249,21 +249,21 @@ def words() -> Reads:
 
 
 def near(word: str, names: Iterable[str]) -> str | None:
-    """The name that a word was probably meant to be, in whatever case; None if none is close."""
+    """Return the name that a word was probably meant to be, in any case; None if none is close."""
     plain = {name.lower(): name for name in names}
     found = get_close_matches(re.sub(r"[-\s]+", "_", word[:80].lower()), plain, n=1)
     return plain[found[0]] if found else None
 
 
 def meant(text: str, dimension: str, usual: str) -> str:
-    """A text whose decimal comma, missing unit or misspelt unit is mended; "" if it has none."""
+    """Return a text with its decimal comma and its unit put right; "" where that cannot be done."""
     match = _SLIP.fullmatch(text[:80])
     unit = _spelt(match[2], units.UNITS[dimension]) if match and match[2] else usual
     return f"{match[1].replace(',', '.')} {unit}" if match and unit else ""
 
 
 def _spelt(word: str, names: Iterable[str]) -> str | None:
-    """The unit that differs from a word in case or punctuation only.
+    """Return the unit that differs from a word in case or punctuation only.
 
     Not mW for MW: that is another unit, and the number would be wrong.
     """

@@ -31,7 +31,7 @@ class Input:
         """Return the result with its design; SceneError where solving the file finds none."""
         if isinstance(self.what, Result):
             return self.what
-        own = replace(ask, method=None, top=1, prices=False)
+        own = replace(ask, method=None, top=1)
         found: Result = scene_module(self.kind).solve(self.what, own)
         if found.design:
             return found
@@ -89,7 +89,7 @@ def _kept(data: bytes, wrong: Any) -> Result:
 
 
 def inputs_of(scene: Any) -> dict[str, str]:
-    """The files that a scene names, with the hash of the bytes of each."""
+    """Return the files that a scene names, with the hash of the bytes of each."""
     if isinstance(scene, Input):
         return {scene.file: scene.sha256}
     parts = [v for _, v in scene] if isinstance(scene, BaseModel) else scene

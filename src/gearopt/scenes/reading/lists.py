@@ -10,7 +10,7 @@ from gearopt.units import Quantity
 
 
 def _mended(item: Reads, values: list[Any]) -> tuple[list[Any], str]:
-    """The values with what to write for each wrong one (or None), and the first rule broken."""
+    """Return the values, wrong ones replaced (or None), and the first rule broken."""
     right, first = [], ""
     for value in values:
         try:
@@ -23,7 +23,7 @@ def _mended(item: Reads, values: list[Any]) -> tuple[list[Any], str]:
 
 
 def span(item: Reads, example: Any, single: bool = False) -> Reads:
-    """A range [least, most] of items; single: one item is read too and means both ends."""
+    """Read a range [least, most] of items; single: one item is read too and means both ends."""
 
     def order(value: Any) -> Any:
         found = item.reader(value, item.example)
@@ -52,7 +52,7 @@ def span(item: Reads, example: Any, single: bool = False) -> Reads:
 
 
 def either(names: dict[str, Any], item: Reads) -> Reads:
-    """A named set, or a list of items, as a sorted tuple of exact inside-unit numbers."""
+    """Read a named set, or a list of items, as a sorted tuple of exact inside-unit numbers."""
 
     def read(value: Any, example: Any) -> tuple[Fraction, ...]:
         if isinstance(value, tuple):
@@ -74,7 +74,7 @@ def either(names: dict[str, Any], item: Reads) -> Reads:
 
 
 def several(item: Reads, example: Any) -> Reads:
-    """A list of items, as a tuple in the file's order."""
+    """Read a list of items, as a tuple in the file's order."""
 
     def read(value: Any, example: Any) -> tuple[Any, ...]:
         if isinstance(value, tuple):
@@ -91,7 +91,7 @@ def several(item: Reads, example: Any) -> Reads:
 
 
 def pair(item: Reads) -> Reads:
-    """A place [x, y] of two items."""
+    """Read a place [x, y] of two items."""
 
     def read(value: Any, example: Any) -> tuple[Any, Any]:
         if isinstance(value, tuple):

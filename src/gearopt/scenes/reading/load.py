@@ -38,22 +38,22 @@ class Loaded:
 
 
 def kinds() -> tuple[str, ...]:
-    """The kinds of problem file: the modules and folders of `gearopt.scenes`, but shared ones."""
+    """Return the kinds of problem file: all modules of `gearopt.scenes` but shared ones."""
     return tuple(sorted({m.name for m in iter_modules(gearopt.scenes.__path__)} - SHARED))
 
 
 def scene_module(kind: str) -> Any:
-    """The module of a kind."""
+    """Return the module of a kind."""
     return import_module(f"gearopt.scenes.{kind}")
 
 
 def kind_of(scene: BaseModel) -> str:
-    """The kind of a scene, by the room that its class stands in."""
+    """Return the kind of a scene, by the room that its class stands in."""
     return type(scene).__module__.removeprefix(f"{gearopt.scenes.__name__}.").split(".")[0]
 
 
 def _likely(content: dict[str, Any]) -> str:
-    """The kind that knows most of a file's tables."""
+    """Return the kind that knows most of a file's tables."""
 
     def known(kind: str) -> int:
         return len(content.keys() & scene_module(kind).Scene.model_fields.keys())
@@ -82,7 +82,7 @@ def load(path: str | Path, before: tuple[Path, ...] = ()) -> Loaded:
 
 
 def _asked(data: bytes, file: str) -> dict[str, Any]:
-    """What a file asks for, as JSON holds it: without its head and the user's own tables."""
+    """Return what a file asks for, as JSON holds it: without its head and the user's own tables."""
     content = _parse(data, file)
     return {k: _bare(v) for k, v in content.items() if k not in HEAD and not k.startswith("x-")}
 
@@ -96,7 +96,7 @@ def _bare(value: Any) -> Any:
 
 
 def _name_a_file(path: str | Path) -> str:
-    """What to write for a path where no file is: one within it or beside it, if there is one."""
+    """Return a remedy for a path where no file is: a file within or beside it, if there is one."""
     folder = Path(path) if Path(path).is_dir() else Path(path).parent
     try:
         names = sorted(p.name for p in folder.glob("*.toml") if p.is_file())
@@ -108,7 +108,7 @@ def _name_a_file(path: str | Path) -> str:
 
 
 def read(data: bytes, file: str = "<text>", before: tuple[Path, ...] = ()) -> tuple[str, BaseModel]:
-    """Kind and scene of the bytes of a problem file; `file` is the name used in messages."""
+    """Return the kind and scene of the bytes of a problem file; file: its name in messages."""
     content = _parse(data, file)
     if not content:
         remedy = "Start from what `gearopt new drive` prints"
@@ -139,7 +139,7 @@ def _too_deep(file: str) -> SceneError:
 
 
 def _pop(content: dict[str, Any], name: str, file: str) -> Any:
-    """The value of a key that every file has, None if it is missing; SceneError if misspelt."""
+    """Return the value of a key of every file, None if it is missing; SceneError if misspelt."""
     values = [key for key, value in content.items() if not isinstance(value, dict | list)]
     if name not in content and (written := near(name, values)):
         raise wrong_name(file, dotted((written,)), name)
@@ -175,7 +175,7 @@ def _parse(data: bytes, file: str) -> dict[str, Any]:
 
 
 def _decimal(text: str) -> Decimal:
-    """A float exactly as written; infinite where its exponent is beyond what Decimal takes."""
+    """Return a float exactly as written; infinite where Decimal refuses its exponent."""
     try:
         return Decimal(text)
     except InvalidOperation:
@@ -183,7 +183,7 @@ def _decimal(text: str) -> Decimal:
 
 
 def _several(text: str, message: str) -> str:
-    """The remedy where the line of the message has [name], which other tables are called too."""
+    """Return the remedy where the line of the message has [name], as other tables have too."""
     at = re.search(r"\(at line (\d+)", message)
     lines = text.splitlines()
     if at is None or not (found := re.match(r"\s*\[([\w-]+)\]", lines[int(at[1]) - 1])):
@@ -210,7 +210,7 @@ _QUOTES = 'Texts and quantities stand in quotes, as in power = "7.5 kW"'
 
 
 def _syntax(message: str) -> tuple[str, str]:
-    """Rule and remedy for a message of the TOML parser: `Invalid value (at line 6, column 8)`."""
+    """Return rule and remedy for a TOML message: `Invalid value (at line 6, column 8)`."""
     what, at, where = message.rpartition(" (at ")
     what = _TUPLE.sub(lambda found: "[" + found[1].replace("', '", ".") + "]", what)
     remedy = next((r for pattern, r in _SYNTAX.items() if re.search(pattern, what)), _QUOTES)

@@ -15,7 +15,7 @@ from gearopt.scenes.reading.toml import cut, dotted, short, toml_text
 def wrong_value(
     file: str, key: str, value: Any, rule: str, write: Any, sample: bool = False
 ) -> SceneError:
-    """The error for a key that has a wrong value (None: that is missing), with what to write.
+    """Return the error for a key with a wrong value (None: it is missing), with what to write.
 
     sample: `write` is one right value of many, not what the user meant.
     """
@@ -39,7 +39,7 @@ def _pairs(table: dict[str, Any]) -> str:
 
 
 def wrong_name(file: str, key: str, name: str) -> SceneError:
-    """The error for a key whose name is misspelt."""
+    """Return the error for a key whose name is misspelt."""
     return SceneError(
         file, cut(key, 80), "", "unknown key", f"Did you mean {name}?", Fix("rename", key, name)
     )
@@ -48,7 +48,7 @@ def wrong_name(file: str, key: str, name: str) -> SceneError:
 def translate(
     file: str, model: type[BaseModel], content: dict[str, Any], wrong: ValidationError
 ) -> SceneError:
-    """The first error, unknown keys before all others (a typo also makes a key missing)."""
+    """Return the first error, unknown keys before all others (a typo also makes a key missing)."""
     errors = wrong.errors(include_url=False, include_input=False)
     first = next((e for e in errors if e["type"] == "extra_forbidden"), errors[0])
     context: dict[str, Any] = first.get("ctx", {})
@@ -80,7 +80,7 @@ def translate(
 
 
 def _no_table(file: str, model: type[BaseModel], place: tuple[Any, ...], value: Any) -> SceneError:
-    """The error for another value where a table, or a list of tables, belongs."""
+    """Return the error for another value where a table, or a list of tables, belongs."""
     name = next(part for part in reversed(place) if isinstance(part, str))
     many = isinstance(place[-1], str) and _is_many(model, place)
     rule = f"is not a list of tables [[{name}]]" if many else "is not a table"
@@ -96,7 +96,7 @@ def _no_table(file: str, model: type[BaseModel], place: tuple[Any, ...], value: 
 def _unknown(
     file: str, model: type[BaseModel], content: dict[str, Any], place: tuple[Any, ...]
 ) -> SceneError:
-    """The error for an unknown key: what it may have meant, where it belongs, or what is known."""
+    """Return the error for an unknown key: what it may mean, where it belongs, or what is known."""
     value, _ = _lookup(content, place)
     name, key, shown = str(place[-1]), dotted(place), cut(dotted(place), 80)
     what = "unknown table" if isinstance(_first(value), dict) else "unknown key"
@@ -113,7 +113,7 @@ def _unknown(
 
 
 def _homes(model: type[BaseModel], name: str) -> list[str]:
-    """The places where a key of this name is known."""
+    """Return the places where a key of this name is known."""
     homes = ["at the top of the file"] if name in model.model_fields else []
     for field, info in model.model_fields.items():
         table = table_of(info.annotation)
@@ -125,7 +125,7 @@ def _homes(model: type[BaseModel], name: str) -> list[str]:
 def _near_name(
     model: type[BaseModel], content: dict[str, Any], place: tuple[Any, ...]
 ) -> str | None:
-    """A free name close to the last of a place that takes what stands there: a table or a value."""
+    """Return an unused name close to the last of a place that takes the table or value there."""
     value, found = _lookup(content, place)
     parent, _ = _lookup(content, place[:-1])
     fields = _table_at(model, place[:-1]).model_fields
@@ -136,7 +136,7 @@ def _near_name(
 
 
 def _fits(value: Any, table: type[BaseModel] | None) -> bool:
-    """Whether a value may be meant for this table or list of tables (None: for a plain key)."""
+    """Return whether a value may be meant for this table or list of tables (None: a plain key)."""
     first = _first(value)
     if table is None or not isinstance(first, dict):
         return table is None and not isinstance(first, dict)
@@ -164,7 +164,7 @@ def _lookup(content: Any, place: tuple[Any, ...]) -> tuple[Any, bool]:
 
 
 def _table_at(model: type[BaseModel], place: tuple[Any, ...]) -> type[BaseModel]:
-    """The class of the table at a place."""
+    """Return the class of the table at a place."""
     for name in (part for part in place if isinstance(part, str)):
         inner = table_of(model.model_fields[name].annotation)
         assert inner is not None, name
@@ -173,14 +173,14 @@ def _table_at(model: type[BaseModel], place: tuple[Any, ...]) -> type[BaseModel]
 
 
 def table_of(annotation: Any) -> type[BaseModel] | None:
-    """The table class inside an annotation such as `tuple[Stage, ...] | None`."""
+    """Return the table class inside an annotation such as `tuple[Stage, ...] | None`."""
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         return annotation
     return next((t for a in get_args(annotation) if (t := table_of(a))), None)
 
 
 def example_of(model: type[BaseModel], place: tuple[Any, ...]) -> Any:
-    """A right value for a place: of a key its example, of a table that of the example file."""
+    """Return a right value for a place: the example of a key, or a table of the example file."""
     names = [part for part in place if isinstance(part, str)]
     info = _table_at(model, tuple(names[:-1])).model_fields[names[-1]]
     reads = next((m for m in info.metadata if isinstance(m, Reads)), None)

@@ -10,7 +10,7 @@ from gearopt.scenes.reading.toml import toml_text
 
 
 def json_schema(kind: str) -> dict[str, Any]:
-    """JSON schema (2020-12) of a whole file of a kind."""
+    """Return the JSON schema (2020-12) of a whole file of a kind."""
     found: dict[str, Any] = scene_module(kind).Scene.model_json_schema()
     head = {
         "gearopt": {"const": FORMAT, "description": "Format version of the file"},
@@ -25,7 +25,7 @@ def json_schema(kind: str) -> dict[str, Any]:
 
 
 def reference(kind: str) -> str:
-    """Every table and key of a kind in Markdown: what it is, whether it is needed, an example."""
+    """Return every table and key of a kind in Markdown: meaning, whether needed, an example."""
     model: type[BaseModel] = scene_module(kind).Scene
     parts = [f"### top of the file\n\n{_doc(model)}\n\n{_rows(model)}"]
     for name, info in model.model_fields.items():

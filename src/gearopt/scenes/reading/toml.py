@@ -9,7 +9,7 @@ _LONGEST_INTEGER = 10_000  # bits; Python refuses to print integers of more than
 
 
 def toml_text(value: Any) -> str:
-    """A value as TOML writes it."""
+    """Return a value as TOML writes it."""
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, str):
@@ -27,7 +27,7 @@ def toml_text(value: Any) -> str:
 
 
 def short(value: Any, most: int = 60) -> str:
-    """A value as TOML writes it, cut to `most` characters."""
+    """Return a value as TOML writes it, cut to `most` characters."""
     try:
         return cut(toml_text(value), most)
     except RecursionError:
@@ -35,12 +35,12 @@ def short(value: Any, most: int = 60) -> str:
 
 
 def cut(text: str, most: int) -> str:
-    """A text of at most `most` characters."""
+    """Return a text of at most `most` characters."""
     return text if len(text) <= most else text[: most - 3] + "..."
 
 
 def dotted(place: tuple[Any, ...]) -> str:
-    """The path of a place in a file: ("stage", 1, "module") is `stage[2].module`."""
+    """Return the path of a place in a file: ("stage", 1, "module") is `stage[2].module`."""
     parts = [f"[{p + 1}]" if isinstance(p, int) else f".{_key(str(p))}" for p in place]
     return "".join(parts).removeprefix(".")
 

@@ -147,10 +147,10 @@ def _key_figures(scene: Scene, found: Found) -> ServoReport:
     return ServoReport(given_train=train, given_stiffness=stiffness, figures=figures)
 
 
-def explain(scene: Scene, ask: Ask) -> Explanation:
+def explain(scene: Scene, ask: Ask, result: Result | None = None) -> Explanation:
     """Return what every number does to the answer; what would make an impossible one possible."""
     clock = Clock(ask.budget, of_others(ask.watch))
-    result = solve(scene, ask.half)
+    result = result or solve(scene, ask.half)
     if "ways_out" in result.report:
         return of_report(result)
 

@@ -27,7 +27,7 @@ Start = tuple[Slabs, tuple[GearPair, ...], tuple[float, ...]]
 
 
 def at_once(scene: Scene, ask: Ask, sized: Result) -> Result:
-    """The smallest box over gears and places; parts: gears chosen first, and real-valued sizes."""
+    """Return the smallest box over gears and places; parts: gears chosen first; real-valued."""
     together.ready()
     apart = replace(lay_out(scene, replace(ask, method=None), sized), name="apart")
     real = ask.method in REAL
@@ -54,7 +54,7 @@ def at_once(scene: Scene, ask: Ask, sized: Result) -> Result:
 
 
 def _why(result: Result, apart: Result) -> dict[str, Any]:
-    """What to say where nothing was found: what the gears chosen first lack, and its cures."""
+    """Return the message where there is no design: that of the gears chosen first, and remedies."""
     if result.status != "infeasible":
         return {}
     message = apart.message or "no gears within the limits can be laid out"
@@ -64,7 +64,7 @@ def _why(result: Result, apart: Result) -> dict[str, Any]:
 
 
 def posed(scene: Scene, method: str, apart: Result) -> Model:
-    """The problem that a method gets; apart: the layout of gears chosen first, a start."""
+    """Return the problem that a method gets; apart: the layout of gears chosen first, a start."""
     assert scene.layout is not None
     train = scene.train()
     unit = scene.gearbox(pairs_of(scene, apart.parts[0])).unit
@@ -87,7 +87,7 @@ def posed(scene: Scene, method: str, apart: Result) -> Model:
 
 
 def _start(scene: Scene, apart: Result) -> Start:
-    """Slabs, gear pairs and angles of a layout."""
+    """Return slabs, gear pairs and angles of a layout."""
     found = drive_design(apart.design).layout
     assert found is not None
     slabs = tuple(tuple(s - 1 for s in slab) for slab in found.slabs)
@@ -95,7 +95,7 @@ def _start(scene: Scene, apart: Result) -> Start:
 
 
 def _from(scene: Scene, start: Start, ask: Ask) -> tuple[Result, ...]:
-    """The part with real-valued sizes from an exact answer; none where Ipopt finds no better."""
+    """Return the real-valued part, started from an exact answer; none unless Ipopt improves it."""
     slabs, pairs, angles = start
     problem = continuous(scene.train(), scene.gearbox, slabs, (pairs, angles))
     unit = scene.gearbox(pairs).unit
@@ -115,7 +115,7 @@ def _real(
     slabs: Slabs,
     events: list[dict[str, Any]],
 ) -> Result:
-    """A result with real-valued teeth in the words of a drawing."""
+    """Return a result with real-valued teeth in the words of a drawing."""
     assert outcome.x is not None
     train = scene.train()
     own = sizing.problem(train)

@@ -44,7 +44,7 @@ def pairs_of(scene: Scene, sized: Result) -> tuple[GearPair, ...]:
 
 
 def lay_out(scene: Scene, ask: Ask, sized: Result) -> Result:
-    """The layout of a sized drive; the sizing is kept as its part `gears`."""
+    """Return the layout of a sized drive; the sizing is kept as its part `gears`."""
     box = scene.gearbox(pairs_of(scene, sized))
     orders = arrangements(box)
     wrong = faults(box)
@@ -79,7 +79,7 @@ def told(
     angles: tuple[float, ...],
     order: Arrangement,
 ) -> Result:
-    """A result with its gears and layout in the words of a drawing."""
+    """Return a result with its gears and layout in the words of a drawing."""
     gears = drive_design(sized.design)
     found = described(box, order, angles, gears)
     before = sum(p.seconds for p in result.parts), sum(p.evaluations for p in result.parts)
@@ -108,7 +108,7 @@ def _sides_used(result: Result) -> dict[str, float]:
 
 
 def posed(scene: Scene, method: str, sized: Result) -> Model:
-    """The layout problem that a method gets; SolveError where the gears cannot be laid out."""
+    """Return the layout problem of a method; SolveError where the gears cannot be laid out."""
     if sized.value is None:
         raise SolveError("there are no gears to lay out: gearopt explain says why")
     box = scene.gearbox(pairs_of(scene, sized))
@@ -146,7 +146,7 @@ def _impossible(
 
 
 def _reached(box: Gearbox, found: LayoutDesign) -> list[str]:
-    """Keep-outs that the box itself reaches into: only what is on the shafts is kept out."""
+    """Return notes on keep-outs that the box itself reaches into."""
     left, bottom = found.box.left_mm, found.box.bottom_mm
     right, top = left + found.box.width_mm, bottom + found.box.height_mm
     deep = {
@@ -263,7 +263,7 @@ def _gears(box: Gearbox, one: Arrangement, sized: DriveDesign) -> tuple[GearDesi
 
 
 def _gaps(box: Gearbox, one: Arrangement, found: Placed) -> tuple[GapDesign, ...]:
-    """Clear distances of bodies that must keep apart, the narrowest over its need first."""
+    """Return clear distances of bodies that must keep apart, the tightest first."""
     gaps = []
     for (i, j), need in one.needs.items():
         (ya, za), (yb, zb) = found.axes[i], found.axes[j]

@@ -132,7 +132,7 @@ def _price(scene: Scene, number: Number, result: Result, solved: Any) -> tuple[s
 
 
 def _eases(scene: Scene, number: Number) -> int:
-    """+1 or -1: the direction that eases a limit of the file; 0 for what is no limit."""
+    """Return +1 or -1: the direction that eases a limit of the file; 0 for what is no limit."""
     path = number.path
     if path == ("duty", "ratio_tolerance"):
         return 1 if number.value else 0
