@@ -221,7 +221,7 @@ def _values(text, key, value, way, most, single):
 
 
 def faults(text, found):
-    """What is wrong with the ways out of a file, by brute force; [] where nothing is."""
+    """What is wrong with the remedies of a file, by brute force; [] where nothing is."""
     wrong = []
     for way in found.remedies:
         edits = [(c.key, c.write) for c in way.changes]

@@ -156,7 +156,7 @@ def other_write(way, write):
 
 
 def ways_by(monkeypatch, text, answer):
-    """The ways out of a file, where `answer` says whether a gearbox can be laid out."""
+    """The remedies of a file, where `answer` says whether a gearbox can be laid out."""
     asked = []
 
     def possible_(box, seconds, watch=None):
@@ -191,7 +191,7 @@ def test_the_smallest_size_known_to_fit_is_told_where_less_stays_undecided(monke
 def test_where_nothing_is_decided_no_change_is_called_impossible(monkeypatch):
     ways, _ = ways_by(monkeypatch, BARE + POST, lambda box: None)
     assert not ways["remedies"]
-    assert ways["message"] == "no way out was found, and not every change could be decided"
+    assert ways["message"] == "no remedy was found, and not every change could be decided"
 
 
 def test_a_change_that_stays_undecided_is_named(monkeypatch):

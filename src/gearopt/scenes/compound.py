@@ -17,8 +17,8 @@ from gearopt.scenes.reading.fields import Table, number, whole, words
 from gearopt.scenes.reading.lists import span
 
 __all__ = ["EXAMPLE", "Scene", "compared", "model", "solve"]
-LEAST, MOST = 5, 400  # teeth of a gear that a file may ask for
-ASSUMED = "Tooth numbers alone: modules, centre distances and loads are not looked at."
+MIN_TEETH, MAX_TEETH = 5, 400  # teeth of a gear that a file may ask for
+ASSUMED = "Tooth numbers alone: modules, centre distances and loads are not considered."
 EXAMPLE = """\
 gearopt = 1
 kind = "compound"
@@ -36,8 +36,8 @@ class Train(Table):
     ratio: Annotated[Fraction, number(6.931, 0, 10**6)] = Field(
         description="Ratio to come near to, input over output speed"
     )
-    teeth: Annotated[tuple[int, int], span(whole(12, LEAST, MOST), [12, 60])] = Field(
-        description="Least and most teeth of any gear"
+    teeth: Annotated[tuple[int, int], span(whole(12, MIN_TEETH, MAX_TEETH), [12, 60])] = Field(
+        description="Minimum and maximum teeth of any gear"
     )
 
 
@@ -79,12 +79,13 @@ def solve(scene: Scene, ask: Ask) -> Result:
         ratio_error_percent=100.0 * float(ratio / train.ratio - 1),
     )
     value = float(train.miss(teeth) ** 2)  # rational until here
-    least, most = train.reach
+    lowest, highest = train.reach
+    within = lowest <= train.ratio <= highest
     reach = {
-        "least_ratio": float(least),
-        "most_ratio": float(most),
-        "within": least <= train.ratio <= most,
-        "wider_teeth": [] if least <= train.ratio <= most else wider(train, LEAST, MOST),
+        "least_ratio": float(lowest),
+        "most_ratio": float(highest),
+        "within": within,
+        "wider_teeth": [] if within else wider(train, MIN_TEETH, MAX_TEETH),
     }
     return replace(
         result,
@@ -102,10 +103,10 @@ def _achieved(train: compound.Compound, ratio: Fraction) -> str:
         return f"ratio {float(ratio):.10g} exactly"
     off = 100.0 * float(ratio / train.ratio - 1)
     percent = f"{off:+,.0f} %" if abs(off) >= 100.0 else f"{off:+.3g} %"
-    told = f"ratio {float(ratio):.10g} instead of {float(train.ratio):.10g} ({percent})"
-    least, most = train.reach
-    within = least <= train.ratio <= most
-    return told if within else "{}, out of reach of {} to {} teeth".format(told, *train.teeth)
+    text = f"ratio {float(ratio):.10g} instead of {float(train.ratio):.10g} ({percent})"
+    lowest, highest = train.reach
+    within = lowest <= train.ratio <= highest
+    return text if within else "{}, out of reach of {} to {} teeth".format(text, *train.teeth)
 
 
 def _out_of_reach(train: compound.Compound, reach: dict[str, Any]) -> str:
@@ -123,7 +124,7 @@ def _out_of_reach(train: compound.Compound, reach: dict[str, Any]) -> str:
     if ways:
         return f"{made}. Write {' or '.join(ways)}."
     more = ': kind = "drive" has more stages' if train.ratio >= 1 else ""  # a drive slows down
-    return f"{made}. No two pairs of {LEAST} to {MOST} teeth make it{more}."
+    return f"{made}. No two pairs of {MIN_TEETH} to {MAX_TEETH} teeth make it{more}."
 
 
 def compared(scene: Scene) -> tuple[str, ...]:

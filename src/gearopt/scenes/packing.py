@@ -59,7 +59,7 @@ count = 3
 
 [container]
 shape = "rectangle"            # or square, circle; width = "20 mm" fixes one side of a rectangle
-gap = "0 mm"                   # least clearance between cylinders, sideways
+gap = "0 mm"                   # minimum clearance between cylinders, sideways
 wall = "0 mm"                  # and to the container
 
 [layers]
@@ -68,7 +68,7 @@ most = 2                       # or: exactly = 2
 [objective]
 minimise = "volume"            # or area, of the container's plan
 """
-MOST = 50  # cylinders; their 1,225 pairs take two seconds to trace, once
+MAX_CYLINDERS = 50  # their 1,225 pairs take two seconds to trace, once
 LENGTH = quantity("length", "20 mm")
 CLEARANCE = quantity("length", "0 mm", zero=True)
 PLACE = pair(quantity("length", "10 mm", zero=True, signed=True))
@@ -93,12 +93,12 @@ class CylinderTable(Table):
     height: Annotated[Quantity, quantity("length", "10 mm")] = Field(
         description="Height of the cylinder, along its axis"
     )
-    count: Annotated[int, whole(1, 1, MOST)] = Field(1, description="How many of them")
+    count: Annotated[int, whole(1, 1, MAX_CYLINDERS)] = Field(1, description="How many of them")
     name: Annotated[str, words()] = Field("", description="What the report calls it")
     at: Annotated[tuple[Quantity, Quantity] | None, PLACE] = Field(
         None, description="Fixed place [x, y] of the axis, from an origin of your choice"
     )
-    layer: Annotated[int | None, whole(1, 1, MOST)] = Field(
+    layer: Annotated[int | None, whole(1, 1, MAX_CYLINDERS)] = Field(
         None,
         description="Fixed layer, counted from the floor: 1 is the lowest, and every layer below "
         "it holds a cylinder",
@@ -116,12 +116,12 @@ class Container(Table):
     )
     gap: Annotated[Quantity, CLEARANCE] = Field(
         NONE,
-        description="Least clearance between cylinders of a layer",
+        description="Minimum clearance between cylinders of a layer",
         json_schema_extra={"default": "0 mm"},
     )
     wall: Annotated[Quantity, CLEARANCE] = Field(
         NONE,
-        description="Least clearance to the container's side",
+        description="Minimum clearance to the container's side",
         json_schema_extra={"default": "0 mm"},
     )
 
@@ -129,10 +129,10 @@ class Container(Table):
 class Layers(Table):
     """How many layers; one without this table. A layer is as high as its highest cylinder."""
 
-    most: Annotated[int | None, whole(2, 1, MOST)] = Field(
+    most: Annotated[int | None, whole(2, 1, MAX_CYLINDERS)] = Field(
         None, description="At most so many layers (or give exactly)"
     )
-    exactly: Annotated[int | None, whole(2, 1, MOST)] = Field(
+    exactly: Annotated[int | None, whole(2, 1, MAX_CYLINDERS)] = Field(
         None, description="Just so many layers, each with a cylinder"
     )
 
@@ -160,7 +160,7 @@ class Scene(Table):
     source: Annotated[str, words()] = Field(
         "", description="Where the data and the expected value come from"
     )
-    cylinder: tuple[CylinderTable, ...] = Field(description="Cylinders, one table a size or place")
+    cylinder: tuple[CylinderTable, ...] = Field(description="One table per size or place")
     container: Container = Field(default_factory=Container)
     layers: Layers = Field(default_factory=lambda: Layers(most=1))
     objective: Aim = Field(default_factory=Aim)
@@ -168,22 +168,22 @@ class Scene(Table):
     @model_validator(mode="after")
     def _consistent(self) -> "Scene":
         if not self.cylinder:
-            raise refuse("is missing: one table [[cylinder]] a size", at=("cylinder",))
+            raise refuse("is missing: one table [[cylinder]] per size", at=("cylinder",))
         for k, own in enumerate(self.cylinder):
             if own.at is not None and own.count > 1:
                 rule = "stands beside at, which is the place of one cylinder"
                 raise refuse(rule, 1, ("cylinder", k, "count"))
-            if own.layer is not None and own.layer > self._most:
-                rule = f"is above the {self._most} of [layers]"
+            if own.layer is not None and own.layer > self._max_layers:
+                rule = f"is above the {self._max_layers} of [layers]"
                 raise refuse(rule, self._layer_for(k), ("cylinder", k, "layer"))
         if all(own.at is not None for own in self.cylinder):
             rule = "fixes the last free cylinder, so that nothing is left to place"
             raise refuse(rule, at=("cylinder", len(self.cylinder) - 1, "at"), action="remove")
         total = sum(own.count for own in self.cylinder)
-        if total > MOST:
+        if total > MAX_CYLINDERS:
             most = max(range(len(self.cylinder)), key=lambda k: self.cylinder[k].count)
-            rule = f"makes {total} cylinders; at most {MOST} can be packed"
-            left = max(1, self.cylinder[most].count - (total - MOST))
+            rule = f"makes {total} cylinders; at most {MAX_CYLINDERS} can be packed"
+            left = max(1, self.cylinder[most].count - (total - MAX_CYLINDERS))
             raise refuse(rule, left, ("cylinder", most, "count"))
         self._check_layers()
         self._check_container()
@@ -191,18 +191,18 @@ class Scene(Table):
         return self
 
     @property
-    def _most(self) -> int:
+    def _max_layers(self) -> int:
         return self.layers.exactly or self.layers.most or 1
 
     def _layer_for(self, k: int) -> int:
         """Return the highest layer for a cylinder that leaves none empty; else the top."""
         movable = sum(own.count for own in self.cylinder if own.layer is None)
         others = {own.layer for j, own in enumerate(self.cylinder) if own.layer and j != k}
-        for layer in range(self._most, 0, -1):
+        for layer in range(self._max_layers, 0, -1):
             given = others | {layer}
             if max(self.layers.exactly or 0, *given) <= len(given) + movable:
                 return layer
-        return self._most
+        return self._max_layers
 
     def _check_layers(self) -> None:
         """Check that no layer that must hold a cylinder stays empty."""
@@ -281,7 +281,7 @@ class Scene(Table):
             gap=self.container.gap.value,
             wall=self.container.wall.value,
             min_layers=self.layers.exactly or 1,
-            max_layers=self._most,
+            max_layers=self._max_layers,
             objective=self.objective.minimise,
         )
 
@@ -372,8 +372,8 @@ def explain(scene: Scene, ask: Ask, result: Result | None = None) -> Explanation
         return solve_within(clock, posed(other), "ipopt").value
 
     basis = at_point(result.value, followed, posed, scene, x)
-    told = "" if result.status in CERTAIN else UNTRIED
-    return priced(scene, result, clock, basis, packed, told, eases(posed(scene)))
+    note = "" if result.status in CERTAIN else UNTRIED
+    return priced(scene, result, clock, basis, packed, note, eases(posed(scene)))
 
 
 def compared(scene: Scene) -> tuple[str, ...]:

@@ -1,4 +1,4 @@
-"""kind = "drive": a multi-stage drive of cylindrical gears of least volume, mass or length.
+"""kind = "drive": a multi-stage drive of cylindrical gears of minimum volume, mass or length.
 
 With a [teeth] table the answer has whole teeth and standard modules and is proven by exhaustion;
 without one, or by the method ipopt, sizes are continuous and proven by a dual bound.
@@ -42,7 +42,7 @@ def solve(scene: Scene, ask: Ask) -> Result:
 
 
 def _solved(scene: Scene, ask: Ask) -> Result:
-    """Return the drive, laid out where the file asks for it; else ways out where there is none."""
+    """Return the drive, laid out where the file asks for it; else remedies where there is none."""
     if scene.layout is not None:
         from gearopt.scenes.drive.box.at_once import at_once
         from gearopt.scenes.drive.box.lay_out import lay_out
@@ -140,19 +140,19 @@ def _with_processes(scene: Scene, ask: Ask, best: Result) -> Result:
         return best
     train = scene.train()
     problem = _discrete(scene, train)
-    parts, told = [], list(best.report.get("notes", []))
+    parts, remarks = [], list(best.report.get("notes", []))
     for name in asked:
         words, method = name.replace("_", " "), name.replace("_", "-")
         try:
             watch = in_part(ask.watch, train.unit, words)
             part, outcome = run(problem, method, ask.budget, ask.seed, watch, ask.gap)
         except SolveError as reason:
-            told.append(f"There is no design by {words}: {reason}.")
+            remarks.append(f"There is no design by {words}: {reason}.")
             continue
         made = {} if outcome.x is None else untyped(scene.design(teeth.pairs(train, outcome.x)))
         part = replace(part, objective=part.objective | {"unit": train.unit}, design=made)
         parts.append(reconcile(replace(part, name=words), best, ask.gap))
-    return replace(best, parts=(*best.parts, *parts), report=best.report | {"notes": told})
+    return replace(best, parts=(*best.parts, *parts), report=best.report | {"notes": remarks})
 
 
 def compared(scene: Scene) -> tuple[str, ...]:
@@ -177,7 +177,7 @@ def model(scene: Scene, method: str) -> Model:
         if not scene.layout.together:
             return lay_out.posed(scene, method, sized)
         if sized.value is None:
-            raise SolveError("there are no gears to lay out: gearopt explain says why")
+            raise SolveError("there are no gears to lay out: gearopt explain shows why")
         return at_once.posed(scene, method, lay_out.lay_out(scene, Ask(), sized))
     train = scene.train()
     if _continuous(scene, method):
@@ -210,6 +210,6 @@ def _sized(scene: Scene, train: Train, ask: Ask, problem: Problem) -> Result:
     ]
     report: dict[str, Any] = {"trains": trains} if exact and ask.top > 1 else {}
     thin = undercut(designs[0]["stages"], train.rack, train.helix_angle, WEAKER)
-    if told := [*notes(scene, exact), *thin]:
-        report["notes"] = told
+    if remarks := [*notes(scene, exact), *thin]:
+        report["notes"] = remarks
     return replace(result, name="drive", design=designs[0], report=report)

@@ -25,7 +25,7 @@ def notes(scene: Scene, exact: bool) -> list[str]:
     if limits.preset is not None:
         found.append(f"The load limits are those of preset {limits.preset}, not of a standard.")
     if scene.teeth is not None and not exact:
-        found.append("Teeth and modules are real numbers here; the table [teeth] was left aside.")
+        found.append("Teeth and modules are real numbers here; the table [teeth] was not used.")
     names = ("wheel_teeth", "stage_ratio", "wheel_diameter")
     if not any(getattr(table, name) for table in (limits, *stages) for name in names):
         found.append("No limit on wheel teeth, stage ratio or wheel diameter was set.")

@@ -252,7 +252,7 @@ Modules = Annotated[tuple[Quantity, ...] | None, EACH_MODULE]
 class ProcessOneTable(Table):
     """Design by K-factor and unit load (Chong and Lee, process one), shown beside the best.
 
-    Lists have one entry a stage.
+    Lists have one entry per stage.
     """
 
     stage_ratios: Annotated[tuple[Fraction, ...], EACH_RATIO] = Field(
@@ -263,7 +263,7 @@ class ProcessOneTable(Table):
         None, description="Pinion teeth, instead of those balanced between K-factor and unit load"
     )
     modules: Modules = Field(
-        None, description="Normal modules, instead of the least that carry the load"
+        None, description="Normal modules, instead of the smallest that carry the load"
     )
 
     def check(self, stages: int, name: str) -> None:
@@ -278,8 +278,8 @@ class ProcessOneTable(Table):
 class ProcessTwoTable(Table):
     """Design from the first centre distance (Chong and Lee, process two, after Niemann).
 
-    It is shown beside the best. Lists have one entry a stage; modules or pinion_teeth, or both, are
-    needed, and what is not given is rounded up from the centre distance.
+    It is shown beside the best. Lists have one entry per stage. Modules or pinion_teeth, or both,
+    are needed; what is not given is rounded up from the centre distance.
     """
 
     first_centre_distance: Annotated[Quantity, quantity("length", "150 mm")] = Field(

@@ -99,9 +99,9 @@ class Layout(Table):
         None, description="Torsional stress that gives each shaft its diameter instead"
     )
     bearing_diameters: Bearings = Field(
-        None, description="Outer diameters of the bearings, one a shaft; with bearing_widths"
+        None, description="Outer diameters of the bearings, one per shaft; with bearing_widths"
     )
-    bearing_widths: Lengths = Field(None, description="Widths of the bearings, one a shaft")
+    bearing_widths: Lengths = Field(None, description="Widths of the bearings, one per shaft")
     span: Annotated[str, choice("full", "partial")] = Field(
         "full",
         description="full: every shaft runs from wall to wall; partial: it ends beside its gears",
@@ -111,9 +111,9 @@ class Layout(Table):
         description='Stages of each slab along the shafts, such as [[1, 3], [2]], or "best"',
         json_schema_extra={"default": "best"},
     )
-    gear_clearance: Clearance = _clear("5 mm", "Least distance of gears that do not mesh")
+    gear_clearance: Clearance = _clear("5 mm", "Minimum distance between gears that do not mesh")
     shaft_clearance: Clearance = _clear(
-        "2 mm", "Least distance of a shaft or bearing from other shafts, gears and keep-outs"
+        "2 mm", "Minimum distance of a shaft or bearing from other shafts, gears and keep-outs"
     )
     wall_clearance: Clearance = _clear("10 mm", "From the gears to the box, across the shafts")
     axial_clearance: Clearance = _clear("10 mm", "Between slabs, and from them to the box")

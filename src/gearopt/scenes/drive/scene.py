@@ -100,16 +100,16 @@ class Scene(Table):
     )
     duty: Duty
     stages: Annotated[int | None, whole(2, 1, 6)] = Field(
-        None, description="Number of stages (or write one [[stage]] table a stage)"
+        None, description="Number of stages (or write one [[stage]] table per stage)"
     )
     gears: Gears = Field(default_factory=Gears)
-    stage: tuple[StageTable, ...] = Field((), description="One table a stage, from the input on")
+    stage: tuple[StageTable, ...] = Field((), description="One table per stage, from the input on")
     limits: Limits
     teeth: Teeth | None = None
     objective: Objective = Field(default_factory=Objective)
     layout: Layout | None = None
-    place: tuple[PlaceTable, ...] = Field((), description="One table a place")
-    keep_out: tuple[KeepOutTable, ...] = Field((), description="One table a keep-out")
+    place: tuple[PlaceTable, ...] = Field((), description="One table per place")
+    keep_out: tuple[KeepOutTable, ...] = Field((), description="One table per keep-out")
     process_one: ProcessOneTable | None = None
     process_two: ProcessTwoTable | None = None
 
@@ -118,8 +118,8 @@ class Scene(Table):
         number = len(self.stage)
         if self.stages is None and not self.stage:
             if self.gears.face_width_over_diameter is None:
-                raise refuse("is missing: one table [[stage]] a stage", at=("stage",))
-            raise refuse("is missing (or write one [[stage]] table a stage)", at=("stages",))
+                raise refuse("is missing: one table [[stage]] per stage", at=("stage",))
+            raise refuse("is missing (or write one [[stage]] table per stage)", at=("stages",))
         if number > 6:
             raise refuse(
                 "is one more than the six stages allowed", at=("stage", 6), action="remove"

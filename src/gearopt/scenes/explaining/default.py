@@ -39,9 +39,9 @@ BASIS = (
     " by multipliers, checked by solving again. What easing a limit or a step brings: solved again"
 )
 HELD = f", with these whole numbers and choices,{BASIS}"
-UNSURE = 0.02  # of a slope by multipliers and one by solving again that are told apart
+UNSURE = 0.02  # between sensitivities by multipliers and by solving again that differ
 PART = 1e-3  # of the change up to which whole numbers and choices stay: the step of a re-solve
-UNPROVEN = "numbers are not solved again, because the answer is not proven to the end"
+UNPROVEN = "numbers are not solved again, because the answer is not proven optimal"
 
 
 def explain(kind: Any, scene: Any, ask: Ask, result: Result | None = None) -> Explanation:
@@ -64,12 +64,12 @@ def explain(kind: Any, scene: Any, ask: Ask, result: Result | None = None) -> Ex
 
 def of_report(result: Result) -> Explanation:
     """Return the explanation that an impossible result brings along as `ways_out`."""
-    told: dict[str, Any] = result.report.get("ways_out", {})
+    ways: dict[str, Any] = result.report.get("ways_out", {})
     found = tuple(
         Remedy(**{**r, "changes": tuple(Change(**c) for c in r["changes"])})
-        for r in told.get("remedies", ())
+        for r in ways.get("remedies", ())
     )
-    names, words = tuple(told.get("conflict", ())), told.get("message", "")
+    names, words = tuple(ways.get("conflict", ())), ways.get("message", "")
     return Explanation(result, names, found, message=words, seconds=result.seconds)
 
 
@@ -119,8 +119,8 @@ def remedies(scene: Any, problem: Problem, clock: Clock, status: Callable[[Any],
     """Return the conflict of an impossible file, and each number that alone makes it possible.
 
     problem: what is solved for the file; its handles say by their keys which numbers are limits or
-    given, and which way is easier. status(scene): of a changed file, solved. A remedy is told only
-    if the file with it, read anew, has a design.
+    given, and which way is easier. status(scene): of a changed file, solved. A remedy is reported
+    only if the file with it, read again, has a design.
     """
     known = _handles(problem)
     found = [r for n, h in _keyed(scene, known) if (r := _alone(scene, n, h, clock, status))]
@@ -129,7 +129,7 @@ def remedies(scene: Any, problem: Problem, clock: Clock, status: Callable[[Any],
         tried = "not all known" if clock.over else "need more"
         least = replace(own[0], kind="least", verified={**own[0].verified, "others": tried})
         own = [least, *own[1:]]
-    late = "time ran out before all ways out were tried" if clock.over else ""
+    late = "time ran out before all remedies were tried" if clock.over else ""
     return Remedies(
         _conflict(problem, known, clock),
         (*own, *(r for r in found if r.kind == "less")),
@@ -138,7 +138,7 @@ def remedies(scene: Any, problem: Problem, clock: Clock, status: Callable[[Any],
 
 
 def _conflict(problem: Problem, known: Sequence[Handle], clock: Clock) -> tuple[str, ...]:
-    """Return limits that cannot hold together; with what is given where limits alone can."""
+    """Return limits in conflict; with what is given where limits alone are not."""
     if any(variable.discrete for variable, _ in problem.columns):
         return ()
     limits = [h for h in known if not h.given]
@@ -207,7 +207,7 @@ def priced(
     clock: Clock,
     basis: Basis,
     solved: Solved,
-    told: str,
+    note: str,
     directions: dict[str, int],
     held: bool = False,
 ) -> Explanation:
@@ -234,7 +234,7 @@ def priced(
         return stepped(scene, number, way, value, basis.solved, solved)
 
     found = tuple(map(_sure, influences(scene, basis, clock, wanted, price, near=near)))
-    late = f"stopped after {len(found)} of {len(wanted)} numbers" if clock.over else told
+    late = f"stopped after {len(found)} of {len(wanted)} numbers" if clock.over else note
     if ranges:
         late = "; ".join(filter(None, (late, f"the same design is best with {', '.join(ranges)}")))
     words = HELD if held else f",{BASIS}"
@@ -242,7 +242,7 @@ def priced(
 
 
 def _sure(found: Influence) -> Influence:
-    """Return without a slope by multipliers that is neither side's: there they are not unique."""
+    """Return without a sensitivity by multipliers that is neither side's: it is not unique."""
     sides = [s for s in found.resolved if s is not None]
     own = found.sensitivity
     if own is None or not sides or any(abs(own - s) <= UNSURE * max(1.0, abs(s)) for s in sides):
@@ -265,7 +265,7 @@ def at_point(
         return Basis(value, solved, posed, x, of_fixed(held))
     try:
         known = sensitivities(held, x)
-    except SolveError:  # the text cannot be traced, or has no slopes
+    except SolveError:  # the text cannot be traced, or has no derivatives
         return Basis(value, solved)
     return (
         Basis(value, solved, posed, x, known) if known.stationary(held, x) else Basis(value, solved)

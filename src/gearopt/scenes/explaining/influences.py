@@ -1,4 +1,4 @@
-"""What every number of a file does to the objective: slopes by multipliers, checked by solving."""
+"""Sensitivities of the objective to every number of a file: by multipliers, checked by solving."""
 
 import math
 from collections.abc import Callable, Iterable, Iterator
@@ -15,12 +15,12 @@ from gearopt.optimise.terms import Array
 from gearopt.scenes.explaining.numbers import Number, Path, eased, moved, times
 from gearopt.units import Quantity
 
-POSED = 1e-5  # of ln number, to either side, at most: where a problem is posed anew
+POSED = 1e-5  # of ln number, to either side, at most: where a problem is posed again
 NEAR = 1e-4  # relative, of the re-solves: small enough for most choices to stay as they are
 NEAREST = 1e-10  # relative change of a number below which it is not asked whether they do
 HALVINGS = 12  # of the logarithm of the change up to which they do
 SAME = 1e-9  # relative: objectives that are equal
-FARTHEST = 64  # whole steps up to which the first that makes a difference is looked for
+FARTHEST = 64  # whole steps up to which the first that makes a difference is sought
 FIRST = 0.1  # step of a length or angle of zero, in its own unit
 
 Solved = Callable[[Any], float | None]  # a changed scene -> its objective; None: no design
@@ -29,7 +29,7 @@ Price = Callable[[Number], tuple[str, float | None]]
 
 @dataclass(frozen=True)
 class Basis:
-    """The problem whose slopes are told: its optimum `point` (None: slopes by solving alone).
+    """The problem of the sensitivities: its optimum `point` (None: sensitivities by solving alone).
 
     posed(scene): that of a changed file; value: its objective; solved(scene): the same of a changed
     file; step: relative, of the re-solves; memo: what was solved, by number and factor.
@@ -78,7 +78,7 @@ class Basis:
                 self.at(scene, number, 1.0 + change),
             )
             if other is None or solved is None or self.posed is None or self.point is None:
-                return True  # no design, which the slopes tell
+                return True  # no design, which the sensitivities show
             held = float(self.posed(other).batch(self.point[None]).F[0, 0])
             return bool(abs(held - solved) <= SAME * abs(held))
 
@@ -138,9 +138,9 @@ def influences(
 def stepped(
     scene: Any, number: Number, direction: int, value: float, solved: Solved, whole: Solved
 ) -> tuple[str, float | None]:
-    """Return the step of a number whose price is told, and the relative change that it brings.
+    """Return the step of a number, and the relative change of the objective that it brings.
 
-    direction: that eases it, 0 where none is known: then 1 % of no number is priced, a whole number
+    direction: that eases it, 0 where none is known: then 1 % of no number is tried, a whole number
     is tried both ways. solved: of changed quantities; whole: of changed whole numbers.
     """
     now = number.value

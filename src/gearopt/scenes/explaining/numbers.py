@@ -107,7 +107,7 @@ def allowed(scene: BaseModel) -> bool:
 
 
 def content(scene: BaseModel) -> dict[str, Any]:
-    """Return what the file of a scene holds, to be read anew by its own rules."""
+    """Return what the file of a scene holds, to be read again by its own rules."""
     found: dict[str, Any] = _content(scene, ())
     return found
 

@@ -96,15 +96,15 @@ def _is_far(value: int | Decimal) -> bool:
 def quantity(
     dimension: str,
     example: str,
-    most: str | None = None,
+    limit: str | None = None,
     zero: bool = False,
     signed: bool = False,
 ) -> Reads:
-    """Read a positive quantity such as "7.5 kW"; most: the largest allowed, zero: whether 0 is.
+    """Read a positive quantity such as "7.5 kW"; limit: the largest allowed, zero: whether 0 is.
 
     signed: it may be below zero as well (a place).
     """
-    limit = units.parse(most, dimension) if most else None
+    bound = units.parse(limit, dimension) if limit else None
     names = ", ".join(units.UNITS[dimension])
     usual = units.parse(example, dimension).unit
 
@@ -113,8 +113,8 @@ def quantity(
             return "is below zero" if zero else "is not greater than zero"
         if found.number and not SMALLEST < abs(found.number) < LARGEST:
             return BEYOND
-        above = limit is not None and found.value > limit.value * (1 + 1e-12)
-        return f"is above {most}" if above else ""
+        above = bound is not None and found.value > bound.value * (1 + 1e-12)
+        return f"is above {limit}" if above else ""
 
     def usable(text: str) -> str | None:
         try:
@@ -146,14 +146,14 @@ def quantity(
 
 
 def number(
-    example: Any, least: int, most: int | Fraction, percent: bool = False, zero: bool = False
+    example: Any, minimum: int, maximum: int | Fraction, percent: bool = False, zero: bool = False
 ) -> Reads:
     """Read a pure number, kept exactly as a fraction; percent: "1 %" is read too."""
-    above = f"between {least} and" if least or zero else "above 0 and at most"
+    above = f"between {minimum} and" if minimum or zero else "above 0 and at most"
     sort = 'a number or a percentage such as "1 %"' if percent else "a number"
 
     def inside(found: Fraction) -> bool:
-        return least <= found <= most and (found > 0 or zero)
+        return minimum <= found <= maximum and (found > 0 or zero)
 
     def read(value: Any, example: Any) -> Fraction:
         if isinstance(value, Fraction):
@@ -174,7 +174,7 @@ def number(
         if found and not SMALLEST < abs(found) < LARGEST:
             raise refuse(BEYOND)
         if not inside(found):
-            raise refuse(f"is not {above} {float(most):.7g}", slip(value, found))
+            raise refuse(f"is not {above} {float(maximum):.7g}", slip(value, found))
         return found
 
     def slip(value: Any, found: Fraction) -> Any:
@@ -182,30 +182,30 @@ def number(
             return f"{value} %"
         return -value if _is_number(value) and inside(-found) else None
 
-    schema: dict[str, Any] = {"type": "number", "minimum": least, "maximum": float(most)}
+    schema: dict[str, Any] = {"type": "number", "minimum": minimum, "maximum": float(maximum)}
     if percent:
         text = {"type": "string", "pattern": r"^\s*[0-9.]+([eE][+-]?[0-9]+)?\s*%?\s*$"}
         schema = {"anyOf": [schema, text]}
     return Reads(read, example, schema)
 
 
-def whole(example: int, least: int, most: int) -> Reads:
+def whole(example: int, minimum: int, maximum: int) -> Reads:
     """Read a whole number."""
 
     def read(value: Any, example: Any) -> int:
         if isinstance(value, str) and re.fullmatch(r"\s*[0-9]{1,9}\s*", value):
-            meant = int(value) if least <= int(value) <= most else None
+            meant = int(value) if minimum <= int(value) <= maximum else None
             raise refuse("is a text, not a whole number", meant)
-        if isinstance(value, Decimal) and value.is_finite() and least <= value <= most:
+        if isinstance(value, Decimal) and value.is_finite() and minimum <= value <= maximum:
             raise refuse("is not a whole number", int(value))
         if isinstance(value, bool) or not isinstance(value, int):
             raise refuse("is not a whole number")
-        if not least <= value <= most:
-            meant = least if value < least else None  # the largest is no sensible proposal
-            raise refuse(f"is not a whole number from {least} to {most}", meant)
+        if not minimum <= value <= maximum:
+            meant = minimum if value < minimum else None  # the largest is no sensible proposal
+            raise refuse(f"is not a whole number from {minimum} to {maximum}", meant)
         return value
 
-    return Reads(read, example, {"type": "integer", "minimum": least, "maximum": most})
+    return Reads(read, example, {"type": "integer", "minimum": minimum, "maximum": maximum})
 
 
 def choice(*names: str) -> Reads:

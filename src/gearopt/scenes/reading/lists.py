@@ -39,7 +39,7 @@ def span(item: Reads, example: Any, single: bool = False) -> Reads:
         right, rule = _mended(item, ends[:2])
         if len(ends) != 2:
             pair = right * 2 if len(ends) == 1 and not rule else None
-            raise refuse("is not a range [least, most]", pair)
+            raise refuse("is not a range [minimum, maximum]", pair)
         if rule:
             known = None not in right
             raise refuse(f"has an end that {rule}", sorted(right, key=order) if known else None)

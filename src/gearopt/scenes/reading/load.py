@@ -134,7 +134,7 @@ def read(data: bytes, file: str = "<text>", before: tuple[Path, ...] = ()) -> tu
 
 
 def _too_deep(file: str) -> SceneError:
-    remedy = "A problem file has tables of depth two at the most"
+    remedy = "A problem file has tables of at most two levels"
     return SceneError(file, "", "", "is nested too deeply", remedy)
 
 

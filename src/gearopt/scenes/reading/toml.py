@@ -26,17 +26,17 @@ def toml_text(value: Any) -> str:
     return str(value)
 
 
-def short(value: Any, most: int = 60) -> str:
-    """Return a value as TOML writes it, cut to `most` characters."""
+def short(value: Any, longest: int = 60) -> str:
+    """Return a value as TOML writes it, cut to `longest` characters."""
     try:
-        return cut(toml_text(value), most)
+        return cut(toml_text(value), longest)
     except RecursionError:
         return "{...}" if isinstance(value, dict) else "[...]"
 
 
-def cut(text: str, most: int) -> str:
-    """Return a text of at most `most` characters."""
-    return text if len(text) <= most else text[: most - 3] + "..."
+def cut(text: str, longest: int) -> str:
+    """Return a text of at most `longest` characters."""
+    return text if len(text) <= longest else text[: longest - 3] + "..."
 
 
 def dotted(place: tuple[Any, ...]) -> str:

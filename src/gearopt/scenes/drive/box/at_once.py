@@ -16,7 +16,7 @@ from gearopt.optimise.result import Outcome, Result
 from gearopt.optimise.solve import limits, run
 from gearopt.optimise.typed import untyped
 from gearopt.physics.gears import GearPair
-from gearopt.scenes.drive.box.lay_out import lay_out, pairs_of, told
+from gearopt.scenes.drive.box.lay_out import lay_out, pairs_of, with_layout
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.reading.ask import Ask
 
@@ -47,7 +47,7 @@ def at_once(scene: Scene, ask: Ask, sized: Result) -> Result:
     own, pairs = teeth.problem(scene.train()), together.pairs(scene.train(), outcome.x)
     point = outcome.x[: sum(v.size for v in own.variables)]
     gears = replace(sized, design=untyped(scene.design(pairs)), limits=limits(own, point))
-    found = told(scene, result, events, replace(gears, report={}), box, angles, order)
+    found = with_layout(scene, result, events, replace(gears, report={}), box, angles, order)
     left = replace(ask, budget=asked.less(result.seconds))
     smooth = _from(scene, (order.slabs, pairs, angles), left)
     return replace(found, parts=(*found.parts, *smooth))
@@ -59,7 +59,7 @@ def _why(result: Result, apart: Result) -> dict[str, Any]:
         return {}
     message = apart.message or "no gears within the limits can be laid out"
     ways = apart.report.get("ways_out") or {"conflict": [], "remedies": [], "message": ""}
-    words = f"No gears within the limits can be laid out. Of those of least volume: {message}"
+    words = f"No gears within the limits can be laid out. Of the gears chosen first: {message}"
     return {"message": words, "report": {"notes": [words], "ways_out": ways}}
 
 
@@ -126,4 +126,4 @@ def _real(
     )
     box = scene.gearbox(pairs)
     angles = angles_of(problem, outcome.x)
-    return told(scene, result, events, gears, box, angles, arrange(box, slabs))
+    return with_layout(scene, result, events, gears, box, angles, arrange(box, slabs))

@@ -46,7 +46,7 @@ REACHES = 2.0  # a place or a keep-out moves so many times the length of all lin
 FINE = 1e-4  # relative accuracy of a factor that is found
 NEAR = 1e-3  # mm; accuracy of a place that is found
 GRID = 1e-2  # mm; what is proposed is a multiple of it, within the tolerance of a place
-BACK = 1e-3  # part of a number by which a proposal is taken back to see that it is the least
+BACK = 1e-3  # part of a number by which a proposal is taken back to see that it is the smallest
 LEFT = 0.01  # part of a keep-out that is left of it
 
 

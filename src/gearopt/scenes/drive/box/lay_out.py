@@ -63,14 +63,14 @@ def lay_out(scene: Scene, ask: Ask, sized: Result) -> Result:
         return _impossible(scene, sized, ask, parts, notes, result)
     if result.value is None or outcome.x is None:
         return replace(result, name="drive")
-    found = told(scene, result, events, sized, box, *read(orders, outcome.x))
+    found = with_layout(scene, result, events, sized, box, *read(orders, outcome.x))
     if outcome.others:
         front = [_sides(box, orders, x) for x in (outcome.x, *outcome.others)]
         found = replace(found, report=found.report | {"front": front})
     return found
 
 
-def told(
+def with_layout(
     scene: Scene,
     result: Result,
     events: list[dict[str, Any]],
@@ -110,7 +110,7 @@ def _sides_used(result: Result) -> dict[str, float]:
 def posed(scene: Scene, method: str, sized: Result) -> Model:
     """Return the layout problem of a method; SolveError where the gears cannot be laid out."""
     if sized.value is None:
-        raise SolveError("there are no gears to lay out: gearopt explain says why")
+        raise SolveError("there are no gears to lay out: gearopt explain shows why")
     box = scene.gearbox(pairs_of(scene, sized))
     if wrong := faults(box):
         raise SolveError(" ".join(wrong))

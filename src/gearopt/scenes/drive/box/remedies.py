@@ -1,4 +1,4 @@
-"""Remedies of an impossible layout, tried before they are told; slopes of a possible one."""
+"""Remedies of an impossible layout, tried before they are reported; slopes of a possible one."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -30,7 +30,7 @@ BRIEF = 0.2  # and beyond a size that stayed undecided
 COARSE = 8  # halvings of the common size of two moves, by which pairs are compared
 PAIRS = 6  # that are worked out
 HALVINGS = 20  # of the size within which the file's own rules hold
-SLOPE_GAP = 0.01  # gap of the proof behind a slope: the polished layout is far better than that
+SENSITIVITY_GAP = 0.01  # gap of the proof behind a sensitivity: the polished layout is far closer
 SAME = 1e-7  # relative, of boxes that are equal
 TABLES = ("layout", "place", "keep_out")
 
@@ -118,12 +118,12 @@ def remedies(scene: Scene, pairs: tuple[GearPair, ...], ask: Ask) -> Remedies:
         both = _pairs(scene, single + choices[::-1], asked)  # of two tables the last goes first
         found = [r for _, r in sorted(both, key=_size)]
         if asked.open and not found:
-            message = "no way out was found, and not every change could be decided"
+            message = "no remedy was found, and not every change could be decided"
         elif not found:
             none = "no change of one number or of two makes a layout possible within what is tried"
             message = f"{none}: {', '.join(limits_of(single + choices))}"
     if clock.over:
-        message = "time ran out before all ways out were tried"
+        message = "time ran out before all remedies were tried"
     return Remedies((), tuple(found), message)
 
 
@@ -155,7 +155,7 @@ def _halved(asks: Asks, high: float, steps: int) -> list[float]:
 
 
 def _moved(scene: Scene, edit: Edit, asked: Questions) -> tuple[float, Remedy] | None:
-    """Return the least known size of one edit and its remedy; None where none is known."""
+    """Return the smallest known size of one edit and its remedy; None where none is known."""
     known = asked.smallest(
         lambda size: edit.put(scene, edit.searched(size)), edit.steps, edit.key()
     )
@@ -176,7 +176,7 @@ def _word(found: bool | None) -> str:
 
 
 def _change(scene: Scene, edit: Edit, value: Any) -> Change:
-    """Return an edit as it is told; its factor is infinite where a number is shifted."""
+    """Return an edit as a change; its factor is infinite where a number is shifted."""
     factor = math.inf
     if edit.texts:
         factor = 1.0
@@ -265,17 +265,19 @@ def _put(scene: Scene, pair: Pair, values: list[Any]) -> Scene:
 
 
 def explained(scene: Scene, result: Result, clock: Clock) -> Explanation:
-    """Return the answer of a layout with the slope of the box over every number of its tables."""
+    """Return the sensitivities of the box to every number of the tables of a layout."""
     if result.status not in CERTAIN or result.value is None:
-        return Explanation(result, message="slopes need a proven layout", seconds=clock.seconds)
+        return Explanation(
+            result, message="sensitivities need a proven layout", seconds=clock.seconds
+        )
     pairs = pairs_of(scene, next((p for p in result.parts if p.name == "gears"), result))
 
     def solved(other: Scene) -> float | None:
         box = gearbox_of(other, pairs)
         if box is None or faults(box):
             return None
-        left = replace(clock.left, gap=SLOPE_GAP)
-        return solve(layout.problem(box), None, left, watch=clock.watch, gap=SLOPE_GAP).value
+        left = replace(clock.left, gap=SENSITIVITY_GAP)
+        return solve(layout.problem(box), None, left, watch=clock.watch, gap=SENSITIVITY_GAP).value
 
     wanted = [
         n
@@ -288,6 +290,6 @@ def explained(scene: Scene, result: Result, clock: Clock) -> Explanation:
         result,
         binding=tuple(n for n, v in result.limits.items() if v > 1.0 - SAME),
         influences=found,
-        message=f"slopes are those of the box around these gears{late}",
+        message=f"sensitivities are those of the box around these gears{late}",
         seconds=result.seconds + clock.seconds,
     )

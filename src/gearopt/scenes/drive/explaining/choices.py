@@ -22,7 +22,7 @@ TOLERANCE = ("duty", "ratio_tolerance")
 WIDEST = (
     Fraction(1, 2),
     Fraction(999, 1000),
-)  # distances to which ratios are looked for, up and down
+)  # distances to which ratios are sought, up and down
 NEARER = Fraction(1, 10**9)  # part of its distance by which one that is nearer is asked for
 SHARP = Fraction(1, 10**5)  # part of its distance to which that of real-valued teeth is known
 CLOSE = Fraction(1, 10)  # part of its distance from where all that is nearer is asked for at once
@@ -46,7 +46,7 @@ class Reached:
 def nearest_ratio(case: Case, away: Fraction | None) -> Remedy | None:
     """Return the ratio next to the one asked for that a design exists for, written into the duty.
 
-    away: the least tolerance known to suffice, None where the file can hold none.
+    away: the smallest tolerance known to suffice, None where the file can hold none.
     """
     far = max(WIDEST[0], min(WIDEST[1], 1 - 1 / case.scene.duty.total_ratio))
     reached = _met(case, away or far)
@@ -143,7 +143,7 @@ def _short(number: Fraction, digits: int) -> Fraction:
 
 
 def eased_tolerance(case: Case) -> Remedy | None:
-    """Return the least ratio tolerance with which a drive of none is possible."""
+    """Return the smallest ratio tolerance with which a drive of none is possible."""
     path = ("duty", "ratio_tolerance")
 
     def works(value: float, back: float = 0.0) -> bool | None:

@@ -1,4 +1,4 @@
-"""A drive that was sized, explained: what binds, and what every number of its file costs."""
+"""A drive that was sized, explained: what binds, and its sensitivities to every number."""
 
 from collections.abc import Callable
 from typing import Any
@@ -30,7 +30,7 @@ def explained(
 ) -> Explanation:
     """Return the result with the influence of every number; answer(scene) solves a changed drive.
 
-    Slopes are those of real-valued sizes, prices are of the drive as it is.
+    Sensitivities are those of real-valued sizes; steps are solved for the drive as it is.
     """
     whole = result.status in CERTAIN and (result.gap or 0.0) <= SAME
 
@@ -56,7 +56,7 @@ def explained(
     )
     late = f"stopped after {len(found)} of {len(numbers(scene))} numbers" if clock.over else ""
     if not whole:
-        late = late or "easing a limit is not priced, because the answer is not proven to the end"
+        late = late or "easing a limit is not tried, because the answer is not proven optimal"
     return Explanation(
         result,
         binding=tuple(n for n in binding(result) if not n.startswith("common_divisor")),

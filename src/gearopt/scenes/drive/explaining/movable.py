@@ -152,7 +152,7 @@ def stage_of(handle: Handle) -> int:
 
 
 def staged(scene: Scene) -> Scene:
-    """Return the scene with one table a stage."""
+    """Return the scene with one table per stage."""
     if scene.stage:
         return scene
     return scene.model_copy(update={"stage": (StageTable(),) * int(scene.stages or 0)})
@@ -225,7 +225,7 @@ def tolerance(now: Fraction, end: int | None, factor: float) -> Fraction:
 
 
 def bound_of(scene: Scene, number: Movable, bound: float | None) -> float | None:
-    """Return the proven least factor of a number as the file has it, from that of its handles."""
+    """Return the proven minimum factor of a number as the file has it, from that of its handles."""
     if bound is None:
         return None
     if number.path[-1] == "ratio_tolerance":
@@ -243,7 +243,7 @@ def _mismatched(scene: Scene, number: Movable) -> bool:
 
 
 def comparable(scene: Scene, found: Sequence[Movable]) -> bool:
-    """Return whether a proven least product of handles is one of the file's numbers."""
+    """Return whether a proven minimum product of handles is one of the file's numbers."""
     return not any(_mismatched(scene, number) for number in found)
 
 

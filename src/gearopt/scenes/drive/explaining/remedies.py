@@ -1,4 +1,4 @@
-"""Remedies of an impossible drive, as edits of its file that were tried before they are told."""
+"""Remedies of an impossible drive: edits of its file, each of them tried."""
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
@@ -24,16 +24,16 @@ from gearopt.scenes.drive.explaining.movable import (
 from gearopt.scenes.drive.explaining.together import (
     is_real,
     is_stepped,
-    least_together,
     posed,
+    smallest_together,
     together,
     widest,
 )
 from gearopt.scenes.drive.explaining.tried import (
     Case,
     enlarged,
-    least_alike,
-    least_step,
+    smallest_alike,
+    smallest_step,
     trimmed,
 )
 from gearopt.scenes.drive.scene import Scene
@@ -41,7 +41,7 @@ from gearopt.scenes.explaining.numbers import read
 
 
 def remedies(scene: Scene, clock: Clock) -> Remedies:
-    """Return the conflict and the remedies of an impossible drive, the least change first.
+    """Return the conflict and the remedies of an impossible drive, the smallest change first.
 
     Every remedy was tried: a design exists with it.
     """
@@ -57,7 +57,7 @@ def remedies(scene: Scene, clock: Clock) -> Remedies:
         found.append(remedy)
     if scene.teeth is not None:
         found += switches(case)
-    late = "time ran out before all ways out were tried" if clock.over else ""
+    late = "time ran out before all remedies were tried" if clock.over else ""
     return Remedies(tuple(h.name for h in blamed), tuple(found), late)
 
 
@@ -69,14 +69,14 @@ def _tolerance(found: Sequence[Remedy]) -> Fraction | None:
 
 
 def _conflict(base: Problem, known: Sequence[Handle], clock: Clock) -> tuple[Handle, ...]:
-    """Return the limits that cannot hold together; with what is given where limits alone can."""
+    """Return the limits in conflict; with what is given where limits alone are not."""
     limits = [h for h in known if not h.given]
     return conflict(base, limits, clock) or conflict(base, known, clock)
 
 
 @dataclass(frozen=True)
 class Proposal:
-    """Moves that suffice, what they are called, and the proven least factor.
+    """Moves that suffice, what they are called, and the proven minimum factor.
 
     sure: every smaller change of the same numbers is known to be impossible; None: try a step less.
     """
@@ -97,7 +97,7 @@ def _singles(
     """
     places = {(h.kind, h.place) for h in blamed if not h.given}
     conflicting = places and all(not h.given for h in blamed)
-    common: dict[tuple[str, int], float] = {}  # least factors of all stages: one needs no less
+    common: dict[tuple[str, int], float] = {}  # smallest factors of all stages: one needs no less
     for number in movable:
         start, bound = 1.0, None
         if base is not None:
@@ -113,17 +113,17 @@ def _singles(
             return
         kind = "less" if number.sort == "duty" else ("even" if number.shared else "one")
         if is_stepped(case.scene, number):
-            alone = least_together(case, [number], FARTHEST * start)
+            alone = smallest_together(case, [number], FARTHEST * start)
             if alone is not None:
                 yield Proposal(kind, alone[0], bound, alone[1] or None)
         elif number.path[-1] == "module" and case.scene.teeth is not None:
-            stepped = least_step(case, number, FARTHEST * start)
+            stepped = smallest_step(case, number, FARTHEST * start)
             if stepped is not None:
                 yield Proposal(kind, ((number, stepped[0]),), bound, stepped[1])
         else:
             start = max(start, common.get((number.family, number.direction), 1.0))
             doubts = len(case.open)
-            moves = None if math.isinf(start) else least_alike(case, ((number, start),))
+            moves = None if math.isinf(start) else smallest_alike(case, ((number, start),))
             if number.shared and len(case.open) == doubts:  # else a smaller one may do
                 least = math.inf if moves is None else moves[0][1]
                 common[number.family, number.direction] = least
@@ -158,7 +158,7 @@ def _alike(case: Case, base: Problem | None, movable: Sequence[Movable]) -> Iter
                 continue
             start = alike.factor
             bound = alike.bound if comparable(case.scene, group) else None
-        moves = least_alike(case, tuple((m, start) for m in group))
+        moves = smallest_alike(case, tuple((m, start) for m in group))
         if moves is not None:
             yield Proposal("even", moves, bound)
 
@@ -170,7 +170,7 @@ def _changes(
     beside: Moves | None,
     floor: float | None,
 ) -> list[Remedy]:
-    """Return the remedies of limits and sizes, the least first, then those that ask for less."""
+    """Return the remedies of limits and sizes, the smallest first, then those that ask for less."""
     proposals = []
     if beside is not None and len(beside) > 1:
         proposals.append(Proposal("least", beside, floor))
@@ -180,16 +180,16 @@ def _changes(
         )
         if several:
             proposals.append(Proposal("least", trimmed(case, proposal.moves), floor))
-    told = [r for _, r in (*singles, *_tried(case, proposals))]
-    best = min((_product(r) for r in told if r.kind != "less"), default=FARTHEST)
-    joint = least_together(case, movable, best * (1.0 - SAME))
+    rows = [r for _, r in (*singles, *_tried(case, proposals))]
+    best = min((_product(r) for r in rows if r.kind != "less"), default=FARTHEST)
+    joint = smallest_together(case, movable, best * (1.0 - SAME))
     if joint is not None and (
         r := _remedy(case, Proposal("least", joint[0], floor, joint[1] or None))
     ):
-        told.append(r)
-    if not any(r.kind != "less" for r in told) and (r := _all_limits(case, movable)):
-        told.append(r)
-    own = sorted((r for r in told if r.kind != "less"), key=_product)
+        rows.append(r)
+    if not any(r.kind != "less" for r in rows) and (r := _all_limits(case, movable)):
+        rows.append(r)
+    own = sorted((r for r in rows if r.kind != "less"), key=_product)
     own.sort(key=lambda r: r.kind == "even" and len(r.changes) > 1)  # its numbers move alike
     if own:
         all_known = not (case.clock.over or case.open) and _product(own[0]) <= FARTHEST
@@ -201,12 +201,12 @@ def _changes(
             bound=own[0].bound if floor is None else floor,
             verified={**own[0].verified, "others": tried},
         )
-        own = [least, *_worth_telling(r for r in own[1:] if r.kind != "least")]
-    return _distinct([*own, *(r for r in told if r.kind == "less")])
+        own = [least, *_worth_reporting(r for r in own[1:] if r.kind != "least")]
+    return _distinct([*own, *(r for r in rows if r.kind == "less")])
 
 
-def _worth_telling(found: Any) -> Iterator[Remedy]:
-    """Yield of the numbers of single stages the least one of each kind."""
+def _worth_reporting(found: Any) -> Iterator[Remedy]:
+    """Yield of the numbers of single stages the smallest one of each kind."""
     seen = set()
     for remedy in found:
         if remedy.kind != "one" or remedy.what not in seen:

@@ -2,8 +2,8 @@
 
 Real-valued numbers by the elastic form; given tooth numbers and modules by bisection of boxes. A
 box is a range of each number; where a drive that may choose within the box is impossible, so is
-every choice of its numbers. Boxes are taken by the least product they hold, so that the first
-single choice that is possible is the least one.
+every choice of its numbers. Boxes are taken by the smallest product they hold, so that the first
+single choice that is possible is the minimum.
 """
 
 import heapq
@@ -57,8 +57,10 @@ class Choice:
     movables: tuple[Movable | None, ...]
 
 
-def least_together(case: Case, movables: list[Movable], most: float) -> tuple[Moves, bool] | None:
-    """Return moves of given numbers with the least product below `most`; and whether none has less.
+def smallest_together(
+    case: Case, movables: list[Movable], most: float
+) -> tuple[Moves, bool] | None:
+    """Return moves of given numbers with the smallest product below `most`; whether that is proven.
 
     None where there are none. After so many questions, the best that was met on the way.
     """
@@ -168,7 +170,7 @@ def _parts(choices: list[Choice], box: Box) -> list[Box]:
 
 
 def _product(choices: list[Choice], box: Box) -> float:
-    """Return the least product of factors in a box."""
+    """Return the smallest product of factors in a box."""
     return math.prod(min(c.factors[i : j + 1]) for c, (i, j) in zip(choices, box, strict=True))
 
 
@@ -211,11 +213,11 @@ def _named(handle: Handle, train: Train, whole: bool) -> Handle:
 def together(
     case: Case, base: Problem, movable: list[Movable]
 ) -> tuple[float | None, Moves | None]:
-    """Return the proven least product over all limits and given sizes, and moves of about that.
+    """Return the proven minimum product over all limits and given sizes, and moves of about that.
 
     Whole numbers that are given are set first: the others follow them.
     """
-    found = _least_moves(case, base, movable)
+    found = _smallest_moves(case, base, movable)
     if found is None:
         return None, None
     moves, bound = found
@@ -244,7 +246,7 @@ def _rounded(scene: Scene, moves: Moves) -> list[Moves]:
 
 
 def _beside(case: Case, fixed: Moves, rest: Moves) -> Moves | None:
-    """Return moves that are made as they are, and the least of others beside them that suffice."""
+    """Return fixed moves, and the smallest of others that suffice beside them."""
     if fixed and case.works(fixed):
         return fixed
     if case.scene.teeth is None and case.works((*fixed, *rest)):
@@ -260,7 +262,7 @@ def _beside(case: Case, fixed: Moves, rest: Moves) -> Moves | None:
 
 
 def _from_sizes(case: Case, movable: list[Movable], real: Moves) -> Moves | None:
-    """Return given whole numbers moved least under wide limits, then limits as little as it takes.
+    """Return given whole numbers moved as little as possible under wide limits, then limits.
 
     real: given real-valued sizes that move too.
     """
@@ -269,15 +271,15 @@ def _from_sizes(case: Case, movable: list[Movable], real: Moves) -> Moves | None
     edited = applied(case.scene, (*wide, *real))
     if edited is None:
         return None
-    there = least_together(Case(edited.scene, case.clock), movable, FARTHEST)
+    there = smallest_together(Case(edited.scene, case.clock), movable, FARTHEST)
     rest = (*real, *((m, 1.0) for m in limits))
     return None if there is None else _beside(case, there[0], rest)
 
 
-def _least_moves(
+def _smallest_moves(
     case: Case, base: Problem, movable: Sequence[Movable]
 ) -> tuple[Moves, float | None] | None:
-    """Return the moves of limits and given sizes of the least product, and its bound."""
+    """Return the moves of limits and given sizes of the smallest product, and its bound."""
     groups = [m for m in movable if m.sort != "duty"]
     found = least_factors(base, [m.handles for m in groups], case.clock) if groups else None
     if found is None:
@@ -292,7 +294,7 @@ def _after(case: Case, scene: Scene) -> Moves | None:
     if not is_real(scene, case.clock):
         return ()
     base, _, movable = posed(scene)
-    found = _least_moves(case, base, [m for m in movable if not is_stepped(scene, m)])
+    found = _smallest_moves(case, base, [m for m in movable if not is_stepped(scene, m)])
     return None if found is None else found[0]
 
 

@@ -1,4 +1,4 @@
-"""Whether an impossible drive would be possible with some numbers moved, and the least that do."""
+"""Whether an impossible drive is possible with some numbers moved; the smallest moves that do."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -73,8 +73,8 @@ class Case:
         return self.possible((less(self.scene, edited, back) if back else edited.scene).train())
 
 
-def least_step(case: Case, number: Movable, most: float) -> tuple[float, bool] | None:
-    """Return the least factor, at most `most`, of a number that may only take steps.
+def smallest_step(case: Case, number: Movable, most: float) -> tuple[float, bool] | None:
+    """Return the smallest factor, at most `most`, of a number that may only take steps.
 
     And whether every smaller one is known to be impossible.
     """
@@ -90,15 +90,15 @@ def least_step(case: Case, number: Movable, most: float) -> tuple[float, bool] |
     return None
 
 
-def least_alike(case: Case, moves: Moves) -> Moves | None:
-    """Return the least moves that suffice, all alike: as given, or enlarged for whole teeth."""
+def smallest_alike(case: Case, moves: Moves) -> Moves | None:
+    """Return the smallest moves that suffice, all alike: as given, or enlarged for whole teeth."""
     if case.scene.teeth is None:
         return moves
     return enlarged(case, moves)
 
 
 def enlarged(case: Case, moves: Moves, fixed: Moves = ()) -> Moves | None:
-    """Return moves with the least common factor beyond their own with which a design exists.
+    """Return moves with the smallest common factor beyond their own with which a design exists.
 
     fixed: moves that are made beside them, as they are.
     """

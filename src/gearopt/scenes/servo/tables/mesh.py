@@ -203,12 +203,12 @@ class Mesh(Table):
 class Accuracy(Table):
     """How far the output may be off, whatever deviations within tolerance come together."""
 
-    error: Annotated[Quantity | None, quantity("angle", "0.1082 deg", most="90 deg")] = Field(
+    error: Annotated[Quantity | None, quantity("angle", "0.1082 deg", limit="90 deg")] = Field(
         None,
         description="Maximum error of the output, both flanks; without it the error is shown, not "
         "limited",
     )
-    pressure_angle: Annotated[Quantity, quantity("angle", "20 deg", most="45 deg")] = Field(
+    pressure_angle: Annotated[Quantity, quantity("angle", "20 deg", limit="45 deg")] = Field(
         default_factory=lambda: units.parse("20 deg", "angle"),
         description="Pressure angle",
         json_schema_extra={"default": "20 deg"},
@@ -317,7 +317,7 @@ class BudgetTable(Table):
         description="worst_case: all at their limits; rss: root of the sum of squares; "
         "mean_plus_sd: mean and kappa standard deviations",
     )
-    limit: Annotated[Quantity | None, quantity("angle", "0.1082 deg", most="90 deg")] = Field(
+    limit: Annotated[Quantity | None, quantity("angle", "0.1082 deg", limit="90 deg")] = Field(
         None,
         description="Maximum error by this rule; by default that of [accuracy], without it what "
         "the old tolerances use",

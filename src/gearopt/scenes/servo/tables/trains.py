@@ -47,7 +47,7 @@ class Train(Table):
         json_schema_extra={"default": "1 %"},
     )
     modules: Annotated[
-        tuple[Fraction, ...], either(MODULES, quantity("length", "0.5 mm", most="50 mm"))
+        tuple[Fraction, ...], either(MODULES, quantity("length", "0.5 mm", limit="50 mm"))
     ] = Field(description="Modules to choose from: a series or a list")
     pinion_teeth: Annotated[tuple[int, int], span(whole(16, 12, 200), [16, 60])] = Field(
         description="Minimum and maximum number of teeth of both pinions"
@@ -153,7 +153,7 @@ class Stiffness(Table):
     load_torque: Annotated[Quantity | None, quantity("torque", "4.3 kgf cm")] = Field(
         None, description="Torque at the output under which the train winds up"
     )
-    windup: Annotated[Quantity | None, quantity("angle", "0.001 deg", most="90 deg")] = Field(
+    windup: Annotated[Quantity | None, quantity("angle", "0.001 deg", limit="90 deg")] = Field(
         None, description="Maximum wind-up angle; needs load_torque"
     )
 
@@ -201,7 +201,7 @@ class Space(Table):
         description="Diameter of the output shaft with its hub, over its whole length; motor and "
         "gears keep clear of it"
     )
-    swept_angle: Annotated[Quantity | None, quantity("angle", "180 deg", most="360 deg")] = Field(
+    swept_angle: Annotated[Quantity | None, quantity("angle", "180 deg", limit="360 deg")] = Field(
         None,
         description="Angle that the last wheel sweeps, its own sector and its travel together; by "
         "default twice its sector, as far as its teeth reach, at most 360 deg",
