@@ -64,7 +64,7 @@ def solve(
     ask = Ask(method, budget, seed, watch, gap, top)
     scene, module, names = _opened(what)
     result: Result = module.solve(scene, ask)
-    if prices and result.value is not None:
+    if prices and result.value is not None and result.status != "evaluated":
         left = replace(ask, budget=budget.less(result.seconds))
         found = _explained(module, scene, left, result)
         result = replace(result, report=result.report | {"prices": found.prices})
