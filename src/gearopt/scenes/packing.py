@@ -34,7 +34,7 @@ from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Result
 from gearopt.optimise.solve import run, solve_within
 from gearopt.optimise.typed import untyped
-from gearopt.scenes.explaining.default import at_point, eases, priced
+from gearopt.scenes.explaining.default import at_point, eases, of_design
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.fields import Table, choice, quantity, refuse, whole, words
 from gearopt.scenes.reading.lists import pair
@@ -373,7 +373,7 @@ def explain(scene: Scene, ask: Ask, result: Result | None = None) -> Explanation
 
     basis = at_point(result.value, followed, posed, scene, x)
     note = "" if result.status in CERTAIN else UNTRIED
-    return priced(scene, result, clock, basis, packed, note, eases(posed(scene)))
+    return of_design(scene, result, clock, basis, packed, note, eases(posed(scene)))
 
 
 def compared(scene: Scene) -> tuple[str, ...]:

@@ -98,7 +98,7 @@ def explained(
     if isinstance(problem, Problem) and outcome.x is not None:
         x, held = outcome.x, any(variable.discrete for variable, _ in problem.columns)
         basis = at_point(own.value, solved, lambda other: _held(posed(other), x), scene, x)
-    return priced(scene, result, clock, basis, solved, "", eases(problem), held)
+    return of_design(scene, result, clock, basis, solved, "", eases(problem), held)
 
 
 def _impossible(
@@ -201,7 +201,7 @@ def _handles(problem: Problem | Conic) -> tuple[Handle, ...]:
         return ()
 
 
-def priced(
+def of_design(
     scene: Any,
     result: Result,
     clock: Clock,
@@ -229,11 +229,11 @@ def priced(
             return small * (down > 0.0), small * (up > 0.0)
         return down, up
 
-    def price(number: Number) -> tuple[str, float | None]:
+    def easing(number: Number) -> tuple[str, float | None]:
         way = directions.get(number.key, 0)
         return stepped(scene, number, way, value, basis.solved, solved)
 
-    found = tuple(map(_sure, influences(scene, basis, clock, wanted, price, near=near)))
+    found = tuple(map(_sure, influences(scene, basis, clock, wanted, easing, near=near)))
     late = f"stopped after {len(found)} of {len(wanted)} numbers" if clock.over else note
     if ranges:
         late = "; ".join(filter(None, (late, f"the same design is best with {', '.join(ranges)}")))

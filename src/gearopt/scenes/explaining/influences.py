@@ -24,7 +24,7 @@ FARTHEST = 64  # whole steps up to which the first that makes a difference is so
 FIRST = 0.1  # step of a length or angle of zero, in its own unit
 
 Solved = Callable[[Any], float | None]  # a changed scene -> its objective; None: no design
-Price = Callable[[Number], tuple[str, float | None]]
+Easing = Callable[[Number], tuple[str, float | None]]
 
 
 @dataclass(frozen=True)
@@ -108,13 +108,14 @@ def influences(
     basis: Basis | None,
     clock: Clock,
     wanted: Iterable[Number],
-    price: Price = lambda number: ("", None),
+    easing: Easing = lambda number: ("", None),
     sloped: Callable[[Number], bool] = smooth,
     near: Callable[[Number], tuple[float, float]] | None = None,
 ) -> Iterator[Influence]:
     """Yield what every wanted number does to the objective, as long as the clock allows.
 
-    price(number): the step that eases it and what that brings. sloped: whether it has a slope.
+    easing(number): the step that eases it and what that brings. sloped: whether a small change
+    of it means anything.
     near(number): the relative steps of its re-solves down and up, by default those of the basis;
     0: none to that side.
     """
@@ -129,7 +130,7 @@ def influences(
             solved = partial(basis.at, scene, number)
             low, high = (slope(basis.value, solved, 1.0 + s) if s else None for s in (-down, up))
             both = low, high
-        step, brings = price(number)
+        step, brings = easing(number)
         if clock.over:  # the row may be half done
             return
         yield Influence(number.key, number.text, own, both, step, brings)

@@ -1,4 +1,4 @@
-"""Remedies of an impossible layout, tried before they are reported; slopes of a possible one."""
+"""Remedies of an impossible layout, each of them tried; sensitivities of a possible one."""
 
 import math
 from collections.abc import Callable, Sequence

@@ -50,7 +50,7 @@ def explained(
             _basis(spelt, clock),
             clock,
             wanted,
-            lambda number: _price(spelt, number, result, solved),
+            lambda number: _easing(spelt, number, result, solved),
             lambda number: _smooth(spelt, number),
         )
     )
@@ -110,7 +110,7 @@ def _is_series(scene: Scene) -> bool:
     return scene.teeth is not None and scene.teeth.modules in MODULES.values()
 
 
-def _price(scene: Scene, number: Number, result: Result, solved: Any) -> tuple[str, float | None]:
+def _easing(scene: Scene, number: Number, result: Result, solved: Any) -> tuple[str, float | None]:
     """Return the step that eases a limit of the file, and what it brings; "" for no limit."""
     direction = _eases(scene, number)
     if direction == 0 or result.value is None:
