@@ -1,7 +1,7 @@
 """What multipliers prove: a lower bound, or that nothing is feasible; and those of a point.
 
 With l >= 0 and any v the Lagrangian of a convex form is convex, so on the box it is at least its
-value at a point plus the least of its linear part; that of a strictly convex quadratic program is
+value at a point plus the minimum of its linear part; that of a strictly convex quadratic program is
 bounded without a box. Rounding of every term, of the gradient too, is taken off.
 
 Multipliers are computed from a point's gradients alone, no method's word is needed: of the rows

@@ -14,7 +14,7 @@ from gearopt.optimise.problem import Batch, Problem
 from gearopt.optimise.result import FEASIBLE
 from gearopt.optimise.terms import Array
 
-PART = 1e-3  # of its box is the least scale of a variable, so that one at zero has a scale too
+PART = 1e-3  # of its box is the minimum scale of a variable, so that one at zero has a scale too
 COARSE, FINE = 1e-2, 1e-10  # steps that see curvature, and gradients alone
 NOTHING = 1e-28  # the square of a rounding
 ENTRIES = 1_000_000  # of the points that are evaluated at once

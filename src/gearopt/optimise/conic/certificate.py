@@ -69,7 +69,7 @@ def certify(problem: Conic, outcome: Outcome, gap: float) -> Verdict:
 
 
 def _bound(problem: Conic, outcome: Outcome, value: float) -> tuple[float, float, float, str]:
-    """Return the least cost over all leaves, what it lost (see `Proof`), and what nothing holds."""
+    """Return the minimum cost of all leaves, what it lost (see `Proof`), and what is unbounded."""
     data = canonical(problem)
     if not covers(data, outcome.leaves):
         return -math.inf, 0.0, 0.0, ""

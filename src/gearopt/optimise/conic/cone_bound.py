@@ -2,7 +2,7 @@
 
 With y in the dual cone, y.(b - A x) >= 0 for every feasible x. Hence cost(x) is at least
 cost(x) + y.(A x - b), a convex function, which on a box is at least its value at any point plus the
-least of its linear part there. Rounding of every term is taken off; the cone is entered strictly.
+minimum of its linear part there. Rounding of every term is taken off; the cone is entered strictly.
 
 Epigraph variables have no bounds of their own. They follow by interval reasoning, rounded outwards,
 from the rows, the cones, and from the wish to be no worse than a design that is known.

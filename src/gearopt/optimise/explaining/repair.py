@@ -1,7 +1,7 @@
 """Why a request is impossible, and the smallest change of its limits that makes it possible.
 
 Three answers, each proven by our own bound: the conflict (limits that exclude each other, so that
-dropping any one resolves it), the least repair (the smallest product of factors over all limits)
+dropping any one resolves it), the smallest repair (product of factors over all limits)
 and, for every kind of limit, the even repair (one factor for that kind alone).
 """
 
@@ -25,10 +25,16 @@ CERTAIN = ("optimal", "stationary")
 SAME = 1e-7  # relative: two repairs as small as each other; a factor below 1 + SAME is none
 TAKEN_BACK = 1e-3  # a remedy this much smaller must be impossible
 FARTHEST = 4.0  # factor to which whole numbers and modules are tried
-WIDEST = (1.02, 1.1, 1.3, 2.0, FARTHEST)  # factors tried in turn, before the least is looked for
+WIDEST = (
+    1.02,
+    1.1,
+    1.3,
+    2.0,
+    FARTHEST,
+)  # factors tried in turn, before the smallest is searched for
 CLOSE = 1.0 + 0.5 * TAKEN_BACK  # ratio of an impossible to a possible factor that ends a search
 LEAST = 1.0 + 1e-7  # a search between two factors this close ends in any case
-DOUBTS = 3  # factors that may stay undecided before a search ends at the least that is known
+DOUBTS = 3  # factors that may stay undecided before a search ends at the smallest that is known
 BEYOND = (*WIDEST, 16.0, 256.0, 1e6)  # the same of real numbers
 
 Works = Callable[..., bool | None]
@@ -147,7 +153,7 @@ def impossible(
     limits: Sequence[Handle],
     together: Sequence[Sequence[Handle]] = (),
 ) -> tuple[tuple[Handle, ...], list[Repair]]:
-    """Return the conflict of an impossible problem and its repairs: the least, then the even ones.
+    """Return the conflict of an impossible problem and its repairs: the smallest, then even ones.
 
     movable: what a repair may move; limits: what may be named in the conflict; together: further
     groups of limits to move alike.
@@ -225,7 +231,7 @@ def _blamed(verdict: Result, kept: Sequence[int], movable: Sequence[Handle]) -> 
 
 
 def least_value(low: float, wider: Sequence[float], works: Works) -> float | None:
-    """Return the least value from `low` that will do, below the first of `wider` that does.
+    """Return the smallest value from `low` that will do, below the first of `wider` that does.
 
     works(value, back): whether a value will do, also with its edits taken back by a part; None:
     not known, so that the widest is tried. None where none is known to do.
@@ -243,7 +249,7 @@ def least_value(low: float, wider: Sequence[float], works: Works) -> float | Non
 
 
 def least_between(low: float, high: float, works: Works) -> float:
-    """Return the least factor known to do, between an impossible and a possible one.
+    """Return the smallest factor known to do, between an impossible and a possible one.
 
     works(factor, back): whether a factor will do, also with its edits taken back by a part. One
     that stays undecided is not known to do.

@@ -1,7 +1,7 @@
 """Linear, quadratic and second-order cone problems, mixed-integer ones too.
 
 Clarabel on data that we scale, point and multipliers sharpened by Newton's method. A relaxation is
-solved, scaled by its solution, solved again, and the best kept: the point of the least cost among
+solved, scaled by its solution, solved again, and the best kept: the point of the lowest cost among
 feasible ones, the multipliers of the highest certified bound; they need not come from the same
 round.
 
