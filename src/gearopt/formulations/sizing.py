@@ -126,7 +126,7 @@ def text_pairs(train: Train, x: Any, numbers: Any) -> tuple[GearPair, ...]:
         m, z, u = each(x.module)[k], each(x.pinion_teeth)[k], each(x.ratio)[k]
         d = reference_diameter(m / numbers.helix_cosine, z)
         if stage.face_width.tied:
-            width = each(numbers.width_high)[k] * d
+            width = each(numbers.width_high)[k] * reference_diameter(m / numbers.helix_cosine, z)
         else:
             width = each(x.face_width)[k]
         found.append(GearPair.of_diameter(m, z, d, u, width, train.helix_angle, train.rack))
