@@ -39,9 +39,7 @@ STEP = 1e-3  # relative, of the re-solves that check a sensitivity
 ZERO = 1e-9  # of the objective at the guess
 EASE = 0.01  # relative, of the step whose effect is reported
 DIGITS = 6  # of a number that is proposed; rounded to the easy side
-ROOM = (
-    2e-7  # a proposal asks for this much more than the smallest factor, to be feasible in doubles
-)
+ROOM = 2e-7  # a proposal asks for this much more than the factor found, to be feasible in doubles
 
 
 def explain(

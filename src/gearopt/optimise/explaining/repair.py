@@ -25,13 +25,7 @@ CERTAIN = ("optimal", "stationary")
 SAME = 1e-7  # relative: two repairs as small as each other; a factor below 1 + SAME is none
 TAKEN_BACK = 1e-3  # a remedy this much smaller must be impossible
 FARTHEST = 4.0  # factor to which whole numbers and modules are tried
-WIDEST = (
-    1.02,
-    1.1,
-    1.3,
-    2.0,
-    FARTHEST,
-)  # factors tried in turn, before the smallest is searched for
+WIDEST = (1.02, 1.1, 1.3, 2.0, FARTHEST)  # factors tried in turn, before the smallest is sought
 CLOSE = 1.0 + 0.5 * TAKEN_BACK  # ratio of an impossible to a possible factor that ends a search
 LEAST = 1.0 + 1e-7  # a search between two factors this close ends in any case
 DOUBTS = 3  # factors that may stay undecided before a search ends at the smallest that is known
