@@ -9,6 +9,7 @@ holds there too.
 
 import math
 from dataclasses import replace
+from fractions import Fraction
 from types import SimpleNamespace
 from typing import Any
 
@@ -18,6 +19,7 @@ from gearopt.optimise.terms import Array, Param, Terms, Var, each, namespace
 from gearopt.physics.gears import GearPair, reference_diameter
 
 BEYOND = 1e6  # factor between any length of a drive and the ends of the search: they never bind
+BAND = Fraction(1, 10**10)  # half width of the band of a ratio that is given: far below 1e-8
 TEETH = (1.0, 1e6)
 RATIO = (1.0, 1e7)
 VARIABLES = {"module": "mm", "pinion_teeth": "", "ratio": "", "face_width": "mm"}
@@ -80,6 +82,15 @@ def movable(train: Train) -> Problem:
 
     variables = _with_wheels(train) if wheels else own.variables
     return Problem("sizing", variables, parameters, evaluate)
+
+
+def relaxed(train: Train) -> Problem:
+    """Return `movable` of a drive that is at least as easy and convex in logarithms.
+
+    A law that is no posynomial gives way to its lower bound, a ratio without tolerance to a band.
+    """
+    law = train.law.relaxed or train.law
+    return movable(replace(train, law=law, tolerance=train.tolerance or BAND))
 
 
 def given_wheels(train: Train) -> tuple[int, ...]:

@@ -68,6 +68,8 @@ class Problem:
     tuples of scalars for size > 1. methods: {name: run(problem, budget, seed, watch) -> Outcome},
     the formulation's own exact algorithms. vectorised: the text also takes arrays (N,) of N points
     for its scalars; where it does not say so, gearopt finds out whether it may (`evaluation`).
+    relaxed: a continuous problem whose limits every point of this one meets, with the keys of a
+    file at its parameters: what `explain` takes for the limits and their conflict.
     """
 
     name: str
@@ -77,6 +79,7 @@ class Problem:
     repeats: tuple[Repeat, ...] = ()
     methods: Mapping[str, Callable[..., Any]] = field(default_factory=dict)
     vectorised: bool = False
+    relaxed: "Problem | None" = None
     memo: dict[Any, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:

@@ -60,7 +60,8 @@ class Law:
     speed) it rises with the torque. proportional: for given teeth it is c T/(b m_n^2), and for a
     given pinion diameter it does not fall as the teeth become more and smaller: then minimum widths
     and modules have closed forms, which are bisected otherwise. pressure_angle: whether an index
-    depends on it.
+    depends on it. relaxed: of a law that is no posynomial, a lower bound of its indices that is
+    one, for proofs that a drive is impossible.
     """
 
     title: str
@@ -69,6 +70,7 @@ class Law:
     proportional: bool = False
     kind: str = "index values, not a rating"
     pressure_angle: bool = False
+    relaxed: "Law | None" = None
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -1,5 +1,6 @@
 """Lewis stress: bending at the root of the pinion's teeth, without dynamic factors."""
 
+import math
 from typing import Any
 
 from gearopt.formulations.strength import Law, Limit
@@ -19,7 +20,9 @@ def lewis(teeth: float | None = None) -> Law:
         d = pair.pinion.reference_diameter
         return (lewis_stress(torque, d, pair.face_width, pair.normal_module, form),)
 
-    return Law("Lewis stress", (Limit("bending_stress"),), indices, proportional=True)
+    bound = lewis(math.inf) if teeth is None else None
+    limits = (Limit("bending_stress"),)
+    return Law("Lewis stress", limits, indices, proportional=True, relaxed=bound)
 
 
 LEWIS = lewis()

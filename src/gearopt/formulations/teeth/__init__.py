@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from gearopt.errors import SolveError
+from gearopt.formulations import sizing
 from gearopt.formulations.gear_train import Stage, Train, terms
 from gearopt.formulations.teeth.progress import MARGIN, TIE, Progress, Teeth
 from gearopt.formulations.teeth.search import BEAM, narrowed, search, trimmed
@@ -47,7 +48,8 @@ def problem(train: Train, count: int = 1, floor: float = -math.inf) -> Problem:
 
     Trains are distinct when a tooth number differs; each has its best modules and face widths.
     Variables, one component per stage: module [mm], pinion_teeth, wheel_teeth, and face_width [mm]
-    or width_steps where the width is not tied to d1.
+    or width_steps where the width is not tied to d1. Numbers are constants of the text; those with
+    a key in `train.keys` are parameters of the relaxed problem.
     """
     numbers = SimpleNamespace(**train.numbers())
 
@@ -70,8 +72,15 @@ def problem(train: Train, count: int = 1, floor: float = -math.inf) -> Problem:
         """Branch and bound over the teeth; the seed changes nothing."""
         return _outcome(train, count, floor, budget, watch)
 
-    methods = {"exact": exact}
-    return Problem("teeth", _variables(train), (), evaluate, methods=methods, vectorised=True)
+    return Problem(
+        "teeth",
+        _variables(train),
+        (),
+        evaluate,
+        methods={"exact": exact},
+        vectorised=True,
+        relaxed=sizing.relaxed(train),
+    )
 
 
 def pairs(train: Train, x: Array) -> tuple[GearPair, ...]:

@@ -118,10 +118,11 @@ def _impossible(
 def remedies(scene: Any, problem: Problem, clock: Clock, status: Callable[[Any], str]) -> Remedies:
     """Return the conflict of an impossible file, and each number that alone makes it possible.
 
-    problem: what is solved for the file; its handles say by their keys which numbers are limits or
-    given, and which way is easier. status(scene): of a changed file, solved. A remedy is reported
-    only if the file with it, read again, has a design.
+    problem: what is solved for the file; its handles, or those of its `relaxed` form, say by their
+    keys which numbers are limits or given, and which way is easier. status(scene): of a changed
+    file, solved. A remedy is reported only if the file with it, read again, has a design.
     """
+    problem = problem.relaxed or problem
     known = _handles(problem)
     found = [r for n, h in _keyed(scene, known) if (r := _alone(scene, n, h, clock, status))]
     own = sorted((r for r in found if r.kind != "less"), key=lambda r: r.factor)
@@ -174,7 +175,7 @@ def _alone(
         return words.get(tried(factor, back))
 
     wider = [f for f in BEYOND if at(f) is not None]
-    if not getattr(number.value, "number", number.value) or not wider:
+    if not wider:
         return None
     least = least_value(1.0, tuple(wider), works)
     if least is None:
@@ -196,7 +197,7 @@ def eases(problem: Problem | Conic) -> dict[str, int]:
 def _handles(problem: Problem | Conic) -> tuple[Handle, ...]:
     """Return the handles of a problem; none where its text cannot be traced."""
     try:
-        return () if isinstance(problem, Conic) else handles(problem)
+        return () if isinstance(problem, Conic) else handles(problem.relaxed or problem)
     except SolveError:
         return ()
 

@@ -12,7 +12,7 @@ from gearopt.optimise.explaining.explanation import Influence
 from gearopt.optimise.explaining.sensitivity import Sensitivities
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Array
-from gearopt.scenes.explaining.numbers import Number, Path, eased, moved, times
+from gearopt.scenes.explaining.numbers import FIRST, Number, Path, eased, moved, times
 from gearopt.units import Quantity
 
 POSED = 1e-5  # of ln number, to either side, at most: where a problem is posed again
@@ -21,7 +21,6 @@ NEAREST = 1e-10  # relative change of a number below which it is not asked wheth
 HALVINGS = 12  # of the logarithm of the change up to which they do
 SAME = 1e-9  # relative: objectives that are equal
 FARTHEST = 64  # whole steps up to which the first that makes a difference is sought
-FIRST = 0.1  # step of a length or angle of zero, in its own unit
 
 Solved = Callable[[Any], float | None]  # a changed scene -> its objective; None: no design
 Easing = Callable[[Number], tuple[str, float | None]]
@@ -150,18 +149,12 @@ def stepped(
     if not getattr(now, "number", now):
         if not isinstance(now, Quantity):
             return "", None
-        new = replace(now, number=now.number + _fraction(FIRST))
+        new = replace(now, number=now.number + FIRST)
         return _brings(scene, number, f"to {new}", new, value, solved)
     if direction == 0:
         return "", None
     new = eased(now, 1.0 + EASE, direction)
     return _brings(scene, number, f"{direction * EASE:+.0%}", new, value, solved)
-
-
-def _fraction(number: float) -> Any:
-    from fractions import Fraction
-
-    return Fraction(str(number))
 
 
 def _brings(

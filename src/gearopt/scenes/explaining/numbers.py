@@ -16,6 +16,7 @@ from gearopt.units import Quantity
 
 SHORT = 4  # digits of a number that is kept as it is
 MET = 5e-9  # relative, by which it may miss: half of what a row may exceed its limit
+FIRST = Fraction(1, 10)  # step from zero, in the unit of a number
 Path = tuple[str | int, ...]
 
 
@@ -157,8 +158,11 @@ def eased(value: Any, factor: float, direction: int) -> Any:
     """Return a number moved by a factor >= 1 up (+1) or down (-1), rounded to its easy side.
 
     Integers stay integers (one that is meant but for rounding is taken); others keep DIGITS digits
-    and get ROOM, to be feasible in doubles.
+    and get ROOM, to be feasible in doubles. Zero is shifted by (factor - 1) FIRST in its own unit,
+    a whole one by ones.
     """
+    if not getattr(value, "number", value):
+        return _shifted(value, factor, direction)
     moved = Fraction(factor) ** direction
     if isinstance(value, Quantity):
         return replace(value, number=_rounded(value.number * moved, direction))
@@ -168,6 +172,13 @@ def eased(value: Any, factor: float, direction: int) -> Any:
             return near
         return math.ceil(number) if direction > 0 else math.floor(number)
     return _rounded(value * moved, direction)
+
+
+def _shifted(zero: Any, factor: float, direction: int) -> Any:
+    if isinstance(zero, int):
+        return direction * math.ceil(factor - 1.0)
+    number = direction * _rounded((Fraction(factor) - 1) * FIRST, 1)
+    return replace(zero, number=number) if isinstance(zero, Quantity) else number
 
 
 def _rounded(value: Fraction, direction: int) -> Fraction:
