@@ -4,6 +4,7 @@ import math
 from dataclasses import replace
 from decimal import Decimal
 from fractions import Fraction
+from itertools import product
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ from small_drives import FACES, OBJECTIVES, drive
 
 from gearopt.errors import SolveError
 from gearopt.formulations import process, sizing, teeth, together
-from gearopt.formulations.gear_train import FaceWidth
+from gearopt.formulations.gear_train import FaceWidth, Stage, Train
 from gearopt.formulations.layout.gearbox import Gearbox, Shaft
 from gearopt.formulations.process import ProcessOne
 from gearopt.formulations.strength import Law, Limit, laws
@@ -23,6 +24,8 @@ from gearopt.optimise import tape
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import run, solve
 from gearopt.physics.gears import GearPair, Rack
+from gearopt.physics.loads import lewis_stress
+from gearopt.physics.stiffness import lewis_form_factor
 from gearopt.scenes import drive as drives
 from gearopt.scenes.drive.drive_tables import Limits, StageTable, limited_by
 from gearopt.scenes.drive.scene import Scene
@@ -50,6 +53,42 @@ FASTER = Law("dynamic contact pressure", (Limit("pressure"),), faster)
 
 def test_every_file_of_a_law_is_known():
     assert [law.title for law in laws()] == ["K-factor and unit load", "Lewis stress"]
+
+
+def test_a_law_may_ask_for_the_helix_angle():
+    """Lewis stress of virtual teeth, with the promise and without it, against every train."""
+    beta = math.radians(30)
+
+    def stress(pair, torque, speed):
+        form = lewis_form_factor(pair.pinion_teeth / math.cos(pair.pinion.helix_angle) ** 3)
+        d = pair.pinion.reference_diameter
+        return (lewis_stress(torque, d, pair.face_width, pair.normal_module, form),)
+
+    law = Law("virtual teeth", (Limit("bending_stress"),), stress, proportional=True)
+    modules = tuple(map(F, (1, 2, 3, 4, 5)))
+    stage = Stage((40.0,), FaceWidth(F(1, 2), F(1)), modules, (17, 20), (17, 80))
+    train = Train(5e4, F(3), F(1, 100), (stage,), beta, law=law)
+    values = []
+    for z1, m in product(range(17, 21), range(1, 6)):
+        d = m * z1 / math.cos(beta)
+        form = math.pi * (0.154 - 0.912 * math.cos(beta) ** 3 / z1)
+        b = max(2 * 5e4 / (d * m * form * 40.0), d / 2)
+        inside = (z2 for z2 in range(17, 81) if 297 * z1 <= 100 * z2 <= 303 * z1)
+        values += [0.25 * math.pi * b * d**2 * (1 + (z2 / z1) ** 2) for z2 in inside if b <= d]
+    for promised in (True, False):
+        own = replace(train, law=replace(law, proportional=promised))
+        result = solve(teeth.problem(own), "exact")
+        assert result.status == "optimal"
+        assert result.value == pytest.approx(min(values), rel=1e-11)
+
+
+def test_a_pinion_below_the_range_of_a_law_is_refused():
+    """With 4 teeth the Lewis factor is negative, and any load would be carried."""
+    train = drive(1)
+    low = tuple(replace(s, allowable=(100.0,), pinion_teeth=(11, 40)) for s in train.stages)
+    with pytest.raises(ValueError, match="Lewis stress needs pinions of 12 teeth"):
+        replace(train, stages=low, law=LEWIS)
+    assert LEWIS.load(GearPair.of_teeth(2.0, 5, 20, 10.0), 1e3, 0.0, (100.0,)) < 0.0
 
 
 def pressed(law=CONTACT, stages=2, face="tied", allowable=1.5, **changes):
@@ -101,6 +140,8 @@ def test_a_law_keeps_its_promises(law):
             d = pair.pinion.reference_diameter
             finer = GearPair.of_diameter(m * z / (z + 1), z + 1, d, u, b, pair.pinion.helix_angle)
             assert (use(finer, torque) >= now * (1 - 1e-12)).all()
+            slower = GearPair.of_diameter(m, z, d, f * u, b, pair.pinion.helix_angle)
+            assert (use(slower, torque) * f * (u + 1) >= now * (f * u + 1) * (1 - 1e-12)).all()
 
 
 @pytest.mark.parametrize("face", FACES)

@@ -119,8 +119,12 @@ class Train:
             raise ValueError(f"torque and load limits must be positive numbers: {numbers}")
         if any(len(s.allowable) != len(self.law.limits) for s in self.stages):
             raise ValueError(f"every stage needs limits for {', '.join(self.law.names)}")
+        if any(s.pinion_teeth[0] < self.law.minimum_teeth for s in self.stages):
+            raise ValueError(f"{self.law.title} needs pinions of {self.law.minimum_teeth} teeth")
         if self.ratio < 1 or not 0 <= self.tolerance < 1 or not self.stages:
             raise ValueError("a drive needs stages, ratio >= 1 and a tolerance from 0 to below 1")
+        if not abs(self.helix_angle) < math.pi / 3.0:  # whose cosine is rational
+            raise ValueError("the helix angle must be below 60 degrees")
         if self.objective == "mass" and self.density is None:
             raise ValueError("the objective mass needs a density")
 

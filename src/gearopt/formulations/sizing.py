@@ -156,7 +156,8 @@ def _variables(train: Train) -> tuple[Var, ...]:
         if given:
             u = numbers.wheel_low[k] / z
         proportion = min(numbers.width_high[k], 1.0)
-        unit = GearPair.of_diameter(numbers.helix_cosine / z, z, 1.0, u, proportion)
+        own = proportion, train.helix_angle, train.rack
+        unit = GearPair.of_diameter(numbers.helix_cosine / z, z, 1.0, u, *own)
         load = train.law.indices(unit, torque, train.speed_at(torque))[0] / stage.allowable[0]
         d = load ** (1.0 / 3.0)
         m_fixed = len(stage.modules) == 1

@@ -57,11 +57,13 @@ class Law:
     else Ipopt takes it as it is.
 
     Promised of every law: an index falls as the face width grows, and at one power (torque times
-    speed) it rises with the torque. proportional: for given teeth it is c T/(b m_n^2), and for a
-    given pinion diameter it does not fall as the teeth become more and smaller: then minimum widths
-    and modules have closed forms, which are bisected otherwise. pressure_angle: whether an index
-    depends on it. relaxed: of a law that is no posynomial, a lower bound of its indices that is
-    one, for proofs that a drive is impossible.
+    speed) it rises with the torque. proportional: for given teeth, helix angle and rack it is
+    c T/(b m_n^2); for a given pinion diameter it does not fall as the teeth become more and
+    smaller, and as the ratio u grows it falls no faster than 1 + 1/u: then minimum widths and
+    modules have closed forms, which are bisected otherwise. minimum_teeth: number of teeth of a
+    pinion from which on the law and its promises hold. pressure_angle: whether an index depends on
+    it. relaxed: of a law that is no posynomial, a lower bound of its indices that is one, for
+    proofs that a drive is impossible.
     """
 
     title: str
@@ -71,6 +73,7 @@ class Law:
     kind: str = "index values, not a rating"
     pressure_angle: bool = False
     relaxed: "Law | None" = None
+    minimum_teeth: int = 1
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -280,7 +280,8 @@ def _reach(train: Train, cut: Fraction, maximum: Fraction, threshold: float) -> 
 def _least_size(train: Train, stage: Stage, ratios: Array) -> Array:
     """Return the minimum b d1^2 [mm3] for the input torque at given ratios, of the fewest teeth."""
     z = float(stage.pinion_teeth[0])
-    unit = GearPair.of_diameter(math.cos(train.helix_angle) / z, z, 1.0, ratios, 1.0)
+    own = 1.0, train.helix_angle, train.rack
+    unit = GearPair.of_diameter(math.cos(train.helix_angle) / z, z, 1.0, ratios, *own)
     return train.law.load(unit, train.torque, train.speed, stage.allowable)
 
 

@@ -223,7 +223,7 @@ def _closed(
     stage, cosine = train.stages[position], math.cos(train.helix_angle)
     if not train.law.proportional:
         return None, np.zeros_like(ratio), 1.0, np.zeros_like(ratio)
-    one = GearPair.of_diameter(1.0, z1, z1 / cosine, ratio, 1.0)
+    one = GearPair.of_diameter(1.0, z1, z1 / cosine, ratio, 1.0, train.helix_angle, train.rack)
     load = train.law.load(one, 1.0, 0.0, stage.allowable)
     slope = np.zeros_like(ratio)
     if train.objective in ("gear_volume", "mass"):  # no module counts: d1 is 1 mm here
@@ -245,7 +245,7 @@ def _pairs(train: Train, position: int, cut: Fraction) -> tuple[Index, Index]:
     if count > PAIRS:
         raise SolveError(
             f"a stage has {count:,} tooth pairs to choose from: narrow its pinion teeth, or limit "
-            "its wheel teeth or ratio (limits.pinion_teeth, limits.wheel_teeth, limits.stage_ratio)"
+            "its wheel teeth or ratio (pinion_teeth, wheel_teeth, stage_ratio)"
         )
     wheels = [np.arange(start, stop + 1, dtype=np.int64) for _, start, stop in ranges]
     z1 = np.repeat([z for z, _, _ in ranges], [len(w) for w in wheels]).astype(np.int64)
