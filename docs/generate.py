@@ -22,7 +22,10 @@ PAGES = {"commands.md": commands.page, "gallery.md": gallery.page, "python.md": 
 
 def page_of(kind: str) -> str:
     """The page of a kind with its example and its tables of keys as they are now."""
-    page = (DOCS / f"{kind}.md").read_text(encoding="utf-8")
+    path = DOCS / f"{kind}.md"
+    if not path.exists():
+        raise SystemExit(f"kind {kind} needs a page docs/{kind}.md: see docs/compound.md")
+    page = path.read_text(encoding="utf-8")
     example = f"```toml\n{scene_module(kind).EXAMPLE}```"
     page = re.sub(r"```toml\ngearopt = 1\n.*?```", lambda _: example, page, count=1, flags=re.S)
     keys = r"### top of the file\n.*?(?=\n## |\Z)"

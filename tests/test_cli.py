@@ -343,6 +343,14 @@ def test_six_stages_fit_a_terminal_of_80_columns(here, solved, tmp_path, monkeyp
     assert "224,034.1" in done.stdout and "20,941.64" in done.stdout  # no digit is cut
 
 
+def test_top_says_where_no_next_best_answers_are_listed(here):
+    file = ROOT / "problems" / "sandgren_train.toml"
+    words = "--top changes nothing here: no next best answers are listed."
+    assert words in " ".join(here("solve", file, "--top", 3).stdout.split())
+    assert words not in " ".join(here("solve", file).stdout.split())
+    assert "--top" not in " ".join(here("solve", ELEVATOR, "--top", 3).stdout.split())
+
+
 def test_continuous_answer_of_a_teeth_file_says_so(here):
     done = here("solve", ELEVATOR, "--method", "ipopt", "--top", 3)
     assert "Teeth and modules are real numbers here" in done.stdout

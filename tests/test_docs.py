@@ -25,6 +25,7 @@ def text(name):
 
 @pytest.mark.parametrize("kind", kinds())
 def test_the_reference_page_holds_the_generated_tables_and_the_example_file(kind):
+    assert (DOCS / f"{kind}.md").exists(), f"kind {kind} needs a page docs/{kind}.md"
     page = text(f"docs/{kind}.md")
     assert reference(kind) in page
     assert scene_module(kind).EXAMPLE in page

@@ -1,6 +1,7 @@
 """`solve`, `explain`, `compare`: the best design, why it is what it is, methods side by side."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Annotated
 
 import typer
@@ -13,6 +14,8 @@ from gearopt.cli.writing import check_html
 from gearopt.optimise.comparing.compare import EVALUATIONS, SEEDS, Progress
 from gearopt.optimise.comparing.compare import SECONDS as EACH
 from gearopt.optimise.result import Budget
+
+NO_LIST = "--top changes nothing here: no next best answers are listed."
 
 
 @app.command()
@@ -68,6 +71,9 @@ def solve(
             top=top or (TOP_ON_PAGE if full else 1),
             prices=prices or full,
         )
+    if top and top > 1 and result.value is not None and "trains" not in result.report:
+        notes = [*result.report.get("notes", ()), NO_LIST]
+        result = replace(result, report=result.report | {"notes": notes})
     lines: list[str] = []
     try:
         lines = written(result, files)

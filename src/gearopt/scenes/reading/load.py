@@ -14,7 +14,7 @@ from typing import Any, get_origin
 from pydantic import BaseModel, ValidationError
 
 import gearopt.scenes
-from gearopt.errors import Fix, SceneError
+from gearopt.errors import Fix, SceneError, SolveError
 from gearopt.scenes.reading.fields import Opened, near
 from gearopt.scenes.reading.remedy import translate, wrong_name, wrong_value
 from gearopt.scenes.reading.toml import cut, dotted
@@ -43,8 +43,11 @@ def kinds() -> tuple[str, ...]:
 
 
 def scene_module(kind: str) -> Any:
-    """Return the module of a kind."""
-    return import_module(f"gearopt.scenes.{kind}")
+    """Return the module of a kind; SolveError names one that cannot be imported."""
+    try:
+        return import_module(f"{gearopt.scenes.__name__}.{kind}")
+    except (ImportError, SyntaxError, NameError) as reason:
+        raise SolveError(f"kind {kind!r} cannot be imported: {reason}") from reason
 
 
 def kind_of(scene: BaseModel) -> str:
@@ -53,10 +56,13 @@ def kind_of(scene: BaseModel) -> str:
 
 
 def _likely(content: dict[str, Any]) -> str:
-    """Return the kind that knows most of a file's tables."""
+    """Return the kind that knows most of a file's tables; one that is not importable, none."""
 
     def known(kind: str) -> int:
-        return len(content.keys() & scene_module(kind).Scene.model_fields.keys())
+        try:
+            return len(content.keys() & scene_module(kind).Scene.model_fields.keys())
+        except SolveError:
+            return -1
 
     return max(kinds(), key=known)
 
