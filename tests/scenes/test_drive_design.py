@@ -9,8 +9,8 @@ import gearopt
 from gearopt.formulations.servo.servo_design import ServoDesign, ServoReport, Stage, TrainDesign
 from gearopt.physics.gears import Rack
 from gearopt.report.design_tables import PAGE_ONLY, STAGE_ROWS
-from gearopt.scenes.drive.assumptions import undercut
 from gearopt.scenes.drive.drive_tables import ORIGINS, PRESETS
+from gearopt.scenes.parts import undercut
 from gearopt.scenes.servo.assumptions import notes as servo_notes
 
 PROBLEMS = Path(__file__).parents[2] / "problems"

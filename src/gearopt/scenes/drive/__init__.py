@@ -19,9 +19,10 @@ from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import GAP, run
 from gearopt.optimise.typed import untyped
-from gearopt.scenes.drive.assumptions import assumptions, notes, undercut
+from gearopt.scenes.drive.assumptions import assumptions, notes
 from gearopt.scenes.drive.scene import EXAMPLE, Scene
 from gearopt.scenes.explaining.default import of_report
+from gearopt.scenes.parts import undercut
 from gearopt.scenes.reading.ask import Ask
 
 __all__ = ["EXAMPLE", "Scene", "compared", "explain", "model", "solve"]

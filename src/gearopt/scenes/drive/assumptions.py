@@ -1,11 +1,7 @@
 """What a drive takes for granted, and what a reader of its result should know."""
 
-import math
-from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
-
 from gearopt.formulations.design import STEEL_DENSITY
-from gearopt.physics.gears import ISO_53_A, NEGLIGIBLE, Rack, teeth_without_undercut
+from gearopt.physics.gears import ISO_53_A
 from gearopt.scenes.drive.drive_tables import ORIGINS
 from gearopt.scenes.drive.layout_tables import Layout
 from gearopt.scenes.drive.scene import Scene
@@ -83,21 +79,3 @@ def _layout_assumptions(layout: Layout) -> list[str]:
         f"{shafts} Shafts {ends}.",
         f"{bearings} The box is measured inside its walls.",
     ]
-
-
-def undercut(
-    stages: Sequence[Mapping[str, Any]], rack: Rack, helix_angle: float, more: str = ""
-) -> Iterator[str]:
-    """Yield a sentence for every pinion of a design that is undercut; more: what follows it.
-
-    At 20 degrees 17 spur teeth are not: the rack reaches 0.006 modules too deep.
-    """
-    limit = float(teeth_without_undercut(rack, helix_angle))
-    least = (1.0 - NEGLIGIBLE) * limit
-    for k, stage in enumerate(stages, 1):
-        if (teeth := stage["pinion_teeth"]) < least:
-            yield (
-                f"The pinion of stage {k} is undercut, with {teeth:.4g} teeth: without profile "
-                f"shift a rack cuts {math.ceil(least)} teeth and more cleanly (in theory "
-                f"{limit:.1f}).{more}"
-            )

@@ -1,4 +1,4 @@
-"""What a drive must do, its stages and limits, what is best, and design processes beside it."""
+"""Stages and limits of a drive, what is best, and design processes beside it."""
 
 from collections.abc import Callable
 from fractions import Fraction
@@ -102,62 +102,6 @@ class StageTable(Loaded):
     face_width_step: Step = Field(None, description=STEP_IS)
     stage_ratio: Ratios = Field(None, description="Range of the stage's ratio")
     wheel_diameter: Length = Field(None, description=WHEEL_IS)
-
-
-class Duty(Table):
-    """What the drive must do."""
-
-    power: Annotated[Quantity, quantity("power", "7.5 kW")] = Field(
-        description="Power at the input shaft; gears are taken as loss-free"
-    )
-    input_speed: Annotated[Quantity, quantity("speed", "1450 rpm")] = Field(
-        description="Speed of the input shaft"
-    )
-    output_speed: Annotated[Quantity | None, quantity("speed", "66.5 rpm")] = Field(
-        None, description="Speed of the output shaft (or give ratio)"
-    )
-    ratio: Annotated[Fraction | None, number(20, 1, 10**6)] = Field(
-        None, description="Total ratio, input over output speed"
-    )
-    ratio_tolerance: Annotated[Fraction, number("1 %", 0, Fraction(1, 2), True, True)] = Field(
-        default_factory=lambda: Fraction(1, 100),
-        description="Allowed relative deviation of the total ratio",
-        json_schema_extra={"default": "1 %"},
-    )
-
-    @model_validator(mode="after")
-    def _one_ratio(self) -> "Duty":
-        if self.output_speed is not None and self.ratio is not None:
-            raise refuse(
-                "stands beside output_speed; one is enough", at=("ratio",), action="remove"
-            )
-        if self.output_speed is None and self.ratio is None:
-            raise refuse("is missing (or give ratio)", self._slow(), ("output_speed",), "sample")
-        if self.total_ratio < 1:
-            raise refuse(
-                "is above the input speed: gearopt sizes reducers, and a loss-free speed increaser "
-                "has the same gears with input and output exchanged",
-                "input_speed",
-                ("output_speed",),
-                "swap",
-            )
-        if self.total_ratio > 10**6:
-            raise refuse(
-                "asks for a ratio above 1000000", self._slow(), ("output_speed",), "sample"
-            )
-        return self
-
-    def _slow(self) -> str:
-        """Return an output speed that suits the input speed: a ratio of 20."""
-        return f"{float(self.input_speed.number / 20):.4g} {self.input_speed.unit}"
-
-    @property
-    def total_ratio(self) -> Fraction:
-        """Return input over output speed, exactly."""
-        if self.ratio is not None:
-            return self.ratio
-        assert self.output_speed is not None
-        return units.quotient(self.input_speed, self.output_speed)
 
 
 # Load limits a source states for its own drive (Chong and Lee print 2.07 MPa and 48 MPa).

@@ -15,7 +15,6 @@ from gearopt.optimise.result import Outcome
 from gearopt.physics.gears import GearPair, Rack
 from gearopt.physics.loads import torque
 from gearopt.scenes.drive.drive_tables import (
-    Duty,
     Gears,
     Limits,
     Objective,
@@ -25,6 +24,7 @@ from gearopt.scenes.drive.drive_tables import (
     Teeth,
 )
 from gearopt.scenes.drive.layout_tables import KeepOutTable, Layout, PlaceTable, gearbox
+from gearopt.scenes.parts import Duty
 from gearopt.scenes.reading.fields import Table, refuse, whole, words
 
 EXAMPLE = """\

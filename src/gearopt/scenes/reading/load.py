@@ -20,7 +20,7 @@ from gearopt.scenes.reading.remedy import translate, wrong_name, wrong_value
 from gearopt.scenes.reading.toml import cut, dotted
 
 FORMAT = 1
-SHARED = {"reading", "explaining"}  # folders of `gearopt.scenes` that are no kinds
+SHARED = {"reading", "explaining", "parts"}  # of `gearopt.scenes`, what is no kind
 HEAD = ("gearopt", "kind")  # keys of every file
 LARGEST_FILE = 1_000_000  # bytes
 DEEPEST_KEY = r"(?:[\w-]\s*\.\s*){6000}"  # tomllib's time grows with the square: 1 s at 5000

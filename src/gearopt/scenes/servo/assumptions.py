@@ -10,7 +10,7 @@ from gearopt.formulations.servo.split.bodies import broken
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import untyped
 from gearopt.physics.gears import GearPair, Rack
-from gearopt.scenes.drive.assumptions import undercut
+from gearopt.scenes.parts import undercut
 from gearopt.scenes.servo.scene import Scene
 from gearopt.scenes.servo.tables.trains import Train
 from gearopt.scenes.servo.train_part import candidates, given_gears

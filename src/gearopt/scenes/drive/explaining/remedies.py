@@ -11,7 +11,6 @@ from gearopt.optimise.explaining.explanation import Remedies, Remedy
 from gearopt.optimise.explaining.handles import Handle
 from gearopt.optimise.explaining.repair import FARTHEST, SAME, TAKEN_BACK, conflict, even
 from gearopt.optimise.problem import Problem
-from gearopt.scenes.drive.drive_tables import Duty
 from gearopt.scenes.drive.explaining.choices import eased_tolerance, nearest_ratio, switches
 from gearopt.scenes.drive.explaining.movable import (
     Movable,
@@ -38,6 +37,7 @@ from gearopt.scenes.drive.explaining.tried import (
 )
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.explaining.numbers import read
+from gearopt.scenes.parts import Duty
 
 
 def remedies(scene: Scene, clock: Clock) -> Remedies:

@@ -1,0 +1,87 @@
+"""What kinds of gear drives share: the table [duty], and warnings of undercut pinions."""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from fractions import Fraction
+from typing import Annotated, Any
+
+from pydantic import Field, model_validator
+
+from gearopt import units
+from gearopt.physics.gears import NEGLIGIBLE, Rack, teeth_without_undercut
+from gearopt.scenes.reading.fields import Table, number, quantity, refuse
+from gearopt.units import Quantity
+
+
+class Duty(Table):
+    """What the drive must do."""
+
+    power: Annotated[Quantity, quantity("power", "7.5 kW")] = Field(
+        description="Power at the input shaft; gears are taken as loss-free"
+    )
+    input_speed: Annotated[Quantity, quantity("speed", "1450 rpm")] = Field(
+        description="Speed of the input shaft"
+    )
+    output_speed: Annotated[Quantity | None, quantity("speed", "66.5 rpm")] = Field(
+        None, description="Speed of the output shaft (or give ratio)"
+    )
+    ratio: Annotated[Fraction | None, number(20, 1, 10**6)] = Field(
+        None, description="Total ratio, input over output speed"
+    )
+    ratio_tolerance: Annotated[Fraction, number("1 %", 0, Fraction(1, 2), True, True)] = Field(
+        default_factory=lambda: Fraction(1, 100),
+        description="Allowed relative deviation of the total ratio",
+        json_schema_extra={"default": "1 %"},
+    )
+
+    @model_validator(mode="after")
+    def _one_ratio(self) -> "Duty":
+        if self.output_speed is not None and self.ratio is not None:
+            raise refuse(
+                "stands beside output_speed; one is enough", at=("ratio",), action="remove"
+            )
+        if self.output_speed is None and self.ratio is None:
+            raise refuse("is missing (or give ratio)", self._slow(), ("output_speed",), "sample")
+        if self.total_ratio < 1:
+            raise refuse(
+                "is above the input speed: gearopt sizes reducers, and a loss-free speed increaser "
+                "has the same gears with input and output exchanged",
+                "input_speed",
+                ("output_speed",),
+                "swap",
+            )
+        if self.total_ratio > 10**6:
+            raise refuse(
+                "asks for a ratio above 1000000", self._slow(), ("output_speed",), "sample"
+            )
+        return self
+
+    def _slow(self) -> str:
+        """Return an output speed that suits the input speed: a ratio of 20."""
+        return f"{float(self.input_speed.number / 20):.4g} {self.input_speed.unit}"
+
+    @property
+    def total_ratio(self) -> Fraction:
+        """Return input over output speed, exactly."""
+        if self.ratio is not None:
+            return self.ratio
+        assert self.output_speed is not None
+        return units.quotient(self.input_speed, self.output_speed)
+
+
+def undercut(
+    stages: Sequence[Mapping[str, Any]], rack: Rack, helix_angle: float, more: str = ""
+) -> Iterator[str]:
+    """Yield a sentence for every pinion of a design that is undercut; more: what follows it.
+
+    At 20 degrees 17 spur teeth are not: the rack reaches 0.006 modules too deep.
+    """
+    limit = float(teeth_without_undercut(rack, helix_angle))
+    least = (1.0 - NEGLIGIBLE) * limit
+    for k, stage in enumerate(stages, 1):
+        if (teeth := stage["pinion_teeth"]) < least:
+            yield (
+                f"The pinion of stage {k} is undercut, with {teeth:.4g} teeth: without profile "
+                f"shift a rack cuts {math.ceil(least)} teeth and more cleanly (in theory "
+                f"{limit:.1f}).{more}"
+            )
