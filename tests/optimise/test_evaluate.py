@@ -113,8 +113,10 @@ def test_exit_codes_words_and_page(tmp_path):
     assert (exit_code(met), exit_code(broken)) == (0, 3)
     assert certainty(met)[0] == "evaluated, all limits met"
     assert certainty(broken)[0] == "evaluated, a limit is exceeded"
-    assert "the design given was evaluated, and meets all limits" in page(met, "solve")
-    assert "and does not meet all limits" in page(broken, "solve")
+    assert "The given design was evaluated, not optimised; it meets all limits." in page(
+        met, "solve"
+    )
+    assert "not optimised; it does not meet all limits." in page(broken, "solve")
     kept = tmp_path / "kept.json"
     kept.write_text(broken.to_json())
     shown = CliRunner().invoke(app, ["report", str(kept)])

@@ -66,7 +66,7 @@ def test_other_kinds_are_shown_by_what_their_design_holds(scene):
         (["ratio_low"], "This limit cannot be met, even if all others are dropped: ratio low"),
         (
             ["ratio_low", "wheel_diameter[1]"],
-            "These limits are in conflict; dropping any one of them resolves it: ratio low",
+            "These limits are in conflict, and each is needed for it: ratio low",
         ),
     ],
 )

@@ -143,7 +143,7 @@ def remedy_words(
     if conflict:
         names = ", ".join(limit_words(n) for n in conflict)
         why.append(
-            f"These limits are in conflict; dropping any one of them resolves it: {names}."
+            f"These limits are in conflict, and each is needed for it: {names}."
             if len(conflict) > 1
             else f"This limit cannot be met, even if all others are dropped: {names}."
         )

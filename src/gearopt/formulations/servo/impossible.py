@@ -24,7 +24,7 @@ def status(train: ServoTrain, clock: Clock) -> str:
 
 
 def in_conflict(train: ServoTrain, clock: Clock, goal: str = "") -> tuple[str, ...]:
-    """Return limits in conflict for real-valued teeth and modules; dropping any one resolves it."""
+    """Return limits in conflict for real-valued teeth and modules, each needed for it."""
     known = "error" if train.lost_motion is not None else "inertia"
     relaxed = split.relaxation(train, goal or known)
     if solve_within(clock, relaxed).status != "infeasible":

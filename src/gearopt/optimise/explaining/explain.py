@@ -69,7 +69,7 @@ def explain(
             result,
             tuple(h.name for h in blamed),
             tuple(r for r in found_ if r.verified["with"] in THERE),
-            message="time ran out before all remedies were tried" if clock.over else "",
+            message="the budget ended before all remedies were tried" if clock.over else "",
         )
     elif result.value is None or outcome.x is None:
         found = Explanation(result, message="no design was found in time")

@@ -77,7 +77,7 @@ class Influence:
 class Explanation:
     """Why an answer is what it is.
 
-    result: the answer itself. conflict: limits in conflict, dropping any one of which resolves it.
+    result: the answer itself. conflict: limits in conflict, each needed for it.
     remedies: proven ones, smallest first. binding: limits used to the full. influences: one per
     input. basis: of which problem the sensitivities are, the end of a sentence.
     """

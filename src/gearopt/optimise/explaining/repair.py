@@ -1,8 +1,8 @@
 """Why a request is impossible, and the smallest change of its limits that makes it possible.
 
-Three answers, each proven by our own bound: the conflict (limits that exclude each other, so that
-dropping any one resolves it), the smallest repair (product of factors over all limits)
-and, for every kind of limit, the even repair (one factor for that kind alone).
+Three answers, each proven by our own bound: the conflict (limits that exclude each other, each
+of them needed for it), the smallest repair (product of factors over all limits) and, for every kind
+of limit, the even repair (one factor for that kind alone).
 """
 
 import math
@@ -58,7 +58,7 @@ def value_within(clock: Clock, problem: Problem, method: str = "ipopt") -> float
 def least(problem: Problem, movable: Sequence[Handle], clock: Clock) -> Repair | None:
     """Return the repair of the smallest product of factors, with as few moves as it allows.
 
-    None where no factors within reach suffice, or time ran out.
+    None where no factors within reach suffice, or the budget ended.
     """
     found = least_factors(problem, [[h] for h in movable], clock)
     if found is None:
@@ -74,7 +74,7 @@ def least_factors(
     """Return factors of groups of limits of the smallest product, that product, and its bound.
 
     As few factors are above 1 as that product allows; whole numbers are at whole values. None
-    where no factors within reach suffice, or time ran out.
+    where no factors within reach suffice, or the budget ended.
     """
     form = elastic(problem, groups)
     found = solve_within(clock, form, "ipopt")
@@ -186,7 +186,7 @@ def families(movable: Sequence[Handle]) -> dict[str, list[Handle]]:
 
 
 def conflict(problem: Problem, movable: Sequence[Handle], clock: Clock) -> tuple[Handle, ...]:
-    """Return limits in conflict with all others dropped: dropping any one of them resolves it.
+    """Return limits that are in conflict with all others dropped, each needed for it.
 
     A deletion filter: a limit that can be dropped without making a design possible is dropped for
     good; for each that stays, a design exists without it. Empty where that is not proven: time ran

@@ -36,7 +36,7 @@ from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.toml import toml_text
 
 BASIS = (
-    " by multipliers, checked by solving again. What easing a limit or a step brings: solved again"
+    " by multipliers, checked by solving again. Effect of relaxing a limit or a step: solved again"
 )
 HELD = f", with these whole numbers and choices,{BASIS}"
 UNSURE = 0.02  # between sensitivities by multipliers and by solving again that differ
@@ -130,7 +130,7 @@ def remedies(scene: Any, problem: Problem, clock: Clock, status: Callable[[Any],
         tried = "not all known" if clock.over else "need more"
         least = replace(own[0], kind="least", verified={**own[0].verified, "others": tried})
         own = [least, *own[1:]]
-    late = "time ran out before all remedies were tried" if clock.over else ""
+    late = "the budget ended before all remedies were tried" if clock.over else ""
     return Remedies(
         _conflict(problem, known, clock),
         (*own, *(r for r in found if r.kind == "less")),

@@ -123,7 +123,7 @@ def remedies(scene: Scene, pairs: tuple[GearPair, ...], ask: Ask) -> Remedies:
             none = "no change of one number or of two makes a layout possible within what is tried"
             message = f"{none}: {', '.join(limits_of(single + choices))}"
     if clock.over:
-        message = "time ran out before all remedies were tried"
+        message = "the budget ended before all remedies were tried"
     return Remedies((), tuple(found), message)
 
 
@@ -285,7 +285,7 @@ def explained(scene: Scene, result: Result, clock: Clock) -> Explanation:
         if n.path[0] in TABLES and isinstance(n.value, Quantity) and smooth(n)
     ]
     found = tuple(influences(scene, Basis(result.value, solved, step=STEP), clock, wanted))
-    late = ", and time ran out" if clock.over else ""
+    late = ", and the budget ended" if clock.over else ""
     return Explanation(
         result,
         binding=tuple(n for n, v in result.limits.items() if v > 1.0 - SAME),

@@ -20,7 +20,7 @@ from gearopt.scenes.explaining.numbers import Number, eased, moved, numbers
 
 BASIS = (
     " with real-valued teeth and modules, by multipliers, checked by solving again. "
-    "What easing a limit brings: the drive itself solved again"
+    "Effect of relaxing a limit: the drive itself solved again"
 )
 SAME = 1e-6  # gap of an answer that may be compared with another
 
@@ -56,7 +56,7 @@ def explained(
     )
     late = f"stopped after {len(found)} of {len(numbers(scene))} numbers" if clock.over else ""
     if not whole:
-        late = late or "easing a limit is not tried, because the answer is not proven optimal"
+        late = late or "relaxing a limit is not tried, because the answer is not proven optimal"
     return Explanation(
         result,
         binding=tuple(n for n in binding(result) if not n.startswith("common_divisor")),

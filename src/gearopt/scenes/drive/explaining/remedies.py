@@ -57,7 +57,7 @@ def remedies(scene: Scene, clock: Clock) -> Remedies:
         found.append(remedy)
     if scene.teeth is not None:
         found += switches(case)
-    late = "time ran out before all remedies were tried" if clock.over else ""
+    late = "the budget ended before all remedies were tried" if clock.over else ""
     return Remedies(tuple(h.name for h in blamed), tuple(found), late)
 
 
