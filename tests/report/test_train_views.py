@@ -164,6 +164,8 @@ def test_words_say_that_nothing_is_optimised_and_how_it_would_be():
     shown = "".join(Reader(html).text)
     assert "shafts are drawn in one line: their places are not optimised" in shown
     assert "A [layout] table" in shown and "Gears in one line" in shown
+    other = page(replace(result(TRAINS["two stages"]), scene="another"), "x")
+    assert "A [layout] table" not in other and "Gears in one line" in other  # of drives alone
 
 
 def test_a_laid_out_or_missing_design_is_not_drawn_so():

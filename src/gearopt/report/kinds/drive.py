@@ -249,12 +249,18 @@ def _instead(part: Result, measures: Measures) -> list[str]:
     ]
 
 
+def _in_one_line(result: Result, measures: Measures) -> Section | None:
+    """Draw the gears; None where they are laid out."""
+    hint = " A [layout] table in the file places the gears in the smallest box."
+    return train_views.section(result, measures, hint)
+
+
 KIND = Kind(
     sections=(
         *FIRST,
         layout_views.section,
         layout_solid.section,
-        train_views.section,
+        _in_one_line,
         processes,
         tables,
         *ASKED,

@@ -47,15 +47,17 @@ class DrawnStage:
     centre_distance_mm: float
 
 
-def section(result: Result, measures: Measures) -> Section | None:
-    """Draw both views at one scale; None without gears or where they are laid out."""
+def section(result: Result, measures: Measures, hint: str = "") -> Section | None:
+    """Draw both views at one scale; None without gears or where they are laid out.
+
+    hint: what a file may ask for beside.
+    """
     drawn = views(result.design.get("stages", ()), measures)
     if not drawn or result.design.get("layout"):
         return None
     words = (
         "All shafts are drawn in one line: their places are not optimised, and the gaps between "
-        "the stages are only as wide as the labels need. A [layout] table in the file places the "
-        "gears in the smallest box.",
+        f"the stages are only as wide as the labels need.{hint}",
         f"Drawn to one scale; dimensions in {measures.lengths}: centre distances, length over "
         "tip circles, face widths b; modules m_n in mm; teeth z. Solid lines are tip circles, "
         "dash-dotted ones reference circles; numbers in circles are shafts, whose diameters are "
