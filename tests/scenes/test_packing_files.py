@@ -174,7 +174,7 @@ def test_compare_takes_a_packing():
         PROBLEMS / "six_cylinders.toml", seeds=2, evaluations=3_000, seconds=0.2
     )
     assert [r.method for r in found.groups[0].rows][:2] == ["hop", "sa"]
-    assert "free layers" in found.groups[0].rows[2].refused
+    assert "gradient methods need fixed layers" in found.groups[0].rows[2].refused
     assert not found.groups[0].proven and len(found.groups) == 1
 
 

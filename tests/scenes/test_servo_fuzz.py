@@ -31,7 +31,7 @@ def fate(kind, base, seed):
     data, steps = MUTATIONS[kind].make(Random(f"{kind} {base} {seed}"), BASES[base]), 0
     while True:
         try:
-            _, scene = read(data, "my.toml")
+            read_as, scene = read(data, "my.toml")
         except SceneError as wrong:
             message = str(wrong)
             assert message.startswith("my.toml: ") and len(message) < 900, message
@@ -42,7 +42,7 @@ def fate(kind, base, seed):
             assert steps <= STEPS, message
             data = mended(data.decode("utf-8-sig"), wrong.fix).encode()
             continue
-        if type(scene).__module__.endswith(".servo"):  # it may have become another kind
+        if read_as == "servo":  # it may have become another kind
             plain_numbers(scene)
         return "mended" if steps else "loaded"
 
@@ -75,13 +75,13 @@ def answer(kind, base, seed):
     data = MUTATIONS[kind].make(Random(f"{kind} {base} {seed}"), BASES[base])
     for _ in range(STEPS):
         try:
-            _, scene = read(data, "my.toml")
+            read_as, scene = read(data, "my.toml")
         except SceneError as wrong:
             if wrong.fix is None or wrong.fix.action == "replace":
                 return ""
             data = mended(data.decode("utf-8-sig"), wrong.fix).encode()
             continue
-        if not type(scene).__module__.endswith(".servo"):
+        if read_as != "servo":
             return ""
         return gearopt.solve(scene, budget=Budget(seconds=0.2)).status
     return ""
