@@ -9,7 +9,7 @@ lint:
     ruff check .
     mypy
 
-# The default test suite (three to four minutes of one core).
+# The default test suite (two and a half minutes of one core).
 test:
     pytest
 

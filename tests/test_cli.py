@@ -24,6 +24,7 @@ def gear(*words, **kind):
     )
 
 
+@pytest.mark.slow
 def test_solve_prints_design_limits_bound_and_proof():
     done = gear("solve", ELEVATOR, "--top", 3)
     assert done.returncode == 0 and done.stderr == ""
@@ -48,6 +49,7 @@ def test_json_is_one_object_and_reads_back(here):
     assert result.scene == "drive" and result.versions["numpy"]
 
 
+@pytest.mark.slow
 def test_html_writes_a_page_beside_the_report_or_the_json(tmp_path, here):
     path = tmp_path / "a page.html"
     done = here("solve", ELEVATOR, "--html", path, "--top", 3)
@@ -61,6 +63,7 @@ def test_html_writes_a_page_beside_the_report_or_the_json(tmp_path, here):
     assert json.loads(done.stdout)["status"] == "optimal" and path.exists()
 
 
+@pytest.mark.slow
 def test_report_shows_a_kept_result_again(tmp_path, here):
     kept, pages = tmp_path / "result.json", [tmp_path / name for name in ("a.html", "b.html")]
     done = here("solve", ELEVATOR, "--top", 10, "--prices", "--json", "--html", pages[0])
@@ -120,6 +123,7 @@ def test_a_page_that_cannot_be_written_is_told_before_solving(page, tmp_path, he
     assert done.returncode == 2 and done.stdout == "" and done.stderr.count("\n") == 1
 
 
+@pytest.mark.slow
 def test_infeasible_is_exit_3(here):
     done = here("solve", ROOT / "problems" / "thousand_in_two_stages.toml", "--seconds", 0.5)
     assert done.returncode == 3
@@ -189,6 +193,7 @@ def to_nobody(*words, **kind):
     return running
 
 
+@pytest.mark.slow
 def test_a_closed_pipe_is_no_error():
     running = to_nobody("schema", "drive")
     assert running.communicate()[1] == "" and running.returncode == 0
@@ -235,6 +240,7 @@ def test_a_closed_pipe_is_no_error_of_any_command(words, tmp_path):
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a device that is always full")
+@pytest.mark.slow
 def test_a_full_disk_is_one_message():
     with open("/dev/full", "w") as full:
         command = [sys.executable, "-m", "gearopt", "schema", "drive"]
@@ -328,6 +334,7 @@ def test_every_option_has_help(here):
         assert done.returncode == 0 and "Usage" in done.stdout
 
 
+@pytest.mark.slow
 def test_version_and_ascii_terminals():
     assert gear("--version").stdout.strip() == gearopt.Result("", "", "", {}).gearopt
     ascii_only = {**os.environ, "PYTHONIOENCODING": "ascii"}

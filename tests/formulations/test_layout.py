@@ -273,6 +273,7 @@ def test_random_trains_are_proven(seed):
     assert result.gap <= 1e-6
 
 
+@pytest.mark.slow
 def test_annealing_on_angles_is_near_the_optimum():
     text = problem(gearbox("table4_p1"), "sa")
     values = [solve(text, "sa", Budget(evaluations=128_701), seed).value for seed in range(25)]

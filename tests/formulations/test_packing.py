@@ -261,6 +261,7 @@ def test_no_time_gives_the_row():
     assert result.status == "limit" and result.value == pytest.approx(20 * 90 * 10)
 
 
+@pytest.mark.slow
 def test_a_loose_bound_is_not_claimed_in_comparisons():
     short = Budget(evaluations=5_000)
     assert solve(packing.problem(Plan(SIX)), "sa", short).bound > 15_000

@@ -222,7 +222,7 @@ SLOW = [pytest.param(face, marks=pytest.mark.slow) for face in ("tied", "stepped
 SLOWER = [pytest.param(face, marks=pytest.mark.slow) for face in ("free", "stepped")]
 
 
-@pytest.mark.parametrize("face", ["free", "fixed", *SLOW])
+@pytest.mark.parametrize("face", ["fixed", *SLOW, SLOWER[0]])
 def test_laws_in_gears_and_box_at_once(face):
     """A pressure is a K-factor without its ratio; unpromised, its widths are bounds in cells."""
     train = pressed(face=face, total=6, allowable=2.5, **FEW)
@@ -287,6 +287,7 @@ def test_explain_knows_the_limits_of_a_law_from_its_declaration():
     assert "pressure_MPa" in found.result.design["stages"][0]
 
 
+@pytest.mark.slow
 def test_a_conflict_and_remedies_of_a_law():
     found = drives.explain(scene(wheel_diameter="200 mm"), Ask())
     assert found.result.status == "infeasible"

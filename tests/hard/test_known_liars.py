@@ -176,6 +176,7 @@ def test_a_polish_leaves_the_basin_of_its_incumbent():
     assert kept.message == "Ipopt ended higher than a point it passed, which is kept"
 
 
+@pytest.mark.slow
 def test_no_polish_ends_above_its_feasible_start():
     """A ring with many valleys: Ipopt from 100 feasible starts, and one start that it loses."""
 

@@ -40,6 +40,7 @@ def test_wrong_point_with_right_multipliers_is_not_optimal():
     assert verdict.gap > 0.1
 
 
+@pytest.mark.slow
 def test_wrong_multipliers_weaken_the_bound_but_never_falsify_it():
     _, outcome = run(hill())
     rng = np.random.default_rng(3)

@@ -260,6 +260,7 @@ def test_a_curve_is_no_better_than_the_checked_point():
     assert curve.median == pytest.approx((7.0, 0.9**-3 - 1.0, 0.9**-3 - 1.0))
 
 
+@pytest.mark.slow
 def test_curves_of_samplers_fall_to_the_final_gap():
     found = gearopt.compare(box(), ("annealing", "nsga2", "ipopt"), seeds=5, **SMALL)
     for method in ("annealing", "nsga2"):

@@ -119,6 +119,7 @@ def grid(rows=100, width=20):
     )
 
 
+@pytest.mark.slow
 def test_mapped_repeat_of_100_rows_by_20_variables():
     """Against the closed form: d/dc [40 c + sum (target - c)+^2] = 0."""
     pull, problem = grid()

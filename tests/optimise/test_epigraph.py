@@ -86,6 +86,7 @@ def test_a_split_program_is_sparse_and_starts_on_its_levels(name):
     assert slope.jac_sparsity(0, 0).nnz() < 40 * len(z)  # of a dense one: 120 a row
 
 
+@pytest.mark.slow
 def test_two_thousand_separable_variables_against_the_closed_form():
     """min sum a/w with sum a w <= n: w is n/sum a for all, proven."""
     size = 2000

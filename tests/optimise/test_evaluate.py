@@ -133,6 +133,7 @@ def test_a_result_without_an_objective_is_evaluated():
         Result.from_dict({**data, "objective": {}, "status": "feasible"})
 
 
+@pytest.mark.slow
 def test_other_results_know_whether_they_are_feasible():
     found = gearopt.solve(beam(), "annealing", budget=gearopt.Budget(evaluations=4000))
     assert found.status == "feasible" and found.feasible

@@ -135,6 +135,7 @@ def test_gp_refuses_what_is_no_geometric_program():
         solve(logarithm, "gp")
 
 
+@pytest.mark.slow
 def test_scip_finds_what_exhaustion_proves_but_is_not_believed():
     problem = teeth.problem(drive())
     ours, theirs = solve(problem, "exact"), solve(problem, "scip", Budget(seconds=60))

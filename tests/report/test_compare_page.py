@@ -204,6 +204,7 @@ def test_runs_that_the_clock_ended_are_named():
     assert words_of_it in printed(made) and words_of_it in page(made)
 
 
+@pytest.mark.slow
 def test_a_proof_that_nothing_is_feasible_is_the_verdict():
     made = gearopt.compare(
         "problems/elevator_small_wheels.toml",

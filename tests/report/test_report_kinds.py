@@ -40,7 +40,7 @@ def test_only_a_drive_is_proven_impossible_with_real_valued_teeth():
 def test_a_kind_has_a_drawing_or_says_that_it_has_none(kind):
     """A kind whose designs have no drawing declares `drawn=False` in report/kinds/KIND.py."""
     _, scene = load.read(load.scene_module(kind).EXAMPLE.encode())
-    result = gearopt.solve(scene, budget=gearopt.Budget(5.0))
+    result = gearopt.solve(scene, budget=gearopt.Budget(5.0, 100_000))
     drawn = any(section.drawings for section in sections(result))
     assert drawn is kind_named(kind).drawn
 

@@ -373,6 +373,7 @@ def test_the_page_needs_nothing_but_the_json(case):
     assert page(again, "x") == page(result, "x")
 
 
+@pytest.mark.slow
 def test_colours_are_those_of_the_page():
     style = (ROOM / "frame.css").read_text(encoding="utf-8")
     known = set(re.findall(r"(--[\w-]+):", style))

@@ -30,6 +30,7 @@ def read(text):
     return list(csv.reader(io.StringIO(text)))
 
 
+@pytest.mark.slow
 def test_given_gears_stand_beside_the_chosen_and_the_bound(found):
     """7.578e-7 kg m2, 191.4 g, 0.10819 degrees, 210.1 Hz against 5.142e-7, 167.7, 0.10813."""
     section = found["The given train"]

@@ -79,6 +79,7 @@ def test_keys_are_read_with_their_units(key, metric, inch):
     assert parted("gear_volume_mm3") == ("gear_volume", "mm3")
 
 
+@pytest.mark.slow
 def test_csv_holds_the_numbers_in_full(elevator):
     found = tables(elevator)
     stages = {row[0]: row[1:] for row in rows(found["stages.csv"])}

@@ -219,6 +219,7 @@ def check_nearest(seed):
     return feasible(edited)
 
 
+@pytest.mark.slow
 def test_the_nearest_ratio_is_that_of_listing_all_trains():
     assert all(check_nearest(seed) for seed in (102, 108))
 

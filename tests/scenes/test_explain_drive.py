@@ -237,7 +237,13 @@ def test_every_remedy_of_random_impossible_drives_is_verified(block):
     assert seed - 1000 * block < 30
 
 
-@pytest.mark.parametrize("text", [ELEVATOR, THREE], ids=["elevator", "three stages"])
+@pytest.mark.parametrize(
+    "text",
+    [
+        pytest.param(ELEVATOR, id="elevator"),
+        pytest.param(THREE, id="three stages", marks=pytest.mark.slow),
+    ],
+)
 def test_sensitivity_of_every_number_against_re_solving(text):
     """Multipliers and central differences of independent solves agree to 1e-3 for every input."""
     scene, _ = scene_of(text)
@@ -253,6 +259,7 @@ def test_sensitivity_of_every_number_against_re_solving(text):
     assert found["duty.power"].sensitivity == pytest.approx(1, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_sensitivities_where_other_limits_bind():
     """Large modules, given teeth and width, mass: all kinds of numbers have their effect."""
     text = without_teeth(with_limits(ELEVATOR, 'module = ["3 mm", "10 mm"]'))
@@ -334,6 +341,7 @@ def size(text):
     return float(text.strip('"').split()[0])
 
 
+@pytest.mark.slow
 def test_a_tolerance_of_zero_can_be_eased():
     """Pinions of 19 teeth and a ratio of 20.123: no pair of whole ratios hits it exactly."""
     text = ELEVATOR.replace(*EXACT).replace('output_speed = "66.5 rpm"', "ratio = 20.123")
@@ -354,6 +362,7 @@ def test_standard_modules_move_to_standard_modules():
     assert all(verify(content, r) for r in found.remedies)
 
 
+@pytest.mark.slow
 def test_a_limit_at_a_standard_module_has_a_price_and_no_slope():
     scene, _ = scene_of(with_limits(ELEVATOR, 'module = ["1 mm", "2.5 mm"]'))
     found = {i.key: i for i in explain(scene).influences}
@@ -368,6 +377,7 @@ def test_a_series_that_is_to_blame_is_named():
     assert any(name.startswith("module_low") for name in explain(scene).conflict)
 
 
+@pytest.mark.slow
 def test_what_a_stopped_explanation_prints_is_what_the_whole_one_prints():
     scene, _ = scene_of(ELEVATOR)
     whole = {i.key: i for i in explained(ELEVATOR).influences}
@@ -399,6 +409,7 @@ def test_a_better_material_is_worth_as_much_as_less_power():
     assert verify(content, loads) and verify(content, power)
 
 
+@pytest.mark.slow
 def test_load_limits_of_a_preset_have_their_influence():
     text = PRESET.replace('wheel_diameter = "250 mm"', "")
     found = {i.key: i for i in explain(scene_of(text)[0]).influences}

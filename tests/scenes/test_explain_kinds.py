@@ -72,6 +72,7 @@ def by_key(found):
     return {i.key: i for i in found.influences}
 
 
+@pytest.mark.slow
 def test_compound_slope_is_that_of_the_same_teeth(train):
     """Squared error e^2 with e = 1/u - r: d ln e^2/d ln u = -2/(u e), on both sides."""
     ratio = by_key(train)["train.ratio"]
@@ -145,6 +146,7 @@ def test_packing_slopes_against_the_closed_form(row):
     assert slopes["cylinder[1].height"] == pytest.approx(0.0, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_an_unproven_packing_is_followed_and_whole_numbers_are_left_alone():
     seven = ROW.replace("height", "count = 3\nheight", 1).replace('width = "30 mm"', "")
     found = gearopt.explain(scene(seven), budget=gearopt.Budget(evaluations=100_000))
@@ -283,6 +285,7 @@ def test_servo_prices_a_larger_motor(axis):
     assert found.price == pytest.approx(larger.value / axis.result.value - 1.0, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_a_servo_train_holds_its_teeth():
     """Inertia is in proportion to density; a larger bore asks for another pinion at once."""
     text = (PROBLEMS / "servo_axis.toml").read_text()
@@ -300,6 +303,7 @@ def test_a_servo_train_holds_its_teeth():
     assert least.price == pytest.approx(other / found.result.value - 1.0, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_tolerances_that_no_budget_holds():
     """0.9 of all deviations make 0.0974 deg where 0.08 are allowed: 0.1082 is what they make."""
     text = (PROBLEMS / "servo_gimbal_tolerances.toml").read_text()

@@ -70,6 +70,7 @@ def test_a_place_out_of_reach_is_moved_to_where_the_links_reach():
     assert_least(found, content)
 
 
+@pytest.mark.slow
 def test_the_side_of_a_keep_out_is_moved():
     found, content = told(BARE + POST)
     least = next(r for r in found.remedies if r.changes[0].key == "keep_out[1].y")
@@ -202,6 +203,7 @@ def test_a_change_that_stays_undecided_is_named(monkeypatch):
     assert ways["message"].startswith("it is not known whether a change of keep_out[1].y")
 
 
+@pytest.mark.slow
 def test_what_was_tried_is_said_where_nothing_helps():
     """50 times the stress would do; moves end at 3 times."""
     found, content = told(ELEVATOR.replace('"25 MPa"', '"0.5 MPa"'))

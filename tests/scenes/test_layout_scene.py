@@ -370,6 +370,7 @@ def small():
     return scene(text)
 
 
+@pytest.mark.slow
 def test_together_stopped_at_once_gives_the_gears_chosen_first(small):
     from gearopt.scenes.drive import bare, solve
     from gearopt.scenes.drive.box.at_once import at_once
@@ -408,6 +409,7 @@ def test_every_answer_makes_a_page(small, tmp_path):
     assert "Front view" in html and "link angles" in html
 
 
+@pytest.mark.slow
 def test_impossible_at_once_is_explained(small):
     low = small.layout.model_copy(
         update={

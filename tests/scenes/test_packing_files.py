@@ -149,6 +149,7 @@ def test_an_impossible_request_is_one_message_and_exit_2(tmp_path):
         assert done.stderr.count("\n") == 1 and "2 mm are missing" in done.stderr
 
 
+@pytest.mark.slow
 def test_words_without_a_proof_say_so():
     short = gearopt.Budget(evaluations=4_000)
     result = gearopt.solve(PROBLEMS / "six_cylinders_one_layer.toml", budget=short)

@@ -108,6 +108,7 @@ def test_an_impossible_drive_has_no_processes():
     assert "process" not in keys  # no number of theirs is a remedy
 
 
+@pytest.mark.slow
 def test_explain_prices_none_of_their_numbers():
     found = gearopt.explain(scene(ELEVATOR))
     assert found.influences and not any("process" in n.key for n in found.influences)

@@ -167,6 +167,7 @@ def test_torque_of_a_swing_is_rms_and_peak(swung):
     assert one["motor_speed_rpm"] == pytest.approx(speed, rel=1e-12)
 
 
+@pytest.mark.slow
 def test_the_word_of_the_file_is_understood(fast):
     """What `minimise = "acceleration"` asks for is the largest one, and the answer says so."""
     same = gearopt.solve(scene(FAST, train={"maximise": None, "minimise": "acceleration"}))
@@ -179,6 +180,7 @@ def test_the_word_of_the_file_is_understood(fast):
 UNASKED = ("error", "arcmin", "backlash", "shaft between", "tolerance", "stiffness", "nan", "None")
 
 
+@pytest.mark.slow
 def test_what_is_not_asked_for_is_neither_computed_nor_shown():
     """A train alone: no shaft, no deviations, no accuracy, no motor."""
     bare = scene(

@@ -34,6 +34,7 @@ def test_a_look_for_a_box_stops_in_time():
     assert result.status == "limit" and result.value is None
 
 
+@pytest.mark.slow
 def test_tolerances_beyond_the_error_of_the_file_are_named():
     """Three standard deviations within the limit, the worst case above it."""
     edits = ((("budget", 0), {"rule": "mean_plus_sd"}),)
@@ -42,6 +43,7 @@ def test_tolerances_beyond_the_error_of_the_file_are_named():
     assert any("at their worst" in note for note in result.report["notes"])
 
 
+@pytest.mark.slow
 def test_the_wider_error_that_is_proposed_is_the_least():
     explained = gearopt.explain(PROBLEMS / "servo_gimbal_impossible.toml")
     assert {"error", "wheel_tip[2]"} <= set(explained.conflict)

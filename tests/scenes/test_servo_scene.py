@@ -158,6 +158,7 @@ def test_the_whole_toothed_train_is_as_stiff_as_asked():
     assert none.status == "infeasible" and "stiffness" in none.message
 
 
+@pytest.mark.slow
 def test_a_box_that_is_required_changes_the_train():
     """The answer fits, and of the better trains none does."""
     scene = changed(EXAMPLE, *NARROW, drop=BARE)
@@ -207,6 +208,7 @@ FEW = [
 ]
 
 
+@pytest.mark.slow
 def test_shafts_in_the_way_change_the_train_and_are_named():
     """The first wheel may not run into the hub, nor the motor into the shaft; each is a limit."""
     free = solved(EXAMPLE, *FEW, drop=BARE)
@@ -245,6 +247,7 @@ def gears_point(result):
     return np.array([stage[key] for key in keys for stage in (first, second)], float)
 
 
+@pytest.mark.slow
 def test_neighbours_are_not_beaten_in_all_three():
     result = gearopt.solve(PROBLEMS / "servo_gimbal_light.toml")
     rows = result.report["trains"]
@@ -260,6 +263,7 @@ def test_neighbours_are_not_beaten_in_all_three():
     assert named["inertia"]["inertia_kg_m2"] == pytest.approx(1.562e-7, abs=6e-11)
 
 
+@pytest.mark.slow
 def test_a_look_for_neighbours_in_parts_finds_the_same_and_stops_in_time(monkeypatch):
     scene, seen = gearopt.load(PROBLEMS / "servo_gimbal_light.toml"), []
     points, worth = front(scene.choice(), Clock(Budget()))
