@@ -82,6 +82,8 @@ def solve(scene: Scene, ask: Ask) -> Result:
     lowest, highest = train.reach
     within = lowest <= train.ratio <= highest
     reach = {
+        "ratio": float(train.ratio),
+        "teeth": list(train.teeth),
         "least_ratio": float(lowest),
         "most_ratio": float(highest),
         "within": within,

@@ -1,22 +1,97 @@
-"""A compound train: its ratio beside what all kinds show; tooth numbers alone have no drawing."""
+"""A compound train: its gears to scale, its ratio, and the ratios that its teeth reach."""
 
 from dataclasses import replace
+from typing import Any
 
+from gearopt.formulations.layout.layout_design import GearDesign
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import typed
 from gearopt.report.design_tables import ratio_tile
 from gearopt.report.kinds import generic
 from gearopt.report.measures import Measures
-from gearopt.report.section import Tile
+from gearopt.report.pages.number_line import Guide, Span, number_line
+from gearopt.report.pages.train_views import DrawnStage, along_shafts, in_one_line
+from gearopt.report.section import Section, Tile
 from gearopt.scenes.compound import CompoundDesign
+
+
+def _design(result: Result) -> CompoundDesign:
+    found: CompoundDesign = typed(CompoundDesign, result.design, "design")
+    return found
 
 
 def tiles(result: Result, measures: Measures) -> list[Tile]:
     """Return the ratio as a key figure."""
     if not result.design:
         return []
-    design: CompoundDesign = typed(CompoundDesign, result.design, "design")
+    design = _design(result)
     return [ratio_tile(design.ratio, design.ratio_error_percent)]
 
 
-KIND = replace(generic.KIND, tiles=tiles, drawn=False)
+def gears(result: Result, measures: Measures) -> Section | None:
+    """Draw the gears along their shafts, in modules; None where there are none."""
+    if not result.design:
+        return None
+    design = _design(result)
+    found, scale = in_one_line(
+        [_stage(*z) for z in zip(design.driver_teeth, design.driven_teeth, strict=True)]
+    )
+    named = tuple(replace(gear, name=f"z {gear.teeth}") for gear in found.gears)
+    drawing = along_shafts(replace(found, gears=named), scale, _modules, _title)
+    words = (
+        "Drawn to scale as if both pairs had one normal module m, with spur gears and an addendum "
+        "of m: centre distances and the length over tip circles are multiples of m. Solid lines "
+        "are tip circles, dash-dotted ones reference circles; numbers in circles are shafts, 1 "
+        "the input and 3 the output. The drivers, and the driven gears, may change places.",
+    )
+    return Section("Gears", words=words, drawings=(drawing,))
+
+
+def _stage(driver: int, driven: int) -> DrawnStage:
+    """Return a pair of spur gears in modules; it has no face width."""
+    return DrawnStage(
+        normal_module_mm=1.0,
+        pinion_teeth=driver,
+        wheel_teeth=driven,
+        face_width_mm=0.0,
+        pinion_diameter_mm=driver,
+        wheel_diameter_mm=driven,
+        pinion_tip_diameter_mm=driver + 2,
+        wheel_tip_diameter_mm=driven + 2,
+        centre_distance_mm=0.5 * (driver + driven),
+    )
+
+
+def _modules(length: float) -> str:
+    return f"{length:g} m"
+
+
+def _title(gear: GearDesign) -> str:
+    member = "driver" if gear.member == "pinion" else "driven gear"
+    return f"{member} of pair {gear.stage}: {gear.name}, d {_modules(gear.reference_diameter_mm)}"
+
+
+def reach(result: Result, measures: Measures) -> Section | None:
+    """Draw the ratio asked beside those that two pairs reach; None where it is among them."""
+    found: dict[str, Any] = result.report.get("reach") or {}
+    if not found or found["within"]:
+        return None
+    rows = [_span(found["teeth"], found["least_ratio"], found["most_ratio"])]
+    for wider in found["wider_teeth"]:
+        most = (wider[1] / wider[0]) ** 2
+        rows.append(_span(wider, 1.0 / most, most))
+    caption = "Total ratios of two pairs, by the number of teeth allowed; the axis is logarithmic."
+    asked = Guide(found["ratio"], f"asked {found['ratio']:.6g}", "gap")
+    drawing = number_line(rows, (asked,), "ratio asked and ratios in reach", caption)
+    return Section("Out of reach", drawings=(drawing,))
+
+
+def _span(teeth: list[int], low: float, high: float) -> Span:
+    return Span("{} to {} teeth".format(*teeth), low, high, (f"{low:.5g}", f"{high:.5g}"))
+
+
+KIND = replace(
+    generic.KIND,
+    sections=(*generic.FIRST, reach, gears, *generic.KIND.sections[len(generic.FIRST) + 1 :]),
+    tiles=tiles,
+)

@@ -1,7 +1,7 @@
 """A gearbox layout as a technical drawing: along the shafts, from the side, from above."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 from gearopt.formulations.layout.layout_design import (
@@ -115,7 +115,7 @@ def front_view(found: LayoutDesign, window: Window, scale: float, measures: Meas
     for it in keep_outs(found):
         keep_out(sheet, it, "y", "z")
     places = {s.shaft: (s.y_mm, s.z_mm) for s in found.shafts}
-    gear_circles(sheet, found, places, measures)
+    gear_circles(sheet, found, places, lambda gear: meaning(gear, measures))
     for shaft in found.shafts:
         y, z = places[shaft.shaft]
         size = f"{measures.length(shaft.diameter_mm)} {measures.unit('mm')}"
@@ -143,14 +143,17 @@ def gear_circles(
     sheet: Sheet,
     found: Turning,
     places: Mapping[int, tuple[float, float]],
-    measures: Measures,
+    title: Callable[[GearDesign], str],
 ) -> None:
-    """Draw the tip and reference circles, those behind first; places: (y, z) of the shafts."""
+    """Draw the tip and reference circles, those behind first; places: (y, z) of the shafts.
+
+    title: what a gear says where the pointer rests.
+    """
     gears = sorted(found.gears, key=lambda g: (g.from_mm, -g.tip_diameter_mm))
     for gear in gears:
         y, z = places[gear.shaft]
-        colour, title = series(gear.stage), meaning(gear, measures)
-        sheet.circle(y, z, 0.5 * gear.tip_diameter_mm, "tip", colour, title)
+        colour = series(gear.stage)
+        sheet.circle(y, z, 0.5 * gear.tip_diameter_mm, "tip", colour, title(gear))
         sheet.circle(y, z, 0.5 * gear.reference_diameter_mm, "reference", colour)
 
 

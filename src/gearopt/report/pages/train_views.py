@@ -1,6 +1,6 @@
 """A train without a layout, drawn to scale with all its shafts in one line."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from itertools import pairwise
 from typing import Any
@@ -9,7 +9,7 @@ from gearopt.formulations.layout.layout_design import GearDesign, ShaftDesign
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import typed
 from gearopt.report.measures import Measures
-from gearopt.report.pages.bodies import Bodies
+from gearopt.report.pages.bodies import Bodies, meaning
 from gearopt.report.pages.layout_views import (
     LEVEL,
     face_widths,
@@ -73,7 +73,8 @@ def views(stages: Sequence[Mapping[str, Any]], measures: Measures) -> tuple[Draw
         return ()
     picked = [{key: stage[key] for key in keys} for stage in stages]
     found, scale = in_one_line(typed(tuple[DrawnStage, ...], picked, "stages"))
-    return _front(found, scale, measures), _side(found, scale, measures)
+    front = along_shafts(found, scale, measures.length, lambda gear: meaning(gear, measures))
+    return front, _side(found, scale, measures)
 
 
 def in_one_line(stages: Sequence[DrawnStage]) -> tuple[Bodies, float]:
@@ -140,21 +141,29 @@ def _ends(found: Bodies) -> tuple[float, float]:
     return min(y - r for y, r in rims), max(y + r for y, r in rims)
 
 
-def _front(found: Bodies, scale: float, measures: Measures) -> Drawing:
-    """Draw the view along the shafts: circles in a row, centre distances and length below."""
+def along_shafts(
+    found: Bodies,
+    scale: float,
+    length: Callable[[float], str],
+    title: Callable[[GearDesign], str],
+) -> Drawing:
+    """Draw the view along the shafts: circles in a row, centre distances and length below.
+
+    length: a length as it is written. title: what a gear says where the pointer rests.
+    """
     left, right = _ends(found)
     high = max(0.5 * g.tip_diameter_mm for g in found.gears)
     if scale * high < LOW:
         high += NAMES / scale
     axes = [s.y_mm for s in found.shafts]
-    texts = [measures.length(b - a) for a, b in pairwise(axes)]
+    texts = [length(b - a) for a, b in pairwise(axes)]
     narrow = sum(
         scale * (b - a) < _room(text) for (a, b), text in zip(pairwise(axes), texts, strict=True)
     )
     below = CHAIN + min(narrow, ROWS) * ROW + 46.0
     sheet = Sheet(Window(left, right, -high, high, (EDGE, EDGE, below, 44.0)), scale)
     places = {s.shaft: (s.y_mm, 0.0) for s in found.shafts}
-    gear_circles(sheet, found, places, measures)
+    gear_circles(sheet, found, places, title)
     level = sheet.at(0.0, -high)[1] + CHAIN
     for shaft in found.shafts:
         x = sheet.at(shaft.y_mm, 0.0)[0]
@@ -164,7 +173,7 @@ def _front(found: Bodies, scale: float, measures: Measures) -> Drawing:
         sheet.balloon(str(shaft.shaft), spots)
     sheet.line((left - 6.0 / scale, 0.0), (right + 6.0 / scale, 0.0), "axis")
     away = sheet.height - 18.0 - sheet.at(0.0, -high)[1]
-    sheet.dimension((left, -high), (right, -high), away, measures.length(right - left))
+    sheet.dimension((left, -high), (right, -high), away, length(right - left))
     for (a, b), text in reversed(list(zip(pairwise(axes), texts, strict=True))):
         _distance(sheet, sheet.at(a, 0.0)[0], sheet.at(b, 0.0)[0], level, text)
     gear_names(sheet, found)
