@@ -99,9 +99,10 @@ def printed(code, capsys, monkeypatch):
 
 
 def test_python_of_the_start_page_runs(capsys, monkeypatch):
-    code = re.search(r"```python\n(.*?)```", text("docs/start.md"), re.S)[1]
-    said = printed(code, capsys, monkeypatch)
+    code = re.findall(r"```python\n(.*?)```", text("docs/start.md"), re.S)
+    said = printed("".join(code), capsys, monkeypatch)
     assert said.startswith("optimal 5782370.7") and "2.0 21 115" in said
+    assert "7.5 kW 5782370.7" in said and "11 kW 8507482.2" in said
 
 
 def test_python_of_the_conic_section_runs(capsys, monkeypatch):

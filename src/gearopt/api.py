@@ -3,9 +3,10 @@
 All that `import gearopt` offers is to be found here, imported or defined.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from types import NoneType
 from typing import Any
 
 from pydantic import BaseModel
@@ -17,6 +18,7 @@ from gearopt.optimise.comparing.compare import compare as compare_methods
 from gearopt.optimise.comparing.comparison import Comparison
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.explaining.explanation import Explanation
+from gearopt.optimise.options import check, named
 from gearopt.optimise.problem import Problem, one_objective
 from gearopt.optimise.result import Budget, Event, Result, Watch, plain  # noqa: F401
 from gearopt.optimise.solve import GAP, evaluate  # noqa: F401
@@ -24,19 +26,32 @@ from gearopt.optimise.solve import solve as solve_problem
 from gearopt.optimise.terms import Param, Repeat, Terms, Var  # noqa: F401
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.inputs import inputs_of
-from gearopt.scenes.reading.load import kind_of, scene_module
+from gearopt.scenes.reading.load import FORMAT, bare, kind_of, scene_module
 from gearopt.scenes.reading.load import load as load_file
 
-
-def load(path: str | Path) -> BaseModel:
-    """Return the scene of a problem file; SceneError says where it is wrong and what to write."""
-    return load_file(path).scene
+File = str | Path | Mapping[str, Any] | BaseModel  # its path, its tables, or what `load` returns
+Changes = Mapping[str, Any] | None  # {key of a file: value}
 
 
+@named
+def load(what: File, changes: Changes = None) -> BaseModel:
+    """Return the scene of a problem file; SceneError says where it is wrong and what to write.
+
+    what: a path, or the tables of a file as `tomllib` gives them. changes: {key: value} of what is
+    otherwise than in the file, by the keys that `explain` writes: {"duty.power": "9 kW",
+    "stage[2].face_width_over_diameter": 0.7, "limits.pinion_teeth[2]": 60}; counted from 1. A key
+    that the file lacks is added, and None removes one. Other files that it names stand beside the
+    file, or in the working directory for tables.
+    """
+    return _opened(what, changes)[0]
+
+
+@named
 def solve(
-    what: str | Path | BaseModel | Problem | Conic,
-    method: str | None = None,
+    what: File | Problem | Conic,
+    changes: Changes = None,
     *,
+    method: str | None = None,
     budget: Budget | None = None,
     seed: int = 0,
     watch: Watch | None = None,
@@ -44,25 +59,26 @@ def solve(
     top: int = 1,
     prices: bool = False,
 ) -> Result:
-    """Return the certified answer to a problem file, a loaded scene, or a problem of your own.
+    """Return the certified answer to a problem file, its tables or scene, or a problem of your own.
 
+    changes: of a file, as in `load`; `Result.asked` holds the tables with them.
     method: by default the scene's or problem's own. budget: seconds and evaluations. watch(event)
     returns False to stop the run. gap: relative gap to our bound that is enough, so that a search
     may end there; None: none is, and 1e-6 is called optimal. top: so many next best answers too
     (scenes with an exact method). prices: report["prices"] holds the sensitivities to every number
-    of the file, as `explain` does. SceneError for a wrong file, SolveError where the method does
-    not fit, ValueError for gap < 0 or top < 1. Not thread-safe.
+    of the file, as `explain` does. SceneError for a wrong file or change, SolveError where the
+    method does not fit, ValueError for an option of another sort. Not thread-safe.
     """
-    if (gap is not None and gap < 0.0) or top < 1:
-        raise ValueError(f"needs gap >= 0 and top >= 1, not gap = {gap}, top = {top}")
+    check(method=method, budget=budget, seed=seed, watch=watch, gap=gap, top=top, prices=prices)
     budget, watch = replace(budget or Budget(), gap=gap or 0.0), whole(watch)
     asked = {"method": method, "seconds": budget.seconds, "evaluations": budget.evaluations}
     asked |= {"gap": gap, "seed": seed, "top": top, "prices": prices}
     gap = GAP if gap is None else gap
     if isinstance(what, Problem | Conic):
+        _unchanged(what, changes)
         return solve_problem(what, method, budget, seed, watch, gap)
     ask = Ask(method, budget, seed, watch, gap, top)
-    scene, module, names = _opened(what)
+    scene, module, names = _opened(what, changes)
     result: Result = module.solve(scene, ask)
     if prices and result.value is not None and result.status != "evaluated":
         left = replace(ask, budget=budget.less(result.seconds))
@@ -70,17 +86,20 @@ def solve(
         result = replace(result, report=result.report | {"prices": found.prices})
     if inputs := inputs_of(scene):
         result = replace(result, report=result.report | {"inputs": inputs})
-    return _named(result, options=asked, **names)
+    return _named(result, **names | {"options": asked | names["options"]})
 
 
+@named
 def explain(
-    what: str | Path | BaseModel | Problem | Conic,
+    what: File | Problem | Conic,
+    changes: Changes = None,
     *,
     budget: Budget | None = None,
     watch: Watch | None = None,
 ) -> Explanation:
     """Explain why the answer to a file, a scene or a problem is what it is.
 
+    changes: of a file, as in `load`.
     Possible: the limits that bind, and the sensitivity to every number of the file (to every
     parameter, and bound with a key, of a problem). Impossible: the limits in conflict, and
     remedies that were tried: what to write instead. SceneError and SolveError as in
@@ -88,15 +107,17 @@ def explain(
     """
     from gearopt.optimise.explaining.explain import explain as explain_problem
 
+    check(budget=budget, watch=watch)
     budget, watch = budget or Budget(), whole(watch)
     if isinstance(what, Conic):
         raise SolveError(
             f"explain takes a Problem; {what.name} is a Conic, whose conflict `solve` names already"
         )
     if isinstance(what, Problem):
+        _unchanged(what, changes)
         return explain_problem(what, budget, watch)
     ask = Ask(budget=budget, watch=watch)
-    scene, module, names = _opened(what)
+    scene, module, names = _opened(what, changes)
     found = _explained(module, scene, ask)
     return replace(found, result=_named(found.result, **names))
 
@@ -114,18 +135,21 @@ def _explained(module: Any, scene: Any, ask: Ask, result: Result | None = None) 
 DEFAULT = ("ipopt", "annealing", "nsga2")  # compared beside exact algorithms where none are named
 
 
+@named
 def compare(
-    what: str | Path | BaseModel | Problem | Conic,
-    methods: Sequence[str] | str | None = None,
+    what: File | Problem | Conic,
+    changes: Changes = None,
     *,
+    methods: Sequence[str] | str | None = None,
     seeds: int = SEEDS,
     evaluations: int = EVALUATIONS,
     seconds: float = SECONDS,
     bound_from: str | None = None,
     watch: Follow | None = None,
 ) -> Comparison:
-    """Compare methods on a problem file, a loaded scene, or a problem of your own.
+    """Compare methods on a problem file, its tables or scene, or a problem of your own.
 
+    changes: of a file, as in `load`.
     methods: by default those of the file's kind; of a problem its own exact ones, ipopt, annealing
     and nsga2 (of a Conic: conic).
     Every method is run by evaluations and by seconds, random ones once for each of the seeds 0, 1,
@@ -134,34 +158,60 @@ def compare(
     a method is unknown or none takes the problem, ValueError for a budget or number of seeds below
     1.
     """
+    check(seeds=seeds, evaluations=evaluations, seconds=seconds, bound_from=bound_from, watch=watch)
     plan = Plan(evaluations, seconds, seeds)
     methods = methods.split(",") if isinstance(methods, str) else methods
     if isinstance(what, Problem | Conic):
+        _unchanged(what, changes)
         usual = ("conic",) if isinstance(what, Conic) else (*what.methods, *DEFAULT)
-        named = usual if methods is None else methods
+        chosen = usual if methods is None else methods
         one_objective(what.name, what.rows.objectives)
         own = Model(what)
-        found = compare_methods(named, lambda method: own, plan, watch, bound_from)
+        found = compare_methods(chosen, lambda method: own, plan, watch, bound_from)
         return replace(found, title=what.name)
-    scene, module, names = _opened(what)
-    named = module.compared(scene) if methods is None else methods
-    found = compare_methods(named, lambda m: module.model(scene, m), plan, watch, bound_from)
+    scene, module, names = _opened(what, changes)
+    chosen = module.compared(scene) if methods is None else methods
+    found = compare_methods(chosen, lambda m: module.model(scene, m), plan, watch, bound_from)
     del names["asked"]
+    names["changes"] = names.pop("options").get("changes", {})
     return replace(found, title=getattr(scene, "title", "") or names["scene"], **names)
 
 
-def _opened(what: str | Path | BaseModel) -> tuple[BaseModel, Any, dict[str, Any]]:
-    """Return the scene of a file (or the scene itself), the module of its kind, and its names."""
+def _unchanged(problem: Problem | Conic, changes: Changes) -> None:
+    """Raise ValueError for changes of what is no file."""
+    if changes is not None:
+        raise ValueError(
+            "changes are those of a problem file; write problem.at(name=value) for a parameter of "
+            f"{problem.name}"
+        )
+
+
+def _opened(what: File, changes: Changes) -> tuple[BaseModel, Any, dict[str, Any]]:
+    """Return the scene of what was given, the module of its kind, and its names for a result."""
+    if not isinstance(changes, Mapping | NoneType):
+        raise ValueError(
+            f"{changes!r} is no dict of changes, such as {{'duty.power': '9 kW'}}; options have "
+            "names, as in method='exact'"
+        )
+    if not isinstance(what, str | Path | Mapping | BaseModel):
+        raise ValueError(
+            f"{type(what).__name__}: write the path of a problem file, its tables, what `load` "
+            "returns, or a Problem"
+        )
     if isinstance(what, BaseModel):
-        kind = kind_of(what)
-        title = {"title": getattr(what, "title", "")}
-        return what, scene_module(kind), {"scene": kind, "asked": title}
-    loaded = load_file(what)
+        from gearopt.scenes.explaining.numbers import content
+
+        kind, tables = kind_of(what), content(what)
+        if not changes:
+            return what, scene_module(kind), {"scene": kind, "asked": bare(tables), "options": {}}
+        what = {"gearopt": FORMAT, "kind": kind, **tables}
+    loaded = load_file(what, changes)
     names: dict[str, Any] = {
         "scene": loaded.kind,
         "file": loaded.file,
         "file_sha256": loaded.sha256,
         "asked": loaded.asked,
+        "options": {"changes": loaded.changes} if loaded.changes else {},
     }
     return loaded.scene, scene_module(loaded.kind), names
 

@@ -20,7 +20,7 @@ def test_the_reducer_is_golinskis():
 
 
 def test_rows_have_the_same_columns_also_where_a_method_is_refused():
-    found = gearopt.compare(reducer(), ("gp", "ipopt"))
+    found = gearopt.compare(reducer(), methods=("gp", "ipopt"))
     gp, by_count, by_time = _rows("Golinski", found)
     assert list(gp) == list(by_count) == list(by_time)
     assert gp["equal"] == "refused" and gp["objective"] is None

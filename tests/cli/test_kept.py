@@ -24,7 +24,9 @@ KINDS = ("drive", "layout", "packing", "servo", "compound", "impossible", "compa
 def kept():
     """One file of every kind as plain data."""
     small = {"seeds": 2, "seconds": 0.01, "evaluations": 64}
-    compared = gearopt.compare(ROOT / "problems" / "elevator.toml", "ipopt,annealing", **small)
+    compared = gearopt.compare(
+        ROOT / "problems" / "elevator.toml", methods="ipopt,annealing", **small
+    )
     pictures = {"drive": "elevator", "layout": "elevator_box", "packing": "six_cylinders"}
     solved = {"servo": "servo_gimbal_swing", "compound": "sandgren_train"}
     found = {k: json.loads((PICTURES / f"{n}.json").read_text()) for k, n in pictures.items()}

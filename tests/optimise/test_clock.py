@@ -85,7 +85,7 @@ def test_events_of_an_own_problem_name_it():
 
     for own, name in ((square(), None), (replace(square(), methods={"mine": method}), "mine")):
         events, watch = seen(lambda told: told)
-        gearopt.solve(own, name, budget=Budget(evaluations=50), watch=watch)
+        gearopt.solve(own, method=name, budget=Budget(evaluations=50), watch=watch)
         assert events and {(e.part, e.objective, e.unit) for e in events} == {("square", "y", "")}
 
 

@@ -135,7 +135,7 @@ def test_a_result_without_an_objective_is_evaluated():
 
 @pytest.mark.slow
 def test_other_results_know_whether_they_are_feasible():
-    found = gearopt.solve(beam(), "annealing", budget=gearopt.Budget(evaluations=4000))
+    found = gearopt.solve(beam(), method="annealing", budget=gearopt.Budget(evaluations=4000))
     assert found.status == "feasible" and found.feasible
     impossible = gearopt.solve(gearopt.load("problems/servo_gimbal_impossible.toml"))
     assert not impossible.feasible

@@ -214,7 +214,7 @@ def test_two_objectives_are_refused_with_what_to_do(method):
 
 def test_two_objectives_are_refused_everywhere_but_for_a_front():
     with pytest.raises(SolveError, match="2 objectives"):
-        gearopt.compare(own(two), ("nsga2",), seeds=1, evaluations=20, seconds=0.1)
+        gearopt.compare(own(two), methods=("nsga2",), seeds=1, evaluations=20, seconds=0.1)
     with pytest.raises(SolveError, match="2 objectives"):
         gearopt.explain(own(two))
     found, outcome = run(own(two), "nsga2", Budget(evaluations=200))

@@ -39,7 +39,7 @@ def check(seed, methods, evaluations, starts):
         with warnings.catch_warnings():
             warnings.simplefilter("error")
             try:
-                result = solve(own.problem, method, budget=budget, seed=seed)
+                result = solve(own.problem, method=method, budget=budget, seed=seed)
             except SolveError:
                 continue
         if result.status == "infeasible":

@@ -189,7 +189,7 @@ def test_methods_are_compared_by_the_scale():
     assert excess(0.5, 0.0) == 0.5
     found = gearopt.compare(
         plane(lambda a, b: (a - 3.0) ** 2 + (b + 2.0) ** 2, -5.0, 5.0),
-        ("qp", "annealing"),
+        methods=("qp", "annealing"),
         seeds=1,
         evaluations=320,
         seconds=0.02,

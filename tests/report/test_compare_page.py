@@ -38,7 +38,7 @@ def problem():
 @pytest.fixture(scope="module")
 def found():
     methods = ("ipopt", "annealing", "wrong", "gp")
-    made = gearopt.compare(problem(), methods, seeds=3, evaluations=640, seconds=0.02)
+    made = gearopt.compare(problem(), methods=methods, seeds=3, evaluations=640, seconds=0.02)
     (group,) = made.groups
     *others, last = group.rows
     refused = replace(
@@ -142,7 +142,9 @@ def test_terminal_fits_80_columns(found):
 
 
 def test_verdicts():
-    made = gearopt.compare(problem(), ("ipopt", "wrong"), seeds=3, evaluations=64, seconds=5.0)
+    made = gearopt.compare(
+        problem(), methods=("ipopt", "wrong"), seeds=3, evaluations=64, seconds=5.0
+    )
     (group,) = made.groups
     ipopt, wrong = group.rows
     assert words.reference(group).startswith("Gaps are to the proven lower bound of the inverse, 1")
@@ -171,7 +173,7 @@ def test_a_run_that_the_time_ended_is_not_all_that_its_method_needs(size, finish
         return Outcome(np.full(3, size), finished=finished)
 
     both = replace(problem(), methods={"best": best, "once": once})
-    (group,) = gearopt.compare(both, ("best", "once"), seeds=1, seconds=0.01).groups
+    (group,) = gearopt.compare(both, methods=("best", "once"), seeds=1, seconds=0.01).groups
     assert words.verdict(group, replace(group.rows[1], random=False)) == said
 
 
@@ -198,7 +200,11 @@ def test_runs_that_the_clock_ended_are_named():
         return Outcome(np.full(3, 0.9), finished=False, evaluations=3)
 
     made = gearopt.compare(
-        replace(problem(), methods={"slow": slow}), ("slow",), seeds=2, evaluations=9, seconds=0.001
+        replace(problem(), methods={"slow": slow}),
+        methods=("slow",),
+        seeds=2,
+        evaluations=9,
+        seconds=0.001,
     )
     words_of_it = "2 runs of slow ended by the clock, after 0.01 s"
     assert words_of_it in printed(made) and words_of_it in page(made)
@@ -208,7 +214,7 @@ def test_runs_that_the_clock_ended_are_named():
 def test_a_proof_that_nothing_is_feasible_is_the_verdict():
     made = gearopt.compare(
         "problems/elevator_small_wheels.toml",
-        ("exact", "annealing"),
+        methods=("exact", "annealing"),
         seeds=2,
         evaluations=640,
         seconds=0.25,

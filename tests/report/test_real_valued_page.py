@@ -57,6 +57,6 @@ def test_the_page_draws_whole_teeth_and_says_so():
 @pytest.mark.parametrize("method", ["ipopt", "multistart"])
 def test_gears_and_box_at_once_with_real_valued_teeth_make_a_page(method):
     path = ROOT / "problems" / "three_stage_together.toml"
-    result = gearopt.solve(path, method, budget=gearopt.Budget(seconds=5.0))
+    result = gearopt.solve(path, method=method, budget=gearopt.Budget(seconds=5.0))
     assert any(gear["teeth"] % 1 for gear in result.design["layout"]["gears"])
     assert layout_solid.ROUNDED in page(result, "")

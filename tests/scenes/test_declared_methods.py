@@ -95,7 +95,7 @@ def test_every_method_honours_watcher_and_budget(name):
 
 def test_a_servo_train_is_compared_once_not_for_every_seed():
     found = gearopt.compare(
-        PROBLEMS / "servo_gimbal.toml", ("exact",), seeds=3, evaluations=100, seconds=0.02
+        PROBLEMS / "servo_gimbal.toml", methods=("exact",), seeds=3, evaluations=100, seconds=0.02
     )
     (row,) = found.groups[0].rows
     assert not row.random and len(row.equal_evaluations.runs) == 1

@@ -193,7 +193,7 @@ def test_an_impossible_height_names_the_least_one():
 def test_every_method_lays_out(method, table4):
     result = gearopt.solve(
         scene(TABLE4),
-        method,
+        method=method,
         budget=gearopt.Budget(evaluations=128_701 if method == "sa-paper" else 20_000),
     )
     assert result.value >= table4.bound
@@ -207,7 +207,7 @@ def test_every_method_lays_out(method, table4):
 
 def test_a_method_that_only_sizes_says_so():
     with pytest.raises(SolveError, match="gp"):
-        gearopt.solve(scene(TABLE4), "gp")
+        gearopt.solve(scene(TABLE4), method="gp")
 
 
 @pytest.mark.slow
@@ -290,7 +290,7 @@ def test_gears_and_box_at_once():
 def test_real_valued_gears_and_box_at_once():
     """Below whole teeth; every limit of the text is kept, and the drawing's box is the value."""
     text = (PROBLEMS / "three_stage_together.toml").read_text(encoding="utf-8")
-    result = gearopt.solve(scene(text), "ipopt")
+    result = gearopt.solve(scene(text), method="ipopt")
     assert result.status == "stationary"
     assert 0.9 * 44_383_628 < result.value < 47_483_050  # from the gears chosen first
     box = result.design["layout"]["box"]
@@ -301,7 +301,7 @@ def test_real_valued_gears_and_box_at_once():
 def test_together_is_for_exact_and_ipopt():
     text = (PROBLEMS / "three_stage_together.toml").read_text(encoding="utf-8")
     with pytest.raises(SolveError, match="together"):
-        gearopt.solve(scene(text), "sa")
+        gearopt.solve(scene(text), method="sa")
 
 
 STATIC = {  # what is added to the file, and a part of what is said

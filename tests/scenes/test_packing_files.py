@@ -159,14 +159,14 @@ def test_words_without_a_proof_say_so():
 @pytest.mark.parametrize("method", ["sa", "ipopt", "annealing", "nsga2"])
 def test_every_method_is_held_against_the_bound(method):
     short = gearopt.Budget(evaluations=4_000)
-    result = gearopt.solve(PROBLEMS / "six_cylinders_one_layer.toml", method, budget=short)
+    result = gearopt.solve(PROBLEMS / "six_cylinders_one_layer.toml", method=method, budget=short)
     assert result.value > result.bound > 15_109 and result.gap < 0.5
     assert len(result.design["cylinders"]) == 6
 
 
 def test_gradient_methods_take_no_free_layers():
     with pytest.raises(SolveError, match="layer"):
-        gearopt.solve(PROBLEMS / "six_cylinders.toml", "ipopt")
+        gearopt.solve(PROBLEMS / "six_cylinders.toml", method="ipopt")
 
 
 @pytest.mark.slow

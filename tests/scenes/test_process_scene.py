@@ -49,7 +49,7 @@ def test_only_the_tables_that_are_there_are_parts():
 
 def test_as_methods_they_are_held_to_a_proven_bound(elevator):
     for part in elevator.parts[1:]:
-        alone = gearopt.solve(scene(ELEVATOR), part.method)
+        alone = gearopt.solve(scene(ELEVATOR), method=part.method)
         assert alone.design == part.design and alone.status == "feasible"
         assert alone.bound == pytest.approx(5618183.49, abs=0.01)  # of real-valued sizes
         assert [p.name for p in alone.parts] == ["sizing"]
@@ -57,7 +57,11 @@ def test_as_methods_they_are_held_to_a_proven_bound(elevator):
 
 def test_compare_names_their_gaps_to_the_optimum(elevator):
     found = gearopt.compare(
-        scene(ELEVATOR), "exact,process-one,process-two", seeds=3, evaluations=10, seconds=0.05
+        scene(ELEVATOR),
+        methods="exact,process-one,process-two",
+        seeds=3,
+        evaluations=10,
+        seconds=0.05,
     )
     (group,) = found.groups
     rows = {row.method: row for row in group.rows}
@@ -73,10 +77,10 @@ def test_compare_names_their_gaps_to_the_optimum(elevator):
 def test_a_method_without_its_table_says_what_to_write(method):
     table = method.replace("-", "_")
     with pytest.raises(SolveError, match=rf"needs a table \[{table}\] in the file, with"):
-        gearopt.solve(scene(BARE), method)
+        gearopt.solve(scene(BARE), method=method)
     continuous = re.sub(r"\[teeth\].*", "", BARE, flags=re.S)
     with pytest.raises(SolveError, match=rf"{method} needs a \[teeth\] table"):
-        gearopt.solve(scene(continuous), method)
+        gearopt.solve(scene(continuous), method=method)
 
 
 def test_a_design_that_breaks_a_limit_stays_a_part_without_a_value():

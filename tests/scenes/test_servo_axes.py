@@ -191,7 +191,7 @@ def test_what_touches_exactly_is_clear(what, seed):
         best = min((worth(axis, t) for t in known), default=math.inf)
         own = read(axis.text().encode())[1].servo_train()
         for method in ("exact", "enumeration"):
-            result = gearopt.solve(split.problem(own, axis.goal), method)
+            result = gearopt.solve(split.problem(own, axis.goal), method=method)
             assert result.status == ("optimal" if known else "infeasible")
             assert not known or result.value == pytest.approx(best, rel=SAME)
         assert result.proof["feasible_trains"] == len(known)

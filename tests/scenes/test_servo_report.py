@@ -59,7 +59,11 @@ def test_what_an_enumeration_does_not_look_at_is_said():
 def test_enumeration_may_be_compared():
     assert {"exact", "enumeration"} <= model(scene("gimbal_stiff"), "exact").problem.methods.keys()
     found = gearopt.compare(
-        scene("gimbal_stiff"), ("exact", "enumeration"), seeds=1, evaluations=10**7, seconds=1.0
+        scene("gimbal_stiff"),
+        methods=("exact", "enumeration"),
+        seeds=1,
+        evaluations=10**7,
+        seconds=1.0,
     )
     assert found is not None
 

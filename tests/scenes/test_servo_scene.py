@@ -312,7 +312,9 @@ def test_stiffness_by_youngs_modulus_is_near_the_known_one():
 
 def test_comparing_takes_the_train_without_its_box():
     scene = changed(EXAMPLE)
-    found = gearopt.compare(scene, ("exact", "annealing"), seeds=1, evaluations=500, seconds=0.2)
+    found = gearopt.compare(
+        scene, methods=("exact", "annealing"), seeds=1, evaluations=500, seconds=0.2
+    )
     assert found is not None
     assert choice.train_problem(scene.choice(boxed=False)).methods.keys() == {
         "exact",

@@ -63,7 +63,7 @@ def solve(
     with watching(seconds, quiet=as_json) as watch:
         result = solve_file(
             file,
-            method,
+            method=method,
             budget=Budget(seconds),
             seed=seed,
             watch=watch,
@@ -148,7 +148,7 @@ def compare(
     with following(_words, quiet=as_json) as watch:
         found = compare_file(
             file,
-            named,
+            methods=named,
             seeds=seeds,
             evaluations=evaluations,
             seconds=seconds,

@@ -136,10 +136,13 @@ def written(result: Result, files: Files) -> list[str]:
 def again(result: Result, files: Files) -> str:
     """Return the command that makes a page again, without default options; "" if none.
 
-    A run from Python without a limit of time had more of it than any command.
+    A run from Python without a limit of time had more of it than any command. One that changed the
+    tables of its file was Python's.
     """
     if result.file is None:
         return ""
+    if changes := result.options.get("changes"):
+        return f"gearopt.solve({result.file!r}, {changes!r})"
     words = ["gearopt", "solve", result.file]
     if result.options and result.options.get("seconds") is None:
         words += ["--seconds", "1e9"]

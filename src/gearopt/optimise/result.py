@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import MISSING, asdict, dataclass, field, fields, replace
 from functools import cache
 from importlib.metadata import version
+from numbers import Real
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -23,6 +24,11 @@ STATUSES = ("optimal", "stationary", "feasible", "evaluated", "infeasible", "lim
 FEASIBLE = 1e-8  # of its own scale a variable, of 1 a row is off; that is below any data error
 
 
+def is_number(value: Any) -> bool:
+    """Return whether a value is a finite real number."""
+    return isinstance(value, Real) and not isinstance(value, bool) and math.isfinite(value)
+
+
 @dataclass(frozen=True)
 class Budget:
     """What a method may spend: wall seconds and evaluations (None: no bound).
@@ -33,6 +39,15 @@ class Budget:
     seconds: float | None = None
     evaluations: int | None = None
     gap: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name in ("seconds", "evaluations", "gap"):
+            value, whole = getattr(self, name), name == "evaluations"
+            if value is None and name != "gap":
+                continue
+            if not is_number(value) or value < 0.0 or (whole and value != int(value)):
+                sort = "whole number" if whole else "number"
+                raise ValueError(f"Budget({name}={value!r}): write a {sort} of at least 0")
 
     def less(self, seconds: float, evaluations: int = 0) -> "Budget":
         """Return what is left of it after so much is spent."""
@@ -105,8 +120,8 @@ class Result:
     bound: nothing feasible is better; gap: (objective - bound)/|objective|, of an objective of zero
     relative to certificate["scale"], its own scale. proof: {method, sentence, ...}. certificate:
     {feasibility, stationarity, complementarity}. limits: utilisations by name.
-    asked: the tables of the problem file; options: what was asked for beside it (method, seconds,
-    gap, seed, top, prices).
+    file_sha256: of the file as it is. asked: its tables, with the changes; options: what was asked
+    for beside it (method, seconds, gap, seed, top, prices, and changes {key: value} if there were).
     """
 
     name: str

@@ -147,9 +147,10 @@ def command(found: Comparison) -> str:
     """Return the command that repeats the comparison."""
     methods = [row.method for group in found.groups for row in group.rows]
     budget = found.budget
-    if found.file is None:
+    if found.file is None or found.changes:
+        what = f"{found.file!r}, {found.changes!r}" if found.file else "problem"
         return (
-            f"gearopt.compare(problem, {methods}, seeds={len(found.seeds)}, "
+            f"gearopt.compare({what}, methods={methods}, seeds={len(found.seeds)}, "
             f"evaluations={budget['evaluations']}, seconds={budget['seconds']:g})"
         )
     more = f" --bound-from {found.bound_from}" if found.bound_from else ""

@@ -175,10 +175,6 @@ class Plan:
     seconds: float = SECONDS
     seeds: int = SEEDS
 
-    def __post_init__(self) -> None:
-        if self.evaluations < 1 or not self.seconds > 0 or self.seeds < 1:
-            raise ValueError("needs evaluations >= 1, seconds > 0 and seeds >= 1")
-
 
 @dataclass(frozen=True)
 class Progress:

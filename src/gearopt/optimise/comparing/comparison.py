@@ -130,6 +130,8 @@ class Comparison:
 
     budget: {evaluations, seconds, patience_seconds}; settings: {method: {name: value}}. bound_from:
     the method that was asked for a bound. complete: every run was made; else message says how many.
+    changes: what is otherwise than in the file, by key.
+    changes: what is otherwise than in the file, by key.
     """
 
     groups: tuple[Group, ...]
@@ -143,6 +145,7 @@ class Comparison:
     scene: str | None = None
     file: str | None = None
     file_sha256: str | None = None
+    changes: Mapping[str, Any] = field(default_factory=dict)
     date: str = field(default_factory=lambda: date.today().isoformat())
     machine: Mapping[str, Any] = field(default_factory=lambda: machine())
     versions: Mapping[str, str] = field(default_factory=lambda: versions("numpy", "casadi"))

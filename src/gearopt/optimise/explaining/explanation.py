@@ -1,5 +1,6 @@
 """What `explain` answers: remedies for an impossible request, influences on a possible one."""
 
+import tomllib
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
@@ -19,6 +20,11 @@ class Change:
     was: str
     write: str
     factor: float
+
+    @property
+    def value(self) -> Any:
+        """Return what is written, as a value of Python; None for what is removed."""
+        return tomllib.loads(f"value = {self.write}")["value"] if self.write else None
 
 
 @dataclass(frozen=True)
@@ -41,6 +47,11 @@ class Remedy:
     factor: float
     bound: float | None
     verified: dict[str, str] = field(default_factory=dict)
+
+    @property
+    def edits(self) -> dict[str, Any]:
+        """Return the edits as `solve` takes them: {key: value}, None for what is removed."""
+        return {c.key: c.value for c in self.changes}
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,7 @@ from gearopt.report.measures import METRIC, Measures
 from gearopt.report.pages.frame import render
 from gearopt.report.section import Section
 from gearopt.report.words import amount, goal, title, verdict
+from gearopt.scenes.reading.toml import short
 
 
 def sections(result: Result, measures: Measures = METRIC) -> list[Section]:
@@ -26,7 +27,7 @@ def page(result: Result, command: str, measures: Measures = METRIC) -> str:
         command,
         plots=any(section.figures for section in found),
         sections=found,
-        source=result.file and f"File {result.file}, SHA-256 {(result.file_sha256 or '')[:16]}…",
+        source=_source(result),
     )
 
 
@@ -38,6 +39,19 @@ def tables(result: Result, measures: Measures = METRIC) -> dict[str, str]:
             names = (f"{table.stem}{k}.csv" for k in ("", *range(2, 1000)))
             found[next(name for name in names if name not in found)] = table.csv()
     return found
+
+
+def _source(result: Result) -> str | None:
+    """Say what file it is of, and what was changed in it."""
+    if result.file is None:
+        return None
+    changes = result.options.get("changes", {})
+    edits = [
+        f"{key} = {short(value)}" if value is not None else f"no {key}"
+        for key, value in changes.items()
+    ]
+    words = f"File {result.file}, SHA-256 {(result.file_sha256 or '')[:16]}…"
+    return ", changed: ".join(filter(None, [words, ", ".join(edits)]))
 
 
 def _subtitle(result: Result, measures: Measures) -> str:

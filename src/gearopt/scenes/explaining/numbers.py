@@ -8,10 +8,11 @@ from fractions import Fraction
 from typing import Any
 
 from pydantic import BaseModel, ValidationError
+from pydantic_core import PydanticCustomError
 
 from gearopt.optimise.explaining.explain import DIGITS, ROOM
 from gearopt.scenes.reading.fields import Reads
-from gearopt.scenes.reading.toml import dotted, toml_text
+from gearopt.scenes.reading.toml import dotted, exact, toml_text
 from gearopt.units import Quantity
 
 SHORT = 4  # digits of a number that is kept as it is
@@ -24,7 +25,7 @@ Path = tuple[str | int, ...]
 class Number:
     """A number of the file. path: its place; value: a quantity, an exact fraction or an integer.
 
-    A pair of equal ends (one number in the file means both) is one number.
+    A range of equal ends (one number in the file means both) is one number.
     """
 
     path: Path
@@ -53,15 +54,24 @@ def _walk(value: Any, path: Path, defaults: bool) -> Iterator[Number]:
     if isinstance(value, BaseModel):
         for name in type(value).model_fields:
             if defaults or name in value.model_fields_set:
-                yield from _walk(getattr(value, name), (*path, name), defaults)
+                held = getattr(value, name)
+                one = held[0] if _is_one(type(value), name, held, (*path, name)) else held
+                yield from _walk(one, (*path, name), defaults)
     elif isinstance(value, tuple):
-        if len(value) == 2 and value[0] == value[1] and not isinstance(value[0], BaseModel):
-            yield Number(path, value[0])
-        else:
-            for k, item in enumerate(value):
-                yield from _walk(item, (*path, k), defaults)
+        for k, item in enumerate(value):
+            yield from _walk(item, (*path, k), defaults)
     elif isinstance(value, Quantity | Fraction | int) and not isinstance(value, bool):
         yield Number(path, value)
+
+
+def _is_one(model: type[BaseModel], field: str, value: Any, path: Path) -> bool:
+    """Return whether a value is a range of equal ends, which its file may write as one number."""
+    if not isinstance(value, tuple) or len(value) != 2 or value[0] != value[1]:
+        return False
+    try:
+        return bool(read(model, field, written(value[0], path)) == value)
+    except (PydanticCustomError, ValueError):  # a place, or a list of tables
+        return False
 
 
 def at(scene: Any, path: Path) -> Any:
@@ -193,13 +203,6 @@ def _rounded(value: Fraction, direction: int) -> Fraction:
         return short
     roomy = value * Fraction(1.0 + ROOM) ** direction
     return decimal(roomy, DIGITS, ROUND_CEILING if direction > 0 else ROUND_FLOOR)
-
-
-def exact(value: Fraction) -> Decimal | int:
-    """Return a fraction of a file as the decimal number it was."""
-    if value.denominator == 1:
-        return value.numerator
-    return Context(prec=40).divide(Decimal(value.numerator), Decimal(value.denominator))
 
 
 def taken_back(now: Any, before: Any, part: float) -> Any:

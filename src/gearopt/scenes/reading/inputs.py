@@ -27,6 +27,9 @@ class Input:
     kind: str
     what: Result | BaseModel
 
+    def __str__(self) -> str:
+        return self.file
+
     def result(self, ask: Ask) -> Result:
         """Return the result with its design; SceneError where solving the file finds none."""
         if isinstance(self.what, Result):
@@ -67,7 +70,7 @@ def result_of(kind: str) -> Reads:
             what = result = _kept(data, wrong)
             found = result.scene or "a problem of one's own"
         else:
-            loaded = load(path, before)
+            loaded = load(path, before=before)
             what, found = loaded.scene, loaded.kind
         if found != kind:
             raise wrong(f"is of kind {found}, not {kind}")

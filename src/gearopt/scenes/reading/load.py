@@ -3,18 +3,21 @@
 import hashlib
 import re
 import tomllib
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from decimal import Decimal, InvalidOperation
 from difflib import get_close_matches
 from importlib import import_module
 from pathlib import Path
 from pkgutil import iter_modules
+from types import NoneType
 from typing import Any, get_origin
 
 from pydantic import BaseModel, ValidationError
 
 import gearopt.scenes
 from gearopt.errors import Fix, SceneError, SolveError
+from gearopt.scenes.reading.changes import as_written, changed
 from gearopt.scenes.reading.fields import Opened, near
 from gearopt.scenes.reading.remedy import translate, wrong_name, wrong_value
 from gearopt.scenes.reading.toml import cut, dotted
@@ -22,19 +25,25 @@ from gearopt.scenes.reading.toml import cut, dotted
 FORMAT = 1
 SHARED = {"reading", "explaining", "parts"}  # of `gearopt.scenes`, what is no kind
 HEAD = ("gearopt", "kind")  # keys of every file
+TABLES = "<tables>"  # from Python, in messages
 LARGEST_FILE = 1_000_000  # bytes
 DEEPEST_KEY = r"(?:[\w-]\s*\.\s*){6000}"  # tomllib's time grows with the square: 1 s at 5000
 
 
 @dataclass(frozen=True)
 class Loaded:
-    """A scene with the file it came from, the hash of its bytes and its tables as written."""
+    """A scene with its tables as they were read, and where they came from.
+
+    file, sha256: of the bytes of its file, None of tables from Python. changes: what was changed in
+    its tables, by key.
+    """
 
     scene: BaseModel
     kind: str
-    file: str
-    sha256: str
     asked: dict[str, Any]
+    file: str | None = None
+    sha256: str | None = None
+    changes: dict[str, Any] = field(default_factory=dict)
 
 
 def kinds() -> tuple[str, ...]:
@@ -67,14 +76,39 @@ def _likely(content: dict[str, Any]) -> str:
     return max(kinds(), key=known)
 
 
-def load(path: str | Path, before: tuple[Path, ...] = ()) -> Loaded:
-    """Read a problem file; SceneError says where it is wrong and what to write instead.
+def load(
+    what: str | Path | Mapping[str, Any],
+    changes: Mapping[str, Any] | None = None,
+    before: tuple[Path, ...] = (),
+) -> Loaded:
+    """Read a problem file, or its tables; SceneError says where it is wrong and what to write.
 
-    before: the files by way of which it was named as an input.
+    changes: other values by key, see `changes.changed`. before: the files by way of which it was
+    named as an input.
     """
+    changes = changes or {}
+    if isinstance(what, Mapping):
+        file = digest = None
+        name, folder = TABLES, Path(TABLES)
+        content = _from_python(what, name)
+    else:
+        file = name = str(what)
+        data = _bytes(what)
+        digest, folder = hashlib.sha256(data).hexdigest(), Path(what)
+        content = _parse(data, file)
+    if changes:
+        name += " (changed)"
+        content = changed(content, changes, name)
+    asked = _asked(content)
+    kind, scene = _scene(content, name, (*before, folder.resolve()))
+    return Loaded(scene, kind, asked, file, digest, bare(as_written(changes)))
+
+
+def _bytes(path: str | Path) -> bytes:
+    """Return what a file holds; SceneError where it cannot be read."""
     file = str(path)
     try:
-        data = Path(path).read_bytes()
+        return Path(path).read_bytes()
     except IsADirectoryError:
         raise SceneError(file, "", "", "is a directory, not a file", _name_a_file(path)) from None
     except FileNotFoundError:
@@ -83,22 +117,30 @@ def load(path: str | Path, before: tuple[Path, ...] = ()) -> Loaded:
         text = getattr(reason, "strerror", None) or str(reason)
         remedy = "Check the name and the permissions"
         raise SceneError(file, "", "", f"cannot be read ({text})", remedy) from None
-    kind, scene = read(data, file, before)
-    return Loaded(scene, kind, file, hashlib.sha256(data).hexdigest(), _asked(data, file))
 
 
-def _asked(data: bytes, file: str) -> dict[str, Any]:
+def _from_python(tables: Mapping[str, Any], name: str) -> dict[str, Any]:
+    """Return tables as the text of a file would have given them."""
+    try:
+        return dict(as_written(tables))
+    except RecursionError:
+        raise _too_deep(name) from None
+
+
+def _asked(content: dict[str, Any]) -> dict[str, Any]:
     """Return what a file asks for, as JSON holds it: without its head and the user's own tables."""
-    content = _parse(data, file)
-    return {k: _bare(v) for k, v in content.items() if k not in HEAD and not k.startswith("x-")}
+    return {k: bare(v) for k, v in content.items() if k not in HEAD and not k.startswith("x-")}
 
 
-def _bare(value: Any) -> Any:
+def bare(value: Any) -> Any:
+    """Return a value of a file as JSON holds it; a file that is an input by its name."""
     if isinstance(value, dict):
-        return {key: _bare(v) for key, v in value.items()}
+        return {key: bare(v) for key, v in value.items()}
     if isinstance(value, list):
-        return [_bare(v) for v in value]
-    return float(value) if isinstance(value, Decimal) else value
+        return [bare(v) for v in value]
+    if isinstance(value, Decimal):
+        return float(value)
+    return value if isinstance(value, str | int | NoneType) else str(value)
 
 
 def _name_a_file(path: str | Path) -> str:
@@ -115,7 +157,11 @@ def _name_a_file(path: str | Path) -> str:
 
 def read(data: bytes, file: str = "<text>", before: tuple[Path, ...] = ()) -> tuple[str, BaseModel]:
     """Return the kind and scene of the bytes of a problem file; file: its name in messages."""
-    content = _parse(data, file)
+    return _scene(_parse(data, file), file, (*before, Path(file).resolve()))
+
+
+def _scene(content: dict[str, Any], file: str, opened: tuple[Path, ...]) -> tuple[str, BaseModel]:
+    """Return the kind and scene of the tables of a file; opened: the files being read."""
     if not content:
         remedy = "Start from what `gearopt new drive` prints"
         raise SceneError(file, "", "", "is empty", remedy, Fix("replace", "", "new drive"))
@@ -129,12 +175,10 @@ def read(data: bytes, file: str = "<text>", before: tuple[Path, ...] = ()) -> tu
         known = f"is not a known kind (known: {', '.join(kinds())})"
         rule = "is missing" if kind is None else known
         raise wrong_value(file, "kind", kind, rule, meant or _likely(content))
-    own = [key for key in content if key.startswith("x-")]  # the user's tables
-    for key in own:
-        del content[key]
+    content = {k: v for k, v in content.items() if not k.startswith("x-")}  # the user's tables
     model: type[BaseModel] = scene_module(kind).Scene
     try:
-        return kind, model.model_validate(content, context=Opened((*before, Path(file).resolve())))
+        return kind, model.model_validate(content, context=Opened(opened))
     except ValidationError as wrong:
         raise translate(file, model, content, wrong) from None
 

@@ -1,7 +1,8 @@
 """Values and keys as TOML writes them, for messages and for remedies a machine can apply."""
 
 import re
-from decimal import Decimal
+from decimal import Context, Decimal
+from fractions import Fraction
 from typing import Any
 
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
@@ -43,6 +44,13 @@ def dotted(place: tuple[Any, ...]) -> str:
     """Return the path of a place in a file: ("stage", 1, "module") is `stage[2].module`."""
     parts = [f"[{p + 1}]" if isinstance(p, int) else f".{_key(str(p))}" for p in place]
     return "".join(parts).removeprefix(".")
+
+
+def exact(value: Fraction) -> Decimal | int:
+    """Return a fraction of a file as the decimal number it was."""
+    if value.denominator == 1:
+        return value.numerator
+    return Context(prec=40).divide(Decimal(value.numerator), Decimal(value.denominator))
 
 
 def _escape(character: str) -> str:
