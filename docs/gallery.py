@@ -49,6 +49,7 @@ GROUPS = {  # heading: {file: what it shows, in a line}
         "four_stages": "300:1, proven like the short ones.",
         "five_stages": "1000:1.",
         "six_stages": "3000:1, the most stages a drive may have.",
+        "how_many_stages": "`stages = [1, 5]`: the best number of stages, with a table of each.",
         "five_stages_continuous": "1000:1 with real-valued sizes and an exact ratio.",
     },
     "Impossible requests": {

@@ -7,7 +7,7 @@ objective's own scale (see `scale`).
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -273,4 +273,34 @@ def reconcile(result: Result, relaxation: Result, tolerance: float) -> Result:
         status=status,
         certificate=certificate,
         proof=dict(relaxation.proof),
+    )
+
+
+def least(results: Sequence[Result], tolerance: float) -> Result:
+    """Return the best of the answers to the parts of a problem, held against the bounds of all.
+
+    results: of parts whose designs together are all designs. The bound is the least of theirs; a
+    part that is proven impossible has none to be below, one without a bound leaves the whole
+    without. tolerance: the largest relative gap called optimal.
+    """
+    possible = [r for r in results if r.status != "infeasible"]
+    if not possible:
+        return results[0]
+    known = [r for r in possible if r.value is not None]
+    early = [r for r in possible if r.status == "limit"]
+    best = min(known, key=lambda r: r.value or 0.0, default=(early or possible)[0])
+    lowest = min(possible, key=lambda r: -math.inf if r.bound is None else r.bound)
+    if best.value is None or lowest.bound is None:
+        status = best.status if best.status != "optimal" else "feasible"
+        return replace(best, status=status, bound=lowest.bound, gap=None, proof=dict(lowest.proof))
+    scale = max(r.certificate.get("scale") or 0.0 for r in results)
+    gap = gap_of(best.value, lowest.bound, scale)
+    unsure = "limit" if early else "feasible"
+    status = unsure if best.status == "optimal" else best.status
+    return replace(
+        best,
+        status="optimal" if gap <= tolerance else status,
+        bound=lowest.bound,
+        gap=reported_gap(gap),
+        proof=dict(lowest.proof),
     )

@@ -1,6 +1,6 @@
 """Drives of cylindrical gears, laid out or not: drawings, stages, processes, next best trains."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from gearopt.formulations.design import drive_design
@@ -13,7 +13,16 @@ from gearopt.report.measures import Measures
 from gearopt.report.pages import layout_solid, layout_views, train_views
 from gearopt.report.pages.bodies import layout_of
 from gearopt.report.section import Cell, Figure, Section, Table, Tile, axis, layout
-from gearopt.report.words import RULED, amount, heading, limit_words, number, objective, parted
+from gearopt.report.words import (
+    RULED,
+    VERDICTS,
+    amount,
+    heading,
+    limit_words,
+    number,
+    objective,
+    parted,
+)
 
 NARROWEST = 3  # gaps that are named
 OF_STAGE = {"ratio": "ratio u", "centre_distance_mm": "a", "face_width_mm": "b"}
@@ -110,6 +119,57 @@ def _missing(part: Result) -> str:
     first, _, rest = part.message.partition(" ")
     shown = "The design" if part.design else "No design"
     return f"{shown} by {part.name}: {limit_words(first)} {rest}".rstrip(". ") + "."
+
+
+def counts(result: Result, measures: Measures) -> Section | None:
+    """Return every number of stages that was solved; None where the file gives one."""
+    gears = (part for part in result.parts if part.name == "gears")
+    found = next((one for one in (result, *gears) if one.report.get("counts")), None)
+    if found is None:
+        return None
+    rows, (name, unit) = found.report["counts"], objective(found)
+    sign = f"\n[{measures.unit(unit)}]" if unit else ""
+    long = (f"{name}{sign}", "above the best,\n%", f"bound{sign}", "gap,\n%")
+    names = {head.replace("\n", " "): head for head in long}
+    heads = ("stages", "status", *names, "ratio of each stage", "m_n, z1/z2", "seconds")
+    cells = [[*_count(row, found, measures), *_each(row)] for row in rows]
+    hidden = (*[*names][2:], "m_n, z1/z2")
+    table = Table("numbers of stages", heads, cells, page_only=hidden, short=names, left=2, wrap=9)
+    words = [
+        f"Impossible with {row['stages']} {'stage' if row['stages'] == 1 else 'stages'}: in "
+        f"conflict are {', '.join(limit_words(n) for n in row['conflict'])}."
+        for row in rows
+        if row["conflict"]
+    ]
+    shown = (table, "\n".join(words)) if words else (table,)
+    return Section("Number of stages", words=words, tables=(table,), terminal=shown)
+
+
+def _count(row: Mapping[str, Any], best: Result, measures: Measures) -> list[Any]:
+    """Return number, status, objective and bound of a number of stages."""
+    unit, value, bound, gap = objective(best)[1], row["objective"], row["bound"], row["gap"]
+    more = None if value is None or not best.value else 100.0 * (value / best.value - 1.0)
+    beyond = row["status"] == "limit" and None not in (bound, best.value) and bound > best.value
+    return [
+        row["stages"],
+        "not better, by its bound" if beyond else VERDICTS[row["status"]][0],
+        None if value is None else measures.of(value, unit),
+        None if more is None else Cell(more, f"{more:.2f}"),
+        None if bound is None else measures.of(bound, unit),
+        None if gap is None else Cell(100.0 * gap, f"{100.0 * gap:.3g}"),
+    ]
+
+
+def _each(row: Mapping[str, Any]) -> list[Any]:
+    """Return ratios, gears and seconds of a number of stages."""
+    ratios = row["ratios"]
+    gears = zip(row["modules_mm"], row["teeth"], strict=True)
+    teeth = "  ".join(f"{number(m)}, {number(a)}/{number(b)}" for m, (a, b) in gears)
+    return [
+        Cell(ratios, "  ".join(f"{u:.3f}" for u in ratios)),
+        teeth,
+        Cell(row["seconds"], f"{row['seconds']:.2g}"),
+    ]
 
 
 def trade_off(result: Result, measures: Measures) -> Section | None:
@@ -262,6 +322,7 @@ KIND = Kind(
         layout_solid.section,
         _in_one_line,
         processes,
+        counts,
         tables,
         *ASKED,
         trains,
@@ -271,6 +332,7 @@ KIND = Kind(
     terminal=(
         tables,
         places,
+        counts,
         limits,
         trains,
         processes,

@@ -14,13 +14,14 @@ from gearopt.formulations.gear_train import Train
 from gearopt.optimise.certificate import reconcile
 from gearopt.optimise.clock import Clock, in_part, of_others
 from gearopt.optimise.comparing.compare import Model
-from gearopt.optimise.explaining.explanation import Explanation
+from gearopt.optimise.explaining.explanation import Explanation, Remedies
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import GAP, run
 from gearopt.optimise.typed import untyped
 from gearopt.scenes.drive.assumptions import assumptions, notes
 from gearopt.scenes.drive.scene import EXAMPLE, Scene
+from gearopt.scenes.drive.stage_counts import best_count
 from gearopt.scenes.explaining.default import of_report
 from gearopt.scenes.parts import undercut
 from gearopt.scenes.reading.ask import Ask
@@ -44,6 +45,9 @@ def solve(scene: Scene, ask: Ask) -> Result:
 
 def _solved(scene: Scene, ask: Ask) -> Result:
     """Return the drive, laid out where the file asks for it; else remedies where there is none."""
+    together = scene.layout is not None and scene.layout.together
+    if scene.several and together:
+        return _with_ways_out(scene, ask, best_count(scene, ask, _real, _boxed))
     if scene.layout is not None:
         from gearopt.scenes.drive.box.at_once import at_once
         from gearopt.scenes.drive.box.lay_out import lay_out
@@ -51,14 +55,47 @@ def _solved(scene: Scene, ask: Ask) -> Result:
         sized = _solved(bare(scene), replace(ask, method=None))
         if sized.value is None:
             return sized
-        return (at_once if scene.layout.together else lay_out)(_unruled(scene), ask, sized)
-    result = _answer(scene, ask)
+        scene = _unruled(_chosen(scene, sized))
+        return (at_once if together else lay_out)(scene, ask, sized)
+    result = best_count(scene, ask, _real, _answer) if scene.several else _answer(scene, ask)
     if result.status != "infeasible":
         return _with_processes(scene, ask, result)
-    from gearopt.scenes.drive.explaining.remedies import remedies
+    return _with_ways_out(scene, ask, result)
 
-    ways = asdict(remedies(_unruled(scene), _others(ask, result.seconds)))
+
+def _real(scene: Scene, ask: Ask) -> Result:
+    """Return the drive with real-valued teeth and modules, without its layout."""
+    train = scene.train()
+    return _sized(bare(scene), train, Ask(None, ask.budget, watch=ask.watch), sizing.problem(train))
+
+
+def _boxed(scene: Scene, ask: Ask, ideal: Result) -> Result:
+    """Return gears and box at once of a drive with one number of stages."""
+    from gearopt.scenes.drive.box.at_once import at_once
+
+    sized = _answer(bare(scene), replace(ask, method=None), ideal)
+    if sized.value is None:  # a bound of the gears is none of the box
+        return replace(sized, bound=None)
+    return at_once(_unruled(scene), replace(ask, budget=ask.budget.less(sized.seconds)), sized)
+
+
+def _chosen(scene: Scene, result: Result) -> Scene:
+    """Return the drive with the number of stages of its design."""
+    return scene.held(len(result.design["stages"])) if scene.several else scene
+
+
+def _with_ways_out(scene: Scene, ask: Ask, result: Result) -> Result:
+    """Return an impossible result with its remedies, those of a box where it has them already."""
+    if result.status != "infeasible" or "ways_out" in result.report:
+        return result
+    ways = asdict(_ways_out(scene, _others(ask, result.seconds)))
     return replace(result, report=result.report | {"ways_out": ways})
+
+
+def _ways_out(scene: Scene, clock: Clock) -> Remedies:
+    from gearopt.scenes.drive.explaining.counts import remedies_of_counts
+
+    return remedies_of_counts(scene, _unruled(bare(scene)), clock)
 
 
 def explain(scene: Scene, ask: Ask, result: Result | None = None) -> Explanation:
@@ -72,11 +109,11 @@ def explain(scene: Scene, ask: Ask, result: Result | None = None) -> Explanation
             return of_report(result)
         return _explained(scene, ask, result, _others(ask, result.seconds))
     clock = _others(ask)
-    result = _answer(scene, ask.half)
+    result = (
+        best_count(scene, ask.half, _real, _answer) if scene.several else _answer(scene, ask.half)
+    )
     if result.status == "infeasible":
-        from gearopt.scenes.drive.explaining.remedies import remedies
-
-        return Explanation(result, **vars(remedies(scene, clock)), seconds=clock.seconds)
+        return Explanation(result, **vars(_ways_out(scene, clock)), seconds=clock.seconds)
     if result.value is None:
         return Explanation(result, message="no design was found in time", seconds=clock.seconds)
     return _explained(scene, ask, result, clock)
@@ -88,7 +125,12 @@ def _others(ask: Ask, spent: float = 0.0) -> Clock:
 
 
 def _explained(scene: Scene, ask: Ask, result: Result, clock: Clock) -> Explanation:
-    """Return what every number of the file does to a design that was found."""
+    """Return what every number of the file does to a design that was found; stages are held."""
+    if scene.several:
+        count = len(result.design["stages"])
+        found = _explained(scene.held(count), ask, result, clock)
+        words = f"the number of stages is held at {count}"
+        return replace(found, message="; ".join(filter(None, (found.message, words))))
     if scene.layout is not None:
         from gearopt.scenes.drive.box.remedies import explained as box_explained
 
@@ -113,14 +155,15 @@ def _unruled(scene: Scene) -> Scene:
     return scene.model_copy(update=dict.fromkeys(PROCESSES))
 
 
-def _answer(scene: Scene, ask: Ask) -> Result:
+def _answer(scene: Scene, ask: Ask, ideal: Result | None = None) -> Result:
+    """Return the sized drive; ideal: the one with real-valued sizes, where it is known."""
     train = scene.train()
     if _continuous(scene, ask.method):
         return _sized(scene, train, ask, sizing.problem(train))
-    ideal = _sized(scene, train, Ask(budget=ask.budget, watch=ask.watch), sizing.problem(train))
+    known, ideal = ideal is not None, ideal or _real(scene, ask)
     if ideal.status == "infeasible":  # then no whole teeth do either
         return replace(ideal, name="drive")
-    ask = replace(ask, budget=ask.budget.less(ideal.seconds))
+    ask = replace(ask, budget=ask.budget.less(0.0 if known else ideal.seconds))
     floor = -math.inf if ideal.bound is None else ideal.bound
     found = _sized(scene, train, ask, _discrete(scene, train, ask.top, floor))
     if found.status == "limit" and found.value is None:  # the continuous bound holds all the same
@@ -171,6 +214,8 @@ def model(scene: Scene, method: str) -> Model:
 
     With a [layout] that is the layout of the gears that are best without it.
     """
+    if scene.several:
+        return _of_best_count(scene, method)
     if scene.layout is not None:
         from gearopt.scenes.drive.box import at_once, lay_out
 
@@ -184,6 +229,15 @@ def model(scene: Scene, method: str) -> Model:
     if _continuous(scene, method):
         return Model(sizing.problem(train), "Real-valued teeth and modules", train.unit)
     return Model(_discrete(scene, train), "Whole teeth and standard modules", train.unit)
+
+
+def _of_best_count(scene: Scene, method: str) -> Model:
+    """Return the problem of a method with the number of stages that is best, the same for all."""
+    best = solve(scene, Ask())
+    if best.value is None:
+        raise SolveError("there is no drive to compare: gearopt explain shows why")
+    found = model(_chosen(scene, best), method)
+    return replace(found, words=f"{found.words}, {len(best.design['stages'])} stages (the best)")
 
 
 def _continuous(scene: Scene, method: str | None) -> bool:

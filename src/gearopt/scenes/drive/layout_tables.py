@@ -155,9 +155,19 @@ class Layout(Table):
             raise refuse("names fewer than two shafts", [1, 2], ("split_line",), "sample")
         return self
 
-    def check(self, stages: int) -> None:
-        """Check that every list fits a drive of so many stages; places count from the file."""
+    def check(self, counts: tuple[int, ...]) -> None:
+        """Check that every list fits a drive of these numbers of stages, ascending.
+
+        Places count from the file.
+        """
+        stages, several = counts[0], len(counts) > 1
         shafts = stages + 1
+        for name in ("shaft_diameters", "bearing_diameters", "bearing_widths", "slabs"):
+            if several and getattr(self, name) is not None:
+                other = "give shaft_stress instead" if name == "shaft_diameters" else "leave it out"
+                rule = "is a list for one number of stages, and stages is a range"
+                remedy = f"Write stages = {stages}, or {other}"
+                raise refuse(rule, remedy, ("layout", name), "tell")
         for name in ("shaft_diameters", "bearing_diameters", "bearing_widths"):
             found = getattr(self, name)
             if found is not None and len(found) != shafts:

@@ -26,11 +26,13 @@ from gearopt.scenes.drive.drive_tables import (
 from gearopt.scenes.drive.layout_tables import KeepOutTable, Layout, PlaceTable, gearbox
 from gearopt.scenes.parts import Duty
 from gearopt.scenes.reading.fields import Table, refuse, whole, words
+from gearopt.scenes.reading.lists import span
 
 EXAMPLE = """\
 gearopt = 1
 kind = "drive"
 title = "A two-stage drive"
+# stages = [1, 4]              # instead of the tables [[stage]]: the best number of stages
 
 [duty]
 power = "7.5 kW"
@@ -91,6 +93,14 @@ ENDS: dict[str, tuple[str, int | None]] = {
 }
 
 
+RANGE = (
+    "is a range, which [[stage]] tables do not fit: write what all stages share in [gears] and "
+    "[limits] instead, or one number"
+)
+MOST_STAGES = 6
+STAGES = span(whole(2, 1, MOST_STAGES), 2, single=True)
+
+
 class Scene(Table):
     """A drive."""
 
@@ -99,8 +109,10 @@ class Scene(Table):
         "", description="Where the data and the expected value come from"
     )
     duty: Duty
-    stages: Annotated[int | None, whole(2, 1, 6)] = Field(
-        None, description="Number of stages (or write one [[stage]] table per stage)"
+    stages: Annotated[tuple[int, int] | None, STAGES] = Field(
+        None,
+        description="Number of stages, or a range: the best of it is found, without [[stage]] "
+        "(or write one [[stage]] table per stage)",
     )
     gears: Gears = Field(default_factory=Gears)
     stage: tuple[StageTable, ...] = Field((), description="One table per stage, from the input on")
@@ -120,37 +132,58 @@ class Scene(Table):
             if self.gears.face_width_over_diameter is None:
                 raise refuse("is missing: one table [[stage]] per stage", at=("stage",))
             raise refuse("is missing (or write one [[stage]] table per stage)", at=("stages",))
-        if number > 6:
-            raise refuse(
-                "is one more than the six stages allowed", at=("stage", 6), action="remove"
-            )
-        if self.stages is not None and self.stage and self.stages != number:
-            raise refuse(f"differs from the {number} [[stage]] tables", number, ("stages",))
+        if number > MOST_STAGES:
+            rule = "is one more than the six stages allowed"
+            raise refuse(rule, at=("stage", MOST_STAGES), action="remove")
+        if self.stages is not None and self.stage and self.stages != (number, number):
+            rule = f"differs from the {number} [[stage]] tables"
+            raise refuse(RANGE if self.several else rule, number, ("stages",))
         for k, own in enumerate(self.stage or (StageTable(),)):
             self._check_width(own, ("stage", k) if self.stage else ("gears",))
             if self.teeth is not None and not self._modules(own):
                 place = ("stage", k, "module") if own.module else ("limits", "module")
                 raise refuse("holds no module that [teeth] allows", self._around(own), place)
-        self._check_layout(len(self.stage) or int(self.stages or 0))
+        self._check_layout()
         for name, table in (("process_one", self.process_one), ("process_two", self.process_two)):
             if table is not None and self.teeth is None:
                 raise refuse("needs a table [teeth]", at=(name,), action="remove")
+            if table is not None and self.several:
+                rule = "is for one number of stages, and stages is a range"
+                raise refuse(rule, at=(name,), action="remove")
             if table is not None:
-                table.check(len(self.stage) or int(self.stages or 0), name)
+                table.check(self.counts[0], name)
         return self
 
-    def _check_layout(self, stages: int) -> None:
+    @property
+    def counts(self) -> tuple[int, ...]:
+        """Return the numbers of stages that the drive may have, ascending."""
+        number = len(self.stage)
+        low, high = self.stages or (number, number)
+        return tuple(range(low, high + 1))
+
+    @property
+    def several(self) -> bool:
+        """Return whether the number of stages is to be chosen."""
+        return len(self.counts) > 1
+
+    def held(self, count: int) -> "Scene":
+        """Return the drive with one number of stages."""
+        return self.model_copy(update={"stages": (count, count)}) if self.several else self
+
+    def _check_layout(self) -> None:
         """Check the tables of a layout against the drive and each other."""
         if self.layout is None:
             for name in ("place", "keep_out"):
                 if getattr(self, name):
                     raise refuse("needs a table [layout]", at=(name,), action="remove")
             return
-        self.layout.check(stages)
+        self.layout.check(self.counts)
+        last = self.counts[0] + 1
         for k, place in enumerate(self.place):
-            if place.shaft > stages + 1:
-                rule = f"is above {stages + 1}, the output shaft"
-                raise refuse(rule, stages + 1, ("place", k, "shaft"), "sample")
+            if place.shaft > last:
+                of = f" of a drive of {self.counts[0]} stages" if self.several else ""
+                rule = f"is above {last}, the output shaft{of}"
+                raise refuse(rule, last, ("place", k, "shaft"), "sample")
         if self.layout.together and self.teeth is None:
             raise refuse("needs a table [teeth]", False, ("layout", "together"))
 
@@ -216,8 +249,9 @@ class Scene(Table):
         )
 
     def train(self) -> Train:
-        """Return the drive as plain numbers."""
-        stages = self.stage or (StageTable(),) * int(self.stages or 0)
+        """Return the drive as plain numbers; it has one number of stages."""
+        assert not self.several
+        stages = self.stage or (StageTable(),) * self.counts[0]
         density, speed = self.objective.density, self.duty.input_speed.value
         return Train(
             torque=torque(self.duty.power.value, speed),

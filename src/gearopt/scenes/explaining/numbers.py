@@ -47,7 +47,7 @@ def numbers(scene: BaseModel, defaults: bool = False) -> tuple[Number, ...]:
 
     defaults: those too that the file leaves out.
     """
-    return tuple(n for n in _walk(scene, (), defaults) if n.path != ("stages",))
+    return tuple(n for n in _walk(scene, (), defaults) if n.path[0] != "stages")
 
 
 def _walk(value: Any, path: Path, defaults: bool) -> Iterator[Number]:

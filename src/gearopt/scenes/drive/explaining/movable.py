@@ -155,7 +155,7 @@ def staged(scene: Scene) -> Scene:
     """Return the scene with one table per stage."""
     if scene.stage:
         return scene
-    return scene.model_copy(update={"stage": (StageTable(),) * int(scene.stages or 0)})
+    return scene.model_copy(update={"stage": (StageTable(),) * scene.counts[0]})
 
 
 def applied(scene: Scene, moves: Sequence[tuple[Movable, float]]) -> Edited | None:
