@@ -236,5 +236,5 @@ def test_page_and_terminal_show_every_number():
     assert "Impossible with 1 stage: in conflict are ratio low" in screen.export_text()
     rows = tables(found, METRIC)["numbers-of-stages.csv"].splitlines()
     assert len(rows) == 4 and rows[3].startswith("3,proven optimal,")
-    assert "above the best, %,bound [mm³]" in rows[0]
+    assert '"above the best, %",bound [mm³]' in rows[0]
     assert "Number of stages" in page(found, "", METRIC)
