@@ -37,8 +37,9 @@ class Reader(HTMLParser):
 
 
 def drawings(html):
-    """Every SVG of a page as a tree."""
-    return [ET.fromstring(text) for text in re.findall(r"<svg .*?</svg>", ours(html), re.S)]
+    """Every SVG of a page as a tree, but for stills of views in space."""
+    found = [ET.fromstring(text) for text in re.findall(r"<svg .*?</svg>", ours(html), re.S)]
+    return [svg for svg in found if not svg.get("aria-label").endswith("in space")]
 
 
 def ours(html):

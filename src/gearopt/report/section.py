@@ -24,11 +24,15 @@ LONG = 24  # rows; a longer table may break between rows when it is printed
 
 @dataclass(frozen=True)
 class Figure:
-    """A plot: its plotly data and layout, and and its caption."""
+    """A plot: its plotly data and layout, and its caption.
+
+    still: what is seen before it is drawn, without WebGL, and in print.
+    """
 
     data: list[dict[str, Any]]
     layout: dict[str, Any]
     caption: str
+    still: Drawing | None = None
 
 
 LOOK = {  # of any plot

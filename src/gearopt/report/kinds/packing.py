@@ -28,6 +28,7 @@ from gearopt.report.pages.solid import (
     space,
     upright,
 )
+from gearopt.report.pages.still import Rod, Texts, sizes_of, still, view
 from gearopt.report.section import Cell, Figure, Section, Table, shown
 from gearopt.report.words import heading, number, parted
 
@@ -137,8 +138,31 @@ def solid(result: Result, measures: Measures) -> Section | None:
         seen.add(d)
         name = escape(words(it, measures))
         traces.append(mesh_trace(mesh, name, colours[d], group, showlegend=first))
-    view = space(*corners, measures, 520)
-    return Section("In three dimensions", figures=(Figure(traces, view, TURN),))
+    turned = space(*corners, measures, 520)
+    figure = Figure(traces, turned, TURN, _picture(design, colours, measures))
+    return Section("In three dimensions", figures=(figure,))
+
+
+def _picture(design: PackingDesign, colours: Mapping[float, str], measures: Measures) -> Drawing:
+    """Draw what the view in space begins with, for print: a, b and c are z, x and y."""
+    left, right, front, back = _span(design.container)
+    room = (0.0, left, front), (design.container.height_mm, right, back)
+    unit, seen = measures.unit("mm"), view("zxy")
+    bodies = [
+        Rod(
+            (it.x_mm, it.y_mm),
+            0.5 * it.diameter_mm,
+            it.from_mm,
+            it.to_mm,
+            "gear",
+            colours[it.diameter_mm],
+            words(it, measures),
+        )
+        for it in design.cylinders
+    ]
+    legend = [(f"⌀ {measures.of(d, 'mm'):.4g} {unit}", colour) for d, colour in colours.items()]
+    texts = Texts(sizes_of(room, "zxy", measures), legend)
+    return still(bodies, room, seen, texts, "the packing in space")
 
 
 def _outline(container: ContainerDesign) -> list[Point | None]:

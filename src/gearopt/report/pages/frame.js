@@ -21,13 +21,17 @@
     return Object.fromEntries(Object.entries(part).map(([k, v]) => [k, resolved(style, v)]));
   }
 
+  // A view in space, which print would leave empty, stays a still without WebGL.
+  const turns = !!document.createElement("canvas").getContext("webgl");
+
   function draw() {
     const style = getComputedStyle(root);
-    for (const place of document.querySelectorAll(".plot")) {
+    for (const place of document.querySelectorAll(turns ? ".plot" : "figure:not(.solid) > .plot")) {
       const spec = JSON.parse(place.parentElement.querySelector("script").textContent);
       const { data, layout } = resolved(style, spec);
       if (place.clientWidth < narrow) layout.font.size = 11;
       if (root.classList.contains("paper")) layout.width = sheet;
+      place.parentElement.classList.add("drawn");  // a still made way for it
       Plotly.react(place, data, layout, options);
     }
   }

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from html import escape
 from typing import Any
 
-from gearopt.formulations.layout.layout_design import GearDesign, LayoutDesign
+from gearopt.formulations.layout.layout_design import GearDesign, LayoutDesign, ShaftDesign
 from gearopt.optimise.result import Result
 from gearopt.physics.gears import Gear
 from gearopt.report.measures import Measures
@@ -17,8 +17,9 @@ from gearopt.report.pages.bodies import (
     meaning,
     motor,
     nearest,
+    sides,
 )
-from gearopt.report.pages.sheet import series
+from gearopt.report.pages.sheet import Drawing, series
 from gearopt.report.pages.solid import (
     TURN,
     Mesh,
@@ -29,9 +30,12 @@ from gearopt.report.pages.solid import (
     gear_mesh,
     line_trace,
     mesh_trace,
+    outline,
     rod,
     space,
+    twist,
 )
+from gearopt.report.pages.still import Block, Body, Rod, Texts, sizes_of, still, view
 from gearopt.report.section import Figure, Section
 
 MOST = 50_000  # triangles of all gears together, for a page that turns smoothly without a GPU
@@ -50,10 +54,62 @@ def section(result: Result, measures: Measures) -> Section | None:
     """Draw the gearbox in space; None where there is no layout."""
     if (found := layout_of(result)) is None:
         return None
-    view = space(*drawn_corners(found), measures)
+    seen = space(*drawn_corners(found), measures)
     whole = all(gear.teeth == drawn_teeth(gear.teeth) for gear in found.gears)
     words = CAPTION if whole else f"{CAPTION} {ROUNDED}"
-    return Section("In three dimensions", figures=(Figure(_traces(found, measures), view, words),))
+    figure = Figure(_traces(found, measures), seen, words, picture(found, measures))
+    return Section("In three dimensions", figures=(figure,))
+
+
+def picture(found: LayoutDesign, measures: Measures) -> Drawing:
+    """Draw what the view in space begins with, its teeth in mesh, for print."""
+    places = {s.shaft: (s.y_mm, s.z_mm) for s in found.shafts}
+    bodies: list[Body] = [_picture_of(found, gear, places, measures) for gear in found.gears]
+    for it in found.bearings:
+        r, title = 0.5 * it.diameter_mm, f"bearing of shaft {it.shaft}"
+        bodies.append(Rod(places[it.shaft], r, it.from_mm, it.to_mm, "metal", title=title))
+    for shaft in found.shafts:
+        r, title = 0.5 * shaft.diameter_mm, f"shaft {shaft.shaft}"
+        for start, end in _bare(found, shaft):
+            bodies.append(Rod(places[shaft.shaft], r, start, end, "metal", title=title))
+    if place := motor(found):
+        bodies.append(Rod((0.0, 0.0), *place, "metal", title="motor"))
+    for out in keep_outs(found):
+        low, high = zip(*(sides(out, axis) for axis in "xyz"), strict=True)
+        bodies.append(Block(low, high, "blocked", out.name))
+    legend = [(f"stage {k}", series(k)) for k in sorted({g.stage for g in found.gears})]
+    past = FLUSH * found.box.length_mm
+    ends = [((s.to_mm + past, s.y_mm, s.z_mm), str(s.shaft)) for s in found.shafts]
+    corners = box_corners(found)
+    texts = Texts(sizes_of(corners, "xyz", measures), legend, ends)
+    return still(bodies, corners, view(), texts, "the gearbox in space")
+
+
+def _picture_of(
+    found: LayoutDesign,
+    gear: GearDesign,
+    places: Mapping[int, tuple[float, float]],
+    measures: Measures,
+) -> Rod:
+    """Return a gear with its teeth, as they are at its face on the side of the output."""
+    solid, r = _toothed(found, gear, places), 0.5 * gear.tip_diameter_mm
+    turn = solid.phase + twist(solid.gear) * (gear.to_mm - solid.middle)
+    rim = tuple((angle + turn, at) for angle, at in outline(solid.gear, 2))
+    words, colour = meaning(gear, measures), series(gear.stage)
+    return Rod(solid.centre, r, gear.from_mm, gear.to_mm, "gear", colour, words, rim)
+
+
+def _bare(found: LayoutDesign, shaft: ShaftDesign) -> list[tuple[float, float]]:
+    """Return the parts of a shaft between what sits on it."""
+    on = [(g.from_mm, g.to_mm) for g in found.gears if g.shaft == shaft.shaft]
+    on += [(b.from_mm, b.to_mm) for b in found.bearings if b.shaft == shaft.shaft]
+    past = FLUSH * found.box.length_mm
+    parts, start = [], shaft.from_mm - past
+    for low, high in [*sorted(on), (shaft.to_mm + past, math.inf)]:
+        if low > start:
+            parts.append((start, low))
+        start = max(start, high)
+    return parts
 
 
 def _traces(found: LayoutDesign, measures: Measures) -> list[dict[str, Any]]:

@@ -208,6 +208,10 @@ class Sheet:
         for corner in () if rim else (arc[0], arc[-1]):
             self._ink.add(_along((cx, cy), corner))
 
+    def shape(self, path: str, style: str, colour: str = "", title: str = "") -> None:
+        """Draw an SVG path [px], over which labels may be written."""
+        self._add("path", f'd="{path}"', style, colour, title)
+
     def line(self, a: Point, b: Point, style: str, colour: str = "") -> None:
         """Draw a line [mm]."""
         self._stroke(self.at(*a), self.at(*b), style, colour)

@@ -59,21 +59,21 @@ def gear_mesh(placed: Toothed, flank: int, step: float) -> Mesh:
     Half the angle of a tooth at radius r is pi/(2 z) + inv(alpha_t) - inv(alpha_r).
     """
     gear, start, end = placed.gear, placed.start, placed.end
-    outline = _outline(gear, flank)
-    rate = 2.0 * math.tan(gear.helix_angle) / gear.reference_diameter  # twist per mm
+    rim = outline(gear, flank)
+    rate = twist(gear)
     sections = 1 + max(1, math.ceil(abs(rate) * (end - start) / step))
-    if sections * len(outline) > MOST_POINTS:
+    if sections * len(rim) > MOST_POINTS:
         raise ValueError(f"a gear of {gear.teeth:g} teeth that is drawn in {sections:.0e} sections")
     points: list[Point] = []
     y, z = placed.centre
     for k in range(sections):
         x = start + (end - start) * k / (sections - 1)
         turn = placed.phase + rate * (x - placed.middle)
-        for angle, r in outline:
+        for angle, r in rim:
             at = angle + turn
             points.append((x, y + r * math.cos(at), z + r * math.sin(at)))
-    faces = _skin(len(outline), sections)
-    around, last = len(outline), len(points) - len(outline)
+    faces = _skin(len(rim), sections)
+    around, last = len(rim), len(points) - len(rim)
     middle = len(points)
     points += [(start, y, z), (end, y, z)]
     for k in range(around):  # a fan over each face
@@ -82,7 +82,12 @@ def gear_mesh(placed: Toothed, flank: int, step: float) -> Mesh:
     return points, faces
 
 
-def _outline(gear: Gear, flank: int) -> list[tuple[float, float]]:
+def twist(gear: Gear) -> float:
+    """Return the angle by which teeth turn along the axis [rad/mm]."""
+    return float(2.0 * math.tan(gear.helix_angle) / gear.reference_diameter)
+
+
+def outline(gear: Gear, flank: int) -> list[tuple[float, float]]:
     """Return (angle, radius) once round the gear, a tooth in the middle of angle 0."""
     transverse = float(gear.transverse_pressure_angle)
     base = float(gear.base_diameter) / 2.0
