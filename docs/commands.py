@@ -22,7 +22,7 @@ the version; `python -m gearopt` is the same as `gearopt`.
 EXIT_CODES = {
     0: "done: a design was found (its status says how good it is), the files are right",
     1: "`doctor`: a solver does not work on this machine",
-    2: "the file or the command is wrong; one message says where and what to write",
+    2: "the file or the command is wrong; a line for every mistake says where and what to write",
     3: "proven: no design meets the limits; or a given design, evaluated, exceeds one",
     4: "nothing found within the time",
     130: "interrupted before there was anything to keep, or by a second Ctrl-C",

@@ -1,12 +1,13 @@
 """Units against pint, and what is said about a quantity that cannot be read."""
 
 import math
+import re
 from fractions import Fraction
 
 import pint
 import pytest
 
-from gearopt.units import UNITS, parse, quotient
+from gearopt.units import SPELLINGS, UNITS, parse, pattern, quotient
 
 PINT = pint.UnitRegistry()
 INSIDE = {  # dimension -> what one is inside
@@ -101,13 +102,56 @@ def test_numbers_are_read_exactly(text, number, unit):
 
 
 @pytest.mark.parametrize("dimension", UNITS)
-@pytest.mark.parametrize(
-    "text", ["", "kW", "7.5 parsec", "7,5 mm", "1e99999 mm", "\u0667 mm", "nan"]
-)
+@pytest.mark.parametrize("text", ["", "kW", "7.5 parsec", "1e99999 mm", "\u0667 mm", "nan"])
 def test_errors_name_the_units(dimension, text):
     with pytest.raises(ValueError) as wrong:
         parse(text, dimension)
     assert ", ".join(UNITS[dimension]) in str(wrong.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "theirs", "dimension"),
+    [
+        ("25 \u00b0", "25 degree", "angle"),
+        ("25\u00ba", "25 degree", "angle"),
+        ("1450 U/min", "1450 revolution / minute", "speed"),
+        ("1450 r/min", "1450 revolution / minute", "speed"),
+        ("1450 min^-1", "1450 revolution / minute", "speed"),
+        ("1450 min-1", "1450 revolution / minute", "speed"),
+        ("1450 min\u207b\u00b9", "1450 revolution / minute", "speed"),
+        ("24 s^-1", "24 revolution / second", "speed"),
+        ("6 \u00b0/s", "6 degree / second", "speed"),
+        ("3 N\u00b7m", "3 newton * meter", "torque"),
+        ("3 N*m", "3 newton * meter", "torque"),
+        ("3 kNm", "3 kilonewton * meter", "torque"),
+        ("3 ft lbf", "3 foot * pound_force", "torque"),
+        ("3 lb-in", "3 inch * pound_force", "torque"),
+        ("48 N/mm\u00b2", "48 newton / millimeter**2", "stress"),
+        ("48 N/mm2", "48 newton / millimeter**2", "stress"),
+        ("7850 kg/m\u00b3", "7850 kilogram / meter**3", "density"),
+        ("7.85 g/cm3", "7.85 gram / centimeter**3", "density"),
+        ("2 kg\u00b7cm\u00b2", "2 kilogram * centimeter**2", "inertia"),
+        ("5 \u00b5m", "5 micrometer", "length"),
+        ("5 \u03bcm", "5 micrometer", "length"),
+        ("5 inches", "5 inch", "length"),
+    ],
+)
+def test_other_spellings_of_a_unit_agree_with_pint(text, theirs, dimension):
+    number = PINT.Quantity(theirs).to(INSIDE[dimension]).magnitude
+    assert parse(text, dimension).value == pytest.approx(number, rel=1e-12)
+
+
+def test_no_spelling_is_that_of_two_units():
+    for dimension, known in UNITS.items():
+        for text in [way for unit in known for way in (unit, *SPELLINGS.get(unit, ()))]:
+            others = [u for u in known if u != text and re.fullmatch(pattern(u), text)]
+            assert len(others) <= (text not in known) or text in ("Nm", "mNm"), (dimension, text)
+
+
+@pytest.mark.parametrize("text", ["7,5 kW", "1,450 kW"])
+def test_a_comma_is_no_decimal_sign(text):
+    with pytest.raises(ValueError, match="has a comma: the sign of decimals is a point"):
+        parse(text, "power")
 
 
 def test_a_unit_of_another_dimension_is_called_so():

@@ -8,6 +8,7 @@
 An infeasible request is not an exception: it is a status of the result.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 
@@ -39,13 +40,17 @@ class Fix:
 
 
 class SceneError(GearoptError):
-    """A problem file cannot be used: says where, what was found, the rule, and what to write.
+    """A problem file cannot be used: for every mistake where, what was found, and what to write.
 
-    file, key, value: where it is and what stands there (value as text, shortened).
+    file, key, value: where the first mistake is and what stands there (value as text, shortened).
     rule: what is wrong, one sentence.
     remedy: what to write instead, one sentence.
     fix: the remedy as data, when one change of one key mends the file; else None.
+    errors: all mistakes of the file in its order, this one first, each an error of its own; the
+    text has a line for each of the first `SHOWN`.
     """
+
+    SHOWN = 20
 
     def __init__(
         self,
@@ -55,13 +60,27 @@ class SceneError(GearoptError):
         rule: str,
         remedy: str,
         fix: Fix | None = None,
+        more: "Sequence[SceneError]" = (),
     ) -> None:
         self.file, self.key, self.value = file, key, value
         self.rule, self.remedy, self.fix = rule, remedy, fix
-        super().__init__(self._text())
+        self.errors: tuple[SceneError, ...] = (self, *more)
+        lines = [self._line(), *(error._line() for error in more)]
+        if (left := len(lines) - self.SHOWN) > 0:
+            lines[self.SHOWN :] = [f"{self._name()}: and {left} more"]
+        super().__init__("\n".join(lines))
 
-    def _text(self) -> str:
-        name = "".join(c if c.isprintable() else "?" for c in self.file)
-        where = name + (f": {self.key}" if self.key else "")
+    def _name(self) -> str:
+        return "".join(c if c.isprintable() else "?" for c in self.file)
+
+    def _line(self) -> str:
+        where = self._name() + (f": {self.key}" if self.key else "")
         found = f" = {self.value}" if self.value else ""
         return f"{where}{found}: {self.rule}. {self.remedy}".rstrip()
+
+
+def together(errors: Sequence[SceneError]) -> SceneError:
+    """Return one error that holds several, of which there is at least one."""
+    first = errors[0]
+    place = first.file, first.key, first.value
+    return SceneError(*place, first.rule, first.remedy, first.fix, errors[1:])

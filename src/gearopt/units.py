@@ -78,6 +78,26 @@ UNITS: dict[str, dict[str, tuple[Fraction, int]]] = {
     "fraction": {"%": (Fraction(1, 100), 0)},
 }
 
+# unit -> other ways to write it, read as that unit
+SPELLINGS: dict[str, tuple[str, ...]] = {
+    "rpm": ("U/min", "r/min", "rev/min"),
+    "1/min": ("min^-1", "min-1", "min\u207b\u00b9", "/min"),
+    "1/s": ("s^-1", "s-1", "s\u207b\u00b9", "U/s", "r/s", "rev/s"),
+    "deg": ("\u00b0", "\u00ba", "degree", "degrees"),  # the raised o is taken for a degree sign
+    "deg/s": ("\u00b0/s",),
+    "arcmin": ("\u2032",),
+    "arcsec": ("\u2033",),
+    "um": ("\u00b5m", "\u03bcm"),  # the micro sign, and the Greek letter
+    "in": ("inch", "inches"),
+    "lbf in": ("lb in", "in lbf", "in lb"),
+    "lbf ft": ("lb ft", "ft lbf", "ft lb"),
+}
+SIGNS = {  # within any unit: a raised digit, a product with a point or without
+    r"\^2": "(\\^2|\u00b2|2)",
+    r"\^3": "(\\^3|\u00b3|3)",
+    " ": "[ \u00b7\u22c5.*-]?",
+}
+
 _NUMBER = r"([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,4})?)"
 _UNIT = r"((?![eE][+-]?[0-9])[^\s\d.,].*?|1/\S+)?"  # it may hold spaces: N m
 _PATTERN = re.compile(rf"{_NUMBER}\s*{_UNIT}")
@@ -119,17 +139,41 @@ def quotient(above: Quantity, below: Quantity) -> Fraction:
     return Fraction(above.value / below.value)
 
 
+def pattern(unit: str) -> str:
+    """Return the regular expression of all ways to write a unit."""
+    ways = [re.escape(way).replace("\\ ", " ") for way in (unit, *SPELLINGS.get(unit, ()))]
+    for sign, others in SIGNS.items():
+        ways = [way.replace(sign, others) for way in ways]
+    return "|".join(way.replace("\\/", "/").replace("\\-", "-") for way in ways)
+
+
+def named(text: str, dimension: str, flags: int = 0) -> str | None:
+    """Return the unit of a dimension that a text spells; None where there is none.
+
+    flags: of the module `re`, such as re.IGNORECASE.
+    """
+    known = UNITS[dimension]
+    return (
+        text
+        if text in known
+        else next((unit for unit in known if re.fullmatch(pattern(unit), text, flags)), None)
+    )
+
+
 def parse(text: str, dimension: str) -> Quantity:
     """Read "7.5 kW"; ValueError with a sentence naming the rule where it cannot be read."""
-    known = UNITS[dimension]
+    known = ", ".join(UNITS[dimension])
     match = _PATTERN.fullmatch(text.strip()) if len(text) <= _LONGEST else None
+    if match is None and re.search("[0-9],[0-9]", text[:_LONGEST]):
+        raise ValueError("has a comma: the sign of decimals is a point, and thousands have none")
     if match is None:
-        raise ValueError(f"is not a number with a unit of {dimension} ({', '.join(known)})")
+        raise ValueError(f"is not a number with a unit of {dimension} ({known})")
     number, unit = match.groups()
     if unit is None and dimension != "fraction":
-        raise ValueError(f"has no unit; units of {dimension}: {', '.join(known)}")
-    if unit is not None and unit not in known:
-        other = next((f" of {d}" for d, names in UNITS.items() if unit in names), "")
+        raise ValueError(f"has no unit; units of {dimension}: {known}")
+    found = unit and named(unit, dimension)
+    if unit is not None and found is None:
+        other = next((f" of {d}" for d in UNITS if named(unit, d)), "")
         shown = f"{'' if other else 'unknown '}unit {unit if unit.isprintable() else ''}".rstrip()
-        raise ValueError(f"has the {shown}{other}; units of {dimension}: {', '.join(known)}")
-    return Quantity(Fraction(number), unit or "", dimension)
+        raise ValueError(f"has the {shown}{other}; units of {dimension}: {known}")
+    return Quantity(Fraction(number), found or "", dimension)

@@ -36,6 +36,8 @@ NO_FIX = (
     "is nested too deeply",
     "has a whole number of",
     "has a NUL",
+    "has a comma, which may part thousands or decimals",
+    "is not supported yet",
 )
 VALIDATOR = jsonschema.Draft202012Validator(json_schema("drive"))
 
@@ -52,11 +54,13 @@ def refusal(data):
     try:
         kind, scene = read(data, "my.toml")
     except SceneError as wrong:
-        message = str(wrong)
-        assert message.startswith("my.toml: ") and len(message) < 600
-        assert message.isprintable(), message
-        assert wrong.rule and wrong.remedy
-        assert (wrong.fix is None) == wrong.rule.startswith(NO_FIX), message
+        lines = str(wrong).splitlines()
+        assert len(lines) == min(len(wrong.errors), SceneError.SHOWN + 1)
+        for error, message in zip(wrong.errors, lines, strict=False):
+            assert message.startswith("my.toml: ") and len(message) < 600
+            assert message.isprintable(), message
+            assert error.rule and error.remedy
+            assert (error.fix is None) == error.rule.startswith(NO_FIX), message
         return wrong
     if kind == "drive":  # a file that lost its kind and tables may have become another
         scene.train()

@@ -17,18 +17,22 @@ from gearopt.scenes.servo import EXAMPLE
 
 
 @pytest.mark.parametrize(
-    ("wrong", "write"),
+    ("sheet", "plain"),
     [
         ("8.6e-6 kgm2", "8.6e-6 kg m^2"),
         ("86 gcm\u00b2", "86 g cm^2"),
         ("86 g\u00b7cm\u00b2", "86 g cm^2"),
-        ("0,09 kg cm^2", "0.09 kg cm^2"),
     ],
 )
-def test_inertias_as_data_sheets_write_them_are_mended(wrong, write):
+def test_inertias_are_read_as_data_sheets_write_them(sheet, plain):
+    there, same = (changed(EXAMPLE, (("motor", "inertia"), text)) for text in (sheet, plain))
+    assert there.motor.inertia == same.motor.inertia
+
+
+def test_an_inertia_with_a_decimal_comma_is_mended():
     with pytest.raises(SceneError) as caught:
-        changed(EXAMPLE, (("motor", "inertia"), wrong))
-    assert caught.value.fix.value == f'"{write}"'
+        changed(EXAMPLE, (("motor", "inertia"), "0,09 kg cm^2"))
+    assert caught.value.fix.value == '"0.09 kg cm^2"'
 
 
 NO_GRADE = {k: v for k, v in GIVEN_GEARS.items() if k != "grade"}

@@ -7,13 +7,13 @@ from gearopt.cli import answering  # noqa: F401
 
 # isort: split
 from gearopt.cli import files, reporting  # noqa: F401
-from gearopt.cli.app import app
+from gearopt.cli.app import app, told
 from gearopt.cli.writing import patient
 from gearopt.errors import GearoptError
 
 
 def run() -> None:
-    """Run a command; errors on purpose become one message and exit code 2.
+    """Run a command; errors on purpose become a line each and exit code 2.
 
     A reader that leaves (`gearopt ... | head`) changes neither what is done nor the exit code.
     """
@@ -24,5 +24,5 @@ def run() -> None:
         finally:
             print(end="", flush=True)  # a full disk is reported here, not at the end of Python
     except GearoptError as wrong:
-        print(f"gearopt: {wrong}", file=sys.stderr)
+        print(told(wrong), file=sys.stderr)
         sys.exit(2)

@@ -8,6 +8,7 @@ import typer
 from rich.console import Console
 
 from gearopt.cli.watching import unbroken
+from gearopt.errors import GearoptError
 from gearopt.optimise.result import Result
 
 app = typer.Typer(
@@ -58,6 +59,11 @@ def exit_code(result: Result) -> int:
     if result.status == "evaluated":
         return 0 if result.feasible else 3
     return EXIT[result.status]
+
+
+def told(wrong: GearoptError) -> str:
+    """Return a line for every mistake that an error names."""
+    return "\n".join(f"gearopt: {line}" for line in str(wrong).splitlines())
 
 
 def print_whole(text: str, end: str = "\n") -> None:

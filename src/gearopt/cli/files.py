@@ -12,8 +12,8 @@ from typing import Annotated, Any
 
 import typer
 
-from gearopt.cli.app import Json, app, console, print_whole
-from gearopt.errors import GearoptError
+from gearopt.cli.app import Json, app, console, print_whole, told
+from gearopt.errors import GearoptError, SceneError
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Result
 
@@ -24,7 +24,6 @@ def check(
     as_json: Json = False,
 ) -> None:
     """Read problem files and report their mistakes, without solving."""
-    from gearopt.errors import SceneError
     from gearopt.scenes.reading.load import load
 
     found: list[dict[str, Any]] = []
@@ -32,19 +31,10 @@ def check(
         try:
             loaded = load(file)
         except SceneError as wrong:
-            found.append(
-                {
-                    "file": str(file),
-                    "valid": False,
-                    "key": wrong.key,
-                    "value": wrong.value,
-                    "rule": wrong.rule,
-                    "fix": None if wrong.fix is None else asdict(wrong.fix),
-                    "remedy": wrong.remedy,
-                }
-            )
+            errors = [_plain(error) for error in wrong.errors]
+            found.append({"file": str(file), "valid": False, **errors[0], "errors": errors})
             if not as_json:
-                print(f"gearopt: {wrong}", file=sys.stderr)
+                print(told(wrong), file=sys.stderr)
         else:
             found.append({"file": str(file), "valid": True, "kind": loaded.kind})
             if not as_json:
@@ -52,6 +42,13 @@ def check(
     if as_json:
         print_whole(json.dumps(found, indent=2))
     raise typer.Exit(0 if all(f["valid"] for f in found) else 2)
+
+
+def _plain(error: SceneError) -> dict[str, Any]:
+    """Return one mistake of a file as JSON holds it."""
+    fix = None if error.fix is None else asdict(error.fix)
+    names = ("key", "value", "rule", "remedy")
+    return {name: getattr(error, name) for name in names} | {"fix": fix}
 
 
 @app.command()

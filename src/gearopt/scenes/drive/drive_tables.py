@@ -23,6 +23,18 @@ TOOTH_COUNT = whole(21, 5, 1000)
 WHEEL_TEETH = whole(100, 5, 100_000)
 MODULE = quantity("length", "2 mm")
 PROPORTION = span(number(0.6, 0, 10), [0.3, 0.6], single=True)
+AIM = choice(
+    *OBJECTIVES,
+    means={"weight": "mass"},
+    other={
+        "volume": 'Write "gear_volume" for that of the gears; for that of the box minimise = '
+        '"box_volume" in a table [layout]',
+        "size": 'Write "gear_volume" or "total_length" for that of the gears; for that of the box '
+        'minimise = "box_volume" in a table [layout]',
+        "centre_distance": 'Write "sum_of_centre_distances", of all stages',
+        "cost": 'Costs are not supported yet. Nearest: "mass" or "gear_volume"',
+    },
+)
 RATIOS = span(number(5, 1, 10**6), [1, 10])
 
 Proportion = Annotated[tuple[Fraction, Fraction] | None, PROPORTION]
@@ -169,10 +181,10 @@ class Teeth(Table):
 class Objective(Table):
     """What to minimise."""
 
-    minimise: Annotated[str, choice(*OBJECTIVES)] = Field(
+    minimise: Annotated[str, AIM] = Field(
         "gear_volume",
-        description="gear_volume (solid reference cylinders), mass, sum_of_centre_distances, or "
-        "total_length (shafts in one line, over reference circles)",
+        description="gear_volume (solid reference cylinders), mass (or weight), "
+        "sum_of_centre_distances, or total_length (shafts in one line, over reference circles)",
     )
     density: Annotated[Quantity | None, quantity("density", "7.85 kg/dm^3")] = Field(
         None, description="Density of the gears; mass needs it"

@@ -13,7 +13,6 @@ from difflib import get_close_matches
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
-from unicodedata import normalize
 
 from pydantic import BaseModel, ConfigDict
 from pydantic_core import PydanticCustomError, core_schema
@@ -26,6 +25,7 @@ SMALLEST = 1 / LARGEST
 BEYOND = "is out of any sensible range (1e-30 to 1e30)"
 # A comma before three digits may separate thousands, so it is not taken for a decimal one.
 _NUMBER = r"(\+?[0-9]*(?:\.|,(?![0-9]{3}(?![0-9])))?[0-9]+(?:[eE][+-]?[0-9]{1,3})?)"
+_THOUSANDS = re.compile(r"\s*([0-9]{1,3}),([0-9]{3})\s*(|[A-Za-z][\w ^/*]*)\s*", re.ASCII)
 _SLIP = re.compile(rf"\s*{_NUMBER}\s*((?![eE][+-]?[0-9])[^\s\d.,].*?|1/\S+)?\s*")
 
 
@@ -133,12 +133,15 @@ def quantity(
         try:
             found = units.parse(value, dimension)
         except ValueError as reason:
+            if two := thousands(value):
+                rule = "has a comma, which may part thousands or decimals"
+                raise refuse(rule, f'Write "{two[0]}" or "{two[1]}"', action="tell") from None
             raise refuse(str(reason), usable(meant(value, dimension, usual))) from None
         if rule := fault(found):
             raise refuse(rule, usable(value.strip().removeprefix("-")))
         return found
 
-    alternatives = "|".join(re.escape(u).replace("\\ ", " ") for u in units.UNITS[dimension])
+    alternatives = "|".join(map(units.pattern, units.UNITS[dimension]))
     sign = "[+-]?" if signed else r"\+?"
     number = sign + r"([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?"
     schema = {"type": "string", "pattern": rf"^\s*{number}\s*({alternatives})\s*$"}
@@ -208,17 +211,29 @@ def whole(example: int, minimum: int, maximum: int) -> Reads:
     return Reads(read, example, {"type": "integer", "minimum": minimum, "maximum": maximum})
 
 
-def choice(*names: str) -> Reads:
-    """Read one of some words."""
+def choice(
+    *names: str, means: dict[str, str] | None = None, other: dict[str, str] | None = None
+) -> Reads:
+    """Read one of some words.
+
+    means: other words for some of them, which are read as they are. other: words that may mean
+    several things, each with a sentence that says what to write.
+    """
+    means, other = means or {}, other or {}
 
     def read(value: Any, example: Any) -> str:
+        if isinstance(value, str) and value in means:
+            return means[value]
+        if isinstance(value, str) and (ways := other.get(value)):
+            known = ", ".join(f'"{n}"' for n in names)
+            raise refuse(f"is not one of {known}", ways, action="tell")
         if value not in names or not isinstance(value, str):
             known = ", ".join(f'"{n}"' for n in names)
             close = near(value, names) if isinstance(value, str) else None
             raise refuse(f"is not {'one of ' * (len(names) > 1)}{known}", close)
         return value
 
-    return Reads(read, names[0], {"enum": list(names)})
+    return Reads(read, names[0], {"enum": [*names, *means]})
 
 
 def truth() -> Reads:
@@ -255,21 +270,20 @@ def near(word: str, names: Iterable[str]) -> str | None:
     return plain[found[0]] if found else None
 
 
+def thousands(text: str) -> tuple[str, str] | None:
+    """Return both readings of "1,450 rpm", whose comma may part thousands; None without one."""
+    match = _THOUSANDS.fullmatch(text[:80])
+    unit = f" {match[3]}".rstrip() if match else ""
+    return match and (f"{match[1]}{match[2]}{unit}", f"{match[1]}.{match[2]}{unit}")
+
+
 def meant(text: str, dimension: str, usual: str) -> str:
     """Return a text with its decimal comma and its unit put right; "" where that cannot be done."""
     match = _SLIP.fullmatch(text[:80])
-    unit = _spelt(match[2], units.UNITS[dimension]) if match and match[2] else usual
-    return f"{match[1].replace(',', '.')} {unit}" if match and unit else ""
-
-
-def _spelt(word: str, names: Iterable[str]) -> str | None:
-    """Return the unit that differs from a word in case or punctuation only.
-
-    Not mW for MW: that is another unit, and the number would be wrong.
-    """
-
-    def plain(unit: str) -> str:
-        return re.sub(r"[^a-z0-9/%]", "", normalize("NFKC", unit).lower())  # also of a raised 2
-
-    found = next((n for n in names if plain(n) == plain(word)), None)
-    return None if found and found[0] != word[0] and found[1:] == word[1:] else found
+    if match is None:
+        return ""
+    word = match[2] or usual
+    unit = units.named(word, dimension, re.IGNORECASE)
+    if unit is None or (unit[0] != word[0] and unit[1:] == word[1:]):
+        return ""  # not MW for mW: that is another unit, and the number would be wrong
+    return f"{match[1].replace(',', '.')} {unit}"

@@ -16,7 +16,7 @@ from typing import Any, get_origin
 from pydantic import BaseModel, ValidationError
 
 import gearopt.scenes
-from gearopt.errors import Fix, SceneError, SolveError
+from gearopt.errors import Fix, SceneError, SolveError, together
 from gearopt.scenes.reading.changes import as_written, changed
 from gearopt.scenes.reading.fields import Opened, near
 from gearopt.scenes.reading.remedy import translate, wrong_name, wrong_value
@@ -156,7 +156,10 @@ def _name_a_file(path: str | Path) -> str:
 
 
 def read(data: bytes, file: str = "<text>", before: tuple[Path, ...] = ()) -> tuple[str, BaseModel]:
-    """Return the kind and scene of the bytes of a problem file; file: its name in messages."""
+    """Return the kind and scene of the bytes of a problem file; SceneError names all mistakes.
+
+    file: its name in messages. What depends on several tables is checked once each is right.
+    """
     return _scene(_parse(data, file), file, (*before, Path(file).resolve()))
 
 
@@ -165,22 +168,36 @@ def _scene(content: dict[str, Any], file: str, opened: tuple[Path, ...]) -> tupl
     if not content:
         remedy = "Start from what `gearopt new drive` prints"
         raise SceneError(file, "", "", "is empty", remedy, Fix("replace", "", "new drive"))
-    version = _pop(content, "gearopt", file)
-    if version != FORMAT or isinstance(version, bool):
-        rule = "is missing" if version is None else f"is not the format version {FORMAT}"
-        raise wrong_value(file, "gearopt", version, rule, FORMAT)
-    kind = _pop(content, "kind", file)
-    if not isinstance(kind, str) or kind not in kinds():
-        meant = near(kind, kinds()) if isinstance(kind, str) else None
-        known = f"is not a known kind (known: {', '.join(kinds())})"
-        rule = "is missing" if kind is None else known
-        raise wrong_value(file, "kind", kind, rule, meant or _likely(content))
+    kind, errors = _head(content, file)
     content = {k: v for k, v in content.items() if not k.startswith("x-")}  # the user's tables
-    model: type[BaseModel] = scene_module(kind).Scene
-    try:
-        return kind, model.model_validate(content, context=Opened(opened))
-    except ValidationError as wrong:
-        raise translate(file, model, content, wrong) from None
+    if kind:
+        model: type[BaseModel] = scene_module(kind).Scene
+        try:
+            scene = model.model_validate(content, context=Opened(opened))
+        except ValidationError as wrong:
+            errors += translate(file, kind, model, content, wrong)
+    if errors:
+        raise together(errors) from None
+    return kind, scene
+
+
+def _head(content: dict[str, Any], file: str) -> tuple[str, list[SceneError]]:
+    """Take the keys of every file; return the kind to read it as ("": none), and mistakes."""
+    errors: list[SceneError] = []
+    version = _pop(content, "gearopt", file, errors)
+    if not errors and (version != FORMAT or isinstance(version, bool)):
+        rule = "is missing" if version is None else f"is not the format version {FORMAT}"
+        errors.append(wrong_value(file, "gearopt", version, rule, FORMAT))
+    kind = _pop(content, "kind", file, errors)
+    if isinstance(kind, str) and kind in kinds():
+        return kind, errors
+    meant = near(kind, kinds()) if isinstance(kind, str) else None
+    likely = meant or _likely(content)
+    known = f"is not a known kind (known: {', '.join(kinds())})"
+    rule = "is missing" if kind is None else known
+    errors.append(wrong_value(file, "kind", kind, rule, likely))
+    sure = meant or not content.keys().isdisjoint(scene_module(likely).Scene.model_fields)
+    return likely if sure else "", errors
 
 
 def _too_deep(file: str) -> SceneError:
@@ -188,11 +205,12 @@ def _too_deep(file: str) -> SceneError:
     return SceneError(file, "", "", "is nested too deeply", remedy)
 
 
-def _pop(content: dict[str, Any], name: str, file: str) -> Any:
-    """Return the value of a key of every file, None if it is missing; SceneError if misspelt."""
+def _pop(content: dict[str, Any], name: str, file: str, errors: list[SceneError]) -> Any:
+    """Return the value of a key of every file, None where it is missing; note a misspelt one."""
     values = [key for key, value in content.items() if not isinstance(value, dict | list)]
     if name not in content and (written := near(name, values)):
-        raise wrong_name(file, dotted((written,)), name)
+        errors.append(wrong_name(file, dotted((written,)), name))
+        name = written
     return content.pop(name, None)
 
 

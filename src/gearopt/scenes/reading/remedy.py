@@ -9,6 +9,7 @@ from pydantic import BaseModel, ValidationError
 
 from gearopt.errors import Fix, SceneError
 from gearopt.scenes.reading.fields import Reads, near
+from gearopt.scenes.reading.not_yet import nearest
 from gearopt.scenes.reading.toml import cut, dotted, short, toml_text
 
 
@@ -46,20 +47,52 @@ def wrong_name(file: str, key: str, name: str) -> SceneError:
 
 
 def translate(
-    file: str, model: type[BaseModel], content: dict[str, Any], wrong: ValidationError
+    file: str, kind: str, model: type[BaseModel], content: dict[str, Any], wrong: ValidationError
+) -> list[SceneError]:
+    """Return all mistakes in the file's order; a key that is missing for a typo is not one."""
+    mistakes = []
+    for error in wrong.errors(include_url=False, include_input=False):
+        place = (*error["loc"], *error.get("ctx", {}).get("at", ()))
+        mistakes.append((place, error, _mistake(file, kind, model, content, place, error)))
+    renamed = {
+        (*place[:-1], mistake.fix.value)
+        for place, _, mistake in mistakes
+        if mistake.fix is not None and mistake.fix.action == "rename"
+    }
+    real = [m for m in mistakes if m[1]["type"] != "missing" or m[0] not in renamed]
+    return [mistake for *_, mistake in sorted(real, key=lambda m: _order(content, m[0]))]
+
+
+def _order(content: Any, place: tuple[Any, ...]) -> list[int]:
+    """Return where a place stands in a file; what is missing stands at the end of its table."""
+    found: list[int] = []
+    for part in place:
+        if isinstance(content, dict):
+            found.append(list(content).index(part) if part in content else len(content))
+            content = content.get(part)
+        elif isinstance(content, list) and isinstance(part, int):
+            found.append(part)
+            content = content[part] if part < len(content) else None
+    return found
+
+
+def _mistake(
+    file: str,
+    kind: str,
+    model: type[BaseModel],
+    content: dict[str, Any],
+    place: tuple[Any, ...],
+    error: Any,
 ) -> SceneError:
-    """Return the first error, unknown keys before all others (a typo also makes a key missing)."""
-    errors = wrong.errors(include_url=False, include_input=False)
-    first = next((e for e in errors if e["type"] == "extra_forbidden"), errors[0])
-    context: dict[str, Any] = first.get("ctx", {})
-    place = (*first["loc"], *context.get("at", ()))
-    if first["type"] == "extra_forbidden":
-        return _unknown(file, model, content, place)
+    """Return one error of pydantic as ours."""
+    context: dict[str, Any] = error.get("ctx", {})
+    if error["type"] == "extra_forbidden":
+        return _unknown(file, kind, model, content, place)
     value, found = _lookup(content, place)
     key = dotted(place)
-    if first["type"] == "missing":
+    if error["type"] == "missing":
         return wrong_value(file, key, None, "is missing", example_of(model, place), sample=True)
-    if first["type"] != "gearopt":
+    if error["type"] != "gearopt":
         return _no_table(file, model, place, value)
     if name := _near_name(model, content, place):  # [[stages]] for [[stage]]
         return wrong_name(file, key, name)
@@ -94,11 +127,17 @@ def _no_table(file: str, model: type[BaseModel], place: tuple[Any, ...], value: 
 
 
 def _unknown(
-    file: str, model: type[BaseModel], content: dict[str, Any], place: tuple[Any, ...]
+    file: str,
+    kind: str,
+    model: type[BaseModel],
+    content: dict[str, Any],
+    place: tuple[Any, ...],
 ) -> SceneError:
     """Return the error for an unknown key: what it may mean, where it belongs, or what is known."""
     value, _ = _lookup(content, place)
     name, key, shown = str(place[-1]), dotted(place), cut(dotted(place), 80)
+    if way := nearest(kind, name):
+        return SceneError(file, shown, short(value), "is not supported yet", way)
     what = "unknown table" if isinstance(_first(value), dict) else "unknown key"
     if homes := _homes(model, name):
         rule = f"{what} here; it belongs {' or '.join(homes)}"

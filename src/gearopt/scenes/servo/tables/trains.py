@@ -81,10 +81,10 @@ class Train(Table):
     bending_stress: Annotated[Quantity, quantity("stress", "150 MPa")] = Field(
         description="Allowed bending stress after Lewis, without any factor"
     )
-    minimise: Annotated[str, choice(*AIMS)] = Field(
+    minimise: Annotated[str, choice(*AIMS, means={"weight": "mass"})] = Field(
         "inertia",
-        description="inertia (of the train at the motor), mass or error; move_time or rms_torque "
-        "of [duty], with ratio and train chosen together",
+        description="inertia (of the train at the motor), mass (or weight) or error; move_time or "
+        "rms_torque of [duty], with ratio and train chosen together",
     )
     maximise: Annotated[str | None, choice("acceleration")] = Field(
         None,

@@ -1,0 +1,116 @@
+"""Keys that a gear engineer expects and that no kind knows yet: what stands nearest to each.
+
+A key is found by its name in any table of a file, also where another table has a key of that name
+with another meaning, as the deviation `centre_distance` of a servo train's [[mesh]].
+"""
+
+import re
+
+FACTORS = "application_factor service_factor overload_factor k_a ka"
+MATERIAL = (
+    "material materials pinion_material wheel_material gear_material steel hardness "
+    "surface_hardness heat_treatment yield_strength tensile_strength"
+)
+SAFETY = (
+    "safety_factor safety_factors safety s_h s_f minimum_safety contact_safety bending_safety "
+    "safety_factor_contact safety_factor_bending"
+)
+STRESS = (
+    "allowable_stress allowable_stresses contact_stress hertz_stress hertzian_stress sigma_hlim "
+    "sigma_flim sigma_h sigma_f endurance_limit tooth_root_stress root_stress"
+)
+CENTRES = (
+    "centre_distance center_distance centre_distances center_distances axis_distance shaft_distance"
+)
+SHIFT = (
+    "profile_shift profile_shifts profile_shift_coefficient profile_shift_coefficients "
+    "addendum_modification x1 x2"
+)
+QUALITY = "quality accuracy grade gear_quality accuracy_grade quality_grade iso_grade agma_quality"
+OIL = "lubricant lubrication oil viscosity oil_temperature temperature"
+LOSS = "efficiency mesh_efficiency friction_coefficient"
+LIFE = "life lifetime service_life life_hours operating_hours load_cycles cycles load_spectrum"
+RACK = "addendum dedendum addendum_coefficient dedendum_coefficient tip_radius rack tool profile"
+SHAPE = "gear_type gear_types internal ring_gear planetary planets bevel worm hypoid crossed_axes"
+BODY = "rim_thickness web_thickness web hub_diameter bore bore_diameter lightening_holes"
+BEARINGS = "bearing bearings bearing_life bearing_type"
+CONTACT = "contact_ratio transverse_contact_ratio overlap_ratio noise"
+MONEY = "cost price costs budget maximum_cost"
+
+NEAREST: dict[str, dict[str, str]] = {  # kind -> names -> what stands nearest
+    "drive": {
+        CENTRES: 'Nearest: objective.minimise = "sum_of_centre_distances", or a [[place]] beside '
+        "[layout], which says where a shaft is",
+        f"{MATERIAL} {STRESS}": "Nearest: k_factor and unit_load, the limits of the load on flank "
+        "and tooth root, in [limits] or a [[stage]]: choose them for the material",
+        SAFETY: "Nearest: k_factor and unit_load in [limits]: divide what the material bears by "
+        "the factor",
+        FACTORS: "Nearest: duty.power: multiply it by the factor",
+        SHIFT: "Nearest: limits.pinion_teeth: with a minimum of 17 teeth a spur pinion of 20 deg "
+        "needs no profile shift",
+        QUALITY: 'Nearest: kind = "servo", which counts deviations and grades of gears; k_factor '
+        "and unit_load are chosen for a quality",
+        OIL: "Nearest: limits.k_factor, which is chosen for lubrication and temperature; scuffing "
+        "is not checked",
+        LOSS: "Gears are taken as loss-free. Nearest: duty.power, the power at the input",
+        LIFE: "Nearest: k_factor and unit_load in [limits], which are chosen for a life",
+        RACK: "Gears have the basic rack of ISO 53, profile A. Nearest: gears.pressure_angle",
+        SHAPE: "Drives have external spur or helical gears on parallel shafts. Nearest: "
+        "gears.helix_angle",
+        BODY: "Gears are solid. Nearest: shaft_diameters of [layout]",
+        BEARINGS: "Nearest: bearing_diameters and bearing_widths of [layout]",
+        CONTACT: "The contact ratio is reported. Nearest: gears.helix_angle, which raises it",
+        MONEY: 'Nearest: objective.minimise = "mass", or "gear_volume"',
+        "torque input_torque output_torque": "Nearest: duty.power and input_speed: power is torque "
+        "times angular speed",
+        "weight mass maximum_mass max_mass maximum_weight max_weight": "Nearest: "
+        'objective.minimise = "mass", with its density',
+        "depth length width height size": "Nearest: largest_width, largest_height and "
+        "largest_length of the box in [layout]",
+    },
+    "servo": {
+        CENTRES: "Nearest: modules and teeth of [train], which it follows from, or the box of "
+        "[space]; centre_distance of a [[mesh]] is its deviation",
+        f"{MATERIAL} {STRESS}": "Nearest: bending_stress and density of [train]",
+        SAFETY: "Nearest: bending_stress of [train]: divide what the material bears by the factor",
+        FACTORS: "Nearest: output_torque of [train]: multiply it by the factor",
+        SHIFT: "Nearest: pinion_teeth of [train]: with a minimum of 17 teeth a pinion of 20 deg "
+        "needs no profile shift",
+        QUALITY: "Nearest: grade of a [[mesh]] with given gears, or its pitch deviations",
+        OIL: "Nearest: friction of [motor] and [load]",
+        LIFE: "Nearest: bending_stress of [train], which is chosen for a life",
+        "helix_angle beta helical": "The gears of a servo train are spur gears. Nearest: kind = "
+        '"drive", whose gears may be helical',
+        "stages number_of_stages": "A servo train has two stages, or three by kind = "
+        '"drive". Nearest: ratio and teeth of [train]',
+        BODY: "Gears are solid. Nearest: second_pinion_diameter and output_shaft_diameter of "
+        "[train]",
+        SHAPE: "Servo trains have external spur gears on parallel shafts",
+        CONTACT: "Nearest: pinion_teeth of [train]",
+    },
+    "compound": {
+        f"{CENTRES} module modules": 'Nearest: kind = "drive" or "servo", which have modules; here '
+        "only numbers of teeth are chosen",
+        f"{MATERIAL} {STRESS} {SAFETY} power torque load face_width": 'Nearest: kind = "drive", '
+        "which has loads; here only numbers of teeth are chosen",
+        "stages number_of_stages idler": 'Nearest: kind = "drive", of up to six stages; a compound '
+        "train has two pairs",
+        "ratio_tolerance tolerance": "Nearest: train.ratio, which is met as nearly as teeth allow; "
+        'kind = "drive" has a tolerance',
+    },
+    "packing": {
+        "weight mass density material": 'Nearest: objective.minimise = "volume"',
+        "height maximum_height max_height depth": "The height follows from the cylinders. Nearest: "
+        "most or exactly of [layers]",
+        "length radius": "Nearest: diameter and height of a [[cylinder]], width of a rectangle",
+        "orientation rotation axis tilt": "All axes are upright. Nearest: at of a [[cylinder]], "
+        "which fixes its place",
+    },
+}
+
+
+def nearest(kind: str, name: str) -> str | None:
+    """Return what stands nearest to a key that is not supported yet; None of any other name."""
+    plain = re.sub(r"[-\s]+", "_", name[:80].strip().lower())
+    found = (way for names, way in NEAREST.get(kind, {}).items() if plain in names.split())
+    return next(found, None)

@@ -1,0 +1,191 @@
+"""Files with several mistakes: every one is named, in the file's order, in a line of its own."""
+
+import json
+import re
+from random import Random
+
+import pytest
+from mutations import typo
+from scene_files import BASES, keys, parse, put, rename
+
+from gearopt.errors import SceneError
+from gearopt.scenes.reading.load import read, scene_module
+from gearopt.scenes.reading.not_yet import NEAREST
+from gearopt.scenes.reading.remedy import table_of
+from gearopt.scenes.reading.toml import dotted
+
+WRONG = """\
+gearopt = 1
+kind = "drive"
+
+[duty]
+power = 7.5
+input_sped = "1450 rpm"
+output_speed = "66,5 rpm"
+
+[bearings]
+life = "20000 h"
+
+[gears]
+helix_angle = "95 deg"
+
+[[stage]]
+face_width_over_diameter = 0.6
+material = "16MnCr5"
+
+[limits]
+k_factor = "2 N"
+unit_load = "48 MPa"
+"""
+SAID = """\
+gearopt: wrong.toml: duty.power = 7.5: is a bare number: power needs a unit (W, kW, MW, hp, PS). \
+Write power = "7.5 kW"
+gearopt: wrong.toml: duty.input_sped: unknown key. Did you mean input_speed?
+gearopt: wrong.toml: duty.output_speed = "66,5 rpm": has a comma: the sign of decimals is a point, \
+and thousands have none. Write output_speed = "66.5 rpm"
+gearopt: wrong.toml: bearings = {life = "20000 h"}: is not supported yet. Nearest: \
+bearing_diameters and bearing_widths of [layout]
+gearopt: wrong.toml: gears.helix_angle = "95 deg": is above 45 deg. Write, for example, \
+helix_angle = "25 deg"
+gearopt: wrong.toml: stage[1].material = "16MnCr5": is not supported yet. Nearest: k_factor and \
+unit_load, the limits of the load on flank and tooth root, in [limits] or a [[stage]]: choose \
+them for the material
+gearopt: wrong.toml: limits.k_factor = "2 N": has the unknown unit N; units of stress: MPa, Pa, \
+kPa, GPa, bar, N/mm^2, psi, ksi. Write, for example, k_factor = "2.07 MPa"
+gearopt: wrong.toml: limits.pinion_teeth: is missing. Write, for example, pinion_teeth = [20, 40]
+"""
+
+
+def mistakes(text):
+    """The SceneError of a file that must have one."""
+    with pytest.raises(SceneError) as wrong:
+        read(text.encode(), "my.toml")
+    return wrong.value
+
+
+def test_all_mistakes_of_a_file_are_named_in_its_order(here, tmp_path, monkeypatch):
+    (tmp_path / "wrong.toml").write_text(WRONG)
+    monkeypatch.chdir(tmp_path)
+    for command in ("check", "solve", "explain", "compare"):
+        done = here(command, "wrong.toml")
+        assert (done.returncode, done.stdout, done.stderr) == (2, "", SAID)
+    (found,) = json.loads(here("check", "wrong.toml", "--json").stdout)
+    keys = [e["key"] for e in found["errors"]]
+    assert keys == [line.split(": ")[2].split(" =")[0] for line in SAID.splitlines()]
+    assert found["key"] == "duty.power" and found["fix"]["value"] == '"7.5 kW"'
+
+
+def test_python_holds_all_mistakes():
+    wrong = mistakes(WRONG)
+    assert wrong.errors[0] is wrong and len(wrong.errors) == 8
+    assert [e.fix and e.fix.action for e in wrong.errors] == [
+        "set",
+        "rename",
+        "set",
+        None,
+        "set",
+        None,
+        "set",
+        "set",
+    ]
+
+
+def test_the_head_is_reported_with_the_rest():
+    wrong = mistakes('gearopt = 2\nkind = "driv"\n[duty]\npower = "7.5 kW"\ninput_speed = 3\n')
+    assert [e.key for e in wrong.errors] == ["gearopt", "kind", "duty.input_speed", "limits"]
+
+
+def test_more_than_twenty_mistakes_are_counted():
+    text = BASES["elevator"] + "".join(f"[bolt{k}]\nx = 1\n" for k in range(30))
+    wrong = mistakes(text)
+    assert len(wrong.errors) == 30
+    lines = str(wrong).splitlines()
+    assert len(lines) == 21 and lines[-1] == "my.toml: and 10 more"
+
+
+def broken(rng, text):
+    """The text with two or three mistakes in keys of tables, and the places that are wrong."""
+    named = [p for p in keys(parse(text)) if len(p) > 1 and len(p[-1]) > 4 and "x-" not in p[0]]
+    wrong = set()
+    for place in rng.sample(named, rng.choice([2, 3])):
+        sort = rng.choice(["value", "name", "unknown"])
+        if sort == "name" and (new := typo(rng, place[-1])) != place[-1]:
+            text, place = rename(text, place, new).decode(), (*place[:-1], new)
+        elif sort == "unknown":
+            place = (*place[:-1], f"colour{len(wrong)}")
+            text = put(text, place, "red").decode()
+        else:
+            text = put(text, place, rng.choice([[["x"]], "1 parsec", {"a": 1}])).decode()
+        wrong.add(place)
+    return text, wrong
+
+
+@pytest.mark.parametrize("base", BASES)
+def test_random_mistakes_are_all_named(base):
+    for seed in range(20):
+        text, wrong = broken(Random(f"{base} {seed}"), BASES[base])
+        error = mistakes(text)
+        named = {e.key for e in error.errors}
+        assert {dotted(place) for place in wrong} <= named, text
+        assert len(str(error).splitlines()) == len(error.errors)
+
+
+def test_the_command_refuses_random_mistakes(here, tmp_path):
+    path = tmp_path / "my.toml"
+    for seed in range(20):
+        text, wrong = broken(Random(seed), BASES["laid_out"])
+        path.write_text(text, encoding="utf-8")
+        done = here("check", path)
+        assert done.returncode == 2 and done.stdout == ""
+        lines = done.stderr.splitlines()
+        assert len(lines) >= len(wrong)
+        assert all(line.startswith(f"gearopt: {path}: ") and line.isprintable() for line in lines)
+
+
+@pytest.mark.parametrize(
+    ("table", "line", "said"),
+    [
+        ("limits", 'centre_distance = "120 mm"', "sum_of_centre_distances"),
+        ("stage[1]", "profile_shift = 0.5", "limits.pinion_teeth"),
+        ("gears", "quality = 6", 'kind = "servo"'),
+        ("limits", "safety_factor = 1.5", "divide what the material bears by the factor"),
+        ("duty", "application_factor = 1.25", "multiply it by the factor"),
+        ("gears", 'lubricant = "VG 220"', "scuffing is not checked"),
+        ("gears", "hardness = 58", "k_factor and unit_load"),
+        ("duty", 'output-torque = "900 N m"', "power is torque times angular speed"),
+    ],
+)
+def test_what_is_not_supported_yet_names_what_stands_nearest(table, line, said):
+    head = "[[stage]]" if table.startswith("stage") else f"[{table}]"
+    (wrong,) = mistakes(BASES["elevator"].replace(head, f"{head}\n{line}", 1)).errors
+    name = line.split(" = ")[0]
+    assert (wrong.key, wrong.rule) == (f"{table}.{name}", "is not supported yet")
+    assert said in wrong.remedy and wrong.fix is None
+
+
+@pytest.mark.parametrize(("kind", "names"), [(k, n) for k, t in NEAREST.items() for n in t])
+def test_every_key_of_what_stands_nearest_is_known(kind, names):
+    """What a remedy calls a key, with an underscore or a table before it, is one of the kind's."""
+    scene = scene_module(kind).Scene
+    tables = {n: table_of(f.annotation) for n, f in scene.model_fields.items()}
+    known = {*scene.model_fields, *(k for t in tables.values() if t for k in t.model_fields)}
+    known |= {"gear_volume", "sum_of_centre_distances"}  # values
+    way = NEAREST[kind][names]
+    assert set(re.findall(r"\b[a-z]+(?:_[a-z]+)+\b", way)) <= known
+    assert {t for t in re.findall(r"\[([a-z_]+)\]", way)} <= tables.keys()
+    for table, key in re.findall(r"\b([a-z_]+)\.([a-z_]+)\b", way):
+        assert key in tables[table].model_fields
+
+
+def test_weight_is_mass_and_volume_is_asked_back():
+    base = BASES["fixed"].replace('"mass"', '"weight"')
+    assert read(base.encode())[1].objective.minimise == "mass"
+    (wrong,) = mistakes(base.replace('"weight"', '"volume"')).errors
+    assert wrong.fix is None and "gear_volume" in wrong.remedy and "box_volume" in wrong.remedy
+    (wrong,) = mistakes(base.replace('"weight"', '"centre_distance"')).errors
+    assert "sum_of_centre_distances" in wrong.remedy
+
+
+def test_a_comma_of_thousands_is_asked_back():
+    (wrong,) = mistakes(BASES["elevator"].replace('"1450 rpm"', '"1,450 rpm"')).errors
+    assert wrong.remedy == 'Write "1450 rpm" or "1.450 rpm"' and wrong.fix is None
