@@ -18,6 +18,7 @@ from gearopt.report.words import number, share
 
 SHEET = 660.0  # px across an A4 sheet inside its margins
 GUTTER = 18.0  # px between drawings, as in drawing.css
+TALL = 480.0  # px of a sheet that drawings may take, where their text stays legible
 LEGIBLE = 0.6  # of a text of 12 px: 5.4 pt on paper
 LONG = 24  # rows; a longer table may break between rows when it is printed
 
@@ -186,11 +187,11 @@ class Section:
     def printed(self) -> float:
         """Return how much the drawings shrink in print so that the first two stand side by side.
 
-        1 where their text would become too small.
+        They leave room on the sheet for other things; 1 where their text would become too small.
         """
         both = sum(drawing.width for drawing in self.drawings[:2]) + GUTTER
-        share = SHEET / both
-        return min(1.0, share) if share > LEGIBLE else 1.0
+        share, low = SHEET / both, TALL / max(drawing.height for drawing in self.drawings)
+        return min(1.0, share, max(low, LEGIBLE)) if share > LEGIBLE else 1.0
 
 
 def shown(value: Any) -> Cell:

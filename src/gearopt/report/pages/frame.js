@@ -4,7 +4,8 @@
   const dark = window.matchMedia("(prefers-color-scheme: dark)");
   const options = { displaylogo: false, displayModeBar: false, responsive: true };
   const narrow = 560;
-  const sheet = 660;  // px across a printed page, as in section.py: it is laid out after beforeprint
+  const sheet = 660;  // px across a printed page, as in section.py
+  const half = 390;  // of a plot beside another one there
 
   function colour(style, word) {
     const [, name, opacity] = word.match(/^(--[\w-]+)(?:\/([\d.]+))?$/);
@@ -24,6 +25,13 @@
   // A view in space, which print would leave empty, stays a still without WebGL.
   const turns = !!document.createElement("canvas").getContext("webgl");
 
+  // A printed page is laid out after beforeprint: plots are told the width that they will have.
+  function beside(place) {
+    const section = place.closest("section.half");
+    return section && [section.previousElementSibling, section.nextElementSibling]
+      .some((next) => next && next.classList.contains("half"));
+  }
+
   function draw() {
     const style = getComputedStyle(root);
     for (const place of document.querySelectorAll(turns ? ".plot" : "figure:not(.solid) > .plot")) {
@@ -31,6 +39,7 @@
       const { data, layout } = resolved(style, spec);
       if (place.clientWidth < narrow) layout.font.size = 11;
       if (root.classList.contains("paper")) layout.width = sheet;
+      if (root.classList.contains("paper") && beside(place)) layout.width = half;
       place.parentElement.classList.add("drawn");  // a still made way for it
       Plotly.react(place, data, layout, options);
     }

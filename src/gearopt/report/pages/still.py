@@ -242,7 +242,7 @@ def still(
         if not any(covers(body, spot, seen) for body in bodies if isinstance(body, Rod)):
             sheet.balloon(text, around(sheet.at(*seen.at(spot)), (0.0, 20.0, 30.0), 0.0))
     _sizes(sheet, room, seen, texts.sizes)
-    return sheet.drawing(name, "")
+    return sheet.drawing(name, "Drawn to scale in parallel projection.")
 
 
 def _rows(legend: Sequence[tuple[str, str]], width: float) -> list[tuple[float, int, str, str]]:
