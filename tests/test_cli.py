@@ -7,12 +7,15 @@ import signal
 import subprocess
 import sys
 import time
+from importlib import import_module
 from pathlib import Path
 
 import pytest
 
 import gearopt
 from gearopt.cli.app import print_whole
+from gearopt.optimise.solve import back_ends
+from gearopt.scenes.reading.ask import RANDOM
 
 ROOT = Path(__file__).parents[1]
 ELEVATOR = ROOT / "problems" / "elevator.toml"
@@ -350,16 +353,47 @@ def test_six_stages_fit_a_terminal_of_80_columns(here, solved, tmp_path, monkeyp
     assert "224,034.1" in done.stdout and "20,941.64" in done.stdout  # no digit is cut
 
 
-def test_top_says_where_no_next_best_answers_are_listed(here):
-    file = ROOT / "problems" / "sandgren_train.toml"
-    words = "--top changes nothing here: no next best answers are listed."
-    assert words in " ".join(here("solve", file, "--top", 3).stdout.split())
-    assert words not in " ".join(here("solve", file).stdout.split())
-    assert "--top" not in " ".join(here("solve", ELEVATOR, "--top", 3).stdout.split())
+@pytest.mark.parametrize(
+    ("stem", "options", "said"),
+    [
+        ("sandgren_train", ("--top", 3), "--top 3 changes nothing here: a compound train"),
+        ("sandgren_train", ("--seed", 3), "--seed 3 changes nothing here: the method is not ran"),
+        ("elevator", ("--seed", 3, "--method", "ipopt"), "nothing here: ipopt is not random"),
+        ("elevator", ("--top", 3, "--method", "ipopt"), "exact lists the next best ones"),
+        ("elevator", ("--units", "inch", "--json"), "--units inch changes nothing of --json"),
+        ("five_stages_continuous", ("--top", 3), "which a table [teeth] asks for"),
+        ("servo_gimbal", ("--top", 3), "the trains of the Pareto front are listed"),
+        ("servo_gimbal_ratio", ("--top", 3), "without [train] there are no trains"),
+        ("six_cylinders", ("--top", 3), "no next best answers are listed"),
+    ],
+)
+def test_an_option_that_changes_nothing_is_refused(stem, options, said, here):
+    file = ROOT / "problems" / f"{stem}.toml"
+    done = here("solve", file, *options)
+    assert done.returncode == 2 and done.stdout == "" and done.stderr.count("\n") == 1
+    assert said in done.stderr
+    if options[0] == "--top":
+        method = options[3] if len(options) > 2 else None
+        with pytest.raises(gearopt.SolveError, match="top=3 changes nothing here: "):
+            gearopt.solve(file, method=method, top=3)
+
+
+def test_options_of_files_are_refused_for_problems_of_ones_own():
+    x = gearopt.Var("x", "mm", 1.0, 2.0, 1.5)
+    own = gearopt.Problem("own", (x,), (), lambda x, p: gearopt.Terms({"length": x.x}))
+    with pytest.raises(gearopt.SolveError, match="top=2 changes nothing here: own has no next"):
+        gearopt.solve(own, top=2)
+    with pytest.raises(gearopt.SolveError, match=r"prices=True is for files: explain\(own\)"):
+        gearopt.solve(own, prices=True)
+
+
+def test_the_methods_that_take_a_seed_are_those_that_say_so():
+    declared = {n: import_module(f"gearopt.optimise.solvers.{n}").RANDOM for n in back_ends()}
+    assert {name for name, random in declared.items() if random} == set(RANDOM)
 
 
 def test_continuous_answer_of_a_teeth_file_says_so(here):
-    done = here("solve", ELEVATOR, "--method", "ipopt", "--top", 3)
+    done = here("solve", ELEVATOR, "--method", "ipopt")
     assert "Teeth and modules are real numbers here" in done.stdout
     assert "centre distances" not in done.stdout.split("total length")[1]
 

@@ -24,7 +24,7 @@ from gearopt.optimise.result import Budget, Event, Result, Watch, plain  # noqa:
 from gearopt.optimise.solve import GAP, evaluate  # noqa: F401
 from gearopt.optimise.solve import solve as solve_problem
 from gearopt.optimise.terms import Param, Repeat, Terms, Var  # noqa: F401
-from gearopt.scenes.reading.ask import Ask
+from gearopt.scenes.reading.ask import Ask, idle
 from gearopt.scenes.reading.inputs import inputs_of
 from gearopt.scenes.reading.load import FORMAT, bare, kind_of, scene_module
 from gearopt.scenes.reading.load import load as load_file
@@ -65,9 +65,10 @@ def solve(
     method: by default the scene's or problem's own. budget: seconds and evaluations. watch(event)
     returns False to stop the run. gap: relative gap to our bound that is enough, so that a search
     may end there; None: none is, and 1e-6 is called optimal. top: so many next best answers too
-    (scenes with an exact method). prices: report["prices"] holds the sensitivities to every number
+    (drives with a [teeth] table). prices: report["prices"] holds the sensitivities to every number
     of the file, as `explain` does. SceneError for a wrong file or change, SolveError where the
-    method does not fit, ValueError for an option of another sort. Not thread-safe.
+    method does not fit, or top or prices change nothing, ValueError for an option of another sort.
+    Not thread-safe.
     """
     check(method=method, budget=budget, seed=seed, watch=watch, gap=gap, top=top, prices=prices)
     budget, watch = replace(budget or Budget(), gap=gap or 0.0), whole(watch)
@@ -76,9 +77,14 @@ def solve(
     gap = GAP if gap is None else gap
     if isinstance(what, Problem | Conic):
         _unchanged(what, changes)
+        _only_of_files(what.name, top, prices)
         return solve_problem(what, method, budget, seed, watch, gap)
     ask = Ask(method, budget, seed, watch, gap, top)
     scene, module, names = _opened(what, changes)
+    if why := idle(module, scene, method).get("top"):
+        if top > 1:
+            raise SolveError(f"top={top} changes nothing here: {why}; leave it out")
+        asked["top"] = None
     result: Result = module.solve(scene, ask)
     if prices and result.value is not None and result.status != "evaluated":
         left = replace(ask, budget=budget.less(result.seconds))
@@ -120,6 +126,20 @@ def explain(
     scene, module, names = _opened(what, changes)
     found = _explained(module, scene, ask)
     return replace(found, result=_named(found.result, **names))
+
+
+def idle_options(what: File, method: str | None) -> dict[str, str]:
+    """Return the options of `solve` that change nothing for a file, each with the reason."""
+    scene, module, _ = _opened(what, None)
+    return idle(module, scene, method)
+
+
+def _only_of_files(name: str, top: int, prices: bool) -> None:
+    """Raise SolveError for options of problem files that are asked of a problem of one's own."""
+    if top > 1:
+        raise SolveError(f"top={top} changes nothing here: {name} has no next best answers")
+    if prices:
+        raise SolveError(f"prices=True is for files: explain({name}) has its sensitivities")
 
 
 def _explained(module: Any, scene: Any, ask: Ask, result: Result | None = None) -> Explanation:

@@ -1,7 +1,6 @@
 """`solve`, `explain`, `compare`: the best design, why it is what it is, methods side by side."""
 
-from collections.abc import Callable
-from dataclasses import replace
+from collections.abc import Callable, Mapping
 from typing import Annotated
 
 import typer
@@ -11,11 +10,10 @@ from gearopt.cli.app import Csv, File, Html, Json, Units, app, console, exit_cod
 from gearopt.cli.reporting import SECONDS, TOP_ON_PAGE, answer, checked, compared, written
 from gearopt.cli.watching import following, reached, watching
 from gearopt.cli.writing import check_html
+from gearopt.errors import GearoptError
 from gearopt.optimise.comparing.compare import EVALUATIONS, SEEDS, Progress
 from gearopt.optimise.comparing.compare import SECONDS as EACH
 from gearopt.optimise.result import Budget
-
-NO_LIST = "--top changes nothing here: no next best answers are listed."
 
 
 @app.command()
@@ -56,10 +54,18 @@ def solve(
     as_json: Json = False,
 ) -> None:
     """Find the best design and prove how good it is. Ctrl-C keeps the best found so far."""
+    from gearopt.api import idle_options
     from gearopt.api import solve as solve_file
 
     files = checked(html, csv, units, file)
     full = html is not None or csv is not None
+    if as_json and not full and units != "metric":
+        raise GearoptError(f"--units {units} changes nothing of --json, which names its units")
+    unusual = full or seed or (top or 1) > 1
+    idle = idle_options(file, method) if unusual else {}
+    _refuse({"top": (top, 1), "seed": (seed, 0)}, idle)
+    if top is None:
+        top = TOP_ON_PAGE if full and "top" not in idle else 1
     with watching(seconds, quiet=as_json) as watch:
         result = solve_file(
             file,
@@ -68,18 +74,22 @@ def solve(
             seed=seed,
             watch=watch,
             gap=gap,
-            top=top or (TOP_ON_PAGE if full else 1),
+            top=top,
             prices=prices or full,
         )
-    if top and top > 1 and result.value is not None and "trains" not in result.report:
-        notes = [*result.report.get("notes", ()), NO_LIST]
-        result = replace(result, report=result.report | {"notes": notes})
     lines: list[str] = []
     try:
         lines = written(result, files)
     finally:  # what took long to find is shown even where no file can be written
         answer(result, as_json, lines, files.measures)
     raise typer.Exit(exit_code(result))
+
+
+def _refuse(given: Mapping[str, tuple[int | None, int]], idle: Mapping[str, str]) -> None:
+    """Raise GearoptError for the first option that changes nothing; given: value and default."""
+    for name, (value, usual) in given.items():
+        if value not in (None, usual) and (why := idle.get(name)):
+            raise GearoptError(f"--{name} {value} changes nothing here: {why}; leave it out")
 
 
 @app.command()

@@ -12,11 +12,11 @@ from gearopt.optimise.comparing.compare import Model
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run
 from gearopt.optimise.typed import untyped
-from gearopt.scenes.reading.ask import Ask
+from gearopt.scenes.reading.ask import Ask, unseeded
 from gearopt.scenes.reading.fields import Table, number, whole, words
 from gearopt.scenes.reading.lists import span
 
-__all__ = ["EXAMPLE", "Scene", "compared", "model", "solve"]
+__all__ = ["EXAMPLE", "Scene", "compared", "idle", "model", "solve"]
 MIN_TEETH, MAX_TEETH = 5, 400  # teeth of a gear that a file may ask for
 ASSUMED = "Tooth numbers alone: modules, centre distances and loads are not considered."
 EXAMPLE = """\
@@ -127,6 +127,12 @@ def _out_of_reach(train: compound.Compound, reach: dict[str, Any]) -> str:
         return f"{made}. Write {' or '.join(ways)}."
     more = ': kind = "drive" has more stages' if train.ratio >= 1 else ""  # a drive slows down
     return f"{made}. No two pairs of {MIN_TEETH} to {MAX_TEETH} teeth make it{more}."
+
+
+def idle(scene: Scene, method: str | None) -> dict[str, str]:
+    """Return the options of `solve` that change nothing, each with the reason."""
+    found = {"top": "a compound train has no list of next best answers"}
+    return found | unseeded(method)
 
 
 def compared(scene: Scene) -> tuple[str, ...]:

@@ -24,9 +24,9 @@ from gearopt.scenes.drive.scene import EXAMPLE, Scene
 from gearopt.scenes.drive.stage_counts import best_count
 from gearopt.scenes.explaining.default import of_report
 from gearopt.scenes.parts import undercut
-from gearopt.scenes.reading.ask import Ask
+from gearopt.scenes.reading.ask import Ask, unseeded
 
-__all__ = ["EXAMPLE", "Scene", "compared", "explain", "model", "solve"]
+__all__ = ["EXAMPLE", "Scene", "compared", "explain", "idle", "model", "solve"]
 PROCESSES = ("process_one", "process_two")  # tables; as methods with a hyphen
 WEAKER = " Its contact ratio is less than the one given, its root is weaker."
 CONTINUOUS = ("ipopt", "gp", "multistart")  # methods that take no whole teeth
@@ -197,6 +197,16 @@ def _with_processes(scene: Scene, ask: Ask, best: Result) -> Result:
         part = replace(part, objective=part.objective | {"unit": train.unit}, design=made)
         parts.append(reconcile(replace(part, name=words), best, ask.gap))
     return replace(best, parts=(*best.parts, *parts), report=best.report | {"notes": remarks})
+
+
+def idle(scene: Scene, method: str | None) -> dict[str, str]:
+    """Return the options of `solve` that change nothing, each with the reason."""
+    found, boxed = {}, scene.layout is not None
+    if scene.teeth is None:
+        found["top"] = "next best answers are listed of whole teeth, which a table [teeth] asks for"
+    elif not boxed and method not in (None, "exact"):
+        found["top"] = f"{method} finds one answer; exact lists the next best ones"
+    return found if boxed else found | unseeded(method)
 
 
 def compared(scene: Scene) -> tuple[str, ...]:

@@ -1,9 +1,12 @@
 """What a caller asks of a scene beside the file: method, budget, how many answers."""
 
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 from gearopt.optimise.result import Budget, Watch
 from gearopt.optimise.solve import GAP
+
+RANDOM = ("annealing", "multistart", "nsga2", "scip")  # back ends that another seed leads elsewhere
 
 
 @dataclass(frozen=True)
@@ -22,3 +25,20 @@ class Ask:
         """Return the same in half of its seconds: an answer that leaves time to explain it."""
         seconds = self.budget.seconds and 0.5 * self.budget.seconds
         return replace(self, budget=replace(self.budget, seconds=seconds))
+
+
+def unseeded(method: str | None) -> dict[str, str]:
+    """Return that a seed changes nothing, for a kind whose own methods are not random."""
+    return {} if method in RANDOM else {"seed": f"{method or 'the method'} is not random"}
+
+
+def idle(module: Any, scene: Any, method: str | None) -> dict[str, str]:
+    """Return the options that change nothing for a scene and a method, each with the reason.
+
+    module: of the kind, which may have an `idle(scene, method)` of its own: by default no next best
+    answers are listed.
+    """
+    if hasattr(module, "idle"):
+        found: dict[str, str] = module.idle(scene, method)
+        return found
+    return {"top": "no next best answers are listed"}

@@ -25,7 +25,7 @@ from gearopt.optimise.result import Result
 from gearopt.optimise.typed import untyped
 from gearopt.physics.gears import disc_mass
 from gearopt.scenes.explaining.default import explained, of_report
-from gearopt.scenes.reading.ask import Ask
+from gearopt.scenes.reading.ask import Ask, unseeded
 from gearopt.scenes.servo.assumptions import assumptions, notes
 from gearopt.scenes.servo.remedies import remedies
 from gearopt.scenes.servo.scene import EXAMPLE, Scene
@@ -44,7 +44,7 @@ from gearopt.scenes.servo.train_part import (
     train_part,
 )
 
-__all__ = ["EXAMPLE", "Scene", "compared", "explain", "model", "solve"]
+__all__ = ["EXAMPLE", "Scene", "compared", "explain", "idle", "model", "solve"]
 
 COUNTS = {"combinations": "trains_looked_at", "feasible_trains": "feasible_trains"}
 
@@ -161,6 +161,14 @@ def explain(scene: Scene, ask: Ask, result: Result | None = None) -> Explanation
     if scene.train is None and scene.duty is None:
         found = replace(found, conflict=tuple(named(n, scene.sources) for n in found.conflict))
     return found
+
+
+def idle(scene: Scene, method: str | None) -> dict[str, str]:
+    """Return the options of `solve` that change nothing, each with the reason."""
+    found = {"top": "the trains of the Pareto front are listed as they are"}
+    if scene.train is None:
+        found["top"] = "without [train] there are no trains to list"
+    return found | unseeded(method)
 
 
 def compared(scene: Scene) -> tuple[str, ...]:
