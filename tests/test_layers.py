@@ -1,6 +1,7 @@
 """Who may import whom, read from the source by ast (docs/contract.md has the table)."""
 
 import ast
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -84,6 +85,18 @@ def test_imports_follow_the_layers(path):
             assert path.stem.endswith("_kernel"), f"{path.name} imports numba at module level"
         elif top_level and first not in sys.stdlib_module_names:
             assert first in outside, f"{path.name} imports {module} at module level"
+
+
+def test_one_module_asks_the_report_room_by_name():
+    """What shows an answer (docs/contract.md); the room itself, cli and api may."""
+    rooms = ("physics", "optimise", "formulations", "scenes")
+    asking = {
+        str(path.relative_to(SRC))
+        for path in _files()
+        if path.relative_to(SRC).parts[0] in rooms
+        and re.search(r"[\"']gearopt\.report", path.read_text(encoding="utf-8"))
+    }
+    assert asking == {"optimise/result.py"}
 
 
 def test_modules_do_not_import_each_other_in_a_circle():

@@ -7,13 +7,14 @@ import typer
 from rich.console import Console
 
 from gearopt.cli.app import Csv, File, Html, Json, Units, app, console, exit_code, print_whole
-from gearopt.cli.reporting import SECONDS, TOP_ON_PAGE, answer, checked, compared, written
+from gearopt.cli.reporting import answer, checked, compared, written
 from gearopt.cli.watching import following, reached, watching
 from gearopt.cli.writing import check_html
 from gearopt.errors import GearoptError
 from gearopt.optimise.comparing.compare import EVALUATIONS, SEEDS, Progress
 from gearopt.optimise.comparing.compare import SECONDS as EACH
 from gearopt.optimise.result import Budget
+from gearopt.report.command import SECONDS, TOP_ON_PAGE
 
 
 @app.command()
@@ -99,8 +100,6 @@ def explain(
     as_json: Json = False,
 ) -> None:
     """Show what each number of the file costs; of an impossible request, what to write instead."""
-    from dataclasses import asdict, replace
-
     from gearopt.api import explain as explain_file
 
     with watching(seconds, quiet=as_json) as watch:
@@ -108,15 +107,10 @@ def explain(
     if as_json:
         print_whole(found.to_json())
     elif found.result.value is None:
+        from gearopt.report.shown import answered
         from gearopt.report.terminal import show as show_result
 
-        ways = {k: getattr(found, k) for k in ("conflict", "message")}
-        ways |= {"remedies": [asdict(r) for r in found.remedies]}
-        reasons = found.conflict or found.remedies or found.message != found.result.message
-        if found.result.status != "infeasible" or not reasons:  # the proof says why, once
-            ways = {}
-        report = found.result.report | ({"ways_out": ways} if ways else {})
-        show_result(replace(found.result, report=report), console())
+        show_result(answered(found), console())
     else:
         from gearopt.report.terminal import show_explanation
 

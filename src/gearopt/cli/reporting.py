@@ -1,7 +1,6 @@
 """`report`: a result that was kept as JSON, shown again; and how every result is written out."""
 
 import json
-import shlex
 import warnings
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,13 +14,11 @@ from gearopt.cli.writing import check_csv, check_html, write
 from gearopt.errors import GearoptError
 from gearopt.optimise.comparing.comparison import Comparison
 from gearopt.optimise.result import Result, loads
+from gearopt.report.command import again
 from gearopt.report.measures import METRIC, SYSTEMS, Measures
 
-SECONDS = 60.0  # that a run may take by default
 LONGEST = 200  # characters shown of what is wrong with a file
 HOW = "write one with `gearopt solve FILE --json > result.json`"
-TOP_ON_PAGE = 10  # trains that a page lists by default
-DEFAULTS = {"seconds": SECONDS, "seed": 0, "top": TOP_ON_PAGE}
 
 
 @dataclass(frozen=True)
@@ -133,34 +130,12 @@ def written(result: Result, files: Files) -> list[str]:
     return lines
 
 
-def again(result: Result, files: Files) -> str:
-    """Return the command that makes a page again, without default options; "" if none.
-
-    A run from Python without a limit of time had more of it than any command. One that changed the
-    tables of its file was Python's.
-    """
-    if result.file is None:
-        return ""
-    if changes := result.options.get("changes"):
-        return f"gearopt.solve({result.file!r}, {changes!r})"
-    words = ["gearopt", "solve", result.file]
-    if result.options and result.options.get("seconds") is None:
-        words += ["--seconds", "1e9"]
-    for name in ("method", "seconds", "gap", "seed", "top"):
-        value = result.options.get(name)
-        if value is not None and value != DEFAULTS.get(name):
-            words += [f"--{name}", f"{value:.12g}" if isinstance(value, float) else str(value)]
-    if files.measures.name != "metric":
-        words += ["--units", files.measures.name]
-    return shlex.join([*words, "--html", str(files.html)])
-
-
 def _page(result: Result, files: Files) -> str:
     if files.html is None:
         return ""
     from gearopt.report.pages.result import page
 
-    return page(result, again(result, files), files.measures)
+    return page(result, again(result, str(files.html), files.measures), files.measures)
 
 
 def _tables(result: Result, files: Files) -> dict[Path, str]:

@@ -6,6 +6,7 @@ import platform
 from collections.abc import Callable, Mapping
 from dataclasses import MISSING, asdict, dataclass, field, fields, replace
 from functools import cache
+from importlib import import_module
 from importlib.metadata import version
 from numbers import Real
 from typing import TYPE_CHECKING, Any
@@ -161,6 +162,30 @@ class Result:
         excess = self.certificate.get("feasibility")
         return bool(self.design) and excess is not None and excess <= FEASIBLE
 
+    def __repr__(self) -> str:
+        return str(shown("lines", self))
+
+    def _repr_html_(self) -> str:
+        return str(shown("fragment", self))
+
+    @property
+    def tables(self) -> tuple[str, ...]:
+        """Return names of the tables of its page, which `table` takes."""
+        return tuple(shown("table_names", self, "metric"))
+
+    def table(self, name: str, units: str = "metric") -> list[dict[str, Any]]:
+        """Return a table of its page as rows {column: value}, in full precision.
+
+        A row for every stage in "stages", for every train in "best-trains"; columns are those of
+        the CSV files. units: "metric" or "inch". ValueError names the tables there are.
+        """
+        found: list[dict[str, Any]] = shown("table_rows", self, name, units)
+        return found
+
+    def to_html(self, units: str = "metric") -> str:
+        """Return its page, one self-contained HTML text; units: "metric" or "inch"."""
+        return str(shown("whole_page", self, units))
+
     def to_dict(self) -> dict[str, Any]:
         """Return plain dicts, lists and numbers; no NaN and no infinity (None instead)."""
         return as_dict(self)
@@ -193,6 +218,14 @@ class Result:
     def from_json(cls, text: str) -> "Result":
         """Return the inverse of `to_json`."""
         return cls.from_dict(loads(text))
+
+
+SHOWN = "gearopt.report.shown"  # who shows an answer, by name: this room imports no report
+
+
+def shown(what: str, *of: Any) -> Any:
+    """Return what a function of the report room makes of an answer, imported when it is asked."""
+    return getattr(import_module(SHOWN), what)(*of)
 
 
 def as_dict(record: Any) -> dict[str, Any]:

@@ -74,7 +74,7 @@ def stage_table(
         if key == MODULE and measures is INCH:
             pitches = [diametral_pitch(s[key]) for s in stages]
             found.append(["diametral pitch P_nd [1/in]", *pitches])
-    return Table("stages", heads, found, page_only=hidden)
+    return Table("stages", heads, found, page_only=hidden, across=True)
 
 
 def ratio_tile(ratio: float, error_percent: float) -> Tile:

@@ -99,7 +99,8 @@ class Table:
     words: sentences, not numbers, that may break over lines. folded: a plot shows its values, so
     that the page holds its CSV only. page_only, terminal_only: heads of the columns and labels (the
     first cells) of the rows that only one of them shows. short: other heads on the terminal. left,
-    wrap: how many columns stand on the left there, and how many may break over lines.
+    wrap: how many columns stand on the left there, and how many may break over lines. across: what
+    it lists (stages, parts) stands side by side, each in a column.
     """
 
     name: str
@@ -113,6 +114,7 @@ class Table:
     short: Mapping[str, str] = field(default_factory=dict)
     left: int = 1
     wrap: int = 1
+    across: bool = False
 
     def without(self, hidden: Collection[str]) -> tuple[list[str], list[list[Any]]]:
         """Return heads and rows without the columns and rows of these names."""
@@ -136,11 +138,43 @@ class Table:
         heads, rows = self.without(self.terminal_only)
         return heads, [[shown(value) for value in row] for row in rows]
 
+    @property
+    def told(self) -> tuple[list[str], list[list[Cell]]]:
+        """Return heads and cells as the terminal shows them."""
+        heads, rows = self.without(self.page_only)
+        names = [self.short.get(head, head) for head in heads]
+        return names, [[shown(value) for value in row] for row in rows]
+
+    @property
+    def values(self) -> tuple[list[str], list[list[Any]]]:
+        """Return heads and plain values in full precision, as the CSV has them."""
+        heads, rows = self.without(self.terminal_only)
+        return heads, [[v.value if isinstance(v, Cell) else v for v in row] for row in rows]
+
+    @property
+    def records(self) -> list[dict[str, Any]]:
+        """Return a dict {column: value} for everything that the table lists.
+
+        A list of names and values is one record; a column without a head is called name.
+        """
+        heads, rows = self.values
+        if not any(heads):
+            values = ([v for v in row[1:] if v not in (None, "")] for row in rows)
+            cells = (v[0] if len(v) == 1 else v or None for v in values)
+            return [dict(zip((str(row[0]) for row in rows), cells, strict=True))]
+        columns = [head or "name" for head in heads]
+        if self.across:
+            columns, rows = (
+                ["name", *(str(row[0]) for row in rows)],
+                [[head, *cells] for head, *cells in zip(heads, *rows, strict=True)][1:],
+            )
+        return [dict(zip(columns, row, strict=True)) for row in rows]
+
     def csv(self) -> str:
         """Return heads and values in full precision, as RFC 4180 has it."""
         text = io.StringIO()
         writer = csv.writer(text, lineterminator="\r\n")
-        heads, rows = self.without(self.terminal_only)
+        heads, rows = self.values
         if any(heads):
             writer.writerow(heads)
         writer.writerows([_plain(value) for value in row] for row in rows)

@@ -15,7 +15,7 @@ from datetime import date
 from typing import Any
 
 from gearopt.errors import CertificateError
-from gearopt.optimise.result import as_dict, as_json, loads, versions
+from gearopt.optimise.result import as_dict, as_json, loads, shown, versions
 from gearopt.optimise.scale import unit
 from gearopt.optimise.typed import typed
 
@@ -151,6 +151,16 @@ class Comparison:
     versions: Mapping[str, str] = field(default_factory=lambda: versions("numpy", "casadi"))
     comparison: int = FORMAT
     gearopt: str = field(default_factory=lambda: versions("gearopt")["gearopt"])
+
+    def __repr__(self) -> str:
+        return str(shown("compared_lines", self))
+
+    def _repr_html_(self) -> str:
+        return str(shown("compared_fragment", self))
+
+    def to_html(self) -> str:
+        """Return its page, one self-contained HTML text."""
+        return str(shown("compared_page", self))
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain dicts, lists and numbers; no NaN and no infinity (None instead)."""

@@ -4,7 +4,7 @@ import tomllib
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
-from gearopt.optimise.result import Result, as_dict, as_json
+from gearopt.optimise.result import Result, as_dict, as_json, shown
 
 FORMAT = 1
 
@@ -107,6 +107,12 @@ class Explanation:
         """Return influences, and what to say of them, as the report of a result holds them."""
         influences = [asdict(i) for i in self.influences]
         return {"influences": influences, "message": self.message, "basis": self.basis}
+
+    def __repr__(self) -> str:
+        return str(shown("explained_lines", self))
+
+    def _repr_html_(self) -> str:
+        return str(shown("explained_fragment", self))
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain dicts, lists and numbers; no NaN and no infinity (None instead)."""

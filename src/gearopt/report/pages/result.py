@@ -1,19 +1,25 @@
 """The page of a result: drawings, a solid to turn, progress, numbers, and how sure they are."""
 
+from collections.abc import Iterator
+
 from gearopt.optimise.result import Result
 from gearopt.report.kinds import kind_of
 from gearopt.report.measures import METRIC, Measures
 from gearopt.report.pages.frame import render
-from gearopt.report.section import Section
+from gearopt.report.section import Section, Table
 from gearopt.report.words import amount, goal, title, verdict
 from gearopt.scenes.reading.toml import short
 
 
 def sections(result: Result, measures: Measures = METRIC) -> list[Section]:
     """Return what a result has to show, in the order of its page."""
+    return list(_each(result, measures))
+
+
+def _each(result: Result, measures: Measures) -> Iterator[Section]:
     result = Result.from_dict(result.to_dict())  # plain numbers, as a file of it has them
     made = (section(result, measures) for section in kind_of(result).sections)
-    return [section for section in made if section is not None]
+    return (section for section in made if section is not None)
 
 
 def page(result: Result, command: str, measures: Measures = METRIC) -> str:
@@ -33,12 +39,18 @@ def page(result: Result, command: str, measures: Measures = METRIC) -> str:
 
 def tables(result: Result, measures: Measures = METRIC) -> dict[str, str]:
     """Return the CSV of every table by the name of its file, such as `stages.csv`."""
-    found: dict[str, str] = {}
-    for section in sections(result, measures):
+    return {f"{name}.csv": table.csv() for name, table in tables_by_name(result, measures)}
+
+
+def tables_by_name(result: Result, measures: Measures) -> Iterator[tuple[str, Table]]:
+    """Yield the tables with a name of their own each, as soon as their section is made."""
+    taken: set[str] = set()
+    for section in _each(result, measures):
         for table in section.tables:
-            names = (f"{table.stem}{k}.csv" for k in ("", *range(2, 1000)))
-            found[next(name for name in names if name not in found)] = table.csv()
-    return found
+            names = (f"{table.stem}{k}" for k in ("", *range(2, 1000)))
+            name = next(name for name in names if name not in taken)
+            taken.add(name)
+            yield name, table
 
 
 def _source(result: Result) -> str | None:

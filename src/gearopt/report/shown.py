@@ -1,0 +1,213 @@
+"""Answers as they show themselves in Python: a few lines, a fragment for notebooks, pages, rows.
+
+`optimise.result.shown` asks for the functions here by their names.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, replace
+from difflib import get_close_matches
+from typing import Any
+
+from rich.text import Text
+
+from gearopt.optimise.comparing.comparison import Comparison
+from gearopt.optimise.explaining.explanation import Explanation
+from gearopt.optimise.result import Result
+from gearopt.report import comparison_words
+from gearopt.report.explained import of_influences
+from gearopt.report.kinds import kind_of
+from gearopt.report.measures import METRIC, SYSTEMS, Measures
+from gearopt.report.section import Table
+from gearopt.report.words import (
+    MODULE,
+    amount,
+    goal,
+    leading,
+    limit_words,
+    number,
+    parted,
+    title,
+    verdict,
+)
+
+LONGEST = 300  # characters of a line
+MOST = 5  # numbers of a design, numbers of a file, or remedies that are listed
+Block = str | Text | Table
+
+
+def lines(result: Result) -> str:
+    """Return status, value, bound and gap, and what is essential of the design, in a few lines."""
+    _, unit, value, bound, _ = goal(result)
+    rows = [_head(result)]
+    if bound is not None:
+        gap = "" if result.gap is None else f", gap {100 * result.gap:.3g} %"
+        rows.append(f"bound {amount(bound, unit)}{gap}")
+    rows += _design(result)
+    if result.message and (value is None or not result.feasible or leading(result)):
+        rows.append(result.message)
+    return "\n  ".join(
+        row if len(row) <= 3 * LONGEST else f"{row[: 3 * LONGEST]}..." for row in rows
+    )
+
+
+def _head(result: Result) -> str:
+    """Return title, value and what is certain of it."""
+    name, unit, value, _, _ = goal(result)
+    found = f"{name} {amount(value, unit)}, " if value is not None else ""
+    return f"{title(result)}: {found}{verdict(result)[0]}"
+
+
+def _design(result: Result) -> list[str]:
+    """Return a line for every stage of gears, then the first numbers of a design."""
+    design, goal = result.design, result.objective.get("name")
+    groups = [part for part in design.values() if isinstance(part, Mapping)]
+    parts = sorted((design, *groups), key=lambda part: not part.get("stages"))
+    stages: list[Any] = parts[0].get("stages", [])
+    rows = [
+        f"stage {k}: m_n {s[MODULE]:.6g} mm, "
+        f"z {number(s['pinion_teeth'])}/{number(s['wheel_teeth'])}"
+        for k, s in enumerate(stages, 1)
+        if {MODULE, "pinion_teeth", "wheel_teeth"} <= s.keys()
+    ]
+    values = next((words for part in parts if (words := _values(part, goal))), [])
+    more = ["..."] if len(values) > MOST else []
+    return [*rows, *filter(None, [", ".join([*values[:MOST], *more])])]
+
+
+def _values(part: Mapping[str, Any], goal: Any) -> list[str]:
+    """Return `width 76.57 mm` of the single numbers of a part of a design, but for its goal."""
+    words = []
+    for key, value in part.items():
+        name, unit = parted(key)
+        if isinstance(value, list) and value and all(isinstance(v, int | float) for v in value):
+            short = [*map(number, value[:MOST]), *(["..."] if len(value) > MOST else [])]
+            words.append(f"{name} [{', '.join(short)}] {METRIC.unit(unit)}".rstrip())
+        elif isinstance(value, int | float) and name != goal:
+            words.append(f"{name} {amount(value, unit)}")
+    return [word.replace("_", " ") for word in words]
+
+
+def explained_lines(found: Explanation) -> str:
+    """Return the answer, the limits that bind and the largest sensitivities, or the remedies."""
+    rows = [lines(found.result)]
+    if found.conflict:
+        rows.append(f"in conflict: {', '.join(map(limit_words, found.conflict))}")
+    for remedy in found.remedies[:MOST]:
+        rows.append(" and ".join(f"{c.key} = {c.write}" for c in remedy.changes[:3]))
+    if found.binding:
+        rows.append(f"limits reached: {', '.join(map(limit_words, found.binding))}")
+    slopes = {i.key: i.sensitivity for i in found.influences if i.sensitivity is not None}
+    if slopes:
+        largest = sorted(slopes, key=lambda key: -abs(slopes[key]))[:MOST]
+        words = ", ".join(f"{key} {slopes[key]:+.4g}" for key in largest)
+        rows.append(f"effect of +1 % in %: {words}")
+    return "\n  ".join(rows)
+
+
+def compared_lines(found: Comparison) -> str:
+    """Return the verdict of every method, model by model."""
+    rows = [f"{found.title}: methods compared"]
+    for group in found.groups:
+        rows.append(comparison_words.reference(group))
+        rows += (f"{row.method}: {comparison_words.verdict(group, row)}" for row in group.rows)
+    return "\n  ".join(rows)
+
+
+def fragment(result: Result) -> str:
+    """Return what the terminal shows of a result as HTML for a notebook."""
+    result = Result.from_dict(result.to_dict())
+    made = (make(result, METRIC) for make in kind_of(result).terminal)
+    blocks = [block for section in made if section is not None for block in section.terminal]
+    return _html(_head(result), [*leading(result), *blocks])
+
+
+def explained_fragment(found: Explanation) -> str:
+    """Return an explanation as HTML for a notebook: sensitivities, or the way out."""
+    if found.result.value is None:
+        return fragment(answered(found))
+    head, *rest = explained_lines(replace(found, influences=())).split("\n")
+    return _html(head, [*rest[-1:], *of_influences(found.prices, found.result).terminal])
+
+
+def compared_fragment(found: Comparison) -> str:
+    """Return a comparison as HTML for a notebook: verdicts and numbers of every method."""
+    blocks: list[Block] = []
+    for group in found.groups:
+        blocks += [comparison_words.reference(group)]
+        blocks += [f"{r.method}: {comparison_words.verdict(group, r)}" for r in group.rows]
+        for field, name, budget in comparison_words.kinds(found):
+            heads = [f"{head} {unit}".strip() for head, unit, _ in comparison_words.COLUMNS]
+            samples = ((row.method, getattr(row, field)) for row in group.rows)
+            rows = [(m, *comparison_words.cells(sample)) for m, sample in samples if sample]
+            blocks += [f"{name}: {budget}", Table(name, ("method", *heads), rows)] if rows else []
+    return _html(f"{found.title}: methods compared", blocks)
+
+
+def answered(found: Explanation) -> Result:
+    """Return the result of an impossible request with the conflict and the remedies in it."""
+    ways: dict[str, Any] = {"conflict": found.conflict, "message": found.message}
+    ways |= {"remedies": [asdict(remedy) for remedy in found.remedies]}
+    reasons = found.conflict or found.remedies or found.message != found.result.message
+    if found.result.status != "infeasible" or not reasons:  # the proof says why, once
+        return found.result
+    return replace(found.result, report=found.result.report | {"ways_out": ways})
+
+
+def _html(head: str, blocks: Sequence[Block]) -> str:
+    """Return a fragment of a page in the colours of where it stands; all text is escaped."""
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+
+    loader = PackageLoader("gearopt.report", "pages")
+    room = Environment(
+        loader=loader,
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    parts: list[Any] = [b if isinstance(b, Table) else str(b) for b in blocks]
+    return room.get_template("notebook.html").render(head=head, blocks=parts)
+
+
+def measures_of(units: str) -> Measures:
+    """Return the system of units of a name; ValueError names those there are."""
+    if units not in SYSTEMS:
+        raise ValueError(f"units={units!r}: write {' or '.join(map(repr, SYSTEMS))}")
+    return SYSTEMS[units]
+
+
+def whole_page(result: Result, units: str) -> str:
+    """Return the page of a result, as `gearopt report --html` writes it."""
+    from gearopt.report.command import again
+    from gearopt.report.pages.result import page
+
+    measures = measures_of(units)
+    return page(result, again(result, "page.html", measures), measures)
+
+
+def compared_page(found: Comparison) -> str:
+    """Return the page of a comparison."""
+    from gearopt.report.pages.comparison import page
+
+    return page(found)
+
+
+def table_names(result: Result, units: str) -> tuple[str, ...]:
+    """Return names of the tables of a result, in the order of its page."""
+    from gearopt.report.pages.result import tables_by_name
+
+    return tuple(name for name, _ in tables_by_name(result, measures_of(units)))
+
+
+def table_rows(result: Result, name: str, units: str) -> list[dict[str, Any]]:
+    """Return a table of a result as rows {column: value}; ValueError names the tables there are."""
+    from gearopt.report.pages.result import tables_by_name
+
+    known = []
+    for found, table in tables_by_name(result, measures_of(units)):
+        if found == name:
+            return table.records
+        known.append(found)
+    close = get_close_matches(str(name), known, n=1)
+    meant = f" (did you mean {close[0]!r}?)" if close else ""
+    raise ValueError(f"no table {name!r}{meant}; tables: {', '.join(known)}")
