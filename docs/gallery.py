@@ -29,6 +29,9 @@ GROUPS = {  # heading: {file: what it shows, in a line}
         "elevator_coprime": "Hunting teeth, `coprime = true`: the best train has them already.",
         "three_stage_coprime": "Here hunting teeth cost a little volume.",
     },
+    "Inches": {
+        "inch_drive": "Diametral pitches, horsepower and psi; shown by `--units inch`.",
+    },
     "The paper's processes": {
         "elevator_processes": "The rules of a paper beside the optimum, `[process_one]` and "
         "`[process_two]`.",

@@ -7,13 +7,14 @@ from fractions import Fraction
 import pint
 import pytest
 
-from gearopt.units import SPELLINGS, UNITS, parse, pattern, quotient
+from gearopt.units import RECIPROCALS, SPELLINGS, UNITS, parse, pattern, quotient
 
 PINT = pint.UnitRegistry()
 INSIDE = {  # dimension -> what one is inside
     "power": "newton * millimeter / second",
     "speed": "radian / second",
     "length": "millimeter",
+    "module": "millimeter",
     "stress": "megapascal",
     "angle": "radian",
     "density": "metric_ton / millimeter**3",
@@ -34,6 +35,7 @@ NAMES = {  # where pint's name is another; a speed of 1/min or 1/s counts revolu
     "deg/s": "degree / second",
     "rad/s": "radian / second",
     "in": "inch",
+    "1/in": "1 / inch",
     "um": "micrometer",
     "deg": "degree",
     "mrad": "milliradian",
@@ -62,7 +64,8 @@ ALL = [(dimension, unit) for dimension, units in UNITS.items() for unit in units
 @pytest.mark.parametrize(("dimension", "unit"), ALL, ids=[f"{d} {u}" for d, u in ALL])
 def test_every_unit_agrees_with_pint(dimension, unit):
     name = NAMES.get((dimension, unit), NAMES.get(unit, unit))
-    theirs = (7.25 * PINT.parse_expression(name)).to(INSIDE[dimension]).magnitude
+    theirs = 7.25 * PINT.parse_expression(name)
+    theirs = (1 / theirs if unit in RECIPROCALS else theirs).to(INSIDE[dimension]).magnitude
     assert parse(f"7.25 {unit}", dimension).value == pytest.approx(theirs, rel=1e-12)
 
 

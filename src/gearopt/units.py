@@ -9,7 +9,7 @@ the tests.
 
 import math
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 _INCH = Fraction("25.4")  # mm
@@ -21,6 +21,12 @@ _POUND_FORCE = _POUND * _GRAVITY  # N
 def _table(**units: Fraction | int) -> dict[str, tuple[Fraction, int]]:
     return {name: (Fraction(factor), 0) for name, factor in units.items()}
 
+
+_LENGTHS = {
+    **_table(mm=1, cm=10, m=1000, um=Fraction(1, 1000)),
+    **_table(**{"in": _INCH, "ft": 12 * _INCH}),
+}
+RECIPROCALS = ("1/in",)  # units that count how often a length goes into theirs: diametral pitches
 
 # dimension -> unit -> (rational factor, power of pi) to the inside unit
 UNITS: dict[str, dict[str, tuple[Fraction, int]]] = {
@@ -36,10 +42,8 @@ UNITS: dict[str, dict[str, tuple[Fraction, int]]] = {
         "rad/s": (Fraction(1), 0),
         "deg/s": (Fraction(1, 180), 1),
     },
-    "length": {  # mm
-        **_table(mm=1, cm=10, m=1000, um=Fraction(1, 1000)),
-        **_table(**{"in": _INCH, "ft": 12 * _INCH}),
-    },
+    "length": _LENGTHS,  # mm
+    "module": _LENGTHS | {"1/in": (_INCH, 0)},  # mm: m_n = 25.4 mm/P of a diametral pitch P
     "stress": {  # MPa = N/mm2
         **_table(MPa=1, Pa=Fraction(1, 10**6), kPa=Fraction(1, 1000), GPa=1000),
         **_table(bar=Fraction(1, 10), **{"N/mm^2": 1}),
@@ -89,6 +93,7 @@ SPELLINGS: dict[str, tuple[str, ...]] = {
     "arcsec": ("\u2033",),
     "um": ("\u00b5m", "\u03bcm"),  # the micro sign, and the Greek letter
     "in": ("inch", "inches"),
+    "1/in": ("/in", "in^-1", "in\u207b\u00b9", "DP"),
     "lbf in": ("lb in", "in lbf", "in lb"),
     "lbf ft": ("lb ft", "ft lbf", "ft lb"),
 }
@@ -119,7 +124,17 @@ class Quantity:
     def exact(self) -> tuple[Fraction, int]:
         """Return the value in the inside unit as (rational number, power of pi)."""
         factor, power = UNITS[self.dimension][self.unit] if self.unit else (Fraction(1), 0)
-        return self.number * factor, power
+        return (factor / self.number if self.reciprocal else self.number * factor), power
+
+    @property
+    def reciprocal(self) -> bool:
+        """Return whether a larger number is a smaller quantity, as with a diametral pitch."""
+        return self.unit in RECIPROCALS
+
+    def of(self, value: Fraction) -> "Quantity":
+        """Return a value in the inside unit in the unit of this quantity, which has no pi."""
+        factor, _ = UNITS[self.dimension][self.unit]
+        return replace(self, number=factor / value if self.reciprocal else value / factor)
 
     @property
     def value(self) -> float:

@@ -23,6 +23,12 @@ SERIES_II = _series("1.125 1.375 1.75 2.25 2.75 3.5 4.5 5.5 6.5 7 9 11 14 18 22 
 
 MODULES = {"ISO 54 I": SERIES_I, "ISO 54 I+II": tuple(sorted(SERIES_I + SERIES_II))}
 
+# Diametral pitches [1/in] that American textbooks list as in general use (Shigley and others);
+# unverified: no second listing of the whole series was found, and standards list others, too.
+COARSE = _series("2 2.25 2.5 3 4 6 8 10 12 16")
+FINE = _series("20 24 32 40 48 64 80 96 120 150 200")
+DIAMETRAL_PITCHES = {"DP coarse": COARSE, "DP fine": FINE, "DP coarse+fine": COARSE + FINE}
+
 NEGLIGIBLE = 0.01  # modules that a rack may reach too deep: 17 teeth of 20 degrees need 0.006
 
 

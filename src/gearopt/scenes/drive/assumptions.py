@@ -5,6 +5,7 @@ from gearopt.physics.gears import ISO_53_A
 from gearopt.scenes.drive.drive_tables import ORIGINS
 from gearopt.scenes.drive.layout_tables import Layout
 from gearopt.scenes.drive.scene import Scene
+from gearopt.scenes.reading.modules import unverified
 
 CLEARANCES = {
     "gear_clearance": "between gears that do not mesh",
@@ -25,6 +26,8 @@ def notes(scene: Scene, exact: bool) -> list[str]:
     names = ("wheel_teeth", "stage_ratio", "wheel_diameter")
     if not any(getattr(table, name) for table in (limits, *stages) for name in names):
         found.append("No limit on wheel teeth, stage ratio or wheel diameter was set.")
+    if exact and scene.teeth is not None:
+        found += unverified(scene.teeth.modules)
     if scene.objective.density is None:
         found.append(f"Masses are those of steel, {1e9 * STEEL_DENSITY:g} kg/dm³ (assumed).")
     return found

@@ -11,9 +11,9 @@ from gearopt.formulations.gear_train import OBJECTIVES
 from gearopt.formulations.process import ProcessOne, ProcessTwo
 from gearopt.formulations.strength import Law
 from gearopt.formulations.strength.k_factor import K_FACTOR
-from gearopt.physics.gears import MODULES
 from gearopt.scenes.reading.fields import Table, choice, number, quantity, refuse, truth, whole
-from gearopt.scenes.reading.lists import either, several, span
+from gearopt.scenes.reading.lists import several, span
+from gearopt.scenes.reading.modules import MODULE, SERIES, series
 from gearopt.units import Quantity
 
 LAW = K_FACTOR  # that limits a drive
@@ -21,7 +21,6 @@ LENGTH = quantity("length", "400 mm")
 STEP = quantity("length", "1 mm")
 TOOTH_COUNT = whole(21, 5, 1000)
 WHEEL_TEETH = whole(100, 5, 100_000)
-MODULE = quantity("length", "2 mm")
 PROPORTION = span(number(0.6, 0, 10), [0.3, 0.6], single=True)
 AIM = choice(
     *OBJECTIVES,
@@ -99,7 +98,7 @@ class StageTable(Loaded):
     """One stage: what differs from the other tables, and what is fixed."""
 
     module: Annotated[Lengths | None, span(MODULE, "2 mm", single=True)] = Field(
-        None, description="Normal module: fixed, or a range"
+        None, description="Normal module: fixed, or a range; or a diametral pitch in 1/in"
     )
     pinion_teeth: Annotated[tuple[int, int] | None, span(TOOTH_COUNT, 21, single=True)] = Field(
         None, description="Pinion teeth: fixed, or a range"
@@ -140,7 +139,7 @@ class Limits(Loaded):
         None, description="Range of wheel teeth"
     )
     module: Annotated[Lengths | None, span(MODULE, ["1 mm", "10 mm"])] = Field(
-        None, description="Range of the normal module"
+        None, description="Range of the normal module, or of diametral pitches in 1/in"
     )
     stage_ratio: Ratios = Field(
         None, description="Range of every stage's ratio (without it: 1 and up)"
@@ -168,14 +167,20 @@ class Limits(Loaded):
 class Teeth(Table):
     """Whole teeth and standard modules; without this table sizes are continuous."""
 
-    modules: Annotated[tuple[Fraction, ...], either(MODULES, MODULE)] = Field(
-        default_factory=lambda: MODULES["ISO 54 I"],
-        description='"ISO 54 I", "ISO 54 I+II", or a list of modules',
+    modules: Annotated[tuple[Quantity, ...], series()] = Field(
+        default_factory=lambda: SERIES["ISO 54 I"],
+        description='"ISO 54 I", "ISO 54 I+II", or a list of modules; diametral pitches: '
+        '"DP coarse", "DP fine", "DP coarse+fine", or a list in 1/in',
         json_schema_extra={"default": "ISO 54 I"},
     )
     coprime: Annotated[bool, truth()] = Field(
         False, description="Hunting teeth: z1 and z2 without a common divisor"
     )
+
+    @property
+    def sizes(self) -> tuple[Fraction, ...]:
+        """Return the normal modules [mm], ascending."""
+        return tuple(sorted(m.exact[0] for m in self.modules))
 
 
 class Objective(Table):

@@ -1,7 +1,6 @@
 """A drive's file as a whole: its tables, how they fit together, and the drive they describe."""
 
 from collections.abc import Callable
-from decimal import Decimal
 from fractions import Fraction
 from typing import Annotated, Any
 
@@ -24,6 +23,7 @@ from gearopt.scenes.drive.drive_tables import (
     Teeth,
 )
 from gearopt.scenes.drive.layout_tables import KeepOutTable, Layout, PlaceTable, gearbox
+from gearopt.scenes.explaining.numbers import eased, in_reverse, written
 from gearopt.scenes.parts import Duty
 from gearopt.scenes.reading.fields import Table, refuse, whole, words
 from gearopt.scenes.reading.lists import span
@@ -224,17 +224,19 @@ class Scene(Table):
             return tuple(sorted(set(ends)))
         if own.module and ends[0] == ends[1]:
             return ends[:1]
-        series = self.teeth.modules
+        series = self.teeth.sizes
         return tuple(m for m in series if not ends or ends[0] <= m <= ends[1])
 
     def _around(self, own: StageTable) -> list[str]:
         """Return the narrowest range of modules of [teeth] around one that holds none of them."""
         span = own.module or self.limits.module
         assert span is not None and self.teeth is not None
-        series = self.teeth.modules
+        series = self.teeth.sizes
         below = max((m for m in series if m < span[0].exact[0]), default=series[0])
         above = min((m for m in series if m > span[1].exact[0]), default=series[-1])
-        return [f"{Decimal(m.numerator) / m.denominator} mm" for m in (below, above)]
+        ends = eased(span[0].of(below), 1.0, -1), eased(span[1].of(above), 1.0, 1)
+        found = written(ends, ("limits", "module"))
+        return found if isinstance(found, list) else [found, found]
 
     @property
     def given(self) -> bool:
@@ -275,8 +277,10 @@ class Scene(Table):
             tables = ("limits", self.limits), ("gears", self.gears)
             for name, table in ((f"stage[{k + 1}]", stages[k]), *tables):
                 if (value := getattr(table, field, None)) is not None:
-                    one = end is None or value[0] == value[1]
-                    return f"{name}.{field}" if one else f"{name}.{field}[{end}]"
+                    if end is None or value[0] == value[1]:
+                        return f"{name}.{field}"
+                    end = 3 - end if in_reverse(value, (field,)) else end
+                    return f"{name}.{field}[{end}]"
             return f"limits.{field}" if field in self.limits.LAW.names else ""  # of a preset
 
         ends = {name: (name, None) for name in self.limits.LAW.names} | ENDS

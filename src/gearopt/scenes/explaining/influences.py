@@ -154,7 +154,13 @@ def stepped(
     if direction == 0:
         return "", None
     new = eased(now, 1.0 + EASE, direction)
-    return _brings(scene, number, f"{direction * EASE:+.0%}", new, value, solved)
+    return _brings(scene, number, per_cent(now, direction), new, value, solved)
+
+
+def per_cent(now: Any, direction: int) -> str:
+    """Return the step of EASE that a number takes in a direction of its quantity, in words."""
+    way = -direction if isinstance(now, Quantity) and now.reciprocal else direction
+    return f"{way * EASE:+.0%}"
 
 
 def _brings(

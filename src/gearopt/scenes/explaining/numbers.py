@@ -1,7 +1,7 @@
 """The numbers of a scene by their place in the file: list them, move them, write them."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Context, Decimal
 from fractions import Fraction
@@ -34,12 +34,25 @@ class Number:
     @property
     def key(self) -> str:
         """Return its place as messages write it: `stage[2].face_width_over_diameter`."""
-        return dotted(self.path)
+        return dotted(self._written)
+
+    @property
+    def _written(self) -> Path:
+        """Return its place in the file: of a range of diametral pitches the larger is last."""
+        flipped = in_reverse(self.value, self.path[:-1])
+        end = self.path[-1]
+        return (*self.path[:-1], 1 - end) if flipped and isinstance(end, int) else self.path
 
     @property
     def text(self) -> str:
         """Return the number as the file writes it."""
         return toml_text(written(self.value, self.path)).strip('"')
+
+
+def in_reverse(value: Any, path: Path) -> bool:
+    """Return whether a range has its ends in the file the other way: diametral pitches."""
+    one = value[0] if isinstance(value, tuple) and value else value
+    return path[-1:] == ("module",) and isinstance(one, Quantity) and one.reciprocal
 
 
 def numbers(scene: BaseModel, defaults: bool = False) -> tuple[Number, ...]:
@@ -58,7 +71,8 @@ def _walk(value: Any, path: Path, defaults: bool) -> Iterator[Number]:
                 one = held[0] if _is_one(type(value), name, held, (*path, name)) else held
                 yield from _walk(one, (*path, name), defaults)
     elif isinstance(value, tuple):
-        for k, item in enumerate(value):
+        items = list(enumerate(value))
+        for k, item in items[::-1] if in_reverse(value, path) else items:
             yield from _walk(item, (*path, k), defaults)
     elif isinstance(value, Quantity | Fraction | int) and not isinstance(value, bool):
         yield Number(path, value)
@@ -131,7 +145,8 @@ def _content(value: Any, path: Path) -> Any:
             if name in value.model_fields_set and getattr(value, name) is not None
         }
     if isinstance(value, tuple):
-        return [_content(v, path) for v in value]
+        found = [_content(v, path) for v in value]
+        return found[::-1] if in_reverse(value, path) else found
     return written(value, path)
 
 
@@ -150,8 +165,6 @@ def read(model: type[BaseModel], field: str, raw: Any) -> Any:
 
 def written(value: Any, path: Path) -> Any:
     """Return a value as a file holds it at a place: quantities as texts, decimals, lists."""
-    if path[1:2] == ("modules",) and isinstance(value, Fraction):
-        return f"{exact(value)} mm"
     if path[-1:] == ("ratio_tolerance",):
         return f"{exact(100 * value)} %"
     if isinstance(value, Quantity):
@@ -159,8 +172,10 @@ def written(value: Any, path: Path) -> Any:
     if isinstance(value, Fraction):
         return exact(value)
     if isinstance(value, tuple):
-        ends: Sequence[Any] = [written(v, path) for v in value]
-        return ends[0] if len(ends) == 2 and value[0] == value[1] else ends
+        ends: list[Any] = [written(v, path) for v in value]
+        if len(ends) == 2 and value[0] == value[1]:
+            return ends[0]
+        return ends[::-1] if in_reverse(value, path) else ends
     return value
 
 
@@ -173,9 +188,10 @@ def eased(value: Any, factor: float, direction: int) -> Any:
     """
     if not getattr(value, "number", value):
         return _shifted(value, factor, direction)
-    moved = Fraction(factor) ** direction
     if isinstance(value, Quantity):
-        return replace(value, number=_rounded(value.number * moved, direction))
+        way = -direction if value.reciprocal else direction
+        return replace(value, number=_rounded(value.number * Fraction(factor) ** way, way))
+    moved = Fraction(factor) ** direction
     if isinstance(value, int):
         number, near = float(value * moved), round(value * moved)
         if abs(number - near) <= ROOM * number:

@@ -22,12 +22,29 @@ def _mended(item: Reads, values: list[Any]) -> tuple[list[Any], str]:
     return right, first
 
 
-def span(item: Reads, example: Any, single: bool = False) -> Reads:
-    """Read a range [least, most] of items; single: one item is read too and means both ends."""
+def _reciprocal(value: Any) -> bool:
+    return isinstance(value, Quantity) and value.reciprocal
 
-    def order(value: Any) -> Any:
-        found = item.reader(value, item.example)
-        return found.value if isinstance(found, Quantity) else found
+
+def _number(value: Any, as_written: bool) -> Any:
+    """Return what an end of a range is compared by: its size, or the number as it is written."""
+    if not isinstance(value, Quantity):
+        return value
+    return value.number if as_written else value.value
+
+
+def span(item: Reads, example: Any, single: bool = False) -> Reads:
+    """Read a range [least, most] of items; single: one item is read too and means both ends.
+
+    Of diametral pitches the ends are in the order of the file's numbers; the smaller module is the
+    first one that is returned.
+    """
+
+    def ordered(values: list[Any]) -> list[Any]:
+        """Return two right values as a file has them: by number, also of diametral pitches."""
+        found = [item.reader(value, item.example) for value in values]
+        numbers = [_number(one, all(map(_reciprocal, found))) for one in found]
+        return values if numbers[0] <= numbers[1] else values[::-1]
 
     def read(value: Any, example: Any) -> tuple[Any, Any]:
         if isinstance(value, tuple):
@@ -42,19 +59,23 @@ def span(item: Reads, example: Any, single: bool = False) -> Reads:
             raise refuse("is not a range [minimum, maximum]", pair)
         if rule:
             known = None not in right
-            raise refuse(f"has an end that {rule}", sorted(right, key=order) if known else None)
-        if order(value[0]) > order(value[1]):
+            raise refuse(f"has an end that {rule}", ordered(right) if known else None)
+        low, high = (item.reader(end, item.example) for end in value)
+        if _reciprocal(low) != _reciprocal(high):
+            text = [str(low), str(low.of(high.exact[0]))]
+            raise refuse("has a module and a diametral pitch as its ends", ordered(text))
+        if ordered(value) != value:
             raise refuse("has its ends in the wrong order", value[::-1])
-        return item.reader(value[0], item.example), item.reader(value[1], item.example)
+        return (high, low) if _reciprocal(low) else (low, high)
 
     schema: dict[str, Any] = {"type": "array", "items": item.schema, "minItems": 2, "maxItems": 2}
     return Reads(read, example, {"anyOf": [item.schema, schema]} if single else schema)
 
 
 def either(names: dict[str, Any], item: Reads) -> Reads:
-    """Read a named set, or a list of items, as a sorted tuple of exact inside-unit numbers."""
+    """Read a named set, or a list of items, as a tuple of quantities, each size once."""
 
-    def read(value: Any, example: Any) -> tuple[Fraction, ...]:
+    def read(value: Any, example: Any) -> tuple[Quantity, ...]:
         if isinstance(value, tuple):
             return value
         if isinstance(value, str) and value in names:
@@ -67,7 +88,10 @@ def either(names: dict[str, Any], item: Reads) -> Reads:
         if rule:
             write = [item.example if entry is None else entry for entry in right]
             raise refuse(f"has an entry that {rule}", write)
-        return tuple(sorted({item.reader(entry, item.example).exact[0] for entry in value}))
+        sizes: dict[Fraction, Quantity] = {}
+        for found in (item.reader(entry, item.example) for entry in value):
+            sizes.setdefault(found.exact[0], found)
+        return tuple(sizes.values())
 
     items = {"type": "array", "items": item.schema, "minItems": 1}
     return Reads(read, next(iter(names)), {"anyOf": [{"enum": list(names)}, items]})

@@ -11,6 +11,7 @@ from gearopt.optimise.result import Result
 from gearopt.optimise.typed import untyped
 from gearopt.physics.gears import GearPair, Rack
 from gearopt.scenes.parts import undercut
+from gearopt.scenes.reading.modules import unverified
 from gearopt.scenes.servo.scene import Scene
 from gearopt.scenes.servo.tables.trains import Train
 from gearopt.scenes.servo.train_part import candidates, given_gears
@@ -65,6 +66,7 @@ def _of_train(scene: Scene) -> list[str]:
         "higher): no dynamic, load distribution or notch factor, and no contact stress. It is no "
         "rating by ISO 6336 or AGMA 2101.",
         _counted(scene),
+        *unverified(scene.train.modules),
     ]
     found += _of_bodies(scene)
     if scene.stiffness is not None:

@@ -229,7 +229,7 @@ class Scene(Table):
         return ServoTrain(
             ratio=ratio,
             tolerance=tolerance,
-            modules=table.modules,
+            modules=tuple(sorted(m.exact[0] for m in table.modules)),
             pinion_teeth=table.pinion_teeth,
             max_wheel_teeth=table.wheel_teeth,
             face_width=table.face_width.value,

@@ -10,13 +10,14 @@ from typing import Any
 from gearopt.optimise.explaining.explain import DIGITS
 from gearopt.optimise.explaining.explanation import Change, Remedy
 from gearopt.optimise.explaining.repair import TAKEN_BACK, least_value
-from gearopt.physics.gears import MODULES
 from gearopt.scenes.drive.explaining.movable import edited_from
 from gearopt.scenes.drive.explaining.together import is_real
 from gearopt.scenes.drive.explaining.tried import Case
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.explaining.numbers import SHORT, allowed, eased, put, written
+from gearopt.scenes.reading.modules import SERIES, family, series_of
 from gearopt.scenes.reading.toml import dotted, toml_text
+from gearopt.units import Quantity
 
 TOLERANCE = ("duty", "ratio_tolerance")
 WIDEST = (
@@ -171,16 +172,16 @@ def switches(case: Case) -> Iterator[Remedy]:
     ways: list[tuple[str, str, str, dict[str, Any]]] = []
     if teeth.coprime:
         ways.append(("coprime", "true", "false", {"coprime": False}))
-    named = next((f'"{n}"' for n, s in MODULES.items() if s == teeth.modules), None)
-    both = MODULES["ISO 54 I+II"]
-    if named is None:
+    named, widest = series_of(teeth.modules), family(teeth.modules)[-1]
+    both = SERIES[widest]
+    if not named:
         ways += [
             ("modules", _listed(teeth.modules), _listed(more), {"modules": more})
             for more in _one_more(teeth.modules)
         ]
     if not set(both) <= set(teeth.modules):
-        was = named or _listed(teeth.modules)
-        ways.append(("modules", was, '"ISO 54 I+II"', {"modules": both}))
+        was = f'"{named}"' if named else _listed(teeth.modules)
+        ways.append(("modules", was, f'"{widest}"', {"modules": both}))
     done = set()
     for field, was, write, update in ways:
         kind = (field, write.startswith("["))
@@ -191,18 +192,20 @@ def switches(case: Case) -> Iterator[Remedy]:
             yield Remedy("choice", field, (change,), 1.0, None, {"with": "feasible"})
 
 
-def _one_more(modules: tuple[Fraction, ...]) -> list[tuple[Fraction, ...]]:
-    """Return the list with one module of ISO 54 more: series I first, the near ones first."""
+def _one_more(modules: tuple[Quantity, ...]) -> list[tuple[Quantity, ...]]:
+    """Return the list with one module of a series more: the first series, the near ones first."""
+    sizes = {m.exact[0] for m in modules}
 
-    def far(module: Fraction) -> float:
-        return min(float(max(m, module) / min(m, module)) for m in modules)
+    def far(module: Quantity) -> float:
+        size = module.exact[0]
+        return min(float(max(m, size) / min(m, size)) for m in sizes)
 
-    found: list[Fraction] = []
-    for series in MODULES.values():
-        new = sorted(set(series) - set(modules) - set(found), key=far)
-        found += new
-    return [tuple(sorted((*modules, m))) for m in found]
+    found: list[Quantity] = []
+    for name in family(modules):
+        new = [m for m in SERIES[name] if m.exact[0] not in sizes and m not in found]
+        found += sorted(new, key=far)
+    return [tuple(sorted((*modules, m), key=lambda m: m.number)) for m in found]
 
 
-def _listed(modules: Sequence[Fraction]) -> str:
+def _listed(modules: Sequence[Quantity]) -> str:
     return toml_text([written(m, ("teeth", "modules")) for m in modules])

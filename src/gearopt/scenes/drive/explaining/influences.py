@@ -12,11 +12,11 @@ from gearopt.optimise.explaining.sensitivity import sensitivities
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run
-from gearopt.physics.gears import MODULES
 from gearopt.scenes.drive.explaining.movable import fields, next_module
 from gearopt.scenes.drive.scene import Scene
-from gearopt.scenes.explaining.influences import Basis, influences
+from gearopt.scenes.explaining.influences import Basis, influences, per_cent
 from gearopt.scenes.explaining.numbers import Number, eased, moved, numbers
+from gearopt.scenes.reading.modules import series_of
 
 BASIS = (
     " with real-valued teeth and modules, by multipliers, checked by solving again. "
@@ -107,7 +107,7 @@ def _is_range(number: Number) -> bool:
 
 
 def _is_series(scene: Scene) -> bool:
-    return scene.teeth is not None and scene.teeth.modules in MODULES.values()
+    return scene.teeth is not None and bool(series_of(scene.teeth.modules))
 
 
 def _easing(scene: Scene, number: Number, result: Result, solved: Any) -> tuple[str, float | None]:
@@ -123,7 +123,7 @@ def _easing(scene: Scene, number: Number, result: Result, solved: Any) -> tuple[
         value, step = number.value + direction, f"{direction:+d}"
     else:
         value = eased(number.value, 1.0 + EASE, direction)
-        step = f"{direction * EASE:+.0%}"
+        step = per_cent(number.value, direction)
     other = None if value is None else moved(scene, number.path, value)
     if other is None:
         return "", None

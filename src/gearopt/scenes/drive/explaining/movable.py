@@ -20,7 +20,7 @@ from gearopt.scenes.explaining.numbers import (
     taken_back,
     written,
 )
-from gearopt.scenes.reading.toml import dotted, toml_text
+from gearopt.scenes.reading.toml import dotted, exact, toml_text
 from gearopt.units import Quantity
 
 FIELDS: dict[str, tuple[str, int | None]] = {
@@ -209,7 +209,7 @@ def steps(scene: Scene, number: Movable) -> list[float]:
     now = now[number.end or 0] if isinstance(now, tuple) else now
     if number.path[-1] == "module" and scene.teeth is not None:
         size = now.exact[0]
-        beyond = [m for m in scene.teeth.modules if (m - size) * number.direction > 0]
+        beyond = [m for m in scene.teeth.sizes if (m - size) * number.direction > 0]
         return sorted(float(max(m, size) / min(m, size)) for m in beyond)
     if not isinstance(now, int):
         return []
@@ -309,9 +309,10 @@ def next_module(
     assert scene.teeth is not None
     size = module.exact[0]
     found = [
-        m for m in scene.teeth.modules if (m - size) * direction > 0 or (m == size and not beyond)
+        m for m in scene.teeth.sizes if (m - size) * direction > 0 or (m == size and not beyond)
     ]
     if not found:
         return None
-    nearest = min(found, key=lambda m: abs(m - size))
-    return replace(module, number=nearest * module.number / size)
+    nearest = module.of(min(found, key=lambda m: abs(m - size)))
+    decimal = Fraction(exact(nearest.number)) == nearest.number
+    return nearest if decimal else eased(nearest, 1.0, direction)

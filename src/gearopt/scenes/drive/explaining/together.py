@@ -136,7 +136,7 @@ def _plain(scene: Scene, path: tuple[Any, ...], factor: float = 1.0, direction: 
     if path[2] != "module":
         return round(getattr(stage, path[2])[0] * factor**direction)
     now = stage.modules[0]
-    known = (now,) if factor == 1.0 or scene.teeth is None else scene.teeth.modules
+    known = (now,) if factor == 1.0 or scene.teeth is None else scene.teeth.sizes
     return min(known, key=lambda m: abs(float(m) - float(now) * factor**direction))
 
 

@@ -77,7 +77,7 @@ class Mesh(Table):
     ones, without it tolerances are for them.
     """
 
-    module: Annotated[Quantity | None, quantity("length", "0.5 mm")] = Field(
+    module: Annotated[Quantity | None, quantity("module", "0.5 mm")] = Field(
         None, description="Module of given gears"
     )
     pinion_teeth: Annotated[int | None, whole(20, 12, 1000)] = Field(

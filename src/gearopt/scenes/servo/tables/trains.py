@@ -11,7 +11,6 @@ from gearopt import units
 from gearopt.formulations.servo.servo_design import GOALS
 from gearopt.formulations.servo.split import Bodies
 from gearopt.formulations.servo.split.bodies import ROOT
-from gearopt.physics.gears import MODULES
 from gearopt.scenes.reading.fields import (
     Table,
     choice,
@@ -21,7 +20,8 @@ from gearopt.scenes.reading.fields import (
     truth,
     whole,
 )
-from gearopt.scenes.reading.lists import either, several, span
+from gearopt.scenes.reading.lists import several, span
+from gearopt.scenes.reading.modules import series
 from gearopt.scenes.servo.tables.mesh import Mesh
 from gearopt.scenes.servo.tables.motion import Duty
 from gearopt.units import Quantity
@@ -47,8 +47,8 @@ class Train(Table):
         json_schema_extra={"default": "1 %"},
     )
     modules: Annotated[
-        tuple[Fraction, ...], either(MODULES, quantity("length", "0.5 mm", limit="50 mm"))
-    ] = Field(description="Modules to choose from: a series or a list")
+        tuple[Quantity, ...], series(quantity("module", "0.5 mm", limit="50 mm"))
+    ] = Field(description="Modules to choose from: a series or a list, also of 1/in")
     pinion_teeth: Annotated[tuple[int, int], span(whole(16, 12, 200), [16, 60])] = Field(
         description="Minimum and maximum number of teeth of both pinions"
     )
@@ -241,7 +241,7 @@ def check_shafts(
         raise refuse(rule, str(output), ("space", "hub_diameter"))
     if shaft is None:
         return
-    thick, module = shaft.diameter, min(train.modules)
+    thick, module = shaft.diameter, min(m.exact[0] for m in train.modules)
     least = thick.exact[0] + ROOT * module
     if train.second_pinion_diameter.exact[0] < least:
         rule = (
