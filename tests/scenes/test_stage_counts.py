@@ -62,7 +62,7 @@ def text_of(stages, changes=None, teeth=TEETH, more=""):
 @cache
 def solved(stages, name):
     changes, teeth = DUTIES[name]
-    return gearopt.solve(scene_of(text_of(stages, changes, teeth))[0], top=3)
+    return gearopt.solve(scene_of(text_of(stages, changes, teeth))[0], top=3 if teeth else 1)
 
 
 def slow(values, *names):
