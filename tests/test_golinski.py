@@ -28,8 +28,13 @@ def page_code():
 
 
 def test_the_page_runs_as_printed(capsys):
-    exec(compile(page_code(), str(PAGE), "exec"), {})
+    scope = {}
+    exec(compile(page_code(), str(PAGE), "exec"), scope)
     assert "2994.4710661" in capsys.readouterr().out
+    price = scope["result"].multipliers["stress_2"]
+    words = " ".join(PAGE.read_text(encoding="utf-8").split())
+    assert f'`result.multipliers["stress_2"]` is {price:.1f} cm³' in words
+    assert f"about {-0.01 * price:.1f} cm³" in words
 
 
 @pytest.mark.parametrize("case", OPTIMA)

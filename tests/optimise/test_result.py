@@ -52,6 +52,7 @@ def test_keys_are_those_of_the_documented_object():
         "certificate",
         "design",
         "limits",
+        "multipliers",
         "report",
         "parts",
         "evaluations",

@@ -18,12 +18,12 @@ from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.dual import ROUNDING, farkas, multipliers
 from gearopt.optimise.dual import bound as dual_bound
 from gearopt.optimise.form import Form, form
-from gearopt.optimise.problem import Problem
+from gearopt.optimise.problem import Problem, Rows
 from gearopt.optimise.quadratic import natural
 from gearopt.optimise.result import FEASIBLE, Outcome, Result
 from gearopt.optimise.scale import gap as gap_of
 from gearopt.optimise.scale import is_known, measured, runaway, violation, way
-from gearopt.optimise.stationarity import STATIONARY, Point, evaluated, no_minimum, residuals
+from gearopt.optimise.stationarity import NEAR, STATIONARY, Point, evaluated, no_minimum, residuals
 from gearopt.optimise.terms import Array
 
 LOOSE = 1e-2  # a gap above which no point of a convex problem is said to be a minimum
@@ -36,7 +36,10 @@ CONVEX_IN_LOGARITHMS, CONVEX_QUADRATIC = (
 
 @dataclass(frozen=True)
 class Verdict:
-    """What is certain: status, objective, bound and gap (or None), residuals, proof, words."""
+    """What is certain: status, objective, bound and gap (or None), residuals, proof, words.
+
+    multipliers: {name of a limit or an equality: d objective / d right-hand side}.
+    """
 
     status: str
     objective: float | None = None
@@ -45,6 +48,7 @@ class Verdict:
     certificate: Mapping[str, float | None] = field(default_factory=dict)
     proof: Mapping[str, Any] = field(default_factory=dict)
     message: str = ""
+    multipliers: Mapping[str, float] = field(default_factory=dict)
 
 
 @np.errstate(all="ignore")  # numbers beyond doubles become NaN, and NaN proves nothing
@@ -172,7 +176,8 @@ def _local(
         return before
     each = [(residuals(point), point) for point in points]
     found, best = min(each, key=lambda j: np.nan_to_num(np.max([*j[0].values()]), nan=np.inf))
-    before = replace(before, certificate=dict(before.certificate) | found)
+    residual = dict(before.certificate) | found
+    before = replace(before, certificate=residual, multipliers=_shadow_prices(best))
     lower, upper, guess = problem.bounds()
     if loose := runaway(problem, outcome.x, lower, upper, guess):
         return replace(before, status="failed", message=loose)
@@ -191,6 +196,25 @@ def _local(
     value = shape.objective(least)
     judged = bounded(problem, outcome.x, replace(before, proof=proof), value, tolerance, worst)
     return _doubted(problem, outcome.x, judged)
+
+
+def _shadow_prices(point: Point) -> dict[str, float]:
+    """Return d objective / d right-hand side of every limit and equality, by its name.
+
+    The rows of a form are those of the problem, or their logarithms, which at the right-hand side 1
+    change alike.
+    """
+    shape, rows = point.shape, point.problem.rows
+    unit = shape.objective(point.f) if shape.log_objective else 1.0
+    binding = np.where(point.g >= -NEAR, point.lam_g, 0.0)
+    return prices(rows, -unit * binding, -unit * point.lam_h)
+
+
+def prices(rows: Rows, of_g: Array, of_h: Array) -> dict[str, float]:
+    """Return numbers of inequalities (ng,) and equalities (nh,) by name, but for `defines`."""
+    limits = zip(rows.inequalities, of_g, strict=True)
+    named = [(row.name, v) for row, v in limits if row.kind == "limits"]
+    return {n: float(v) + 0.0 for n, v in (*named, *zip(rows.equalities, of_h, strict=True))}
 
 
 def _doubted(problem: Problem, x: Array, before: Verdict) -> Verdict:

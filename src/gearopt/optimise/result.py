@@ -120,7 +120,10 @@ class Result:
     status evaluated it may be empty.
     bound: nothing feasible is better; gap: (objective - bound)/|objective|, of an objective of zero
     relative to certificate["scale"], its own scale. proof: {method, sentence, ...}. certificate:
-    {feasibility, stationarity, complementarity}. limits: utilisations by name.
+    {feasibility, stationarity, complementarity}. limits: utilisations by name. multipliers: shadow
+    prices of limits and equalities by name, d objective / d right-hand side: where 1.01 instead of
+    1 is allowed, the objective changes by 0.01 of it, in its own unit; of a limit at most 0, and 0
+    where it does not bind. Empty where they are not known: discrete variables, an exact search.
     file_sha256: of the file as it is. asked: its tables, with the changes; options: what was asked
     for beside it (method, seconds, gap, seed, top, prices, and changes {key: value} if there were).
     """
@@ -135,6 +138,7 @@ class Result:
     certificate: dict[str, float | None] = field(default_factory=dict)
     design: dict[str, Any] = field(default_factory=dict)
     limits: dict[str, float] = field(default_factory=dict)
+    multipliers: dict[str, float] = field(default_factory=dict)
     report: dict[str, Any] = field(default_factory=dict)
     parts: tuple["Result", ...] = ()
     message: str = ""
@@ -256,6 +260,7 @@ _SORTS: dict[str, Any] = {  # of what a result's keys hold
     **dict.fromkeys(("scene", "file", "file_sha256"), str | None),
     "seed": int,
     **dict.fromkeys(("objective", "proof", "certificate", "design", "limits"), Mapping),
+    "multipliers": Mapping,
     **dict.fromkeys(("report", "versions", "asked", "options"), Mapping),
     "parts": list | tuple,
     "bound": int | float | None,

@@ -21,6 +21,7 @@ from gearopt.optimise.scale import violation
 from gearopt.optimise.terms import Array, Var
 
 LIBRARIES = {Problem: ("casadi",), Conic: ("cvxpy", "clarabel")}  # what an answer rests on
+PRICED = ("optimal", "stationary")  # of other points multipliers mean nothing
 GAP = 1e-6  # relative; what `optimal` means unless the caller says otherwise
 
 
@@ -164,6 +165,7 @@ def _result(
         certificate=dict(verdict.certificate),
         design={} if point is None else design(problem, point),
         limits={} if point is None else limits(problem, point),
+        multipliers=dict(verdict.multipliers) if verdict.status in PRICED else {},
         report={} if point is None else report(problem, point),
         message=verdict.message,
         evaluations=outcome.evaluations,

@@ -69,9 +69,22 @@ def _design(result: Result) -> list[str]:
         for k, s in enumerate(stages, 1)
         if {MODULE, "pinion_teeth", "wheel_teeth"} <= s.keys()
     ]
-    values = next((words for part in parts if (words := _values(part, goal))), [])
+    values = _own(design) if result.scene is None else []
+    values = values or next((words for part in parts if (words := _values(part, goal))), [])
     more = ["..."] if len(values) > MOST else []
     return [*rows, *filter(None, [", ".join([*values[:MOST], *more])])]
+
+
+def _own(design: Mapping[str, Any]) -> list[str]:
+    """Return `width_cm = 3.5` of the variables of a problem of one's own."""
+    return [
+        f"{key} = {_list(v) if isinstance(v, list) else number(v)}" for key, v in design.items()
+    ]
+
+
+def _list(values: Sequence[Any]) -> str:
+    more = ["..."] if len(values) > MOST else []
+    return f"[{', '.join([*map(number, values[:MOST]), *more])}]"
 
 
 def _values(part: Mapping[str, Any], goal: Any) -> list[str]:
@@ -80,8 +93,7 @@ def _values(part: Mapping[str, Any], goal: Any) -> list[str]:
     for key, value in part.items():
         name, unit = parted(key)
         if isinstance(value, list) and value and all(isinstance(v, int | float) for v in value):
-            short = [*map(number, value[:MOST]), *(["..."] if len(value) > MOST else [])]
-            words.append(f"{name} [{', '.join(short)}] {METRIC.unit(unit)}".rstrip())
+            words.append(f"{name} {_list(value)} {METRIC.unit(unit)}".rstrip())
         elif isinstance(value, int | float) and name != goal:
             words.append(f"{name} {amount(value, unit)}")
     return [word.replace("_", " ") for word in words]

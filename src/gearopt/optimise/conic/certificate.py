@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from gearopt.optimise.certificate import FARKAS, Verdict, bounded
+from gearopt.optimise.certificate import prices as by_name
 from gearopt.optimise.conic.canonical import Canonical, canonical
 from gearopt.optimise.conic.cone_bound import (
     Leaf,
@@ -23,6 +24,7 @@ from gearopt.optimise.conic.cone_bound import (
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.result import FEASIBLE, Outcome
 from gearopt.optimise.scale import runaway, violation
+from gearopt.optimise.stationarity import NEAR
 from gearopt.optimise.terms import Array
 
 EXCLUDED = "the bounds of the variables exclude every point"
@@ -65,7 +67,25 @@ def certify(problem: Conic, outcome: Outcome, gap: float) -> Verdict:
     verdict = bounded(problem, outcome.x, before, bound, gap, worst)
     unit = verdict.certificate.get("scale") or abs(value) or 1.0
     residuals = {"stationarity": charge / unit, "complementarity": slack / unit}
-    return replace(verdict, certificate=dict(verdict.certificate) | residuals)
+    prices = _shadow_prices(problem, outcome.leaves, batch.G[0] >= 1.0 - NEAR)
+    found = dict(verdict.certificate) | residuals
+    return replace(verdict, certificate=found, multipliers=prices)
+
+
+def _shadow_prices(problem: Conic, leaves: tuple[Leaf, ...], binding: Any) -> dict[str, float]:
+    """Return d objective / d right-hand side of every limit and equality; of several leaves none.
+
+    With A x + s = b the cost changes by -y per b, and the right-hand side of a row is in its b.
+    binding (ng,): which inequalities bind.
+    """
+    (leaf, *others), data, rows = leaves, canonical(problem), problem.rows
+    if others or leaf.y is None:
+        return {}
+    stated = data.label >= 0
+    count = len(rows.inequalities)
+    found = np.zeros(count + len(rows.equalities))
+    found[data.label[stated]] = -leaf.y[stated]
+    return by_name(rows, np.where(binding, found[:count], 0.0), found[count:])
 
 
 def _bound(problem: Conic, outcome: Outcome, value: float) -> tuple[float, float, float, str]:
