@@ -154,6 +154,9 @@ def _result(
 ) -> Result:
     solved = verdict.objective is not None or verdict.status == "evaluated"
     point = outcome.x if solved else None
+    texts = {} if point is None else report(problem, point)
+    if verdict.status == "infeasible" and outcome.x is not None and isinstance(problem, Problem):
+        texts = {"nearest": limits(problem, outcome.x)}
     return Result(
         name=problem.name,
         status=verdict.status,
@@ -166,7 +169,7 @@ def _result(
         design={} if point is None else design(problem, point),
         limits={} if point is None else limits(problem, point),
         multipliers=dict(verdict.multipliers) if verdict.status in PRICED else {},
-        report={} if point is None else report(problem, point),
+        report=texts,
         message=verdict.message,
         evaluations=outcome.evaluations,
         seconds=seconds,

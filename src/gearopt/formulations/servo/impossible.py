@@ -32,6 +32,16 @@ def in_conflict(train: ServoTrain, clock: Clock, goal: str = "") -> tuple[str, .
     return tuple(handle.name for handle in conflict(relaxed, handles(relaxed), clock))
 
 
+def nearest(train: ServoTrain, clock: Clock, goal: str = "") -> dict[str, float]:
+    """Return the utilisations of real-valued teeth and modules that violate the limits least.
+
+    Nothing where they meet all limits.
+    """
+    known = "error" if train.lost_motion is not None else "inertia"
+    result = solve_within(clock, split.relaxation(train, goal or known))
+    return dict(result.report.get("nearest", {}))
+
+
 def minimum_error(train: ServoTrain, clock: Clock) -> float | None:
     """Return a bound of the error [rad] of real-valued teeth and modules; None without one."""
     relaxed = split.relaxation(replace(train, error=math.pi), "error")

@@ -7,9 +7,10 @@ from gearopt.report.answer import asked, assumptions, limits, progress, proven, 
 from gearopt.report.design_tables import tables
 from gearopt.report.explained import remedies, sensitivities
 from gearopt.report.kinds import Kind
+from gearopt.report.pages.impossible_views import section as impossible
 from gearopt.report.pages.train_views import section as gears_in_one_line
 
-FIRST = (summary, remedies)
+FIRST = (summary, remedies, impossible)
 ASKED = (asked, limits, sensitivities)
 LAST = (progress, proven, assumptions)
 TOLD = (sensitivities, remedies, summary)  # on the terminal, after the design

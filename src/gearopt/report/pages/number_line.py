@@ -8,7 +8,8 @@ from gearopt.report.pages.sheet import Drawing, Place, Sheet, Window
 
 WIDE = 640.0  # px of the drawing
 EDGE = 34.0  # px left and right of the line
-ROW, BAR = 58.0, 11.0  # px: of a row, and half of it that its bar fills
+ROW, BAR = 58.0, 11.0  # px: from a row to the next, and of a bar
+BARE = 40.0  # px from a row without texts below it to the next
 ABOVE, BELOW = 34.0, 36.0  # px: for the texts of guides, and for the axis
 ROOM = 1.02  # of the largest value to the smallest, where they are alike
 MARKS, FEW = (1.0, 2.0, 5.0), 6  # ticks of a decade; about so many of them
@@ -19,15 +20,15 @@ NARROW = 4.0  # of the largest to the smallest value: below it ticks are evenly 
 class Span:
     """A bar between two positive values, its name above it and the texts of its ends below.
 
-    blocked: up to this value from the start it is hatched: nothing there is possible.
+    blocked: up to this value from the start nothing is possible. reached: a dot marks the end.
     """
 
     name: str
     start: float
     end: float
-    texts: tuple[str, str]
-    style: str = "range"
+    texts: tuple[str, str] = ("", "")
     blocked: float | None = None
+    reached: bool = False
 
 
 @dataclass(frozen=True)
@@ -60,7 +61,8 @@ def number_line(
     low, high = min(values), max(values)
     if high < low * ROOM:
         low, high = low / ROOM, high * ROOM
-    scale, tall = Scale(low, high), ABOVE + ROW * len(rows) + BELOW
+    pitch = ROW if any(any(row.texts) for row in rows) else BARE
+    scale, tall = Scale(low, high), ABOVE + pitch * len(rows) + BELOW
     sheet = Sheet(Window(0.0, WIDE, 0.0, tall, (0.0, 0.0, 0.0, 0.0)), 1.0)
     level = tall - BELOW + 8.0
     sheet.tick((EDGE, level), (WIDE - EDGE, level))
@@ -73,27 +75,27 @@ def number_line(
         sheet.line((x, tall - ABOVE + 6.0), (x, BELOW - 8.0), guide.style)
         sheet.label(guide.text, [_inside(x, y, guide.text) for y in (18.0, 8.0)], guide.style)
     for k, row in enumerate(rows):
-        _row(sheet, row, ABOVE + ROW * (k + 0.5), scale)
+        _row(sheet, row, ABOVE + pitch * (k + 0.5) + 8.0, scale)
     return sheet.drawing(name, caption)
 
 
 def _row(sheet: Sheet, row: Span, level: float, scale: Scale) -> None:
     """Draw a bar about a level [px, downwards] with its texts."""
     start, end = scale.at(row.start), scale.at(row.end)
-
-    def up(y: float) -> float:
-        return sheet.height - y
-
-    low, high = sorted((start, end))
-    sheet.rectangle((low, up(level - BAR / 2)), (high, up(level + BAR / 2)), row.style)
-    if row.blocked is not None:
-        ends = (start, up(level - BAR / 2)), (scale.at(row.blocked), up(level + BAR / 2))
-        sheet.hatch(*ends)
+    middle = start if row.blocked is None else scale.at(row.blocked)
+    for one, other, style in ((start, middle, "excess"), (middle, end, "range")):
+        low, high = sorted((one, other))
+        if high > low or (style == "range" and not row.reached):
+            y = sheet.height - level
+            sheet.rectangle((low, y - BAR / 2), (high, y + BAR / 2), style)
+    if row.reached:
+        sheet.circle(end, sheet.height - level, 0.5 * BAR, "enough")
     texts = zip((start, end), row.texts, strict=True)
     for x, text in texts if end != start else [(end, row.texts[1])]:
         if text:
             sheet.label(text, _near(x, level + 16.0, text), "name")
-    sheet.label(row.name, _near(0.5 * (start + end), level - 16.0, row.name), "plain")
+    left = min(start, end) + Place(0.0, 0.0).half_width(row.name)
+    sheet.label(row.name, [_inside(left, level - 15.0, row.name)], "plain")
 
 
 def _near(x: float, y: float, text: str) -> list[Place]:

@@ -9,6 +9,7 @@ from dataclasses import asdict, replace
 from typing import Any
 
 from gearopt.formulations.servo.choice import train_problem
+from gearopt.formulations.servo.impossible import nearest
 from gearopt.formulations.servo.servo_design import (
     GOALS,
     OBJECTIVES,
@@ -71,6 +72,8 @@ def solve(scene: Scene, ask: Ask) -> Result:
         texts["notes"] = said
     if answer.status == "infeasible" and scene.train is not None:
         texts["ways_out"] = asdict(remedies(scene, clock, answer.message))
+        if violated := nearest(scene.servo_train(), clock):
+            texts["nearest"] = violated
     return replace(
         answer,
         design=untyped(found.design),

@@ -11,6 +11,7 @@ from gearopt.report.kinds.generic import ASKED, LAST, TOLD
 from gearopt.report.kinds.servo import axis_accuracy, axis_housing, axis_motion, axis_trains
 from gearopt.report.kinds.servo.axis_words import arc_minutes, degrees, design_of
 from gearopt.report.measures import Measures
+from gearopt.report.pages import impossible_views
 from gearopt.report.section import Section, Tile
 from gearopt.report.words import amount, goal, number
 
@@ -88,6 +89,7 @@ KIND = Kind(
     sections=(
         summary,
         explained.remedies,
+        impossible_views.section,
         axis_motion.section,
         axis_trains.section,
         axis_housing.box,
