@@ -11,13 +11,16 @@ from typing import Annotated, Any, Literal, get_args, get_origin, get_type_hints
 
 from typer.models import ArgumentInfo, OptionInfo
 
-from gearopt.cli.app import app
+from gearopt.cli import app
+from gearopt.cli.names import filled
 
 HEAD = """\
 # Commands
 
 What `gearopt --help` and `gearopt COMMAND --help` print, on one page. `gearopt --version` prints
-the version; `python -m gearopt` is the same as `gearopt`.
+the version; `python -m gearopt` is the same as `gearopt`. `gearopt --install-completion` makes the
+Tab key complete commands, options, problem files, kinds, methods and benches in bash, zsh, fish and
+PowerShell, from the next shell on; `--show-completion` prints what it would install.
 """
 EXIT_CODES = {
     0: "done: a design was found (its status says how good it is), the files are right",
@@ -82,7 +85,7 @@ def _word(name: str, kind: Any, info: ArgumentInfo | OptionInfo, default: Any) -
     if not needed and default is not None and default is not False:
         plain = default.value if isinstance(default, Enum) else default
         shown = f"`{plain:g}`" if isinstance(plain, float) else f"`{plain}`"
-    meaning = _plain(info.help or "") + _range(info)
+    meaning = _plain(filled(info.help or "")) + _range(info)
     if isinstance(info, ArgumentInfo):
         many = "..." if get_origin(kind) is list else ""
         value = name.upper().removesuffix("S" if many else "") + many

@@ -9,7 +9,6 @@ import gallery
 import generate
 import pytest
 import python_api
-from typer.testing import CliRunner
 
 import gearopt
 from gearopt.cli import app
@@ -35,16 +34,17 @@ def section(name):
 
 
 @pytest.mark.parametrize("command", app.registered_commands, ids=lambda c: c.callback.__name__)
-def test_the_reference_has_what_help_prints(command):
+def test_the_reference_has_what_help_prints(command, here, monkeypatch):
     """Options, defaults and first words of each help, against typer's own reading."""
     name = command.name or command.callback.__name__
-    done = CliRunner().invoke(app, [name, "--help"], env={"COLUMNS": "300", "TERM": "dumb"})
-    assert done.exit_code == 0
-    printed = [line for line in done.output.splitlines() if re.search(r"^\W*--", line)]
+    monkeypatch.setenv("COLUMNS", "2000")
+    done = here(name, "--help")
+    assert done.returncode == 0
+    printed = [line for line in done.stdout.splitlines() if re.search(r"^\W*--", line)]
     helped = {re.search(r"--[\w-]+", line)[0] for line in printed} - {"--help"}
     rows = dict(re.findall(r"(?m)^\| `(--[\w-]+)[^`]*` \| (.*) \|$", section(name)))
     assert rows.keys() == helped
-    words = " ".join(done.output.replace("│", " ").split())
+    words = " ".join(done.stdout.replace("│", " ").split())
     for option, row in rows.items():
         default, meaning = row.split(" | ", 1) if " | " in row else ("", row)
         assert meaning.split(".")[0].split("[")[0].strip(" |") in words, option

@@ -48,7 +48,8 @@ def own_methods(name):
 @pytest.mark.parametrize("name", FILES)
 def test_every_method_says_whether_it_is_random_and_what_it_counts(name):
     methods = own_methods(name)
-    assert methods
+    room = ROOMS[type(gearopt.load(PROBLEMS / f"{name}.toml"))]
+    assert methods and methods.keys() <= set(room.METHODS)
     for method, run in methods.items():
         module = sys.modules[run.__module__]
         assert isinstance(module.RANDOM, bool), method

@@ -2,14 +2,20 @@
 
 import sys
 
-# Importing registers the commands, in the order of --help.
+from typer.main import get_command
+
+# Importing registers the commands.
 from gearopt.cli import answering  # noqa: F401
 
 # isort: split
 from gearopt.cli import files, reporting  # noqa: F401
 from gearopt.cli.app import app, told
+from gearopt.cli.names import fill
 from gearopt.cli.writing import patient
 from gearopt.errors import GearoptError
+
+ORDER = ("new", "solve", "explain", "check", "compare", "report", "schema", "doctor", "bench")
+app.registered_commands.sort(key=lambda c: ORDER.index(getattr(c.callback, "__name__", "")))
 
 
 def run() -> None:
@@ -20,7 +26,10 @@ def run() -> None:
     sys.stdout, sys.stderr = patient(sys.stdout), patient(sys.stderr)
     try:
         try:
-            app()
+            command = get_command(app)
+            if "--help" in sys.argv:
+                fill(command)
+            command(prog_name="gearopt")
         finally:
             print(end="", flush=True)  # a full disk is reported here, not at the end of Python
     except GearoptError as wrong:

@@ -6,7 +6,20 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from gearopt.cli.app import Csv, File, Html, Json, Units, app, console, exit_code, print_whole
+from gearopt.cli.app import (
+    FIRST,
+    MORE,
+    Csv,
+    File,
+    Html,
+    Json,
+    Units,
+    app,
+    console,
+    exit_code,
+    print_whole,
+)
+from gearopt.cli.names import method_lists, method_words
 from gearopt.cli.reporting import answer, checked, compared, written
 from gearopt.cli.watching import following, reached, watching
 from gearopt.cli.writing import check_html
@@ -17,14 +30,15 @@ from gearopt.optimise.result import Budget
 from gearopt.report.command import SECONDS, TOP_ON_PAGE
 
 
-@app.command()
+@app.command(rich_help_panel=FIRST)
 def solve(
     file: File,
     method: Annotated[
         str | None,
         typer.Option(
             help="By default, for a drive, exact where the file has a \\[teeth] table, else ipopt; "
-            "for a packing hop (basin hopping); docs/methods.md lists all."
+            "for a packing hop (basin hopping). Methods: {methods}; docs/methods.md says more.",
+            autocompletion=method_words,
         ),
     ] = None,
     top: Annotated[
@@ -93,13 +107,13 @@ def _refuse(given: Mapping[str, tuple[int | None, int]], idle: Mapping[str, str]
             raise GearoptError(f"--{name} {value} changes nothing here: {why}; leave it out")
 
 
-@app.command()
+@app.command(rich_help_panel=FIRST)
 def explain(
     file: File,
     seconds: Annotated[float, typer.Option(min=0.0, help="Stop after this time.")] = 60.0,
     as_json: Json = False,
 ) -> None:
-    """Show what each number of the file costs; of an impossible request, what to write instead."""
+    """Show sensitivities to each number of a file; of an impossible one, what to write instead."""
     from gearopt.api import explain as explain_file
 
     with watching(seconds, quiet=as_json) as watch:
@@ -118,14 +132,15 @@ def explain(
     raise typer.Exit(exit_code(found.result))
 
 
-@app.command()
+@app.command(rich_help_panel=MORE)
 def compare(
     file: File,
     methods: Annotated[
         str | None,
         typer.Option(
-            help="Methods by name, with commas between; docs/methods.md lists all. By default a "
-            "choice for the kind of the file."
+            help="Methods by name, with commas between: {methods}. By default a choice for the "
+            "kind of the file.",
+            autocompletion=method_lists,
         ),
     ] = None,
     seeds: Annotated[int, typer.Option(min=1, help="Runs of every random method.")] = SEEDS,
@@ -137,7 +152,10 @@ def compare(
     ] = EACH,
     bound_from: Annotated[
         str | None,
-        typer.Option(help="A method that is run once, up to a minute, to prove a bound."),
+        typer.Option(
+            help="A method that is run once, up to a minute, to prove a bound.",
+            autocompletion=method_words,
+        ),
     ] = None,
     html: Html = None,
     as_json: Json = False,

@@ -7,23 +7,44 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
+from gearopt.cli.names import problem_files, system_words
 from gearopt.cli.watching import unbroken
 from gearopt.errors import GearoptError
 from gearopt.optimise.result import Result
 
-app = typer.Typer(
-    help="Size gear drives to a proven optimum.",
-    no_args_is_help=True,
-    pretty_exceptions_enable=False,
-    add_completion=False,
+HELP = "\n\n".join(
+    (
+        "Design gear drives, and prove that no better design is possible.",
+        "A text file says what is needed: power, speeds, limits. gearopt finds the smallest or "
+        "lightest gears that do it, and how much smaller any other design could be: mostly not at "
+        "all. It does so for drives of up to six stages and the box around them, for servo axes, "
+        "for compound trains of a given ratio, and for packings of cylinders.",
+        "Begin with three commands: [bold]new[/] prints a file to start from, [bold]solve[/] finds "
+        "the best design for it, and [bold]explain[/] says how much each number of it matters.",
+        "Examples:",
+        "[bold]gearopt new drive > my.toml[/]               a file with comments, to be edited\n"
+        "[bold]gearopt solve my.toml[/]                     the best gears for it, with the proof\n"
+        "[bold]gearopt solve my.toml --html page.html[/]    the same as a page with drawings\n"
+        "[bold]gearopt explain my.toml[/]                   what would change it, and how much",
+    )
 )
+FIRST, MORE, TOOLS = "To begin with", "More of files and results", "For editors and machines"
+
+app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False, rich_markup_mode="rich")
 
 EXIT = {"optimal": 0, "stationary": 0, "feasible": 0, "infeasible": 3, "failed": 4}
 
-File = Annotated[Path, typer.Argument(help="A problem file (TOML).", show_default=False)]
+File = Annotated[
+    Path,
+    typer.Argument(help="A problem file (TOML).", show_default=False, autocompletion=problem_files),
+]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")]
 Units = Annotated[
-    str, typer.Option(help="Units to show: metric, or inch (in, psi, lb, diametral pitch).")
+    str,
+    typer.Option(
+        help="Units to show: metric, or inch (in, psi, lb, diametral pitch).",
+        autocompletion=system_words,
+    ),
 ]
 Csv = Annotated[
     Path | None, typer.Option("--csv", help="Write every table as a CSV file into this folder.")
@@ -40,7 +61,7 @@ def _print_version(wanted: bool) -> None:
         raise typer.Exit()
 
 
-@app.callback()
+@app.callback(help=HELP)
 def options(
     shown: Annotated[
         bool,
@@ -49,7 +70,7 @@ def options(
         ),
     ] = False,
 ) -> None:
-    """Size gear drives to a proven optimum."""
+    """Read the options that stand before a command."""
 
 
 def exit_code(result: Result) -> int:

@@ -12,15 +12,25 @@ from typing import Annotated, Any
 
 import typer
 
-from gearopt.cli.app import Json, app, console, print_whole, told
+from gearopt.cli.app import FIRST, MORE, TOOLS, Json, app, console, print_whole, told
+from gearopt.cli.names import bench_words, kind_words, problem_files
 from gearopt.errors import GearoptError, SceneError
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Result
 
+Kind = Annotated[
+    str, typer.Argument(help="A kind of problem file: {kinds}.", autocompletion=kind_words)
+]
 
-@app.command()
+
+@app.command(rich_help_panel=MORE)
 def check(
-    files: Annotated[list[Path], typer.Argument(help="Problem files (TOML).", show_default=False)],
+    files: Annotated[
+        list[Path],
+        typer.Argument(
+            help="Problem files (TOML).", show_default=False, autocompletion=problem_files
+        ),
+    ],
     as_json: Json = False,
 ) -> None:
     """Read problem files and report their mistakes, without solving."""
@@ -51,9 +61,9 @@ def _plain(error: SceneError) -> dict[str, Any]:
     return {name: getattr(error, name) for name in names} | {"fix": fix}
 
 
-@app.command()
+@app.command(rich_help_panel=TOOLS)
 def schema(
-    kind: Annotated[str, typer.Argument(help="A kind of problem file.")] = "drive",
+    kind: Kind = "drive",
     table: Annotated[
         bool, typer.Option("--table", help="Print tables of all keys in Markdown instead.")
     ] = False,
@@ -67,8 +77,8 @@ def schema(
         print_whole(json.dumps(json_schema(_known(kind)), indent=2))
 
 
-@app.command()
-def new(kind: Annotated[str, typer.Argument(help="A kind of problem file.")] = "drive") -> None:
+@app.command(rich_help_panel=FIRST)
+def new(kind: Kind = "drive") -> None:
     """Print a problem file to start from: `gearopt new drive > my.toml`."""
     from gearopt.scenes.reading.load import scene_module
 
@@ -83,7 +93,7 @@ def _known(kind: str) -> str:
     return kind
 
 
-@app.command()
+@app.command(rich_help_panel=TOOLS)
 def doctor(as_json: Json = False) -> None:
     """Show versions, and whether the solvers work on this machine."""
     packages = ("gearopt", "numpy", "casadi", "cvxpy", "pymoo", "pyscipopt", "pydantic", "typer")
@@ -122,9 +132,11 @@ def _works(method: str) -> str:
     return f"{word} ({1000 * clock.seconds:.0f} ms)"
 
 
-@app.command()
+@app.command(rich_help_panel=TOOLS)
 def bench(
-    name: Annotated[str, typer.Argument(help="A bench; drive is the first.")] = "drive",
+    name: Annotated[
+        str, typer.Argument(help="A bench: {benches}.", autocompletion=bench_words)
+    ] = "drive",
     repeat: Annotated[int, typer.Option(min=1, help="Runs to take the median of.")] = 7,
     as_json: Json = False,
 ) -> None:

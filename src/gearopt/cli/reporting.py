@@ -9,7 +9,8 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from gearopt.cli.app import Csv, Html, Units, app, console, exit_code, print_whole
+from gearopt.cli.app import MORE, Csv, Html, Units, app, console, exit_code, print_whole
+from gearopt.cli.names import result_files
 from gearopt.cli.writing import check_csv, check_html, write
 from gearopt.errors import GearoptError
 from gearopt.optimise.comparing.comparison import Comparison
@@ -30,13 +31,14 @@ class Files:
     measures: Measures
 
 
-@app.command()
+@app.command(rich_help_panel=MORE)
 def report(
     file: Annotated[
         Path,
         typer.Argument(
             help="What `gearopt solve --json` or `gearopt compare --json` printed.",
             show_default=False,
+            autocompletion=result_files,
         ),
     ],
     html: Html = None,

@@ -18,6 +18,7 @@ from gearopt.scenes.reading.lists import span
 
 __all__ = ["EXAMPLE", "Scene", "compared", "idle", "model", "solve"]
 MIN_TEETH, MAX_TEETH = 5, 400  # teeth of a gear that a file may ask for
+METHODS = ("exact",)  # its own
 ASSUMED = "Tooth numbers alone: modules, centre distances and loads are not considered."
 EXAMPLE = """\
 gearopt = 1

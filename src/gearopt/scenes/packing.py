@@ -68,6 +68,7 @@ most = 2                       # or: exactly = 2
 [objective]
 minimise = "volume"            # or area, of the container's plan
 """
+METHODS = ("hop", "sa")  # its own
 MAX_CYLINDERS = 50  # their 1,225 pairs take two seconds to trace, once
 LENGTH = quantity("length", "20 mm")
 CLEARANCE = quantity("length", "0 mm", zero=True)

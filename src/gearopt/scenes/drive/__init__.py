@@ -29,6 +29,7 @@ from gearopt.scenes.reading.ask import Ask, unseeded
 __all__ = ["EXAMPLE", "Scene", "compared", "explain", "idle", "model", "solve"]
 PROCESSES = ("process_one", "process_two")  # tables; as methods with a hyphen
 WEAKER = " Its contact ratio is less than the one given, its root is weaker."
+METHODS = ("exact", "process-one", "process-two", "sa", "sa-polish", "sa-paper")  # its own
 CONTINUOUS = ("ipopt", "gp", "multistart")  # methods that take no whole teeth
 
 

@@ -47,6 +47,7 @@ from gearopt.scenes.servo.train_part import (
 
 __all__ = ["EXAMPLE", "Scene", "compared", "explain", "idle", "model", "solve"]
 
+METHODS = ("exact", "enumeration")  # its own
 COUNTS = {"combinations": "trains_looked_at", "feasible_trains": "feasible_trains"}
 
 
