@@ -8,7 +8,7 @@ import pytest
 from servo_trains import PAPER
 
 from gearopt.formulations.servo import servo_box, split
-from gearopt.formulations.servo.servo_box import ServoBox, extents, first_that_fits, of_train
+from gearopt.formulations.servo.servo_box import Room, ServoBox, extents, first_that_fits, of_train
 from gearopt.formulations.servo.split.servo_train import pairs
 from gearopt.optimise.kernels import kernel
 from gearopt.optimise.result import Budget
@@ -20,7 +20,7 @@ WIDER = replace(PAPER, error=math.radians(0.12))
 
 def in_box(z1, z2, z3, z4, m1, m2):
     """A train of half a turn's sweep, motor radius 12 and hub 8 mm, in the box of the paper."""
-    return of_train(pairs((z1, z3, z2, z4, m1, m2)), 12.0, 8.0, math.pi / 2, (80.0, 130.0))
+    return of_train(pairs((z1, z3, z2, z4, m1, m2)), Room(12.0, 8.0, math.pi / 2, (80.0, 130.0)))
 
 
 def on_a_grid(box, degrees):
@@ -113,7 +113,7 @@ def test_between_the_degrees_of_a_grid_there_is_room_for_less_error():
 def test_no_train_of_less_error_fits_the_box():
     """Each of the 196990 trains of less error is proven to have no layout."""
     found = split.trains(WIDER, math.radians(0.1172))
-    boxes = (of_train(pairs(x), 12.0, 8.0, math.pi / 2, (80.0, 130.0)) for x in found)
+    boxes = (of_train(pairs(x), Room(12.0, 8.0, math.pi / 2, (80.0, 130.0))) for x in found)
     place, angles = first_that_fits(boxes)
     assert list(found[place]) == [18.0, 23.0, 94.0, 210.0, 0.3, 0.5]
     width, height = extents(in_box(18, 94, 23, 210, 0.3, 0.5), *angles)
@@ -172,7 +172,7 @@ def test_a_layout_that_meets_the_box_exactly_fits():
 def test_the_second_pinion_is_in_the_box():
     """Gear 3 is larger than gear 2, and as large as gear 4: two discs of 10.5 mm, 20 mm apart."""
     point = np.array([16, 40, 20, 40, 0.3, 0.5])
-    box = of_train(pairs(point), 3.0, 2.0, math.pi, (50.0, 50.0))
+    box = of_train(pairs(point), Room(3.0, 2.0, math.pi, (50.0, 50.0)))
     assert box.radii == pytest.approx((3.0, 10.5, 10.5))
     result = solve(servo_box.problem(box))
     side = 21.0 + 20.0 / math.sqrt(2.0)

@@ -10,7 +10,7 @@ import pytest
 from servo_trains import PAPER
 
 from gearopt.formulations.servo.ratio import Drive, ServoDuty, best_ratio
-from gearopt.formulations.servo.split import feasible, in_order, order, problem, relaxation
+from gearopt.formulations.servo.split import problem, relaxation
 from gearopt.formulations.servo.split.numbers import numbers
 from gearopt.formulations.servo.split.teeth import KERNEL
 from gearopt.optimise import tape
@@ -206,23 +206,6 @@ def test_where_no_train_moves_the_load_none_is_found():
     stuck = ServoDuty(replace(DRIVE, load_friction=1e5), "acceleration")
     for method in ("exact", "enumeration"):
         assert solve(problem(replace(PAPER, duty=stuck), stuck.goal), method).status == "infeasible"
-
-
-@pytest.mark.parametrize("goal", ["inverse_acceleration", "inertia", "mass"])
-def test_lots_of_trains_are_in_order_and_together_all(goal, monkeypatch):
-    monkeypatch.setattr(order, "LOT", 500)
-    train = replace(SMALL, ratio=F(4), tolerance=F(1, 20), modules=(F(1, 2), F(3, 5)), bore=F(7))
-    train = replace(train, duty=replace(FASTEST, drive=replace(DRIVE, load_friction=10.0)))
-    posed, calls = problem(train, goal), []
-    best = solve(posed).value
-    lots = list(in_order(train, goal, best, lambda: calls.append(1)))
-    points = np.concatenate(lots)
-    values = posed.batch(points).F[:, 0]
-    assert len(lots) > 3 and calls and (np.diff(values) >= -1e-12 * values[1:]).all()
-    assert values[0] == pytest.approx(best, rel=1e-12)
-    every = feasible(train)
-    assert {tuple(x) for x in points.tolist()} == {tuple(x) for x in every.tolist()}
-    assert len(points) == len(every)
 
 
 def test_samplers_take_the_same_problem():

@@ -30,6 +30,8 @@ from gearopt.formulations.servo.split.servo_train import pairs
 from gearopt.formulations.servo.tolerance.sampling import drawn
 from gearopt.optimise.solve import solve
 
+ROOM = servo_box.Room(12.0, 8.0, math.pi / 2, (80.0, 130.0))
+
 
 def about_statistics():
     parts = components()
@@ -89,7 +91,7 @@ def about_box():
 def in_box(z1, z2, z3, z4, m1, m2):
     """A train of 90 degrees to either side, motor radius 12 and hub 8 mm, in 80 x 130 mm."""
     train = pairs((z1, z3, z2, z4, m1, m2))
-    return servo_box.of_train(train, 12.0, 8.0, math.pi / 2, (80.0, 130.0))
+    return servo_box.of_train(train, ROOM)
 
 
 def about_tolerances():
@@ -166,6 +168,6 @@ def fitting():
     """The train of minimum error that fits the box with 90 degrees to either side."""
     wide = with_error(0.1172)
     found = split.trains(wide, wide.error)
-    boxes = (servo_box.of_train(pairs(x), 12.0, 8.0, math.pi / 2, (80.0, 130.0)) for x in found)
+    boxes = (servo_box.of_train(pairs(x), ROOM) for x in found)
     place, _ = servo_box.first_that_fits(boxes)
     return found[place]

@@ -216,7 +216,9 @@ def springs(point):
 @cache
 def box_part(point, half_sweep=HALF_SWEEP):
     """The smallest box of a train; 0.12 deg: 78.77 x 103.9 mm."""
-    box = servo_box.of_train(pairs(point), MOTOR, HUB, math.radians(half_sweep), INNER)
+    box = servo_box.of_train(
+        pairs(point), servo_box.Room(MOTOR, HUB, math.radians(half_sweep), INNER)
+    )
     result = solve(servo_box.problem(box))
     motor, output = (result.design[f"{k}_angle_rad"] for k in ("motor", "output"))
     width, height = servo_box.extents(box, motor, output)

@@ -324,7 +324,7 @@ def test_a_box_that_no_train_keeps_is_told_once():
     few |= {"pinion_teeth": [20, 24]}
     result = gearopt.solve(scene(FAST, space=narrow, train=few))
     assert result.status == "infeasible"
-    assert " ".join(shown(result).split()).count("that meet all other limits fits the box") == 1
+    assert " ".join(shown(result).split()).count("that meets all other limits fits the box") == 1
 
 
 @pytest.mark.parametrize("aim", [{}, {"maximise": None, "minimise": "inertia"}])

@@ -4,18 +4,20 @@ Stiffness is that of meshes and shaft in series at the output, motor locked.
 """
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from gearopt.formulations.servo import servo_box, split
+from gearopt.formulations.servo.choice_search import Kept, best_kept
 from gearopt.formulations.servo.servo_design import GOALS, Spring, StiffnessDesign
 from gearopt.formulations.servo.split import teeth
 from gearopt.formulations.servo.split.bodies import Pairs
 from gearopt.formulations.servo.split.servo_train import pairs
 from gearopt.optimise.clock import Clock, in_part, of_others
+from gearopt.optimise.kernels import kernel
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.terms import Array, Terms
@@ -31,11 +33,13 @@ from gearopt.physics.stiffness import (
 )
 
 RANDOM, COUNTS = teeth.RANDOM, teeth.COUNTS  # of the methods that are passed on here
-ROUNDING = 1e-12  # of an objective
-WANTED = {"stiffness": "is stiff enough", "box": "fits the box"}
-LISTED = 1_000_000  # trains that a Pareto front is taken from, at most
+SLACK = teeth.ROUNDING, teeth.FLAT  # of an objective, and of that of a duty
+WANTED = {"stiffness": "has the stiffness that is required", "box": "fits the box"}
+FRONT = "gearopt.formulations.servo.front_kernel"
+SAMPLE = 250  # trains of a Pareto front that others are held against
+STEPS = 1_000_000  # of the kernel between two checks of the clock
 SPRINGS = ("mesh of stage 2", "shaft between the stages", "mesh of stage 1")
-PART = 50_000  # trains that are evaluated between two checks of the clock
+PART, FEW = 20_000, 50  # trains that wait for the next front, at most; before the first one
 
 
 @dataclass(frozen=True)
@@ -73,6 +77,12 @@ class Springs:
             stiffness = line_stiffness(self.youngs_modulus, one, self.youngs_modulus, two)
         return mesh_compliance(stiffness, pair.face_width, pair.wheel.reference_diameter)
 
+    def numbers(self, face_width: float) -> Array:
+        """Return `spring` of a `choice_search.Kept`; face_width [mm]."""
+        twist = shaft_compliance(self.shear_modulus, *self.shaft)
+        line, elastic = self.line_stiffness or 0.0, self.youngs_modulus
+        return np.array([line, elastic, face_width, twist, self.minimum or 0.0])
+
     def output_stiffness(self, pairs: Pairs) -> Any:
         """Return the stiffness at the output [N mm/rad]."""
         return 1.0 / output_compliance(self.compliances(pairs), (1.0, 1.0, 1.0))
@@ -104,7 +114,7 @@ class Choice:
     train: split.ServoTrain
     goal: str = "inertia"
     springs: Springs | None = None
-    room: Callable[[Pairs], servo_box.ServoBox] | None = None
+    room: servo_box.Room | None = None
 
     @property
     def minimum_stiffness(self) -> float | None:
@@ -124,19 +134,29 @@ class Choice:
         first = self.goal if GOALS[self.goal].motion else "inertia"
         return (first, "mass", *(("error",) if self.train.lost_motion is not None else ()))
 
-    def stiff(self, points: Array) -> Array:
-        """Return those of some points (N, 6) that are stiff enough."""
-        if self.springs is None or self.springs.minimum is None:
-            return points
-        made = pairs(points.T, self.train.face_width)
-        found: Array = points[self.springs.output_stiffness(made) >= self.springs.minimum]
-        return found
+    def stiff(self, pairs: Pairs) -> bool:
+        """Return whether a train is stiff enough."""
+        least = self.minimum_stiffness
+        if self.springs is None or least is None:
+            return True
+        return bool(self.springs.output_stiffness(pairs) >= least * (1.0 - teeth.ROUNDING))
 
     def keeps(self, point: Array) -> bool:
         """Return whether a train is stiff enough and fits."""
-        if not len(self.stiff(point[None])):
-            return False
-        return self.room is None or servo_box.first_that_fits([self.room(pairs(point))]) is not None
+        made = pairs(point, self.train.face_width)
+        if self.room is None or not self.stiff(made):
+            return self.stiff(made)
+        return servo_box.first_that_fits([servo_box.of_train(made, self.room)]) is not None
+
+    @property
+    def kept(self) -> Kept:
+        """Return stiffness and box as the kernel of `choice_search` reads them."""
+        room, springs = self.room or servo_box.Room(0.0, 0.0, math.pi, (1.0, 1.0)), self.springs
+        box = servo_box.Numbers(
+            np.zeros(3), np.zeros(3), room.hub, room.half_sweep, servo_box.tied(room.box)
+        )
+        spring = np.zeros(5) if springs is None else springs.numbers(self.train.face_width)
+        return Kept(spring, box, self.room is not None, room.motor_radius)
 
 
 def train_problem(choice: Choice) -> Problem:
@@ -157,7 +177,7 @@ def train_problem(choice: Choice) -> Problem:
 
     def method(name: str) -> Callable[..., Outcome]:
         def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
-            """Return the best train, or of all in order the first that keeps the limits apart."""
+            """Return the best train; where it breaks the limits apart, the best that keeps them."""
             clock = Clock(budget, watch)
             # a train may be better than the answer where limits are checked apart
             shown = of_others(watch, "") if choice.apart else in_part(watch, factor=factor)
@@ -165,12 +185,9 @@ def train_problem(choice: Choice) -> Problem:
             found = _counted(found, found.proof, choice.apart)
             if choice.apart and found.x is not None and not choice.keeps(found.x):
                 clock.evaluations = found.evaluations
-                try:
-                    best = float(base.batch(found.x[None]).F[0, 0])
-                    counts, found = found.proof, _in_order(choice, base, best, clock)
-                    found = _counted(found, counts, choice.apart)
-                except TimeoutError as early:
-                    found = Outcome(None, finished=False, message=str(early))
+                best = float(base.batch(found.x[None]).F[0, 0])
+                counts, found = found.proof, _kept(choice, base, best, clock)
+                found = _counted(found, counts, choice.apart)
             return found if found.bound is None else replace(found, bound=factor * found.bound)
 
         return run
@@ -190,73 +207,60 @@ def _counted(found: Outcome, proof: Mapping[str, Any] | None, apart: tuple[str, 
     return replace(found, proof=made)
 
 
-def _in_order(choice: Choice, base: Problem, best: float, clock: Clock) -> Outcome:
-    """Examine all feasible trains, the best first, until one is stiff and fits.
+def _kept(choice: Choice, base: Problem, best: float, clock: Clock) -> Outcome:
+    """Return the best train that is stiff and fits, proven.
 
     best: the objective of the best train, whether it is stiff and fits or not.
     """
-    looked, stiff, counted = 0, 0, choice.minimum_stiffness is not None
-    asked = [WANTED[name] for name in choice.apart]
-
-    def check(tried: int = 0) -> None:
-        count = looked + tried
-        if not clock.tell(count):
-            none = f"none of which {' and '.join(asked)}"
-            raise TimeoutError(f"stopped after {count:,} trains, {none}")
-
-    def boxes(points: Array, room: Callable[[Pairs], Any]) -> Iterator[servo_box.ServoBox]:
-        for tried, point in enumerate(points):
-            check(tried)
-            yield room(pairs(point))
-
-    for lot in split.in_order(choice.train, choice.goal, best, check):
-        points, room = choice.stiff(lot), choice.room
-        found = (0, None) if room is None else servo_box.first_that_fits(boxes(points, room))
-        if found is not None and len(points):
-            point = points[found[0]]
-            bound = float(base.batch(point[None]).F[0, 0]) * (1.0 - ROUNDING)
-            count = looked + len(lot)
-            proof = _looked(count, stiff + len(points) if counted else None, False)
-            return Outcome(point, bound=bound, proof=proof, evaluations=count)
-        looked, stiff = looked + len(lot), stiff + len(points)
-    what = "fits the box" if stiff else "has the stiffness that is required"
-    text = f"none of the {looked:,} trains that meet all other limits {what}"
-    proof = _looked(looked, stiff if counted else None, True)
-    return Outcome(None, infeasible=True, proof=proof, evaluations=looked, message=text)
-
-
-def _looked(count: int, stiff: int | None, infeasible: bool) -> dict[str, Any]:
-    """Return how an order of trains is proven; stiff: how many of them are, where asked for."""
-    proof = teeth.exhaustion(count, None, True)
-    proof["sentence"] = teeth.sentence(proof, infeasible)
-    return proof if stiff is None else proof | {"trains_stiff_enough": stiff}
+    before = clock.evaluations
+    asked = " and ".join(WANTED[name] for name in choice.apart)
+    try:
+        x = best_kept(choice.train, choice.goal, choice.kept, best, clock)
+    except TimeoutError as early:
+        (x,) = early.args
+        text = "stopped by the budget" if x is not None else f"stopped before a train that {asked}"
+        return Outcome(x, finished=False, message=text, evaluations=clock.evaluations)
+    looked = clock.evaluations - before
+    proof = teeth.exhaustion(looked, None, True)
+    proof["sentence"] = teeth.sentence(proof, x is None)
+    if x is None:
+        text = f"no train that meets all other limits {asked}"
+        return Outcome(None, infeasible=True, proof=proof, evaluations=looked, message=text)
+    bound = float(base.batch(x[None]).F[0, 0]) * (1.0 - SLACK[bool(GOALS[choice.goal].motion)])
+    return Outcome(x, bound=bound, proof=proof, evaluations=looked)
 
 
 def front(choice: Choice, clock: Clock) -> tuple[Array, Array] | None:
     """Return points and objectives (`weighed`) of the Pareto front of trains.
 
-    Stiffness is kept, a box left aside; None where the feasible trains are too many, or time is
-    up.
+    Stiffness is kept, a box left aside; None where there is no train, or time is up. Trains are
+    listed in parts, without those that a sample of the front so far beats.
     """
-
-    def check() -> None:
+    goals, look = choice.weighed, kernel(FRONT).unbeaten
+    posed, (given, _) = split.problem(choice.train, *goals), split.posed(choice.train, goals[0])
+    aims, spring = np.array([list(GOALS).index(g) for g in goals]), choice.kept.spring
+    longest = int(given.wheel_2.max()) + 1
+    rows = np.empty((max(PART, 2 * longest), 6), np.int64)
+    at, end = np.array([0, -1, -1]), kernel(teeth.KERNEL).first_stages(given)[0]
+    best, worth, duty = np.empty((0, 6)), np.empty((0, len(goals))), np.zeros(1)
+    count, sample = 0, worth
+    while at[0] < end:
         if not clock.tell():
-            raise TimeoutError
-
-    goals = choice.weighed
-    posed = split.problem(choice.train, *goals)
-    try:
-        points = split.feasible(choice.train, goals[0], LISTED, check)
-        if points is None:
             return None
-        best, worth = points[:0], np.empty((0, len(goals)))
-        for start in range(0, len(points), PART):
-            check()
-            part = choice.stiff(points[start : start + PART])
-            if len(part):
-                best, worth = np.vstack([best, part]), np.vstack([worth, posed.batch(part).F])
-                kept = split.pareto_front(worth)
-                best, worth = best[kept], worth[kept]
-    except TimeoutError:
-        return None
+        if not count:
+            sample = _sample(worth)
+        count += look(given, aims, spring, sample, at, duty, rows[count:], STEPS)
+        if at[0] < end and count < min(FEW + len(best), len(rows) - longest):
+            continue
+        found, count = split.points(given, rows[:count]), 0
+        if len(found):
+            best, worth = np.vstack([best, found]), np.vstack([worth, posed.batch(found).F])
+            kept = split.pareto_front(worth)
+            best, worth = best[kept], worth[kept]
     return (best, worth) if len(best) else None
+
+
+def _sample(worth: Array) -> Array:
+    """Return some trains of a front that beat as many others as possible."""
+    rows = np.linspace(0, len(worth) - 1, min(SAMPLE, len(worth))).round().astype(int)
+    return np.ascontiguousarray(worth[rows])

@@ -56,7 +56,10 @@ class ServoBox:
 
 
 class Numbers(NamedTuple):
-    """A `ServoBox` as the kernel reads it."""
+    """A `ServoBox` as the kernel reads it.
+
+    link: centre distance of stage 1, and the ends of that of stage 2, here the same.
+    """
 
     radius: Array
     link: Array
@@ -67,19 +70,32 @@ class Numbers(NamedTuple):
 
 def numbers(box: ServoBox) -> Numbers:
     """Return the numbers of the kernel."""
-    arrays = (np.array(v, float) for v in (box.radii, box.links, box.box))
-    radius, link, sides = arrays
+    links = (*box.links, box.links[1])
+    radius, link, sides = (np.array(v, float) for v in (box.radii, links, box.box))
     return Numbers(radius, link, float(box.hub), float(box.half_sweep), sides)
 
 
-def of_train(
-    pairs: Pairs, motor_radius: float, hub: float, half_sweep: float, box: tuple[float, float]
-) -> ServoBox:
+@dataclass(frozen=True)
+class Room:
+    """What is given of a `ServoBox` without its train; motor_radius: of the motor's body [mm]."""
+
+    motor_radius: float
+    hub: float
+    half_sweep: float
+    box: tuple[float, float]
+
+
+def tied(box: Any) -> Array:
+    """Return the sides of a box with the tie, so that a layout that meets it exactly fits."""
+    return (1.0 + TIE) * np.array(box, float)
+
+
+def of_train(pairs: Pairs, room: Room) -> ServoBox:
     """Return the box of a train."""
     tips = [float(0.5 * gear.tip_diameter) for pair in pairs for gear in pair.gears]
-    radii = max(motor_radius, tips[0]), max(tips[1], tips[2]), tips[3]
+    radii = max(room.motor_radius, tips[0]), max(tips[1], tips[2]), tips[3]
     first, second = (float(pair.centre_distance) for pair in pairs)
-    return ServoBox(radii, (first, second), hub, half_sweep, box)
+    return ServoBox(radii, (first, second), room.hub, room.half_sweep, room.box)
 
 
 def extents(box: ServoBox, motor: Any, output: Any) -> tuple[Any, Any]:
@@ -169,7 +185,7 @@ def first_that_fits(boxes: Iterable[ServoBox], limit: int = 10_000) -> tuple[int
     code, cells, angles = kernel(KERNEL), np.zeros((DEEP, 2)), np.zeros(2)
     for k, box in enumerate(boxes):
         given = numbers(box)
-        answer = code.fits(given._replace(box=(1.0 + TIE) * given.box), cells, angles, limit)
+        answer = code.fits(given._replace(box=tied(given.box)), cells, angles, limit)
         if answer < 0:
             raise SolveError(f"whether train {k + 1} fits is not decided in {limit:,} intervals")
         if answer:

@@ -27,15 +27,27 @@ def reach(s, low, high, axis):
     turn = axis * 0.5 * math.pi
     off = farthest(low - turn, high - turn)
     swept = max(s.radius[2] * math.cos(max(off - s.half_sweep, 0.0)), s.hub)
-    return swept, s.link[1] * math.cos(off)
+    along = math.cos(off)
+    return swept, (s.link[1] if along >= 0.0 else s.link[2]) * along
+
+
+@njit(cache=True)
+def least_bend(keep, a, near, far):
+    """Least cosine of the links' angle at which the motor clears the hub, over near <= b <= far.
+
+    In b it falls, or first rises and then falls: an end is least.
+    """
+    first = (keep * keep - a * a - near * near) / (2.0 * a * near)
+    return min(first, (keep * keep - a * a - far * far) / (2.0 * a * far))
 
 
 @njit(cache=True)
 def room(s, scale, low, high, slack):
     """An angle of the motor link that fits a box of this scale, or nan where there is none.
 
-    Over an interval of angles of the output link the needs are relaxed, so that nan proves that no
-    angle in it fits; for one angle (low = high) and slack 0 an angle found does fit.
+    Over an interval of angles of the output link, and of its lengths link[1] to link[2], the needs
+    are relaxed, so that nan proves that no angle in it fits; for one angle (low = high), one length
+    and slack 0 an angle found does fit.
     """
     width, height = scale * s.box[0], scale * s.box[1]
     right, x_right = reach(s, low, high, 0)
@@ -43,7 +55,7 @@ def room(s, scale, low, high, slack):
     left, x_left = reach(s, low, high, 2)
     down, y_down = reach(s, low, high, 3)
     tight = slack * max(width, height)
-    r, r2, a, b = s.radius[0], s.radius[1], s.link[0], s.link[1]
+    r, r2, a = s.radius[0], s.radius[1], s.link[0]
     if max(right, x_right + r2) + max(left, x_left + r2) > width + tight:
         return math.nan
     if max(up, y_up + r2) + max(down, y_down + r2) > height + tight:
@@ -57,8 +69,7 @@ def room(s, scale, low, high, slack):
     y_high = (height - r - max(down + y_up, r2) + tight) / a
     if max(x_low, y_low) > 1.0 or min(x_high, y_high) < -1.0 or x_low > x_high or y_low > y_high:
         return math.nan
-    keep = r + s.hub
-    bend = (keep * keep - a * a - b * b) / (2.0 * a * b)
+    bend = least_bend(r + s.hub, a, s.link[1], s.link[2])
     if bend > 1.0 + slack:
         return math.nan
     middle = 0.5 * (low + high)
@@ -130,10 +141,12 @@ def search(s, cells, count, best, angles, rel, aim, limit):
 
 
 @njit(cache=True)
-def fits(s, cells, angles, limit):
-    """Whether a train fits its box of scale 1: 1 yes (angles), 0 proven no, -1 undecided."""
-    cells[0, 0], cells[0, 1] = -math.pi, math.pi
-    count, looked = 1, 0
+def decided(s, cells, count, angles, limit):
+    """Whether a train fits with the output link in the open cells; see `fits`.
+
+    cells (size, 2): `count` in use. Also returns how many were judged.
+    """
+    looked = 0
     while count > 0:
         count -= 1
         looked += 1
@@ -144,10 +157,17 @@ def fits(s, cells, angles, limit):
         motor = room(s, 1.0, middle, middle, 0.0)
         if not math.isnan(motor):
             angles[0], angles[1] = motor, middle
-            return 1
+            return 1, looked
         if looked >= limit or count + 2 > cells.shape[0] or not low < middle < high:
-            return -1
+            return -1, looked
         cells[count, 0], cells[count, 1] = low, middle
         cells[count + 1, 0], cells[count + 1, 1] = middle, high
         count += 2
-    return 0
+    return 0, looked
+
+
+@njit(cache=True)
+def fits(s, cells, angles, limit):
+    """Whether a train fits its box of scale 1: 1 yes (angles), 0 proven no, -1 undecided."""
+    cells[0, 0], cells[0, 1] = -math.pi, math.pi
+    return decided(s, cells, 1, angles, limit)[0]

@@ -334,7 +334,7 @@ class ServoDesign:
 class ServoReport:
     """What is reported beside the design. figures: by the names that docs/servo.md lists.
 
-    trains: none of them where they are too many, None where no train was chosen.
+    trains: none of them where time was up, None where no train was chosen.
     """
 
     trains: tuple[ListedTrain, ...] | None = None

@@ -164,7 +164,7 @@ def _told(whose: str, broken: list[str]) -> str:
     return f"{whose} {' and '.join(WHAT[name] for name in broken)}." if broken else ""
 
 
-UNLISTED = "Other trains are not shown beside this one: there are too many, or the budget ended."
+UNLISTED = "Other trains are not shown beside this one: the budget ended."
 
 
 def notes(

@@ -272,15 +272,19 @@ class Scene(Table):
         """Return the train to be chosen, and what it must keep; boxed: a required box too."""
         assert self.train is not None
         held = boxed and self.space is not None and self.space.required
-        room = self.box if held else None
-        return Choice(self.servo_train(), self.train.goal, self.springs, room)
+        return Choice(
+            self.servo_train(), self.train.goal, self.springs, self.room() if held else None
+        )
 
     def box(self, pairs: Pairs) -> servo_box.ServoBox:
         """Return the box of a train, as its layout sees it."""
+        return servo_box.of_train(pairs, self.room())
+
+    def room(self) -> servo_box.Room:
+        """Return the box, motor and hub of a file, in plain numbers."""
         space, train = self.space, self.train
         assert space is not None and train is not None
-        return servo_box.of_train(
-            pairs,
+        return servo_box.Room(
             0.5 * space.motor_diameter.value,
             0.5 * space.hub_diameter.value,
             half_sweep(train, space),

@@ -154,7 +154,7 @@ def train_part(scene: Scene, ask: Ask) -> tuple[Result, Pairs | None]:
 
 
 def neighbours(scene: Scene, clock: Clock) -> tuple[ListedTrain, ...]:
-    """Return the Pareto front of trains; nothing where time is up or they are too many.
+    """Return the Pareto front of trains; nothing where time is up.
 
     Thinned if many. One that is the best by two goals stands there twice, each time named by one
     of them.

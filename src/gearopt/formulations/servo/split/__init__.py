@@ -13,7 +13,8 @@ from gearopt.formulations.servo.split.core import (
     stage_counts,
     staged,
 )
-from gearopt.formulations.servo.split.order import feasible, in_order, pareto_front, trains
+from gearopt.formulations.servo.split.numbers import posed
+from gearopt.formulations.servo.split.order import feasible, pareto_front, points, trains
 from gearopt.formulations.servo.split.relaxation import relaxation
 from gearopt.formulations.servo.split.servo_train import ServoTrain
 from gearopt.formulations.servo.split.stiff import StiffTrain, stiff
@@ -26,8 +27,9 @@ __all__ = [
     "core",
     "feasible",
     "first_ratio",
-    "in_order",
     "lightest_stage_ratio",
+    "points",
+    "posed",
     "problem",
     "relaxation",
     "stage_counts",

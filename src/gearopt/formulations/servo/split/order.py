@@ -1,4 +1,4 @@
-"""All feasible trains: at once, in lots in the order of an objective, or a Pareto front.
+"""All feasible trains, and their Pareto front.
 
 Trains are points of `split.problem`, (trains, 6). `check` is called several times a second and may
 raise, to stop.
@@ -6,7 +6,7 @@ raise, to stop.
 
 import math
 from bisect import bisect_left, bisect_right
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -19,10 +19,6 @@ from gearopt.optimise.terms import Array
 
 KERNEL = "gearopt.formulations.servo.split.order_kernel"
 TEETH = "gearopt.formulations.servo.split.teeth_kernel"
-FIRST = 1e-3  # by which the trains of the first lot are worse than the best one, at most
-WIDER = 4.0  # from a lot of few trains to the next one
-LOT = 1_000_000  # trains of a lot, at most; more where they are as good as each other
-ALIKE = 1e-9  # relative: no lot is split further
 STEPS = 1_000_000  # of the kernel between two checks
 FEW = 60  # rows that are tried against all others
 MANY = 2000  # rows from which on that is quicker than one by one
@@ -37,10 +33,13 @@ def unchecked() -> None:
 def feasible(
     train: ServoTrain,
     goal: str = "inertia",
-    maximum: int = LOT,
+    maximum: int = 0,
     check: Callable[[], None] = unchecked,
 ) -> Array | None:
-    """Return all feasible trains; None for more than `maximum`. A duty as goal adds its limits."""
+    """Return all feasible trains; None for more than `maximum` above 0.
+
+    A duty as goal adds its limits.
+    """
     return _listed(*posed(train, goal), -math.inf, math.inf, maximum, check)
 
 
@@ -49,27 +48,6 @@ def trains(train: ServoTrain, error: float) -> Array:
     found = _listed(*posed(train, "error"), -math.inf, error, 0, unchecked)
     assert found is not None
     return found[problem(train, "error").batch(found).F[:, 0].argsort(kind="stable")]
-
-
-def in_order(
-    train: ServoTrain, goal: str, best: float, check: Callable[[], None]
-) -> Iterator[Array]:
-    """Yield lots of trains, the best first; together all. best: the minimum objective, > 0."""
-    (given, aim), text = posed(train, goal), problem(train, goal)
-    above, reached, step = -math.inf, best, FIRST
-    while True:
-        maximum = reached + step * best
-        maximum = maximum if math.isfinite(maximum) and step < 1.0 / ALIKE else math.inf
-        found = _listed(given, aim, above, maximum, LOT if step > ALIKE else 0, check)
-        if found is None:
-            step /= WIDER
-            continue
-        if len(found):
-            yield found[text.batch(found).F[:, 0].argsort(kind="stable")]
-        if math.isinf(maximum):
-            return
-        above = reached = maximum
-        step *= WIDER if len(found) < LOT / WIDER else 1.0
 
 
 def _listed(
@@ -88,7 +66,12 @@ def _listed(
         total, first = total + good, last
         if 0 < limit < total:
             return None
-    z1, z2, z3, z4, i, j = np.concatenate([rows[:0], *parts]).T
+    return points(given, np.concatenate([rows[:0], *parts]))
+
+
+def points(given: Numbers, rows: Any) -> Array:
+    """Return the points of a kernel's rows (N, 6): pinion and wheel teeth, modules."""
+    z1, z2, z3, z4, i, j = rows.T
     return np.column_stack([z1, z3, z2, z4, given.module[i], given.module[j]]).astype(float)
 
 

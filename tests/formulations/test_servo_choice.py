@@ -1,0 +1,164 @@
+"""Trains that are stiff enough and fit a box, and fronts of trains, against looking at all."""
+
+import math
+from dataclasses import replace
+from fractions import Fraction as F
+
+import numpy as np
+import pytest
+from servo_trains import PAPER
+
+from gearopt.formulations.servo import choice, choice_search, servo_box, split
+from gearopt.formulations.servo.choice import Choice, Springs, front, train_problem
+from gearopt.formulations.servo.ratio import Drive, ServoDuty
+from gearopt.formulations.servo.servo_box import Room, ServoBox, first_that_fits, of_train
+from gearopt.formulations.servo.split.servo_train import pairs
+from gearopt.optimise.clock import Clock
+from gearopt.optimise.kernels import kernel
+from gearopt.optimise.result import Budget
+from gearopt.optimise.solve import solve
+
+DRIVE = Drive(1.98e1, 8.6e-3, 50.0, motor_friction=3.0, load_friction=400.0)
+FASTEST = ServoDuty(DRIVE, "acceleration")
+GOALS = "inertia", "mass", "error", FASTEST.goal
+
+
+def posed(rng):
+    """A small train of random numbers; half of them with modules whose diameters tie."""
+    one = int(rng.integers(6, 12))
+    other = 2 * one if rng.random() < 0.5 else one + int(rng.integers(1, 6))
+    modules = F(one, 20), F(other, 20)
+    return replace(
+        PAPER,
+        ratio=F(int(rng.integers(40, 110)), 10),
+        tolerance=F(int(rng.integers(10, 120)), 1000),
+        modules=modules,
+        pinion_teeth=(14, 19),
+        max_wheel_teeth=60,
+        bore=14 * modules[0],
+        wheel_tips=(45 * modules[1], 60 * modules[1]),
+        error=math.radians(float(rng.uniform(0.5, 1.5))),
+        bending=float(rng.uniform(500.0, 3000.0)),
+        sector=float(rng.uniform(0.2, 1.0)),
+        bodies=split.Bodies(F(2), F(3), F(4)),
+        duty=FASTEST,
+    )
+
+
+def springs(rng, stiffness):
+    line = None if rng.random() < 0.5 else 10.3e3
+    return Springs(79e3, (5.0, 40.0), line, 206e3, minimum=stiffness)
+
+
+def asked(train, points, rng):
+    """Limits that some of the trains meet: a stiffness, a box, or both; ties on purpose."""
+    made = pairs(points.T, train.face_width)
+    known = springs(rng, None)
+    values = np.sort(known.output_stiffness(made))
+    known = replace(known, minimum=float(values[int(rng.integers(len(values)))]))
+    size = float(rng.uniform(0.7, 1.5) * (points[:, 3] * points[:, 5]).min())
+    room = Room(2.0, 2.0, float(rng.uniform(0.5, math.pi)), (size, size * rng.uniform(1.0, 1.5)))
+    kind = int(rng.integers(3))
+    return (known if kind != 1 else None), (room if kind != 0 else None)
+
+
+def brute_force(chosen, points):
+    """The least objective of the trains that keep stiffness and box, by other code."""
+    worth = split.problem(chosen.train, chosen.goal).batch(points).F[:, 0]
+    for k in np.argsort(worth, kind="stable"):
+        made = pairs(points[k], chosen.train.face_width)
+        least = chosen.minimum_stiffness or 0.0
+        if least and chosen.springs.output_stiffness(made) < least * (1.0 - 1e-12):
+            continue
+        if chosen.room is None or first_that_fits([of_train(made, chosen.room)]):
+            return float(worth[k])
+    return None
+
+
+def compared(seeds):
+    answered, impossible = 0, 0
+    for seed in seeds:
+        rng = np.random.default_rng(seed)
+        train, goal = posed(rng), GOALS[seed % 4]
+        points = split.feasible(train, goal)
+        if not len(points):
+            continue
+        chosen = Choice(train, goal, *asked(train, points, rng))
+        best = brute_force(chosen, points)
+        factor = choice.GOALS[goal].factor
+        found = solve(train_problem(chosen))
+        if best is None:
+            assert found.status == "infeasible", (seed, found)
+            impossible += 1
+            continue
+        assert found.status == "optimal", (seed, found.message)
+        assert found.value == pytest.approx(factor * best, rel=1e-12), seed
+        answered += 1
+        given = choice_search.best_kept(
+            train, goal, chosen.kept, math.inf, Clock(Budget()), some=True
+        )
+        assert chosen.keeps(given)
+    return answered, impossible
+
+
+def test_stiff_trains_in_boxes_are_what_looking_at_all_finds():
+    answered, impossible = compared((2, 6, 7))
+    assert answered and impossible
+
+
+@pytest.mark.slow
+def test_hundreds_of_stiff_trains_in_boxes_are_what_looking_at_all_finds():
+    answered, impossible = compared(range(310))
+    assert answered > 120 and impossible > 60
+
+
+def test_a_look_at_a_range_of_links_excludes_no_layout():
+    """What fits with one link of stage 2 is not excluded for any range around it."""
+    rng = np.random.default_rng(3)
+    code, tried = kernel("gearopt.formulations.servo.servo_box_kernel"), 0
+    for _ in range(400):
+        a, b = rng.uniform(10.0, 30.0, 2)
+        radii, half = tuple(rng.uniform(5.0, 25.0, 3)), float(rng.uniform(0.3, math.pi))
+        box = ServoBox(radii, (a, b), 3.0, half, tuple(rng.uniform(50.0, 110.0, 2)))
+        given = servo_box.numbers(box)
+        angle = float(rng.uniform(0.0, 0.5 * math.pi))
+        if math.isnan(code.room(given, 1.0, angle, angle, 0.0)):
+            continue
+        tried += 1
+        low, high = angle - rng.uniform(0.0, 0.3), angle + rng.uniform(0.0, 0.3)
+        wide = np.array([a, b * rng.uniform(0.3, 1.0), b * rng.uniform(1.0, 3.0)])
+        assert not math.isnan(code.room(given._replace(link=wide), 1.0, low, high, 1e-12))
+    assert tried > 100
+
+
+@pytest.mark.parametrize("goal", ["mass", FASTEST.goal])
+def test_the_front_is_that_of_all_trains(goal, monkeypatch):
+    monkeypatch.setattr(choice, "PART", 70)
+    for seed in range(6):
+        rng = np.random.default_rng(seed)
+        train = posed(rng)
+        train = replace(train, modules=train.modules[:1])
+        points = split.feasible(train, goal if goal == FASTEST.goal else "inertia")
+        chosen = Choice(train, goal)
+        found = front(chosen, Clock(Budget()))
+        if not len(points):
+            assert found is None
+            continue
+        worth = split.problem(train, *chosen.weighed).batch(points).F
+        kept = split.pareto_front(worth)
+        assert np.array_equal(found[1], worth[kept]) and np.array_equal(found[0], points[kept])
+
+
+def test_a_search_stops_when_told_and_pauses_change_nothing(monkeypatch):
+    rng = np.random.default_rng(11)
+    train = posed(rng)
+    points = split.feasible(train)
+    chosen = Choice(train, "mass", *asked(train, points, rng))
+    whole = choice_search.best_kept(train, "mass", chosen.kept, 1e-3, Clock(Budget()))
+    monkeypatch.setattr(choice_search, "STEPS", (1, 1))
+    seen = []
+    clock = Clock(Budget(), lambda event: seen.append(event) or True)
+    assert np.array_equal(choice_search.best_kept(train, "mass", chosen.kept, 1e-3, clock), whole)
+    assert len(seen) > 100
+    with pytest.raises(TimeoutError):
+        choice_search.best_kept(train, "mass", chosen.kept, 1e-3, Clock(Budget(seconds=0.0)))
