@@ -1,5 +1,10 @@
 """The words of a run that is under way."""
 
+import os
+import re
+import subprocess
+import sys
+
 import pytest
 
 from gearopt.cli.watching import progress
@@ -9,27 +14,70 @@ from gearopt.optimise.result import Event
 @pytest.mark.parametrize(
     ("event", "said"),
     [
-        (Event(1.0, 1200), "1,200 evaluations, 9 s left"),
-        (Event(1.0, 0, part="other numbers"), "other numbers: 0 evaluations, 9 s left"),
+        (Event(1.0, 1200), "1,200 evaluations"),
+        (Event(1.0, 0, part="compiling: 3 of 18"), "compiling: 3 of 18"),
         (
             Event(1.0, 20, 25455260.4, 25000000.0, "layout", "box_volume", "mm3"),
-            "layout: 20 evaluations, best 25,455,260.4 mm³, gap 1.8 %, 9 s left",
+            "layout: best 25,455,260.4 mm³, bound 25,000,000.0 mm³, gap 1.8 %, 20 evaluations",
         ),
         (
             Event(1.0, 20, 12.5, None, "teeth", "mass", "kg"),
-            "teeth: 20 evaluations, best 12.5 kg, 9 s left",
+            "teeth: best 12.5 kg, 20 evaluations",
         ),
         (
             Event(1.0, 20, None, 12.5, "teeth", "mass", "kg"),
-            "teeth: 20 evaluations, bound 12.5 kg, 9 s left",
+            "teeth: bound 12.5 kg, 20 evaluations",
         ),
         (
             Event(1.0, 20, 5.0899e-07, 5e-07, "train", "inertia", "kg_m2"),
-            "train: 20 evaluations, best 5.0899 g cm², gap 1.8 %, 9 s left",
+            "train: best 5.0899 g cm², bound 5 g cm², gap 1.8 %, 20 evaluations",
         ),
-        (Event(1.0, 20, 0.0, 0.0), "20 evaluations, best 0, gap 0 %, 9 s left"),
-        (Event(1.0, 20, -4.0, -5.0), "20 evaluations, best -4, gap 25 %, 9 s left"),
+        (Event(1.0, 20, 0.0, 0.0), "best 0, bound 0, gap 0 %, 20 evaluations"),
+        (Event(1.0, 20, -4.0, -5.0), "best -4, bound -5, gap 25 %, 20 evaluations"),
     ],
 )
 def test_progress_names_part_value_and_unit(event, said):
-    assert progress(event, 9.2) == said
+    assert progress(event) == said
+
+
+TERMINAL = """
+import sys, time
+from gearopt.cli.watching import watching
+from gearopt.optimise.result import Event
+
+with watching(60.0, quiet=False) as watch:
+    time.sleep(float(sys.argv[1]))
+    watch(Event(1.0, 1200, 12.5, 12.0, "teeth", "mass", "kg"))
+    time.sleep(float(sys.argv[1]))
+print("done")
+"""
+
+
+def on_a_terminal(seconds):
+    """What a terminal is sent by a run that reports once."""
+    screen, child = os.openpty()
+    command = [sys.executable, "-c", TERMINAL, str(seconds)]
+    env = os.environ | {"TERM": "xterm", "COLUMNS": "120"}
+    running = subprocess.Popen(command, stdout=child, stderr=child, env=env)
+    os.close(child)
+    sent = b""
+    try:
+        while block := os.read(screen, 65536):
+            sent += block
+    except OSError:  # the other end is closed
+        pass
+    assert running.wait() == 0
+    return re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", sent.decode())
+
+
+@pytest.mark.slow
+def test_a_terminal_shows_what_is_reached_and_seconds_that_move():
+    said = on_a_terminal(1.6)
+    assert "1 of 60 s  begins" in said  # before anything is reported
+    assert "2 of 60 s  teeth: best 12.5 kg, bound 12 kg, gap 4 %, 1,200 evaluations" in said
+    assert "3 of 60 s  teeth" in said and said.rstrip().endswith("done")
+
+
+@pytest.mark.slow
+def test_a_short_run_shows_nothing():
+    assert on_a_terminal(0.1).split() == ["done"]

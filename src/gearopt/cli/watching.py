@@ -4,37 +4,45 @@ import logging
 import math
 import os
 import signal
+import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass, field
 from typing import Any
 
 from rich.console import Console
 
 from gearopt.optimise.clock import Clock
-from gearopt.optimise.result import Budget, Event, Watch
+from gearopt.optimise.result import Event, Watch
 from gearopt.optimise.scale import gap
 
+PATIENCE = 0.5  # seconds of a run without a line about it
+PAUSE = 0.2  # seconds between one line and the next
+LONGEST = 1e5  # seconds: a limit above it is none
 SHOW_CURSOR = b"\r\x1b[K\x1b[?25h"  # and clear the line of the progress that hid it
 
 
 @contextmanager
 def watching(seconds: float, quiet: bool) -> Iterator[Watch]:
     """Yield a watcher of one run that ends it at Ctrl-C and shows long work."""
-    clock = Clock(Budget(seconds))
-
-    def words(event: Event) -> str:
-        return progress(event, clock.within(seconds))
-
-    with following(words, quiet) as watch:
+    with following(progress, quiet, seconds) as watch:
         yield watch
 
 
 @contextmanager
-def following(words: Callable[[Any], str], quiet: bool) -> Iterator[Callable[[Any], bool]]:
-    """Yield a watcher, False after Ctrl-C (the second one kills), that shows words(progress)."""
+def following(
+    words: Callable[[Any], str], quiet: bool, limit: float = math.inf
+) -> Iterator[Callable[[Any], bool]]:
+    """Yield a watcher, False after Ctrl-C (the second one kills), that shows words(progress).
+
+    On a terminal a line of what was reached last and of the seconds spent moves after half a
+    second, whether or not the run has anything to report. limit: seconds that it may take.
+    """
     stopped = False
     screen = Console(stderr=True, highlight=False)
-    status = screen.status("") if screen.is_terminal and not quiet else None
+    line = _Line(limit)
+    status = screen.status(line) if screen.is_terminal and not quiet else None
+    begin = threading.Timer(PATIENCE, status.start) if status is not None else None
 
     def stop(number: int, frame: Any) -> None:
         nonlocal stopped
@@ -45,7 +53,6 @@ def following(words: Callable[[Any], str], quiet: bool) -> Iterator[Callable[[An
         stopped = True
 
     before = signal.signal(signal.SIGINT, stop)
-    clock, shown = Clock(), 0.0
     news = _News(screen)
     if not quiet:
         logger = logging.getLogger("gearopt.kernels")
@@ -53,17 +60,18 @@ def following(words: Callable[[Any], str], quiet: bool) -> Iterator[Callable[[An
         logger.setLevel(logging.INFO)
 
     def watch(progress: Any) -> bool:
-        nonlocal shown
-        now = clock.seconds
-        if status is not None and now > 0.5 and now > shown + 0.2:
-            shown = now
-            status.start()
-            status.update(words(progress))
+        if status is not None and line.due():
+            line.words = words(progress)
         return not stopped
 
     try:
+        if begin is not None:
+            begin.start()
         yield watch
     finally:
+        if begin is not None:
+            begin.cancel()
+            begin.join()
         logging.getLogger("gearopt.kernels").removeHandler(news)
         if status is not None:
             status.stop()
@@ -97,20 +105,47 @@ class _News(logging.Handler):
             self.screen.print(words[0].upper() + words[1:] + ".", style="dim")
 
 
-def progress(event: Event, left: float) -> str:
-    """Return part, evaluations, best value and gap of a run, and the seconds it has left."""
-    words = [f"{event.evaluations:,} evaluations", *reached(event), f"{max(left, 0.0):.0f} s left"]
-    return ": ".join(filter(None, (event.part, ", ".join(words))))
+@dataclass
+class _Line:
+    """What a terminal shows of a run under way; an interface of rich.
+
+    It has state because time passes and the run continues.
+    """
+
+    limit: float
+    words: str = "begins"
+    clock: Clock = field(default_factory=Clock)
+    shown: float = 0.0
+
+    def due(self) -> bool:
+        """Return whether other words may be shown: a few times in a second."""
+        now = self.clock.seconds
+        if now < self.shown + PAUSE:
+            return False
+        self.shown = now
+        return True
+
+    def __rich__(self) -> str:
+        """Return the words with the seconds spent, asked again for every frame."""
+        now = self.clock.seconds
+        of = f" of {self.limit:.0f}" if now <= self.limit < LONGEST else ""
+        return f"{now:.0f}{of} s  {self.words}"
+
+
+def progress(event: Event) -> str:
+    """Return the part of a run, its best value, bound and gap, and the evaluations spent."""
+    spent = [f"{event.evaluations:,} evaluations"] if event.evaluations else []
+    return ": ".join(filter(None, (event.part, ", ".join([*reached(event), *spent]))))
 
 
 def reached(event: Event) -> list[str]:
-    """Return the best value and the bound of an event in words."""
+    """Return the best value, the bound and the gap of an event in words."""
     from gearopt.report.words import amount
 
     unit, best, bound = event.unit, event.best, event.bound
     words = [] if best is None else [f"best {amount(best, unit)}"]
     if bound is None:
         return words
+    words.append(f"bound {amount(bound, unit)}")
     away = math.inf if best is None else gap(best, bound)
-    shown = math.isfinite(away)
-    return [*words, f"gap {100.0 * away:.2g} %" if shown else f"bound {amount(bound, unit)}"]
+    return [*words, f"gap {100.0 * away:.2g} %"] if math.isfinite(away) else words
