@@ -18,7 +18,16 @@ solved in three lines ([How to start](start.md#from-python)); a problem of your 
 GROUPS = {  # heading: names, in reading order
     "From a file to an answer": ("solve", "explain", "compare", "load"),
     "Answers": ("Result", "Explanation", "Comparison"),
-    "Problems of your own": ("Problem", "Var", "Param", "Terms", "Repeat", "Conic", "evaluate"),
+    "Problems of your own": (
+        "Problem",
+        "Var",
+        "Param",
+        "Terms",
+        "Repeat",
+        "Conic",
+        "evaluate",
+        "Outcome",
+    ),
     "Limits of a run, and its progress": ("Budget", "Event"),
     "Errors": ("GearoptError", "SceneError", "SolveError", "CertificateError"),
 }

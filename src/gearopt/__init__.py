@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from gearopt.optimise.conic.problem import Conic
     from gearopt.optimise.explaining.explanation import Explanation
     from gearopt.optimise.problem import Problem
-    from gearopt.optimise.result import Budget, Event, Result
+    from gearopt.optimise.result import Budget, Event, Outcome, Result
     from gearopt.optimise.solve import evaluate
     from gearopt.optimise.terms import Param, Repeat, Terms, Var
 
@@ -23,6 +23,7 @@ __all__ = [
     "Event",
     "Explanation",
     "GearoptError",
+    "Outcome",
     "Param",
     "Problem",
     "Repeat",

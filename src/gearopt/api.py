@@ -19,10 +19,10 @@ from gearopt.optimise.comparing.comparison import Comparison
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.explaining.explanation import Explanation
 from gearopt.optimise.options import check, named
+from gearopt.optimise.own_problems import solve_own
 from gearopt.optimise.problem import Problem, one_objective
-from gearopt.optimise.result import Budget, Event, Result, Watch, plain  # noqa: F401
+from gearopt.optimise.result import Budget, Event, Outcome, Result, Watch, plain  # noqa: F401
 from gearopt.optimise.solve import GAP, evaluate  # noqa: F401
-from gearopt.optimise.solve import solve as solve_problem
 from gearopt.optimise.terms import Param, Repeat, Terms, Var  # noqa: F401
 from gearopt.scenes.reading.ask import Ask, idle
 from gearopt.scenes.reading.inputs import inputs_of
@@ -58,6 +58,7 @@ def solve(
     gap: float | None = None,
     top: int = 1,
     prices: bool = False,
+    start: Mapping[str, Any] | None = None,
 ) -> Result:
     """Return the certified answer to a problem file, its tables or scene, or a problem of your own.
 
@@ -66,11 +67,13 @@ def solve(
     returns False to stop the run. gap: relative gap to our bound that is enough, so that a search
     may end there; None: none is, and 1e-6 is called optimal. top: so many next best answers too
     (drives with a [teeth] table). prices: report["prices"] holds the sensitivities to every number
-    of the file, as `explain` does. SceneError for a wrong file or change, SolveError where the
-    method does not fit, or top or prices change nothing, ValueError for an option of another sort.
-    Not thread-safe.
+    of the file, as `explain` does. start: of a Problem, values by name of the variable from which
+    ipopt, multistart and annealing begin instead of the guess. SceneError for a wrong file or
+    change, SolveError where the method does not fit, or an option changes nothing, ValueError for
+    an option of another sort. Not thread-safe.
     """
     check(method=method, budget=budget, seed=seed, watch=watch, gap=gap, top=top, prices=prices)
+    check(start=start)
     budget, watch = replace(budget or Budget(), gap=gap or 0.0), whole(watch)
     asked = {"method": method, "seconds": budget.seconds, "evaluations": budget.evaluations}
     asked |= {"gap": gap, "seed": seed, "top": top, "prices": prices}
@@ -78,7 +81,9 @@ def solve(
     if isinstance(what, Problem | Conic):
         _unchanged(what, changes)
         _only_of_files(what.name, top, prices)
-        return solve_problem(what, method, budget, seed, watch, gap)
+        return solve_own(what, method, budget, seed, watch, gap, start)
+    if start is not None:
+        raise SolveError("start changes nothing here: it is for a Problem; leave it out")
     ask = Ask(method, budget, seed, watch, gap, top)
     scene, module, names = _opened(what, changes)
     if why := idle(module, scene, method).get("top"):

@@ -248,7 +248,7 @@ def test_what_daqp_leaves_open_is_given_to_qrqp(monkeypatch):
 def test_watch_and_budget():
     problem = sharing(2)
     assert solve(problem, "qp", watch=lambda event: False).status == "limit"
-    assert solve(problem, "qp", Budget(seconds=-1.0)).status == "limit"
+    assert solve(problem, "qp", Budget(seconds=0.0)).status == "limit"
     seen = []
     assert (
         solve(problem, "qp", watch=lambda event: seen.append(event.best) or True).value == seen[-1]

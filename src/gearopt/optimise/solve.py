@@ -57,7 +57,7 @@ def run(
     Of several objectives the first counts; the outcome's other points are the rest of the Pareto
     front.
     """
-    name = method or next(iter(problem.methods), _default(problem))
+    name = method or default(problem)
     clock = Clock()
     follow = of_problem(watch, problem)
     outcome = method_of(problem, name)(problem, budget or Budget(), seed, follow)
@@ -111,8 +111,9 @@ def back_ends() -> tuple[str, ...]:
     return tuple(sorted(m.name for m in iter_modules(solvers.__path__)))
 
 
-def _default(problem: Problem | Conic) -> str:
-    return "conic" if isinstance(problem, Conic) else "ipopt"
+def default(problem: Problem | Conic) -> str:
+    """Return the method that is run where none is named."""
+    return next(iter(problem.methods), "conic" if isinstance(problem, Conic) else "ipopt")
 
 
 def judge(problem: Problem | Conic, method: str, outcome: Outcome, gap: float) -> Verdict:

@@ -234,17 +234,26 @@ def kinds(problem: Problem) -> Kinds:
     """Return which terms are log-convex, read at the present parameter values, once for each."""
     key = ("kinds", problem.parameter_values().tobytes())
     if key not in problem.memo:
-        objective, inequalities, equalities = (
-            # a row is used through its logarithm, so a constant counts only when positive
-            [term.kind if term.positive else OTHER for term in terms]
-            for terms in read(problem, lambda v: Term(MONOMIAL) if v.log else _UNKNOWN, _apply)
-        )
-        total = max(objective)
-        if len(objective) > 1 and total == MONOMIAL:
-            total = POSYNOMIAL  # a sum over blocks
-        problem.memo[key] = Kinds(total, tuple(inequalities), tuple(equalities))
+        problem.memo[key] = _kinds(problem, lambda v: Term(MONOMIAL) if v.log else _UNKNOWN)
     found: Kinds = problem.memo[key]
     return found
+
+
+def log_convex_in_logarithms(problem: Problem) -> bool:
+    """Return whether the terms of a problem were log-convex if all its variables were log."""
+    return _kinds(problem, lambda v: Term(MONOMIAL)).log_convex
+
+
+def _kinds(problem: Problem, variable: Callable[[Var], Term]) -> Kinds:
+    objective, inequalities, equalities = (
+        # a row is used through its logarithm, so a constant counts only when positive
+        [term.kind if term.positive else OTHER for term in terms]
+        for terms in read(problem, variable, _apply)
+    )
+    total = max(objective)
+    if len(objective) > 1 and total == MONOMIAL:
+        total = POSYNOMIAL  # a sum over blocks
+    return Kinds(total, tuple(inequalities), tuple(equalities))
 
 
 def read(

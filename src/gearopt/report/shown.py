@@ -43,7 +43,7 @@ def lines(result: Result) -> str:
         gap = "" if result.gap is None else f", gap {100 * result.gap:.3g} %"
         rows.append(f"bound {amount(bound, unit)}{gap}")
     rows += _design(result)
-    if result.message and (value is None or not result.feasible or leading(result)):
+    if result.message and (result.status != "optimal" or leading(result)):
         rows.append(result.message)
     return "\n  ".join(
         row if len(row) <= 3 * LONGEST else f"{row[: 3 * LONGEST]}..." for row in rows

@@ -22,6 +22,7 @@ PENALTY, HARDER = 5.0, 100.0  # energy of a violation of 1 at first, and how oft
 LONGEST, SHORTEST = 0.3, 1e-6  # steps in a box of width 1
 FEASIBLE = 1e-9
 
+FROM_GUESS = True  # it begins at the guess, or where a caller starts it
 RANDOM = True
 PACED = True  # the cooling is stretched over the evaluations it is given
 COUNTS = "point evaluated or Ipopt iteration"

@@ -31,6 +31,7 @@ SMALLER = 1e-2  # of the objective's scale at first: less, and Ipopt continues f
 AGAIN = 6  # times at most
 STUCK = 1e-6  # violation at which Ipopt's end point counts as not solved
 
+FROM_GUESS = True  # it begins at the guess, or where a caller starts it
 RANDOM = False
 COUNTS = "iteration"
 SETTINGS = {k: v for k, v in OPTIONS.items() if k not in ("print_level", "sb")}

@@ -14,6 +14,7 @@ from gearopt.optimise.solvers import ipopt
 
 STARTS = 50  # where the budget names no end
 
+FROM_GUESS = True  # it begins at the guess, or where a caller starts it
 RANDOM = True
 COUNTS = "Ipopt iteration of any start"
 SETTINGS = {"starts": STARTS, "local method": "ipopt"}

@@ -1,0 +1,137 @@
+"""A problem of a user's own: where a method starts, which one is taken, what would prove more."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from importlib import import_module
+from typing import Any
+
+import numpy as np
+
+from gearopt.errors import SolveError
+from gearopt.optimise.conic.problem import Conic
+from gearopt.optimise.problem import Problem, one_objective
+from gearopt.optimise.result import Budget, Result, Watch
+from gearopt.optimise.solve import back_ends, default, solve
+from gearopt.optimise.tape import log_convex_in_logarithms
+from gearopt.optimise.terms import Array
+
+SAMPLER = "annealing"  # taken where variables are discrete and no method is named
+
+
+def solve_own(
+    problem: Problem | Conic,
+    method: str | None,
+    budget: Budget,
+    seed: int,
+    watch: Watch | None,
+    gap: float,
+    start: Mapping[str, Any] | None,
+) -> Result:
+    """Solve like `optimise.solve.solve`, from a start, by a method that takes the problem.
+
+    The message says where that method proves nothing, and what would make the problem provable.
+    ValueError for a start that is no point of the box, SolveError where the method takes none.
+    """
+    one_objective(problem.name, problem.rows.objectives)
+    name = method or default(problem)
+    discrete = [n for v, n in problem.columns if v.discrete]
+    sampled = method is None and name == "ipopt" and bool(discrete)
+    name = SAMPLER if sampled else name
+    posed = problem if start is None else _started(problem, name, start)
+    result = solve(posed, name, budget, seed, watch, gap)
+    words = _of_sampler(discrete[0]) if sampled else _provable(problem, result)
+    return replace(result, message=". ".join(filter(None, [result.message.rstrip("."), words])))
+
+
+def _of_sampler(name: str) -> str:
+    return (
+        f"{SAMPLER} was taken, because {name} is discrete, and proves nothing; for a proof pose a "
+        "Conic, or bring an exact method of your own in Problem(methods=...)"
+    )
+
+
+def _provable(problem: Problem | Conic, result: Result) -> str:
+    """Return what to declare so that a problem without a bound is a geometric program; "" if none.
+
+    That its terms are log-convex is read from the tape, as if every variable were log.
+    """
+    if isinstance(problem, Conic) or result.value is None or result.bound is not None:
+        return ""
+    (low, high, _), variables = problem.bounds(), [v for v, _ in problem.columns]
+    plain = list(dict.fromkeys(v.name for v in variables if not v.log))
+    if not plain or any(v.discrete for v in variables) or (low < 0.0).any():
+        return ""
+    try:
+        if not log_convex_in_logarithms(problem):
+            return ""
+    except SolveError:  # no tape
+        return ""
+    more = {
+        "a lower bound above 0": [
+            n for (_, n), a in zip(problem.columns, low, strict=True) if not a
+        ],
+        "a finite upper bound": [
+            n for (_, n), b in zip(problem.columns, high, strict=True) if np.isinf(b)
+        ],
+    }
+    needs = "".join(f", {what} for {', '.join(names)}" for what, names in more.items() if names)
+    return (
+        f"declare log=True for {', '.join(plain)}{needs}: then this is a geometric program, whose "
+        "optimum is proven"
+    )
+
+
+def _started(problem: Problem | Conic, method: str, start: Mapping[str, Any]) -> Problem:
+    """Return the problem with a start as its guess; variables that it leaves out keep theirs."""
+    known = [n for n in back_ends() if getattr(_module(n), "FROM_GUESS", False)]
+    own = method in problem.methods
+    if isinstance(problem, Conic) or not (own or method in known):
+        takes = "" if isinstance(problem, Conic) else f"; these do: {', '.join(known)}"
+        raise SolveError(f"{method} takes no start{takes}; leave start out")
+    return problem.starting(_point(problem, start))
+
+
+def _module(name: str) -> Any:
+    return import_module(f"gearopt.optimise.solvers.{name}")
+
+
+def _point(problem: Problem, start: Mapping[str, Any]) -> Array:
+    """Return the guess (n,) with the values of a start by name, as declared or as a design has it.
+
+    ValueError names a value that is none, or lies outside the bounds or the values of its variable.
+    """
+    low, high, guess = problem.bounds()
+    x, places = guess.copy(), _places(problem)
+    for name, value in start.items():
+        if name not in places:
+            declared = dict.fromkeys(
+                n.rsplit("[", 1)[0] if v.size > 1 else n for v, n in problem.columns
+            )
+            raise ValueError(f"start: no variable {name!r}; variables: {', '.join(declared)}")
+        where = places[name]
+        try:
+            values = np.ravel(np.asarray(value, float))
+        except (TypeError, ValueError):
+            values = np.array([np.nan])
+        if len(values) != len(where) or not np.isfinite(values).all():
+            sort = "a number" if len(where) == 1 else f"{len(where)} numbers"
+            raise ValueError(f"start: {name}={value!r}: write {sort}")
+        x[where] = values
+    for (variable, name), v, a, b in zip(problem.columns, x, low, high, strict=True):
+        if not a <= v <= b:
+            raise ValueError(f"start: {name}={v:g} lies outside its bounds {a:g} to {b:g}")
+        if variable.values is not None and v not in variable.values:
+            raise ValueError(f"start: {name}={v:g} is none of its values {variable.values}")
+        if variable.values is None and variable.integer and v != round(v):
+            raise ValueError(f"start: {name}={v:g} is not whole")
+    return x
+
+
+def _places(problem: Problem) -> dict[str, list[int]]:
+    """Return the columns of every name: of a variable, of a key of a design, of one component."""
+    found: dict[str, list[int]] = {}
+    for k, (variable, name) in enumerate(problem.columns):
+        head = name.rsplit("[", 1)[0] if variable.size > 1 else name
+        for key in {head, f"{head}_{variable.unit}" if variable.unit else head, name}:
+            found.setdefault(key, []).append(k)
+    return found
