@@ -2,6 +2,7 @@
 
 import math
 
+import layout_cases as cases
 import numpy as np
 import pytest
 from page_reader import drawings, extents, marks, numbers
@@ -108,3 +109,65 @@ def test_an_impossible_problem_reports_its_limits_where_the_largest_excess_is_sm
     near = result.report["nearest"]
     assert result.status == "infeasible" and set(near) == {"low", "a", "b"}
     assert list(near.values()) == pytest.approx([2.0 ** (1 / 3)] * 3, rel=1e-3)
+
+
+def nearest(**asked):
+    """An impossible layout whose first remedy is laid out as the elevator is."""
+    found = cases.elevator()
+    change = {"key": "layout.largest_width", "was": "1 mm", "write": '"2 mm"', "factor": 2.0}
+    way = {"kind": "least", "what": "x", "changes": [change], "factor": 2.0, "bound": None}
+    ways = {"conflict": [], "remedies": [way | {"verified": {"with": "feasible"}}], "message": ""}
+    near = {"keep_outs": [], "motor_mm": None, "largest_mm": [None, None, None]}
+    near |= {"layout": found.design["layout"]} | asked
+    report = {"ways_out": ways, "nearest_layout": near}
+    objective = {"name": "box_volume", "value": None, "unit": "mm3"}
+    made = gearopt.Result("drive", "infeasible", "exact", objective, report=report, scene="drive")
+    views = {svg.get("aria-label"): svg for svg in drawings(page(made, ""))}
+    box = found.design["layout"]["box"]
+    frames = {name: marks(views[f"{name} view"], "rect", "box")[0] for name in ("front", "side")}
+    scale = numbers(frames["front"], "width")[0] / box["width_mm"]
+    return views, frames, scale, box
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_sides_asked_of_a_box_stand_over_the_nearest_one(seed):
+    rng = np.random.default_rng(seed)
+    parts = rng.uniform(0.4, 1.4, 3)
+    parts[seed % 3] = rng.uniform(0.4, 0.9)
+    box = cases.elevator().design["layout"]["box"]
+    keys = ("width_mm", "height_mm", "length_mm")
+    sides = [float(p * box[key]) for p, key in zip(parts, keys, strict=True)]
+    views, frames, scale, _ = nearest(largest_mm=sides)
+    sizes = [min(side, box[key]) for side, key in zip(sides, keys, strict=True)]
+    asked = marks(views["front view"], "rect", "asked")
+    assert len(asked) == (min(parts[:2]) < 1.0)
+    for e in asked:
+        assert np.allclose(numbers(e, "width", "height"), np.multiply(sizes[:2], scale), atol=0.03)
+        assert numbers(e, "x") == numbers(frames["front"], "x")  # from the left and the floor
+        ends = [sum(numbers(one, "y", "height")) for one in (e, frames["front"])]
+        assert abs(ends[0] - ends[1]) < 0.03
+    long = marks(views["side view"], "rect", "asked")
+    assert len(long) == (parts[2] < 1.0)
+    for e in long:
+        assert abs(numbers(e, "width")[0] - scale * sides[2]) < 0.03
+        assert numbers(e, "x") == numbers(frames["side"], "x")
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_keep_outs_and_motor_that_are_asked_are_where_the_file_has_them(seed):
+    rng = np.random.default_rng(seed)
+    at = np.sort(rng.uniform(-100.0, 100.0, (3, 2)), axis=1)
+    names = ("left_mm", "right_mm", "bottom_mm", "top_mm", "from_mm", "to_mm")
+    keep_out = {"name": "beam"} | dict(zip(names, at.ravel().tolist(), strict=True))
+    views, frames, scale, box = nearest(keep_outs=[keep_out], motor_mm=230.0)
+    x, y = numbers(frames["front"], "x", "y")
+    (e,) = marks(views["front view"], "rect", "asked")
+    (y0, y1), (z0, z1), _ = at
+    top = box["bottom_mm"] + box["height_mm"]
+    meant = [x + scale * (y0 - box["left_mm"]), y + scale * (top - z1)]
+    assert np.allclose(numbers(e, "x", "y"), meant, atol=0.03)
+    assert np.allclose(
+        numbers(e, "width", "height"), [scale * (y1 - y0), scale * (z1 - z0)], atol=0.03
+    )
+    (motor,) = marks(views["front view"], "circle", "asked")
+    assert abs(numbers(motor, "r")[0] - scale * 115.0) < 0.02

@@ -67,6 +67,8 @@ def test_a_place_out_of_reach_is_moved_to_where_the_links_reach():
     reach = 680.232  # sum of the centre distances
     written = float(first.changes[0].write.strip('"').split()[0])
     assert written == pytest.approx(reach + 0.01, abs=0.01)  # the tolerance of the place
+    drawn = found.result.report["nearest_layout"]["layout"]["shafts"][3]
+    assert drawn["z_mm"] == pytest.approx(written, abs=0.011)
     assert_least(found, content)
 
 

@@ -10,7 +10,7 @@ from gearopt.report.design_tables import ratio_tile, tables, trains
 from gearopt.report.kinds import Kind
 from gearopt.report.kinds.generic import ASKED, FIRST, LAST, TOLD
 from gearopt.report.measures import Measures
-from gearopt.report.pages import layout_solid, layout_views, train_views
+from gearopt.report.pages import impossible_layout, layout_solid, layout_views, train_views
 from gearopt.report.pages.bodies import layout_of
 from gearopt.report.section import Cell, Figure, Section, Table, Tile, axis, layout
 from gearopt.report.words import (
@@ -318,6 +318,7 @@ def _in_one_line(result: Result, measures: Measures) -> Section | None:
 KIND = Kind(
     sections=(
         *FIRST,
+        impossible_layout.section,
         layout_views.section,
         layout_solid.section,
         _in_one_line,

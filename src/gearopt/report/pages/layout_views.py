@@ -33,11 +33,14 @@ WIDE, HIGH = 640.0, 780.0  # largest drawing [px]: two side by side, or one on a
 LEVEL = 32.0  # px from the upper edge: where face widths stand
 
 
+Over = Callable[[Sheet], None]  # draws more over a view
+
+
 def section(result: Result, measures: Measures) -> Section | None:
     """Draw the views of a layout, all at one scale; None where there is no layout."""
     if (found := layout_of(result)) is None:
         return None
-    windows = [_window(found, axis) for axis in ("", "z", "y")]
+    windows = [window_of(found, axis) for axis in ("", "z", "y")]
     scale = min(window.scale(WIDE, HIGH) for window in windows)
     words = [
         f"Drawn to one scale; dimensions in {measures.lengths}. The axis of shaft 1, the input, "
@@ -57,7 +60,7 @@ def section(result: Result, measures: Measures) -> Section | None:
     return Section("Layout", words=words, drawings=views)
 
 
-def _window(found: LayoutDesign, axis: str) -> Window:
+def window_of(found: LayoutDesign, axis: str) -> Window:
     """Return the window of the front view, or of the view with this upright axis."""
     ends = drawn_corners(found)
     (bottom, top), (left, right) = along(ends, axis or "z"), along(ends, "x" if axis else "y")
@@ -106,8 +109,14 @@ def keep_out(
     sheet.label(it.name, places, "obstacle")
 
 
-def front_view(found: LayoutDesign, window: Window, scale: float, measures: Measures) -> Drawing:
-    """Draw the view along the shafts, y to the right and z up."""
+def front_view(
+    found: LayoutDesign,
+    window: Window,
+    scale: float,
+    measures: Measures,
+    over: Over | None = None,
+) -> Drawing:
+    """Draw the view along the shafts, y to the right and z up; over: what is drawn over it."""
     sheet = Sheet(window, scale)
     box_lines(sheet, found, "y", "z")
     if place := motor(found):
@@ -132,6 +141,8 @@ def front_view(found: LayoutDesign, window: Window, scale: float, measures: Meas
     for number, (y, z) in places.items():
         sheet.balloon(str(number), around(sheet.at(y, z), (26.0, 36.0, 50.0), 0.0))
     gear_names(sheet, found)
+    if over is not None:
+        over(sheet)
     caption = (
         f"Front view along the shafts, y to the right and z up, from the end x = "
         f"{measures.length(found.box.length_mm, 1)}: each gear is drawn over those behind it."
@@ -240,9 +251,17 @@ def _within(sheet: Sheet, spot: Place, one: Disc) -> bool:
 
 
 def side_view(
-    found: LayoutDesign, window: Window, scale: float, axis: str, measures: Measures
+    found: LayoutDesign,
+    window: Window,
+    scale: float,
+    axis: str,
+    measures: Measures,
+    over: Over | None = None,
 ) -> Drawing:
-    """Draw the view along x to the right and z (from the side) or y (from above) up."""
+    """Draw the view along x to the right and z (from the side) or y (from above) up.
+
+    over: what is drawn over it.
+    """
     sheet = Sheet(window, scale)
     box_lines(sheet, found, "x", axis)
     for it in keep_outs(found):
@@ -272,6 +291,8 @@ def side_view(
         sheet.balloon(str(shaft.shaft), spots)
     for gear in sorted(found.gears, key=lambda g: -g.tip_diameter_mm):
         side_name(sheet, gear, heights[gear.shaft], gear.name)
+    if over is not None:
+        over(sheet)
     if axis == "z":
         return sheet.drawing("side view", "Side view, x to the right and z up.")
     return sheet.drawing("top view", "Top view, x to the right and y up.")

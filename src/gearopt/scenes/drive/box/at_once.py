@@ -60,7 +60,8 @@ def _why(result: Result, apart: Result) -> dict[str, Any]:
     message = apart.message or "no gears within the limits can be laid out"
     ways = apart.report.get("ways_out") or {"conflict": [], "remedies": [], "message": ""}
     words = f"No gears within the limits can be laid out. Of the gears chosen first: {message}"
-    return {"message": words, "report": {"notes": [words], "ways_out": ways}}
+    beside = {key: apart.report[key] for key in ("nearest_layout",) if key in apart.report}
+    return {"message": words, "report": {"notes": [words], "ways_out": ways} | beside}
 
 
 def posed(scene: Scene, method: str, apart: Result) -> Model:

@@ -23,7 +23,7 @@ from gearopt.formulations.layout.layout_design import (
 )
 from gearopt.formulations.layout.layout_text import Placed, placed, read
 from gearopt.formulations.layout.slabs import Arrangement, arrangements
-from gearopt.optimise.clock import following, in_part
+from gearopt.optimise.clock import Clock, following, in_part, of_others
 from gearopt.optimise.comparing.compare import Model
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run
@@ -32,6 +32,8 @@ from gearopt.optimise.typed import untyped
 from gearopt.physics.gears import GearPair
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.reading.ask import Ask
+
+SECONDS = 2.0  # at most, for the layout that is drawn beside an impossible one
 
 
 def pairs_of(scene: Scene, sized: Result) -> tuple[GearPair, ...]:
@@ -135,14 +137,34 @@ def _impossible(
         objective = {"name": str(scene.layout and scene.layout.minimise), "value": None}
         result = replace(sized, method="data check", objective=objective, bound=None, gap=None)
         result = replace(result, status="infeasible", proof=proof, certificate={}, limits={})
-    found = remedies(scene, pairs_of(scene, sized), left)
-    return replace(
-        result,
-        design={},
-        parts=parts,
-        message=" ".join(notes),
-        report={"notes": notes, "ways_out": asdict(found)},
-    )
+    found, changed = remedies(scene, pairs_of(scene, sized), left)
+    report = {"notes": notes, "ways_out": asdict(found)}
+    if changed is not None and (drawn := _beside(scene, changed, sized, left)) is not None:
+        report["nearest_layout"] = drawn
+    return replace(result, design={}, parts=parts, message=" ".join(notes), report=report)
+
+
+def _beside(scene: Scene, changed: Scene, sized: Result, ask: Ask) -> dict[str, Any] | None:
+    """Return a layout of a changed file, and what of the file as it is differs, for a drawing.
+
+    None where none is found in SECONDS.
+    """
+    pairs = pairs_of(scene, sized)
+    asked, box = scene.gearbox(pairs), changed.gearbox(pairs)
+    watch = of_others(ask.watch)
+    budget = replace(ask.budget, seconds=Clock(ask.budget, watch).within(SECONDS))
+    result, outcome = run(layout.problem(box, None), None, budget, watch=watch)
+    if result.value is None or outcome.x is None:
+        return None
+    angles, order = read(arrangements(box), outcome.x)
+    found = placed(box, order, angles)
+    gone = [_keep_out(k, found) for k in asked.keep_outs if k not in box.keep_outs]
+    return {
+        "layout": untyped(described(box, order, angles, drive_design(sized.design))),
+        "keep_outs": [untyped(k) for k in gone],
+        "motor_mm": 2.0 * asked.motor if asked.motor != box.motor else None,
+        "largest_mm": [None if math.isinf(v) else v for v in asked.largest],
+    }
 
 
 def _reached(box: Gearbox, found: LayoutDesign) -> list[str]:

@@ -35,6 +35,7 @@ SAME = 1e-7  # relative, of boxes that are equal
 TABLES = ("layout", "place", "keep_out")
 
 Pair = tuple[Edit, Edit]
+Found = tuple[float, Remedy, Scene]  # how much is changed, and the file with it
 Asks = Callable[[float, float], bool | None]  # size and seconds: whether a layout is possible
 
 
@@ -103,20 +104,23 @@ class Questions:
         return None
 
 
-def remedies(scene: Scene, pairs: tuple[GearPair, ...], ask: Ask) -> Remedies:
-    """Return each change that alone lets these gears be laid out; else pairs of changes."""
+def remedies(scene: Scene, pairs: tuple[GearPair, ...], ask: Ask) -> tuple[Remedies, Scene | None]:
+    """Return each change that alone lets these gears be laid out; else pairs of changes.
+
+    Beside them the file with the first of them; None without any.
+    """
     clock = Clock(ask.budget, of_others(ask.watch))
     asked = Questions(pairs, clock)
     single, choices = edits(scene, pairs), switches(scene)
     chosen = [c for m in choices if (c := _chosen(scene, m, asked)) is not None]
     moved = [r for m in single if (r := _moved(scene, m, asked)) is not None]
-    found = [r for _, r in sorted(moved, key=_size)] + chosen
+    found = sorted(moved, key=_size) + chosen
     message = ""
     if found and asked.open:
         message = f"it is not known whether a change of {', '.join(asked.open)} alone does"
     elif not found:
         both = _pairs(scene, single + choices[::-1], asked)  # of two tables the last goes first
-        found = [r for _, r in sorted(both, key=_size)]
+        found = sorted(both, key=_size)
         if asked.open and not found:
             message = "no remedy was found, and not every change could be decided"
         elif not found:
@@ -124,10 +128,11 @@ def remedies(scene: Scene, pairs: tuple[GearPair, ...], ask: Ask) -> Remedies:
             message = f"{none}: {', '.join(limits_of(single + choices))}"
     if clock.over:
         message = "the budget ended before all remedies were tried"
-    return Remedies((), tuple(found), message)
+    changed = found[0][2] if found else None
+    return Remedies((), tuple(remedy for _, remedy, _ in found), message), changed
 
 
-def _size(found: tuple[float, Remedy]) -> float:
+def _size(found: Found) -> float:
     return found[0]
 
 
@@ -154,7 +159,7 @@ def _halved(asks: Asks, high: float, steps: int) -> list[float]:
     return known
 
 
-def _moved(scene: Scene, edit: Edit, asked: Questions) -> tuple[float, Remedy] | None:
+def _moved(scene: Scene, edit: Edit, asked: Questions) -> Found | None:
     """Return the smallest known size of one edit and its remedy; None where none is known."""
     known = asked.smallest(
         lambda size: edit.put(scene, edit.searched(size)), edit.steps, edit.key()
@@ -168,7 +173,8 @@ def _moved(scene: Scene, edit: Edit, asked: Questions) -> tuple[float, Remedy] |
     less = asked.fits(edit.put(scene, edit.back(value)))
     verified = {"with": "feasible", "with_less": _word(less)}
     change = _change(scene, edit, value)
-    return edit.change(size), Remedy("least", edit.what, (change,), change.factor, None, verified)
+    remedy = Remedy("least", edit.what, (change,), change.factor, None, verified)
+    return edit.change(size), remedy, edit.put(scene, value)
 
 
 def _word(found: bool | None) -> str:
@@ -186,16 +192,17 @@ def _change(scene: Scene, edit: Edit, value: Any) -> Change:
     return Change(edit.key(), edit.was(scene), edit.write(value), factor)
 
 
-def _chosen(scene: Scene, edit: Edit, asked: Questions) -> Remedy | None:
+def _chosen(scene: Scene, edit: Edit, asked: Questions) -> Found | None:
     """Return a switch that suffices alone."""
     value = edit.searched(1.0)
     if not asked.smallest(lambda _: edit.put(scene, value), 0, edit.key()):
         return None
     change = _change(scene, edit, value)
-    return Remedy("choice", edit.what, (change,), 1.0, None, {"with": "feasible"})
+    remedy = Remedy("choice", edit.what, (change,), 1.0, None, {"with": "feasible"})
+    return edit.change(1.0), remedy, edit.put(scene, value)
 
 
-def _pairs(scene: Scene, single: tuple[Edit, ...], asked: Questions) -> list[tuple[float, Remedy]]:
+def _pairs(scene: Scene, single: tuple[Edit, ...], asked: Questions) -> list[Found]:
     """Return two changes that do together, each as small as the other allows."""
     rough: list[tuple[float, float, Pair]] = []
     for pair in combinations(single, 2):
@@ -224,9 +231,7 @@ def _same(one: Edit, other: Edit) -> bool:
     return one.path[:shared] == other.path[:shared]
 
 
-def _together(
-    scene: Scene, pair: Pair, size: float, asked: Questions
-) -> tuple[float, Remedy] | None:
+def _together(scene: Scene, pair: Pair, size: float, asked: Questions) -> Found | None:
     """Return the remedy of two moves of a common size: one made smaller, then the other."""
     sizes, values = [size, size], [m.searched(size) for m in pair]
     for k, edit in enumerate(pair):
@@ -254,7 +259,8 @@ def _together(
     changes = tuple(_change(scene, m, v) for m, v in zip(pair, values, strict=True))
     change = sum(m.change(s) for m, s in zip(pair, sizes, strict=True))
     what = " and ".join(m.what for m in pair)
-    return change, Remedy("pair", what, changes, math.inf, None, verified)
+    remedy = Remedy("pair", what, changes, math.inf, None, verified)
+    return change, remedy, _put(scene, pair, values)
 
 
 def _put(scene: Scene, pair: Pair, values: list[Any]) -> Scene:
