@@ -167,7 +167,7 @@ def test_a_shaft_through_a_wheel_is_told_with_cures_that_work():
 
 def test_a_search_and_the_ways_out_of_it_share_a_budget(monkeypatch):
     given = []
-    none = Remedies()
+    none = Remedies(), None
     monkeypatch.setattr(
         "gearopt.scenes.drive.box.remedies.remedies",
         lambda *asked: given.append(asked[-1].budget) or none,
