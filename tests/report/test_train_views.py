@@ -1,5 +1,6 @@
 """Gears without a layout, drawn with all shafts in one line: to scale, labels clear, told so."""
 
+import xml.etree.ElementTree as ET
 from dataclasses import replace
 from functools import cache
 
@@ -13,8 +14,9 @@ from gearopt.formulations.design import describe
 from gearopt.formulations.gear_train import FaceWidth, Stage, Train
 from gearopt.formulations.strength.k_factor import K_FACTOR
 from gearopt.optimise.typed import untyped
+from gearopt.report.measures import METRIC
 from gearopt.report.pages.result import page
-from gearopt.report.pages.train_views import PITCH, WIDE
+from gearopt.report.pages.train_views import BESIDE, PITCH, WIDE, beside
 
 TRAINS = {  # m_n, z1, z2, b of every stage
     "two stages": ((2.0, 21, 115, 27.805), (3.0, 23, 91, 57.1)),
@@ -174,3 +176,19 @@ def test_a_laid_out_or_missing_design_is_not_drawn_so():
     laid_out = cases.elevator().design
     html = page(replace(found, design=laid_out), "")
     assert len(drawings(html)) == 3 and "in one line" not in "".join(Reader(html).text)
+
+
+def test_several_trains_are_drawn_to_one_scale():
+    names = ("two stages", "one stage", "six stages", "one to one")
+    designs = {name: result(TRAINS[name]).design["stages"] for name in names}
+    drawn = beside(designs, METRIC)
+    assert [one.caption for one in drawn] == [f"{name.capitalize()}." for name in names]
+    assert max(one.width for one in drawn) == pytest.approx(BESIDE)
+    scales = []
+    for one, stages in zip(drawn, designs.values(), strict=True):
+        svg = ET.fromstring(one.svg)
+        scales.append(scale_of(stages, svg)[0])
+        tips = sorted(numbers(e, "r")[0] for e in marks(svg, "circle", "tip"))
+        meant = sorted(s[f"{m}_tip_diameter_mm"] / 2 for _, s, m in gears(stages))
+        assert np.allclose(tips, np.multiply(meant, scales[-1]), atol=0.01)
+    assert np.ptp(scales) < 1e-3 * max(scales)

@@ -73,8 +73,11 @@ def processes(result: Result, measures: Measures) -> Section | None:
     words = "The processes follow design rules, without a search; limits and bound are the same."
     table = Table("processes and optimum", heads, rows)
     shown: list[str | Table] = [table, *missing] if result.value is not None else []
+    names = ["optimum" if best.method == "exact" else best.method, *heads[2:]]
+    trains = {name: one.design["stages"] for name, one in zip(names, designs, strict=True)}
+    drawings = train_views.beside(trains, measures) if len(designs) > 1 else ()
     return Section(
-        "Processes and optimum", words=(words, *missing), tables=(table,), terminal=shown
+        "Processes and optimum", (), (words, *missing), drawings, tables=(table,), terminal=shown
     )
 
 

@@ -1,7 +1,7 @@
 """A train without a layout, drawn to scale with all its shafts in one line."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from itertools import pairwise
 from typing import Any
 
@@ -23,6 +23,7 @@ from gearopt.report.section import Section
 from gearopt.report.words import number
 
 WIDE = 640.0  # widest drawing [px], as those of a layout
+BESIDE = 430.0  # px of the longest of several trains: three stand beside each other
 EDGE = 20.0  # px kept free left and right of the front view
 PITCH = 76.0  # px from stage to stage along the shafts, at least: its face width and module fit
 GAP = 16.0  # px between the gears of two stages, at least
@@ -66,13 +67,36 @@ def section(result: Result, measures: Measures, hint: str = "") -> Section | Non
     return Section("Gears in one line", words=words, drawings=drawn)
 
 
+def beside(
+    designs: Mapping[str, Sequence[Mapping[str, Any]]], measures: Measures
+) -> tuple[Drawing, ...]:
+    """Draw trains along their shafts, all at one scale; designs: stages by what they are called."""
+    rows = {name: in_one_line(_picked(stages))[0] for name, stages in designs.items()}
+    ends = [_ends(found) for found in rows.values()]
+    scale = (BESIDE - 2.0 * EDGE) / max(right - left for left, right in ends)
+
+    def title(gear: GearDesign) -> str:
+        return meaning(gear, measures)
+
+    return tuple(
+        replace(along_shafts(found, scale, measures.length, title), caption=f"{name.capitalize()}.")
+        for name, found in rows.items()
+    )
+
+
+def _picked(stages: Sequence[Mapping[str, Any]]) -> Sequence[DrawnStage]:
+    """Return what is drawn of stages; KeyError where a size is not known."""
+    picked = [{f.name: stage[f.name] for f in fields(DrawnStage)} for stage in stages]
+    found: Sequence[DrawnStage] = typed(tuple[DrawnStage, ...], picked, "stages")
+    return found
+
+
 def views(stages: Sequence[Mapping[str, Any]], measures: Measures) -> tuple[Drawing, ...]:
     """Draw a train along its shafts and across them; nothing where a size is not known."""
     keys = [f.name for f in fields(DrawnStage)]
     if not stages or not all(key in stage for stage in stages for key in keys):
         return ()
-    picked = [{key: stage[key] for key in keys} for stage in stages]
-    found, scale = in_one_line(typed(tuple[DrawnStage, ...], picked, "stages"))
+    found, scale = in_one_line(_picked(stages))
     front = along_shafts(found, scale, measures.length, lambda gear: meaning(gear, measures))
     return front, _side(found, scale, measures)
 
