@@ -1,7 +1,8 @@
 """Write the generated pages and pictures of the docs: `python docs/generate.py`.
 
 In the page of a kind of problem file the example and the tables of keys are written. With --solve
-the problem files whose pictures are shown are solved again first. Tests hold every file to this.
+the problem files whose pictures are shown are solved again first, and the notebook is run. Tests
+hold every file to this.
 """
 
 import re
@@ -10,6 +11,7 @@ from pathlib import Path
 
 import commands
 import gallery
+import notebook
 import pictures
 import python_api
 
@@ -48,6 +50,8 @@ def main() -> None:
     if "--solve" in sys.argv:
         for name in pictures.PICTURES:
             (pictures.ROOM / f"{name}.json").write_text(pictures.solve(name), encoding="utf-8")
+        notebook.PAGE.write_text(notebook.solved(), encoding="utf-8")
+    (DOCS / "notebook.ipynb").write_text(notebook.ipynb(), encoding="utf-8")
     for name in pictures.PICTURES:
         (pictures.ROOM / f"{name}.svg").write_text(pictures.draw(name), encoding="utf-8")
     for name, page in PAGES.items():

@@ -21,6 +21,7 @@ from gearopt.report.section import Table
 from gearopt.report.words import (
     MODULE,
     amount,
+    edit,
     goal,
     leading,
     limit_words,
@@ -43,8 +44,10 @@ def lines(result: Result) -> str:
         gap = "" if result.gap is None else f", gap {100 * result.gap:.3g} %"
         rows.append(f"bound {amount(bound, unit)}{gap}")
     rows += _design(result)
-    if result.message and (result.status != "optimal" or leading(result)):
-        rows.append(result.message)
+    if result.status != "optimal" or leading(result):
+        rows += filter(None, [result.message or result.proof.get("sentence", "")])
+    for remedy in result.report.get("ways_out", {}).get("remedies", ())[:1]:
+        rows.append(f"possible with {' and '.join(map(edit, remedy['changes']))}")
     return "\n  ".join(
         row if len(row) <= 3 * LONGEST else f"{row[: 3 * LONGEST]}..." for row in rows
     )
@@ -105,7 +108,7 @@ def explained_lines(found: Explanation) -> str:
     if found.conflict:
         rows.append(f"in conflict: {', '.join(map(limit_words, found.conflict))}")
     for remedy in found.remedies[:MOST]:
-        rows.append(" and ".join(f"{c.key} = {c.write}" for c in remedy.changes[:3]))
+        rows.append(f"possible with {' and '.join(edit(asdict(c)) for c in remedy.changes)}")
     if found.binding:
         rows.append(f"limits reached: {', '.join(map(limit_words, found.binding))}")
     slopes = {i.key: i.sensitivity for i in found.influences if i.sensitivity is not None}
