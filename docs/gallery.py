@@ -10,7 +10,8 @@ from typing import Any
 
 from pictures import PICTURES, ROOM
 
-from gearopt.report.words import VERDICTS, number
+from gearopt.report.measures import METRIC
+from gearopt.report.words import VERDICTS
 
 PROBLEMS = Path(__file__).parents[1] / "problems"
 HEAD = """\
@@ -105,18 +106,18 @@ KINDS = {  # of a file: the page about it, and what is minimised
     "compound": ("compound.md", lambda file: "squared_error"),
     "servo": ("servo.md", lambda file: _of_servo(file)),
 }
-UNITS = {
-    "gear_volume": "mm³",
-    "box_volume": "mm³",
-    "volume": "mm³",
-    "area": "mm²",
+UNITS = {  # as keys of a result have them
+    "gear_volume": "mm3",
+    "box_volume": "mm3",
+    "volume": "mm3",
+    "area": "mm2",
     "squared_error": "",
-    "inertia": "kg m²",
+    "inertia": "kg_m2",
     "mass": "kg",
     "error": "deg",
-    "inverse_acceleration": "s²/rad",
+    "inverse_acceleration": "",
     "move_time": "s",
-    "rms_torque": "N m",
+    "rms_torque": "Nm",
     "cost": "",
 }
 
@@ -181,18 +182,19 @@ def _answer(file: Mapping[str, Any]) -> str:
     """The file's own [x-expected] in words."""
     expected = file["x-expected"]
     parts = [f"**{VERDICTS[expected['status']][0]}**"]
+    name, unit = objective(file)
     if "objective" in expected:
-        name, unit = objective(file)
         value = expected["objective"]
         if name == "inverse_acceleration":  # as reports tell it
-            name, unit, value = "acceleration", "rad/s²", 1.0 / value
-        parts.append(f"{name.replace('_', ' ')} {number(value)} {unit}".rstrip())
+            name, unit, value = "acceleration", "rad_per_s2", 1.0 / value
+        parts.append(f"{name.replace('_', ' ')} {METRIC.amount(value, unit)}")
     if "gap" in expected:
         parts.append(f"gap at most {100 * expected['gap']:g} %")
     if "sizing" in expected:
-        parts.append(f"with real-valued teeth and modules {number(expected['sizing'])}")
+        value = METRIC.amount(expected["sizing"], unit)
+        parts.append(f"with real-valued teeth and modules {value}")
     if expected["status"] == "feasible":
-        parts.append(f"lower bound {number(expected['bound'])}")
+        parts.append(f"lower bound {METRIC.amount(expected['bound'], unit, -1)}")
     if "least_factor" in expected:
         parts.append(f"limits must move by a factor of at least {expected['least_factor']:g}")
     return ", ".join(parts)

@@ -11,6 +11,7 @@ import gearopt
 from gearopt import api, cli
 from gearopt.formulations import sizing, teeth
 from gearopt.optimise.solve import back_ends
+from gearopt.report.measures import METRIC
 from gearopt.scenes.reading.load import kinds, read, scene_module
 from gearopt.scenes.reading.schema import reference
 from gearopt.units import UNITS
@@ -127,11 +128,11 @@ def test_the_walk_of_the_start_page(tmp_path):
         told.add(f"gearopt: {error.value}".replace(str(path), "my.toml"))
     assert told == set(re.findall(r"(?m)^gearopt: my.toml: .*$", page))
     path.write_text(stronger := right.replace('"7.5 kW"', '"11 kW"'), encoding="utf-8")
-    assert f"needs {gearopt.solve(path).value:,.1f} mm³" in page
+    assert f"needs {METRIC.amount(gearopt.solve(path).value, 'mm3')}" in page
     path.write_text(
         stronger + re.search(r"\[layout\]\n.*?(?=```)", page, re.S)[0], encoding="utf-8"
     )
-    assert f"has {gearopt.solve(path).value:,.0f} mm³" in page
+    assert f"has {METRIC.amount(gearopt.solve(path).value, 'mm3')}" in page
 
 
 def test_readme_shows_what_the_command_prints(here, monkeypatch):

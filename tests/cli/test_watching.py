@@ -18,7 +18,7 @@ from gearopt.optimise.result import Event
         (Event(1.0, 0, part="compiling: 3 of 18"), "compiling: 3 of 18"),
         (
             Event(1.0, 20, 25455260.4, 25000000.0, "layout", "box_volume", "mm3"),
-            "layout: best 25,455,260.4 mm³, bound 25,000,000.0 mm³, gap 1.8 %, 20 evaluations",
+            "layout: best 25.455 dm³, bound 25 dm³, gap 1.8 %, 20 evaluations",
         ),
         (
             Event(1.0, 20, 12.5, None, "teeth", "mass", "kg"),

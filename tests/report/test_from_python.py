@@ -59,8 +59,9 @@ def test_a_result_is_a_few_lines(result):
 def test_the_lines_of_a_drive(solved):
     """The teeth are those that brute force and the README have."""
     assert repr(solved("elevator")).splitlines()[:4] == [
-        "Two-stage elevator drive: gear volume 5,782,370.7 mm³, proven optimal",
-        "  bound 5,782,370.7 mm³, gap 0 %",
+        "Two-stage elevator drive: gear volume 5,782.4 cm³, proven optimal",
+        "  K-factor of stages 1 and 2 decides the gear volume; "
+        "the ratio tolerance is used to 63 %.",
         "  stage 1: m_n 2 mm, z 21/115",
         "  stage 2: m_n 3 mm, z 23/91",
     ]

@@ -12,9 +12,9 @@ import gearopt
 from gearopt.report.kinds.drive import processes
 from gearopt.report.measures import METRIC
 from gearopt.report.pages.result import page
+from gearopt.report.section import shown
 from gearopt.report.terminal import show
-from gearopt.report.words import number
-from gearopt.scenes.reading.load import read
+from gearopt.scenes.reading import load
 
 PROBLEMS = Path(__file__).parents[2] / "problems"
 
@@ -22,6 +22,10 @@ PROBLEMS = Path(__file__).parents[2] / "problems"
 @pytest.fixture(scope="module")
 def three():
     return gearopt.solve(PROBLEMS / "three_stage_processes.toml")
+
+
+def read(cell):
+    return shown(cell).text
 
 
 def side_by_side(result):
@@ -42,25 +46,28 @@ def printed(result, width=80):
 
 def test_every_design_is_a_column(three):
     heads, rows, missing = side_by_side(three)
-    cells = {row[0]: [number(v) for v in row[1:]] for row in rows}
+    cells = {row[0]: list(map(read, row[1:])) for row in rows}
     assert heads == ["", "exact", "process one", "process two"] and not missing
     assert cells["stage 1: m_n, z1/z2"] == ["1.5, 21/160", "1.5, 27/229", "1.25, 27/237"]
     assert cells["stage 3: a [mm]"] == ["220.68", "251.57", "236.12"]
-    assert cells["ratio error [%]"] == ["-0.86003", "0.33454", "-0.87772"]
-    assert cells["gear volume [mm³]"] == ["12,715,108.3", "20,369,036.4", "17,876,793.2"]
-    assert cells["above the bound [%]"] == ["0", "60.196", "40.595"]  # 20,369,036/12,715,108 ...
-    assert len(rows) == 3 * 4 + 4 and all(len(row) == len(heads) for row in rows)
+    assert cells["ratio error [%]"] == ["-0.860", "0.335", "-0.878"]
+    assert cells["gear volume [cm³]"] == ["12,715", "20,369", "17,877"]
+    assert cells["above the bound [%]"] == ["0", "60.2", "40.6"]  # 20,369/12,715 ...
+    assert len(rows) == 3 * 7 + 4 and all(len(row) == len(heads) for row in rows)
 
 
 def test_terminal_and_page_show_the_same_cells(three):
-    _, rows, _ = side_by_side(three)
+    table = processes(three, METRIC).tables[0]
+    heads, rows = table.shown
+    assert (heads, rows) == table.told and heads == ["", "process one", "process two"]
+    assert len(rows) == 3 * 4 + 4  # the optimum is in the tables of the design
     lines = [" ".join(line.split()) for line in printed(three).splitlines()]
     for row in rows:
-        assert " ".join(number(v) for v in row) in lines
+        assert " ".join(cell.text for cell in row) in lines
     html = page(three, "gearopt solve x.toml")
     text = [t.strip() for t in Reader(html).text if t.strip()]
     assert "Processes and optimum" in text
-    assert {number(cell) for row in rows for cell in row} <= set(text)
+    assert {cell.text for row in rows for cell in row} <= set(text)
 
 
 def test_without_processes_nothing_is_added():
@@ -85,15 +92,15 @@ def test_a_process_without_a_design_is_a_sentence(three):
     made = replace(none, design=two.design)
     heads, rows, missing = side_by_side(replace(three, parts=(three.parts[0], one, made)))
     assert heads[1:] == ["exact", "process one", "process two"]
-    assert rows[0][3] == "1.25, 27/237" and rows[-1][3] is None
+    assert rows[0][3] == "1.25, 27/237" and rows[-1][3].value is None
     assert missing == ["The design by process two: K-factor of stage 2 is violated by 0.03."]
 
 
 def test_another_objective_has_its_row():
     text = (PROBLEMS / "elevator_processes.toml").read_text(encoding="utf-8")
     aim = '[objective]\nminimise = "sum_of_centre_distances"\n'
-    result = gearopt.solve(read((text + aim).encode())[1])
-    cells = {row[0]: row[1:] for row in side_by_side(result)[1]}
+    result = gearopt.solve(load.read((text + aim).encode())[1])
+    cells = {row[0]: [getattr(c, "value", c) for c in row[1:]] for row in side_by_side(result)[1]}
     centres = [
         sum(s["centre_distance_mm"] for s in one.design["stages"])
         for one in (result, *result.parts[1:])
@@ -101,13 +108,13 @@ def test_another_objective_has_its_row():
     assert cells["sum of centre distances [mm]"] == pytest.approx(centres, rel=1e-12)
     over = [100 * (c / result.bound - 1) for c in centres]
     assert cells["above the bound [%]"] == pytest.approx(over, abs=1e-9)
-    assert min(over[1:]) > 1 and "gear volume [mm³]" in cells
+    assert min(over[1:]) > 1 and "gear volume [cm³]" in cells
 
 
 def test_gears_of_a_layout_stand_beside_the_processes():
     text = (PROBLEMS / "elevator_processes.toml").read_text(encoding="utf-8")
-    result = gearopt.solve(read((text + '[layout]\nshaft_stress = "40 MPa"\n').encode())[1])
+    result = gearopt.solve(load.read((text + '[layout]\nshaft_stress = "40 MPa"\n').encode())[1])
     heads, rows, _ = side_by_side(result)
     assert heads[1:] == ["exact", "process one", "process two"]
-    over = next(row[1:] for row in rows if row[0] == "above the bound [%]")
+    over = [c.value for c in next(row[1:] for row in rows if row[0] == "above the bound [%]")]
     assert over == pytest.approx([0.0, 50.549, 42.759], abs=1e-3)

@@ -229,7 +229,7 @@ def test_shafts_in_the_way_change_the_train_and_are_named():
     largest = left[clear].max()
     assert only.changes[0].write == f'"{largest:.5g} mm"' and largest == pytest.approx(88.9)
     assert only.verified == {"with": "optimal", "with_less": "infeasible"} and only.bound is None
-    _, _, (sure,) = remedy_words(explained.to_dict())  # whole teeth alone are excluded
+    _, sure = remedy_words(explained.to_dict())  # whole teeth alone are excluded
     assert "none with 0.1 %" in sure and "real-valued" not in sure
 
 

@@ -5,19 +5,24 @@ from typing import Any
 
 from gearopt.optimise.result import Result
 from gearopt.optimise.scale import gap
+from gearopt.report.deciding import lead
 from gearopt.report.kinds import kind_of
-from gearopt.report.measures import METRIC, Measures
+from gearopt.report.measures import METRIC, Measures, gap_percent
 from gearopt.report.section import Cell, Figure, Section, Table, Tile, axis, layout, percent
 from gearopt.report.words import (
+    EXACT,
     RULED,
     amount,
     certainty,
     goal,
+    grouped,
     leading,
     limit_rows,
     limit_words,
     number,
     objective,
+    sentence,
+    series_of,
     verdict,
 )
 
@@ -26,7 +31,11 @@ PARTS = {  # of a result: what their names mean
     "apart": "gears first, then the box",
     "real-valued": "real-valued teeth",
 }
-ROWS = ("status", "objective", "value", "bound", "gap, %", "method", "proof", "seconds")
+ROWS = (
+    *("status", "objective", "value", "bound", "gap, %"),
+    *("method", "proof", "evaluations", "seconds"),
+)
+WAYS = {"below": -1, "above": 1}  # in which a bound is rounded, by the side without designs
 SHOWN = ("method", "arithmetic", "sentence")  # of a proof, elsewhere
 CHECKS = {  # of a certificate: what each number is
     "feasibility": "largest violation of a limit",
@@ -38,23 +47,54 @@ SENTENCES = ("title", "source")  # keys of a file that are sentences
 EARLIEST = 1e-4  # s; the logarithmic axis begins here at the earliest
 
 
-def summary(result: Result, measures: Measures) -> Section:
-    """Return key figures, and in words what is certain."""
-    words = proof(result, measures)
+def decided(result: Result) -> str:
+    """Return the first sentence: what decides the answer."""
+    return sentence(lead(result, kind_of(result).decides(result)))
+
+
+def opening(result: Result) -> str:
+    """Return the status and what decides the answer, in one sentence."""
+    return sentence(f"{verdict(result)[0]}: {lead(result, kind_of(result).decides(result))}")
+
+
+def summary(result: Result, measures: Measures) -> Section | None:
+    """Return key figures and what must be known beside; None where there is nothing of both.
+
+    On the terminal, which has no key figures, it ends with what is proven.
+    """
     tiles = [*_tiles(result, measures), *kind_of(result).tiles(result, measures)]
-    return Section("Result", tiles, [*leading(result), *words], terminal=("\n".join(words),))
+    words = [*leading(result), *_notes(result)]
+    certain = [*bound_words(result, measures), *proof(result, measures), _effort(result)]
+    ends = "\n".join([*certain[:-1], *_notes(result), certain[-1]])
+    shown = tiles or words
+    return Section("Result" if shown else "", tiles, words, terminal=(ends,))
 
 
 def _tiles(result: Result, measures: Measures) -> list[Tile]:
-    """Return objective and bound as key figures."""
-    name, unit, value, bound, _ = goal(result)
+    """Return the objective as a key figure, and its bound where that is another number."""
+    name, unit, value, bound, side = goal(result)
     tiles = []
     if value is not None:
         tiles.append(Tile(name, amount(value, unit, measures), certainty(result)[0]))
-    if bound is not None:
+    if bound is not None and (value is None or (result.gap or 0.0) > EXACT):
         title = f"proven bound{scope(result)}"
-        tiles.append(Tile(title, amount(bound, unit, measures), gap_words(result)))
+        text = measures.amount(bound, unit, WAYS[side])
+        tiles.append(Tile(title, text, gap_words(result)))
     return tiles
+
+
+def _notes(result: Result) -> list[str]:
+    """Return what is reported of this answer, and the message of a run."""
+    if result.status == "infeasible":
+        return []
+    lines = list(result.report.get("notes", []))
+    if result.message and not leading(result):
+        lines.append(sentence(result.message))
+    return lines
+
+
+def _effort(result: Result) -> str:
+    return f"{result.method}, {result.evaluations:,} evaluations, {result.seconds:.3g} s."
 
 
 def limits(result: Result, measures: Measures) -> Section | None:
@@ -64,30 +104,25 @@ def limits(result: Result, measures: Measures) -> Section | None:
     stages, rows = limit_rows(result.limits)
     heads = ["limit used, %", *(f"stage {k}" for k in range(1, stages + 1)), kind_of(result).whole]
     cells = [[words, *map(percent, values)] for words, values in rows]
-    table = Table("limits", heads, cells)
+    elsewhere = [limit_words(name) for name in kind_of(result).elsewhere(result)]
+    table = Table("limits", heads, cells, csv_only=elsewhere)
     words = ("At 100 % a limit is reached.",)
     return Section("Limits", words=words, tables=(table,), half=True, terminal=(table,))
 
 
 def proof(result: Result, measures: Measures = METRIC) -> list[str]:
-    """Say what is certain: the bound, its proof, the values of other methods, notes."""
-    lines = bound_words(result, measures) + _method(result)
-    lines += kind_of(result).beside(result, measures)
-    lines += result.report.get("notes", []) if result.status != "infeasible" else []
-    if result.message and result.status != "infeasible" and not leading(result):
-        lines.append(result.message[0].upper() + result.message[1:].rstrip(".") + ".")
-    lines.append(f"{result.method}, {result.evaluations:,} evaluations, {result.seconds:.3g} s.")
-    return lines
+    """Say how it is proven, and what other methods give."""
+    return [*_method(result), *kind_of(result).beside(result, measures)]
 
 
 def bound_words(result: Result, measures: Measures) -> list[str]:
-    """Say the bound in a sentence; nothing without one."""
-    name, unit, _, bound, side = goal(result)
-    if bound is None or result.gap is None:
+    """Say the bound in a sentence; nothing without one, or where it is the value."""
+    name, unit, value, bound, side = goal(result)
+    if bound is None or result.gap is None or (value is not None and result.gap <= EXACT):
         return []
     known = "Lower" if side == "below" else "Upper"
-    words = f"{known} bound of the {name}{scope(result)}: {amount(bound, unit, measures)}"
-    return [f"{words}; {gap_words(result)}."]
+    text = measures.amount(bound, unit, WAYS[side])
+    return [f"{known} bound of the {name}{scope(result)}: {text}; {gap_words(result)}."]
 
 
 def gap_words(result: Result) -> str:
@@ -95,7 +130,7 @@ def gap_words(result: Result) -> str:
     if result.gap is None:
         return ""
     of = " of the objective's scale (its value is zero)" if "scale" in result.certificate else ""
-    return f"gap {100 * result.gap:.3g} %{of}"
+    return f"gap {gap_percent(result.gap)}{of}"
 
 
 def scope(result: Result) -> str:
@@ -108,12 +143,11 @@ def _method(result: Result) -> list[str]:
     known, proof = result.bound is not None or result.status == "infeasible", result.proof
     lines = [proof["sentence"]] if known and "sentence" in proof else []
     if result.status == "infeasible" and proof.get("conflict") and "least_violation" in proof:
-        names = ", ".join(limit_words(n) for n in proof["conflict"])
         minimum = 100 * proof["least_violation"]
         violation = f"{minimum:.2g}" if minimum < 100 else f"{minimum:,.0f}"
         lines.append(
             "Proof: whatever the design, one of these limits is violated by at least "
-            f"{violation} %: {names}."
+            f"{violation} %: {series_of(grouped(proof['conflict']))}."
         )
     return lines
 
@@ -141,52 +175,61 @@ def meaning(result: Result) -> str:
 
 
 def proven(result: Result, measures: Measures) -> Section:
-    """Say what the status means, with the numbers of the proof of every part."""
+    """Say what the status means and how it is proven, with the numbers of every part."""
     parts = (result, *result.parts)
     heads = ("", *(PARTS.get(part.name, part.name.replace("_", " ")) for part in parts))
-    rows = [list(row) for row in zip(*(_column(part, measures) for part in parts), strict=True)]
-    tables = [Table("proof", heads, [[n, *row] for n, row in zip(ROWS, rows, strict=True)])]
+    columns = [_column(part, measures) for part in parts]
+    rows = [[n, *row] for n, *row in zip(ROWS, *columns, strict=True) if any(c != "" for c in row)]
+    told = ("value", "bound")  # key figures, or in the design
+    tables = [Table("proof", heads, rows, csv_only=told)]
     if checks := _checks(result):
-        tables.append(Table("checks", ("", ""), checks))
-    words = [meaning(result)]
+        tables.append(checks)
+    words = [meaning(result), *proof(result, measures)]
     if arithmetic := result.proof.get("arithmetic"):
         words.append(f"Arithmetic: {arithmetic}.")
     return Section("What is proven, and how", words=words, tables=tables, half=len(parts) < 3)
 
 
 def _column(part: Result, measures: Measures) -> list[Any]:
-    """Return what ROWS names, of a result or one of its parts."""
+    """Return what ROWS names, of a result or one of its parts; "" for what it has not."""
     name, unit = objective(part)
+    bound = WAYS["below"]  # of the objective itself, which is minimised
+    amounts = (_amount(v, unit, measures, way) for v, way in ((part.value, 0), (part.bound, bound)))
     return [
-        verdict(part)[0],
+        certainty(part)[0],
         f"{name} [{measures.unit(unit)}]" if unit else name,
-        _amount(part.value, unit, measures),
-        _amount(part.bound, unit, measures),
-        "" if part.gap is None else Cell(100.0 * part.gap, f"{100.0 * part.gap:.3g}"),
+        *amounts,
+        "" if part.gap is None else Cell(100.0 * part.gap, gap_percent(part.gap).rstrip(" %")),
         part.method,
         "by rules" if part.name in RULED else str(part.proof.get("method", "")),
+        part.evaluations,
         Cell(part.seconds, f"{part.seconds:.3g}"),
     ]
 
 
-def _amount(value: float | None, unit: str, measures: Measures) -> Cell:
-    """Return a value in the unit that is shown, which its text names."""
+def _amount(value: float | None, unit: str, measures: Measures, way: int) -> Cell | str:
+    """Return a value in the unit that its column names."""
     if value is None:
-        return Cell(None, "")
-    return Cell(measures.of(value, unit), amount(value, unit, measures))
+        return ""
+    return Cell(measures.of(value, unit), measures.number(value, unit, way))
 
 
-def _checks(result: Result) -> list[tuple[str, Any]]:
-    """Return the certificate, then what else the proof says."""
+def _checks(result: Result) -> Table | None:
+    """Return the certificate, then what else the proof says; its sentence is not said again."""
     rows: list[tuple[str, Any]] = [
         (f"{name}: {CHECKS.get(name, '')}", Cell(value, "" if value is None else f"{value:.2g}"))
         for name, value in result.certificate.items()
     ]
+    spoken = []
     for key, value in result.proof.items():
         if key not in SHOWN and not isinstance(value, Mapping | list):
-            shown = Cell(value, f"{value:.3g}") if isinstance(value, float) else value
-            rows.append((key.replace("_", " "), shown))
-    return rows
+            text = f"{value:.3g}" if isinstance(value, float) else number(value)
+            rows.append((key.replace("_", " "), Cell(value, text)))
+            if text in str(result.proof.get("sentence", "")):
+                spoken.append(rows[-1][0])
+    if not rows:
+        return None
+    return Table("checks", ("", ""), rows, csv_only=spoken, folded=len(spoken) == len(rows))
 
 
 def assumptions(result: Result, measures: Measures) -> Section | None:
@@ -206,7 +249,7 @@ def asked(result: Result, measures: Measures) -> Section | None:
     tables = [_asked_table(key, value) for key, value in asked.items() if _is_table(value)]
     if single:
         tables.insert(0, _asked_table("", single))
-    return Section("What was asked", words=words, tables=tables)
+    return Section("What was asked", words=words, tables=tables, folded=True)
 
 
 def _is_table(value: Any) -> bool:
@@ -228,7 +271,8 @@ def _asked_table(key: str, value: Any) -> Table:
 def _ends(value: Any) -> Any:
     """Return a value as the file writes it."""
     if isinstance(value, list):
-        return Cell(value, f"[{', '.join(str(v) for v in value)}]")
+        text = f"[{', '.join(str(v) for v in value)}]"
+        return Cell(text, text)
     number = isinstance(value, int | float) and not isinstance(value, bool)
     return Cell(value, f"{value:.15g}") if number else value
 

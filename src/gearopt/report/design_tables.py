@@ -1,12 +1,13 @@
 """The numbers of a design as tables: its stages, and whatever lists and groups it holds."""
 
 from collections.abc import Collection, Mapping, Sequence
+from itertools import zip_longest
 from typing import Any
 
 from gearopt.formulations.strength import laws
 from gearopt.optimise.result import Result
 from gearopt.report.measures import INCH, Measures, diametral_pitch
-from gearopt.report.section import Cell, Section, Table, Tile, percent
+from gearopt.report.section import Cell, Section, Table, Tile, cell, percent
 from gearopt.report.words import EXACT, MODULE, heading, number, objective, parted
 
 STAGE_ROWS = {  # what a key is called, and its unit (modules are metric in any system)
@@ -27,17 +28,22 @@ STAGE_ROWS = {  # what a key is called, and its unit (modules are metric in any 
     "pinion_torque_Nm": ("torque T1", "Nm"),
     "pitch_line_velocity_m_per_s": ("pitch-line velocity v", "m_per_s"),
     **{limit.design_key: (limit.label, limit.unit) for law in laws() for limit in law.limits},
-    "gear_volume_mm3": ("volume", "cm3"),
+    "gear_volume_mm3": ("volume", "mm3"),
     "pinion_mass_kg": ("pinion mass", "kg"),
     "wheel_mass_kg": ("wheel mass", "kg"),
     "mass_kg": ("mass of the pair", "kg"),
 }
+VOLUME = "gear_volume_mm3"
+SHARE = "share of the volume, %"
 PAGE_ONLY = {
     *("pinion_tip_diameter_mm", "wheel_tip_diameter_mm"),
     *("pinion_root_diameter_mm", "wheel_root_diameter_mm"),
     *("transverse_contact_ratio", "overlap_ratio", "pitch_line_velocity_m_per_s"),
     *("pinion_mass_kg", "wheel_mass_kg", "mass_kg"),
 }
+TEETH = "m_n, z1/z2"  # of every stage, for reading
+TRAIN = ("m_n", "z1", "z2", "a")  # of one stage, each in a column of the CSV
+LISTED = {"between": ("from", "to")}  # lists of as many values: what each is called
 
 
 def tables(result: Result, measures: Measures) -> Section | None:
@@ -46,14 +52,11 @@ def tables(result: Result, measures: Measures) -> Section | None:
     if not design:
         return None
     stages = design.pop("stages", [])
-    tables = [stage_table(stages, measures)] if stages else []
-    found = tables_of("", design, measures)
-    short = [*tables, *(table for table in found if table.name == "totals")]
-    return Section(
-        "Design",
-        tables=[*tables, *_shares(stages, measures), *found],
-        terminal=short if result.value is not None or result.status == "evaluated" else (),
-    )
+    found = [stage_table(stages, measures)] if stages else []
+    found += tables_of("", design, measures)
+    short = [table for table in found if table.name in ("stages", "totals")]
+    known = result.value is not None or result.status == "evaluated"
+    return Section("Design", tables=found, terminal=short if known else ())
 
 
 def stage_table(
@@ -68,35 +71,21 @@ def stage_table(
         if not all(key in s for s in stages):
             continue
         label = f"{words} [{measures.unit(unit)}]" if unit else words
-        found.append([label, *(measures.of(s[key], unit) for s in stages)])
+        found.append([label, *(cell(s[key], unit, measures) for s in stages)])
         if key in page_only:
             hidden.append(label)
+        if key == VOLUME and len(stages) > 1:
+            whole = sum(s[key] for s in stages)
+            found.append([SHARE, *(percent(s[key] / whole) for s in stages)])
         if key == MODULE and measures is INCH:
             pitches = [diametral_pitch(s[key]) for s in stages]
             found.append(["diametral pitch P_nd [1/in]", *pitches])
-    return Table("stages", heads, found, page_only=hidden, across=True)
+    return Table("stages", heads, found, page_only=[*hidden, SHARE], across=True)
 
 
 def ratio_tile(ratio: float, error_percent: float) -> Tile:
     """Return the total ratio and its error from the one that is asked for."""
-    return Tile("total ratio", number(ratio), f"error {error_percent:+.3f} %")
-
-
-def _shares(stages: Sequence[Mapping[str, Any]], measures: Measures) -> list[Table]:
-    """Return volume and mass per stage; nothing to share out for one stage."""
-    if len(stages) < 2 or not all("gear_volume_mm3" in s for s in stages):
-        return []
-    volumes = [s["gear_volume_mm3"] for s in stages]
-    heads = ["", f"volume [{measures.unit('cm3')}]", "share, %"]
-    columns = [
-        [measures.of(v, "cm3") for v in volumes],
-        [percent(v / sum(volumes)) for v in volumes],
-    ]
-    if all("mass_kg" in s for s in stages):
-        heads.append(f"mass [{measures.unit('kg')}]")
-        columns.append([measures.of(s["mass_kg"], "kg") for s in stages])
-    rows = [[f"stage {k}", *cells] for k, cells in enumerate(zip(*columns, strict=True), 1)]
-    return [Table("volume and mass", heads, rows)]
+    return Tile("total ratio", number(ratio), f"error {error_percent:+.3g} %")
 
 
 def trains(result: Result, measures: Measures) -> Section | None:
@@ -105,15 +94,29 @@ def trains(result: Result, measures: Measures) -> Section | None:
     best = next((one for one in (result, *gears) if len(one.report.get("trains", ())) > 1), None)
     if best is None:
         return None
-    found, (name, unit), length = best.report["trains"], objective(best), measures.unit("mm")
-    minimum = found[0]["objective"]
-    goal, centres = (f"{name}\n{measures.unit(unit)}", f"centre distances\n{length}")
+    found, (name, unit) = best.report["trains"], objective(best)
+    minimum, stages = found[0]["objective"], len(found[0]["stages"])
+    length = measures.unit("mm")
+    goal, centres = (
+        f"{name}\n{measures.unit(unit)}".rstrip(),
+        f"centre distances\n{length}",
+    )
     names = {head.replace("\n", " "): head for head in (goal, centres)}
+    single = [f"{words} {k}" for k in range(1, stages + 1) for words in TRAIN]
+    single = [f"{h} [{length}]" if h[0] == "a" else h for h in single]
     rows = [_train_row(k, train, minimum, unit, measures) for k, train in enumerate(found, 1)]
     first, last = names
-    heads = ("", first, "above the best, %", "ratio", "m_n, z1/z2", last)
+    heads = ("", first, "above the best, %", "ratio", TEETH, last, *single)
     table = Table(
-        "best trains", heads, rows, page_only=("above the best, %",), short=names, left=6, wrap=6
+        "best trains",
+        heads,
+        rows,
+        page_only=("above the best, %",),
+        csv_only=single,
+        read_only=(TEETH, last),
+        short=names,
+        left=6,
+        wrap=6,
     )
     words = (
         "Distinct choices of teeth, each with its best modules and widths. The list is complete: "
@@ -130,19 +133,28 @@ def _train_row(
 ) -> list[Any]:
     stages, extra = train["stages"], 100.0 * (train["objective"] / minimum - 1.0)
     teeth = "  ".join(f"{s[MODULE]:g}, {s['pinion_teeth']}/{s['wheel_teeth']}" for s in stages)
-    distances = [s["centre_distance_mm"] for s in stages]
+    sizes = [cell(s["centre_distance_mm"], "mm", measures) for s in stages]
+    single = [
+        value
+        for s, size in zip(stages, sizes, strict=True)
+        for value in (s[MODULE], s["pinion_teeth"], s["wheel_teeth"], size)
+    ]
     return [
         rank,
-        measures.of(train["objective"], unit),
+        cell(train["objective"], unit, measures),
         Cell(extra, f"{extra:.2f}"),
-        Cell(train["ratio"], f"{train['ratio']:.4f}"),
+        train["ratio"],
         teeth,
-        Cell([measures.of(a, "mm") for a in distances], "  ".join(map(measures.length, distances))),
+        Cell(None, "  ".join(size.text for size in sizes)),
+        *single,
     ]
 
 
 def tables_of(name: str, group: Mapping[str, Any], measures: Measures) -> list[Table]:
-    """Return a table of the single values, then one for every list of records and every group."""
+    """Return a table of the single values, then one for every list of records and every group.
+
+    Several values of a key stand side by side.
+    """
     found, single = [], []
     for key, value in group.items():
         if isinstance(value, Mapping):
@@ -150,24 +162,37 @@ def tables_of(name: str, group: Mapping[str, Any], measures: Measures) -> list[T
         elif _records(value):
             found.append(records(heading(key, measures), value, measures))
         elif value is not None and value != []:
-            single.append((heading(key, measures), _converted(key, value, measures)))
-    return ([Table(name or "totals", ("", ""), single, name)] if single else []) + found
+            single.append([heading(key, measures), *_cells(key, value, measures)])
+    if not single:
+        return found
+    rows = list(zip(*zip_longest(*single, fillvalue=""), strict=True))
+    heads = [""] * len(rows[0])
+    return [Table(name or "totals", heads, rows, name), *found]
 
 
 def _records(value: Any) -> bool:
     return isinstance(value, Sequence) and bool(value) and isinstance(value[0], Mapping)
 
 
-def records(name: str, rows: Sequence[Mapping[str, Any]], measures: Measures) -> Table:
+def records(
+    name: str,
+    rows: Sequence[Mapping[str, Any]],
+    measures: Measures,
+) -> Table:
     """Return a row for every record, a column for every key."""
     keys = list(dict.fromkeys(key for row in rows for key in row))
-    cells = [[_converted(key, row.get(key), measures) for key in keys] for row in rows]
-    return Table(name, [heading(key, measures) for key in keys], cells, name)
+    heads = [h for key in keys for h in LISTED.get(key, (heading(key, measures),))]
+    cells = [[c for key in keys for c in _cells(key, row.get(key), measures)] for row in rows]
+    return Table(name, heads, cells, name)
 
 
-def _converted(key: str, value: Any, measures: Measures) -> Any:
-    """Return a value of a design in the unit that is shown."""
+def _cells(key: str, value: Any, measures: Measures) -> list[Cell]:
+    """Return a value of a design in the unit that is shown, or each of several."""
     unit = parted(key, measures)[1]
-    if unit and isinstance(value, list):
-        return [measures.of(v, unit) for v in value]
-    return measures.of(value, unit) if unit and value is not None else value
+    values = value if isinstance(value, list | tuple) else [value]
+    return [cell(_joined(v), unit, measures) for v in values]
+
+
+def _joined(value: Any) -> Any:
+    """Return several numbers as words: those of stages in one plane."""
+    return " and ".join(map(str, value)) if isinstance(value, list | tuple) else value

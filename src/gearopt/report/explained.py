@@ -5,9 +5,9 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from gearopt.optimise.result import Result
-from gearopt.report.measures import Measures
+from gearopt.report.measures import DIGITS, Measures, rounded
 from gearopt.report.section import Cell, Section, Table
-from gearopt.report.words import edit, limit_words, objective
+from gearopt.report.words import edit, grouped, objective, sentence, series_of
 
 ALIKE = 0.02  # of sensitivities from both sides shown as one; relative to those above 1
 FLAT = 0.5e-4  # sensitivity that would be shown as 0.0000
@@ -119,37 +119,25 @@ def _sides(resolved: Sequence[float | None]) -> str:
 
 
 def remedies(result: Result, measures: Measures) -> Section | None:
-    """Say why nothing meets the limits, and what to write instead; None elsewhere."""
+    """Say what to write instead of an impossible request; None elsewhere."""
     found: Mapping[str, Any] = result.report.get("ways_out") or {}
     if not found:
         return None
-    why, rows, tried = remedy_words(found)
-    if not found["conflict"] and result.message not in ("", found["message"]):
-        why.insert(0, result.message)
+    rows, sure = remedy_words(found)
+    if not rows and not found["conflict"] and found["message"] in result.message:
+        return None  # the first sentence says it
     tables = [Table("remedies", REMEDY_HEADS, rows, words=True, left=3)] if rows else []
-    terminal: list[str | Table] = [*why, *tables, *tried]
-    return Section("Remedies", words=[*why, *tried], tables=tables, terminal=terminal)
+    return Section("Remedies", words=[sure], tables=tables, terminal=[*tables, sure])
 
 
-def remedy_words(
-    found: Mapping[str, Any],
-) -> tuple[list[str], list[tuple[str, ...]], list[str]]:
-    """Return why it is impossible, rows of edits below REMEDY_HEADS, and how sure these are.
+def remedy_words(found: Mapping[str, Any]) -> tuple[list[list[Any]], str]:
+    """Return rows of edits below REMEDY_HEADS, and how sure these are.
 
     found: conflict, remedies and message, as `explain` and `solve` have them.
     """
-    why = []
-    conflict, ways, missing = found["conflict"], found["remedies"], found["message"]
-    if conflict:
-        names = ", ".join(limit_words(n) for n in conflict)
-        why.append(
-            f"These limits are in conflict, and each is needed for it: {names}."
-            if len(conflict) > 1
-            else f"This limit cannot be met, even if all others are dropped: {names}."
-        )
-    missing = f"{missing[0].upper()}{missing[1:]}." if missing else ""
+    conflict, ways, missing = found["conflict"], found["remedies"], sentence(found["message"])
     if not ways:
-        return [*why, missing or "No remedy was found by moving limits."], [], []
+        return [], missing or "No remedy was found by moving limits."
     rows = [row for way in ways for row in _rows(way)]
     words = f"Each was verified: a design exists with it{_less(ways)}."
     if any(way["verified"].get("others") == "need more" for way in ways):
@@ -164,7 +152,7 @@ def remedy_words(
         )
     if conflict and any(way["bound"] is not None for way in ways):
         words += " Proven minimum: no smaller factor suffices, even with real-valued sizes."
-    return why, rows, [f"{words} {missing}".rstrip()]
+    return rows, f"{words} {missing}".rstrip()
 
 
 def _less(ways: Sequence[Mapping[str, Any]]) -> str:
@@ -187,28 +175,35 @@ def _doubtful(way: Mapping[str, Any]) -> bool:
     return bool(way["verified"].get("with_less") == "undecided")
 
 
-def _rows(way: Mapping[str, Any]) -> list[tuple[str, ...]]:
-    """Return a row for every edit of a remedy."""
+def _rows(way: Mapping[str, Any]) -> list[list[Any]]:
+    """Return a row for every edit of a remedy; a factor that all of them have stands once."""
     alike = ", all alike" if way["kind"] == "even" else ", one stage"
-    label = KINDS.get(way["kind"], f"{', '.join(map(limit_words, way['what'].split(', ')))}{alike}")
+    label = KINDS.get(way["kind"], f"{series_of(grouped(way['what'].split(', ')))}{alike}")
     if way["kind"] == "least" and _doubtful(way):
         label = "smallest found"
     product = "product " if len(way["changes"]) > 1 and way["kind"] == "least" else ""
-    rows: list[tuple[str, ...]] = []
+    rows: list[list[Any]] = []
     for k, change in enumerate(way["changes"]):
-        proven = k == 0 and way["kind"] != "choice" and way["bound"] is not None
+        same = k > 0 and change["factor"] == way["changes"][0]["factor"]
         rows.append(
-            (
+            [
                 label if k == 0 else "  and",
                 edit(change),
                 change["was"].strip('"'),
-                _factor(change["factor"]),
-                f"{product}{way['bound']:.4f}" if proven else "",
-            )
+                "" if same else _factor(change["factor"]),
+                _proven(way["bound"], product) if k == 0 and way["kind"] != "choice" else "",
+            ]
         )
     return rows
 
 
-def _factor(factor: float | None) -> str:
-    """Return a factor in words; nothing where a number is shifted, or a switch is set."""
-    return "" if factor is None or factor == 1.0 or math.isinf(factor) else f"{factor:.4f}"
+def _factor(factor: float | None) -> Cell | str:
+    """Return a factor; nothing where a number is shifted, or a switch is set."""
+    if factor is None or factor == 1.0 or math.isinf(factor):
+        return ""
+    return Cell(factor, rounded(factor, DIGITS))
+
+
+def _proven(bound: float | None, product: str) -> Cell | str:
+    """Return the smallest factor that may suffice, rounded down so that it stays true."""
+    return "" if bound is None else Cell(bound, f"{product}{rounded(bound, DIGITS, way=-1)}")

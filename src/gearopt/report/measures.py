@@ -4,8 +4,10 @@ A result holds mm, MPa, N m and kg, named in the suffix of every key; nothing is
 is shown. Factors are those of `gearopt.units`, exact by definition of the inch and the pound.
 """
 
+import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Decimal
 
 from gearopt.units import UNITS
 
@@ -14,17 +16,58 @@ _PSI = float(UNITS["stress"]["psi"][0])  # MPa
 _POUND = float(UNITS["density"]["lb/in^3"][0]) * 1000.0 * _INCH**3  # kg
 _POUND_FORCE = _PSI * _INCH**2  # N
 
+DIGITS = 5  # significant digits of a number for reading
+FEWEST = {"percent": 3, "mm": 3}  # the same of parts of a whole; of a length, at least
+HUNDREDTHS = 2  # decimals of a length in mm
+NOTHING = 5e-7  # mm; a smaller length is rounding
+SMALL, LARGE = 1e-5, 1e15  # numbers below and from there are written with a power of ten
+EXACT = 1e-12  # relative; a number so near to a shorter one is that one
+NO_GAP = 1e-8  # a gap below it is rounding of the bound
+_ROUNDING = {-1: ROUND_FLOOR, 0: ROUND_HALF_EVEN, 1: ROUND_CEILING}
+
+
+def rounded(value: float, digits: int, decimals: int | None = None, way: int = 0) -> str:
+    """Return a number with so many significant digits, integer digits never cut.
+
+    decimals: at least so many of them. Without it a number that has fewer digits, as one of a
+    catalogue, is written with these.
+    way: -1 rounds down, 1 up, 0 to the nearest.
+    """
+    if value == 0.0 or not math.isfinite(value):
+        return f"{value:.{decimals or 0}f}".replace("-0", "0")
+    exponent = math.floor(math.log10(abs(value)))
+    places = max(digits - 1 - exponent, decimals or 0)
+    if not SMALL <= abs(value) < LARGE:
+        step = Decimal(1).scaleb(exponent - digits + 1)
+        mantissa = Decimal(value).quantize(step, _ROUNDING[way]).scaleb(-exponent)
+        return f"{f'{mantissa:f}'.rstrip('0').rstrip('.')}e{exponent}"
+    step = Decimal(1).scaleb(-max(places, 0))
+    text = f"{Decimal(value).quantize(step, _ROUNDING[way]):,}"
+    exact = math.isclose(float(text.replace(",", "")), value, rel_tol=EXACT)
+    short = decimals is None and exact and "." in text
+    return text.rstrip("0").rstrip(".") if short else text
+
+
+def gap_percent(gap: float) -> str:
+    """Return a gap in per cent, never less than it is."""
+    if 0.0 < gap < NO_GAP:
+        return f"below {100.0 * NO_GAP:.6f} %"
+    text = rounded(100.0 * gap, 2, way=1)
+    return f"{text.rstrip('0').rstrip('.') if '.' in text else text} %"
+
 
 @dataclass(frozen=True)
 class Measures:
     """How quantities are shown: of every suffix the unit's sign and the factor to it.
 
-    digits: how many more decimals a length has than in mm.
+    digits: how many more decimals a length has than in mm. scaled: of some suffixes, units
+    of sentences and key figures: the end of values it is for, sign and factor.
     """
 
     name: str
     units: Mapping[str, tuple[str, float]]
     digits: int = 0
+    scaled: Mapping[str, tuple[tuple[float, str, float], ...]] = field(default_factory=dict)
 
     def unit(self, suffix: str) -> str:
         """Return the sign of a unit, `mm³` for mm3; an unknown suffix as it is."""
@@ -44,6 +87,31 @@ class Measures:
         """Return a length [mm] with so many decimals, for drawings."""
         return f"{self.of(value, 'mm'):.{digits + self.digits}f}".replace("-0.00", "0.00")
 
+    def number(self, value: float, suffix: str = "", way: int = 0) -> str:
+        """Return a value of the result in the unit that is shown, for reading.
+
+        Lengths to a hundredth of a millimetre, parts in per cent to three digits, all else to
+        five; a number that has fewer is shown exactly. way: as for `rounded`.
+        """
+        if suffix != "mm":
+            return rounded(self.of(value, suffix), FEWEST.get(suffix, DIGITS), way=way)
+        size = 0.0 if abs(value) < NOTHING else self.of(value, suffix)
+        return rounded(size, FEWEST["mm"], HUNDREDTHS + self.digits, way)
+
+    def amount(self, value: float, suffix: str, way: int = 0) -> str:
+        """Return a value with its unit for sentences and key figures.
+
+        Volumes and areas have several units there; a length of fewer decimals is shown exactly.
+        way: as for `rounded`, for a bound that must stay true.
+        """
+        for end, sign, factor in self.scaled.get(suffix, ()):
+            if abs(value) < end:
+                return f"{rounded(value * factor, DIGITS, way=way)} {sign}"
+        text = self.number(value, suffix, way)
+        if "." in text and math.isclose(float(text.replace(",", "")), self.of(value, suffix)):
+            text = text.rstrip("0").rstrip(".")
+        return f"{text} {self.unit(suffix)}".rstrip()
+
 
 _SAME = {
     **{"percent": ("%", 1.0), "deg": ("°", 1.0), "ms": ("ms", 1.0), "Hz": ("Hz", 1.0)},
@@ -54,9 +122,8 @@ METRIC = Measures(
     _SAME
     | {
         "mm": ("mm", 1.0),
-        "mm2": ("mm²", 1.0),
-        "mm3": ("mm³", 1.0),
-        "cm3": ("cm³", 1e-3),  # of mm3
+        "mm2": ("cm²", 1e-2),
+        "mm3": ("cm³", 1e-3),
         "MPa": ("MPa", 1.0),
         "Nm": ("N m", 1.0),
         "m_per_s": ("m/s", 1.0),
@@ -66,6 +133,15 @@ METRIC = Measures(
         "Nm_per_rad": ("N m/rad", 1.0),
         "deg_per_mm": ("°/mm", 1.0),
     },
+    scaled={
+        "mm2": ((1e2, "mm²", 1.0), (1e6, "cm²", 1e-2), (math.inf, "m²", 1e-6)),
+        "mm3": (
+            (1e3, "mm³", 1.0),
+            (1e7, "cm³", 1e-3),
+            (1e10, "dm³", 1e-6),
+            (math.inf, "m³", 1e-9),
+        ),
+    },
 )
 INCH = Measures(
     "inch",
@@ -74,7 +150,6 @@ INCH = Measures(
         "mm": ("in", 1.0 / _INCH),
         "mm2": ("in²", 1.0 / _INCH**2),
         "mm3": ("in³", 1.0 / _INCH**3),
-        "cm3": ("in³", 1.0 / _INCH**3),  # of mm3
         "MPa": ("psi", 1.0 / _PSI),
         "m_per_s": ("ft/min", 60_000.0 / (12.0 * _INCH)),
         "Nm": ("lbf in", 1000.0 / (_POUND_FORCE * _INCH)),

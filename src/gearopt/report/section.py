@@ -13,6 +13,7 @@ from urllib.parse import quote
 
 from rich.text import Text
 
+from gearopt.report.measures import Measures
 from gearopt.report.pages.sheet import Drawing
 from gearopt.report.words import number, share
 
@@ -97,10 +98,11 @@ class Table:
     """Rows of values or cells below heads, what it is called and what its CSV file is called.
 
     words: sentences, not numbers, that may break over lines. folded: a plot shows its values, so
-    that the page holds its CSV only. page_only, terminal_only: heads of the columns and labels (the
-    first cells) of the rows that only one of them shows. short: other heads on the terminal. left,
-    wrap: how many columns stand on the left there, and how many may break over lines. across: what
-    it lists (stages, parts) stands side by side, each in a column.
+    that the page holds its CSV only. page_only, terminal_only, csv_only: heads of the columns and
+    labels (the first cells) of the rows that only one of them shows; the CSV holds those of the
+    page, too, but for read_only. short: other heads on the terminal. left, wrap: how many columns
+    stand on the left there, and how many may break over lines. across: what it lists, as
+    stages, stands side by side, each in a column.
     """
 
     name: str
@@ -111,6 +113,8 @@ class Table:
     folded: bool = False
     page_only: Collection[str] = ()
     terminal_only: Collection[str] = ()
+    csv_only: Collection[str] = ()
+    read_only: Collection[str] = ()
     short: Mapping[str, str] = field(default_factory=dict)
     left: int = 1
     wrap: int = 1
@@ -135,20 +139,20 @@ class Table:
     @property
     def shown(self) -> tuple[list[str], list[list[Cell]]]:
         """Return heads and cells as the page shows them."""
-        heads, rows = self.without(self.terminal_only)
+        heads, rows = self.without({*self.terminal_only, *self.csv_only})
         return heads, [[shown(value) for value in row] for row in rows]
 
     @property
     def told(self) -> tuple[list[str], list[list[Cell]]]:
         """Return heads and cells as the terminal shows them."""
-        heads, rows = self.without(self.page_only)
+        heads, rows = self.without({*self.page_only, *self.csv_only})
         names = [self.short.get(head, head) for head in heads]
         return names, [[shown(value) for value in row] for row in rows]
 
     @property
     def values(self) -> tuple[list[str], list[list[Any]]]:
         """Return heads and plain values in full precision, as the CSV has them."""
-        heads, rows = self.without(self.terminal_only)
+        heads, rows = self.without({*self.terminal_only, *self.read_only})
         return heads, [[v.value if isinstance(v, Cell) else v for v in row] for row in rows]
 
     @property
@@ -199,7 +203,8 @@ class Tile:
 class Section:
     """A heading, then key figures, sentences, drawings at one scale, plots, tables.
 
-    half: two such sections stand side by side where the page is wide. terminal: the sentences and
+    half: two such sections stand side by side where the page is wide. folded: the page shows its
+    heading, and the rest when asked. terminal: the sentences and
     tables that the terminal shows of it, in its order.
     """
 
@@ -210,6 +215,7 @@ class Section:
     figures: Sequence[Figure] = ()
     tables: Sequence[Table] = ()
     half: bool = False
+    folded: bool = False
     terminal: Sequence[str | Text | Table] = ()
 
     @property
@@ -229,18 +235,23 @@ class Section:
 
 
 def shown(value: Any) -> Cell:
-    """Return a value as it is read; the items of a list with commas between."""
+    """Return a value as it is read."""
     if isinstance(value, Cell):
         return value
     if value is None:
         return Cell(value, "")
     if isinstance(value, bool):
         return Cell(value, "yes" if value else "no")
-    if isinstance(value, list | tuple):
-        return Cell(value, ", ".join(shown(v).text for v in value))
-    if isinstance(value, float):
-        return Cell(value, number(round(value, 6) + 0.0))  # no minus before a zero
     return Cell(value, number(value))
+
+
+def cell(value: Any, suffix: str, measures: Measures) -> Cell:
+    """Return a value of a result in the unit that is shown, with the digits that are read."""
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return shown(value)
+    if not suffix:
+        return shown(value)
+    return Cell(measures.of(value, suffix), measures.number(value, suffix))
 
 
 def percent(used: float | None) -> Cell:
@@ -251,9 +262,9 @@ def percent(used: float | None) -> Cell:
 
 
 def _plain(value: Any) -> Any:
-    """Return a value as CSV holds it."""
+    """Return a value as CSV holds it; TypeError for several in one cell."""
     if isinstance(value, Cell):
         return _plain(value.value)
     if isinstance(value, list | tuple):
-        return "; ".join(str(_plain(v)) for v in value)
+        raise TypeError(f"a cell holds one value, not {value}")
     return "" if value is None else value

@@ -14,11 +14,13 @@ from gearopt.optimise.comparing.comparison import Comparison
 from gearopt.optimise.explaining.explanation import Explanation
 from gearopt.optimise.result import Result
 from gearopt.report import comparison_words
+from gearopt.report.answer import WAYS, decided
 from gearopt.report.explained import of_influences
 from gearopt.report.kinds import kind_of
-from gearopt.report.measures import METRIC, SYSTEMS, Measures
+from gearopt.report.measures import METRIC, SYSTEMS, Measures, gap_percent
 from gearopt.report.section import Table
 from gearopt.report.words import (
+    EXACT,
     MODULE,
     amount,
     edit,
@@ -38,11 +40,11 @@ Block = str | Text | Table
 
 def lines(result: Result) -> str:
     """Return status, value, bound and gap, and what is essential of the design, in a few lines."""
-    _, unit, value, bound, _ = goal(result)
-    rows = [_head(result)]
-    if bound is not None:
-        gap = "" if result.gap is None else f", gap {100 * result.gap:.3g} %"
-        rows.append(f"bound {amount(bound, unit)}{gap}")
+    _, unit, value, bound, side = goal(result)
+    rows = [_head(result), decided(result)]
+    if bound is not None and (value is None or (result.gap or 0.0) > EXACT):
+        gap = "" if result.gap is None else f", gap {gap_percent(result.gap)}"
+        rows.append(f"bound {METRIC.amount(bound, unit, WAYS[side])}{gap}")
     rows += _design(result)
     if result.status != "optimal" or leading(result):
         rows += filter(None, [result.message or result.proof.get("sentence", "")])
@@ -56,7 +58,8 @@ def lines(result: Result) -> str:
 def _head(result: Result) -> str:
     """Return title, value and what is certain of it."""
     name, unit, value, _, _ = goal(result)
-    found = f"{name} {amount(value, unit)}, " if value is not None else ""
+    known = value is not None and "achieved" not in result.report
+    found = f"{name} {amount(value, unit)}, " if known else ""
     return f"{title(result)}: {found}{verdict(result)[0]}"
 
 
@@ -133,7 +136,7 @@ def fragment(result: Result) -> str:
     result = Result.from_dict(result.to_dict())
     made = (make(result, METRIC) for make in kind_of(result).terminal)
     blocks = [block for section in made if section is not None for block in section.terminal]
-    return _html(_head(result), [*leading(result), *blocks])
+    return _html(_head(result), [decided(result), *leading(result), *blocks])
 
 
 def explained_fragment(found: Explanation) -> str:

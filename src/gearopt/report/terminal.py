@@ -1,7 +1,6 @@
 """The terminal: sections of a result, explanations and comparisons, in words and tables."""
 
 from collections.abc import Sequence
-from typing import Any
 
 from rich.console import Console
 from rich.markup import escape
@@ -12,6 +11,7 @@ from gearopt.optimise.comparing.comparison import Comparison, Group
 from gearopt.optimise.explaining.explanation import Explanation
 from gearopt.optimise.result import Result
 from gearopt.report import comparison_words as words
+from gearopt.report.answer import decided
 from gearopt.report.explained import of_influences
 from gearopt.report.kinds import kind_of
 from gearopt.report.measures import METRIC, Measures
@@ -23,7 +23,6 @@ from gearopt.report.words import (
     goal,
     leading,
     limit_words,
-    number,
     title,
     verdict,
 )
@@ -31,32 +30,32 @@ from gearopt.report.words import (
 
 def grid(table: Table) -> Grid:
     """Return a section's table for the terminal; without heads a list of names and values."""
-    heads, rows = table.without(table.page_only)
+    heads, rows = table.told
     if any(heads):
-        names = (escape(table.short.get(head, head)) for head in heads)
-        shown = Grid(*names, box=None, header_style="bold", pad_edge=False)
+        shown = Grid(*map(escape, heads), box=None, header_style="bold", pad_edge=False)
         for k, column in enumerate(shown.columns):
             column.justify = "left" if k < table.left else "right"
             column.no_wrap = k >= table.wrap
     else:
         shown = Grid.grid(padding=(0, 2))
     for row in rows:
-        shown.add_row(*map(_cell, row))
+        shown.add_row(*map(_text, row))
     return shown
 
 
-def _cell(value: Any) -> Text:
-    if isinstance(value, Cell):
-        full = value.share is not None and value.share > 1.0 - REACHED
-        text = value.text if value.short is None else value.short
-        return Text(text, style="bold" if full else "")
-    return Text("" if value is None else number(value))
+def _text(cell: Cell) -> Text:
+    full = cell.share is not None and cell.share > 1.0 - REACHED
+    return Text(cell.text if cell.short is None else cell.short, style="bold" if full else "")
 
 
 def show(result: Result, console: Console, measures: Measures = METRIC) -> None:
     """Print a result."""
     words, colour = verdict(result)
-    console.print(Text.assemble((title(result), "bold"), ": ", (words, f"bold {colour}")))
+    name, unit, value, _, _ = goal(result)
+    known = "" if value is None or "achieved" in result.report else amount(value, unit, measures)
+    reached = f"{name} {known}, " if known else ""
+    console.print(Text.assemble((title(result), "bold"), f": {reached}", (words, f"bold {colour}")))
+    console.print(Text(decided(result)))
     _print(leading(result), console)
     for make in kind_of(result).terminal:
         if (section := make(result, measures)) is not None:

@@ -2,12 +2,12 @@
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from gearopt.formulations.strength import laws
 from gearopt.optimise.result import Result
-from gearopt.report.measures import METRIC, Measures
+from gearopt.report.measures import DIGITS, METRIC, Measures, rounded
 
 REACHED = 1e-6  # nearer to a limit than that, it is reached
 MODULE = "normal_module_mm"
@@ -29,9 +29,48 @@ INVERSE = {"inverse acceleration": ("acceleration", "rad/s²")}  # name and unit
 def limit_words(name: str) -> str:
     """Return `k_factor[2]` as "K-factor of stage 2"."""
     stem, _, index = name.rstrip("]").partition("[")
+    return f"{_stem_words(stem)} of stage {index}" if index else _stem_words(stem)
+
+
+def _stem_words(stem: str) -> str:
+    """Return `k_factor` as "K-factor", `ratio_low` as "minimum ratio"."""
     known = {limit.name: limit.label for law in laws() for limit in law.limits}
-    words = known.get(stem, stem.replace("_", " "))
-    return f"{words} of stage {index}" if index else words
+    for end, words in (("_low", "minimum"), ("_high", "maximum")):
+        if stem.endswith(end):
+            return f"{words} {stem.removesuffix(end).replace('_', ' ')}"
+    return known.get(stem, stem.replace("_", " "))
+
+
+def grouped(names: Iterable[str]) -> list[str]:
+    """Return limits in words, those of several stages as one: "K-factor of stages 1 and 2"."""
+    stages: dict[str, list[str]] = {}
+    for name in sorted(names):
+        stem, _, index = name.rstrip("]").partition("[")
+        stages.setdefault(stem, []).append(index)
+    return [
+        limit_words(stem)
+        if not all(own)
+        else f"{limit_words(stem)} of stage{'s' if len(own) > 1 else ''} {_run(own)}"
+        for stem, own in stages.items()
+    ]
+
+
+def _run(indices: Sequence[str]) -> str:
+    """Return indices as words, those without a break as "1 to 4"."""
+    numbers = sorted(map(int, indices))
+    whole = len(numbers) > 2 and numbers[-1] - numbers[0] == len(numbers) - 1
+    return f"{numbers[0]} to {numbers[-1]}" if whole else series_of(list(map(str, numbers)))
+
+
+def series_of(words: Sequence[str]) -> str:
+    """Return several words as a list: "a, b and c"."""
+    *first, last = words
+    return f"{', '.join(first)} and {last}" if first else last
+
+
+def sentence(words: str) -> str:
+    """Return words with a capital and a full stop."""
+    return f"{words[0].upper()}{words[1:].rstrip('.')}." if words else ""
 
 
 def edit(change: Mapping[str, Any]) -> str:
@@ -58,7 +97,7 @@ def parted(key: str, measures: Measures = METRIC) -> tuple[str, str]:
 
 def amount(value: Any, unit: str, measures: Measures = METRIC) -> str:
     """Return a number of a result with its unit, for reading."""
-    return f"{number(measures.of(value, unit))} {measures.unit(unit)}".rstrip()
+    return measures.amount(value, unit)
 
 
 def share(used: float) -> str:
@@ -69,18 +108,10 @@ def share(used: float) -> str:
 
 
 def number(value: Any) -> str:
-    """Return a number for reading: thousands apart, six digits, tenths of large ones."""
-    if isinstance(value, list):
-        return "  ".join(number(v) for v in value)
+    """Return a number without a unit for reading: whole ones in full, others to five digits."""
     if isinstance(value, bool) or not isinstance(value, int | float):
         return str(value)
-    if isinstance(value, int):
-        return f"{value:,}"
-    if abs(value) >= 1e5:
-        return f"{value:,.0f}" if abs(value) >= 1e8 else f"{value:,.1f}"
-    if abs(value) >= 100:
-        return f"{value:,.2f}"
-    return f"{value:.5g}" if abs(value) >= 1e-6 or value == 0.0 else f"{value:.8g}"
+    return f"{value:,}" if isinstance(value, int) else rounded(value, DIGITS)
 
 
 def certainty(result: Result) -> tuple[str, str]:

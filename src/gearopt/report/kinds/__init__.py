@@ -4,7 +4,7 @@ Each module here is a kind, of the name that its scene has, and holds a `Kind` c
 is registered: a kind without a module, and a problem of a user's own, are shown as `generic` says.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from pkgutil import iter_modules
@@ -21,19 +21,26 @@ def _nothing(result: Result, measures: Measures) -> Sequence[Any]:
     return ()
 
 
+def _silent(result: Result) -> str:
+    return ""
+
+
 @dataclass(frozen=True)
 class Kind:
     """Sections in the order of the page, and those that the terminal shows in its own order.
 
     tiles: key figures beside objective and bound. beside: sentences after the proof about what
-    else was solved. drawn: whether there is a drawing of its designs. whole: what a limit of no
-    single stage belongs to, the head of that column.
+    else was solved. elsewhere: limits that another table shows, in their own unit. decides:
+    what decides a design, "" where its limits say it. drawn: whether there is a drawing of its
+    designs. whole: what a limit of no single stage belongs to, the head of that column.
     """
 
     sections: tuple[MakeSection, ...]
     terminal: tuple[MakeSection, ...]
     tiles: Callable[[Result, Measures], Sequence[Tile]] = _nothing
     beside: Callable[[Result, Measures], Sequence[str]] = _nothing
+    elsewhere: Callable[[Result], Collection[str]] = _silent
+    decides: Callable[[Result], str] = _silent
     drawn: bool = True
     whole: str = "design"
 

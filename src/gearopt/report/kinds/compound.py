@@ -25,7 +25,17 @@ def tiles(result: Result, measures: Measures) -> list[Tile]:
     if not result.design:
         return []
     design = _design(result)
-    return [ratio_tile(design.ratio, design.ratio_error_percent)]
+    tile = ratio_tile(design.ratio, design.ratio_error_percent)
+    return [replace(tile, remark="") if "achieved" in result.report else tile]
+
+
+def decides(result: Result) -> str:
+    """Return what stands between the train and its ratio."""
+    if not result.design:
+        return ""
+    exact = _design(result).ratio_error_percent == 0.0
+    words = "make the ratio exactly" if exact else "are all that keeps the train from the ratio"
+    return f"whole numbers of teeth {words}"
 
 
 def gears(result: Result, measures: Measures) -> Section | None:
@@ -94,4 +104,5 @@ KIND = replace(
     generic.KIND,
     sections=(*generic.FIRST, reach, gears, *generic.KIND.sections[len(generic.FIRST) + 1 :]),
     tiles=tiles,
+    decides=decides,
 )

@@ -1,44 +1,113 @@
 """Drives of cylindrical gears, laid out or not: drawings, stages, processes, next best trains."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from gearopt.formulations.design import drive_design
+from gearopt.formulations.layout.layout_design import LayoutDesign
 from gearopt.optimise.result import Result
 from gearopt.report.answer import limits
-from gearopt.report.design_tables import ratio_tile, tables, trains
+from gearopt.report.deciding import of_limits
+from gearopt.report.design_tables import TEETH, ratio_tile, tables, trains
 from gearopt.report.kinds import Kind
 from gearopt.report.kinds.generic import ASKED, FIRST, LAST, TOLD
-from gearopt.report.measures import Measures
-from gearopt.report.pages import impossible_layout, layout_solid, layout_views, train_views
+from gearopt.report.measures import Measures, gap_percent, rounded
+from gearopt.report.pages import (
+    box_front,
+    impossible_layout,
+    layout_solid,
+    layout_views,
+    train_views,
+)
 from gearopt.report.pages.bodies import layout_of
-from gearopt.report.section import Cell, Figure, Section, Table, Tile, axis, layout
+from gearopt.report.section import Cell, Section, Table, Tile, cell
 from gearopt.report.words import (
+    MODULE,
+    REACHED,
     RULED,
     VERDICTS,
     amount,
+    grouped,
     heading,
     limit_words,
     number,
     objective,
     parted,
+    series_of,
 )
 
-NARROWEST = 3  # gaps that are named
-OF_STAGE = {"ratio": "ratio u", "centre_distance_mm": "a", "face_width_mm": "b"}
+DRAWN = ("layout", "bearings", "clearances", "motor")  # tables of a layout
+WALL = 1e-6  # of the box: a gear so near to a wall's clearance is at it
+STAGED = {  # tables of a layout: keys that the table of stages or the box shows
+    "shafts": ("from_mm", "to_mm"),
+    "gears": (
+        *("stage", "member", "teeth", "normal_module_mm", "reference_diameter_mm"),
+        *("tip_diameter_mm", "root_diameter_mm", "helix_angle_deg"),
+    ),
+    "gaps": ("axes_mm",),
+    "obstacles": ("from_mm", "to_mm"),
+}
+SINGLE = {MODULE: "m_n", "pinion_teeth": "z1", "wheel_teeth": "z2"}  # in the CSV, for TEETH
+OF_STAGE = SINGLE | {"ratio": "ratio u", "centre_distance_mm": "a", "face_width_mm": "b"}
 OF_DRIVE = ("ratio", "ratio_error_percent", "gear_volume_mm3")
-LINES = 6  # of equal area
+
+
+def numbers(result: Result, measures: Measures) -> Section | None:
+    """Return all tables of the design; of a layout what its stages and drawings do not show."""
+    if (found := tables(result, measures)) is None:
+        return None
+    shown = [
+        replace(t, csv_only=[heading(key, measures) for key in STAGED.get(t.name, ())])
+        if t.name in STAGED
+        else replace(t, folded=t.name in DRAWN)
+        for t in found.tables
+    ]
+    return replace(found, tables=shown)
+
+
+def clearances(result: Result) -> set[str]:
+    """Return the limits of a layout that its table of gaps shows in mm."""
+    gaps = result.design.get("layout", {}).get("gaps", ())
+    return {" to ".join(gap["between"]).replace(" ", "_") for gap in gaps}
+
+
+def decides(result: Result) -> str:
+    """Return what decides the box of a layout; nothing without one, where limits say it."""
+    if result.value is None or (found := layout_of(result)) is None:
+        return ""
+    gaps = clearances(result)
+    full = [n for n in gaps if result.limits.get(n, 0.0) >= 1.0 - REACHED]
+    walls, apart = _at_walls(found), any(part.name == "gears" for part in result.parts)
+    first = "the gears, chosen first, decide the box" if apart else "gears and box are one choice"
+    words = [f"{first}: {series_of(walls)} stand at its walls" if walls else first]
+    words += [f"{series_of(list(map(limit_words, full)))} at the minimum clearance"] if full else []
+    return "; ".join(words if apart else [*words, of_limits(result, gaps)])
+
+
+def _at_walls(found: LayoutDesign) -> list[str]:
+    """Return the gears that reach to the clearance of a wall, seen along the shafts."""
+    places, box, wall = {s.shaft: s for s in found.shafts}, found.box, found.clearances.wall_mm
+    near = WALL * max(box.sides)
+    sides = {"y": (box.left_mm, box.width_mm), "z": (box.bottom_mm, box.height_mm)}
+    names = []
+    for gear in found.gears:
+        for axis_, (start, size) in sides.items():
+            at, r = getattr(places[gear.shaft], f"{axis_}_mm"), 0.5 * gear.tip_diameter_mm
+            free = min(at - r - start, start + size - at - r) - wall
+            if free < near and gear.name not in names:
+                names.append(gear.name)
+    return names
 
 
 def places(result: Result, measures: Measures) -> Section | None:
-    """Return box, shafts and narrowest gaps; None where there is no layout."""
+    """Return box, shafts and gaps; None where there is no layout."""
     if result.value is None or (found := layout_of(result)) is None:
         return None
-    box, unit = found.box, measures.unit("mm")
-    sides = " x ".join(map(measures.length, box.sides))
-    volume = amount(box.volume_mm3, "mm3", measures)
+    unit = measures.unit("mm")
+    sides = " x ".join(map(measures.length, found.box.sides))
     rows = [
-        [f"{words} [{unit}]", *(Cell(v, measures.length(v)) for v in values)]
+        [f"{words} [{unit}]", *(cell(v, "mm", measures) for v in values)]
         for words, values in (
             ("y, right of the input", [s.y_mm for s in found.shafts]),
             ("z, above the input", [s.z_mm for s in found.shafts]),
@@ -47,14 +116,13 @@ def places(result: Result, measures: Measures) -> Section | None:
     ]
     table = Table("places of shafts", ["", *(f"shaft {s.shaft}" for s in found.shafts)], rows)
     slabs = ", ".join(" and ".join(map(str, slab)) for slab in found.slabs)
+    heads = ("gap", unit, f"minimum, {unit}")
     gaps = [
-        f"Clearance of {' to '.join(gap.between)}: {measures.length(gap.gap_mm)} {unit} "
-        f"(minimum {measures.of(gap.needed_mm, 'mm'):.4g} {unit})"
-        for gap in found.gaps[:NARROWEST]
+        [" to ".join(g.between), *(cell(v, "mm", measures) for v in (g.gap_mm, g.needed_mm))]
+        for g in found.gaps
     ]
-    last = "\n".join([f"Stages along the shafts: {slabs}.", *gaps])
-    size = f"box {sides} {unit} (width, height, length), {volume}"
-    return Section("Layout", terminal=(size, table, last))
+    size = f"Box {sides} {unit} (width, height, length). Stages along the shafts: {slabs}."
+    return Section("Layout", terminal=(size, table, Table("gaps", heads, gaps)))
 
 
 def processes(result: Result, measures: Measures) -> Section | None:
@@ -71,7 +139,14 @@ def processes(result: Result, measures: Measures) -> Section | None:
     heads = ["", best.method, *(part.name for part in designs[1:])]
     rows = [*_stages(designs, measures), *_totals(designs, best.bound, measures)]
     words = "The processes follow design rules, without a search; limits and bound are the same."
-    table = Table("processes and optimum", heads, rows)
+    stages = len(best.design["stages"])
+    table = Table(
+        "processes and optimum",
+        heads,
+        rows,
+        csv_only=[*_labels(stages, *SINGLE.values()), best.method],
+        read_only=_labels(stages, TEETH),
+    )
     shown: list[str | Table] = [table, *missing] if result.value is not None else []
     names = ["optimum" if best.method == "exact" else best.method, *heads[2:]]
     trains = {name: one.design["stages"] for name, one in zip(names, designs, strict=True)}
@@ -86,29 +161,34 @@ def _stages(designs: Sequence[Result], measures: Measures) -> list[list[Any]]:
     for k in range(len(designs[0].design["stages"])):
         stages = [one.design["stages"][k] for one in designs]
         teeth = [
-            f"{number(s['normal_module_mm'])}, {s['pinion_teeth']}/{s['wheel_teeth']}"
+            f"{number(s[MODULE])}, {number(s['pinion_teeth'])}/{number(s['wheel_teeth'])}"
             for s in stages
         ]
-        rows.append([f"stage {k + 1}: m_n, z1/z2", *teeth])
+        rows.append([f"stage {k + 1}: {TEETH}", *teeth])
         for key, label in OF_STAGE.items():
             unit = parted(key)[1]
             sign = f" [{measures.unit(unit)}]" if unit else ""
-            values = (measures.of(s[key], unit) for s in stages)
+            values = (cell(s[key], unit, measures) for s in stages)
             rows.append([f"stage {k + 1}: {label}{sign}", *values])
     return rows
+
+
+def _labels(stages: int, *labels: str) -> list[str]:
+    return [f"stage {k}: {label}" for k in range(1, stages + 1) for label in labels]
 
 
 def _totals(designs: Sequence[Result], bound: float | None, measures: Measures) -> list[list[Any]]:
     rows: list[list[Any]] = []
     for key in OF_DRIVE:
-        values = (measures.of(one.design[key], parted(key)[1]) for one in designs)
+        values = (cell(one.design[key], parted(key)[1], measures) for one in designs)
         rows.append([heading(key, measures), *values])
     name, unit = objective(designs[0])
     if name != "gear volume":
-        shown = (None if one.value is None else measures.of(one.value, unit) for one in designs)
+        shown = (cell(one.value, unit, measures) for one in designs)
         rows.append([f"{name} [{measures.unit(unit)}]", *shown])
     if bound is not None and bound > 0.0:
-        rows.append(["above the bound [%]", *(_over(one, bound) for one in designs)])
+        over = (cell(_over(one, bound), "percent", measures) for one in designs)
+        rows.append(["above the bound [%]", *over])
     return rows
 
 
@@ -132,15 +212,27 @@ def counts(result: Result, measures: Measures) -> Section | None:
         return None
     rows, (name, unit) = found.report["counts"], objective(found)
     sign = f"\n[{measures.unit(unit)}]" if unit else ""
+    most = max(len(row["ratios"]) for row in rows)
+    single = [f"{words} {k}" for k in range(1, most + 1) for words in ("ratio", *SINGLE.values())]
     long = (f"{name}{sign}", "above the best,\n%", f"bound{sign}", "gap,\n%")
     names = {head.replace("\n", " "): head for head in long}
-    heads = ("stages", "status", *names, "ratio of each stage", "m_n, z1/z2", "seconds")
-    cells = [[*_count(row, found, measures), *_each(row)] for row in rows]
-    hidden = (*[*names][2:], "m_n, z1/z2")
-    table = Table("numbers of stages", heads, cells, page_only=hidden, short=names, left=2, wrap=9)
+    read = ("ratio of each stage", TEETH)
+    heads = ("stages", "status", *names, *read, "seconds", *single)
+    cells = [[*_count(row, found, measures), *_each(row, most)] for row in rows]
+    table = Table(
+        "numbers of stages",
+        heads,
+        cells,
+        page_only=(*[*names][2:], TEETH),
+        csv_only=single,
+        read_only=read,
+        short=names,
+        left=2,
+        wrap=9,
+    )
     words = [
         f"Impossible with {row['stages']} {'stage' if row['stages'] == 1 else 'stages'}: in "
-        f"conflict are {', '.join(limit_words(n) for n in row['conflict'])}."
+        f"conflict are {series_of(grouped(row['conflict']))}."
         for row in rows
         if row["conflict"]
     ]
@@ -156,100 +248,25 @@ def _count(row: Mapping[str, Any], best: Result, measures: Measures) -> list[Any
     return [
         row["stages"],
         "not better, by its bound" if beyond else VERDICTS[row["status"]][0],
-        None if value is None else measures.of(value, unit),
+        cell(value, unit, measures),
         None if more is None else Cell(more, f"{more:.2f}"),
-        None if bound is None else measures.of(bound, unit),
-        None if gap is None else Cell(100.0 * gap, f"{100.0 * gap:.3g}"),
+        None if bound is None else Cell(measures.of(bound, unit), measures.number(bound, unit, -1)),
+        None if gap is None else Cell(100.0 * gap, gap_percent(gap).rstrip(" %")),
     ]
 
 
-def _each(row: Mapping[str, Any]) -> list[Any]:
-    """Return ratios, gears and seconds of a number of stages."""
-    ratios = row["ratios"]
-    gears = zip(row["modules_mm"], row["teeth"], strict=True)
-    teeth = "  ".join(f"{number(m)}, {number(a)}/{number(b)}" for m, (a, b) in gears)
+def _each(row: Mapping[str, Any], most: int) -> list[Any]:
+    """Return ratios, gears and seconds of a number of stages; then each ratio and gear alone."""
+    gears = list(zip(row["ratios"], row["modules_mm"], row["teeth"], strict=True))
+    teeth = "  ".join(f"{number(m)}, {number(a)}/{number(b)}" for _, m, (a, b) in gears)
+    single = [value for u, m, (a, b) in gears for value in (u, m, a, b)]
     return [
-        Cell(ratios, "  ".join(f"{u:.3f}" for u in ratios)),
+        "  ".join(f"{u:.3f}" for u, *_ in gears),
         teeth,
         Cell(row["seconds"], f"{row['seconds']:.2g}"),
+        *single,
+        *[None] * (4 * (most - len(gears))),
     ]
-
-
-def trade_off(result: Result, measures: Measures) -> Section | None:
-    """Plot the Pareto front of box width and height; None where the run computed none."""
-    front = result.report.get("front") or []
-    if not front:
-        return None
-    keys = ("width_mm", "height_mm", "volume_mm3")
-    points = sorted([measures.of(p[key], parted(key)[1]) for key in keys] for p in front)
-    unit, volume = measures.unit("mm"), measures.unit("mm3")
-    widths, heights, volumes = zip(*points, strict=True)
-    x0, x1 = _ends(widths)
-    y0, y1 = _ends(heights)
-    low, high = x0 * y0, x1 * y1
-    areas = [low * (high / low) ** ((k + 0.5) / LINES) for k in range(LINES)]
-    traces = [_equal(area, (x0, x1), (y0, y1), measures) for area in areas]
-    traces.append(
-        {
-            "type": "scatter",
-            "mode": "markers",
-            "name": "boxes",
-            "x": widths,
-            "y": heights,
-            "text": [f"{number(v)} {volume}" for v in volumes],
-            "hovertemplate": f"%{{x:.2f}} x %{{y:.2f}} {unit}, %{{text}}<extra></extra>",
-            "marker": {"color": "--series-1", "size": 8},
-            "showlegend": False,
-        }
-    )
-    best = min(points, key=lambda p: p[2])
-    traces.append(
-        {
-            "type": "scatter",
-            "mode": "markers",
-            "name": "minimum volume",
-            "x": [best[0]],
-            "y": [best[1]],
-            "hovertemplate": f"minimum volume: {number(best[2])} {volume}<extra></extra>",
-            "marker": {"color": "--series-2", "size": 13, "symbol": "star"},
-        }
-    )
-    plot = layout(
-        axis(f"width [{unit}]", range=[x0, x1]), axis(f"height [{unit}]", range=[y0, y1]), 420
-    )
-    words = (
-        f"Pareto front: {len(points)} boxes, none of them dominated in width and height. "
-        "Dotted lines: equal area of the front face."
-    )
-    return Section("Width against height", figures=(Figure(traces, plot, words),))
-
-
-def _ends(values: tuple[float, ...]) -> tuple[float, float]:
-    room = 0.08 * (max(values) - min(values)) or 0.05 * max(values)
-    return max(min(values) - room, 0.5 * min(values)), max(values) + room
-
-
-def _equal(
-    area: float, across: tuple[float, float], up: tuple[float, float], measures: Measures
-) -> dict[str, Any]:
-    """Return a line of equal area through the plot, named near its upper end."""
-    start, end = max(across[0], area / up[1]), min(across[1], area / up[0])
-    x = [start * (end / start) ** (k / 40) for k in range(41)]
-    metric = measures.unit("mm2") == "mm²"
-    shown, unit = (area / 100.0, "cm²") if metric else (area, measures.unit("mm2"))
-    name = f"{shown:,.{0 if shown > 100.0 else 1}f} {unit}"
-    return {
-        "type": "scatter",
-        "mode": "lines+text",
-        "x": x,
-        "y": [area / v for v in x],
-        "text": [name if k == 2 else "" for k in range(41)],
-        "textposition": "top right",
-        "textfont": {"size": 11, "color": "--soft"},
-        "line": {"color": "--axis", "width": 1, "dash": "dot"},
-        "hoverinfo": "skip",
-        "showlegend": False,
-    }
 
 
 def tiles(result: Result, measures: Measures) -> list[Tile]:
@@ -279,26 +296,24 @@ def beside(result: Result, measures: Measures) -> list[str]:
     for part in result.parts:
         alike = part.objective["name"] == result.objective["name"]
         if part.name in ("sizing", "apart") and alike and result.status == "optimal":
-            found += _other_way(result, part, measures)
+            found += _other_way(result, part)
         if part.name == "sizing" and result.status == "limit" and result.value is None:
             found += _instead(part, measures)
     return found
 
 
-def _other_way(result: Result, part: Result, measures: Measures) -> list[str]:
+def _other_way(result: Result, part: Result) -> list[str]:
     if part.value is None or result.value is None:
         return []
-    more = 100 * (result.value / part.value - 1)
-    value = amount(part.value, objective(result)[1], measures)
+    more = percent_more(result.value, part.value)
     if part.name == "apart":
-        less = f"{-more:.2f}".replace("-0.00", "0.00")
-        words = f"Gears optimised first, then the layout: {value}"
-        return [f"{words} (optimised together: {less} % smaller)."]
-    cost = f"{more:.2f}".replace("-0.00", "0.00")
-    return [
-        f"With real-valued teeth and modules: {value} "
-        f"(whole teeth and standard modules add {cost} %)."
-    ]
+        return [f"Gears and layout optimised together save {more} % of gears first, then layout."]
+    return [f"Whole teeth and standard modules cost {more} % more than real-valued ones."]
+
+
+def percent_more(value: float, other: float) -> str:
+    """Return by how many per cent two values differ."""
+    return rounded(abs(100.0 * (value / other - 1.0)), 3)
 
 
 def _instead(part: Result, measures: Measures) -> list[str]:
@@ -325,12 +340,12 @@ KIND = Kind(
         layout_views.section,
         layout_solid.section,
         _in_one_line,
+        numbers,
         processes,
         counts,
-        tables,
         *ASKED,
         trains,
-        trade_off,
+        box_front.section,
         *LAST,
     ),
     terminal=(
@@ -344,5 +359,7 @@ KIND = Kind(
     ),
     tiles=tiles,
     beside=beside,
+    elsewhere=clearances,
+    decides=decides,
     whole="drive",
 )

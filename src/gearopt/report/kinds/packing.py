@@ -32,6 +32,7 @@ from gearopt.report.pages.still import Rod, Texts, sizes_of, still, view
 from gearopt.report.section import Cell, Figure, Section, Table, shown
 from gearopt.report.words import heading, number, parted
 
+WALL = 1e-6  # of the container: a cylinder so near to a wall touches it
 WIDE, HIGH = 640.0, 560.0  # largest drawing [px]
 
 
@@ -107,9 +108,7 @@ def _plan(
         sheet.dimension((left, front), (left, back), away, measures.length(back - front))
     for it in sorted(on, key=lambda c: -c.diameter_mm):
         _name(sheet, it, colours[it.diameter_mm])
-    start, end = (f"{measures.of(v, 'mm'):.4g}" for v in (layer.from_mm, layer.to_mm))
-    ends = f"{start} to {end} {measures.unit('mm')}"
-    caption = f"Layer {layer.layer}, from {ends}, x to the right and y up."
+    caption = f"Layer {layer.layer}, x to the right and y up."
     return sheet.drawing(f"layer {layer.layer}", caption)
 
 
@@ -119,6 +118,31 @@ def _name(sheet: Sheet, it: CylinderDesign, colour: str) -> None:
     inside = [Place(centre[0], centre[1] + s * r, 0.0) for s in (0.35, -0.35) if half < 0.9 * r]
     outside = around(centre, (r + half + 6, r + half + 24), r, 20.0)
     sheet.label(it.name, inside or outside, "name", colour)
+
+
+def decides(result: Result) -> str:
+    """Return how full the container is, and how many cylinders stand at its walls."""
+    if not result.design:
+        return ""
+    design = packing_design(result.design)
+    box, count = design.container, len(design.cylinders)
+    full = sum(0.25 * math.pi * c.diameter_mm**2 * c.height_mm for c in design.cylinders)
+    share = f"{100.0 * full / box.volume_mm3:.0f} %"
+    at_walls = sum(_at_wall(c, box) for c in design.cylinders)
+    all_ = "all" if at_walls == count else f"{at_walls} of the"
+    return (
+        f"{all_} {count} cylinders stand at the walls; together they fill {share} of the container"
+    )
+
+
+def _at_wall(one: CylinderDesign, box: ContainerDesign) -> bool:
+    left, right, front, back = _span(box)
+    r, near = 0.5 * one.diameter_mm, WALL * max(box.sides)
+    if box.shape == "circle":
+        middle = 0.5 * (left + right), 0.5 * (front + back)
+        return 0.5 * (right - left) - math.dist(middle, (one.x_mm, one.y_mm)) - r < near
+    free = (one.x_mm - left, right - one.x_mm, one.y_mm - front, back - one.y_mm)
+    return min(free) - r < near
 
 
 def solid(result: Result, measures: Measures) -> Section | None:
@@ -218,7 +242,7 @@ def _container(design: PackingDesign, sizes: Table, measures: Measures) -> Table
     corner = [heading(key, measures) for key in ("left_mm", "front_mm")]
     at_origin = design.container.left_mm == 0.0 == design.container.front_mm
     rows = [
-        [f"container {name}", number(value)]
+        [f"container {name}", value]
         for name, value in sizes.rows
         if not (at_origin and name in corner)
     ]
@@ -232,4 +256,5 @@ def _container(design: PackingDesign, sizes: Table, measures: Measures) -> Table
 KIND = Kind(
     sections=(*FIRST, plans, solid, places, *ASKED, *LAST),
     terminal=(places, *TOLD),
+    decides=decides,
 )

@@ -144,8 +144,8 @@ def front_view(
     if over is not None:
         over(sheet)
     caption = (
-        f"Front view along the shafts, y to the right and z up, from the end x = "
-        f"{measures.length(found.box.length_mm, 1)}: each gear is drawn over those behind it."
+        "Front view along the shafts, y to the right and z up, from the end of largest x: "
+        "each gear is drawn over those behind it."
     )
     return sheet.drawing("front view", caption)
 

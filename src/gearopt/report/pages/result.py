@@ -3,11 +3,12 @@
 from collections.abc import Iterator
 
 from gearopt.optimise.result import Result
+from gearopt.report.answer import opening
 from gearopt.report.kinds import kind_of
 from gearopt.report.measures import METRIC, Measures
 from gearopt.report.pages.frame import render
 from gearopt.report.section import Section, Table
-from gearopt.report.words import amount, goal, title, verdict
+from gearopt.report.words import title
 from gearopt.scenes.reading.toml import short
 
 
@@ -19,7 +20,7 @@ def sections(result: Result, measures: Measures = METRIC) -> list[Section]:
 def _each(result: Result, measures: Measures) -> Iterator[Section]:
     result = Result.from_dict(result.to_dict())  # plain numbers, as a file of it has them
     made = (section(result, measures) for section in kind_of(result).sections)
-    return (section for section in made if section is not None)
+    return (section for section in made if section is not None and section.heading)
 
 
 def page(result: Result, command: str, measures: Measures = METRIC) -> str:
@@ -28,7 +29,7 @@ def page(result: Result, command: str, measures: Measures = METRIC) -> str:
     return render(
         "result.html",
         title(result),
-        _subtitle(result, measures),
+        opening(result),
         {"gearopt": result.gearopt, **result.versions},
         command,
         plots=any(section.figures for section in found),
@@ -64,10 +65,3 @@ def _source(result: Result) -> str | None:
     ]
     words = f"File {result.file}, SHA-256 {(result.file_sha256 or '')[:16]}…"
     return ", changed: ".join(filter(None, [words, ", ".join(edits)]))
-
-
-def _subtitle(result: Result, measures: Measures) -> str:
-    name, unit, value, _, _ = goal(result)
-    if value is None or "achieved" in result.report:
-        return verdict(result)[0]
-    return f"{name} {amount(value, unit, measures)}, {verdict(result)[0]}"

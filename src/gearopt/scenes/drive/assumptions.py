@@ -40,7 +40,7 @@ def assumptions(scene: Scene) -> list[str]:
     mass = (
         f"the density of the file, {density}"
         if density
-        else f"steel of {1e9 * STEEL_DENSITY:g} kg/dm^3, because the file gives no density"
+        else "the density of steel, because the file gives none"
     )
     law = scene.limits.LAW
     alone = f"and {law.title}" if law.pressure_angle else f"alone; {law.title} do not depend on it"

@@ -1,11 +1,8 @@
 """Servo axes: ratio, train, box, errors, tolerances and stiffness."""
 
-from dataclasses import replace
-
 from gearopt.formulations.servo.servo_design import RatioDesign, TrainDesign
 from gearopt.optimise.result import Result
 from gearopt.report import answer, explained
-from gearopt.report.answer import bound_words
 from gearopt.report.kinds import Kind, MakeSection
 from gearopt.report.kinds.generic import ASKED, LAST, TOLD
 from gearopt.report.kinds.servo import axis_accuracy, axis_housing, axis_motion, axis_trains
@@ -13,13 +10,18 @@ from gearopt.report.kinds.servo.axis_words import arc_minutes, degrees, design_o
 from gearopt.report.measures import Measures
 from gearopt.report.pages import impossible_views
 from gearopt.report.section import Section, Tile
-from gearopt.report.words import amount, goal, number
+from gearopt.report.words import REACHED, amount, goal, number
+
+FULL_TORQUE = "motor_torque"  # used up wherever an acceleration is largest
 
 
-def summary(result: Result, measures: Measures) -> Section:
-    """Return key figures and what is certain; the bound, a key figure, is not said again."""
-    found, bound = answer.summary(result, measures), bound_words(result, measures)
-    return replace(found, words=[words for words in found.words if words not in bound])
+def decides(result: Result) -> str:
+    """Return what decides a total ratio without gears, where no limit of the motor does."""
+    design = design_of(result)
+    full = [n for n, u in result.limits.items() if u >= 1.0 - REACHED and n != FULL_TORQUE]
+    if design.train is not None or design.ratio is None or full or result.value is None:
+        return ""
+    return "the inertias of motor and load decide the total ratio, no limit of the motor does"
 
 
 def tiles(result: Result, measures: Measures) -> list[Tile]:
@@ -36,14 +38,10 @@ def tiles(result: Result, measures: Measures) -> list[Tile]:
             frequency = f"{number(chain.frequency_Hz)} Hz, motor locked"
         found.append(Tile("stiffness at the output", stiff, frequency))
     if (cost := design.allocation) is not None and name != "cost":
-        change = 100.0 * (cost.cost / cost.old_cost - 1.0)
-        found.append(Tile("cost of tolerances", number(cost.cost), f"{change:+.1f} %"))
+        found.append(Tile("cost of tolerances", number(cost.cost)))
     if (drawn := design.drawn) is not None:
         good = f"{100.0 * drawn.yield_share:.4g} %"
         found.append(Tile("yield", good, f"of {drawn.count:,} drawn trains"))
-    if (box := design.box) is not None:
-        fits = f"{'fits' if box.fits else 'does not fit'} the box"
-        found.append(Tile("needed room", axis_housing.needed_size(box, measures), fits))
     return found
 
 
@@ -54,15 +52,13 @@ def _ratio(ratio: RatioDesign, name: str, measures: Measures) -> list[Tile]:
         worse = f"{chosen.loss_percent:.3g} % worse than the best ratio, no gears"
         value = amount(chosen.value, ratio.unit, measures)
         made.append(Tile(f"{ratio.name} of the train", value, worse))
-    value = amount(ratio.value, ratio.unit, measures)
-    without = ", no gears" if chosen is not None else ""
-    remark = f"{ratio.name} {value}{without}"
-    return [*made, Tile("best total ratio", number(ratio.total_ratio), remark)]
+    without = "no gears" if chosen is not None else ""
+    return [*made, Tile("best total ratio", number(ratio.total_ratio), without)]
 
 
 def _train(train: TrainDesign, name: str, measures: Measures) -> list[Tile]:
     error, angle = train.ratio_error_percent, train.error_deg
-    off = "" if error is None else f", {error:+.3f} %"
+    off = "" if error is None else f", {error:+.3g} %"
     teeth = ", ".join(f"{s.pinion_teeth}/{s.wheel_teeth}" for s in train.stages)
     made = [Tile("ratio of the train", number(train.ratio), f"{teeth}{off}")]
     if name != "error" and angle is not None:
@@ -87,7 +83,7 @@ def _answered(make: MakeSection) -> MakeSection:
 KIND = Kind(
     whole="axis",
     sections=(
-        summary,
+        answer.summary,
         explained.remedies,
         impossible_views.section,
         axis_motion.section,
@@ -119,4 +115,5 @@ KIND = Kind(
         *TOLD,
     ),
     tiles=tiles,
+    decides=decides,
 )

@@ -75,23 +75,17 @@ def errors(result: Result, measures: Measures) -> Section | None:
         words=[*words, *_by_kind(found, total)],
         figures=(Figure(traces, plot, caption),),
         tables=(table,),
-        terminal=(table, "\n".join(words)),
+        terminal=(table, *words),
     )
 
 
 def _error_words(total: float, limit: float | None) -> list[str]:
-    """Say what all sources [deg] add up to, and how much that is of what is allowed."""
-    words = [
-        f"All sources at their limits add up to {degrees(total)} ({arc_minutes(total)}) at the "
-        "output."
-    ]
-    if limit is not None:
-        more = f", {degrees(total - limit)} too much" if total > limit * (1.0 + 1e-9) else ""
-        words.append(
-            f"Backlash and pitch make {degrees(total)} of it: {100.0 * total / limit:.1f} % of "
-            f"the {degrees(limit)} allowed to them{more}."
-        )
-    return words
+    """Say what all sources [deg] add up to where no limit shows it, and what is too much."""
+    if limit is None:
+        return [f"All sources at their limits add up to {arc_minutes(total)} at the output."]
+    if total <= limit * (1.0 + 1e-9):
+        return []
+    return [f"All sources at their limits make {degrees(total - limit)} more than is allowed."]
 
 
 def _error_table(found: Sequence[ErrorSource], total: float, measures: Measures) -> Table:
@@ -187,7 +181,7 @@ def tolerances(result: Result, measures: Measures) -> Section | None:
         page_only=("stage", "kind", "of the error, %"),
         short={"cost, old": "cost", "cost, new": "new cost"},
     )
-    words = _cost_words(cost)
+    words = _cost_words(cost, None if design.train is None else design.train.error_deg)
     ends = (
         "Of the error: sensitivity times new tolerance, of their sum. Min and max: the new "
         "tolerance is the minimum or the maximum that the file allows."
@@ -196,16 +190,16 @@ def tolerances(result: Result, measures: Measures) -> Section | None:
     return Section("Tolerances", words=[*words, ends], tables=(table,), terminal=terminal)
 
 
-def _cost_words(found: Allocation) -> list[str]:
-    """Say what the new tolerances cost, and how far they use each budget."""
+def _cost_words(found: Allocation, error: float | None) -> list[str]:
+    """Say how the cost changes, and what the budgets are; error: of the train [deg]."""
     change = 100.0 * (found.cost / found.old_cost - 1.0)
-    words = [f"Cost {number(found.cost)}, before {number(found.old_cost)}: {change:+.1f} %."]
-    for budget in found.budgets:
-        words.append(
-            f"Budget {_rule(budget)}: {degrees(budget.used_deg)} of {degrees(budget.limit_deg)}, "
-            f"{100.0 * budget.used_deg / budget.limit_deg:.1f} %."
-        )
-    return words
+    limits = (
+        f"{_rule(b)} as the error at the output"
+        if error is not None and degrees(b.limit_deg) == degrees(error)
+        else f"{_rule(b)} {degrees(b.limit_deg)}"
+        for b in found.budgets
+    )
+    return [f"The cost changes by {change:+.1f} %. Budgets: {', '.join(limits)}."]
 
 
 def _rule(budget: BudgetUse) -> str:
@@ -272,11 +266,14 @@ def drawn(result: Result, measures: Measures) -> Section | None:
         f"{found.count:,} trains drawn with every deviation at random within its tolerance "
         f"(seed {found.seed}); the band is the interval of the quantile."
     )
+    worst = 100.0 * found.worst_case_deg / found.limit_deg
     normal = (
         f"Mean {degrees(found.mean_deg)}, standard deviation {degrees(found.sd_deg)}; all "
-        f"tolerances at their limits at once would be {degrees(found.worst_case_deg)}."
+        f"tolerances at their limits at once would be {worst:.4g} % of the limit."
     )
-    words, bins = _drawn_words(found), _bins(found.histogram)
+    budgets = () if design.allocation is None else design.allocation.budgets
+    said = any(budget.limit_deg == found.limit_deg for budget in budgets)
+    words, bins = _drawn_words(found, said), _bins(found.histogram)
     heads = ("from [°]", "to [°]", "drawn trains")
     traces = [_bars(bins, found.count), *_lines(found, 1.05 * most)]
     return Section(
@@ -289,16 +286,16 @@ def drawn(result: Result, measures: Measures) -> Section | None:
     )
 
 
-def _drawn_words(found: DrawnErrors) -> list[str]:
-    """Say what yield and quantile are, with their intervals."""
+def _drawn_words(found: DrawnErrors, said: bool) -> list[str]:
+    """Say what yield and quantile are, with their intervals; said: the limit is known."""
     sure = f"{100.0 * found.confidence:g} %"
     low = f"{math.floor(1e6 * found.yield_low) / 1e4:.4f}"  # outwards, to hold what is said
     high = f"{math.ceil(1e6 * found.yield_high) / 1e4:.4f}"
     share, ends = f"{100.0 * found.probability:g} %", _ends(found)
+    limit = "" if said else f" of {degrees(found.limit_deg)}"
     words = [
-        f"{100.0 * found.yield_share:.4f} % of {found.count:,} drawn trains keep the limit of "
-        f"{degrees(found.limit_deg)}; with {sure} confidence the yield lies between {low} and "
-        f"{high} %."
+        f"{100.0 * found.yield_share:.4f} % of the drawn trains keep the limit{limit}; with "
+        f"{sure} confidence the yield lies between {low} and {high} %."
     ]
     between = " (too few draws for an interval with this confidence)"
     if ends:

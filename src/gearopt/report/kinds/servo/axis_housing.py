@@ -18,11 +18,11 @@ from gearopt.formulations.servo.servo_design import (
     TrainDesign,
 )
 from gearopt.optimise.result import Result
-from gearopt.report.kinds.servo.axis_words import arc_minutes, degrees, design_of
+from gearopt.report.kinds.servo.axis_words import arc_minutes, degrees, design_of, report_of
 from gearopt.report.measures import Measures
 from gearopt.report.pages.layout_views import centre_distance
 from gearopt.report.pages.sheet import Drawing, Place, Point, Sheet, Window, around
-from gearopt.report.section import Figure, Section, Table, Tile, axis, layout, percent
+from gearopt.report.section import Figure, Section, Table, Tile, axis, cell, layout, percent
 from gearopt.report.words import amount, number
 
 ROW, REST = 44.0, 70.0  # px of a spring, and of the axis
@@ -41,22 +41,18 @@ def stiffness(result: Result, measures: Measures) -> Section | None:
     found = design.stiffness
     if found is None:
         return None
-    tiles = [
-        Tile("stiffness at the output", amount(found.output_Nm_per_rad, "Nm_per_rad", measures))
-    ]
-    if found.frequency_Hz is not None:
-        tiles.append(Tile("lowest frequency", f"{number(found.frequency_Hz)} Hz", "motor locked"))
+    tiles = []
     if found.windup_deg is not None:
         tiles.append(Tile("wind-up", degrees(found.windup_deg), arc_minutes(found.windup_deg)))
     springs = sorted(found.springs, key=lambda s: s.compliance_share)
-    table = _springs(springs[::-1], measures)
+    table, words = _springs(springs[::-1], measures), _stiffness_words(found, measures)
     return Section(
         "Stiffness",
         tiles,
         figures=(_bars(springs, measures),),
         tables=(table,),
         half=design.drawn is not None,
-        terminal=(table, _stiffness_words(found, measures)),
+        terminal=(table, *([] if report_of(result).given_stiffness else [words])),
     )
 
 
@@ -96,7 +92,11 @@ def _springs(springs: Sequence[Spring], measures: Measures) -> Table:
     heads = ["spring", "share, %", f"alone at the output [{unit}]"]
     short = {heads[1]: "share of compliance, %", heads[2]: f"alone [{unit}]"}
     rows = [
-        [s.name, percent(s.compliance_share), measures.of(s.referred_Nm_per_rad, "Nm_per_rad")]
+        [
+            s.name,
+            percent(s.compliance_share),
+            cell(s.referred_Nm_per_rad, "Nm_per_rad", measures),
+        ]
         for s in springs
     ]
     return Table("springs", heads, rows, short=short)

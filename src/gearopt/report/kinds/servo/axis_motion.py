@@ -7,7 +7,7 @@ from gearopt.formulations.servo.servo_design import MOTIONS, Achieved, RatioDesi
 from gearopt.optimise.result import Result
 from gearopt.report.kinds.servo.axis_words import design_of, report_of
 from gearopt.report.measures import METRIC, Measures
-from gearopt.report.section import Cell, Figure, Section, Table, axis, layout, shown
+from gearopt.report.section import Cell, Figure, Section, Table, axis, cell, layout
 from gearopt.report.words import amount, number
 
 LARGEST = "acceleration"  # the duty whose value is made largest
@@ -49,16 +49,17 @@ def section(result: Result, measures: Measures) -> Section | None:
     found = design_of(result).ratio
     if found is None:
         return None
-    best, trains = best_words(found, measures), train_words(report_of(result), found, measures)
     curve, known = _curve(found, measures), found.best is not None
+    words = [_flat(found), *bound_words(report_of(result), found, measures)]
     achieved = [_achieved(found, measures)] if known else []
     note = [NOTE + (SPEEDING if found.duty != "swing" else "")] if known else []
+    told = words if known else [*best_words(found, measures), *words]
     return Section(
         "Total ratio",
-        words=[*best, _flat(found), *trains, *note],
+        words=[*words, *note],
         figures=(_figure(found, curve, measures),),
         tables=(*achieved, curve),
-        terminal=("\n".join(best + trains), *achieved, *note),
+        terminal=("\n".join(told), *achieved, *note),
     )
 
 
@@ -76,29 +77,16 @@ def best_words(found: RatioDesign, measures: Measures = METRIC) -> list[str]:
     return words
 
 
-def train_words(report: ServoReport, found: RatioDesign, measures: Measures) -> list[str]:
-    """Say what the chosen and the given train achieve, and what no train can."""
-    words = []
-    for train, one in (("chosen", found.chosen), ("given", found.given_train)):
-        if one is not None:
-            words.append(
-                f"The {train} train, of ratio {number(one.total_ratio)} and "
-                f"{amount(one.gear_inertia_kg_m2, 'kg_m2', measures)} at the motor, gives "
-                f"{_value(one, found, measures)} than the best."
-            )
-    if one := found.best_with_train:
-        words.append(
-            f"With the chosen train's inertia the best total ratio is {number(one.total_ratio)}, "
-            f"with {amount(one.value, found.unit, measures)}."
-        )
+def bound_words(report: ServoReport, found: RatioDesign, measures: Measures) -> list[str]:
+    """Say what not even real-valued gears achieve; nothing where that is not known."""
     bound = report.figures.get(f"real_valued_bound_{MOTIONS[found.duty].key}")
-    if bound is not None:
-        better = "more" if found.duty == LARGEST else "less"
-        words.append(
-            "Not even real-valued teeth and modules within the limits give "
-            f"{better} than {amount(bound, found.unit, measures)}."
-        )
-    return words
+    if bound is None:
+        return []
+    better = "more" if found.duty == LARGEST else "less"
+    return [
+        "Not even real-valued teeth and modules within the limits give "
+        f"{better} than {amount(bound, found.unit, measures)}."
+    ]
 
 
 def _value(one: Achieved, found: RatioDesign, measures: Measures) -> str:
@@ -128,10 +116,7 @@ def _achieved(found: RatioDesign, measures: Measures) -> Table:
 def _cell(value: float | None, unit: str, measures: Measures) -> Cell | None:
     if value is None:
         return None
-    size = measures.of(value, unit)
-    if unit == "percent":
-        return Cell(size, f"{size:.3g}")
-    return Cell(size, shown(size).text, short=number(float(size)))
+    return cell(value, unit, measures)
 
 
 def _curve(found: RatioDesign, measures: Measures) -> Table:

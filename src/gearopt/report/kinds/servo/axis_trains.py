@@ -13,6 +13,7 @@ from gearopt.formulations.servo.servo_design import (
     RatioDesign,
     ServoDesign,
     ServoReport,
+    Teeth,
     TrainDesign,
     train_figures,
 )
@@ -20,7 +21,6 @@ from gearopt.optimise.result import Result
 from gearopt.optimise.typed import untyped
 from gearopt.report.design_tables import stage_table
 from gearopt.report.kinds.servo.axis_words import (
-    arc_minutes,
     degrees,
     design_of,
     error_limit,
@@ -30,7 +30,7 @@ from gearopt.report.kinds.servo.axis_words import (
 )
 from gearopt.report.measures import Measures
 from gearopt.report.pages import train_views
-from gearopt.report.section import Figure, Section, Table, axis, layout
+from gearopt.report.section import Figure, Section, Table, axis, cell, layout
 from gearopt.report.words import amount, heading, parted
 
 BARE = (
@@ -40,6 +40,7 @@ BARE = (
 )
 COMPARED = (*MOTIONS.values(), *(GOALS[name] for name in OBJECTIVES))  # the duty first
 LARGEST = GOALS["inverse_acceleration"]  # whose value is maximised
+MOVED = ("ratio", "inertia_kg_m2")  # of a train: in the table of motor and load, too
 STAGE = ("normal_module_mm", "pinion_teeth", "wheel_teeth")
 BEST = {  # symbol and colour of the best by a goal
     "inertia": ("diamond", "--series-4"),
@@ -59,14 +60,10 @@ def section(result: Result, measures: Measures) -> Section | None:
     stages = plain.pop("stages")
     totals = []
     for key, value in plain.items():
-        unit = parted(key)[1]
-        totals.append([heading(key, measures), measures.of(value, unit) if unit else value])
+        totals.append([heading(key, measures), cell(value, parted(key)[1], measures)])
     words = [_sector(found.sector)] if found.sector < 1.0 else []
     if found.error_deg is not None:
-        words.append(
-            f"The error of {degrees(found.error_deg)} ({arc_minutes(found.error_deg)}) is the "
-            "worst case of backlash and pitch at the output."
-        )
+        words.append("The error is the worst case of backlash and pitch at the output.")
     if found.inertia_kg_m2 is not None:
         words.append("Inertia is seen at the motor.")
     drawn = train_views.views(stages, measures) if design.box is None else ()
@@ -76,7 +73,11 @@ def section(result: Result, measures: Measures) -> Section | None:
             f"dash-dotted. Dimensions in {measures.lengths}."
         )
     side_by_side = replace(stage_table(stages, measures, page_only=()), short={"": "train"})
-    tables = (side_by_side, Table("train", ("", ""), totals))
+    compared = [row[0] for row in _beside(design, report_of(result), measures)]
+    if design.ratio is not None and design.ratio.chosen is not None:
+        compared += [heading(key, measures) for key in MOVED]
+    whole = Table("train", ("", ""), totals, csv_only=compared)
+    tables = (side_by_side, replace(whole, folded=len(compared) >= len(totals)))
     half = not drawn
     return Section("Train", words=words, drawings=drawn, tables=tables, half=half, terminal=tables)
 
@@ -90,17 +91,23 @@ def _sector(share: float) -> str:
 
 def best(result: Result, measures: Measures) -> Section | None:
     """Show the best train by every goal; None where no trains are listed."""
+    chosen = design_of(result).train
     trains = [t for t in report_of(result).trains or () if t.best_of]
+    trains = [t for t in trains if chosen is None or _teeth(t.stages) != _teeth(chosen.stages)]
     if not trains:
         return None
     keys = [goal.key for goal in _known(trains[0])]
     heads = ["best", "teeth", *(heading(key, measures) for key in keys)]
     rows = [
         [t.best_of, teeth_words(t.stages)]
-        + [float(measures.of(getattr(t, key), parted(key)[1])) for key in keys]
+        + [cell(getattr(t, key), parted(key)[1], measures) for key in keys]
         for t in trains
     ]
     return Section("Best trains", terminal=(Table("best", heads, rows),))
+
+
+def _teeth(stages: Sequence[Teeth]) -> list[tuple[Any, ...]]:
+    return [tuple(getattr(s, key) for key in STAGE) for s in stages]
 
 
 def beside(result: Result, measures: Measures) -> Section | None:
@@ -127,14 +134,12 @@ def _beside(design: ServoDesign, report: ServoReport, measures: Measures) -> lis
         return []
     own = train_figures(chosen, design.stiffness)
     other = train_figures(given, report.given_stiffness)
-    if ratio is not None:
-        for figures, one in ((own, ratio.chosen), (other, ratio.given_train)):
-            figures |= {} if one is None else {MOTIONS[ratio.duty].key: one.value}
+    moved = MOVED if ratio is not None and ratio.chosen is not None else ()
     rows = []
-    for key in own | other:
+    for key in (key for key in own | other if key not in moved):
         bound, unit = report.figures.get(f"real_valued_bound_{key}"), parted(key)[1]
         values = (own.get(key), other.get(key), bound)
-        shown = [None if v is None else float(measures.of(v, unit)) for v in values]
+        shown = [cell(v, unit, measures) for v in values]
         rows.append([heading(key, measures), *shown])
     return rows
 
@@ -147,18 +152,23 @@ def _known(train: ListedTrain) -> list[Goal]:
 def stage_counts(result: Result, measures: Measures) -> Section | None:
     """Show inertia and mass by number of stages; None without a train."""
     design, report = design_of(result), report_of(result)
+    most = max((len(row.ratios_of_least_inertia) for row in report.stage_counts or ()), default=0)
     rows = [
         [
             row.stages,
             row.inertia_in_pinions,
             " x ".join(f"{n:.3f}" for n in row.ratios_of_least_inertia),
             row.mass_in_pinions,
+            *row.ratios_of_least_inertia,
+            *[None] * (most - len(row.ratios_of_least_inertia)),
         ]
         for row in report.stage_counts or ()
     ]
     if not rows:
         return None
-    table = Table("stage counts", ("stages", "minimum inertia", "at ratios", "minimum mass"), rows)
+    single = [f"ratio {k}" for k in range(1, most + 1)]
+    heads = ("stages", "minimum inertia", "at ratios", "minimum mass", *single)
+    table = Table("stage counts", heads, rows, csv_only=single, read_only=("at ratios",))
     half = bool(_beside(design, report, measures))
     words = (BARE,)
     return Section(
@@ -217,7 +227,7 @@ def _front(result: Result, measures: Measures, goal: Goal, other: Goal) -> Secti
     limit = error_limit(known, result.limits) if other.name == "error" else None
     shapes = [] if limit is None else [limit_line("allowed", limit, "x", 1.6)]
     traces = [_points(*group, (key, high), measures) for group in groups]
-    figure = Figure(traces, layout(across, up, 400, shapes=shapes), _caption(result, found))
+    figure = Figure(traces, layout(across, up, 400, shapes=shapes), _caption(result, found, goal))
     tables = (_table(found, measures),) if goal.name != "mass" else ()
     title = f"{other.word.capitalize()} and {goal.word}"
     return Section(title, figures=(figure,), tables=tables, half=True)
@@ -253,7 +263,7 @@ def _head(goal: Goal, measures: Measures) -> str:
     return f"{goal.title} [{measures.unit(parted(goal.key)[1])}]"
 
 
-def _caption(result: Result, trains: Sequence[ListedTrain]) -> str:
+def _caption(result: Result, trains: Sequence[ListedTrain], goal: Goal) -> str:
     """Say what the points are."""
     goals = _weighed(result)
     worth = [
@@ -262,6 +272,8 @@ def _caption(result: Result, trains: Sequence[ListedTrain]) -> str:
     dominated = any(
         a != b and all(x <= y for x, y in zip(a, b, strict=True)) for a in worth for b in worth
     )
+    if goal.name == "mass":  # the second plot, of the same trains
+        return "The same trains by mass."
     which = f"{len(trains)} of the best trains"
     if not dominated:
         *names, last = (goal.word for goal in goals)

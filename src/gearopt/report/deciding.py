@@ -1,0 +1,146 @@
+"""The first sentence of page and terminal: what decides the answer, or keeps one from existing."""
+
+import math
+from collections.abc import Collection, Mapping, Sequence
+
+from gearopt.optimise.result import Result
+from gearopt.report.measures import rounded
+from gearopt.report.words import (
+    INVERSE,
+    REACHED,
+    grouped,
+    limit_words,
+    objective,
+    series_of,
+)
+
+PROVEN = ("optimal", "stationary")  # where a limit that is reached decides
+NEAR = 0.95  # of a limit; one used so far is named
+NAMED = 3  # limits that a sentence names, where more are reached it counts them
+ENDS = ("ratio_low", "ratio_high")  # limits of one range
+GIVEN = ("common_divisor",)  # rules that every design of the file is at the end of
+
+
+def lead(result: Result, own: str = "") -> str:
+    """Return one sentence: what decides, is exceeded, or cannot be met together.
+
+    own: what the kind of result says of a design.
+    """
+    if result.status == "infeasible":
+        return _impossible(result)
+    if result.value is None and result.status != "evaluated":
+        return f"{_stopped(result)}: no design was found, which does not prove that there is none"
+    if result.status == "evaluated" and (over := _over(result.limits)):
+        return f"the given design exceeds {series_of(over)}"
+    return own or of_limits(result)
+
+
+def _stopped(result: Result) -> str:
+    return "the budget ended" if result.status == "limit" else "the search ended"
+
+
+def _impossible(result: Result) -> str:
+    """Return which limits exclude each other, else what the search says."""
+    ways = result.report.get("ways_out") or {}
+    names = ways.get("conflict") or result.proof.get("conflict") or ()
+    if not names:
+        return (result.message or "no design meets all limits").rstrip(".")
+    together = series_of(grouped(names))
+    if len(names) == 1:
+        return f"{together} cannot be met, even if all other limits are dropped"
+    if ways.get("conflict"):
+        return f"{together} cannot be met together; without any one of them the others can"
+    return f"{together} cannot be met together"
+
+
+def _over(limits: Mapping[str, float]) -> list[str]:
+    """Return the limits that are exceeded, and by how much."""
+    worst = sorted((u, n) for n, u in limits.items() if u > 1.0 + REACHED)[::-1]
+    found = [f"{limit_words(n)} by {rounded(100.0 * (u - 1.0), 2)} %" for u, n in worst[:NAMED]]
+    more = len(worst) - NAMED
+    return found if more <= 0 else [*found, f"{more} other limits"]
+
+
+def of_limits(result: Result, shown: Collection[str] = ()) -> str:
+    """Return which limits decide, else which is nearest; shown: limits that are not named here.
+
+    Of whole teeth and standard sizes, which come in steps, the limits that decide are those that
+    their real-valued relaxation reaches.
+    """
+    left_out = {*GIVEN, *ENDS, *shown}
+    own = {n: u for n, u in result.limits.items() if _stem(n) not in left_out}
+    reached = [n for n, u in own.items() if u >= 1.0 - REACHED]
+    relaxed = next((part.limits for part in result.parts if part.name == "sizing"), {})
+    decisive = [n for n in own if relaxed.get(n, 0.0) >= 1.0 - REACHED] or reached
+    ends = [n for n in reached if n not in decisive]
+    rest = {n: u for n, u in own.items() if n not in (*decisive, *ends) and not _is_end(n)}
+    parts = [_decided(result, decisive)] if decisive else []
+    parts += [f"{series_of(grouped(ends))} {_verb(ends, 'is', 'are')} reached"] if ends else []
+    parts += _nearest(rest, alone=not decisive) + _tolerance(result)
+    return "; ".join(parts) or _free(result)
+
+
+def _is_end(name: str) -> bool:
+    """Return whether a limit is an end of a range, which a design may be anywhere in."""
+    return _stem(name).endswith(("_low", "_high"))
+
+
+def _whole(used: float) -> str:
+    """Return a part in whole per cent; 100 only where it is reached."""
+    percent = round(100.0 * used)
+    below = percent == 100 and used < 1.0 - REACHED
+    return f"{math.floor(1000.0 * used) / 10.0:.1f}" if below else f"{percent:,}"
+
+
+def _stem(name: str) -> str:
+    return name.partition("[")[0]
+
+
+def _decided(result: Result, names: list[str]) -> str:
+    """Return that limits decide, where that is certain; else that they are reached."""
+    found = grouped(names)
+    if len(found) > NAMED:
+        found = [*found[: NAMED - 1], f"{len(found) - NAMED + 1} other limits"]
+    if result.status not in PROVEN:
+        return f"{series_of(found)} {_verb(found, 'is', 'are')} reached"
+    return f"{series_of(found)} {_verb(found, 'decides', 'decide')} the {_goal(result)}"
+
+
+def _verb(names: Sequence[str], one: str, several: str) -> str:
+    return one if len(names) == 1 else several
+
+
+def _goal(result: Result) -> str:
+    name = objective(result)[0]
+    return INVERSE[name][0] if name in INVERSE else name
+
+
+def _nearest(limits: Mapping[str, float], alone: bool) -> list[str]:
+    """Return the limit that is nearest; alone: none is reached."""
+    if not limits:
+        return []
+    name, used = max(limits.items(), key=lambda item: item[1])
+    words = f"{limit_words(name)} {'comes nearest, ' if alone else 'is '}used to {_whole(used)} %"
+    if alone:
+        return [f"no limit is reached, {words}"]
+    return [words] if used >= NEAR else []
+
+
+def _tolerance(result: Result) -> list[str]:
+    """Return how far the tolerance of a total ratio is used; nothing where it has none."""
+    low, high = (result.limits.get(name) for name in ENDS)
+    error, ratio = result.design.get("ratio_error_percent"), result.design.get("ratio")
+    if low is None or high is None or error is None or ratio is None:
+        return []
+    asked = ratio / (1.0 + error / 100.0)
+    room = 1.0 - low * ratio / asked if error < 0.0 else ratio / high / asked - 1.0
+    if room <= REACHED:
+        return []
+    return [f"the ratio tolerance is used to {_whole(abs(error) / 100.0 / room)} %"]
+
+
+def _free(result: Result) -> str:
+    """Return what is said where no limit is reported."""
+    if result.status in PROVEN:
+        return f"no limit decides the {_goal(result)}, only the model itself"
+    return "no limit is reached" if result.status == "evaluated" else "a better design may exist"
