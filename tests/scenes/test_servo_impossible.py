@@ -1,5 +1,6 @@
 """Servo axes that no train can do: what is named, what is proposed, and what a stop leaves."""
 
+import re
 from dataclasses import replace
 from decimal import Decimal
 
@@ -16,10 +17,12 @@ from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget
 from gearopt.report.answer import proof
 from gearopt.scenes.servo import EXAMPLE
+from gearopt.scenes.servo.alone import reached
 from gearopt.scenes.servo.assumptions import notes
 from gearopt.scenes.servo.remedies import remedies
 
 
+@pytest.mark.slow
 def test_a_stiff_train_with_wheel_tips_below_a_tooth_is_impossible():
     tips = (("train", "wheel_tip_diameters"), ["1 mm", "1 mm"])
     result = solved(STIFF, tips)
@@ -47,56 +50,111 @@ def test_tolerances_beyond_the_error_of_the_file_are_named():
 def test_the_wider_error_that_is_proposed_is_the_least():
     explained = gearopt.explain(PROBLEMS / "servo_gimbal_impossible.toml")
     assert {"error", "wheel_tip[2]"} <= set(explained.conflict)
-    least, even = explained.remedies
+    least, even, *_ = explained.remedies
     assert least.changes[0].write == '"0.09798 deg"' and least.bound < least.factor
     assert len(even.changes) == 14 and "pitch of stage 2" in explained.message
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
-    ("edits", "blamed", "words"),
+    ("edits", "blamed", "words", "ways"),
     [
         (
             [(("train", "bending_stress"), "1 MPa")],
             {"bending_stress", "wheel_tip[2]"},
             "real-valued",
+            {"train.bending_stress", "train.face_width", "train.output_torque"},
         ),
         (
             [(("train", "output_torque"), "2400 N m")],
             {"bending_stress", "wheel_tip[2]"},
             "real-valued",
+            {"train.bending_stress", "train.face_width", "train.output_torque"},
         ),
-        ([(("train", "ratio"), 5000)], {"ratio_low", "wheel_tip[2]", "bore"}, "real-valued"),
+        ([(("train", "ratio"), 5000)], {"ratio_low", "wheel_tip[2]", "bore"}, "real-valued", set()),
         (
             [(("train", "ratio"), Decimal("47.98255")), (("train", "ratio_tolerance"), 0)],
             set(),
             "no whole teeth make the ratio within 0 %; within 0.0001 % some do",
+            {"train.ratio_tolerance"},
         ),
     ],
 )
-def test_what_is_impossible_for_another_reason_is_said(edits, blamed, words):
+def test_what_is_impossible_for_another_reason_is_said(edits, blamed, words, ways):
     explained = gearopt.explain(changed(text("gimbal_light"), *edits))
-    assert explained.result.status == "infeasible" and explained.remedies == ()
+    assert explained.result.status == "infeasible"
+    assert ways <= {way.what for way in explained.remedies}
+    assert all(way.verified["with"] == "optimal" for way in explained.remedies)
     assert "the cause is not the accuracy" in explained.message and words in explained.message
     assert blamed <= set(explained.conflict) and "error" not in explained.conflict
     assert bool(blamed) == bool(explained.conflict)
 
 
-@pytest.mark.parametrize(
-    ("edit", "words"),
-    [
-        ((("space", "width"), "40 mm"), "fits the box"),
-        ((("stiffness", "frequency"), "5 kHz"), "has the stiffness that is required"),
-    ],
+FEW = (
+    (("train", "modules"), ["0.5 mm"]),
+    (("train", "pinion_teeth"), [20, 26]),
+    (("accuracy", "error"), "0.3 deg"),
 )
-def test_a_box_or_stiffness_that_no_train_keeps_is_named(edit, words):
-    few = ("modules", ["0.5 mm"]), ("pinion_teeth", [16, 24])
-    loose = (("accuracy", "error"), "0.3 deg")
-    drop = [("lightest",), ("tolerances",), ("budget",), ("cost",)]
-    drop += [("space",)] if edit[0][0] == "stiffness" else [("stiffness",)]
-    edits = [(("train", name), value) for name, value in few]
-    explained = gearopt.explain(changed(EXAMPLE, edit, *edits, loose, drop=drop))
-    assert explained.result.status == "infeasible" and explained.conflict == ()
-    assert words in explained.message
+PLAIN = [("lightest",), ("tolerances",), ("budget",), ("cost",)]
+
+
+def possible(scene):
+    return gearopt.solve(choice.train_problem(scene.choice())).status == "optimal"
+
+
+@pytest.mark.slow
+def test_a_box_that_no_train_fits_is_told_with_the_smallest_one():
+    edits = (*FEW, (("space", "width"), "40 mm"))
+    scene = changed(EXAMPLE, *edits, drop=[*PLAIN, ("stiffness",)])
+    result = gearopt.solve(scene)
+    assert result.status == "infeasible" and "fits the box" in result.message
+    found = result.report["ways_out"]
+    there, too_small = re.findall(r"([\d.]+) mm x ([\d.]+) mm", found["message"])
+    assert float(too_small[0]) == pytest.approx(float(there[0]), rel=1e-3)
+    for sides, fits in ((there, True), (too_small, False)):
+        width, height = (f"{side} mm" for side in sides)
+        edits = (*FEW, (("space", "width"), width), (("space", "height"), height))
+        assert possible(changed(EXAMPLE, *edits, drop=[*PLAIN, ("stiffness",)])) == fits
+    (way,) = (w for w in found["remedies"] if w["what"] == "space.width")
+    write = way["changes"][0]["write"].strip('"')
+    assert len(write.split()[0]) <= 3 and way["bound"] < way["factor"] < 1.011 * way["bound"]
+    edits = (*FEW, (("space", "width"), write))
+    assert possible(changed(EXAMPLE, *edits, drop=[*PLAIN, ("stiffness",)]))
+
+
+def test_a_frequency_that_no_train_has_is_told_with_the_highest_one():
+    drop, asked = [*PLAIN, ("space",)], (("stiffness", "frequency"), "5 kHz")
+    (words,) = reached(changed(EXAMPLE, *FEW, asked, drop=drop), Clock())
+    highest = float(re.search(r", ([\d.]+) Hz", words)[1])
+    for factor, there in ((1.0 - 1e-4, True), (1.0 + 1e-4, False)):
+        asked = (("stiffness", "frequency"), f"{highest * factor:.8g} Hz")
+        assert possible(changed(EXAMPLE, *FEW, asked, drop=drop)) == there
+
+
+@pytest.mark.slow
+def test_the_highest_frequency_is_proposed():
+    drop, asked = [*PLAIN, ("space",)], (("stiffness", "frequency"), "5 kHz")
+    result = gearopt.solve(changed(EXAMPLE, *FEW, asked, drop=drop))
+    assert result.status == "infeasible" and "stiffness that is required" in result.message
+    found = result.report["ways_out"]
+    least, highest = found["remedies"][0], float(re.search(r", ([\d.]+) Hz", found["message"])[1])
+    assert least["what"] == "stiffness.frequency" and least["kind"] == "least"
+    assert float(least["changes"][0]["write"].strip('"').split()[0]) <= highest
+
+
+@pytest.mark.slow
+def test_every_number_that_helps_alone_is_least_and_a_module_is_added():
+    """Tip diameters, bore, teeth and modules: what is proposed is possible, a little less not."""
+    tips = (("train", "wheel_tip_diameters"), ["80 mm", "84 mm"])
+    explained = gearopt.explain(changed(text("gimbal_light"), tips))
+    ways = {way.what: way for way in explained.remedies}
+    assert {"accuracy.error", "train.wheel_tip_diameters[2]"} <= ways.keys()
+    for way in explained.remedies:
+        assert way.verified["with"] == "optimal"
+        assert way.verified.get("with_less", "infeasible") == "infeasible"
+    few = (("train", "modules"), ["1.25 mm"])
+    explained = gearopt.explain(changed(text("gimbal_light"), few))
+    assert any(way.what == "train.modules" for way in explained.remedies)
 
 
 def test_the_reason_of_an_impossible_duty_is_told_once(tmp_path):

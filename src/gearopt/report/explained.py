@@ -167,7 +167,9 @@ def _less(ways: Sequence[Mapping[str, Any]]) -> str:
         return "; whether less suffices is not known" if any(map(_doubtful, moved)) else ""
     doubtful += [w["changes"][0]["key"] for w in ways if w["verified"].get("nearer") == "undecided"]
     but = f" (not known of {', '.join(doubtful)})" if doubtful else ""
-    return f", and none with 0.1 % (or one tooth or module) less{but}"
+    short = [way["verified"]["rounded"] for way in moved if "rounded" in way["verified"]]
+    rounded = f", before they were rounded {short[0]}" if short else ""
+    return f", and none with 0.1 % (or one tooth or module) less{rounded}{but}"
 
 
 def _doubtful(way: Mapping[str, Any]) -> bool:

@@ -100,6 +100,8 @@ def promised(s, goal, spring, i, z1, z2):
     m1 = s.module[i]
     if least_d4(s, m1, z1, z2, least_d3(s)) > s.tip:
         return math.inf
+    if s.load[z1] > s.high * z1 * m1**2 * ALLOWANCE:
+        return math.inf
     if spring[4] > 0.0 and least_compliance(s, spring, m1, z1, z2) * spring[4] > ALLOWANCE:
         return math.inf
     if goal > 2:
@@ -193,7 +195,11 @@ def enter(s, goal, kept, work, limit):
 def module_parts(s, kept, work, i, z1, z2, j):
     """Which parts are open with a module of the second stage, and the steps to know it."""
     m1, m2 = s.module[i], s.module[j]
+    if s.bored[j] > s.pinion[1]:
+        return 0, 1
     d3, largest = m2 * s.bored[j], m2 * s.wheel_2[j]
+    if s.load[s.bored[j] : s.pinion[1] + 1].min() > largest * m2 * ALLOWANCE:
+        return 0, 1
     if not kept.boxed:
         return EVERY if least_d4(s, m1, z1, z2, d3) <= largest else 0, 1
     first_sizes(kept, m1, z1, z2)

@@ -38,7 +38,8 @@ class Remedy:
     product or common factor, as written (infinite where a number is shifted). bound: a smaller one
     is proven impossible (None: not proven). verified: status with the edits, and with each taken
     back by 0.1 %, one tooth or one module ({"with": ..., "with_less": ...}); "nearer": of ratios
-    nearer to the one asked for; "others": what all other single numbers need.
+    nearer to the one asked for; "others": what all other single numbers need; "rounded": how far
+    numbers were rounded to the easy side, after they were taken back.
     """
 
     kind: str

@@ -13,6 +13,7 @@ from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.explanation import Change, Remedies, Remedy
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import solve, solve_within
+from gearopt.scenes.servo.alone import alone, reached
 from gearopt.scenes.servo.scene import Scene
 from gearopt.scenes.servo.tables.mesh import WORDS, Mesh
 from gearopt.scenes.servo.train_part import errors, of_point
@@ -23,6 +24,7 @@ ROOM = 1e-9  # by which a proposal is easier, to be feasible in doubles
 BACK = 1e-3  # a remedy that much smaller must be impossible
 LOOSE = "90 deg"  # an error that no train misses
 LATE = "the budget ended before the cause was known"
+PATIENCE = 20.0, 5.0  # seconds, for numbers that help alone; where a duty chooses
 NAMED = 3  # sources of error that the message names
 WHOLE = (
     "real-valued teeth and modules meet all other limits, whole teeth and the modules of the list "
@@ -49,8 +51,31 @@ PLACES: tuple[Place, ...] = (
 def remedies(scene: Scene, clock: Clock, message: str = NO_TEETH) -> Remedies:
     """Return the conflict of a train that is impossible, and what to write instead.
 
-    message: of the search.
+    message: of the search. Numbers that help alone are looked for at most PATIENCE.
     """
+    found = _cause(scene, clock, message)
+    if clock.over:
+        return found
+    assert scene.train is not None
+    patience = PATIENCE[bool(GOALS[scene.train.goal].motion)]
+    budget = replace(clock.left, seconds=clock.within(patience))
+    within = Clock(budget, clock.watch)
+    known = frozenset(change.key for way in found.remedies for change in way.changes)
+    more = alone(scene, within, known)
+    if found.conflict:  # their bound is of whole teeth
+        more = tuple(replace(way, bound=None) for way in more)
+    elif found.remedies == () and more and more[0].kind == "alone":
+        tried = "not all known" if within.over else "need more"
+        least = replace(more[0], kind="least", verified={**more[0].verified, "others": tried})
+        more = (least, *more[1:])
+    words = found.message
+    if within.over:
+        words += "; not all numbers of the file were tried" if words else ""
+    return replace(found, remedies=(*found.remedies, *more), message=words)
+
+
+def _cause(scene: Scene, clock: Clock, message: str) -> Remedies:
+    """Return the conflict of an impossible train, and what is proposed by its cause."""
     asked = scene.accuracy.error
     assert scene.train is not None
     if GOALS[scene.train.goal].motion:
@@ -102,11 +127,19 @@ def _other(scene: Scene, message: str, clock: Clock) -> Remedies:
         why = "real-valued teeth and modules do not meet all other limits either"
         return Remedies(names, message=why)
     if message != NO_TEETH:  # it names the box, or the stiffness
-        return Remedies(message=message)
+        return Remedies(message=_reached(scene, clock) or message)
     if (other := impossible.with_wider_ratio(train, clock)) is not None:
         own, ends = (_span(scene, one) for one in (train, other))
         return Remedies(message=f"no whole teeth make the ratio {own}; {ends} some do")
     return Remedies(message=LATE if clock.over else WHOLE)
+
+
+def _reached(scene: Scene, clock: Clock) -> str:
+    """Return how stiff a train can be and how small its box, as far as time allows."""
+    try:
+        return "; ".join(reached(scene, clock))
+    except TimeoutError:
+        return ""
 
 
 def _span(scene: Scene, train: split.ServoTrain) -> str:

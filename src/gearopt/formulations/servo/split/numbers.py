@@ -1,13 +1,14 @@
 """A servo train as its kernels read it: limits as whole numbers of teeth."""
 
 import math
+from fractions import Fraction
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from gearopt.formulations.servo.ratio.duty import ServoDuty
 from gearopt.formulations.servo.servo_design import GOALS, MOTIONS
-from gearopt.formulations.servo.split.bodies import TIP, minimum_teeth
+from gearopt.formulations.servo.split.bodies import LARGEST, TIP, minimum_teeth
 from gearopt.formulations.servo.split.servo_train import ServoTrain
 from gearopt.formulations.strength.lewis import LEWIS
 from gearopt.optimise.terms import Array
@@ -85,13 +86,12 @@ def numbers(train: ServoTrain, moved: bool = False) -> Numbers:
     if moved and train.duty is not None and train.duty.max_ratio is not None:
         high = min(high, train.duty.max_ratio)
     most, width, density = train.pinion_teeth[1], train.face_width, train.density
-    products = range(most**2 + 1)
     known = np.maximum(np.arange(most + 1, dtype=float), train.pinion_teeth[0])
     pinions = GearPair.of_teeth(1.0, known, known, width)
     thick, long = train.shaft or (0.0, 0.0)
     return Numbers(
-        least=np.array([-(-low.numerator * p // low.denominator) for p in products], np.int64),
-        most=np.array([high.numerator * p // high.denominator for p in products], np.int64),
+        least=-_floors(-low, most**2),
+        most=_floors(high, most**2),
         pinion=np.array(train.pinion_teeth, np.int64),
         **_teeth(train),
         module=np.array([float(m) for m in train.modules]),
@@ -108,6 +108,14 @@ def numbers(train: ServoTrain, moved: bool = False) -> Numbers:
         sector=float(train.sector),
         duty=duty_numbers(train.duty),
     )
+
+
+def _floors(ratio: Fraction, most: int) -> Any:
+    """Return the whole part of a ratio times 0, 1 ... most, exactly."""
+    above, below = ratio.numerator, ratio.denominator
+    if max(abs(above) * most, below) < LARGEST:
+        return above * np.arange(most + 1) // below
+    return np.array([above * p // below for p in range(most + 1)], np.int64)
 
 
 def _teeth(train: ServoTrain) -> dict[str, Any]:
