@@ -28,6 +28,7 @@ from gearopt.optimise.comparing.compare import EVALUATIONS, SEEDS, Progress
 from gearopt.optimise.comparing.compare import SECONDS as EACH
 from gearopt.optimise.result import Budget
 from gearopt.report.command import SECONDS, TOP_ON_PAGE
+from gearopt.report.measures import METRIC
 
 
 @app.command(rich_help_panel=FIRST)
@@ -81,7 +82,7 @@ def solve(
     _refuse({"top": (top, 1), "seed": (seed, 0)}, idle)
     if top is None:
         top = TOP_ON_PAGE if full and "top" not in idle else 1
-    with watching(seconds, quiet=as_json) as watch:
+    with watching(seconds, quiet=as_json, measures=files.measures) as watch:
         result = solve_file(
             file,
             method=method,
@@ -111,12 +112,16 @@ def _refuse(given: Mapping[str, tuple[int | None, int]], idle: Mapping[str, str]
 def explain(
     file: File,
     seconds: Annotated[float, typer.Option(min=0.0, help="Stop after this time.")] = 60.0,
+    units: Units = "metric",
     as_json: Json = False,
 ) -> None:
     """Show sensitivities to each number of a file; of an impossible one, what to write instead."""
     from gearopt.api import explain as explain_file
 
-    with watching(seconds, quiet=as_json) as watch:
+    measures = checked(None, None, units, file).measures
+    if as_json and measures is not METRIC:
+        raise GearoptError(f"--units {units} changes nothing of --json, which names its units")
+    with watching(seconds, quiet=as_json, measures=measures) as watch:
         found = explain_file(file, budget=Budget(seconds), watch=watch)
     if as_json:
         print_whole(found.to_json())
@@ -124,11 +129,11 @@ def explain(
         from gearopt.report.shown import answered
         from gearopt.report.terminal import show as show_result
 
-        show_result(answered(found), console())
+        show_result(answered(found), console(), measures)
     else:
         from gearopt.report.terminal import show_explanation
 
-        show_explanation(found, console())
+        show_explanation(found, console(), measures)
     raise typer.Exit(exit_code(found.result))
 
 

@@ -15,6 +15,7 @@ from rich.console import Console
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Event, Watch
 from gearopt.optimise.scale import gap
+from gearopt.report.measures import METRIC, Measures
 
 PATIENCE = 0.5  # seconds of a run without a line about it
 PAUSE = 0.2  # seconds between one line and the next
@@ -23,9 +24,13 @@ SHOW_CURSOR = b"\r\x1b[K\x1b[?25h"  # and clear the line of the progress that hi
 
 
 @contextmanager
-def watching(seconds: float, quiet: bool) -> Iterator[Watch]:
+def watching(seconds: float, quiet: bool, measures: Measures = METRIC) -> Iterator[Watch]:
     """Yield a watcher of one run that ends it at Ctrl-C and shows long work."""
-    with following(progress, quiet, seconds) as watch:
+
+    def words(event: Event) -> str:
+        return progress(event, measures)
+
+    with following(words, quiet, seconds) as watch:
         yield watch
 
 
@@ -132,20 +137,20 @@ class _Line:
         return f"{now:.0f}{of} s  {self.words}"
 
 
-def progress(event: Event) -> str:
+def progress(event: Event, measures: Measures = METRIC) -> str:
     """Return the part of a run, its best value, bound and gap, and the evaluations spent."""
     spent = [f"{event.evaluations:,} evaluations"] if event.evaluations else []
-    return ": ".join(filter(None, (event.part, ", ".join([*reached(event), *spent]))))
+    return ": ".join(filter(None, (event.part, ", ".join([*reached(event, measures), *spent]))))
 
 
-def reached(event: Event) -> list[str]:
+def reached(event: Event, measures: Measures = METRIC) -> list[str]:
     """Return the best value, the bound and the gap of an event in words."""
     from gearopt.report.words import amount
 
     unit, best, bound = event.unit, event.best, event.bound
-    words = [] if best is None else [f"best {amount(best, unit)}"]
+    words = [] if best is None else [f"best {amount(best, unit, measures)}"]
     if bound is None:
         return words
-    words.append(f"bound {amount(bound, unit)}")
+    words.append(f"bound {amount(bound, unit, measures)}")
     away = math.inf if best is None else gap(best, bound)
     return [*words, f"gap {100.0 * away:.2g} %"] if math.isfinite(away) else words

@@ -66,8 +66,8 @@ def summary(result: Result, measures: Measures) -> Section | None:
     words = [*leading(result), *_notes(result)]
     certain = [*bound_words(result, measures), *proof(result, measures), _effort(result)]
     ends = "\n".join([*certain[:-1], *_notes(result), certain[-1]])
-    shown = tiles or words
-    return Section("Result" if shown else "", tiles, words, terminal=(ends,))
+    shown, said = tiles or words, list(map(measures.words, words))
+    return Section("Result" if shown else "", tiles, said, terminal=(measures.words(ends),))
 
 
 def _tiles(result: Result, measures: Measures) -> list[Tile]:
@@ -184,7 +184,7 @@ def proven(result: Result, measures: Measures) -> Section:
     tables = [Table("proof", heads, rows, csv_only=told)]
     if checks := _checks(result):
         tables.append(checks)
-    words = [meaning(result), *proof(result, measures)]
+    words = [meaning(result), *map(measures.words, proof(result, measures))]
     if arithmetic := result.proof.get("arithmetic"):
         words.append(f"Arithmetic: {arithmetic}.")
     return Section("What is proven, and how", words=words, tables=tables, half=len(parts) < 3)
@@ -234,7 +234,7 @@ def _checks(result: Result) -> Table | None:
 
 def assumptions(result: Result, measures: Measures) -> Section | None:
     """Return the assumptions beside the file; None where the kind reports none."""
-    words = result.report.get("assumptions") or []
+    words = list(map(measures.words, result.report.get("assumptions") or []))
     return Section("Assumptions and unverified data", words=words, half=True) if words else None
 
 

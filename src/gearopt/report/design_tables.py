@@ -6,12 +6,12 @@ from typing import Any
 
 from gearopt.formulations.strength import laws
 from gearopt.optimise.result import Result
-from gearopt.report.measures import INCH, Measures, diametral_pitch
+from gearopt.report.measures import Measures
 from gearopt.report.section import Cell, Section, Table, Tile, cell, percent
-from gearopt.report.words import EXACT, MODULE, heading, number, objective, parted
+from gearopt.report.words import EXACT, MODULE, heading, is_module, number, objective, parted
 
-STAGE_ROWS = {  # what a key is called, and its unit (modules are metric in any system)
-    "normal_module_mm": ("module m_n [mm]", ""),
+STAGE_ROWS = {  # what a key is called, and its unit
+    MODULE: ("", ""),  # see `Measures.module`
     "pinion_teeth": ("teeth z1", ""),
     "wheel_teeth": ("teeth z2", ""),
     "ratio": ("ratio u", ""),
@@ -41,9 +41,17 @@ PAGE_ONLY = {
     *("transverse_contact_ratio", "overlap_ratio", "pitch_line_velocity_m_per_s"),
     *("pinion_mass_kg", "wheel_mass_kg", "mass_kg"),
 }
-TEETH = "m_n, z1/z2"  # of every stage, for reading
-TRAIN = ("m_n", "z1", "z2", "a")  # of one stage, each in a column of the CSV
 LISTED = {"between": ("from", "to")}  # lists of as many values: what each is called
+
+
+def teeth_head(measures: Measures) -> str:
+    """Return the head of a column of modules and teeth, for reading."""
+    return f"{measures.module[1]}, z1/z2"
+
+
+def teeth_heads(measures: Measures) -> tuple[str, str, str]:
+    """Return the heads of the same each in a column, in the CSV."""
+    return measures.module[1], "z1", "z2"
 
 
 def tables(result: Result, measures: Measures) -> Section | None:
@@ -70,6 +78,10 @@ def stage_table(
     for key, (words, unit) in STAGE_ROWS.items():
         if not all(key in s for s in stages):
             continue
+        if key == MODULE:
+            label = "{} {} [{}]".format(*measures.module)
+            found.append([label, *(measures.of_module(s[key]) for s in stages)])
+            continue
         label = f"{words} [{measures.unit(unit)}]" if unit else words
         found.append([label, *(cell(s[key], unit, measures) for s in stages)])
         if key in page_only:
@@ -77,9 +89,6 @@ def stage_table(
         if key == VOLUME and len(stages) > 1:
             whole = sum(s[key] for s in stages)
             found.append([SHARE, *(percent(s[key] / whole) for s in stages)])
-        if key == MODULE and measures is INCH:
-            pitches = [diametral_pitch(s[key]) for s in stages]
-            found.append(["diametral pitch P_nd [1/in]", *pitches])
     return Table("stages", heads, found, page_only=[*hidden, SHARE], across=True)
 
 
@@ -102,18 +111,20 @@ def trains(result: Result, measures: Measures) -> Section | None:
         f"centre distances\n{length}",
     )
     names = {head.replace("\n", " "): head for head in (goal, centres)}
-    single = [f"{words} {k}" for k in range(1, stages + 1) for words in TRAIN]
+    single = [
+        f"{words} {k}" for k in range(1, stages + 1) for words in (*teeth_heads(measures), "a")
+    ]
     single = [f"{h} [{length}]" if h[0] == "a" else h for h in single]
     rows = [_train_row(k, train, minimum, unit, measures) for k, train in enumerate(found, 1)]
     first, last = names
-    heads = ("", first, "above the best, %", "ratio", TEETH, last, *single)
+    heads = ("", first, "above the best, %", "ratio", teeth_head(measures), last, *single)
     table = Table(
         "best trains",
         heads,
         rows,
         page_only=("above the best, %",),
         csv_only=single,
-        read_only=(TEETH, last),
+        read_only=(teeth_head(measures), last),
         short=names,
         left=6,
         wrap=6,
@@ -132,13 +143,10 @@ def _train_row(
     rank: int, train: Mapping[str, Any], minimum: float, unit: str, measures: Measures
 ) -> list[Any]:
     stages, extra = train["stages"], 100.0 * (train["objective"] / minimum - 1.0)
-    teeth = "  ".join(f"{s[MODULE]:g}, {s['pinion_teeth']}/{s['wheel_teeth']}" for s in stages)
+    gears = [(measures.of_module(s[MODULE]), s["pinion_teeth"], s["wheel_teeth"]) for s in stages]
+    teeth = "  ".join(f"{m:g}, {a}/{b}" for m, a, b in gears)
     sizes = [cell(s["centre_distance_mm"], "mm", measures) for s in stages]
-    single = [
-        value
-        for s, size in zip(stages, sizes, strict=True)
-        for value in (s[MODULE], s["pinion_teeth"], s["wheel_teeth"], size)
-    ]
+    single = [value for gear, size in zip(gears, sizes, strict=True) for value in (*gear, size)]
     return [
         rank,
         cell(train["objective"], unit, measures),
@@ -190,6 +198,8 @@ def _cells(key: str, value: Any, measures: Measures) -> list[Cell]:
     """Return a value of a design in the unit that is shown, or each of several."""
     unit = parted(key, measures)[1]
     values = value if isinstance(value, list | tuple) else [value]
+    if is_module(key):
+        values = list(map(measures.of_module, values))
     return [cell(_joined(v), unit, measures) for v in values]
 
 

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from gearopt.optimise.result import Result
-from gearopt.report.measures import DIGITS, Measures, rounded
+from gearopt.report.measures import DIGITS, METRIC, Measures, rounded
 from gearopt.report.section import Cell, Section, Table
 from gearopt.report.words import edit, grouped, objective, sentence, series_of
 
@@ -35,10 +35,10 @@ REMEDY_HEADS = (
 def sensitivities(result: Result, measures: Measures) -> Section | None:
     """Return the sensitivities of the file's numbers; None if they are not asked for."""
     found = result.report.get("prices")
-    return of_influences(found, result) if found and result.value is not None else None
+    return of_influences(found, result, measures) if found and result.value is not None else None
 
 
-def of_influences(found: Mapping[str, Any], result: Result) -> Section:
+def of_influences(found: Mapping[str, Any], result: Result, measures: Measures = METRIC) -> Section:
     """Return the effect of every number on the objective, and what the columns mean.
 
     found: influences, message and basis, see `optimise.explaining.explanation`.
@@ -47,7 +47,8 @@ def of_influences(found: Mapping[str, Any], result: Result) -> Section:
     table = Table(
         "sensitivities", HEADS, rows, page_only=PAGE_ONLY, terminal_only=TERMINAL_ONLY, wrap=0
     )
-    words, tables = influence_words(found, result), (table,) if rows else ()
+    words = list(map(measures.words, influence_words(found, result)))
+    tables = (table,) if rows else ()
     terminal = (*tables, "\n".join(words))
     return Section("Sensitivities", words=words, tables=tables, half=True, terminal=terminal)
 
@@ -127,6 +128,7 @@ def remedies(result: Result, measures: Measures) -> Section | None:
     if not rows and not found["conflict"] and found["message"] in result.message:
         return None  # the first sentence says it
     tables = [Table("remedies", REMEDY_HEADS, rows, words=True, left=3)] if rows else []
+    sure = measures.words(sure)
     return Section("Remedies", words=[sure], tables=tables, terminal=[*tables, sure])
 
 

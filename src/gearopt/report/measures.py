@@ -5,9 +5,11 @@ is shown. Factors are those of `gearopt.units`, exact by definition of the inch 
 """
 
 import math
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Decimal
+from typing import Any
 
 from gearopt.units import UNITS
 
@@ -82,6 +84,36 @@ class Measures:
         """Return a value of the result in the unit that is shown."""
         factor = self.units.get(suffix, ("", 1.0))[1]
         return value if factor == 1.0 else value * factor
+
+    @property
+    def module(self) -> tuple[str, str, str]:
+        """Return what stands for a normal module: its name, its sign, its unit."""
+        inch = self.unit("mm") == "in"
+        return ("diametral pitch", "P_nd", "1/in") if inch else ("module", "m_n", "mm")
+
+    def of_module(self, module: Any) -> Any:
+        """Return a normal module [mm] as it is shown: itself, or P_nd = 25.4/m_n [1/in].
+
+        A pitch is rounded to 12 digits: 25.4/(25.4/12) is 12.
+        """
+        if self.module[1] == "m_n" or not isinstance(module, int | float) or not module:
+            return module
+        return float(f"{_INCH / module:.12g}")
+
+    def words(self, text: str) -> str:
+        """Return a sentence with its metric quantities in these units: "3.2 mm" as "0.126 in"."""
+        return text if self.name == "metric" else _METRIC.sub(self._converted, text)
+
+    def _converted(self, found: re.Match[str]) -> str:
+        text, unit = found.groups()
+        value, shown = float(text.replace(",", "")), "lb/in³"
+        if unit in _DENSITIES:
+            value *= self.of(1.0, "kg") / self.of(1e6, "mm3")
+        else:
+            suffix, power = _SUFFIXES[unit]
+            value, shown = self.of(value * power, suffix), self.unit(suffix)
+        digits = len(re.sub(r"e.*|[^0-9]", "", text).lstrip("0"))
+        return f"{rounded(value, max(3, digits))} {shown}"
 
     def length(self, value: float, digits: int = 2) -> str:
         """Return a length [mm] with so many decimals, for drawings."""
@@ -162,8 +194,15 @@ INCH = Measures(
     digits=1,
 )
 SYSTEMS = {m.name: m for m in (METRIC, INCH)}
-
-
-def diametral_pitch(module: float) -> float:
-    """Return the normal diametral pitch [1/in] of a normal module [mm]: 25.4/m_n."""
-    return _INCH / module
+_SUFFIXES = {  # a unit in a sentence: what a key calls it, and how many of that it is
+    **{"mm": ("mm", 1.0), "µm": ("mm", 1e-3), "m": ("mm", 1e3)},
+    **{"mm²": ("mm2", 1.0), "mm^2": ("mm2", 1.0), "cm²": ("mm2", 1e2), "m²": ("mm2", 1e6)},
+    **{"mm³": ("mm3", 1.0), "mm^3": ("mm3", 1.0), "cm³": ("mm3", 1e3), "dm³": ("mm3", 1e6)},
+    **{"m³": ("mm3", 1e9), "MPa": ("MPa", 1.0), "N m": ("Nm", 1.0), "kg": ("kg", 1.0)},
+}
+_DENSITIES = ("kg/dm³", "kg/dm^3", "g/cm³", "g/cm^3")  # kg in 1e6 mm3
+_SIGNS = sorted((*_SUFFIXES, *_DENSITIES), key=len, reverse=True)
+_METRIC = re.compile(
+    r"(?<![\w.])(-?[0-9][0-9,]*(?:\.[0-9]+)?(?:e[+-]?[0-9]+)?)[ \u00a0]"
+    rf"({'|'.join(map(re.escape, _SIGNS))})(?![\w/²³^])"
+)

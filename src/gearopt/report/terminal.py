@@ -55,25 +55,27 @@ def show(result: Result, console: Console, measures: Measures = METRIC) -> None:
     known = "" if value is None or "achieved" in result.report else amount(value, unit, measures)
     reached = f"{name} {known}, " if known else ""
     console.print(Text.assemble((title(result), "bold"), f": {reached}", (words, f"bold {colour}")))
-    console.print(Text(decided(result)))
-    _print(leading(result), console)
+    console.print(Text(measures.words(decided(result))))
+    _print(list(map(measures.words, leading(result))), console)
     for make in kind_of(result).terminal:
         if (section := make(result, measures)) is not None:
             _print(section.terminal, console)
 
 
-def show_explanation(explanation: Explanation, console: Console) -> None:
+def show_explanation(
+    explanation: Explanation, console: Console, measures: Measures = METRIC
+) -> None:
     """Print the explanation of a possible request (an impossible one is shown by its result)."""
     result = explanation.result
     name, unit, reached, _, _ = goal(result)
     words, colour = VERDICTS[result.status]
-    value = amount(reached, unit)
+    value = amount(reached, unit, measures)
     console.print(
         Text.assemble((title(result), "bold"), f": {name} {value}, ", (words, f"bold {colour}"))
     )
     full = ", ".join(limit_words(n) for n in explanation.binding)
     console.print(Text(f"Limits reached: {full}." if full else "No limit is reached."))
-    _print(of_influences(explanation.prices, result).terminal, console)
+    _print(of_influences(explanation.prices, result, measures).terminal, console)
 
 
 def _print(blocks: Sequence[str | Text | Table], console: Console) -> None:

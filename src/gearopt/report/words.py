@@ -11,6 +11,7 @@ from gearopt.report.measures import DIGITS, METRIC, Measures, rounded
 
 REACHED = 1e-6  # nearer to a limit than that, it is reached
 MODULE = "normal_module_mm"
+_MODULES = "module_mm"  # how keys of modules end
 VERDICTS = {
     "optimal": ("proven optimal", "green"),
     "stationary": ("locally optimal (no bound)", "yellow"),
@@ -86,10 +87,16 @@ def heading(key: str, measures: Measures = METRIC) -> str:
     return f"{words} [{measures.unit(suffix)}]" if suffix else words
 
 
+def is_module(key: str) -> bool:
+    """Return whether a key holds normal modules [mm], shown as diametral pitches in inches."""
+    return key.endswith(_MODULES)
+
+
 def parted(key: str, measures: Measures = METRIC) -> tuple[str, str]:
     """Return name and unit of a key: `face_width_mm` is ("face_width", "mm")."""
-    if key == MODULE:  # of a metric series, in any system
-        return "normal_module [mm]", ""
+    if is_module(key):
+        name, _, unit = measures.module
+        return f"{key.removesuffix(_MODULES)}{name} [{unit}]", ""
     units = [unit for unit in measures.units if key.endswith(f"_{unit}")]
     unit = max(units, key=len, default="")
     return (key.removesuffix(f"_{unit}"), unit) if unit else (key, "")
@@ -98,6 +105,12 @@ def parted(key: str, measures: Measures = METRIC) -> tuple[str, str]:
 def amount(value: Any, unit: str, measures: Measures = METRIC) -> str:
     """Return a number of a result with its unit, for reading."""
     return measures.amount(value, unit)
+
+
+def module_words(module: float, measures: Measures) -> str:
+    """Return a normal module [mm] as drawings name it: "m_n 2 mm", "P_nd 10 1/in"."""
+    _, sign, unit = measures.module
+    return f"{sign} {measures.of_module(module):g} {unit}"
 
 
 def share(used: float) -> str:

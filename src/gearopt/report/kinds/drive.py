@@ -9,7 +9,7 @@ from gearopt.formulations.layout.layout_design import LayoutDesign
 from gearopt.optimise.result import Result
 from gearopt.report.answer import limits
 from gearopt.report.deciding import of_limits
-from gearopt.report.design_tables import TEETH, ratio_tile, tables, trains
+from gearopt.report.design_tables import ratio_tile, tables, teeth_head, teeth_heads, trains
 from gearopt.report.kinds import Kind
 from gearopt.report.kinds.generic import ASKED, FIRST, LAST, TOLD
 from gearopt.report.measures import Measures, gap_percent, rounded
@@ -48,8 +48,7 @@ STAGED = {  # tables of a layout: keys that the table of stages or the box shows
     "gaps": ("axes_mm",),
     "obstacles": ("from_mm", "to_mm"),
 }
-SINGLE = {MODULE: "m_n", "pinion_teeth": "z1", "wheel_teeth": "z2"}  # in the CSV, for TEETH
-OF_STAGE = SINGLE | {"ratio": "ratio u", "centre_distance_mm": "a", "face_width_mm": "b"}
+OF_STAGE = {"ratio": "ratio u", "centre_distance_mm": "a", "face_width_mm": "b"}
 OF_DRIVE = ("ratio", "ratio_error_percent", "gear_volume_mm3")
 
 
@@ -144,8 +143,8 @@ def processes(result: Result, measures: Measures) -> Section | None:
         "processes and optimum",
         heads,
         rows,
-        csv_only=[*_labels(stages, *SINGLE.values()), best.method],
-        read_only=_labels(stages, TEETH),
+        csv_only=[*_labels(stages, *teeth_heads(measures)), best.method],
+        read_only=_labels(stages, teeth_head(measures)),
     )
     shown: list[str | Table] = [table, *missing] if result.value is not None else []
     names = ["optimum" if best.method == "exact" else best.method, *heads[2:]]
@@ -160,11 +159,13 @@ def _stages(designs: Sequence[Result], measures: Measures) -> list[list[Any]]:
     rows: list[list[Any]] = []
     for k in range(len(designs[0].design["stages"])):
         stages = [one.design["stages"][k] for one in designs]
-        teeth = [
-            f"{number(s[MODULE])}, {number(s['pinion_teeth'])}/{number(s['wheel_teeth'])}"
-            for s in stages
+        gears = [
+            (measures.of_module(s[MODULE]), s["pinion_teeth"], s["wheel_teeth"]) for s in stages
         ]
-        rows.append([f"stage {k + 1}: {TEETH}", *teeth])
+        teeth = [f"{number(m)}, {number(a)}/{number(b)}" for m, a, b in gears]
+        rows.append([f"stage {k + 1}: {teeth_head(measures)}", *teeth])
+        for label, each in zip(teeth_heads(measures), zip(*gears, strict=True), strict=True):
+            rows.append([f"stage {k + 1}: {label}", *each])
         for key, label in OF_STAGE.items():
             unit = parted(key)[1]
             sign = f" [{measures.unit(unit)}]" if unit else ""
@@ -213,17 +214,18 @@ def counts(result: Result, measures: Measures) -> Section | None:
     rows, (name, unit) = found.report["counts"], objective(found)
     sign = f"\n[{measures.unit(unit)}]" if unit else ""
     most = max(len(row["ratios"]) for row in rows)
-    single = [f"{words} {k}" for k in range(1, most + 1) for words in ("ratio", *SINGLE.values())]
+    heads: tuple[str, ...] = teeth_heads(measures)
+    single = [f"{words} {k}" for k in range(1, most + 1) for words in ("ratio", *heads)]
     long = (f"{name}{sign}", "above the best,\n%", f"bound{sign}", "gap,\n%")
     names = {head.replace("\n", " "): head for head in long}
-    read = ("ratio of each stage", TEETH)
+    read = ("ratio of each stage", teeth_head(measures))
     heads = ("stages", "status", *names, *read, "seconds", *single)
-    cells = [[*_count(row, found, measures), *_each(row, most)] for row in rows]
+    cells = [[*_count(row, found, measures), *_each(row, most, measures)] for row in rows]
     table = Table(
         "numbers of stages",
         heads,
         cells,
-        page_only=(*[*names][2:], TEETH),
+        page_only=(*[*names][2:], read[1]),
         csv_only=single,
         read_only=read,
         short=names,
@@ -255,9 +257,10 @@ def _count(row: Mapping[str, Any], best: Result, measures: Measures) -> list[Any
     ]
 
 
-def _each(row: Mapping[str, Any], most: int) -> list[Any]:
+def _each(row: Mapping[str, Any], most: int, measures: Measures) -> list[Any]:
     """Return ratios, gears and seconds of a number of stages; then each ratio and gear alone."""
-    gears = list(zip(row["ratios"], row["modules_mm"], row["teeth"], strict=True))
+    modules = map(measures.of_module, row["modules_mm"])
+    gears = list(zip(row["ratios"], modules, row["teeth"], strict=True))
     teeth = "  ".join(f"{number(m)}, {number(a)}/{number(b)}" for _, m, (a, b) in gears)
     single = [value for u, m, (a, b) in gears for value in (u, m, a, b)]
     return [

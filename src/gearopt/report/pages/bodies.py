@@ -15,6 +15,7 @@ from gearopt.formulations.layout.layout_design import (
 from gearopt.optimise.result import Result
 from gearopt.report.measures import Measures
 from gearopt.report.pages.sheet import Point
+from gearopt.report.words import module_words
 
 Corner = tuple[float, float, float]  # x, y, z
 AROUND = 0.12  # of the box's larger side: keep-outs are drawn so far beyond box and motor
@@ -118,7 +119,7 @@ def meaning(gear: GearDesign, measures: Measures) -> str:
     """Describe a gear in a line, as drawings do where the pointer rests."""
     unit = measures.unit("mm")
     return (
-        f"{gear.name}: z {gear.teeth:.6g}, m_n {gear.normal_module_mm:g} mm, "
+        f"{gear.name}: z {gear.teeth:.6g}, {module_words(gear.normal_module_mm, measures)}, "
         f"d {measures.length(gear.reference_diameter_mm)} {unit}, "
         f"d_a {measures.length(gear.tip_diameter_mm)} {unit}, "
         f"b {measures.length(gear.to_mm - gear.from_mm)} {unit}"

@@ -29,7 +29,7 @@ def page(result: Result, command: str, measures: Measures = METRIC) -> str:
     return render(
         "result.html",
         title(result),
-        opening(result),
+        measures.words(opening(result)),
         {"gearopt": result.gearopt, **result.versions},
         command,
         plots=any(section.figures for section in found),

@@ -56,11 +56,13 @@ def section(result: Result, measures: Measures, hint: str = "") -> Section | Non
     drawn = views(result.design.get("stages", ()), measures)
     if not drawn or result.design.get("layout"):
         return None
+    name, sign, one = measures.module
+    plural = f"modules {sign} in {one}" if one == "mm" else f"{name}es {sign} in {one}"
     words = (
         "All shafts are drawn in one line: their places are not optimised, and the gaps between "
         f"the stages are only as wide as the labels need.{hint}",
         f"Drawn to one scale; dimensions in {measures.lengths}: centre distances, length over "
-        "tip circles, face widths b; modules m_n in mm; teeth z. Solid lines are tip circles, "
+        f"tip circles, face widths b; {plural}; teeth z. Solid lines are tip circles, "
         "dash-dotted ones reference circles; numbers in circles are shafts, whose diameters are "
         "not known.",
     )
@@ -238,7 +240,8 @@ def _side(found: Bodies, scale: float, measures: Measures) -> Drawing:
         tops[gear.stage] = max(top, tops.get(gear.stage, top))
     for gear in (g for g in found.gears if g.member == "wheel"):
         x = sheet.at(0.5 * (gear.from_mm + gear.to_mm), 0.0)[0]
-        sheet.label(f"m_n {number(gear.normal_module_mm)}", [Place(x, LEVEL - 24.0)], "size")
+        module = measures.of_module(gear.normal_module_mm)
+        sheet.label(f"{measures.module[1]} {number(module)}", [Place(x, LEVEL - 24.0)], "size")
     face_widths(sheet, found, tops, measures)
     for shaft in shafts:
         x, y = sheet.at(shaft.to_mm, shaft.y_mm)

@@ -99,7 +99,7 @@ def best(result: Result, measures: Measures) -> Section | None:
     keys = [goal.key for goal in _known(trains[0])]
     heads = ["best", "teeth", *(heading(key, measures) for key in keys)]
     rows = [
-        [t.best_of, teeth_words(t.stages)]
+        [t.best_of, teeth_words(t.stages, measures)]
         + [cell(getattr(t, key), parted(key)[1], measures) for key in keys]
         for t in trains
     ]
@@ -116,7 +116,7 @@ def beside(result: Result, measures: Measures) -> Section | None:
     given, rows = report.given_train, _beside(design, report, measures)
     if given is None or not rows:
         return None
-    teeth = f"Given: {teeth_words(given.stages)}."
+    teeth = f"Given: {teeth_words(given.stages, measures)}."
     words = (
         teeth,
         "Real-valued bound: no train is better, even with real-valued teeth and modules.",
@@ -246,16 +246,21 @@ def _table(trains: Sequence[ListedTrain], measures: Measures) -> Table:
     """Return all points with their teeth and modules."""
     known = _known(trains[0])
     heads = [_head(goal, measures) for goal in known]
-    heads += [f"{what} of stage {k}" for k in (1, 2) for what in ("module [mm]", "z1", "z2")]
+    module = "{} [{}]".format(*measures.module[::2])
+    heads += [f"{what} of stage {k}" for k in (1, 2) for what in (module, "z1", "z2")]
     rows = [
         [
             *(measures.of(getattr(t, goal.key), parted(goal.key)[1]) for goal in known),
-            *(getattr(s, k) for s in t.stages for k in STAGE),
+            *(v for s in t.stages for v in _gears(s, measures)),
             t.best_of,
         ]
         for t in trains
     ]
     return Table("trains", [*heads, "best"], rows, folded=True)
+
+
+def _gears(stage: Teeth, measures: Measures) -> tuple[float, int, int]:
+    return measures.of_module(stage.normal_module_mm), stage.pinion_teeth, stage.wheel_teeth
 
 
 def _head(goal: Goal, measures: Measures) -> str:
@@ -307,7 +312,7 @@ def _points(
 
 def _told(train: ListedTrain, measures: Measures) -> str:
     """Return a train in lines: teeth and modules, then what it is worth."""
-    lines = teeth_words(train.stages).split("; ")
+    lines = teeth_words(train.stages, measures).split("; ")
     for goal in _known(train):
         value, unit = getattr(train, goal.key), parted(goal.key)[1]
         shown = degrees(value) if goal.name == "error" else amount(value, unit, measures)

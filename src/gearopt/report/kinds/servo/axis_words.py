@@ -6,7 +6,8 @@ from typing import Any
 from gearopt.formulations.servo.servo_design import ServoDesign, ServoReport, Teeth
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import typed
-from gearopt.report.words import number
+from gearopt.report.measures import Measures
+from gearopt.report.words import module_words, number
 
 ARCMIN = 60.0  # a degree
 
@@ -32,10 +33,11 @@ def arc_minutes(value: float) -> str:
     return f"{number(ARCMIN * value)} arcmin"
 
 
-def teeth_words(stages: Sequence[Teeth]) -> str:
+def teeth_words(stages: Sequence[Teeth], measures: Measures) -> str:
     """Return teeth and modules of a train in a line."""
     return "; ".join(
-        f"{s.pinion_teeth}/{s.wheel_teeth}, m_n {s.normal_module_mm:g} mm" for s in stages
+        f"{s.pinion_teeth}/{s.wheel_teeth}, {module_words(s.normal_module_mm, measures)}"
+        for s in stages
     )
 
 
