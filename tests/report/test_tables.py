@@ -161,3 +161,18 @@ def test_cells():
     used = percent(1.25)
     assert (used.value, used.text, used.share) == (125.0, "125.0", 1.0)
     assert percent(None).text == ""
+
+
+SAID = {  # a sentence in mm, and in inches as pint has them
+    "It reaches 3.2 mm into it.": "It reaches 0.126 in into it.",
+    "Steel, 7.85 kg/dm³ (assumed).": "Steel, 0.284 lb/in³ (assumed).",
+    "At most 5,782,370.7 mm³ and 25.4 mm.": "At most 352.86191 in³ and 1.000 in.",
+    "Below 120 MPa; 1.5 N m, 10 kg.": "Below 17,405 psi; 13.3 lbf in, 22.0 lb.",
+    "A 22 mm2 thing, 3 mmol, m_n2 mm": "A 22 mm2 thing, 3 mmol, m_n2 mm",
+}
+
+
+@pytest.mark.parametrize("text", SAID)
+def test_sentences_are_converted(text):
+    """5782370.7/25.4^3 = 352.86191, 120 MPa = 17404.5 psi, 1.5 N m = 13.276 lbf in."""
+    assert INCH.words(text) == SAID[text] and METRIC.words(text) == text

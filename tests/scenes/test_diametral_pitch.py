@@ -1,15 +1,20 @@
 """Diametral pitches in problem files: m_n = 25.4 mm/P, exactly, and in the file's own words."""
 
+import re
+from dataclasses import replace
 from fractions import Fraction
+from pathlib import Path
 
 import pytest
 from edits import edited, scene_of
 
 import gearopt
 from gearopt import SceneError
+from gearopt.formulations.teeth.search import possible
 from gearopt.scenes.explaining.numbers import content, numbers
 from gearopt.scenes.reading.load import read
 
+PROBLEMS = Path(__file__).parents[2] / "problems"
 FILE = """
 gearopt = 1
 kind = "drive"
@@ -84,9 +89,6 @@ def test_a_wheel_that_is_as_large_as_allowed_is_allowed():
     exact = scene('["12 1/in"]', limits=limits, stage=stage).train()
     less = scene('["12 1/in"]', limits='wheel_diameter = "9.999999999 in"', stage=stage).train()
     free = {"allowable": (1e9, 1e9)}
-    from dataclasses import replace
-
-    from gearopt.formulations.teeth.search import possible
 
     def met(train):
         return possible(replace(train, stages=(replace(train.stages[0], **free),)), 2.0, None)
@@ -115,6 +117,7 @@ def test_numbers_are_named_by_their_place_in_the_file():
     assert listed["teeth.modules[1]"] == "12 1/in"
 
 
+@pytest.mark.slow
 def test_sensitivities_are_those_of_the_number_as_it_is_written():
     """A given module: +1 % of the pitch is -1 % of the module, and of its diameters."""
     stage = 'module = "{}"\npinion_teeth = 20'
@@ -148,3 +151,21 @@ def test_remedies_are_in_the_units_of_the_file(modules, limits, write):
     assert not any("mm" in c.write for r in found.remedies for c in r.changes)
     for remedy in found.remedies:
         assert gearopt.solve(edited(tables, remedy)).value is not None
+
+
+@pytest.mark.slow
+def test_an_explanation_in_inches_names_no_metric_unit(here):
+    """Of a file in inches: value, sentences and table."""
+    done = here("explain", PROBLEMS / "inch_drive.toml", "--units", "inch")
+    assert done.returncode == 0 and "gear volume 339.67 in³, proven optimal" in done.stdout
+    assert "limits.module[1]                     4 1/in" in done.stdout
+    assert not re.search(r"\bmm|MPa|\bkg\b|N m\b", done.stdout)
+
+
+def test_a_file_in_inches_is_answered_in_inches(here, tmp_path):
+    """5,566,260.9 mm3 are 339.67 in3; pitches of 16 and 8 to the inch, without a rounding error."""
+    done = here("solve", PROBLEMS / "inch_drive.toml", "--units", "inch", "--csv", tmp_path)
+    stages = (tmp_path / "stages.csv").read_text(encoding="utf-8-sig")
+    assert "diametral pitch P_nd [1/in],16.0,8.0" in stages
+    words = re.sub(r"(?m)^Tables: .*", "", done.stdout)
+    assert not re.search(r"\bmm|MPa|\bkg\b|N m\b", words), words
