@@ -166,7 +166,7 @@ def test_cells():
 SAID = {  # a sentence in mm, and in inches as pint has them
     "It reaches 3.2 mm into it.": "It reaches 0.126 in into it.",
     "Steel, 7.85 kg/dm³ (assumed).": "Steel, 0.284 lb/in³ (assumed).",
-    "At most 5,782,370.7 mm³ and 25.4 mm.": "At most 352.86191 in³ and 1.000 in.",
+    "At most 5,782,370.7 mm³ and 25.4 mm.": "At most 352.86191 in³ and 1 in.",
     "Below 120 MPa; 1.5 N m, 10 kg.": "Below 17,405 psi; 13.3 lbf in, 22.0 lb.",
     "A 22 mm2 thing, 3 mmol, m_n2 mm": "A 22 mm2 thing, 3 mmol, m_n2 mm",
 }
