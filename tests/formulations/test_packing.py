@@ -293,7 +293,7 @@ def test_held_names_what_is_fixed():
 def test_kernel_is_compiled_before_the_clock_starts(method, monkeypatch):
     """The first use on a machine compiles for seconds, which are not the search's."""
     order = []
-    monkeypatch.setattr(method, "ready", lambda: order.append("compiled"))
+    monkeypatch.setattr(method, "ready", lambda watch: order.append("compiled") or True)
     monkeypatch.setattr(method, "Clock", lambda *given: order.append("clock") or Clock(*given))
     run(packing.problem(Plan(SIX)), method.__name__.rsplit(".", 1)[-1], Budget(evaluations=10))
     assert order == ["compiled", "clock"]
@@ -308,8 +308,9 @@ def test_what_is_compiled_before_is_what_a_search_calls(plan, monkeypatch):
         seen.append(tuple(map(numba.typeof, given)))
         return compiled(*given)
 
+    spy.py_func = compiled.py_func
     monkeypatch.setattr(sa, "kernel", lambda name: SimpleNamespace(anneal=spy))
-    sa.ready.__wrapped__()
+    sa._one_disc.__wrapped__()
     assert len(seen) == 1
     run(packing.problem(plan), "sa", Budget(evaluations=100))
     run(packing.problem(plan), "hop", Budget(evaluations=100))

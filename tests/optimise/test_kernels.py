@@ -1,10 +1,14 @@
 """Compiled kernels are kept between runs, and never stale."""
 
+import gc
 import subprocess
 import sys
 import textwrap
 
+import numba
 import pytest
+
+from gearopt.optimise.kernels import COMPILING, compiled
 
 PROGRAM = """
 import sys
@@ -44,3 +48,31 @@ def test_a_changed_callee_is_compiled_again(tmp_path, monkeypatch):
     callee.write_text(njit + "def factor():\n    return 4.0\n")
     assert run() == 6.0
     assert len(list((tmp_path / "cache").iterdir())) == 2
+
+
+@numba.njit
+def half(x):
+    return 0.5 * x
+
+
+@numba.njit
+def quarter(x):
+    return half(half(x))
+
+
+def test_a_watcher_hears_of_every_function_and_may_end_the_compiling():
+    events, values = [], []
+
+    def work():
+        values.append(quarter(8.0))
+
+    def ends(event):
+        events.append(event)
+        return len(events) < 2
+
+    assert not compiled(work, (quarter,), ends) and values == []
+    assert [e.part for e in events] == [f"{COMPILING}: {k} of 2" for k in (1, 2)]
+    assert all(e.best is None and e.bound is None for e in events)
+    assert compiled(work, (quarter,), lambda event: True) and values == [2.0]
+    assert compiled(work, (quarter,), lambda event: pytest.fail("nothing is left to compile"))
+    assert gc.isenabled() and len(quarter.signatures) == len(half.signatures) == 1

@@ -347,7 +347,7 @@ def test_random_impossible_layouts_get_remedies_that_are_least(seed):
 def test_kernels_are_compiled_before_the_time_of_the_ways_out_runs(monkeypatch):
     """On a machine's first use compiling takes longer than a question may."""
     order, clock = [], ways.Clock
-    monkeypatch.setattr(layout, "ready", lambda: order.append("compiled"))
+    monkeypatch.setattr(layout, "ready", lambda watch: order.append("compiled"))
     monkeypatch.setattr(ways, "Clock", lambda *given: order.append("clock") or clock(*given))
     assert gearopt.solve(scene_of(BARE + FAR)[0], budget=Budget(1.0)).status == "infeasible"
     assert order[:2] == ["compiled", "clock"]

@@ -323,7 +323,7 @@ def solve(scene: Scene, ask: Ask) -> Result:
     problem = _problem(plan, ask.method)
     watch = in_part(ask.watch, plan.unit())
     if ask.method in (None, *problem.methods):
-        ready()
+        ready(ask.watch)
     result, outcome = run(problem, ask.method, ask.budget, ask.seed, watch, ask.gap)
     result = replace(result, objective=result.objective | {"unit": plan.unit()})
     if result.value is None or outcome.x is None:

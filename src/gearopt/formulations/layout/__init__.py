@@ -42,14 +42,11 @@ def problem(box: Gearbox, method: str | None = None) -> Problem:
     return direct(box, orders, _methods(box, orders), front=method == "nsga2")
 
 
-@cache
-def ready() -> None:
-    """Have the kernels compiled, once on a machine, before a clock runs: by a tiny gearbox."""
+def ready(watch: Watch | None = None) -> bool:
+    """Have the kernels compiled before a clock runs; False if the watcher ended that."""
     pair, shaft = GearPair.of_teeth(1.0, 6, 14, 5.0), Shaft(1.0)
     tiny = Gearbox((pair, pair), (shaft, shaft, shaft))
-    found = problem(tiny)
-    for name in ("sa", "exact"):
-        found.methods[name](found, Budget(evaluations=10), 0, None)
+    return exact.ready(chain(tiny, arrangements(tiny)), watch)
 
 
 def _counted(one: Arrangement) -> tuple[tuple[int, ...], ...]:

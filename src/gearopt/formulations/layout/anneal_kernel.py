@@ -8,7 +8,7 @@ import math
 import numpy as np
 from numba import njit
 
-from gearopt.formulations.layout.chain_kernel import ROUNDING, measured, value
+from gearopt.formulations.layout.chain_kernel import ROUNDING, ZERO, measured, value
 
 HOT, COLD = 0.03, 3e-5  # temperatures, relative to the objective at the start
 WIDE, NARROW = 1.0, 1e-3  # steps of an angle [rad], shrinking with the root of the temperature
@@ -117,8 +117,8 @@ def anneal_positions(chain, seed, start, stop, total, y, z, state, found):
         span = 0.5 * chain.link.sum()
         for i in range(1, links + 1):
             y[i], z[i] = span * np.random.random(), span * np.random.random()
-        width, height, short = measured(chain, 0, y, z)
-        state[2], state[3] = value(chain, 0, width, height), math.sqrt(width * height)
+        width, height, short = measured(chain, ZERO, y, z)
+        state[2], state[3] = value(chain, ZERO, width, height), math.sqrt(width * height)
         state[1] = math.inf
     for step in range(start, stop):
         temperature = FREE * HOT * (COLD / HOT) ** (step / total)
@@ -127,11 +127,11 @@ def anneal_positions(chain, seed, start, stop, total, y, z, state, found):
         oldy, oldz = y[i], z[i]
         y[i] += size * np.random.normal()
         z[i] += size * np.random.normal()
-        width, height, short = measured(chain, 0, y, z)
+        width, height, short = measured(chain, ZERO, y, z)
         mesh = 0.0
         for k in range(links):
             mesh += abs(math.hypot(y[k + 1] - y[k], z[k + 1] - z[k]) - chain.link[k])
-        objective = value(chain, 0, width, height)
+        objective = value(chain, ZERO, width, height)
         energy = objective / state[2] + (PENALTY * short + MESH * mesh) / state[3]
         rise = energy - state[1]
         if rise <= 0.0 or np.random.random() < math.exp(-rise / temperature):
@@ -142,8 +142,8 @@ def anneal_positions(chain, seed, start, stop, total, y, z, state, found):
                 for k in range(links):
                     yy[k + 1] = yy[k] + chain.link[k] * math.cos(theta[k])
                     zz[k + 1] = zz[k] + chain.link[k] * math.sin(theta[k])
-                width, height, short = measured(chain, 0, yy, zz)
-                objective = value(chain, 0, width, height)
+                width, height, short = measured(chain, ZERO, yy, zz)
+                objective = value(chain, ZERO, width, height)
                 if short <= ROUNDING and objective < found[0]:
                     found[0], found[1] = objective, 0.0
                     found[2:] = theta

@@ -8,11 +8,12 @@ import numpy as np
 
 from gearopt.formulations.layout.chain import Chain
 from gearopt.optimise.clock import Clock
-from gearopt.optimise.kernels import kernel
+from gearopt.optimise.kernels import UNREADY, compiled, kernel
 from gearopt.optimise.polish import KEPT, sampling
 from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.terms import Array
 
+ANNEAL = "gearopt.formulations.layout.anneal_kernel"
 RANDOM = True
 PACED = True  # the cooling is stretched over the evaluations it is given
 COUNTS = {
@@ -61,7 +62,7 @@ def anneal(
     free: positions instead of angles, the paper's way. goes(steps, best): whether to continue; it
     is asked after SLICE steps, and `looks` times at least.
     """
-    kernels = kernel("gearopt.formulations.layout.anneal_kernel")
+    kernels = kernel(ANNEAL)
     links = chain.link.size
     found, state = np.full(links + 2, np.inf), np.zeros(4)
     theta, y, z = np.zeros(links), np.zeros(links + 1), np.zeros(links + 1)
@@ -78,6 +79,10 @@ def anneal(
     return found, steps
 
 
+def _goes_on(steps: int, best: float) -> bool:
+    return True
+
+
 def point(chain: Chain, found: Array) -> Array | None:
     """Return the problem's point of what `anneal` found."""
     if not np.isfinite(found[0]):
@@ -89,6 +94,10 @@ def method(chain: Chain, free: bool, polish: Polish | None = None) -> Any:
     """Return a run(problem, budget, seed, watch); polish: a local method that keeps the point."""
 
     def run(problem: Any, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
+        law = kernel(ANNEAL)
+        entry = law.anneal_positions if free else law.anneal
+        if not compiled(lambda: anneal(chain, 0, 1, _goes_on, free), (entry,), watch):
+            return Outcome(None, False, message=UNREADY)
         clock = Clock(budget, watch)
         own, maximum = sampling(clock, polish is not None)
 

@@ -11,7 +11,7 @@ import math
 import numpy as np
 from numba import njit
 
-from gearopt.formulations.layout.chain_kernel import MARGIN, cosines, lowest
+from gearopt.formulations.layout.chain_kernel import MARGIN, NONE, ZERO, cosines, lowest
 
 PIVOTS = 40  # of a linear program of some ten columns; more would be a cycle
 SMALL = 1e-12  # of a pivot, where the columns are of the order of the sides
@@ -64,7 +64,7 @@ def gather(chain, m, low, high, spans, edge, row, ends):
     p, q, b. ends (n, 3): i, j, the side it is below (-1: none). Returns their number.
     """
     ly, hy, lz, hz = spans
-    count, n = chain.reach.size, 0
+    count, n = chain.reach.size, ZERO
     for i in range(count):
         for j in range(i + 1, count):
             r = chain.reach[i] + chain.reach[j]
@@ -78,7 +78,7 @@ def gather(chain, m, low, high, spans, edge, row, ends):
                     if counts and far > edge[which, 0]:
                         n = put(row, ends, n, p, q, -r, i, j, which)
                     if far > chain.most[axis]:
-                        n = put(row, ends, n, p, q, chain.most[axis] - r, i, j, -1)
+                        n = put(row, ends, n, p, q, chain.most[axis] - r, i, j, NONE)
             need = chain.apart[m, i, j]
             y = max(ly[i, j], -hy[i, j], 0.0)
             z = max(lz[i, j], -hz[i, j], 0.0)
@@ -86,7 +86,7 @@ def gather(chain, m, low, high, spans, edge, row, ends):
                 y, z = 0.5 * (ly[i, j] + hy[i, j]), 0.5 * (lz[i, j] + hz[i, j])
                 p, q, b = cut(chain, need, low, high, i, j, y, z)
                 if b > 0.0:
-                    n = put(row, ends, n, -p, -q, -b, i, j, -1)
+                    n = put(row, ends, n, -p, -q, -b, i, j, NONE)
     for i in range(1, count):
         for c in range(4):
             end = chain.place[i, c]
@@ -94,11 +94,11 @@ def gather(chain, m, low, high, spans, edge, row, ends):
             if (c % 2 == 0 and least < end) or (c % 2 == 1 and most > end):
                 sign = -1.0 if c % 2 == 0 else 1.0
                 p, q = (sign, 0.0) if c < 2 else (0.0, sign)
-                n = put(row, ends, n, p, q, sign * end, 0, i, -1)
+                n = put(row, ends, n, p, q, sign * end, ZERO, i, NONE)
     for k in range(1, chain.level.size):
         i, j = chain.level[k - 1], chain.level[k]
-        n = put(row, ends, n, 0.0, 1.0, 0.0, i, j, -1)
-        n = put(row, ends, n, 0.0, -1.0, 0.0, i, j, -1)
+        n = put(row, ends, n, 0.0, 1.0, 0.0, i, j, NONE)
+        n = put(row, ends, n, 0.0, -1.0, 0.0, i, j, NONE)
     return n
 
 

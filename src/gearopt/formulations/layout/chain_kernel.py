@@ -6,11 +6,14 @@ angles in rad.
 
 import math
 
+import numpy as np
 from numba import njit
 
 FULL = 2.0 * math.pi
 MARGIN = 1e-12  # relative; far above the rounding of some ten sums and products of doubles
 ROUNDING = 1e-9  # mm; what exact positions may seem to lack
+# Integers for arguments: for a literal numba compiles a function once more, and all it calls.
+NONE, ZERO, ONE = np.int64(-1), np.int64(0), np.int64(1)
 
 
 @njit(cache=True)

@@ -12,13 +12,14 @@ from typing import Any
 
 import numpy as np
 
-from gearopt.formulations.layout.annealing import anneal, point
+from gearopt.formulations.layout.annealing import ANNEAL, anneal, point
 from gearopt.formulations.layout.chain import Chain
 from gearopt.optimise.clock import Clock
-from gearopt.optimise.kernels import kernel
+from gearopt.optimise.kernels import UNREADY, compiled, kernel
 from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.terms import Array
 
+BRANCH = "gearopt.formulations.layout.branch_kernel"
 RANDOM = False
 COUNTS = "layout measured or cell bounded"
 GAPS = (0.1, 0.01, 1e-3, 1e-4, 1e-5)  # each is proven before the next is tried
@@ -60,7 +61,8 @@ def method(chain: Chain, turns: tuple[float, float], polish: Polish) -> Any:
     """
 
     def run(problem: Any, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
-        _compile(chain)
+        if not ready(chain, watch):
+            return Outcome(None, False, message=UNREADY)
         search = Search(clock := Clock(budget, watch))
         _first(search, chain, seed, polish)
         wanted, proven = budget.gap or GAP, None
@@ -108,12 +110,19 @@ def _outcome(search: Search, proven: float | None) -> Outcome:
     )
 
 
-def _compile(chain: Chain) -> None:
-    """Have the kernel compiled, on its first use on a machine, before the clock is started."""
-    links = chain.link.size
-    kernels = kernel("gearopt.formulations.layout.branch_kernel")
-    cells, bounds, theta = np.zeros((2, 2, links)), np.zeros(2), np.zeros(links)
-    kernels.branch(chain, 0, cells, bounds, 0, math.inf, math.inf, GAP, NODES, theta)
+def ready(chain: Chain, watch: Watch | None = None) -> bool:
+    """Have the kernels compiled, on their first use on a machine; False if the watcher ended that.
+
+    It comes before the clock is started, so that the time is in no budget.
+    """
+    links, branch = chain.link.size, kernel(BRANCH).branch
+
+    def work() -> None:
+        anneal(chain, 0, 1, lambda steps, best: True)
+        cells, bounds, theta = np.zeros((2, 2, links)), np.zeros(2), np.zeros(links)
+        branch(chain, 0, cells, bounds, 0, math.inf, math.inf, GAP, NODES, theta)
+
+    return compiled(work, (kernel(ANNEAL).anneal, branch), watch)
 
 
 def _first(search: Search, chain: Chain, seed: int, polish: Polish) -> None:
@@ -159,7 +168,7 @@ def _prove(
     polish: Polish,
 ) -> float | None:
     """Return a bound within `rel` of the best layout, which may improve; None if stopped before."""
-    kernels = kernel("gearopt.formulations.layout.branch_kernel")
+    kernels = kernel(BRANCH)
     floor, theta = math.inf, np.zeros(chain.link.size)
     for m in range(chain.factor.size):
         (cells, bounds), count = first_cell(theta.size, turns), 1

@@ -141,6 +141,23 @@ def propose(
 
 
 @njit(cache=True)
+def copy(
+    x: Reals,
+    y: Reals,
+    layer: Whole,
+    centre: Reals,
+    to_x: Reals,
+    to_y: Reals,
+    to_layer: Whole,
+    to_centre: Reals,
+) -> None:
+    """Copy a state, entry by entry: numba compiles that in a tenth of the time of slices."""
+    for i in range(x.size):
+        to_x[i], to_y[i], to_layer[i] = x[i], y[i], layer[i]
+    to_centre[0], to_centre[1] = centre[0], centre[1]
+
+
+@njit(cache=True)
 def anneal(
     seed: int,
     first: int,
@@ -169,8 +186,13 @@ def anneal(
     gap, wall, width = numbers[0], numbers[1], numbers[2]
     shape, volume = int(numbers[3]), numbers[4] > 0.0
     least, most, anchored = int(numbers[5]), int(numbers[6]), numbers[7] > 0.0
-    n, size, accepted = x.size, 2.0 * radius.mean(), 0
-    old_x, old_y, old_layer, old_centre = x.copy(), y.copy(), layer.copy(), centre.copy()
+    n, size, accepted = x.size, 0.0, 0
+    for k in range(n):
+        size += radius[k]
+    size = 2.0 * (size / n)
+    old_x, old_y, old_centre = np.empty(n), np.empty(n), np.empty(2)
+    old_layer = np.empty(n, np.int64)
+    copy(x, y, layer, centre, old_x, old_y, old_layer, old_centre)
     crowd = crowding_of_all(x, y, layer, radius, gap)
     tall, missing = stack(layer, height, least, most)
     area, excess = plan_area(x, y, centre, radius, shape, wall, width)
@@ -195,7 +217,7 @@ def anneal(
         )
         if worse > 0.0 and np.random.random() >= math.exp(-worse / temperature):
             if i == -1:
-                x[:], y[:], layer[:], centre[:] = old_x, old_y, old_layer, old_centre
+                copy(old_x, old_y, old_layer, old_centre, x, y, layer, centre)
             else:
                 x[i], y[i], layer[i] = old_x[i], old_y[i], old_layer[i]
             continue
@@ -203,12 +225,13 @@ def anneal(
         crowd, excess, tall = max(0.0, new_crowd), new_excess, new_tall
         missing, value = new_missing, new_value
         if i == -1:
-            old_x[:], old_y[:], old_layer[:], old_centre[:] = x, y, layer, centre
+            copy(x, y, layer, centre, old_x, old_y, old_layer, old_centre)
         else:
             old_x[i], old_y[i], old_layer[i] = x[i], y[i], layer[i]
         if crowd < ROUNDING and excess == 0.0 and missing == 0 and value < best[3 * n + 2]:
             crowd = crowding_of_all(x, y, layer, radius, gap)
             if crowd == 0.0:
-                best[:n], best[n : 2 * n], best[2 * n : 3 * n] = x, y, layer
-                best[3 * n : 3 * n + 2], best[3 * n + 2] = centre, value
+                for k in range(n):
+                    best[k], best[n + k], best[2 * n + k] = x[k], y[k], layer[k]
+                best[3 * n], best[3 * n + 1], best[3 * n + 2] = centre[0], centre[1], value
     return accepted

@@ -19,6 +19,7 @@ from gearopt.formulations.packing.plan import Places, Plan, row
 from gearopt.formulations.packing.sa import Finish, Floor, Spent, anneal, ready, scattered
 from gearopt.optimise.box import violation
 from gearopt.optimise.clock import Clock
+from gearopt.optimise.kernels import UNREADY
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.solvers import ipopt
@@ -66,7 +67,8 @@ def method(plan: Plan, floor: Floor, finish: Finish) -> Any:
 
     def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
         """Hop until the bound is reached, rounds end alike, or the budget is spent."""
-        ready()
+        if not ready(watch):
+            return Outcome(None, False, message=UNREADY)
         spent, rng = Spent(clock := Clock(budget, watch)), np.random.default_rng(seed)
         first = point(plan, row(plan))
         spent.keep(float(problem.batch(first[None]).F[0, 0]), first)

@@ -15,7 +15,7 @@ from gearopt.formulations.packing.container_bound import Bound, Late
 from gearopt.formulations.packing.packing_text import point
 from gearopt.formulations.packing.plan import Places, Plan, row
 from gearopt.optimise.clock import Clock
-from gearopt.optimise.kernels import kernel
+from gearopt.optimise.kernels import UNREADY, compiled, kernel
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.terms import Array
@@ -81,9 +81,14 @@ Floor = Callable[[Problem, Spent], Bound]
 Finish = Callable[[Outcome, Spent, Bound], Outcome]  # the outcome with bound and proof
 
 
+def ready(watch: Watch | None = None) -> bool:
+    """Have the kernel compiled before a clock runs; False if the watcher ended that."""
+    return compiled(_one_disc, (kernel(KERNEL).anneal,), watch)
+
+
 @cache
-def ready() -> None:
-    """Compile the kernel, once on a machine, before a clock runs: by one move of a disc."""
+def _one_disc() -> None:
+    """Call the kernel for no move of a disc."""
     x, y, radius, height = np.zeros(1), np.zeros(1), np.ones(1), np.ones(1)
     layer, free = np.ones(1, np.int64), np.zeros(1, np.int64)
     plain = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0])
@@ -183,7 +188,8 @@ def method(plan: Plan, floor: Floor, finish: Finish) -> Any:
 
     def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
         """Anneal once; keep the best feasible state, or else all cylinders in a row."""
-        ready()
+        if not ready(watch):
+            return Outcome(None, False, message=UNREADY)
         spent, rng = Spent(clock := Clock(budget, watch)), np.random.default_rng(seed)
         first = point(plan, row(plan))
         spent.keep(float(problem.batch(first[None]).F[0, 0]), first)

@@ -14,6 +14,7 @@ import numpy as np
 
 from gearopt.formulations import teeth
 from gearopt.formulations.gear_train import FaceWidth, Stage, Train
+from gearopt.formulations.layout.annealing import ANNEAL
 from gearopt.formulations.layout.chain import chain
 from gearopt.formulations.layout.gearbox import Gearbox, Shaft
 from gearopt.formulations.layout.layout_text import given_places, largest, positions, sides, value
@@ -21,8 +22,9 @@ from gearopt.formulations.layout.slabs import Arrangement, Slabs, arrange, order
 from gearopt.formulations.strength.k_factor import K_FACTOR
 from gearopt.formulations.teeth.search import search as sizing
 from gearopt.formulations.together.search import MARGINS, Search, keep, lay, prepare, prove
-from gearopt.formulations.together.tables import Make, numbers
+from gearopt.formulations.together.tables import KERNELS, Make, numbers
 from gearopt.optimise.clock import Clock
+from gearopt.optimise.kernels import UNREADY, compiled, kernel
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.terms import Array, Terms, Var, each
@@ -50,15 +52,24 @@ def problem(train: Train, make: Make, start: Start | None = None) -> Problem:
 
     def exact(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
         """Depth-first passes with narrowing margins; the seed is that of first layouts."""
-        ready()
+        if not ready(watch):
+            return Outcome(None, False, message=UNREADY)
         return _searched(Search(train, make, Clock(budget, watch), seed), start)
 
     return text(train, make, box, {"exact": exact})
 
 
+def ready(watch: Watch | None = None) -> bool:
+    """Have every kernel compiled before a clock runs; False if the watcher ended that."""
+    law = kernel(KERNELS)
+    return compiled(
+        _tiny, (law.useful, law.fill, law.expand, law.sift, kernel(ANNEAL).anneal), watch
+    )
+
+
 @cache
-def ready() -> None:
-    """Have every kernel compiled, once on a machine, before a clock runs: by a tiny drive."""
+def _tiny() -> None:
+    """Search a tiny drive, which calls every kernel."""
     one = FaceWidth(Fraction(1), Fraction(1))
     stage = Stage((2.0, 48.0), one, (Fraction(2), Fraction(3)), (20, 22))
     train = Train(3e4, Fraction(9), Fraction(1, 50), (stage, stage), law=K_FACTOR)

@@ -10,6 +10,7 @@ import numpy as np
 from numba import njit
 
 from gearopt.formulations.layout.branch_kernel import branch
+from gearopt.formulations.layout.chain_kernel import ONE, ZERO
 from gearopt.formulations.together.node_kernel import (
     ALLOWANCE,
     EDGE,
@@ -27,6 +28,8 @@ from gearopt.formulations.together.node_kernel import (
     width,
     worth,
 )
+
+NODES = np.int64(64)  # cells of a node's layout between two looks at how many were spent
 
 
 @njit(cache=True)
@@ -51,7 +54,7 @@ def useful(d, j, cut, keep):
             put(d, j, p, k, node, body)
             least = math.inf
             for m in range(d.slabs.size):
-                least = min(least, length(d, m, 0, node))
+                least = min(least, length(d, m, ZERO, node))
             r = body[j + 1, 0] + wall
             area = least_area(body[j, 1] + wall, r, node[j, 0])
             if worth(d.aim, least, area, 2.0 * r) < cut:
@@ -84,7 +87,7 @@ def fill(d, k, start, stop, rest):
     for p in range(end - begin):
         for q in range(d.first[begin + p], d.last[begin + p] + 1):
             radius = d.modules[j, q] * (0.5 * d.z2[begin + p] / d.cosine + 1.0)
-            above = place(rest.edge[k], 0, rest.edge.shape[1], radius)
+            above = place(rest.edge[k], ZERO, rest.edge.shape[1], radius)
             bins[p, q] = max(above - 1, 0)  # not above the radius
     for cell in range(start, stop):
         low = cell * d.delta - EDGE
@@ -190,7 +193,7 @@ def expand(d, rest, j, parents, start, stop, cut, limit, children, bounds):
                     if larger and worth(aim, least, 4.0 * r * r, 2.0 * r) >= cut:
                         break
                     continue
-                if j == 0 and not loaded(d, 0, choice, node):
+                if j == 0 and not loaded(d, ZERO, choice, node):
                     continue
                 value = bound(d, rest, j, node, body, need, cut, lengths, radius)
                 if value < cut:
@@ -247,10 +250,10 @@ def sift(d, rest, chain, turns, first, nodes, start, levels, limits, alive, foun
             if aim[7] > 0.0:
                 chain.factor[0] = max(aim[3], lengths[m])
             cells[0, 0, 0], cells[0, 1, 0] = turns[0], turns[1]
-            bounds[0], count, used, least, floor = 0.0, 1, 0, better, math.inf
+            bounds[0], count, used, least, floor = 0.0, ONE, 0, better, math.inf
             while count > 0 and used < most and least == better:
                 count, least, floor, looked, _ = branch(
-                    chain, 0, cells, bounds, count, least, floor, margin, 64, theta
+                    chain, ZERO, cells, bounds, count, least, floor, margin, NODES, theta
                 )
                 used += looked
             spent += used + 1

@@ -28,7 +28,7 @@ Start = tuple[Slabs, tuple[GearPair, ...], tuple[float, ...]]
 
 def at_once(scene: Scene, ask: Ask, sized: Result) -> Result:
     """Return the smallest box over gears and places; parts: gears chosen first; real-valued."""
-    together.ready()
+    together.ready(ask.watch)
     apart = replace(lay_out(scene, replace(ask, method=None), sized), name="apart")
     real = ask.method in REAL
     model = posed(scene, ask.method or "exact", apart)

@@ -50,7 +50,7 @@ def lay_out(scene: Scene, ask: Ask, sized: Result) -> Result:
     box = scene.gearbox(pairs_of(scene, sized))
     orders = arrangements(box)
     wrong = faults(box)
-    layout.ready()
+    layout.ready(ask.watch)
     parts = (replace(sized, name="gears"),)
     if wrong:
         return _impossible(scene, sized, ask, parts, wrong)
