@@ -225,13 +225,16 @@ class Section:
 
     @property
     def printed(self) -> float:
-        """Return how much the drawings shrink in print so that the first two stand side by side.
+        """Return how much the drawings shrink in print so that all stand side by side, or two.
 
         They leave room on the sheet for other things; 1 where their text would become too small.
         """
-        both = sum(drawing.width for drawing in self.drawings[:2]) + GUTTER
-        share, low = SHEET / both, TALL / max(drawing.height for drawing in self.drawings)
-        return min(1.0, share, max(low, LEGIBLE)) if share > LEGIBLE else 1.0
+        low = TALL / max(drawing.height for drawing in self.drawings)
+        for some in (self.drawings, self.drawings[:2]):
+            wide = sum(drawing.width + GUTTER for drawing in some) - GUTTER
+            if (share := SHEET / wide) > LEGIBLE:
+                return min(1.0, share, max(low, LEGIBLE))
+        return 1.0
 
 
 def shown(value: Any) -> Cell:

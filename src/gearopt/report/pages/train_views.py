@@ -23,7 +23,7 @@ from gearopt.report.section import Section
 from gearopt.report.words import number
 
 WIDE = 640.0  # widest drawing [px], as those of a layout
-BESIDE = 430.0  # px of the longest of several trains: three stand beside each other
+BESIDE = 340.0  # px of the longest of several trains: three stand beside each other
 EDGE = 20.0  # px kept free left and right of the front view
 PITCH = 76.0  # px from stage to stage along the shafts, at least: its face width and module fit
 GAP = 16.0  # px between the gears of two stages, at least
