@@ -40,8 +40,8 @@ def load(what: File, changes: Changes = None) -> BaseModel:
     what: a path, or the tables of a file as `tomllib` gives them. changes: {key: value} of what is
     otherwise than in the file, by the keys that `explain` writes: {"duty.power": "9 kW",
     "stage[2].face_width_over_diameter": 0.7, "limits.pinion_teeth[2]": 60}; counted from 1. A key
-    that the file lacks is added, and None removes one. Other files that it names stand beside the
-    file, or in the working directory for tables.
+    that the file lacks is added, None removes one, and a dict stands for a whole table. Other files
+    that it names stand beside the file, or in the working directory for tables.
     """
     return _opened(what, changes)[0]
 
@@ -223,6 +223,8 @@ def _opened(what: File, changes: Changes) -> tuple[BaseModel, Any, dict[str, Any
             f"{type(what).__name__}: write the path of a problem file, its tables, what `load` "
             "returns, or a Problem"
         )
+    if isinstance(what, str) and "\n" in what:
+        raise ValueError("that is the text of a file: write its path, or tomllib.loads(text)")
     if isinstance(what, BaseModel):
         from gearopt.scenes.explaining.numbers import content
 

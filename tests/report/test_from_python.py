@@ -153,6 +153,8 @@ def test_a_stage_is_a_row(solved):
     for row, stage in zip(rows, found.design["stages"], strict=True):
         assert row["teeth z1"] == stage["pinion_teeth"] and type(row["teeth z1"]) is int
         assert row["diameter d2 [mm]"] == stage["wheel_diameter_mm"]
+    assert [part["name"] for part in found.table("proof")] == ["drive", "real-valued sizes"]
+    assert found.table("proof")[1]["status"] == "proven optimal"
     (totals,) = found.table("totals")
     assert totals["ratio"] == found.design["ratio"]
     inch = found.table("stages", units="inch")

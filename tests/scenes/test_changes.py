@@ -158,6 +158,7 @@ def test_other_files_stand_in_the_working_directory(tmp_path, monkeypatch):
         ({"stage[4].module": 2}, "stage[4].module", "stage has 2 entries. Write stage[1], ..."),
         ({"stage[0].module": 2}, "stage[0].module", "counted from 1"),
         ({"stage.module": 2}, "stage.module", "Write stage[1].module, ..."),
+        ({"stage.1.module": 2}, "stage.1.module", "Write stage[1], ..."),
         ({"duty.power.value": 2}, "duty.power.value", "duty.power is no table"),
         ({"duty.power[1]": 2}, "duty.power[1]", "duty.power is no list"),
         ({"a b": 2}, "a b", "is no key of a file"),
@@ -213,6 +214,11 @@ def test_wrong_tables_are_told():
         ("solve", {"changes": "exact"}, "is no dict of changes.*method='exact'"),
         ("compare", {"seeds": 0}, "seeds is a whole number of at least 1"),
         ("solve", {"what": 3}, "int: write the path of a problem file"),
+        (
+            "solve",
+            {"what": 'gearopt = 1\nkind = "drive"'},
+            "is the text of a file: .* tomllib.loads",
+        ),
     ],
 )
 def test_a_wrong_option_is_refused_by_name(call, wrong, words):

@@ -181,7 +181,7 @@ def proven(result: Result, measures: Measures) -> Section:
     columns = [_column(part, measures) for part in parts]
     rows = [[n, *row] for n, *row in zip(ROWS, *columns, strict=True) if any(c != "" for c in row)]
     told = ("value", "bound")  # key figures, or in the design
-    tables = [Table("proof", heads, rows, csv_only=told)]
+    tables = [Table("proof", heads, rows, csv_only=told, across=True)]
     if checks := _checks(result):
         tables.append(checks)
     words = [meaning(result), *map(measures.words, proof(result, measures))]

@@ -47,7 +47,8 @@ def lines(result: Result) -> str:
         rows.append(f"bound {METRIC.amount(bound, unit, WAYS[side])}{gap}")
     rows += _design(result)
     if result.status != "optimal" or leading(result):
-        rows += filter(None, [result.message or result.proof.get("sentence", "")])
+        proof = result.proof.get("sentence", "") if result.status == "infeasible" else ""
+        rows += filter(None, [result.message or proof])
     for remedy in result.report.get("ways_out", {}).get("remedies", ())[:1]:
         rows.append(f"possible with {' and '.join(map(edit, remedy['changes']))}")
     return "\n  ".join(

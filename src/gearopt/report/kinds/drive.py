@@ -143,6 +143,7 @@ def processes(result: Result, measures: Measures) -> Section | None:
         "processes and optimum",
         heads,
         rows,
+        across=True,
         csv_only=[*_labels(stages, *teeth_heads(measures)), best.method],
         read_only=_labels(stages, teeth_head(measures)),
     )

@@ -95,7 +95,7 @@ def _check(here: Any, place: Place, key: str, file: str) -> None:
         return
     if isinstance(here, list):
         rule = f"{above} has {len(here)} {'entry' if len(here) == 1 else 'entries'}"
-        rest = "" if isinstance(step, int) else f".{step}"
+        rest = "" if isinstance(step, int) or step.isdigit() else f".{step}"
         remedy = f"Write {above}[1]{rest}, ... or {above}[{len(here) + 1}]{rest} for one more"
     else:
         rule = f"{above} is no {'list' if isinstance(step, int) else 'table'}"

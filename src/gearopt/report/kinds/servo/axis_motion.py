@@ -110,7 +110,7 @@ def _achieved(found: RatioDesign, measures: Measures) -> Table:
         if any(getattr(one, key) is not None for one in columns.values()):
             rows.append(row(name, key, unit))
     short = {"": "\nmotor and load"} | {WHO[who].replace("\n", " "): WHO[who] for who in columns}
-    return Table("motor and load", list(short), rows, short=short)
+    return Table("motor and load", list(short), rows, short=short, across=True)
 
 
 def _cell(value: float | None, unit: str, measures: Measures) -> Cell | None:

@@ -122,7 +122,7 @@ def beside(result: Result, measures: Measures) -> Section | None:
         "Real-valued bound: no train is better, even with real-valued teeth and modules.",
     )
     heads = ("", "chosen", "given", "real-valued bound")
-    table = Table("chosen and given", heads, rows, short={"": "train"})
+    table = Table("chosen and given", heads, rows, short={"": "train"}, across=True)
     terminal = (table, teeth)
     return Section("The given train", words=words, tables=(table,), half=True, terminal=terminal)
 
