@@ -6,6 +6,7 @@ from typing import Any
 from gearopt.optimise.result import Result
 from gearopt.optimise.scale import gap
 from gearopt.report.deciding import lead
+from gearopt.report.explained import remedy_words
 from gearopt.report.kinds import kind_of
 from gearopt.report.measures import METRIC, Measures, gap_percent
 from gearopt.report.section import Cell, Figure, Section, Table, Tile, axis, layout, percent
@@ -185,6 +186,8 @@ def proven(result: Result, measures: Measures) -> Section:
     if checks := _checks(result):
         tables.append(checks)
     words = [meaning(result), *map(measures.words, proof(result, measures))]
+    ways = result.report.get("ways_out") or {}
+    words += [measures.words(remedy_words(ways)[1])] if ways.get("remedies") else []
     if arithmetic := result.proof.get("arithmetic"):
         words.append(f"Arithmetic: {arithmetic}.")
     return Section("What is proven, and how", words=words, tables=tables, half=len(parts) < 3)

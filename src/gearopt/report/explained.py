@@ -14,8 +14,10 @@ FLAT = 0.5e-4  # sensitivity that would be shown as 0.0000
 NOTHING = 1e-9  # relative: no change
 BOTH = ("number in the file", "value")
 TERMINAL_ONLY = ("effect of +1 %", "re-solved", "effect")
-PAGE_ONLY = ("effect, %", "effect of +1 %, %")
-HEADS = (*BOTH, *TERMINAL_ONLY[:2], "relaxed by", TERMINAL_ONLY[2], *PAGE_ONLY)
+PAGE_ONLY = ("effect, %", "effect of 1 % more")
+READ_ONLY = PAGE_ONLY[1:]
+CSV_ONLY = ("sensitivity", "sensitivity, re-solved below", "sensitivity, re-solved above")
+HEADS = (*BOTH, *TERMINAL_ONLY[:2], "relaxed by", TERMINAL_ONLY[2], *PAGE_ONLY, *CSV_ONLY)
 KINDS = {
     "least": "smallest change",
     "alone": "or this alone",
@@ -44,34 +46,42 @@ def of_influences(found: Mapping[str, Any], result: Result, measures: Measures =
     found: influences, message and basis, see `optimise.explaining.explanation`.
     """
     rows = [_row(one) for one in found["influences"]]
+    idle = [one["key"] for one in found["influences"] if _is_idle(one)]
     table = Table(
-        "sensitivities", HEADS, rows, page_only=PAGE_ONLY, terminal_only=TERMINAL_ONLY, wrap=0
+        "sensitivities",
+        HEADS,
+        rows,
+        page_only=PAGE_ONLY,
+        terminal_only=TERMINAL_ONLY,
+        csv_only=(*CSV_ONLY, *idle),
+        read_only=READ_ONLY,
+        wrap=0,
     )
     words = list(map(measures.words, influence_words(found, result)))
-    tables = (table,) if rows else ()
+    tables = (table,) if len(idle) < len(rows) else ()
+    if idle:
+        name = objective(result)[0]
+        words.append(f"Small changes of these leave the {name} as it is: {', '.join(idle)}.")
     terminal = (*tables, "\n".join(words))
     return Section("Sensitivities", words=words, tables=tables, half=True, terminal=terminal)
 
 
+def _is_idle(one: Mapping[str, Any]) -> bool:
+    """Return whether a number changes nothing: not by 1 %, to either side, nor when it is eased."""
+    slopes = [s for s in (one["sensitivity"], *one["resolved"]) if s is not None]
+    known = bool(slopes) or one["price"] is not None
+    return known and all(abs(s) < FLAT for s in slopes) and abs(one["price"] or 0.0) < NOTHING
+
+
 def _row(one: Mapping[str, Any]) -> list[Any]:
-    """Return key, value, sensitivities, step and its effect; then these two as a page has them."""
+    """Return what HEADS names of a number, in words and as plain numbers."""
     slope, both, effect = _percent(one["sensitivity"]), _sides(one["resolved"]), price(one["price"])
     change = None if one["price"] is None else 100.0 * clean(one["price"])
+    plain = [None if s is None else clean(s) for s in (one["sensitivity"], *one["resolved"])]
     return [
         *(one["key"], one["value"], slope, both, one["step"], effect),
-        *(Cell(change, effect), Cell(_slope(one), slope or both)),
+        *(Cell(change, effect), slope or both, *plain),
     ]
-
-
-def _slope(influence: Mapping[str, Any]) -> Any:
-    """Return the sensitivity by multipliers, else by re-solving, both sides where they differ."""
-    slope = influence["sensitivity"]
-    if slope is not None:
-        return clean(slope)
-    below, above = influence["resolved"]
-    if below is None or above is None:
-        return above if below is None else below
-    return clean(0.5 * (below + above)) if alike(below, above) else [below, above]
 
 
 def influence_words(found: Mapping[str, Any], result: Result) -> list[str]:
@@ -129,7 +139,8 @@ def remedies(result: Result, measures: Measures) -> Section | None:
         return None  # the first sentence says it
     tables = [Table("remedies", REMEDY_HEADS, rows, words=True, left=3)] if rows else []
     sure = measures.words(sure)
-    return Section("Remedies", words=[sure], tables=tables, terminal=[*tables, sure])
+    words = [] if rows else [sure]  # of remedies `proven` says it
+    return Section("Remedies", words=words, tables=tables, terminal=[*tables, sure])
 
 
 def remedy_words(found: Mapping[str, Any]) -> tuple[list[list[Any]], str]:
@@ -141,7 +152,7 @@ def remedy_words(found: Mapping[str, Any]) -> tuple[list[list[Any]], str]:
     if not ways:
         return [], missing or "No remedy was found by moving limits."
     rows = [row for way in ways for row in _rows(way)]
-    words = f"Each was verified: a design exists with it{_less(ways)}."
+    words = f"Each remedy was verified: a design exists with it{_less(ways)}."
     if any(way["verified"].get("others") == "need more" for way in ways):
         words += (
             " Smallest change: the duty is kept, and no other limit or given size, moved alone, "

@@ -22,7 +22,6 @@ from gearopt.report.words import (
     amount,
     goal,
     leading,
-    limit_words,
     title,
     verdict,
 )
@@ -73,8 +72,7 @@ def show_explanation(
     console.print(
         Text.assemble((title(result), "bold"), f": {name} {value}, ", (words, f"bold {colour}"))
     )
-    full = ", ".join(limit_words(n) for n in explanation.binding)
-    console.print(Text(f"Limits reached: {full}." if full else "No limit is reached."))
+    console.print(Text(decided(result)))
     _print(of_influences(explanation.prices, result, measures).terminal, console)
 
 

@@ -62,7 +62,7 @@ def numbers(result: Result, measures: Measures) -> Section | None:
         else replace(t, folded=t.name in DRAWN)
         for t in found.tables
     ]
-    return replace(found, tables=shown)
+    return replace(found, tables=sorted(shown, key=lambda t: t.folded))
 
 
 def clearances(result: Result) -> set[str]:
