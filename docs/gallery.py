@@ -97,7 +97,7 @@ GROUPS = {  # heading: {file: what it shows, in a line}
         "servo_gimbal_impossible": "No train is so accurate: what to write instead.",
     },
     "A compound train": {
-        "sandgren_train": "Four tooth numbers nearest to a ratio, proven in rational arithmetic.",
+        "sandgren_train": "Four numbers of teeth nearest to a ratio, proven in rationals.",
     },
 }
 KINDS = {  # of a file: the page about it, and what is minimised

@@ -32,11 +32,24 @@ def bar(most=10.0, power=1.0, role="limit"):
     return Problem("bar", variables, parameters, evaluate)
 
 
+def test_of_two_conflicts_no_limit_resolves_both():
+    """x <= 1 against x >= 2, and the same of y: dropping one limit leaves the other pair."""
+
+    def evaluate(x, p):
+        limits = {"x stress": p.needed / x.x, "y stress": p.needed / x.y}
+        return Terms({"area": x.x * x.y}, limits)
+
+    pair = tuple(Var(n, "mm", 0.1, 1.0, 0.5, log=True) for n in "xy")
+    found = explain(Problem("two", pair, (Param("needed", "mm", 2.0),), evaluate))
+    assert len(found.conflict) == 2 and len({n[0] for n in found.conflict}) == 1
+    assert found.any_resolves is False
+
+
 def test_a_bound_and_a_safety_factor_that_enters_squared():
     """Either d <= 13.82, or the safety factor whose square is 1.5/1.91."""
     found = explain(bar(power=2.0))
     assert found.result.status == "infeasible"
-    assert set(found.conflict) == {"stress", "d upper"}
+    assert set(found.conflict) == {"stress", "d upper"} and found.any_resolves
     even = {r.what: r for r in found.remedies}
     ratio = NEEDED / 10.0
     assert even["d upper"].bound == pytest.approx(ratio, rel=1e-9)

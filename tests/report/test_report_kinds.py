@@ -61,6 +61,15 @@ def test_other_kinds_are_shown_by_what_their_design_holds(scene):
         assert words in out.getvalue()
 
 
+def test_dropping_any_one_is_said_where_it_was_tried():
+    ways = {"conflict": ["ratio_low", "span"], "remedies": [], "message": "", "any_resolves": True}
+    own = Result("own", "infeasible", "ipopt", {"name": "mass"}, report={"ways_out": ways})
+    said = (
+        "minimum ratio and span are in conflict; dropping any one of them makes a design possible"
+    )
+    assert lead(own) == said
+
+
 @pytest.mark.parametrize(
     ("conflict", "said"),
     [

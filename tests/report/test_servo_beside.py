@@ -74,7 +74,8 @@ def test_the_given_train_is_a_marker(found, heading, x):
 def test_every_plot_has_its_csv(result):
     texts = tables(result)
     errors, trains, curve, bars = (
-        read(texts[f"{name}.csv"]) for name in ("errors", "trains", "ratio-curve", "drawn-errors")
+        read(texts[f"{name}.csv"])
+        for name in ("errors", "trains", "ratio-curve", "monte-carlo-errors")
     )
     assert len(errors) == 15
     assert sum(float(row[4]) for row in errors[1:]) == pytest.approx(0.10813, abs=6e-6)

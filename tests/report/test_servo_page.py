@@ -30,7 +30,7 @@ HEADINGS = (
     "Error and mass",
     "Where the error comes from",
     "Tolerances",
-    "Drawn errors",
+    "Monte Carlo errors",
     "Stiffness",
     "Limits",
     "What is proven, and how",
@@ -137,15 +137,17 @@ def test_equal_sources_are_bars_apart(result):
 
 
 def test_histogram_holds_every_draw(result, found):
-    bars, mean, quantile, limit = found["Drawn errors"].figures[0].data
+    bars, mean, quantile, limit = found["Monte Carlo errors"].figures[0].data
     drawn = result.design["drawn"]
     assert sum(bars["y"]) == drawn["count"] and len(bars["x"]) == 60
     assert sum(bars["width"]) == pytest.approx(np.ptp(drawn["histogram"]["edges_deg"]))
     assert np.average(bars["x"], weights=bars["y"]) == pytest.approx(mean["x"][0], rel=2e-3)
     assert quantile["x"][0] == drawn["quantile_deg"] and limit["x"][0] == drawn["limit_deg"]
-    band = found["Drawn errors"].figures[0].layout["shapes"][0]
+    band = found["Monte Carlo errors"].figures[0].layout["shapes"][0]
     assert band["x0"] == drawn["quantile_low_deg"] < quantile["x"][0] < band["x1"]
-    share = re.match(r"([\d.]+) % of the drawn .* between ([\d.]+) and ([\d.]+) %", words(found))
+    share = re.match(
+        r"([\d.]+) % of the Monte Carlo .* between ([\d.]+) and ([\d.]+) %", words(found)
+    )
     good, low, high = map(float, share.groups())
     assert good == pytest.approx(100.0 * drawn["yield_share"], abs=1e-4)
     assert low <= 100.0 * drawn["yield_low"] and high >= 100.0 * drawn["yield_high"]
@@ -153,13 +155,13 @@ def test_histogram_holds_every_draw(result, found):
 
 
 def words(found):
-    return found["Drawn errors"].words[0]
+    return found["Monte Carlo errors"].words[0]
 
 
 def test_too_few_draws_have_no_interval(result):
     drawn = result.design["drawn"] | {"quantile_high_deg": math.inf}  # None in JSON
     made = {s.heading: s for s in sections(replace(result, design={"drawn": drawn}))}[
-        "Drawn errors"
+        "Monte Carlo errors"
     ]
     assert "too few draws" in made.words[1] and made.figures[0].layout["shapes"] == []
 
@@ -307,7 +309,7 @@ def test_generic_sections_look_right(result):
     [
         (("ratio",), ["Total ratio"]),
         (("train",), ["Train", "Error and inertia", "Error and mass"]),
-        (("tolerances", "allocation", "drawn"), ["Tolerances", "Drawn errors"]),
+        (("tolerances", "allocation", "drawn"), ["Tolerances", "Monte Carlo errors"]),
         (("errors",), ["Where the error comes from"]),
         (("box",), ["In the box"]),
         (("stiffness",), ["Stiffness"]),
@@ -401,7 +403,7 @@ def test_the_terminal_tells_all_below_100_columns(result):
         "tolerance [µm]",
         "0.11975  7.185  100.0",
         "178.10    272.33    1.529  14.000",
-        "99.8850 % of the drawn trains",
+        "99.8850 % of the Monte Carlo trains",
         "alone [N m/rad]",
         "The train fits",
         "171.19°",

@@ -1,4 +1,4 @@
-"""A compound train of two pairs whose ratio comes nearest to a given one: four whole tooth numbers.
+"""A compound train of two pairs whose ratio comes nearest to a given one: four numbers of teeth.
 
 Minimise (1/u - z1 z2/(z3 z4))^2 over teeth in a range. Posed by Sandgren (J. Mech. Des. 112, 1990)
 with u = 6.931 and 12 to 60 teeth, where it is a standard case of discrete optimisation.
@@ -18,9 +18,9 @@ from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.terms import Terms, Var
 
 RANDOM = False
-COUNTS = "pair of tooth numbers matched"
+COUNTS = "pair of numbers of teeth matched"
 LOOK = 500  # pairs between two checks of clock and watcher: some 10 ms
-BASE = 2**24  # a digit of the ratio times two tooth numbers is a whole number that doubles hold
+BASE = 2**24  # a digit of the ratio times two numbers of teeth is a whole number that doubles hold
 
 
 @dataclass(frozen=True)

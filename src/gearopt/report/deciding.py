@@ -48,6 +48,8 @@ def _impossible(result: Result) -> str:
     together = series_of(grouped(names))
     if len(names) == 1:
         return f"{together} cannot be met, even if all other limits are dropped"
+    if ways.get("any_resolves"):
+        return f"{together} are in conflict; dropping any one of them makes a design possible"
     if ways.get("conflict"):
         return f"{together} cannot be met together; without any one of them the others can"
     return f"{together} cannot be met together"

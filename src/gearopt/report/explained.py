@@ -13,8 +13,8 @@ ALIKE = 0.02  # of sensitivities from both sides shown as one; relative to those
 FLAT = 0.5e-4  # sensitivity that would be shown as 0.0000
 NOTHING = 1e-9  # relative: no change
 BOTH = ("number in the file", "value")
-TERMINAL_ONLY = ("effect of +1 %", "re-solved", "effect")
-PAGE_ONLY = ("effect, %", "effect of 1 % more")
+TERMINAL_ONLY = ("sensitivity, %", "re-solved", "effect")
+PAGE_ONLY = ("effect, %", "sensitivity, % per %")
 READ_ONLY = PAGE_ONLY[1:]
 CSV_ONLY = ("sensitivity", "sensitivity, re-solved below", "sensitivity, re-solved above")
 HEADS = (*BOTH, *TERMINAL_ONLY[:2], "relaxed by", TERMINAL_ONLY[2], *PAGE_ONLY, *CSV_ONLY)
@@ -90,7 +90,7 @@ def influence_words(found: Mapping[str, Any], result: Result) -> list[str]:
     lines = [found["message"][0].upper() + found["message"][1:] + "."] if found["message"] else []
     if not found["influences"]:
         return lines or ["No number of the file was examined."]
-    slope = f"Effect of +1 %: sensitivity of the {name} (d ln objective / d ln number)"
+    slope = f"Sensitivity of the {name}: d ln objective / d ln number, % per %"
     if any(i["sensitivity"] is not None for i in found["influences"]):
         return [*lines, f"{slope}{found.get('basis', '')}."]
     return [*lines, f"{slope}, by re-solving."]

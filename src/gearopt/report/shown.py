@@ -119,7 +119,7 @@ def explained_lines(found: Explanation) -> str:
     if slopes:
         largest = sorted(slopes, key=lambda key: -abs(slopes[key]))[:MOST]
         words = ", ".join(f"{key} {slopes[key]:+.4g}" for key in largest)
-        rows.append(f"effect of +1 % in %: {words}")
+        rows.append(f"sensitivities: {words}")
     return "\n  ".join(rows)
 
 
@@ -165,6 +165,7 @@ def compared_fragment(found: Comparison) -> str:
 def answered(found: Explanation) -> Result:
     """Return the result of an impossible request with the conflict and the remedies in it."""
     ways: dict[str, Any] = {"conflict": found.conflict, "message": found.message}
+    ways |= {"any_resolves": found.any_resolves}
     ways |= {"remedies": [asdict(remedy) for remedy in found.remedies]}
     reasons = found.conflict or found.remedies or found.message != found.result.message
     if found.result.status != "infeasible" or not reasons:  # the proof says why, once

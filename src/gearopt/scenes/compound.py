@@ -19,7 +19,7 @@ from gearopt.scenes.reading.lists import span
 __all__ = ["EXAMPLE", "Scene", "compared", "idle", "model", "solve"]
 MIN_TEETH, MAX_TEETH = 5, 400  # teeth of a gear that a file may ask for
 METHODS = ("exact",)  # its own
-ASSUMED = "Tooth numbers alone: modules, centre distances and loads are not considered."
+ASSUMED = "Numbers of teeth alone: modules, centre distances and loads are not considered."
 EXAMPLE = """\
 gearopt = 1
 kind = "compound"
@@ -143,7 +143,7 @@ def compared(scene: Scene) -> tuple[str, ...]:
 
 def model(scene: Scene, method: str) -> Model:
     """Return the problem of every method."""
-    return Model(compound.problem(_train(scene)), "Four whole tooth numbers")
+    return Model(compound.problem(_train(scene)), "Four numbers of teeth")
 
 
 def _train(scene: Scene) -> compound.Compound:

@@ -23,6 +23,7 @@ from gearopt.optimise.explaining.repair import (
     BEYOND,
     TAKEN_BACK,
     Repair,
+    any_resolves,
     elastic,
     impossible,
     least_value,
@@ -70,6 +71,7 @@ def explain(
             tuple(h.name for h in blamed),
             tuple(r for r in found_ if r.verified["with"] in THERE),
             message="the budget ended before all remedies were tried" if clock.over else "",
+            any_resolves=any_resolves(problem, known, blamed, clock),
         )
     elif result.value is None or outcome.x is None:
         found = Explanation(result, message="no design was found in time")

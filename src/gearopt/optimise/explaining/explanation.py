@@ -59,12 +59,14 @@ class Remedy:
 class Remedies:
     """What is reported of an impossible request.
 
-    conflict: names of limits in conflict; message: what is missing.
+    conflict: names of limits in conflict; message: what is missing. any_resolves: whether it was
+    found that any one of these limits, dropped alone, makes a design possible.
     """
 
     conflict: tuple[str, ...] = ()
     remedies: tuple[Remedy, ...] = ()
     message: str = ""
+    any_resolves: bool = False
 
 
 @dataclass(frozen=True)
@@ -91,7 +93,8 @@ class Explanation:
 
     result: the answer itself. conflict: limits in conflict, each needed for it.
     remedies: proven ones, smallest first. binding: limits used to the full. influences: one per
-    input. basis: of which problem the sensitivities are, the end of a sentence.
+    input. basis: of which problem the sensitivities are, the end of a sentence. any_resolves: as
+    in `Remedies`.
     """
 
     result: Result
@@ -102,6 +105,7 @@ class Explanation:
     message: str = ""
     seconds: float = 0.0
     basis: str = ""
+    any_resolves: bool = False
 
     @property
     def prices(self) -> dict[str, Any]:

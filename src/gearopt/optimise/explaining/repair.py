@@ -211,6 +211,21 @@ def conflict(problem: Problem, movable: Sequence[Handle], clock: Clock) -> tuple
     return tuple(movable[k] for k in kept)
 
 
+def any_resolves(
+    problem: Problem, known: Sequence[Handle], blamed: Sequence[Handle], clock: Clock
+) -> bool:
+    """Return whether a design exists with any one of the limits in conflict dropped alone.
+
+    known: all that may be dropped; the others are kept as they are. Each is tried, so False is also
+    what is not known in time.
+    """
+    if len(blamed) < 2 or not set(blamed) <= set(known):
+        return False
+    form = elastic(problem, [[h] for h in known])
+    rest = ([k for k, h in enumerate(known) if h != one] for one in blamed)
+    return all(_verdict(form, kept, known, clock).value is not None for kept in rest)
+
+
 def _verdict(form: Problem, kept: Sequence[int], movable: Sequence[Handle], clock: Clock) -> Result:
     """Solve with the kept limits as they are and all others dropped."""
     upper = np.full(len(movable), REACH)

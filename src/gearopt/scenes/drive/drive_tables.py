@@ -101,10 +101,10 @@ class StageTable(Loaded):
         None, description="Normal module: fixed, or a range; or a diametral pitch in 1/in"
     )
     pinion_teeth: Annotated[tuple[int, int] | None, span(TOOTH_COUNT, 21, single=True)] = Field(
-        None, description="Pinion teeth: fixed, or a range"
+        None, description="Number of pinion teeth: fixed, or a range"
     )
     wheel_teeth: Annotated[tuple[int, int] | None, span(WHEEL_TEETH, 100, single=True)] = Field(
-        None, description="Wheel teeth: fixed, or a range"
+        None, description="Number of wheel teeth: fixed, or a range"
     )
     face_width: Annotated[Quantity | None, quantity("length", "40 mm")] = Field(
         None, description="Face width, fixed"
@@ -133,10 +133,10 @@ class Limits(Loaded):
         "and 7000 psi",
     )
     pinion_teeth: Annotated[tuple[int, int], span(TOOTH_COUNT, [20, 40])] = Field(
-        description="Range of pinion teeth"
+        description="Range of the number of pinion teeth"
     )
     wheel_teeth: Annotated[tuple[int, int] | None, span(WHEEL_TEETH, [20, 400])] = Field(
-        None, description="Range of wheel teeth"
+        None, description="Range of the number of wheel teeth"
     )
     module: Annotated[Lengths | None, span(MODULE, ["1 mm", "10 mm"])] = Field(
         None, description="Range of the normal module, or of diametral pitches in 1/in"

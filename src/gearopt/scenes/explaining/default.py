@@ -16,7 +16,14 @@ from gearopt.optimise.explaining.explanation import (
     Remedy,
 )
 from gearopt.optimise.explaining.handles import Handle, handles
-from gearopt.optimise.explaining.repair import BEYOND, CERTAIN, TAKEN_BACK, conflict, least_value
+from gearopt.optimise.explaining.repair import (
+    BEYOND,
+    CERTAIN,
+    TAKEN_BACK,
+    any_resolves,
+    conflict,
+    least_value,
+)
 from gearopt.optimise.explaining.sensitivity import of_fixed, sensitivities
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result
@@ -70,7 +77,8 @@ def of_report(result: Result) -> Explanation:
         for r in ways.get("remedies", ())
     )
     names, words = tuple(ways.get("conflict", ())), ways.get("message", "")
-    return Explanation(result, names, found, message=words, seconds=result.seconds)
+    sure = ways.get("any_resolves", False)
+    return Explanation(result, names, found, (), (), words, result.seconds, any_resolves=sure)
 
 
 def explained(
@@ -122,7 +130,7 @@ def remedies(scene: Any, problem: Problem, clock: Clock, status: Callable[[Any],
     keys which numbers are limits or given, and which way is easier. status(scene): of a changed
     file, solved. A remedy is reported only if the file with it, read again, has a design.
     """
-    problem = problem.relaxed or problem
+    relaxed, problem = problem.relaxed is not None, problem.relaxed or problem
     known = _handles(problem)
     found = [r for n, h in _keyed(scene, known) if (r := _alone(scene, n, h, clock, status))]
     own = sorted((r for r in found if r.kind != "less"), key=lambda r: r.factor)
@@ -130,22 +138,19 @@ def remedies(scene: Any, problem: Problem, clock: Clock, status: Callable[[Any],
         tried = "not all known" if clock.over else "need more"
         least = replace(own[0], kind="least", verified={**own[0].verified, "others": tried})
         own = [least, *own[1:]]
+    blamed = _conflict(problem, known, clock)
+    others = tuple(r for r in found if r.kind == "less")
     late = "the budget ended before all remedies were tried" if clock.over else ""
-    return Remedies(
-        _conflict(problem, known, clock),
-        (*own, *(r for r in found if r.kind == "less")),
-        late,
-    )
+    sure = not relaxed and any_resolves(problem, known, blamed, clock)
+    return Remedies(tuple(h.name for h in blamed), (*own, *others), late, sure)
 
 
-def _conflict(problem: Problem, known: Sequence[Handle], clock: Clock) -> tuple[str, ...]:
+def _conflict(problem: Problem, known: Sequence[Handle], clock: Clock) -> tuple[Handle, ...]:
     """Return limits in conflict; with what is given where limits alone are not."""
     if any(variable.discrete for variable, _ in problem.columns):
         return ()
     limits = [h for h in known if not h.given]
-    return tuple(
-        h.name for h in conflict(problem, limits, clock) or conflict(problem, known, clock)
-    )
+    return conflict(problem, limits, clock) or conflict(problem, known, clock)
 
 
 def _keyed(scene: Any, known: Sequence[Handle]) -> Iterator[tuple[Number, Handle]]:

@@ -45,13 +45,13 @@ def assumptions(scene: Scene) -> list[str]:
         )
     if scene.tolerances is not None:
         found.append(
-            "Cost of a tolerance: that of the old one times (old/new)^exponent. Drawn errors: "
-            "run-outs t cos(phi), phi uniform; all else uniform from 0 to t."
+            "Cost of a tolerance: that of the old one times (old/new)^exponent. Monte Carlo "
+            "errors: run-outs t cos(phi), phi uniform; all else uniform from 0 to t."
         )
     if any(budget.rule == "rss" for budget in scene.budget):
         found.append(
             "The root of the sum of squares leaves aside that one-sided deviations have a mean "
-            "above zero: the yield that is drawn counts it."
+            "above zero: the Monte Carlo yield counts it."
         )
     return found
 

@@ -41,7 +41,7 @@ def tiles(result: Result, measures: Measures) -> list[Tile]:
         found.append(Tile("cost of tolerances", number(cost.cost)))
     if (drawn := design.drawn) is not None:
         good = f"{100.0 * drawn.yield_share:.4g} %"
-        found.append(Tile("yield", good, f"of {drawn.count:,} drawn trains"))
+        found.append(Tile("yield", good, f"of {drawn.count:,} Monte Carlo trains"))
     return found
 
 

@@ -257,13 +257,13 @@ def drawn(result: Result, measures: Measures) -> Section | None:
     most = max(found.histogram.counts)
     plot = layout(
         axis("error at the output [°]"),
-        axis("drawn trains", range=[0, 1.08 * most]),
+        axis("Monte Carlo trains", range=[0, 1.08 * most]),
         380,
         bargap=0.0,
         shapes=_interval(found),
     )
     caption = (
-        f"{found.count:,} trains drawn with every deviation at random within its tolerance "
+        f"{found.count:,} Monte Carlo trains with every deviation at random within its tolerance "
         f"(seed {found.seed}); the band is the interval of the quantile."
     )
     worst = 100.0 * found.worst_case_deg / found.limit_deg
@@ -274,13 +274,13 @@ def drawn(result: Result, measures: Measures) -> Section | None:
     budgets = () if design.allocation is None else design.allocation.budgets
     said = any(budget.limit_deg == found.limit_deg for budget in budgets)
     words, bins = _drawn_words(found, said), _bins(found.histogram)
-    heads = ("from [°]", "to [°]", "drawn trains")
+    heads = ("from [°]", "to [°]", "Monte Carlo trains")
     traces = [_bars(bins, found.count), *_lines(found, 1.05 * most)]
     return Section(
-        "Drawn errors",
+        "Monte Carlo errors",
         words=[*words, normal],
         figures=(Figure(traces, plot, caption),),
-        tables=(Table("drawn errors", heads, bins, folded=True),),
+        tables=(Table("Monte Carlo errors", heads, bins, folded=True),),
         half=design.stiffness is not None,
         terminal=("\n".join(words),),
     )
@@ -294,7 +294,7 @@ def _drawn_words(found: DrawnErrors, said: bool) -> list[str]:
     share, ends = f"{100.0 * found.probability:g} %", _ends(found)
     limit = "" if said else f" of {degrees(found.limit_deg)}"
     words = [
-        f"{100.0 * found.yield_share:.4f} % of the drawn trains keep the limit{limit}; with "
+        f"{100.0 * found.yield_share:.4f} % of the Monte Carlo trains keep the limit{limit}; with "
         f"{sure} confidence the yield lies between {low} and {high} %."
     ]
     between = " (too few draws for an interval with this confidence)"
@@ -302,7 +302,7 @@ def _drawn_words(found: DrawnErrors, said: bool) -> list[str]:
         interval = f"between {' and '.join(map(degrees, ends))}"
         between = f" (this quantile lies {interval} with {sure} confidence)"
     quantile = f"{share} of them have an error of at most {degrees(found.quantile_deg)}"
-    words.append(f"{quantile}{between}; the maximum drawn is {degrees(found.largest_deg)}.")
+    words.append(f"{quantile}{between}; the maximum is {degrees(found.largest_deg)}.")
     return words
 
 

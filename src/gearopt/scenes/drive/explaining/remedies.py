@@ -9,7 +9,14 @@ from typing import Any
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.explanation import Remedies, Remedy
 from gearopt.optimise.explaining.handles import Handle
-from gearopt.optimise.explaining.repair import FARTHEST, SAME, TAKEN_BACK, conflict, even
+from gearopt.optimise.explaining.repair import (
+    FARTHEST,
+    SAME,
+    TAKEN_BACK,
+    any_resolves,
+    conflict,
+    even,
+)
 from gearopt.optimise.problem import Problem
 from gearopt.scenes.drive.explaining.choices import eased_tolerance, nearest_ratio, switches
 from gearopt.scenes.drive.explaining.movable import (
@@ -58,7 +65,8 @@ def remedies(scene: Scene, clock: Clock) -> Remedies:
     if scene.teeth is not None:
         found += switches(case)
     late = "the budget ended before all remedies were tried" if clock.over else ""
-    return Remedies(tuple(h.name for h in blamed), tuple(found), late)
+    sure = scene.teeth is None and any_resolves(base, known, blamed, clock)
+    return Remedies(tuple(h.name for h in blamed), tuple(found), late, sure)
 
 
 def _tolerance(found: Sequence[Remedy]) -> Fraction | None:

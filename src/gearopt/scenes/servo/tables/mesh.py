@@ -240,7 +240,7 @@ class Tolerances(Table):
         "of the old value",
     )
     seed: Annotated[int, whole(0, 0, 10**9)] = Field(
-        0, description="Seed of the drawn errors that show what the tolerances give"
+        0, description="Seed of the Monte Carlo errors that show what the tolerances give"
     )
 
     @model_validator(mode="after")
