@@ -6,7 +6,7 @@ import io
 import pickle
 import re
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import replace
+from dataclasses import asdict, replace
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -23,15 +23,37 @@ ROOT = Path(__file__).parents[2]
 ELEVATOR = ROOT / "problems" / "elevator.toml"
 CASES = {"packing": cases.packing, "layout": cases.three_stage}
 NAMES = (
-    *("elevator", "elevator_small_wheels", "sandgren_train", "servo_gimbal_ratio", "packing"),
-    pytest.param("layout", marks=pytest.mark.slow),
+    *("elevator", "impossible", "sandgren_train", "servo_gimbal_ratio", "packing"),
+    *(pytest.param(n, marks=pytest.mark.slow) for n in ("elevator_small_wheels", "layout")),
 )
+
+
+REMEDY = Remedy("one", "", (Change("duty.power", '"9 kW"', '"5 kW"', 1.8),), 1.8, None)
 
 
 @pytest.fixture(params=NAMES)
 def result(request, solved):
     name = request.param
+    if name == "impossible":
+        return impossible(solved("elevator"))
     return CASES[name]() if name in CASES else solved(name)
+
+
+def impossible(result):
+    """The same request without an answer, and with a way out."""
+    ways = {"conflict": ["k_factor[1]"], "message": "", "remedies": [asdict(REMEDY)]}
+    proof = {"method": "dual", "sentence": "Proof: made up."}
+    return replace(
+        result,
+        status="infeasible",
+        objective=result.objective | {"value": None},
+        **dict.fromkeys(("bound", "gap")),
+        **dict.fromkeys(("design", "limits", "certificate"), {}),
+        parts=(),
+        proof=proof,
+        report={"ways_out": ways},
+        message="no design meets these together: k_factor[1]",
+    )
 
 
 def own(**bounds):
@@ -54,6 +76,7 @@ def test_a_result_is_a_few_lines(result):
     assert str(result.asked.get("title") or result.file or result.scene) in shown
     if result.value is None:
         assert "impossible, proven" in shown and result.message in shown
+        assert "possible with " in shown
 
 
 def test_the_lines_of_a_drive(solved):
@@ -179,9 +202,9 @@ def test_an_explanation_shows_itself(solved):
     assert "limits reached: area" in repr(found) and repr(found).count("\n") < 8
     Balanced(found._repr_html_())
     way = gearopt.Explanation(
-        solved("elevator_small_wheels"),
+        replace(impossible(solved("elevator")), report={}),
         conflict=("k_factor[1]",),
-        remedies=(Remedy("one", "", (Change("duty.power", '"9 kW"', '"5 kW"', 1.8),), 1.8, None),),
+        remedies=(REMEDY,),
     )
     assert "in conflict: K-factor of stage 1" in repr(way) and 'duty.power = "5 kW"' in repr(way)
     html = way._repr_html_()

@@ -113,14 +113,18 @@ def explained_lines(found: Explanation) -> str:
         rows.append(f"in conflict: {', '.join(map(limit_words, found.conflict))}")
     for remedy in found.remedies[:MOST]:
         rows.append(f"possible with {' and '.join(edit(asdict(c)) for c in remedy.changes)}")
-    if found.binding:
-        rows.append(f"limits reached: {', '.join(map(limit_words, found.binding))}")
+    rows += _reached(found)
     slopes = {i.key: i.sensitivity for i in found.influences if i.sensitivity is not None}
     if slopes:
         largest = sorted(slopes, key=lambda key: -abs(slopes[key]))[:MOST]
         words = ", ".join(f"{key} {slopes[key]:+.4g}" for key in largest)
         rows.append(f"sensitivities: {words}")
     return "\n  ".join(rows)
+
+
+def _reached(found: Explanation) -> list[str]:
+    names = ", ".join(map(limit_words, found.binding))
+    return [f"limits reached: {names}"] if names else []
 
 
 def compared_lines(found: Comparison) -> str:
@@ -144,8 +148,8 @@ def explained_fragment(found: Explanation) -> str:
     """Return an explanation as HTML for a notebook: sensitivities, or the way out."""
     if found.result.value is None:
         return fragment(answered(found))
-    head, *rest = explained_lines(replace(found, influences=())).split("\n")
-    return _html(head, [*rest[-1:], *of_influences(found.prices, found.result).terminal])
+    blocks = [*_reached(found), *of_influences(found.prices, found.result).terminal]
+    return _html(_head(found.result), blocks)
 
 
 def compared_fragment(found: Comparison) -> str:
@@ -175,18 +179,10 @@ def answered(found: Explanation) -> Result:
 
 def _html(head: str, blocks: Sequence[Block]) -> str:
     """Return a fragment of a page in the colours of where it stands; all text is escaped."""
-    from jinja2 import Environment, PackageLoader, StrictUndefined
+    from gearopt.report.pages.frame import templates
 
-    loader = PackageLoader("gearopt.report", "pages")
-    room = Environment(
-        loader=loader,
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
     parts: list[Any] = [b if isinstance(b, Table) else str(b) for b in blocks]
-    return room.get_template("notebook.html").render(head=head, blocks=parts)
+    return str(templates().get_template("notebook.html").render(head=head, blocks=parts))
 
 
 def measures_of(units: str) -> Measures:

@@ -4,6 +4,19 @@ from collections.abc import Mapping
 from typing import Any
 
 
+def templates() -> Any:
+    """Return the jinja2 environment of our templates; all that is put into them is escaped."""
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+
+    return Environment(
+        loader=PackageLoader("gearopt.report", "pages"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+
+
 def render(
     template: str,
     title: str,
@@ -17,23 +30,15 @@ def render(
 
     plots: the page has figures, which need plotly (4.8 MB) inside it.
     """
-    from jinja2 import Environment, PackageLoader, StrictUndefined
     from markupsafe import Markup
     from plotly.offline import get_plotlyjs
 
-    loader = PackageLoader("gearopt.report", "pages")
-    room = Environment(
-        loader=loader,
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
+    room = templates()
 
     def inlined(name: str) -> Markup:
-        return Markup(loader.get_source(room, name)[0])
+        return Markup(room.loader.get_source(room, name)[0])
 
-    return room.get_template(template).render(
+    page: str = room.get_template(template).render(
         title=title,
         subtitle=subtitle,
         versions=versions,
@@ -43,3 +48,4 @@ def render(
         plotly=Markup(get_plotlyjs()) if plots else "",
         **content,
     )
+    return page
