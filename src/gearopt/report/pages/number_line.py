@@ -94,7 +94,7 @@ def _row(sheet: Sheet, row: Span, level: float, scale: Scale) -> None:
     for x, text in texts if end != start else [(end, row.texts[1])]:
         if text:
             sheet.label(text, _near(x, level + 16.0, text), "name")
-    left = min(start, end) + Place(0.0, 0.0).half_width(row.name)
+    left = min(start, end) + 6.0 + Place(0.0, 0.0).half_width(row.name)
     sheet.label(row.name, [_inside(left, level - 15.0, row.name)], "plain")
 
 
