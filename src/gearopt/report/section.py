@@ -20,7 +20,7 @@ from gearopt.report.words import number, share
 SHEET = 660.0  # px across an A4 sheet inside its margins
 GUTTER = 18.0  # px between drawings, as in drawing.css
 TALL = 480.0  # px of a sheet that drawings may take, where their text stays legible
-LEGIBLE = 0.6  # of a text of 12 px: 5.4 pt on paper
+LEGIBLE = 0.58  # of a text of 12 px: 5.2 pt on paper
 LONG = 24  # rows; a longer table may break between rows when it is printed
 
 
