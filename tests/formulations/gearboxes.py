@@ -141,8 +141,8 @@ def smallest_box(train, make, rel, needed=k_factor_width):
             shape, count, bounds[0] = chain(box, (order,)), 1, 0.0
             cells[0, 0], cells[0, 1], cells[0, :, 0] = -math.pi, math.pi, turns(box)
             while count:
-                count, best, _, nodes, _ = branch(
-                    shape, 0, cells, bounds, count, best, math.inf, rel, 100_000, theta
+                count, best, _, _, nodes = branch(
+                    shape, 0, cells, bounds, count, best, 0.0, math.inf, rel, 100_000, theta
                 )
                 assert nodes
     return best

@@ -10,7 +10,7 @@ import pytest
 from gearboxes import gearbox, law, places, some_box
 
 from gearopt.errors import SolveError
-from gearopt.formulations.layout import problem
+from gearopt.formulations.layout import exact, problem
 from gearopt.formulations.layout.chain import chain, turns
 from gearopt.formulations.layout.gearbox import Clearances, Gearbox, KeepOut, Place, Shaft
 from gearopt.formulations.layout.layout_text import positions, sides, smooth
@@ -333,7 +333,7 @@ def test_exact_stopped_early_keeps_a_valid_bound():
     assert whole.status == "optimal"
     bounds = []
     for spare in (50, 500, 2000):
-        spent = 160_000 + spare
+        spent = exact.STARTS * exact.STEPS + spare
         result = solve(problem(box), "exact", Budget(evaluations=spent))
         assert result.status == "limit" and result.evaluations <= spent
         assert result.value >= whole.bound

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from gearboxes import gearbox, law, places, some_box
+from uncompiled import uncompiled
 
 from gearopt.formulations.layout import problem
 from gearopt.formulations.layout.chain import chain
@@ -15,9 +16,9 @@ from gearopt.optimise.kernels import kernel
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import solve
 
-K = kernel("gearopt.formulations.layout.chain_kernel")
-BOUND = kernel("gearopt.formulations.layout.bound_kernel")
-ANNEAL = kernel("gearopt.formulations.layout.anneal_kernel")
+K = uncompiled("gearopt.formulations.layout.chain_kernel")
+BOUND = uncompiled("gearopt.formulations.layout.bound_kernel")
+ANNEAL = uncompiled("gearopt.formulations.layout.anneal_kernel")
 KEEPS = (
     KeepOut("wall", (60.0, math.inf), (-math.inf, 40.0)),
     KeepOut("post", (-300.0, -150.0), (20.0, 90.0), (0.0, 90.0)),
@@ -213,5 +214,8 @@ def test_a_search_without_room_or_that_cannot_halve_keeps_an_honest_floor():
     shape = chain(box, arrangements(box))
     cells, bounds, theta = np.zeros((3, 2, 3)), np.zeros(3), np.zeros(3)
     cells[0, 0], cells[0, 1] = -math.pi, math.pi
-    count, best, floor, *_ = branch(shape, 0, cells, bounds, 1, 8e7, math.inf, 1e-6, 10**6, theta)
+    count, best, floor = 1, 8e7, math.inf
+    while count:
+        state = (count, best, 0.0, floor, 1e-6, 10**6)
+        count, best, _, floor, _ = branch(shape, 0, cells, bounds, *state, theta)
     assert count == 0 and 0.0 < floor <= 75_516_511.6 < best

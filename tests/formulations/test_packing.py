@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import numba
 import numpy as np
 import pytest
+from uncompiled import uncompiled
 
 from gearopt.formulations import packing
 from gearopt.formulations.packing import hop, packing_text, sa
@@ -53,7 +54,7 @@ def shaken(plan, rng):
 @pytest.mark.parametrize("plan", PLANS.values(), ids=PLANS)
 def test_kernel_computes_what_the_text_does(plan):
     """Objective, crowding of all pairs that may move, empty layers, excess of a given width."""
-    law, rng = kernel(KERNEL), np.random.default_rng(7)
+    law, rng = uncompiled(KERNEL), np.random.default_rng(7)
     problem = packing.problem(plan)
     gap, wall, width, shape, volume, least, most, _ = numbers(plan, plan.max_layers)
     for _ in range(40):

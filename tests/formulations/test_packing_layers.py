@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from packing_brute_force import drawn_fault, least_at_random, least_of_two, random_plan
+from uncompiled import uncompiled
 
 from gearopt.formulations import packing
 from gearopt.formulations.packing import packing_text
@@ -13,7 +14,6 @@ from gearopt.formulations.packing.design import describe
 from gearopt.formulations.packing.plan import Cylinder, Plan, row
 from gearopt.formulations.packing.sa import KERNEL, lateness, numbers
 from gearopt.optimise.clock import Clock
-from gearopt.optimise.kernels import kernel
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import run, solve
 from gearopt.optimise.typed import untyped
@@ -49,7 +49,7 @@ def test_text_kernel_and_bound_ask_for_the_same_layers():
         held = problem.batch(packing_text.point(plan, first._replace(layer=layer))[None]).G[
             0, columns
         ]
-        _, missing = kernel(KERNEL).stack(layer, plan.height, int(least), int(most))
+        _, missing = uncompiled(KERNEL).stack(layer, plan.height, int(least), int(most))
         assert (missing == 0) == bool((held <= 1.0).all()) == (2 in free)
     assert plan.filled == 3 and sorted(set(first.layer.tolist())) == [1, 2, 3]
     assert bound(plan).value == pytest.approx(400.0 * 40.0, rel=1e-8)

@@ -7,6 +7,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 from gearboxes import face_width, smallest_box
+from uncompiled import uncompiled
 
 from gearopt.errors import SolveError
 from gearopt.formulations import layout, teeth, together
@@ -17,7 +18,6 @@ from gearopt.formulations.strength.k_factor import K_FACTOR
 from gearopt.formulations.together import search
 from gearopt.formulations.together.tables import numbers, rest
 from gearopt.optimise.clock import Clock
-from gearopt.optimise.kernels import kernel
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import run
 from gearopt.physics.gears import MODULES
@@ -247,7 +247,7 @@ def at_its_limit():
 def test_a_box_as_large_as_it_may_be_is_not_too_large_by_rounding():
     train, make = at_its_limit()
     drive, _ = numbers(train, make)
-    nodes = kernel("gearopt.formulations.together.node_kernel")
+    nodes = uncompiled("gearopt.formulations.together.node_kernel")
     high = 2.0 * (0.5 * 2.2 * 56 + 2.2 + 8.0)
     assert high > 143.6  # by rounding alone
     assert math.isfinite(nodes.worth(drive.aim, 50.0, high * high, high))
@@ -318,7 +318,7 @@ def test_the_text_measures_a_layout_as_layout_does():
 @pytest.mark.slow
 def test_kernels_bound_what_they_measure():
     """The closed form of two discs is the least W H of all angles; widths are those of `teeth`."""
-    nodes = kernel("gearopt.formulations.together.node_kernel")
+    nodes = uncompiled("gearopt.formulations.together.node_kernel")
     rng = np.random.default_rng(5)
     angle = np.linspace(0.0, 0.5 * math.pi, 20_001)
     for r0, r1, share in rng.uniform([10, 10, 0.5], [200, 200, 1.5], (200, 3)):

@@ -58,6 +58,7 @@ def gearbox(name: str) -> Gearbox:
 def run(repeat: int) -> list[dict[str, Any]]:
     """Return rows: case, method, evaluations, ms (median), objective, gap to our bound, error."""
     rows = []
+    layout.ready()
     for name in CASES:
         box, known = gearbox(name), CASES[name][-1]
         exact, took = _timed(box, "exact", [0] * (repeat + 1), Budget(seconds=60.0))

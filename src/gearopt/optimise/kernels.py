@@ -4,7 +4,9 @@ import gc
 import hashlib
 import logging
 import os
+import time
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
 from importlib.metadata import version
@@ -12,12 +14,17 @@ from pathlib import Path
 from types import FunctionType, ModuleType
 from typing import Any
 
+import numpy as np
+
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget, Event, Watch
 
 logger = logging.getLogger("gearopt.kernels")
 COMPILING = "compiling, once for this version of gearopt"  # the part of events meanwhile
 UNREADY = "stopped while kernels were compiled"
+PATIENCE = (
+    3.0  # s that a process runs kernels uncompiled; compiling those of layouts takes twice that
+)
 ROOM = 70_000  # words of a frame: Python then takes 1 MB for it and all frames that it calls
 _SOURCES = Path(__file__).parents[1]
 
@@ -32,11 +39,31 @@ def kernel(module: str) -> ModuleType:
     """
     import numba
 
-    folder = _folder() / _key()
-    numba.config.CACHE_DIR = str(folder)
-    if not any(folder.rglob(f"{module.rsplit('.', 1)[-1]}.*.nbi")):
-        logger.info("%s: this takes some seconds", COMPILING)
+    numba.config.CACHE_DIR = str(_folder() / _key())
+    _announced()
     return import_module(module)
+
+
+@cache
+def _announced() -> None:
+    """Have it said, once in a process, that kernels are compiled, should that become necessary."""
+    from numba.core import event
+
+    class Listener(event.Listener):  # type: ignore[misc, unused-ignore]
+        """Says so; an interface of numba."""
+
+        said = False
+
+        def on_start(self, found: Any) -> None:
+            """Say so of the first function."""
+            if not self.said:
+                logger.info("%s: this takes some seconds", COMPILING)
+            self.said = True
+
+        def on_end(self, found: Any) -> None:
+            """Do nothing."""
+
+    event.register("numba:compile", Listener())
 
 
 def compiled(work: Callable[[], Any], entries: tuple[Any, ...], watch: Watch | None = None) -> bool:
@@ -79,6 +106,60 @@ def compiled(work: Callable[[], Any], entries: tuple[Any, ...], watch: Watch | N
         if collects:
             gc.enable()
     return True
+
+
+@dataclass
+class Warm:
+    """Kernels that run uncompiled for PATIENCE seconds, unless their machine code is at hand.
+
+    Small problems are solved before a compiler would be through, and with the same numbers.
+    seconds: CPU time spent so; it has state because it counts that, for all runs of a process.
+    """
+
+    seconds: float = 0.0
+
+    def waits(self, entry: Any) -> bool:
+        """Return whether a kernel is called uncompiled as yet."""
+        return self.seconds < PATIENCE and not _kept(entry)
+
+    def call(self, clock: Clock, entry: Any, *given: Any) -> Any:
+        """Call a kernel; the time of compiling it is not the clock's. None if that was ended."""
+        if self.waits(entry):
+            begun, drawn = time.process_time(), np.random.get_state()  # noqa: NPY002
+            try:
+                with np.errstate(all="ignore"):  # as machine code does
+                    return plain(entry)(*given)
+            finally:  # a kernel seeds the generator that is the user's here
+                np.random.set_state(drawn)  # noqa: NPY002
+                self.seconds += time.process_time() - begun
+        if _kept(entry):
+            return entry(*given)
+        begun, found = time.perf_counter(), list[Any]()
+        clock.stopped = not compiled(lambda: found.append(entry(*given)), (entry,), clock.watch)
+        clock.start += time.perf_counter() - begun
+        return found[0] if found else None
+
+
+warm = cache(Warm)
+
+
+@cache
+def plain(entry: Any) -> Callable[..., Any]:
+    """Return a kernel as the Python it was written in, with all kernels that it calls."""
+    copies = {
+        one: FunctionType(one.py_func.__code__, dict(one.py_func.__globals__))
+        for one in _called(entry, set())
+    }
+    for copy in copies.values():
+        own, names = copy.__globals__, copy.__code__.co_names
+        own |= {n: copies[own[n]] for n in names if hasattr(own.get(n), "py_func")}
+    return copies[entry]
+
+
+def _kept(entry: Any) -> bool:
+    """Return whether the machine code of a kernel is at hand."""
+    name = f"{entry.py_func.__module__.rsplit('.', 1)[-1]}.{entry.py_func.__name__}-*.nbi"
+    return bool(entry.signatures) or any((_folder() / _key()).rglob(name))
 
 
 class _Ended(Exception):

@@ -6,9 +6,9 @@ Both keep the best feasible point: link angles, so that every mesh is exact.
 import math
 
 import numpy as np
-from numba import njit
 
 from gearopt.formulations.layout.chain_kernel import ROUNDING, ZERO, measured, value
+from gearopt.optimise.jit_kernel import entry, inner
 
 HOT, COLD = 0.03, 3e-5  # temperatures, relative to the objective at the start
 WIDE, NARROW = 1.0, 1e-3  # steps of an angle [rad], shrinking with the root of the temperature
@@ -19,7 +19,7 @@ OTHER = 0.05  # share of moves that try another arrangement of the slabs
 TOUCHING, MESHING = 0.05, 0.3  # mm; what the free positions may lack to be worth repairing
 
 
-@njit(cache=True)
+@inner
 def placed(chain, theta, y, z):
     """Positions of the shafts for search angles: those of closing links only choose a side."""
     y[0] = z[0] = 0.0
@@ -38,7 +38,7 @@ def placed(chain, theta, y, z):
         elif chain.close[k] == 2:
             b = chain.link[k + 1]
             dy, dz = chain.goal[k, 1] - y[k], chain.goal[k, 2] - z[k]
-            d = max(math.hypot(dy, dz), 1e-9 * a)
+            d = max(math.sqrt(dy * dy + dz * dz), 1e-9 * a)
             cosine = min(1.0, max(-1.0, (a * a + d * d - b * b) / (2.0 * a * d)))
             turn = math.atan2(dz, dy) + side * math.acos(cosine)
             y[k + 1], z[k + 1] = y[k] + a * math.cos(turn), z[k] + a * math.sin(turn)
@@ -50,14 +50,14 @@ def placed(chain, theta, y, z):
             z[k + 1] = z[k] + a * math.sin(theta[k])
 
 
-@njit(cache=True)
+@inner
 def directions(y, z, theta):
     """The link angles of positions."""
     for k in range(theta.size):
         theta[k] = math.atan2(z[k + 1] - z[k], y[k + 1] - y[k])
 
 
-@njit(cache=True)
+@entry
 def anneal(chain, seed, start, stop, total, theta, state, found):
     """Metropolis on link angles, steps `start` to `stop` of `total`.
 
@@ -101,7 +101,7 @@ def anneal(chain, seed, start, stop, total, theta, state, found):
             theta[k] = old
 
 
-@njit(cache=True)
+@entry
 def anneal_positions(chain, seed, start, stop, total, y, z, state, found):
     """The paper's search: free positions, centre distances and overlaps as penalties.
 
@@ -130,7 +130,8 @@ def anneal_positions(chain, seed, start, stop, total, y, z, state, found):
         width, height, short = measured(chain, ZERO, y, z)
         mesh = 0.0
         for k in range(links):
-            mesh += abs(math.hypot(y[k + 1] - y[k], z[k + 1] - z[k]) - chain.link[k])
+            dy, dz = y[k + 1] - y[k], z[k + 1] - z[k]
+            mesh += abs(math.sqrt(dy * dy + dz * dz) - chain.link[k])
         objective = value(chain, ZERO, width, height)
         energy = objective / state[2] + (PENALTY * short + MESH * mesh) / state[3]
         rise = energy - state[1]

@@ -55,12 +55,18 @@ Polish = Callable[[Array, Budget, Watch | None], Polished]
 
 
 def anneal(
-    chain: Chain, seed: int, steps: int, goes: Goes, free: bool = False, looks: int = 1
+    chain: Chain,
+    seed: int,
+    steps: int,
+    goes: Goes,
+    free: bool = False,
+    looks: int = 1,
+    call: Callable[..., Any] = lambda entry, *given: entry(*given),
 ) -> tuple[Array, int]:
     """Anneal; return best value, arrangement and angles (N + 2,), inf if none is feasible; steps.
 
     free: positions instead of angles, the paper's way. goes(steps, best): whether to continue; it
-    is asked after SLICE steps, and `looks` times at least.
+    is asked after SLICE steps, and `looks` times at least. call(kernel, *arguments): calls it.
     """
     kernels = kernel(ANNEAL)
     links = chain.link.size
@@ -71,9 +77,10 @@ def anneal(
         stop = min(steps, start + size)
         own = (seed * 1_000_003 + start // size) % 2**32  # a stream for every slice
         if free:
-            kernels.anneal_positions(chain, own, start, stop, steps, y, z, state, found)
+            given = (chain, own, start, stop, steps, y, z, state, found)
+            call(kernels.anneal_positions, *given)
         else:
-            kernels.anneal(chain, own, start, stop, steps, theta, state, found)
+            call(kernels.anneal, chain, own, start, stop, steps, theta, state, found)
         if not goes(stop, float(found[0])):
             return found, stop
     return found, steps

@@ -9,15 +9,15 @@ the linear program of the cell's middle, so that the bound converges with the sq
 import math
 
 import numpy as np
-from numba import njit
 
 from gearopt.formulations.layout.chain_kernel import MARGIN, NONE, ZERO, cosines, lowest
+from gearopt.optimise.jit_kernel import inner
 
 PIVOTS = 40  # of a linear program of some ten columns; more would be a cycle
 SMALL = 1e-12  # of a pivot, where the columns are of the order of the sides
 
 
-@njit(cache=True)
+@inner
 def span(chain, low, high, i, j, p, q):
     """Least and largest p y + q z over a cell, y, z from shaft i to j; p, q a unit vector."""
     turn = math.atan2(q, p)
@@ -29,14 +29,14 @@ def span(chain, low, high, i, j, p, q):
     return least, most
 
 
-@njit(cache=True)
+@inner
 def cut(chain, need, low, high, i, j, y, z):
     """A line u that axes i and j, `need` apart, keep apart along: u, and how far; 0 for none.
 
     |v| >= need, v = (y, z) from i to j, has u v >= sqrt(need^2 - s^2) wherever u v > 0 and v is at
     most s beside u.
     """
-    size = math.hypot(y, z)
+    size = math.sqrt(y * y + z * z)
     if size <= 0.0:
         return 0.0, 0.0, 0.0
     p, q = y / size, z / size
@@ -48,7 +48,7 @@ def cut(chain, need, low, high, i, j, y, z):
     return p, q, math.sqrt(need * need - s * s) * (1.0 - MARGIN)
 
 
-@njit(cache=True)
+@inner
 def put(row, ends, n, p, q, b, i, j, side):
     """Write row n; the number of rows then."""
     row[n, 0], row[n, 1], row[n, 2] = p, q, b
@@ -56,7 +56,7 @@ def put(row, ends, n, p, q, b, i, j, side):
     return n + 1
 
 
-@njit(cache=True)
+@inner
 def gather(chain, m, low, high, spans, edge, row, ends):
     """The rows of a cell: p y + q z from shaft i to j is at most b, or b more than a side.
 
@@ -102,7 +102,7 @@ def gather(chain, m, low, high, spans, edge, row, ends):
     return n
 
 
-@njit(cache=True)
+@inner
 def program(chain, low, high, edge, slope, row, ends, n, table, names, weight, theta):
     """Weights of the rows by the dual simplex method on the rows' lines at the cell's middle.
 
@@ -183,7 +183,7 @@ def program(chain, low, high, edge, slope, row, ends, n, table, names, weight, t
     return True
 
 
-@njit(cache=True)
+@inner
 def judged(chain, low, high, edge, slope, log, row, ends, n, weight, pull):
     """The bound that weights of rows give: the least of the weighted sum over cell and sides.
 
@@ -223,7 +223,7 @@ def judged(chain, low, high, edge, slope, log, row, ends, n, weight, pull):
     return found - MARGIN * size
 
 
-@njit(cache=True)
+@inner
 def sharp(chain, m, low, high, spans, box, aim, room, pull, theta):
     """A bound of the objective over a cell, no more than `aim`, to which it is sharp.
 
@@ -259,7 +259,7 @@ def sharp(chain, m, low, high, spans, box, aim, room, pull, theta):
     return min(found, aim)
 
 
-@njit(cache=True)
+@inner
 def scratch(links):
     """Room for the rows of a cell and their linear program."""
     most = 5 * links * (links + 1) + 6 * links

@@ -3,7 +3,6 @@
 import math
 
 import numpy as np
-from numba import njit
 
 from gearopt.formulations.layout.bound_kernel import scratch, sharp
 from gearopt.formulations.layout.chain_kernel import (
@@ -15,20 +14,21 @@ from gearopt.formulations.layout.chain_kernel import (
     value,
     widest,
 )
+from gearopt.optimise.jit_kernel import entry, inner
 
 ALIKE = 1e-6  # an angle this much narrower than another is not halved again: it is not the cause
 
 
-@njit(cache=True)
-def branch(chain, m, cells, bounds, count, best, floor, rel, limit, theta):
-    """Depth-first branch and bound on cells of link angles, for one slice of `limit` nodes.
+@entry
+def branch(chain, m, cells, bounds, count, best, near, floor, rel, limit, theta):
+    """Depth-first branch and bound on cells of angles: `limit` nodes, or until `best` improves.
 
     cells (size, 2, N): low and high of the open cells, of which `count` are in use; bounds (size,):
     theirs. A cell is dropped if nothing in it is feasible or all of it is above best (1 - rel).
-    Points of cells improve `best`, `theta` holds the best one. floor: least bound of the cells
-    dropped for being too good to matter, or because they cannot be halved or there is no room.
-    Where `best` is not improved, theta holds the point that lacks least of those that promise to,
-    and near is that lack [mm]. Returns count, best, floor, nodes, near.
+    A point of a cell improves `best`, `theta` holds it. floor: least bound of the cells dropped for
+    being too good to matter, or because they cannot be halved or there is no room. Where `best` is
+    not improved, theta holds the point that lacks least of those that promise to, if that is less
+    than `near`, its lack [mm]. Returns count, best, near, floor, nodes.
     """
     links = theta.size
     spans = (
@@ -40,8 +40,8 @@ def branch(chain, m, cells, bounds, count, best, floor, rel, limit, theta):
     room, pull, point = scratch(links), np.zeros((2, links)), np.zeros(links)
     low, high = np.empty(links), np.empty(links)
     y, z = np.zeros(links + 1), np.zeros(links + 1)
-    nodes, near, start = 0, math.inf, best
-    while count > 0 and nodes < limit:
+    nodes, start = 0, best
+    while count > 0 and nodes < limit and best == start:
         count -= 1
         nodes += 1
         aim, bound = best * (1.0 - rel), bounds[count]
@@ -86,10 +86,10 @@ def branch(chain, m, cells, bounds, count, best, floor, rel, limit, theta):
             cells[count, 1 - half, k] = middle
             bounds[count] = bound
             count += 1
-    return count, best, floor, nodes, near
+    return count, best, near, floor, nodes
 
 
-@njit(cache=True)
+@inner
 def halved(chain, m, low, high, box, pull, point, y, z):
     """The angle whose halving promises most: by its weight in the bound, or where that is wrong.
 
@@ -106,11 +106,14 @@ def halved(chain, m, low, high, box, pull, point, y, z):
         for k in range(chain.keep.shape[0]):
             past_y = max(chain.keep[k, 0] - y[i], y[i] - chain.keep[k, 1], 0.0)
             past_z = max(chain.keep[k, 2] - z[i], z[i] - chain.keep[k, 3], 0.0)
-            lack = max(lack, chain.keep_apart[m, k, i] - math.hypot(past_y, past_z))
+            lack = max(
+                lack, chain.keep_apart[m, k, i] - math.sqrt(past_y * past_y + past_z * past_z)
+            )
         for k in range(i):
             wrong[k] = max(wrong[k], lack / scale)
         for j in range(i + 2, links + 1):
-            lack = chain.apart[m, i, j] - math.hypot(y[i] - y[j], z[i] - z[j])
+            dy, dz = y[i] - y[j], z[i] - z[j]
+            lack = chain.apart[m, i, j] - math.sqrt(dy * dy + dz * dz)
             for k in range(i, j):
                 wrong[k] = max(wrong[k], lack / scale)
     i, j, _, _ = widest(chain, y)
@@ -122,9 +125,8 @@ def halved(chain, m, low, high, box, pull, point, y, z):
     best, most, longest, length = -1, 0.0, 0, 0.0
     for k in range(links):
         size = high[k] - low[k]
-        score = size * (
-            math.hypot(pull[0, k], pull[1, k]) / unit + wrong[k] * chain.link[k] / scale
-        )
+        weight = math.sqrt(pull[0, k] * pull[0, k] + pull[1, k] * pull[1, k])
+        score = size * (weight / unit + wrong[k] * chain.link[k] / scale)
         if score > most:
             best, most = k, score
         if size * chain.link[k] > length:

@@ -1,13 +1,15 @@
 """Kernels on the chain of shafts: what a point measures, and what no point of a cell is below.
 
 A chain is the NamedTuple of arrays of `chain.Chain`; theta (N,) are the link angles. Lengths in mm,
-angles in rad.
+angles in rad. Of `math` they call what Python and machine code round alike (so not `hypot`):
+uncompiled they give the same numbers.
 """
 
 import math
 
 import numpy as np
-from numba import njit
+
+from gearopt.optimise.jit_kernel import inner
 
 FULL = 2.0 * math.pi
 MARGIN = 1e-12  # relative; far above the rounding of some ten sums and products of doubles
@@ -16,7 +18,7 @@ ROUNDING = 1e-9  # mm; what exact positions may seem to lack
 NONE, ZERO, ONE = np.int64(-1), np.int64(0), np.int64(1)
 
 
-@njit(cache=True)
+@inner
 def measure(chain, m, theta, y, z):
     """Width, height, and violation [mm] (the sum of what is missing); y, z are filled in."""
     y[0] = z[0] = 0.0
@@ -26,7 +28,7 @@ def measure(chain, m, theta, y, z):
     return measured(chain, m, y, z)
 
 
-@njit(cache=True)
+@inner
 def measured(chain, m, y, z):
     """Width, height and violation of shafts at y, z."""
     count = y.size
@@ -60,7 +62,7 @@ def measured(chain, m, y, z):
     return width, height, short
 
 
-@njit(cache=True)
+@inner
 def value(chain, m, width, height):
     """The objective: factor W^p H^q, or the longest side."""
     if chain.longest:
@@ -73,7 +75,7 @@ def value(chain, m, width, height):
     return found
 
 
-@njit(cache=True)
+@inner
 def cosines(low, high):
     """Least and largest cosine on an interval, widened by MARGIN."""
     if high - low >= FULL:
@@ -87,19 +89,19 @@ def cosines(low, high):
     return max(least, -1.0), min(most, 1.0)
 
 
-@njit(cache=True)
+@inner
 def lowest(a, b, low, high):
     """Where a cos(t) + b sin(t) is least on an interval, and its value there."""
     t = math.atan2(b, a) + math.pi  # a minimum; bring it to the first one not below `low`
     t += FULL * math.ceil((low - t) / FULL)
     if t <= high:
-        return t, -math.hypot(a, b)
+        return t, -math.sqrt(a * a + b * b)
     first = a * math.cos(low) + b * math.sin(low)
     last = a * math.cos(high) + b * math.sin(high)
     return (low, first) if first < last else (high, last)
 
 
-@njit(cache=True)
+@inner
 def excluded(chain, m, low, high, ly, hy, lz, hz):
     """Whether no point of a cell keeps the distances and places; fills in the intervals.
 
@@ -134,7 +136,7 @@ def excluded(chain, m, low, high, ly, hy, lz, hz):
     return misplaced(chain, m, ly, hy, lz, hz)
 
 
-@njit(cache=True)
+@inner
 def misplaced(chain, m, ly, hy, lz, hz):
     """Whether every point of a cell misses a given place, level, keep-out or largest side."""
     count = chain.reach.size
@@ -159,7 +161,7 @@ def misplaced(chain, m, ly, hy, lz, hz):
     return False
 
 
-@njit(cache=True)
+@inner
 def sides(chain, ly, hy, lz, hz):
     """Bounds of width and height of every point of a cell: W low, W high, H low, H high."""
     w0 = w1 = h0 = h1 = 0.0
@@ -176,7 +178,7 @@ def sides(chain, ly, hy, lz, hz):
     return w0, w1, h0, h1
 
 
-@njit(cache=True)
+@inner
 def widest(chain, y):
     """The pair of shafts (i <= j) that makes a side at y, the sign of y_j - y_i, and the side."""
     first = last = 0

@@ -8,6 +8,7 @@ steps, so that a search which is stopped has the bound of its last full step.
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,7 @@ import numpy as np
 from gearopt.formulations.layout.annealing import ANNEAL, anneal, point
 from gearopt.formulations.layout.chain import Chain
 from gearopt.optimise.clock import Clock
-from gearopt.optimise.kernels import UNREADY, compiled, kernel
+from gearopt.optimise.kernels import compiled, kernel, warm
 from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.terms import Array
 
@@ -25,9 +26,10 @@ COUNTS = "layout measured or cell bounded"
 GAPS = (0.1, 0.01, 1e-3, 1e-4, 1e-5)  # each is proven before the next is tried
 GAP = 1e-6  # the last one where the budget requests none
 INSIDE = 1e-2  # a gap is proven smaller by this part of it, so that rounding leaves it there
-STARTS, STEPS = 8, 20_000  # annealing runs for the first layout, and their steps
+STARTS, STEPS = 8, 500  # annealing runs for the first layout, and their steps
 SETTINGS = {"first layout": f"{STARTS} annealing runs of {STEPS}, the best polished"}
-NODES = 5_000  # of a slice: below 0.1 s
+NODES = 5_000  # of a slice, below 0.1 s, after which a near miss is polished
+FEW = 100  # of a slice of uncompiled Python, some hundredths of a second
 DEEP = 4_000  # open cells: a depth-first search leaves one per halving, some 60 halvings per angle
 NEAR = 1.0  # mm; a layout that lacks no more may be mended by polishing
 
@@ -61,8 +63,6 @@ def method(chain: Chain, turns: tuple[float, float], polish: Polish) -> Any:
     """
 
     def run(problem: Any, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
-        if not ready(chain, watch):
-            return Outcome(None, False, message=UNREADY)
         search = Search(clock := Clock(budget, watch))
         _first(search, chain, seed, polish)
         wanted, proven = budget.gap or GAP, None
@@ -120,7 +120,7 @@ def ready(chain: Chain, watch: Watch | None = None) -> bool:
     def work() -> None:
         anneal(chain, 0, 1, lambda steps, best: True)
         cells, bounds, theta = np.zeros((2, 2, links)), np.zeros(2), np.zeros(links)
-        branch(chain, 0, cells, bounds, 0, math.inf, math.inf, GAP, NODES, theta)
+        branch(chain, 0, cells, bounds, 0, math.inf, math.inf, math.inf, GAP, NODES, theta)
 
     return compiled(work, (kernel(ANNEAL).anneal, branch), watch)
 
@@ -128,6 +128,7 @@ def ready(chain: Chain, watch: Watch | None = None) -> bool:
 def _first(search: Search, chain: Chain, seed: int, polish: Polish) -> None:
     """Keep a good layout: the best of some annealing runs, polished."""
     clock = search.clock
+    call = partial(warm().call, clock)
     for k in range(STARTS):
         spent = clock.evaluations
 
@@ -135,7 +136,7 @@ def _first(search: Search, chain: Chain, seed: int, polish: Polish) -> None:
             clock.evaluations = spent + steps
             return clock.tell()
 
-        found, _ = anneal(chain, STARTS * seed + k, search.left(STEPS), goes)
+        found, _ = anneal(chain, STARTS * seed + k, search.left(STEPS), goes, call=call)
         if found[0] < clock.best:
             clock.best, search.x = float(found[0]), point(chain, found)
         if clock.stopped:
@@ -168,22 +169,27 @@ def _prove(
     polish: Polish,
 ) -> float | None:
     """Return a bound within `rel` of the best layout, which may improve; None if stopped before."""
-    kernels = kernel(BRANCH)
+    branch, clock = kernel(BRANCH).branch, search.clock
     floor, theta = math.inf, np.zeros(chain.link.size)
     for m in range(chain.factor.size):
-        (cells, bounds), count = first_cell(theta.size, turns), 1
+        (cells, bounds), count, near, spent = first_cell(theta.size, turns), 1, math.inf, 0
         while count:
-            start = search.clock.best
-            count, best, floor, nodes, near = kernels.branch(
-                chain, m, cells, bounds, count, start, floor, rel, search.left(NODES), theta
-            )
-            search.nodes += nodes
-            search.clock.evaluations += nodes
+            start, size = clock.best, FEW if warm().waits(branch) else NODES
+            limit = search.left(min(size, NODES - spent))
+            state = (count, start, near, floor, rel, limit, theta)
+            found = warm().call(clock, branch, chain, m, cells, bounds, *state)
+            if found is None:
+                return None
+            count, best, near, floor, nodes = found
+            search.nodes, clock.evaluations = search.nodes + nodes, clock.evaluations + nodes
+            spent += nodes
             x = np.append(theta, m) if chain.factor.size > 1 else theta.copy()
             if best < start:
                 _take(search, x, best)
-            if best < start or near < NEAR:
-                _take(search, *polish(x))
-            if not search.clock.tell() and (count or m + 1 < chain.factor.size):
+            if best < start or not count or spent >= NODES:
+                if best < start or near < NEAR:
+                    _take(search, *polish(x))
+                near, spent = math.inf, 0
+            if not clock.tell() and (count or m + 1 < chain.factor.size):
                 return None
     return floor

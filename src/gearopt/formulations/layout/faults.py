@@ -182,8 +182,8 @@ def possible(box: Gearbox, seconds: float, watch: Watch | None = None) -> bool |
     for m in range(len(orders)):
         (cells, bounds), count, floor = first_cell(theta.size, turns(box)), 1, math.inf
         while count:
-            state = (count, math.inf, floor)
-            count, best, floor, fresh, _ = kernels.branch(
+            state = (count, math.inf, 0.0, floor)
+            count, best, _, floor, fresh = kernels.branch(
                 shape, m, cells, bounds, *state, 0.5, NODES, theta
             )
             clock.evaluations += fresh

@@ -8,8 +8,9 @@ relative excess, and a layer that must hold something but is empty counts as 1.
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from gearopt.optimise.jit_kernel import entry, inner
 
 Reals = NDArray[np.float64]
 Whole = NDArray[np.int64]
@@ -22,7 +23,7 @@ LIGHT, HEAVY = (
 ROUNDING = 1e-12  # of a crowding that is kept by differences
 
 
-@njit(cache=True)
+@inner
 def crowding(i: int, x: Reals, y: Reals, layer: Whole, radius: Reals, gap: float) -> float:
     """How much cylinder i crowds the others of its layer."""
     total = 0.0
@@ -35,7 +36,7 @@ def crowding(i: int, x: Reals, y: Reals, layer: Whole, radius: Reals, gap: float
     return total
 
 
-@njit(cache=True)
+@inner
 def crowding_of_all(x: Reals, y: Reals, layer: Whole, radius: Reals, gap: float) -> float:
     """The crowding of all pairs."""
     total = 0.0
@@ -44,7 +45,7 @@ def crowding_of_all(x: Reals, y: Reals, layer: Whole, radius: Reals, gap: float)
     return 0.5 * total
 
 
-@njit(cache=True)
+@inner
 def stack(layer: Whole, height: Reals, least: int, most: int) -> tuple[float, int]:
     """Sum of the heights of the layers, and the number of layers that lack a cylinder."""
     total, missing = 0.0, 0
@@ -59,7 +60,7 @@ def stack(layer: Whole, height: Reals, least: int, most: int) -> tuple[float, in
     return total, missing
 
 
-@njit(cache=True)
+@inner
 def plan_area(
     x: Reals, y: Reals, centre: Reals, radius: Reals, shape: int, wall: float, width: float
 ) -> tuple[float, float]:
@@ -81,7 +82,7 @@ def plan_area(
     return across * along, 0.0
 
 
-@njit(cache=True)
+@inner
 def propose(
     step: float,
     x: Reals,
@@ -140,7 +141,7 @@ def propose(
     return i
 
 
-@njit(cache=True)
+@inner
 def copy(
     x: Reals,
     y: Reals,
@@ -157,7 +158,7 @@ def copy(
     to_centre[0], to_centre[1] = centre[0], centre[1]
 
 
-@njit(cache=True)
+@entry
 def anneal(
     seed: int,
     first: int,

@@ -12,6 +12,7 @@ import math
 from numba import njit
 
 from gearopt.formulations.layout.chain_kernel import MARGIN
+from gearopt.optimise.jit_kernel import inner
 
 ALLOWANCE = 1e-12  # a stress utilisation this little above 1 is rounding, as in sizing
 EDGE = 1e-9  # cells and ratio windows overlap by this much in log ratio
@@ -48,7 +49,7 @@ def width(d, j, p, k, torque):
     return count * d.given[j] if count <= d.most_steps[k, p] else math.inf
 
 
-@njit(cache=True)
+@inner
 def least_area(r0, r1, a):
     """Least W H of a box around two discs whose centres are `a` (or more) apart.
 
@@ -61,7 +62,7 @@ def least_area(r0, r1, a):
     return big * (r0 + r1 + math.sqrt(a * a - rise * rise))
 
 
-@njit(cache=True)
+@inner
 def worth(aim, length, area, big):
     """Least objective of boxes of a length, W H >= area and W, H >= big.
 
@@ -90,7 +91,7 @@ def put(d, j, p, k, node, body):
     node[j, 2] = d.log_ratio[p]
 
 
-@njit(cache=True)
+@inner
 def place(sorted_values, start, stop, value):
     """First index from start to stop whose value is not below a value; stop if there is none."""
     while start < stop:
@@ -102,13 +103,13 @@ def place(sorted_values, start, stop, value):
     return start
 
 
-@njit(cache=True)
+@inner
 def widest(body, x):
     """Radius of the largest body on a shaft."""
     return max(max(body[x, 0], body[x, 1]), max(body[x, 2], body[x, 3]))
 
 
-@njit(cache=True)
+@inner
 def onto(d, first, node, body):
     """Shafts and bearings of a node by the least torque they carry."""
     log_ratio = d.log_low
@@ -121,7 +122,7 @@ def onto(d, first, node, body):
     return log_ratio
 
 
-@njit(cache=True)
+@inner
 def loaded(d, first, choice, node):
     """Set the face widths of a node; False if a stage cannot carry its least torque.
 
@@ -144,7 +145,7 @@ def loaded(d, first, choice, node):
     return True
 
 
-@njit(cache=True)
+@inner
 def apart(d, m, first, node, body, found):
     """Least distances of the axes of a node; False if its links cannot hold them apart."""
     shafts = body.shape[0]
@@ -168,7 +169,7 @@ def apart(d, m, first, node, body, found):
     return True
 
 
-@njit(cache=True)
+@inner
 def length(d, m, first, node):
     """Length of the box with the stages of a node; others add nothing but their slabs' gaps."""
     found = d.ends + d.gap[3] * (d.slabs[m] - 1)
@@ -181,7 +182,7 @@ def length(d, m, first, node):
     return found
 
 
-@njit(cache=True)
+@inner
 def bound(d, rest, first, node, body, need, cut, lengths, radius):
     """Lower bound of all that a node leads to, as far as it is below `cut`.
 
@@ -232,7 +233,7 @@ def grows(d, j):
     return d.kind[j] == 0 or d.kind[j] == 2
 
 
-@njit(cache=True)
+@inner
 def bases(d, j, node, base, shared):
     """Least length without stage j, and what its slab is wide anyhow, in each arrangement (M,)."""
     for m in range(base.size):

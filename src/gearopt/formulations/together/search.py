@@ -149,8 +149,8 @@ def _below(search: Search, box: Gearbox, order: Arrangement, margin: float) -> b
     cells, bounds = first_cell(theta.size, turns(box))
     count, best, floor = 1, aim, math.inf
     while count and best == aim and search.clock.tell():
-        count, best, floor, nodes, _ = kernels.branch(
-            shape, 0, cells, bounds, count, best, floor, 1.0 - cut / aim, 20_000, theta
+        count, best, _, floor, nodes = kernels.branch(
+            shape, 0, cells, bounds, count, best, 0.0, floor, 1.0 - cut / aim, 20_000, theta
         )
         search.clock.evaluations += nodes
     return count > 0 or best < aim or floor < cut

@@ -7,7 +7,6 @@ a look for a layout of what is chosen.
 import math
 
 import numpy as np
-from numba import njit
 
 from gearopt.formulations.layout.branch_kernel import branch
 from gearopt.formulations.layout.chain_kernel import ONE, ZERO
@@ -28,11 +27,12 @@ from gearopt.formulations.together.node_kernel import (
     width,
     worth,
 )
+from gearopt.optimise.jit_kernel import entry, inner
 
 NODES = np.int64(64)  # cells of a node's layout between two looks at how many were spent
 
 
-@njit(cache=True)
+@entry
 def useful(d, j, cut, keep):
     """Mark the pairs of a stage that alone stay below `cut`; the least width of those for all."""
     node, body = np.zeros((d.kind.size, 3)), np.zeros((d.kind.size + 1, 4))
@@ -65,7 +65,7 @@ def useful(d, j, cut, keep):
     return found
 
 
-@njit(cache=True)
+@entry
 def fill(d, k, start, stop, rest):
     """Tables of stages 0..k-1 with a total ratio of cells start to stop.
 
@@ -115,7 +115,7 @@ def fill(d, k, start, stop, rest):
                     break
 
 
-@njit(cache=True)
+@inner
 def added(d, alone, widths, more):
     """Length that stages add in slabs of their own, in each arrangement: more (M,)."""
     for m in range(more.size):
@@ -130,7 +130,7 @@ def added(d, alone, widths, more):
             more[m] += widest if alone[m, i] > 0 else 0.0
 
 
-@njit(cache=True)
+@entry
 def expand(d, rest, j, parents, start, stop, cut, limit, children, bounds):
     """Children of nodes by a choice for stage j; one slice of about `limit` choices.
 
@@ -208,7 +208,7 @@ def expand(d, rest, j, parents, start, stop, cut, limit, children, bounds):
     return count, looked
 
 
-@njit(cache=True)
+@entry
 def sift(d, rest, chain, turns, first, nodes, start, levels, limits, alive, found):
     """Look for a layout below a value of the discs of each node, for one slice.
 
@@ -252,8 +252,8 @@ def sift(d, rest, chain, turns, first, nodes, start, levels, limits, alive, foun
             cells[0, 0, 0], cells[0, 1, 0] = turns[0], turns[1]
             bounds[0], count, used, least, floor = 0.0, ONE, 0, better, math.inf
             while count > 0 and used < most and least == better:
-                count, least, floor, looked, _ = branch(
-                    chain, ZERO, cells, bounds, count, least, floor, margin, NODES, theta
+                count, least, _, floor, looked = branch(
+                    chain, ZERO, cells, bounds, count, least, 0.0, floor, margin, NODES, theta
                 )
                 used += looked
             spent += used + 1

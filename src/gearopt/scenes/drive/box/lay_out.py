@@ -50,7 +50,6 @@ def lay_out(scene: Scene, ask: Ask, sized: Result) -> Result:
     box = scene.gearbox(pairs_of(scene, sized))
     orders = arrangements(box)
     wrong = faults(box)
-    layout.ready(ask.watch)
     parts = (replace(sized, name="gears"),)
     if wrong:
         return _impossible(scene, sized, ask, parts, wrong)
@@ -116,6 +115,7 @@ def posed(scene: Scene, method: str, sized: Result) -> Model:
     box = scene.gearbox(pairs_of(scene, sized))
     if wrong := faults(box):
         raise SolveError(" ".join(wrong))
+    layout.ready()  # what is compared is machine code
     words = "Layout by four sides" if method in layout.GRADIENT else "Layout by link angles"
     return Model(layout.problem(box, method), words, box.unit)
 
@@ -130,6 +130,7 @@ def _impossible(
 ) -> Result:
     from gearopt.scenes.drive.box.remedies import remedies
 
+    layout.ready(ask.watch)
     spent = sized.seconds + (0.0 if result is None else result.seconds)
     left = replace(ask, budget=ask.budget.less(spent))
     if result is None:
