@@ -153,7 +153,7 @@ def test_no_spelling_is_that_of_two_units():
 
 @pytest.mark.parametrize("text", ["7,5 kW", "1,450 kW"])
 def test_a_comma_is_no_decimal_sign(text):
-    with pytest.raises(ValueError, match="has a comma: the sign of decimals is a point"):
+    with pytest.raises(ValueError, match="has a comma: the decimal sign is a point"):
         parse(text, "power")
 
 

@@ -180,7 +180,7 @@ def parse(text: str, dimension: str) -> Quantity:
     known = ", ".join(UNITS[dimension])
     match = _PATTERN.fullmatch(text.strip()) if len(text) <= _LONGEST else None
     if match is None and re.search("[0-9],[0-9]", text[:_LONGEST]):
-        raise ValueError("has a comma: the sign of decimals is a point, and thousands have none")
+        raise ValueError("has a comma: the decimal sign is a point")
     if match is None:
         raise ValueError(f"is not a number with a unit of {dimension} ({known})")
     number, unit = match.groups()

@@ -36,7 +36,7 @@ NO_FIX = (
     "is nested too deeply",
     "has a whole number of",
     "has a NUL",
-    "has a comma, which may part thousands or decimals",
+    "has a comma, which may separate thousands or decimals",
     "is not supported yet",
 )
 VALIDATOR = jsonschema.Draft202012Validator(json_schema("drive"))

@@ -10,7 +10,7 @@ from scene_files import BASES, keys, parse, put, rename
 
 from gearopt.errors import SceneError
 from gearopt.scenes.reading.load import read, scene_module
-from gearopt.scenes.reading.not_yet import NEAREST
+from gearopt.scenes.reading.not_yet import CALLED, NEAREST
 from gearopt.scenes.reading.remedy import table_of
 from gearopt.scenes.reading.toml import dotted
 
@@ -41,8 +41,8 @@ SAID = """\
 gearopt: wrong.toml: duty.power = 7.5: is a bare number: power needs a unit (W, kW, MW, hp, PS). \
 Write power = "7.5 kW"
 gearopt: wrong.toml: duty.input_sped: unknown key. Did you mean input_speed?
-gearopt: wrong.toml: duty.output_speed = "66,5 rpm": has a comma: the sign of decimals is a point, \
-and thousands have none. Write output_speed = "66.5 rpm"
+gearopt: wrong.toml: duty.output_speed = "66,5 rpm": has a comma: the decimal sign is a \
+point. Write output_speed = "66.5 rpm"
 gearopt: wrong.toml: bearings = {life = "20000 h"}: is not supported yet. Nearest: \
 bearing_diameters and bearing_widths of [layout]
 gearopt: wrong.toml: gears.helix_angle = "95 deg": is above 45 deg. Write, for example, \
@@ -163,6 +163,18 @@ def test_what_is_not_supported_yet_names_what_stands_nearest(table, line, said):
     assert said in wrong.remedy and wrong.fix is None
 
 
+def test_the_letters_of_the_field_are_told_their_keys():
+    text = BASES["elevator"].replace("[gears]", '[gears]\nbeta = "20 deg"\nnumber_of_stages = 2')
+    first, second = mistakes(text).errors
+    assert first.remedy == "Here it is called helix_angle, in [gears]" and first.fix is None
+    assert second.remedy == "Here it is called stages, at the top of the file"
+    scene = scene_module("drive").Scene
+    tables = [t for f in scene.model_fields.values() if (t := table_of(f.annotation))]
+    known = {*scene.model_fields, *(k for t in tables for k in t.model_fields)}
+    for names, there in CALLED["drive"].items():
+        assert there.split(",")[0].split(" ")[0] in known and not known & set(names.split())
+
+
 @pytest.mark.parametrize(("kind", "names"), [(k, n) for k, t in NEAREST.items() for n in t])
 def test_every_key_of_what_stands_nearest_is_known(kind, names):
     """What a remedy calls a key, with an underscore or a table before it, is one of the kind's."""
@@ -184,6 +196,12 @@ def test_weight_is_mass_and_volume_is_asked_back():
     assert wrong.fix is None and "gear_volume" in wrong.remedy and "box_volume" in wrong.remedy
     (wrong,) = mistakes(base.replace('"weight"', '"centre_distance"')).errors
     assert "sum_of_centre_distances" in wrong.remedy
+
+
+def test_a_comma_in_a_bare_number_is_named():
+    (wrong,) = mistakes(BASES["elevator"].replace('"1 %"', "0,5")).errors
+    assert wrong.rule.startswith("is not valid TOML: ")
+    assert wrong.remedy == "The decimal sign is a point: 0.5" and wrong.fix is None
 
 
 def test_a_comma_of_thousands_is_asked_back():

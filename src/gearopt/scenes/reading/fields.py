@@ -134,7 +134,7 @@ def quantity(
             found = units.parse(value, dimension)
         except ValueError as reason:
             if two := thousands(value):
-                rule = "has a comma, which may part thousands or decimals"
+                rule = "has a comma, which may separate thousands or decimals"
                 raise refuse(rule, f'Write "{two[0]}" or "{two[1]}"', action="tell") from None
             raise refuse(str(reason), usable(meant(value, dimension, usual))) from None
         if rule := fault(found):

@@ -235,7 +235,7 @@ def _parse(data: bytes, file: str) -> dict[str, Any]:
         raise _too_deep(file) from None
     except tomllib.TOMLDecodeError as wrong:
         rule, remedy = _syntax(str(wrong))
-        remedy = _several(text, str(wrong)) or remedy
+        remedy = _several(text, str(wrong)) or _comma(text, str(wrong)) or remedy
         raise SceneError(file, "", "", rule, remedy) from None
     except ValueError:  # the limit of Python itself; no position is known
         rule = "has a whole number of thousands of digits"
@@ -265,6 +265,14 @@ def _several(text: str, message: str) -> str:
         if name in scene_module(kind).Scene.model_fields
     )
     return f"Each of several tables [[{name}]] has double brackets" if double else ""
+
+
+def _comma(text: str, message: str) -> str:
+    """Return the remedy where the line of the message has a number with a decimal comma."""
+    at = re.search(r"\(at line (\d+)", message)
+    line = text.splitlines()[int(at[1]) - 1] if at else ""
+    found = re.match(r"\s*[\w.-]+\s*=\s*([+-]?[0-9]+),([0-9]+)", line)
+    return f"The decimal sign is a point: {found[1]}.{found[2]}" if found else ""
 
 
 _SYNTAX = {  # part of the parser's message -> remedy

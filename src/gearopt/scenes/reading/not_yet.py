@@ -1,4 +1,6 @@
-"""Keys that a gear engineer expects and that no kind knows yet: what stands nearest to each.
+"""Keys that a gear engineer expects: what stands nearest to those that no kind knows yet.
+
+Those that are called otherwise here are named too.
 
 A key is found by its name in any table of a file, also where another table has a key of that name
 with another meaning, as the deviation `centre_distance` of a servo train's [[mesh]].
@@ -17,7 +19,8 @@ SAFETY = (
 )
 STRESS = (
     "allowable_stress allowable_stresses contact_stress hertz_stress hertzian_stress sigma_hlim "
-    "sigma_flim sigma_h sigma_f endurance_limit tooth_root_stress root_stress"
+    "sigma_flim sigma_h_lim sigma_f_lim sigma_h sigma_f endurance_limit tooth_root_stress "
+    "root_stress hertzian_pressure contact_pressure"
 )
 CENTRES = (
     "centre_distance center_distance centre_distances center_distances axis_distance shaft_distance"
@@ -27,7 +30,7 @@ SHIFT = (
     "addendum_modification x1 x2"
 )
 QUALITY = "quality accuracy grade gear_quality accuracy_grade quality_grade iso_grade agma_quality"
-OIL = "lubricant lubrication oil viscosity oil_temperature temperature"
+OIL = "lubricant lubrication oil viscosity oil_temperature temperature scuffing"
 LOSS = "efficiency mesh_efficiency friction_coefficient"
 LIFE = "life lifetime service_life life_hours operating_hours load_cycles cycles load_spectrum"
 RACK = "addendum dedendum addendum_coefficient dedendum_coefficient tip_radius rack tool profile"
@@ -59,6 +62,7 @@ NEAREST: dict[str, dict[str, str]] = {  # kind -> names -> what stands nearest
         "gears.helix_angle",
         BODY: "Gears are solid. Nearest: shaft_diameters of [layout]",
         BEARINGS: "Nearest: bearing_diameters and bearing_widths of [layout]",
+        "backlash flank_clearance": 'Nearest: kind = "servo", which counts backlash and its causes',
         CONTACT: "The contact ratio is reported. Nearest: gears.helix_angle, which raises it",
         MONEY: 'Nearest: objective.minimise = "mass", or "gear_volume"',
         "torque input_torque output_torque": "Nearest: duty.power and input_speed: power is torque "
@@ -108,9 +112,34 @@ NEAREST: dict[str, dict[str, str]] = {  # kind -> names -> what stands nearest
     },
 }
 
+CALLED: dict[str, dict[str, str]] = {  # kind -> other names of its keys -> what they are called
+    "drive": {
+        "z1 z_1 teeth_1": "pinion_teeth, in a [[stage]] or [limits]",
+        "z2 z_2 teeth_2": "wheel_teeth, in a [[stage]] or [limits]",
+        "m m_n mn normal_module": "module, in a [[stage]] or [limits]",
+        "b b1 b2 tooth_width facewidth": "face_width, in a [[stage]]",
+        "i u": "ratio in [duty], stage_ratio in a [[stage]]",
+        "beta": "helix_angle, in [gears]",
+        "alpha alpha_n": "pressure_angle, in [gears]",
+        "p": "power, in [duty]",
+        "n1 n_1 n_in rpm speed input_rpm": "input_speed, in [duty]",
+        "n2 n_2 n_out output_rpm": "output_speed, in [duty]",
+        "number_of_stages num_stages stage_count": "stages, at the top of the file",
+    }
+}
+
+
+def called(kind: str, name: str) -> str | None:
+    """Return what a key with another name is called here, and where; None of any other name."""
+    return _found(CALLED, kind, name)
+
 
 def nearest(kind: str, name: str) -> str | None:
     """Return what stands nearest to a key that is not supported yet; None of any other name."""
+    return _found(NEAREST, kind, name)
+
+
+def _found(table: dict[str, dict[str, str]], kind: str, name: str) -> str | None:
     plain = re.sub(r"[-\s]+", "_", name[:80].strip().lower())
-    found = (way for names, way in NEAREST.get(kind, {}).items() if plain in names.split())
+    found = (way for names, way in table.get(kind, {}).items() if plain in names.split())
     return next(found, None)

@@ -9,7 +9,7 @@ from pydantic import BaseModel, ValidationError
 
 from gearopt.errors import Fix, SceneError
 from gearopt.scenes.reading.fields import Reads, near
-from gearopt.scenes.reading.not_yet import nearest
+from gearopt.scenes.reading.not_yet import called, nearest
 from gearopt.scenes.reading.toml import cut, dotted, short, toml_text
 
 
@@ -138,6 +138,8 @@ def _unknown(
     name, key, shown = str(place[-1]), dotted(place), cut(dotted(place), 80)
     if way := nearest(kind, name):
         return SceneError(file, shown, short(value), "is not supported yet", way)
+    if there := called(kind, name):
+        return SceneError(file, shown, short(value), "unknown key", f"Here it is called {there}")
     what = "unknown table" if isinstance(_first(value), dict) else "unknown key"
     if homes := _homes(model, name):
         rule = f"{what} here; it belongs {' or '.join(homes)}"
