@@ -219,6 +219,17 @@ def test_a_comparison_shows_itself():
     assert found.to_html().startswith("<!doctype html>")
 
 
+def test_a_comparison_says_what_was_changed():
+    """In its JSON, and in the line that repeats it."""
+    changes = {"duty.power": "9 kW"}
+    small = {"seeds": 1, "evaluations": 50, "seconds": 0.05}
+    found = gearopt.compare(ELEVATOR, changes, methods=["exact"], **small)
+    assert found.file == str(ELEVATOR) and dict(found.changes) == changes
+    assert gearopt.Comparison.from_json(found.to_json()) == found
+    line = f"gearopt.compare({str(ELEVATOR)!r}, {changes!r}, methods=['exact']"
+    assert line.replace("'", "&#39;") in found.to_html()
+
+
 def test_changes_of_a_file_are_told():
     """In the footer, and by the line that makes the page again: no command of the shell does."""
     changes = {"duty.power": "9 kW", "teeth.coprime": True, "source": None}

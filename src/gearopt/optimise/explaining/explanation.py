@@ -92,9 +92,9 @@ class Explanation:
     """Why an answer is what it is.
 
     result: the answer itself. conflict: limits in conflict, each needed for it.
-    remedies: proven ones, smallest first. binding: limits used to the full. influences: one per
-    input. basis: of which problem the sensitivities are, the end of a sentence. any_resolves: as
-    in `Remedies`.
+    remedies: proven ones, smallest first; `edits` of each are changes for `solve`. binding: limits
+    used to the full. influences: one per input. basis: of which problem the sensitivities are, the
+    end of a sentence. any_resolves: as in `Remedies`.
     """
 
     result: Result
