@@ -75,11 +75,27 @@ def test_bodies_in_the_way_change_the_train_and_raise_the_bound(bodies):
 
 
 def test_numbers_too_long_for_whole_numbers_are_refused():
-    fine = Bodies(F(0), F(1, 10**17), F(0))
+    long = (F(1, 2), F(1, 2) + F(1, 10**17))
     with pytest.raises(SolveError, match="fewer digits"):
-        minimum_teeth(fine, PAPER.modules, 300)
+        minimum_teeth(Bodies(), long, 300)
     with pytest.raises(ValueError, match="not below zero"):
         Bodies(F(-1))
+
+
+@pytest.mark.parametrize("shaft", [F(10), F(127, 20), F(1, 10**17), F(math.e * 3)])
+def test_gears_beside_the_output_shaft_are_compared_exactly(shaft):
+    """In fractions: m1 (z2 + 2) + shaft against m2 (z3 + z4); of pitches of 12 and 10 to an inch.
+
+    The shafts are of whole modules, of a part of one, and of more digits than 64 bits hold.
+    """
+    modules = (F(254, 120), F(254, 100))
+    found = minimum_teeth(Bodies(output_shaft=shaft), modules, 400)
+    for i, j in ((0, 0), (0, 1), (1, 0), (1, 1)):
+        for z2 in (17, 50, 100):
+            beside = (modules[i] * (z2 + 2) + shaft) / modules[j]
+            for teeth in (math.floor(beside), math.ceil(beside), math.ceil(beside) + 1):
+                whole = found.units[i] * (z2 + 2) + found.output <= found.units[j] * teeth
+                assert whole == (beside <= teeth)
 
 
 @pytest.mark.parametrize("tips", [(1.0, 1.0), (1.0, 105.0), (61.0, 0.2)])

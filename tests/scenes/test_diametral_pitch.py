@@ -169,3 +169,18 @@ def test_a_file_in_inches_is_answered_in_inches(here, tmp_path):
     assert "diametral pitch P_nd [1/in],16.0,8.0" in stages
     words = re.sub(r"(?m)^Tables: .*", "", done.stdout)
     assert not re.search(r"\bmm|MPa|\bkg\b|N m\b", words), words
+
+
+@pytest.mark.slow
+def test_a_servo_train_of_pitches_is_that_of_its_modules():
+    """50.8 and 63.5 to the inch are 0.5 and 0.4 mm; those of a named series are unverified."""
+    text = (PROBLEMS / "servo_axis.toml").read_text(encoding="utf-8")
+    line = next(row for row in text.splitlines() if row.startswith("modules"))
+
+    def solved(modules):
+        one = read(text.replace(line, f"modules = {modules}").encode())[1]
+        return gearopt.solve(one)
+
+    module, pitch = solved('["0.5 mm", "0.4 mm"]'), solved('["50.8 1/in", "63.5 1/in"]')
+    assert module.status == "optimal" and module.value == pitch.value
+    assert "unverified by a standard" in " ".join(solved('"DP fine"').report["assumptions"])

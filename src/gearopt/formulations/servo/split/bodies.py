@@ -12,7 +12,7 @@ motor plane: motor and middle shaft (`motor`), motor and output shaft (by the li
 
 from dataclasses import dataclass
 from fractions import Fraction
-from math import lcm
+from math import ceil, lcm
 from typing import Any
 
 from gearopt.errors import SolveError
@@ -107,13 +107,11 @@ def minimum_teeth(bodies: Bodies | None, modules: tuple[Fraction, ...], wheel: i
     none = [0] * len(modules)
     if bodies is None:
         return MinimumTeeth(none, none, none, none, none, 0)
-    unit = Fraction(1, lcm(*(d.denominator for d in (bodies.output_shaft, *modules))))
-    units, output = [int(m / unit) for m in modules], int(bodies.output_shaft / unit)
+    unit = Fraction(1, lcm(*(m.denominator for m in modules)))
+    # Whole units on both sides: a shaft of a part of one more needs that one.
+    units, output = [int(m / unit) for m in modules], ceil(bodies.output_shaft / unit)
     if max(units) * (wheel + 2) + output > LARGEST:
-        raise SolveError(
-            "modules and output shaft cannot be compared exactly: write their diameters with fewer "
-            "digits"
-        )
+        raise SolveError("modules cannot be compared exactly: write them with fewer digits")
     beside = bodies.motor + bodies.shaft
     return MinimumTeeth(
         wheel_1=_around(bodies.shaft, modules),
