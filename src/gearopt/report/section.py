@@ -227,14 +227,14 @@ class Section:
     def printed(self) -> float:
         """Return how much the drawings shrink in print so that all stand side by side, or two.
 
-        They leave room on the sheet for other things; 1 where their text would become too small.
+        They leave room on the sheet for other things, but their text stays legible.
         """
-        low = TALL / max(drawing.height for drawing in self.drawings)
+        low = max(TALL / max(drawing.height for drawing in self.drawings), LEGIBLE)
         for some in (self.drawings, self.drawings[:2]):
             wide = sum(drawing.width + GUTTER for drawing in some) - GUTTER
             if (share := SHEET / wide) > LEGIBLE:
-                return min(1.0, share, max(low, LEGIBLE))
-        return 1.0
+                return min(1.0, share, low)
+        return min(1.0, low)
 
 
 def shown(value: Any) -> Cell:
