@@ -7,6 +7,7 @@ import pytest
 from gearboxes import gearbox, some_box
 
 from gearopt.formulations import layout
+from gearopt.formulations.layout import annealing
 from gearopt.formulations.layout.exact import BRANCH
 from gearopt.optimise import kernels
 from gearopt.optimise.result import Budget
@@ -47,7 +48,7 @@ def test_python_and_machine_code_give_the_same_answer_bit_by_bit(box, monkeypatc
 def test_after_some_seconds_a_search_goes_on_compiled_from_where_it_is(monkeypatch):
     box = gearbox("table4_p1")
     machine = solved(box)
-    first_use(monkeypatch, 1e-9)  # the first annealing run alone is Python's
+    first_use(monkeypatch, 1e-9)  # the first slice alone is Python's
     both = solved(box)
     assert both.evaluations == machine.evaluations and both.bound == machine.bound
 
@@ -55,6 +56,9 @@ def test_after_some_seconds_a_search_goes_on_compiled_from_where_it_is(monkeypat
 def test_a_watcher_ends_a_search_that_would_compile(monkeypatch):
     first_use(monkeypatch, 0.0)
     monkeypatch.setattr(kernels, "compiled", lambda work, entries, watch: watch(None))
+    outcome = solved(gearbox("table4_p1"), lambda event: event is not None)
+    assert not outcome.finished and outcome.x is not None and outcome.bound is None
+    monkeypatch.setattr(annealing, "compiled", lambda work, entries, watch: watch(None))
     outcome = solved(gearbox("table4_p1"), lambda event: event is not None)
     assert not outcome.finished and outcome.x is None and outcome.bound is None
 

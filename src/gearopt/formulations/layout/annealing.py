@@ -55,18 +55,12 @@ Polish = Callable[[Array, Budget, Watch | None], Polished]
 
 
 def anneal(
-    chain: Chain,
-    seed: int,
-    steps: int,
-    goes: Goes,
-    free: bool = False,
-    looks: int = 1,
-    call: Callable[..., Any] = lambda entry, *given: entry(*given),
+    chain: Chain, seed: int, steps: int, goes: Goes, free: bool = False, looks: int = 1
 ) -> tuple[Array, int]:
     """Anneal; return best value, arrangement and angles (N + 2,), inf if none is feasible; steps.
 
     free: positions instead of angles, the paper's way. goes(steps, best): whether to continue; it
-    is asked after SLICE steps, and `looks` times at least. call(kernel, *arguments): calls it.
+    is asked after SLICE steps, and `looks` times at least.
     """
     kernels = kernel(ANNEAL)
     links = chain.link.size
@@ -77,17 +71,19 @@ def anneal(
         stop = min(steps, start + size)
         own = (seed * 1_000_003 + start // size) % 2**32  # a stream for every slice
         if free:
-            given = (chain, own, start, stop, steps, y, z, state, found)
-            call(kernels.anneal_positions, *given)
+            kernels.anneal_positions(chain, own, start, stop, steps, y, z, state, found)
         else:
-            call(kernels.anneal, chain, own, start, stop, steps, theta, state, found)
+            kernels.anneal(chain, own, start, stop, steps, theta, state, found)
         if not goes(stop, float(found[0])):
             return found, stop
     return found, steps
 
 
-def _goes_on(steps: int, best: float) -> bool:
-    return True
+def ready(chain: Chain, watch: Watch | None, free: bool = False) -> bool:
+    """Have the kernel compiled, on its first use on a machine; False if the watcher ended that."""
+    law = kernel(ANNEAL)
+    entry = law.anneal_positions if free else law.anneal
+    return compiled(lambda: anneal(chain, 0, 1, lambda *_: True, free), (entry,), watch)
 
 
 def point(chain: Chain, found: Array) -> Array | None:
@@ -101,9 +97,7 @@ def method(chain: Chain, free: bool, polish: Polish | None = None) -> Any:
     """Return a run(problem, budget, seed, watch); polish: a local method that keeps the point."""
 
     def run(problem: Any, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
-        law = kernel(ANNEAL)
-        entry = law.anneal_positions if free else law.anneal
-        if not compiled(lambda: anneal(chain, 0, 1, _goes_on, free), (entry,), watch):
+        if not ready(chain, watch, free):
             return Outcome(None, False, message=UNREADY)
         clock = Clock(budget, watch)
         own, maximum = sampling(clock, polish is not None)

@@ -8,15 +8,15 @@ steps, so that a search which is stopped has the bound of its last full step.
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
 from typing import Any
 
 import numpy as np
 
+from gearopt.formulations.layout import annealing
 from gearopt.formulations.layout.annealing import ANNEAL, anneal, point
 from gearopt.formulations.layout.chain import Chain
 from gearopt.optimise.clock import Clock
-from gearopt.optimise.kernels import compiled, kernel, warm
+from gearopt.optimise.kernels import UNREADY, compiled, kernel, warm
 from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.terms import Array
 
@@ -26,7 +26,7 @@ COUNTS = "layout measured or cell bounded"
 GAPS = (0.1, 0.01, 1e-3, 1e-4, 1e-5)  # each is proven before the next is tried
 GAP = 1e-6  # the last one where the budget requests none
 INSIDE = 1e-2  # a gap is proven smaller by this part of it, so that rounding leaves it there
-STARTS, STEPS = 8, 500  # annealing runs for the first layout, and their steps
+STARTS, STEPS = 8, 20_000  # annealing runs for the first layout, and their steps
 SETTINGS = {"first layout": f"{STARTS} annealing runs of {STEPS}, the best polished"}
 NODES = 5_000  # of a slice, below 0.1 s, after which a near miss is polished
 FEW = 100  # of a slice of uncompiled Python, some hundredths of a second
@@ -63,6 +63,8 @@ def method(chain: Chain, turns: tuple[float, float], polish: Polish) -> Any:
     """
 
     def run(problem: Any, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
+        if not annealing.ready(chain, watch):
+            return Outcome(None, False, message=UNREADY)
         search = Search(clock := Clock(budget, watch))
         _first(search, chain, seed, polish)
         wanted, proven = budget.gap or GAP, None
@@ -128,7 +130,6 @@ def ready(chain: Chain, watch: Watch | None = None) -> bool:
 def _first(search: Search, chain: Chain, seed: int, polish: Polish) -> None:
     """Keep a good layout: the best of some annealing runs, polished."""
     clock = search.clock
-    call = partial(warm().call, clock)
     for k in range(STARTS):
         spent = clock.evaluations
 
@@ -136,7 +137,7 @@ def _first(search: Search, chain: Chain, seed: int, polish: Polish) -> None:
             clock.evaluations = spent + steps
             return clock.tell()
 
-        found, _ = anneal(chain, STARTS * seed + k, search.left(STEPS), goes, call=call)
+        found, _ = anneal(chain, STARTS * seed + k, search.left(STEPS), goes)
         if found[0] < clock.best:
             clock.best, search.x = float(found[0]), point(chain, found)
         if clock.stopped:
