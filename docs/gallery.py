@@ -89,6 +89,7 @@ GROUPS = {  # heading: {file: what it shows, in a line}
         "servo_gimbal_quick": "Ratio and train together for the quickest move, accurate enough.",
         "servo_gimbal_swing": "A sine at minimum rms torque.",
         "servo_gimbal_light": "Minimum mass instead of minimum inertia.",
+        "servo_gimbal_backlash": "Two-sided allowances, and a minimum backlash in both stages.",
         "servo_gimbal_fine": "Only trains that fit the box are chosen.",
         "servo_gimbal_stiff": "Stiff enough for 200 Hz; real-valued sizes beside whole teeth.",
         "servo_gimbal_tolerances": "Given gears: the same error for 29 % less cost.",

@@ -36,6 +36,7 @@ RANDOM, COUNTS = teeth.RANDOM, teeth.COUNTS  # of the methods that are passed on
 SLACK = teeth.ROUNDING, teeth.FLAT  # of an objective, and of that of a duty
 WANTED = {"stiffness": "has the stiffness that is required", "box": "fits the box"}
 FRONT = "gearopt.formulations.servo.front_kernel"
+TIE = 1e-9  # relative: a minimum backlash that is met exactly
 SAMPLE = 250  # trains of a Pareto front that others are held against
 STEPS = 1_000_000  # of the kernel between two checks of the clock
 SPRINGS = ("mesh of stage 2", "shaft between the stages", "mesh of stage 1")
@@ -108,13 +109,15 @@ class Choice:
     """A train to be chosen, what for, and what it must keep beside the limits of `split.problem`.
 
     springs: with the stiffness that is asked for; None for none. room: the box of a train, which it
-    must fit; None for none.
+    must fit; None for none. backlash: stages with a minimum backlash, what it is with all
+    deviations at their worst, and what is asked for [mm]; no teeth or module change it.
     """
 
     train: split.ServoTrain
     goal: str = "inertia"
     springs: Springs | None = None
     room: servo_box.Room | None = None
+    backlash: tuple[tuple[int, float, float], ...] = ()
 
     @property
     def minimum_stiffness(self) -> float | None:
@@ -172,12 +175,17 @@ def train_problem(choice: Choice) -> Problem:
         if choice.springs is not None and choice.springs.minimum is not None:
             made = pairs((*x.pinion_teeth, *x.wheel_teeth, *x.module), choice.train.face_width)
             limits["stiffness"] = choice.springs.minimum / choice.springs.output_stiffness(made)
+        for stage, there, asked in choice.backlash:
+            none = 0.0 * x.module[0]  # of the shape of a population
+            limits[f"minimum_backlash[{stage}]"] = 1.0 + (asked - there) / asked + none
         goal = {choice.goal: factor * found.minimise[choice.goal]}
         return replace(found, minimise=goal, limits=limits)
 
     def method(name: str) -> Callable[..., Outcome]:
         def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
             """Return the best train; where it breaks the limits apart, the best that keeps them."""
+            if (bound := binding(choice.backlash)) is not None:
+                return bound
             clock = Clock(budget, watch)
             # a train may be better than the answer where limits are checked apart
             shown = of_others(watch, "") if choice.apart else in_part(watch, factor=factor)
@@ -194,6 +202,24 @@ def train_problem(choice: Choice) -> Problem:
 
     methods = {name: method(name) for name in ("exact", "enumeration")}
     return Problem("train", base.variables, (), evaluate, methods=methods)
+
+
+def binding(backlash: tuple[tuple[int, float, float], ...]) -> Outcome | None:
+    """Return the claim that a minimum backlash is not kept; None where all are.
+
+    backlash: as a `Choice` has it. The sum of the deviations is the proof.
+    """
+    short = [(k, there, asked) for k, there, asked in backlash if there < asked * (1.0 - TIE)]
+    if not short:
+        return None
+    text = " and ".join(
+        f"the backlash of stage {k} goes down to {1e3 * there:.4g} µm, below the minimum of "
+        f"{1e3 * asked:.4g} µm"
+        for k, there, asked in short
+    )
+    conflict = [f"minimum_backlash[{k}]" for k, _, _ in short]
+    proof = {"method": "closed form", "conflict": conflict, "sentence": f"Proof: {text}."}
+    return Outcome(None, infeasible=True, proof=proof, message=text)
 
 
 def _counted(found: Outcome, proof: Mapping[str, Any] | None, apart: tuple[str, ...]) -> Outcome:

@@ -193,6 +193,16 @@ class ErrorSource:
 
 
 @dataclass(frozen=True)
+class MeshBacklash:
+    """Circumferential backlash of a stage with all deviations at their worst; None: none asked."""
+
+    stage: int
+    minimum_mm: float
+    maximum_mm: float
+    asked_mm: float | None
+
+
+@dataclass(frozen=True)
 class Spring:
     """A mesh or shaft of the train, its share of the compliance, its stiffness at the output."""
 
@@ -324,6 +334,7 @@ class ServoDesign:
     tolerances: tuple[ToleranceRow, ...] = ()
     allocation: Allocation | None = None
     drawn: DrawnErrors | None = None
+    backlash: tuple[MeshBacklash, ...] = ()
 
     def __or__(self, other: "ServoDesign") -> "ServoDesign":
         """Return both together; what the other has counts."""

@@ -34,6 +34,7 @@ from gearopt.scenes.servo.tolerance_part import by_every_rule, named, old, toler
 from gearopt.scenes.servo.tolerance_part import problem as tolerance_problem
 from gearopt.scenes.servo.train_part import (
     Found,
+    backlashes,
     beside,
     box_part,
     described,
@@ -113,6 +114,7 @@ def _geared(scene: Scene, ask: Ask, gears: Pairs) -> Found:
     design = ServoDesign(
         train=described(scene, gears),
         errors=rows,
+        backlash=backlashes(scene),
         stiffness=None if springs is None else springs.design(gears),
     )
     found = Found((), design, ServoReport(figures=sums))

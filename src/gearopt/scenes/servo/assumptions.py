@@ -39,6 +39,18 @@ def assumptions(scene: Scene) -> list[str]:
             "Error: lost motion between both flanks at the output, by small angles; every "
             "deviation is one-sided and at its limit at the same time."
         )
+    if any(mesh.two_sided or mesh.minimum_backlash for mesh in scene.mesh):
+        found.append(
+            "Backlash: at the reference circle, -(sum of thickness allowances) + 2 tan(alpha) "
+            "times what moves the gears apart (ISO 21771, DIN 3967); at its minimum one-sided "
+            "deviations are zero and run-outs close the mesh by as much as they open it. Pitch and "
+            "helix deviations, heat and swelling are not counted."
+        )
+    if scene.tolerances is not None and any(mesh.two_sided for mesh in scene.mesh):
+        found.append(
+            "Of two-sided allowances the end that leaves less backlash is held; their width is "
+            "the tolerance."
+        )
     if any(mesh.grade is not None for mesh in scene.mesh):
         found.append(
             "Pitch deviations by grade are F_pT of ISO 1328-1:2013, not rounded, of both gears."

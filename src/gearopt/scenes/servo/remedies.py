@@ -3,6 +3,7 @@
 from dataclasses import replace
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 from fractions import Fraction
+from typing import Any
 
 from gearopt import units
 from gearopt.formulations.servo import impossible, split
@@ -13,7 +14,9 @@ from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.explanation import Change, Remedies, Remedy
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import solve, solve_within
+from gearopt.scenes.explaining.numbers import times
 from gearopt.scenes.servo.alone import alone, reached
+from gearopt.scenes.servo.backlash import binds
 from gearopt.scenes.servo.scene import Scene
 from gearopt.scenes.servo.tables.mesh import WORDS, Mesh
 from gearopt.scenes.servo.train_part import errors, of_point
@@ -53,6 +56,8 @@ def remedies(scene: Scene, clock: Clock, message: str = NO_TEETH) -> Remedies:
 
     message: of the search. Numbers that help alone are looked for at most PATIENCE.
     """
+    if (found := binds(scene, clock)) is not None:
+        return found
     found = _cause(scene, clock, message)
     if clock.over:
         return found
@@ -226,10 +231,10 @@ def _finer(scene: Scene, best: Quantity, bound: float, clock: Clock) -> Remedy:
     assert asked is not None
     part = asked.value / best.value * (1.0 - ROOM)
     changes = [
-        Change(f"mesh[{k}].{name}", f'"{was}"', f'"{_times(was, part)}"', 1.0 / part)
+        Change(f"mesh[{k}].{name}", _text(was), _text(_times(was, part)), 1.0 / part)
         for k, mesh in enumerate(scene.mesh, 1)
         for name in WORDS
-        if (was := getattr(mesh, name)) is not None and was.number > 0
+        if (was := getattr(mesh, name)) and (isinstance(was, tuple) or was.number > 0)
     ]
     verified = {
         "with": _status(_scaled(scene, part), clock),
@@ -238,8 +243,19 @@ def _finer(scene: Scene, best: Quantity, bound: float, clock: Clock) -> Remedy:
     return Remedy("even", "all deviations", tuple(changes), 1.0 / part, bound, verified)
 
 
-def _times(was: Quantity, part: float) -> str:
-    return f"{_rounded(float(was.number) * part, False)} {was.unit}"
+def _times(was: Any, part: float) -> Any:
+    """Return a deviation, or both of its allowances, times a part, rounded towards zero."""
+    if isinstance(was, tuple):
+        return tuple(_times(end, part) for end in was)
+    size = Fraction(_rounded(abs(float(was.number)) * part, False))
+    return replace(was, number=size if was.number > 0 else -size)
+
+
+def _text(value: Any) -> str:
+    """Return a deviation as a file writes it."""
+    ends = value if isinstance(value, tuple) else (value,)
+    texts = ", ".join(f'"{end}"' for end in ends)
+    return f"[{texts}]" if isinstance(value, tuple) else texts
 
 
 def _scaled(scene: Scene, part: float, exact: bool = False) -> Scene:
@@ -247,9 +263,10 @@ def _scaled(scene: Scene, part: float, exact: bool = False) -> Scene:
         update = {}
         for name in WORDS:
             was = getattr(mesh, name)
-            if was is not None and was.number > 0:
-                text = f"{float(was.number) * part!r} {was.unit}" if exact else _times(was, part)
-                update[name] = units.parse(text, "length")
+            if isinstance(was, tuple):
+                update[name] = tuple(times(e, part) for e in was) if exact else _times(was, part)
+            elif was is not None and was.number > 0:
+                update[name] = times(was, part) if exact else _times(was, part)
         return mesh.model_copy(update=update)
 
     return scene.model_copy(update={"mesh": tuple(scaled(mesh) for mesh in scene.mesh)})

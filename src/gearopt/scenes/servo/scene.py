@@ -10,10 +10,12 @@ from gearopt.formulations.servo.choice import Choice, Springs
 from gearopt.formulations.servo.ratio import ServoDuty
 from gearopt.formulations.servo.split import ServoTrain, StiffTrain
 from gearopt.formulations.servo.split.bodies import Pairs
+from gearopt.formulations.servo.tolerance.stack import RUN_OUT
 from gearopt.physics.stiffness import stiffness_of_frequency
 from gearopt.scenes.reading.fields import Table, refuse, words
 from gearopt.scenes.servo.example import EXAMPLE
 from gearopt.scenes.servo.tables.mesh import (
+    TWO_SIDED,
     Accuracy,
     BudgetTable,
     CostTable,
@@ -97,6 +99,7 @@ class Scene(Table):
             rule = "is missing: the gears of the other [[mesh]] are given"
             raise refuse(rule, at=("mesh", given.index(False), "module"))
         self._check_deviations()
+        self._check_backlash()
         for k, mesh in enumerate(self.mesh):
             if mesh.grade is not None and self.train is not None:
                 rule = "stands beside [train], which chooses the diameters that it depends on"
@@ -122,6 +125,33 @@ class Scene(Table):
             if needed:
                 rule = f"is missing, as is any deviation: {why}"
                 raise refuse(rule, at=("mesh", deviates.index(False), "pitch"))
+
+    def _check_backlash(self) -> None:
+        """Check that every mesh can open at all, and that a minimum backlash has deviations."""
+        for k, mesh in enumerate(self.mesh):
+            own = [s for s in self.sources if s.stage == k + 1]
+            if own and sum(s.per_mm * s.most for s in own) <= 0.0:
+                key = next(n for n in TWO_SIDED if isinstance(getattr(mesh, n), tuple))
+                raise refuse("leaves no backlash at all: the gears bind", at=("mesh", k, key))
+            if mesh.minimum_backlash is None:
+                continue
+            if not own:
+                rule = "is missing, as is any deviation: minimum_backlash needs one"
+                raise refuse(rule, at=("mesh", k, "centre_distance"))
+            if self.tolerances is not None and self.tolerances.grades is not None:
+                rule = "is not supported yet beside grades of [tolerances]"
+                raise refuse(rule, at=("mesh", k, "minimum_backlash"), action="remove")
+
+    def backlash(self, k: int, run_outs: bool = True) -> tuple[float, float]:
+        """Return the minimum and maximum circumferential backlash of stage k [mm].
+
+        Every deviation is at the end that closes or opens the mesh; a run-out closes it by as much
+        as it opens it. run_outs: whether they are counted at the minimum.
+        """
+        own = [s for s in self.sources if s.stage == k and s.kind == "backlash"]
+        closed = [s.start - (s.tolerance if run_outs and s.law is RUN_OUT else 0.0) for s in own]
+        low = math.fsum(0.5 * s.per_mm * end for s, end in zip(own, closed, strict=True))
+        return low, math.fsum(0.5 * s.per_mm * s.most for s in own)
 
     def _check_aim(self, train: Train) -> None:
         """Check that the objective is known: an error needs deviations, a motion needs [duty]."""
@@ -224,7 +254,7 @@ class Scene(Table):
         table, shaft, error = self.train, self.shaft, self.accuracy.error
         assert table is not None
         ratio, tolerance = table.ratios
-        lost = [sum(s.per_mm * s.tolerance for s in self.sources if s.stage == k) for k in (1, 2)]
+        lost = [sum(s.per_mm * s.most for s in self.sources if s.stage == k) for k in (1, 2)]
         first, second = (q.exact[0] for q in table.wheel_tip_diameters)
         return ServoTrain(
             ratio=ratio,
@@ -272,8 +302,13 @@ class Scene(Table):
         """Return the train to be chosen, and what it must keep; boxed: a required box too."""
         assert self.train is not None
         held = boxed and self.space is not None and self.space.required
+        asked = [(k, m.minimum_backlash) for k, m in enumerate(self.mesh, 1)]
         return Choice(
-            self.servo_train(), self.train.goal, self.springs, self.room() if held else None
+            self.servo_train(),
+            self.train.goal,
+            self.springs,
+            self.room() if held else None,
+            tuple((k, self.backlash(k)[0], q.value) for k, q in asked if q is not None),
         )
 
     def box(self, pairs: Pairs) -> servo_box.ServoBox:

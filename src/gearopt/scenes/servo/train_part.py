@@ -18,6 +18,7 @@ from gearopt.formulations.servo.servo_design import (
     KG_M2,
     ErrorSource,
     ListedTrain,
+    MeshBacklash,
     RatioDesign,
     ServoDesign,
     ServoReport,
@@ -85,10 +86,28 @@ def errors(scene: Scene, gears: Pairs) -> tuple[ErrorSource, ...]:
             source=s.name,
             kind=s.kind,
             stage=s.stage,
-            tolerance_mm=s.tolerance,
-            error_deg=math.degrees(s.tolerance * sensitivity(gears, s)),
+            tolerance_mm=s.most,
+            error_deg=math.degrees(s.most * sensitivity(gears, s)),
         )
         for s in scene.sources
+    )
+
+
+def backlashes(scene: Scene) -> tuple[MeshBacklash, ...]:
+    """Return minimum and maximum backlash of both stages, where the file has two-sided allowances.
+
+    Or a minimum backlash.
+    """
+    meshes = scene.mesh
+    if not any(m.minimum_backlash or m.two_sided for m in meshes):
+        return ()
+    return tuple(
+        MeshBacklash(
+            k,
+            *scene.backlash(k),
+            None if mesh.minimum_backlash is None else mesh.minimum_backlash.value,
+        )
+        for k, mesh in enumerate(meshes, 1)
     )
 
 
@@ -120,7 +139,7 @@ def described(scene: Scene, gears: Pairs) -> TrainDesign:
         torques = train.output_torque / second.ratio, train.output_torque
         one, two = (bending_stress(t, p) for t, p in zip(torques, gears, strict=True))
         stresses = float(one), float(two)
-    error = sum(s.tolerance * sensitivity(gears, s) for s in scene.sources)
+    error = sum(s.most * sensitivity(gears, s) for s in scene.sources)
     found = TrainDesign(
         stages=(_stage(first, stresses[0]), _stage(second, stresses[1])),
         ratio=n,

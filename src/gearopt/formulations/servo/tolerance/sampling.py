@@ -25,16 +25,18 @@ def drawn(
     probability: float = THREE_SD,
     confidence: float = 0.99,
     seed: int = 0,
+    start: float = 0.0,
 ) -> DrawnErrors:
     """Draw the error of tolerances t [mm] and hold its quantile and yield against a limit.
 
     Errors in degrees, as the sensitivities have them. The quantile and the yield are one-sided, of
     the signed error. An end of the quantile's interval is None where the draws are too few for it.
+    start: error that is always there, of two-sided deviations at their lower ends.
     ValueError for less than two draws, and for a probability or a confidence not between 0 and 1.
     """
     if count < 2 or not 0.0 < probability < 1.0 or not 0.0 < confidence < 1.0:
         raise ValueError("needs two draws or more, and probabilities between 0 and 1")
-    e = errors(stack, t, count, seed)
+    e = start + errors(stack, t, count, seed)
     counts, edges = np.histogram(e, BINS)
     good = int((e <= limit).sum())
     low, high = binomial_interval(good, count, confidence)
@@ -52,7 +54,7 @@ def drawn(
         limit_deg=limit,
         largest_deg=float(e.max()),
         worst_case_deg=float(
-            sum(c.sensitivity * w for c, w in zip(stack.components, t, strict=True))
+            start + sum(c.sensitivity * w for c, w in zip(stack.components, t, strict=True))
         ),
         histogram=Histogram(tuple(edges.tolist()), tuple(counts.tolist())),
     )

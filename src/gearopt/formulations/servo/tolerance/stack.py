@@ -93,7 +93,7 @@ class ErrorBudget:
     """The error > 0 allowed by a rule, in the unit of the sensitivities times mm.
 
     kappa >= 0: standard deviations counted by mean_plus_sd. name: by default the rule. key: the
-    place of the error in a problem file.
+    place of the error in a problem file. only: names of the components that count; None: all.
     """
 
     rule: Rule
@@ -101,6 +101,7 @@ class ErrorBudget:
     kappa: float = 3.0
     name: str = ""
     key: str = ""
+    only: frozenset[str] | None = None
 
     def __post_init__(self) -> None:
         if self.rule not in get_args(Rule):
@@ -115,6 +116,8 @@ class ErrorBudget:
 
     def weights(self, one: Component) -> tuple[float, float]:
         """Return weights l, q [1/mm] of a component."""
+        if self.only is not None and one.name not in self.only:
+            return 0.0, 0.0
         share = one.sensitivity / self.error
         if self.rule == "worst_case":
             return share, 0.0

@@ -12,6 +12,7 @@ from gearopt.formulations.servo.servo_design import (
     DrawnErrors,
     ErrorSource,
     Histogram,
+    MeshBacklash,
     ToleranceRow,
 )
 from gearopt.optimise.result import Result
@@ -70,13 +71,33 @@ def errors(result: Result, measures: Measures) -> Section | None:
     plot = layout(across, up, high, barmode="overlay", bargap=0.25, shapes=shapes)
     caption = "Each bar begins where the last one ends: the worst case, all at once."
     words, table = _error_words(total, limit), _error_table(found, total, measures)
+    tables = (table, *_backlash_table(design.backlash, measures))
     return Section(
         "Where the error comes from",
         words=[*words, *_by_kind(found, total)],
         figures=(Figure(traces, plot, caption),),
-        tables=(table,),
-        terminal=(table, *words),
+        tables=tables,
+        terminal=(*tables, *words),
     )
+
+
+def _backlash_table(found: Sequence[MeshBacklash], measures: Measures) -> tuple[Table, ...]:
+    """Return minimum and maximum backlash of every stage; nothing where the file asks for none."""
+    if not found:
+        return ()
+    unit = measures.unit("um")
+
+    def cell(length: float | None) -> Cell | str:
+        if length is None:
+            return ""
+        size = measures.of(length, "um")
+        return Cell(size, f"{size:.2f}")
+
+    heads = ("stage", f"minimum backlash [{unit}]", f"maximum [{unit}]", f"required [{unit}]")
+    rows = [
+        [row.stage, cell(row.minimum_mm), cell(row.maximum_mm), cell(row.asked_mm)] for row in found
+    ]
+    return (Table("backlash", heads, rows),)
 
 
 def _error_words(total: float, limit: float | None) -> list[str]:

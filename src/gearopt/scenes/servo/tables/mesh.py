@@ -19,6 +19,7 @@ from gearopt.physics.backlash import (
 )
 from gearopt.physics.gears import GearPair
 from gearopt.physics.tolerances import SCOPE, total_pitch_tolerance
+from gearopt.scenes.reading.allowances import allowances
 from gearopt.scenes.reading.fields import Table, choice, number, quantity, refuse, whole
 from gearopt.units import Quantity
 
@@ -44,7 +45,10 @@ WORDS = RADIAL | THICKNESS | PITCH
 MOST = Fraction(1000)  # of a cost and of a factor
 GEARS = ("module", "pinion_teeth", "wheel_teeth")
 
+TWO_SIDED = ("centre_distance", *THICKNESS)  # keys that may be two allowances
+
 Deviation = Annotated[Quantity | None, quantity("length", "0.018 mm", zero=True)]
+Allowance = Annotated[Quantity | tuple[Quantity, Quantity] | None, allowances("0.018 mm")]
 
 
 def _deviation(description: str) -> Quantity | None:
@@ -54,10 +58,10 @@ def _deviation(description: str) -> Quantity | None:
 
 @dataclass(frozen=True)
 class Source:
-    """One deviation of a mesh.
+    """One deviation of a mesh, which opens it by start to start + tolerance [mm].
 
     key: of its [[mesh]]. per_mm: angle [rad] at a wheel of diameter 1 mm and 1 mm of deviation.
-    kind: backlash or pitch.
+    kind: backlash or pitch. start: of a two-sided deviation, 0 for others; below 0 it closes.
     """
 
     name: str
@@ -67,6 +71,12 @@ class Source:
     tolerance: float
     per_mm: float
     law: Distribution
+    start: float = 0.0
+
+    @property
+    def most(self) -> float:
+        """Return by how much it opens the mesh at most [mm]."""
+        return self.start + self.tolerance
 
 
 class Mesh(Table):
@@ -92,8 +102,9 @@ class Mesh(Table):
     wheel_reading: Deviation = _deviation(
         "Maximum deviation of the wheel's test radius below nominal"
     )
-    centre_distance: Deviation = _deviation(
-        "Maximum deviation of the centre distance above nominal"
+    centre_distance: Allowance = _deviation(
+        "Maximum deviation of the centre distance above nominal; or both allowances, as "
+        '"+0.02/-0.01 mm" or ["-0.01 mm", "0.02 mm"]'
     )
     pinion_bearing_clearance: Deviation = _deviation(
         "Half the radial clearance of the pinion's bearings"
@@ -103,11 +114,13 @@ class Mesh(Table):
     )
     pinion_bearing_run_out: Deviation = _deviation("Half the run-out of the pinion's bearings")
     wheel_bearing_run_out: Deviation = _deviation("Half the run-out of the wheel's bearings")
-    pinion_thickness: Deviation = _deviation(
-        "Maximum deviation of the pinion's tooth thickness below nominal (lower allowance)"
+    pinion_thickness: Allowance = _deviation(
+        "Maximum deviation of the pinion's tooth thickness below nominal (lower allowance); "
+        'or both, as "-0.02/-0.05 mm"'
     )
-    wheel_thickness: Deviation = _deviation(
-        "Maximum deviation of the wheel's tooth thickness below nominal (lower allowance)"
+    wheel_thickness: Allowance = _deviation(
+        "Maximum deviation of the wheel's tooth thickness below nominal (lower allowance); "
+        'or both, as "-0.02/-0.05 mm"'
     )
     pitch: Deviation = _deviation("Cumulative pitch deviation of the pair (or one per gear)")
     pinion_pitch: Deviation = _deviation("Cumulative pitch deviation of the pinion")
@@ -116,6 +129,12 @@ class Mesh(Table):
         None,
         description="Grade of ISO 1328-1 of both given gears, instead of pitch deviations; not "
         "beside [train]",
+    )
+
+    minimum_backlash: Annotated[Quantity | None, quantity("length", "0.005 mm")] = Field(
+        None,
+        description="Minimum circumferential backlash, whatever deviations within tolerance come "
+        "together, so that the gears never bind",
     )
 
     @model_validator(mode="after")
@@ -153,13 +172,26 @@ class Mesh(Table):
             raise refuse(rule, f"{5.0 / int(self.pinion_teeth or 1) + 0.05:.1f} mm", ("module",))
 
     def _length(self, name: str) -> float:
+        low, high = self.opening(name)
+        return high - low
+
+    def opening(self, name: str) -> tuple[float, float]:
+        """Return the ends of a deviation [mm], in the direction that opens the mesh."""
         found = getattr(self, name)
-        return 0.0 if found is None else float(found.value)
+        if not isinstance(found, tuple):
+            return 0.0, 0.0 if found is None else float(found.value)
+        low, high = (float(end.value) for end in found)
+        return (-high, -low) if name in THICKNESS else (low, high)
 
     @property
     def deviates(self) -> bool:
         """Return whether any deviation is given."""
         return self.grade is not None or any(self._length(name) for name in WORDS)
+
+    @property
+    def two_sided(self) -> bool:
+        """Return whether a deviation has a lower and an upper allowance."""
+        return any(isinstance(getattr(self, name), tuple) for name in TWO_SIDED)
 
     @property
     def given(self) -> bool:
@@ -189,7 +221,7 @@ class Mesh(Table):
             kind = "pitch" if name in PITCH else "backlash"
             law = RUN_OUT if name.endswith("run_out") else UNIFORM
             own = f"{words} {stage}", name, kind, stage, tolerance, float(laws[name]), law
-            found.append(Source(*own))
+            found.append(Source(*own, start=self.opening(name)[0]))
         return tuple(found)
 
     def _tolerance(self, name: str) -> float:

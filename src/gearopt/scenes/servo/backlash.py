@@ -1,0 +1,85 @@
+"""What to write where gears may bind: a smaller minimum backlash, or other allowances.
+
+j = -(A_s1 + A_s2) + 2 tan(alpha) A_a, all at the ends that close the mesh (`physics.backlash`).
+"""
+
+import math
+from dataclasses import replace
+from fractions import Fraction
+from typing import Any
+
+from gearopt.formulations.servo.choice import binding, train_problem
+from gearopt.optimise.clock import Clock
+from gearopt.optimise.explaining.explanation import Change, Remedies, Remedy
+from gearopt.optimise.solve import solve_within
+from gearopt.scenes.explaining.numbers import moved, times, written
+from gearopt.scenes.reading.toml import dotted, toml_text
+from gearopt.scenes.servo.alone import BACK, short
+from gearopt.scenes.servo.scene import Scene
+from gearopt.scenes.servo.tables.mesh import THICKNESS, TWO_SIDED
+from gearopt.units import Quantity
+
+
+def binds(scene: Scene, clock: Clock) -> Remedies | None:
+    """Return which minimum backlashes are not kept, and what to write; None where all are.
+
+    An allowance moves as a whole, both ends alike, so that its width stays.
+    """
+    choice = scene.choice()
+    none = binding(choice.backlash)
+    if none is None or none.proof is None:
+        return None
+    ways = []
+    for k, there, asked in choice.backlash:
+        if there >= asked:
+            continue
+        for key in ("minimum_backlash", *TWO_SIDED):
+            way = _way(scene, ("mesh", k - 1, key), asked - there, clock)
+            ways += [way] if way is not None else []
+    return Remedies(tuple(none.proof["conflict"]), tuple(ways), none.message)
+
+
+def _way(scene: Scene, path: tuple[str | int, ...], missing: float, clock: Clock) -> Remedy | None:
+    """Return one key moved by what is missing [mm]; None where that is no answer."""
+    key, mesh = path[-1], scene.mesh[int(path[1])]
+    was = getattr(mesh, str(key))
+    if was is None or clock.over:
+        return None
+    slope = 2.0 * math.tan(scene.accuracy.pressure_angle.value)
+    by = -missing if key == "minimum_backlash" or key in THICKNESS else missing / slope
+    new, less = _moved(was, str(key), by), _moved(was, str(key), by * (1.0 - BACK), exact=True)
+    if new is None or (changed := moved(scene, path, new)) is None:
+        return None
+    status = solve_within(clock, train_problem(changed.choice())).status
+    if status != "optimal":
+        return None
+    back = None if less is None else moved(scene, path, less)
+    bound = back is not None and binding(back.choice().backlash) is not None
+    verified = {"with": status, "rounded": "to the easy side"}
+    verified["with_less"] = "infeasible" if bound else "undecided"
+    before, write = (toml_text(written(v, path)) for v in (was, new))
+    change = Change(dotted(path), before, write, math.inf)
+    return Remedy("alone", dotted(path), (change,), math.inf, None, verified)
+
+
+def _moved(was: Any, key: str, by: float, exact: bool = False) -> Any:
+    """Return a value moved by so much [mm], rounded to the side that leaves more backlash."""
+    if key == "minimum_backlash":
+        new = times(was, 1.0 + by / was.value)
+        if new.number <= 0:
+            return None
+        return new if exact else short(new, -1)
+    zero = times(was, 0.0) if isinstance(was, Quantity) else None
+    ends = was if zero is None else ((times(was, -1.0), zero) if key in THICKNESS else (zero, was))
+    way = -1 if key in THICKNESS else 1
+    if exact:
+        return tuple(end.of(end.exact[0] + Fraction(by)) for end in ends)
+    return tuple(_shifted(end, by, way) for end in ends)
+
+
+def _shifted(end: Quantity, by: float, way: int) -> Quantity:
+    """Return an allowance moved by so much [mm], to a tenth of a micrometre beyond."""
+    one = end.of(Fraction(1, 10_000)).number
+    steps = (end.of(end.exact[0] + Fraction(by)).number) / one
+    number = one * (math.ceil(steps) if way > 0 else math.floor(steps))
+    return replace(end, number=Fraction(number))
