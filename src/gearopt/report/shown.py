@@ -6,6 +6,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, replace
 from difflib import get_close_matches
+from itertools import accumulate
 from typing import Any
 
 from rich.text import Text
@@ -32,8 +33,10 @@ from gearopt.report.words import (
     title,
     verdict,
 )
+from gearopt.scenes.reading.toml import cut
 
-LONGEST = 300  # characters of a line
+WIDTH = 90  # characters of a line of numbers
+LONGEST = 900  # of a line of words
 MOST = 5  # numbers of a design, numbers of a file, or remedies that are listed
 Block = str | Text | Table
 
@@ -51,9 +54,7 @@ def lines(result: Result) -> str:
         rows += filter(None, [result.message or proof])
     for remedy in result.report.get("ways_out", {}).get("remedies", ())[:1]:
         rows.append(f"possible with {' and '.join(map(edit, remedy['changes']))}")
-    return "\n  ".join(
-        row if len(row) <= 3 * LONGEST else f"{row[: 3 * LONGEST]}..." for row in rows
-    )
+    return "\n  ".join(cut(row, LONGEST) for row in rows)
 
 
 def _head(result: Result) -> str:
@@ -78,8 +79,14 @@ def _design(result: Result) -> list[str]:
     ]
     values = _own(design) if result.scene is None else []
     values = values or next((words for part in parts if (words := _values(part, goal))), [])
-    more = ["..."] if len(values) > MOST else []
-    return [*rows, *filter(None, [", ".join([*values[:MOST], *more])])]
+    return [*rows, _fitting(values)] if values else rows
+
+
+def _fitting(values: Sequence[str]) -> str:
+    """Return as many values as fit into a line, at least one."""
+    ends = list(accumulate(len(value) + 2 for value in values))
+    fit = max(1, sum(end <= WIDTH for end in ends))
+    return ", ".join([*values[:fit], *(["..."] if fit < len(values) else [])])
 
 
 def _own(design: Mapping[str, Any]) -> list[str]:
