@@ -4,7 +4,7 @@ All that `import gearopt` offers is to be found here, imported or defined.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 from types import NoneType
 from typing import Any
@@ -12,22 +12,26 @@ from typing import Any
 from pydantic import BaseModel
 
 from gearopt.errors import CertificateError, GearoptError, SceneError, SolveError  # noqa: F401
-from gearopt.optimise.clock import whole
+from gearopt.optimise.clock import Clock, of_others, whole
 from gearopt.optimise.comparing.compare import EVALUATIONS, SECONDS, SEEDS, Follow, Model, Plan
 from gearopt.optimise.comparing.compare import compare as compare_methods
 from gearopt.optimise.comparing.comparison import Comparison
 from gearopt.optimise.conic.problem import Conic
-from gearopt.optimise.explaining.explanation import Explanation
+from gearopt.optimise.explaining.explanation import Explanation, Remedy
 from gearopt.optimise.options import check, named
 from gearopt.optimise.own_problems import solve_own
 from gearopt.optimise.problem import Problem, one_objective
 from gearopt.optimise.result import Budget, Event, Outcome, Result, Watch, plain  # noqa: F401
 from gearopt.optimise.solve import GAP, evaluate  # noqa: F401
 from gearopt.optimise.terms import Param, Repeat, Terms, Var  # noqa: F401
+from gearopt.scenes.explaining.default import of_report
+from gearopt.scenes.explaining.shorter import shorter
 from gearopt.scenes.reading.ask import Ask, idle
 from gearopt.scenes.reading.inputs import inputs_of
 from gearopt.scenes.reading.load import FORMAT, bare, kind_of, scene_module
 from gearopt.scenes.reading.load import load as load_file
+
+ENOUGH = 1.0  # gap at which a search for any design may end
 
 File = str | Path | Mapping[str, Any] | BaseModel  # its path, its tables, or what `load` returns
 Changes = Mapping[str, Any] | None  # {key of a file: value}
@@ -95,6 +99,11 @@ def solve(
         left = replace(ask, budget=budget.less(result.seconds))
         found = _explained(module, scene, left, result)
         result = replace(result, report=result.report | {"prices": found.prices})
+    if (ways := result.report.get("ways_out")) and result.status == "infeasible":
+        left = replace(ask, budget=budget.less(result.seconds))
+        short = _shortened(of_report(result).remedies, what, changes, module, left)
+        ways = ways | {"remedies": [asdict(remedy) for remedy in short]}
+        result = replace(result, report=result.report | {"ways_out": ways})
     if inputs := inputs_of(scene):
         result = replace(result, report=result.report | {"inputs": inputs})
     return _named(result, **names | {"options": asked | names["options"]})
@@ -130,7 +139,29 @@ def explain(
     ask = Ask(budget=budget, watch=watch)
     scene, module, names = _opened(what, changes)
     found = _explained(module, scene, ask)
-    return replace(found, result=_named(found.result, **names))
+    left = replace(ask, budget=budget.less(found.seconds))
+    short = _shortened(found.remedies, what, changes, module, left)
+    return replace(found, remedies=short, result=_named(found.result, **names))
+
+
+def _shortened(
+    found: Sequence[Remedy], what: Any, changes: Changes, module: Any, ask: Ask
+) -> tuple[Remedy, ...]:
+    """Return remedies with what one would write, where the file with it has a design."""
+    if not found:
+        return ()
+    clock = Clock(ask.budget, of_others(ask.watch))
+
+    def works(edits: dict[str, Any], seconds: float) -> bool:
+        try:
+            scene = _opened(what, {**(changes or {}), **edits})[0]
+        except SceneError:
+            return False
+        budget = replace(clock.left, seconds=seconds, gap=ENOUGH)
+        answer = module.solve(scene, replace(ask, budget=budget, watch=clock.watch, top=1))
+        return answer.value is not None and answer.feasible
+
+    return shorter(found, clock, works)
 
 
 def idle_options(what: File, method: str | None) -> dict[str, str]:

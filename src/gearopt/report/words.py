@@ -76,7 +76,7 @@ def sentence(words: str) -> str:
 
 def edit(change: Mapping[str, Any]) -> str:
     """Return a change as it is written in the file."""
-    key, write = change["key"], change["write"]
+    key, write = change["key"], change.get("short") or change["write"]
     return f"{key} = {write}" if write else f"remove {key}"
 
 

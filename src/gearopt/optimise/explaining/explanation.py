@@ -13,18 +13,21 @@ FORMAT = 1
 class Change:
     """One edit: at `key`, where `was` stands (or is inherited), write `write` ("": remove it).
 
-    factor: how far the limit moves, >= 1.
+    factor: how far the limit moves, >= 1. short: what one would write, rounded to the easy side,
+    where a design exists with it, too; "" where `write` is short, or nothing shorter was verified.
     """
 
     key: str
     was: str
     write: str
     factor: float
+    short: str = ""
 
     @property
     def value(self) -> Any:
-        """Return what is written, as a value of Python; None for what is removed."""
-        return tomllib.loads(f"value = {self.write}")["value"] if self.write else None
+        """Return what one would write, as a value of Python; None for what is removed."""
+        text = self.short or self.write
+        return tomllib.loads(f"value = {text}")["value"] if text else None
 
 
 @dataclass(frozen=True)

@@ -78,7 +78,8 @@ def remedies(found: Sequence[Mapping[str, Any]]) -> Drawing | None:
         factor = change["factor"]
         if len(way["changes"]) > 1 or not factor or not 1.0 < factor < math.inf:
             continue
-        was, write = (change[key].strip('"') for key in ("was", "write"))
+        was = change["was"].strip('"')
+        write = (change.get("short") or change["write"]).strip('"')
         blocked = None if way["bound"] is None else min(way["bound"], factor)
         name = f"{change['key']}: {was} → {write}"
         rows.append(Span(name, 1.0, factor, blocked=blocked, reached=True))
