@@ -15,7 +15,8 @@ from gearopt.formulations.servo import choice
 from gearopt.formulations.servo.servo_design import ServoDesign, ServoReport
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget
-from gearopt.report.answer import proof
+from gearopt.report.answer import proof, summary
+from gearopt.report.measures import METRIC
 from gearopt.scenes.servo import EXAMPLE
 from gearopt.scenes.servo.alone import reached
 from gearopt.scenes.servo.assumptions import notes
@@ -201,7 +202,7 @@ def test_a_stop_ends_the_look_for_ways_out():
 def test_a_message_with_a_stop_gets_no_second_one():
     result = gearopt.solve(changed(RATIO))
     late = replace(result, status="limit", message="Bound of ratio is violated by 1.01.")
-    assert "Bound of ratio is violated by 1.01." in proof(late)
+    assert "Bound of ratio is violated by 1.01." in summary(late, METRIC).words
     ratio = replace(late, objective={"name": "ratio"})
     note = notes(changed(RATIO), (result, ratio), ServoDesign(), ServoReport())
     assert note == ["There is no answer for the part ratio: Bound of ratio is violated by 1.01."]
