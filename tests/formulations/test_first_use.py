@@ -1,6 +1,8 @@
 """Before kernels are compiled: layouts are solved in Python, to the same numbers."""
 
 import math
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -12,6 +14,20 @@ from gearopt.formulations.layout.exact import BRANCH
 from gearopt.optimise import kernels
 from gearopt.optimise.result import Budget
 
+PROGRAM = """
+import sys
+from gearopt.formulations import layout, together
+from gearopt.formulations.packing import sa
+
+told = []
+for room in (sa, layout, together):
+    assert room.ready(lambda event: told.append(event.part) or True)
+for name, module in sys.modules.items():
+    for function in vars(module).values() if name.endswith("_kernel") else ():
+        if len(getattr(function, "signatures", ())) > 1:
+            sys.exit(f"{function.__name__} is compiled for {function.signatures}")
+print(*told, sep="\\n")
+"""
 BOXES = [
     pytest.param(lambda: gearbox("table4_p1"), id="table 4"),
     pytest.param(lambda: some_box(3, 4), id="random 3", marks=pytest.mark.slow),
@@ -70,3 +86,14 @@ def test_a_kernel_in_python_is_what_it_was_written_as():
     assert not hasattr(python.__globals__["sharp"], "py_func")
     assert not hasattr(python.__globals__["sharp"].__globals__["program"], "py_func")
     assert hasattr(law.branch.py_func.__globals__["sharp"], "py_func")
+
+
+@pytest.mark.slow
+def test_every_function_is_compiled_once(tmp_path, monkeypatch):
+    """A literal integer among the arguments of one would compile it, and what it calls, again."""
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+    done = subprocess.run([sys.executable, "-c", PROGRAM], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    steps = [line.split(": ")[1].split(" of ") for line in done.stdout.splitlines()]
+    assert steps[0] == ["1", "7"] and len(steps) > 40
+    assert all(0 < int(k) <= int(n) for k, n in steps)
