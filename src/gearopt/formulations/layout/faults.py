@@ -86,8 +86,8 @@ def _sides(box: Gearbox) -> Iterator[str]:
     for side, maximum in (("wide", wide), ("high", box.largest[1])):
         if need > maximum + TOUCH:
             yield (
-                f"The box is at least {need:.2f} mm {side} ({2.0 * largest.radius:.2f} for "
-                f"{largest.name}, twice {box.clearances.wall:g} to the walls), and may be "
+                f"The box is at least {need:.2f} mm {side} ({2.0 * largest.radius:.2f} mm for "
+                f"{largest.name}, twice {box.clearances.wall:g} mm to the walls), and may be "
                 f"{maximum:.7g} mm."
             )
 
@@ -157,8 +157,8 @@ def _sentence(clash: Clash) -> str:
     return (
         f"{first[0].upper()}{first[1:]} and {last} are {clash.short:.2f} mm too close: the axes of "
         f"shafts {a} and {b} are at most {clash.there:.2f} mm apart (centre distance of {between}) "
-        f"and need {clash.need.distance:.2f} mm ({radii:.2f} for both radii, "
-        f"{clash.need.clearance:g} clearance)."
+        f"and need {clash.need.distance:.2f} mm ({radii:.2f} mm for both radii, "
+        f"{clash.need.clearance:g} mm clearance)."
     )
 
 
