@@ -182,7 +182,7 @@ def test_an_impossible_height_names_the_least_one():
     """The lowest box is as high as the largest wheel with walls; nothing else helps."""
     result = gearopt.solve(scene(with_layout(largest_height='"350 mm"')))
     assert result.status == "infeasible" and result.proof["method"] == "closed form"
-    assert "The box is at least 411.98 mm high (391.98 for wheel 3" in result.message
+    assert "The box is at least 411.98 mm high (391.98 mm for wheel 3" in result.message
     best = next(r for r in result.report["ways_out"]["remedies"] if r["what"] == "largest_height")
     needed = float(best["changes"][0]["write"].strip('"').split()[0])
     assert needed == pytest.approx(391.98 + 20, abs=0.05)
