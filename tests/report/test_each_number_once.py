@@ -12,6 +12,7 @@ from read_numbers import figures, repeated
 
 import gearopt
 from gearopt.optimise.result import Result
+from gearopt.report.answer import opening
 from gearopt.report.deciding import lead
 from gearopt.report.measures import INCH, METRIC, gap_percent, rounded
 from gearopt.report.pages.result import page, tables
@@ -130,3 +131,10 @@ def test_a_ratio_tolerance_is_used_as_far_as_its_error_goes(solved):
     result = solved("elevator")
     assert "the ratio tolerance is used to 63 %" in lead(result)
     assert isinstance(result, gearopt.Result)
+
+
+def test_a_ratio_out_of_reach_is_not_blamed_on_whole_numbers():
+    result = gearopt.solve("problems/sandgren_train.toml", {"train.ratio": 4000})
+    words = opening(result)
+    assert words.endswith("the numbers of teeth allowed end before the ratio.")
+    assert "whole" in opening(gearopt.solve("problems/sandgren_train.toml"))

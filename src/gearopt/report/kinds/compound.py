@@ -33,6 +33,8 @@ def decides(result: Result) -> str:
     """Return what stands between the train and its ratio."""
     if not result.design:
         return ""
+    if not result.report.get("reach", {"within": True})["within"]:
+        return "the numbers of teeth allowed end before the ratio"
     exact = _design(result).ratio_error_percent == 0.0
     words = "make the ratio exactly" if exact else "are all that keeps the train from the ratio"
     return f"whole numbers of teeth {words}"
