@@ -1,6 +1,7 @@
 """Two-sided allowances and minimum backlash: by hand, by drawn deviations, by one-sided files."""
 
 import math
+from dataclasses import asdict
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ import gearopt
 from gearopt.errors import SceneError
 from gearopt.formulations.servo.choice import train_problem
 from gearopt.optimise.clock import Clock
+from gearopt.report.explained import remedy_words
 from gearopt.scenes.servo.backlash import binds
 
 TAN = math.tan(math.radians(20.0))
@@ -128,3 +130,9 @@ def test_tolerances_keep_the_lower_ends_and_the_minimum_backlash():
     assert start < drawn["mean_deg"] < worst and drawn["largest_deg"] <= worst
     none = changed(TOLERANCES, *edits, (("mesh", 0, "minimum_backlash"), "0.003 mm"))
     assert gearopt.solve(none).status == "infeasible"
+
+
+def test_a_page_proposes_them():
+    scene = changed(FILE, (("mesh", 0, "minimum_backlash"), "0.034 mm"))
+    rows, _ = remedy_words(asdict(binds(scene, Clock())))
+    assert [row[1] for row in rows][:1] == ['mesh[1].minimum_backlash = "0.0295 mm"']

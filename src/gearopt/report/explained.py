@@ -195,7 +195,9 @@ def _doubtful(way: Mapping[str, Any]) -> bool:
 def _rows(way: Mapping[str, Any]) -> list[list[Any]]:
     """Return a row for every edit of a remedy; a factor that all of them have stands once."""
     alike = ", all alike" if way["kind"] == "even" else ", one stage"
-    label = KINDS.get(way["kind"], f"{series_of(grouped(way['what'].split(', ')))}{alike}")
+    label = KINDS.get(way["kind"])
+    if label is None:
+        label = f"{series_of(grouped(way['what'].split(', ')))}{alike}"
     if way["kind"] == "least" and _doubtful(way):
         label = "smallest found"
     product = "product " if len(way["changes"]) > 1 and way["kind"] == "least" else ""

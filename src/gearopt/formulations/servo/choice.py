@@ -218,7 +218,8 @@ def binding(backlash: tuple[tuple[int, float, float], ...]) -> Outcome | None:
         for k, there, asked in short
     )
     conflict = [f"minimum_backlash[{k}]" for k, _, _ in short]
-    proof = {"method": "closed form", "conflict": conflict, "sentence": f"Proof: {text}."}
+    words = "Proof: the sum of the deviations, all at the ends that close the mesh."
+    proof = {"method": "closed form", "conflict": conflict, "sentence": words}
     return Outcome(None, infeasible=True, proof=proof, message=text)
 
 

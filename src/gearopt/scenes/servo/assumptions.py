@@ -176,7 +176,7 @@ def _told(whose: str, broken: list[str]) -> str:
     return f"{whose} {' and '.join(WHAT[name] for name in broken)}." if broken else ""
 
 
-UNLISTED = "Other trains are not shown beside this one: the budget ended."
+UNLISTED = "Other trains are not shown beside this one: time ended before all were compared."
 
 
 def notes(

@@ -12,8 +12,8 @@ from gearopt.formulations.servo.choice import binding, train_problem
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.explanation import Change, Remedies, Remedy
 from gearopt.optimise.solve import solve_within
-from gearopt.scenes.explaining.numbers import moved, times, written
-from gearopt.scenes.reading.toml import dotted, toml_text
+from gearopt.scenes.explaining.numbers import moved, times
+from gearopt.scenes.reading.toml import dotted
 from gearopt.scenes.servo.alone import BACK, short
 from gearopt.scenes.servo.scene import Scene
 from gearopt.scenes.servo.tables.mesh import THICKNESS, TWO_SIDED
@@ -57,9 +57,18 @@ def _way(scene: Scene, path: tuple[str | int, ...], missing: float, clock: Clock
     bound = back is not None and binding(back.choice().backlash) is not None
     verified = {"with": status, "rounded": "to the easy side"}
     verified["with_less"] = "infeasible" if bound else "undecided"
-    before, write = (toml_text(written(v, path)) for v in (was, new))
+    before, write = (_text(v) for v in (was, new))
     change = Change(dotted(path), before, write, math.inf)
     return Remedy("alone", dotted(path), (change,), math.inf, None, verified)
+
+
+def _text(value: Any) -> str:
+    """Return a length, or two allowances in the unit of the first, as a file writes them."""
+    if isinstance(value, Quantity):
+        return f'"{value}"'
+    unit = value[0].unit
+    low, high = (f"{float(value[0].of(end.exact[0]).number):+.10g}" for end in value)
+    return f'"{low}/{high} {unit}"'
 
 
 def _moved(was: Any, key: str, by: float, exact: bool = False) -> Any:

@@ -41,6 +41,7 @@ from gearopt.scenes.servo.tables.mesh import Source
 
 STAGES = 6  # that a ratio is split into, at most, for comparison
 LISTED = 400  # trains that are shown
+PATIENCE = 10.0  # seconds, for the Pareto front
 
 
 @dataclass(frozen=True)
@@ -173,7 +174,7 @@ def train_part(scene: Scene, ask: Ask) -> tuple[Result, Pairs | None]:
 
 
 def neighbours(scene: Scene, clock: Clock) -> tuple[ListedTrain, ...]:
-    """Return the Pareto front of trains; nothing where time is up.
+    """Return the Pareto front of trains; nothing where time is up, at most PATIENCE.
 
     Thinned if many. One that is the best by two goals stands there twice, each time named by one
     of them.
@@ -181,7 +182,8 @@ def neighbours(scene: Scene, clock: Clock) -> tuple[ListedTrain, ...]:
     import numpy as np
 
     choice = scene.choice()
-    found = front(choice, clock)
+    within = Clock(replace(clock.left, seconds=clock.within(PATIENCE)), clock.watch)
+    found = front(choice, within)
     if found is None:
         return ()
     points, worth = found
