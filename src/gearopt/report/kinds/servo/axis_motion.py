@@ -82,11 +82,10 @@ def bound_words(report: ServoReport, found: RatioDesign, measures: Measures) -> 
     bound = report.figures.get(f"real_valued_bound_{MOTIONS[found.duty].key}")
     if bound is None:
         return []
-    better = "more" if found.duty == LARGEST else "less"
-    return [
-        "Not even real-valued teeth and modules within the limits give "
-        f"{better} than {amount(bound, found.unit, measures)}."
-    ]
+    better, most = "more" if found.duty == LARGEST else "less", amount(bound, found.unit, measures)
+    reached = found.chosen and amount(found.chosen.value, found.unit, measures) == most
+    than = "" if reached else f" than {most}"
+    return [f"Not even real-valued teeth and modules within the limits give {better}{than}."]
 
 
 def _value(one: Achieved, found: RatioDesign, measures: Measures) -> str:

@@ -157,7 +157,7 @@ def stage_counts(result: Result, measures: Measures) -> Section | None:
         [
             row.stages,
             row.inertia_in_pinions,
-            " x ".join(f"{n:.3f}" for n in row.ratios_of_least_inertia),
+            " x ".join(f"{n:.3f}" for n in row.ratios_of_least_inertia if row.stages > 1),
             row.mass_in_pinions,
             *row.ratios_of_least_inertia,
             *[None] * (most - len(row.ratios_of_least_inertia)),
