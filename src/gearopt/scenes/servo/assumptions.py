@@ -35,9 +35,10 @@ def assumptions(scene: Scene) -> list[str]:
     if scene.train is not None:
         found += _of_train(scene)
     if scene.mesh:
+        sides = "" if any(mesh.two_sided for mesh in scene.mesh) else "one-sided and "
         found.append(
             "Error: lost motion between both flanks at the output, by small angles; every "
-            "deviation is one-sided and at its limit at the same time."
+            f"deviation is {sides}at its limit at the same time."
         )
     if any(mesh.two_sided or mesh.minimum_backlash for mesh in scene.mesh):
         found.append(
