@@ -77,9 +77,11 @@ def test_a_ratio_out_of_reach_is_said_first(ratio, teeth, first, then):
     assert result.status == "optimal" and result.message == then
     assert not result.report["reach"]["within"]
     told = printed(result)
-    assert told[0] == f"Two pairs: {first}" and " ".join(told[1].split()) == then
+    title, decides = told[0].split("\n")
+    assert title == f"Two pairs: {first}" and " ".join(told[1].split()) == then
+    assert decides == "The numbers of teeth allowed end before the ratio."
     html = page(result, "")
-    assert html.index(first) < html.index("driver teeth") and "Remedies" not in html
+    assert html.index(first[1:]) < html.index("driver teeth") and "Remedies" not in html
     said = then.replace('"', "&#34;")
     assert html.count(said) == 1 and html.index(said) < html.index("driver teeth")
 

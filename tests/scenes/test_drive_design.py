@@ -87,7 +87,7 @@ def test_a_density_of_the_file_counts(tmp_path, result):
     found = solved(tmp_path, text)
     assert found.design["mass_kg"] == pytest.approx(result.design["mass_kg"] * 7.2 / 7.85)
     assert any("density of the file, 7.2 kg/dm^3" in s for s in found.report["assumptions"])
-    assert any("steel of 7.85 kg/dm^3" in s for s in result.report["assumptions"])
+    assert any("steel, 7.85 kg/dm³" in s for s in result.report["notes"])
 
 
 def test_the_pressure_angle_changes_the_contact_ratio_alone(tmp_path, result):

@@ -22,7 +22,7 @@ def allowances(example: str) -> Reads:
     def read(value: Any, example: Any) -> Quantity | tuple[Quantity, Quantity]:
         if isinstance(value, Quantity | tuple):
             return value  # read before
-        ends = _ends(value)
+        ends = texts_of(value)
         if ends is None:
             found: Quantity = one.reader(value, example)
             return found
@@ -38,8 +38,8 @@ def allowances(example: str) -> Reads:
     return Reads(read, example, {"anyOf": [one.schema, texts, pair]})
 
 
-def _ends(value: Any) -> list[Any] | None:
-    """Return two allowances as texts; None for a value that is no pair."""
+def texts_of(value: Any) -> list[Any] | None:
+    """Return two allowances as texts, in the order they have; None for a value that is no pair."""
     if isinstance(value, list):
         return value
     if not isinstance(value, str):

@@ -9,8 +9,10 @@ from os import PathLike, fspath
 from typing import Any
 
 from gearopt.errors import SceneError
+from gearopt.scenes.reading.allowances import texts_of
 from gearopt.scenes.reading.fields import near
 from gearopt.scenes.reading.toml import cut, dotted, exact
+from gearopt.units import parse
 
 Place = tuple[str | int, ...]
 _STEP = r"\.([\w-]+)|\[0*([1-9][0-9]{0,5})\]"  # places are counted from 1
@@ -77,7 +79,15 @@ def _set(content: dict[str, Any], place: Place, value: Any, key: str, file: str)
             here[step] = _begun(here, str(step)) if isinstance(place[k + 1], int) else {}
         if last:
             here[step] = value
+        elif isinstance(place[k + 1], int) and isinstance(here[step], str):
+            here[step] = _two(here[step])
         here = here[step]
+
+
+def _two(text: str) -> list[Any] | str:
+    """Return two allowances in one text as the list of the lower and the upper one."""
+    ends = texts_of(text)
+    return text if ends is None else sorted(ends, key=lambda end: parse(end, "length").value)
 
 
 def _begun(table: Mapping[str, Any], name: str) -> list[Any]:
