@@ -8,8 +8,6 @@ Angles of the output link are those of a quarter: box and train have the same mi
 
 import math
 
-from numba import njit
-
 from gearopt.formulations.servo.servo_box_kernel import SLACK, decided, room
 from gearopt.formulations.servo.split import duty_kernel
 from gearopt.formulations.servo.split.teeth_kernel import (
@@ -20,9 +18,11 @@ from gearopt.formulations.servo.split.teeth_kernel import (
     possible,
     promise,
     row,
+    smallest,
     sound,
     worth,
 )
+from gearopt.optimise.jit_kernel import entry, inner
 
 promise_of_duty = duty_kernel.promise
 PARTS = 16  # of a quarter, as bits
@@ -35,13 +35,13 @@ INTERVALS = 10_000  # that may decide whether one train fits
 UNDECIDED = -1
 
 
-@njit(cache=True)
+@inner
 def soft(teeth):
     """1/Z of Buckingham's factor of a tooth, after Lewis."""
     return 0.242 / (0.154 - 0.912 / teeth) + 7.25
 
 
-@njit(cache=True)
+@inner
 def mesh(spring, m, pinion, wheel):
     """Compliance of a mesh at its wheel [rad/(N mm)]."""
     line = spring[0]
@@ -50,14 +50,14 @@ def mesh(spring, m, pinion, wheel):
     return 4.0 / (line * spring[2] * (m * wheel) ** 2)
 
 
-@njit(cache=True)
+@inner
 def compliance(spring, m1, z1, z2, m2, z3, z4):
     """Compliance of a train at the output [rad/(N mm)]; it falls with z4."""
     behind = mesh(spring, m1, z1, z2) + spring[3]
     return mesh(spring, m2, z3, z4) + behind * (z3 / z4) ** 2
 
 
-@njit(cache=True)
+@inner
 def stiff(s, spring, m1, z1, z2, m2, z3, z4):
     """Whether a train keeps all limits that fall with z4: error, stress and stiffness."""
     if not sound(s, m1, z1, z2, m2, z3, z4):
@@ -67,7 +67,7 @@ def stiff(s, spring, m1, z1, z2, m2, z3, z4):
     return compliance(spring, m1, z1, z2, m2, z3, z4) * spring[4] <= ALLOWANCE
 
 
-@njit(cache=True)
+@inner
 def least_compliance(s, spring, m1, z1, z2):
     """A lower bound of the compliance of all trains with a first stage."""
     n1 = z2 / z1
@@ -78,7 +78,7 @@ def least_compliance(s, spring, m1, z1, z2):
     return last + (mesh(spring, m1, z1, z2) + spring[3]) * (n1 / s.high) ** 2
 
 
-@njit(cache=True)
+@inner
 def least_d4(s, m1, z1, z2, d3):
     """Least reference diameter of gear 4 by error and ratio [mm]; d3: least of gear 3."""
     left = s.error * ALLOWANCE - s.lost[0] / (m1 * z1 * s.high)
@@ -86,13 +86,13 @@ def least_d4(s, m1, z1, z2, d3):
     return max(asked, d3 * max(1.0, s.low * z1 / z2)) * (1.0 - SLACK)
 
 
-@njit(cache=True)
+@inner
 def least_d3(s):
     """Least reference diameter of gear 3 [mm]."""
-    return max(s.bore, s.pinion[0] * s.module.min())
+    return max(s.bore, s.pinion[0] * smallest(s.module))
 
 
-@njit(cache=True)
+@inner
 def promised(s, goal, spring, i, z1, z2):
     """A lower bound on the objective of all trains with a first stage; inf where there is none."""
     if not first_wheel(s, i, z1) <= z2 <= s.wheel_1[i]:
@@ -109,7 +109,7 @@ def promised(s, goal, spring, i, z1, z2):
     return promise(s, goal, m1, z1, z2)
 
 
-@njit(cache=True)
+@inner
 def first_sizes(kept, m1, z1, z2):
     """Write what a first stage has of the box: of motor or gear 1, gear 2 and their link."""
     kept.box.radius[0] = max(kept.motor, 0.5 * m1 * (z1 + 2))
@@ -117,7 +117,7 @@ def first_sizes(kept, m1, z1, z2):
     kept.box.link[0] = 0.5 * m1 * (z1 + z2)
 
 
-@njit(cache=True)
+@inner
 def open_parts(s, box, m1, z1, z2, parts, bore, added, largest):
     """Which parts of the quarter a first stage leaves to all second stages, as bits.
 
@@ -137,7 +137,7 @@ def open_parts(s, box, m1, z1, z2, parts, bore, added, largest):
     return found
 
 
-@njit(cache=True)
+@inner
 def fitting(kept, work, m1, z1, z2, m2, z3, z4):
     """Whether a train fits in the open parts: 1, 0 or UNDECIDED; and the steps that took."""
     box = kept.box
@@ -154,7 +154,7 @@ def fitting(kept, work, m1, z1, z2, m2, z3, z4):
     return answer, ROOM * looked
 
 
-@njit(cache=True)
+@inner
 def first_stiff(s, spring, m1, z1, z2, m2, z3, low, high):
     """Least z4 from low on that keeps error, stress and stiffness; high + 1 for none."""
     if low > high or not stiff(s, spring, m1, z1, z2, m2, z3, high):
@@ -168,7 +168,7 @@ def first_stiff(s, spring, m1, z1, z2, m2, z3, low, high):
     return low
 
 
-@njit(cache=True)
+@inner
 def enter(s, goal, kept, work, limit):
     """Whether the first stage at hand has trains up to a limit, and the steps to know it."""
     n, steps = work.at[0], 1
@@ -182,7 +182,7 @@ def enter(s, goal, kept, work, limit):
     if kept.boxed:
         first_sizes(kept, m1, z1, z2)
         if work.parts[n] == UNKNOWN:
-            d3, added = least_d3(s), 2.0 * s.module.min()
+            d3, added = least_d3(s), 2.0 * smallest(s.module)
             work.parts[n] = open_parts(s, kept.box, m1, z1, z2, EVERY, d3, added, s.tip)
             steps += ROOM * PARTS
         if work.parts[n] == 0:
@@ -191,14 +191,14 @@ def enter(s, goal, kept, work, limit):
     return True, steps
 
 
-@njit(cache=True)
+@inner
 def module_parts(s, kept, work, i, z1, z2, j):
     """Which parts are open with a module of the second stage, and the steps to know it."""
     m1, m2 = s.module[i], s.module[j]
     if s.bored[j] > s.pinion[1]:
         return 0, 1
     d3, largest = m2 * s.bored[j], m2 * s.wheel_2[j]
-    if s.load[s.bored[j] : s.pinion[1] + 1].min() > largest * m2 * ALLOWANCE:
+    if smallest(s.load[s.bored[j] : s.pinion[1] + 1]) > largest * m2 * ALLOWANCE:
         return 0, 1
     if not kept.boxed:
         return EVERY if least_d4(s, m1, z1, z2, d3) <= largest else 0, 1
@@ -208,7 +208,7 @@ def module_parts(s, kept, work, i, z1, z2, j):
     return found, ROOM * PARTS
 
 
-@njit(cache=True)
+@inner
 def none_left(s, goal, i, z1, z2, j, z3, limit):
     """Whether no train with this pinion 3 or a larger one of its module is within a limit."""
     if z3 > s.pinion[1]:
@@ -219,7 +219,7 @@ def none_left(s, goal, i, z1, z2, j, z3, limit):
     return goal < 2 and worth(s, goal, s.module[i], z1, z2, s.module[j], z3, z4) > limit * ALLOWANCE
 
 
-@njit(cache=True)
+@inner
 def best_of_row(s, goal, kept, work, i, z1, z2, j, z3):
     """Look at the trains of one row; returns how many, the steps, and whether a box is undecided.
 
@@ -254,7 +254,7 @@ def best_of_row(s, goal, kept, work, i, z1, z2, j, z3):
     return looked, steps, False
 
 
-@njit(cache=True)
+@entry
 def best_kept(s, goal, kept, work, most):
     """Find the best train between ends, for a slice of `most` steps; see `choice_search`.
 

@@ -3,7 +3,6 @@
 import math
 
 import numpy as np
-from numba import njit
 
 from gearopt.formulations.servo.choice_kernel import first_stiff, least_d3, least_d4, promised
 from gearopt.formulations.servo.split import duty_kernel
@@ -14,6 +13,7 @@ from gearopt.formulations.servo.split.teeth_kernel import (
     row,
     worth,
 )
+from gearopt.optimise.jit_kernel import entry, inner
 
 best_of_row = duty_kernel.best_of_row
 centre = duty_kernel.centre
@@ -23,7 +23,7 @@ MARGIN = duty_kernel.MARGIN
 PROMISE = 2 * duty_kernel.STEPS  # steps of a promise of a duty
 
 
-@njit(cache=True)
+@inner
 def beaten(sample, values):
     """Whether a train of the sample (trains, objectives) is below all values; it moves forward."""
     for k in range(sample.shape[0]):
@@ -41,7 +41,7 @@ def beaten(sample, values):
     return False
 
 
-@njit(cache=True)
+@inner
 def all_beaten(s, aims, sample, m1, z1, z2, d3, largest, duty, values):
     """Whether the sample beats all trains with a first stage and so large a gear 3 or larger.
 
@@ -72,7 +72,7 @@ def all_beaten(s, aims, sample, m1, z1, z2, d3, largest, duty, values):
     return True
 
 
-@njit(cache=True)
+@inner
 def row_bounds(s, aims, m1, z1, z2, m2, z3, low, high, values):
     """Write lower bounds of the objectives along a row, each of a train of its own."""
     for c in range(aims.size):
@@ -84,7 +84,7 @@ def row_bounds(s, aims, m1, z1, z2, m2, z3, low, high, values):
         values[c] = margin * worth(s, aims[c], m1, z1, z2, m2, z3, z4)
 
 
-@njit(cache=True)
+@entry
 def unbeaten(s, aims, spring, sample, at, duty, rows, most):
     """List the feasible trains that no train of a sample beats, for a slice of `most` steps.
 
@@ -93,7 +93,7 @@ def unbeaten(s, aims, spring, sample, at, duty, rows, most):
     (capacity, 6): z1, z2, z3, z4 and module indices; a row of wheel teeth must find room. Returns
     how many there are.
     """
-    count = steps = 0
+    count, steps = rows.shape[0] * 0, 0  # no literal, which would compile `listed` once more
     end, pinions, wheels = first_stages(s)
     values = np.empty(aims.size)
     while at[0] < end and steps < most:
@@ -142,7 +142,7 @@ def unbeaten(s, aims, spring, sample, at, duty, rows, most):
     return count
 
 
-@njit(cache=True)
+@inner
 def listed(s, aims, sample, i, z1, z2, j, z3, low, high, values, rows, count):
     """Append the trains of a row that are not beaten; returns how many there are then."""
     for z4 in range(low, high + 1):

@@ -3,12 +3,13 @@
 import math
 
 import numpy as np
-from numba import njit
+
+from gearopt.optimise.jit_kernel import entry, inner
 
 SLACK = 1e-12  # of lengths over the box, and of angles: many times their rounding
 
 
-@njit(cache=True)
+@inner
 def farthest(low, high):
     """Largest distance from 0, at most pi, of angles in an interval."""
     turn = math.floor((low - math.pi) / (2.0 * math.pi)) + 1.0
@@ -18,7 +19,7 @@ def farthest(low, high):
     return max(first, abs((high + math.pi) % (2.0 * math.pi) - math.pi))
 
 
-@njit(cache=True)
+@inner
 def reach(s, low, high, axis):
     """Least extents from the output shaft in one of 4 directions, over angles of the output link.
 
@@ -31,7 +32,7 @@ def reach(s, low, high, axis):
     return swept, (s.link[1] if along >= 0.0 else s.link[2]) * along
 
 
-@njit(cache=True)
+@inner
 def least_bend(keep, a, near, far):
     """Least cosine of the links' angle at which the motor clears the hub, over near <= b <= far.
 
@@ -41,7 +42,7 @@ def least_bend(keep, a, near, far):
     return min(first, (keep * keep - a * a - far * far) / (2.0 * a * far))
 
 
-@njit(cache=True)
+@inner
 def room(s, scale, low, high, slack):
     """An angle of the motor link that fits a box of this scale, or nan where there is none.
 
@@ -50,10 +51,10 @@ def room(s, scale, low, high, slack):
     and slack 0 an angle found does fit.
     """
     width, height = scale * s.box[0], scale * s.box[1]
-    right, x_right = reach(s, low, high, 0)
-    up, y_up = reach(s, low, high, 1)
-    left, x_left = reach(s, low, high, 2)
-    down, y_down = reach(s, low, high, 3)
+    right, x_right = reach(s, low, high, 0.0)
+    up, y_up = reach(s, low, high, 1.0)
+    left, x_left = reach(s, low, high, 2.0)
+    down, y_down = reach(s, low, high, 3.0)
     tight = slack * max(width, height)
     r, r2, a = s.radius[0], s.radius[1], s.link[0]
     if max(right, x_right + r2) + max(left, x_left + r2) > width + tight:
@@ -92,7 +93,7 @@ def room(s, scale, low, high, slack):
     return math.nan
 
 
-@njit(cache=True)
+@inner
 def smallest(s, angle, best):
     """Least scale at one angle of the output link, by halving from `best`, and the motor link."""
     found = room(s, best, angle, angle, 0.0)
@@ -111,7 +112,7 @@ def smallest(s, angle, best):
     return high, found
 
 
-@njit(cache=True)
+@entry
 def search(s, cells, count, best, angles, rel, aim, limit):
     """Depth-first halving of intervals of the output link's angle, for one slice of cells.
 
@@ -140,7 +141,7 @@ def search(s, cells, count, best, angles, rel, aim, limit):
     return count, best, looked, stuck
 
 
-@njit(cache=True)
+@inner
 def decided(s, cells, count, angles, limit):
     """Whether a train fits with the output link in the open cells; see `fits`.
 
@@ -166,7 +167,7 @@ def decided(s, cells, count, angles, limit):
     return 0, looked
 
 
-@njit(cache=True)
+@entry
 def fits(s, cells, angles, limit):
     """Whether a train fits its box of scale 1: 1 yes (angles), 0 proven no, -1 undecided."""
     cells[0, 0], cells[0, 1] = -math.pi, math.pi

@@ -7,30 +7,30 @@ the total ratio where the inertia is replaced by a + b N^2.
 
 import math
 
-from numba import njit
-
 from gearopt.formulations.servo.split.teeth_kernel import (
     first_stage,
     first_stages,
     first_wheel,
     moved,
     row,
+    smallest,
     sound,
     worth,
 )
+from gearopt.optimise.jit_kernel import entry, inner
 
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 STEPS = 70  # of a golden section: a range of 1e6 shrinks to 3e-14 of its logarithm
 MARGIN = 1.0 - 1e-9  # far more than rounding and the last interval leave
 
 
-@njit(cache=True)
+@inner
 def centre(duty):
     """A ratio at which the load moves if it moves at any: there the motor gives most power."""
     return duty[3] / (2.0 * duty[6]) if duty[6] > 0.0 else math.inf
 
 
-@njit(cache=True)
+@inner
 def falls(here, beyond, ratio, middle):
     """Whether to go on to larger ratios; where nothing moves, towards those at which it may."""
     if math.isinf(here) and math.isinf(beyond):
@@ -38,7 +38,7 @@ def falls(here, beyond, ratio, middle):
     return beyond < here
 
 
-@njit(cache=True)
+@inner
 def held(duty, low, high, fixed, grown, best):
     """A lower bound of what a duty makes least, for ratios from low to high and fixed + grown N^2.
 
@@ -68,14 +68,14 @@ def held(duty, low, high, fixed, grown, best):
     return least * MARGIN
 
 
-@njit(cache=True)
+@inner
 def promise(s, m1, z1, z2, best):
     """A lower bound for all trains with this first stage; inf where there is none.
 
     d3 is at least the bore and the smallest pinion, so d4^4/N^2 at least d3^4 N^2/n1^4.
     """
     n1, d1, d2 = z2 / z1, m1 * z1, m1 * z2
-    d3 = max(s.bore, s.pinion[0] * s.module.min())
+    d3 = max(s.bore, s.pinion[0] * smallest(s.module))
     low, high = max(s.low, n1), min(s.high, n1 * s.tip / d3)
     if low > high:
         return math.inf
@@ -84,7 +84,7 @@ def promise(s, m1, z1, z2, best):
     return held(s.duty, low, high, fixed, grown, best)
 
 
-@njit(cache=True)
+@inner
 def best_of_row(s, goal, m1, z1, z2, m2, z3, low, high, middle):
     """Teeth of wheel 4 from low to high that are best; z4 and how many were looked at."""
     looked = 0
@@ -100,7 +100,7 @@ def best_of_row(s, goal, m1, z1, z2, m2, z3, low, high, middle):
     return low, looked + 1
 
 
-@njit(cache=True)
+@entry
 def useful(s, goal, first, most, best, found):
     """Like `useful` of the teeth, for what a duty makes least; a promise is STEPS steps.
 

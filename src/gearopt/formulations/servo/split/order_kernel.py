@@ -1,7 +1,5 @@
 """A kernel that lists the trains whose objective lies between two values."""
 
-from numba import njit
-
 from gearopt.formulations.servo.split import duty_kernel
 from gearopt.formulations.servo.split.teeth_kernel import (
     ALLOWANCE,
@@ -14,12 +12,13 @@ from gearopt.formulations.servo.split.teeth_kernel import (
     sound,
     worth,
 )
+from gearopt.optimise.jit_kernel import entry
 
 STEPS = duty_kernel.STEPS
 promise_of_duty = duty_kernel.promise
 
 
-@njit(cache=True)
+@entry
 def between(s, goal, first, most_steps, above, most, rows):
     """Feasible trains with above < objective <= most, of the first stages from `first` on.
 

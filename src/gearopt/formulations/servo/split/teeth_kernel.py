@@ -11,12 +11,12 @@ from.
 
 import math
 
-from numba import njit
+from gearopt.optimise.jit_kernel import entry, inner
 
 ALLOWANCE = 1.0 + 1e-12  # of error and stress: many times their rounding
 
 
-@njit(cache=True)
+@inner
 def worth(s, goal, m1, z1, z2, m2, z3, z4):
     """The objective of one train."""
     d1, d2, d3, d4 = m1 * z1, m1 * z2, m2 * z3, m2 * z4
@@ -31,7 +31,7 @@ def worth(s, goal, m1, z1, z2, m2, z3, z4):
     return moved(s.duty, n, gears) if goal > 2 else gears
 
 
-@njit(cache=True)
+@inner
 def moved(duty, ratio, gears):
     """What a duty (`duty_numbers`) makes least, with gears [t mm2]; inf where nothing moves."""
     load, motor, torque, friction, efficiency, slope = duty[1:7]
@@ -50,13 +50,13 @@ def moved(duty, ratio, gears):
     return angle / top + top * inverse
 
 
-@njit(cache=True)
+@inner
 def possible(duty, value):
     """Whether the load moves at all, and within the rms torque of the motor."""
     return math.isfinite(value) and value <= duty[11] * ALLOWANCE
 
 
-@njit(cache=True)
+@inner
 def sound(s, m1, z1, z2, m2, z3, z4):
     """Whether a train keeps the limits of error and of both pinions' stress."""
     d2, d4 = m1 * z2, m2 * z4
@@ -67,13 +67,13 @@ def sound(s, m1, z1, z2, m2, z3, z4):
     return s.load[z1] * z3 <= z4 * d2 * m1 * ALLOWANCE
 
 
-@njit(cache=True)
+@inner
 def first_wheel(s, i, z1):
     """Least teeth of gear 2 behind a pinion: around its shaft, and with the motor beside it."""
     return max(z1, s.clear_1[i], s.stage_1[i] - z1)
 
 
-@njit(cache=True)
+@inner
 def last_wheel(s, i, z2, j, z3):
     """Least teeth of gear 4: around its hub, and gear 2 clear of the output shaft."""
     if s.unit[j] == 0:
@@ -82,32 +82,50 @@ def last_wheel(s, i, z2, j, z3):
     return max(z3, s.clear_2[j], beside - z3)
 
 
-@njit(cache=True)
+@inner
 def row(s, i, z1, z2, j, z3):
     """Least and most teeth of gear 4 by the ratio, its tip and what gears keep clear of."""
     low = max(-(-s.least[z1 * z3] // z2), last_wheel(s, i, z2, j, z3))
     return low, min(s.most[z1 * z3] // z2, s.wheel_2[j])
 
 
-@njit(cache=True)
+@inner
+def largest(numbers):
+    """The largest of some numbers; their method `max` takes as long to compile as a search."""
+    found = numbers[0]
+    for number in numbers:
+        found = max(found, number)
+    return found
+
+
+@inner
+def smallest(numbers):
+    """The smallest of some numbers."""
+    found = numbers[0]
+    for number in numbers:
+        found = min(found, number)
+    return found
+
+
+@entry
 def first_stages(s):
     """How many first stages are numbered, and the numbers of pinions and wheels of each module.
 
     Wheels beyond their limits are among them.
     """
     pinions = s.pinion[1] - s.pinion[0] + 1
-    wheels = max(0, s.wheel_1.max() - s.pinion[0] + 1)
+    wheels = max(0, largest(s.wheel_1) - s.pinion[0] + 1)
     return s.module.size * pinions * wheels, pinions, wheels
 
 
-@njit(cache=True)
+@inner
 def first_stage(n, least, pinions, wheels):
     """Module index, pinion and wheel teeth of first stage n; least: fewest teeth of either."""
     k = n // wheels
     return k // pinions, least + k % pinions, least + n % wheels
 
 
-@njit(cache=True)
+@entry
 def every(s, goal, first, most, best, found):
     """Look at all trains of the first stages from `first` on.
 
@@ -147,7 +165,7 @@ def every(s, goal, first, most, best, found):
     return best, looked, feasible, n
 
 
-@njit(cache=True)
+@inner
 def promise(s, goal, m1, z1, z2):
     """A lower bound on the objective of all trains with this first stage; inf where none is.
 
@@ -169,7 +187,7 @@ def promise(s, goal, m1, z1, z2):
     return s.disc_inertia * d1**4 + middle / n1**2 + s.sector * s.disc_inertia * d4**4 / most**2
 
 
-@njit(cache=True)
+@entry
 def useful(s, goal, first, most, best, found):
     """Like `every`, for the best train alone: what cannot be better is not looked at.
 
