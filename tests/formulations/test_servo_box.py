@@ -6,11 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from servo_trains import PAPER
+from uncompiled import uncompiled
 
 from gearopt.formulations.servo import servo_box, split
 from gearopt.formulations.servo.servo_box import Room, ServoBox, extents, first_that_fits, of_train
 from gearopt.formulations.servo.split.servo_train import pairs
-from gearopt.optimise.kernels import kernel
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import solve
 
@@ -141,7 +141,7 @@ def test_what_is_no_box_is_refused(wrong):
 
 def test_the_kernel_and_the_text_are_one_law():
     """At an angle of the output link: its motor angle gives the scale, none is less."""
-    code = kernel(servo_box.KERNEL)
+    code = uncompiled(servo_box.KERNEL)
     rng = np.random.default_rng(11)
     fine = np.linspace(-math.pi, math.pi, 20_001)
     for half_sweep in (0.3, 1.2, math.pi / 2, 2.5, math.pi):

@@ -7,6 +7,7 @@ from fractions import Fraction as F
 import numpy as np
 import pytest
 from servo_trains import PAPER
+from uncompiled import uncompiled
 
 from gearopt.formulations.servo import choice, choice_search, servo_box, split
 from gearopt.formulations.servo.choice import Choice, Springs, front, train_problem
@@ -14,7 +15,6 @@ from gearopt.formulations.servo.ratio import Drive, ServoDuty
 from gearopt.formulations.servo.servo_box import Room, ServoBox, first_that_fits, of_train
 from gearopt.formulations.servo.split.servo_train import pairs
 from gearopt.optimise.clock import Clock
-from gearopt.optimise.kernels import kernel
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import solve
 
@@ -115,7 +115,7 @@ def test_hundreds_of_stiff_trains_in_boxes_are_what_looking_at_all_finds():
 def test_a_look_at_a_range_of_links_excludes_no_layout():
     """What fits with one link of stage 2 is not excluded for any range around it."""
     rng = np.random.default_rng(3)
-    code, tried = kernel("gearopt.formulations.servo.servo_box_kernel"), 0
+    code, tried = uncompiled("gearopt.formulations.servo.servo_box_kernel"), 0
     for _ in range(400):
         a, b = rng.uniform(10.0, 30.0, 2)
         radii, half = tuple(rng.uniform(5.0, 25.0, 3)), float(rng.uniform(0.3, math.pi))

@@ -8,6 +8,7 @@ from itertools import product
 import numpy as np
 import pytest
 from servo_trains import PAPER
+from uncompiled import uncompiled
 
 from gearopt.formulations.servo.servo_design import OBJECTIVES
 from gearopt.formulations.servo.split import (
@@ -27,7 +28,6 @@ from gearopt.formulations.servo.split.numbers import numbers
 from gearopt.formulations.servo.split.order import _one_by_one
 from gearopt.formulations.servo.split.teeth import KERNEL
 from gearopt.optimise import tape
-from gearopt.optimise.kernels import kernel
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import run, solve
 from gearopt.physics.stiffness import lewis_form_factor
@@ -234,7 +234,7 @@ def test_it_is_what_full_enumeration_in_plain_python_finds(seed):
 
 def test_the_kernel_and_the_text_are_one_law():
     rng = np.random.default_rng(5)
-    given, code = numbers(PAPER), kernel(KERNEL)
+    given, code = numbers(PAPER), uncompiled(KERNEL)
     text = problem(PAPER, *OBJECTIVES)
     rows = [row.name for row in text.rows.inequalities]
     judged = [rows.index(n) for n in ("error", "bending_stress[1]", "bending_stress[2]")]

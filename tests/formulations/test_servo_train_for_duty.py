@@ -8,13 +8,13 @@ from itertools import product
 import numpy as np
 import pytest
 from servo_trains import PAPER
+from uncompiled import uncompiled
 
 from gearopt.formulations.servo.ratio import Drive, ServoDuty, best_ratio
 from gearopt.formulations.servo.split import problem, relaxation
 from gearopt.formulations.servo.split.numbers import numbers
 from gearopt.formulations.servo.split.teeth import KERNEL
 from gearopt.optimise import tape
-from gearopt.optimise.kernels import kernel
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import solve
 
@@ -167,7 +167,7 @@ def test_gears_move_the_best_ratio_as_known_independently():
 def test_the_kernel_and_the_text_are_one_law_of_the_duty(seed):
     rng = np.random.default_rng(100 + seed)
     duty = any_duty(rng, 30.0)
-    given, code = numbers(replace(PAPER, duty=duty)), kernel(KERNEL)
+    given, code = numbers(replace(PAPER, duty=duty)), uncompiled(KERNEL)
     for n, gears in zip(rng.uniform(1.0, 100.0, 50), 10.0 ** rng.uniform(-6, 0, 50), strict=True):
         found = code.moved(given.duty, n, gears)
         if math.isinf(found):
