@@ -291,6 +291,13 @@ def test_many_rows_are_thinned_to_the_same_front():
     assert pareto_front(worth[:, :2]) == _one_by_one(pairs)
 
 
+def test_columns_of_one_value_order_nothing():
+    """What is alike in all rows is left out of the scales, whatever its size."""
+    worth = np.array([[602.3, 4.5, 2e-4], [602.3, 4.5, 1e-4], [602.3, 4.0, 2e-4]])
+    assert pareto_front(worth[:1]) == [0]
+    assert pareto_front(worth) == [2, 1]
+
+
 def test_a_run_stops_when_told():
     seen = []
 

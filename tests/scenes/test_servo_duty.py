@@ -175,7 +175,8 @@ def test_the_word_of_the_file_is_understood(fast):
     assert same.value == fast.value and same.design["train"] == fast.design["train"]
     assert any("read as maximise" in note for note in same.report["notes"])
     assert "read as maximise" not in str(fast.report)
-    assert "Upper bound of the acceleration: 46.831 rad/s²; gap" in shown(fast)
+    assert "acceleration: acceleration 46.831 rad/s², proven" in shown(fast)
+    assert 1.0 / fast.bound == pytest.approx(46.831, abs=5e-4) and fast.bound <= fast.value
 
 
 UNASKED = ("error", "arcmin", "backlash", "shaft between", "tolerance", "stiffness", "nan", "None")

@@ -179,7 +179,7 @@ def test_what_is_explained_and_compared_is_the_best_number():
     assert f"held at {count}" in found.message and found.influences
     alone = gearopt.explain(scene.held(count))
     assert [i.sensitivity for i in found.influences] == [i.sensitivity for i in alone.influences]
-    compared = gearopt.compare(scene, "exact", seeds=1, evaluations=500, seconds=0.2)
+    compared = gearopt.compare(scene, methods="exact", seeds=1, evaluations=500, seconds=0.2)
     assert f"{count} stages (the best)" in compared.groups[0].words
 
 

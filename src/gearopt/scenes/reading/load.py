@@ -99,9 +99,8 @@ def load(
     if changes:
         name += " (changed)"
         content = changed(content, changes, name)
-    asked = _asked(content)
     kind, scene = _scene(content, name, (*before, folder.resolve()))
-    return Loaded(scene, kind, asked, file, digest, bare(as_written(changes)))
+    return Loaded(scene, kind, _asked(content), file, digest, bare(as_written(changes)))
 
 
 def _bytes(path: str | Path) -> bytes:

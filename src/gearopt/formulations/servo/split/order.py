@@ -90,7 +90,8 @@ def _rest(worth: Array) -> Any:
     """Return the rows that are left once those that a few good ones dominate are dropped."""
     low, rows, idle = worth.min(0), np.arange(len(worth)), 0
     columns = np.ascontiguousarray(worth.T)
-    width = np.maximum(worth.max(0) - low, np.finfo(float).tiny)
+    spread = worth.max(0) - low
+    width = np.where(spread > 0.0, spread, 1.0)  # a column of one value orders nothing
     for direction in np.random.default_rng(0).dirichlet([0.5, 0.5, 0.5], FEW) / width:
         a, b, c = columns
         best = (direction @ columns).argmin()
