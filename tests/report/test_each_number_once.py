@@ -27,6 +27,9 @@ SOLVED = (
     *("servo_gimbal", "servo_gimbal_ratio", "servo_gimbal_impossible", "servo_gimbal_tolerances"),
     "servo_gimbal_stiff",
 )
+BY_CHANCE = {  # the ratio of 1000 makes 31.831 N m of the motor 31,831 N m
+    "five_stages_continuous": {"31831": "in 2 tables"}
+}
 SEVERAL = re.compile(r"\d[;,] +\d|\d/\d|\d x \d|m_n")  # of values in one cell
 
 
@@ -50,7 +53,7 @@ def test_no_number_stands_twice(make, measures):
 @pytest.mark.parametrize("name", SOLVED)
 def test_no_number_stands_twice_on_pages_of_files(solved, name):
     result = solved(name)
-    assert repeated(page(result, "gearopt solve x.toml")) == {}
+    assert repeated(page(result, "gearopt solve x.toml")) == BY_CHANCE.get(name, {})
     for text in tables(result).values():
         _one_value_a_cell(text)
 
