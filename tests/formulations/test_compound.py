@@ -107,6 +107,12 @@ def test_a_budget_ends_it(budget):
     assert result.evaluations <= 500
 
 
+def test_the_minimum_goes_down_no_further_than_it_must():
+    """sqrt(1000) = 31.6: 12 teeth need 380, 13 would need 412."""
+    assert wider(Compound(Fraction(1000), (20, 40)), 5, 400) == [(12, 380)]
+    assert wider(Compound(Fraction(5000), (20, 40)), 5, 2000) == [(20, 1415)]
+
+
 @pytest.mark.parametrize("seed", range(20))
 def test_a_wider_range_is_the_smallest_that_reaches(seed):
     """Each end moved on its own, counted up and down until the ratio is within."""
@@ -125,6 +131,7 @@ def test_a_wider_range_is_the_smallest_that_reaches(seed):
         return
     more = next(((low, h) for h in range(high, 401) if reaches(low, h)), None)
     fewer = next(((k, high) for k in range(low, 4, -1) if reaches(k, high)), None)
-    both = next(((5, h) for h in range(high, 401) if reaches(5, h)), None)
+    held = next((k for k in range(low, 4, -1) if reaches(k, 400)), 0)  # the highest minimum
+    both = next(((held, h) for h in range(high, 401) if held and reaches(held, h)), None)
     expected = [r for r in (more, fewer) if r] or [r for r in (both,) if r]
     assert wider(train, 5, 400) == expected

@@ -99,6 +99,17 @@ def test_a_width_holds_what_is_fixed():
     assert error.key == "container.width" and error.fix.value == '"62 mm"'
 
 
+def test_a_remedy_is_in_the_unit_of_the_file():
+    """25.4 mm to the inch: 60 mm are 2.362204724... in, rounded up; whole inches stay whole."""
+    error = wrong(ROW + '\n[container]\nwidth = "2 in"\n')
+    assert error.fix.value == '"2.362205 in"' and "needs 2.362205 in" in error.rule
+    inches = ROW.replace(" mm", " in")
+    error = wrong(inches + '\n[container]\nwidth = "50 in"\nwall = "1 in"\n')
+    assert error.fix.value == '"62 in"'
+    error = wrong(inches.replace('["30 in", "10 in"]', '["28 in", "10 in"]'))
+    assert error.fix.value == '["30 in", "10 in"]' and "near: 2 in are missing" in error.rule
+
+
 def test_a_width_is_for_a_rectangle():
     error = wrong(ROW + '\n[container]\nwidth = "90 mm"\nshape = "circle"\n')
     assert error.key == "container.width" and error.fix.action == "remove"

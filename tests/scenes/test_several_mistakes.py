@@ -2,6 +2,7 @@
 
 import json
 import re
+from pathlib import Path
 from random import Random
 
 import pytest
@@ -14,6 +15,7 @@ from gearopt.scenes.reading.not_yet import CALLED, NEAREST
 from gearopt.scenes.reading.remedy import table_of
 from gearopt.scenes.reading.toml import dotted
 
+PROBLEMS = Path(__file__).parents[2] / "problems"
 WRONG = """\
 gearopt = 1
 kind = "drive"
@@ -187,6 +189,27 @@ def test_every_key_of_what_stands_nearest_is_known(kind, names):
     assert {t for t in re.findall(r"\[([a-z_]+)\]", way)} <= tables.keys()
     for table, key in re.findall(r"\b([a-z_]+)\.([a-z_]+)\b", way):
         assert key in tables[table].model_fields
+
+
+@pytest.mark.parametrize(
+    ("head", "line", "said"),
+    [
+        ("[motor]", 'max_speed = "800 rad/s"', "Here it is called speed_limit, in [motor]"),
+        ("[train]", 'backlash = "0.1 mm"', "Here it is called minimum_backlash, in a [[mesh]], "),
+        ("", '[backlash]\nerror = "1 arcmin"', "or, at the output, error, in [accuracy]"),
+    ],
+)
+def test_what_a_servo_file_calls_otherwise(head, line, said):
+    base = (PROBLEMS / "servo_gimbal.toml").read_text(encoding="utf-8")
+    text = base.replace(head, f"{head}\n{line}", 1) if head else f"{base}\n{line}\n"
+    (wrong,) = mistakes(text).errors
+    assert said in wrong.remedy and wrong.fix is None
+
+
+@pytest.mark.parametrize("base", ["elevator", "laid_out"])
+def test_a_gearbox_is_a_drive(base):
+    (wrong,) = mistakes(BASES[base].replace('"drive"', '"gearbox"')).errors
+    assert (wrong.key, wrong.remedy) == ("kind", 'Write kind = "drive"')
 
 
 def test_weight_is_mass_and_volume_is_asked_back():

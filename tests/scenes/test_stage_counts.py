@@ -188,7 +188,12 @@ REFUSED = {  # what is added to a file, or a number of stages: a word of the mes
     "[process_one]\nstage_ratios = [3, 4]\n": "one number of stages",
     '[layout]\nshaft_diameters = ["20 mm", "30 mm", "40 mm"]\n': "shaft_stress",
     '[layout]\nshaft_stress = "40 MPa"\nslabs = [[1], [2]]\n': "leave it out",
-    '[layout]\nshaft_stress = "40 MPa"\n[[place]]\nshaft = 4\ny = "0 mm"\n': "output shaft",
+    '[layout]\nshaft_stress = "40 MPa"\n[[place]]\nshaft = 4\ny = "0 mm"\n': "is for one "
+    "number of stages, and stages is a range: shaft 4 is no intermediate shaft of a drive of "
+    "2 stages. Write stages = 3, or leave the place out",
+    '[layout]\nshaft_stress = "40 MPa"\n[[place]]\nshaft = 3\ny = "0 mm"\n': "one number of stages",
+    '[layout]\nshaft_stress = "40 MPa"\nsplit_line = [1, 4]\n': "Write stages = 3",
+    '[layout]\nshaft_stress = "40 MPa"\nsplit_line = [1, 3]\n': "Write stages = 2, or leave",
 }
 
 

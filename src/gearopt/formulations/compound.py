@@ -124,15 +124,17 @@ def _pairs(train: Compound, clock: Clock) -> tuple[dict[Fraction, tuple[int, int
 def wider(train: Compound, minimum: int, maximum: int) -> list[tuple[int, int]]:
     """Return ranges of teeth from minimum to maximum that reach the ratio by the smallest change.
 
-    More teeth or fewer, and both only where neither alone suffices; none where nothing does.
+    More teeth or fewer, and both only where neither alone suffices, then with the highest minimum
+    that does; none where nothing does.
     """
     low, high = train.teeth
     ratio = max(train.ratio, 1 / train.ratio)
     more = low, _root(ratio * low**2)
     fewer = math.isqrt(math.floor(high**2 / ratio)), high
-    both = minimum, _root(ratio * minimum**2)
+    least = math.isqrt(math.floor(maximum**2 / ratio))
+    both = least, _root(ratio * least**2)
     alone = [r for r in (more, fewer) if minimum <= r[0] and r[1] <= maximum]
-    return alone or [r for r in (both,) if r[1] <= maximum]
+    return alone or [r for r in (both,) if minimum <= r[0]]
 
 
 def _root(square: Fraction) -> int:

@@ -6,6 +6,7 @@ is met.
 
 import math
 from dataclasses import replace
+from fractions import Fraction
 from itertools import combinations
 from typing import Annotated
 
@@ -35,6 +36,7 @@ from gearopt.optimise.result import Budget, Result
 from gearopt.optimise.solve import run, solve_within
 from gearopt.optimise.typed import untyped
 from gearopt.scenes.explaining.default import at_point, eases, of_design
+from gearopt.scenes.explaining.numbers import rounded
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.fields import Table, choice, quantity, refuse, whole, words
 from gearopt.scenes.reading.lists import pair
@@ -74,7 +76,6 @@ LENGTH = quantity("length", "20 mm")
 CLEARANCE = quantity("length", "0 mm", zero=True)
 PLACE = pair(quantity("length", "10 mm", zero=True, signed=True))
 NONE = units.parse("0 mm", "length")
-DIGITS = 1e4  # a place that is proposed is rounded to 0.1 um, away from the overlap
 SMOOTH = ("ipopt", "multistart")  # methods that need derivatives
 MOMENT = 0.1  # seconds for a bound after a run that has spent all of its time
 ASSUMED = (
@@ -240,9 +241,9 @@ class Scene(Table):
         span = max((x + r for x, r in fixed), default=0) - min((x - r for x, r in fixed), default=0)
         for size, what in ((widest, "the widest cylinder"), (span, "the fixed cylinders")):
             if width.value < (size + 2.0 * wall) * (1.0 - 1e-12):
-                need = math.ceil((size + 2.0 * wall) * DIGITS - 1e-6) / DIGITS
-                rule = f"is too narrow: {what} with the clearance to the sides needs {need:.10g} mm"
-                raise refuse(rule, f"{need:.10g} mm", ("container", "width"))
+                need = rounded(size + 2.0 * wall, width, 1.0)
+                rule = f"is too narrow: {what} with the clearance to the sides needs {need}"
+                raise refuse(rule, need, ("container", "width"))
 
     def _check_places(self) -> None:
         """Check that fixed cylinders that must share a layer do not overlap."""
@@ -253,11 +254,12 @@ class Scene(Table):
                 plan.max_layers == 1
                 or plan.cylinders[i].layer == plan.cylinders[j].layer is not None
             )
-            missing = overlap(plan, i, j)
-            if same and missing:
-                names = [plan.cylinders[k].name for k in (j, i)]
-                rule = f"is too near: {missing:.4g} mm are missing between {' and '.join(names)}"
-                raise refuse(rule, _away(plan, i, j), ("cylinder", where[j], "at"))
+            missing, at = overlap(plan, i, j), self.cylinder[where[j]].at
+            if same and missing and at:
+                names = " and ".join(plan.cylinders[k].name for k in (j, i))
+                short = f"{float(at[0].of(Fraction(missing)).number):.4g} {at[0].unit}"
+                rule = f"is too near: {short} are missing between {names}"
+                raise refuse(rule, _away(plan, i, j, at), ("cylinder", where[j], "at"))
         need = minimum_layers(plan)
         if need > plan.max_layers:
             key = "most" if self.layers.exactly is None else "exactly"
@@ -303,18 +305,17 @@ def _lowered(cylinders: tuple[CylinderTable, ...], most: int) -> dict[tuple[str 
     }
 
 
-def _away(plan: Plan, i: int, j: int) -> list[str]:
-    """Return the nearest place of cylinder j, on the line of both axes, that is clear of i."""
+def _away(plan: Plan, i: int, j: int, at: tuple[Quantity, Quantity]) -> list[str]:
+    """Return the nearest place of cylinder j, on the line of both axes, that is clear of i.
+
+    at: its place in the file, whose units are kept.
+    """
     (a, b), (c, d) = plan.cylinders[i].at or (0.0, 0.0), plan.cylinders[j].at or (0.0, 0.0)
     far = math.hypot(c - a, d - b)
     u, v = ((c - a) / far, (d - b) / far) if far > 0 else (1.0, 0.0)
 
-    def rounded(value: float, direction: float) -> str:
-        up = math.ceil if direction > 0 else math.floor
-        return f"{up(round(value * DIGITS, 4)) / DIGITS:.12g} mm"
-
     need = plan.apart(i, j)
-    return [rounded(a + need * u, u), rounded(b + need * v, v)]
+    return [rounded(a + need * u, at[0], u), rounded(b + need * v, at[1], v)]
 
 
 def solve(scene: Scene, ask: Ask) -> Result:

@@ -89,7 +89,10 @@ class Gears(Table):
         + ("" if LAW.pressure_angle else f"; {LAW.title} do not depend on it"),
         json_schema_extra={"default": "20 deg"},
     )
-    face_width_over_diameter: Proportion = Field(None, description=PROPORTION_IS)
+    face_width_over_diameter: Proportion = Field(
+        None,
+        description=f"{PROPORTION_IS}; needed, here or in every [[stage]] without face_width",
+    )
     face_width_step: Step = Field(None, description=STEP_IS)
 
 
@@ -109,7 +112,10 @@ class StageTable(Loaded):
     face_width: Annotated[Quantity | None, quantity("length", "40 mm")] = Field(
         None, description="Face width, fixed"
     )
-    face_width_over_diameter: Proportion = Field(None, description=PROPORTION_IS)
+    face_width_over_diameter: Proportion = Field(
+        None,
+        description=f"{PROPORTION_IS}; without face_width needed, here or in [gears]",
+    )
     face_width_step: Step = Field(None, description=STEP_IS)
     stage_ratio: Ratios = Field(None, description="Range of the stage's ratio")
     wheel_diameter: Length = Field(None, description=WHEEL_IS)

@@ -175,7 +175,9 @@ class Layout(Table):
                 fit = (texts + texts[-1:] * shafts)[:shafts]
                 rule = f"names {len(found)} shafts; a drive of {stages} stages has {shafts}"
                 raise refuse(rule, fit, ("layout", name), "sample")
-        if self.split_line is not None and max(self.split_line) > shafts:
+        if self.split_line is not None and several:
+            check_shared(max(self.split_line), counts, ("layout", "split_line"))
+        elif self.split_line is not None and max(self.split_line) > shafts:
             raise refuse(
                 f"names a shaft above {shafts}", [1, shafts], ("layout", "split_line"), "sample"
             )
@@ -192,6 +194,18 @@ class Layout(Table):
             if any(b - a == 1 for a, b in zip(ordered, ordered[1:], strict=False)):
                 rule = "puts stages that share a shaft into one slab"
                 raise refuse(rule, right, ("layout", "slabs"), "sample")
+
+
+def check_shared(shaft: int, counts: tuple[int, ...], at: tuple[str | int, ...]) -> None:
+    """Check that a shaft is the input shaft or an intermediate one with every number of stages."""
+    if shaft > counts[0]:
+        fewest = "one stage" if counts[0] == 1 else f"{counts[0]} stages"
+        rule = (
+            "is for one number of stages, and stages is a range: shaft "
+            f"{shaft} is no intermediate shaft of a drive of {fewest}"
+        )
+        out = "the place" if at[0] == "place" else "it"
+        raise refuse(rule, f"Write stages = {shaft - 1}, or leave {out} out", at, "tell")
 
 
 class PlaceTable(Table):

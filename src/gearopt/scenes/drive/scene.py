@@ -22,7 +22,13 @@ from gearopt.scenes.drive.drive_tables import (
     StageTable,
     Teeth,
 )
-from gearopt.scenes.drive.layout_tables import KeepOutTable, Layout, PlaceTable, gearbox
+from gearopt.scenes.drive.layout_tables import (
+    KeepOutTable,
+    Layout,
+    PlaceTable,
+    check_shared,
+    gearbox,
+)
 from gearopt.scenes.explaining.numbers import eased, in_reverse, written
 from gearopt.scenes.parts import Duty
 from gearopt.scenes.reading.fields import Table, refuse, whole, words
@@ -180,10 +186,11 @@ class Scene(Table):
         self.layout.check(self.counts)
         last = self.counts[0] + 1
         for k, place in enumerate(self.place):
-            if place.shaft > last:
-                of = f" of a drive of {self.counts[0]} stages" if self.several else ""
-                rule = f"is above {last}, the output shaft{of}"
-                raise refuse(rule, last, ("place", k, "shaft"), "sample")
+            at = ("place", k, "shaft")
+            if self.several:
+                check_shared(place.shaft, self.counts, at)
+            elif place.shaft > last:
+                raise refuse(f"is above {last}, the output shaft", last, at, "sample")
         if self.layout.together and self.teeth is None:
             raise refuse("needs a table [teeth]", False, ("layout", "together"))
 

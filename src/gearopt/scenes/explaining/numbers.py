@@ -18,6 +18,7 @@ from gearopt.units import Quantity
 SHORT = 4  # digits of a number that is kept as it is
 MET = 5e-9  # relative, by which it may miss: half of what a row may exceed its limit
 FIRST = Fraction(1, 10)  # step from zero, in the unit of a number
+SLIGHT = 1e-4  # mm; by at most this a length in a remedy is rounded
 Path = tuple[str | int, ...]
 
 
@@ -198,6 +199,14 @@ def eased(value: Any, factor: float, direction: int) -> Any:
             return near
         return math.ceil(number) if direction > 0 else math.floor(number)
     return _rounded(value * moved, direction)
+
+
+def rounded(size: float, like: Quantity, direction: float) -> str:
+    """Return a length in mm in the unit of another, rounded up (> 0) or down by at most SLIGHT."""
+    per_mm = float(like.of(Fraction(1)).number)
+    digits = 10.0 ** math.ceil(-math.log10(per_mm * SLIGHT) - 1e-9)
+    whole = (math.ceil if direction > 0 else math.floor)(round(size * per_mm * digits, 6))
+    return f"{whole / digits:.12g} {like.unit}"
 
 
 def _shifted(zero: Any, factor: float, direction: int) -> Any:

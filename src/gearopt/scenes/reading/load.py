@@ -19,6 +19,7 @@ import gearopt.scenes
 from gearopt.errors import Fix, SceneError, SolveError, together
 from gearopt.scenes.reading.changes import as_written, changed
 from gearopt.scenes.reading.fields import Opened, near
+from gearopt.scenes.reading.not_yet import kind_called
 from gearopt.scenes.reading.remedy import translate, wrong_name, wrong_value
 from gearopt.scenes.reading.toml import cut, dotted
 
@@ -190,7 +191,7 @@ def _head(content: dict[str, Any], file: str) -> tuple[str, list[SceneError]]:
     kind = _pop(content, "kind", file, errors)
     if isinstance(kind, str) and kind in kinds():
         return kind, errors
-    meant = near(kind, kinds()) if isinstance(kind, str) else None
+    meant = (kind_called(kind) or near(kind, kinds())) if isinstance(kind, str) else None
     likely = meant or _likely(content)
     known = f"is not a known kind (known: {', '.join(kinds())})"
     rule = "is missing" if kind is None else known

@@ -125,8 +125,20 @@ CALLED: dict[str, dict[str, str]] = {  # kind -> other names of its keys -> what
         "n1 n_1 n_in rpm speed input_rpm": "input_speed, in [duty]",
         "n2 n_2 n_out output_rpm": "output_speed, in [duty]",
         "number_of_stages num_stages stage_count": "stages, at the top of the file",
-    }
+    },
+    "servo": {
+        "max_speed maximum_speed": "speed_limit, in [motor]",
+        "backlash flank_clearance": "minimum_backlash, in a [[mesh]], or, at the output, error, in "
+        "[accuracy]",
+    },
 }
+
+KINDS = {"gearbox gear_box gear_unit transmission reducer speed_reducer gear_reducer": "drive"}
+
+
+def kind_called(name: str) -> str | None:
+    """Return the kind of file that another name stands for; None of any other name."""
+    return _found({"": KINDS}, "", name)
 
 
 def called(kind: str, name: str) -> str | None:
