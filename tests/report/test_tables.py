@@ -16,7 +16,7 @@ import gearopt
 from gearopt.report.measures import INCH, METRIC, SYSTEMS
 from gearopt.report.pages.result import page, sections, tables
 from gearopt.report.section import Table, cell, percent, shown
-from gearopt.report.terminal import show
+from gearopt.report.terminal import grid, show
 from gearopt.report.words import heading, parted
 
 UNITS = {
@@ -146,6 +146,25 @@ def test_units_in_heads_are_no_markup_on_the_terminal():
     console = Console(width=99, record=True, file=io.StringIO())
     show(cases.packing(), console)
     assert "x [mm]" in console.export_text()
+
+
+LONG = 'mesh[1].wheel_thickness = ["-0.0429 mm", "-0.0184 mm"]'
+WAYS = [  # as of remedies
+    ["all deviations, all alike", LONG, '["-0.07 mm", "-0.03 mm"]', 1.628, 1.626],
+    ["  and", 'mesh[1].pitch = "0.0184 mm"', "0.03 mm", "", ""],
+]
+
+
+@pytest.mark.parametrize("width", range(60, 160, 10))
+def test_what_is_to_be_written_is_never_cut(width):
+    heads = ("remedy, one is enough", "write in the file", "instead of", "factor", "minimum")
+    console = Console(file=io.StringIO(), width=width)
+    console.print(grid(Table("remedies", heads, WAYS, words=True, left=3), width))
+    lines = console.file.getvalue().splitlines()
+    assert max(map(len, lines)) <= width and not any("…" in line for line in lines)
+    assert any("all deviations, all" in line for line in lines)  # no column of single letters
+    assert (LONG in "\n".join(lines)) == (width >= 90)
+    assert "0.0184" in "".join(lines) and len(lines) < 10
 
 
 def test_drawn_lengths_in_inches():

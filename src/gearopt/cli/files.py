@@ -155,4 +155,5 @@ def bench(
     from gearopt.report.words import heading
 
     cells, wide = [list(row.values()) for row in rows], len(rows[0])
-    console().print(grid(Table(name, [heading(key) for key in rows[0]], cells, wrap=wide)))
+    table, screen = Table(name, [heading(key) for key in rows[0]], cells, wrap=wide), console()
+    screen.print(grid(table, screen.width))

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from rich.console import Console
+from rich.console import Console, JustifyMethod
 from rich.markup import escape
 from rich.table import Table as Grid
 from rich.text import Text
@@ -26,10 +26,20 @@ from gearopt.report.words import (
     verdict,
 )
 
+LABEL = 20  # columns of the terminal that the first column of a table of words has at least
+GAP = 2  # columns of the terminal between those of a table
+INDENT = "  "
 
-def grid(table: Table) -> Grid:
-    """Return a section's table for the terminal; without heads a list of names and values."""
+
+def grid(table: Table, width: int) -> Grid:
+    """Return a section's table for the terminal; without heads a list of names and values.
+
+    width: columns of the terminal. Of a table of words in which the first column has too little
+    room, its text stands above that of the second.
+    """
     heads, rows = table.told
+    if table.words and _narrow(table, width):
+        return _stacked(table, width)
     if any(heads):
         shown = Grid(*map(escape, heads), box=None, header_style="bold", pad_edge=False)
         for k, column in enumerate(shown.columns):
@@ -39,6 +49,43 @@ def grid(table: Table) -> Grid:
         shown = Grid.grid(padding=(0, 2))
     for row in rows:
         shown.add_row(*map(_text, row))
+    return shown
+
+
+def _narrow(table: Table, width: int) -> bool:
+    """Return whether a table's first column would have less than LABEL columns, and needs more."""
+    first, *others = (max(map(len, column)) for column in _columns(table))
+    return width - sum(GAP + other for other in others) < min(first, LABEL)
+
+
+def _columns(table: Table) -> list[list[str]]:
+    """Return head and texts of every column."""
+    heads, rows = table.told
+    return [[head, *(row[k].text for row in rows)] for k, head in enumerate(heads)]
+
+
+def _stacked(table: Table, width: int) -> Grid:
+    """Return a table whose first column stands above the second one, which is never cut.
+
+    The second one breaks where the others, of which those on the left break, leave no room for it.
+    A row that continues the one before, by a first cell that is indented, has one line.
+    """
+    (first, second, *heads), rows = table.told
+    _, widest, *others = _columns(table)
+    room = width - len(INDENT) - max(map(len, widest))
+    for k, column in enumerate(others, 2):
+        pieces = " ".join(column).split() if k < table.left else column
+        room -= GAP + max(map(len, pieces))
+    shown = Grid(box=None, header_style="bold", pad_edge=False)
+    both = f"{escape(first)}\n{INDENT}{escape(second)}"
+    shown.add_column(both, no_wrap=room >= 0, overflow="fold")
+    for k, head in enumerate(heads, 2):
+        breaks = k < table.left
+        side: JustifyMethod = "left" if breaks else "right"
+        shown.add_column(escape(head), justify=side, no_wrap=not breaks, vertical="bottom")
+    for label, value, *more in rows:
+        above = "" if label.text.startswith(" ") else f"{label.text}\n"
+        shown.add_row(Text(f"{above}{INDENT}{value.text}"), *map(_text, more))
     return shown
 
 
@@ -80,7 +127,9 @@ def _print(blocks: Sequence[str | Text | Table], console: Console) -> None:
     """Print sentences and tables with a blank line before each."""
     for block in blocks:
         console.print()
-        console.print(grid(block) if isinstance(block, Table) else Text.assemble(block))
+        console.print(
+            grid(block, console.width) if isinstance(block, Table) else Text.assemble(block)
+        )
 
 
 def show_comparison(found: Comparison, console: Console) -> None:
@@ -118,7 +167,8 @@ def _group(found: Comparison, group: Group, console: Console) -> None:
         if rows:
             console.print()
             console.print(Text(f"{name}: {budget}", style="bold"))
-            console.print(grid(Table(name, ("method", *heads), rows, wrap=1 + len(heads))))
+            table = Table(name, ("method", *heads), rows, wrap=1 + len(heads))
+            console.print(grid(table, console.width))
     for row in group.rows:
         if late := words.ended(found, row):
             console.print(Text(f"Equal evaluations: {late}.", style="yellow"))

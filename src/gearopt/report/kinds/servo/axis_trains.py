@@ -74,8 +74,7 @@ def section(result: Result, measures: Measures) -> Section | None:
         )
     side_by_side = replace(stage_table(stages, measures, page_only=()), short={"": "train"})
     compared = [row[0] for row in _beside(design, report_of(result), measures)]
-    if design.ratio is not None and design.ratio.chosen is not None:
-        compared += [heading(key, measures) for key in MOVED]
+    compared += [heading(key, measures) for key in _moved(design)]
     whole = Table("train", ("", ""), totals, csv_only=compared)
     tables = (side_by_side, replace(whole, folded=len(compared) >= len(totals)))
     half = not drawn
@@ -117,10 +116,12 @@ def beside(result: Result, measures: Measures) -> Section | None:
     if given is None or not rows:
         return None
     teeth = f"Given: {teeth_words(given.stages, measures)}."
-    words = (
+    words = [
         teeth,
         "Real-valued bound: no train is better, even with real-valued teeth and modules.",
-    )
+    ]
+    if _moved(design):
+        words.append("The inertias of both trains are in the table of the total ratio.")
     heads = ("", "chosen", "given", "real-valued bound")
     table = Table("chosen and given", heads, rows, short={"": "train"}, across=True)
     terminal = (table, teeth)
@@ -129,19 +130,25 @@ def beside(result: Result, measures: Measures) -> Section | None:
 
 def _beside(design: ServoDesign, report: ServoReport, measures: Measures) -> list[list[Any]]:
     """Return a row for every figure; none where gears are given without being compared."""
-    chosen, given, ratio = design.train, report.given_train, design.ratio
+    chosen, given, moved = design.train, report.given_train, _moved(design)
     if chosen is None or given is None or chosen.mass_kg is None:
         return []
     own = train_figures(chosen, design.stiffness)
     other = train_figures(given, report.given_stiffness)
-    moved = MOVED if ratio is not None and ratio.chosen is not None else ()
     rows = []
-    for key in (key for key in own | other if key not in moved):
+    for key in own | other:
         bound, unit = report.figures.get(f"real_valued_bound_{key}"), parted(key)[1]
-        values = (own.get(key), other.get(key), bound)
-        shown = [cell(v, unit, measures) for v in values]
-        rows.append([heading(key, measures), *shown])
+        shown = [cell(v, unit, measures) for v in (own.get(key), other.get(key))]
+        if key in moved:  # the page has only the bound here
+            shown = [replace(one, text="", short=one.text) for one in shown]
+        if bound is not None or key not in moved:
+            rows.append([heading(key, measures), *shown, cell(bound, unit, measures)])
     return rows
+
+
+def _moved(design: ServoDesign) -> Sequence[str]:
+    """Return the figures of a train that the table of motor and load shows."""
+    return MOVED if design.ratio is not None and design.ratio.chosen is not None else ()
 
 
 def _known(train: ListedTrain) -> list[Goal]:
