@@ -11,6 +11,7 @@ from gearopt.optimise.typed import INLINE, typed
 from gearopt.physics.gears import GearPair
 from gearopt.physics.loads import pitch_line_velocity
 
+GEARS_FIRST = "the gears chosen first"  # of what alone a layout is proven impossible
 STEEL_DENSITY = 7.85e-9  # t/mm3: EN 1991-1-1 table A.4 (to 78.5 kN/m3), Steel for Life Blue Book
 
 

@@ -22,6 +22,7 @@ from gearopt.report.words import (
     limit_words,
     number,
     objective,
+    of_gears_first,
     sentence,
     series_of,
     verdict,
@@ -162,6 +163,8 @@ def meaning(result: Result) -> str:
             "the bound itself; it is not taken from a solver."
         )
     if status == "infeasible":
+        if of_gears_first(result):
+            return "Proven: no layout of these gears meets all limits. Others were not tried."
         return "Proven: no design meets all limits."
     if status == "evaluated":
         met = "meets all limits" if result.feasible else "does not meet all limits"

@@ -5,6 +5,7 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
+from gearopt.formulations.design import GEARS_FIRST
 from gearopt.formulations.strength import laws
 from gearopt.optimise.result import Result
 from gearopt.report.measures import DIGITS, METRIC, Measures, rounded
@@ -132,11 +133,18 @@ def certainty(result: Result) -> tuple[str, str]:
     words, colour = VERDICTS[result.status]
     if result.status == "evaluated" and not result.feasible:
         words, colour = "evaluated, a limit is exceeded", "red"
+    if of_gears_first(result):
+        words = "impossible with these gears, proven"
     if result.status == "optimal" and (result.gap or 0.0) > EXACT:
         words = f"proven within {100 * (result.gap or 0.0):.2g} % of the optimum"
     if "achieved" in result.report:  # something is come near to
         words = words.replace("optimal", "nearest")
     return words, colour
+
+
+def of_gears_first(result: Result) -> bool:
+    """Return whether only the gears chosen first are proven impossible to lay out."""
+    return result.status == "infeasible" and result.proof.get("scope") == GEARS_FIRST
 
 
 def verdict(result: Result) -> tuple[str, str]:

@@ -29,7 +29,12 @@ STEPS, STARTS = 5_000, 4  # short runs of annealing: most layouts that exist are
 
 def faults(box: Gearbox) -> list[str]:
     """Return sentences about what is too close, too long or out of reach; none if nothing is."""
-    return [*_axial(box), *_blocked(box), *_reach(box), *_level(box), *_sides(box)]
+    return [*_axial(box), *_blocked(box), *_reach(box), *of_any_gears(box), *_sides(box)]
+
+
+def of_any_gears(box: Gearbox) -> list[str]:
+    """Return those of the faults that other gears have too."""
+    return [*_motor(box), *_apart(box), *_level(box)]
 
 
 def _axial(box: Gearbox) -> Iterator[str]:
@@ -72,6 +77,11 @@ def _blocked(box: Gearbox) -> Iterator[str]:
                     f"What stands on {who} is {need - there:.2f} mm too close to {keep.name}: its "
                     f"axis is {hedge}{there:.2f} mm from it and needs {need:.2f} mm."
                 )
+
+
+def _motor(box: Gearbox) -> Iterator[str]:
+    """Yield the keep-outs that the motor reaches into."""
+    for keep in box.keep_outs:
         there = _distance(keep, 0.0, 0.0)
         if keep.x == ANYWHERE and box.motor - there > TOUCH:
             yield f"The motor reaches {box.motor - there:.2f} mm into {keep.name}."
@@ -101,7 +111,7 @@ def _distance(keep: KeepOut, y: float, z: float) -> float:
 
 
 def _reach(box: Gearbox) -> Iterator[str]:
-    """Yield places that the links between two shafts cannot span, or that exclude each other."""
+    """Yield places that the links between two shafts cannot span."""
     given = [INPUT, *box.places]
     for n, b in enumerate(given):
         for a in given[:n]:
@@ -111,9 +121,7 @@ def _reach(box: Gearbox) -> Iterator[str]:
             reach = sum(links)
             minimum = max(0.0, 2.0 * max(links, default=0.0) - reach)
             who = f"The places of shafts {a.shaft + 1} and {b.shaft + 1}"
-            if a.shaft == b.shaft and near > TOUCH:
-                yield f"Two places of shaft {a.shaft + 1} are {near:.2f} mm apart."
-            elif near > reach + TOUCH and links:
+            if near > reach + TOUCH and links:
                 yield (
                     f"{who} are at least {near:.2f} mm apart; the centre distances between them "
                     f"reach {reach:.2f} mm."
@@ -123,6 +131,16 @@ def _reach(box: Gearbox) -> Iterator[str]:
                     f"{who} are at most {far:.2f} mm apart; the centre distances between them "
                     f"keep them {minimum:.2f} mm apart."
                 )
+
+
+def _apart(box: Gearbox) -> Iterator[str]:
+    """Yield two places of one shaft that exclude each other."""
+    given = [INPUT, *box.places]
+    for n, b in enumerate(given):
+        for a in given[:n]:
+            near, _ = _between(a, b)
+            if a.shaft == b.shaft and near > TOUCH:
+                yield f"Two places of shaft {a.shaft + 1} are {near:.2f} mm apart."
 
 
 def _level(box: Gearbox) -> Iterator[str]:

@@ -6,9 +6,9 @@ from typing import Any
 
 from gearopt.errors import SolveError
 from gearopt.formulations import layout
-from gearopt.formulations.design import DriveDesign, drive_design
+from gearopt.formulations.design import GEARS_FIRST, DriveDesign, drive_design
 from gearopt.formulations.layout.exact import GAP
-from gearopt.formulations.layout.faults import faults
+from gearopt.formulations.layout.faults import faults, of_any_gears
 from gearopt.formulations.layout.gearbox import Gearbox, KeepOut
 from gearopt.formulations.layout.layout_design import (
     BearingDesign,
@@ -138,11 +138,31 @@ def _impossible(
         objective = {"name": str(scene.layout and scene.layout.minimise), "value": None}
         result = replace(sized, method="data check", objective=objective, bound=None, gap=None)
         result = replace(result, status="infeasible", proof=proof, certificate={}, limits={})
+    box = scene.gearbox(pairs_of(scene, sized))
+    if others_may_fit(scene, box):
+        result = replace(result, proof=result.proof | {"scope": GEARS_FIRST})
     found, changed = remedies(scene, pairs_of(scene, sized), left)
     report = {"notes": notes, "ways_out": asdict(found)}
     if changed is not None and (drawn := _beside(scene, changed, sized, left)) is not None:
         report["nearest_layout"] = drawn
-    return replace(result, design={}, parts=parts, message=" ".join(notes), report=report)
+    message = _message(scene, sized, box, notes)
+    return replace(result, design={}, parts=parts, message=message, report=report)
+
+
+def others_may_fit(scene: Scene, box: Gearbox) -> bool:
+    """Return whether a fault of these gears says nothing of others: they were chosen."""
+    return not scene.given and not of_any_gears(box)
+
+
+def _message(scene: Scene, sized: Result, box: Gearbox, notes: list[str]) -> str:
+    """Say why there is no layout; of gears chosen first, that others may have one."""
+    why = " ".join(notes)
+    assert scene.layout is not None
+    if scene.layout.together or not others_may_fit(scene, box):
+        return why
+    least = str(sized.objective["name"]).replace("_", " ")
+    others = "" if scene.teeth is None else ": write together = true in [layout]"
+    return f"These gears, chosen first for the least {least}, do not fit: {why} Others may{others}."
 
 
 def _beside(scene: Scene, changed: Scene, sized: Result, ask: Ask) -> dict[str, Any] | None:

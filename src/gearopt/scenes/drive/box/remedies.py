@@ -17,7 +17,7 @@ from gearopt.optimise.result import Result
 from gearopt.optimise.solve import solve
 from gearopt.physics.gears import GearPair
 from gearopt.scenes.drive.box.edits import Edit, edits, limits_of, switches
-from gearopt.scenes.drive.box.lay_out import pairs_of
+from gearopt.scenes.drive.box.lay_out import others_may_fit, pairs_of
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.explaining.influences import Basis, influences, smooth
 from gearopt.scenes.explaining.numbers import allowed, numbers
@@ -32,6 +32,9 @@ PAIRS = 6  # that are worked out
 HALVINGS = 20  # of the size within which the file's own rules hold
 SENSITIVITY_GAP = 0.01  # gap of the proof behind a sensitivity: the polished layout is far closer
 SAME = 1e-7  # relative, of boxes that are equal
+FIRST = "this is known of the gears chosen first"
+TOGETHER = f"{FIRST}: with other gears smaller changes may do"
+APART = f"{FIRST}: with together = true in [layout] others may need less, or no change"
 TABLES = ("layout", "place", "keep_out")
 
 Pair = tuple[Edit, Edit]
@@ -129,7 +132,28 @@ def remedies(scene: Scene, pairs: tuple[GearPair, ...], ask: Ask) -> tuple[Remed
     if clock.over:
         message = "the budget ended before all remedies were tried"
     changed = found[0][2] if found else None
-    return Remedies((), tuple(remedy for _, remedy, _ in found), message), changed
+    return _of_gears(scene, pairs, tuple(remedy for _, remedy, _ in found), message), changed
+
+
+def _of_gears(
+    scene: Scene, pairs: tuple[GearPair, ...], found: tuple[Remedy, ...], message: str
+) -> Remedies:
+    """Return remedies for one choice of gears, and what they say of others.
+
+    What is least for these gears need not be for others, which `together = true` allows.
+    """
+    assert scene.layout is not None
+    if scene.given or scene.teeth is None:
+        return Remedies((), found, message)
+    if not scene.layout.together:
+        if not others_may_fit(scene, scene.gearbox(pairs)):
+            return Remedies((), found, message)
+        return Remedies((), found, "; ".join(filter(None, (message, APART))))
+    found = tuple(
+        replace(r, verified={k: v if k == "with" else "undecided" for k, v in r.verified.items()})
+        for r in found
+    )
+    return Remedies((), found, "; ".join(filter(None, (message, TOGETHER))))
 
 
 def _size(found: Found) -> float:
