@@ -14,7 +14,7 @@ import pytest
 
 import gearopt
 from gearopt.cli.app import print_whole
-from gearopt.optimise.solve import back_ends
+from gearopt.optimise.own_methods import back_ends
 from gearopt.scenes.reading.ask import RANDOM
 
 ROOT = Path(__file__).parents[1]

@@ -14,8 +14,8 @@ from gearopt import Comparison, Problem, SolveError, Terms, Var
 from gearopt.errors import CertificateError
 from gearopt.optimise.comparing.compare import KINDS, PATIENCE, WARM
 from gearopt.optimise.comparing.comparison import excess, quantile
+from gearopt.optimise.own_methods import back_ends
 from gearopt.optimise.result import Event, Outcome
-from gearopt.optimise.solve import back_ends
 
 PROBLEMS = Path(__file__).parents[2] / "problems"
 SMALL = {"evaluations": 2000, "seconds": 0.02}

@@ -222,13 +222,15 @@ def test_a_parameter_at_the_end_of_what_the_text_takes_is_probed_on_one_side():
 def bars(most, largest):
     """Least section n d^2 of n whole bars, n d^2 >= 150, n and d up to a most."""
 
+    proof = {"method": "closed form", "sentence": "Proof: a closed form."}
+
     def exact(problem, budget, seed, watch):
         (need,), upper = problem.parameter_values(), problem.bounds()[1]
         n = math.ceil(need / upper[1] ** 2 - 1e-9)
         if n > upper[0]:
-            return Outcome(None, infeasible=True, proof={"method": "closed form"})
+            return Outcome(None, infeasible=True, proof=proof)
         x = np.array([n, math.sqrt(need / n)])
-        return Outcome(x, bound=need * (1.0 - 1e-12), proof={"method": "closed form"})
+        return Outcome(x, bound=need * (1.0 - 1e-12), proof=proof)
 
     def evaluate(x, p):
         section = x.n * x.d**2

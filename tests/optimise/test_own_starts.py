@@ -152,7 +152,8 @@ def test_the_method_of_ones_own_on_the_page_runs(capsys):
 
 def test_a_method_of_ones_own_may_not_lie():
     def lies(problem, budget, seed, watch):
-        return gearopt.Outcome(np.array([20.0, 60.0]), bound=1.0, proof={"method": "none"})
+        proof = {"method": "none", "sentence": "Proof: none."}
+        return gearopt.Outcome(np.array([20.0, 60.0]), bound=1.0, proof=proof)
 
     with pytest.raises(gearopt.CertificateError, match="below the claimed bound"):
         solve(pair(methods={"lies": lies}))

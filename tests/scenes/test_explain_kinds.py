@@ -179,15 +179,15 @@ def bars(own, method=""):
         stress = p.pull * p.safety / (x.n * x.d**2)
         return Terms({"section": x.n * x.d**2}, {"stress": stress / p.stress, "size": x.d / p.most})
 
+    proof = {"method": "closed form", "sentence": "Proof: a closed form."}
+
     def exact(problem, budget, seed, watch):
         pull, stress, safety, most = problem.parameter_values()
         least = pull * safety / stress
         n = math.ceil(least / most**2 - 1e-9)
         if n > bar.most:
-            return Outcome(None, infeasible=True, proof={"method": "closed form"})
-        return Outcome(
-            np.array([n, math.sqrt(least / n)]), bound=least * (1 - 1e-12), proof={"method": "x"}
-        )
+            return Outcome(None, infeasible=True, proof=proof)
+        return Outcome(np.array([n, math.sqrt(least / n)]), bound=least * (1 - 1e-12), proof=proof)
 
     parameters = (
         Param("pull", "N mm", bar.pull.value, key="bar.pull", role="given"),

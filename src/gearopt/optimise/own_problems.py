@@ -9,9 +9,10 @@ import numpy as np
 
 from gearopt.errors import SolveError
 from gearopt.optimise.conic.problem import Conic
+from gearopt.optimise.own_methods import back_ends
 from gearopt.optimise.problem import Problem, one_objective
 from gearopt.optimise.result import Budget, Result, Watch
-from gearopt.optimise.solve import back_ends, default, solve
+from gearopt.optimise.solve import default, solve
 from gearopt.optimise.tape import log_convex_in_logarithms
 from gearopt.optimise.terms import Array
 

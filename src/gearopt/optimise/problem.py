@@ -14,6 +14,7 @@ import numpy as np
 
 from gearopt.errors import SolveError
 from gearopt.optimise.evaluation import at, terms_of
+from gearopt.optimise.own_methods import check_methods
 from gearopt.optimise.terms import (
     SECTIONS,
     Array,
@@ -65,11 +66,13 @@ class Problem:
     """An optimisation problem: minimise one term under limits <= 1 and equal rows = 1.
 
     evaluate(x, p) -> Terms, in plain numpy text on scalars: x.name and p.name are scalars, or
-    tuples of scalars for size > 1. methods: {name: run(problem, budget, seed, watch) -> Outcome},
-    the formulation's own exact algorithms. vectorised: the text also takes arrays (N,) of N points
-    for its scalars; where it does not say so, gearopt finds out whether it may (`evaluation`).
-    relaxed: a continuous problem whose limits every point of this one meets, with the keys of a
-    file at its parameters: what `explain` takes for the limits and their conflict.
+    blocks of scalars for size > 1, to be indexed, unpacked and summed; arithmetic is with
+    np.array(x.name). methods: {name: run(problem, budget, seed, watch) -> Outcome}, exact
+    algorithms of its own, none named as one of gearopt's; watch(event) may always be called.
+    vectorised: the text also takes arrays (N,) of N points for its scalars; where it does not say
+    so, gearopt finds out whether it may (`evaluation`). relaxed: a continuous problem whose limits
+    every point of this one meets, with the keys of a file at its parameters: what `explain` takes
+    for the limits and their conflict.
     """
 
     name: str
@@ -95,6 +98,7 @@ class Problem:
                 )
         if twice := _twice([r.name for r in self.repeats]):
             raise ValueError(f"problem {self.name}: repeat {twice!r} is declared twice")
+        check_methods(self.name, self.methods)
         names = [v.name for v in self.variables]
         names += [v.name for r in self.repeats for v in r.variables]
         if twice := _twice(names):

@@ -4,17 +4,16 @@ import math
 from collections.abc import Callable, Mapping
 from difflib import get_close_matches
 from importlib import import_module
-from pkgutil import iter_modules
 from typing import Any
 
 import numpy as np
 
 from gearopt.errors import SolveError
-from gearopt.optimise import solvers
 from gearopt.optimise.box import check_discrete
 from gearopt.optimise.certificate import Verdict, certify
 from gearopt.optimise.clock import Clock, of_problem
 from gearopt.optimise.conic.problem import Conic
+from gearopt.optimise.own_methods import back_ends, run_method
 from gearopt.optimise.problem import Problem, one_objective
 from gearopt.optimise.result import FEASIBLE, Budget, Outcome, Result, Watch, versions
 from gearopt.optimise.scale import violation
@@ -60,7 +59,8 @@ def run(
     name = method or default(problem)
     clock = Clock()
     follow = of_problem(watch, problem)
-    outcome = method_of(problem, name)(problem, budget or Budget(), seed, follow)
+    call = method_of(problem, name)
+    outcome = run_method(call, problem, name, budget or Budget(), seed, follow)
     verdict = judge(problem, name, outcome, gap)
     return _result(problem, name, outcome, verdict, clock.seconds, seed), outcome
 
@@ -104,11 +104,6 @@ def solve_within(clock: Clock, problem: Problem | Conic, method: str | None = No
     result = solve(problem, method, clock.left, watch=clock.watch)
     clock.stopped = clock.stopped or result.status == "limit"
     return result
-
-
-def back_ends() -> tuple[str, ...]:
-    """Return names of the back ends for any problem: the modules of `optimise/solvers`."""
-    return tuple(sorted(m.name for m in iter_modules(solvers.__path__)))
 
 
 def default(problem: Problem | Conic) -> str:

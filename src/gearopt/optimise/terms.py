@@ -203,6 +203,39 @@ def each(value: Any) -> tuple[Any, ...]:
     return value if isinstance(value, tuple) else (value,)
 
 
+def _refused(sign: str) -> Callable[[Any, Any], Any]:
+    def refuse(block: Any, other: Any) -> Any:
+        raise TypeError(
+            f"a block of several components has no {sign}: write np.array(x.w), which computes "
+            "component by component"
+        )
+
+    return refuse
+
+
+class Block(tuple[Any, ...]):
+    """The components of a variable or parameter; a tuple whose signs do not replicate or join.
+
+    numpy on the left of a sign computes component by component, as with any tuple.
+    """
+
+    __slots__ = ()
+    __add__ = __radd__ = _refused("+")
+    __sub__ = __rsub__ = _refused("-")
+    __mul__ = __rmul__ = _refused("*")
+    __truediv__ = __rtruediv__ = _refused("/")
+    __pow__ = __rpow__ = _refused("**")
+    __lt__ = __le__ = __gt__ = __ge__ = _refused("order (<, <=, >, >=)")
+
+    def __getitem__(self, at: Any) -> Any:
+        found = tuple.__getitem__(self, at)
+        return Block(found) if type(at) is slice else found
+
+    def __neg__(self) -> Any:
+        """Refuse the sign of a block: TypeError."""
+        return self - 0.0
+
+
 class Named(SimpleNamespace):
     """Scalars by name; a name that is not declared is answered with those that are."""
 
@@ -211,12 +244,12 @@ class Named(SimpleNamespace):
 
 
 def namespace(declared: tuple[Any, ...], scalars: list[Any]) -> Named:
-    """Return scalars by name: one for size 1, a tuple for more."""
+    """Return scalars by name: one for size 1, a `Block` for more."""
     found: dict[str, Any] = {}
     start = 0
     for item in declared:
-        part = tuple(scalars[start : start + item.size])
-        found[item.name] = part[0] if item.size == 1 else part
+        part = scalars[start : start + item.size]
+        found[item.name] = part[0] if item.size == 1 else Block(part)
         start += item.size
     return Named(**found)
 

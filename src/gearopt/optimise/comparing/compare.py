@@ -19,6 +19,7 @@ from gearopt.optimise.certificate import Verdict
 from gearopt.optimise.clock import Clock, following, in_part, of_problem
 from gearopt.optimise.comparing.comparison import Comparison, Group, Row, Run, sample
 from gearopt.optimise.conic.problem import Conic
+from gearopt.optimise.own_methods import run_method
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Event, Outcome
 from gearopt.optimise.scale import zero_scale
@@ -82,7 +83,7 @@ def enter(method: str, model: Callable[[str], Model]) -> Entry:
     try:
         for _ in range(2):
             clock = Clock()
-            outcome: Outcome = run(problem, WARM, 0, None)
+            outcome = run_method(run, problem, method, WARM, 0, None)
             times.append(clock.seconds)
     except SolveError as refusal:
         return replace(entry, refused=str(refusal))
@@ -117,7 +118,8 @@ def attempt(entry: Entry, seed: int, budget: Budget, follow: Callable[[Event], b
     unit = "" if entry.model is None else entry.model.unit
     watch = of_problem(in_part(followed, unit), problem)
     try:
-        outcome = method_of(problem, method)(problem, budget, seed, watch)
+        run = method_of(problem, method)
+        outcome = run_method(run, problem, method, budget, seed, watch)
         seconds = clock.seconds
         verdict = judge(problem, method, outcome, GAP)
     except GearoptError as broken:
@@ -259,7 +261,8 @@ def _bound(
         return watch is None or watch(Progress(0, 0, method, 0, 0.0, event)) is not False
 
     follow = of_problem(in_part(continues, posed.unit), problem)
-    outcome = method_of(problem, method)(problem, Budget(BOUND_SECONDS), 0, follow)
+    run = method_of(problem, method)
+    outcome = run_method(run, problem, method, Budget(BOUND_SECONDS), 0, follow)
     bound = judge(problem, method, outcome, GAP).bound
     return None if bound is None else (problem.name, method, bound)
 

@@ -131,7 +131,6 @@ class Comparison:
     budget: {evaluations, seconds, patience_seconds}; settings: {method: {name: value}}. bound_from:
     the method that was asked for a bound. complete: every run was made; else message says how many.
     changes: what is otherwise than in the file, by key.
-    changes: what is otherwise than in the file, by key.
     """
 
     groups: tuple[Group, ...]

@@ -128,6 +128,10 @@ def _exact(choice: Choice) -> Any:
         }
         if found.positions is None:
             return _impossible(choice, proof, limit)
+        proof["sentence"] = (
+            f"Proof: a dynamic program over all picks, {clock.evaluations:,} pairs of weight and "
+            "cost looked at."
+        )
         costs = [float(row[k]) for row, k in zip(choice.costs, found.positions, strict=True)]
         rounding = ROUNDING * sum(map(abs, costs))
         return Outcome(
