@@ -169,6 +169,16 @@ def test_a_layout_that_meets_the_box_exactly_fits():
     assert first_that_fits([narrow]) is None
 
 
+def test_a_box_that_is_met_but_for_rounding_is_decided():
+    """A full wheel of 120 mm in sides that are 120 mm with the tie, give or take some ulp."""
+    wheel = ServoBox((30.0, 40.0, 60.0), (46.0, 70.0), 12.5, math.pi, (120.0, 200.0))
+    side = 120.0 / (1.0 + servo_box.TIE)
+    for ulps in range(-4, 5):
+        box = replace(wheel, box=(side + ulps * math.ulp(side), 200.0))
+        assert first_that_fits([box]) is not None
+    assert first_that_fits([replace(wheel, box=(side * (1.0 - 1e-10), 200.0))]) is None
+
+
 def test_the_second_pinion_is_in_the_box():
     """Gear 3 is larger than gear 2, and as large as gear 4: two discs of 10.5 mm, 20 mm apart."""
     point = np.array([16, 40, 20, 40, 0.3, 0.5])

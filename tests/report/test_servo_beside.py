@@ -9,7 +9,16 @@ import pytest
 from rich.console import Console
 
 import gearopt
+from gearopt.formulations.servo.servo_design import (
+    BoxDesign,
+    ListedTrain,
+    ServoDesign,
+    ServoReport,
+)
+from gearopt.optimise.typed import untyped
 from gearopt.report.answer import bound_words
+from gearopt.report.kinds import servo
+from gearopt.report.kinds.servo.axis_housing import box
 from gearopt.report.measures import METRIC
 from gearopt.report.pages.result import page, sections, tables
 from gearopt.report.terminal import show
@@ -126,3 +135,41 @@ def test_on_paper_tiles_stay_with_what_follows(result):
     tiles = [rule for part in paper for rule in part.split("\n") if rule.startswith("  .tiles {")]
     assert any("break-inside: avoid; break-after: avoid;" in rule for rule in tiles)
     assert any(".card > figure { zoom: 0.8; }" in part for part in paper)  # two plots on a sheet
+
+
+def boxed(best_s=0.2, **more):
+    """A train of 0.21 s in a box that it meets exactly; best_s: that of the best without a box."""
+    told = {"needed_width_mm": 120.0 * (1.0 + 1e-9), "fits": True} | more
+    room = BoxDesign(
+        inner_width_mm=120.0,
+        inner_height_mm=200.0,
+        needed_height_mm=199.7,
+        motor_angle_deg=45.0,
+        output_angle_deg=97.0,
+        radii_mm=(30.0, 40.0, 60.0),
+        motor_mm=30.0,
+        shaft_mm=7.5,
+        links_mm=(46.0, 70.0),
+        hub_mm=12.5,
+        half_sweep_deg=180.0,
+        **told,
+    )
+    best = ListedTrain((), 40.0, "move time", 1e-5, 2.0, move_time_s=best_s)
+    goal = {"name": "move_time", "value": 0.21, "unit": "s"}
+    design, report = untyped(ServoDesign(box=room)), ServoReport(trains=(best,)).to_dict()
+    return gearopt.Result("servo", "optimal", "exact", goal, design=design, report=report)
+
+
+def test_a_train_that_fits_is_not_called_too_large():
+    said = box(boxed(), METRIC).words[0]
+    assert (
+        said == "The train fits: it needs 120.00 x 199.70 mm, the box is 120.00 x 200.00 mm inside."
+    )
+    large = box(boxed(needed_width_mm=121.0, fits=False), METRIC).words[0]
+    assert "does not fit" in large and large.endswith("Too large by 1.00 mm in width.")
+
+
+def test_the_first_sentence_names_a_box_that_costs_something():
+    assert servo.decides(boxed()) == "the box decides the move time: without it a train is better"
+    assert servo.decides(boxed(best_s=0.21)) == ""
+    assert servo.decides(replace(boxed(), status="feasible")) == ""

@@ -14,11 +14,12 @@ from edits import edited, scene_of
 from pydantic import Field
 
 import gearopt
-from gearopt import Param, Problem, Terms, Var
+from gearopt import Param, Problem, SolveError, Terms, Var
 from gearopt.optimise.comparing.compare import Model
 from gearopt.optimise.explaining.handles import each_word, handles
 from gearopt.optimise.result import Outcome
 from gearopt.optimise.solve import solve as solve_problem
+from gearopt.scenes.explaining import default
 from gearopt.scenes.explaining.default import explain
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.fields import Table, number, quantity, whole
@@ -48,6 +49,22 @@ minimise = "area"
 
 def scene(text):
     return read(text.encode())[1]
+
+
+def test_a_changed_file_that_is_not_decided_does_not_cost_the_answer(monkeypatch):
+    own, calls = default.run, []
+
+    def once(*given, **more):
+        calls.append(given)
+        if len(calls) > 1:
+            raise SolveError("this is not decided")
+        return own(*given, **more)
+
+    monkeypatch.setattr(default, "run", once)
+    found = gearopt.explain(scene(TRAIN))
+    assert found.result.status == "optimal" and len(calls) > 2
+    assert all(one.resolved == (None, None) for one in found.influences)
+    assert found.message.endswith("not decided by solving again: this is not decided")
 
 
 def slope(text, old, new, step=1e-4):

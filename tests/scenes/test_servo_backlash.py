@@ -11,6 +11,7 @@ import gearopt
 from gearopt.errors import SceneError
 from gearopt.formulations.servo.choice import train_problem
 from gearopt.optimise.clock import Clock
+from gearopt.report.deciding import lead
 from gearopt.report.explained import remedy_words
 from gearopt.scenes.servo.backlash import binds
 
@@ -130,6 +131,24 @@ def test_tolerances_keep_the_lower_ends_and_the_minimum_backlash():
     assert start < drawn["mean_deg"] < worst and drawn["largest_deg"] <= worst
     none = changed(TOLERANCES, *edits, (("mesh", 0, "minimum_backlash"), "0.003 mm"))
     assert gearopt.solve(none).status == "infeasible"
+
+
+def test_the_utilisation_is_required_over_actual():
+    """16 of 29.54 µm in stage 1, by hand."""
+    found = posed(changed(FILE, (("mesh", 0, "minimum_backlash"), "0.016 mm")))
+    assert found.limits["minimum_backlash[1]"] == pytest.approx(16 / (35 - 15 * TAN), rel=1e-12)
+
+
+def test_both_stages_are_moved_together():
+    both = [(("mesh", k, "minimum_backlash"), "0.08 mm") for k in (0, 1)]
+    found = binds(changed(FILE, *both), Clock())
+    assert found.remedies and {len(way.changes) for way in found.remedies} == {2}
+    for way in found.remedies:
+        assert way.verified["with"] == "optimal" and way.verified["with_less"] == "infeasible"
+    told = lead(posed(changed(FILE, *both)))
+    assert told == (
+        "minimum backlash of stages 1 and 2 cannot be met, even if all other limits are dropped"
+    )
 
 
 def test_a_page_proposes_them():

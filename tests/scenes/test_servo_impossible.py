@@ -86,7 +86,7 @@ def test_what_is_impossible_for_another_reason_is_said(edits, blamed, words, way
     assert explained.result.status == "infeasible"
     assert ways <= {way.what for way in explained.remedies}
     assert all(way.verified["with"] == "optimal" for way in explained.remedies)
-    assert "the cause is not the accuracy" in explained.message and words in explained.message
+    assert "the cause is not the accuracy alone" in explained.message and words in explained.message
     assert blamed <= set(explained.conflict) and "error" not in explained.conflict
     assert bool(blamed) == bool(explained.conflict)
 

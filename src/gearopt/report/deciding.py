@@ -46,12 +46,10 @@ def _impossible(result: Result) -> str:
     if not names:
         return (result.message or "no design meets all limits").rstrip(".")
     together = series_of(grouped(names))
-    if len(names) == 1:
+    if len(names) == 1 or result.proof.get("each_alone"):
         return f"{together} cannot be met, even if all other limits are dropped"
     if ways.get("any_resolves"):
         return f"{together} are in conflict; dropping any one of them makes a design possible"
-    if ways.get("conflict"):
-        return f"{together} cannot be met together; without any one of them the others can"
     return f"{together} cannot be met together"
 
 

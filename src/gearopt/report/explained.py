@@ -138,6 +138,8 @@ def remedies(result: Result, measures: Measures) -> Section | None:
     if not rows and not found["conflict"] and found["message"] in result.message:
         return None  # the first sentence says it
     tables = [Table("remedies", REMEDY_HEADS, rows, words=True, left=3)] if rows else []
+    if not rows and found["message"] and found["message"] in result.message:
+        sure += " No remedy was found by moving limits."  # the message stands above
     sure = measures.words(sure)
     words = [] if rows else [sure]  # of remedies `proven` says it
     return Section("Remedies", words=words, tables=tables, terminal=[*tables, sure])

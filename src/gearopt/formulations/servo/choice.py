@@ -177,7 +177,8 @@ def train_problem(choice: Choice) -> Problem:
             limits["stiffness"] = choice.springs.minimum / choice.springs.output_stiffness(made)
         for stage, there, asked in choice.backlash:
             none = 0.0 * x.module[0]  # of the shape of a population
-            limits[f"minimum_backlash[{stage}]"] = 1.0 + (asked - there) / asked + none
+            scale = there if there > 0.0 else asked  # required over actual, where gears have any
+            limits[f"minimum_backlash[{stage}]"] = 1.0 + (asked - there) / scale + none
         goal = {choice.goal: factor * found.minimise[choice.goal]}
         return replace(found, minimise=goal, limits=limits)
 
@@ -219,7 +220,7 @@ def binding(backlash: tuple[tuple[int, float, float], ...]) -> Outcome | None:
     )
     conflict = [f"minimum_backlash[{k}]" for k, _, _ in short]
     words = "Proof: the sum of the deviations, all at the ends that close the mesh."
-    proof = {"method": "closed form", "conflict": conflict, "sentence": words}
+    proof = {"method": "closed form", "conflict": conflict, "each_alone": True, "sentence": words}
     return Outcome(None, infeasible=True, proof=proof, message=text)
 
 

@@ -7,6 +7,7 @@ import numpy as np
 from gearopt.optimise.jit_kernel import entry, inner
 
 SLACK = 1e-12  # of lengths over the box, and of angles: many times their rounding
+MEETS = 1.0 + 10.0 * SLACK  # scale of a box that one layout is judged in: a tie is decided
 
 
 @inner
@@ -145,7 +146,8 @@ def search(s, cells, count, best, angles, rel, aim, limit):
 def decided(s, cells, count, angles, limit):
     """Whether a train fits with the output link in the open cells; see `fits`.
 
-    cells (size, 2): `count` in use. Also returns how many were judged.
+    cells (size, 2): `count` in use. Also returns how many were judged. A layout that meets the box
+    but for rounding fits: layouts are judged in one MEETS times as large.
     """
     looked = 0
     while count > 0:
@@ -155,7 +157,7 @@ def decided(s, cells, count, angles, limit):
         if math.isnan(room(s, 1.0, low, high, SLACK)):
             continue
         middle = 0.5 * (low + high)
-        motor = room(s, 1.0, middle, middle, 0.0)
+        motor = room(s, MEETS, middle, middle, 0.0)
         if not math.isnan(motor):
             angles[0], angles[1] = motor, middle
             return 1, looked

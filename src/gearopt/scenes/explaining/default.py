@@ -48,6 +48,7 @@ BASIS = (
 HELD = f", with these whole numbers and choices,{BASIS}"
 UNSURE = 0.02  # between sensitivities by multipliers and by solving again that differ
 PART = 1e-3  # of the change up to which whole numbers and choices stay: the step of a re-solve
+UNDECIDED = "what is not shown of a number was not decided by solving again"
 UNPROVEN = "numbers are not solved again, because the answer is not proven optimal"
 
 
@@ -94,8 +95,14 @@ def explained(
     if result.value is None:
         return Explanation(result, message="no design was found in time", seconds=clock.seconds)
 
+    undecided: list[str] = []
+
     def solved(other: Any) -> float | None:
-        found = run(posed(other), None, clock.left, watch=clock.watch)[0]
+        try:
+            found = run(posed(other), None, clock.left, watch=clock.watch)[0]
+        except SolveError as reason:  # of a changed file: the answer stands
+            undecided.append(str(reason))
+            return None
         return found.value if found.status in CERTAIN else None
 
     problem = posed(scene)
@@ -106,7 +113,11 @@ def explained(
     if isinstance(problem, Problem) and outcome.x is not None:
         x, held = outcome.x, any(variable.discrete for variable, _ in problem.columns)
         basis = at_point(own.value, solved, lambda other: _held(posed(other), x), scene, x)
-    return of_design(scene, result, clock, basis, solved, "", eases(problem), held)
+    found = of_design(scene, result, clock, basis, solved, "", eases(problem), held)
+    if not undecided:
+        return found
+    gaps = f"{UNDECIDED}: {undecided[0]}"
+    return replace(found, message="; ".join(filter(None, (found.message, gaps))))
 
 
 def _impossible(

@@ -8,6 +8,7 @@ asks for of train, ratio and tolerances is the answer, the others are its parts.
 from dataclasses import asdict, replace
 from typing import Any
 
+from gearopt.errors import SolveError
 from gearopt.formulations.servo.choice import train_problem
 from gearopt.formulations.servo.impossible import nearest
 from gearopt.formulations.servo.servo_design import (
@@ -20,7 +21,7 @@ from gearopt.formulations.servo.servo_design import (
 from gearopt.formulations.servo.split.bodies import Pairs
 from gearopt.optimise.clock import Clock, of_others
 from gearopt.optimise.comparing.compare import Model
-from gearopt.optimise.explaining.explanation import Explanation
+from gearopt.optimise.explaining.explanation import Explanation, Remedies
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import untyped
@@ -73,7 +74,7 @@ def solve(scene: Scene, ask: Ask) -> Result:
     if said := notes(scene, found.results, found.design, found.report):
         texts["notes"] = said
     if answer.status == "infeasible" and scene.train is not None:
-        texts["ways_out"] = asdict(remedies(scene, clock, answer.message))
+        texts["ways_out"] = asdict(_ways_out(scene, clock, answer))
         if violated := nearest(scene.servo_train(), clock):
             texts["nearest"] = violated
     return replace(
@@ -83,6 +84,15 @@ def solve(scene: Scene, ask: Ask) -> Result:
         parts=tuple(parts),
         seconds=clock.seconds,
     )
+
+
+def _ways_out(scene: Scene, clock: Clock, answer: Result) -> Remedies:
+    """Return the remedies; a changed file that is not decided does not cost the answer."""
+    try:
+        return remedies(scene, clock, answer.message)
+    except SolveError as reason:
+        conflict = tuple(answer.proof.get("conflict", ()))
+        return Remedies(conflict, message=f"no remedy is known: {reason}")
 
 
 def _part(ask: Ask, clock: Clock, found: Found) -> Ask:

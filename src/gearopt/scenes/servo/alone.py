@@ -11,6 +11,7 @@ from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 from fractions import Fraction
 from typing import Any
 
+from gearopt.errors import SolveError
 from gearopt.formulations.servo.choice import Springs, train_problem
 from gearopt.formulations.servo.choice_search import best_kept
 from gearopt.formulations.servo.impossible import WIDER
@@ -77,7 +78,8 @@ def some_train(scene: Scene, clock: Clock) -> Array | None:
 def alone(scene: Scene, clock: Clock, known: frozenset[str]) -> tuple[Remedy, ...]:
     """Return each number that alone makes a train possible, the smallest change first.
 
-    known: keys that are proposed already. What is found when the clock stops is kept.
+    known: keys that are proposed already. What is found when the clock stops, or a box is not
+    decided, is kept.
     """
     found: list[Remedy] = []
     try:
@@ -86,8 +88,11 @@ def alone(scene: Scene, clock: Clock, known: frozenset[str]) -> tuple[Remedy, ..
             if value is None or dotted(path) in known:
                 continue
             far = FAR if (path, way) in LIMITS else WIDE
-            if (one := _moved_alone(scene, path, value, way, far, clock)) is not None:
-                found.append(one)
+            try:
+                one = _moved_alone(scene, path, value, way, far, clock)
+            except SolveError:  # a box that is not decided: this number is not proposed
+                continue
+            found += [] if one is None else [one]
         if (tolerance := _tolerance(scene, clock)) is not None:
             found.append(tolerance)
         sides = [one.factor for one in found if one.what in ("space.width", "space.height")]
@@ -95,7 +100,7 @@ def alone(scene: Scene, clock: Clock, known: frozenset[str]) -> tuple[Remedy, ..
         if box is not None and all(box.factor * (1.0 + ROUND) < side for side in sides):
             found.append(box)
         found += [] if module is None else [module]
-    except TimeoutError:
+    except (TimeoutError, SolveError):
         pass
     return tuple(sorted(found, key=lambda one: (one.kind != "alone", one.factor)))
 

@@ -23,43 +23,45 @@ from gearopt.units import Quantity
 def binds(scene: Scene, clock: Clock) -> Remedies | None:
     """Return which minimum backlashes are not kept, and what to write; None where all are.
 
-    An allowance moves as a whole, both ends alike, so that its width stays.
+    An allowance moves as a whole, both ends alike, so that its width stays. Where both stages may
+    bind, a key moves in both.
     """
     choice = scene.choice()
     none = binding(choice.backlash)
     if none is None or none.proof is None:
         return None
-    ways = []
-    for k, there, asked in choice.backlash:
-        if there >= asked:
-            continue
-        for key in ("minimum_backlash", *TWO_SIDED):
-            way = _way(scene, ("mesh", k - 1, key), asked - there, clock)
-            ways += [way] if way is not None else []
+    short_of = {k: asked - there for k, there, asked in choice.backlash if there < asked}
+    tried = (_way(scene, key, short_of, clock) for key in ("minimum_backlash", *TWO_SIDED))
+    ways = [way for way in tried if way is not None]
     return Remedies(tuple(none.proof["conflict"]), tuple(ways), none.message)
 
 
-def _way(scene: Scene, path: tuple[str | int, ...], missing: float, clock: Clock) -> Remedy | None:
-    """Return one key moved by what is missing [mm]; None where that is no answer."""
-    key, mesh = path[-1], scene.mesh[int(path[1])]
-    was = getattr(mesh, str(key))
-    if was is None or clock.over:
-        return None
+def _way(scene: Scene, key: str, missing: dict[int, float], clock: Clock) -> Remedy | None:
+    """Return one key of some stages moved by what is missing [mm]; None where it is no answer."""
     slope = 2.0 * math.tan(scene.accuracy.pressure_angle.value)
-    by = -missing if key == "minimum_backlash" or key in THICKNESS else missing / slope
-    new, less = _moved(was, str(key), by), _moved(was, str(key), by * (1.0 - BACK), exact=True)
-    if new is None or (changed := moved(scene, path, new)) is None:
-        return None
+    changes = list[Change]()
+    changed: Any = scene
+    back: Any = scene
+    for k, lacking in missing.items():
+        path, was = ("mesh", k - 1, key), getattr(scene.mesh[k - 1], key)
+        if was is None or clock.over:
+            return None
+        by = -lacking if key == "minimum_backlash" or key in THICKNESS else lacking / slope
+        new, less = _moved(was, key, by), _moved(was, key, by * (1.0 - BACK), exact=True)
+        if new is None or (changed := moved(changed, path, new)) is None:
+            return None
+        back = None if less is None or back is None else moved(back, path, less)
+        changes.append(Change(dotted(path), _text(was), _text(new), math.inf))
     status = solve_within(clock, train_problem(changed.choice())).status
     if status != "optimal":
         return None
-    back = None if less is None else moved(scene, path, less)
     bound = back is not None and binding(back.choice().backlash) is not None
     verified = {"with": status, "rounded": "to the easy side"}
     verified["with_less"] = "infeasible" if bound else "undecided"
-    before, write = (_text(v) for v in (was, new))
-    change = Change(dotted(path), before, write, math.inf)
-    return Remedy("alone", dotted(path), (change,), math.inf, None, verified)
+    what = ", ".join(change.key for change in changes)
+    return Remedy(
+        "pair" if len(changes) > 1 else "alone", what, tuple(changes), math.inf, None, verified
+    )
 
 
 def _text(value: Any) -> str:

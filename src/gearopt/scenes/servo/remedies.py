@@ -6,6 +6,7 @@ from fractions import Fraction
 from typing import Any
 
 from gearopt import units
+from gearopt.errors import SolveError
 from gearopt.formulations.servo import impossible, split
 from gearopt.formulations.servo.choice import train_problem
 from gearopt.formulations.servo.servo_design import GOALS
@@ -29,6 +30,8 @@ LOOSE = "90 deg"  # an error that no train misses
 LATE = "the budget ended before the cause was known"
 PATIENCE = 20.0, 5.0  # seconds, for numbers that help alone; where a duty chooses
 NAMED = 3  # sources of error that the message names
+ASIDE = "the cause is not the accuracy alone: with the maximum error left aside"
+KEPT = {"stiffness": "the stiffness", "box": "[space]"}
 WHOLE = (
     "real-valued teeth and modules meet all other limits, whole teeth and the modules of the list "
     "do not"
@@ -74,6 +77,8 @@ def remedies(scene: Scene, clock: Clock, message: str = NO_TEETH) -> Remedies:
         least = replace(more[0], kind="least", verified={**more[0].verified, "others": tried})
         more = (least, *more[1:])
     words = found.message
+    if found.conflict and (kept := [KEPT[name] for name in scene.choice().apart]):
+        words += f"{'; ' if words else ''}every remedy also keeps {' and '.join(kept)}"
     if within.over:
         words += "; not all numbers of the file were tried" if words else ""
     return replace(found, remedies=(*found.remedies, *more), message=words)
@@ -101,7 +106,7 @@ def _cause(scene: Scene, clock: Clock, message: str) -> Remedies:
         if rooms is not None:
             return rooms
         other = _other(free, least.message, clock)
-        return replace(other, message=f"the cause is not the accuracy: {other.message}")
+        return replace(other, message=f"{ASIDE}, {other.message}")
     if least.status != "optimal":
         return Remedies(message="the budget ended before the minimum possible error was proven")
     best = units.parse(f"{least.value!r} deg", "angle")
@@ -143,7 +148,7 @@ def _reached(scene: Scene, clock: Clock) -> str:
     """Return how stiff a train can be and how small its box, as far as time allows."""
     try:
         return "; ".join(reached(scene, clock))
-    except TimeoutError:
+    except (TimeoutError, SolveError):
         return ""
 
 

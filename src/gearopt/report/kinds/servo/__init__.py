@@ -1,27 +1,44 @@
 """Servo axes: ratio, train, box, errors, tolerances and stiffness."""
 
-from gearopt.formulations.servo.servo_design import RatioDesign, TrainDesign
+from gearopt.formulations.servo.servo_design import GOALS, RatioDesign, TrainDesign
 from gearopt.optimise.result import Result
 from gearopt.report import answer, explained
+from gearopt.report.deciding import PROVEN
 from gearopt.report.kinds import Kind, MakeSection
 from gearopt.report.kinds.generic import ASKED, LAST, TOLD
 from gearopt.report.kinds.servo import axis_accuracy, axis_housing, axis_motion, axis_trains
-from gearopt.report.kinds.servo.axis_words import arc_minutes, degrees, design_of
+from gearopt.report.kinds.servo.axis_words import arc_minutes, degrees, design_of, report_of
 from gearopt.report.measures import Measures
 from gearopt.report.pages import impossible_views
 from gearopt.report.section import Section, Tile
 from gearopt.report.words import REACHED, amount, goal, number
 
+SAME = 1e-6  # relative: objectives that are equal
 FULL_TORQUE = "motor_torque"  # used up wherever an acceleration is largest
 
 
 def decides(result: Result) -> str:
-    """Return what decides a total ratio without gears, where no limit of the motor does."""
+    """Return what decides beside the limits: a box, or the inertias of motor and load."""
     design = design_of(result)
+    if _costs(result):
+        return f"the box decides the {goal(result)[0]}: without it a train is better"
     full = [n for n, u in result.limits.items() if u >= 1.0 - REACHED and n != FULL_TORQUE]
     if design.train is not None or design.ratio is None or full or result.value is None:
         return ""
     return "the inertias of motor and load decide the total ratio, no limit of the motor does"
+
+
+def _costs(result: Result) -> bool:
+    """Return whether a train that leaves the box aside is better than the proven answer.
+
+    The Pareto front keeps all limits but the box, and so has the best of these trains.
+    """
+    asked = GOALS.get(str(result.objective.get("name")))
+    if result.status not in PROVEN or design_of(result).box is None or asked is None:
+        return False
+    best = [t for t in report_of(result).trains or () if t.best_of == asked.word]
+    own, there = goal(result)[2], getattr(best[0], asked.key) if best else None
+    return bool(own and there and abs(there - own) > SAME * abs(own))
 
 
 def tiles(result: Result, measures: Measures) -> list[Tile]:

@@ -161,7 +161,7 @@ def _box_words(found: BoxDesign, measures: Measures) -> str:
             ("width", found.needed_width_mm, found.inner_width_mm),
             ("height", found.needed_height_mm, found.inner_height_mm),
         )
-        if needed > inside
+        if needed > inside and not found.fits  # a box that is met exactly fits
     ]
     return f"{words} Too large by {' and '.join(over)}." if over else words
 
