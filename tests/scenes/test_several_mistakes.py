@@ -212,6 +212,13 @@ def test_a_gearbox_is_a_drive(base):
     assert (wrong.key, wrong.remedy) == ("kind", 'Write kind = "drive"')
 
 
+def test_a_gearbox_with_the_tables_of_another_kind_is_that():
+    servo = (PROBLEMS / "servo_gimbal.toml").read_text(encoding="utf-8")
+    for text, kind in ((servo, "servo"), ('gearopt = 1\nkind = "servo"\n', "drive")):
+        wrong = mistakes(text.replace('kind = "servo"', 'kind = "gearbox"'))
+        assert len(wrong.errors) == 1 and wrong.remedy == f'Write kind = "{kind}"'
+
+
 def test_weight_is_mass_and_volume_is_asked_back():
     base = BASES["fixed"].replace('"mass"', '"weight"')
     assert read(base.encode())[1].objective.minimise == "mass"

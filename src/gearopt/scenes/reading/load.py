@@ -65,14 +65,18 @@ def kind_of(scene: BaseModel) -> str:
     return type(scene).__module__.removeprefix(f"{gearopt.scenes.__name__}.").split(".")[0]
 
 
-def _likely(content: dict[str, Any]) -> str:
-    """Return the kind that knows most of a file's tables; one that is not importable, none."""
+def _likely(content: dict[str, Any], called: str | None) -> str:
+    """Return the kind that knows most of a file's tables; one that is not importable, none.
 
-    def known(kind: str) -> int:
+    called: the kind that it is called, which counts where several know as many.
+    """
+
+    def known(kind: str) -> tuple[int, bool]:
         try:
-            return len(content.keys() & scene_module(kind).Scene.model_fields.keys())
+            tables = scene_module(kind).Scene.model_fields.keys()
         except SolveError:
-            return -1
+            return -1, False
+        return len(content.keys() & tables), kind == called
 
     return max(kinds(), key=known)
 
@@ -191,8 +195,9 @@ def _head(content: dict[str, Any], file: str) -> tuple[str, list[SceneError]]:
     kind = _pop(content, "kind", file, errors)
     if isinstance(kind, str) and kind in kinds():
         return kind, errors
-    meant = (kind_called(kind) or near(kind, kinds())) if isinstance(kind, str) else None
-    likely = meant or _likely(content)
+    name = kind if isinstance(kind, str) else ""
+    meant = near(name, kinds())
+    likely = meant or _likely(content, kind_called(name))
     known = f"is not a known kind (known: {', '.join(kinds())})"
     rule = "is missing" if kind is None else known
     errors.append(wrong_value(file, "kind", kind, rule, likely))
