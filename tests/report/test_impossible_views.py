@@ -171,3 +171,16 @@ def test_keep_outs_and_motor_that_are_asked_are_where_the_file_has_them(seed):
     )
     (motor,) = marks(views["front view"], "circle", "asked")
     assert abs(numbers(motor, "r")[0] - scale * 115.0) < 0.02
+
+
+@pytest.mark.parametrize("hatched", [True, False])
+def test_hatched_boxes_are_named_where_there_are_any(hatched):
+    made = cases.elevator() if hatched else cases.three_stage()
+    change = {"key": "layout.largest_width", "was": "1 mm", "write": '"2 mm"', "factor": 2.0}
+    near = {"keep_outs": [], "motor_mm": None, "largest_mm": [1.0, None, None]}
+    near |= {"layout": made.design["layout"]}
+    ways = {"conflict": [], "remedies": [remedy("a", 2.0) | {"changes": [change]}], "message": ""}
+    report = {"ways_out": ways, "nearest_layout": near}
+    shown = page(cases.elevator(status="infeasible", design={}, limits={}, report=report), "")
+    assert "what was asked. One scale" in shown
+    assert ("hatched boxes are keep-outs" in shown) == hatched

@@ -99,3 +99,31 @@ def test_a_problem_file_makes_a_page(path):
     assert "None" not in words and "nan" not in words.split()
     assert "What is proven, and how" in page(again, "gearopt solve x.toml", INCH)
     assert all(text.strip() for text in tables(again).values())
+
+
+@pytest.mark.parametrize("make", [cases.packing, cases.round_packing])
+@pytest.mark.parametrize(
+    ("clear", "asked", "some"), [(5.08, "0.2 in", True), (5.08, "5 mm", False)]
+)
+def test_cylinders_at_the_clearance_to_the_walls_are_counted(make, clear, asked, some):
+    """Around cylinders that touch the walls, walls 5.08 mm = 0.2 in farther out."""
+    near = answer.opening(make())
+    assert "cylinders stand at the walls" in near
+    box = make().design["container"]
+    wider = {
+        k: v + 2.0 * clear for k, v in box.items() if k in ("diameter_mm", "width_mm", "depth_mm")
+    }
+    wider |= {k: box[k] - clear for k in ("left_mm", "front_mm")}
+    design = make().design | {"container": box | wider}
+    found = answer.opening(replace(make(), design=design, asked={"container": {"wall": asked}}))
+    count = near.split(" cylinders")[0] if some else near.split(": ")[0] + ": 0 of the "
+    assert found.startswith(count) and "at the clearance to the walls" in found
+
+
+def test_gears_of_several_stages_are_told_apart():
+    """Modules and teeth of a row: a stage ends where a semicolon is."""
+    stages = [[17, 142], [23, 108]]
+    row = {"stages": 2, "status": "optimal", "objective": 1.0, "bound": 1.0, "gap": 0.0}
+    row |= {"ratios": [8.353, 4.696], "modules_mm": [2.5, 4.0], "teeth": stages, "seconds": 0.1}
+    made = cases.three_stage(report={"counts": [row | {"conflict": []}]})
+    assert "2.5, 17/142; 4, 23/108" in page(made, "")

@@ -144,7 +144,7 @@ def _train_row(
 ) -> list[Any]:
     stages, extra = train["stages"], 100.0 * (train["objective"] / minimum - 1.0)
     gears = [(measures.of_module(s[MODULE]), s["pinion_teeth"], s["wheel_teeth"]) for s in stages]
-    teeth = "  ".join(f"{m:g}, {a}/{b}" for m, a, b in gears)
+    teeth = "; ".join(f"{m:g}, {a}/{b}" for m, a, b in gears)
     sizes = [cell(s["centre_distance_mm"], "mm", measures) for s in stages]
     single = [value for gear, size in zip(gears, sizes, strict=True) for value in (*gear, size)]
     return [

@@ -262,7 +262,7 @@ def _each(row: Mapping[str, Any], most: int, measures: Measures) -> list[Any]:
     """Return ratios, gears and seconds of a number of stages; then each ratio and gear alone."""
     modules = map(measures.of_module, row["modules_mm"])
     gears = list(zip(row["ratios"], modules, row["teeth"], strict=True))
-    teeth = "  ".join(f"{number(m)}, {number(a)}/{number(b)}" for _, m, (a, b) in gears)
+    teeth = "; ".join(f"{number(m)}, {number(a)}/{number(b)}" for _, m, (a, b) in gears)
     single = [value for u, m, (a, b) in gears for value in (u, m, a, b)]
     return [
         "  ".join(f"{u:.3f}" for u, *_ in gears),

@@ -31,8 +31,9 @@ from gearopt.report.pages.solid import (
 from gearopt.report.pages.still import Rod, Texts, sizes_of, still, view
 from gearopt.report.section import Cell, Figure, Section, Table, shown
 from gearopt.report.words import heading, number, parted
+from gearopt.units import parse
 
-WALL = 1e-6  # of the container: a cylinder so near to a wall touches it
+WALL = 1e-6  # of the container: a cylinder so near to the clearance is at it
 WIDE, HIGH = 640.0, 560.0  # largest drawing [px]
 
 
@@ -128,16 +129,17 @@ def decides(result: Result) -> str:
     box, count = design.container, len(design.cylinders)
     full = sum(0.25 * math.pi * c.diameter_mm**2 * c.height_mm for c in design.cylinders)
     share = f"{100.0 * full / box.volume_mm3:.0f} %"
-    at_walls = sum(_at_wall(c, box) for c in design.cylinders)
+    wall = parse(str(result.asked.get("container", {}).get("wall", "0 mm")), "length").value
+    at_walls = sum(_at_wall(c, box, wall) for c in design.cylinders)
     all_ = "all" if at_walls == count else f"{at_walls} of the"
-    return (
-        f"{all_} {count} cylinders stand at the walls; together they fill {share} of the container"
-    )
+    where = "at the clearance to the walls" if wall else "at the walls"
+    return f"{all_} {count} cylinders stand {where}; together they fill {share} of the container"
 
 
-def _at_wall(one: CylinderDesign, box: ContainerDesign) -> bool:
+def _at_wall(one: CylinderDesign, box: ContainerDesign, wall: float) -> bool:
+    """Return whether a cylinder is as near to a wall as the clearance [mm] lets it."""
     left, right, front, back = _span(box)
-    r, near = 0.5 * one.diameter_mm, WALL * max(box.sides)
+    r, near = 0.5 * one.diameter_mm, wall + WALL * max(box.sides)
     if box.shape == "circle":
         middle = 0.5 * (left + right), 0.5 * (front + back)
         return 0.5 * (right - left) - math.dist(middle, (one.x_mm, one.y_mm)) - r < near

@@ -50,9 +50,10 @@ def section(result: Result, measures: Measures) -> Section | None:
         side_view(found, side, scale, "z", measures, partial(_side, near, measures)),
     )
     first = result.report["ways_out"]["remedies"][0]["changes"]
+    hatched = "; hatched boxes are keep-outs" if found.obstacles else ""
     words = (
         f"Drawn with {' and '.join(map(edit, first))}; dashed, in brown: what was asked. One "
-        f"scale; dimensions in {measures.lengths}; hatched boxes are keep-outs.",
+        f"scale; dimensions in {measures.lengths}{hatched}.",
     )
     return Section("Nearest layout", words=words, drawings=views)
 
