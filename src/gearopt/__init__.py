@@ -41,7 +41,11 @@ __all__ = [
 
 
 def __getattr__(name: str) -> object:
-    """A name of `__all__`, from `gearopt.api`, which holds them all."""
+    """The version, or a name of `__all__`, from `gearopt.api`, which holds them all."""
+    if name == "__version__":
+        from importlib.metadata import version
+
+        return version("gearopt")
     if name not in __all__:
         raise AttributeError(f"module 'gearopt' has no attribute {name!r}")
     from importlib import import_module

@@ -235,6 +235,11 @@ def compare(
 
 def _unchanged(problem: Problem | Conic, changes: Changes) -> None:
     """Raise ValueError for changes of what is no file."""
+    if isinstance(changes, list | tuple | str):
+        raise ValueError(
+            f"{changes!r}: options have names, as in method='ipopt', or "
+            "methods=['ipopt', 'annealing'] of compare"
+        )
     if changes is not None:
         raise ValueError(
             "changes are those of a problem file; write problem.at(name=value) for a parameter of "
@@ -247,7 +252,7 @@ def _opened(what: File, changes: Changes) -> tuple[BaseModel, Any, dict[str, Any
     if not isinstance(changes, Mapping | NoneType):
         raise ValueError(
             f"{changes!r} is no dict of changes, such as {{'duty.power': '9 kW'}}; options have "
-            "names, as in method='exact'"
+            "names, as in method='exact', or methods=['ipopt', 'annealing'] of compare"
         )
     if not isinstance(what, str | Path | Mapping | BaseModel):
         raise ValueError(

@@ -69,7 +69,7 @@ def test_what_the_user_did_not_name_a_limit_counts_too(point, words):
     [
         ({"width": (5.0, 5.0)}, "missing height; variables: width, height"),
         ({"width": (5.0, 5.0), "height": 20.0, "depth": 1.0}, "unknown depth"),
-        ({"width": 5.0, "height": 20.0}, "needs 3 numbers"),
+        ({"width": 5.0, "height": 20.0}, "width=5.0: write 2 numbers"),
         (np.ones(2), "needs 3 numbers"),
         ([1.0, math.nan, 1.0], "needs 3 numbers"),
     ],
@@ -139,3 +139,23 @@ def test_other_results_know_whether_they_are_feasible():
     assert found.status == "feasible" and found.feasible
     impossible = gearopt.solve(gearopt.load("problems/servo_gimbal_impossible.toml"))
     assert not impossible.feasible
+
+
+def test_a_design_is_a_point_and_a_wrong_value_names_its_variable():
+    result = evaluate(beam(), {"width": (5.0, 6.0), "height": 20.0})
+    assert set(result.design) == {"width_mm", "height_mm"}
+    assert evaluate(beam(), result.design).value == result.value == 220.0
+    wrong = {"width": (5.0, 6.0), "height": "3 mm"}
+    with pytest.raises(ValueError, match="beam: height='3 mm': write a number"):
+        evaluate(beam(), wrong)
+    with pytest.raises(ValueError, match="beam: width_*=5.0: write 2 numbers"):
+        evaluate(beam(), {"width": 5.0, "height": 20.0})
+
+
+def test_the_version_is_that_of_the_package():
+    assert gearopt.__version__ == result_version()
+
+
+def result_version():
+    """The version as results carry it."""
+    return evaluate(beam(), {"width": (5.0, 6.0), "height": 20.0}).gearopt

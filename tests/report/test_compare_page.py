@@ -224,3 +224,22 @@ def test_a_proof_that_nothing_is_feasible_is_the_verdict():
     assert words.verdict(group, group.rows[0]) == "proves that no design meets the limits"
     assert words.verdict(group, group.rows[1]) == "no feasible point in any of 2 seeds"
     assert "figure" not in {tag for tag, _ in Reader(page(made)).tags}
+
+
+def test_gaps_to_a_bound_of_zero_are_said_in_the_scale_of_the_objective(found):
+    (group,) = found.groups
+    group = replace(group, reference=-1.4e-73, best=1.7e-3, scale=4.0, proven=True, bound_from="qp")
+    said = words.reference(group)
+    assert "scale, 4" in said and "best known is 0.0017" in said and "e-73" not in said
+    assert "%" not in said
+    assert "it is reached" in words.reference(replace(group, best=1e-9))
+
+
+def test_the_call_on_the_page_of_comparisons_runs():
+    text = (Path(__file__).parents[2] / "docs" / "compare.md").read_text(encoding="utf-8")
+    (call,) = re.findall(r"`(gearopt\.compare\(problem.*?\))`", text)
+    small = call.replace("seeds=25", "seeds=1, evaluations=40, seconds=0.01")
+    made = eval(small, {"gearopt": gearopt, "problem": problem()})
+    assert [row.method for row in made.groups[0].rows] == ["ipopt", "annealing"]
+    with pytest.raises(ValueError, match="methods="):
+        gearopt.compare(problem(), ["ipopt", "annealing"])

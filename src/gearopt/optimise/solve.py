@@ -1,6 +1,7 @@
 """`solve`: run a method on a problem and certify what it returns."""
 
 import math
+from collections import Counter
 from collections.abc import Callable, Mapping
 from difflib import get_close_matches
 from importlib import import_module
@@ -69,8 +70,9 @@ def evaluate(problem: Problem | Conic, point: Mapping[str, Any] | Array) -> Resu
     """Evaluate a problem's text at a point: objective, report, utilisation of every limit.
 
     Nothing is minimised; `Result.feasible` says whether the point meets all limits, its message
-    what it exceeds most. point: values by name of the variable (a list for one of size above 1), or
-    all in order (n,). ValueError where a value is missing, unknown, or not a number.
+    what it exceeds most. point: values by name of the variable (a list for one of size above 1), a
+    `Result.design`, or all in order (n,). ValueError where a value is missing, unknown, or not a
+    number.
     """
     clock, x = Clock(), _given(problem, point)
     batch = problem.batch(x[None])
@@ -88,15 +90,35 @@ def evaluate(problem: Problem | Conic, point: Mapping[str, Any] | Array) -> Resu
 def _given(problem: Problem | Conic, point: Mapping[str, Any] | Array) -> Array:
     """Return the point (n,) of values by name."""
     if isinstance(point, Mapping):
-        names = list(dict.fromkeys(_head(*column) for column in problem.columns))
-        if odd := sorted(set(point) ^ set(names)):
-            what = "unknown" if odd[0] in point else "missing"
-            raise ValueError(f"{problem.name}: {what} {odd[0]}; variables: {', '.join(names)}")
-        point = np.concatenate([np.ravel(np.asarray(point[name], float)) for name in names])
+        heads = {_head(v, name): _key(v, name) for v, name in problem.columns}
+        named = {
+            name: point[key if key in point else name]
+            for name, key in heads.items()
+            if key in point or name in point
+        }
+        odd = sorted(set(point) - set(heads) - set(heads.values()))
+        if odd or (left := [name for name in heads if name not in named]):
+            what = f"unknown {odd[0]}" if odd else f"missing {left[0]}"
+            raise ValueError(f"{problem.name}: {what}; variables: {', '.join(heads)}")
+        sizes = Counter(_head(v, name) for v, name in problem.columns)
+        parts = [_values(problem.name, name, named[name], n) for name, n in sizes.items()]
+        point = np.concatenate(parts)
     x = np.asarray(point, float)
     if x.shape != (len(problem.columns),) or np.isnan(x).any():
         raise ValueError(f"{problem.name}: needs {len(problem.columns)} numbers, not {x.tolist()}")
     return x
+
+
+def _values(problem: str, name: str, value: Any, count: int) -> Array:
+    """Return the values of one variable (count,); ValueError names it where they are none."""
+    try:
+        found = np.ravel(np.asarray(value, float))
+    except (TypeError, ValueError):
+        found = np.empty(0)
+    if len(found) != count or np.isnan(found).any():
+        sort = "a number" if count == 1 else f"{count} numbers"
+        raise ValueError(f"{problem}: {name}={value!r}: write {sort}")
+    return found
 
 
 def solve_within(clock: Clock, problem: Problem | Conic, method: str | None = None) -> Result:
@@ -178,8 +200,7 @@ def design(problem: Problem | Conic, x: Array) -> dict[str, Any]:
     """Return every variable by name and unit (`face_width_mm`); lists for blocks."""
     found: dict[str, Any] = {}
     for (variable, name), value in zip(problem.columns, x, strict=True):
-        head = _head(variable, name)
-        key = f"{head}_{variable.unit}" if variable.unit else head
+        key = _key(variable, name)
         number: Any = round(float(value)) if variable.integer else float(value)
         if variable.size > 1:
             found.setdefault(key, []).append(number)
@@ -191,6 +212,12 @@ def design(problem: Problem | Conic, x: Array) -> dict[str, Any]:
 def _head(variable: Var, name: str) -> str:
     """Return the name of the variable that a column is of."""
     return name.rsplit("[", 1)[0] if variable.size > 1 else name
+
+
+def _key(variable: Var, name: str) -> str:
+    """Return the key in a design of the variable that a column is of."""
+    head = _head(variable, name)
+    return f"{head}_{variable.unit}" if variable.unit else head
 
 
 def limits(problem: Problem | Conic, x: Array) -> dict[str, float]:

@@ -4,7 +4,16 @@ import shlex
 from collections.abc import Mapping
 from typing import Any
 
-from gearopt.optimise.comparing.comparison import CLOSE, TIGHT, Comparison, Group, Row, Sample
+from gearopt.optimise.comparing.comparison import (
+    CLOSE,
+    TIGHT,
+    Comparison,
+    Group,
+    Row,
+    Sample,
+    excess,
+)
+from gearopt.optimise.scale import is_known
 from gearopt.report.words import amount
 
 NOTHING = 1e-12  # a gap below it is rounding
@@ -63,26 +72,40 @@ def reference(group: Group) -> str:
         return f"No design meets all limits, proven ({', '.join(proving)}): there are no gaps."
     if group.reference is None:
         return "No method found a feasible point, and nothing is proven: there are no gaps."
-    value = amount(group.reference, group.unit)
+    zero = not is_known(group.reference, group.scale)
+    value = amount(0.0 if zero else group.reference, group.unit)
     if not group.proven:
         return (
             f"Nothing is proven here: gaps are to the best {name} known, {value}, which may "
             "itself not be the optimum."
         )
     words = f"Gaps are to the proven lower bound of the {name}, {value} ({group.bound_from}"
+    if zero:
+        words += f"; relative to {_own(group)}"
     if group.best is None:
         return f"{words}). No method found a feasible point."
-    apart = group.best / group.reference - 1.0 if group.reference else 0.0
     if _closed(group):
         return f"{words}, and it is reached: the optimum is known)."
-    return f"{words}). The best known is {100 * apart:.2g} % above it; the optimum lies between."
+    if zero:
+        above = amount(group.best - group.reference, group.unit)
+        return f"{words}). The best known is {above} above it; the optimum lies between."
+    apart = 100.0 * excess(group.best, group.reference, group.scale)
+    return f"{words}). The best known is {apart:.2g} % above it; the optimum lies between."
+
+
+def _own(group: Group) -> str:
+    """Say what the gaps to a reference of zero are measured by."""
+    if not group.scale:
+        return "1, because the bound is zero"
+    scale = amount(group.scale, group.unit)
+    return f"the objective's own scale, {scale}, because the bound is zero"
 
 
 def _closed(group: Group) -> bool:
     """Return whether the reference is the proven optimum."""
     if not group.proven or group.best is None or group.reference is None:
         return False
-    return group.best - group.reference <= TIGHT * abs(group.reference)
+    return excess(group.best, group.reference, group.scale) <= TIGHT
 
 
 def _impossible(row: Row) -> bool:
