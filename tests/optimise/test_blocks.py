@@ -63,3 +63,18 @@ def test_arithmetic_of_arrays_of_blocks_is_traced_and_evaluated_alike():
     assert solve(own).value == pytest.approx(7.0, rel=1e-7)
     assert evaluate(own, {"w": [2.0, 1.0]}).value == 10.0
     assert own.batch(np.array([[2.0, 1.0], [1.0, 1.0]])).F[:, 0].tolist() == [10.0, 7.0]
+
+
+def test_blocks_of_limits_of_an_own_problem_are_no_stages():
+    d = Var("d", "mm", 1.0, 9.0, 3.0, size=2, log=True)
+    text = lambda x, p: Terms(  # noqa: E731
+        {"f": 1.0 / (x.d[0] * x.d[1])}, {"shaft_length": (x.d[0] / 4.0, x.d[1] / 5.0)}
+    )
+    found = solve(Problem("shafts", (d,), (), text))
+    assert "Shaft length[1] and shaft length[2] decide" in repr(found) and "stage" not in repr(
+        found
+    )
+    assert [row["limit used, %"] for row in found.table("limits")] == [
+        "shaft length[1]",
+        "shaft length[2]",
+    ]

@@ -17,6 +17,7 @@ from gearopt.report.words import (
     certainty,
     goal,
     grouped,
+    has_stages,
     leading,
     limit_rows,
     limit_words,
@@ -103,7 +104,7 @@ def limits(result: Result, measures: Measures) -> Section | None:
     """Return the utilisation of every limit; None without limits."""
     if not result.limits or (result.value is None and result.status != "evaluated"):
         return None
-    stages, rows = limit_rows(result.limits)
+    stages, rows = limit_rows(result.limits, has_stages(result))
     heads = ["limit used, %", *(f"stage {k}" for k in range(1, stages + 1)), kind_of(result).whole]
     cells = [[words, *map(percent, values)] for words, values in rows]
     elsewhere = [limit_words(name) for name in kind_of(result).elsewhere(result)]
@@ -149,7 +150,7 @@ def _method(result: Result) -> list[str]:
         violation = f"{minimum:.2g}" if minimum < 100 else f"{minimum:,.0f}"
         lines.append(
             "Proof: whatever the design, one of these limits is violated by at least "
-            f"{violation} %: {series_of(grouped(proof['conflict']))}."
+            f"{violation} %: {series_of(grouped(proof['conflict'], has_stages(result)))}."
         )
     return lines
 

@@ -9,6 +9,7 @@ from gearopt.report.words import (
     INVERSE,
     REACHED,
     grouped,
+    has_stages,
     limit_words,
     objective,
     series_of,
@@ -30,7 +31,7 @@ def lead(result: Result, own: str = "") -> str:
         return _impossible(result)
     if result.value is None and result.status != "evaluated":
         return f"{_stopped(result)}: no design was found, which does not prove that there is none"
-    if result.status == "evaluated" and (over := _over(result.limits)):
+    if result.status == "evaluated" and (over := _over(result.limits, has_stages(result))):
         return f"the given design exceeds {series_of(over)}"
     return own or of_limits(result)
 
@@ -45,7 +46,7 @@ def _impossible(result: Result) -> str:
     names = ways.get("conflict") or result.proof.get("conflict") or ()
     if not names:
         return (result.message or "no design meets all limits").rstrip(".")
-    together = series_of(grouped(names))
+    together = series_of(grouped(names, has_stages(result)))
     if len(names) == 1 or result.proof.get("each_alone"):
         return f"{together} cannot be met, even if all other limits are dropped"
     if ways.get("any_resolves"):
@@ -53,10 +54,12 @@ def _impossible(result: Result) -> str:
     return f"{together} cannot be met together"
 
 
-def _over(limits: Mapping[str, float]) -> list[str]:
+def _over(limits: Mapping[str, float], staged: bool) -> list[str]:
     """Return the limits that are exceeded, and by how much."""
     worst = sorted((u, n) for n, u in limits.items() if u > 1.0 + REACHED)[::-1]
-    found = [f"{limit_words(n)} by {rounded(100.0 * (u - 1.0), 2)} %" for u, n in worst[:NAMED]]
+    found = [
+        f"{limit_words(n, staged)} by {rounded(100.0 * (u - 1.0), 2)} %" for u, n in worst[:NAMED]
+    ]
     more = len(worst) - NAMED
     return found if more <= 0 else [*found, f"{more} other limits"]
 
@@ -75,8 +78,12 @@ def of_limits(result: Result, shown: Collection[str] = ()) -> str:
     ends = [n for n in reached if n not in decisive]
     rest = {n: u for n, u in own.items() if n not in (*decisive, *ends) and not _is_end(n)}
     parts = [_decided(result, decisive)] if decisive else []
-    parts += [f"{series_of(grouped(ends))} {_verb(ends, 'is', 'are')} reached"] if ends else []
-    parts += _nearest(rest, alone=not decisive) + _tolerance(result)
+    parts += (
+        [f"{series_of(grouped(ends, has_stages(result)))} {_verb(ends, 'is', 'are')} reached"]
+        if ends
+        else []
+    )
+    parts += _nearest(rest, not decisive, has_stages(result)) + _tolerance(result)
     return "; ".join(parts) or _free(result)
 
 
@@ -98,7 +105,7 @@ def _stem(name: str) -> str:
 
 def _decided(result: Result, names: list[str]) -> str:
     """Return that limits decide, where that is certain; else that they are reached."""
-    found = grouped(names)
+    found = grouped(names, has_stages(result))
     if len(found) > NAMED:
         found = [*found[: NAMED - 1], f"{len(found) - NAMED + 1} other limits"]
     if result.status not in PROVEN:
@@ -115,12 +122,13 @@ def _goal(result: Result) -> str:
     return INVERSE[name][0] if name in INVERSE else name
 
 
-def _nearest(limits: Mapping[str, float], alone: bool) -> list[str]:
+def _nearest(limits: Mapping[str, float], alone: bool, staged: bool) -> list[str]:
     """Return the limit that is nearest; alone: none is reached."""
     if not limits:
         return []
     name, used = max(limits.items(), key=lambda item: item[1])
-    words = f"{limit_words(name)} {'comes nearest, ' if alone else 'is '}used to {_whole(used)} %"
+    use = f"{'comes nearest, ' if alone else 'is '}used to {_whole(used)} %"
+    words = f"{limit_words(name, staged)} {use}"
     if alone:
         return [f"no limit is reached, {words}"]
     return [words] if used >= NEAR else []

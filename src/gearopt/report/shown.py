@@ -26,6 +26,7 @@ from gearopt.report.words import (
     amount,
     edit,
     goal,
+    has_stages,
     leading,
     limit_words,
     number,
@@ -117,7 +118,7 @@ def explained_lines(found: Explanation) -> str:
     """Return the answer, the limits that bind and the largest sensitivities, or the remedies."""
     rows = [lines(found.result)]
     if found.conflict:
-        rows.append(f"in conflict: {', '.join(map(limit_words, found.conflict))}")
+        rows.append(f"in conflict: {_names(found, found.conflict)}")
     for remedy in found.remedies[:MOST]:
         rows.append(f"possible with {' and '.join(edit(asdict(c)) for c in remedy.changes)}")
     rows += _reached(found)
@@ -129,8 +130,12 @@ def explained_lines(found: Explanation) -> str:
     return "\n  ".join(rows)
 
 
+def _names(found: Explanation, limits: Sequence[str]) -> str:
+    return ", ".join(limit_words(name, has_stages(found.result)) for name in limits)
+
+
 def _reached(found: Explanation) -> list[str]:
-    names = ", ".join(map(limit_words, found.binding))
+    names = _names(found, found.binding)
     return [f"limits reached: {names}"] if names else []
 
 

@@ -28,10 +28,17 @@ EXACT = 1e-6  # a gap below it is called optimal, one above it is named
 INVERSE = {"inverse acceleration": ("acceleration", "rad/s²")}  # name and unit of the inverse
 
 
-def limit_words(name: str) -> str:
-    """Return `k_factor[2]` as "K-factor of stage 2"."""
+def limit_words(name: str, staged: bool = True) -> str:
+    """Return `k_factor[2]` as "K-factor of stage 2"; not staged, of a user's problem, as [2]."""
     stem, _, index = name.rstrip("]").partition("[")
-    return f"{_stem_words(stem)} of stage {index}" if index else _stem_words(stem)
+    if not index:
+        return _stem_words(stem)
+    return f"{_stem_words(stem)} of stage {index}" if staged else f"{_stem_words(stem)}[{index}]"
+
+
+def has_stages(result: Result) -> bool:
+    """Return whether the blocks of limits are of stages: not in a user's own problem."""
+    return result.scene is not None
 
 
 def _stem_words(stem: str) -> str:
@@ -43,8 +50,10 @@ def _stem_words(stem: str) -> str:
     return known.get(stem, stem.replace("_", " "))
 
 
-def grouped(names: Iterable[str]) -> list[str]:
+def grouped(names: Iterable[str], staged: bool = True) -> list[str]:
     """Return limits in words, those of several stages as one: "K-factor of stages 1 and 2"."""
+    if not staged:
+        return [limit_words(name, staged) for name in sorted(names)]
     stages: dict[str, list[str]] = {}
     for name in sorted(names):
         stem, _, index = name.rstrip("]").partition("[")
@@ -183,8 +192,12 @@ def goal(result: Result) -> tuple[str, str, float | None, float | None, str]:
     return *INVERSE[name], value, bound, "above"
 
 
-def limit_rows(limits: Mapping[str, float]) -> tuple[int, list[tuple[str, list[float | None]]]]:
+def limit_rows(
+    limits: Mapping[str, float], staged: bool = True
+) -> tuple[int, list[tuple[str, list[float | None]]]]:
     """Return the number of stages; every limit with its use per stage, then of the whole."""
+    if not staged:
+        return 0, [(limit_words(name, staged), [value]) for name, value in limits.items()]
     rows: dict[str, dict[int, float]] = {}
     for name, value in limits.items():
         match = re.fullmatch(r"(.*)\[(\d+)\]", name)
