@@ -64,7 +64,7 @@ def test_other_kinds_are_shown_by_what_their_design_holds(scene):
 
 def test_dropping_any_one_is_said_where_it_was_tried():
     ways = {"conflict": ["ratio_low", "span"], "remedies": [], "message": "", "any_resolves": True}
-    own = Result("own", "infeasible", "ipopt", {"name": "mass"}, report={"ways_out": ways})
+    own = Result("own", "infeasible", "x", {}, scene="drive", report={"ways_out": ways})
     said = (
         "minimum ratio and span are in conflict; dropping any one of them makes a design possible"
     )
@@ -83,7 +83,7 @@ def test_dropping_any_one_is_said_where_it_was_tried():
 )
 def test_one_limit_is_not_reported_as_several(conflict, said):
     ways = {"conflict": conflict, "remedies": [], "message": ""}
-    own = Result("own", "infeasible", "ipopt", {"name": "mass"}, report={"ways_out": ways})
+    own = Result("own", "infeasible", "x", {}, scene="drive", report={"ways_out": ways})
     assert lead(own) == said and remedy_words(ways)[0] == []
 
 
