@@ -19,7 +19,13 @@ KEYS = {  # of [x-expected], as the tests below read them
         *("status", "objective", "least_factor", "report"),
     },
 }
-LONG = ("thousand_in_two_stages", "three_stage_small_wheels", "elevator_small_wheels")
+LONG = (
+    "thousand_in_two_stages",
+    "three_stage_small_wheels",
+    "elevator_small_wheels",
+    "servo_gimbal_quick",
+    "servo_gimbal_impossible",
+)
 DIGIT = {"objective": 0.06, "sizing": 0.006}  # the values are printed to tenths and hundredths
 
 
