@@ -111,8 +111,8 @@ def _of(status, limits, value=1.0, **more):
 @pytest.mark.parametrize(
     ("result", "words"),
     [
-        (_of("optimal", {"a[1]": 1.0, "a[2]": 1.0, "b": 0.97}), "a of stages 1 and 2 decides the "),
-        (_of("feasible", {"a[1]": 1.0, "b": 1.0}), "a of stage 1 and b are reached"),
+        (_of("optimal", {"a[1]": 1.0, "a[2]": 1.0, "b": 0.97}), "a[1] and a[2] decide the "),
+        (_of("feasible", {"a[1]": 1.0, "b": 1.0}), "a[1] and b are reached"),
         (
             _of("optimal", {"a": 0.5, "b": 0.9996}),
             "no limit is reached, b comes nearest, used to ",

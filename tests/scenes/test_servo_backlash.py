@@ -1,7 +1,7 @@
 """Two-sided allowances and minimum backlash: by hand, by drawn deviations, by one-sided files."""
 
 import math
-from dataclasses import asdict
+from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
@@ -145,7 +145,7 @@ def test_both_stages_are_moved_together():
     assert found.remedies and {len(way.changes) for way in found.remedies} == {2}
     for way in found.remedies:
         assert way.verified["with"] == "optimal" and way.verified["with_less"] == "infeasible"
-    told = lead(posed(changed(FILE, *both)))
+    told = lead(replace(posed(changed(FILE, *both)), scene="servo"))
     assert told == (
         "minimum backlash of stages 1 and 2 cannot be met, even if all other limits are dropped"
     )

@@ -34,7 +34,7 @@ def test_a_stiff_train_with_wheel_tips_below_a_tooth_is_impossible():
 def test_a_look_for_a_box_stops_in_time():
     tight = (*NARROW, (("space", "height"), "95 mm"))
     scene = changed(EXAMPLE, *tight, drop=BARE)
-    result = gearopt.solve(choice.train_problem(scene.choice()), budget=Budget(seconds=0.02))
+    result = gearopt.solve(choice.train_problem(scene.choice()), budget=Budget(seconds=0.0))
     assert result.status == "limit" and result.value is None
 
 
