@@ -28,42 +28,47 @@ from gearopt.optimise.comparing.compare import EVALUATIONS, SEEDS, Progress
 from gearopt.optimise.comparing.compare import SECONDS as EACH
 from gearopt.optimise.result import Budget
 from gearopt.report.command import SECONDS, TOP_ON_PAGE
-from gearopt.report.measures import METRIC
+
+Seconds = Annotated[float, typer.Option(min=0.0, help="Stop after this time.")]
+Method = Annotated[
+    str | None,
+    typer.Option(
+        help="By default, for a drive, exact where the file has a \\[teeth] table, else ipopt; "
+        "for a packing hop (basin hopping). Methods: {methods}; docs/methods.md says more.",
+        autocompletion=method_words,
+    ),
+]
+Top = Annotated[
+    int | None,
+    typer.Option(
+        min=1,
+        max=1000,
+        help="Show so many of the best distinct trains, in proven order; by default 1, on a "
+        "page 10.",
+    ),
+]
+Prices = Annotated[
+    bool,
+    typer.Option(
+        "--prices", help="Show sensitivities to every number of the file, as a page always does."
+    ),
+]
+Gap = Annotated[
+    float | None,
+    typer.Option(min=0.0, max=1.0, help="Stop when this relative gap to the bound is reached."),
+]
+Seed = Annotated[int, typer.Option(help="Seed of random methods.")]
 
 
 @app.command(rich_help_panel=FIRST)
 def solve(
     file: File,
-    method: Annotated[
-        str | None,
-        typer.Option(
-            help="By default, for a drive, exact where the file has a \\[teeth] table, else ipopt; "
-            "for a packing hop (basin hopping). Methods: {methods}; docs/methods.md says more.",
-            autocompletion=method_words,
-        ),
-    ] = None,
-    top: Annotated[
-        int | None,
-        typer.Option(
-            min=1,
-            max=1000,
-            help="Show so many of the best distinct trains, in proven order; by default 1, on a "
-            "page 10.",
-        ),
-    ] = None,
-    prices: Annotated[
-        bool,
-        typer.Option(
-            "--prices",
-            help="Show sensitivities to every number of the file, as a page always does.",
-        ),
-    ] = False,
-    seconds: Annotated[float, typer.Option(min=0.0, help="Stop after this time.")] = SECONDS,
-    gap: Annotated[
-        float | None,
-        typer.Option(min=0.0, max=1.0, help="Stop when this relative gap to the bound is reached."),
-    ] = None,
-    seed: Annotated[int, typer.Option(help="Seed of random methods.")] = 0,
+    method: Method = None,
+    top: Top = None,
+    prices: Prices = False,
+    seconds: Seconds = SECONDS,
+    gap: Gap = None,
+    seed: Seed = 0,
     html: Html = None,
     csv: Csv = None,
     units: Units = "metric",
@@ -75,8 +80,8 @@ def solve(
 
     files = checked(html, csv, units, file)
     full = html is not None or csv is not None
-    if as_json and not full and units != "metric":
-        raise GearoptError(f"--units {units} changes nothing of --json, which names its units")
+    if not full:
+        _metric(as_json, units)
     unusual = full or seed or (top or 1) > 1
     idle = idle_options(file, method) if unusual else {}
     _refuse({"top": (top, 1), "seed": (seed, 0)}, idle)
@@ -101,6 +106,12 @@ def solve(
     raise typer.Exit(exit_code(result))
 
 
+def _metric(as_json: bool, units: str) -> None:
+    """Raise GearoptError for units that were chosen for JSON alone."""
+    if as_json and units != "metric":
+        raise GearoptError(f"--units {units} changes nothing of --json, which names its units")
+
+
 def _refuse(given: Mapping[str, tuple[int | None, int]], idle: Mapping[str, str]) -> None:
     """Raise GearoptError for the first option that changes nothing; given: value and default."""
     for name, (value, usual) in given.items():
@@ -111,7 +122,7 @@ def _refuse(given: Mapping[str, tuple[int | None, int]], idle: Mapping[str, str]
 @app.command(rich_help_panel=FIRST)
 def explain(
     file: File,
-    seconds: Annotated[float, typer.Option(min=0.0, help="Stop after this time.")] = 60.0,
+    seconds: Seconds = 60.0,
     units: Units = "metric",
     as_json: Json = False,
 ) -> None:
@@ -119,8 +130,7 @@ def explain(
     from gearopt.api import explain as explain_file
 
     measures = checked(None, None, units, file).measures
-    if as_json and measures is not METRIC:
-        raise GearoptError(f"--units {units} changes nothing of --json, which names its units")
+    _metric(as_json, units)
     with watching(seconds, quiet=as_json, measures=measures) as watch:
         found = explain_file(file, budget=Budget(seconds), watch=watch)
     if as_json:
