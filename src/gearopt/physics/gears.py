@@ -1,4 +1,4 @@
-"""External cylindrical gears and gear pairs without profile shift (ISO 21771 terms), in mm and t.
+"""External cylindrical gears and gear pairs (ISO 21771 terms), in mm and t.
 
 Every quantity is a float, an array (all of one shape) or a casadi scalar; numbers of teeth may be
 real. An inertia is in t mm^2 (1 kg m^2 = 1e3 t mm^2).
@@ -10,6 +10,8 @@ from fractions import Fraction
 from typing import Any
 
 import numpy as np
+
+from gearopt.physics.geometry.involute import angle_at_distance, working_pressure_angle
 
 
 def _series(text: str) -> tuple[Fraction, ...]:
@@ -34,15 +36,20 @@ NEGLIGIBLE = 0.01  # modules that a rack may reach too deep: 17 teeth of 20 degr
 
 @dataclass(frozen=True)
 class Rack:
-    """Basic rack: pressure angle alpha_P [rad], addendum h_aP and dedendum h_fP in normal modules.
+    """Basic rack: normal pressure angle alpha_P [rad]; all else in normal modules.
 
+    addendum h_aP; dedendum h_fP, which the tool's addendum h_a0 cuts; tip_radius rho_fP of the
+    tool's tip, the root radius of the rack; protuberance pr: how far the tool's tip juts out of its
+    flank, normal to it, beyond what finishing takes away.
     Source: ISO 53:1998, profile A; the same in Rack.m of github.com/gfsReboucas/Drivetrain, and
     what the diameters of its KISSsoft report (NREL 5 MW gearbox, stage 3) follow.
     """
 
-    pressure_angle: float = math.radians(20.0)
-    addendum: float = 1.0
-    dedendum: float = 1.25
+    pressure_angle: Any = math.radians(20.0)
+    addendum: Any = 1.0
+    dedendum: Any = 1.25
+    tip_radius: Any = 0.38
+    protuberance: Any = 0.0
 
 
 ISO_53_A = Rack()
@@ -103,6 +110,16 @@ def transverse_contact_ratio(
     return (reach - centres * np.sin(working_angle)) / base_pitch
 
 
+def _none(value: Any) -> bool:
+    """Return whether a shift is the number 0, of which nothing needs to be solved."""
+    return isinstance(value, int | float) and value == 0
+
+
+def _external(teeth: Any) -> None:
+    if isinstance(teeth, int | float | np.number) and teeth <= 0:
+        raise ValueError(f"{teeth:g} teeth: internal gears are not covered, only external ones")
+
+
 def teeth_without_undercut(rack: Rack, helix_angle: Any) -> Any:
     """Return the minimum teeth z = 2 h_aP/m_n cos(beta)/sin(alpha_t)^2 without undercut by a rack.
 
@@ -121,9 +138,10 @@ def teeth_without_undercut(rack: Rack, helix_angle: Any) -> Any:
 class Gear:
     """An external gear: normal module m_n [mm], number of teeth z, reference diameter d [mm].
 
-    face_width b [mm]; helix_angle beta [rad], |beta| < pi/2; rack: its basic rack. d is
-    m_n z/cos(beta); `GearPair` sees to that. Diameters are nominal: without backlash. Source: ISO
-    21771:2007.
+    face_width b [mm]; helix_angle beta [rad], |beta| < pi/2; rack: its basic rack. profile_shift x
+    and tip_alteration k (negative: shorter teeth) in normal modules; thickness_allowance A_sn [mm]
+    of the normal tooth thickness, negative: thinner. d is m_n z/cos(beta); `GearPair` sees to that.
+    Diameters are nominal: without backlash. Source: ISO 21771:2007.
     """
 
     normal_module: Any
@@ -132,6 +150,17 @@ class Gear:
     face_width: Any
     helix_angle: Any = 0.0
     rack: Rack = ISO_53_A
+    profile_shift: Any = 0.0
+    tip_alteration: Any = 0.0
+    thickness_allowance: Any = 0.0
+
+    @property
+    def generating_shift(self) -> Any:
+        """Generating profile shift x_E = x + A_sn/(2 m_n tan(alpha_n)): thinned by a deeper cut."""
+        if _none(self.thickness_allowance):
+            return self.profile_shift
+        thinner = 0.5 * self.thickness_allowance / np.tan(self.rack.pressure_angle)
+        return self.profile_shift + thinner / self.normal_module
 
     @property
     def transverse_pressure_angle(self) -> Any:
@@ -140,13 +169,15 @@ class Gear:
 
     @property
     def tip_diameter(self) -> Any:
-        """Tip diameter d_a = d + 2 h_aP [mm]."""
-        return self.reference_diameter + 2.0 * self.rack.addendum * self.normal_module
+        """Tip diameter d_a = d + 2 (h_aP + x + k) m_n [mm]."""
+        height = self.rack.addendum + self.profile_shift + self.tip_alteration
+        return self.reference_diameter + 2.0 * height * self.normal_module
 
     @property
     def root_diameter(self) -> Any:
-        """Root diameter d_f = d - 2 h_fP [mm]."""
-        return self.reference_diameter - 2.0 * self.rack.dedendum * self.normal_module
+        """Root diameter d_f = d - 2 (h_fP - x) m_n [mm]."""
+        depth = self.rack.dedendum - self.profile_shift
+        return self.reference_diameter - 2.0 * depth * self.normal_module
 
     @property
     def base_diameter(self) -> Any:
@@ -174,13 +205,16 @@ class Gear:
 
 @dataclass(frozen=True)
 class GearPair:
-    """Two gears in mesh at their reference centre distance: index 1 the pinion, 2 the wheel.
+    """Two gears in mesh: index 1 the pinion, 2 the wheel.
 
-    Normal module, face width, helix angle and rack are those of both. Source: ISO 21771:2007.
+    Normal module, face width, helix angle and pressure angle are those of both. working_distance:
+    a centre distance [mm] that is given; else it is the one without backlash of nominal teeth.
+    Source: ISO 21771:2007.
     """
 
     pinion: Gear
     wheel: Gear
+    working_distance: Any = None
 
     @classmethod
     def of_teeth(
@@ -191,8 +225,14 @@ class GearPair:
         face_width: Any,
         helix_angle: Any = 0.0,
         rack: Rack = ISO_53_A,
+        profile_shifts: tuple[Any, Any] = (0.0, 0.0),
+        working_distance: Any = None,
     ) -> "GearPair":
-        """Return the pair of a normal module [mm], numbers of teeth and a face width [mm]."""
+        """Return the pair of a normal module [mm], numbers of teeth and a face width [mm].
+
+        profile_shifts x1, x2 in normal modules; working_distance [mm] as in the class. ValueError
+        for internal gears, of negative numbers of teeth.
+        """
         pinion, wheel = (
             Gear(
                 normal_module,
@@ -201,10 +241,13 @@ class GearPair:
                 face_width,
                 helix_angle,
                 rack,
+                shift,
             )
-            for teeth in (pinion_teeth, wheel_teeth)
+            for teeth, shift in zip((pinion_teeth, wheel_teeth), profile_shifts, strict=True)
         )
-        return cls(pinion, wheel)
+        _external(pinion_teeth)
+        _external(wheel_teeth)
+        return cls(pinion, wheel, working_distance)
 
     @classmethod
     def of_diameter(
@@ -229,7 +272,8 @@ class GearPair:
 
     def of_width(self, face_width: Any) -> "GearPair":
         """Return the pair with another face width [mm]."""
-        return GearPair(*(replace(gear, face_width=face_width) for gear in self.gears))
+        gears = (replace(gear, face_width=face_width) for gear in self.gears)
+        return GearPair(*gears, self.working_distance)
 
     @property
     def normal_module(self) -> Any:
@@ -262,9 +306,38 @@ class GearPair:
         return self.wheel.teeth / self.pinion.teeth
 
     @property
-    def centre_distance(self) -> Any:
-        """Reference centre distance a = d1 (1 + u)/2 [mm]."""
+    def reference_distance(self) -> Any:
+        """Reference centre distance a_0 = d1 (1 + u)/2 [mm]."""
         return 0.5 * self.pinion.reference_diameter * (1.0 + self.ratio)
+
+    @property
+    def working_angle(self) -> Any:
+        """Transverse working pressure angle alpha_wt [rad]; NaN where there is none."""
+        angle = self.pinion.transverse_pressure_angle
+        if self.working_distance is not None:
+            return angle_at_distance(self.reference_distance, angle, self.working_distance)
+        shifts = self.pinion.profile_shift, self.wheel.profile_shift
+        if all(_none(shift) for shift in shifts):
+            return angle
+        teeth = self.pinion.teeth + self.wheel.teeth
+        return working_pressure_angle(sum(shifts), teeth, self.pinion.rack.pressure_angle, angle)
+
+    @property
+    def centre_distance(self) -> Any:
+        """Centre distance a = a_0 cos(alpha_t)/cos(alpha_wt) [mm], or the one that is given."""
+        if self.working_distance is not None:
+            return self.working_distance
+        shifts = self.pinion.profile_shift, self.wheel.profile_shift
+        if all(_none(shift) for shift in shifts):
+            return self.reference_distance
+        cosine = np.cos(self.pinion.transverse_pressure_angle)
+        return self.reference_distance * cosine / np.cos(self.working_angle)
+
+    @property
+    def working_diameters(self) -> tuple[Any, Any]:
+        """Working pitch diameters d_w1 = 2 a/(1 + u), d_w2 = u d_w1 [mm]."""
+        pinion = 2.0 * self.centre_distance / (1.0 + self.ratio)
+        return pinion, self.ratio * pinion
 
     @property
     def volume(self) -> Any:
@@ -294,7 +367,7 @@ class GearPair:
             (pinion.tip_diameter, wheel.tip_diameter),
             (pinion.base_diameter, wheel.base_diameter),
             self.centre_distance,
-            pinion.transverse_pressure_angle,
+            self.working_angle,
             self.base_pitch,
         )
 
