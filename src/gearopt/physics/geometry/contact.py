@@ -1,0 +1,124 @@
+"""The path of contact: its points A to E, contact ratios, sliding, active diameters.
+
+Positions s [mm] lie on the transverse line of action, 0 at the pitch point C, positive towards the
+pinion's tip; the pinion drives, so contact runs from A to E.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from gearopt.physics.gears import GearPair
+from gearopt.physics.geometry.fillet import form_diameter
+
+
+@dataclass(frozen=True)
+class ContactPath:
+    """Points on the line of action as positions s [mm] from the pitch point, transverse.
+
+    start A, end E of contact; lowest B and highest D point of single tooth contact of the pinion, one
+    base pitch p_bt from E and A; curvatures: distances T1 C and T2 C from the base circles' tangent
+    points to the pitch point, r_b1 tan(alpha_wt) and r_b2 tan(alpha_wt).
+    """
+
+    start: Any
+    end: Any
+    base_pitch: Any
+    curvatures: tuple[Any, Any]
+
+    @property
+    def lowest_single(self) -> Any:
+        """Lowest point of single tooth contact B of the pinion (LPSTC) [mm]."""
+        return self.end - self.base_pitch
+
+    @property
+    def highest_single(self) -> Any:
+        """Highest point of single tooth contact D of the pinion (HPSTC) [mm]."""
+        return self.start + self.base_pitch
+
+    @property
+    def length(self) -> Any:
+        """Length of the path of contact g_alpha [mm]; negative where the gears never touch."""
+        return self.end - self.start
+
+    @property
+    def transverse_ratio(self) -> Any:
+        """Transverse contact ratio eps_alpha = g_alpha/p_bt."""
+        return self.length / self.base_pitch
+
+    def radii_of_curvature(self, position: Any) -> tuple[Any, Any]:
+        """Return the transverse radii of curvature (T1 C + s, T2 C - s) of both flanks [mm]."""
+        first, second = self.curvatures
+        return first + position, second - position
+
+
+@np.errstate(invalid="ignore")
+def contact_path(pair: GearPair, form_diameters: tuple[Any, Any] | None = None) -> ContactPath:
+    """Return the path of contact between the tip circles, or what form circles leave of it.
+
+    form_diameters d_Ff of pinion and wheel [mm] (`fillet.form_diameter`): contact ends there where
+    the mate's tip reaches deeper, as undercut and interference make it. Source: ISO 21771:2007,
+    path of contact.
+    """
+    tangent = np.tan(pair.working_angle)
+    first, second = (0.5 * gear.base_diameter * tangent for gear in pair.gears)
+    reaches = [0.5 * np.sqrt(g.tip_diameter**2 - g.base_diameter**2) for g in pair.gears]
+    start, end = second - reaches[1], reaches[0] - first
+    if form_diameters is not None:
+        rows = zip(form_diameters, pair.gears, strict=True)
+        least = [0.5 * np.sqrt(np.maximum(d**2 - g.base_diameter**2, 0.0)) for d, g in rows]
+        start, end = np.maximum(start, least[0] - first), np.minimum(end, second - least[1])
+    return ContactPath(start, end, pair.base_pitch, (first, second))
+
+
+def usable_path(pair: GearPair) -> ContactPath:
+    """Return the path of contact as far as tips and form circles of both gears allow it."""
+    return contact_path(pair, (form_diameter(pair.pinion), form_diameter(pair.wheel)))
+
+
+def total_contact_ratio(pair: GearPair) -> Any:
+    """Return eps_gamma = eps_alpha + eps_beta, the former of the `usable_path`."""
+    return usable_path(pair).transverse_ratio + pair.overlap_ratio
+
+
+@np.errstate(invalid="ignore")
+def active_root_diameters(pair: GearPair) -> tuple[Any, Any]:
+    """Return the start of active profile diameters d_Nf [mm] that the mate's tip circle gives.
+
+    d_Nf1 = sqrt(d_b1^2 + (2 a sin(alpha_wt) - sqrt(d_a2^2 - d_b2^2))^2); NaN where the mate's tip
+    passes the tangent point of the base circle (interference). Below d_Ff there is interference with
+    the fillet. Source: ISO 21771:2007, start of active profile diameter.
+    """
+    path = contact_path(pair)
+    first, second = path.radii_of_curvature(path.start)[0], path.radii_of_curvature(path.end)[1]
+    rows = zip((first, second), pair.gears, strict=True)
+    found = [np.hypot(g.base_diameter, 2.0 * at) + 0.0 * np.sqrt(at) for at, g in rows]
+    return found[0], found[1]
+
+
+def diameters_at(pair: GearPair, path: ContactPath, position: Any) -> tuple[Any, Any]:
+    """Return the diameters [mm] of pinion and wheel that touch at a position s [mm]."""
+    first, second = path.radii_of_curvature(position)
+    return (
+        np.hypot(pair.pinion.base_diameter, 2.0 * first),
+        np.hypot(pair.wheel.base_diameter, 2.0 * second),
+    )
+
+
+def specific_sliding(path: ContactPath, ratio: Any, position: Any) -> tuple[Any, Any]:
+    """Return the specific sliding of pinion and wheel, zeta_1 = 1 - rho_2/(u rho_1), zeta_2.
+
+    zeta_2 = 1 - u rho_1/rho_2. ratio u; position s [mm]. Minus infinity where a flank's radius of
+    curvature is 0. Source: ISO 21771:2007, specific sliding.
+    """
+    first, second = path.radii_of_curvature(position)
+    return 1.0 - second / (ratio * first), 1.0 - ratio * first / second
+
+
+def sliding_velocity(position: Any, pinion_speed: Any, ratio: Any) -> Any:
+    """Return the sliding velocity v_g = omega_1 (1 + 1/u) s [mm/s]; positive beyond the pitch point.
+
+    position s [mm]; pinion_speed omega_1 [rad/s]; ratio u. Source: ISO 21771:2007.
+    """
+    return pinion_speed * (1.0 + 1.0 / ratio) * position

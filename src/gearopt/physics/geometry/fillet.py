@@ -1,0 +1,208 @@
+"""The root fillet that a rack with a rounded tip generates, and where it meets the involute.
+
+Transverse section of the gear, exact for helical gears too: the tip round of the tool is a circle in
+its normal section, an ellipse in the transverse one. A point of the fillet is named by the angle
+theta of the tool's normal there, in the tool's normal section, from the pitch line: alpha_n where
+the round leaves the flank of the tool, pi/2 at its tip. Coordinates of a tooth: y along its centre
+line from the gear's axis, x > 0 across it. For the virtual spur gear of AGMA 908 or ISO 6336-3 pass
+a gear of its teeth without helix angle.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from gearopt.physics.gears import Gear
+from gearopt.physics.geometry.involute import involute
+
+HALVINGS = 60  # of an interval of tool angles: to the last digit
+TOUCHES = 1e-12  # of sin(alpha_t)^2 z/2: undercut by less is none
+
+
+@dataclass(frozen=True)
+class ToolTip:
+    """Where the round of the tool's tip lies as it cuts a gear; lengths [mm], normal section.
+
+    depth: of its centre below the pitch line of the cut, c = (h_fP - x_E) m_n - rho; half_width:
+    of its centre from the middle of the tool's tooth, E = pi m_n/4 - (h_fP m_n - rho) tan(alpha_n)
+    - (rho - pr)/cos(alpha_n), negative for a tool that would be pointed; radius rho.
+    Source: derived; for pr = 0 E = pi m_n/4 - h_fP m_n tan(alpha_n) - rho (1 - sin(alpha_n))/
+    cos(alpha_n), as ISO 6336-3 has it but for its sign.
+    """
+
+    depth: Any
+    half_width: Any
+    radius: Any
+
+
+@dataclass(frozen=True)
+class FilletPoint:
+    """A point of a fillet: x, y [mm]; slope of its tangent to the centre line of the tooth [rad].
+
+    slope > 0: the tooth gets thinner outwards; its normal into the tooth is (-cos(slope),
+    -sin(slope)). radius [mm] and half_angle [rad]: the same point in polar coordinates.
+    """
+
+    x: Any
+    y: Any
+    slope: Any
+    radius: Any
+    half_angle: Any
+
+
+def tool_tip(gear: Gear) -> ToolTip:
+    """Return the tip round of the rack that cuts a gear at its generating profile shift x_E."""
+    rack, module = gear.rack, gear.normal_module
+    radius = rack.tip_radius * module
+    depth = (rack.dedendum - gear.generating_shift) * module - radius
+    inside = rack.dedendum * module - radius
+    left = (radius - rack.protuberance * module) / np.cos(rack.pressure_angle)
+    half = np.pi / 4.0 * module - inside * np.tan(rack.pressure_angle) - left
+    return ToolTip(depth, half, radius)
+
+
+def largest_tip_radius(pressure_angle: Any, dedendum: Any) -> Any:
+    """Return rho_fP [normal modules] of a tool whose tip is one full round; see `ToolTip`.
+
+    normal pressure_angle [rad]; dedendum h_fP [normal modules]. E = 0 is solved for rho.
+    """
+    sine = np.sin(pressure_angle)
+    left = np.pi / 4.0 - dedendum * np.tan(pressure_angle)
+    return left * np.cos(pressure_angle) / (1.0 - sine)
+
+
+def fillet_point(gear: Gear, theta: Any, tip: ToolTip | None = None) -> FilletPoint:
+    """Return the point of the fillet that the tool cuts where its normal has the angle theta.
+
+    theta [rad] in the tool's normal section, from `fillet_end` (root side of the flank) to pi/2
+    (the root circle, or what undercut leaves of it). tip: `tool_tip` of the gear, if known.
+    Derived: a point is cut as its normal passes through the pitch point.
+    """
+    tip = tool_tip(gear) if tip is None else tip
+    cosine, radius = np.cos(gear.helix_angle), 0.5 * gear.reference_diameter
+    below = tip.depth + tip.radius * np.sin(theta)
+    across = (tip.half_width + tip.radius * np.cos(theta)) / cosine
+    beside = below * cosine * np.cos(theta) / np.sin(theta)
+    roll = (beside - across) / radius
+    above = radius - below
+    at = np.hypot(beside, above)
+    half = np.pi / gear.teeth - np.arctan2(beside, above) + roll
+    normal = np.arctan2(np.sin(theta), cosine * np.cos(theta))
+    slope = normal - roll - np.pi / gear.teeth
+    return FilletPoint(at * np.sin(half), at * np.cos(half), slope, at, half)
+
+
+def least_fillet_radius(gear: Gear) -> Any:
+    """Return the radius of curvature rho + c^2/(r + c) [mm] of the fillet at the root circle.
+
+    c: depth of the centre of the tool's tip round, r: reference radius. For spur gears and virtual
+    spur gears; AGMA 908-B89 takes it as the least of the fillet. Source: AGMA 908-B89, clause 5;
+    the curvature of a rolled curve (Euler and Savary) at its end.
+    """
+    tip, radius = tool_tip(gear), 0.5 * gear.reference_diameter
+    return tip.radius + tip.depth**2 / (radius + tip.depth)
+
+
+def undercut_depth(gear: Gear) -> Any:
+    """Return how far the tool's straight flank reaches below its last useful point [mm].
+
+    h_Ff - x_E m_n - (d/2) sin(alpha_t)^2, h_Ff = h_fP m_n - rho (1 - sin(alpha_n)). Above 0 the gear
+    is undercut. Source: ISO 21771:2007, undercut; the flank's end passes the tangent point of the
+    base circle.
+    """
+    tip = tool_tip(gear)
+    end = tip.depth + tip.radius * np.sin(gear.rack.pressure_angle)
+    lever = 0.5 * gear.reference_diameter * np.sin(gear.transverse_pressure_angle) ** 2
+    return end - lever
+
+
+def is_undercut(gear: Gear) -> Any:
+    """Return whether the tool cuts away involute above the base circle: bool or array of them."""
+    lever = 0.5 * gear.reference_diameter * np.sin(gear.transverse_pressure_angle) ** 2
+    return undercut_depth(gear) > TOUCHES * lever
+
+
+def half_angle(gear: Gear, radius: Any) -> Any:
+    """Return half the angle [rad] of a tooth at a radius [mm] >= d_b/2, transverse.
+
+    s_t/d + inv(alpha_t) - inv(alpha_yt), s_n = m_n (pi/2 + 2 x tan(alpha_n)) + A_sn. Below the base
+    circle that of the base circle. Source: ISO 21771:2007, tooth thickness half angle.
+    """
+    return base_half_angle(gear) - involute(profile_angle(gear, radius))
+
+
+def profile_angle(gear: Gear, radius: Any) -> Any:
+    """Return alpha_yt = arccos(d_b/d_y) [rad] at a radius d_y/2 [mm]; 0 below the base circle."""
+    return np.arccos(np.minimum(0.5 * gear.base_diameter / radius, 1.0))
+
+
+def base_half_angle(gear: Gear) -> Any:
+    """Return half the angle of a tooth on its base circle [rad], which may be below the fillet."""
+    shifted = 0.5 * np.pi + 2.0 * gear.generating_shift * np.tan(gear.rack.pressure_angle)
+    return shifted / gear.teeth + involute(gear.transverse_pressure_angle)
+
+
+def fillet_end(gear: Gear) -> Any:
+    """Return the tool angle theta [rad] of the point where fillet and involute meet.
+
+    alpha_n without undercut and protuberance: there they meet with one tangent. Else where the two
+    curves cross, by halving an interval (`HALVINGS`): with undercut below alpha_n and above it the
+    crossing lies between the base circle and the end of the tool's flank; protuberance moves that
+    end to alpha_n - arccos(1 - pr/rho). Floats or arrays of one shape, not casadi.
+    """
+    rack, tip = gear.rack, tool_tip(gear)
+    angle = np.asarray(rack.pressure_angle, float)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        share = np.where(
+            np.asarray(rack.protuberance) > 0.0, rack.protuberance / np.asarray(rack.tip_radius), 0
+        )
+        low = angle - np.arccos(1.0 - np.minimum(share, 1.0))
+        cut = is_undercut(gear)
+        high = np.where(cut, _at_base(gear, tip, angle), angle)
+        low, high = np.broadcast_arrays(low, high)
+        searched = high > low
+        for _ in range(HALVINGS if np.any(searched) else 0):
+            middle = 0.5 * (low + high)
+            inside = _inside(gear, tip, middle) < 0.0
+            low, high = np.where(inside, low, middle), np.where(inside, middle, high)
+    return high[()]
+
+
+def _inside(gear: Gear, tip: ToolTip, theta: Any) -> Any:
+    """Return how far the fillet is outside the involute [rad]; negative: it cuts it away."""
+    point = fillet_point(gear, theta, tip)
+    return point.half_angle - half_angle(gear, point.radius)
+
+
+def _at_base(gear: Gear, tip: ToolTip, angle: Any) -> Any:
+    """Return the tool angle at which the fillet crosses the base circle."""
+    low, high = np.broadcast_arrays(angle, np.full_like(angle, 0.5 * np.pi))
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        outside = fillet_point(gear, middle, tip).radius > 0.5 * gear.base_diameter
+        low, high = np.where(outside, middle, low), np.where(outside, high, middle)
+    return low
+
+
+def form_diameter(gear: Gear) -> Any:
+    """Return the root form diameter d_Ff [mm], where fillet and involute meet (`fillet_end`).
+
+    Without undercut and protuberance it is sqrt(d_b^2 + (d sin(alpha_t) - 2 (h_Ff - x_E m_n)/
+    sin(alpha_t))^2). Source: ISO 21771:2007, root form diameter of generated gears.
+    """
+    return 2.0 * fillet_point(gear, fillet_end(gear)).radius
+
+
+def profile(gear: Gear, on_fillet: int, on_flank: int) -> tuple[Any, Any]:
+    """Return x and y [mm] of one side of a tooth, from the root circle to the tip circle.
+
+    on_fillet, on_flank: points of either, at least 2; the arrays have on_fillet + on_flank - 1. Of
+    one gear of floats; a flank above a pointed tip is left as it is computed, with x < 0.
+    """
+    theta = np.linspace(0.5 * np.pi, float(fillet_end(gear)), on_fillet)
+    fillet = fillet_point(gear, theta)
+    radius = np.linspace(fillet.radius[-1], 0.5 * gear.tip_diameter, on_flank)[1:]
+    half = half_angle(gear, radius)
+    x = np.concatenate((fillet.x, radius * np.sin(half)))
+    return x, np.concatenate((fillet.y, radius * np.cos(half)))

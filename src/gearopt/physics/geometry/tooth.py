@@ -1,0 +1,154 @@
+"""Tooth thickness, and what is measured for it: span, dimension over balls, backlash.
+
+Arguments are gears and pairs of floats, arrays of one shape or casadi scalars.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from gearopt.physics.gears import Gear, GearPair
+from gearopt.physics.geometry.fillet import base_half_angle, half_angle
+from gearopt.physics.geometry.involute import involute, involute_angle
+
+
+def helix_angle_at(gear: Gear, diameter: Any) -> Any:
+    """Return the helix angle arctan(tan(beta) d_y/d) [rad] at a diameter d_y [mm]."""
+    return np.arctan(np.tan(gear.helix_angle) * diameter / gear.reference_diameter)
+
+
+def base_helix_angle(gear: Gear) -> Any:
+    """Return the base helix angle arcsin(sin(beta) cos(alpha_n)) [rad]."""
+    return np.arcsin(np.sin(gear.helix_angle) * np.cos(gear.rack.pressure_angle))
+
+
+def transverse_thickness(gear: Gear, diameter: Any) -> Any:
+    """Return the transverse tooth thickness s_yt [mm], an arc, at a diameter d_y [mm] >= d_b.
+
+    d_y (s_t/d + inv(alpha_t) - inv(alpha_yt)), with the thickness allowance; negative above the
+    point of a pointed tooth. Source: ISO 21771:2007, transverse tooth thickness.
+    """
+    return diameter * half_angle(gear, 0.5 * diameter)
+
+
+def normal_thickness(gear: Gear, diameter: Any) -> Any:
+    """Return the normal tooth thickness s_yn = s_yt cos(beta_y) [mm] at a diameter d_y [mm] >= d_b.
+
+    Source: ISO 21771:2007, normal tooth thickness.
+    """
+    return transverse_thickness(gear, diameter) * np.cos(helix_angle_at(gear, diameter))
+
+
+def tip_thickness(gear: Gear) -> Any:
+    """Return the normal tip tooth thickness s_an [mm]; negative for a pointed tooth."""
+    return normal_thickness(gear, gear.tip_diameter)
+
+
+def span_teeth(gear: Gear) -> int:
+    """Return the number of teeth k whose span is touched near the diameter d + 2 x m_n.
+
+    z/pi (tan(alpha_v)/cos(beta_b)^2 - 2 x/z tan(alpha_n) - inv(alpha_t)) + 1/2, rounded, at least
+    2, alpha_v at that diameter. Of a gear of floats. Source: ISO 21771:2007, number of teeth in a
+    span measurement.
+    """
+    middle = gear.reference_diameter + 2.0 * gear.profile_shift * gear.normal_module
+    tangent = np.tan(np.arccos(min(1.0, float(gear.base_diameter / middle))))
+    teeth, angle = gear.teeth, gear.rack.pressure_angle
+    shifted = 2.0 * gear.profile_shift / teeth * np.tan(angle)
+    rolled = tangent / np.cos(base_helix_angle(gear)) ** 2 - shifted
+    found = teeth / np.pi * (rolled - involute(gear.transverse_pressure_angle)) + 0.5
+    return max(2, round(float(found)))
+
+
+def span(gear: Gear, teeth: Any) -> Any:
+    """Return the span measurement W_k [mm] over k teeth, with the thickness allowance.
+
+    m_n cos(alpha_n) (pi (k - 1/2) + z inv(alpha_t) + 2 x tan(alpha_n)) + A_sn cos(alpha_n).
+    Source: ISO 21771:2007, span measurement.
+    """
+    angle = gear.rack.pressure_angle
+    arcs = np.pi * (teeth - 0.5) + gear.teeth * involute(gear.transverse_pressure_angle)
+    arcs = arcs + 2.0 * gear.generating_shift * np.tan(angle)
+    return gear.normal_module * np.cos(angle) * arcs
+
+
+def span_diameter(gear: Gear, teeth: Any) -> Any:
+    """Return the diameter sqrt(d_b^2 + (W_k cos(beta_b))^2) [mm] where the span touches flanks.
+
+    It has to lie between form diameter and tip diameter. Source: ISO 21771:2007.
+    """
+    base = np.cos(base_helix_angle(gear))
+    return np.hypot(gear.base_diameter, span(gear, teeth) * base)
+
+
+def over_balls(gear: Gear, ball_diameter: Any) -> Any:
+    """Return the dimension M_dK [mm] over two balls in opposite tooth spaces.
+
+    inv(alpha_Kt) = D_M/(z m_n cos(alpha_n)) - pi/(2 z) + 2 x tan(alpha_n)/z + inv(alpha_t), their
+    centres on d_K = d_b/cos(alpha_Kt); M = d_K + D_M for even z, d_K cos(pi/(2 z)) + D_M for odd z
+    (for balls of helical gears in one transverse plane). z: floats or arrays, whole.
+    ball_diameter D_M [mm]. Source: ISO 21771:2007, dimension over balls.
+    """
+    angle = involute_angle(_ball_value(gear, ball_diameter))
+    centres = gear.base_diameter / np.cos(angle)
+    odd = np.asarray(gear.teeth) % 2 == 1
+    return centres * np.where(odd, np.cos(0.5 * np.pi / gear.teeth), 1.0)[()] + ball_diameter
+
+
+def ball_contact_diameter(gear: Gear, ball_diameter: Any) -> Any:
+    """Return the diameter [mm] where a ball in a tooth space touches the flanks.
+
+    tan(alpha_Mt) = tan(alpha_Kt) - D_M cos(beta_b)/d_b, by d_b/cos(alpha_Mt). It has to lie between
+    form diameter and tip diameter. Source: ISO 21771:2007, ball contact circle.
+    """
+    angle = involute_angle(_ball_value(gear, ball_diameter))
+    base = gear.base_diameter
+    tangent = np.tan(angle) - ball_diameter * np.cos(base_helix_angle(gear)) / base
+    return np.hypot(base, base * tangent)
+
+
+def _ball_value(gear: Gear, ball_diameter: Any) -> Any:
+    angle, teeth = gear.rack.pressure_angle, gear.teeth
+    filled = ball_diameter / (teeth * gear.normal_module * np.cos(angle))
+    return filled - np.pi / teeth + base_half_angle(gear)
+
+
+def circumferential_backlash(pair: GearPair) -> Any:
+    """Return the circumferential backlash j_wt [mm] at the working pitch circles, transverse.
+
+    Pitch minus both thicknesses there, which hold the thickness allowances: exact, where
+    `backlash.thickness_backlash` is linear in the allowances. Negative: the teeth do not fit in.
+    Source: ISO 21771:2007, circumferential backlash.
+    """
+    pinion, wheel = pair.working_diameters
+    pitch = np.pi * pinion / pair.pinion_teeth
+    used = transverse_thickness(pair.pinion, pinion) + transverse_thickness(pair.wheel, wheel)
+    return pitch - used
+
+
+def normal_backlash(pair: GearPair) -> Any:
+    """Return the normal backlash j_bn = j_wt cos(alpha_wt) cos(beta_b) [mm]."""
+    across = np.cos(pair.working_angle) * np.cos(base_helix_angle(pair.pinion))
+    return circumferential_backlash(pair) * across
+
+
+def tip_clearances(pair: GearPair) -> tuple[Any, Any]:
+    """Return the tip clearances c = a - d_a/2 - d_f/2 [mm] of pinion and wheel tips.
+
+    Root diameters nominal, without backlash. Source: ISO 21771:2007, tip clearance.
+    """
+    pinion, wheel = pair.gears
+    centres = pair.centre_distance
+    return (
+        centres - 0.5 * (pinion.tip_diameter + wheel.root_diameter),
+        centres - 0.5 * (wheel.tip_diameter + pinion.root_diameter),
+    )
+
+
+def virtual_teeth(gear: Gear) -> Any:
+    """Return the virtual number of teeth z_n = z/(cos(beta_b)^2 cos(beta)).
+
+    AGMA 908-B89 takes z/cos(beta)^3 instead. Source: ISO 6336-3:2006 and ISO 21771:2007.
+    """
+    cosine = np.cos(base_helix_angle(gear)) ** 2 * np.cos(gear.helix_angle)
+    return gear.teeth / cosine
