@@ -1,0 +1,213 @@
+"""Factors of load and strength by AGMA 2001-D04: K_v, K_s, K_m, K_B, K_R, K_T, C_p.
+
+Arguments are floats, arrays of one shape or casadi scalars unless a docstring says less. Constants are
+those of the inch form. Where 2001-D04 is quoted, the formulas agree in Shigley, a digest of the field
+and at least one public program (r3kste/pydome, `Spur`), unless marked.
+"""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from gearopt.physics.agma.mesh import choose
+
+INCH = 25.4  # mm
+FEET_PER_MINUTE = 12.0 * INCH / 60.0  # mm/s, of one ft/min
+QUALITIES = (5.0, 11.0)  # of the curves of K_v
+WIDEST = 40.0 * INCH  # face width of the curves of K_m, mm
+
+# C_ma = A + B F + C F^2, F in inches. Source: AGMA 2001-D04, clause 15 (Shigley, table 14-9)
+ALIGNMENT = {
+    "open": (0.247, 0.0167, -0.765e-4),
+    "commercial": (0.127, 0.0158, -0.930e-4),
+    "precision": (0.0675, 0.0128, -0.926e-4),
+    "extra precision": (0.00360, 0.0102, -0.822e-4),
+}
+
+# Lewis form factor Y of full-depth teeth of 20 degrees. Source: Shigley, table 14-2; pydome
+LEWIS = {
+    12: 0.245,
+    13: 0.261,
+    14: 0.277,
+    15: 0.290,
+    16: 0.296,
+    17: 0.303,
+    18: 0.309,
+    19: 0.314,
+    20: 0.322,
+    21: 0.328,
+    22: 0.331,
+    24: 0.337,
+    26: 0.346,
+    28: 0.353,
+    30: 0.359,
+    34: 0.371,
+    38: 0.384,
+    43: 0.397,
+    50: 0.409,
+    60: 0.422,
+    75: 0.435,
+    100: 0.447,
+    150: 0.460,
+    300: 0.472,
+    400: 0.480,
+    math.inf: 0.485,
+}
+
+# K_R by reliability. Source: AGMA 2001-D04, table 11; Shigley, table 14-10 (with 0.5: 0.70)
+RELIABILITY = {0.9: 0.85, 0.99: 1.0, 0.999: 1.25, 0.9999: 1.50}
+
+
+def dynamic_factor(speed: Any, quality: Any) -> Any:
+    """Return K_v = ((A + sqrt(V))/A)^B >= 1 for a pitch line velocity [mm/s], V in ft/min.
+
+    quality: transmission accuracy Q_v. B = (12 - Q_v)^(2/3)/4, A = 50 + 56 (1 - B) for 6 to 11;
+    (50 + sqrt(V))/50 for 5 up to below 6. Up to `highest_speed`. ValueError for a number outside 5
+    to 11: above, K_v lies between 1.02 and 1.11 and is to be given. B88 has 1/K_v, C_v = K_v.
+    Source: AGMA 2001-D04, clause 8.
+    """
+    if isinstance(quality, int | float) and not QUALITIES[0] <= quality <= QUALITIES[1]:
+        raise ValueError(f"no curve of K_v for Q_v = {quality:g}: 5 to 11; above, give K_v itself")
+    exponent, offset = _dynamic(quality)
+    return ((offset + np.sqrt(speed / FEET_PER_MINUTE)) / offset) ** exponent
+
+
+def highest_speed(quality: Any) -> Any:
+    """Return the pitch line velocity [mm/s] at which the curve of K_v ends: (A + Q_v - 3)^2 ft/min.
+
+    2500 ft/min for Q_v of 5 to below 6. Source: AGMA 2001-D04, clause 8.
+    """
+    offset = _dynamic(quality)[1]
+    return FEET_PER_MINUTE * choose(quality < 6.0, 2500.0, (offset + quality - 3.0) ** 2)
+
+
+def _dynamic(quality: Any) -> tuple[Any, Any]:
+    """Return B and A of the curve of a quality."""
+    exponent = 0.25 * (12.0 - quality) ** (2.0 / 3.0)
+    offset = 50.0 + 56.0 * (1.0 - exponent)
+    return choose(quality < 6.0, 1.0, exponent), choose(quality < 6.0, 50.0, offset)
+
+
+def lewis_form(teeth: Any) -> Any:
+    """Return the Lewis form factor Y of LEWIS, linear in the number of teeth between entries.
+
+    teeth 12 to 400; a rack's beyond; of fewer teeth that of 12. Floats or arrays, not casadi.
+    Source: Shigley, table 14-2.
+    """
+    known = [z for z in LEWIS if math.isfinite(z)]
+    found = np.interp(teeth, known, [LEWIS[z] for z in known])
+    return np.where(np.asarray(teeth) > known[-1], LEWIS[math.inf], found)[()]
+
+
+def size_factor(face_width: Any, module: Any, form: Any) -> Any:
+    """Return K_s = 1.192 (F sqrt(Y)/P)^0.0535 with F and 1/P in inches, at least 1.
+
+    face_width b, transverse module [mm]; form: Lewis form factor Y. AGMA 2001-D04 (clause 20) takes
+    1 for most gears; this form is that of Shigley, eq. (14-10), from Lewis's formula.
+    """
+    return np.maximum(1.0, 1.192 * (face_width * module / INCH**2 * form**0.5) ** 0.0535)
+
+
+def proportion_factor(face_width: Any, pinion_diameter: Any) -> Any:
+    """Return the pinion proportion factor C_pf of a face width b and the diameter d of the pinion.
+
+    F/(10 d) - 0.025 for F <= 1 inch, F/(10 d) - 0.0375 + 0.0125 F up to 17, F/(10 d) - 0.1109 +
+    0.0207 F - 0.000228 F^2 up to 40; F/(10 d) at least 0.05. Lengths [mm]; d: working pitch
+    diameter. Source: AGMA 2001-D04, clause 15.
+    """
+    slender = np.maximum(face_width / (10.0 * pinion_diameter), 0.05)
+    width = face_width / INCH
+    middle = -0.0375 + 0.0125 * width
+    wide = -0.1109 + 0.0207 * width - 0.000228 * width**2
+    return slender + choose(width <= 1.0, -0.025, choose(width <= 17.0, middle, wide))
+
+
+def alignment_factor(face_width: Any, curve: str) -> Any:
+    """Return the mesh alignment factor C_ma of a face width b [mm]; curve: a key of ALIGNMENT.
+
+    ValueError for another curve. Source: AGMA 2001-D04, clause 15.
+    """
+    if curve not in ALIGNMENT:
+        raise ValueError(f"no curve {curve!r} of C_ma; known: {', '.join(ALIGNMENT)}")
+    a, b, c = ALIGNMENT[curve]
+    width = face_width / INCH
+    return a + b * width + c * width**2
+
+
+def load_distribution_factor(
+    face_width: Any,
+    pinion_diameter: Any,
+    curve: str = "commercial",
+    crowned: bool = False,
+    offset: Any = 0.0,
+    adjusted: bool = False,
+) -> Any:
+    """Return K_m = 1 + C_mc (C_pf C_pm + C_ma C_e), the same for pitting (C_m) and bending.
+
+    face_width b, pinion_diameter d [mm]. C_mc: 0.8 crowned or leads corrected, else 1. C_pm: 1.1
+    where the pinion is offset by S1/S >= 0.175 of the bearings' span from its middle, else 1. C_e: 0.8
+    adjusted at assembly or lapped, else 1. For b/d <= 2, straddle mounted, b <= WIDEST.
+    Source: AGMA 2001-D04, clause 15, empirical method.
+    """
+    leads, mounted = 0.8 if crowned else 1.0, 0.8 if adjusted else 1.0
+    proportion = proportion_factor(face_width, pinion_diameter) * choose(offset < 0.175, 1.0, 1.1)
+    return 1.0 + leads * (proportion + alignment_factor(face_width, curve) * mounted)
+
+
+def rim_factor(backup_ratio: Any) -> Any:
+    """Return K_B = 1.6 ln(2.242/m_B), at least 1, of the backup ratio m_B = rim/whole depth.
+
+    1 from 1.2 up. Source: AGMA 2001-D04, annex B; for m_B >= 0.5.
+    """
+    return np.maximum(1.0, 1.6 * np.log(2.242 / backup_ratio))
+
+
+def rim_factor_b88(backup_ratio: Any) -> Any:
+    """Return K_B = 3.4 - 2 m_B, at least 1, for m_B from 0.5; unverified, of a single source.
+
+    Source: AGMA 2001-B88.
+    """
+    return np.maximum(1.0, 3.4 - 2.0 * backup_ratio)
+
+
+def reliability_factor(reliability: Any) -> Any:
+    """Return K_R of a reliability R by its curves: 0.658 - 0.0759 ln(1 - R), from 0.99 0.50 - 0.109.
+
+    The second branch is 0.50 - 0.109 ln(1 - R). For 0.5 < R <= 0.9999. The table RELIABILITY has
+    0.85 for 0.8328 at 0.90. Source: Shigley, eq. (14-38), a fit of AGMA 2001-D04, table 11.
+    """
+    unreliable = np.log(1.0 - reliability)
+    return choose(reliability < 0.99, 0.658 - 0.0759 * unreliable, 0.50 - 0.109 * unreliable)
+
+
+def tabled_reliability_factor(reliability: float) -> float:
+    """Return K_R of RELIABILITY; ValueError for a reliability that the table does not have."""
+    if reliability not in RELIABILITY:
+        known = ", ".join(f"{r:g}" for r in RELIABILITY)
+        raise ValueError(f"no K_R of {reliability:g} in the table: {known}")
+    return RELIABILITY[reliability]
+
+
+def temperature_factor(temperature_C: Any) -> Any:
+    """Return K_T: 1 up to 120 degrees C, (460 + T)/620 above, T in degrees F; at least 1.
+
+    temperature of the gear blank or the oil [degrees C]. AGMA 2001-D04, clause 19, gives 1 and
+    leaves higher temperatures to judgement. The form above 120 degrees is customary (textbooks of
+    machine design; a public program has it at all temperatures); it starts with a jump to 1.14.
+    """
+    fahrenheit = 1.8 * temperature_C + 32.0
+    hot = choose(temperature_C > 120.0, 1.0, 0.0)
+    return 1.0 + hot * np.maximum(0.0, (460.0 + fahrenheit) / 620.0 - 1.0)
+
+
+def elastic_coefficient(
+    pinion_modulus: Any, pinion_poisson: Any, wheel_modulus: Any, wheel_poisson: Any
+) -> Any:
+    """Return C_p = 1/sqrt(pi ((1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2)) [sqrt(MPa)]; 2101: Z_E.
+
+    moduli E [MPa]. 189.8 of steel with E = 206000, nu = 0.3; AGMA's customary 2300 sqrt(psi) is
+    190.98. Source: AGMA 2001-D04, eq. (31); ISO 6336-2.
+    """
+    pinion = (1.0 - pinion_poisson**2) / pinion_modulus
+    return (np.pi * (pinion + (1.0 - wheel_poisson**2) / wheel_modulus)) ** -0.5
