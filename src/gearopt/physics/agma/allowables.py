@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 PSI = 4.4482216152605 / 25.4**2  # MPa
 HARDNESS = (180.0, 400.0)  # HB: range of the lines of through-hardened steel
-NITRIDED_CORE = {"nitrided": (255.0, 345.0), "nitralloy": (255.0, 345.0)}  # HB, of figures 10, 11
+NITRIDED_CORE = {"nitrided": (255.0, 345.0), "nitralloy": (255.0, 345.0)}  # HB, from memory
 REVERSED = 0.7  # of s_at: idlers and fully reversed loads. AGMA 2001-D04, clause 16; Shigley
 
 DIGEST = "AGMA 2001-D04 as in Shigley ch. 14; r3kste/pydome Spur"

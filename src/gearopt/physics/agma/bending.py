@@ -53,9 +53,14 @@ class BendingFactor:
     thickness: Any
 
 
-def flipped(pair: GearPair) -> GearPair:
-    """Return the pair seen from the wheel."""
-    return GearPair(pair.wheel, pair.pinion, pair.working_distance)
+def seen_from_wheel(mesh: Mesh) -> Mesh:
+    """Return a mesh with its wheel in the place of the pinion, for J of the wheel.
+
+    Load sharing and overlap factor are those of the pair: 908 has one of each.
+    """
+    pair = mesh.pair
+    turned = GearPair(pair.wheel, pair.pinion, pair.working_distance)
+    return replace(mesh, pair=turned)
 
 
 @np.errstate(invalid="ignore", divide="ignore")
@@ -63,7 +68,7 @@ def loaded_tooth(mesh: Mesh, load: str = "highest single") -> LoadedTooth:
     """Return the virtual tooth of the pinion of a mesh and its load.
 
     load: one of LOADS; helical gears with m_F > 1 are loaded at the tip whatever is asked. For the
-    wheel pass the mesh of the `flipped` pair. With t = tan(phi_nW) at the point of load, phi_nL = t -
+    wheel pass the mesh `seen_from_wheel`. With t = tan(phi_nW) at the point of load, phi_nL = t -
     (half angle of the tooth on its base circle); apex r_nb/cos(phi_nL). C_h = 1/(1 - sqrt(w (1 -
     w))), w = arctan(tan(psi) sin(phi_n)) in degrees over 100; K_psi = cos(psi_r) cos(psi), both 1 for
     spur gears and m_F <= 1. Source: AGMA 908-B89, clause 5.
@@ -117,13 +122,15 @@ def critical_theta(tooth: LoadedTooth) -> Any:
     """Return the tool angle theta [rad] at which the parabola touches the fillet.
 
     Floats or arrays of one shape. Where it touches only above the fillet (large tip radius of the
-    tool, low load), the end of the fillet is the weakest section of it, and theta is alpha_n.
+    tool, low load), the end of the fillet is the weakest section of it, and theta is alpha_n; 908's
+    iteration would follow the round of the tool into its flank. NaN where the load passes so low that
+    the parabola touches nothing.
     """
     angle = tooth.gear.rack.pressure_angle
     shape = np.shape(tooth.apex + angle)
     low, high = np.broadcast_to(angle, shape), np.full(shape, 0.5 * np.pi)
     start = low
-    above = tangency(tooth, low) >= 0.0
+    above, below = tangency(tooth, low) >= 0.0, tangency(tooth, high) <= 0.0
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
         past = tangency(tooth, middle) > 0.0
@@ -136,7 +143,7 @@ def critical_theta(tooth: LoadedTooth) -> Any:
         step = np.where(change == 0.0, 0.0, f_here * (here - before) / change)
         before, f_before = here, f_here
         here = np.clip(here - step, low, high)
-    return np.where(above, start, here)[()]
+    return np.where(below, np.nan, np.where(above, start, here))[()]
 
 
 @np.errstate(invalid="ignore", divide="ignore", over="ignore")
@@ -170,7 +177,8 @@ def bending_factors(
     pair: GearPair, load: str = "highest single"
 ) -> tuple[BendingFactor, BendingFactor]:
     """Return J of pinion and wheel; floats or arrays of one shape."""
-    teeth = [loaded_tooth(mesh_of(p), load) for p in (pair, flipped(pair))]
+    mesh = mesh_of(pair)
+    teeth = [loaded_tooth(m, load) for m in (mesh, seen_from_wheel(mesh))]
     first, second = (bending_factor(tooth, critical_theta(tooth)) for tooth in teeth)
     return first, second
 

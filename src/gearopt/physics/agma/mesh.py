@@ -49,8 +49,10 @@ def choose(condition: Any, yes: Any, no: Any) -> Any:
 
 
 @np.errstate(invalid="ignore", divide="ignore")
-def mesh_of(pair: GearPair, regime: str | None = None) -> Mesh:
+def mesh_of(pair: GearPair, regime: str | None = None, smooth: bool = False) -> Mesh:
     """Return the mesh of a pair; regime: one of REGIMES, if it is known, so that nothing branches.
+
+    smooth: with `mean_load_sharing`, whose derivative is continuous, for `load_sharing`.
 
     m_N = 1 for spur gears and for m_F <= 1, else F/L_min (`shortest_lines`). C_psi^2 = 1 - m_F
     (1 - rho_m1 rho_m2 Z/(rho_1 rho_2 p_N)) for m_F <= 1, else 1; rho_m at the mean of the working
@@ -66,7 +68,8 @@ def mesh_of(pair: GearPair, regime: str | None = None) -> Mesh:
     (low1, low2), (mean1, mean2) = lowest_curvatures(path), mean_curvatures(pair, path)
     ratio = mean1 * mean2 * path.length / (low1 * low2 * normal_base_pitch(pair))
     factor = bare.chosen(1.0, 1.0 - overlap * (1.0 - ratio))
-    sharing = 1.0 if regime == "low" else bare.chosen(load_sharing(pair, path), 1.0)
+    law = mean_load_sharing if smooth else load_sharing
+    sharing = 1.0 if regime == "low" else bare.chosen(law(pair, path), 1.0)
     return Mesh(pair, path, overlap, sharing, factor, regime)
 
 

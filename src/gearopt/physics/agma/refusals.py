@@ -1,0 +1,109 @@
+"""Pairs of gears for which AGMA 908 has no answer, by name, for one pair or arrays of them."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from gearopt.physics.agma.bending import bending_factors
+from gearopt.physics.agma.mesh import lowest_curvatures, mesh_of, pitting_factor
+from gearopt.physics.gears import Gear, GearPair
+from gearopt.physics.geometry.fillet import tool_tip
+from gearopt.physics.geometry.tooth import tip_thickness
+
+REFUSALS = (
+    "",
+    "internal gear",
+    "no centre distance",
+    "pointed tool",
+    "no root",
+    "no involute",
+    "pointed tooth",
+    "contact ratio below 1",
+    "contact ratio of 2 or more",
+    "contact at the base circle",
+    "no bending",
+)
+SENTENCES = dict(
+    zip(
+        REFUSALS[1:],
+        (
+            "internal gears are not covered, only external ones",
+            "the sum of the profile shifts is too small for any centre distance, or a given one "
+            "makes the base circles overlap",
+            "the tool's tip radius does not fit between its flanks",
+            "a root circle has no diameter",
+            "a tip circle lies inside its base circle",
+            "a tooth is pointed below its tip circle",
+            "the transverse contact ratio is below 1 and the overlap does not make up for it",
+            "AGMA 908 has no geometry factors for spur gears, and helical gears with an overlap "
+            "ratio of at most 1, with a transverse contact ratio of 2 or more",
+            "the point of the load that AGMA 908 asks for lies at or below a base circle",
+            "the radial part of the load outweighs bending, or there is no critical section",
+        ),
+        strict=True,
+    )
+)
+
+
+@dataclass(frozen=True)
+class GeometryFactors:
+    """I, (J_1, J_2) and the refusal, an index of REFUSALS; NaN where that is not 0."""
+
+    pitting: Any
+    bending: tuple[Any, Any]
+    refusal: Any
+
+
+@np.errstate(invalid="ignore", divide="ignore", over="ignore")
+def geometry_factors(pair: GearPair, load: str = "highest single") -> GeometryFactors:
+    """Return I and J of a pair of floats or of arrays of one shape, and what refuses them.
+
+    load as of `bending.loaded_tooth`. No exception for any finite numbers, and no NaN without a
+    refusal. Flaws that a designer may accept refuse nothing: see `geometry.flaws`.
+    """
+    mesh = mesh_of(pair)
+    pitting = pitting_factor(mesh)
+    bending = [f.value for f in bending_factors(pair, load)]
+    ratio, low = mesh.path.transverse_ratio, lowest_curvatures(mesh.path)
+    single = mesh.overlap <= 1.0
+    bare = [
+        np.less_equal(pair.pinion_teeth, 0) | np.less_equal(pair.wheel_teeth, 0),
+        ~np.isfinite(pair.working_angle) | ~(np.asarray(pair.working_angle) > 0.0),
+        *_of_gears(pair),
+        ~(ratio > 0.0) | (ratio < 1.0) & (ratio + mesh.overlap < 1.0),
+        single & (ratio >= 2.0),
+        ~(np.minimum(*low) > 0.0) & single | ~(pitting > 0.0),
+        ~(np.minimum(*bending) > 0.0),
+    ]
+    flags = np.broadcast_arrays(*bare, np.zeros(np.shape(pitting), bool))[:-1]
+    refusal = np.select(flags, range(1, len(REFUSALS)), 0)
+    values = [np.where(refusal == 0, value, np.nan)[()] for value in (pitting, *bending)]
+    return GeometryFactors(values[0], (values[1], values[2]), refusal[()])
+
+
+def _of_gears(pair: GearPair) -> list[Any]:
+    """Return whether a gear has a pointed tool, no root, no involute, a pointed tooth."""
+
+    def either(fault: Any) -> Any:
+        return fault(pair.pinion) | fault(pair.wheel)
+
+    return [
+        either(lambda g: np.less(tool_tip(g).half_width, 0.0)),
+        either(lambda g: np.less_equal(g.root_diameter, 0.0)),
+        either(_no_involute),
+        either(lambda g: ~(np.asarray(tip_thickness(g)) > 0.0)),
+    ]
+
+
+def _no_involute(gear: Gear) -> Any:
+    return np.less_equal(gear.tip_diameter, gear.base_diameter)
+
+
+def single_factors(pair: GearPair, load: str = "highest single") -> GeometryFactors:
+    """Return I and J of one pair of floats; ValueError says what refuses them, by its name."""
+    found = geometry_factors(pair, load)
+    if found.refusal:
+        name = REFUSALS[int(found.refusal)]
+        raise ValueError(f"{name}: {SENTENCES[name]}")
+    return found
