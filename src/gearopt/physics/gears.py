@@ -272,8 +272,8 @@ class GearPair:
 
     def of_width(self, face_width: Any) -> "GearPair":
         """Return the pair with another face width [mm]."""
-        gears = (replace(gear, face_width=face_width) for gear in self.gears)
-        return GearPair(*gears, self.working_distance)
+        pinion, wheel = (replace(gear, face_width=face_width) for gear in self.gears)
+        return GearPair(pinion, wheel, self.working_distance)
 
     @property
     def normal_module(self) -> Any:

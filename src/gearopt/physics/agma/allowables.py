@@ -1,8 +1,8 @@
 """Allowable stress numbers of steel gears, s_at of bending and s_ac of pitting, by AGMA 2001-D04.
 
-For 1e7 cycles, unidirectional load and a reliability of 0.99, as a hardness times HB plus a constant in
-psi, converted exactly. 2101 calls them sigma_FP and sigma_HP. What has a single source, or memory
-alone, is not verified, and says so to whoever uses it.
+For 1e7 cycles, unidirectional load and a reliability of 0.99, as a hardness times HB plus a
+constant in psi, converted exactly. 2101 calls them sigma_FP and sigma_HP. What has a single source,
+or memory alone, is not verified, and says so to whoever uses it.
 """
 
 from dataclasses import dataclass
@@ -85,9 +85,10 @@ class Allowable:
 def bending_allowable(treatment: str, grade: int, hardness: float = 0.0) -> Allowable:
     """Return s_at [MPa] of a treatment and a metallurgical grade.
 
-    treatment: one of TREATMENTS ("induction, roots": flank and root hardened, type A; "flanks": type
-    B). hardness [HB]: of through-hardened steel, of the core of nitrided steel; others need none.
-    ValueError names what is missing. Source: AGMA 2001-D04, clause 16, figures 9 to 11, table 4.
+    treatment: one of TREATMENTS ("induction, roots": flank and root hardened, type A; "flanks":
+    type B). hardness [HB]: of through-hardened steel, of the core of nitrided steel; others need
+    none. ValueError names what is missing. Source: AGMA 2001-D04, clause 16, figures 9 to 11, table
+    4.
     """
     slope, base, source = _found(BENDING, treatment, "", grade)
     return _allowable(slope, base, source, hardness, treatment)
@@ -123,7 +124,9 @@ def contact_allowable_b88(grade: int, hardness: float) -> Allowable:
     return _old(CONTACT_B88, grade, hardness)
 
 
-def _old(lines: dict[int, tuple[float, float, float, str]], grade: int, hardness: float) -> Allowable:
+def _old(
+    lines: dict[int, tuple[float, float, float, str]], grade: int, hardness: float
+) -> Allowable:
     if grade not in lines:
         raise ValueError(f"no grade {grade} in AGMA 2001-B88: 1 or 2")
     base, slope, bend, source = lines[grade]

@@ -70,8 +70,8 @@ def loaded_tooth(mesh: Mesh, load: str = "highest single") -> LoadedTooth:
     load: one of LOADS; helical gears with m_F > 1 are loaded at the tip whatever is asked. For the
     wheel pass the mesh `seen_from_wheel`. With t = tan(phi_nW) at the point of load, phi_nL = t -
     (half angle of the tooth on its base circle); apex r_nb/cos(phi_nL). C_h = 1/(1 - sqrt(w (1 -
-    w))), w = arctan(tan(psi) sin(phi_n)) in degrees over 100; K_psi = cos(psi_r) cos(psi), both 1 for
-    spur gears and m_F <= 1. Source: AGMA 908-B89, clause 5.
+    w))), w = arctan(tan(psi) sin(phi_n)) in degrees over 100; K_psi = cos(psi_r) cos(psi), both 1
+    for spur gears and m_F <= 1. Source: AGMA 908-B89, clause 5.
     """
     if load not in LOADS:
         raise ValueError(f"no load {load!r}; known: {', '.join(LOADS)}")
@@ -123,8 +123,8 @@ def critical_theta(tooth: LoadedTooth) -> Any:
 
     Floats or arrays of one shape. Where it touches only above the fillet (large tip radius of the
     tool, low load), the end of the fillet is the weakest section of it, and theta is alpha_n; 908's
-    iteration would follow the round of the tool into its flank. NaN where the load passes so low that
-    the parabola touches nothing.
+    iteration would follow the round of the tool into its flank. NaN where the load passes so low
+    that the parabola touches nothing.
     """
     angle = tooth.gear.rack.pressure_angle
     shape = np.shape(tooth.apex + angle)
@@ -188,5 +188,5 @@ def thinned(pair: GearPair, thinning: Any) -> GearPair:
 
     AGMA 908-B89 takes 0.024 normal modules for its tables.
     """
-    gears = (replace(gear, thickness_allowance=-thinning) for gear in pair.gears)
-    return GearPair(*gears, pair.working_distance)
+    pinion, wheel = (replace(gear, thickness_allowance=-thinning) for gear in pair.gears)
+    return GearPair(pinion, wheel, pair.working_distance)

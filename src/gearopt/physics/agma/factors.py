@@ -1,8 +1,8 @@
 """Factors of load and strength by AGMA 2001-D04: K_v, K_s, K_m, K_B, K_R, K_T, C_p.
 
-Arguments are floats, arrays of one shape or casadi scalars unless a docstring says less. Constants are
-those of the inch form. Where 2001-D04 is quoted, the formulas agree in Shigley, a digest of the field
-and at least one public program (r3kste/pydome, `Spur`), unless marked.
+Arguments are floats, arrays of one shape or casadi scalars unless a docstring says less. Constants
+are those of the inch form. Where 2001-D04 is quoted, the formulas agree in Shigley, a digest of the
+field and at least one public program (r3kste/pydome, `Spur`), unless marked.
 """
 
 import math
@@ -146,8 +146,8 @@ def load_distribution_factor(
     """Return K_m = 1 + C_mc (C_pf C_pm + C_ma C_e), the same for pitting (C_m) and bending.
 
     face_width b, pinion_diameter d [mm]. C_mc: 0.8 crowned or leads corrected, else 1. C_pm: 1.1
-    where the pinion is offset by S1/S >= 0.175 of the bearings' span from its middle, else 1. C_e: 0.8
-    adjusted at assembly or lapped, else 1. For b/d <= 2, straddle mounted, b <= WIDEST.
+    where the pinion is offset by S1/S >= 0.175 of the bearings' span from its middle, else 1. C_e:
+    0.8 adjusted at assembly or lapped, else 1. For b/d <= 2, straddle mounted, b <= WIDEST.
     Source: AGMA 2001-D04, clause 15, empirical method.
     """
     leads, mounted = 0.8 if crowned else 1.0, 0.8 if adjusted else 1.0
@@ -172,10 +172,11 @@ def rim_factor_b88(backup_ratio: Any) -> Any:
 
 
 def reliability_factor(reliability: Any) -> Any:
-    """Return K_R of a reliability R by its curves: 0.658 - 0.0759 ln(1 - R), from 0.99 0.50 - 0.109.
+    """Return K_R of a reliability R by its curves.
 
-    The second branch is 0.50 - 0.109 ln(1 - R). For 0.5 < R <= 0.9999. The table RELIABILITY has
-    0.85 for 0.8328 at 0.90. Source: Shigley, eq. (14-38), a fit of AGMA 2001-D04, table 11.
+    0.658 - 0.0759 ln(1 - R) below 0.99, 0.50 - 0.109 ln(1 - R) from there. For 0.5 < R <= 0.9999.
+    The table RELIABILITY has 0.85 for 0.8328 at 0.90. Source: Shigley, eq. (14-38), a fit of AGMA
+    2001-D04, table 11.
     """
     unreliable = np.log(1.0 - reliability)
     return choose(reliability < 0.99, 0.658 - 0.0759 * unreliable, 0.50 - 0.109 * unreliable)

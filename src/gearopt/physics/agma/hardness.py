@@ -30,8 +30,8 @@ def surface_hardened_factor(finish: Any, wheel_hardness: Any) -> Any:
     """Return C_H = 1 + B (450 - HB_2), at least 1, of a pinion of 48 HRC or more.
 
     B = 0.00075 exp(-0.0112 f_P), f_P: its finish R_a in microinches; finish R_a [mm] (the metric
-    form of the standard has exp(-0.448 f_P), f_P in um, 1.6 % more of the exponent: the inch form is
-    taken). For wheels of 180 to 400 HB. Source: AGMA 2001-D04, clause 14; Shigley, eq. (14-37).
+    form of the standard has exp(-0.448 f_P), f_P in um, 1.6 % more of the exponent: the inch form
+    is taken). For wheels of 180 to 400 HB. Source: AGMA 2001-D04, clause 14; Shigley, eq. (14-37).
     """
     slope = 0.00075 * np.exp(-0.0112 * finish / MICROINCH)
     return np.maximum(1.0, 1.0 + slope * (450.0 - wheel_hardness))

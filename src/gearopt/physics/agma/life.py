@@ -1,8 +1,8 @@
 """Stress cycle factors Y_N and Z_N, the lives that follow from them, and Miner's sum.
 
-A curve is a power law of the numbers of cycles to 1e7 (or 3e6) and another beyond, joined where they
-cross, so that it is continuous and has an inverse: the standard's join is off by up to 2e-4 there.
-Numbers of cycles are floats or arrays; hardness is a float.
+A curve is a power law of the numbers of cycles to 1e7 (or 3e6) and another beyond, joined where
+they cross, so that it is continuous and has an inverse: the standard's join is off by up to 2e-4
+there. Numbers of cycles are floats or arrays; hardness is a float.
 """
 
 from collections.abc import Iterable
@@ -52,7 +52,9 @@ class Curve:
         Beyond LONGEST it is an extrapolation.
         """
         with np.errstate(over="ignore", divide="ignore"):
-            short, long = ((np.asarray(factor) / a) ** (-1.0 / b) for a, b in (self.short, self.long))
+            short, long = (
+                (np.asarray(factor) / a) ** (-1.0 / b) for a, b in (self.short, self.long)
+            )
             cycles = np.minimum(short, long) if self.least else np.maximum(short, long)
         return np.where(cycles < self.shortest * (1.0 - 1e-12), 0.0, cycles)[()]
 
@@ -61,9 +63,10 @@ def bending_curve(kind: str, hardness: float = 250.0, service: str = "general") 
     """Return the curve of Y_N; hardness [HB] of through-hardened steel, 160 to 400.
 
     kind: one of KINDS (flame and induction hardened steels count as carburised: unverified);
-    service: one of SERVICES, "critical" where little pitting and wear is allowed. Between the curves
-    of 160, 250 and 400 HB ln Y_N is linear in the hardness, outside it is that of the nearest; the
-    standard says nothing. ValueError for other words. Source: AGMA 2001-D04, clause 17.
+    service: one of SERVICES, "critical" where little pitting and wear is allowed. Between the
+    curves of 160, 250 and 400 HB ln Y_N is linear in the hardness, outside it is that of the
+    nearest; the standard says nothing. ValueError for other words. Source: AGMA 2001-D04, clause
+    17.
     """
     _check(kind, service)
     short = {"carburised": CARBURISED, "nitrided": NITRIDED}.get(kind) or _between(hardness)
@@ -106,10 +109,9 @@ def miner_sum(cycles: Iterable[Any], lives: Iterable[Any]) -> Any:
     cycles n_i of each level, lives N_i at its stress. A level without cycles adds nothing.
     Source: Palmgren and Miner; AGMA 2001-D04 refers to it for load spectra (annex of 2101).
     """
+    rows = [(np.asarray(n), np.asarray(life)) for n, life in zip(cycles, lives, strict=True)]
     with np.errstate(divide="ignore", invalid="ignore"):
-        parts = [choose(np.asarray(n) > 0.0, n / np.asarray(life), 0.0) for n, life in
-                 zip(cycles, lives, strict=True)]  # fmt: skip
-    return sum(parts)
+        return sum(choose(n > 0.0, n / life, 0.0) for n, life in rows)
 
 
 def spectrum_safety(
@@ -117,16 +119,16 @@ def spectrum_safety(
 ) -> float:
     """Return the factor by which all stresses of a spectrum may grow until Miner's sum is 1.
 
-    cycles n_i; stresses s_i and the allowable stress at a cycle factor of 1, in one unit: of pitting
-    take contact stresses, and square the result for a factor of load. Life of level i at a factor f:
-    that of Y_N = f s_i/allowable. By halving; one level gives allowable Y_N(n)/s. Below the shortest
-    life the curve is flat, so that a level may at most reach the factor there.
+    cycles n_i; stresses s_i and the allowable stress at a cycle factor of 1, in one unit: of
+    pitting take contact stresses, and square the result for a factor of load. Life of level i at a
+    factor f: that of Y_N = f s_i/allowable. By halving; one level gives allowable Y_N(n)/s. Below
+    the shortest life the curve is flat, so that a level may at most reach the factor there.
     """
     levels = [(n, s / allowable) for n, s in zip(cycles, stresses, strict=True) if n > 0 and s > 0]
     if not levels:
         return float("inf")
     total = sum(n for n, _ in levels)
-    high = min(float(curve.factor(n)) / s for n, s in levels)  # each alone, alone at its worst
+    high = min(float(curve.factor(n)) / s for n, s in levels)  # of the worst level alone
     low = float(curve.factor(total)) / max(s for _, s in levels)  # all at the largest stress
     if low == high:
         return high

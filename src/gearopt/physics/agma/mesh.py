@@ -1,10 +1,10 @@
 """Load sharing and the geometry factor for pitting, I, by AGMA 908-B89.
 
 Arguments are pairs of floats, arrays of one shape or casadi scalars. A mesh belongs to a regime:
-"spur"; "low" for helical gears of an overlap ratio m_F of at most 1 (low axial contact ratio, LACR),
-which 908 treats like spur gears with a correction; "conventional" above. I is continuous from one to
-the next, J jumps at m_F = 1: there the load moves from the highest point of single tooth contact to
-the tip.
+"spur"; "low" for helical gears of an overlap ratio m_F of at most 1 (low axial contact ratio,
+LACR), which 908 treats like spur gears with a correction; "conventional" above. I is continuous
+from one to the next, J jumps at m_F = 1: there the load moves from the highest point of single
+tooth contact to the tip.
 """
 
 from dataclasses import dataclass

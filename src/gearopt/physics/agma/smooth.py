@@ -1,8 +1,8 @@
 """I and J as a gradient solver wants them: one text without branches, and what that costs.
 
 The regime is chosen beforehand, the tool angles of the critical sections are variables of the
-problem, and the tangency of the parabolas are its equalities: no table and no inner loop. For m_F > 1
-the load sharing ratio is that of the mean length of contact, as the least one has kinks.
+problem, and the tangency of the parabolas are its equalities: no table and no inner loop. For m_F >
+1 the load sharing ratio is that of the mean length of contact, as the least one has kinks.
 """
 
 from dataclasses import dataclass
@@ -34,9 +34,9 @@ def smooth_factors(
 ) -> SmoothFactors:
     """Return I and J of a pair at tool angles theta of pinion and wheel [rad].
 
-    pair: of floats, arrays or casadi scalars; regime: one of `mesh.REGIMES`; thetas between alpha_n and
-    pi/2, to be found by a solver, from `critical_theta` or 1. At the tangency both J are at their
-    least value over theta but for K_f, whose section is that of the tangency by definition.
+    pair: of floats, arrays or casadi scalars; regime: one of `mesh.REGIMES`; thetas between alpha_n
+    and pi/2, to be found by a solver, from `critical_theta` or 1. At the tangency both J are at
+    their least value over theta but for K_f, whose section is that of the tangency by definition.
     """
     mesh = mesh_of(pair, regime, smooth=True)
     teeth = [loaded_tooth(m, load) for m in (mesh, seen_from_wheel(mesh))]
@@ -50,8 +50,8 @@ def smooth_error(
 ) -> tuple[float, float, float]:
     """Return I, J_1 and J_2 of the smooth form less the exact ones, relative to these.
 
-    Of a pair of floats. Rounding alone for spur gears and m_F <= 1; for m_F > 1 the two load sharing
-    ratios: -5 to +7 % (positive: the smooth form is optimistic), see tests/physics/agma.
+    Of a pair of floats. Rounding alone for spur gears and m_F <= 1; for m_F > 1 the two load
+    sharing ratios: -5 to +7 % (positive: the smooth form is optimistic), see tests/physics/agma.
     """
     mesh = mesh_of(pair, regime)
     teeth = [loaded_tooth(m, load) for m in (mesh, seen_from_wheel(mesh))]

@@ -1,7 +1,8 @@
 """Stresses, safety factors, permissible power and life by AGMA 2001-D04, clauses 5 and 10.
 
-Arguments are floats, arrays of one shape or casadi scalars. Two definitions of safety against pitting
-are in use: S_H of stresses, as the standard has it, and S_H^2 of loads, which alone compares with S_F.
+Arguments are floats, arrays of one shape or casadi scalars. Two definitions of safety against
+pitting are in use: S_H of stresses, as the standard has it, and S_H^2 of loads, which alone
+compares with S_F.
 """
 
 from typing import Any
@@ -67,8 +68,8 @@ def contact_safety(
 ) -> Any:
     """Return S_H = s_ac Z_N C_H/(K_T K_R s_c), of stress; the load may grow by its square.
 
-    allowable s_ac, stress s_c [MPa]; hardness_ratio C_H: 1 of the pinion. Source: AGMA 2001-D04, eq.
-    (4); Shigley, eq. (14-42), who compares S_F with S_H^2.
+    allowable s_ac, stress s_c [MPa]; hardness_ratio C_H: 1 of the pinion. Source: AGMA 2001-D04,
+    eq. (4); Shigley, eq. (14-42), who compares S_F with S_H^2.
     """
     return allowable * cycle_factor * hardness_ratio / (temperature * reliability * stress)
 
@@ -77,7 +78,8 @@ def permissible_power(power: Any, bending: Any, contact: Any, wanted: tuple[Any,
     """Return the power that a gear may transmit: P min(S_F/S_Fmin, (S_H/S_Hmin)^2).
 
     power P, at which the safety factors bending S_F and contact S_H are; wanted (S_Fmin, S_Hmin).
-    Stress grows with load and its root; K_v depends on speed alone. Source: AGMA 2001-D04, clause 5.
+    Stress grows with load and its root; K_v depends on speed alone. Source: AGMA 2001-D04, clause
+    5.
     """
     return power * np.minimum(bending / wanted[0], (contact / wanted[1]) ** 2)
 
@@ -98,8 +100,8 @@ def contact_life(curve: Curve, cycle_factor: Any, safety: Any) -> Any:
 def shaft_forces(load: Any, working_angle: Any, working_helix: Any) -> tuple[Any, Any]:
     """Return radial force W_t tan(alpha_wt), and axial force W_t tan(beta_w) [N] of a mesh.
 
-    load W_t [N] at the working pitch circle; transverse working_angle alpha_wt, working_helix beta_w
-    [rad], signed by hand: the axial force turns with hand and with the direction of rotation.
-    Source: statics; Shigley, eq. (13-40).
+    load W_t [N] at the working pitch circle; transverse working_angle alpha_wt, working_helix
+    beta_w [rad], signed by hand: the axial force turns with hand and with the direction of
+    rotation. Source: statics; Shigley, eq. (13-40).
     """
     return load * np.tan(working_angle), load * np.tan(working_helix)

@@ -1,7 +1,7 @@
 """Many ratings at once: geometry factors tabulated by tooth pair, all else numpy on rows.
 
-For searches over numbers of teeth, modules and face widths with one tool, helix angle and shifts: I and
-J then depend on the tooth pair and, for helical gears, on the overlap ratio by closed forms.
+For searches over numbers of teeth, modules and face widths with one tool, helix angle and shifts: I
+and J then depend on the tooth pair and, for helical gears, on the overlap ratio by closed forms.
 """
 
 from collections.abc import Iterable
@@ -39,9 +39,9 @@ class FactorTable:
     """Geometry factors by tooth pair, arrays of shape (pinions, wheels); rows of numbers of teeth.
 
     pinions, wheels: numbers of teeth, ascending. low: I/C_psi^2, J_1/C_psi, J_2/C_psi of spur gears
-    and m_F <= 1; slope: (1 - C_psi^2)/m_F; high: I m_N, J_1 m_N, J_2 m_N of m_F > 1; contact: transverse
-    contact ratio; working: d_w1/m_n; cosine: of the base helix angle; refusal: indices of
-    `refusals.REFUSALS` for m_F <= 1 and above, where the factors are NaN.
+    and m_F <= 1; slope: (1 - C_psi^2)/m_F; high: I m_N, J_1 m_N, J_2 m_N of m_F > 1; contact:
+    transverse contact ratio; working: d_w1/m_n; cosine: of the base helix angle; refusal: indices
+    of `refusals.REFUSALS` for m_F <= 1 and above, where the factors are NaN.
     """
 
     pinions: Any
@@ -169,8 +169,8 @@ def rate_rows(
 ) -> Ratings:
     """Return the safety factors of many gear pairs under one duty; K_s = K_B = K_T = C_f = 1.
 
-    row, column: integer arrays into the table; module m_n, face width b [mm]: arrays of their shape,
-    one-dimensional. Row by row the same as the laws of `stress` with `geometry_factors`.
+    row, column: integer arrays into the table; module m_n, face width b [mm]: arrays of their
+    shape, one-dimensional. Row by row the same as the laws of `stress` with `geometry_factors`.
     """
     found = np.empty((4, len(row)))
     for start in range(0, len(row), BLOCK):
@@ -198,7 +198,5 @@ def _block(table: FactorTable, duty: Duty, row: Any, column: Any, module: Any, w
         found.append(bending_safety(duty.bending[k], life, 1.0, duty.reliability, stress))
     for k in (0, 1):
         life = duty.contact_curves[k].factor(cycles[k])
-        found.append(
-            contact_safety(duty.contact[k], life, 1.0, 1.0, duty.reliability, pressed)
-        )
+        found.append(contact_safety(duty.contact[k], life, 1.0, 1.0, duty.reliability, pressed))
     return found

@@ -17,9 +17,9 @@ from gearopt.physics.geometry.fillet import form_diameter
 class ContactPath:
     """Points on the line of action as positions s [mm] from the pitch point, transverse.
 
-    start A, end E of contact; lowest B and highest D point of single tooth contact of the pinion, one
-    base pitch p_bt from E and A; curvatures: distances T1 C and T2 C from the base circles' tangent
-    points to the pitch point, r_b1 tan(alpha_wt) and r_b2 tan(alpha_wt).
+    start A, end E of contact; lowest B and highest D point of single tooth contact of the pinion,
+    one base pitch p_bt from E and A; curvatures: distances T1 C and T2 C from the base circles'
+    tangent points to the pitch point, r_b1 tan(alpha_wt) and r_b2 tan(alpha_wt).
     """
 
     start: Any
@@ -87,8 +87,8 @@ def active_root_diameters(pair: GearPair) -> tuple[Any, Any]:
     """Return the start of active profile diameters d_Nf [mm] that the mate's tip circle gives.
 
     d_Nf1 = sqrt(d_b1^2 + (2 a sin(alpha_wt) - sqrt(d_a2^2 - d_b2^2))^2); NaN where the mate's tip
-    passes the tangent point of the base circle (interference). Below d_Ff there is interference with
-    the fillet. Source: ISO 21771:2007, start of active profile diameter.
+    passes the tangent point of the base circle (interference). Below d_Ff there is interference
+    with the fillet. Source: ISO 21771:2007, start of active profile diameter.
     """
     path = contact_path(pair)
     first, second = path.radii_of_curvature(path.start)[0], path.radii_of_curvature(path.end)[1]
@@ -117,8 +117,9 @@ def specific_sliding(path: ContactPath, ratio: Any, position: Any) -> tuple[Any,
 
 
 def sliding_velocity(position: Any, pinion_speed: Any, ratio: Any) -> Any:
-    """Return the sliding velocity v_g = omega_1 (1 + 1/u) s [mm/s]; positive beyond the pitch point.
+    """Return the sliding velocity v_g = omega_1 (1 + 1/u) s [mm/s].
 
-    position s [mm]; pinion_speed omega_1 [rad/s]; ratio u. Source: ISO 21771:2007.
+    Positive beyond the pitch point. position s [mm]; pinion_speed omega_1 [rad/s]; ratio u.
+    Source: ISO 21771:2007.
     """
     return pinion_speed * (1.0 + 1.0 / ratio) * position

@@ -1,7 +1,7 @@
 """The root fillet that a rack with a rounded tip generates, and where it meets the involute.
 
-Transverse section of the gear, exact for helical gears too: the tip round of the tool is a circle in
-its normal section, an ellipse in the transverse one. A point of the fillet is named by the angle
+Transverse section of the gear, exact for helical gears too: the tip round of the tool is a circle
+in its normal section, an ellipse in the transverse one. A point of the fillet is named by the angle
 theta of the tool's normal there, in the tool's normal section, from the pitch line: alpha_n where
 the round leaves the flank of the tool, pi/2 at its tip. Coordinates of a tooth: y along its centre
 line from the gear's axis, x > 0 across it. For the virtual spur gear of AGMA 908 or ISO 6336-3 pass
@@ -107,9 +107,9 @@ def least_fillet_radius(gear: Gear) -> Any:
 def undercut_depth(gear: Gear) -> Any:
     """Return how far the tool's straight flank reaches below its last useful point [mm].
 
-    h_Ff - x_E m_n - (d/2) sin(alpha_t)^2, h_Ff = h_fP m_n - rho (1 - sin(alpha_n)). Above 0 the gear
-    is undercut. Source: ISO 21771:2007, undercut; the flank's end passes the tangent point of the
-    base circle.
+    h_Ff - x_E m_n - (d/2) sin(alpha_t)^2, h_Ff = h_fP m_n - rho (1 - sin(alpha_n)). Above 0 the
+    gear is undercut. Source: ISO 21771:2007, undercut; the flank's end passes the tangent point of
+    the base circle.
     """
     tip = tool_tip(gear)
     end = tip.depth + tip.radius * np.sin(gear.rack.pressure_angle)

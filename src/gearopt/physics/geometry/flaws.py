@@ -1,6 +1,6 @@
-"""What is wrong with the teeth of a pair, by name: what stops a rating, and what a designer may accept.
+"""Flaws of the teeth of a pair by name: what stops a rating, and what a designer may accept.
 
-Of one pair of floats. `agma.table` has the same refusals for arrays, as codes.
+Of one pair of floats. `agma.refusals` has the fatal ones for arrays, as codes.
 """
 
 import math

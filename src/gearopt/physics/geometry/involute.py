@@ -20,9 +20,9 @@ def involute_angle(value: Any) -> Any:
     """Return the angle alpha [rad] with inv(alpha) = value; NaN for arrays and floats below 0.
 
     value >= 0 [rad], up to 11 (85 degrees). Newton's method on t - arctan(t) = value, t =
-    tan(alpha), which is convex and rising: from the guess (3 value)^(1/3), too small, the first step
-    overshoots and all later ones fall monotonically to the root. A fixed number of them, so that
-    it can be traced. Relative error below 1e-14/alpha^2.
+    tan(alpha), which is convex and rising: from the guess (3 value)^(1/3), too small, the first
+    step overshoots and all later ones fall monotonically to the root. A fixed number of them, so
+    that it can be traced. Relative error below 1e-14/alpha^2.
     """
     value = value + 1e-300  # a root of 0 without 0/0
     t = (3.0 * value) ** (1.0 / 3.0)
@@ -44,9 +44,7 @@ def working_pressure_angle(
     return involute_angle(involute(transverse_angle) + shifted)
 
 
-def shift_sum(
-    working_angle: Any, teeth_sum: Any, normal_angle: Any, transverse_angle: Any
-) -> Any:
+def shift_sum(working_angle: Any, teeth_sum: Any, normal_angle: Any, transverse_angle: Any) -> Any:
     """Return x1 + x2 that mesh without backlash at alpha_wt [rad]; see `working_pressure_angle`.
 
     Source: ISO 21771:2007, sum of the profile shift coefficients.

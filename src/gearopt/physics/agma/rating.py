@@ -1,0 +1,175 @@
+"""The rating of one gear pair by AGMA 2001-D04: stresses, safety factors, lives, what governs.
+
+Of floats. What is given replaces what is computed, factor by factor.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from gearopt.physics.agma import life, stress
+from gearopt.physics.agma.rating_factors import (
+    EDITIONS,
+    PAIRED,
+    SHARED,
+    Case,
+    Factor,
+    Operation,
+    Practice,
+    Steel,
+    all_factors,
+    life_curves,
+)
+from gearopt.physics.gears import GearPair
+
+MEMBERS = ("pinion", "wheel")
+
+
+@dataclass(frozen=True)
+class Rating:
+    """The rating of a pair; tuples are of pinion and wheel.
+
+    factors by symbol; load W_t [N]; speed v [mm/s]; stresses [MPa]; safety factors of bending S_F
+    and of contact S_H (of stress; S_H^2 is of load); cycles asked for; lives [cycles] at which S_F
+    and S_H are 1; power [N mm/s] at which the least of all safety factors is 1; governs: member and
+    mode.
+    """
+
+    factors: dict[str, Factor]
+    load: float
+    speed: float
+    bending_stress: tuple[float, float]
+    contact_stress: tuple[float, float]
+    bending_safety: tuple[float, float]
+    contact_safety: tuple[float, float]
+    cycles: tuple[float, float]
+    bending_life: tuple[float, float]
+    contact_life: tuple[float, float]
+    power: float
+    governs: tuple[str, str]
+
+    @property
+    def unverified(self) -> tuple[str, ...]:
+        """Symbols of the factors that a single source or memory alone has."""
+        return tuple(name for name, factor in self.factors.items() if not factor.verified)
+
+
+def rate(
+    pair: GearPair,
+    operation: Operation,
+    steels: tuple[Steel, Steel],
+    practice: Practice | None = None,
+    given: Mapping[str, Any] | None = None,
+) -> Rating:
+    """Return the rating of a pair.
+
+    given: factors by symbol, of PAIRED as pairs, of SHARED as numbers; s_at and s_ac in MPa, C_p in
+    sqrt(MPa). ValueError for a pair that AGMA 908 refuses (unless I and J are given), a symbol that
+    is not known, and what the laws refuse.
+    """
+    practice, given = practice or Practice(), dict(given or {})
+    if unknown := set(given) - {*PAIRED, *SHARED}:
+        raise ValueError(
+            f"no factor {sorted(unknown)[0]!r}; known: {', '.join((*SHARED, *PAIRED))}"
+        )
+    if practice.edition not in EDITIONS:
+        raise ValueError(f"no edition {practice.edition!r}; known: {', '.join(EDITIONS)}")
+    case = Case(pair, operation, steels, practice, given)
+    return _results(case, {factor.symbol: factor for factor in all_factors(case)})
+
+
+def _results(case: Case, found: dict[str, Factor]) -> Rating:
+    """Return stresses, safety factors and lives of the factors."""
+    one: dict[str, Any] = {symbol: factor.value for symbol, factor in found.items()}
+    power, speed = case.operation.power, case.operation.pinion_speed
+    load = stress.tangential_load(power, speed, case.diameter)
+    width, weaker = case.pair.face_width, (one["K_T"], one["K_R"])
+    transverse = case.pair.pinion.reference_diameter / case.pair.pinion_teeth
+    bent, pressed, s_f, s_h = [], [], [], []
+    for k in (0, 1):
+        product = one["K_o"] * one["K_v"] * one["K_m"] * one["K_s"][k]
+        of_rim = product * one["K_B"][k]
+        bent.append(float(stress.bending_stress(load, width, transverse, one["J"][k], of_rim)))
+        own = one["C_p"], load, width, case.diameter, one["I"], product * one["C_f"]
+        pressed.append(float(stress.contact_stress(*own)))
+        s_f.append(stress.bending_safety(one["s_at"][k], one["Y_N"][k], *weaker, bent[k]))
+        strong = one["s_ac"][k], one["Z_N"][k], one["C_H"][k]
+        s_h.append(stress.contact_safety(*strong, *weaker, pressed[k]))
+    bending, contact = (life_curves(case, mode) for mode in (False, True))
+    lives_f = [float(stress.bending_life(bending[k], one["Y_N"][k], s_f[k])) for k in (0, 1)]
+    lives_h = [float(stress.contact_life(contact[k], one["Z_N"][k], s_h[k])) for k in (0, 1)]
+    modes = [(s_f[k], MEMBERS[k], "bending") for k in (0, 1)]
+    least, *governs = min(modes + [(s_h[k] ** 2, MEMBERS[k], "contact") for k in (0, 1)])
+    return Rating(
+        found,
+        float(load),
+        case.speed,
+        (bent[0], bent[1]),
+        (pressed[0], pressed[1]),
+        (s_f[0], s_f[1]),
+        (s_h[0], s_h[1]),
+        case.cycles,
+        (lives_f[0], lives_f[1]),
+        (lives_h[0], lives_h[1]),
+        power * least,
+        (governs[0], governs[1]),
+    )
+
+
+@dataclass(frozen=True)
+class Spectrum:
+    """The rating of a load spectrum; tuples are of pinion and wheel.
+
+    levels: the rating of each level alone, at its own number of cycles. damage: Miner's sums of
+    bending and contact, infinite where a level breaks a tooth at once. safety factors S_F and S_H
+    by which all stresses may grow until the sum is 1.
+    """
+
+    levels: tuple[Rating, ...]
+    bending_damage: tuple[float, float]
+    contact_damage: tuple[float, float]
+    bending_safety: tuple[float, float]
+    contact_safety: tuple[float, float]
+
+
+def rate_spectrum(
+    pair: GearPair,
+    operations: tuple[Operation, ...],
+    steels: tuple[Steel, Steel],
+    practice: Practice | None = None,
+    given: Mapping[str, Any] | None = None,
+) -> Spectrum:
+    """Return the rating of a pair under levels of load, each with its hours, speed and power.
+
+    Temperature and reliability enter each level's strength; Y_N and Z_N may not be given
+    (ValueError). One level gives what `rate` gives. Source: Palmgren and Miner.
+    """
+    if {"Y_N", "Z_N"} & set(given or {}):
+        raise ValueError("Y_N and Z_N follow from the levels of a spectrum and cannot be given")
+    practice = practice or Practice()
+    levels = tuple(rate(pair, one, steels, practice, given) for one in operations)
+    case = Case(pair, operations[0], steels, practice)
+    bent = [_miner(case, levels, k, False) for k in (0, 1)]
+    pressed = [_miner(case, levels, k, True) for k in (0, 1)]
+    return Spectrum(
+        levels,
+        (bent[0][0], bent[1][0]),
+        (pressed[0][0], pressed[1][0]),
+        (bent[0][1], bent[1][1]),
+        (pressed[0][1], pressed[1][1]),
+    )
+
+
+def _miner(
+    case: Case, levels: tuple[Rating, ...], member: int, contact: bool
+) -> tuple[float, float]:
+    """Return Miner's sum and the safety factor of one gear."""
+    curve = life_curves(case, contact)[member]
+    cycles = tuple(level.cycles[member] for level in levels)
+    needed = []
+    for level in levels:  # the cycle factor at which a safety factor is 1
+        safety = (level.contact_safety if contact else level.bending_safety)[member]
+        value: Any = level.factors["Z_N" if contact else "Y_N"].value
+        needed.append(value[member] / safety)
+    damage = life.miner_sum(cycles, [curve.life(factor) for factor in needed])
+    return float(damage), life.spectrum_safety(curve, cycles, tuple(needed), 1.0)

@@ -1,0 +1,294 @@
+"""What a rating by AGMA 2001-D04 starts from, and every factor with its clause."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from gearopt.physics.agma import allowables, factors, hardness, life
+from gearopt.physics.agma.bending import bending_factors
+from gearopt.physics.agma.mesh import mesh_of, pitting_factor
+from gearopt.physics.agma.refusals import single_factors
+from gearopt.physics.gears import GearPair
+
+SURFACE_HARD_KINDS = ("carburised", "nitrided")  # whose pinions count as 48 HRC and more
+EDITIONS = ("D04", "B88")
+PAIRED = ("K_B", "K_s", "J", "s_at", "s_ac", "Y_N", "Z_N", "C_H")  # one value for each gear
+SHARED = ("K_o", "K_v", "K_m", "K_R", "K_T", "C_f", "C_p", "I")
+
+
+@dataclass(frozen=True)
+class Steel:
+    """A gear's material: treatment of `allowables.TREATMENTS`, grade, hardness.
+
+    hardness [HB]: of through-hardened steel, of the core of nitrided steel; of a wheel against a
+    surface hardened pinion its own. surface: as in `allowables.CONTACT`; modulus E [MPa], poisson
+    nu; finish R_a [mm] of the flanks; reversed_load: for idlers, s_at times 0.7.
+    """
+
+    treatment: str = "through-hardened"
+    grade: int = 1
+    hardness: float = 0.0
+    surface: str = ""
+    modulus: float = 206000.0
+    poisson: float = 0.3
+    finish: float = 0.8e-3
+    reversed_load: bool = False
+
+    @property
+    def kind(self) -> str:
+        """Kind of its life curves, one of `life.KINDS`."""
+        return allowables.CURVES.get(self.treatment, "carburised")
+
+
+@dataclass(frozen=True)
+class Operation:
+    """What the pair does: power [N mm/s], pinion_speed [rad/s], hours of life.
+
+    overload K_o; temperature [degrees C]; reliability R; contacts: load cycles a revolution of
+    pinion and wheel.
+    """
+
+    power: float
+    pinion_speed: float
+    hours: float
+    overload: float = 1.0
+    temperature_C: float = 60.0
+    reliability: float = 0.99
+    contacts: tuple[float, float] = (1.0, 1.0)
+
+
+@dataclass(frozen=True)
+class Practice:
+    """How it is made and rated.
+
+    quality Q_v; curve, crowned, offset, adjusted: of `factors.load_distribution_factor`; backup:
+    ratios m_B of both rims, or None for solid blanks; size: whether K_s is Shigley's; service: of
+    `life.SERVICES`; load: of `bending.LOADS`; edition: of EDITIONS.
+    """
+
+    quality: float = 6.0
+    curve: str = "commercial"
+    crowned: bool = False
+    offset: float = 0.0
+    adjusted: bool = False
+    backup: tuple[float | None, float | None] = (None, None)
+    size: bool = False
+    service: str = "general"
+    load: str = "highest single"
+    edition: str = "D04"
+
+
+@dataclass(frozen=True)
+class Factor:
+    """A factor by its symbol: its value, or those of pinion and wheel; where it is from.
+
+    unit: "" of plain numbers. verified: whether two sources have it; remark: what limits it, or "".
+    """
+
+    symbol: str
+    value: float | tuple[float, float]
+    clause: str
+    unit: str = ""
+    verified: bool = True
+    remark: str = ""
+
+
+@dataclass(frozen=True)
+class Case:
+    """What the factors are computed from."""
+
+    pair: GearPair
+    operation: Operation
+    steels: tuple[Steel, Steel]
+    practice: Practice
+    given: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def diameter(self) -> float:
+        """Working pitch diameter of the pinion [mm]."""
+        return float(self.pair.working_diameters[0])
+
+    @property
+    def speed(self) -> float:
+        """Pitch line velocity [mm/s]."""
+        return 0.5 * self.operation.pinion_speed * self.diameter
+
+    @property
+    def cycles(self) -> tuple[float, float]:
+        """Stress cycles of pinion and wheel."""
+        rpm = self.operation.pinion_speed * 30.0 / math.pi
+        first, second = self.operation.contacts
+        hours = self.operation.hours
+        wheel = life.cycles_of(hours, rpm / float(self.pair.ratio), second)
+        return float(life.cycles_of(hours, rpm, first)), float(wheel)
+
+
+def all_factors(case: Case) -> list[Factor]:
+    """Return all factors of a case, given ones in the place of computed ones."""
+    found = []
+    for symbol in (*SHARED, *PAIRED):
+        if symbol in case.given:
+            found.append(Factor(symbol, case.given[symbol], "given"))
+        else:
+            found.append(_COMPUTED[symbol](case))
+    return found
+
+
+def _dynamic(case: Case) -> Factor:
+    quality, speed = case.practice.quality, case.speed
+    most = float(factors.highest_speed(quality))
+    remark = "" if speed <= most else f"beyond the curve, which ends at {1e-3 * most:.1f} m/s"
+    value = float(factors.dynamic_factor(speed, quality))
+    return Factor("K_v", value, "2001-D04, 8", remark=remark)
+
+
+def _distribution(case: Case) -> Factor:
+    practice, width = case.practice, float(case.pair.face_width)
+    value = factors.load_distribution_factor(
+        width, case.diameter, practice.curve, practice.crowned, practice.offset, practice.adjusted
+    )
+    remark = ""
+    if width > factors.WIDEST:
+        remark = f"face widths up to {factors.WIDEST:.0f} mm"
+    elif width > 2.0 * case.diameter:
+        remark = "face widths up to 2 pinion diameters"
+    return Factor("K_m", float(value), "2001-D04, 15", remark=remark)
+
+
+def _reliability(case: Case) -> Factor:
+    wanted = case.operation.reliability
+    if wanted in factors.RELIABILITY:
+        return Factor("K_R", factors.RELIABILITY[wanted], "2001-D04, 18, table 11")
+    if not 0.5 < wanted <= 0.9999:
+        raise ValueError(f"no K_R of a reliability of {wanted:g}: above 0.5, up to 0.9999")
+    return Factor("K_R", float(factors.reliability_factor(wanted)), "fit of 2001-D04, table 11")
+
+
+def _temperature(case: Case) -> Factor:
+    celsius = case.operation.temperature_C
+    clause = "2001-D04, 19" if celsius <= 120.0 else "customary; the standard has no value"
+    return Factor("K_T", float(factors.temperature_factor(celsius)), clause)
+
+
+def _elastic(case: Case) -> Factor:
+    moduli = [number for steel in case.steels for number in (steel.modulus, steel.poisson)]
+    return Factor("C_p", float(factors.elastic_coefficient(*moduli)), "2001-D04, 11", "sqrt(MPa)")
+
+
+def _pitting(case: Case) -> Factor:
+    if "J" not in case.given:
+        single_factors(case.pair, case.practice.load)
+    return Factor("I", float(pitting_factor(mesh_of(case.pair))), "908-B89, 4")
+
+
+def _bending(case: Case) -> Factor:
+    if "I" in case.given:
+        single_factors(case.pair, case.practice.load)
+    first, second = bending_factors(case.pair, case.practice.load)
+    return Factor("J", (float(first.value), float(second.value)), "908-B89, 5")
+
+
+def _rim(case: Case) -> Factor:
+    new = case.practice.edition == "D04"
+    law = factors.rim_factor if new else factors.rim_factor_b88
+    first, second = (1.0 if ratio is None else float(law(ratio)) for ratio in case.practice.backup)
+    solid = case.practice.backup == (None, None)
+    return Factor(
+        "K_B", (first, second), f"2001-{case.practice.edition}, annex B", "", new or solid
+    )
+
+
+def _size(case: Case) -> Factor:
+    if not case.practice.size:
+        return Factor("K_s", (1.0, 1.0), "2001-D04, 20")
+    gears, width = case.pair.gears, case.pair.face_width
+    first, second = (
+        float(
+            factors.size_factor(
+                width, gear.reference_diameter / gear.teeth, factors.lewis_form(gear.teeth)
+            )
+        )
+        for gear in gears
+    )
+    return Factor("K_s", (first, second), "Shigley, eq. 14-10")
+
+
+def _strength(case: Case, contact: bool) -> Factor:
+    """Return s_ac or s_at of both gears."""
+    made = []
+    for steel in case.steels:
+        if case.practice.edition == "B88" and steel.treatment == "through-hardened":
+            old = allowables.contact_allowable_b88 if contact else allowables.bending_allowable_b88
+            made.append(old(steel.grade, steel.hardness))
+        elif contact:
+            own = steel.treatment, steel.grade, steel.hardness, steel.surface
+            made.append(allowables.contact_allowable(*own))
+        else:
+            made.append(allowables.bending_allowable(steel.treatment, steel.grade, steel.hardness))
+    used = [
+        1.0 if contact or not steel.reversed_load else allowables.REVERSED for steel in case.steels
+    ]
+    first, second = (a.stress * u for a, u in zip(made, used, strict=True))
+    remark = "" if all(a.within for a in made) else "hardness outside the range of its line"
+    sources = "; ".join(dict.fromkeys(a.source for a in made))
+    verified = all(a.verified for a in made)
+    return Factor("s_ac" if contact else "s_at", (first, second), sources, "MPa", verified, remark)
+
+
+def _cycle_factor(case: Case, contact: bool) -> Factor:
+    curves = life_curves(case, contact)
+    first, second = (
+        float(curve.factor(cycles)) for curve, cycles in zip(curves, case.cycles, strict=True)
+    )
+    most = max(case.cycles)
+    remark = "" if most <= life.LONGEST else f"beyond {life.LONGEST:g} cycles"
+    symbol = "Z_N" if contact else "Y_N"
+    induction = not contact and any(s.treatment.startswith("induction") for s in case.steels)
+    return Factor(symbol, (first, second), "2001-D04, 17", "", not induction, remark)
+
+
+def life_curves(case: Case, contact: bool) -> tuple[life.Curve, life.Curve]:
+    """Return the life curves of pinion and wheel, of contact or of bending."""
+    service = case.practice.service
+    first, second = (
+        life.pitting_curve(steel.kind, service)
+        if contact
+        else life.bending_curve(steel.kind, steel.hardness, service)
+        for steel in case.steels
+    )
+    return first, second
+
+
+def _hardness_ratio(case: Case) -> Factor:
+    pinion, wheel = case.steels
+    clause = "2001-D04, 14"
+    if wheel.kind != "through-hardened":
+        return Factor("C_H", (1.0, 1.0), clause)
+    if pinion.kind in SURFACE_HARD_KINDS:
+        value = hardness.surface_hardened_factor(pinion.finish, wheel.hardness)
+    else:
+        value = hardness.hardness_ratio_factor(
+            pinion.hardness, wheel.hardness, float(case.pair.ratio)
+        )
+    return Factor("C_H", (1.0, float(value)), clause)
+
+
+_COMPUTED = {
+    "K_o": lambda case: Factor("K_o", case.operation.overload, "2001-D04, 9"),
+    "K_v": _dynamic,
+    "K_m": _distribution,
+    "K_R": _reliability,
+    "K_T": _temperature,
+    "C_f": lambda case: Factor("C_f", 1.0, "2001-D04, 13"),
+    "C_p": _elastic,
+    "I": _pitting,
+    "K_B": _rim,
+    "K_s": _size,
+    "J": _bending,
+    "s_at": lambda case: _strength(case, False),
+    "s_ac": lambda case: _strength(case, True),
+    "Y_N": lambda case: _cycle_factor(case, False),
+    "Z_N": lambda case: _cycle_factor(case, True),
+    "C_H": _hardness_ratio,
+}
