@@ -6,8 +6,6 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from gearopt.physics.agma import allowables, factors, hardness, life
-from gearopt.physics.agma.bending import bending_factors
-from gearopt.physics.agma.mesh import mesh_of, pitting_factor
 from gearopt.physics.agma.refusals import single_factors
 from gearopt.physics.gears import GearPair
 
@@ -177,16 +175,13 @@ def _elastic(case: Case) -> Factor:
 
 
 def _pitting(case: Case) -> Factor:
-    if "J" not in case.given:
-        single_factors(case.pair, case.practice.load)
-    return Factor("I", float(pitting_factor(mesh_of(case.pair))), "908-B89, 4")
+    found = single_factors(case.pair, case.practice.load)
+    return Factor("I", float(found.pitting), "908-B89, 4")
 
 
 def _bending(case: Case) -> Factor:
-    if "I" in case.given:
-        single_factors(case.pair, case.practice.load)
-    first, second = bending_factors(case.pair, case.practice.load)
-    return Factor("J", (float(first.value), float(second.value)), "908-B89, 5")
+    first, second = single_factors(case.pair, case.practice.load).bending
+    return Factor("J", (float(first), float(second)), "908-B89, 5")
 
 
 def _rim(case: Case) -> Factor:

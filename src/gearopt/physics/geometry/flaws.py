@@ -83,8 +83,9 @@ def _of_pair(pair: GearPair) -> list[Flaw]:
     nominal, usable = contact_path(pair), usable_path(pair)
     ratio = float(usable.transverse_ratio)
     found = []
-    if nominal.transverse_ratio < 1.0 and ratio + pair.overlap_ratio < 1.0:
-        text = f"The contact ratio is {nominal.transverse_ratio:.3f}: contact breaks off."
+    bare = float(nominal.transverse_ratio)
+    if bare <= 0.0 or bare < 1.0 and bare + pair.overlap_ratio < 1.0:
+        text = f"The transverse contact ratio is {bare:.3f}: contact breaks off."
         found.append(Flaw("contact ratio below 1", text, True))
     elif ratio < 1.0:
         text = f"Form circles leave a transverse contact ratio of {ratio:.3f}, below 1."

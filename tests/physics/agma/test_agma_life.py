@@ -1,0 +1,109 @@
+"""Stress cycle factors against worked examples; lives as inverses; Miner's sum by hand."""
+
+import math
+
+import numpy as np
+import pytest
+
+from gearopt.physics.agma.life import (
+    KINDS,
+    SERVICES,
+    bending_curve,
+    cycles_of,
+    miner_sum,
+    pitting_curve,
+    spectrum_safety,
+)
+
+CURVES = [
+    *(bending_curve(kind, 330.0, service) for kind in KINDS for service in SERVICES),
+    *(pitting_curve(kind, service) for kind in KINDS for service in SERVICES),
+]
+
+
+def test_factors_of_an_example():
+    """Shigley 14-4, 1e8 cycles of the pinion, u 52/17: Y_N 0.977, 0.996; Z_N 0.948, 0.973."""
+    cycles = np.array([1e8, 1e8 * 17 / 52])
+    bent = bending_curve("through-hardened", 240.0).factor(cycles)
+    assert bent == pytest.approx([0.977, 0.996], abs=6e-4)
+    pressed = pitting_curve("through-hardened").factor(cycles)
+    assert pressed == pytest.approx([0.948, 0.973], abs=6e-4)
+
+
+def test_short_lives_of_the_figure():
+    """Left ends of the charts, at 1000 cycles: 160, 250, 400 HB, carburised, nitrided."""
+    for hardness, value in ((160, 1.6), (250, 2.4), (400, 3.4)):
+        assert bending_curve("through-hardened", hardness).factor(1e3) == pytest.approx(value, 0.01)
+    assert bending_curve("carburised").factor(1e3) == pytest.approx(2.7, abs=0.01)
+    assert bending_curve("nitrided").factor(1e3) == pytest.approx(2.0, abs=0.01)
+    assert pitting_curve("carburised").factor(1e4) == pytest.approx(1.47, abs=0.01)
+    assert pitting_curve("nitrided").factor(1e4) == pytest.approx(1.10, abs=0.01)
+
+
+@pytest.mark.parametrize("curve", CURVES)
+def test_curves_fall_without_a_step_and_have_an_inverse(curve):
+    cycles = np.logspace(math.log10(curve.shortest), 10, 20001)
+    factors = curve.factor(cycles)
+    assert (np.diff(factors) < 0).all()
+    assert np.abs(np.diff(np.log(factors))).max() < 0.15 * np.diff(np.log(cycles)).max()
+    assert np.allclose(curve.life(factors), cycles, rtol=1e-9, atol=0)
+    assert curve.life(float(factors[0]) * 1.001) == 0.0
+    assert curve.factor(0.01 * curve.shortest) == pytest.approx(factors[0], rel=1e-15)
+
+
+@pytest.mark.parametrize("cycles", [1e7, 3e6])
+def test_the_join_is_that_of_the_figure(cycles):
+    """Within 3e-4 of 1 at 1e7 in pitting; of 1.04 at 3e6 cycles in bending."""
+    for curve in CURVES:
+        wanted = 1.0397 if curve.shortest == 1e3 else 1.0
+        at = 3e6 if curve.shortest == 1e3 else 1e7
+        assert curve.factor(at) == pytest.approx(wanted, abs=3e-4)
+
+
+def test_between_hardnesses_curves_lie_between():
+    low, middle, high = (bending_curve("through-hardened", h).factor(1e4) for h in (250, 300, 400))
+    assert low < middle < high
+    assert bending_curve("through-hardened", 500).factor(1e4) == high
+
+
+def test_words_without_a_curve_are_refused():
+    with pytest.raises(ValueError, match="through-hardened"):
+        bending_curve("soft")
+    with pytest.raises(ValueError, match="critical"):
+        pitting_curve("nitrided", "perfect")
+
+
+def test_cycles_and_miner_by_hand():
+    assert cycles_of(1000.0, 1500.0, 2.0) == 1.8e8
+    assert miner_sum((1e6, 2e6, 0.0), (4e6, 4e6, 0.0)) == pytest.approx(0.75)
+    assert miner_sum((1.0,), (0.0,)) == math.inf
+
+
+def test_one_level_is_a_plain_load():
+    curve = bending_curve("carburised")
+    assert spectrum_safety(curve, (1e6,), (200.0,), 380.0) == pytest.approx(
+        380.0 * curve.factor(1e6) / 200.0, rel=1e-14
+    )
+    assert spectrum_safety(curve, (5e5, 5e5), (200.0, 200.0), 380.0) == pytest.approx(
+        380.0 * curve.factor(1e6) / 200.0, rel=1e-12
+    )
+
+
+def test_two_levels_by_hand():
+    """On the short branch, N = (A/Y)^(1/B): the sum of n_i (f s_i)^(1/B) is (A s_at)^(1/B)."""
+    curve = bending_curve("carburised")
+    a, b = curve.short
+    cycles, stresses, allowable = (1e5, 2e5), (500.0, 400.0), 380.0
+    total = sum(n * s ** (1 / b) for n, s in zip(cycles, stresses, strict=True))
+    expected = a * allowable * total**-b
+    found = spectrum_safety(curve, cycles, stresses, allowable)
+    assert found == pytest.approx(expected, rel=1e-12)
+    lives = [curve.life(found * s / allowable) for s in stresses]
+    assert miner_sum(cycles, lives) == pytest.approx(1.0, rel=1e-9)
+
+
+def test_a_level_without_cycles_or_load_changes_nothing():
+    curve = pitting_curve("carburised")
+    one = spectrum_safety(curve, (1e8,), (900.0,), 1240.0)
+    assert spectrum_safety(curve, (1e8, 0.0, 1e9), (900.0, 9e9, 0.0), 1240.0) == one
+    assert spectrum_safety(curve, (0.0,), (900.0,), 1240.0) == math.inf
