@@ -107,6 +107,31 @@ def test_helical_values_of_another_program(z2, degrees, j1, j2, i):
     assert pitted(pair) == pytest.approx(i, rel=0.01)
 
 
+# By the form of 908 for pinion-type tools, of a tool of 2e7 teeth, written out apart: z1, z2, psi,
+# b/m_n, phi_n, shifts, thinning, h_a0, rho_a0, delta_a0; I, J1, J2. The first is an input set with
+# tool data in the style of AGMA 918 whose tool is pointed by 0.03 m_n.
+SHAPED = [
+    (
+        (21, 86, 15, 22.5, 20, (0.5343, 0.0), 0.0, 1.476, 0.4092, 0.0061),
+        (0.242106, 0.594539, 0.549538),
+    ),
+    ((19, 40, 20, 6.0, 20, (0.3, -0.1), 0.02, 1.35, 0.25, 0.02), (0.162478, 0.465808, 0.418788)),
+    ((24, 95, 10, 25.7, 20, (0.38, 0.2), 0.0, 1.25, 0.3, 0.0), (0.215046, 0.529083, 0.517973)),
+    ((15, 32, 0, 10.0, 25, (0.25, 0.1), 0.03, 1.3, 0.2, 0.03), (0.117465, 0.382775, 0.400838)),
+    ((30, 75, 30, 12.0, 20, (-0.1, 0.2), 0.024, 1.4, 0.2, 0.0), (0.194417, 0.450827, 0.509777)),
+    ((18, 18, 25, 4.0, 20, (0.2, 0.2), 0.0, 1.25, 0.25, 0.01), (0.110791, 0.417748, 0.417748)),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("teeth", "values"), SHAPED)
+def test_any_tool_shift_thinning_and_overlap(teeth, values):
+    z1, z2, helix, width, angle, shifts, thinning, depth, radius, protuberance = teeth
+    rack = Rack(math.radians(angle), 1.0, depth, radius, protuberance)
+    pair = GearPair.of_teeth(1.0, z1, z2, width, math.radians(helix), rack, shifts)
+    found = single_factors(thinned(pair, thinning))
+    assert (found.pitting, *found.bending) == pytest.approx(values, abs=1.5e-6)
+
+
 def test_shigley_14_5_by_908():
     """17/52, psi 30: the book's charts give 0.423/0.529 and 0.195; 908 0.4221/0.4690, 0.1967."""
     pair = GearPair.of_teeth(2.54, 17, 52, 38.1, math.radians(30.0), R20)

@@ -214,7 +214,7 @@ def check(pair):
 
 
 def test_random_points_have_an_answer_or_a_name():
-    assert len(check(random_pairs(10_000, 1))) > 6  # of the names of REFUSALS
+    assert len(check(random_pairs(4_000, 1))) > 6  # of the names of REFUSALS
 
 
 @pytest.mark.slow
@@ -231,8 +231,8 @@ def test_a_million_random_points_have_an_answer_or_a_name():
         (GearPair.of_teeth(1.0, 60, 90, 8.0, working_distance=77.5), "contact ratio below 1"),
         (GearPair.of_teeth(1.0, 60, 90, 8.0, working_distance=70.0), "no centre distance"),
         (GearPair.of_teeth(1.0, 90, 90, 8.0, rack=Rack(0.3, 1.35, 1.6, 0.2)), "contact ratio of 2"),
-        (GearPair.of_teeth(1.0, 8, 100, 8.0, profile_shifts=(-0.5, 0.5)), "contact at the base"),
-        (GearPair.of_teeth(1.0, 30, 60, 8.0, rack=Rack(tip_radius=0.6)), "pointed tool"),
+        (GearPair.of_teeth(1.0, 8, 50, 8.0), "usable contact ratio below 1"),
+        (GearPair.of_teeth(1.0, 30, 60, 8.0, rack=Rack(0.5, 1.0, 1.8)), "pointed tool"),
     ],
 )
 def test_refusals_by_name(pair, name):
@@ -252,9 +252,9 @@ def single(gear, k):
 
 def test_fatal_flaws_are_refusals():
     """Of pairs of floats taken out of random arrays; 908's own refusals are no flaws."""
-    many = random_pairs(200, 7)
+    many = random_pairs(30, 7)
     codes = geometry_factors(many).refusal
-    own = REFUSALS.index("contact ratio below 1")
+    own = REFUSALS.index("usable contact ratio below 1")
     for k, code in enumerate(codes):
         gears = [single(gear, k) for gear in many.gears]
         found = flaws(GearPair(*gears, float(many.working_distance[k])))

@@ -19,14 +19,16 @@ def pair(z1, z2, x1=0.0, x2=0.0, rack=None, distance=None):
     [
         (pair(25, 50), set(), set()),
         (pair(14, 50), set(), {"undercut", "interference"}),
-        (pair(8, 50), set(), {"undercut", "interference", "usable contact ratio below 1"}),
+        (pair(17, 17), set(), set()),
+        (pair(8, 50), {"usable contact ratio below 1"}, {"undercut", "interference"}),
         (pair(10, 40, 0.8), {"pointed tooth"}, set()),
         (pair(12, 40, 0.7, -0.7), set(), {"thin tip"}),
         (pair(60, 100, -1.8, -1.8), {"no centre distance"}, set()),
         (pair(25, 50, distance=100.0), {"no centre distance"}, set()),
         (pair(25, 50, distance=116.0), {"contact ratio below 1"}, set()),
         (pair(25, 50, distance=112.4), set(), {"no backlash"}),
-        (pair(25, 50, rack=Rack(tip_radius=0.5)), {"pointed tool"}, set()),
+        (pair(25, 50, rack=Rack(tip_radius=0.5)), set(), {"pointed tool"}),
+        (pair(25, 50, rack=Rack(0.5, 1.0, 1.8)), {"pointed tool"}, set()),
         (pair(25, 50, rack=Rack(addendum=1.3)), set(), {"no tip clearance", "interference"}),
     ],
 )

@@ -13,7 +13,12 @@ import numpy as np
 
 from gearopt.physics.agma.mesh import Mesh, choose, mesh_of, virtual_gear
 from gearopt.physics.gears import Gear, GearPair
-from gearopt.physics.geometry.fillet import base_half_angle, fillet_point, least_fillet_radius
+from gearopt.physics.geometry.fillet import (
+    base_half_angle,
+    fillet_point,
+    least_fillet_radius,
+    tool_tip,
+)
 
 HALVINGS, SECANTS = 12, 4  # of a tool angle of 1.2: 3e-4, then 1e-7, 3e-11, to the last digit
 LOADS = ("highest single", "tip")
@@ -153,7 +158,7 @@ def bending_factor(tooth: LoadedTooth, theta: Any) -> BendingFactor:
     Y = K_psi/((cos(phi_nL)/cos(phi_nr)) (6 h_F/(s_F^2 C_h) - tan(phi_nL)/s_F));
     K_f = H + (s_F/rho_F)^L (s_F/h_F)^M, H = 0.331 - 0.436 phi_n, L = 0.324 - 0.492 phi_n, M = 0.261
     + 0.545 phi_n (Dolan and Broghamer; phi_n of the tool). NaN where 908 has no answer: the radial
-    part of the load outweighs bending, or no height is left above the section.
+    part of the load outweighs bending, or a pointed tool does not cut the section.
     Source: AGMA 908-B89, clause 5; its tables are met within 0.007 (tests/physics/agma).
     """
     point = fillet_point(tooth.gear, theta)
@@ -169,7 +174,9 @@ def bending_factor(tooth: LoadedTooth, theta: Any) -> BendingFactor:
     overlap = tooth.mesh.overlap_factor**0.5
     value = form * overlap / (concentration * tooth.mesh.sharing)
     if isinstance(value, float | np.ndarray):
-        value = choose(stress > 0.0, value, np.nan)
+        tip = tool_tip(tooth.gear)
+        cut = tip.half_width + tip.radius * np.cos(theta) >= 0.0
+        value = choose((stress > 0.0) & cut, value, np.nan)
     return BendingFactor(value, form, concentration, height, thickness)
 
 

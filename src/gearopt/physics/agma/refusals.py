@@ -8,7 +8,8 @@ import numpy as np
 from gearopt.physics.agma.bending import bending_factors
 from gearopt.physics.agma.mesh import lowest_curvatures, mesh_of, pitting_factor
 from gearopt.physics.gears import Gear, GearPair
-from gearopt.physics.geometry.fillet import tool_tip
+from gearopt.physics.geometry.contact import usable_path
+from gearopt.physics.geometry.fillet import has_tip
 from gearopt.physics.geometry.tooth import tip_thickness
 
 REFUSALS = (
@@ -20,6 +21,7 @@ REFUSALS = (
     "no involute",
     "pointed tooth",
     "contact ratio below 1",
+    "usable contact ratio below 1",
     "contact ratio of 2 or more",
     "contact at the base circle",
     "no bending",
@@ -31,15 +33,18 @@ SENTENCES = dict(
             "internal gears are not covered, only external ones",
             "the sum of the profile shifts is too small for any centre distance, or a given one "
             "makes the base circles overlap",
-            "the tool's tip radius does not fit between its flanks",
+            "the flanks of a tool meet before its tip round begins",
             "a root circle has no diameter",
             "a tip circle lies inside its base circle",
             "a tooth is pointed below its tip circle",
             "the transverse contact ratio is below 1 and the overlap does not make up for it",
+            "undercut or interference leaves a transverse contact ratio below 1, and the overlap "
+            "does not make up for it",
             "AGMA 908 has no geometry factors for spur gears, and helical gears with an overlap "
             "ratio of at most 1, with a transverse contact ratio of 2 or more",
             "the point of the load that AGMA 908 asks for lies at or below a base circle",
-            "the radial part of the load outweighs bending, or there is no critical section",
+            "the radial part of the load outweighs bending, or there is no critical section (the "
+            "load passes below it, or the tool is pointed above it)",
         ),
         strict=True,
     )
@@ -72,6 +77,7 @@ def geometry_factors(pair: GearPair, load: str = "highest single") -> GeometryFa
         ~np.isfinite(pair.working_angle) | ~(np.asarray(pair.working_angle) > 0.0),
         *_of_gears(pair),
         ~(ratio > 0.0) | (ratio < 1.0) & (ratio + mesh.overlap < 1.0),
+        ~(usable_path(pair).transverse_ratio + mesh.overlap >= 1.0),
         single & (ratio >= 2.0),
         ~(np.minimum(*low) > 0.0) & single | ~(pitting > 0.0),
         ~(np.minimum(*bending) > 0.0),
@@ -89,7 +95,7 @@ def _of_gears(pair: GearPair) -> list[Any]:
         return fault(pair.pinion) | fault(pair.wheel)
 
     return [
-        either(lambda g: np.less(tool_tip(g).half_width, 0.0)),
+        either(lambda g: ~np.asarray(has_tip(g))),
         either(lambda g: np.less_equal(g.root_diameter, 0.0)),
         either(_no_involute),
         either(lambda g: ~(np.asarray(tip_thickness(g)) > 0.0)),

@@ -8,15 +8,15 @@ line from the gear's axis, x > 0 across it. For the virtual spur gear of AGMA 90
 a gear of its teeth without helix angle.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
 
-from gearopt.physics.gears import Gear
+from gearopt.physics.gears import Gear, Rack
 from gearopt.physics.geometry.involute import involute
 
-HALVINGS = 60  # of an interval of tool angles: to the last digit
+HALVINGS = 50  # of an interval of tool angles: to the last digit
 TOUCHES = 1e-12  # of sin(alpha_t)^2 z/2: undercut by less is none
 
 
@@ -60,6 +60,16 @@ def tool_tip(gear: Gear) -> ToolTip:
     left = (radius - rack.protuberance * module) / np.cos(rack.pressure_angle)
     half = np.pi / 4.0 * module - inside * np.tan(rack.pressure_angle) - left
     return ToolTip(depth, half, radius)
+
+
+def has_tip(gear: Gear) -> Any:
+    """Return whether the tool's flanks end before they meet: bool or array of them.
+
+    A tool with half_width < 0 may have a tip: its rounds then meet in an edge, which leaves a ridge
+    on the root circle.
+    """
+    tip = tool_tip(gear)
+    return np.greater(tip.half_width + tip.radius * np.cos(gear.rack.pressure_angle), 0.0)
 
 
 def largest_tip_radius(pressure_angle: Any, dedendum: Any) -> Any:
@@ -151,22 +161,38 @@ def fillet_end(gear: Gear) -> Any:
     crossing lies between the base circle and the end of the tool's flank; protuberance moves that
     end to alpha_n - arccos(1 - pr/rho). Floats or arrays of one shape, not casadi.
     """
+    rack = gear.rack
+    searched = np.asarray(is_undercut(gear) | np.greater(rack.protuberance, 0.0))
+    found = np.array(np.broadcast_to(rack.pressure_angle, searched.shape), float)
+    if searched.any():
+        found[searched] = _crossing(_rows(gear, searched))
+    return found[()]
+
+
+def _rows(gear: Gear, chosen: Any) -> Gear:
+    """Return the chosen ones of a gear of arrays; chosen: booleans of their shape."""
+
+    def part(value: Any) -> Any:
+        return np.broadcast_to(value, chosen.shape)[chosen]
+
+    rack = Rack(*(part(getattr(gear.rack, each.name)) for each in fields(Rack)))
+    names = [each.name for each in fields(gear) if each.name != "rack"]
+    return replace(gear, rack=rack, **{name: part(getattr(gear, name)) for name in names})
+
+
+@np.errstate(invalid="ignore", divide="ignore", over="ignore")
+def _crossing(gear: Gear) -> Any:
+    """Return the tool angle at which fillet and involute cross; a gear of arrays."""
     rack, tip = gear.rack, tool_tip(gear)
-    angle = np.asarray(rack.pressure_angle, float)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        share = np.where(
-            np.asarray(rack.protuberance) > 0.0, rack.protuberance / np.asarray(rack.tip_radius), 0
-        )
-        low = angle - np.arccos(1.0 - np.minimum(share, 1.0))
-        cut = is_undercut(gear)
-        high = np.where(cut, _at_base(gear, tip, angle), angle)
-        low, high = np.broadcast_arrays(low, high)
-        searched = high > low
-        for _ in range(HALVINGS if np.any(searched) else 0):
-            middle = 0.5 * (low + high)
-            inside = _inside(gear, tip, middle) < 0.0
-            low, high = np.where(inside, low, middle), np.where(inside, middle, high)
-    return high[()]
+    share = np.where(rack.protuberance > 0.0, rack.protuberance / rack.tip_radius, 0.0)
+    low = rack.pressure_angle - np.arccos(1.0 - np.minimum(share, 1.0))
+    at_base = _at_base(gear, tip, rack.pressure_angle)
+    high = np.where(is_undercut(gear), at_base, rack.pressure_angle)
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        inside = _inside(gear, tip, middle) < 0.0
+        low, high = np.where(inside, low, middle), np.where(inside, middle, high)
+    return high
 
 
 def _inside(gear: Gear, tip: ToolTip, theta: Any) -> Any:
@@ -177,7 +203,7 @@ def _inside(gear: Gear, tip: ToolTip, theta: Any) -> Any:
 
 def _at_base(gear: Gear, tip: ToolTip, angle: Any) -> Any:
     """Return the tool angle at which the fillet crosses the base circle."""
-    low, high = np.broadcast_arrays(angle, np.full_like(angle, 0.5 * np.pi))
+    low, high = angle, np.full_like(angle, 0.5 * np.pi)
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
         outside = fillet_point(gear, middle, tip).radius > 0.5 * gear.base_diameter

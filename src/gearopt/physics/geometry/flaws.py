@@ -6,11 +6,11 @@ Of one pair of floats. `agma.refusals` has the fatal ones for arrays, as codes.
 import math
 from dataclasses import dataclass
 
-from gearopt.physics.gears import Gear, GearPair
+from gearopt.physics.gears import NEGLIGIBLE, Gear, GearPair
 from gearopt.physics.geometry.contact import active_root_diameters, contact_path, usable_path
 from gearopt.physics.geometry.fillet import (
     form_diameter,
-    is_undercut,
+    has_tip,
     largest_tip_radius,
     tool_tip,
     undercut_depth,
@@ -47,8 +47,8 @@ def _of_gear(member: str, gear: Gear) -> list[Flaw]:
             Flaw(
                 "pointed tool",
                 f"The tool of the {member} has no room for a tip radius of "
-                f"{gear.rack.tip_radius:.4g} m_n: at most {most:.4g}.",
-                True,
+                f"{gear.rack.tip_radius:.4g} m_n: at most {most:.4g} make one full round.",
+                not has_tip(gear),
             )
         )
     if gear.root_diameter <= 0.0:
@@ -64,8 +64,8 @@ def _of_gear(member: str, gear: Gear) -> list[Flaw]:
     elif thin < THIN_TIP:
         text = f"The tips of the {member} are {thin:.2f} m_n thick, below {THIN_TIP:g} m_n."
         found.append(Flaw("thin tip", text, False))
-    if is_undercut(gear):
-        depth = float(undercut_depth(gear)) / gear.normal_module
+    depth = float(undercut_depth(gear)) / gear.normal_module
+    if depth > NEGLIGIBLE:
         text = f"The {member} is undercut: its tool reaches {depth:.3f} m_n too deep."
         found.append(Flaw("undercut", text, False))
     return found
@@ -87,9 +87,10 @@ def _of_pair(pair: GearPair) -> list[Flaw]:
     if bare <= 0.0 or bare < 1.0 and bare + pair.overlap_ratio < 1.0:
         text = f"The transverse contact ratio is {bare:.3f}: contact breaks off."
         found.append(Flaw("contact ratio below 1", text, True))
-    elif ratio < 1.0:
+    elif not ratio >= 1.0:
         text = f"Form circles leave a transverse contact ratio of {ratio:.3f}, below 1."
-        found.append(Flaw("usable contact ratio below 1", text, False))
+        fatal = not ratio + pair.overlap_ratio >= 1.0
+        found.append(Flaw("usable contact ratio below 1", text, fatal))
     found += _interference(pair)
     for member, clearance in zip(MEMBERS, tip_clearances(pair), strict=True):
         if clearance < 0.0:
