@@ -176,6 +176,7 @@ def test_marks_travel():
     assert set(rate(spur(), EXAMPLE, steels, old).unverified) == {"K_B", "s_at"}
     hard = Steel("induction, roots"), Steel("carburised")
     assert rate(spur(), EXAMPLE, hard).unverified == ("Y_N",)
+    assert rate(helical(), EXAMPLE, STEELS).unverified == ("I", "J")
 
 
 def test_limits_of_the_curves_are_remarked():

@@ -176,12 +176,19 @@ def _elastic(case: Case) -> Factor:
 
 def _pitting(case: Case) -> Factor:
     found = single_factors(case.pair, case.practice.load)
-    return Factor("I", float(found.pitting), "908-B89, 4")
+    return Factor("I", float(found.pitting), "908-B89, 4", "", *_of_helix(case))
 
 
 def _bending(case: Case) -> Factor:
     first, second = single_factors(case.pair, case.practice.load).bending
-    return Factor("J", (float(first), float(second)), "908-B89, 5")
+    return Factor("J", (float(first), float(second)), "908-B89, 5", "", *_of_helix(case))
+
+
+def _of_helix(case: Case) -> tuple[bool, str]:
+    """Return whether published values confirm I and J, and what is to be remarked."""
+    if case.pair.overlap_ratio == 0.0:
+        return True, ""
+    return False, "helical: two sources have the method, no published table confirms its values"
 
 
 def _rim(case: Case) -> Factor:
