@@ -252,7 +252,7 @@ def single(gear, k):
 
 def test_fatal_flaws_are_refusals():
     """Of pairs of floats taken out of random arrays; 908's own refusals are no flaws."""
-    many = random_pairs(30, 7)
+    many = random_pairs(16, 7)
     codes = geometry_factors(many).refusal
     own = REFUSALS.index("usable contact ratio below 1")
     for k, code in enumerate(codes):

@@ -68,6 +68,8 @@ def test_points_of_the_digest(teeth, shifts, points, ratio):
     found = path.start, path.lowest_single, path.highest_single, path.end
     assert found == pytest.approx(points, abs=6e-5)
     assert path.transverse_ratio == pytest.approx(ratio, rel=4e-7)
+    pair = GearPair.of_teeth(*teeth, 30.0, profile_shifts=shifts)
+    assert pair.transverse_contact_ratio == pytest.approx(path.transverse_ratio, rel=1e-13)
 
 
 def test_radii_of_the_digest():

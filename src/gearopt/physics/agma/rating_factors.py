@@ -3,10 +3,11 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 from gearopt.physics.agma import allowables, factors, hardness, life
-from gearopt.physics.agma.refusals import single_factors
+from gearopt.physics.agma.refusals import GeometryFactors, single_factors
 from gearopt.physics.gears import GearPair
 
 SURFACE_HARD_KINDS = ("carburised", "nitrided")  # whose pinions count as 48 HRC and more
@@ -112,6 +113,11 @@ class Case:
         """Pitch line velocity [mm/s]."""
         return 0.5 * self.operation.pinion_speed * self.diameter
 
+    @cached_property
+    def geometry(self) -> GeometryFactors:
+        """I and J of AGMA 908; ValueError where it refuses the pair."""
+        return single_factors(self.pair, self.practice.load)
+
     @property
     def cycles(self) -> tuple[float, float]:
         """Stress cycles of pinion and wheel."""
@@ -175,12 +181,11 @@ def _elastic(case: Case) -> Factor:
 
 
 def _pitting(case: Case) -> Factor:
-    found = single_factors(case.pair, case.practice.load)
-    return Factor("I", float(found.pitting), "908-B89, 4", "", *_of_helix(case))
+    return Factor("I", float(case.geometry.pitting), "908-B89, 4", "", *_of_helix(case))
 
 
 def _bending(case: Case) -> Factor:
-    first, second = single_factors(case.pair, case.practice.load).bending
+    first, second = case.geometry.bending
     return Factor("J", (float(first), float(second)), "908-B89, 5", "", *_of_helix(case))
 
 

@@ -138,8 +138,8 @@ class Duty:
     """What all rows of a batch share.
 
     power [N mm/s] and pinion_speed [rad/s]; overload K_o; quality Q_v; curve of K_m; elastic C_p
-    [sqrt(MPa)]; bending and contact: s_at and s_ac Z-ready [MPa] of pinion and wheel, (s_at, s_at)
-    and (s_ac, s_ac C_H); cycles of the pinion; bending_curves, contact_curves; reliability K_R.
+    [sqrt(MPa)]; bending (s_at, s_at) and contact (s_ac, s_ac C_H) [MPa] of pinion and wheel; cycles
+    of the pinion; bending_curves, contact_curves; reliability K_R.
     """
 
     power: float
