@@ -3,9 +3,11 @@
 import statistics
 from collections.abc import Callable
 from pkgutil import iter_modules
+from typing import TypeVar
 
 from gearopt.optimise.clock import Clock
-from gearopt.optimise.result import Result
+
+T = TypeVar("T")
 
 
 def names() -> tuple[str, ...]:
@@ -13,7 +15,7 @@ def names() -> tuple[str, ...]:
     return tuple(sorted(m.name for m in iter_modules(__path__)))
 
 
-def timed(call: Callable[[], Result], repeat: int) -> tuple[Result, dict[str, float]]:
+def timed(call: Callable[[], T], repeat: int) -> tuple[T, dict[str, float]]:
     """Return the last result and the times [ms] of so many calls, without the first."""
     times = []
     for _ in range(repeat + 1):
