@@ -8,10 +8,11 @@ import pytest
 
 import gearopt
 from gearopt.physics.gears import Gear
+from gearopt.physics.geometry.fillet import profile
 from gearopt.report.measures import METRIC
 from gearopt.report.pages import layout_solid
 from gearopt.report.pages.result import page, tables
-from gearopt.report.pages.solid import Toothed, drawn_teeth, gear_mesh
+from gearopt.report.pages.solid import BACKLASH, Toothed, drawn_teeth, gear_mesh, outline
 
 ROOT = Path(__file__).parents[2]
 BOX = ROOT / "docs" / "pictures" / "elevator_box.json"
@@ -60,3 +61,13 @@ def test_gears_and_box_at_once_with_real_valued_teeth_make_a_page(method):
     result = gearopt.solve(path, method=method, budget=gearopt.Budget(seconds=5.0))
     assert any(gear["teeth"] % 1 for gear in result.design["layout"]["gears"])
     assert layout_solid.ROUNDED in page(result, "")
+
+
+def test_teeth_in_space_are_those_of_the_rack():
+    """Points of the outline lie on the profile that a rolled rack leaves, but for the backlash."""
+    gear = Gear(2.0, 20, 40.0, 10.0)
+    tooth = outline(gear, 9)[:18]
+    x, y = profile(gear, 4, 6)
+    for (angle, radius), a, b in zip(tooth[9:], x[::-1], y[::-1], strict=True):
+        assert radius == pytest.approx(math.hypot(a, b))
+        assert angle == pytest.approx(math.atan2(a, b) - BACKLASH * math.pi / 20)

@@ -42,9 +42,9 @@ MOST = 50_000  # triangles of all gears together, for a page that turns smoothly
 DETAIL = ((3, 0.12), (3, 0.3), (2, 0.6), (2, 10.0))  # points on a flank, twist a section [rad]
 FLUSH = 0.003  # of the box: a shaft is drawn so much longer, to be seen where it ends in a face
 CAPTION = (
-    f"{TURN} Tooth numbers, diameters and helix angles are those of the design; flanks are "
-    "involutes of 20 degrees. Clearances, hidden at first: the space that other shafts leave "
-    "around each gear, the limit inside the walls, and the smallest gap."
+    f"{TURN} Tooth numbers, diameters and helix angles are those of the design; teeth are "
+    "cut by the rack of ISO 53, profile A. Clearances, hidden at first: the space that other "
+    "shafts leave around each gear, the limit inside the walls, and the smallest gap."
 )
 
 ROUNDED = "Teeth are real numbers here: of each gear the nearest whole number is drawn."

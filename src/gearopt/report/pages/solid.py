@@ -8,10 +8,11 @@ import math
 import sys
 from array import array
 from base64 import b64encode
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
-from gearopt.physics.gears import Gear
+from gearopt.physics.gears import Gear, Rack
+from gearopt.physics.geometry.fillet import profile
 from gearopt.report.measures import Measures
 from gearopt.report.section import LOOK
 
@@ -53,10 +54,9 @@ class Toothed:
 
 
 def gear_mesh(placed: Toothed, flank: int, step: float) -> Mesh:
-    """Return a helical gear with involute flanks; the bore is left out.
+    """Return a helical gear with the teeth of its rack; the bore is left out.
 
-    flank: points on a flank, at least 2. step: largest twist between two sections [rad].
-    Half the angle of a tooth at radius r is pi/(2 z) + inv(alpha_t) - inv(alpha_r).
+    flank: points on a flank, as of `outline`. step: largest twist between two sections [rad].
     """
     gear, start, end = placed.gear, placed.start, placed.end
     rim = outline(gear, flank)
@@ -88,22 +88,38 @@ def twist(gear: Gear) -> float:
 
 
 def outline(gear: Gear, flank: int) -> list[tuple[float, float]]:
-    """Return (angle, radius) once round the gear, a tooth in the middle of angle 0."""
-    transverse = float(gear.transverse_pressure_angle)
-    base = float(gear.base_diameter) / 2.0
+    """Return (angle, radius) once round the gear, a tooth in the middle of angle 0.
+
+    flank: points from root circle to tip circle, at least 2: of the fillet and the involute, with
+    2 a straight flank from root to tip. Thinner by BACKLASH.
+    """
     teeth = drawn_teeth(gear.teeth)
-    half = math.pi / (2.0 * teeth) * (1.0 - 2.0 * BACKLASH)
-    low, high = gear.root_diameter / 2.0, gear.tip_diameter / 2.0
-    side = []
-    for k in range(flank):
-        at = low + (high - low) * k / (flank - 1)
-        angle = math.acos(min(1.0, base / max(at, base)))
-        thick = half + _involute(transverse) - _involute(angle)
-        side.append((max(thick, 0.1 * half), at))
-    side[0] = (min(side[0][0], math.pi / teeth * 0.9), side[0][1])
+    x, y = (list(map(float, v)) for v in profile(_of_whole_teeth(gear, teeth), *_shares(flank)))
+    side = [(math.atan2(a, b), math.hypot(a, b)) for a, b in zip(x, y, strict=True)]
+    if flank == 2:
+        side = [(side[1][0], side[0][1]), side[-1]]
+    half = math.pi / teeth
+    least, most = 0.05 * half, (1.0 - BACKLASH) * half  # of pointed teeth and pointed tools
+    side = [(min(max(angle - half * BACKLASH, least), most), at) for angle, at in side]
     tooth = [(-angle, at) for angle, at in side] + side[::-1]
     pitch = 2.0 * math.pi / teeth
     return [(k * pitch + angle, at) for k in range(teeth) for angle, at in tooth]
+
+
+def _shares(flank: int) -> tuple[int, int]:
+    """Return points of the fillet and of the involute, which share one."""
+    on_fillet = max(2, flank // 2)
+    return on_fillet, max(2, flank + 1 - on_fillet)
+
+
+def _of_whole_teeth(gear: Gear, teeth: int) -> Gear:
+    """Return the gear with a whole number of teeth in the same circles."""
+    scale = gear.teeth / teeth
+    rack = gear.rack
+    heights = (rack.addendum, rack.dedendum, rack.tip_radius, rack.protuberance)
+    drawn = Rack(rack.pressure_angle, *(height / scale for height in heights))
+    module = gear.normal_module * scale
+    return replace(gear, normal_module=module, teeth=float(teeth), rack=drawn)
 
 
 def drawn_teeth(teeth: float) -> int:
@@ -111,10 +127,6 @@ def drawn_teeth(teeth: float) -> int:
     if not 1 <= round(teeth) <= MOST_TEETH:
         raise ValueError(f"a gear of {teeth:g} teeth")
     return round(teeth)
-
-
-def _involute(angle: float) -> float:
-    return math.tan(angle) - angle
 
 
 def _skin(around: int, sections: int) -> list[Face]:
