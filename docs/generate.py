@@ -9,6 +9,7 @@ import re
 import sys
 from pathlib import Path
 
+import agma
 import commands
 import gallery
 import notebook
@@ -19,7 +20,12 @@ from gearopt.scenes.reading.load import kinds, scene_module
 from gearopt.scenes.reading.schema import reference as tables
 
 DOCS = Path(__file__).parent
-PAGES = {"commands.md": commands.page, "gallery.md": gallery.page, "python.md": python_api.page}
+PAGES = {
+    "agma.md": agma.page,
+    "commands.md": commands.page,
+    "gallery.md": gallery.page,
+    "python.md": python_api.page,
+}
 
 
 def page_of(kind: str) -> str:

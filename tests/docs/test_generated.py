@@ -102,3 +102,16 @@ def test_the_python_page_names_all_that_is_public(monkeypatch):
 def test_the_compound_page_shows_the_code_as_it_is():
     assert page("compound.md") == generate.with_code(), "run: python docs/generate.py"
     assert page("compound.md").count("def exact(") == 1
+
+
+def test_python_of_the_page_on_ratings_runs(capsys):
+    """What it prints are safety factors, the least of which governs."""
+    block = page("agma.md").split("```python\n")[1].split("```")[0]
+    exec(compile(block, "agma.md", "exec"), {})
+    numbers, member, mode = re.search(
+        r"\[(.*)\] \('(\w+)', '(\w+)'\)", capsys.readouterr().out
+    ).groups()
+    values = [float(n) for n in numbers.split(", ")]
+    names = [(m, k) for k in ("bending", "contact") for m in ("pinion", "wheel")]
+    of_load = [v**2 if k == "contact" else v for v, (_, k) in zip(values, names, strict=True)]
+    assert names[of_load.index(min(of_load))] == (member, mode)

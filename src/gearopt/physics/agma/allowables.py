@@ -13,6 +13,7 @@ NITRIDED_CORE = {"nitrided": (255.0, 345.0), "nitralloy": (255.0, 345.0)}  # HB,
 REVERSED = 0.7  # of s_at: idlers and fully reversed loads. AGMA 2001-D04, clause 16; Shigley
 
 DIGEST = "AGMA 2001-D04 as in Shigley ch. 14; r3kste/pydome Spur"
+SHIGLEY = "AGMA 2001-D04, table 4, as in Shigley, table 14-3; a public transcription of it"
 TABLE = "AGMA 2001-D04, table 3; a public table of it (engineersedge.com)"
 OLD = "AGMA 2001-B88; two public programs of its allowables"
 SINGLE = "AGMA 2001-B88; a single source"
@@ -28,13 +29,13 @@ BENDING: dict[tuple[str, str, int], tuple[float, float, str]] = {
     ("2.5 % chrome", "", 1): (105.2, 9280.0, DIGEST),
     ("2.5 % chrome", "", 2): (105.2, 22280.0, DIGEST),
     ("2.5 % chrome", "", 3): (105.2, 29280.0, DIGEST),
-    ("carburised", "", 1): (0.0, 55000.0, DIGEST),
-    ("carburised", "", 2): (0.0, 65000.0, DIGEST),  # 70000 where bainite and cracks are limited
-    ("carburised", "", 3): (0.0, 75000.0, DIGEST),
-    ("induction, roots", "", 1): (0.0, 45000.0, DIGEST),
-    ("induction, roots", "", 2): (0.0, 55000.0, DIGEST),
-    ("induction, flanks", "", 1): (0.0, 22000.0, DIGEST),
-    ("induction, flanks", "", 2): (0.0, 22000.0, DIGEST),
+    ("carburised", "", 1): (0.0, 55000.0, SHIGLEY),
+    ("carburised", "", 2): (0.0, 65000.0, SHIGLEY),  # 70000 where bainite and cracks are limited
+    ("carburised", "", 3): (0.0, 75000.0, SHIGLEY),
+    ("induction, roots", "", 1): (0.0, 45000.0, SHIGLEY),
+    ("induction, roots", "", 2): (0.0, 55000.0, SHIGLEY),
+    ("induction, flanks", "", 1): (0.0, 22000.0, SHIGLEY),
+    ("induction, flanks", "", 2): (0.0, 22000.0, SHIGLEY),
 }
 
 CONTACT: dict[tuple[str, str, int], tuple[float, float, str]] = {
