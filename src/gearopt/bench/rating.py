@@ -38,7 +38,7 @@ PUBLISHED = (
 OPERATION = Operation(1.5e7, 150.0, 5000.0, overload=1.25)  # 15 kW
 STEEL, PRACTICE = Steel("carburised", 1), Practice(quality=8)
 HELIX = {"spur": 0.0, "helical, 17 deg": math.radians(17.0)}
-TEETH = range(17, 61), range(20, 201)
+TEETH = range(17, 61), range(61, 201)
 ROWS, CHECKED = 1_000_000, 30
 
 

@@ -118,8 +118,9 @@ def mean_load_sharing(pair: GearPair, path: ContactPath) -> Any:
 def pitting_factor(mesh: Mesh) -> Any:
     """Return the geometry factor I = cos(alpha_wt) C_psi^2/((1/rho_1 + 1/rho_2) d_w1 m_N).
 
-    rho at the lowest point of single tooth contact for spur gears and m_F <= 1, at the mean radius
-    above. Zero or negative where that point lies at or below the base circle. 2101 calls it Z_I.
+    rho at the pinion's lowest point of single tooth contact for spur gears and m_F <= 1, at its
+    mean radius above; the pinion is the gear with fewer teeth.
+    Zero or negative where that point lies at or below the base circle. 2101 calls it Z_I.
     Source: AGMA 908-B89, clause 4; its table of 15 spur pairs is met to every digit.
     """
     first, second = curvatures(mesh)

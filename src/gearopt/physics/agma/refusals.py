@@ -23,6 +23,7 @@ REFUSALS = (
     "contact ratio below 1",
     "usable contact ratio below 1",
     "contact ratio of 2 or more",
+    "larger pinion",
     "contact at the base circle",
     "no bending",
 )
@@ -42,6 +43,8 @@ SENTENCES = dict(
             "does not make up for it",
             "AGMA 908 has no geometry factors for spur gears, and helical gears with an overlap "
             "ratio of at most 1, with a transverse contact ratio of 2 or more",
+            "the pinion is the gear with fewer teeth: AGMA 908 takes I at its lowest point of "
+            "single tooth contact",
             "the point of the load that AGMA 908 asks for lies at or below a base circle",
             "the radial part of the load outweighs bending, or there is no critical section (the "
             "load passes below it, or the tool is pointed above it)",
@@ -79,6 +82,7 @@ def geometry_factors(pair: GearPair, load: str = "highest single") -> GeometryFa
         ~(ratio > 0.0) | (ratio < 1.0) & (ratio + mesh.overlap < 1.0),
         ~(usable_path(pair).transverse_ratio + mesh.overlap >= 1.0),
         single & (ratio >= 2.0),
+        np.greater(pair.pinion_teeth, pair.wheel_teeth),
         ~(np.minimum(*low) > 0.0) & single | ~(pitting > 0.0),
         ~(np.minimum(*bending) > 0.0),
     ]
