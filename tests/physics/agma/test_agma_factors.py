@@ -28,6 +28,7 @@ from gearopt.physics.agma.factors import (
     lewis_form,
     load_distribution_factor,
     proportion_factor,
+    quality_of_accuracy,
     reliability_factor,
     rim_factor,
     rim_factor_b88,
@@ -80,6 +81,25 @@ def test_qualities_without_a_curve_are_refused(quality):
         dynamic_factor(1e3, quality)
 
 
+def test_accuracies_of_the_later_edition_are_the_qualities_of_the_earlier():
+    """D04: B = (A_v - 5)^(2/3)/4, C = 50 + 56 (1 - B), K_v = (C/(C + sqrt(196.85 v)))^-B, v in m/s.
+
+    Another program: A_v 11, 10 m/s: 1.582 (exponent 0.667). AGMA: the curves of C95, renamed.
+    """
+    assert dynamic_factor(1e4, quality_of_accuracy(11)) == pytest.approx(1.582, abs=1e-3)
+    for accuracy in range(6, 12):
+        b = 0.25 * (accuracy - 5.0) ** (2 / 3)
+        c = 50.0 + 56.0 * (1.0 - b)
+        for v in (1.0, 10.0, 30.0):
+            later = (c / (c + math.sqrt(196.85 * v))) ** -b
+            found = dynamic_factor(1e3 * v, quality_of_accuracy(accuracy))
+            assert found == pytest.approx(later, rel=1e-5)
+    assert quality_of_accuracy(12) == 5.0
+    for accuracy in (5, 13):
+        with pytest.raises(ValueError, match="A_v"):
+            quality_of_accuracy(accuracy)
+
+
 def test_size_factors_of_an_example():
     """Shigley 14-4: F 1.5 in, P 10, 17 and 52 teeth: Y 0.303, 0.412; K_s 1.043, 1.052."""
     assert lewis_form(np.array([17, 52, 1000])) == pytest.approx([0.303, 0.412, 0.485], abs=5e-4)
@@ -106,6 +126,33 @@ def test_parts_of_the_load_distribution():
     assert proportion_factor(20 * INCH, 30 * INCH) == pytest.approx(wide, rel=1e-12)
 
 
+# Metric constants of 2101-D04, per mm, in a public program: A, B, C of every curve
+METRIC = {
+    "open": (0.247, 0.657e-3, -1.186e-7),
+    "commercial": (0.127, 0.622e-3, -1.69e-7),
+    "precision": (0.0675, 0.504e-3, -1.44e-7),
+    "extra precision": (0.0380, 0.402e-3, -1.27e-7),
+}
+
+
+@pytest.mark.parametrize("curve", ALIGNMENT)
+def test_alignment_is_that_of_the_metric_standard(curve):
+    """To the digits of its constants, which give less than the inches have."""
+    a, b, c = METRIC[curve]
+    for width in (25.4, 100.0, 500.0):
+        metric = a + b * width + c * width**2
+        assert alignment_factor(width, curve) == pytest.approx(metric, abs=1.2e-3)
+        assert alignment_factor(width, curve) == pytest.approx(metric, rel=4e-3)
+
+
+def test_a_load_distribution_of_another_program():
+    """b 80, d 160 mm, commercial: 1.2275; of slender pinions F/(10 d) is at least 0.05."""
+    assert load_distribution_factor(80.0, 160.0) == pytest.approx(1.2275, abs=6e-5)
+    assert proportion_factor(10.0, 60.0) == pytest.approx(0.025, rel=1e-12)
+    assert proportion_factor(10.0, 10.0) == pytest.approx(0.1 - 0.025, rel=1e-12)
+    assert load_distribution_factor(80.0, 160.0, offset=0.17) == load_distribution_factor(80, 160)
+
+
 def test_the_curves_join():
     for width, gap in ((1.0, 1e-12), (17.0, 4e-3)):  # the standard's own gap at 17 inches
         below, above = (proportion_factor(width * INCH * s, 20 * INCH) for s in (1, 1 + 1e-12))
@@ -127,6 +174,8 @@ def test_reliability_and_its_fit():
         assert reliability_factor(reliability) == pytest.approx(value, abs=0.02)
         assert tabled_reliability_factor(reliability) == value
     assert reliability_factor(0.90) == pytest.approx(0.8328, abs=5e-5)
+    assert reliability_factor(0.95) == pytest.approx(0.885, abs=5e-4)  # Shigley 14-8
+    assert RELIABILITY[0.5] == 0.70
     with pytest.raises(ValueError, match="0.999"):
         tabled_reliability_factor(0.95)
 
@@ -174,6 +223,31 @@ def test_allowables_of_the_standard():
     assert bending_allowable("nitrided", 2, 300).stress == pytest.approx(334.7, abs=0.7)
     assert bending_allowable("nitralloy", 1, 300).stress == pytest.approx(265.96, abs=0.3)
     assert contact_allowable("nitrided", 2, surface="84.5 HR15N").stress / PSI == 168000.0
+
+
+# Rows of AGMA 2001-D04 in r3kste/pydome and, s_ac 163000, in a table of it: psi per HB, psi
+LINES = [
+    (bending_allowable, "through-hardened", ((77.3, 12800), (102.0, 16400))),
+    (contact_allowable, "through-hardened", ((322.0, 29100), (349.0, 34300))),
+    (bending_allowable, "nitrided", ((82.3, 12150), (108.6, 15890))),
+    (bending_allowable, "nitralloy", ((86.2, 12730), (113.8, 16650))),
+    (bending_allowable, "2.5 % chrome", ((105.2, 9280), (105.2, 22280), (105.2, 29280))),
+    (bending_allowable, "carburised", ((0, 55000), (0, 65000), (0, 75000))),
+    (contact_allowable, "carburised", ((0, 180000), (0, 225000), (0, 275000))),
+    (bending_allowable, "induction, roots", ((0, 45000), (0, 55000))),
+    (bending_allowable, "induction, flanks", ((0, 22000),)),
+    (contact_allowable, "induction, roots", ((0, 170000), (0, 190000))),
+    (contact_allowable, "nitrided", ((0, 150000), (0, 163000), (0, 175000))),
+]
+
+
+@pytest.mark.parametrize(("law", "treatment", "grades"), LINES)
+def test_every_line_of_the_table_of_the_standard(law, treatment, grades):
+    """At 260 and 340 HB, by grade; nitrided flanks of 83.5 HR15N, induction hardened of 50 HRC."""
+    for grade, (slope, base) in enumerate(grades, 1):
+        for hardness in (260.0, 340.0):
+            found = law(treatment, grade, hardness).stress / PSI
+            assert found == pytest.approx(slope * hardness + base, rel=1e-12)
 
 
 def test_older_allowables_are_near_and_marked():

@@ -10,7 +10,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from agma_tables import J20_TIP, J25, J25_TIP
 
+from gearopt.bench.rating import PUBLISHED
 from gearopt.physics.agma.bending import bending_factors, thinned
 from gearopt.physics.agma.mesh import mesh_of, pitch_point_factor, pitting_factor
 from gearopt.physics.agma.refusals import single_factors
@@ -18,28 +20,6 @@ from gearopt.physics.gears import GearPair, Rack
 
 R20 = Rack(tip_radius=0.25)
 R25 = Rack(math.radians(25.0), 1.0, 1.35, 0.27)
-I20 = [
-    (21, 21, 0.078), (21, 26, 0.084), (26, 26, 0.079), (21, 35, 0.091), (26, 35, 0.088),
-    (35, 35, 0.080), (21, 55, 0.102), (26, 55, 0.101), (35, 55, 0.095), (55, 55, 0.080),
-    (21, 135, 0.118), (26, 135, 0.121), (35, 135, 0.120), (55, 135, 0.112), (135, 135, 0.080),
-]  # fmt: skip
-J20 = [
-    (21, 21, 0.33, 0.33), (21, 26, 0.33, 0.35), (26, 26, 0.35, 0.35), (21, 35, 0.34, 0.37),
-    (26, 35, 0.36, 0.38), (35, 35, 0.39, 0.39), (21, 55, 0.34, 0.40), (26, 55, 0.37, 0.41),
-    (35, 55, 0.40, 0.42), (55, 55, 0.43, 0.43), (21, 135, 0.35, 0.43), (26, 135, 0.38, 0.44),
-    (35, 135, 0.41, 0.45), (55, 135, 0.45, 0.47), (135, 135, 0.49, 0.49),
-]  # fmt: skip
-J25 = [
-    (14, 14, 0.33, 0.33), (14, 17, 0.33, 0.36), (17, 17, 0.36, 0.36), (14, 21, 0.33, 0.39),
-    (17, 21, 0.36, 0.39), (21, 21, 0.39, 0.39), (14, 26, 0.33, 0.41), (17, 26, 0.37, 0.42),
-    (21, 26, 0.40, 0.42), (26, 26, 0.43, 0.43), (14, 35, 0.34, 0.44), (17, 35, 0.37, 0.45),
-    (21, 35, 0.40, 0.45), (26, 35, 0.43, 0.46), (35, 35, 0.46, 0.46), (14, 55, 0.34, 0.47),
-    (17, 55, 0.38, 0.48), (21, 55, 0.41, 0.49), (26, 55, 0.44, 0.49), (35, 55, 0.47, 0.50),
-    (55, 55, 0.51, 0.51), (14, 135, 0.35, 0.51), (17, 135, 0.38, 0.52), (21, 135, 0.42, 0.53),
-    (26, 135, 0.45, 0.53), (35, 135, 0.48, 0.54), (55, 135, 0.53, 0.56), (135, 135, 0.57, 0.57),
-]  # fmt: skip
-J20_TIP = [(21, 0.24), (26, 0.25), (35, 0.26), (55, 0.28), (135, 0.29)]
-J25_TIP = [(14, 0.28), (17, 0.30), (21, 0.31), (26, 0.33), (35, 0.34), (55, 0.36), (135, 0.38)]
 
 
 def of_teeth(z1, z2, rack=R20, helix=0.0, overlap=None, shifts=(0.0, 0.0)):
@@ -57,11 +37,15 @@ def pitted(pair):
 
 def test_table_of_i():
     """All 15 values, within half a digit of the table and 1e-4."""
-    for z1, z2, value in I20:
+    for z1, z2, value, _, _ in PUBLISHED:
         assert pitted(of_teeth(z1, z2)) == pytest.approx(value, abs=6e-4)
 
 
-@pytest.mark.parametrize(("rows", "rack"), [(J20, R20), (J25, R25)], ids=["20", "25"])
+@pytest.mark.parametrize(
+    ("rows", "rack"),
+    [([(a, b, *j) for a, b, _, *j in PUBLISHED], R20), (J25, R25)],
+    ids=["20", "25"],
+)
 def test_tables_of_j_at_the_highest_point(rows, rack):
     """30 and 56 values within 0.007, of arrays of all pairs at once."""
     z1, z2, *values = np.array(rows).T

@@ -101,7 +101,7 @@ def test_inches_and_millimetres_are_one_rating():
     b = 0.25 * (12 - 6) ** (2 / 3)
     a = 50 + 56 * (1 - b)
     k_v = ((a + math.sqrt(speed)) / a) ** b
-    alignment = 0.127 + 0.0158 * face - 0.930e-4 * face**2
+    alignment = 0.127 + 0.0158 * face - 1.093e-4 * face**2
     k_m = 1 + face / (10 * d) - 0.0375 + 0.0125 * face + alignment
     k_s = [1.192 * (face * math.sqrt(y) / pitch) ** 0.0535 for y in (0.303, 0.409 + 0.2 * 0.013)]
     for k, j in ((0, 0.3), (1, 0.4)):
@@ -186,6 +186,61 @@ def test_limits_of_the_curves_are_remarked():
     assert "1e+10" in found.factors["Z_N"].remark
     wide = rate(spur().of_width(100.0), EXAMPLE, STEELS)
     assert "2 pinion diameters" in wide.factors["K_m"].remark
+
+
+def test_strengths_may_be_given_without_a_hardness():
+    """C_H is 1 then, and Y_N that of the softest curve; both say so."""
+    soft = Steel(), Steel()
+    given = {"s_at": (200.0, 200.0), "s_ac": (800.0, 800.0)}
+    found = rate(spur(), EXAMPLE, soft, None, given).factors
+    assert found["C_H"].value == (1.0, 1.0) and "no hardness" in found["C_H"].remark
+    assert "160 HB" in found["Y_N"].remark and found["Z_N"].remark == ""
+    with pytest.raises(ValueError, match="hardness in HB"):
+        rate(spur(), EXAMPLE, soft)
+
+
+def test_remarks_of_rims_and_of_soft_wheels():
+    thin = rate(spur(), EXAMPLE, STEELS, Practice(backup=(0.4, 1.0)))
+    assert "thinner" in thin.factors["K_B"].remark
+    assert thin.factors["K_B"].value[1] == pytest.approx(1.6 * math.log(2.242), rel=1e-12)
+    hard = Steel("carburised"), Steel(hardness=150.0)
+    assert "180 to 400 HB" in rate(spur(), EXAMPLE, hard).factors["C_H"].remark
+    fine = rate(spur(), EXAMPLE, (hard[0], STEELS[1]), Practice(backup=(2.0, None)))
+    assert fine.factors["C_H"].remark == fine.factors["K_B"].remark == ""
+    # Shigley, eq. (14-37): 0.8 um is 31.5 microinches
+    expected = 1 + 0.00075 * math.exp(-0.0112 * 31.496) * 250
+    assert fine.factors["C_H"].value[1] == pytest.approx(expected, rel=1e-5)
+
+
+def test_an_idler_has_seven_tenths_of_its_strength():
+    plain = rate(spur(), EXAMPLE, STEELS)
+    idler = rate(spur(), EXAMPLE, (STEELS[0], replace(STEELS[1], reversed_load=True)))
+    assert idler.bending_safety[1] == pytest.approx(0.7 * plain.bending_safety[1], rel=1e-12)
+    assert idler.bending_safety[0] == plain.bending_safety[0]
+    assert idler.contact_safety == plain.contact_safety
+
+
+@pytest.mark.parametrize(
+    ("change", "given", "named"),
+    [
+        ({"power": 0.0}, {}, "leave it out"),
+        ({"power": math.nan}, {}, "power"),
+        ({"pinion_speed": -1.0}, {}, "pinion speed"),
+        ({"overload": 0.0}, {}, "overload"),
+        ({"hours": -1.0}, {}, "life"),
+        ({"reliability": 1.0}, {}, "0.9999"),
+        ({}, {"J": (0.3, 0.0)}, "J is 0"),
+        ({}, {"K_m": math.inf}, "K_m"),
+    ],
+)
+def test_numbers_without_a_rating_are_refused(change, given, named):
+    with pytest.raises(ValueError, match=named):
+        rate(spur(), replace(EXAMPLE, **change), STEELS, None, given)
+
+
+def test_a_rim_of_no_thickness_is_refused():
+    with pytest.raises(ValueError, match="K_B"):
+        rate(spur(), EXAMPLE, STEELS, Practice(backup=(None, 0.0)))
 
 
 def test_refused_teeth_are_refused_by_name_unless_i_and_j_are_given():

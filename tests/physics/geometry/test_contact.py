@@ -16,6 +16,7 @@ from gearopt.physics.geometry.contact import (
     total_contact_ratio,
     usable_path,
 )
+from gearopt.physics.geometry.fillet import half_angle, profile_angle
 from gearopt.physics.geometry.tooth import tip_thickness, virtual_teeth
 
 
@@ -79,6 +80,36 @@ def test_radii_of_the_digest():
     first, second = diameters_at(pair, path, at)
     assert first / 2 == pytest.approx([35.5993, 36.9472, 37.5, 37.8853, 40.5], abs=6e-5)
     assert second / 2 == pytest.approx([78.0, 75.6054, 75.0, 74.6354, 72.8684], abs=6e-5)
+
+
+def test_load_angles_of_the_digest():
+    """Angle of the load to the normal of the centre line, at SAP, LPSTC, pitch, HPSTC, EAP."""
+    pair = GearPair.of_teeth(3.0, 25, 50, 30.0)
+    path = contact_path(pair)
+    at = np.array([path.start, path.lowest_single, 0.0, path.highest_single, path.end])
+    expected = (
+        [3.766, 13.604, 16.400, 18.166, 28.004],
+        [24.517, 19.598, 18.200, 17.317, 12.398],
+    )
+    for gear, diameter, angles in zip(
+        pair.gears, diameters_at(pair, path, at), expected, strict=True
+    ):
+        radius = diameter / 2
+        found = np.degrees(profile_angle(gear, radius) - half_angle(gear, radius))
+        assert found == pytest.approx(angles, abs=6e-4)
+
+
+def test_diameters_and_distances_of_the_digest():
+    """Section 3: r_b, r_a, r_f, p_b, F_n of the reference pair; alpha_w and a of the second."""
+    pair = GearPair.of_teeth(3.0, 25, 50, 30.0)
+    radii = [d / 2 for g in pair.gears for d in (g.base_diameter, g.tip_diameter, g.root_diameter)]
+    expected = [35.23847, 40.5, 33.75, 70.47695, 78.0, 71.25]
+    assert radii == pytest.approx(expected, abs=6e-6)
+    assert pair.base_pitch == pytest.approx(8.856394, abs=6e-7)
+    assert 2e5 / radii[0] == pytest.approx(5675.615, abs=6e-4)  # of 200 N m
+    second = GearPair.of_teeth(4.0, 18, 40, 40.0, profile_shifts=(0.3, -0.1))
+    assert math.degrees(second.working_angle) == pytest.approx(21.0270, abs=6e-5)
+    assert second.centre_distance == pytest.approx(116.7806, abs=6e-5)
 
 
 # Digest, section 10: pinion teeth against 50, nominal and usable contact ratio

@@ -16,13 +16,17 @@ INCH = 25.4  # mm
 FEET_PER_MINUTE = 12.0 * INCH / 60.0  # mm/s, of one ft/min
 QUALITIES = (5.0, 11.0)  # of the curves of K_v
 WIDEST = 40.0 * INCH  # face width of the curves of K_m, mm
+THINNEST = 0.5  # backup ratio at which the chart of K_B begins
 
-# C_ma = A + B F + C F^2, F in inches. Source: AGMA 2001-D04, clause 15 (Shigley, table 14-9)
+# C_ma = A + B F + C F^2, F in inches. Source: AGMA 2001-D04, clause 15, in a public program with
+# the metric constants of 2101-D04 (0.0380; -1.69e-7/mm^2; efirvida/python-gearbox), and in three
+# with these. Shigley, table 14-9, prints -0.930e-4 for commercial (1e-3 of K_m at 8 inches) and
+# 0.00360 for extra precision (3 % of K_m).
 ALIGNMENT = {
     "open": (0.247, 0.0167, -0.765e-4),
-    "commercial": (0.127, 0.0158, -0.930e-4),
+    "commercial": (0.127, 0.0158, -1.093e-4),
     "precision": (0.0675, 0.0128, -0.926e-4),
-    "extra precision": (0.00360, 0.0102, -0.822e-4),
+    "extra precision": (0.0380, 0.0102, -0.822e-4),
 }
 
 # Lewis form factor Y of full-depth teeth of 20 degrees. Source: Shigley, table 14-2; pydome
@@ -55,8 +59,8 @@ LEWIS = {
     math.inf: 0.485,
 }
 
-# K_R by reliability. Source: AGMA 2001-D04, table 11; Shigley, table 14-10 (with 0.5: 0.70)
-RELIABILITY = {0.9: 0.85, 0.99: 1.0, 0.999: 1.25, 0.9999: 1.50}
+# K_R by reliability. Source: AGMA 2001-D04, table 11; Shigley, table 14-10
+RELIABILITY = {0.5: 0.70, 0.9: 0.85, 0.99: 1.0, 0.999: 1.25, 0.9999: 1.50}
 
 
 def dynamic_factor(speed: Any, quality: Any) -> Any:
@@ -65,12 +69,25 @@ def dynamic_factor(speed: Any, quality: Any) -> Any:
     quality: transmission accuracy Q_v. B = (12 - Q_v)^(2/3)/4, A = 50 + 56 (1 - B) for 6 to 11;
     (50 + sqrt(V))/50 for 5 up to below 6. Up to `highest_speed`. ValueError for a number outside 5
     to 11: above, K_v lies between 1.02 and 1.11 and is to be given. B88 has 1/K_v, C_v = K_v.
-    Source: AGMA 2001-D04, clause 8.
+    Source: AGMA 2001-C95, clause 8; D04 names the same curves by A_v (`quality_of_accuracy`).
     """
     if isinstance(quality, int | float) and not QUALITIES[0] <= quality <= QUALITIES[1]:
         raise ValueError(f"no curve of K_v for Q_v = {quality:g}: 5 to 11; above, give K_v itself")
     exponent, offset = _dynamic(quality)
     return ((offset + np.sqrt(speed / FEET_PER_MINUTE)) / offset) ** exponent
+
+
+def quality_of_accuracy(accuracy: Any) -> Any:
+    """Return Q_v = 17 - A_v of a transmission accuracy level number A_v, smaller is better.
+
+    accuracy A_v, 6 to 12: near the accuracy grade of AGMA 2015-1. The exponent of D04 is
+    (A_v - 5)^(2/3)/4, C95's (12 - Q_v)^(2/3)/4. ValueError for a number outside 6 to 12.
+    Source: AGMA 2001-D04, clause 8, in two public programs; AGMA's answer to an inquiry about it:
+    the curves of C95 with other names, so that A_v 12 is the line of Q_v 5.
+    """
+    if isinstance(accuracy, int | float) and not 6.0 <= accuracy <= 12.0:
+        raise ValueError(f"no curve of K_v for A_v = {accuracy:g}: 6 to 12; below, give K_v itself")
+    return 17.0 - accuracy
 
 
 def highest_speed(quality: Any) -> Any:
@@ -174,9 +191,9 @@ def rim_factor_b88(backup_ratio: Any) -> Any:
 def reliability_factor(reliability: Any) -> Any:
     """Return K_R of a reliability R by its curves.
 
-    0.658 - 0.0759 ln(1 - R) below 0.99, 0.50 - 0.109 ln(1 - R) from there. For 0.5 < R <= 0.9999.
-    The table RELIABILITY has 0.85 for 0.8328 at 0.90. Source: Shigley, eq. (14-38), a fit of AGMA
-    2001-D04, table 11.
+    0.658 - 0.0759 ln(1 - R) below 0.99, 0.50 - 0.109 ln(1 - R) from there. For 0.5 <= R <= 0.9999.
+    The table RELIABILITY has 0.85 for 0.8328 at 0.90, 0.70 for 0.7106 at 0.5. Source: Shigley, eq.
+    (14-38), a fit of AGMA 2001-D04, table 11.
     """
     unreliable = np.log(1.0 - reliability)
     return choose(reliability < 0.99, 0.658 - 0.0759 * unreliable, 0.50 - 0.109 * unreliable)

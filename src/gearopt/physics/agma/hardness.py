@@ -10,7 +10,7 @@ import numpy as np
 from gearopt.physics.agma.factors import INCH
 from gearopt.physics.agma.mesh import choose
 
-SURFACE_HARD = 400.0  # HB: through-hardened below
+WHEELS = (180.0, 400.0)  # HB of wheels against surface hardened pinions
 MICROINCH = 1e-6 * INCH  # mm
 
 

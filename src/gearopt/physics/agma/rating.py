@@ -3,9 +3,12 @@
 Of floats. What is given replaces what is computed, factor by factor.
 """
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
+
+import numpy as np
 
 from gearopt.physics.agma import life, stress
 from gearopt.physics.agma.rating_factors import (
@@ -65,7 +68,7 @@ def rate(
 
     given: factors by symbol, of PAIRED as pairs, of SHARED as numbers; s_at and s_ac in MPa, C_p in
     sqrt(MPa). ValueError for a pair that AGMA 908 refuses (unless I and J are given), a symbol that
-    is not known, and what the laws refuse.
+    is not known, a power, speed, K_o or given factor that is not above 0, and what the laws refuse.
     """
     practice, given = practice or Practice(), dict(given or {})
     if unknown := set(given) - {*PAIRED, *SHARED}:
@@ -74,8 +77,25 @@ def rate(
         )
     if practice.edition not in EDITIONS:
         raise ValueError(f"no edition {practice.edition!r}; known: {', '.join(EDITIONS)}")
+    _check(operation, given)
     case = Case(pair, operation, steels, practice, given)
     return _results(case, {factor.symbol: factor for factor in all_factors(case)})
+
+
+def _check(operation: Operation, given: Mapping[str, Any]) -> None:
+    """Refuse numbers without which no stress or no safety factor is one."""
+    asked = {
+        "power": operation.power,
+        "pinion speed": operation.pinion_speed,
+        "overload factor": operation.overload,
+    }
+    asked |= {name: min(np.ravel(value)) for name, value in given.items()}
+    for name, value in asked.items():
+        if not 0.0 < value < math.inf:
+            idle = "; a level without load does no damage: leave it out" if name == "power" else ""
+            raise ValueError(f"{name} is {value:g}, and has to be above 0{idle}")
+    if not operation.hours >= 0.0:
+        raise ValueError(f"the life is {operation.hours:g} h: it cannot be below 0")
 
 
 def _results(case: Case, found: dict[str, Factor]) -> Rating:

@@ -164,8 +164,8 @@ def _reliability(case: Case) -> Factor:
     wanted = case.operation.reliability
     if wanted in factors.RELIABILITY:
         return Factor("K_R", factors.RELIABILITY[wanted], "2001-D04, 18, table 11")
-    if not 0.5 < wanted <= 0.9999:
-        raise ValueError(f"no K_R of a reliability of {wanted:g}: above 0.5, up to 0.9999")
+    if not 0.5 <= wanted <= 0.9999:
+        raise ValueError(f"no K_R of a reliability of {wanted:g}: 0.5 to 0.9999")
     return Factor("K_R", float(factors.reliability_factor(wanted)), "fit of 2001-D04, table 11")
 
 
@@ -199,11 +199,13 @@ def _of_helix(case: Case) -> tuple[bool, str]:
 def _rim(case: Case) -> Factor:
     new = case.practice.edition == "D04"
     law = factors.rim_factor if new else factors.rim_factor_b88
-    first, second = (1.0 if ratio is None else float(law(ratio)) for ratio in case.practice.backup)
-    solid = case.practice.backup == (None, None)
-    return Factor(
-        "K_B", (first, second), f"2001-{case.practice.edition}, annex B", "", new or solid
-    )
+    ratios = [math.inf if ratio is None else ratio for ratio in case.practice.backup]
+    if min(ratios) <= 0.0:
+        raise ValueError(f"no K_B of a backup ratio of {min(ratios):g}: above 0")
+    first, second = (1.0 if math.isinf(ratio) else float(law(ratio)) for ratio in ratios)
+    remark = "" if min(ratios) >= factors.THINNEST else "rims thinner than the chart has"
+    clause = f"2001-{case.practice.edition}, annex B"
+    return Factor("K_B", (first, second), clause, "", new or math.isinf(min(ratios)), remark)
 
 
 def _size(case: Case) -> Factor:
@@ -219,6 +221,11 @@ def _size(case: Case) -> Factor:
         for gear in gears
     )
     return Factor("K_s", (first, second), "Shigley, eq. 14-10")
+
+
+def unknown_hardness(steel: Steel) -> bool:
+    """Return whether a hardness that matters is missing: strengths may be given without one."""
+    return steel.kind == "through-hardened" and not steel.hardness > 0.0
 
 
 def _strength(case: Case, contact: bool) -> Factor:
@@ -248,8 +255,9 @@ def _cycle_factor(case: Case, contact: bool) -> Factor:
     first, second = (
         float(curve.factor(cycles)) for curve, cycles in zip(curves, case.cycles, strict=True)
     )
-    most = max(case.cycles)
-    remark = "" if most <= life.LONGEST else f"beyond {life.LONGEST:g} cycles"
+    remark = "" if max(case.cycles) <= life.LONGEST else f"beyond {life.LONGEST:g} cycles"
+    if not contact and any(unknown_hardness(steel) for steel in case.steels):
+        remark = remark or f"no hardness: curve of {min(life.BENDING):g} HB"
     symbol = "Z_N" if contact else "Y_N"
     induction = not contact and any(s.treatment.startswith("induction") for s in case.steels)
     return Factor(symbol, (first, second), "2001-D04, 17", "", not induction, remark)
@@ -269,16 +277,20 @@ def life_curves(case: Case, contact: bool) -> tuple[life.Curve, life.Curve]:
 
 def _hardness_ratio(case: Case) -> Factor:
     pinion, wheel = case.steels
-    clause = "2001-D04, 14"
+    clause, remark = "2001-D04, 14", ""
     if wheel.kind != "through-hardened":
         return Factor("C_H", (1.0, 1.0), clause)
+    if unknown_hardness(pinion) or unknown_hardness(wheel):
+        return Factor("C_H", (1.0, 1.0), clause, remark="1: no hardness")
     if pinion.kind in SURFACE_HARD_KINDS:
         value = hardness.surface_hardened_factor(pinion.finish, wheel.hardness)
+        low, high = hardness.WHEELS
+        remark = "" if low <= wheel.hardness <= high else f"wheels of {low:g} to {high:g} HB"
     else:
         value = hardness.hardness_ratio_factor(
             pinion.hardness, wheel.hardness, float(case.pair.ratio)
         )
-    return Factor("C_H", (1.0, float(value)), clause)
+    return Factor("C_H", (1.0, float(value)), clause, remark=remark)
 
 
 _COMPUTED = {
