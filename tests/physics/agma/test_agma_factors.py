@@ -100,6 +100,21 @@ def test_accuracies_of_the_later_edition_are_the_qualities_of_the_earlier():
             quality_of_accuracy(accuracy)
 
 
+# Shigley, table 14-2, in public transcriptions: teeth, Y
+LEWIS_TABLE = (
+    "12 .245 13 .261 14 .277 15 .290 16 .296 17 .303 18 .309 19 .314 20 .322 21 .328 22 .331 24 "
+    ".337 26 .346 28 .353 30 .359 34 .371 38 .384 43 .397 50 .409 60 .422 75 .435 100 .447 150 "
+    ".460 300 .472 400 .480"
+)
+
+
+def test_lewis_form_factors_of_the_table():
+    numbers = np.array(LEWIS_TABLE.split(), float)
+    assert np.array_equal(lewis_form(numbers[::2]), numbers[1::2])
+    assert lewis_form(11) == 0.245 and lewis_form(401) == 0.485
+    assert lewis_form(72) == pytest.approx(0.4324, rel=1e-12)  # Shigley 14-8
+
+
 def test_size_factors_of_an_example():
     """Shigley 14-4: F 1.5 in, P 10, 17 and 52 teeth: Y 0.303, 0.412; K_s 1.043, 1.052."""
     assert lewis_form(np.array([17, 52, 1000])) == pytest.approx([0.303, 0.412, 0.485], abs=5e-4)
@@ -175,7 +190,7 @@ def test_reliability_and_its_fit():
         assert tabled_reliability_factor(reliability) == value
     assert reliability_factor(0.90) == pytest.approx(0.8328, abs=5e-5)
     assert reliability_factor(0.95) == pytest.approx(0.885, abs=5e-4)  # Shigley 14-8
-    assert RELIABILITY[0.5] == 0.70
+    assert RELIABILITY == {0.5: 0.70, 0.9: 0.85, 0.99: 1.0, 0.999: 1.25, 0.9999: 1.50}
     with pytest.raises(ValueError, match="0.999"):
         tabled_reliability_factor(0.95)
 
@@ -201,6 +216,9 @@ def test_hardness_ratios():
     assert hardness_ratio_factor(400, 200, 5.0) == pytest.approx(1 + 4 * 0.00698)
     edge = [hardness_ratio_factor(1.7 * 200 + s, 200, 5.0) for s in (-1e-6, 1e-6)]
     assert edge[0] == pytest.approx(edge[1], abs=3e-5)
+    assert hardness_ratio_factor(342, 200, 5.0) == pytest.approx(1 + 4 * 0.00698, rel=1e-12)
+    assert hardness_ratio_factor(400, 200, 30.0) == pytest.approx(1 + 19 * 0.00698, rel=1e-12)
+    assert hardness_ratio_factor(250, 200, 3.0) == pytest.approx(1 + 2 * (8.98 * 1.25 - 8.29) / 1e3)
     inches = surface_hardened_factor(16 * 25.4e-6, 200.0)  # 16 microinches
     assert inches == pytest.approx(1 + 0.00075 * math.exp(-0.0112 * 16) * 250)
     assert surface_hardened_factor(1 * MICROMETRE, 450.0) == 1.0
@@ -296,6 +314,12 @@ def test_stresses_scale_with_load_and_their_safety():
     safety = contact_safety(1000.0, 0.95, 1.0, 1.0, 1.0, pressed)
     power = permissible_power(1.0, 1.8, safety, (1.0, 1.0))
     assert contact_stress(190.0, 1000.0 * power, 10.0, 40.0, 0.1) == pytest.approx(950.0)
+
+
+def test_the_lesser_of_both_safety_factors_permits_a_power():
+    """10 kW at S_F 3 and S_H 2, of which 1.5 and 1.25 are wanted: 20; at S_H 1.5: 14.4 kW."""
+    assert permissible_power(10.0, 3.0, 2.0, (1.5, 1.25)) == pytest.approx(20.0, rel=1e-12)
+    assert permissible_power(10.0, 3.0, 1.5, (1.5, 1.25)) == pytest.approx(14.4, rel=1e-12)
 
 
 def test_forces_of_a_helical_mesh():

@@ -30,6 +30,41 @@ def test_factors_of_an_example():
     assert pressed == pytest.approx([0.948, 0.973], abs=6e-4)
 
 
+# Digest of the profile modification paper, section 9: kind, HB, A, B below 3e6 cycles; of pitting
+SHORT = [
+    ("through-hardened", 160.0, 2.3194, 0.0538),
+    ("through-hardened", 250.0, 4.9404, 0.1045),
+    ("through-hardened", 400.0, 9.4518, 0.148),
+    ("carburised", 0.0, 6.1514, 0.1192),
+    ("nitrided", 0.0, 3.517, 0.0817),
+]
+LONG = {"general": (1.3558, 0.0178), "critical": (1.6831, 0.0323)}
+PRESSED = [
+    ("carburised", "general", 1e5, 2.466, 0.056),
+    ("carburised", "general", 1e9, 1.4488, 0.023),
+    ("carburised", "critical", 1e9, 2.466, 0.056),
+    ("nitrided", "general", 1e5, 1.249, 0.0138),
+    ("nitrided", "general", 1e9, 1.4488, 0.023),
+]
+
+
+@pytest.mark.parametrize(("kind", "hardness", "a", "b"), SHORT)
+def test_bending_curves_by_their_constants(kind, hardness, a, b):
+    for service, (c, d) in LONG.items():
+        curve = bending_curve(kind, hardness, service)
+        for cycles in (1e3, 3e4):
+            assert curve.factor(cycles) == pytest.approx(a / cycles**b, rel=1e-12)
+        assert curve.factor(1e9) == pytest.approx(c / 1e9**d, rel=1e-12)
+        assert curve.factor(10.0) == curve.factor(1e3)
+
+
+@pytest.mark.parametrize(("kind", "service", "cycles", "a", "b"), PRESSED)
+def test_pitting_curves_by_their_constants(kind, service, cycles, a, b):
+    curve = pitting_curve(kind, service)
+    assert curve.factor(cycles) == pytest.approx(a / cycles**b, rel=1e-12)
+    assert curve.factor(10.0) == curve.factor(1e4) > curve.factor(1.01e4)
+
+
 def test_short_lives_of_the_figure():
     """Left ends of the charts, at 1000 cycles: 160, 250, 400 HB, carburised, nitrided."""
     for hardness, value in ((160, 1.6), (250, 2.4), (400, 3.4)):
@@ -74,7 +109,7 @@ def test_words_without_a_curve_are_refused():
 
 
 def test_cycles_and_miner_by_hand():
-    assert cycles_of(1000.0, 1500.0, 2.0) == 1.8e8
+    assert cycles_of(1000.0, 1500.0, 2.0) == 2.0 * cycles_of(1000.0, 1500.0) == 1.8e8
     assert miner_sum((1e6, 2e6, 0.0), (4e6, 4e6, 0.0)) == pytest.approx(0.75)
     assert miner_sum((1.0,), (0.0,)) == math.inf
 

@@ -92,6 +92,31 @@ def test_shigley_14_5_with_the_books_i_and_j():
     assert found.contact_safety == pytest.approx((2.46, 2.22), rel=3e-3)
 
 
+def test_the_least_volume_of_the_digest_is_just_safe_against_pitting():
+    """Digest, section 7: contact 755.99 MPa, all that the wheel may bear; bending 176.9 of 242.4.
+
+    Metric constants there (200 v, 2.22 HB + 200), so 2e-3 apart; volumes by relaxation and by
+    enumeration 1 703 170 and 1 717 666 mm^3.
+    """
+    duty = Operation(15e6, 1450.0 * math.pi / 30.0, 1e8 / 60.0 / 1450.0, overload=1.25)
+    steels = Steel(hardness=300.0), Steel(hardness=260.0)
+    relaxed = GearPair.of_teeth(1.92313077, 46.6666671, 140.0000013, 26.92383104)
+    found = rate(relaxed, duty, steels, Practice(quality=7))
+    assert relaxed.volume == pytest.approx(1703169.8832, rel=1e-6)
+    assert found.contact_stress[1] == pytest.approx(755.9882, rel=2e-3)
+    assert found.contact_safety[1] == pytest.approx(1.0, rel=2e-3)
+    assert found.bending_stress[0] == pytest.approx(176.9, rel=3e-3)
+    factors = found.factors
+    allowed = [s * y for s, y in zip(factors["s_at"].value, factors["Y_N"].value, strict=True)]
+    assert allowed == pytest.approx([242.4361657, 225.9875956], rel=2e-3)
+    allowed = [s * z for s, z in zip(factors["s_ac"].value, factors["Z_N"].value, strict=True)]
+    assert allowed == pytest.approx([821.3463459, 755.9882023], rel=2e-3)
+    assert found.governs == ("wheel", "contact")
+    whole = GearPair.of_teeth(2.0, 45, 135, 27.0)
+    assert whole.volume == pytest.approx(1717665.7834, rel=1e-9)
+    assert 1.0 < rate(whole, duty, steels, Practice(quality=7)).contact_safety[1] < 1.006
+
+
 def test_inches_and_millimetres_are_one_rating():
     """The same by the standard's inch form, written out, to 1e-9."""
     found = rate(spur(), EXAMPLE, STEELS, SHIGLEY, {"I": 0.1, "J": (0.3, 0.4), "C_p": CUSTOMARY})

@@ -128,7 +128,8 @@ def critical_theta(tooth: LoadedTooth) -> Any:
 
     Floats or arrays of one shape. Where it touches only above the fillet (large tip radius of the
     tool, low load), the end of the fillet is the weakest section of it, and theta is alpha_n; 908's
-    iteration would follow the round of the tool into its flank. NaN where the load passes so low
+    iteration would follow the round of the tool into its flank: J at most 0.5 % lower, so for 135
+    teeth of 25 degrees loaded at the tip, 0.05 % at 20 degrees. NaN where the load passes so low
     that the parabola touches nothing.
     """
     angle = tooth.gear.rack.pressure_angle
