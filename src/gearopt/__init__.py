@@ -36,6 +36,7 @@ __all__ = [
     "evaluate",
     "explain",
     "load",
+    "rate",
     "solve",
 ]
 

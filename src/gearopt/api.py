@@ -110,6 +110,22 @@ def solve(
 
 
 @named
+def rate(what: File, changes: Changes = None) -> Result:
+    """Return the rating of the gears that a problem file gives: the table [rating] says by what.
+
+    changes: of a file, as in `load`. The status is `evaluated`; `Result.feasible` says whether all
+    safety factors are met, limits holds them as utilisations (asked for over there), and
+    design["rating"] stresses, safety factors, lives, factors, forces and tooth geometry.
+    SceneError for a wrong file or change, SolveError names what cannot be rated.
+    """
+    scene, module, names = _opened(what, changes)
+    if not hasattr(module, "rate"):
+        raise SolveError(f'rate is for files of kind "drive", not "{names["scene"]}"')
+    result: Result = module.rate(scene, Ask())
+    return _named(result, **names)
+
+
+@named
 def explain(
     what: File | Problem | Conic,
     changes: Changes = None,

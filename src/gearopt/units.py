@@ -79,8 +79,18 @@ UNITS: dict[str, dict[str, tuple[Fraction, int]]] = {
         **_table(**{"ozf in": _POUND_FORCE / 16 * _INCH}),
     },
     "frequency": _table(Hz=1, kHz=1000),  # 1/s
+    "time": _table(s=1, min=60, h=3600),  # s
+    "temperature": _table(degC=1, degF=Fraction(5, 9)),  # degrees C, above OFFSETS
+    "viscosity": _table(**{"mPa s": 1, "Pa s": 1000, "cP": 1}),  # mPa s, dynamic
+    "hardness": _table(HB=1),  # Brinell
+    "elastic coefficient": {  # sqrt(MPa)
+        "sqrt(MPa)": (Fraction(1), 0),
+        "sqrt(psi)": (Fraction(math.sqrt(_POUND_FORCE / _INCH**2)), 0),
+    },
     "fraction": {"%": (Fraction(1, 100), 0)},
 }
+
+OFFSETS = {"degF": Fraction(-32)}  # of a unit whose zero is another
 
 # unit -> other ways to write it, read as that unit
 SPELLINGS: dict[str, tuple[str, ...]] = {
@@ -94,6 +104,10 @@ SPELLINGS: dict[str, tuple[str, ...]] = {
     "um": ("\u00b5m", "\u03bcm"),  # the micro sign, and the Greek letter
     "in": ("inch", "inches"),
     "1/in": ("/in", "in^-1", "in\u207b\u00b9", "DP"),
+    "HB": ("HBW", "HBS", "BHN"),
+    "h": ("hours", "hour", "hr", "hrs"),
+    "degC": ("\u00b0C", "\u2103"),
+    "degF": ("\u00b0F", "\u2109"),
     "lbf in": ("lb in", "in lbf", "in lb"),
     "lbf ft": ("lb ft", "ft lbf", "ft lb"),
 }
@@ -124,7 +138,8 @@ class Quantity:
     def exact(self) -> tuple[Fraction, int]:
         """Return the value in the inside unit as (rational number, power of pi)."""
         factor, power = UNITS[self.dimension][self.unit] if self.unit else (Fraction(1), 0)
-        return (factor / self.number if self.reciprocal else self.number * factor), power
+        number = self.number + OFFSETS.get(self.unit, 0)
+        return (factor / number if self.reciprocal else number * factor), power
 
     @property
     def reciprocal(self) -> bool:
@@ -134,7 +149,8 @@ class Quantity:
     def of(self, value: Fraction) -> "Quantity":
         """Return a value in the inside unit in the unit of this quantity, which has no pi."""
         factor, _ = UNITS[self.dimension][self.unit]
-        return replace(self, number=factor / value if self.reciprocal else value / factor)
+        number = factor / value if self.reciprocal else value / factor
+        return replace(self, number=number - OFFSETS.get(self.unit, 0))
 
     @property
     def value(self) -> float:

@@ -120,6 +120,29 @@ def _refuse(given: Mapping[str, tuple[int | None, int]], idle: Mapping[str, str]
 
 
 @app.command(rich_help_panel=FIRST)
+def rate(
+    file: File,
+    html: Html = None,
+    csv: Csv = None,
+    units: Units = "metric",
+    as_json: Json = False,
+) -> None:
+    """Rate given gears: stresses, safety factors, lives. Exit code 0, safe or not."""
+    from gearopt.api import rate as rate_file
+
+    files = checked(html, csv, units, file)
+    if html is None and csv is None:
+        _metric(as_json, units)
+    result = rate_file(file)
+    lines: list[str] = []
+    try:
+        lines = written(result, files)
+    finally:
+        answer(result, as_json, lines, files.measures)
+    raise typer.Exit(exit_code(result))
+
+
+@app.command(rich_help_panel=FIRST)
 def explain(
     file: File,
     seconds: Seconds = 60.0,

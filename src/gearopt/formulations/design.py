@@ -3,10 +3,13 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from fractions import Fraction
 from typing import Any
 
 from gearopt.formulations.gear_train import Train
 from gearopt.formulations.layout.layout_design import LayoutDesign
+from gearopt.formulations.rating import DriveRating
+from gearopt.formulations.strength import Law
 from gearopt.optimise.typed import INLINE, typed
 from gearopt.physics.gears import GearPair
 from gearopt.physics.loads import pitch_line_velocity
@@ -55,6 +58,7 @@ class DriveDesign:
     total_length_mm: float
     mass_kg: float
     layout: LayoutDesign | None = None
+    rating: DriveRating | None = None
 
 
 def drive_design(data: Mapping[str, Any]) -> DriveDesign:
@@ -64,14 +68,28 @@ def drive_design(data: Mapping[str, Any]) -> DriveDesign:
 
 
 def describe(train: Train, pairs: tuple[GearPair, ...]) -> DriveDesign:
+    """Return stages and totals of a drive; masses as of `of_pairs`."""
+    loaded = float(train.torque), float(train.speed)
+    return of_pairs(train.law, pairs, *loaded, train.ratio, train.density)
+
+
+def of_pairs(
+    law: Law,
+    pairs: tuple[GearPair, ...],
+    torque: float,
+    speed: float,
+    asked_ratio: Fraction | None = None,
+    density: float | None = None,
+) -> DriveDesign:
     """Return stages and totals of a drive.
 
-    Masses are those of solid reference cylinders, of steel where the train has no density.
+    torque [N mm], speed [rad/s] of the input; asked_ratio: None where none is asked for. Masses are
+    those of solid reference cylinders, by default of steel; density [t/mm3].
     """
     stages: list[StageDesign] = []
-    torque, speed = float(train.torque), float(train.speed)
+    density = density or STEEL_DENSITY
     for pair in pairs:
-        stages.append(_stage(train, pair, torque, speed))
+        stages.append(_stage(law, pair, torque, speed, density))
         torque, speed = torque * float(pair.ratio), speed / float(pair.ratio)
     ratio = math.prod(s.ratio for s in stages)
     volume = sum(s.gear_volume_mm3 for s in stages)
@@ -80,24 +98,22 @@ def describe(train: Train, pairs: tuple[GearPair, ...]) -> DriveDesign:
     return DriveDesign(
         stages=tuple(stages),
         ratio=ratio,
-        ratio_error_percent=round(100.0 * (ratio / float(train.ratio) - 1.0), 9),
+        ratio_error_percent=(
+            0.0 if asked_ratio is None else round(100.0 * (ratio / float(asked_ratio) - 1.0), 9)
+        ),
         output_torque_Nm=1e-3 * torque,
         gear_volume_mm3=volume,
         sum_of_centre_distances_mm=centres,
         total_length_mm=0.5 * ends + centres,
-        mass_kg=1000.0 * _density(train) * volume,
+        mass_kg=1000.0 * density * volume,
     )
 
 
-def _density(train: Train) -> float:
-    return train.density or STEEL_DENSITY
-
-
-def _stage(train: Train, pair: GearPair, torque: float, speed: float) -> StageDesign:
+def _stage(law: Law, pair: GearPair, torque: float, speed: float, density: float) -> StageDesign:
     """Describe a pair; torque [N mm] and speed [rad/s] are its pinion's."""
-    (pinion, wheel), law = pair.gears, train.law
+    pinion, wheel = pair.gears
     d, loads = pinion.reference_diameter, law.indices(pair, torque, speed)
-    masses = [1000.0 * float(gear.mass(_density(train))) for gear in pair.gears]
+    masses = [1000.0 * float(gear.mass(density)) for gear in pair.gears]
     return StageDesign(
         normal_module_mm=float(pair.normal_module),
         pinion_teeth=_whole(pair.pinion_teeth),

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 from pydantic import Field, model_validator
 
@@ -15,6 +15,8 @@ from gearopt.units import Quantity
 
 class Duty(Table):
     """What the drive must do."""
+
+    RATIO_NEEDED: ClassVar[bool] = True  # a kind that does without checks it itself
 
     power: Annotated[Quantity, quantity("power", "7.5 kW")] = Field(
         description="Power at the input shaft; gears are taken as loss-free"
@@ -40,8 +42,10 @@ class Duty(Table):
             raise refuse(
                 "stands beside output_speed; one is enough", at=("ratio",), action="remove"
             )
-        if self.output_speed is None and self.ratio is None:
-            raise refuse("is missing (or give ratio)", self._slow(), ("output_speed",), "sample")
+        if not self.asks_ratio:
+            if self.RATIO_NEEDED:
+                raise refuse(*self.missing_ratio(), at=("output_speed",), action="sample")
+            return self
         if self.total_ratio < 1:
             raise refuse(
                 "is above the input speed: gearopt sizes reducers, and a loss-free speed increaser "
@@ -59,6 +63,15 @@ class Duty(Table):
     def _slow(self) -> str:
         """Return an output speed that suits the input speed: a ratio of 20."""
         return f"{float(self.input_speed.number / 20):.4g} {self.input_speed.unit}"
+
+    @property
+    def asks_ratio(self) -> bool:
+        """Return whether a total ratio is asked for."""
+        return self.output_speed is not None or self.ratio is not None
+
+    def missing_ratio(self) -> tuple[str, str]:
+        """Return what is said where a ratio is missing, and an output speed to write."""
+        return "is missing (or give ratio)", self._slow()
 
     @property
     def total_ratio(self) -> Fraction:

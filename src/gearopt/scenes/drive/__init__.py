@@ -20,13 +20,15 @@ from gearopt.optimise.result import Result
 from gearopt.optimise.solve import GAP, run
 from gearopt.optimise.typed import untyped
 from gearopt.scenes.drive.assumptions import assumptions, notes
+from gearopt.scenes.drive.rated import rate, with_rating
+from gearopt.scenes.drive.rating_tables import MATERIAL, GivenTable
 from gearopt.scenes.drive.scene import EXAMPLE, Scene
 from gearopt.scenes.drive.stage_counts import best_count
 from gearopt.scenes.explaining.default import of_report
 from gearopt.scenes.parts import undercut
 from gearopt.scenes.reading.ask import Ask, unseeded
 
-__all__ = ["EXAMPLE", "Scene", "compared", "explain", "idle", "model", "solve"]
+__all__ = ["EXAMPLE", "Scene", "compared", "explain", "idle", "model", "rate", "solve"]
 PROCESSES = ("process_one", "process_two")  # tables; as methods with a hyphen
 WEAKER = " Its contact ratio is less than the one given, its root is weaker."
 METHODS = ("exact", "process-one", "process-two", "sa", "sa-polish", "sa-paper")  # its own
@@ -40,8 +42,19 @@ def solve(scene: Scene, ask: Ask) -> Result:
     cost, and a second, independent bound. With [process_one] or [process_two] the designs by those
     rules are parts as well. What the design takes for granted is in its report.
     """
-    result = _solved(scene, ask)
-    return replace(result, report=result.report | {"assumptions": assumptions(scene)})
+    result = _solved(_to_size(scene), ask)
+    result = replace(result, report=result.report | {"assumptions": assumptions(scene)})
+    return with_rating(scene, result)
+
+
+def _to_size(scene: Scene) -> Scene:
+    """Return the drive; SolveError for one that can only be rated."""
+    if not scene.limited:
+        raise SolveError(
+            "the file has no [limits] and no ratio, so there is nothing to choose: gearopt rate "
+            "FILE rates its gears"
+        )
+    return scene
 
 
 def _solved(scene: Scene, ask: Ask) -> Result:
@@ -101,7 +114,7 @@ def _ways_out(scene: Scene, clock: Clock) -> Remedies:
 
 def explain(scene: Scene, ask: Ask, result: Result | None = None) -> Explanation:
     """Return the sensitivities of the drive, or what would make it possible, in its numbers."""
-    scene = _unruled(scene)
+    scene = unrated(_unruled(_to_size(scene)))
     if result is not None:
         return _explained(scene, ask, result, _others(ask))
     if scene.layout is not None:
@@ -154,6 +167,24 @@ def bare(scene: Scene) -> Scene:
 def _unruled(scene: Scene) -> Scene:
     """Return the drive without its design processes, which change nothing of what is best."""
     return scene.model_copy(update=dict.fromkeys(PROCESSES))
+
+
+def unrated(scene: Scene) -> Scene:
+    """Return the drive without what only its rating asks for: numbers that size nothing."""
+    none: dict[str, Any] = dict.fromkeys(MATERIAL)
+    bare = [
+        stage.model_copy(
+            update={
+                "given": GivenTable(),
+                "pinion": stage.pinion.model_copy(update=none),
+                "wheel": stage.wheel.model_copy(update=none),
+            }
+        )
+        for stage in scene.stage
+    ]
+    gears = scene.gears.model_copy(update=none)
+    update = {"rating": None, "load": (), "gears": gears, "stage": tuple(bare)}
+    return scene.model_copy(update=update) if scene.rating else scene
 
 
 def _answer(scene: Scene, ask: Ask, ideal: Result | None = None) -> Result:
@@ -225,7 +256,7 @@ def model(scene: Scene, method: str) -> Model:
 
     With a [layout] that is the layout of the gears that are best without it.
     """
-    if scene.several:
+    if _to_size(scene).several:
         return _of_best_count(scene, method)
     if scene.layout is not None:
         from gearopt.scenes.drive.box import at_once, lay_out

@@ -59,6 +59,40 @@ def assumptions(scene: Scene) -> list[str]:
     return found if scene.layout is None else [*found, *_layout_assumptions(scene.layout)]
 
 
+def rating_assumptions(scene: Scene) -> list[str]:
+    """Return what a rating takes for granted, in sentences."""
+    asked = scene.rating
+    assert asked
+    load = (
+        "at the highest point of single tooth contact"
+        if asked.bending_load == "highest single"
+        else "at the tip"
+    )
+    found = [
+        "External cylindrical gears on parallel shafts, steel, whose pinions drive; no losses but "
+        "those of the mesh, where they are reported.",
+        "The standards themselves were not read: formulas and values are those of textbooks, "
+        "tables and public programs; what a single source has is marked unverified.",
+        f"K_m by the curve of {asked.mounting} gearing"
+        + (", crowned" if asked.crowned else ", teeth without crowning")
+        + f"; pinion offset S_1/S {float(asked.pinion_offset):g}.",
+        f"Bending of spur teeth and of low overlap: load {load}.",
+        "Scuffing, micropitting, wear, shafts and bearings are not rated.",
+        "Safety against contact is of stress: its square is of load. Lives are those at which a "
+        "safety factor is 1.",
+    ]
+    unstated = [
+        f"{words} {value} (default)"
+        for name, words, value in (
+            ("overload_factor", "overload factor", "1"),
+            ("reliability", "reliability", "99 %"),
+            ("mounting", "mounting", asked.mounting),
+        )
+        if name not in asked.model_fields_set
+    ]
+    return [*found, f"Not in the file: {', '.join(unstated)}."] if unstated else found
+
+
 def _layout_assumptions(layout: Layout) -> list[str]:
     """Return of a layout: clearances, shafts, bearings, walls."""
     clear = [

@@ -11,6 +11,7 @@ from gearopt.formulations.gear_train import OBJECTIVES
 from gearopt.formulations.process import ProcessOne, ProcessTwo
 from gearopt.formulations.strength import Law
 from gearopt.formulations.strength.k_factor import K_FACTOR
+from gearopt.scenes.drive.rating_tables import GearKeys, GearTable, GivenTable
 from gearopt.scenes.reading.fields import Table, choice, number, quantity, refuse, truth, whole
 from gearopt.scenes.reading.lists import several, span
 from gearopt.scenes.reading.modules import MODULE, SERIES, series
@@ -19,6 +20,8 @@ from gearopt.units import Quantity
 LAW = K_FACTOR  # that limits a drive
 LENGTH = quantity("length", "400 mm")
 STEP = quantity("length", "1 mm")
+HELIX = quantity("angle", "25 deg", "45 deg", zero=True)
+PRESSURE = quantity("angle", "20 deg", "45 deg")
 TOOTH_COUNT = whole(21, 5, 1000)
 WHEEL_TEETH = whole(100, 5, 100_000)
 PROPORTION = span(number(0.6, 0, 10), [0.3, 0.6], single=True)
@@ -75,15 +78,15 @@ def limited_by(law: Law) -> Callable[[type[T]], type[T]]:
     return limited
 
 
-class Gears(Table):
-    """What all stages share."""
+class Gears(GearKeys):
+    """What all stages share, and all gears that have nothing else of their own."""
 
-    helix_angle: Annotated[Quantity, quantity("angle", "25 deg", "45 deg", zero=True)] = Field(
+    helix_angle: Annotated[Quantity, HELIX] = Field(
         default_factory=lambda: units.parse("0 deg", "angle"),
         description="Helix angle at the reference cylinder",
         json_schema_extra={"default": "0 deg"},
     )
-    pressure_angle: Annotated[Quantity, quantity("angle", "20 deg", "45 deg")] = Field(
+    pressure_angle: Annotated[Quantity, PRESSURE] = Field(
         default_factory=lambda: units.parse("20 deg", "angle"),
         description="Normal pressure angle: it gives the contact ratio"
         + ("" if LAW.pressure_angle else f"; {LAW.title} do not depend on it"),
@@ -103,6 +106,9 @@ class StageTable(Loaded):
     module: Annotated[Lengths | None, span(MODULE, "2 mm", single=True)] = Field(
         None, description="Normal module: fixed, or a range; or a diametral pitch in 1/in"
     )
+    diametral_pitch: Annotated[Fraction | None, number(10, 0, 2000)] = Field(
+        None, description="Normal diametral pitch in 1/in, fixed, instead of module"
+    )
     pinion_teeth: Annotated[tuple[int, int] | None, span(TOOTH_COUNT, 21, single=True)] = Field(
         None, description="Number of pinion teeth: fixed, or a range"
     )
@@ -119,6 +125,41 @@ class StageTable(Loaded):
     face_width_step: Step = Field(None, description=STEP_IS)
     stage_ratio: Ratios = Field(None, description="Range of the stage's ratio")
     wheel_diameter: Length = Field(None, description=WHEEL_IS)
+    helix_angle: Annotated[Quantity | None, HELIX] = Field(
+        None, description="Helix angle of this stage, instead of that of [gears]"
+    )
+    pressure_angle: Annotated[Quantity | None, PRESSURE] = Field(
+        None, description="Normal pressure angle of this stage, instead of that of [gears]"
+    )
+    pinion_hand: Annotated[str | None, choice("right", "left")] = Field(
+        None,
+        description="Hand of the pinion's helix; by default right, and of later stages the one "
+        "whose thrust opposes that of the wheel on the same shaft",
+    )
+    centre_distance: Length = Field(
+        None, description="Working centre distance; by default without backlash"
+    )
+    pinion: GearTable = Field(
+        default_factory=GearTable, description="What the pinion has of its own"
+    )
+    wheel: GearTable = Field(default_factory=GearTable, description="What the wheel has of its own")
+    given: GivenTable = Field(
+        default_factory=GivenTable, description="Factors of a rating, instead of computed ones"
+    )
+
+    @model_validator(mode="after")
+    def _one_size(self) -> "StageTable":
+        if self.diametral_pitch is not None and self.module is not None:
+            rule = "stands beside module; one is enough"
+            raise refuse(rule, at=("diametral_pitch",), action="remove")
+        return self
+
+    @property
+    def size(self) -> Lengths | None:
+        """Return the ends of the range of the normal module, by whichever key."""
+        if self.diametral_pitch is None:
+            return self.module
+        return (Quantity(self.diametral_pitch, "1/in", "module"),) * 2
 
 
 # Load limits a source states for its own drive (Chong and Lee print 2.07 MPa and 48 MPa).
@@ -151,6 +192,11 @@ class Limits(Loaded):
         None, description="Range of every stage's ratio (without it: 1 and up)"
     )
     wheel_diameter: Length = Field(None, description=WHEEL_IS)
+
+    @classmethod
+    def open(cls) -> "Limits":
+        """Return the limits of a drive whose gears are all given, to be rated: none."""
+        return cls.model_construct(pinion_teeth=(5, 1000))
 
     @model_validator(mode="after")
     def _loads(self) -> "Limits":

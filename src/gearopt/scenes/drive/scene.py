@@ -1,6 +1,6 @@
 """A drive's file as a whole: its tables, how they fit together, and the drive they describe."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from fractions import Fraction
 from typing import Annotated, Any
 
@@ -29,6 +29,7 @@ from gearopt.scenes.drive.layout_tables import (
     check_shared,
     gearbox,
 )
+from gearopt.scenes.drive.rating_tables import MATERIAL, GivenTable, LoadTable, RatingTable
 from gearopt.scenes.explaining.numbers import eased, in_reverse, written
 from gearopt.scenes.parts import Duty
 from gearopt.scenes.reading.fields import Table, refuse, whole, words
@@ -107,6 +108,12 @@ MOST_STAGES = 6
 STAGES = span(whole(2, 1, MOST_STAGES), 2, single=True)
 
 
+class DriveDuty(Duty):
+    """What the drive must do; gears that are all given and rated need no ratio."""
+
+    RATIO_NEEDED = False
+
+
 class Scene(Table):
     """A drive."""
 
@@ -114,7 +121,7 @@ class Scene(Table):
     source: Annotated[str, words()] = Field(
         "", description="Where the data and the expected value come from"
     )
-    duty: Duty
+    duty: DriveDuty
     stages: Annotated[tuple[int, int] | None, STAGES] = Field(
         None,
         description="Number of stages, or a range: the best of it is found, without [[stage]] "
@@ -122,7 +129,12 @@ class Scene(Table):
     )
     gears: Gears = Field(default_factory=Gears)
     stage: tuple[StageTable, ...] = Field((), description="One table per stage, from the input on")
-    limits: Limits
+    limits: Limits = Field(
+        default_factory=Limits.open,
+        description="Needed, but where [rating] rates gears that are all given",
+    )
+    rating: RatingTable | None = None
+    load: tuple[LoadTable, ...] = Field((), description="One table per level of a load spectrum")
     teeth: Teeth | None = None
     objective: Objective = Field(default_factory=Objective)
     layout: Layout | None = None
@@ -147,9 +159,10 @@ class Scene(Table):
         for k, own in enumerate(self.stage or (StageTable(),)):
             self._check_width(own, ("stage", k) if self.stage else ("gears",))
             if self.teeth is not None and not self._modules(own):
-                place = ("stage", k, "module") if own.module else ("limits", "module")
+                place = ("stage", k, "module") if own.size else ("limits", "module")
                 raise refuse("holds no module that [teeth] allows", self._around(own), place)
         self._check_layout()
+        self._check_rating()
         for name, table in (("process_one", self.process_one), ("process_two", self.process_two)):
             if table is not None and self.teeth is None:
                 raise refuse("needs a table [teeth]", at=(name,), action="remove")
@@ -175,6 +188,41 @@ class Scene(Table):
     def held(self, count: int) -> "Scene":
         """Return the drive with one number of stages."""
         return self.model_copy(update={"stages": (count, count)}) if self.several else self
+
+    @property
+    def limited(self) -> bool:
+        """Return whether there is anything to size: limits, and a ratio to be met."""
+        return "limits" in self.model_fields_set and self.duty.asks_ratio
+
+    def _check_rating(self) -> None:
+        """Check that what is not to be sized is to be rated, and what only a rating needs."""
+        if self.rating is None or not self.given:
+            if not self.duty.asks_ratio:
+                raise refuse(
+                    *self.duty.missing_ratio(), at=("duty", "output_speed"), action="sample"
+                )
+            if "limits" not in self.model_fields_set:
+                raise refuse("is missing", at=("limits",))
+        if self.rating is None:
+            for place in self._only_rated():
+                raise refuse("needs a table [rating]", at=place, action="remove")
+        elif self.load and sum(level.share for level in self.load) != 1:
+            total = sum(level.share for level in self.load)
+            rest = self.load[-1].share + 1 - total
+            rule = f"makes the shares of all levels {float(100 * total):.6g} %, not 100 %"
+            write = f"{float(100 * rest):.6g} %" if 0 < rest <= 1 else None
+            raise refuse(rule, write, ("load", len(self.load) - 1, "share"))
+
+    def _only_rated(self) -> Iterator[tuple[Any, ...]]:
+        """Yield the places of keys that change nothing without a rating."""
+        yield from [("load",)] * bool(self.load)
+        gears: list[tuple[tuple[Any, ...], Table]] = [(("gears",), self.gears)]
+        for k, stage in enumerate(self.stage):
+            yield from [("stage", k, "given")] * (stage.given != GivenTable())
+            for member in ("pinion", "wheel"):
+                gears.append((("stage", k, member), getattr(stage, member)))
+        for place, table in gears:
+            yield from ((*place, n) for n in MATERIAL if getattr(table, n) is not None)
 
     def _check_layout(self) -> None:
         """Check the tables of a layout against the drive and each other."""
@@ -225,18 +273,18 @@ class Scene(Table):
             )
 
     def _modules(self, own: StageTable) -> tuple[Fraction, ...]:
-        span = own.module or self.limits.module
+        span = own.size or self.limits.module
         ends = () if span is None else tuple(end.exact[0] for end in span)
         if self.teeth is None:
             return tuple(sorted(set(ends)))
-        if own.module and ends[0] == ends[1]:
+        if own.size and ends[0] == ends[1]:
             return ends[:1]
         series = self.teeth.sizes
         return tuple(m for m in series if not ends or ends[0] <= m <= ends[1])
 
     def _around(self, own: StageTable) -> list[str]:
         """Return the narrowest range of modules of [teeth] around one that holds none of them."""
-        span = own.module or self.limits.module
+        span = own.size or self.limits.module
         assert span is not None and self.teeth is not None
         series = self.teeth.sizes
         below = max((m for m in series if m < span[0].exact[0]), default=series[0])
@@ -253,7 +301,13 @@ class Scene(Table):
             return ends is not None and ends[0] == ends[1]
 
         return bool(self.stage) and all(
-            one(s.pinion_teeth) and one(s.wheel_teeth) and one(s.module) and s.face_width
+            one(s.pinion_teeth)
+            and one(s.wheel_teeth)
+            and one(s.size)
+            and (
+                s.face_width
+                or one(s.face_width_over_diameter or self.gears.face_width_over_diameter)
+            )
             for s in self.stage
         )
 
@@ -281,6 +335,8 @@ class Scene(Table):
         """Return the places of the limits of every stage; "" where the file has none."""
 
         def place(k: int, field: str, end: int | None) -> str:
+            if field == "module" and stages[k].diametral_pitch is not None:
+                return f"stage[{k + 1}].diametral_pitch"
             tables = ("limits", self.limits), ("gears", self.gears)
             for name, table in ((f"stage[{k + 1}]", stages[k]), *tables):
                 if (value := getattr(table, field, None)) is not None:

@@ -72,6 +72,26 @@ def span(item: Reads, example: Any, single: bool = False) -> Reads:
     return Reads(read, example, {"anyOf": [item.schema, schema]} if single else schema)
 
 
+def each_gear(item: Reads) -> Reads:
+    """Read [pinion, wheel], or one item that means both, as a tuple."""
+
+    def read(value: Any, example: Any) -> tuple[Any, Any]:
+        if isinstance(value, tuple):
+            return value[0], value[1]
+        if not isinstance(value, list):
+            only = item.reader(value, item.example)
+            return only, only
+        right, rule = _mended(item, value[:2])
+        if len(value) != 2:
+            raise refuse("is not one value nor a list [pinion, wheel]", (right * 2)[:2] or None)
+        if rule:
+            raise refuse(f"has a value that {rule}", None if None in right else right)
+        return item.reader(value[0], item.example), item.reader(value[1], item.example)
+
+    both = {"type": "array", "items": item.schema, "minItems": 2, "maxItems": 2}
+    return Reads(read, [item.example] * 2, {"anyOf": [item.schema, both]})
+
+
 def either(names: dict[str, Any], item: Reads) -> Reads:
     """Read a named set, or a list of items, as a tuple of quantities, each size once."""
 

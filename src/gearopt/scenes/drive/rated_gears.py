@@ -1,0 +1,177 @@
+"""From the tables of a file to what physics rates: gear pairs, steels, operations, practice."""
+
+from dataclasses import replace
+from fractions import Fraction
+from typing import Any
+
+from gearopt.physics.agma.rating_factors import Operation, Practice, Steel
+from gearopt.physics.gears import ISO_53_A, Gear, GearPair, Rack, reference_diameter
+from gearopt.physics.shaft_forces import rpm
+from gearopt.scenes.drive.rating_tables import GearTable
+from gearopt.scenes.drive.scene import Scene
+
+MEMBERS = ("pinion", "wheel")
+HOUR = 3600.0  # s
+
+
+def own(scene: Scene, stage: int, member: str) -> GearTable:
+    """Return what one gear has, of its own or of all gears; stage from 0."""
+    table: GearTable = getattr(scene.stage[stage], member) if scene.stage else GearTable()
+    shared = {n: getattr(scene.gears, n) for n in type(scene.gears).model_fields}
+    missing = {
+        n: shared[n]
+        for n in GearTable.model_fields
+        if getattr(table, n) is None and shared.get(n) is not None
+    }
+    return table.model_copy(update=missing)
+
+
+def pair_of(
+    scene: Scene, stage: int, module: float, teeth: tuple[float, float], face_width: float
+) -> GearPair:
+    """Return the pair of a stage (from 0) with its shifts, tools and centre distance.
+
+    module, face_width [mm]; teeth of pinion and wheel.
+    """
+    table = scene.stage[stage] if scene.stage else None
+    helix, pressure = (
+        ((table and getattr(table, name)) or getattr(scene.gears, name)).value
+        for name in ("helix_angle", "pressure_angle")
+    )
+    gears = [
+        _gear(own(scene, stage, member), module, z, face_width, helix, pressure)
+        for member, z in zip(MEMBERS, teeth, strict=True)
+    ]
+    centres = table and table.centre_distance
+    return GearPair(gears[0], gears[1], centres.value if centres else None)
+
+
+def _gear(
+    table: GearTable, module: float, teeth: float, width: float, helix: float, pressure: float
+) -> Gear:
+    usual = ISO_53_A
+    rack = Rack(
+        pressure,
+        _or(table.addendum, usual.addendum),
+        _or(table.tool_addendum, usual.dedendum),
+        _or(table.tool_tip_radius, usual.tip_radius),
+        _or(table.tool_protuberance, usual.protuberance),
+    )
+    return Gear(
+        module,
+        teeth,
+        reference_diameter(module, teeth, helix),
+        width,
+        helix,
+        rack,
+        _or(table.profile_shift, 0.0),
+        _or(table.tip_alteration, 0.0),
+        table.thickness_allowance.value if table.thickness_allowance else 0.0,
+    )
+
+
+def _or(value: Fraction | int | None, usual: float) -> float:
+    return usual if value is None else float(value)
+
+
+def given_pairs(scene: Scene) -> tuple[GearPair, ...]:
+    """Return the pairs of a drive whose gears are all given."""
+    found = []
+    for k, stage in enumerate(scene.stage):
+        assert stage.size and stage.pinion_teeth and stage.wheel_teeth
+        teeth = float(stage.pinion_teeth[0]), float(stage.wheel_teeth[0])
+        module = float(stage.size[0].exact[0])
+        if stage.face_width is not None:
+            width = stage.face_width.value
+        else:
+            helix = (stage.helix_angle or scene.gears.helix_angle).value
+            span = stage.face_width_over_diameter or scene.gears.face_width_over_diameter
+            assert span
+            width = float(span[0]) * float(reference_diameter(module, teeth[0], helix))
+        found.append(pair_of(scene, k, module, teeth, width))
+    return tuple(found)
+
+
+def steel(table: GearTable) -> Steel:
+    """Return the material of a gear; it has a treatment, or its strengths are given."""
+    usual = Steel()
+    return Steel(
+        table.treatment or usual.treatment,
+        table.grade or usual.grade,
+        table.hardness.value if table.hardness else usual.hardness,
+        table.surface_hardness or usual.surface,
+        table.elastic_modulus.value if table.elastic_modulus else usual.modulus,
+        _or(table.poisson_ratio, usual.poisson),
+        table.roughness.value if table.roughness else usual.finish,
+        bool(table.reversed_load),
+    )
+
+
+def backup(gear: Gear, table: GearTable) -> float | None:
+    """Return the backup ratio m_B = t_R/h_t of a rim; None of a solid gear."""
+    if table.rim_thickness is None:
+        return None
+    return float(table.rim_thickness.value / (0.5 * (gear.tip_diameter - gear.root_diameter)))
+
+
+def practice(scene: Scene, pair: GearPair, gears: tuple[GearTable, GearTable]) -> Practice:
+    """Return how a pair is made and rated."""
+    asked = scene.rating
+    assert asked
+    return Practice(
+        quality=float(asked.quality),
+        curve=asked.mounting,
+        crowned=asked.crowned,
+        offset=float(asked.pinion_offset),
+        adjusted=asked.adjusted,
+        backup=(backup(pair.pinion, gears[0]), backup(pair.wheel, gears[1])),
+        size=asked.size_factor == "shigley",
+        service=asked.service,
+        load=asked.bending_load,
+        edition=asked.edition,
+    )
+
+
+def required_hours(scene: Scene) -> float:
+    """Return the life that is asked for [h], at the duty's speed where it is in revolutions."""
+    asked = scene.rating
+    assert asked
+    if asked.life is not None:
+        return asked.life.value / HOUR
+    assert asked.input_revolutions is not None
+    return float(asked.input_revolutions) / (60.0 * rpm(scene.duty.input_speed.value))
+
+
+def operations(
+    scene: Scene, slower: float, gears: tuple[GearTable, GearTable]
+) -> tuple[Operation, ...]:
+    """Return what a pair does at every level of load; slower: input over pinion speed."""
+    asked, hours = scene.rating, required_hours(scene)
+    assert asked
+    one = Operation(
+        scene.duty.power.value,
+        scene.duty.input_speed.value / slower,
+        hours,
+        float(asked.overload_factor),
+        reliability=float(asked.reliability),
+        contacts=(float(gears[0].contacts or 1), float(gears[1].contacts or 1)),
+    )
+    if asked.temperature is not None:
+        one = replace(one, temperature_C=asked.temperature.value)
+    levels: list[Any] = [
+        replace(
+            one,
+            power=level.power.value,
+            pinion_speed=(level.input_speed or scene.duty.input_speed).value / slower,
+            hours=hours * float(level.share),
+        )
+        for level in scene.load
+    ]
+    return tuple(levels) or (one,)
+
+
+def given_factors(scene: Scene, stage: int) -> dict[str, Any]:
+    """Return the factors that a file gives for a stage (from 0), those of all stages below."""
+    assert scene.rating
+    mine = scene.stage[stage].given.factors() if scene.stage else {}
+    return scene.rating.given.factors() | mine
