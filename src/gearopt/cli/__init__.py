@@ -14,7 +14,18 @@ from gearopt.cli.names import fill
 from gearopt.cli.writing import patient
 from gearopt.errors import GearoptError
 
-ORDER = ("new", "solve", "explain", "check", "compare", "report", "schema", "doctor", "bench")
+ORDER = (
+    "new",
+    "solve",
+    "rate",
+    "explain",
+    "check",
+    "compare",
+    "report",
+    "schema",
+    "doctor",
+    "bench",
+)
 app.registered_commands.sort(key=lambda c: ORDER.index(getattr(c.callback, "__name__", "")))
 
 

@@ -13,7 +13,7 @@ from typing import Annotated, Any
 import typer
 
 from gearopt.cli.app import FIRST, MORE, TOOLS, Json, app, console, print_whole, told
-from gearopt.cli.names import bench_words, kind_words, problem_files
+from gearopt.cli.names import bench_words, example_words, kind_words, problem_files
 from gearopt.errors import GearoptError, SceneError
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Result
@@ -78,11 +78,23 @@ def schema(
 
 
 @app.command(rich_help_panel=FIRST)
-def new(kind: Kind = "drive") -> None:
+def new(
+    name: Annotated[
+        str,
+        typer.Argument(
+            metavar="KIND",
+            help="What to start from: {examples}.",
+            autocompletion=example_words,
+        ),
+    ] = "drive",
+) -> None:
     """Print a problem file to start from: `gearopt new drive > my.toml`."""
-    from gearopt.scenes.reading.load import scene_module
+    from gearopt.scenes.reading.load import examples
 
-    print_whole(scene_module(_known(kind)).EXAMPLE, end="")
+    known = examples()
+    if name not in known:
+        raise GearoptError(f"no problem file {name!r} to start from: {', '.join(known)}")
+    print_whole(known[name], end="")
 
 
 def _known(kind: str) -> str:

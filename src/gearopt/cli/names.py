@@ -21,6 +21,14 @@ def kinds() -> dict[str, str]:
     return {kind: _said(scene_module(kind).__doc__, 'kind = "[a-z]+": ') for kind in kinds()}
 
 
+def examples() -> dict[str, str]:
+    """Return the problem files to start from, each with what it is for."""
+    from gearopt.scenes.reading.load import scene_module
+
+    more = (getattr(scene_module(kind), "MORE_EXAMPLES", {}) for kind in kinds())
+    return kinds() | {name: words for held in more for name, (words, _) in held.items()}
+
+
 def benches() -> dict[str, str]:
     """Return the benches, each with what it measures."""
     from gearopt.bench import names
@@ -54,8 +62,12 @@ def _said(text: str | None, head: str = "") -> str:
 
 
 def filled(text: str) -> str:
-    """Return a help text with the names that its {kinds}, {methods} or {benches} stand for."""
-    for place, names in (("{kinds}", kinds), ("{benches}", benches)):
+    """Return a help text with the names that its {kinds}, {examples} ... stand for."""
+    for place, names in (
+        ("{kinds}", kinds),
+        ("{examples}", examples),
+        ("{benches}", benches),
+    ):
         if place in text:
             listed = "; ".join(f"{name} ({words})" for name, words in names().items())
             text = text.replace(place, listed)
@@ -69,6 +81,11 @@ def _methods() -> str:
 def kind_words(incomplete: str) -> list[tuple[str, str]]:
     """Return the kinds that begin with what is typed, with a word on each."""
     return _begun(kinds(), incomplete)
+
+
+def example_words(incomplete: str) -> list[tuple[str, str]]:
+    """Return the problem files to start from that begin with what is typed."""
+    return _begun(examples(), incomplete)
 
 
 def bench_words(incomplete: str) -> list[tuple[str, str]]:

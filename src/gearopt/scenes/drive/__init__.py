@@ -20,15 +20,26 @@ from gearopt.optimise.result import Result
 from gearopt.optimise.solve import GAP, run
 from gearopt.optimise.typed import untyped
 from gearopt.scenes.drive.assumptions import assumptions, notes
+from gearopt.scenes.drive.examples import EXAMPLE, MORE_EXAMPLES
 from gearopt.scenes.drive.rated import rate, with_rating
 from gearopt.scenes.drive.rating_tables import MATERIAL, GivenTable
-from gearopt.scenes.drive.scene import EXAMPLE, Scene
+from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.stage_counts import best_count
 from gearopt.scenes.explaining.default import of_report
 from gearopt.scenes.parts import undercut
 from gearopt.scenes.reading.ask import Ask, unseeded
 
-__all__ = ["EXAMPLE", "Scene", "compared", "explain", "idle", "model", "rate", "solve"]
+__all__ = [
+    "EXAMPLE",
+    "MORE_EXAMPLES",
+    "Scene",
+    "compared",
+    "explain",
+    "idle",
+    "model",
+    "rate",
+    "solve",
+]
 PROCESSES = ("process_one", "process_two")  # tables; as methods with a hyphen
 WEAKER = " Its contact ratio is less than the one given, its root is weaker."
 METHODS = ("exact", "process-one", "process-two", "sa", "sa-polish", "sa-paper")  # its own

@@ -7,7 +7,7 @@ from typing import Any
 from gearopt.physics.agma.rating_factors import Operation, Practice, Steel
 from gearopt.physics.gears import ISO_53_A, Gear, GearPair, Rack, reference_diameter
 from gearopt.physics.shaft_forces import rpm
-from gearopt.scenes.drive.rating_tables import GearTable
+from gearopt.scenes.drive.rating_tables import GearTable, with_shared
 from gearopt.scenes.drive.scene import Scene
 
 MEMBERS = ("pinion", "wheel")
@@ -16,14 +16,8 @@ HOUR = 3600.0  # s
 
 def own(scene: Scene, stage: int, member: str) -> GearTable:
     """Return what one gear has, of its own or of all gears; stage from 0."""
-    table: GearTable = getattr(scene.stage[stage], member) if scene.stage else GearTable()
-    shared = {n: getattr(scene.gears, n) for n in type(scene.gears).model_fields}
-    missing = {
-        n: shared[n]
-        for n in GearTable.model_fields
-        if getattr(table, n) is None and shared.get(n) is not None
-    }
-    return table.model_copy(update=missing)
+    table = getattr(scene.stage[stage], member) if scene.stage else GearTable()
+    return with_shared(table, scene.gears)
 
 
 def pair_of(

@@ -103,6 +103,12 @@ class GearTable(GearKeys):
         return self
 
 
+def with_shared(own: GearTable, shared: GearKeys) -> GearTable:
+    """Return what a gear has, of its own or of all gears."""
+    names = [n for n in GearKeys.model_fields if getattr(own, n) is None]
+    return own.model_copy(update={n: getattr(shared, n) for n in names})
+
+
 class GivenTable(Table):
     """Factors that stand in the place of computed ones; [pinion, wheel], or one for both."""
 

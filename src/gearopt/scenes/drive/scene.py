@@ -1,6 +1,6 @@
 """A drive's file as a whole: its tables, how they fit together, and the drive they describe."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from fractions import Fraction
 from typing import Annotated, Any
 
@@ -29,54 +29,13 @@ from gearopt.scenes.drive.layout_tables import (
     check_shared,
     gearbox,
 )
-from gearopt.scenes.drive.rating_tables import MATERIAL, GivenTable, LoadTable, RatingTable
+from gearopt.scenes.drive.rating_checks import check_rated, check_unrated
+from gearopt.scenes.drive.rating_tables import LoadTable, RatingTable
 from gearopt.scenes.explaining.numbers import eased, in_reverse, written
 from gearopt.scenes.parts import Duty
 from gearopt.scenes.reading.fields import Table, refuse, whole, words
 from gearopt.scenes.reading.lists import span
 
-EXAMPLE = """\
-gearopt = 1
-kind = "drive"
-title = "A two-stage drive"
-# stages = [1, 4]              # instead of the tables [[stage]]: the best number of stages
-
-[duty]
-power = "7.5 kW"
-input_speed = "1450 rpm"
-output_speed = "66.5 rpm"      # or: ratio = 21.8
-ratio_tolerance = "1 %"
-
-[gears]
-helix_angle = "25 deg"
-
-[[stage]]                      # from the input on; what is fixed or differs in this stage
-face_width_over_diameter = 0.6 # b/d1; a range [0.3, 0.6] leaves the width free
-
-[[stage]]
-face_width_over_diameter = 0.75
-
-[limits]
-k_factor = "2.07 MPa"          # contact; or: preset = "chong-lee-elevator"
-unit_load = "48 MPa"           # tooth root
-pinion_teeth = [20, 40]
-
-[teeth]                        # whole teeth, standard modules; without it sizes are continuous
-modules = "ISO 54 I"
-
-[objective]
-minimise = "gear_volume"       # or mass, sum_of_centre_distances, total_length
-
-# [layout]                     # without the # the gears are laid out in the smallest box
-# shaft_stress = "40 MPa"      # torsion; or: shaft_diameters = ["20 mm", "35 mm", "60 mm"]
-# span = "full"                # shafts from wall to wall; or partial
-
-# [process_one]                # designs by the rules of a paper, beside the best one:
-# stage_ratios = [4.96, 4.36]  # by K-factor and unit load,
-# [process_two]                # and after Niemann
-# first_centre_distance = "150 mm"
-# modules = ["2 mm", "3 mm"]   # or: pinion_teeth = [23, 25]
-"""
 KEYS: dict[
     str, str | tuple[str, ...]
 ] = {  # of `Train.numbers`, those of the whole drive: their places in a file
@@ -204,25 +163,9 @@ class Scene(Table):
             if "limits" not in self.model_fields_set:
                 raise refuse("is missing", at=("limits",))
         if self.rating is None:
-            for place in self._only_rated():
-                raise refuse("needs a table [rating]", at=place, action="remove")
-        elif self.load and sum(level.share for level in self.load) != 1:
-            total = sum(level.share for level in self.load)
-            rest = self.load[-1].share + 1 - total
-            rule = f"makes the shares of all levels {float(100 * total):.6g} %, not 100 %"
-            write = f"{float(100 * rest):.6g} %" if 0 < rest <= 1 else None
-            raise refuse(rule, write, ("load", len(self.load) - 1, "share"))
-
-    def _only_rated(self) -> Iterator[tuple[Any, ...]]:
-        """Yield the places of keys that change nothing without a rating."""
-        yield from [("load",)] * bool(self.load)
-        gears: list[tuple[tuple[Any, ...], Table]] = [(("gears",), self.gears)]
-        for k, stage in enumerate(self.stage):
-            yield from [("stage", k, "given")] * (stage.given != GivenTable())
-            for member in ("pinion", "wheel"):
-                gears.append((("stage", k, member), getattr(stage, member)))
-        for place, table in gears:
-            yield from ((*place, n) for n in MATERIAL if getattr(table, n) is not None)
+            check_unrated(self.gears, self.stage, self.load)
+        else:
+            check_rated(self.rating, self.gears, self.stage, self.load)
 
     def _check_layout(self) -> None:
         """Check the tables of a layout against the drive and each other."""

@@ -1,6 +1,7 @@
 """The geometry of the teeth of one gear of a pair, for the table of a rating (ISO 21771)."""
 
 import math
+from typing import Any
 
 from gearopt.formulations.rating import ToothGeometry
 from gearopt.physics.gears import Gear, GearPair
@@ -52,7 +53,7 @@ def _finite(value: float) -> float | None:
     return float(value) if math.isfinite(value) else None
 
 
-def _measured(gear: Gear) -> dict[str, float | int | None]:
+def _measured(gear: Gear) -> dict[str, Any]:
     """Return span and dimension over balls, where they touch the flanks."""
     teeth = span_teeth(gear)
     low, high = float(form_diameter(gear)), float(gear.tip_diameter)

@@ -60,6 +60,17 @@ def scene_module(kind: str) -> Any:
         raise SolveError(f"kind {kind!r} cannot be imported: {reason}") from reason
 
 
+def examples() -> dict[str, str]:
+    """Return problem files to start from: one of each kind, and others that kinds have by name."""
+    modules = {kind: scene_module(kind) for kind in kinds()}
+    more = {
+        name: text
+        for module in modules.values()
+        for name, (_, text) in getattr(module, "MORE_EXAMPLES", {}).items()
+    }
+    return {kind: module.EXAMPLE for kind, module in modules.items()} | more
+
+
 def kind_of(scene: BaseModel) -> str:
     """Return the kind of a scene, by the room that its class stands in."""
     return type(scene).__module__.removeprefix(f"{gearopt.scenes.__name__}.").split(".")[0]

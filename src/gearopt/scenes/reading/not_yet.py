@@ -42,27 +42,31 @@ MONEY = "cost price costs budget maximum_cost"
 
 NEAREST: dict[str, dict[str, str]] = {  # kind -> names -> what stands nearest
     "drive": {
-        CENTRES: 'Nearest: objective.minimise = "sum_of_centre_distances", or a [[place]] beside '
-        "[layout], which says where a shaft is",
-        f"{MATERIAL} {STRESS}": "Nearest: k_factor and unit_load, the limits of the load on flank "
-        "and tooth root, in [limits] or a [[stage]]: choose them for the material",
-        SAFETY: "Nearest: k_factor and unit_load in [limits]: divide what the material bears by "
-        "the factor",
-        FACTORS: "Nearest: duty.power: multiply it by the factor",
-        SHIFT: "Nearest: limits.pinion_teeth: with a minimum of 17 teeth a spur pinion of 20 deg "
-        "needs no profile shift",
-        QUALITY: 'Nearest: kind = "servo", which counts deviations and grades of gears; k_factor '
-        "and unit_load are chosen for a quality",
-        OIL: "Nearest: limits.k_factor, which is chosen for lubrication and temperature; scuffing "
-        "is not checked",
-        LOSS: "Gears are taken as loss-free. Nearest: duty.power, the power at the input",
-        LIFE: "Nearest: k_factor and unit_load in [limits], which are chosen for a life",
-        RACK: "Gears have the basic rack of ISO 53, profile A. Nearest: gears.pressure_angle",
+        CENTRES: "Nearest: centre_distance of a [[stage]], or objective.minimise = "
+        '"sum_of_centre_distances", or a [[place]] beside [layout], which says where a shaft is',
+        f"{MATERIAL} {STRESS}": "Nearest: treatment, grade and hardness in [gears], [stage.pinion] "
+        "or [stage.wheel] for a [rating]; its [rating.given] has s_at and s_ac. Sizes are limited "
+        "by k_factor and unit_load in [limits]",
+        SAFETY: "Nearest: minimum_bending_safety and minimum_contact_safety of [rating]; sizes are "
+        "limited by k_factor and unit_load in [limits]",
+        FACTORS: "Nearest: overload_factor of [rating]; of sizes duty.power: multiply it by the "
+        "factor",
+        SHIFT: "Nearest: profile_shift, in [stage.pinion] and [stage.wheel]",
+        QUALITY: 'Nearest: quality of [rating]; or kind = "servo", which counts deviations and '
+        "grades of gears",
+        OIL: "Nearest: oil_viscosity and temperature of [rating]; scuffing is not checked",
+        LOSS: "Nearest: friction_coefficient or oil_viscosity of [rating]; sizes are those of "
+        "loss-free gears",
+        LIFE: "Nearest: life of [rating], and tables [[load]]; sizes are limited by k_factor and "
+        "unit_load in [limits], which are chosen for a life",
+        RACK: "Nearest: addendum, tool_addendum and tool_tip_radius, in [gears], [stage.pinion] or "
+        "[stage.wheel]",
         SHAPE: "Drives have external spur or helical gears on parallel shafts. Nearest: "
         "gears.helix_angle",
-        BODY: "Gears are solid. Nearest: shaft_diameters of [layout]",
+        BODY: "Nearest: rim_thickness of a gear, for its [rating]; masses are those of solid gears",
         BEARINGS: "Nearest: bearing_diameters and bearing_widths of [layout]",
-        "backlash flank_clearance": 'Nearest: kind = "servo", which counts backlash and its causes',
+        "backlash flank_clearance": "Nearest: thickness_allowance of a gear and centre_distance "
+        'of a [[stage]]; kind = "servo" counts backlash and its causes',
         CONTACT: "The contact ratio is reported. Nearest: gears.helix_angle, which raises it",
         MONEY: 'Nearest: objective.minimise = "mass", or "gear_volume"',
         "torque input_torque output_torque": "Nearest: duty.power and input_speed: power is torque "
@@ -121,6 +125,9 @@ CALLED: dict[str, dict[str, str]] = {  # kind -> other names of its keys -> what
         "i u": "ratio in [duty], stage_ratio in a [[stage]]",
         "beta": "helix_angle, in [gears]",
         "alpha alpha_n": "pressure_angle, in [gears]",
+        "diametral_pitch p_nd dp": "diametral_pitch, in a [[stage]], or module in 1/in",
+        "x x1 x2 x_1 x_2": "profile_shift, in [stage.pinion] and [stage.wheel]",
+        "q_v qv agma_quality": "quality, in [rating]",
         "p": "power, in [duty]",
         "n1 n_1 n_in rpm speed input_rpm": "input_speed, in [duty]",
         "n2 n_2 n_out output_rpm": "output_speed, in [duty]",

@@ -1,0 +1,88 @@
+"""Problem files to start from: a drive to be sized, and gears to be rated."""
+
+EXAMPLE = """\
+gearopt = 1
+kind = "drive"
+title = "A two-stage drive"
+# stages = [1, 4]              # instead of the tables [[stage]]: the best number of stages
+
+[duty]
+power = "7.5 kW"
+input_speed = "1450 rpm"
+output_speed = "66.5 rpm"      # or: ratio = 21.8
+ratio_tolerance = "1 %"
+
+[gears]
+helix_angle = "25 deg"
+
+[[stage]]                      # from the input on; what is fixed or differs in this stage
+face_width_over_diameter = 0.6 # b/d1; a range [0.3, 0.6] leaves the width free
+
+[[stage]]
+face_width_over_diameter = 0.75
+
+[limits]
+k_factor = "2.07 MPa"          # contact; or: preset = "chong-lee-elevator"
+unit_load = "48 MPa"           # tooth root
+pinion_teeth = [20, 40]
+
+[teeth]                        # whole teeth, standard modules; without it sizes are continuous
+modules = "ISO 54 I"
+
+[objective]
+minimise = "gear_volume"       # or mass, sum_of_centre_distances, total_length
+
+# [layout]                     # without the # the gears are laid out in the smallest box
+# shaft_stress = "40 MPa"      # torsion; or: shaft_diameters = ["20 mm", "35 mm", "60 mm"]
+# span = "full"                # shafts from wall to wall; or partial
+
+# [process_one]                # designs by the rules of a paper, beside the best one:
+# stage_ratios = [4.96, 4.36]  # by K-factor and unit load,
+# [process_two]                # and after Niemann
+# first_centre_distance = "150 mm"
+# modules = ["2 mm", "3 mm"]   # or: pinion_teeth = [23, 25]
+"""
+
+RATING = """\
+gearopt = 1
+kind = "drive"
+title = "A pair of spur gears, rated"
+
+[duty]
+power = "7.5 kW"
+input_speed = "1450 rpm"
+
+[[stage]]                      # one table per pair, from the input on
+module = "3 mm"                # or: diametral_pitch = 8
+pinion_teeth = 20
+wheel_teeth = 60
+face_width = "30 mm"
+# helix_angle = "15 deg"       # normal module and pressure angle then
+# centre_distance = "121 mm"   # without it the one without backlash
+
+[stage.pinion]                 # what the pinion has of its own; [stage.wheel] likewise
+profile_shift = 0.2
+
+[gears]                        # what all gears share
+treatment = "carburised"       # or through-hardened with hardness = "300 HB", nitrided ...
+grade = 1
+
+[rating]                       # gearopt rate FILE
+standard = "agma"
+life = "20000 h"
+quality = 8                    # Q_v; larger is better
+overload_factor = 1.25
+mounting = "commercial"        # or open, precision, "extra precision"
+minimum_bending_safety = 1.2
+minimum_contact_safety = 1.1
+# oil_viscosity = "40 mPa s"   # for the efficiency of the mesh
+
+# [rating.given]               # factors of your own, instead of computed ones
+# K_m = 1.3
+# J = [0.30, 0.40]             # pinion, wheel
+
+# [[load]]                     # a load spectrum instead of the duty's power
+# power = "7.5 kW"
+# share = "30 %"
+"""
+MORE_EXAMPLES = {"rating": ("gears that are given, rated by AGMA", RATING)}

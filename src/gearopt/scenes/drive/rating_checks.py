@@ -1,0 +1,91 @@
+"""What the tables of a rating must agree on; what only a rating needs."""
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from gearopt.physics.agma.allowables import bending_allowable, contact_allowable
+from gearopt.scenes.drive.drive_tables import Gears, StageTable
+from gearopt.scenes.drive.rating_tables import (
+    MATERIAL,
+    GearTable,
+    GivenTable,
+    LoadTable,
+    RatingTable,
+    with_shared,
+)
+from gearopt.scenes.reading.fields import Table, refuse
+
+Place = tuple[Any, ...]
+MEMBERS = ("pinion", "wheel")
+NEED_HARDNESS = ("through-hardened",)  # of the life curves and the hardness ratio too
+CYCLES = ("Y_N", "Z_N")  # factors that follow from the levels of a spectrum
+
+
+def check_unrated(gears: Gears, stages: Sequence[StageTable], load: Sequence[LoadTable]) -> None:
+    """Refuse what changes nothing without a table [rating]."""
+    for place in _only_rated(gears, stages, load):
+        raise refuse("needs a table [rating]", at=place, action="remove")
+
+
+def _only_rated(
+    gears: Gears, stages: Sequence[StageTable], load: Sequence[LoadTable]
+) -> Iterator[Place]:
+    yield from [("load",)] * bool(load)
+    tables: list[tuple[Place, Table]] = [(("gears",), gears)]
+    for k, stage in enumerate(stages):
+        yield from [("stage", k, "given")] * (stage.given != GivenTable())
+        yield from [("stage", k, "pinion_hand")] * (stage.pinion_hand is not None)
+        tables += [(("stage", k, member), getattr(stage, member)) for member in MEMBERS]
+    for place, table in tables:
+        yield from ((*place, n) for n in MATERIAL if getattr(table, n) is not None)
+
+
+def check_rated(
+    rating: RatingTable,
+    gears: Gears,
+    stages: Sequence[StageTable],
+    load: Sequence[LoadTable],
+) -> None:
+    """Refuse a rating whose gears lack their strength, or whose loads do not fit together."""
+    for k, stage in enumerate(stages or (StageTable(),)):
+        given = rating.given.factors() | stage.given.factors()
+        for name in CYCLES:
+            if load and name in given:
+                at = ("stage", k, "given") if getattr(stage.given, name) else ("rating", "given")
+                rule = "follows from the levels [[load]] and cannot be given"
+                raise refuse(rule, at=(*at, name), action="remove")
+        for member in MEMBERS:
+            own = getattr(stage, member)
+            place = ("stage", k, member) if own.model_fields_set & set(MATERIAL) else ("gears",)
+            _check_steel(with_shared(own, gears), place, given)
+    total = sum(level.share for level in load)
+    if load and total != 1:
+        rest = load[-1].share + 1 - total
+        rule = f"makes the shares of all levels {float(100 * total):.6g} %, not 100 %"
+        write = f"{float(100 * rest):.6g} %" if 0 < rest <= 1 else None
+        raise refuse(rule, write, ("load", len(load) - 1, "share"))
+
+
+def _check_steel(gear: GearTable, place: Place, given: dict[str, Any]) -> None:
+    """Refuse a gear whose steel has no strength in the tables, unless that is given."""
+    if gear.treatment is None:
+        rule = "is missing: a rating needs the steel of every gear"
+        raise refuse(rule, "through-hardened", (*place, "treatment"), "sample")
+    hardness = gear.hardness.value if gear.hardness else 0.0
+    if not hardness and gear.treatment in NEED_HARDNESS:
+        rule = f"is missing: the strength of {gear.treatment} steel follows from it"
+        raise refuse(rule, "240 HB", (*place, "hardness"), "sample")
+    grade = gear.grade or 1
+    try:
+        if "s_at" not in given:
+            bending_allowable(gear.treatment, grade, hardness)
+        if "s_ac" not in given:
+            contact_allowable(gear.treatment, grade, hardness, gear.surface_hardness or "")
+    except ValueError as reason:
+        if "needs its hardness" in str(reason):
+            rule = f"is missing: the strength of {gear.treatment} steel follows from its core"
+            raise refuse(rule, "300 HB", (*place, "hardness"), "sample") from None
+        key = "surface_hardness" if gear.surface_hardness and grade == 1 else "grade"
+        words, _, known = str(reason).partition("; known: ")
+        tell = f"Known of {gear.treatment} steel: {known}; or give s_at and s_ac"
+        raise refuse(f"has {words}", tell, (*place, key), "tell") from None
