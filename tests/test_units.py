@@ -22,6 +22,11 @@ INSIDE = {  # dimension -> what one is inside
     "torque": "newton * millimeter",
     "frequency": "1 / second",
     "fraction": "dimensionless",
+    "time": "second",
+    "temperature": "degree_Celsius",
+    "viscosity": "millipascal * second",
+    "hardness": "dimensionless",
+    "elastic coefficient": "megapascal**0.5",
 }
 NAMES = {  # where pint's name is another; a speed of 1/min or 1/s counts revolutions
     "hp": "horsepower",  # 550 ft lbf/s
@@ -57,6 +62,16 @@ NAMES = {  # where pint's name is another; a speed of 1/min or 1/s counts revolu
     "lbf in": "pound_force * inch",
     "lbf ft": "pound_force * foot",
     "ozf in": "ounce_force * inch",
+    "h": "hour",
+    "min": "minute",
+    "mPa s": "millipascal * second",
+    "Pa s": "pascal * second",
+    "cP": "centipoise",
+    "degC": "degree_Celsius",
+    "degF": "degree_Fahrenheit",
+    "HB": "dimensionless",
+    "sqrt(MPa)": "megapascal**0.5",
+    "sqrt(psi)": "pound_force_per_square_inch**0.5",
 }
 ALL = [(dimension, unit) for dimension, units in UNITS.items() for unit in units]
 
@@ -64,7 +79,8 @@ ALL = [(dimension, unit) for dimension, units in UNITS.items() for unit in units
 @pytest.mark.parametrize(("dimension", "unit"), ALL, ids=[f"{d} {u}" for d, u in ALL])
 def test_every_unit_agrees_with_pint(dimension, unit):
     name = NAMES.get((dimension, unit), NAMES.get(unit, unit))
-    theirs = 7.25 * PINT.parse_expression(name)
+    offset = dimension == "temperature"
+    theirs = PINT.Quantity(7.25, name) if offset else 7.25 * PINT.parse_expression(name)
     theirs = (1 / theirs if unit in RECIPROCALS else theirs).to(INSIDE[dimension]).magnitude
     assert parse(f"7.25 {unit}", dimension).value == pytest.approx(theirs, rel=1e-12)
 

@@ -7,7 +7,7 @@ import jsonschema
 import pytest
 
 from gearopt.scenes.drive import EXAMPLE
-from gearopt.scenes.reading.load import kinds, scene_module
+from gearopt.scenes.reading.load import examples, kinds, scene_module
 from gearopt.scenes.reading.remedy import table_of
 from gearopt.scenes.reading.schema import json_schema
 
@@ -27,15 +27,21 @@ def test_every_shipped_file_fits(path):
     assert list(VALIDATORS[content["kind"]].iter_errors(content)) == []
 
 
+MORE = {"drive": [examples()["rating"]]}
+
+
 @pytest.mark.parametrize("kind", kinds())
 def test_the_example_fits_and_shows_every_table(kind):
-    example = scene_module(kind).EXAMPLE
-    content = tomllib.loads(example)
-    VALIDATORS[kind].validate(content)
+    example, content = scene_module(kind).EXAMPLE, {}
+    for text in (example, *MORE.get(kind, ())):
+        VALIDATORS[kind].validate(tomllib.loads(text))
+        content |= tomllib.loads(text)
     fields = scene_module(kind).Scene.model_fields
     tables = {name for name, info in fields.items() if table_of(info.annotation)}
-    apart = {"layout", "place", "keep_out", "process_one", "process_two"} & tables
-    assert all(f"# [{name}]" in example for name in apart - {"place", "keep_out"})  # as a comment
+    apart = {"layout", "place", "keep_out", "process_one", "process_two", "load"} & tables
+    assert all(
+        f"# [{name}]" in example for name in apart - {"place", "keep_out", "load"}
+    )  # as a comment
     assert tables and all(content[name] for name in tables - apart)
 
 

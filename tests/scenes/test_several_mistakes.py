@@ -12,7 +12,7 @@ from scene_files import BASES, keys, parse, put, rename
 from gearopt.errors import SceneError
 from gearopt.scenes.reading.load import read, scene_module
 from gearopt.scenes.reading.not_yet import CALLED, NEAREST
-from gearopt.scenes.reading.remedy import table_of
+from gearopt.scenes.reading.remedy import tables
 from gearopt.scenes.reading.toml import dotted
 
 PROBLEMS = Path(__file__).parents[2] / "problems"
@@ -49,9 +49,9 @@ gearopt: wrong.toml: bearings = {life = "20000 h"}: is not supported yet. Neares
 bearing_diameters and bearing_widths of [layout]
 gearopt: wrong.toml: gears.helix_angle = "95 deg": is above 45 deg. Write, for example, \
 helix_angle = "25 deg"
-gearopt: wrong.toml: stage[1].material = "16MnCr5": is not supported yet. Nearest: k_factor and \
-unit_load, the limits of the load on flank and tooth root, in [limits] or a [[stage]]: choose \
-them for the material
+gearopt: wrong.toml: stage[1].material = "16MnCr5": is not supported yet. Nearest: treatment, \
+grade and hardness in [gears] or [stage.pinion], for a [rating]; sizes follow from k_factor and \
+unit_load in [limits]
 gearopt: wrong.toml: limits.k_factor = "2 N": has the unknown unit N; units of stress: MPa, Pa, \
 kPa, GPa, bar, N/mm^2, psi, ksi. Write, for example, k_factor = "2.07 MPa"
 gearopt: wrong.toml: limits.pinion_teeth: is missing. Write, for example, pinion_teeth = [20, 40]
@@ -147,13 +147,13 @@ def test_the_command_refuses_random_mistakes(here, tmp_path):
 @pytest.mark.parametrize(
     ("table", "line", "said"),
     [
-        ("limits", 'centre_distance = "120 mm"', "sum_of_centre_distances"),
-        ("stage[1]", "profile_shift = 0.5", "limits.pinion_teeth"),
-        ("gears", "quality = 6", 'kind = "servo"'),
-        ("limits", "safety_factor = 1.5", "divide what the material bears by the factor"),
+        ("limits", 'center_distance = "120 mm"', "sum_of_centre_distances"),
+        ("stage[1]", "addendum_modification = 0.5", "profile_shift, in [stage.pinion]"),
+        ("gears", "accuracy_grade = 6", 'kind = "servo"'),
+        ("limits", "safety_factor = 1.5", "minimum_bending_safety"),
         ("duty", "application_factor = 1.25", "multiply it by the factor"),
         ("gears", 'lubricant = "VG 220"', "scuffing is not checked"),
-        ("gears", "hardness = 58", "k_factor and unit_load"),
+        ("gears", 'steel = "16MnCr5"', "treatment, grade and hardness"),
         ("duty", 'output-torque = "900 N m"', "power is torque times angular speed"),
     ],
 )
@@ -171,8 +171,7 @@ def test_the_letters_of_the_field_are_told_their_keys():
     assert first.remedy == "Here it is called helix_angle, in [gears]" and first.fix is None
     assert second.remedy == "Here it is called stages, at the top of the file"
     scene = scene_module("drive").Scene
-    tables = [t for f in scene.model_fields.values() if (t := table_of(f.annotation))]
-    known = {*scene.model_fields, *(k for t in tables for k in t.model_fields)}
+    known = {*scene.model_fields, *(k for _, t in tables(scene) for k in t.model_fields)}
     for names, there in CALLED["drive"].items():
         assert there.split(",")[0].split(" ")[0] in known and not known & set(names.split())
 
@@ -181,14 +180,14 @@ def test_the_letters_of_the_field_are_told_their_keys():
 def test_every_key_of_what_stands_nearest_is_known(kind, names):
     """What a remedy calls a key, with an underscore or a table before it, is one of the kind's."""
     scene = scene_module(kind).Scene
-    tables = {n: table_of(f.annotation) for n, f in scene.model_fields.items()}
-    known = {*scene.model_fields, *(k for t in tables.values() if t for k in t.model_fields)}
+    held = {title.strip("[]"): table for title, table in tables(scene)}
+    known = {*scene.model_fields, *(k for t in held.values() for k in t.model_fields)}
     known |= {"gear_volume", "sum_of_centre_distances"}  # values
     way = NEAREST[kind][names]
     assert set(re.findall(r"\b[a-z]+(?:_[a-z]+)+\b", way)) <= known
-    assert {t for t in re.findall(r"\[([a-z_]+)\]", way)} <= tables.keys()
-    for table, key in re.findall(r"\b([a-z_]+)\.([a-z_]+)\b", way):
-        assert key in tables[table].model_fields
+    assert {t for t in re.findall(r"\[([a-z_.]+)\]", way)} <= held.keys()
+    for table, key in re.findall(r"\b([a-z_]+)\.([a-z_]+)\b(?!\])", way):
+        assert key in held[table].model_fields
 
 
 @pytest.mark.parametrize(

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from fractions import Fraction
 from typing import Annotated, Any
 
-from pydantic import Field, model_validator
+from pydantic import ConfigDict, Field, ValidationInfo, field_validator, model_validator
 
 from gearopt.formulations.design import DriveDesign, describe
 from gearopt.formulations.gear_train import FaceWidth, Stage, Train
@@ -76,6 +76,9 @@ class DriveDuty(Duty):
 class Scene(Table):
     """A drive."""
 
+    model_config = ConfigDict(
+        json_schema_extra={"anyOf": [{"required": ["limits"]}, {"required": ["rating"]}]}
+    )
     title: Annotated[str, words()] = Field("", description="A line for the report")
     source: Annotated[str, words()] = Field(
         "", description="Where the data and the expected value come from"
@@ -88,12 +91,13 @@ class Scene(Table):
     )
     gears: Gears = Field(default_factory=Gears)
     stage: tuple[StageTable, ...] = Field((), description="One table per stage, from the input on")
-    limits: Limits = Field(
-        default_factory=Limits.open,
-        description="Needed, but where [rating] rates gears that are all given",
-    )
     rating: RatingTable | None = None
     load: tuple[LoadTable, ...] = Field((), description="One table per level of a load spectrum")
+    limits: Limits = Field(
+        None,
+        validate_default=True,
+        description="Needed, but where [rating] rates gears that are all given",
+    )
     teeth: Teeth | None = None
     objective: Objective = Field(default_factory=Objective)
     layout: Layout | None = None
@@ -101,6 +105,14 @@ class Scene(Table):
     keep_out: tuple[KeepOutTable, ...] = Field((), description="One table per keep-out")
     process_one: ProcessOneTable | None = None
     process_two: ProcessTwoTable | None = None
+
+    @field_validator("limits", mode="wrap")
+    @classmethod
+    def _needed(cls, value: Any, handler: Callable[[Any], Limits], info: ValidationInfo) -> Limits:
+        """Refuse a file without limits, unless it has a rating."""
+        if value is None and info.data.get("rating", "wrong") is None:
+            raise refuse("is missing")
+        return Limits.open() if value is None else handler(value)
 
     @model_validator(mode="after")
     def _consistent(self) -> "Scene":

@@ -40,30 +40,52 @@ BEARINGS = "bearing bearings bearing_life bearing_type"
 CONTACT = "contact_ratio transverse_contact_ratio overlap_ratio noise"
 MONEY = "cost price costs budget maximum_cost"
 
+KEYS = frozenset(  # of the names above, those that a drive has as keys
+    "hardness surface_hardness overload_factor centre_distance profile_shift quality grade life "
+    "temperature friction_coefficient addendum rim_thickness".split()
+)
+
+
+def _but_keys(names: str) -> str:
+    return " ".join(name for name in names.split() if name not in KEYS)
+
+
 NEAREST: dict[str, dict[str, str]] = {  # kind -> names -> what stands nearest
     "drive": {
-        CENTRES: "Nearest: centre_distance of a [[stage]], or objective.minimise = "
+        _but_keys(CENTRES): "Nearest: centre_distance of a [[stage]], or objective.minimise = "
         '"sum_of_centre_distances", or a [[place]] beside [layout], which says where a shaft is',
-        f"{MATERIAL} {STRESS}": "Nearest: treatment, grade and hardness in [gears], [stage.pinion] "
-        "or [stage.wheel] for a [rating]; its [rating.given] has s_at and s_ac. Sizes are limited "
-        "by k_factor and unit_load in [limits]",
+        _but_keys(MATERIAL + " " + STRESS): "Nearest: treatment, grade and hardness in [gears] or "
+        "[stage.pinion], for a [rating]; sizes follow from k_factor and unit_load in [limits]",
         SAFETY: "Nearest: minimum_bending_safety and minimum_contact_safety of [rating]; sizes are "
         "limited by k_factor and unit_load in [limits]",
-        FACTORS: "Nearest: overload_factor of [rating]; of sizes duty.power: multiply it by the "
-        "factor",
-        SHIFT: "Nearest: profile_shift, in [stage.pinion] and [stage.wheel]",
-        QUALITY: 'Nearest: quality of [rating]; or kind = "servo", which counts deviations and '
+        _but_keys(
+            FACTORS
+        ): "Nearest: overload_factor of [rating]; of sizes duty.power: multiply it by the factor",
+        _but_keys(SHIFT): "Nearest: profile_shift, in [stage.pinion] and [stage.wheel]",
+        _but_keys(
+            QUALITY
+        ): 'Nearest: quality of [rating]; or kind = "servo", which counts deviations and '
         "grades of gears",
-        OIL: "Nearest: oil_viscosity and temperature of [rating]; scuffing is not checked",
-        LOSS: "Nearest: friction_coefficient or oil_viscosity of [rating]; sizes are those of "
+        _but_keys(
+            OIL
+        ): "Nearest: oil_viscosity and temperature of [rating]; scuffing is not checked",
+        _but_keys(
+            LOSS
+        ): "Nearest: friction_coefficient or oil_viscosity of [rating]; sizes are those of "
         "loss-free gears",
-        LIFE: "Nearest: life of [rating], and tables [[load]]; sizes are limited by k_factor and "
+        _but_keys(
+            LIFE
+        ): "Nearest: life of [rating], and tables [[load]]; sizes are limited by k_factor and "
         "unit_load in [limits], which are chosen for a life",
-        RACK: "Nearest: addendum, tool_addendum and tool_tip_radius, in [gears], [stage.pinion] or "
+        _but_keys(
+            RACK
+        ): "Nearest: addendum, tool_addendum and tool_tip_radius, in [gears], [stage.pinion] or "
         "[stage.wheel]",
         SHAPE: "Drives have external spur or helical gears on parallel shafts. Nearest: "
         "gears.helix_angle",
-        BODY: "Nearest: rim_thickness of a gear, for its [rating]; masses are those of solid gears",
+        _but_keys(
+            BODY
+        ): "Nearest: rim_thickness of a gear, for its [rating]; masses are those of solid gears",
         BEARINGS: "Nearest: bearing_diameters and bearing_widths of [layout]",
         "backlash flank_clearance": "Nearest: thickness_allowance of a gear and centre_distance "
         'of a [[stage]]; kind = "servo" counts backlash and its causes',
@@ -125,8 +147,8 @@ CALLED: dict[str, dict[str, str]] = {  # kind -> other names of its keys -> what
         "i u": "ratio in [duty], stage_ratio in a [[stage]]",
         "beta": "helix_angle, in [gears]",
         "alpha alpha_n": "pressure_angle, in [gears]",
-        "diametral_pitch p_nd dp": "diametral_pitch, in a [[stage]], or module in 1/in",
-        "x x1 x2 x_1 x_2": "profile_shift, in [stage.pinion] and [stage.wheel]",
+        "p_nd pnd dp": "diametral_pitch, in a [[stage]]",
+        "x1 x2 x_1 x_2": "profile_shift, in [stage.pinion] and [stage.wheel]",
         "q_v qv agma_quality": "quality, in [rating]",
         "p": "power, in [duty]",
         "n1 n_1 n_in rpm speed input_rpm": "input_speed, in [duty]",

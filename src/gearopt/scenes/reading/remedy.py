@@ -1,6 +1,7 @@
 """What is wrong with a file as one SceneError: where, the rule, and what to write instead."""
 
 import tomllib
+from collections.abc import Iterator
 from decimal import Decimal
 from importlib import import_module
 from typing import Any, get_args, get_origin
@@ -156,11 +157,16 @@ def _unknown(
 def _homes(model: type[BaseModel], name: str) -> list[str]:
     """Return the places where a key of this name is known."""
     homes = ["at the top of the file"] if name in model.model_fields else []
-    for field, info in model.model_fields.items():
-        table = table_of(info.annotation)
-        if table is not None and name in table.model_fields:
-            homes.append(f"in [[{field}]]" if _is_many(model, (field,)) else f"in [{field}]")
-    return homes
+    return homes + [f"in {title}" for title, table in tables(model) if name in table.model_fields]
+
+
+def tables(model: type[BaseModel], above: str = "") -> Iterator[tuple[str, type[BaseModel]]]:
+    """Yield the title of every table of a file, nested ones after theirs, and its class."""
+    for name, info in model.model_fields.items():
+        if table := table_of(info.annotation):
+            many = get_origin(info.annotation) is tuple
+            yield (f"[[{name}]]" if many else f"[{above}{name}]"), table
+            yield from tables(table, f"{name}.")
 
 
 def _near_name(
@@ -229,8 +235,11 @@ def example_of(model: type[BaseModel], place: tuple[Any, ...]) -> Any:
         return reads.example
     table = table_of(info.annotation)
     assert table is not None, names
-    file = tomllib.loads(import_module(model.__module__).EXAMPLE, parse_float=Decimal)
-    shown, found = _lookup(file, tuple(0 if isinstance(part, int) else part for part in place))
+    kind = import_module(".".join(model.__module__.split(".")[:3]))  # gearopt.scenes.KIND
+    texts = [kind.EXAMPLE, *(text for _, text in getattr(kind, "MORE_EXAMPLES", {}).values())]
+    at = tuple(0 if isinstance(part, int) else part for part in place)
+    each = (_lookup(tomllib.loads(text, parse_float=Decimal), at) for text in texts)
+    shown, found = next((one for one in each if one[1]), (None, False))
     required = {
         n: example_of(table, (n,)) for n, f in table.model_fields.items() if f.is_required()
     }

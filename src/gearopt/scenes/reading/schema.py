@@ -1,11 +1,11 @@
 """What a kind of problem file may hold: as JSON schema for editors, as Markdown for people."""
 
-from typing import Any, get_origin
+from typing import Any
 
 from pydantic import BaseModel
 
 from gearopt.scenes.reading.load import FORMAT, scene_module
-from gearopt.scenes.reading.remedy import example_of, table_of
+from gearopt.scenes.reading.remedy import example_of, table_of, tables
 from gearopt.scenes.reading.toml import toml_text
 
 
@@ -28,10 +28,8 @@ def reference(kind: str) -> str:
     """Return every table and key of a kind in Markdown: meaning, whether needed, an example."""
     model: type[BaseModel] = scene_module(kind).Scene
     parts = [f"### top of the file\n\n{_doc(model)}\n\n{_rows(model)}"]
-    for name, info in model.model_fields.items():
-        if table := table_of(info.annotation):
-            title = f"[[{name}]]" if get_origin(info.annotation) is tuple else f"[{name}]"
-            parts.append(f"### {title}\n\n{_doc(table)}\n\n{_rows(table)}")
+    for title, table in tables(model):
+        parts.append(f"### {title}\n\n{_doc(table)}\n\n{_rows(table)}")
     return "\n\n".join(parts) + "\n"
 
 
