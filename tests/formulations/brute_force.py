@@ -12,6 +12,7 @@ import numpy as np
 
 from gearopt.formulations.gear_train import FaceWidth, Stage, Train
 from gearopt.formulations.strength.k_factor import K_FACTOR
+from gearopt.formulations.toothing import Toothing
 from gearopt.physics.gears import MODULES
 
 SAME = 1e-12  # objectives closer than this are ties; loads may exceed a limit by this much
@@ -66,30 +67,31 @@ def pairs(train, k, pinions, wheels):
     return owner[keep], z1[keep], z2[keep]
 
 
-def side(train, module, teeth, length):
+def side(toothing, module, teeth, length):
     """Sign of diameter - length; exact for spur gears."""
-    if train.helix_angle:
-        return np.sign(float(module) * teeth / math.cos(train.helix_angle) - float(length))
+    if toothing.helix_angle:
+        return np.sign(float(module) * teeth / math.cos(toothing.helix_angle) - float(length))
     limit = length / module
     return (teeth > math.floor(limit)) * 1 - (teeth < math.ceil(limit)) * 1
 
 
-def width(train, face, module, z1, needed):
+def width(stage, module, z1, needed):
     """Least face width that carries the load, inf where the limits allow none."""
-    d = float(module) * z1 / math.cos(train.helix_angle)
+    face, toothing = stage.face_width, stage.toothing
+    d = float(module) * z1 / math.cos(toothing.helix_angle)
     if face.fixed is not None:
         b = np.full(len(z1), float(face.fixed))
         allowed = needed <= b * (1 + SAME)
         if face.low > 0:
-            allowed &= side(train, module, z1, face.fixed / face.low) <= 0
+            allowed &= side(toothing, module, z1, face.fixed / face.low) <= 0
         if face.high is not None:
-            allowed &= side(train, module, z1, face.fixed / face.high) >= 0
+            allowed &= side(toothing, module, z1, face.fixed / face.high) >= 0
     elif face.step is None:
         b = np.clip(needed, float(face.low) * d, float(face.high) * d)
         allowed = needed <= float(face.high) * d * (1 + SAME)
     else:
         step = float(face.step)
-        if train.helix_angle:
+        if toothing.helix_angle:
             low, high = np.ceil(float(face.low) * d / step), np.floor(float(face.high) * d / step)
         else:
             low = ceil_of(face.low * module / face.step, z1)
@@ -125,11 +127,11 @@ def best_choice(train, k, torque, z1, z2, needed=k_factor_width):
     stage, u = train.stages[k], z2 / z1
     best, with_module, with_width = np.full(len(z1), np.inf), np.zeros(len(z1)), np.zeros(len(z1))
     for module in stage.modules:
-        d = float(module) * z1 / math.cos(train.helix_angle)
+        d = float(module) * z1 / math.cos(stage.toothing.helix_angle)
         load = needed(stage, torque, d, float(module), u)
-        b = width(train, stage.face_width, module, z1, load)
+        b = width(stage, module, z1, load)
         if stage.wheel_diameter is not None:
-            b[side(train, module, z2, stage.wheel_diameter) > 0] = np.inf
+            b[side(stage.toothing, module, z2, stage.wheel_diameter) > 0] = np.inf
         value = np.where(np.isfinite(b), cost(train, k, d, b, u), np.inf)
         better = value < best * (1 - SAME)
         best[better], with_width[better] = value[better], b[better]
@@ -215,15 +217,28 @@ def some_drive(number, stages):
     ratio = Fraction(round(ratio)) if rng.random() < 0.3 else Fraction(round(100 * ratio), 100)
     even = float(ratio) ** (1 / stages)
     names = ["gear_volume", "sum_of_centre_distances", "total_length", "mass"]
+    tolerance = Fraction(round(log_uniform(rng, 5, 300)), 10_000)
+    made = tuple(some_stage(rng, torque * even**k, even, stages) for k in range(stages))
+    helix = float(rng.choice([0.0, math.radians(rng.uniform(0, 30))]))
     train = Train(
         torque,
         ratio,
-        tolerance=Fraction(round(log_uniform(rng, 5, 300)), 10_000),
-        stages=tuple(some_stage(rng, torque * even**k, even, stages) for k in range(stages)),
-        helix_angle=float(rng.choice([0.0, math.radians(rng.uniform(0, 30))])),
+        tolerance,
+        stages=tuple(replace(stage, toothing=Toothing(helix)) for stage in made),
         coprime=bool(rng.random() < 0.2),
         objective=str(rng.choice(names, p=[0.55, 0.2, 0.2, 0.05])),
         density=7.85e-9,
         law=K_FACTOR,
     )
     return squeezed(rng, train, even) if rng.random() < 0.7 else train
+
+
+def own_teeth(train):
+    """The drive with other teeth in every stage: the lengths are those of reference circles."""
+    made = []
+    for k, stage in enumerate(train.stages):
+        helix, shift = stage.toothing.helix_angle, (0.0, 0.4, -0.2, 0.1)[k]
+        shifts, tips = (shift, -shift), (0.0, -0.1 * (k % 2))
+        own = Toothing((1.0, 0.6, -1.0, 0.3)[k] * helix + 0.1 * k, profile_shifts=shifts)
+        made.append(replace(stage, toothing=replace(own, tip_alterations=tips)))
+    return replace(train, stages=tuple(made))

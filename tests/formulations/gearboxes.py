@@ -89,13 +89,13 @@ def law(chain, m, y, z):
     return chain.factor[m] * width ** chain.power[0] * height ** chain.power[1], short
 
 
-def face_width(train, stage, torque, module, teeth, needed=k_factor_width):
+def face_width(stage, torque, module, teeth, needed=k_factor_width):
     """Minimum face width [mm] of one choice; None where a limit forbids it."""
-    d, u = float(module) * teeth[0] / math.cos(train.helix_angle), teeth[1] / teeth[0]
+    d, u = float(module) * teeth[0] / math.cos(stage.toothing.helix_angle), teeth[1] / teeth[0]
     if stage.wheel_diameter is not None and d * u > float(stage.wheel_diameter):
         return None
     load = needed(stage, torque, d, float(module), u)
-    b = width(train, stage.face_width, F(module), np.array([teeth[0]]), load).item()
+    b = width(stage, F(module), np.array([teeth[0]]), load).item()
     return b if b < math.inf else None
 
 
@@ -119,9 +119,9 @@ def every(train, needed=k_factor_width):
                 if u > (stage.ratio[1] or u) or (train.coprime and math.gcd(z1, z2) > 1):
                     continue
                 for module in stage.modules:
-                    b = face_width(train, stage, torque, module, (z1, z2), needed)
+                    b = face_width(stage, torque, module, (z1, z2), needed)
                     if b is not None:
-                        row = train.pair(float(module), float(z1), float(z2), b)
+                        row = train.pair(k, float(module), float(z1), float(z2), b)
                         go(k + 1, torque * z2 / z1, ratio * u, [*rows, row])
 
     go(0, train.torque, F(1), [])

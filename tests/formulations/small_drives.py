@@ -5,6 +5,7 @@ from fractions import Fraction
 from gearopt.formulations.gear_train import FaceWidth, Stage, Train
 from gearopt.formulations.strength.k_factor import K_FACTOR
 from gearopt.formulations.teeth.stage import table
+from gearopt.formulations.toothing import Toothing
 
 F = Fraction
 FACES = {
@@ -19,10 +20,12 @@ OBJECTIVES = ("gear_volume", "mass", "sum_of_centre_distances", "total_length")
 
 
 def drive(stages=2, face="tied", total=12, tolerance=None, **changes):
+    toothing = Toothing(changes.pop("helix_angle", 0.0))
     given = {"modules": (F(1), F(3, 2), F(2), F(3)), "pinion_teeth": (15, 20)}
-    of_train = {k: changes.pop(k) for k in ("objective", "helix_angle", "coprime") if k in changes}
+    of_train = {k: changes.pop(k) for k in ("objective", "coprime") if k in changes}
     made = tuple(
-        Stage((1.5 + 0.2 * k, 40.0 + k), FACES[face], **given | changes) for k in range(stages)
+        Stage((1.5 + 0.2 * k, 40.0 + k), FACES[face], toothing=toothing, **given | changes)
+        for k in range(stages)
     )
     tolerance = F(1, 50) if tolerance is None else tolerance
     return Train(2e4, F(total), tolerance, made, density=7.85e-9, law=K_FACTOR, **of_train)

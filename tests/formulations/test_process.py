@@ -84,19 +84,19 @@ def test_the_chain_of_centres_loads_every_stage_alike(k):
 
 def test_a_balanced_pinion_reaches_both_limits_at_once():
     """With z1 as a real number K and U are reached by one module; the rule cuts that number."""
-    stage, u, angle = TWO.stages[0], 4.96, TWO.helix_angle
+    stage, u, angle = TWO.stages[0], 4.96, TWO.stages[0].toothing.helix_angle
     z = stage.allowable[1] / stage.allowable[0] * (1 + 1 / u) * math.cos(angle)
     d = math.cbrt(k_factor(5e4, 1.0, 0.6, u) / stage.allowable[0])
     m = d * math.cos(angle) / z
     assert unit_load(5e4, d, 0.6 * d, m) == pytest.approx(stage.allowable[1], rel=1e-12)
-    assert process.balanced_pinion(TWO.law, stage, u, angle) == math.floor(z) == 25
+    assert process.balanced_pinion(TWO.law, stage, u) == math.floor(z) == 25
 
 
 def test_the_needed_module_is_the_least_that_carries_the_load():
-    stage, angle = TWO.stages[1], TWO.helix_angle
+    stage, angle = TWO.stages[1], TWO.stages[1].toothing.helix_angle
     for z1 in (20, 25, 32):
         z2 = 4 * z1 + 7
-        m, u = process.needed_module(TWO.law, stage, 2.5e5, (z1, z2), angle), z2 / z1
+        m, u = process.needed_module(TWO.law, stage, 2.5e5, (z1, z2)), z2 / z1
         d = m * z1 / math.cos(angle)
         use = (
             k_factor(2.5e5, d, 0.75 * d, u) / stage.allowable[0],
@@ -180,7 +180,7 @@ def test_process_one_holds_its_loads_whatever_the_drive(seed):
         share = float(stage.face_width.high)
 
         def use(m, z1=z1, z2=z2, share=share, stage=stage, torque=torque):
-            d = m * z1 / math.cos(train.helix_angle)
+            d = m * z1 / stage.toothing.cosine
             return max(
                 k_factor(torque, d, share * d, z2 / z1) / stage.allowable[0],
                 unit_load(torque, d, share * d, m) / stage.allowable[1],
@@ -225,8 +225,10 @@ def test_what_is_missing_is_named():
 
 def test_the_design_in_words_has_the_widths_of_the_rule():
     result, gears = made(TWO, "process-one", one=ProcessOne(PRINTED))
-    cosine = math.cos(TWO.helix_angle)
-    rows = zip(gears, (0.6, 0.75), strict=True)
-    pairs = tuple(TWO.pair(m, z1, z2, part * m * z1 / cosine) for (m, z1, z2), part in rows)
+    rows = enumerate(zip(gears, (0.6, 0.75), strict=True))
+    pairs = tuple(
+        TWO.pair(k, m, z1, z2, part * m * z1 / TWO.stages[k].toothing.cosine)
+        for k, ((m, z1, z2), part) in rows
+    )
     found = describe(TWO, pairs)
     assert found.gear_volume_mm3 == pytest.approx(result.value, rel=1e-12)

@@ -10,6 +10,7 @@ import pytest
 from gearopt.formulations import sizing
 from gearopt.formulations.gear_train import FaceWidth, Stage, Train
 from gearopt.formulations.strength.k_factor import K_FACTOR
+from gearopt.formulations.toothing import Toothing
 from gearopt.optimise import tape
 from gearopt.optimise.certificate import certify
 from gearopt.optimise.result import Budget
@@ -19,12 +20,14 @@ from gearopt.optimise.solvers import ipopt
 F = Fraction
 EXACT, ONE_PERCENT = F(0), F(1, 100)
 
+HELICAL = Toothing(math.radians(25.0))
+
 
 def drive(power_kW, speed_rpm, total, widths, tolerance=EXACT, **stage):
-    limits = {"modules": (), "pinion_teeth": (20, 40)} | stage
+    limits = {"modules": (), "pinion_teeth": (20, 40), "toothing": HELICAL} | stage
     stages = tuple(Stage((2.07, 48.0), FaceWidth(F(str(w)), F(str(w))), **limits) for w in widths)
     torque = 30e6 * power_kW / math.pi / speed_rpm
-    return Train(torque, F(total), tolerance, stages, math.radians(25.0), law=K_FACTOR)
+    return Train(torque, F(total), tolerance, stages, law=K_FACTOR)
 
 
 def g(u):
@@ -64,7 +67,11 @@ def test_the_optimum_does_not_depend_on_tied_width_or_helix():
     train = drive(8, 3520, 110, [0.6, 0.6, 0.75])
     values = [
         solve(sizing.problem(t)).value
-        for t in (train, drive(8, 3520, 110, [0.9, 0.5, 0.7]), replace(train, helix_angle=0.1))
+        for t in (
+            train,
+            drive(8, 3520, 110, [0.9, 0.5, 0.7]),
+            drive(8, 3520, 110, [0.6, 0.6, 0.75], toothing=Toothing(0.1)),
+        )
     ]
     assert values == pytest.approx([12707311.04] * 3, abs=0.006)
 

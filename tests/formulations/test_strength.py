@@ -20,6 +20,7 @@ from gearopt.formulations.process import ProcessOne
 from gearopt.formulations.strength import Law, Limit, laws
 from gearopt.formulations.strength.k_factor import K_FACTOR
 from gearopt.formulations.strength.lewis import LEWIS
+from gearopt.formulations.toothing import Toothing
 from gearopt.optimise import tape
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import run, solve
@@ -66,8 +67,10 @@ def test_a_law_may_ask_for_the_helix_angle():
 
     law = Law("virtual teeth", (Limit("bending_stress"),), stress, proportional=True)
     modules = tuple(map(F, (1, 2, 3, 4, 5)))
-    stage = Stage((40.0,), FaceWidth(F(1, 2), F(1)), modules, (17, 20), (17, 80))
-    train = Train(5e4, F(3), F(1, 100), (stage,), beta, law=law)
+    stage = Stage(
+        (40.0,), FaceWidth(F(1, 2), F(1)), modules, (17, 20), (17, 80), toothing=Toothing(beta)
+    )
+    train = Train(5e4, F(3), F(1, 100), (stage,), law=law)
     values = []
     for z1, m in product(range(17, 21), range(1, 6)):
         d = m * z1 / math.cos(beta)

@@ -12,6 +12,7 @@ from gearopt.formulations import sizing, teeth
 from gearopt.formulations.gear_train import OBJECTIVES, FaceWidth, Stage, Train
 from gearopt.formulations.strength.k_factor import K_FACTOR
 from gearopt.formulations.teeth.search import narrowed, possible
+from gearopt.formulations.toothing import Toothing
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import run, solve
 from gearopt.physics.gears import SERIES_I
@@ -19,11 +20,13 @@ from gearopt.physics.gears import SERIES_I
 F = Fraction
 ELEVATOR, ONE_PERCENT = F("1450") / F("66.5"), F(1, 100)
 
+HELICAL = Toothing(math.radians(25.0))
+
 
 def drive(total=ELEVATOR, widths=("0.6", "0.75"), tolerance=ONE_PERCENT, **stage):
-    limits = {"modules": SERIES_I, "pinion_teeth": (20, 40)} | stage
+    limits = {"modules": SERIES_I, "pinion_teeth": (20, 40), "toothing": HELICAL} | stage
     stages = tuple(Stage((2.07, 48.0), FaceWidth(F(w), F(w)), **limits) for w in widths)
-    return Train(49392.913, F(total), tolerance, stages, math.radians(25.0), law=K_FACTOR)
+    return Train(49392.913, F(total), tolerance, stages, law=K_FACTOR)
 
 
 def test_table_2_designs_are_beaten_under_their_own_limits():
@@ -152,7 +155,7 @@ def test_fixed_things_stay_fixed():
     result, outcome = run(teeth.problem(replace(train, stages=(first, train.stages[1]))))
     assert result.status == "optimal"
     pair, _ = teeth.pairs(replace(train, stages=(first, train.stages[1])), outcome.x)
-    assert pair == train.pair(2.5, 24, 119, 40.0)
+    assert pair == train.pair(0, 2.5, 24, 119, 40.0)
 
 
 def test_finer_series_and_wider_tolerance_never_hurt():

@@ -7,11 +7,12 @@ from functools import cache
 
 import numpy as np
 import pytest
-from brute_force import ONE, SAME, every_train, log_uniform, some_drive
+from brute_force import ONE, SAME, every_train, log_uniform, own_teeth, some_drive
 
 from gearopt.formulations.gear_train import FaceWidth, Stage, Train
 from gearopt.formulations.strength.k_factor import K_FACTOR
 from gearopt.formulations.teeth import pairs, problem
+from gearopt.formulations.toothing import Toothing
 from gearopt.optimise.solve import run
 
 
@@ -51,6 +52,20 @@ def agreed_status(number, stages):
 def test_random_two_stage_drives(block):
     for number in range(25 * block, 25 * block + 25):
         assert agreed_status(number, 2) in ("optimal", "infeasible")  # after `agrees`
+
+
+@pytest.mark.slow
+def test_random_drives_with_other_teeth_in_every_stage():
+    """One helix angle, shifts that cancel and shortened tips a stage."""
+    found = [
+        agrees(own_teeth(some_drive(n, stages))).status for n in range(20) for stages in (2, 3)
+    ]
+    assert found.count("infeasible") >= 5
+    assert found.count("optimal") >= 20
+
+
+def test_a_random_drive_with_other_teeth_in_every_stage():
+    assert agrees(own_teeth(some_drive(3, 2))).status == "optimal"
 
 
 @pytest.mark.slow
@@ -215,8 +230,11 @@ def test_rounding_does_not_decide_ties(stages):
     teeth = [((z, z + 10), (5 * z, 5 * z + 50)) for z in (17, 23)[:stages]]
     free = {"modules": (Fraction(3), Fraction(4)), "face_width": FaceWidth(ONE * 0, ONE * 10)}
     train = spur(1e4 / 3, 5**stages, teeth=teeth, allowable=(1.0, 1e9), **free)
-    fives = tuple(replace(stage, ratio=(Fraction(5), Fraction(5))) for stage in train.stages)
-    train = replace(train, helix_angle=0.3, stages=fives)
+    fives = tuple(
+        replace(stage, ratio=(Fraction(5), Fraction(5)), toothing=Toothing(0.3))
+        for stage in train.stages
+    )
+    train = replace(train, stages=fives)
     assert ties(train) == 11**stages
     assert len(set(every_train(train).values.tolist())) > 1
     assert agrees(train).design["module_mm"] in (3.0, [3.0] * stages)

@@ -6,6 +6,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from brute_force import own_teeth
 from gearboxes import face_width, smallest_box
 from uncompiled import uncompiled
 
@@ -17,6 +18,7 @@ from gearopt.formulations.layout.slabs import arrangements, clashes, orders
 from gearopt.formulations.strength.k_factor import K_FACTOR
 from gearopt.formulations.together import search
 from gearopt.formulations.together.tables import numbers, rest
+from gearopt.formulations.toothing import Toothing
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import run
@@ -29,8 +31,11 @@ IN_ORDER = ((0,), (1,), (2,))
 def chong(kilowatt, rpm, ratio, widths):
     torque = 30e6 * kilowatt / (math.pi * rpm)
     series = MODULES["ISO 54 I"]
-    stages = tuple(Stage((2.07, 48.0), FaceWidth(h, h), series, (20, 40)) for h in widths)
-    return Train(torque, ratio, F(1, 100), stages, math.radians(25), law=K_FACTOR)
+    own = Toothing(math.radians(25))
+    stages = tuple(
+        Stage((2.07, 48.0), FaceWidth(h, h), series, (20, 40), toothing=own) for h in widths
+    )
+    return Train(torque, ratio, F(1, 100), stages, law=K_FACTOR)
 
 
 def three():
@@ -83,7 +88,9 @@ def some_train(rng, stages=2):
     ratio = F(int(rng.choice([40, 60, 85] if stages == 2 else [60, 90])), 10)
     torque, helix = float(rng.choice([2e4, 5e4])), math.radians(float(rng.choice([0, 15, 25])))
     coprime = bool(rng.random() < 0.2)
-    return Train(torque, ratio, F(1, 100), tuple(found), helix, coprime=coprime, law=K_FACTOR)
+    made = tuple(replace(stage, toothing=Toothing(helix)) for stage in found)
+    train = Train(torque, ratio, F(1, 100), made, coprime=coprime, law=K_FACTOR)
+    return own_teeth(train) if coprime else train
 
 
 def some_frame(rng, train):
@@ -252,7 +259,7 @@ def test_a_box_as_large_as_it_may_be_is_not_too_large_by_rounding():
     assert high > 143.6  # by rounding alone
     assert math.isfinite(nodes.worth(drive.aim, 50.0, high * high, high))
     assert math.isinf(nodes.worth(drive.aim, 50.0, high * high, high * (1.0 + 1e-10)))
-    box = make((train.pair(2.2, 17, 56, 14.0), train.pair(2.2, 21, 55, 32.0)))
+    box = make((train.pair(0, 2.2, 17, 56, 14.0), train.pair(1, 2.2, 21, 55, 32.0)))
     (order,) = search.orders_of(replace(box, slabs=((0,), (1,))))
     tight = replace(box, slabs=order.slabs, largest=(math.inf, math.inf, order.length - 1e-12))
     assert search.orders_of(tight)
@@ -271,7 +278,7 @@ def test_a_train_whose_layouts_are_not_exhausted_leaves_the_search_unproven(monk
     stage = replace(train.stages[0], modules=(F(2), F(3)), pinion_teeth=(20, 21))
     train = replace(train, stages=(stage, replace(train.stages[1], modules=(F(3), F(4)))))
     work = search.Search(train, frame(train, (10.0, 17.5, 30.0)), Clock(), 0)
-    pairs = train.pair(2.0, 21, 128, 25.0), train.pair(3.0, 24, 85, 50.0)
+    pairs = train.pair(0, 2.0, 21, 128, 25.0), train.pair(1, 3.0, 24, 85, 50.0)
     assert search.lay(work, pairs, 0.3) and math.isfinite(work.value) and not work.clock.stopped
     monkeypatch.setattr("gearopt.formulations.layout.exact.DEEP", 3)
     fresh = search.Search(train, work.make, Clock(), 0)

@@ -11,6 +11,7 @@ from gearopt.errors import SolveError
 from gearopt.formulations import sizing, teeth
 from gearopt.formulations.gear_train import FaceWidth, Stage, Train
 from gearopt.formulations.strength.k_factor import K_FACTOR
+from gearopt.formulations.toothing import Toothing
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import back_ends, solve
@@ -47,11 +48,13 @@ def catalogue():
 
 CATALOGUE_BEST = min(d * d * math.ceil(100.0 / d**3) for d in (1.0, 1.5, 2.0, 2.5, 4.0))
 
+HELICAL = Toothing(math.radians(25.0))
+
 
 def drive(total=ELEVATOR, widths=("0.6", "0.75"), tolerance=ONE_PERCENT, **stage):
-    limits = {"modules": SERIES_I, "pinion_teeth": (20, 40)} | stage
+    limits = {"modules": SERIES_I, "pinion_teeth": (20, 40), "toothing": HELICAL} | stage
     stages = tuple(Stage((2.07, 48.0), FaceWidth(F(w), F(w)), **limits) for w in widths)
-    return Train(49392.913, F(total), tolerance, stages, math.radians(25.0), law=K_FACTOR)
+    return Train(49392.913, F(total), tolerance, stages, law=K_FACTOR)
 
 
 def test_the_folder_is_the_list_of_methods():

@@ -11,6 +11,7 @@ import pytest
 from gearopt.formulations import sizing
 from gearopt.formulations.gear_train import FaceWidth, Stage, Train
 from gearopt.formulations.strength.k_factor import K_FACTOR
+from gearopt.formulations.toothing import Toothing
 from gearopt.optimise import polish
 from gearopt.optimise.certificate import certify
 from gearopt.optimise.form import form
@@ -85,11 +86,10 @@ def golinski():
 def elevator():
     """Real-valued sizes of a two-stage drive, convex in logarithms: ratio 1450/66.5, 7.5 kW."""
     widths = (FaceWidth(Fraction(w), Fraction(w)) for w in ("0.6", "0.75"))
-    stages = tuple(Stage((2.07, 48.0), w, modules=(), pinion_teeth=(20, 40)) for w in widths)
+    own = {"modules": (), "pinion_teeth": (20, 40), "toothing": Toothing(math.radians(25.0))}
+    stages = tuple(Stage((2.07, 48.0), w, **own) for w in widths)
     total = Fraction(1450) / Fraction("66.5")
-    return sizing.problem(
-        Train(49392.913, total, Fraction(1, 100), stages, math.radians(25.0), law=K_FACTOR)
-    )
+    return sizing.problem(Train(49392.913, total, Fraction(1, 100), stages, law=K_FACTOR))
 
 
 CASES = {

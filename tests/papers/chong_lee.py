@@ -72,7 +72,7 @@ def recomputed(name, widths="printed"):
     """A design from its modules, teeth and helix angle; widths: printed, or ruled (b = m_a d1)."""
     rows = DESIGNS[name]
     own = train(len(rows))
-    pairs = tuple(own.pair(row.m, row.z1, row.z2, float(row.b)) for row in rows)
+    pairs = tuple(own.pair(k, r.m, r.z1, r.z2, float(r.b)) for k, r in enumerate(rows))
     if widths == "ruled":
         shares = PROPORTIONS[2] if len(rows) == 2 else (0.6, 0.6, 0.8)
         rows = zip(shares, pairs, strict=True)
@@ -226,5 +226,5 @@ def chain(stages, first, proportions, ratios=None, after=None):
 
 def modules(diameters, pinions):
     """Modules [mm] before rounding."""
-    cosine = math.cos(train(3).helix_angle)
+    cosine = train(3).stages[0].toothing.cosine
     return [d * cosine / z for d, z in zip(diameters, pinions, strict=True)]

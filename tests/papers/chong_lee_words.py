@@ -16,10 +16,10 @@ TEETH = (27, 26, 27)  # pinions of Table 4
 def from_loads():
     """Balanced teeth, and modules by unit load and by K-factor, of process one in Table 2."""
     own, found = train(2), []
-    torque, cosine = own.torque, math.cos(own.helix_angle)
+    torque, cosine = own.torque, own.stages[0].toothing.cosine
     for stage, u, share in zip(own.stages, SPLIT, paper.PROPORTIONS[2], strict=True):
         balanced = paper.U / K * (u + 1) / u * cosine
-        z = process.balanced_pinion(own.law, stage, u, own.helix_angle)
+        z = process.balanced_pinion(own.law, stage, u)
         d = z / cosine
         by_root = math.cbrt(unit_load(torque, d, share * d, 1.0) / paper.U)
         by_contact = math.cbrt(k_factor(torque, d, share * d, u) / K)
@@ -47,7 +47,7 @@ def centres(first=150.0, square=True):
 def rule_rows():
     """What the rules give beside what is printed."""
     one, two = from_loads()
-    cosine = math.cos(train(2).helix_angle)
+    cosine = train(2).stages[0].toothing.cosine
     d1 = process.pinion_diameter(150.0, SPLIT[0])
     d2 = process.pinion_diameter(centres()[0], SPLIT[1])
     small = modules(chain(3, 160.0, paper.PROPORTIONS[3]), TEETH)
@@ -90,7 +90,7 @@ def used():
 
 def sentences():
     """Sentences of the page with numbers in them, white space aside."""
-    cosine = math.cos(train(3).helix_angle)
+    cosine = train(3).stages[0].toothing.cosine
     spans = ", in ".join(f"{low:.2f} to {high:.2f}" for low, high in balance_needed())
     volumes = [recomputed(name)["gear_volume_mm3"] for name in DESIGNS]
     over = [100 * (v / paper.optimum(2) - 1) for v in volumes[:3]]
@@ -111,7 +111,7 @@ def skipped():
     """K-factor [MPa] of stage 2 of Table 4, process two, with a module of 2.5 mm."""
     own = train(3)
     first, second, _ = DESIGNS["Table 4, process two"]
-    d = 2.5 * second.z1 / math.cos(own.helix_angle)
+    d = 2.5 * second.z1 / own.stages[0].toothing.cosine
     return k_factor(own.torque * first.z2 / first.z1, d, 0.6 * d, second.z2 / second.z1)
 
 

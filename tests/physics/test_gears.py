@@ -8,14 +8,10 @@ import pytest
 
 from gearopt.optimise.tape import legacy_numpy
 from gearopt.physics.gears import (
-    ISO_53_A,
     Gear,
     GearPair,
     Rack,
-    reference_diameter,
-    teeth_without_undercut,
     transverse_contact_ratio,
-    transverse_pressure_angle,
 )
 from gearopt.physics.loads import pitch_line_velocity
 
@@ -129,16 +125,6 @@ def test_a_rack_of_other_teeth():
     assert gear.base_diameter == pytest.approx(60.0 * math.cos(math.radians(25.0)))
 
 
-def test_teeth_without_undercut():
-    """17.10 spur teeth of 20 degrees; there a rack's tip line meets the base circle."""
-    assert teeth_without_undercut(ISO_53_A, 0.0) == pytest.approx(17.097, abs=5e-4)
-    for helix in (0.0, 0.4):
-        z = teeth_without_undercut(ISO_53_A, helix)
-        angle = transverse_pressure_angle(ISO_53_A.pressure_angle, helix)
-        reach = reference_diameter(1.0, z, helix) / 2 * math.sin(angle)  # to the base circle
-        assert reach * math.sin(angle) == pytest.approx(1.0, rel=1e-12)  # the rack's tip line
-
-
 def test_a_pair_by_its_pinion_is_the_pair_by_its_teeth():
     """And another face width changes nothing else."""
     d1 = REPORT.pinion.reference_diameter
@@ -173,7 +159,6 @@ def _made(x):
     found = [getattr(gear, name) for gear in pair.gears for name in MEMBERS]
     found += [gear.inertia(7.85e-9) for gear in pair.gears]
     found += [gear.mass(7.85e-9) for gear in pair.gears]
-    found.append(teeth_without_undercut(ISO_53_A, x[4]))
     found.append(pitch_line_velocity(x[1], pair.pinion.reference_diameter))
     return [*found, pair.mass(7.85e-9), *(getattr(pair, name) for name in OF_PAIR)]
 

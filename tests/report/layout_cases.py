@@ -6,6 +6,7 @@ import gearopt
 from gearopt.formulations.design import describe
 from gearopt.formulations.gear_train import FaceWidth, Stage, Train
 from gearopt.formulations.strength.k_factor import K_FACTOR
+from gearopt.formulations.toothing import Toothing
 from gearopt.optimise.typed import untyped
 
 HELIX = 25.0
@@ -132,9 +133,10 @@ PROGRESS = [
 
 def drive(rows):
     """The design of a drive of these stages."""
-    stages = (Stage((1.0, 1.0), FaceWidth(0, None), (), (1, None)),) * len(rows)
-    train = Train(5e4, 1, 0, stages, helix_angle=math.radians(HELIX), law=K_FACTOR, speed=150.0)
-    return untyped(describe(train, tuple(train.pair(*row) for row in rows)))
+    own = Toothing(math.radians(HELIX))
+    stages = (Stage((1.0, 1.0), FaceWidth(0, None), (), (1, None), toothing=own),) * len(rows)
+    train = Train(5e4, 1, 0, stages, law=K_FACTOR, speed=150.0)
+    return untyped(describe(train, tuple(train.pair(k, *row) for k, row in enumerate(rows))))
 
 
 def result(made, rows, **more):

@@ -13,6 +13,7 @@ import gearopt
 from gearopt.formulations.design import describe
 from gearopt.formulations.gear_train import FaceWidth, Stage, Train
 from gearopt.formulations.strength.k_factor import K_FACTOR
+from gearopt.formulations.toothing import Toothing
 from gearopt.optimise.typed import untyped
 from gearopt.report.measures import METRIC
 from gearopt.report.pages.result import page
@@ -46,9 +47,10 @@ TRAINS = {  # m_n, z1, z2, b of every stage
 
 def result(rows):
     width = FaceWidth(0, None)
-    stages = (Stage((1.0, 1.0), width, (), (1, None)),) * len(rows)
-    train = Train(5e4, 1, 0, stages, helix_angle=0.4, law=K_FACTOR, speed=150.0)
-    design = untyped(describe(train, tuple(train.pair(*row) for row in rows)))
+    stages = (Stage((1.0, 1.0), width, (), (1, None), toothing=Toothing(0.4)),) * len(rows)
+    train = Train(5e4, 1, 0, stages, law=K_FACTOR, speed=150.0)
+    pairs = tuple(train.pair(k, *row) for k, row in enumerate(rows))
+    design = untyped(describe(train, pairs))
     objective = {"name": "gear_volume", "value": 1.0, "unit": "mm3"}
     return gearopt.Result(
         name="drive",

@@ -7,10 +7,10 @@ import pytest
 
 import gearopt
 from gearopt.formulations.servo.servo_design import ServoDesign, ServoReport, Stage, TrainDesign
-from gearopt.physics.gears import Rack
+from gearopt.physics.gears import GearPair, Rack
 from gearopt.report.design_tables import PAGE_ONLY, STAGE_ROWS
 from gearopt.scenes.drive.drive_tables import ORIGINS, PRESETS
-from gearopt.scenes.parts import undercut
+from gearopt.scenes.parts import tooth_warnings
 from gearopt.scenes.servo.assumptions import notes as servo_notes
 
 PROBLEMS = Path(__file__).parents[2] / "problems"
@@ -92,10 +92,9 @@ def test_a_density_of_the_file_counts(tmp_path, result):
 
 def test_the_pressure_angle_changes_the_contact_ratio_alone(tmp_path, result):
     text = FILE.replace('"25 deg"', '"25 deg"\npressure_angle = "25 deg"')
-    found = solved(tmp_path, text)
+    found, angle = solved(tmp_path, text), ("transverse_contact_ratio", "pressure_angle_deg")
     one, other = (
-        {k: v for k, v in r.design["stages"][0].items() if k != "transverse_contact_ratio"}
-        for r in (result, found)
+        {k: v for k, v in r.design["stages"][0].items() if k not in angle} for r in (result, found)
     )
     assert one == other and result.limits == found.limits
     was, now = (r.design["stages"][0]["transverse_contact_ratio"] for r in (result, found))
@@ -146,20 +145,26 @@ def test_an_undercut_pinion_is_named(tmp_path, result, teeth):
 
 @pytest.mark.parametrize(
     ("pressure", "helix", "least"),
-    [(20, 0, 17), (14.5, 0, 32), (25, 0, 12), (20, 25, 13), (20, 45, 7)],
+    [(20, 0, 17), (14.5, 0, 31), (25, 0, 12), (20, 25, 13), (20, 45, 7)],
 )
 def test_the_least_teeth_that_are_not_named_are_those_of_tables(pressure, helix, least):
+    """Tables have 32 of 14.5 degrees, of racks with a smaller tip radius than ISO 53."""
     angles = math.radians(pressure), math.radians(helix)
-    stages = [{"pinion_teeth": z} for z in (least - 1, least, least + 1, 5)]
-    notes = list(undercut(stages, Rack(angles[0]), angles[1]))
+    pairs = [
+        GearPair.of_teeth(2.0, z, 60, 20.0, angles[1], Rack(angles[0]))
+        for z in (least - 1, least, least + 1, least - 2)
+    ]
+    notes = [n for n in tooth_warnings(pairs, " So.") if "is undercut" in n]
     assert [n[: n.index(" is undercut")] for n in notes] == [
         "The pinion of stage 1",
         "The pinion of stage 4",
     ]
     assert all(f"a rack cuts {least} teeth and more cleanly" in n for n in notes)
+    assert all(n.endswith(" So.") for n in notes)
+    flank = 1.25 - 0.38 * (1.0 - math.sin(angles[0]))  # where that of the rack ends
     transverse = math.atan(math.tan(angles[0]) / math.cos(angles[1]))
     for z, named in ((least - 1, True), (least, False)):  # how far the rack reaches too deep
-        deep = 1.0 - 0.5 * z / math.cos(angles[1]) * math.sin(transverse) ** 2
+        deep = flank - 0.5 * z / math.cos(angles[1]) * math.sin(transverse) ** 2
         assert (deep > 0.01) is named
 
 

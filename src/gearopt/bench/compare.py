@@ -5,6 +5,7 @@ drawn from a range that gear catalogues span.
 """
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
@@ -12,6 +13,7 @@ from gearopt.bench.drive import CASES, train_of
 from gearopt.formulations import sizing, teeth
 from gearopt.formulations.gear_train import FaceWidth, Stage, Train
 from gearopt.formulations.strength.k_factor import K_FACTOR
+from gearopt.formulations.toothing import Toothing
 from gearopt.optimise.comparing.compare import Model, Plan, compare
 from gearopt.optimise.comparing.comparison import Comparison
 from gearopt.optimise.problem import Problem
@@ -70,7 +72,8 @@ def random_drive(number: int) -> Train:
     torque = float(np.exp(rng.uniform(np.log(5e3), np.log(5e5))))
     ratio = Fraction(round(100 * even**count), 100)
     helix = float(np.radians(rng.uniform(0.0, 25.0)))
-    return Train(torque, ratio, Fraction(1, 100), tuple(stages), helix, law=K_FACTOR)
+    made = tuple(replace(stage, toothing=Toothing(helix)) for stage in stages)
+    return Train(torque, ratio, Fraction(1, 100), made, law=K_FACTOR)
 
 
 def reducer() -> Problem:

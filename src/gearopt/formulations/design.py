@@ -20,7 +20,10 @@ STEEL_DENSITY = 7.85e-9  # t/mm3: EN 1991-1-1 table A.4 (to 78.5 kN/m3), Steel f
 
 @dataclass(frozen=True, kw_only=True)
 class StageDesign:
-    """A gear pair with its loads; fields are the keys of a result, with their units."""
+    """A gear pair with its loads; fields are the keys of a result, with their units.
+
+    Fields with a default say how its teeth are cut; a result leaves out those that hold it.
+    """
 
     normal_module_mm: float
     pinion_teeth: float
@@ -43,6 +46,15 @@ class StageDesign:
     pinion_mass_kg: float
     wheel_mass_kg: float
     mass_kg: float
+    helix_angle_deg: float = 0.0
+    pressure_angle_deg: float = 20.0
+    working_pressure_angle_deg: float | None = None  # transverse; None: on the reference circles
+    pinion_profile_shift: float = 0.0
+    wheel_profile_shift: float = 0.0
+    pinion_tip_alteration: float = 0.0
+    wheel_tip_alteration: float = 0.0
+    pinion_thickness_allowance_mm: float = 0.0
+    wheel_thickness_allowance_mm: float = 0.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -138,7 +150,23 @@ def _stage(law: Law, pair: GearPair, torque: float, speed: float, density: float
         pinion_mass_kg=masses[0],
         wheel_mass_kg=masses[1],
         mass_kg=sum(masses),
+        **_teeth(pair),
     )
+
+
+def _teeth(pair: GearPair) -> dict[str, Any]:
+    """Return what a stage says of how its teeth are cut."""
+    working, own = pair.working_angle, pair.pinion.transverse_pressure_angle
+    found: dict[str, Any] = {
+        "helix_angle_deg": math.degrees(pair.pinion.helix_angle),
+        "pressure_angle_deg": math.degrees(pair.pinion.rack.pressure_angle),
+        "working_pressure_angle_deg": None if working == own else math.degrees(working),
+    }
+    for member, gear in zip(("pinion", "wheel"), pair.gears, strict=True):
+        found[f"{member}_profile_shift"] = float(gear.profile_shift)
+        found[f"{member}_tip_alteration"] = float(gear.tip_alteration)
+        found[f"{member}_thickness_allowance_mm"] = float(gear.thickness_allowance)
+    return found
 
 
 def _whole(teeth: float) -> float | int:

@@ -11,8 +11,9 @@ from fractions import Fraction
 from typing import Any
 
 from gearopt.formulations.strength import Law
+from gearopt.formulations.toothing import Toothing
 from gearopt.optimise.terms import Terms, each
-from gearopt.physics.gears import ISO_53_A, Gear, GearPair, Rack, reference_diameter
+from gearopt.physics.gears import GearPair
 
 OBJECTIVES = {  # name -> unit
     "gear_volume": "mm3",
@@ -20,7 +21,7 @@ OBJECTIVES = {  # name -> unit
     "sum_of_centre_distances": "mm",
     "total_length": "mm",
 }
-
+LENGTHS = ("sum_of_centre_distances", "total_length")  # objectives along the line of centres
 
 CHOICES = (  # of `Train.numbers`, those that limit what a stage may choose
     "width_low",
@@ -68,7 +69,7 @@ class Stage:
     allowable: the limits of the train's strength law, in its order. modules: allowed normal modules
     [mm], increasing (for the continuous form its first and last are limits; empty: any).
     pinion_teeth, wheel_teeth, ratio u = z2/z1 >= 1: minimum and maximum (None: no
-    limit). wheel_diameter: maximum [mm] of the wheel's reference diameter.
+    limit). wheel_diameter: maximum [mm] of the wheel's reference diameter. toothing: of its gears.
     """
 
     allowable: tuple[float, ...]
@@ -78,6 +79,7 @@ class Stage:
     wheel_teeth: tuple[int, int | None] = (1, None)
     ratio: tuple[Fraction, Fraction | None] = (Fraction(1), None)
     wheel_diameter: Fraction | None = None
+    toothing: Toothing = Toothing()
 
     @property
     def pinion_fixed(self) -> bool:
@@ -94,23 +96,21 @@ class Stage:
 class Train:
     """A drive: input torque [N mm], total ratio and its relative tolerance, and its stages.
 
-    helix_angle [rad] and basic rack of every stage. coprime: z1 and z2 without common divisor
-    (hunting teeth). objective: a key of OBJECTIVES; mass needs density [t/mm3]. law: what limits
-    the stages. speed: that of the input [rad/s], for laws that depend on it. keys: places of
-    `numbers` in a problem file, one per stage for the limits of a stage.
+    coprime: z1 and z2 without common divisor (hunting teeth). objective: a key of OBJECTIVES; mass
+    needs density [t/mm3]; LENGTHS are those of reference circles: profile shifts must cancel. law:
+    what limits the stages. speed: that of the input [rad/s], for laws that depend on it. keys:
+    places of `numbers` in a problem file, one per stage for what a stage has of its own.
     """
 
     torque: float
     ratio: Fraction
     tolerance: Fraction
     stages: tuple[Stage, ...]
-    helix_angle: float = 0.0
     coprime: bool = False
     objective: str = "gear_volume"
     density: float | None = None
     law: Law = field(kw_only=True)
     speed: float = 0.0
-    rack: Rack = ISO_53_A
     keys: Mapping[str, str | tuple[str, ...]] = field(default_factory=dict, compare=False)
 
     def __post_init__(self) -> None:
@@ -123,10 +123,15 @@ class Train:
             raise ValueError(f"{self.law.title} needs pinions of {self.law.minimum_teeth} teeth")
         if self.ratio < 1 or not 0 <= self.tolerance < 1 or not self.stages:
             raise ValueError("a drive needs stages, ratio >= 1 and a tolerance from 0 to below 1")
-        if not abs(self.helix_angle) < math.pi / 3.0:  # whose cosine is rational
-            raise ValueError("the helix angle must be below 60 degrees")
+        if self.objective in LENGTHS and not self.on_reference:
+            raise ValueError(f"the objective {self.objective} needs profile shifts that cancel")
         if self.objective == "mass" and self.density is None:
             raise ValueError("the objective mass needs a density")
+
+    @property
+    def on_reference(self) -> bool:
+        """Whether every stage has the centre distance of its reference circles."""
+        return all(stage.toothing.on_reference for stage in self.stages)
 
     @property
     def lowest_ratio(self) -> Fraction:
@@ -143,18 +148,12 @@ class Train:
         one = replace(self.stages[stage], pinion_teeth=(pinion, pinion), wheel_teeth=(wheel, wheel))
         return replace(self, stages=self.stages[:stage] + (one,) + self.stages[stage + 1 :])
 
-    def pair(self, module: Any, pinion_teeth: Any, wheel_teeth: Any, face_width: Any) -> GearPair:
-        """Return the gear pair of a stage with these numbers; module, face_width [mm].
-
-        The wheel's reference diameter is u d1 here, as in `GearPair.of_diameter`: whole teeth and
-        real-valued ones then agree to the last bit.
-        """
-        d1 = reference_diameter(module, pinion_teeth, self.helix_angle)
-        own = face_width, self.helix_angle, self.rack
-        return GearPair(
-            Gear(module, pinion_teeth, d1, *own),
-            Gear(module, wheel_teeth, d1 * (wheel_teeth / pinion_teeth), *own),
-        )
+    def pair(
+        self, stage: int, module: Any, pinion_teeth: Any, wheel_teeth: Any, face_width: Any
+    ) -> GearPair:
+        """Return the gear pair of a stage (counted from 0); module, face_width [mm]."""
+        own = self.stages[stage].toothing
+        return own.pair(module, pinion_teeth, wheel_teeth, face_width)
 
     def speed_at(self, torque: Any) -> Any:
         """Return the speed [rad/s] of a shaft that carries a torque [N mm], without losses."""
@@ -171,11 +170,11 @@ class Train:
         return OBJECTIVES[self.objective]
 
     def numbers(self) -> dict[str, float | tuple[float, ...]]:
-        """Return every number of the drive by name, a float; one per stage for limits of stages."""
+        """Return every number of the drive by name, a float; one per stage for what stages have."""
         stages = self.stages
         return {
             "torque": self.torque,
-            "helix_cosine": math.cos(self.helix_angle),
+            "helix_cosine": tuple(s.toothing.cosine for s in stages),
             "density": 1.0 if self.density is None else self.density,
             "lowest_ratio": float(self.lowest_ratio),
             "highest_ratio": float(self.highest_ratio),

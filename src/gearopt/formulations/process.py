@@ -67,7 +67,8 @@ def methods(
     """Return the methods process-one and process-two for the problem `teeth` of a drive.
 
     SolveError when run: without inputs, with other numbers of entries than stages, or where a face
-    width is not tied to d1.
+    width is not tied to d1; process two
+    also where profile shifts or given distances leave the reference circles.
     """
 
     def process_one(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
@@ -105,36 +106,41 @@ def _check(which: str, train: Train, inputs: ProcessOne | ProcessTwo) -> None:
             f"the method process-{which} needs face widths b = m_a d1: write "
             "face_width_over_diameter as one number for every stage"
         )
+    if which == "two" and not train.on_reference:
+        raise SolveError(
+            "the method process-two starts from the centre distance of reference circles: it needs "
+            "profile shifts that cancel in every stage, and no given centre distance"
+        )
     for given in (inputs.ratios, inputs.pinion_teeth, inputs.modules):
         if given is not None and len(given) != len(train.stages):
             raise SolveError(f"process {which} has {len(given)} entries, not one for each stage")
 
 
-def _pair(train: Train, stage: Stage, module: Fraction, z1: int, z2: int) -> GearPair:
+def _pair(stage: Stage, module: Fraction, z1: int, z2: int) -> GearPair:
     """Return the pair of a stage whose face width is tied to d1."""
-    one = train.pair(float(module), z1, z2, 1.0)
+    one = stage.toothing.pair(float(module), z1, z2, 1.0)
     return one.of_width(float(stage.face_width.high or 0) * one.pinion.reference_diameter)
 
 
 def _first(train: Train, inputs: ProcessOne) -> tuple[Pairs, str]:
     """Return the gears of process one; none, and why, where no module carries the load."""
     pairs: list[GearPair] = []
-    torque, angle = train.torque, train.helix_angle
+    torque = train.torque
     for k, (stage, u) in enumerate(zip(train.stages, inputs.ratios, strict=True)):
         if inputs.pinion_teeth is not None:
             z1 = inputs.pinion_teeth[k]
         else:
-            z1 = balanced_pinion(train.law, stage, float(u), angle)
+            z1 = balanced_pinion(train.law, stage, float(u))
         z2 = wheel_teeth(z1, u)
         if inputs.modules is not None:
             module: Fraction | None = inputs.modules[k]
         else:
-            minimum = needed_module(train.law, stage, torque, (z1, z2), angle)
+            minimum = needed_module(train.law, stage, torque, (z1, z2))
             module = next_module(stage, minimum)
             if module is None:
                 return (), _no_module(k, minimum, stage)
         assert module is not None
-        pairs.append(_pair(train, stage, module, z1, z2))
+        pairs.append(_pair(stage, module, z1, z2))
         torque *= z2 / z1
     return tuple(pairs), ""
 
@@ -150,7 +156,7 @@ def _second(train: Train, inputs: ProcessTwo) -> tuple[Pairs, str]:
     small = []
     diameters = _diameters(train, inputs.first_centre_distance, [float(u) for u in ratios])
     for k, (stage, d1) in enumerate(zip(train.stages, diameters, strict=True)):
-        across = d1 * math.cos(train.helix_angle)  # m z1
+        across = d1 * stage.toothing.cosine  # m z1
         z1 = None if inputs.pinion_teeth is None else inputs.pinion_teeth[k]
         if inputs.modules is not None:
             module: Fraction | None = inputs.modules[k]
@@ -161,7 +167,7 @@ def _second(train: Train, inputs: ProcessTwo) -> tuple[Pairs, str]:
                 return (), _no_module(k, across / z1, stage)
         assert module is not None
         z1 = z1 or math.ceil(across / float(module) * (1.0 - ROUNDING))
-        pairs.append(_pair(train, stage, module, z1, wheel_teeth(z1, ratios[k])))
+        pairs.append(_pair(stage, module, z1, wheel_teeth(z1, ratios[k])))
         made = pairs[-1].pinion.reference_diameter
         if made < d1 * (1.0 - ROUNDING):
             small.append(
@@ -254,12 +260,12 @@ def pinion_diameter(centre_distance: float, ratio: float) -> float:
     return 2.0 * centre_distance / (ratio + 1.0)
 
 
-def balanced_pinion(law: Law, stage: Stage, ratio: float, helix_angle: float) -> int:
+def balanced_pinion(law: Law, stage: Stage, ratio: float) -> int:
     """Teeth z1 = (U/K) (u + 1)/u cos(beta), cut, with which contact and root limit alike.
 
     Source: Chong and Lee, eq. (11) over eq. (10). Cut, not rounded: 25.84 is 25 in their Table 2.
     """
-    one = GearPair.of_diameter(math.cos(helix_angle), 1.0, 1.0, ratio, 1.0, helix_angle)
+    one = stage.toothing.of_diameter(stage.toothing.cosine, 1.0, 1.0, ratio, 1.0)
     contact, root = law.utilisations(one, 1.0, 0.0, stage.allowable).values()
     balanced = float(contact / root)
     return max(1, math.floor(balanced * (1.0 + ROUNDING)))
@@ -275,16 +281,14 @@ def wheel_teeth(pinion_teeth: int, ratio: Fraction | float) -> int:
     return math.floor(ratio * pinion_teeth * (1 if exact else 1.0 + ROUNDING))
 
 
-def needed_module(
-    law: Law, stage: Stage, torque: float, teeth: tuple[int, int], helix_angle: float
-) -> float:
+def needed_module(law: Law, stage: Stage, torque: float, teeth: tuple[int, int]) -> float:
     """Return the minimum normal module [mm] for both load limits with b = m_a d1.
 
     From U: m^3 = 2 T cos^2(beta)/(m_a z1^2 U). From K: m = d1 cos(beta)/z1 with
     d1^3 = 2 T (u + 1)/(u K m_a). torque [N mm] of the pinion; teeth of pinion and wheel, so that
     the loads hold with those that are made. Source: Chong and Lee, eqs. (10) to (13).
     """
-    one = GearPair.of_teeth(1.0, *teeth, 1.0, helix_angle)
+    one = stage.toothing.pair(1.0, *teeth, 1.0)
     tied = one.of_width(float(stage.face_width.high or 0) * one.pinion.reference_diameter)
     return math.cbrt(law.load(tied, torque, 0.0, stage.allowable))
 

@@ -7,7 +7,6 @@ it. With the total ratio free within its tolerance this is a relaxation of `teet
 holds there too.
 """
 
-import math
 from dataclasses import replace
 from fractions import Fraction
 from types import SimpleNamespace
@@ -135,12 +134,13 @@ def text_pairs(train: Train, x: Any, numbers: Any) -> tuple[GearPair, ...]:
     found = []
     for k, stage in enumerate(train.stages):
         m, z, u = each(x.module)[k], each(x.pinion_teeth)[k], each(x.ratio)[k]
-        d = reference_diameter(m / numbers.helix_cosine, z)
+        cosine = each(numbers.helix_cosine)[k]
+        d = reference_diameter(m / cosine, z)
         if stage.face_width.tied:
-            width = each(numbers.width_high)[k] * reference_diameter(m / numbers.helix_cosine, z)
+            width = each(numbers.width_high)[k] * reference_diameter(m / cosine, z)
         else:
             width = each(x.face_width)[k]
-        found.append(GearPair.of_diameter(m, z, d, u, width, train.helix_angle, train.rack))
+        found.append(stage.toothing.of_diameter(m, z, d, u, width))
     return tuple(found)
 
 
@@ -156,12 +156,12 @@ def _variables(train: Train) -> tuple[Var, ...]:
         if given:
             u = numbers.wheel_low[k] / z
         proportion = min(numbers.width_high[k], 1.0)
-        own = proportion, train.helix_angle, train.rack
-        unit = GearPair.of_diameter(numbers.helix_cosine / z, z, 1.0, u, *own)
+        cosine = numbers.helix_cosine[k]
+        unit = stage.toothing.of_diameter(cosine / z, z, 1.0, u, proportion)
         load = train.law.indices(unit, torque, train.speed_at(torque))[0] / stage.allowable[0]
         d = load ** (1.0 / 3.0)
         m_fixed = len(stage.modules) == 1
-        m = numbers.module_low[k] if m_fixed else d * math.cos(train.helix_angle) / z
+        m = numbers.module_low[k] if m_fixed else d * cosine / z
         b_fixed = stage.face_width.fixed
         columns["module"].append(_column(lengths, m, m_fixed))
         columns["pinion_teeth"].append(_column(TEETH, z, stage.pinion_fixed))

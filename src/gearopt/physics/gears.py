@@ -31,8 +31,6 @@ COARSE = _series("2 2.25 2.5 3 4 6 8 10 12 16")
 FINE = _series("20 24 32 40 48 64 80 96 120 150 200")
 DIAMETRAL_PITCHES = {"DP coarse": COARSE, "DP fine": FINE, "DP coarse+fine": COARSE + FINE}
 
-NEGLIGIBLE = 0.01  # modules that a rack may reach too deep: 17 teeth of 20 degrees need 0.006
-
 
 @dataclass(frozen=True)
 class Rack:
@@ -102,7 +100,7 @@ def transverse_contact_ratio(
     g_alpha = (sqrt(d_a1^2 - d_b1^2) + sqrt(d_a2^2 - d_b2^2))/2 - a sin(alpha_wt). Tip diameters
     d_a > base diameters d_b of pinion and wheel; centres: their distance a; base_pitch p_bt, the
     transverse one, all [mm] > 0; working_angle alpha_wt, the transverse one [rad].
-    Valid without undercut (see `teeth_without_undercut`), else too large.
+    Valid without undercut (see `geometry.fillet.is_undercut`), else too large.
     Source: ISO 6336-1:2006 and ISO 21771:2007, transverse contact ratio.
     """
     (a1, a2), (b1, b2) = tip_diameters, base_diameters
@@ -118,20 +116,6 @@ def _none(value: Any) -> bool:
 def _external(teeth: Any) -> None:
     if isinstance(teeth, int | float | np.number) and teeth <= 0:
         raise ValueError(f"{teeth:g} teeth: internal gears are not covered, only external ones")
-
-
-def teeth_without_undercut(rack: Rack, helix_angle: Any) -> Any:
-    """Return the minimum teeth z = 2 h_aP/m_n cos(beta)/sin(alpha_t)^2 without undercut by a rack.
-
-    helix_angle beta [rad]; for gears without profile shift.
-    Source: the rack's tip line passes through the tangent point of the base circle, h = (d/2)
-    sin(alpha_t)^2; 17.1 for spur gears of 20 degrees. With z teeth the line lies 1 - z/limit
-    modules too deep, up to NEGLIGIBLE of which gears are made as they are: 17 teeth of 20 degrees
-    (0.006), 32 of 14.5, 12 of 25, as tables of minimum numbers of teeth
-    have them.
-    """
-    transverse = transverse_pressure_angle(rack.pressure_angle, helix_angle)
-    return 2.0 * rack.addendum * np.cos(helix_angle) / np.sin(transverse) ** 2
 
 
 @dataclass(frozen=True)
@@ -316,19 +300,18 @@ class GearPair:
         angle = self.pinion.transverse_pressure_angle
         if self.working_distance is not None:
             return angle_at_distance(self.reference_distance, angle, self.working_distance)
-        shifts = self.pinion.profile_shift, self.wheel.profile_shift
-        if all(_none(shift) for shift in shifts):
+        shifts = self.pinion.profile_shift + self.wheel.profile_shift
+        if _none(shifts):
             return angle
         teeth = self.pinion.teeth + self.wheel.teeth
-        return working_pressure_angle(sum(shifts), teeth, self.pinion.rack.pressure_angle, angle)
+        return working_pressure_angle(shifts, teeth, self.pinion.rack.pressure_angle, angle)
 
     @property
     def centre_distance(self) -> Any:
         """Centre distance a = a_0 cos(alpha_t)/cos(alpha_wt) [mm], or the one that is given."""
         if self.working_distance is not None:
             return self.working_distance
-        shifts = self.pinion.profile_shift, self.wheel.profile_shift
-        if all(_none(shift) for shift in shifts):
+        if _none(self.pinion.profile_shift + self.wheel.profile_shift):
             return self.reference_distance
         cosine = np.cos(self.pinion.transverse_pressure_angle)
         return self.reference_distance * cosine / np.cos(self.working_angle)

@@ -1,9 +1,11 @@
 """The numbers of a design as tables: its stages, and whatever lists and groups it holds."""
 
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import MISSING, fields
 from itertools import zip_longest
 from typing import Any
 
+from gearopt.formulations.design import StageDesign
 from gearopt.formulations.strength import laws
 from gearopt.optimise.result import Result
 from gearopt.report.measures import Measures
@@ -23,6 +25,15 @@ STAGE_ROWS = {  # what a key is called, and its unit
     "pinion_root_diameter_mm": ("root diameter d_f1", "mm"),
     "wheel_root_diameter_mm": ("root diameter d_f2", "mm"),
     "centre_distance_mm": ("centre distance a", "mm"),
+    "helix_angle_deg": ("helix angle β", "deg"),
+    "pressure_angle_deg": ("normal pressure angle α_n", "deg"),
+    "working_pressure_angle_deg": ("working pressure angle α_wt", "deg"),
+    "pinion_profile_shift": ("profile shift x1", ""),
+    "wheel_profile_shift": ("profile shift x2", ""),
+    "pinion_tip_alteration": ("tip alteration k1", ""),
+    "wheel_tip_alteration": ("tip alteration k2", ""),
+    "pinion_thickness_allowance_mm": ("thickness allowance A_sn1", "mm"),
+    "wheel_thickness_allowance_mm": ("thickness allowance A_sn2", "mm"),
     "transverse_contact_ratio": ("transverse contact ratio ε_α", ""),
     "overlap_ratio": ("overlap ratio ε_β", ""),
     "pinion_torque_Nm": ("torque T1", "Nm"),
@@ -33,6 +44,8 @@ STAGE_ROWS = {  # what a key is called, and its unit
     "wheel_mass_kg": ("wheel mass", "kg"),
     "mass_kg": ("mass of the pair", "kg"),
 }
+OF_TEETH = {f.name: f.default for f in fields(StageDesign) if f.default is not MISSING}
+OF_FILE = ("helix_angle_deg", "pressure_angle_deg")  # said by the file where stages are alike
 VOLUME = "gear_volume_mm3"
 SHARE = "share of the volume, %"
 PAGE_ONLY = {
@@ -76,20 +89,27 @@ def stage_table(
     heads = ["", *(f"stage {k}" for k in range(1, len(stages) + 1))]
     found, hidden = [], []
     for key, (words, unit) in STAGE_ROWS.items():
-        if not all(key in s for s in stages):
+        if not (_own_teeth(key, stages) if key in OF_TEETH else all(key in s for s in stages)):
             continue
         if key == MODULE:
             label = "{} {} [{}]".format(*measures.module)
             found.append([label, *(measures.of_module(s[key]) for s in stages)])
             continue
         label = f"{words} [{measures.unit(unit)}]" if unit else words
-        found.append([label, *(cell(s[key], unit, measures) for s in stages)])
+        values = [s.get(key, OF_TEETH.get(key)) for s in stages]
+        found.append([label, *(cell(value, unit, measures) for value in values)])
         if key in page_only:
             hidden.append(label)
         if key == VOLUME and len(stages) > 1:
             whole = sum(s[key] for s in stages)
             found.append([SHARE, *(percent(s[key] / whole) for s in stages)])
     return Table("stages", heads, found, page_only=[*hidden, SHARE], across=True)
+
+
+def _own_teeth(key: str, stages: Sequence[Mapping[str, Any]]) -> bool:
+    """Return whether a key of the teeth says more than its default or the file."""
+    values = {s.get(key, OF_TEETH[key]) for s in stages}
+    return len(values) > 1 or not (key in OF_FILE or values == {OF_TEETH[key]})
 
 
 def ratio_tile(ratio: float, error_percent: float) -> Tile:

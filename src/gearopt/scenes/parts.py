@@ -1,14 +1,14 @@
-"""What kinds of gear drives share: the table [duty], and warnings of undercut pinions."""
+"""What kinds of gear drives share: the table [duty], and warnings of teeth."""
 
-import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator
 from fractions import Fraction
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, ClassVar
 
 from pydantic import Field, model_validator
 
 from gearopt import units
-from gearopt.physics.gears import NEGLIGIBLE, Rack, teeth_without_undercut
+from gearopt.physics.gears import GearPair
+from gearopt.physics.geometry.flaws import flaws
 from gearopt.scenes.reading.fields import Table, number, quantity, refuse
 from gearopt.units import Quantity
 
@@ -82,19 +82,14 @@ class Duty(Table):
         return units.quotient(self.input_speed, self.output_speed)
 
 
-def undercut(
-    stages: Sequence[Mapping[str, Any]], rack: Rack, helix_angle: float, more: str = ""
-) -> Iterator[str]:
-    """Yield a sentence for every pinion of a design that is undercut; more: what follows it.
+def tooth_warnings(pairs: Iterable[GearPair], weaker: str = "") -> Iterator[str]:
+    """Yield a sentence for every flaw of the teeth of each stage; weaker: follows one of undercut.
 
-    At 20 degrees 17 spur teeth are not: the rack reaches 0.006 modules too deep.
+    Interference at an undercut gear goes without saying.
     """
-    limit = float(teeth_without_undercut(rack, helix_angle))
-    least = (1.0 - NEGLIGIBLE) * limit
-    for k, stage in enumerate(stages, 1):
-        if (teeth := stage["pinion_teeth"]) < least:
-            yield (
-                f"The pinion of stage {k} is undercut, with {teeth:.4g} teeth: without profile "
-                f"shift a rack cuts {math.ceil(least)} teeth and more cleanly (in theory "
-                f"{limit:.1f}).{more}"
-            )
+    for k, pair in enumerate(pairs, 1):
+        found = flaws(pair, f" of stage {k}")
+        undercut = any(flaw.name == "undercut" for flaw in found)
+        for flaw in found:
+            if not (undercut and flaw.name == "interference"):
+                yield flaw.sentence + (weaker if flaw.name == "undercut" else "")

@@ -4,7 +4,10 @@ Fields are the keys of a result, with their units; x runs along the shafts from 
 the box, y and z across them from the axis of shaft 1, the input. Counting starts at 1.
 """
 
+import math
 from dataclasses import dataclass
+
+from gearopt.physics.gears import ISO_53_A, Gear, Rack
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,7 +43,11 @@ class ShaftDesign:
 
 @dataclass(frozen=True, kw_only=True)
 class GearDesign:
-    """A gear on its shaft; member: pinion or wheel."""
+    """A gear on its shaft; member: pinion or wheel.
+
+    Fields with a default, of which lengths without a unit are in normal modules, say how its teeth
+    are cut; a result leaves out those that hold it.
+    """
 
     name: str
     stage: int
@@ -54,6 +61,56 @@ class GearDesign:
     helix_angle_deg: float
     from_mm: float
     to_mm: float
+    pressure_angle_deg: float = 20.0
+    profile_shift: float = 0.0
+    tip_alteration: float = 0.0
+    thickness_allowance_mm: float = 0.0
+    tool_addendum: float = ISO_53_A.dedendum
+    tool_tip_radius: float = ISO_53_A.tip_radius
+    tool_protuberance: float = ISO_53_A.protuberance
+    addendum: float = ISO_53_A.addendum
+
+    @property
+    def gear(self) -> Gear:
+        """The gear with its teeth; its helix angle has no hand."""
+        return Gear(
+            self.normal_module_mm,
+            self.teeth,
+            self.reference_diameter_mm,
+            self.to_mm - self.from_mm,
+            math.radians(abs(self.helix_angle_deg)),
+            Rack(
+                math.radians(self.pressure_angle_deg),
+                self.addendum,
+                self.tool_addendum,
+                self.tool_tip_radius,
+                self.tool_protuberance,
+            ),
+            self.profile_shift,
+            self.tip_alteration,
+            self.thickness_allowance_mm,
+        )
+
+
+def gear_sizes(gear: Gear) -> dict[str, float]:
+    """Return the fields of a `GearDesign` that a gear has by itself, but for its teeth."""
+    rack = gear.rack
+    sizes = {
+        "normal_module_mm": gear.normal_module,
+        "reference_diameter_mm": gear.reference_diameter,
+        "tip_diameter_mm": gear.tip_diameter,
+        "root_diameter_mm": gear.root_diameter,
+        "helix_angle_deg": math.degrees(gear.helix_angle),
+        "pressure_angle_deg": math.degrees(rack.pressure_angle),
+        "profile_shift": gear.profile_shift,
+        "tip_alteration": gear.tip_alteration,
+        "thickness_allowance_mm": gear.thickness_allowance,
+        "tool_addendum": rack.dedendum,
+        "tool_tip_radius": rack.tip_radius,
+        "tool_protuberance": rack.protuberance,
+        "addendum": rack.addendum,
+    }
+    return {key: float(value) for key, value in sizes.items()}
 
 
 @dataclass(frozen=True, kw_only=True)

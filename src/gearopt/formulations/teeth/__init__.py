@@ -91,16 +91,18 @@ def pairs(train: Train, x: Array) -> tuple[GearPair, ...]:
 def _pairs(train: Train, x: Any) -> tuple[GearPair, ...]:
     columns = zip(each(x.module), each(x.pinion_teeth), each(x.wheel_teeth), strict=True)
     return tuple(
-        train.pair(m, z1, z2, _width(train, k, x, m, z1)) for k, (m, z1, z2) in enumerate(columns)
+        train.pair(k, m, z1, z2, _width(train, k, x, m, z1))
+        for k, (m, z1, z2) in enumerate(columns)
     )
 
 
 def _width(train: Train, k: int, x: Any, module: Any, z1: Any) -> Any:
-    face = train.stages[k].face_width
+    stage = train.stages[k]
+    face = stage.face_width
     if face.step is not None:
         return each(x.width_steps)[k] * float(face.step)
     if face.tied:
-        return float(face.low) * reference_diameter(module, z1, train.helix_angle)
+        return float(face.low) * reference_diameter(module, z1, stage.toothing.helix_angle)
     return each(x.face_width)[k]
 
 
@@ -117,7 +119,7 @@ def _variables(train: Train) -> tuple[Var, ...]:
         ranges["wheel_teeth"].append((minimum, max(minimum, min(maximum, float(reach)))))
         given = float(face.fixed or 1)
         free = not face.tied and face.step is None and face.fixed is None
-        ranges["face_width"].append(_widths(train, stage) if free else (given, given))
+        ranges["face_width"].append(_widths(stage) if free else (given, given))
         ranges["width_steps"].append((1.0, MOST if face.step else 1.0))
     if all(s.face_width.tied or s.face_width.step for s in stages):
         del ranges["face_width"]
@@ -138,10 +140,11 @@ def _variables(train: Train) -> tuple[Var, ...]:
     )
 
 
-def _widths(train: Train, stage: Stage) -> tuple[float, float]:
+def _widths(stage: Stage) -> tuple[float, float]:
     """Return a range of every free face width [mm], by the diameters of its teeth and modules."""
     ends = zip((stage.modules[0], stage.modules[-1]), _ends(stage.pinion_teeth), strict=True)
-    minimum, maximum = (reference_diameter(float(m), z, train.helix_angle) for m, z in ends)
+    angle = stage.toothing.helix_angle
+    minimum, maximum = (reference_diameter(float(m), z, angle) for m, z in ends)
     face = stage.face_width
     low = float(face.low) or 1e-6 * face.widest  # thinner than paper
     return 0.999 * low * minimum, 1.001 * face.widest * maximum
@@ -260,7 +263,7 @@ def best_pairs(train: Train, teeth: Teeth) -> tuple[GearPair, ...]:
     for k, (z1, z2) in enumerate(teeth):
         only = table(train.fixed_teeth(k, z1, z2), k, train.highest_ratio)
         module, width = only.choose(torque, 0)
-        found.append(train.pair(module, z1, z2, width))
+        found.append(train.pair(k, module, z1, z2, width))
         torque *= z2 / z1
     return tuple(found)
 

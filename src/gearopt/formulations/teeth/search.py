@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearopt.errors import SolveError
-from gearopt.formulations.gear_train import Stage, Train, share
+from gearopt.formulations.gear_train import Train, share
 from gearopt.formulations.teeth.later_stages import EDGE, SLICE, Bound, bound, ragged
 from gearopt.formulations.teeth.progress import MARGIN, TIE, Progress, Spent, Teeth
 from gearopt.formulations.teeth.stage import Table, spans, table
@@ -258,7 +258,7 @@ def _reach(train: Train, cut: Fraction, maximum: Fraction, threshold: float) -> 
     ratios = np.geomspace(float(cut), float(maximum), 2000)
     useful = np.zeros(len(ratios), dtype=bool)
     for k, stage in enumerate(train.stages):
-        load = _least_size(train, stage, ratios)
+        load = _least_size(train, k, ratios)
         if train.objective in ("gear_volume", "mass"):
             lower = share(train, k, GearPair.of_teeth(1.0, 1.0, ratios, load))  # d1 is 1 mm
         else:
@@ -277,11 +277,11 @@ def _reach(train: Train, cut: Fraction, maximum: Fraction, threshold: float) -> 
     return Fraction(beyond[last[-1]]) if len(last) else cut
 
 
-def _least_size(train: Train, stage: Stage, ratios: Array) -> Array:
+def _least_size(train: Train, k: int, ratios: Array) -> Array:
     """Return the minimum b d1^2 [mm3] for the input torque at given ratios, of the fewest teeth."""
+    stage = train.stages[k]
     z = float(stage.pinion_teeth[0])
-    own = 1.0, train.helix_angle, train.rack
-    unit = GearPair.of_diameter(math.cos(train.helix_angle) / z, z, 1.0, ratios, *own)
+    unit = stage.toothing.of_diameter(stage.toothing.cosine / z, z, 1.0, ratios, 1.0)
     return train.law.load(unit, train.torque, train.speed, stage.allowable)
 
 
@@ -341,7 +341,7 @@ def _least(train: Train, k: int, teeth: NDArray[np.int64]) -> Array:
     """Return the minimum share (n,) of a stage (counted from 0) with pinions of so many teeth."""
     stage = train.stages[k]
     module, face = float(stage.modules[0]), stage.face_width
-    d = reference_diameter(module, teeth, train.helix_angle)
+    d = reference_diameter(module, teeth, stage.toothing.helix_angle)
     width = float(face.low) * d if face.fixed is None else np.full(len(d), float(face.fixed))
-    pair = train.pair(module, teeth, teeth * float(stage.ratio[0]), width)
+    pair = train.pair(k, module, teeth, teeth * float(stage.ratio[0]), width)
     return np.asarray(share(train, k, pair))

@@ -64,7 +64,7 @@ class Table:
 
     def made(self, module: Any, pair: Any) -> GearPair:
         """Return the gear pairs (indices) with modules [mm], of face width 1 mm."""
-        return self.train.pair(module, self.z1[pair], self.z2[pair], 1.0)
+        return self.train.pair(self.position, module, self.z1[pair], self.z2[pair], 1.0)
 
     def cost(self, torque: Array, pair: Index) -> Array:
         """Return the minimum share of pairs at torques [N mm]; inf where nothing carries them."""
@@ -191,7 +191,7 @@ def table(
     """
     tick()
     stage = train.stages[position]
-    cosine = math.cos(train.helix_angle)
+    cosine = stage.toothing.cosine
     z1, z2 = _pairs(train, position, cut)
     tick()
     ratio = z2 / z1
@@ -220,10 +220,11 @@ def _closed(
     train: Train, position: int, z1: Index, ratio: Array
 ) -> tuple[Array | None, Array, float, Array]:
     """Return load, need, exponent and slope of a `Table`."""
-    stage, cosine = train.stages[position], math.cos(train.helix_angle)
+    stage = train.stages[position]
+    cosine = stage.toothing.cosine
     if not train.law.proportional:
         return None, np.zeros_like(ratio), 1.0, np.zeros_like(ratio)
-    one = GearPair.of_diameter(1.0, z1, z1 / cosine, ratio, 1.0, train.helix_angle, train.rack)
+    one = stage.toothing.of_diameter(1.0, z1, z1 / cosine, ratio, 1.0)
     load = train.law.load(one, 1.0, 0.0, stage.allowable)
     slope = np.zeros_like(ratio)
     if train.objective in ("gear_volume", "mass"):  # no module counts: d1 is 1 mm here

@@ -39,7 +39,7 @@ def width(d, j, p, k, torque):
     m = d.modules[j, k]
     if d.kind[j] == 2:
         return d.given[j]
-    diameter = m * d.z1[p] / d.cosine
+    diameter = m * d.z1[p] / d.cosine[j]
     if d.kind[j] == 0:
         return d.high[j] * diameter
     load = d.load[p] * torque / (m * m)
@@ -83,11 +83,11 @@ def worth(aim, length, area, big):
 @njit(cache=True, inline="always")
 def put(d, j, p, k, node, body):
     """Set a stage of a node: node[j] = centre distance, tip radii, width (unset), log ratio."""
-    half = 0.5 * d.modules[j, k] / d.cosine
+    half = 0.5 * d.modules[j, k] / d.cosine[j]
     m = d.modules[j, k]
     node[j, 0] = half * (d.z1[p] + d.z2[p])
-    body[j, 1] = half * d.z1[p] + m
-    body[j + 1, 0] = half * d.z2[p] + m
+    body[j, 1] = half * d.z1[p] + m * d.addenda[j, 0]
+    body[j + 1, 0] = half * d.z2[p] + m * d.addenda[j, 1]
     node[j, 2] = d.log_ratio[p]
 
 

@@ -100,7 +100,7 @@ def sized(train: Train, drive: Drive, node: Nodes) -> tuple[GearPair, ...] | Non
         width = only.width(np.array([torque]), np.array([0]), int(k)).item()
         if width == math.inf:
             return None
-        found.append(train.pair(float(drive.modules[j, k]), z1, z2, width))
+        found.append(train.pair(j, float(drive.modules[j, k]), z1, z2, width))
         torque *= z2 / z1
     return tuple(found)
 

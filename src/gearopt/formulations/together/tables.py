@@ -40,7 +40,8 @@ class Drive(NamedTuple):
 
     kind: of face widths, 0 tied, 1 free, 2 given, 3 on steps (given: the width or the step). load:
     as in `teeth.stage.Table`; for a law without one (size 0), bisected holds minimum widths (cells,
-    modules, pairs) by log ratio reached, in cells of `step`. shaft, bearing (N+1, cells): minimum
+    modules, pairs) by log ratio reached, in cells of `step`. cosine (N,): of the helix angles;
+    addenda (N, 2): of pinion and wheel in modules. shaft, bearing (N+1, cells): minimum
     radius by log ratio reached. gap: between gears, from shafts, to the wall, along the axis. faces
     (M, N+1, 4, N+1, 4): whether bodies of two shafts face each other: wheel, pinion, shaft,
     bearing. widths: minimum of each stage, others (M, N): minimum length that the stages before one
@@ -52,7 +53,8 @@ class Drive(NamedTuple):
     low_ratio: float
     log_low: float
     log_high: float
-    cosine: float
+    cosine: Array
+    addenda: Array
     delta: float
     start: Index
     z1: Array
@@ -101,8 +103,8 @@ class Rest(NamedTuple):
 def numbers(train: Train, make: Make) -> tuple[Drive, Gearbox]:
     """Return the arrays of a drive, and a gearbox with its constants.
 
-    SolveError where its pairs are not those it is made of, or where face widths decide which bodies
-    face each other.
+    SolveError where its pairs are not those it is made of, where face widths decide which bodies
+    face each other, or where centre distances are not those of reference circles.
     """
     stages = train.stages
     tables = [table(train, k, train.highest_ratio) for k in range(len(stages))]
@@ -124,7 +126,8 @@ def numbers(train: Train, make: Make) -> tuple[Drive, Gearbox]:
         float(train.lowest_ratio),
         math.log(train.lowest_ratio),
         math.log(train.highest_ratio),
-        math.cos(train.helix_angle),
+        np.array([s.toothing.cosine for s in stages]),
+        np.array([s.toothing.addenda for s in stages]),
         DELTA,
         *_pairs(tables),
         *_stages(train, tables),
@@ -150,7 +153,7 @@ def _loaded_like(train: Train, ratio: float) -> tuple[GearPair, ...]:
     found = []
     for k, stage in enumerate(train.stages):
         z = float(stage.pinion_teeth[0])
-        found.append(train.pair(float(stage.modules[0]), z, z if k else z * ratio, 1.0))
+        found.append(train.pair(k, float(stage.modules[0]), z, z if k else z * ratio, 1.0))
     return tuple(found)
 
 
@@ -163,6 +166,8 @@ def _slab(slabs: Slabs, stage: int) -> int:
 
 
 def _refuse(train: Train, box: Gearbox) -> None:
+    if not train.on_reference:
+        raise SolveError("together with its layout, a drive needs profile shifts that cancel")
     choice = any(not s.face_width.tied and s.face_width.fixed is None for s in train.stages)
     shared = box.slabs is None or any(len(s) > 1 for s in box.slabs)
     widest = max(s.bearing_width for s in box.shafts)  # up to the gap, a bearing stays in it
@@ -338,7 +343,8 @@ def _edges(drive: Drive, j: int) -> Array:
     """Radii that divide those of the wheels of a stage (none before the first: zeros)."""
     own = slice(drive.start[j], drive.start[j + 1]) if j >= 0 else slice(0, 0)
     modules = drive.modules[j][drive.first[own]], drive.modules[j][drive.last[own]]
-    radii = [m * (0.5 * drive.z2[own] / drive.cosine + 1.0) for m in modules]
+    cosine, addendum = drive.cosine[j], drive.addenda[j, 1]
+    radii = [m * (0.5 * drive.z2[own] / cosine + addendum) for m in modules]
     if j < 0 or not radii[0].size:
         return np.zeros(BINS)
     return np.geomspace(radii[0].min() * (1.0 - 1e-9), radii[1].max(), BINS)

@@ -86,7 +86,7 @@ def fill(d, k, start, stop, rest):
     bins = np.zeros((end - begin, d.modules.shape[1]), np.int64)
     for p in range(end - begin):
         for q in range(d.first[begin + p], d.last[begin + p] + 1):
-            radius = d.modules[j, q] * (0.5 * d.z2[begin + p] / d.cosine + 1.0)
+            radius = d.modules[j, q] * (0.5 * d.z2[begin + p] / d.cosine[j] + d.addenda[j, 1])
             above = place(rest.edge[k], ZERO, rest.edge.shape[1], radius)
             bins[p, q] = max(above - 1, 0)  # not above the radius
     for cell in range(start, stop):

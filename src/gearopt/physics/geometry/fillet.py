@@ -13,10 +13,11 @@ from typing import Any
 
 import numpy as np
 
-from gearopt.physics.gears import Gear, Rack
+from gearopt.physics.gears import Gear, Rack, transverse_pressure_angle
 from gearopt.physics.geometry.involute import involute
 
 HALVINGS = 50  # of an interval of tool angles: to the last digit
+NEGLIGIBLE = 0.01  # modules that a rack may reach too deep: 17 teeth of 20 degrees need 0.006
 TOUCHES = 1e-12  # of sin(alpha_t)^2 z/2: undercut by less is none
 
 
@@ -125,6 +126,20 @@ def undercut_depth(gear: Gear) -> Any:
     end = tip.depth + tip.radius * np.sin(gear.rack.pressure_angle)
     lever = 0.5 * gear.reference_diameter * np.sin(gear.transverse_pressure_angle) ** 2
     return end - lever
+
+
+def teeth_without_undercut(rack: Rack, helix_angle: Any) -> Any:
+    """Return the minimum teeth z = 2 h_Ff/m_n cos(beta)/sin(alpha_t)^2 without undercut by a rack.
+
+    helix_angle beta [rad]; without profile shift; h_Ff as in `undercut_depth`, one module for
+    profile A of ISO 53: 17.1 spur teeth. With z teeth the rack's flank ends h_Ff (1 - z/limit) too
+    deep, up to NEGLIGIBLE of which gears are made as they are: 17 teeth of 20 degrees (0.006), 12
+    of 25, as tables of minimum numbers of teeth have them.
+    """
+    sine = np.sin(rack.pressure_angle)
+    transverse = transverse_pressure_angle(rack.pressure_angle, helix_angle)
+    depth = rack.dedendum - rack.tip_radius * (1.0 - sine)
+    return 2.0 * depth * np.cos(helix_angle) / np.sin(transverse) ** 2
 
 
 def is_undercut(gear: Gear) -> Any:

@@ -2,12 +2,13 @@
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 from html import escape
 from typing import Any
 
 from gearopt.formulations.layout.layout_design import GearDesign, LayoutDesign, ShaftDesign
 from gearopt.optimise.result import Result
-from gearopt.physics.gears import Gear
+from gearopt.physics.gears import ISO_53_A
 from gearopt.report.measures import Measures
 from gearopt.report.pages.bodies import (
     box_corners,
@@ -43,10 +44,11 @@ DETAIL = ((3, 0.12), (3, 0.3), (2, 0.6), (2, 10.0))  # points on a flank, twist 
 FLUSH = 0.003  # of the box: a shaft is drawn so much longer, to be seen where it ends in a face
 CAPTION = (
     f"{TURN} Tooth numbers, diameters and helix angles are those of the design; teeth are "
-    "cut by the rack of ISO 53, profile A. Clearances, hidden at first: the space that other "
+    "cut by {}. Clearances, hidden at first: the space that other "
     "shafts leave around each gear, the limit inside the walls, and the smallest gap."
 )
 
+OWN = "their own racks, with the profile shifts of the design"
 ROUNDED = "Teeth are real numbers here: of each gear the nearest whole number is drawn."
 
 
@@ -56,9 +58,16 @@ def section(result: Result, measures: Measures) -> Section | None:
         return None
     seen = space(*drawn_corners(found), measures)
     whole = all(gear.teeth == drawn_teeth(gear.teeth) for gear in found.gears)
-    words = CAPTION if whole else f"{CAPTION} {ROUNDED}"
+    words = CAPTION.format("the rack of ISO 53, profile A" if _standard(found) else OWN)
+    words = words if whole else f"{words} {ROUNDED}"
     figure = Figure(_traces(found, measures), seen, words, picture(found, measures))
     return Section("In three dimensions", figures=(figure,))
+
+
+def _standard(found: LayoutDesign) -> bool:
+    """Return whether all teeth are unshifted ones of ISO 53, profile A."""
+    gears = [gear.gear for gear in found.gears]
+    return all(g.rack == ISO_53_A and g.profile_shift == g.tip_alteration == 0.0 for g in gears)
 
 
 def picture(found: LayoutDesign, measures: Measures) -> Drawing:
@@ -165,15 +174,9 @@ def _toothed(
     phase = math.atan2(there[1] - here[1], there[0] - here[0])
     middle = sum(g.from_mm + g.to_mm for g in pair.values()) / (2.0 * len(pair))
     hand = 1.0 if (gear.stage % 2 == 1) != wheel else -1.0
-    made = Gear(
-        gear.normal_module_mm,
-        gear.teeth,
-        gear.reference_diameter_mm,
-        gear.to_mm - gear.from_mm,
-        hand * math.radians(abs(gear.helix_angle_deg)),
-    )
+    made = gear.gear
     return Toothed(
-        made,
+        replace(made, helix_angle=hand * made.helix_angle),
         gear.from_mm,
         gear.to_mm,
         here,

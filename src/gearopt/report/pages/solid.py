@@ -118,8 +118,14 @@ def _of_whole_teeth(gear: Gear, teeth: int) -> Gear:
     rack = gear.rack
     heights = (rack.addendum, rack.dedendum, rack.tip_radius, rack.protuberance)
     drawn = Rack(rack.pressure_angle, *(height / scale for height in heights))
-    module = gear.normal_module * scale
-    return replace(gear, normal_module=module, teeth=float(teeth), rack=drawn)
+    return replace(
+        gear,
+        normal_module=gear.normal_module * scale,
+        teeth=float(teeth),
+        rack=drawn,
+        profile_shift=gear.profile_shift / scale,
+        tip_alteration=gear.tip_alteration / scale,
+    )
 
 
 def drawn_teeth(teeth: float) -> int:

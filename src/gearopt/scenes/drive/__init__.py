@@ -26,7 +26,7 @@ from gearopt.scenes.drive.rating_tables import MATERIAL, GivenTable
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.stage_counts import best_count
 from gearopt.scenes.explaining.default import of_report
-from gearopt.scenes.parts import undercut
+from gearopt.scenes.parts import tooth_warnings
 from gearopt.scenes.reading.ask import Ask, unseeded
 
 __all__ = [
@@ -310,14 +310,14 @@ def _sized(scene: Scene, train: Train, ask: Ask, problem: Problem) -> Result:
     if result.value is None or outcome.x is None:
         return result
     points = (outcome.x, *outcome.others)
-    designs = [untyped(scene.design(formulation.pairs(train, x))) for x in points]
+    gears = [formulation.pairs(train, x) for x in points]
+    designs = [untyped(scene.design(pairs)) for pairs in gears]
     values = [float(problem.batch(x[None]).F[0, 0]) for x in points]
     trains = [
         {"objective": value, "ratio": design["ratio"], "stages": design["stages"]}
         for value, design in zip(values, designs, strict=True)
     ]
     report: dict[str, Any] = {"trains": trains} if exact and ask.top > 1 else {}
-    thin = undercut(designs[0]["stages"], train.rack, train.helix_angle, WEAKER)
-    if remarks := [*notes(scene, exact), *thin]:
+    if remarks := [*notes(scene, exact), *tooth_warnings(gears[0], WEAKER)]:
         report["notes"] = remarks
     return replace(result, name="drive", design=designs[0], report=report)

@@ -10,6 +10,7 @@ from gearopt.formulations.design import DriveDesign, describe
 from gearopt.formulations.gear_train import FaceWidth, Stage, Train
 from gearopt.formulations.layout.gearbox import Gearbox
 from gearopt.formulations.process import methods
+from gearopt.formulations.toothing import Toothing
 from gearopt.optimise.result import Outcome
 from gearopt.physics.gears import GearPair, Rack
 from gearopt.physics.loads import torque
@@ -42,7 +43,6 @@ KEYS: dict[
     "torque": "duty.power",
     "speed": "duty.input_speed",
     **dict.fromkeys(("lowest_ratio", "highest_ratio"), "duty.ratio_tolerance"),
-    "helix_cosine": "gears.helix_angle",
     "density": "objective.density",
 }
 RANGES = {  # stem of the two limits of a stage: the key of their range
@@ -56,6 +56,7 @@ ENDS: dict[str, tuple[str, int | None]] = {
     **{f"{stem}_low": (key, 1) for stem, key in RANGES.items()},
     **{f"{stem}_high": (key, 2) for stem, key in RANGES.items()},
     "wheel_diameter": ("wheel_diameter", None),
+    "helix_cosine": ("helix_angle", None),
 }
 
 
@@ -276,8 +277,6 @@ class Scene(Table):
             ratio=self.duty.total_ratio,
             tolerance=self.duty.ratio_tolerance,
             stages=tuple(self._stage(s) for s in stages),
-            helix_angle=self.gears.helix_angle.value,
-            rack=Rack(self.gears.pressure_angle.value),
             coprime=bool(self.teeth and self.teeth.coprime),
             objective=self.objective.minimise,
             density=density.value if density else None,
@@ -287,7 +286,7 @@ class Scene(Table):
         )
 
     def _keys(self, stages: tuple[StageTable, ...]) -> dict[str, str | tuple[str, ...]]:
-        """Return the places of the limits of every stage; "" where the file has none."""
+        """Return the places of what a stage has of its own; "" where the file has none."""
 
         def place(k: int, field: str, end: int | None) -> str:
             if field == "module" and stages[k].diametral_pitch is not None:
@@ -331,7 +330,13 @@ class Scene(Table):
             wheel_teeth=own.wheel_teeth or limits.wheel_teeth or (1, None),
             ratio=own.stage_ratio or limits.stage_ratio or (Fraction(1), None),
             wheel_diameter=diameter.exact[0] if diameter else None,
+            toothing=self._toothing(own),
         )
+
+    def _toothing(self, own: StageTable) -> Toothing:
+        """Return the teeth of a stage."""
+        rack = Rack(self.gears.pressure_angle.value)
+        return Toothing(self.gears.helix_angle.value, (rack, rack))
 
     def _face_width(self, own: StageTable) -> FaceWidth:
         proportion = own.face_width_over_diameter

@@ -8,9 +8,8 @@ from gearopt.formulations.servo.ratio.achieved import why_not
 from gearopt.formulations.servo.servo_design import ServoDesign, ServoReport
 from gearopt.formulations.servo.split.bodies import broken
 from gearopt.optimise.result import Result
-from gearopt.optimise.typed import untyped
 from gearopt.physics.gears import GearPair, Rack
-from gearopt.scenes.parts import undercut
+from gearopt.scenes.parts import tooth_warnings
 from gearopt.scenes.reading.modules import unverified
 from gearopt.scenes.servo.scene import Scene
 from gearopt.scenes.servo.tables.trains import Train
@@ -202,7 +201,11 @@ def notes(
                 f"{limit:.5g} of [accuracy]: their budget counts otherwise."
             )
     stages = () if design.train is None else design.train.stages
-    found += undercut(untyped(stages), Rack(scene.accuracy.pressure_angle.value), 0.0)
+    rack = Rack(scene.accuracy.pressure_angle.value)
+    found += tooth_warnings(
+        GearPair.of_teeth(s.normal_module_mm, s.pinion_teeth, s.wheel_teeth, 1.0, rack=rack)
+        for s in stages
+    )
     if scene.lightest is not None:
         found.append(
             "The lightest train has real-valued sizes: its mass is a lower bound for whole teeth."

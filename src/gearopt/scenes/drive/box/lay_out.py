@@ -20,6 +20,7 @@ from gearopt.formulations.layout.layout_design import (
     LayoutDesign,
     MotorDesign,
     ShaftDesign,
+    gear_sizes,
 )
 from gearopt.formulations.layout.layout_text import Placed, placed, read
 from gearopt.formulations.layout.slabs import Arrangement, arrangements
@@ -40,8 +41,8 @@ def pairs_of(scene: Scene, sized: Result) -> tuple[GearPair, ...]:
     """Return the gear pairs of a sized drive."""
     train = scene.train()
     return tuple(
-        train.pair(s.normal_module_mm, s.pinion_teeth, s.wheel_teeth, s.face_width_mm)
-        for s in drive_design(sized.design).stages
+        train.pair(k, s.normal_module_mm, s.pinion_teeth, s.wheel_teeth, s.face_width_mm)
+        for k, s in enumerate(drive_design(sized.design).stages)
     )
 
 
@@ -293,13 +294,9 @@ def _gears(box: Gearbox, one: Arrangement, sized: DriveDesign) -> tuple[GearDesi
                     member=member,
                     shaft=k,
                     teeth=stage.wheel_teeth if wheel else stage.pinion_teeth,
-                    normal_module_mm=float(gear.normal_module),
-                    reference_diameter_mm=float(gear.reference_diameter),
-                    tip_diameter_mm=float(gear.tip_diameter),
-                    root_diameter_mm=float(gear.root_diameter),
-                    helix_angle_deg=math.degrees(gear.helix_angle),
                     from_mm=body.x[0],
                     to_mm=body.x[1],
+                    **gear_sizes(gear),
                 )
             )
     return tuple(gears)

@@ -1,0 +1,87 @@
+"""The teeth of a stage as they are cut: helix, tools, profile shifts, tips, thickness, distance."""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+from gearopt.physics.gears import ISO_53_A, Gear, GearPair, Rack, reference_diameter
+
+
+@dataclass(frozen=True)
+class Toothing:
+    """What the gears of a stage have whatever their size; of two values the pinion's is first.
+
+    helix_angle beta [rad] of both, below 60 degrees; racks: the basic rack of each, of one normal
+    pressure angle; profile_shifts x and tip_alterations k in normal modules; thickness_allowances
+    A_sn [mm]; working_distance: a given centre distance [mm], None: the one without backlash of
+    nominal teeth. ValueError for other angles. Source: ISO 21771:2007.
+    """
+
+    helix_angle: float = 0.0
+    racks: tuple[Rack, Rack] = (ISO_53_A, ISO_53_A)
+    profile_shifts: tuple[float, float] = (0.0, 0.0)
+    tip_alterations: tuple[float, float] = (0.0, 0.0)
+    thickness_allowances: tuple[float, float] = (0.0, 0.0)
+    working_distance: float | None = None
+
+    def __post_init__(self) -> None:
+        if not abs(self.helix_angle) < math.pi / 3.0:  # whose cosine is rational
+            raise ValueError("the helix angle must be below 60 degrees")
+        first, second = (rack.pressure_angle for rack in self.racks)
+        if first != second:
+            raise ValueError("pinion and wheel need one normal pressure angle")
+
+    @property
+    def cosine(self) -> float:
+        """Cosine of the helix angle."""
+        return math.cos(self.helix_angle)
+
+    @property
+    def addenda(self) -> tuple[float, float]:
+        """Addenda h_aP + x + k of pinion and wheel over the reference circle, in normal modules."""
+        rows = zip(self.racks, self.profile_shifts, self.tip_alterations, strict=True)
+        first, second = (rack.addendum + x + k for rack, x, k in rows)
+        return first, second
+
+    @property
+    def on_reference(self) -> bool:
+        """Whether the centre distance is that of the reference circles: x1 + x2 = 0, none given."""
+        return self.working_distance is None and sum(self.profile_shifts) == 0
+
+    def pair(self, module: Any, pinion_teeth: Any, wheel_teeth: Any, face_width: Any) -> GearPair:
+        """Return the gear pair with these numbers; module, face_width [mm].
+
+        The wheel's reference diameter is u d1, as in `of_diameter`: whole teeth and real-valued
+        ones then agree to the last bit.
+        """
+        d1 = reference_diameter(module, pinion_teeth, self.helix_angle)
+        diameters = d1, d1 * (wheel_teeth / pinion_teeth)
+        return self._made(module, (pinion_teeth, wheel_teeth), diameters, face_width)
+
+    def of_diameter(
+        self, module: Any, pinion_teeth: Any, pinion_diameter: Any, ratio: Any, face_width: Any
+    ) -> GearPair:
+        """Return the gear pair of a pinion and a ratio; arguments as in `GearPair.of_diameter`."""
+        teeth = pinion_teeth, pinion_teeth * ratio
+        diameters = pinion_diameter, pinion_diameter * ratio
+        return self._made(module, teeth, diameters, face_width)
+
+    def _made(
+        self, module: Any, teeth: tuple[Any, Any], diameters: tuple[Any, Any], face_width: Any
+    ) -> GearPair:
+        """Return the pair of these numbers of teeth and reference diameters [mm]."""
+        first, second = (
+            Gear(
+                module,
+                teeth[i],
+                diameters[i],
+                face_width,
+                self.helix_angle,
+                self.racks[i],
+                self.profile_shifts[i],
+                self.tip_alterations[i],
+                self.thickness_allowances[i],
+            )
+            for i in range(2)
+        )
+        return GearPair(first, second, self.working_distance)
