@@ -155,9 +155,9 @@ def rating(scene: Scene, pairs: Sequence[GearPair]) -> DriveRating:
     lives = [gear.life_h for gear in gears]
     losses = [row.mesh_efficiency_percent for row in rows]
     factors = tuple(row for mesh in meshes for row in _factor_rows(mesh))
-    speed = scene.duty.input_speed.value
+    moved, speed = _largest_load(scene)
     turned = hands([table.pinion_hand for table in scene.stage] or [None] * len(pairs))
-    forces = train_forces(pairs, torque(scene.duty.power.value, speed), turned)
+    forces = train_forces(pairs, moved, turned)
     return DriveRating(
         standard=STANDARD.format(asked.edition),
         safe=all(
@@ -175,7 +175,7 @@ def rating(scene: Scene, pairs: Sequence[GearPair]) -> DriveRating:
         gears=gears,
         meshes=tuple(rows),
         factors=factors,
-        shafts=_shafts(pairs, forces, torque(scene.duty.power.value, speed), speed),
+        shafts=_shafts(pairs, forces, moved, speed),
         teeth=tuple(
             tooth_geometry(mesh.stage, mesh.pair, k, turned[mesh.stage - 1])
             for mesh in meshes
@@ -189,6 +189,14 @@ def rating(scene: Scene, pairs: Sequence[GearPair]) -> DriveRating:
             f"Stage {mesh.stage}: {flaw.sentence}" for mesh in meshes for flaw in flaws(mesh.pair)
         ),
     )
+
+
+def _largest_load(scene: Scene) -> tuple[float, float]:
+    """Return torque [N mm] and speed [rad/s] of the input at the level of the largest torque."""
+    usual = scene.duty.input_speed
+    levels = [(level.power.value, (level.input_speed or usual).value) for level in scene.load]
+    levels = levels or [(scene.duty.power.value, usual.value)]
+    return max((torque(power, speed), speed) for power, speed in levels)
 
 
 def _mesh(scene: Scene, k: int, pair: GearPair, slower: float) -> Mesh:

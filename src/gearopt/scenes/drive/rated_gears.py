@@ -4,10 +4,11 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
+from gearopt.physics.agma.factors import quality_of_accuracy
 from gearopt.physics.agma.rating_factors import Operation, Practice, Steel
 from gearopt.physics.gears import ISO_53_A, Gear, GearPair, Rack, reference_diameter
 from gearopt.physics.shaft_forces import rpm
-from gearopt.scenes.drive.rating_tables import GearTable, with_shared
+from gearopt.scenes.drive.rating_tables import GearTable, RatingTable, with_shared
 from gearopt.scenes.drive.scene import Scene
 
 MEMBERS = ("pinion", "wheel")
@@ -113,7 +114,7 @@ def practice(scene: Scene, pair: GearPair, gears: tuple[GearTable, GearTable]) -
     asked = scene.rating
     assert asked
     return Practice(
-        quality=float(asked.quality),
+        quality=_quality(asked),
         curve=asked.mounting,
         crowned=asked.crowned,
         offset=float(asked.pinion_offset),
@@ -124,6 +125,13 @@ def practice(scene: Scene, pair: GearPair, gears: tuple[GearTable, GearTable]) -
         load=asked.bending_load,
         edition=asked.edition,
     )
+
+
+def _quality(asked: RatingTable) -> float:
+    """Return Q_v, by whichever key; any where K_v is given."""
+    if asked.accuracy is not None:
+        return float(quality_of_accuracy(float(asked.accuracy)))
+    return Practice().quality if asked.quality is None else float(asked.quality)
 
 
 def required_hours(scene: Scene) -> float:

@@ -171,8 +171,13 @@ class RatingTable(Table):
     temperature: Annotated[Quantity | None, quantity("temperature", "80 degC")] = Field(
         None, description="Temperature of the gear blanks; by default below 120 degC, K_T = 1"
     )
-    quality: Annotated[Fraction, number(8, 5, 12)] = Field(
-        description="Transmission accuracy Q_v of AGMA 2000, larger is better: sets K_v"
+    quality: Annotated[Fraction | None, number(8, 5, 11)] = Field(
+        None,
+        description="Transmission accuracy Q_v of AGMA 2001-C95, larger is better: sets K_v (or "
+        "give accuracy)",
+    )
+    accuracy: Annotated[Fraction | None, number(9, 6, 12)] = Field(
+        None, description="Transmission accuracy A_v of AGMA 2001-D04, smaller is better: 17 - Q_v"
     )
     mounting: Annotated[str, choice(*ALIGNMENT)] = Field(
         "commercial", description="Housing, as its curve of mesh alignment in K_m"
@@ -229,6 +234,11 @@ class RatingTable(Table):
         if self.friction_coefficient is not None and self.oil_viscosity is not None:
             rule = "stands beside oil_viscosity, from which it is computed"
             raise refuse(rule, at=("friction_coefficient",), action="remove")
+        if self.quality is not None and self.accuracy is not None:
+            rule = "stands beside quality; one is enough"
+            raise refuse(rule, at=("accuracy",), action="remove")
+        if self.quality is None and self.accuracy is None and self.given.K_v is None:
+            raise refuse("is missing (or give accuracy)", 8, ("quality",), "sample")
         if not Fraction(1, 2) <= self.reliability <= Fraction(9999, 10000):
             raise refuse("is not from 50 % to 99.99 %", "99 %", ("reliability",), "sample")
         return self
