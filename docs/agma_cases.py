@@ -64,6 +64,7 @@ def cases() -> tuple[Case, ...]:
         _mott(),
         _report(),
         _iso_example(),
+        _shifted(),
     )
 
 
@@ -314,3 +315,22 @@ def _iso_example() -> Case:
     given = "z 17/103, m_n 8, beta 15.8, x 0.14522/0, b 100, rack 1.4/0.39/1.0; lengths in mm"
     source = "gfsReboucas/Drivetrain, `MATISO_6336.m`; a public test of the 2022 edition"
     return Case("ISO/TR 6336-30, example 1: geometry", given, source, rows)
+
+
+def _shifted() -> Case:
+    """Return the geometry of a shifted pair in the tests of a public program."""
+    pair = GearPair.of_teeth(4.0, 19, 104, 48.64, profile_shifts=(0.5, 0.15))
+    first, second = pair.gears
+    values = (
+        ("a", (248.506843355171,), pair.centre_distance),
+        ("alpha_wt [deg]", (21.531902292465,), math.degrees(pair.working_angle)),
+        ("d_b", (71.416639180, 390.912130247), (first.base_diameter, second.base_diameter)),
+        ("d_a", (88.0, 425.2), (first.tip_diameter, second.tip_diameter)),
+        ("d_f", (70.0, 407.2), (first.root_diameter, second.root_diameter)),
+        ("d_w", (76.774471931, 420.239214779), pair.working_diameters),
+        ("eps_alpha", (1.536323594583,), pair.transverse_contact_ratio),
+    )
+    rows = tuple(Row(name, known, _two(made), 1e-11) for name, known, made in values)
+    given = "z 19/104, m_n 4, x 0.5/0.15, rack 1.25/0.25/1.0; lengths in mm"
+    source = "hanslhansl/din3990, `tests/test_1.py`: a public program's own values"
+    return Case("A shifted pair by another program: geometry", given, source, rows)

@@ -111,6 +111,19 @@ def test_balls_and_spans_of_helical_gears_are_those_of_their_transverse_section(
     assert centre == pytest.approx(over_balls(spur, wide) - wide, rel=1e-13)
 
 
+def test_a_helical_gear_over_pins_of_another_program():
+    """127 teeth, 12 per inch normal, 10.5 degrees, t 0.1309, pins 0.144 in: 10.967749 in over them.
+
+    Pins find the opposite tooth space along the helix, whatever the number of teeth; balls in one
+    transverse plane are half a pitch off it. Source: bfoster59/MOP, `AGMA reference`.
+    """
+    module, helix = 25.4 / 12, math.radians(10.5)
+    made = gear(module, 127, helix=helix, allowance=0.1309 * 25.4 - module * math.pi / 2)
+    ball = 0.144 * 25.4
+    centres = (over_balls(made, ball) - ball) / math.cos(math.pi / 254)
+    assert (centres + ball) / 25.4 == pytest.approx(10.967749, abs=2e-6)
+
+
 def test_backlash_of_nominal_teeth_is_none_and_allowances_make_it():
     pair = GearPair.of_teeth(3.0, 17, 52, 30.0, 0.3, profile_shifts=(0.3, 0.2))
     assert circumferential_backlash(pair) == pytest.approx(0.0, abs=1e-13)
