@@ -165,7 +165,12 @@ def test_a_load_distribution_of_another_program():
     assert load_distribution_factor(80.0, 160.0) == pytest.approx(1.2275, abs=6e-5)
     assert proportion_factor(10.0, 60.0) == pytest.approx(0.025, rel=1e-12)
     assert proportion_factor(10.0, 10.0) == pytest.approx(0.1 - 0.025, rel=1e-12)
-    assert load_distribution_factor(80.0, 160.0, offset=0.17) == load_distribution_factor(80, 160)
+    assert load_distribution_factor(80.0, 160.0, offset=0.174) == load_distribution_factor(80, 160)
+    offset = load_distribution_factor(80.0, 160.0, offset=0.175) - load_distribution_factor(80, 160)
+    assert offset == pytest.approx(0.1 * proportion_factor(80.0, 160.0), rel=1e-12)
+    wide = 40 * INCH  # 0.0675 + 0.512 - 0.14816; 0.0380 + 0.408 - 0.13152
+    assert alignment_factor(wide, "precision") == pytest.approx(0.43134, rel=1e-12)
+    assert alignment_factor(wide, "extra precision") == pytest.approx(0.31448, rel=1e-12)
 
 
 def test_the_curves_join():
@@ -190,6 +195,7 @@ def test_reliability_and_its_fit():
         assert tabled_reliability_factor(reliability) == value
     assert reliability_factor(0.90) == pytest.approx(0.8328, abs=5e-5)
     assert reliability_factor(0.95) == pytest.approx(0.885, abs=5e-4)  # Shigley 14-8
+    assert reliability_factor(0.995) == pytest.approx(0.50 + 0.109 * math.log(200), rel=1e-12)
     assert RELIABILITY == {0.5: 0.70, 0.9: 0.85, 0.99: 1.0, 0.999: 1.25, 0.9999: 1.50}
     with pytest.raises(ValueError, match="0.999"):
         tabled_reliability_factor(0.95)
@@ -198,6 +204,7 @@ def test_reliability_and_its_fit():
 def test_temperature():
     assert temperature_factor(np.array([20.0, 120.0])) == pytest.approx([1.0, 1.0])
     assert temperature_factor(160.0) == pytest.approx((460 + 320) / 620)
+    assert temperature_factor(121.0) == pytest.approx((460 + 249.8) / 620)
 
 
 def test_elastic_coefficients():
