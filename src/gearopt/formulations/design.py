@@ -158,8 +158,8 @@ def _teeth(pair: GearPair) -> dict[str, Any]:
     """Return what a stage says of how its teeth are cut."""
     working, own = pair.working_angle, pair.pinion.transverse_pressure_angle
     found: dict[str, Any] = {
-        "helix_angle_deg": math.degrees(pair.pinion.helix_angle),
-        "pressure_angle_deg": math.degrees(pair.pinion.rack.pressure_angle),
+        "helix_angle_deg": round(math.degrees(pair.pinion.helix_angle), 12),
+        "pressure_angle_deg": round(math.degrees(pair.pinion.rack.pressure_angle), 12),
         "working_pressure_angle_deg": None if working == own else math.degrees(working),
     }
     for member, gear in zip(("pinion", "wheel"), pair.gears, strict=True):

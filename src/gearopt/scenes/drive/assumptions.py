@@ -1,10 +1,13 @@
 """What a drive takes for granted, and what a reader of its result should know."""
 
+from dataclasses import replace
+
 from gearopt.formulations.design import STEEL_DENSITY
 from gearopt.physics.gears import ISO_53_A
-from gearopt.scenes.drive.drive_tables import ORIGINS
+from gearopt.scenes.drive.drive_tables import ORIGINS, StageTable
 from gearopt.scenes.drive.layout_tables import Layout
 from gearopt.scenes.drive.scene import Scene
+from gearopt.scenes.drive.tooth_tables import toothing
 from gearopt.scenes.reading.modules import unverified
 
 CLEARANCES = {
@@ -45,10 +48,7 @@ def assumptions(scene: Scene) -> list[str]:
     law = scene.limits.LAW
     alone = f"and {law.title}" if law.pressure_angle else f"alone; {law.title} do not depend on it"
     found = [
-        "External cylindrical gears without profile shift; no losses in mesh and bearings.",
-        "Tip and root circles by the basic rack ISO 53 profile A: addendum "
-        f"{ISO_53_A.addendum:g} m_n, dedendum {ISO_53_A.dedendum:g} m_n; nominal sizes, "
-        "without backlash.",
+        *_teeth(scene),
         f"Loads are limited by {law.title} alone: {law.kind}.",
         f"The normal pressure angle of {angle}{assumed} enters contact ratio and undercut {alone}.",
         f"Volumes and masses are those of solid reference cylinders; masses with {mass}.",
@@ -57,6 +57,27 @@ def assumptions(scene: Scene) -> list[str]:
         name = scene.limits.preset
         found.insert(3, f"The load limits are those of preset {name}: {ORIGINS[name]}.")
     return found if scene.layout is None else [*found, *_layout_assumptions(scene.layout)]
+
+
+def _teeth(scene: Scene) -> list[str]:
+    """Return what is taken for granted of the teeth: shifts, tools, backlash."""
+    each = [toothing(own, scene.gears) for own in scene.stage or (StageTable(),)]
+    shifted = any(any(one.profile_shifts) for one in each)
+    shifts = "with the profile shifts of the file" if shifted else "without profile shift"
+    ends = "no losses in mesh and bearings"
+    found = [f"External cylindrical gears {shifts}; {ends}."]
+    usual = {replace(ISO_53_A, pressure_angle=r.pressure_angle) for one in each for r in one.racks}
+    if {rack for one in each for rack in one.racks} <= usual:
+        found.append(
+            "Tip and root circles by the basic rack ISO 53 profile A: addendum "
+            f"{ISO_53_A.addendum:g} m_n, dedendum {ISO_53_A.dedendum:g} m_n; nominal sizes, "
+            "without backlash."
+        )
+    else:
+        found.append("Tip and root circles by the tools of the file; nominal sizes.")
+    if shifted and "limits" in scene.model_fields_set:
+        found.append(f"{scene.limits.LAW.title} are those of the reference circles.")
+    return found
 
 
 def rating_assumptions(scene: Scene) -> list[str]:

@@ -24,7 +24,6 @@ from gearopt.physics.agma.rating import rate as rate_pair
 from gearopt.physics.agma.rating_factors import Operation
 from gearopt.physics.gears import GearPair
 from gearopt.physics.geometry.contact import total_contact_ratio
-from gearopt.physics.geometry.flaws import flaws
 from gearopt.physics.geometry.tooth import (
     circumferential_backlash,
     helix_angle_at,
@@ -39,6 +38,7 @@ from gearopt.scenes.drive.rated_gears import MEMBERS
 from gearopt.scenes.drive.rated_words import NAMES, UNITS, material
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.tooth_geometry import tooth_geometry
+from gearopt.scenes.parts import tooth_warnings
 from gearopt.scenes.reading.ask import Ask
 
 STANDARD = "ANSI/AGMA 2001-{} (2101), geometry factors of AGMA 908-B89"
@@ -113,6 +113,7 @@ def with_rating(scene: Scene, result: Result) -> Result:
     except SolveError as reason:
         notes = [*result.report.get("notes", []), f"There is no rating: {reason}."]
         return replace(result, report=result.report | {"notes": notes})
+    found = replace(found, flaws=())  # they stand in the notes of the drive
     return replace(result, design=result.design | {"rating": untyped(found)})
 
 
@@ -185,9 +186,7 @@ def rating(scene: Scene, pairs: Sequence[GearPair]) -> DriveRating:
         unverified=tuple(
             dict.fromkeys(f"{r.symbol} of stage {r.stage}" for r in factors if not r.verified)
         ),
-        flaws=tuple(
-            f"Stage {mesh.stage}: {flaw.sentence}" for mesh in meshes for flaw in flaws(mesh.pair)
-        ),
+        flaws=tuple(tooth_warnings(pairs)),
     )
 
 

@@ -1,15 +1,16 @@
 """From the tables of a file to what physics rates: gear pairs, steels, operations, practice."""
 
 from dataclasses import replace
-from fractions import Fraction
 from typing import Any
 
 from gearopt.physics.agma.factors import quality_of_accuracy
 from gearopt.physics.agma.rating_factors import Operation, Practice, Steel
-from gearopt.physics.gears import ISO_53_A, Gear, GearPair, Rack, reference_diameter
+from gearopt.physics.gears import Gear, GearPair
 from gearopt.physics.shaft_forces import rpm
+from gearopt.scenes.drive.drive_tables import StageTable
 from gearopt.scenes.drive.rating_tables import GearTable, RatingTable, with_shared
 from gearopt.scenes.drive.scene import Scene
+from gearopt.scenes.drive.tooth_tables import toothing
 
 MEMBERS = ("pinion", "wheel")
 HOUR = 3600.0  # s
@@ -28,45 +29,8 @@ def pair_of(
 
     module, face_width [mm]; teeth of pinion and wheel.
     """
-    table = scene.stage[stage] if scene.stage else None
-    helix, pressure = (
-        ((table and getattr(table, name)) or getattr(scene.gears, name)).value
-        for name in ("helix_angle", "pressure_angle")
-    )
-    gears = [
-        _gear(own(scene, stage, member), module, z, face_width, helix, pressure)
-        for member, z in zip(MEMBERS, teeth, strict=True)
-    ]
-    centres = table and table.centre_distance
-    return GearPair(gears[0], gears[1], centres.value if centres else None)
-
-
-def _gear(
-    table: GearTable, module: float, teeth: float, width: float, helix: float, pressure: float
-) -> Gear:
-    usual = ISO_53_A
-    rack = Rack(
-        pressure,
-        _or(table.addendum, usual.addendum),
-        _or(table.tool_addendum, usual.dedendum),
-        _or(table.tool_tip_radius, usual.tip_radius),
-        _or(table.tool_protuberance, usual.protuberance),
-    )
-    return Gear(
-        module,
-        teeth,
-        reference_diameter(module, teeth, helix),
-        width,
-        helix,
-        rack,
-        _or(table.profile_shift, 0.0),
-        _or(table.tip_alteration, 0.0),
-        table.thickness_allowance.value if table.thickness_allowance else 0.0,
-    )
-
-
-def _or(value: Fraction | int | None, usual: float) -> float:
-    return usual if value is None else float(value)
+    own = scene.stage[stage] if scene.stage else StageTable()
+    return toothing(own, scene.gears).pair(module, *teeth, face_width)
 
 
 def given_pairs(scene: Scene) -> tuple[GearPair, ...]:
@@ -79,10 +43,10 @@ def given_pairs(scene: Scene) -> tuple[GearPair, ...]:
         if stage.face_width is not None:
             width = stage.face_width.value
         else:
-            helix = (stage.helix_angle or scene.gears.helix_angle).value
             span = stage.face_width_over_diameter or scene.gears.face_width_over_diameter
             assert span
-            width = float(span[0]) * float(reference_diameter(module, teeth[0], helix))
+            unit = toothing(stage, scene.gears).pair(module, *teeth, 1.0)
+            width = float(span[0]) * float(unit.pinion.reference_diameter)
         found.append(pair_of(scene, k, module, teeth, width))
     return tuple(found)
 
@@ -96,7 +60,7 @@ def steel(table: GearTable) -> Steel:
         table.hardness.value if table.hardness else usual.hardness,
         table.surface_hardness or usual.surface,
         table.elastic_modulus.value if table.elastic_modulus else usual.modulus,
-        _or(table.poisson_ratio, usual.poisson),
+        usual.poisson if table.poisson_ratio is None else float(table.poisson_ratio),
         table.roughness.value if table.roughness else usual.finish,
         bool(table.reversed_load),
     )

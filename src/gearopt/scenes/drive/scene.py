@@ -10,9 +10,8 @@ from gearopt.formulations.design import DriveDesign, describe
 from gearopt.formulations.gear_train import FaceWidth, Stage, Train
 from gearopt.formulations.layout.gearbox import Gearbox
 from gearopt.formulations.process import methods
-from gearopt.formulations.toothing import Toothing
 from gearopt.optimise.result import Outcome
-from gearopt.physics.gears import GearPair, Rack
+from gearopt.physics.gears import GearPair
 from gearopt.physics.loads import torque
 from gearopt.scenes.drive.drive_tables import (
     Gears,
@@ -32,6 +31,7 @@ from gearopt.scenes.drive.layout_tables import (
 )
 from gearopt.scenes.drive.rating_checks import check_rated, check_unrated
 from gearopt.scenes.drive.rating_tables import LoadTable, RatingTable
+from gearopt.scenes.drive.tooth_tables import check_teeth, toothing
 from gearopt.scenes.explaining.numbers import eased, in_reverse, written
 from gearopt.scenes.parts import Duty
 from gearopt.scenes.reading.fields import Table, refuse, whole, words
@@ -134,6 +134,9 @@ class Scene(Table):
                 place = ("stage", k, "module") if own.size else ("limits", "module")
                 raise refuse("holds no module that [teeth] allows", self._around(own), place)
         self._check_layout()
+        together = self.layout is not None and self.layout.together
+        aim = self.objective.minimise if "limits" in self.model_fields_set else ""
+        check_teeth(self.stage, self.gears, self.given, aim, together)
         self._check_rating()
         for name, table in (("process_one", self.process_one), ("process_two", self.process_two)):
             if table is not None and self.teeth is None:
@@ -330,13 +333,8 @@ class Scene(Table):
             wheel_teeth=own.wheel_teeth or limits.wheel_teeth or (1, None),
             ratio=own.stage_ratio or limits.stage_ratio or (Fraction(1), None),
             wheel_diameter=diameter.exact[0] if diameter else None,
-            toothing=self._toothing(own),
+            toothing=toothing(own, self.gears),
         )
-
-    def _toothing(self, own: StageTable) -> Toothing:
-        """Return the teeth of a stage."""
-        rack = Rack(self.gears.pressure_angle.value)
-        return Toothing(self.gears.helix_angle.value, (rack, rack))
 
     def _face_width(self, own: StageTable) -> FaceWidth:
         proportion = own.face_width_over_diameter

@@ -1,0 +1,68 @@
+"""From the tables of a stage to its teeth: helix, tools, shifts; and where shifts do not fit."""
+
+from fractions import Fraction
+
+from gearopt.formulations.gear_train import LENGTHS
+from gearopt.formulations.toothing import Toothing
+from gearopt.physics.gears import ISO_53_A, Rack
+from gearopt.scenes.drive.drive_tables import Gears, StageTable
+from gearopt.scenes.drive.rating_tables import GearTable, with_shared
+from gearopt.scenes.reading.fields import refuse
+
+
+def toothing(own: StageTable, gears: Gears) -> Toothing:
+    """Return the teeth of a stage."""
+    helix, pressure = (
+        (getattr(own, name) or getattr(gears, name)).value
+        for name in ("helix_angle", "pressure_angle")
+    )
+    pinion, wheel = with_shared(own.pinion, gears), with_shared(own.wheel, gears)
+    return Toothing(
+        helix,
+        (_rack(pinion, pressure), _rack(wheel, pressure)),
+        (_or(pinion.profile_shift, 0.0), _or(wheel.profile_shift, 0.0)),
+        (_or(pinion.tip_alteration, 0.0), _or(wheel.tip_alteration, 0.0)),
+        (_allowance(pinion), _allowance(wheel)),
+        own.centre_distance.value if own.centre_distance else None,
+    )
+
+
+def _rack(gear: GearTable, pressure_angle: float) -> Rack:
+    usual = ISO_53_A
+    return Rack(
+        pressure_angle,
+        _or(gear.addendum, usual.addendum),
+        _or(gear.tool_addendum, usual.dedendum),
+        _or(gear.tool_tip_radius, usual.tip_radius),
+        _or(gear.tool_protuberance, usual.protuberance),
+    )
+
+
+def _or(value: Fraction | None, usual: float) -> float:
+    return usual if value is None else float(value)
+
+
+def _allowance(gear: GearTable) -> float:
+    return gear.thickness_allowance.value if gear.thickness_allowance else 0.0
+
+
+def check_teeth(
+    stages: tuple[StageTable, ...], gears: Gears, given: bool, objective: str, together: bool
+) -> None:
+    """Refuse centre distances off the reference circles where what is sought cannot take them.
+
+    given: whether all gears are; objective: what is minimised; together: gears and box at once.
+    """
+    for k, own in enumerate(stages):
+        if own.centre_distance is not None and not given:
+            rule = "needs gears that are all given: of others it follows from teeth and shifts"
+            raise refuse(rule, at=("stage", k, "centre_distance"), action="remove")
+        if toothing(own, gears).on_reference or not (objective in LENGTHS or together):
+            continue
+        place: tuple[str | int, ...] = ("stage", k, "centre_distance")
+        if own.centre_distance is None:
+            member = "wheel" if own.pinion.profile_shift is None else "pinion"
+            place = ("stage", k, member, "profile_shift")
+        what = f"minimise = {objective}" if objective in LENGTHS else "together"
+        rule = f"moves the centre distance, which {what} takes from the reference circles"
+        raise refuse(rule, "Give shifts whose sum is 0, or none", place, "tell")
