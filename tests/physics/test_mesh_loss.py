@@ -7,9 +7,14 @@ import numpy as np
 import pytest
 
 from gearopt.optimise.tape import legacy_numpy
-from gearopt.physics.gears import GearPair
+from gearopt.physics.gears import GearPair, Rack
 from gearopt.physics.geometry.contact import contact_path, sliding_velocity
-from gearopt.physics.mesh_loss import friction_coefficient, mesh_efficiency, tooth_loss_factor
+from gearopt.physics.mesh_loss import (
+    FRICTION_ERROR,
+    friction_coefficient,
+    mesh_efficiency,
+    tooth_loss_factor,
+)
 
 
 @pytest.mark.parametrize(
@@ -33,8 +38,29 @@ def test_the_loss_factor_is_mean_sliding_of_a_shared_load(teeth, shifts):
 
 
 def test_helical_gears_slide_alike_at_a_higher_normal_force():
-    pair = GearPair.of_teeth(3.0, 25, 50, 30.0, 0.3)
+    """As the spur gear of their transverse section, but 1/cos(beta_b) of its normal force."""
+    helix = 0.3
+    pair = GearPair.of_teeth(3.0, 25, 50, 30.0, helix)
     assert tooth_loss_factor(pair) < tooth_loss_factor(GearPair.of_teeth(3.0, 25, 50, 30.0))
+    cosine = math.cos(helix)
+    rack = Rack(float(pair.pinion.transverse_pressure_angle), cosine, 1.25 * cosine)
+    spur = GearPair.of_teeth(3.0 / cosine, 25, 50, 30.0, rack=rack)
+    base = math.asin(math.sin(helix) * math.cos(math.radians(20)))
+    expected = tooth_loss_factor(spur) / math.cos(base)
+    assert tooth_loss_factor(pair) == pytest.approx(expected, rel=1e-12)
+    # mu goes with curvature^-0.2, normal radii being 1/cos(beta_b) of transverse ones
+    helical, straight = (friction_coefficient(p, 5e3, 1e4, 20.0, 4e-4) for p in (pair, spur))
+    assert helical == pytest.approx(straight * math.cos(base) ** 0.2, rel=1e-12)
+
+
+def test_an_oil_of_less_friction_and_the_error_of_the_model():
+    pair = GearPair.of_teeth(3.0, 25, 50, 30.0)
+    plain, polyglycol = (
+        friction_coefficient(pair, 5e3, 1e4, 20.0, 4e-4, oil) for oil in (1.0, 0.585)
+    )
+    assert polyglycol == pytest.approx(0.585 * plain, rel=1e-12)
+    for own, formula in ((0.846, 1.0), (0.65, 0.8), (0.585, 0.75)):  # X_L by measured losses
+        assert abs(own / formula - 1.0) < FRICTION_ERROR
 
 
 def test_friction_by_hand():

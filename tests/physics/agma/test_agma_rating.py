@@ -187,8 +187,11 @@ def test_one_level_is_the_plain_rating_and_halves_of_it_too():
 def test_an_overload_of_a_spectrum_counts_by_miner():
     peak = replace(EXAMPLE, power=3 * EXAMPLE.power, hours=10.0)
     found = rate_spectrum(spur(), (EXAMPLE, peak), STEELS)
-    parts = [level.cycles[0] / level.contact_life[0] for level in found.levels]
-    assert found.contact_damage[0] == pytest.approx(sum(parts), rel=1e-12)
+    for k in (0, 1):
+        parts = [level.cycles[k] / level.contact_life[k] for level in found.levels]
+        assert found.contact_damage[k] == pytest.approx(sum(parts), rel=1e-12)
+        parts = [level.cycles[k] / level.bending_life[k] for level in found.levels]
+        assert found.bending_damage[k] == pytest.approx(sum(parts), rel=1e-12)
     assert found.contact_safety[0] < min(level.contact_safety[0] for level in found.levels)
     with pytest.raises(ValueError, match="Z_N"):
         rate_spectrum(spur(), (EXAMPLE,), STEELS, None, {"Z_N": (1.0, 1.0)})
@@ -211,6 +214,50 @@ def test_limits_of_the_curves_are_remarked():
     assert "1e+10" in found.factors["Z_N"].remark
     wide = rate(spur().of_width(100.0), EXAMPLE, STEELS)
     assert "2 pinion diameters" in wide.factors["K_m"].remark
+
+
+@pytest.mark.parametrize(
+    ("strengths", "member", "mode"),
+    [
+        (((10.0, 900.0), (9e3, 9e3)), "pinion", "bending"),
+        (((900.0, 10.0), (9e3, 9e3)), "wheel", "bending"),
+        (((900.0, 900.0), (100.0, 9e3)), "pinion", "contact"),
+        (((900.0, 900.0), (9e3, 100.0)), "wheel", "contact"),
+    ],
+)
+def test_the_weakest_of_four_governs_and_permits_the_power(strengths, member, mode):
+    """Strengths [MPa] of which one is small; the power is in proportion to S_F and S_H^2."""
+    given = {"s_at": strengths[0], "s_ac": strengths[1]}
+    found = rate(spur(), EXAMPLE, STEELS, None, given)
+    assert found.governs == (member, mode)
+    k = ("pinion", "wheel").index(member)
+    least = found.bending_safety[k] if mode == "bending" else found.contact_safety[k] ** 2
+    assert found.power == pytest.approx(EXAMPLE.power * least, rel=1e-12)
+
+
+def test_factors_given_act_where_the_standard_has_them():
+    """Stresses and safety factors of a factor given 21 % above its value; contact by its root."""
+    plain = rate(spur(), EXAMPLE, STEELS)
+    for symbol, bent, pressed in (("C_f", 1.0, 1.1), ("K_o", 1.21, 1.1), ("K_m", 1.21, 1.1)):
+        more = rate(spur(), EXAMPLE, STEELS, None, {symbol: 1.21 * plain.factors[symbol].value})
+        for k in (0, 1):
+            assert more.bending_stress[k] == pytest.approx(bent * plain.bending_stress[k])
+            assert more.contact_stress[k] == pytest.approx(pressed * plain.contact_stress[k])
+    for symbol in ("K_R", "K_T"):
+        more = rate(spur(), EXAMPLE, STEELS, None, {symbol: 1.21 * plain.factors[symbol].value})
+        assert more.bending_stress == plain.bending_stress
+        assert more.bending_safety == pytest.approx([s / 1.21 for s in plain.bending_safety])
+        assert more.contact_safety == pytest.approx([s / 1.21 for s in plain.contact_safety])
+
+
+def test_what_is_usual_where_nothing_is_said():
+    """Steel of E 206000, nu 0.3; 99 %, below 120 degrees C, pinion between its bearings."""
+    found = rate(spur(), Operation(1e6, SPEED, 1e4), STEELS).factors
+    assert found["C_p"].value == pytest.approx(189.8117, abs=5e-5)
+    assert found["K_R"].value == found["K_T"].value == found["K_o"].value == 1.0
+    assert found["K_T"].clause == "2001-D04, 19"
+    hot = rate(spur(), replace(EXAMPLE, temperature_C=121.0), STEELS).factors["K_T"]
+    assert hot.value > 1.1 and "customary" in hot.clause
 
 
 def test_strengths_may_be_given_without_a_hardness():
