@@ -107,8 +107,9 @@ def stage_table(
 
 
 def _own_teeth(key: str, stages: Sequence[Mapping[str, Any]]) -> bool:
-    """Return whether a key of the teeth says more than its default or the file."""
-    values = {s.get(key, OF_TEETH[key]) for s in stages}
+    """Return whether a key of the teeth, or the mate's, says more than its default or the file."""
+    both = key, key.replace("pinion", "wheel"), key.replace("wheel", "pinion")
+    values = {s.get(name, OF_TEETH[key]) for s in stages for name in both}
     return len(values) > 1 or not (key in OF_FILE or values == {OF_TEETH[key]})
 
 

@@ -38,8 +38,13 @@ def notes(scene: Scene, exact: bool) -> list[str]:
 
 def assumptions(scene: Scene) -> list[str]:
     """Return what a design takes for granted, in sentences."""
-    angle, density = scene.gears.pressure_angle, scene.objective.density
-    assumed = "" if "pressure_angle" in scene.gears.model_fields_set else " (default)"
+    density, stages = scene.objective.density, scene.stage or (StageTable(),)
+    angles = dict.fromkeys(str(own.pressure_angle or scene.gears.pressure_angle) for own in stages)
+    angle = " and ".join(angles)
+    stated = "pressure_angle" in scene.gears.model_fields_set or any(
+        own.pressure_angle for own in stages
+    )
+    assumed = "" if stated else " (default)"
     mass = (
         f"the density of the file, {density}"
         if density

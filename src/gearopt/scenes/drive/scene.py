@@ -31,7 +31,7 @@ from gearopt.scenes.drive.layout_tables import (
 )
 from gearopt.scenes.drive.rating_checks import check_rated, check_unrated
 from gearopt.scenes.drive.rating_tables import LoadTable, RatingTable
-from gearopt.scenes.drive.tooth_tables import check_teeth, toothing
+from gearopt.scenes.drive.tooth_tables import check_mesh, check_teeth, toothing
 from gearopt.scenes.explaining.numbers import eased, in_reverse, written
 from gearopt.scenes.parts import Duty
 from gearopt.scenes.reading.fields import Table, refuse, whole, words
@@ -134,9 +134,7 @@ class Scene(Table):
                 place = ("stage", k, "module") if own.size else ("limits", "module")
                 raise refuse("holds no module that [teeth] allows", self._around(own), place)
         self._check_layout()
-        together = self.layout is not None and self.layout.together
-        aim = self.objective.minimise if "limits" in self.model_fields_set else ""
-        check_teeth(self.stage, self.gears, self.given, aim, together)
+        self._check_teeth()
         self._check_rating()
         for name, table in (("process_one", self.process_one), ("process_two", self.process_two)):
             if table is not None and self.teeth is None:
@@ -182,6 +180,15 @@ class Scene(Table):
             check_unrated(self.gears, self.stage, self.load)
         else:
             check_rated(self.rating, self.gears, self.stage, self.load)
+
+    def _check_teeth(self) -> None:
+        """Check that gears have a centre distance, and that what is sought can take it."""
+        aim = self.objective.minimise if "limits" in self.model_fields_set else ""
+        asked = "together" if self.layout is not None and self.layout.together else ""
+        asked = asked or ("process_two" if self.process_two is not None else "")
+        check_teeth(self.stage, self.gears, self.given, aim, asked)
+        for k, own in enumerate(self.stage):
+            check_mesh(self._stage(own), k)
 
     def _check_layout(self) -> None:
         """Check the tables of a layout against the drive and each other."""

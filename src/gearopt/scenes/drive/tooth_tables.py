@@ -1,8 +1,9 @@
 """From the tables of a stage to its teeth: helix, tools, shifts; and where shifts do not fit."""
 
+import math
 from fractions import Fraction
 
-from gearopt.formulations.gear_train import LENGTHS
+from gearopt.formulations.gear_train import LENGTHS, Stage
 from gearopt.formulations.toothing import Toothing
 from gearopt.physics.gears import ISO_53_A, Rack
 from gearopt.scenes.drive.drive_tables import Gears, StageTable
@@ -47,22 +48,38 @@ def _allowance(gear: GearTable) -> float:
 
 
 def check_teeth(
-    stages: tuple[StageTable, ...], gears: Gears, given: bool, objective: str, together: bool
+    stages: tuple[StageTable, ...], gears: Gears, given: bool, objective: str, asked: str
 ) -> None:
     """Refuse centre distances off the reference circles where what is sought cannot take them.
 
-    given: whether all gears are; objective: what is minimised; together: gears and box at once.
+    given: whether all gears are; objective: what is minimised; asked: what else takes reference
+    circles, such as gears and box at once, or nothing.
     """
     for k, own in enumerate(stages):
         if own.centre_distance is not None and not given:
             rule = "needs gears that are all given: of others it follows from teeth and shifts"
             raise refuse(rule, at=("stage", k, "centre_distance"), action="remove")
-        if toothing(own, gears).on_reference or not (objective in LENGTHS or together):
+        if toothing(own, gears).on_reference or not (objective in LENGTHS or asked):
             continue
         place: tuple[str | int, ...] = ("stage", k, "centre_distance")
         if own.centre_distance is None:
             member = "wheel" if own.pinion.profile_shift is None else "pinion"
             place = ("stage", k, member, "profile_shift")
-        what = f"minimise = {objective}" if objective in LENGTHS else "together"
+        what = f"minimise = {objective}" if objective in LENGTHS else asked
         rule = f"moves the centre distance, which {what} takes from the reference circles"
         raise refuse(rule, "Give shifts whose sum is 0, or none", place, "tell")
+
+
+def check_mesh(stage: Stage, k: int) -> None:
+    """Refuse a stage (from 0) whose fewest teeth have no centre distance."""
+    own, fewest = stage.toothing, stage.pinion_teeth[0]
+    teeth = fewest, max(stage.wheel_teeth[0], math.ceil(stage.ratio[0] * fewest))
+    pair = own.pair(float(min(stage.modules, default=1)), *teeth, 1.0)
+    if math.isfinite(pair.working_angle):
+        return
+    if own.working_distance is not None:
+        rule = f"lets the base circles of {teeth[0]} and {teeth[1]} teeth overlap"
+        raise refuse(rule, f"{pair.reference_distance:.3f} mm", ("stage", k, "centre_distance"))
+    rule = f"and that of its mate leave no centre distance to {teeth[0]} and {teeth[1]} teeth"
+    low = min((0, 1), key=lambda i: own.profile_shifts[i])
+    raise refuse(rule, 0, ("stage", k, ("pinion", "wheel")[low], "profile_shift"))
