@@ -51,8 +51,9 @@ EARLIEST = 1e-4  # s; the logarithmic axis begins here at the earliest
 
 
 def decided(result: Result) -> str:
-    """Return the first sentence: what decides the answer."""
-    return sentence(lead(result, kind_of(result).decides(result)))
+    """Return the first sentence: what decides the answer, with its figures."""
+    kind = kind_of(result)
+    return sentence(lead(result, kind.decides(result)) + kind.figures(result))
 
 
 def opening(result: Result) -> str:
@@ -67,10 +68,12 @@ def summary(result: Result, measures: Measures) -> Section | None:
     """
     tiles = [*_tiles(result, measures), *kind_of(result).tiles(result, measures)]
     words = [*leading(result), *_notes(result)]
+    warned = list(map(measures.words, kind_of(result).warns(result)))
     certain = [*bound_words(result, measures), *proof(result, measures), _effort(result)]
     ends = "\n".join([*certain[:-1], *_notes(result), certain[-1]])
-    shown, said = tiles or words, list(map(measures.words, words))
-    return Section("Result" if shown else "", tiles, said, terminal=(measures.words(ends),))
+    shown, said = tiles or words or warned, list(map(measures.words, words))
+    told = (measures.words(ends),)
+    return Section("Result" if shown else "", tiles, said, terminal=told, notes=warned)
 
 
 def _tiles(result: Result, measures: Measures) -> list[Tile]:

@@ -4,6 +4,7 @@ import shlex
 
 from gearopt.optimise.result import Result
 from gearopt.report.measures import METRIC, Measures
+from gearopt.report.words import RATING
 
 SECONDS = 60.0  # that a run may take
 TOP_ON_PAGE = 10  # trains that a page lists
@@ -18,9 +19,10 @@ def again(result: Result, html: str, measures: Measures) -> str:
     """
     if result.file is None:
         return ""
+    verb = "rate" if result.name == RATING else "solve"
     if changes := result.options.get("changes"):
-        return f"gearopt.solve({result.file!r}, {changes!r})"
-    words = ["gearopt", "solve", result.file]
+        return f"gearopt.{verb}({result.file!r}, {changes!r})"
+    words = ["gearopt", verb, result.file]
     if result.options and result.options.get("seconds") is None:
         words += ["--seconds", "1e9"]
     for name in ("method", "seconds", "gap", "seed", "top"):

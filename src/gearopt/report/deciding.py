@@ -25,15 +25,16 @@ GIVEN = ("common_divisor",)  # rules that every design of the file is at the end
 def lead(result: Result, own: str = "") -> str:
     """Return one sentence: what decides, is exceeded, or cannot be met together.
 
-    own: what the kind of result says of a design.
+    own: what the kind of result says of a design, instead of its limits.
     """
     if result.status == "infeasible":
         return _impossible(result)
     if result.value is None and result.status != "evaluated":
         return f"{_stopped(result)}: no design was found, which does not prove that there is none"
-    if result.status == "evaluated" and (over := _over(result.limits, has_stages(result))):
-        return f"the given design exceeds {series_of(over)}"
-    return own or of_limits(result)
+    if own or result.status != "evaluated":
+        return own or of_limits(result)
+    over = _over(result.limits, has_stages(result))
+    return f"the given design exceeds {series_of(over)}" if over else of_limits(result)
 
 
 def _stopped(result: Result) -> str:

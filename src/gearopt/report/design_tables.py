@@ -88,14 +88,13 @@ def stage_table(
     """Return the stages side by side; page_only: keys of rows that only the page shows."""
     heads = ["", *(f"stage {k}" for k in range(1, len(stages) + 1))]
     found, hidden = [], []
-    for key, (words, unit) in STAGE_ROWS.items():
+    for key, (_, unit) in STAGE_ROWS.items():
         if not (_own_teeth(key, stages) if key in OF_TEETH else all(key in s for s in stages)):
             continue
+        label = stage_label(key, measures)
         if key == MODULE:
-            label = "{} {} [{}]".format(*measures.module)
             found.append([label, *(measures.of_module(s[key]) for s in stages)])
             continue
-        label = f"{words} [{measures.unit(unit)}]" if unit else words
         values = [s.get(key, OF_TEETH.get(key)) for s in stages]
         found.append([label, *(cell(value, unit, measures) for value in values)])
         if key in page_only:
@@ -111,6 +110,14 @@ def _own_teeth(key: str, stages: Sequence[Mapping[str, Any]]) -> bool:
     both = key, key.replace("pinion", "wheel"), key.replace("wheel", "pinion")
     values = {s.get(name, OF_TEETH[key]) for s in stages for name in both}
     return len(values) > 1 or not (key in OF_FILE or values == {OF_TEETH[key]})
+
+
+def stage_label(key: str, measures: Measures) -> str:
+    """Return what a key of a stage is called, with its unit."""
+    if key == MODULE:
+        return "{} {} [{}]".format(*measures.module)
+    words, unit = STAGE_ROWS.get(key, (key, ""))
+    return f"{words} [{measures.unit(unit)}]" if unit else words
 
 
 def ratio_tile(ratio: float, error_percent: float) -> Tile:

@@ -17,6 +17,7 @@ _INCH = float(UNITS["length"]["in"][0])  # mm
 _PSI = float(UNITS["stress"]["psi"][0])  # MPa
 _POUND = float(UNITS["density"]["lb/in^3"][0]) * 1000.0 * _INCH**3  # kg
 _POUND_FORCE = _PSI * _INCH**2  # N
+_HORSEPOWER = float(UNITS["power"]["hp"][0])  # N mm/s
 
 DIGITS = 5  # significant digits of a number for reading
 FEWEST = {"percent": 3, "mm": 3}  # the same of parts of a whole; of a length, at least
@@ -148,6 +149,7 @@ class Measures:
 _SAME = {
     **{"percent": ("%", 1.0), "deg": ("°", 1.0), "ms": ("ms", 1.0), "Hz": ("Hz", 1.0)},
     **{"s": ("s", 1.0), "rpm": ("rpm", 1.0), "rad_per_s2": ("rad/s²", 1.0)},
+    **{"h": ("h", 1.0), "cycles": ("cycles", 1.0)},
 }
 METRIC = Measures(
     "metric",
@@ -157,6 +159,9 @@ METRIC = Measures(
         "mm2": ("cm²", 1e-2),
         "mm3": ("cm³", 1e-3),
         "MPa": ("MPa", 1.0),
+        "sqrt_MPa": ("√MPa", 1.0),
+        "N": ("N", 1.0),
+        "kW": ("kW", 1.0),
         "Nm": ("N m", 1.0),
         "m_per_s": ("m/s", 1.0),
         "kg": ("kg", 1.0),
@@ -183,6 +188,9 @@ INCH = Measures(
         "mm2": ("in²", 1.0 / _INCH**2),
         "mm3": ("in³", 1.0 / _INCH**3),
         "MPa": ("psi", 1.0 / _PSI),
+        "sqrt_MPa": ("√psi", 1.0 / math.sqrt(_PSI)),
+        "N": ("lbf", 1.0 / _POUND_FORCE),
+        "kW": ("hp", 1e6 / _HORSEPOWER),
         "m_per_s": ("ft/min", 60_000.0 / (12.0 * _INCH)),
         "Nm": ("lbf in", 1000.0 / (_POUND_FORCE * _INCH)),
         "kg": ("lb", 1.0 / _POUND),
@@ -199,6 +207,7 @@ _SUFFIXES = {  # a unit in a sentence: what a key calls it, and how many of that
     **{"mm²": ("mm2", 1.0), "mm^2": ("mm2", 1.0), "cm²": ("mm2", 1e2), "m²": ("mm2", 1e6)},
     **{"mm³": ("mm3", 1.0), "mm^3": ("mm3", 1.0), "cm³": ("mm3", 1e3), "dm³": ("mm3", 1e6)},
     **{"m³": ("mm3", 1e9), "MPa": ("MPa", 1.0), "N m": ("Nm", 1.0), "kg": ("kg", 1.0)},
+    **{"kW": ("kW", 1.0), "m/s": ("m_per_s", 1.0)},
 }
 _DENSITIES = ("kg/dm³", "kg/dm^3", "g/cm³", "g/cm^3")  # kg in 1e6 mm3
 _SIGNS = sorted((*_SUFFIXES, *_DENSITIES), key=len, reverse=True)

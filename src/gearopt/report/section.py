@@ -101,7 +101,8 @@ class Table:
     that the page holds its CSV only. page_only, terminal_only, csv_only: heads of the columns and
     labels (the first cells) of the rows that only one of them shows; the CSV holds those of the
     page, too, but for read_only. short: other heads on the terminal. left, wrap: how many columns
-    stand on the left there, and how many may break over lines. across: what it lists, as
+    stand on the left there, and how many may break over lines. texts: heads of columns of words,
+    which stand on the left of the page. across: what it lists, as
     stages, stands side by side, each in a column.
     """
 
@@ -118,6 +119,7 @@ class Table:
     short: Mapping[str, str] = field(default_factory=dict)
     left: int = 1
     wrap: int = 1
+    texts: Collection[str] = ()
     across: bool = False
 
     def without(self, hidden: Collection[str]) -> tuple[list[str], list[list[Any]]]:
@@ -205,7 +207,8 @@ class Section:
 
     half: two such sections stand side by side where the page is wide. folded: the page shows its
     heading, and the rest when asked. terminal: the sentences and
-    tables that the terminal shows of it, in its order.
+    tables that the terminal shows of it, in its order. notes: sentences that come before all else,
+    in a colour that is not missed.
     """
 
     heading: str
@@ -217,6 +220,7 @@ class Section:
     half: bool = False
     folded: bool = False
     terminal: Sequence[str | Text | Table] = ()
+    notes: Sequence[str] = ()
 
     @property
     def widest(self) -> float:

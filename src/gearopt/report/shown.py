@@ -45,7 +45,7 @@ Block = str | Text | Table
 def lines(result: Result) -> str:
     """Return status, value, bound and gap, and what is essential of the design, in a few lines."""
     _, unit, value, bound, side = goal(result)
-    rows = [_head(result), decided(result)]
+    rows = [_head(result), decided(result), *kind_of(result).warns(result)]
     if bound is not None and (value is None or (result.gap or 0.0) > EXACT):
         gap = "" if result.gap is None else f", gap {gap_percent(result.gap)}"
         rows.append(f"bound {METRIC.amount(bound, unit, WAYS[side])}{gap}")
@@ -153,7 +153,8 @@ def fragment(result: Result) -> str:
     result = Result.from_dict(result.to_dict())
     made = (make(result, METRIC) for make in kind_of(result).terminal)
     blocks = [block for section in made if section is not None for block in section.terminal]
-    return _html(_head(result), [decided(result), *leading(result), *blocks])
+    first = [decided(result), *leading(result), *kind_of(result).warns(result)]
+    return _html(_head(result), [*first, *blocks])
 
 
 def explained_fragment(found: Explanation) -> str:

@@ -102,7 +102,9 @@ def show(result: Result, console: Console, measures: Measures = METRIC) -> None:
     reached = f"{name} {known}, " if known else ""
     console.print(Text.assemble((title(result), "bold"), f": {reached}", (words, f"bold {colour}")))
     console.print(Text(measures.words(decided(result))))
-    _print(list(map(measures.words, leading(result))), console)
+    warned = map(measures.words, kind_of(result).warns(result))
+    yellow = [Text(line, style="yellow") for line in warned]
+    _print([*map(measures.words, leading(result)), *yellow], console)
     for make in kind_of(result).terminal:
         if (section := make(result, measures)) is not None:
             _print(section.terminal, console)

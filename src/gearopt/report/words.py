@@ -22,6 +22,7 @@ VERDICTS = {
     "limit": ("stopped early", "yellow"),
     "failed": ("failed", "red"),
 }
+RATING = "rating"  # name of a result that rates gears that are given
 RULED = ("process one", "process two")  # parts that are designs by rules
 EXACT = 1e-6  # a gap below it is called optimal, one above it is named
 
@@ -142,6 +143,8 @@ def certainty(result: Result) -> tuple[str, str]:
     words, colour = VERDICTS[result.status]
     if result.status == "evaluated" and not result.feasible:
         words, colour = "evaluated, a limit is exceeded", "red"
+    if result.name == RATING:
+        words, colour = ("safe", "green") if result.feasible else ("not safe", "red")
     if of_gears_first(result):
         words = "impossible with these gears, proven"
     if result.status == "optimal" and (result.gap or 0.0) > EXACT:

@@ -31,8 +31,11 @@ class Kind:
 
     tiles: key figures beside objective and bound. beside: sentences after the proof about what
     else was solved. elsewhere: limits that another table shows, in their own unit. decides:
-    what decides a design, "" where its limits say it. drawn: whether there is a drawing of its
-    designs. whole: what a limit of no single stage belongs to, the head of that column.
+    what decides a design, "" where its limits say it; figures: what ends that sentence where no
+    key figures stand beside. warns: sentences to be read before the numbers. drawn: whether there
+    is a drawing of its designs. whole: what a limit of no single stage belongs to, the head of that
+    column. given: what is shown of designs that were given, status `evaluated`, where that is
+    something else.
     """
 
     sections: tuple[MakeSection, ...]
@@ -41,13 +44,17 @@ class Kind:
     beside: Callable[[Result, Measures], Sequence[str]] = _nothing
     elsewhere: Callable[[Result], Collection[str]] = _silent
     decides: Callable[[Result], str] = _silent
+    figures: Callable[[Result], str] = _silent
+    warns: Callable[[Result], Sequence[str]] = _silent
     drawn: bool = True
     whole: str = "design"
+    given: "Kind | None" = None
 
 
 def kind_of(result: Result) -> Kind:
     """Return what is shown of a result: what its kind says, else what all kinds have."""
-    return kind_named(result.scene)
+    found = kind_named(result.scene)
+    return found.given if found.given and result.status == "evaluated" else found
 
 
 def kind_named(name: str | None) -> Kind:

