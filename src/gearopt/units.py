@@ -106,8 +106,8 @@ SPELLINGS: dict[str, tuple[str, ...]] = {
     "1/in": ("/in", "in^-1", "in\u207b\u00b9", "DP"),
     "HB": ("HBW", "HBS", "BHN"),
     "h": ("hours", "hour", "hr", "hrs"),
-    "degC": ("\u00b0C", "\u2103"),
-    "degF": ("\u00b0F", "\u2109"),
+    "degC": ("\u00b0C", "\u2103", "C"),
+    "degF": ("\u00b0F", "\u2109", "F"),
     "lbf in": ("lb in", "in lbf", "in lb"),
     "lbf ft": ("lb ft", "ft lbf", "ft lb"),
 }

@@ -12,7 +12,16 @@ from gearopt.formulations.process import ProcessOne, ProcessTwo
 from gearopt.formulations.strength import Law
 from gearopt.formulations.strength.k_factor import K_FACTOR
 from gearopt.scenes.drive.rating_tables import GearKeys, GearTable, GivenTable
-from gearopt.scenes.reading.fields import Table, choice, number, quantity, refuse, truth, whole
+from gearopt.scenes.reading.fields import (
+    Table,
+    advised,
+    choice,
+    number,
+    quantity,
+    refuse,
+    truth,
+    whole,
+)
 from gearopt.scenes.reading.lists import several, span
 from gearopt.scenes.reading.modules import MODULE, SERIES, series
 from gearopt.units import Quantity
@@ -23,7 +32,10 @@ STEP = quantity("length", "1 mm")
 HELIX = quantity("angle", "25 deg", "45 deg", zero=True)
 PRESSURE = quantity("angle", "20 deg", "45 deg")
 TOOTH_COUNT = whole(21, 5, 1000)
-WHEEL_TEETH = whole(100, 5, 100_000)
+WHEEL_TEETH = advised(
+    whole(100, 5, 100_000),
+    {r"-\d+": "Internal gears are not supported yet; numbers of external teeth are above zero"},
+)
 PROPORTION = span(number(0.6, 0, 10), [0.3, 0.6], single=True)
 AIM = choice(
     *OBJECTIVES,

@@ -36,10 +36,12 @@ from gearopt.scenes.drive import rated_gears
 from gearopt.scenes.drive.assumptions import rating_assumptions
 from gearopt.scenes.drive.rated_gears import MEMBERS
 from gearopt.scenes.drive.rated_words import NAMES, UNITS, material
+from gearopt.scenes.drive.rating_checks import not_given
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.tooth_geometry import tooth_geometry
 from gearopt.scenes.parts import tooth_warnings
 from gearopt.scenes.reading.ask import Ask
+from gearopt.scenes.reading.toml import dotted
 
 STANDARD = "ANSI/AGMA 2001-{} (2101), geometry factors of AGMA 908-B89"
 
@@ -67,10 +69,10 @@ def rate(scene: Scene, ask: Ask) -> Result:
     """Return the rating of gears that are all given, status `evaluated`; SolveError why not."""
     if scene.rating is None:
         raise SolveError("there is no table [rating]: write one; gearopt new rating shows how")
-    if not scene.given:
+    if missing := [dotted(place) for place in not_given(scene.gears, scene.stage)]:
         raise SolveError(
-            "the gears are not all given: write module, pinion_teeth, wheel_teeth and face_width "
-            "of every [[stage]]; or gearopt solve, which sizes them and rates what it finds"
+            f"the gears are not all given, which a rating needs: write {', '.join(missing)}; or "
+            "gearopt solve FILE, which sizes them and rates what it finds"
         )
     clock = Clock(ask.budget, ask.watch)
     pairs = rated_gears.given_pairs(scene)
@@ -144,6 +146,9 @@ def rating(scene: Scene, pairs: Sequence[GearPair]) -> DriveRating:
     assert asked
     meshes, slower = [], 1.0
     for k, pair in enumerate(pairs):
+        if fatal := next((flaw for flaw in flaws(pair) if flaw.fatal), None):
+            why = fatal.sentence[0].lower() + fatal.sentence[1:].rstrip(".")
+            raise SolveError(f"stage {k + 1} cannot be rated: {why}")
         try:
             meshes.append(_mesh(scene, k, pair, slower))
         except ValueError as reason:

@@ -21,6 +21,37 @@ NEED_HARDNESS = ("through-hardened",)  # of the life curves and the hardness rat
 CYCLES = ("Y_N", "Z_N")  # factors that follow from the levels of a spectrum
 
 
+def not_given(gears: Gears, stages: Sequence[StageTable]) -> Iterator[Place]:
+    """Yield the places of what leaves gears open: a tooth number, module or width to be found."""
+    if not stages:
+        yield ("stage",)
+    for k, stage in enumerate(stages):
+        width = stage.face_width_over_diameter or gears.face_width_over_diameter
+        fixed: Any = (stage.face_width,) * 2 if stage.face_width else width
+        for name, ends in (
+            ("module", stage.size),
+            ("pinion_teeth", stage.pinion_teeth),
+            ("wheel_teeth", stage.wheel_teeth),
+            ("face_width", fixed),
+        ):
+            if ends is None or ends[0] != ends[1]:
+                yield ("stage", k, name)
+
+
+def check_given(rating: RatingTable | None, gears: Gears, stages: Sequence[StageTable]) -> None:
+    """Refuse a drive without limits and ratio that is not there to be rated."""
+    place = next(not_given(gears, stages), None)
+    if rating is None and place is None:
+        rule = "is missing, which rates gears that are all given; there is nothing to size either"
+        tell = "Write a table [rating], as gearopt new rating shows, or [limits] and a ratio"
+        raise refuse(rule, tell, ("rating",), "tell")
+    if rating is not None and place is not None:
+        held = stages and getattr(stages[place[1]], place[2])
+        what = "is a range" if held else "is missing"
+        rule = f"{what}: a rating takes given gears, and to size them takes [limits] and a ratio"
+        raise refuse(rule, at=place, action="sample")
+
+
 def check_unrated(gears: Gears, stages: Sequence[StageTable], load: Sequence[LoadTable]) -> None:
     """Refuse what changes nothing without a table [rating]."""
     for place in _only_rated(gears, stages, load):
@@ -54,6 +85,7 @@ def check_rated(
                 at = ("stage", k, "given") if getattr(stage.given, name) else ("rating", "given")
                 rule = "follows from the levels [[load]] and cannot be given"
                 raise refuse(rule, at=(*at, name), action="remove")
+        _check_pinion(stage, k)
         for member in MEMBERS:
             own = getattr(stage, member)
             place = ("stage", k, member) if own.model_fields_set & set(MATERIAL) else ("gears",)
@@ -64,6 +96,14 @@ def check_rated(
         rule = f"makes the shares of all levels {float(100 * total):.6g} %, not 100 %"
         write = f"{float(100 * rest):.6g} %" if 0 < rest <= 1 else None
         raise refuse(rule, write, ("load", len(load) - 1, "share"))
+
+
+def _check_pinion(stage: StageTable, k: int) -> None:
+    """Refuse given gears of which the wheel has fewer teeth."""
+    pinion, wheel = stage.pinion_teeth, stage.wheel_teeth
+    if pinion and wheel and wheel[1] < pinion[0]:
+        rule = "is below pinion_teeth: the pinion is the gear with fewer teeth"
+        raise refuse(rule, "pinion_teeth", ("stage", k, "wheel_teeth"), "swap")
 
 
 def _check_steel(gear: GearTable, place: Place, given: dict[str, Any]) -> None:

@@ -7,10 +7,19 @@ from pydantic import Field, model_validator
 
 from gearopt.physics.agma.allowables import CONTACT, TREATMENTS
 from gearopt.physics.agma.bending import LOADS
-from gearopt.physics.agma.factors import ALIGNMENT
+from gearopt.physics.agma.factors import ALIGNMENT, QUALITIES
 from gearopt.physics.agma.life import SERVICES
 from gearopt.physics.agma.rating_factors import EDITIONS
-from gearopt.scenes.reading.fields import Table, choice, number, quantity, refuse, truth, whole
+from gearopt.scenes.reading.fields import (
+    Table,
+    advised,
+    choice,
+    number,
+    quantity,
+    refuse,
+    truth,
+    whole,
+)
 from gearopt.scenes.reading.lists import each_gear
 from gearopt.units import Quantity
 
@@ -24,6 +33,57 @@ Stresses = Annotated[
 MATERIAL = (  # keys of a gear that only a rating needs
     *("treatment", "grade", "hardness", "surface_hardness", "elastic_modulus", "poisson_ratio"),
     *("roughness", "reversed_load", "rim_thickness", "contacts"),
+)
+TREATMENT = choice(
+    *TREATMENTS,
+    means={
+        "carburized": "carburised",
+        "through hardened": "through-hardened",
+        "quenched and tempered": "through-hardened",
+    },
+    other=dict.fromkeys(
+        ("case hardened", "case-hardened", "surface hardened", "surface-hardened"),
+        'Write "carburised"; or "nitrided", or "induction, roots" and "induction, flanks", which '
+        "harden a case too",
+    )
+    | dict.fromkeys(
+        ("induction", "induction hardened", "induction-hardened", "flame hardened"),
+        'Write "induction, roots" where roots are hardened with the flanks, "induction, flanks" '
+        "where they are not",
+    ),
+)
+HARDNESS = advised(
+    quantity("hardness", "240 HB", "800 HB"),
+    {
+        r".*h(rc?|v|ra|r15n)\d*": "Brinell hardness is asked for, of through-hardened steel and of "
+        "the core of nitrided steel. The strength of carburised and induction hardened steel "
+        "follows from its grade: remove hardness",
+    },
+)
+GRADE = advised(
+    whole(1, 1, 3),
+    {"m[lqe]": "AGMA has grades 1, 2 and 3; ML, MQ and ME are those of ISO 6336-5"},
+)
+SHIFT = advised(
+    number(0.2, -3, 3, zero=True),
+    {r".*\d\s*(mm|in)": "Write the coefficient x, the shift over the normal module"},
+)
+GRADES = "(?:a|iso|iso 1328|din|grade)[ -]*"
+QUALITY = advised(
+    number(8, int(QUALITIES[0]), int(QUALITIES[1])),
+    {
+        GRADES + "([6-9]|1[0-2])": "Q_v grows with accuracy. A grade of AGMA 2015 or ISO 1328, "
+        "which falls, is about A_v: write it as a number, accuracy = 8, instead of quality",
+        f"{GRADES}[1-5]|1[2-9]": "So accurate gears have no curve of K_v: write quality = 11, or "
+        "give K_v in [rating.given]",
+    },
+)
+STANDARD = advised(
+    choice("agma", means={"AGMA": "agma"}),
+    {
+        "(iso|din).*": 'ISO 6336 and DIN 3990 are not supported yet. Nearest: standard = "agma"',
+        ".*agma.*": 'Write standard = "agma"; edition = "D04" or "B88" says which',
+    },
 )
 
 
@@ -43,13 +103,13 @@ class GearKeys(Table):
         None,
         description="How far the tool's tip juts out of its flank, in normal modules; by default 0",
     )
-    treatment: Annotated[str | None, choice(*TREATMENTS)] = Field(
+    treatment: Annotated[str | None, TREATMENT] = Field(
         None, description="Heat treatment of the steel; a rating needs it"
     )
-    grade: Annotated[int | None, whole(1, 1, 3)] = Field(
+    grade: Annotated[int | None, GRADE] = Field(
         None, description="Metallurgical grade of AGMA; by default 1"
     )
-    hardness: Annotated[Quantity | None, quantity("hardness", "240 HB", "800 HB")] = Field(
+    hardness: Annotated[Quantity | None, HARDNESS] = Field(
         None,
         description="Brinell hardness of through-hardened steel; of nitrided steel its core",
     )
@@ -81,7 +141,7 @@ class GearKeys(Table):
 class GearTable(GearKeys):
     """One gear of a stage."""
 
-    profile_shift: Annotated[Fraction | None, number(0.2, -3, 3, zero=True)] = Field(
+    profile_shift: Annotated[Fraction | None, SHIFT] = Field(
         None, description="Profile shift coefficient x; by default 0"
     )
     tip_alteration: Annotated[Fraction | None, number(-0.05, -2, 2, zero=True)] = Field(
@@ -146,7 +206,7 @@ def _plain(value: Any) -> Any:
 class RatingTable(Table):
     """How the gears are rated: standard, service, quality, mounting, oil."""
 
-    standard: Annotated[str, choice("agma")] = Field(
+    standard: Annotated[str, STANDARD] = Field(
         "agma", description="agma: ANSI/AGMA 2001 (2101) with AGMA 908"
     )
     edition: Annotated[str, choice(*EDITIONS)] = Field(
@@ -171,7 +231,7 @@ class RatingTable(Table):
     temperature: Annotated[Quantity | None, quantity("temperature", "80 degC")] = Field(
         None, description="Temperature of the gear blanks; by default below 120 degC, K_T = 1"
     )
-    quality: Annotated[Fraction | None, number(8, 5, 11)] = Field(
+    quality: Annotated[Fraction | None, QUALITY] = Field(
         None,
         description="Transmission accuracy Q_v of AGMA 2001-C95, larger is better: sets K_v (or "
         "give accuracy)",

@@ -29,7 +29,12 @@ from gearopt.scenes.drive.layout_tables import (
     check_shared,
     gearbox,
 )
-from gearopt.scenes.drive.rating_checks import check_rated, check_unrated
+from gearopt.scenes.drive.rating_checks import (
+    check_given,
+    check_rated,
+    check_unrated,
+    not_given,
+)
 from gearopt.scenes.drive.rating_tables import LoadTable, RatingTable
 from gearopt.scenes.drive.tooth_tables import check_mesh, check_teeth, toothing
 from gearopt.scenes.explaining.numbers import eased, in_reverse, written
@@ -169,6 +174,9 @@ class Scene(Table):
 
     def _check_rating(self) -> None:
         """Check that what is not to be sized is to be rated, and what only a rating needs."""
+        sized = "limits" in self.model_fields_set or self.duty.asks_ratio
+        if not sized:
+            check_given(self.rating, self.gears, self.stage)
         if self.rating is None or not self.given:
             if not self.duty.asks_ratio:
                 raise refuse(
@@ -262,20 +270,7 @@ class Scene(Table):
     @property
     def given(self) -> bool:
         """Return whether teeth, modules and face widths are all given: nothing is to be sized."""
-
-        def one(ends: tuple[Any, Any] | None) -> bool:
-            return ends is not None and ends[0] == ends[1]
-
-        return bool(self.stage) and all(
-            one(s.pinion_teeth)
-            and one(s.wheel_teeth)
-            and one(s.size)
-            and (
-                s.face_width
-                or one(s.face_width_over_diameter or self.gears.face_width_over_diameter)
-            )
-            for s in self.stage
-        )
+        return not any(not_given(self.gears, self.stage))
 
     def train(self) -> Train:
         """Return the drive as plain numbers; it has one number of stages."""

@@ -236,6 +236,25 @@ def choice(
     return Reads(read, names[0], {"enum": [*names, *means]})
 
 
+def advised(item: Reads, ways: dict[str, str]) -> Reads:
+    """Read an item; what is refused and matches a pattern is told what its sentence says.
+
+    ways: regular expressions of whole values as text, in any case; the first that fits counts.
+    """
+
+    def read(value: Any, example: Any) -> Any:
+        try:
+            return item.reader(value, example)
+        except PydanticCustomError as wrong:
+            text = str(value)[:80].strip() if isinstance(value, str | int) else ""
+            fits = (way for known, way in ways.items() if re.fullmatch(known, text, re.IGNORECASE))
+            if (way := next(fits, None)) is None:
+                raise
+            raise refuse((wrong.context or {})["rule"], way, action="tell") from None
+
+    return Reads(read, item.example, item.schema)
+
+
 def truth() -> Reads:
     """Read true or false."""
 

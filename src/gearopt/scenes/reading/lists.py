@@ -17,7 +17,8 @@ def _mended(item: Reads, values: list[Any]) -> tuple[list[Any], str]:
             item.reader(value, item.example)
         except PydanticCustomError as wrong:
             context = wrong.context or {}
-            first, value = first or context["rule"], context["write"]
+            told = context["action"] == "tell"  # a sentence, no value
+            first, value = first or context["rule"], None if told else context["write"]
         right.append(value)
     return right, first
 

@@ -150,6 +150,8 @@ CALLED: dict[str, dict[str, str]] = {  # kind -> other names of its keys -> what
         "p_nd pnd dp": "diametral_pitch, in a [[stage]]",
         "x1 x2 x_1 x_2": "profile_shift, in [stage.pinion] and [stage.wheel]",
         "q_v qv agma_quality": "quality, in [rating]",
+        "hand wheel_hand helix_hand hand_of_helix": "pinion_hand, in a [[stage]]; the wheel has "
+        "the other hand",
         "p": "power, in [duty]",
         "n1 n_1 n_in rpm speed input_rpm": "input_speed, in [duty]",
         "n2 n_2 n_out output_rpm": "output_speed, in [duty]",
