@@ -221,7 +221,9 @@ def compare(
     plan = plan or Plan()
     entries = [enter(method, model) for method in dict.fromkeys(methods)]
     if not any(not e.refused for e in entries):
-        raise SolveError("; ".join(e.refused for e in entries) or "no method was named")
+        raise SolveError(
+            "; ".join(dict.fromkeys(e.refused for e in entries)) or "no method was named"
+        )
     runs: dict[tuple[str, str], list[Run]] = {}
     bound = None if bound_from is None else _bound(bound_from, model, watch)
     jobs = [

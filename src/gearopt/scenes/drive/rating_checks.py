@@ -38,14 +38,9 @@ def not_given(gears: Gears, stages: Sequence[StageTable]) -> Iterator[Place]:
                 yield ("stage", k, name)
 
 
-def check_given(rating: RatingTable | None, gears: Gears, stages: Sequence[StageTable]) -> None:
-    """Refuse a drive without limits and ratio that is not there to be rated."""
-    place = next(not_given(gears, stages), None)
-    if rating is None and place is None:
-        rule = "is missing, which rates gears that are all given; there is nothing to size either"
-        tell = "Write a table [rating], as gearopt new rating shows, or [limits] and a ratio"
-        raise refuse(rule, tell, ("rating",), "tell")
-    if rating is not None and place is not None:
+def check_given(gears: Gears, stages: Sequence[StageTable]) -> None:
+    """Refuse a drive without limits and ratio whose gears are open: it can only be rated."""
+    if place := next(not_given(gears, stages), None):
         held = stages and getattr(stages[place[1]], place[2])
         what = "is a range" if held else "is missing"
         rule = f"{what}: a rating takes given gears, and to size them takes [limits] and a ratio"

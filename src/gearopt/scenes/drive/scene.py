@@ -117,7 +117,7 @@ class Scene(Table):
     def _needed(cls, value: Any, handler: Callable[[Any], Limits], info: ValidationInfo) -> Limits:
         """Refuse a file without limits, unless it has a rating."""
         if value is None and info.data.get("rating", "wrong") is None:
-            raise refuse("is missing")
+            raise refuse("is missing (or, to rate given gears, write a table [rating])")
         return Limits.open() if value is None else handler(value)
 
     @model_validator(mode="after")
@@ -175,8 +175,8 @@ class Scene(Table):
     def _check_rating(self) -> None:
         """Check that what is not to be sized is to be rated, and what only a rating needs."""
         sized = "limits" in self.model_fields_set or self.duty.asks_ratio
-        if not sized:
-            check_given(self.rating, self.gears, self.stage)
+        if self.rating is not None and not sized:
+            check_given(self.gears, self.stage)
         if self.rating is None or not self.given:
             if not self.duty.asks_ratio:
                 raise refuse(
