@@ -30,6 +30,17 @@ GROUPS = {  # heading: {file: what it shows, in a line}
         "elevator_coprime": "Hunting teeth, `coprime = true`: the best train has them already.",
         "three_stage_coprime": "Here hunting teeth cost a little volume.",
     },
+    "Rating gears": {
+        "catalogue_pair": "A carburised pair with profile shift and backlash: safety, forces, "
+        "efficiency, tooth geometry.",
+        "two_stages_rated": "Two helical stages under a load spectrum, `[[load]]`.",
+        "sized_and_rated": "Sized by load limits, and the optimum rated: `[rating]` beside "
+        "`[limits]`.",
+        "shigley_14_4": "A textbook's pair, met factor by factor; its I and J given.",
+        "shigley_14_4_by_908": "The same with I and J by AGMA 908: the contact stress is higher.",
+        "shigley_14_5": "A textbook's helical pair; its I and J given.",
+        "shigley_14_5_by_908": "The same with I and J by AGMA 908.",
+    },
     "Inches": {
         "inch_drive": "Diametral pitches, horsepower and psi; shown by `--units inch`.",
     },
@@ -170,7 +181,7 @@ def _entry(name: str, words: str) -> str:
         lines.append(f"![{file['title']}: {views} to scale]({ROOM.name}/{name}.svg)\n")
     lines += [
         f"{words}\n",
-        f"```\ngearopt solve problems/{name}.toml\n```\n",
+        f"```\ngearopt {_command(file)} problems/{name}.toml\n```\n",
         f"- Answer: {_answer(file)}",
         f"- File: [{name}.toml](../problems/{name}.toml), kind "
         f"[{file['kind']}]({KINDS[file['kind']][0]})",
@@ -179,9 +190,15 @@ def _entry(name: str, words: str) -> str:
     return "\n".join(lines)
 
 
+def _command(file: Mapping[str, Any]) -> str:
+    return "rate" if file["x-expected"]["status"] == "evaluated" else "solve"
+
+
 def _answer(file: Mapping[str, Any]) -> str:
     """The file's own [x-expected] in words."""
     expected = file["x-expected"]
+    if expected["status"] == "evaluated":
+        return ", ".join(_rated(expected))
     parts = [f"**{VERDICTS[expected['status']][0]}**"]
     name, unit = objective(file)
     if "objective" in expected:
@@ -198,4 +215,18 @@ def _answer(file: Mapping[str, Any]) -> str:
         parts.append(f"lower bound {METRIC.amount(expected['bound'], unit, -1)}")
     if "least_factor" in expected:
         parts.append(f"limits must move by a factor of at least {expected['least_factor']:g}")
-    return ", ".join(parts)
+    rated = _rated(expected) if "governs" in expected else []
+    return ", ".join(parts + rated)
+
+
+def _rated(expected: Mapping[str, Any]) -> list[str]:
+    """What a file expects of a rating, in words."""
+    words = "**rated: safe**" if expected["safe"] else "**rated: not safe**"
+    parts = [words, f"governed by {expected['governs']}"]
+    if "power_capacity_kW" in expected:
+        parts.append(f"power capacity {expected['power_capacity_kW']:g} kW")
+    if "printed" in expected:
+        parts.append(
+            f"{len(expected['printed'])} quantities met within {expected['tolerance']:.1%}"
+        )
+    return parts

@@ -12,6 +12,7 @@ KEYS = {  # of [x-expected], as the tests below read them
     "drive": {
         *("status", "objective", "sizing", "least_factor", "gap"),
         *("process_one", "process_two"),
+        *("safe", "governs", "power_capacity_kW", "printed", "tolerance"),
     },
     "packing": {"status", "objective", "tolerance", "bound"},
     "compound": {"status", "objective"},
@@ -26,6 +27,12 @@ LONG = (
     "servo_gimbal_quick",
     "servo_gimbal_impossible",
 )
+SI = {  # of numbers as a source prints them: their suffix, its value, the suffix of a result
+    "_ft_per_min": (0.3048 / 60, "_m_per_s"),
+    "_lbf": (0.45359237 * 9.80665, "_N"),
+    "_psi": (0.45359237 * 9.80665 / 25.4**2, "_MPa"),
+    "_in": (25.4, "_mm"),
+}
 DIGIT = {"objective": 0.06, "sizing": 0.006}  # the values are printed to tenths and hundredths
 
 
@@ -119,12 +126,37 @@ def test_expected_value(path, solved):
     assert ruled.keys() == expected.keys() & {"process_one", "process_two"} or "layout" in content
     for name in ruled.keys() & expected.keys():
         check_process(ruled[name], expected[name], result)
+    if "governs" in expected:
+        check_rating(result.design["rating"], expected)
     if "least_factor" in expected:
         ways = result.report["ways_out"]
         assert ways["conflict"] and ways["remedies"][0]["kind"] == "least"
         proven = [way["bound"] for way in ways["remedies"] if way["bound"] is not None]
         assert any(b == pytest.approx(expected["least_factor"], rel=1e-5) for b in proven)
     assert result.file == str(path) and len(result.file_sha256) == 64
+
+
+def check_rating(rating, expected):
+    """What a source prints of the only stage, pinion and wheel or both, within its tolerance."""
+    assert rating["safe"] == expected["safe"] and rating["governs"] == expected["governs"]
+    if "power_capacity_kW" in expected:
+        capacity = rating["power_capacity_kW"]
+        assert capacity == pytest.approx(expected["power_capacity_kW"], abs=0.006)
+    for name, printed in expected.get("printed", {}).items():
+        ending = next((s for s in SI if name.endswith(s)), "")
+        unit, ours = SI.get(ending, (1.0, ""))
+        values = [unit * v for v in (printed if isinstance(printed, list) else [printed])]
+        found = of_rating(rating, name.removesuffix(ending), ours)[: len(values)]
+        assert found == pytest.approx(values, rel=expected["tolerance"]), name
+
+
+def of_rating(rating, name, ending):
+    """A factor, or what gears, teeth or the mesh have by this name."""
+    for factor in rating["factors"]:
+        if factor["symbol"] == name:
+            return [factor["pinion"], factor.get("wheel")]
+    rows = next(t for t in ("gears", "teeth", "meshes") if f"{name}{ending}" in rating[t][0])
+    return [row[f"{name}{ending}"] for row in rating[rows]]
 
 
 def check_process(part, expected, best):
@@ -144,8 +176,8 @@ def test_every_file_says_what_it_is_held_to(path):
     expected = content["x-expected"]
     assert content["kind"] in HELD and content["title"] and content["source"]
     assert expected.keys() <= KEYS[content["kind"]]
-    needed = "least_factor" if expected["status"] == "infeasible" else "objective"
-    assert needed in expected
+    needed = {"infeasible": "least_factor", "evaluated": "governs"}
+    assert needed.get(expected["status"], "objective") in expected
 
 
 def test_there_are_files():
