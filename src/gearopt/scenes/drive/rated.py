@@ -24,6 +24,7 @@ from gearopt.physics.agma.rating import rate as rate_pair
 from gearopt.physics.agma.rating_factors import Operation
 from gearopt.physics.gears import GearPair
 from gearopt.physics.geometry.contact import total_contact_ratio
+from gearopt.physics.geometry.flaws import flaws
 from gearopt.physics.geometry.tooth import (
     circumferential_backlash,
     helix_angle_at,

@@ -72,8 +72,11 @@ GRADES = "(?:a|iso|iso 1328|din|grade)[ -]*"
 QUALITY = advised(
     number(8, int(QUALITIES[0]), int(QUALITIES[1])),
     {
-        GRADES + "([6-9]|1[0-2])": "Q_v grows with accuracy. A grade of AGMA 2015 or ISO 1328, "
-        "which falls, is about A_v: write it as a number, accuracy = 8, instead of quality",
+        f"{GRADES}{grade}": "Q_v grows with accuracy. A grade of AGMA 2015 or ISO 1328, which "
+        f"falls, is about A_v: write accuracy = {grade} instead of quality"
+        for grade in range(6, 13)
+    }
+    | {
         f"{GRADES}[1-5]|1[2-9]": "So accurate gears have no curve of K_v: write quality = 11, or "
         "give K_v in [rating.given]",
     },
