@@ -26,13 +26,14 @@ PAIRS = {
 }
 
 
-def placed(name):
-    """A pair of module 3 mm whose line of centres is turned, as it is drawn."""
+def placed(name, hands=None):
+    """A pair of module 3 mm whose line of centres is turned, as it is drawn; hands by member."""
     own, z1, z2 = PAIRS[name]
     pair = own.pair(3.0, z1, z2, 20.0)
     gears = []
     for k, (member, gear) in enumerate(zip(("pinion", "wheel"), pair.gears, strict=True), 1):
         place = {"name": f"{member} 1", "stage": 1, "member": member, "shaft": k}
+        place["hand"] = (hands or {}).get(member, "")
         sizes = gear_sizes(gear) | {"teeth": gear.teeth, "from_mm": 0.0, "to_mm": 20.0}
         gears.append(typed(GearDesign, untyped(GearDesign(**place, **sizes)), name))
     a = float(pair.centre_distance)
@@ -89,6 +90,15 @@ def test_shifted_teeth_mesh_with_their_backlash(name):
     assert not meets(solids, 10.0, 0.0)
     for sign in (1, -1):
         assert free(solids, 10.0, sign) == pytest.approx(0.5 * meant, rel=0.02)
+
+
+@pytest.mark.parametrize("hand", ["", "right", "left"])
+def test_hands_are_those_of_the_design(hand):
+    """Along its axis a right hand helix turns as a right hand screw; by default the pinion's."""
+    other = {"right": "left", "left": "right", "": ""}
+    _, solids = placed("helical", {"pinion": hand, "wheel": other[hand]})
+    turns = tuple(math.copysign(1.0, twist(solid.gear)) for solid in solids)
+    assert turns == ((-1.0, 1.0) if hand == "left" else (1.0, -1.0))
 
 
 def test_drawn_teeth_have_the_diameters_and_tools_of_the_design():

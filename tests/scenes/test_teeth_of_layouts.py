@@ -109,3 +109,19 @@ def test_teeth_that_cannot_be_had_are_refused_by_name(tmp_path, name):
     with pytest.raises(SceneError) as caught:
         gearopt.load(written(tmp_path, stage, more))
     assert said in str(caught.value)
+
+
+@pytest.mark.slow
+def test_a_layout_has_the_hands_of_the_file(tmp_path):
+    """The wheel of stage 1 is right; so is pinion 2 beside it on its shaft, and wheel 2 left."""
+    stage = ANNEX_A.replace("[stage.pinion]", 'pinion_hand = "left"\n[stage.pinion]', 1)
+    rating = '[rating]\nlife = "20000 h"\nquality = 8\n'
+    second = "\n[[stage]]\n" + ANNEX_A
+    text = TEXT.format(stage=stage + second, power="10 kW", ratio="36.709")
+    text = text.replace("[gears]", '[gears]\ntreatment = "carburised"')
+    more = LAYOUT.replace('"90 mm"', '"90 mm", "100 mm"')
+    path = tmp_path / "drive.toml"
+    path.write_text(text.replace('k_factor = "4 MPa"', 'k_factor = "40 MPa"') + rating + more)
+    found = gearopt.solve(path).design["layout"]["gears"]
+    hands = {gear["name"]: gear["hand"] for gear in found}
+    assert hands == {"pinion 1": "left", "wheel 1": "right", "pinion 2": "right", "wheel 2": "left"}

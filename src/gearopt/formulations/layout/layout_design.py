@@ -6,6 +6,7 @@ the box, y and z across them from the axis of shaft 1, the input. Counting start
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 from gearopt.physics.gears import ISO_53_A, Gear, Rack
 
@@ -46,7 +47,7 @@ class GearDesign:
     """A gear on its shaft; member: pinion or wheel.
 
     Fields with a default, of which lengths without a unit are in normal modules, say how its teeth
-    are cut; a result leaves out those that hold it.
+    are cut; a result leaves out those that hold it. hand: right or left, where it is given.
     """
 
     name: str
@@ -69,6 +70,7 @@ class GearDesign:
     tool_tip_radius: float = ISO_53_A.tip_radius
     tool_protuberance: float = ISO_53_A.protuberance
     addendum: float = ISO_53_A.addendum
+    hand: str = ""
 
     @property
     def gear(self) -> Gear:
@@ -92,7 +94,7 @@ class GearDesign:
         )
 
 
-def gear_sizes(gear: Gear) -> dict[str, float]:
+def gear_sizes(gear: Gear) -> dict[str, Any]:
     """Return the fields of a `GearDesign` that a gear has by itself, but for its teeth."""
     rack = gear.rack
     sizes = {

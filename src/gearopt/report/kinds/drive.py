@@ -51,7 +51,7 @@ STAGED = {  # tables of a layout: keys that the table of stages or the box shows
         *("stage", "member", "teeth", "normal_module_mm", "reference_diameter_mm"),
         *("tip_diameter_mm", "root_diameter_mm", "helix_angle_deg"),
         *("pressure_angle_deg", "profile_shift", "tip_alteration", "thickness_allowance_mm"),
-        *("addendum", "tool_addendum", "tool_tip_radius", "tool_protuberance"),
+        *("addendum", "tool_addendum", "tool_tip_radius", "tool_protuberance", "hand"),
     ),
     "gaps": ("axes_mm",),
     "obstacles": ("from_mm", "to_mm"),

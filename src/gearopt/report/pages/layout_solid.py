@@ -165,7 +165,7 @@ def _toothed(
 
     At the middle of the stage the pinion has a tooth on the line of centres and the wheel a gap.
     The hands of a pair are opposite; those of the two gears on a shaft are equal, so that their
-    axial forces are.
+    axial forces are opposite, unless they are given.
     """
     pair = {g.member: g for g in found.gears if g.stage == gear.stage}
     wheel = gear.member == "wheel"
@@ -173,10 +173,10 @@ def _toothed(
     here, there = places[gear.shaft], places[mate.shaft]
     phase = math.atan2(there[1] - here[1], there[0] - here[0])
     middle = sum(g.from_mm + g.to_mm for g in pair.values()) / (2.0 * len(pair))
-    hand = 1.0 if (gear.stage % 2 == 1) != wheel else -1.0
+    right = gear.hand == "right" if gear.hand else (gear.stage % 2 == 1) != wheel
     made = gear.gear
     return Toothed(
-        replace(made, helix_angle=hand * made.helix_angle),
+        replace(made, helix_angle=made.helix_angle if right else -made.helix_angle),
         gear.from_mm,
         gear.to_mm,
         here,

@@ -31,6 +31,7 @@ from gearopt.optimise.solve import run
 from gearopt.optimise.terms import Array
 from gearopt.optimise.typed import untyped
 from gearopt.physics.gears import GearPair
+from gearopt.physics.shaft_forces import OTHER, hands
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.reading.ask import Ask
 
@@ -83,7 +84,7 @@ def with_layout(
 ) -> Result:
     """Return a result with its gears and layout in the words of a drawing."""
     gears = drive_design(sized.design)
-    found = described(box, order, angles, gears)
+    found = _handed(described(box, order, angles, gears), scene)
     before = sum(p.seconds for p in result.parts), sum(p.evaluations for p in result.parts)
     seconds, spent = before[0] + result.seconds, before[1] + result.evaluations
     last = {"seconds": seconds, "evaluations": spent, "best": result.value, "bound": result.bound}
@@ -103,6 +104,16 @@ def with_layout(
         evaluations=spent,
         seconds=seconds,
     )
+
+
+def _handed(found: LayoutDesign, scene: Scene) -> LayoutDesign:
+    """Return a layout with the hands of its helices, where the file gives one."""
+    given = [stage.pinion_hand for stage in scene.stage]
+    if not any(given):
+        return found
+    of_stage = [{"pinion": hand, "wheel": OTHER[hand]} for hand in hands(given)]
+    gears = [replace(gear, hand=of_stage[gear.stage - 1][gear.member]) for gear in found.gears]
+    return replace(found, gears=tuple(gears))
 
 
 def _sides_used(result: Result) -> dict[str, float]:
