@@ -4,6 +4,7 @@ import csv
 import io
 import math
 import re
+from pathlib import Path
 
 import pytest
 import rating_cases as cases
@@ -23,6 +24,11 @@ BOOK = {  # Shigley, example 14-4: pinion and wheel, as printed
     "contact stress s_c [psi]": (70360.0, 70660.0),
     "S_H": (1.69, 1.52),
 }
+FILES = [
+    path
+    for path in sorted((Path(__file__).parents[2] / "problems").glob("*.toml"))
+    if "[rating]" in (words := path.read_text(encoding="utf-8")) and "[limits]" not in words
+]
 RATED = (cases.shigley, cases.unsafe, cases.train)
 
 
@@ -110,6 +116,24 @@ def test_the_terminal_has_every_factor_and_what_is_given_or_unverified():
 @pytest.mark.parametrize("measures", [METRIC, INCH], ids=lambda m: m.name)
 def test_no_number_stands_twice(make, measures):
     assert repeated(page(make(), "gearopt rate x.toml", measures)) == {}
+
+
+@pytest.mark.parametrize("file", FILES, ids=lambda p: p.stem)
+def test_pages_of_the_files_that_are_rated(file):
+    """Their tables have names of their own, one value a cell; 1 % of cycles has their digits."""
+    result = gearopt.rate(file)
+    html, by_chance = page(result, "gearopt rate x.toml"), {"908", "2646"}
+    assert set(repeated(html)) <= by_chance and max(map(len, told(result).splitlines())) <= 80
+    assert not {"None", "nan", "inf"} & set(text(html).split())
+    assert {"gears", "factors", "meshes", "shafts", "teeth", "stages"} <= set(result.tables)
+
+
+def test_sources_are_said_once_where_stages_share_them():
+    found = rows(cases.train(), "factors")
+    assert found["s_at"][-2].count("table 4") == 1 and "stage" not in found["s_at"][-2]
+    own = {'face_width = "70 mm"': 'face_width = "70 mm"\n[stage.given]\nK_m = 1.5'}
+    mixed = rows(cases.rated(cases.TRAIN, own), "factors")["K_m"][-2]
+    assert mixed == "stage 1: 2001-D04, 15; stage 2: given"
 
 
 def test_key_figures_name_gear_capacity_and_life():

@@ -51,12 +51,12 @@ def _factor_row(found: DriveRating, own: Sequence[RatingFactor], measures: Measu
 
 
 def _by_stage(found: DriveRating, own: Sequence[RatingFactor], key: str) -> str:
-    """Return words of a factor in every stage: once where they are the same."""
+    """Return words of a factor in every stage; sources, and what is the same, once."""
     stages: dict[str, list[str]] = {}
     for factor in own:
         stages.setdefault(getattr(factor, key), []).append(str(factor.stage))
-    if len(stages) == 1:
-        return next(iter(stages))
+    if len(stages) == 1 or key == "source" and GIVEN not in stages:
+        return "; ".join(dict.fromkeys(part for words in stages for part in words.split("; ")))
     return "; ".join(f"stage {series_of(k)}: {words}" for words, k in stages.items() if words)
 
 

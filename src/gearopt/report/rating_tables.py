@@ -199,6 +199,8 @@ def _gear_rows(found: DriveRating, measures: Measures) -> Iterator[list[Any]]:
         "contact_safety": found.minimum_contact_safety,
     }
     known = dict(_rows(found.gears, GEARS, measures))
+    steels = (gear.material for gear in found.gears)
+    known["material"] = ["material", *(Cell(s, s.replace(", ", "\n")) for s in steels)]
     for key in GEARS:
         if key in LIVES:
             lives = (_life(getattr(gear, key), key, measures) for gear in found.gears)

@@ -9,7 +9,7 @@ from gearopt.optimise.typed import typed
 from gearopt.physics.agma import life as life_curves
 from gearopt.report.measures import Measures, rounded
 from gearopt.report.section import Tile
-from gearopt.report.words import series_of
+from gearopt.report.words import counted, series_of
 
 SAFETY_DIGITS = 3  # of safety factors in sentences and key figures
 ROUNDING = 1e-8  # relative; a safety factor so near to a shorter number is that one
@@ -173,4 +173,4 @@ def unverified(found: DriveRating) -> list[str]:
 
 def _of_stages(symbol: str, stages: Sequence[str]) -> str:
     own = [stage for stage in stages if stage]
-    return f"{symbol} of stage{'s' * (len(own) > 1)} {series_of(own)}" if own else symbol
+    return f"{symbol} of stage{'s' * (len(own) > 1)} {counted(own)}" if own else symbol

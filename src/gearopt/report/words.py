@@ -62,12 +62,12 @@ def grouped(names: Iterable[str], staged: bool = True) -> list[str]:
     return [
         limit_words(stem)
         if not all(own)
-        else f"{limit_words(stem)} of stage{'s' if len(own) > 1 else ''} {_run(own)}"
+        else f"{limit_words(stem)} of stage{'s' if len(own) > 1 else ''} {counted(own)}"
         for stem, own in stages.items()
     ]
 
 
-def _run(indices: Sequence[str]) -> str:
+def counted(indices: Sequence[str]) -> str:
     """Return indices as words, those without a break as "1 to 4"."""
     numbers = sorted(map(int, indices))
     whole = len(numbers) > 2 and numbers[-1] - numbers[0] == len(numbers) - 1
