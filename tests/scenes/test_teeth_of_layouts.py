@@ -99,7 +99,26 @@ WRONG = {
         "which process_two takes from the reference circles",
     ),
     "overlap": (ANNEX_A.replace("[stage.pin", 'centre_distance = "460 mm"\n[stage.pin'), "", "498"),
-    "no distance": (ANNEX_A.replace("0.14522", "-2.9"), "", "no centre distance to 17 and 103"),
+    "no involute": (
+        ANNEX_A.replace("0.14522", "-2.6"),
+        "",
+        "pinion.profile_shift = -2.6: leaves 17 teeth no involute below their tips",
+    ),
+    "no root": (
+        ANNEX_A.replace("17", "5").replace("profile_shift = 0.14522", "tool_addendum = 2.9"),
+        "",
+        "pinion.tool_addendum = 2.9: leaves the root circle of 5 teeth no diameter",
+    ),
+    "no root by the tool of all gears": (
+        ANNEX_A.replace("17", "5").replace("0.14522", "-1.3"),
+        "",
+        "pinion.profile_shift = -1.3: leaves the root circle of 5 teeth no diameter",
+    ),
+    "no distance": (
+        ANNEX_A + "profile_shift = -2.9\n",
+        "",
+        "wheel.profile_shift = -2.9: and that of its mate leave no centre distance to 17 and 103",
+    ),
 }
 
 

@@ -196,7 +196,7 @@ class Scene(Table):
         asked = asked or ("process_two" if self.process_two is not None else "")
         check_teeth(self.stage, self.gears, self.given, aim, asked)
         for k, own in enumerate(self.stage if self.limited else ()):  # else a rating refuses it
-            check_mesh(self._stage(own), k)
+            check_mesh(self._stage(own), k, own, self.gears)
 
     def _check_layout(self) -> None:
         """Check the tables of a layout against the drive and each other."""

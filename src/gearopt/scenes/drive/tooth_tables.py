@@ -10,6 +10,11 @@ from gearopt.scenes.drive.drive_tables import Gears, StageTable
 from gearopt.scenes.drive.rating_tables import GearTable, with_shared
 from gearopt.scenes.reading.fields import refuse
 
+MEMBERS = ("pinion", "wheel")
+USUAL = {"profile_shift": 0, "tip_alteration": 0, "addendum": 1, "tool_addendum": 1.25}
+ROOT: tuple[str, ...] = ("profile_shift", "tool_addendum")  # what sets a root circle
+TIP: tuple[str, ...] = ("profile_shift", "tip_alteration", "addendum")
+
 
 def toothing(own: StageTable, gears: Gears) -> Toothing:
     """Return the teeth of a stage."""
@@ -70,16 +75,43 @@ def check_teeth(
         raise refuse(rule, "Give shifts whose sum is 0, or none", place, "tell")
 
 
-def check_mesh(stage: Stage, k: int) -> None:
-    """Refuse a stage (from 0) whose fewest teeth have no centre distance."""
-    own, fewest = stage.toothing, stage.pinion_teeth[0]
+def check_mesh(stage: Stage, k: int, own: StageTable, gears: Gears) -> None:
+    """Refuse a stage (from 0) whose fewest teeth have no root, no involute or no centre distance.
+
+    own, gears: its tables.
+    """
+    made, fewest = stage.toothing, stage.pinion_teeth[0]
     teeth = fewest, max(stage.wheel_teeth[0], math.ceil(stage.ratio[0] * fewest))
-    pair = own.pair(float(min(stage.modules, default=1)), *teeth, 1.0)
+    pair = made.pair(float(min(stage.modules, default=1)), *teeth, 1.0)
+    for member, gear in zip(MEMBERS, pair.gears, strict=True):
+        if gear.root_diameter <= 0.0:
+            rule, keys = "leaves the root circle of {} teeth no diameter", ROOT
+        elif gear.tip_diameter <= gear.base_diameter:
+            rule, keys = "leaves {} teeth no involute below their tips", TIP
+        else:
+            continue
+        place, write = _cause(k, member, own, gears, keys)
+        raise refuse(rule.format(gear.teeth), write, place, "sample")
     if math.isfinite(pair.working_angle):
         return
-    if own.working_distance is not None:
+    if made.working_distance is not None:
         rule = f"lets the base circles of {teeth[0]} and {teeth[1]} teeth overlap"
         raise refuse(rule, f"{pair.reference_distance:.3f} mm", ("stage", k, "centre_distance"))
     rule = f"and that of its mate leave no centre distance to {teeth[0]} and {teeth[1]} teeth"
-    low = min((0, 1), key=lambda i: own.profile_shifts[i])
-    raise refuse(rule, 0, ("stage", k, ("pinion", "wheel")[low], "profile_shift"))
+    low = min((0, 1), key=lambda i: made.profile_shifts[i])
+    raise refuse(rule, 0, ("stage", k, MEMBERS[low], "profile_shift"))
+
+
+def _cause(
+    k: int, member: str, own: StageTable, gears: Gears, keys: tuple[str, ...]
+) -> tuple[tuple[str | int, ...], float]:
+    """Return the place of the key that is farthest from its usual value, and that value."""
+    table = with_shared(getattr(own, member), gears)
+
+    def away(key: str) -> float:
+        value = getattr(table, key, None)
+        return 0.0 if value is None else abs(float(value) - USUAL[key])
+
+    key = max(keys, key=away)
+    alone = getattr(getattr(own, member), key) is not None
+    return ("stage", k, member, key) if alone else ("gears", key), USUAL[key]
