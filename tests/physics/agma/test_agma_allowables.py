@@ -89,6 +89,9 @@ def test_older_allowables_by_hand():
         assert [f.stress / PSI for f in found] == pytest.approx(values, rel=1e-12)
         assert all(f.within for f in found)
         assert not bending_allowable_b88(grade, 170.0).within
+    for law in (bending_allowable_b88, contact_allowable_b88):
+        with pytest.raises(ValueError, match="hardness in HB"):
+            law(1, 0.0)
 
 
 def test_older_allowables_are_near_and_marked():
@@ -105,6 +108,20 @@ def test_older_allowables_are_near_and_marked():
             contact_allowable("through-hardened", grade, 240),
         )
         assert old.stress == pytest.approx(new.stress, rel=0.04)
+
+
+def test_ranges_of_hardness_of_the_lines():
+    """180 to 400 HB of through-hardened steel, 255 to 345 HB of nitrided cores."""
+    for treatment, low, high in (
+        ("through-hardened", 180.0, 400.0),
+        ("nitrided", 255.0, 345.0),
+        ("nitralloy", 255.0, 345.0),
+    ):
+        inside = [bending_allowable(treatment, 1, hardness).within for hardness in (low, high)]
+        outside = [bending_allowable(treatment, 1, h).within for h in (low - 1.0, high + 1.0)]
+        assert inside == [True, True] and outside == [False, False]
+    assert bending_allowable("carburised", 1).within
+    assert bending_allowable("induction, flanks", 2).stress / PSI == pytest.approx(22000.0)
 
 
 def test_what_an_allowable_needs_is_said():

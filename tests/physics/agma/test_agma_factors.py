@@ -165,6 +165,17 @@ def test_a_load_distribution_of_another_program():
     assert alignment_factor(wide, "extra precision") == pytest.approx(0.31448, rel=1e-12)
 
 
+@pytest.mark.parametrize("curve", ALIGNMENT)
+def test_load_distribution_never_falls_with_the_face_width(curve):
+    """Beyond the curves' end at 40 inches their polynomials would, below 1 and below 0."""
+    widths = np.linspace(5.0, 6000.0, 600)
+    found = load_distribution_factor(widths, 500.0, curve)
+    assert (np.diff(found) > -4e-3).all() and found.min() > 1.0  # the standard's gap at 17 inches
+    end = load_distribution_factor(40 * INCH, 500.0, curve)
+    beyond = load_distribution_factor(80 * INCH, 500.0, curve)
+    assert beyond - end == pytest.approx(40 * INCH / 5000.0, rel=1e-9)
+
+
 def test_the_curves_join():
     for width, gap in ((1.0, 1e-12), (17.0, 4e-3)):  # the standard's own gap at 17 inches
         below, above = (proportion_factor(width * INCH * s, 20 * INCH) for s in (1, 1 + 1e-12))

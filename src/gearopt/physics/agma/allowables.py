@@ -130,6 +130,8 @@ def _old(
 ) -> Allowable:
     if grade not in lines:
         raise ValueError(f"no grade {grade} in AGMA 2001-B88: 1 or 2")
+    if not hardness > 0.0:
+        raise ValueError("the strength of through-hardened steel needs its hardness in HB")
     base, slope, bend, source = lines[grade]
     psi = base + slope * hardness + bend * hardness**2
     within = HARDNESS[0] <= hardness <= HARDNESS[1]

@@ -126,15 +126,20 @@ def size_factor(face_width: Any, module: Any, form: Any) -> Any:
     return np.maximum(1.0, 1.192 * (face_width * module / INCH**2 * form**0.5) ** 0.0535)
 
 
+def _drawn(face_width: Any) -> Any:
+    """Return a face width in inches, at most WIDEST: parabolas beyond would fall, to K_m < 0."""
+    return np.minimum(face_width, WIDEST) / INCH
+
+
 def proportion_factor(face_width: Any, pinion_diameter: Any) -> Any:
     """Return the pinion proportion factor C_pf of a face width b and the diameter d of the pinion.
 
     F/(10 d) - 0.025 for F <= 1 inch, F/(10 d) - 0.0375 + 0.0125 F up to 17, F/(10 d) - 0.1109 +
-    0.0207 F - 0.000228 F^2 up to 40; F/(10 d) at least 0.05. Lengths [mm]; d: working pitch
-    diameter. Source: AGMA 2001-D04, clause 15.
+    0.0207 F - 0.000228 F^2 up to 40, held there beyond; F/(10 d) at least 0.05. Lengths [mm]; d:
+    working pitch diameter. Source: AGMA 2001-D04, clause 15.
     """
     slender = np.maximum(face_width / (10.0 * pinion_diameter), 0.05)
-    width = face_width / INCH
+    width = _drawn(face_width)
     middle = -0.0375 + 0.0125 * width
     wide = -0.1109 + 0.0207 * width - 0.000228 * width**2
     return slender + choose(width <= 1.0, -0.025, choose(width <= 17.0, middle, wide))
@@ -143,12 +148,12 @@ def proportion_factor(face_width: Any, pinion_diameter: Any) -> Any:
 def alignment_factor(face_width: Any, curve: str) -> Any:
     """Return the mesh alignment factor C_ma of a face width b [mm]; curve: a key of ALIGNMENT.
 
-    ValueError for another curve. Source: AGMA 2001-D04, clause 15.
+    Beyond WIDEST that of WIDEST. ValueError for another curve. Source: AGMA 2001-D04, clause 15.
     """
     if curve not in ALIGNMENT:
         raise ValueError(f"no curve {curve!r} of C_ma; known: {', '.join(ALIGNMENT)}")
     a, b, c = ALIGNMENT[curve]
-    width = face_width / INCH
+    width = _drawn(face_width)
     return a + b * width + c * width**2
 
 
