@@ -11,6 +11,7 @@ from gearopt.physics.agma.bending import bending_factors, thinned
 from gearopt.physics.agma.refusals import SENTENCES, geometry_factors
 from gearopt.physics.agma.smooth import smooth_error
 from gearopt.physics.gears import GearPair, Rack
+from gearopt.physics.mesh_loss import FRICTION_ERROR
 
 HEAD = """\
 # Rating by AGMA
@@ -173,7 +174,14 @@ FORMULAS = (
         "sliding loss",
         "pi (u + 1)/(z_1 u cos beta_b) (1 - eps_alpha + eps_1² + eps_2²)",
         "Ohlendorf",
-        "`mesh_loss`",
+        "`mesh_loss.tooth_loss_factor`",
+    ),
+    (
+        "friction",
+        "0.048 (F_bt/b/(v_SigmaC rho_C))^0.2 eta^-0.05 R_a^0.25 X_L, off by up to "
+        f"{100 * FRICTION_ERROR:.0f} %, *unverified*",
+        "Schlenk",
+        "`mesh_loss.friction_coefficient`",
     ),
 )
 REMARKS = """
