@@ -54,7 +54,10 @@ def _of_gear(member: str, gear: Gear) -> list[Flaw]:
             Flaw(
                 "pointed tool",
                 f"The tool of the {member} has no room for a tip radius of "
-                f"{gear.rack.tip_radius:.4g} m_n: at most {most:.4g} make one full round.",
+                f"{gear.rack.tip_radius:.4g} m_n: at most {most:.4g} make one full round."
+                if most > 0.0
+                else f"The flanks of the tool of the {member} meet before its addendum of "
+                f"{gear.rack.dedendum:.4g} m_n.",
                 not has_tip(gear),
             )
         )

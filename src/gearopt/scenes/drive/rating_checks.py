@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from gearopt.physics.agma.allowables import bending_allowable, contact_allowable
+from gearopt.physics.agma.allowables import CONTACT, bending_allowable, contact_allowable
 from gearopt.scenes.drive.drive_tables import Gears, StageTable
 from gearopt.scenes.drive.rating_tables import (
     MATERIAL,
@@ -110,6 +110,10 @@ def _check_steel(gear: GearTable, place: Place, given: dict[str, Any]) -> None:
     if not hardness and gear.treatment in NEED_HARDNESS:
         rule = f"is missing: the strength of {gear.treatment} steel follows from it"
         raise refuse(rule, "240 HB", (*place, "hardness"), "sample")
+    surfaces = {surface for treatment, surface, _ in CONTACT if treatment == gear.treatment}
+    if gear.surface_hardness and surfaces == {""}:
+        rule = f"changes nothing: of {gear.treatment} steel no strength depends on it"
+        raise refuse(rule, at=(*place, "surface_hardness"), action="remove")
     grade = gear.grade or 1
     try:
         if "s_at" not in given:
