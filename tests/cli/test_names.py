@@ -92,6 +92,8 @@ COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); $way gearopt; printf '%s\\n' "${COMPR
     [
         (("gearopt", "so"), "solve"),
         (("gearopt", "new", "d"), "drive"),
+        (("gearopt", "new", "ra"), "rating"),
+        (("gearopt", "rate", f"{PROBLEMS}/elevator_b"), f"{PROBLEMS}/elevator_b*.toml"),
         (("gearopt", "solve", f"{PROBLEMS}/elevator_b"), f"{PROBLEMS}/elevator_b*.toml"),
         (("gearopt", "solve", "x.toml", "--method", "hop"), "hop"),
         (("gearopt", "report", ""), "bin/ kept.json"),

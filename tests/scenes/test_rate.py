@@ -231,6 +231,13 @@ def test_extreme_gears_have_a_finite_rating(stage):
     assert len(found) > 60 and all(map(math.isfinite, found.values()))
 
 
+def test_a_refusal_tells_what_else_is_wrong_with_the_teeth():
+    """121 mm are too close for teeth whose reference circles touch at 120/cos 15 deg."""
+    with pytest.raises(gearopt.SolveError) as wrong:
+        gearopt.rate(pair(helix_angle="15 deg", centre_distance="121 mm"))
+    assert "the teeth do not fit in: the backlash is -2." in str(wrong.value)
+
+
 def test_undercut_is_a_warning():
     found = rated(pair(pinion_teeth=12))
     assert "pinion of stage 1 is undercut, with 12 teeth" in found["flaws"][0]

@@ -58,7 +58,7 @@ pinion_teeth = 20
 wheel_teeth = 60
 face_width = "30 mm"
 # helix_angle = "15 deg"       # normal module and pressure angle then
-# centre_distance = "121 mm"   # without it the one without backlash
+# centre_distance = "121 mm"   # of spur gears here; without it the one without backlash
 
 [stage.pinion]                 # what the pinion has of its own; [stage.wheel] likewise
 profile_shift = 0.2

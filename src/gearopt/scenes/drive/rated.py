@@ -147,13 +147,15 @@ def rating(scene: Scene, pairs: Sequence[GearPair]) -> DriveRating:
     assert asked
     meshes, slower = [], 1.0
     for k, pair in enumerate(pairs):
-        if fatal := next((flaw for flaw in flaws(pair) if flaw.fatal), None):
-            why = fatal.sentence[0].lower() + fatal.sentence[1:].rstrip(".")
-            raise SolveError(f"stage {k + 1} cannot be rated: {why}")
+        found = flaws(pair)
+        told = [flaw.sentence[0].lower() + flaw.sentence[1:].rstrip(".") for flaw in found]
+        if found and found[0].fatal:
+            raise SolveError(f"stage {k + 1} cannot be rated: {told[0]}")
         try:
             meshes.append(_mesh(scene, k, pair, slower))
         except ValueError as reason:
-            raise SolveError(f"stage {k + 1} cannot be rated: {reason}") from None
+            why = "; ".join([str(reason), *told])
+            raise SolveError(f"stage {k + 1} cannot be rated: {why}") from None
         slower *= float(pair.ratio)
     wanted = float(asked.minimum_bending_safety), float(asked.minimum_contact_safety)
     rows = [_mesh_row(scene, mesh, wanted) for mesh in meshes]

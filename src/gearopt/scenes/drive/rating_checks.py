@@ -125,6 +125,7 @@ def _check_steel(gear: GearTable, place: Place, given: dict[str, Any]) -> None:
             rule = f"is missing: the strength of {gear.treatment} steel follows from its core"
             raise refuse(rule, "300 HB", (*place, "hardness"), "sample") from None
         key = "surface_hardness" if gear.surface_hardness and grade == 1 else "grade"
-        words, _, known = str(reason).partition("; known: ")
-        tell = f"Known of {gear.treatment} steel: {known}; or give s_at and s_ac"
-        raise refuse(f"has {words}", tell, (*place, key), "tell") from None
+        known = str(reason).partition("; known: ")[2]
+        rule = f'has no strength of "{gear.treatment}" in the tables'
+        tell = f"Known: {known}; or give s_at and s_ac in [rating.given]"
+        raise refuse(rule, tell, (*place, key), "tell") from None
