@@ -15,6 +15,7 @@ import gallery
 import notebook
 import pictures
 import python_api
+import rate_page
 
 from gearopt.scenes.reading.load import kinds, scene_module
 from gearopt.scenes.reading.schema import reference as tables
@@ -25,6 +26,7 @@ PAGES = {
     "commands.md": commands.page,
     "gallery.md": gallery.page,
     "python.md": python_api.page,
+    "rate.md": rate_page.page,
 }
 
 

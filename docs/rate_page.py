@@ -1,0 +1,241 @@
+"""The page "Rate gears": files, outputs and numbers of it are the program's own."""
+
+import io
+import re
+import tomllib
+from pathlib import Path
+
+from rich.console import Console
+
+import gearopt
+from gearopt.formulations.rating import DriveRating
+from gearopt.optimise.result import Result
+from gearopt.optimise.typed import typed
+from gearopt.physics.shaft_forces import OTHER
+from gearopt.report.terminal import show
+from gearopt.scenes.reading.load import examples
+
+PROBLEMS = Path(__file__).parents[1] / "problems"
+TEXT = """\
+# Rate gears
+
+`gearopt rate FILE` judges gears that are given: stresses, safety factors, lives, every factor with
+its clause, forces on the shafts, and the geometry of the teeth, by AGMA 2001-D04 (2101-D04 in
+metric terms) with the geometry factors of AGMA 908-B89. Formulas, sources and published values
+beside computed ones: [Rating by AGMA](agma.md). All keys: [drive](drive.md).
+
+## A pair
+
+```
+gearopt new rating > pair.toml
+gearopt rate pair.toml
+```
+
+The first command prints this file. A pair is a drive of one stage:
+
+```toml
+{example}```
+
+With all teeth, modules and widths given, `[limits]` and the ratio of `[duty]` are left out. What
+both gears share stands in `[gears]`; what one has of its own in `[stage.pinion]`, `[stage.wheel]`.
+It is cut by the tool of ISO 53 profile A unless a tool is given, and runs at the centre distance
+without backlash unless `centre_distance` and `thickness_allowance` say otherwise. The same in
+inches: `diametral_pitch = 10`, `"1.5 in"`, `"4 hp"`, `"50 ksi"`.
+
+`gearopt rate problems/catalogue_pair.toml`, a pair with shifts and backlash, prints:
+
+```
+{catalogue}```
+
+- **safe**: every safety factor is at least the one asked for, `minimum_bending_safety` and
+  `minimum_contact_safety` (1 by default). The exit code is 0 either way: an unsafe pair is an
+  answer too. In `--json`, `limits` holds asked for over there, here {used_value} for {used}.
+- **S_F**, **S_H**: permissible over existing stress. S_H is of stress; of load it is its square,
+  {square} here for the pinion.
+- **permissible**: the allowable stress number of the steel, s_at or s_ac, times Y_N or Z_N (and C_H
+  for a softer wheel), over K_T K_R: what the tooth bears for the life asked for.
+- **power capacity**: the power at which the least safety factor is just the one asked for.
+- **life**: until a safety factor has fallen to 1. The curves of Y_N and Z_N end at 1e10 cycles;
+  beyond them no number is told.
+- **efficiency**: of the mesh alone, from `oil_viscosity` or `friction_coefficient`. A computed
+  coefficient of friction may be wrong by a third.
+- **unverified**: a single source or memory alone has it, or no published value confirms it. I and J
+  of helical gears are.
+
+`--html page.html` adds drawings, forces, tooth geometry with span and ball measurement; `--csv
+FOLDER` writes every table; `--units inch` shows in, psi and hp.
+
+## Factors of your own
+
+Any factor can be given instead of being computed, for all stages in `[rating.given]` or for one in
+`[stage.given]`: as a number, or for K_s, K_B, J, s_at, s_ac, Y_N, Z_N and C_H as `[pinion, wheel]`.
+Shigley's example 14-4 takes I from a formula and J from a chart:
+
+```toml
+{given}```
+
+| | I | J | contact stress, psi | S_H |
+|---|---|---|---|---|
+{books}
+
+The book's I is that of the pitch point. AGMA 908 takes the lowest point of single tooth contact,
+where the pair is stressed {higher} % higher: check what a given factor stands for.
+
+## A load spectrum
+
+Tables `[[load]]` stand in the place of the power of `[duty]`: levels of power (and `input_speed`,
+if it is another one), each with its share of the life. The shares add up to 100 %.
+
+```toml
+{load}```
+
+The damage of a level is its number of cycles over the life at its stress; Miner's sum of all levels
+is 1 at the end of the life. S_F and S_H are the factors by which all stresses may grow until then.
+Stresses and forces that are shown are those of the hardest level. The first pinion of
+`problems/two_stages_rated.toml`, beside one load for the whole life:
+
+| load | S_F | S_H |
+|---|---|---|
+{levels}
+
+## Forces and hands
+
+Forces act at the working pitch circles: F_t = 2 T/d_w drives, F_r = F_t tan alpha_wt pushes the
+gears apart, F_a = F_t tan beta_w pushes them along their shafts. Right-hand rule: with the fingers
+of the right hand curled the way a right-handed driving gear turns, the thumb shows its thrust; of a
+left-handed one take the left hand. The mate has the other hand and the opposite thrust.
+`pinion_hand` of a `[[stage]]` sets the hand. By default the first pinion is right-handed, and later
+ones are such that the two thrusts of an intermediate shaft oppose each other. Seen from the input
+end, where the input turns clockwise, → is away from the eye (`problems/two_stages_rated.toml`):
+
+```
+{forces}```
+
+The sum is what the bearings of the shaft hold. It changes its sign with the sense of rotation.
+
+## A drive that is sized
+
+Beside `[limits]` a table `[rating]` changes nothing of what is chosen: sizes follow from the
+K-factor and the unit load. `gearopt solve` then reports the rating of its optimum, so that the load
+limits can be set to what the steel bears (`problems/sized_and_rated.toml`: {sized}).
+
+## What is not rated
+
+Scuffing, micropitting, wear, flank fracture, shafts, bearings and housings; internal gears, bevel
+gears and worms; ISO 6336. Gears that have no rating are refused by name: pointed teeth, contact
+that breaks off, a transverse contact ratio of 2 or more of spur gears. What a designer may accept
+is a warning: undercut, thin tips, no backlash.
+"""
+
+
+def page() -> str:
+    """The page with its files and what the program prints for them now."""
+    rated = {
+        n: gearopt.rate(PROBLEMS / f"{n}.toml") for n in ("catalogue_pair", "two_stages_rated")
+    }
+    pair = _rating(rated["catalogue_pair"])
+    used = max(rated["catalogue_pair"].limits.items(), key=lambda item: item[1])
+    return TEXT.format(
+        example=examples()["rating"],
+        catalogue=_printed(rated["catalogue_pair"]),
+        used=f"`{used[0]}`",
+        used_value=f"{used[1]:.3f}",
+        square=f"{pair.gears[0].contact_safety ** 2:.2f}",
+        given=_table("shigley_14_4", r"\[rating\.given\].*?\n(?=\n|\Z)"),
+        books=_books(),
+        higher=f"{100 * (_contact('shigley_14_4_by_908') / _contact('shigley_14_4') - 1):.0f}",
+        load=_table("two_stages_rated", r"\[\[load\]\].*?\n(?=\n\[x-)"),
+        levels=_levels(_rating(rated["two_stages_rated"])),
+        forces=_forces(_rating(rated["two_stages_rated"])),
+        sized=_sized(),
+    )
+
+
+def _rating(result: Result) -> DriveRating:
+    found: DriveRating = typed(DriveRating, result.design["rating"])
+    return found
+
+
+def _printed(result: Result) -> str:
+    """What the terminal shows, 110 columns wide."""
+    screen = Console(width=110, record=True, file=io.StringIO())
+    show(result, screen)
+    lines = [line.rstrip() for line in screen.export_text().splitlines()]
+    return "\n".join(lines).strip("\n") + "\n"
+
+
+def _table(name: str, pattern: str) -> str:
+    text = (PROBLEMS / f"{name}.toml").read_text(encoding="utf-8")
+    found = re.search(pattern, text, re.S)
+    assert found, name
+    return found[0]
+
+
+def _contact(name: str) -> float:
+    stress = gearopt.rate(PROBLEMS / f"{name}.toml").design["rating"]["gears"][1]
+    return float(stress["contact_stress_MPa"])
+
+
+def _books() -> str:
+    """I and J of the pair of Shigley's example, given and by 908, and what follows."""
+    rows = []
+    for words, name in (
+        ("given, from the book", "shigley_14_4"),
+        ("by AGMA 908", "shigley_14_4_by_908"),
+    ):
+        rating = _rating(gearopt.rate(PROBLEMS / f"{name}.toml"))
+        pitting, bending = (next(f for f in rating.factors if f.symbol == s) for s in "IJ")
+        psi = [gear.contact_stress_MPa / 0.006894757293168361 for gear in rating.gears]
+        safety = ", ".join(f"{gear.contact_safety:.2f}" for gear in rating.gears)
+        rows.append(
+            f"| {words} | {pitting.pinion:.4f} | {bending.pinion:.3f}, {bending.wheel:.3f} | "
+            f"{psi[0]:,.0f}, {psi[1]:,.0f} | {safety} |"
+        )
+    return "\n".join(rows)
+
+
+def _levels(rating: DriveRating) -> str:
+    """S_F and S_H of the first pinion under the spectrum, and under each of its loads alone."""
+    file = tomllib.loads((PROBLEMS / "two_stages_rated.toml").read_text(encoding="utf-8"))
+    found = [("the spectrum", rating.gears[0])]
+    for level in file.pop("load")[:2]:
+        alone = file | {"duty": file["duty"] | {"power": level["power"]}}
+        found.append((f"{level['power']} throughout", _rating(gearopt.rate(alone)).gears[0]))
+    return "\n".join(
+        f"| {words} | {gear.bending_safety:.2f} | {gear.contact_safety:.2f} |"
+        for words, gear in found
+    )
+
+
+def _forces(rating: DriveRating) -> str:
+    """Every shaft with its gears, their hands and thrusts, and the sum."""
+    hands = {(tooth.stage, tooth.member): tooth.hand for tooth in rating.teeth}
+    lines = []
+    for shaft in rating.shafts:
+        gears = []
+        for stage, member in ((shaft.shaft - 1, "wheel"), (shaft.shaft, "pinion")):
+            if (stage, member) not in hands:
+                continue
+            force = rating.meshes[stage - 1].axial_force_N
+            gears.append((stage, member, hands[stage, member], _along(stage, hands, member), force))
+        told = [f"{m} {k} {h:5} {a} {f:7,.1f} N" for k, m, h, a, f in gears]
+        whole = f"{'→' if shaft.axial_force_N > 0 else '←'} {abs(shaft.axial_force_N):,.1f} N"
+        words = f"shaft {shaft.shaft}, {shaft.rotation:13}  {'   '.join(told):56}  sum {whole}"
+        lines.append(words)
+    return "\n".join(lines) + "\n"
+
+
+def _along(stage: int, hands: dict[tuple[int, str], str], member: str) -> str:
+    """The way of a thrust by the right-hand rule; a driven gear as its mate would not go."""
+    pinion = hands[stage, "pinion"]
+    assert member == "pinion" or hands[stage, member] == OTHER[pinion]
+    away = (pinion == "right") == (stage % 2 == 1)
+    return "→" if away == (member == "pinion") else "←"
+
+
+def _sized() -> str:
+    """The answer of the sized drive as its file holds it, which the tests hold to the program."""
+    text = (PROBLEMS / "sized_and_rated.toml").read_text(encoding="utf-8")
+    expected = tomllib.loads(text)["x-expected"]
+    duty = tomllib.loads(text)["duty"]["power"]
+    return f"it may transmit {expected['power_capacity_kW']:.1f} kW, {duty} asked for"
