@@ -23,7 +23,8 @@ Tab key complete commands, options, problem files, kinds, methods and benches in
 PowerShell, from the next shell on; `--show-completion` prints what it would install.
 """
 EXIT_CODES = {
-    0: "done: a design was found (its status says how good it is), the files are right",
+    0: "done: a design was found (its status says how good it is), gears were rated, safe or not; "
+    "the files are right",
     1: "`doctor`: a solver does not work on this machine",
     2: "the file or the command is wrong; a line for every mistake says where and what to write",
     3: "proven: no design meets the limits; or a given design, evaluated, exceeds one",

@@ -111,7 +111,7 @@ end, where the input turns clockwise, → is away from the eye (`problems/two_st
 ```
 {forces}```
 
-The sum is what the bearings of the shaft hold. It changes its sign with the sense of rotation.
+The sum is what the bearings of a shaft hold. Turned the other way round all thrusts change sides.
 
 ## A drive that is sized
 
