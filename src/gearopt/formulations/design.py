@@ -11,10 +11,12 @@ from gearopt.formulations.layout.layout_design import LayoutDesign
 from gearopt.formulations.rating import DriveRating
 from gearopt.formulations.strength import Law
 from gearopt.optimise.typed import INLINE, typed
-from gearopt.physics.gears import GearPair
+from gearopt.physics.gears import ISO_53_A, Gear, GearPair, Rack
 from gearopt.physics.loads import pitch_line_velocity
 
 GEARS_FIRST = "the gears chosen first"  # of what alone a layout is proven impossible
+TOOL = ("addendum", "tool_addendum", "tool_tip_radius", "tool_protuberance")  # as in a `Rack`
+TEETH = ("profile_shift", "tip_alteration", "thickness_allowance_mm")  # as in a `Gear`
 STEEL_DENSITY = 7.85e-9  # t/mm3: EN 1991-1-1 table A.4 (to 78.5 kN/m3), Steel for Life Blue Book
 
 
@@ -55,6 +57,33 @@ class StageDesign:
     wheel_tip_alteration: float = 0.0
     pinion_thickness_allowance_mm: float = 0.0
     wheel_thickness_allowance_mm: float = 0.0
+    pinion_addendum: float = ISO_53_A.addendum
+    wheel_addendum: float = ISO_53_A.addendum
+    pinion_tool_addendum: float = ISO_53_A.dedendum
+    wheel_tool_addendum: float = ISO_53_A.dedendum
+    pinion_tool_tip_radius: float = ISO_53_A.tip_radius
+    wheel_tool_tip_radius: float = ISO_53_A.tip_radius
+    pinion_tool_protuberance: float = ISO_53_A.protuberance
+    wheel_tool_protuberance: float = ISO_53_A.protuberance
+
+    @property
+    def pair(self) -> GearPair:
+        """The gears with their teeth, at their centre distance."""
+        shifted = self.working_pressure_angle_deg is not None
+        made = [self._gear(member) for member in ("pinion", "wheel")]
+        return GearPair(made[0], made[1], self.centre_distance_mm if shifted else None)
+
+    def _gear(self, member: str) -> Gear:
+        own = {n: getattr(self, f"{member}_{n}") for n in (*TOOL, *TEETH, "teeth", "diameter_mm")}
+        return Gear(
+            self.normal_module_mm,
+            own["teeth"],
+            own["diameter_mm"],
+            self.face_width_mm,
+            math.radians(self.helix_angle_deg),
+            Rack(math.radians(self.pressure_angle_deg), *(own[n] for n in TOOL)),
+            *(own[n] for n in TEETH),
+        )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -166,6 +195,9 @@ def _teeth(pair: GearPair) -> dict[str, Any]:
         found[f"{member}_profile_shift"] = float(gear.profile_shift)
         found[f"{member}_tip_alteration"] = float(gear.tip_alteration)
         found[f"{member}_thickness_allowance_mm"] = float(gear.thickness_allowance)
+        rack = gear.rack
+        tool = rack.addendum, rack.dedendum, rack.tip_radius, rack.protuberance
+        found |= {f"{member}_{n}": float(v) for n, v in zip(TOOL, tool, strict=True)}
     return found
 
 

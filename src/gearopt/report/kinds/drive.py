@@ -24,6 +24,7 @@ from gearopt.report.pages import (
     impossible_layout,
     layout_solid,
     layout_views,
+    mesh_view,
     train_views,
 )
 from gearopt.report.pages.bodies import layout_of
@@ -354,7 +355,7 @@ def _in_one_line(result: Result, measures: Measures) -> Section | None:
 DRAWINGS = (layout_views.section, layout_solid.section, _in_one_line)
 RATINGS = (
     *(rating_tables.gears, rating_tables.forces, rating_factors.factors),
-    *(rating_tables.levels, rating_tables.teeth),
+    *(rating_tables.levels, mesh_view.section, rating_tables.teeth),
 )
 GIVEN = Kind(
     sections=(summary, *RATINGS[:2], *DRAWINGS, *RATINGS[2:], numbers, asked, assumptions),
