@@ -57,7 +57,7 @@ class MeshRating:
 
     governs: member and mode of the least safety, against the safety factors that are asked for;
     power_capacity: at which it is just met. friction, efficiency: None where nothing is known of
-    the oil.
+    the oil; the error, up or down, is that of a computed friction.
     """
 
     stage: int
@@ -77,6 +77,7 @@ class MeshRating:
     tooth_loss_factor: float
     friction_coefficient: float | None = None
     mesh_efficiency_percent: float | None = None
+    mesh_efficiency_error_percent: float | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -160,6 +161,7 @@ class DriveRating:
     required_life_h: float
     life_h: float | None
     efficiency_percent: float | None
+    efficiency_error_percent: float | None
     gears: tuple[GearRating, ...]
     meshes: tuple[MeshRating, ...]
     factors: tuple[RatingFactor, ...]

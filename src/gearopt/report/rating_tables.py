@@ -11,8 +11,10 @@ from gearopt.report.design_tables import stage_label, tables
 from gearopt.report.measures import Measures, rounded
 from gearopt.report.rating_words import (
     AT_ONCE,
+    FRICTION,
     LONGEST,
     ROUNDING,
+    efficiency,
     life,
     rating_of,
     told,
@@ -55,6 +57,7 @@ MESHES = {
     "tooth_loss_factor": "tooth loss factor H_V",
     "friction_coefficient": "coefficient of friction μ",
     "mesh_efficiency_percent": "efficiency of the mesh",
+    "mesh_efficiency_error_percent": "its error, up or down",
 }
 SHAFTS = {
     "torque_Nm": "torque",
@@ -245,7 +248,7 @@ def _told(result: Result, found: DriveRating, measures: Measures) -> list[str | 
     table = Table("gears", ["gear", *heads], rows, short=read, wrap=9)
     lasts = f"Life: {life(found.life_h)}, {life(found.required_life_h)} asked for."
     if found.efficiency_percent is not None:
-        lasts += f" Efficiency of the meshes: {rounded(found.efficiency_percent, 4)} %."
+        lasts += f" Efficiency of the meshes: {efficiency(found)}."
     first = [] if result.name == RATING else [measures.words(told(found))]
     end = unverified(found) if first else []
     return [*first, table, "\n".join([lasts, f"By {found.standard}.", *end])]
@@ -270,7 +273,8 @@ def forces(result: Result, measures: Measures) -> Section | None:
     if found.efficiency_percent is not None:
         words.append(
             "Efficiencies are those of tooth friction alone, without bearings, seals and churned "
-            "oil; of the formula of the friction no scatter is known."
+            "oil"
+            + ("." if found.efficiency_error_percent is None else f"; {FRICTION}.")
         )
     stages = result.design["stages"]
     told = "\n".join(f"{_mesh_words(found, stage, k, measures)}" for k, stage in enumerate(stages))

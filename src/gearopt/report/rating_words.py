@@ -7,12 +7,16 @@ from gearopt.formulations.rating import DriveRating, GearRating, MeshRating
 from gearopt.optimise.result import FEASIBLE, Result
 from gearopt.optimise.typed import typed
 from gearopt.physics.agma import life as life_curves
+from gearopt.physics.mesh_loss import FRICTION_ERROR
 from gearopt.report.measures import Measures, rounded
 from gearopt.report.section import Tile
 from gearopt.report.words import counted, series_of
 
 SAFETY_DIGITS = 3  # of safety factors in sentences and key figures
 ROUNDING = 1e-8  # relative; a safety factor so near to a shorter number is that one
+FRICTION = (  # `mesh_loss.FRICTION_ERROR`
+    f"the error is that of the friction, which may be {100 * FRICTION_ERROR:.0f} % off (unverified)"
+)
 LONGEST = f"{life_curves.LONGEST:g} cycles".replace("e+", "e")
 AT_ONCE = "fails at once"
 MODES = {"bending": "S_F", "contact": "S_H"}
@@ -121,6 +125,14 @@ def safety(factor: float) -> str:
     return text if near else rounded(factor, SAFETY_DIGITS, way=-1)
 
 
+def efficiency(found: DriveRating) -> str:
+    """Return the efficiency of all meshes, with the error of a computed friction."""
+    assert found.efficiency_percent is not None
+    error = found.efficiency_error_percent
+    about = "" if error is None else f" ± {rounded(error, 2)}"
+    return f"{rounded(found.efficiency_percent, 4)}{about} %"
+
+
 def tiles(result: Result, measures: Measures) -> list[Tile]:
     """Return least safety factors, power capacity, life and efficiency as key figures."""
     if (found := rating_of(result)) is None:
@@ -137,7 +149,7 @@ def tiles(result: Result, measures: Measures) -> list[Tile]:
     ]
     if found.efficiency_percent is not None:
         remark = "tooth friction alone"
-        made.append(Tile("efficiency", f"{rounded(found.efficiency_percent, 4)} %", remark))
+        made.append(Tile("efficiency", efficiency(found), remark))
     return made
 
 

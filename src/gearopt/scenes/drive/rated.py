@@ -31,7 +31,12 @@ from gearopt.physics.geometry.tooth import (
     normal_backlash,
 )
 from gearopt.physics.loads import torque
-from gearopt.physics.mesh_loss import friction_coefficient, mesh_efficiency, tooth_loss_factor
+from gearopt.physics.mesh_loss import (
+    FRICTION_ERROR,
+    friction_coefficient,
+    mesh_efficiency,
+    tooth_loss_factor,
+)
 from gearopt.physics.shaft_forces import hands, mesh_forces, rotation, rpm, train_forces
 from gearopt.scenes.drive import rated_gears
 from gearopt.scenes.drive.assumptions import rating_assumptions
@@ -163,6 +168,7 @@ def rating(scene: Scene, pairs: Sequence[GearPair]) -> DriveRating:
     least = min(range(len(rows)), key=lambda k: rows[k].power_capacity_kW)
     lives = [gear.life_h for gear in gears]
     losses = [row.mesh_efficiency_percent for row in rows]
+    errors = [e for row in rows if (e := row.mesh_efficiency_error_percent) is not None]
     factors = tuple(row for mesh in meshes for row in _factor_rows(mesh))
     moved, speed = _largest_load(scene)
     turned = hands([table.pinion_hand for table in scene.stage] or [None] * len(pairs))
@@ -181,6 +187,7 @@ def rating(scene: Scene, pairs: Sequence[GearPair]) -> DriveRating:
         required_life_h=rated_gears.required_hours(scene),
         life_h=min((life for life in lives if life is not None), default=None),
         efficiency_percent=_product(losses),
+        efficiency_error_percent=sum(errors) if errors else None,
         gears=gears,
         meshes=tuple(rows),
         factors=factors,
@@ -303,6 +310,11 @@ def _mesh_row(scene: Scene, mesh: Mesh, wanted: tuple[float, float]) -> MeshRati
         friction_coefficient=friction,
         mesh_efficiency_percent=(
             None if friction is None else 100.0 * float(mesh_efficiency(loss, friction))
+        ),
+        mesh_efficiency_error_percent=(
+            None
+            if friction is None or asked.oil_viscosity is None
+            else 100.0 * FRICTION_ERROR * friction * loss
         ),
     )
 
