@@ -273,8 +273,7 @@ def forces(result: Result, measures: Measures) -> Section | None:
     if found.efficiency_percent is not None:
         words.append(
             "Efficiencies are those of tooth friction alone, without bearings, seals and churned "
-            "oil"
-            + ("." if found.efficiency_error_percent is None else f"; {FRICTION}.")
+            "oil" + ("." if found.efficiency_error_percent is None else f"; {FRICTION}.")
         )
     stages = result.design["stages"]
     told = "\n".join(f"{_mesh_words(found, stage, k, measures)}" for k, stage in enumerate(stages))

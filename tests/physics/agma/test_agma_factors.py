@@ -35,7 +35,6 @@ from gearopt.physics.agma.stress import (
     contact_safety,
     contact_stress,
     permissible_power,
-    shaft_forces,
     tangential_load,
 )
 
@@ -252,15 +251,6 @@ def test_the_lesser_of_both_safety_factors_permits_a_power():
     assert permissible_power(10.0, 3.0, 1.5, (1.5, 1.25)) == pytest.approx(14.4, rel=1e-12)
 
 
-def test_forces_of_a_helical_mesh():
-    """Their resultant is normal to the flank: W = W_t/(cos(alpha_n) cos(beta))."""
-    helix, normal = 0.3, math.radians(20)
-    transverse = math.atan(math.tan(normal) / math.cos(helix))
-    radial, axial = shaft_forces(1000.0, transverse, helix)
-    total = math.sqrt(1000.0**2 + radial**2 + axial**2)
-    assert total == pytest.approx(1000.0 / (math.cos(normal) * math.cos(helix)), rel=1e-12)
-
-
 LAWS = [
     lambda a, b: dynamic_factor(1e4 * a, 7.0 + b),
     lambda a, b: highest_speed(7.0 + b),
@@ -275,7 +265,6 @@ LAWS = [
     lambda a, b: surface_hardened_factor(1e-3 * a, 200.0 * b),
     lambda a, b: bending_stress(1e3 * a, 20.0, 3.0, 0.4 * b),
     lambda a, b: contact_stress(190.0, 1e3 * a, 20.0, 50.0 * b, 0.1),
-    lambda a, b: shaft_forces(1e3 * a, 0.3 * b, 0.2)[0],
 ]
 
 

@@ -12,11 +12,12 @@ HARDNESS = (180.0, 400.0)  # HB: range of the lines of through-hardened steel
 NITRIDED_CORE = {"nitrided": (255.0, 345.0), "nitralloy": (255.0, 345.0)}  # HB, from memory
 REVERSED = 0.7  # of s_at: idlers and fully reversed loads. AGMA 2001-D04, clause 16; Shigley
 
-DIGEST = "AGMA 2001-D04 as in Shigley ch. 14; r3kste/pydome Spur"
-SHIGLEY = "AGMA 2001-D04, table 4, as in Shigley, table 14-3; a public transcription of it"
-TABLE = "AGMA 2001-D04, table 3; a public table of it (engineersedge.com)"
-OLD = "AGMA 2001-B88; two public programs of its allowables"
-SINGLE = "AGMA 2001-B88; a single source"
+# the public program: r3kste/pydome, `Spur`; the table: engineersedge.com
+DIGEST = "2001-D04, 16, as in Shigley, ch. 14, and in a public program"
+SHIGLEY = "2001-D04, table 4, as in Shigley, table 14-3, and in a transcription"
+TABLE = "2001-D04, table 3, as in a public table of it"
+OLD = "2001-B88; two public programs of its allowables"
+SINGLE = "2001-B88; a single source"
 
 # (treatment, surface, grade): psi per HB, psi, source; surface: "" where it does not matter
 BENDING: dict[tuple[str, str, int], tuple[float, float, str]] = {

@@ -95,13 +95,3 @@ def bending_life(curve: Curve, cycle_factor: Any, safety: Any) -> Any:
 def contact_life(curve: Curve, cycle_factor: Any, safety: Any) -> Any:
     """Return the cycles at which S_H is 1: Z_N(N) = Z_N/S_H; see `bending_life`."""
     return curve.life(cycle_factor / safety)
-
-
-def shaft_forces(load: Any, working_angle: Any, working_helix: Any) -> tuple[Any, Any]:
-    """Return radial force W_t tan(alpha_wt), and axial force W_t tan(beta_w) [N] of a mesh.
-
-    load W_t [N] at the working pitch circle; transverse working_angle alpha_wt, working_helix
-    beta_w [rad], signed by hand: the axial force turns with hand and with the direction of
-    rotation. Source: statics; Shigley, eq. (13-40).
-    """
-    return load * np.tan(working_angle), load * np.tan(working_helix)

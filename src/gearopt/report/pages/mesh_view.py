@@ -16,7 +16,7 @@ from gearopt.report.section import Section
 
 WIDE, HIGH = 560.0, 340.0  # px of a drawing, at most
 ALONG, ACROSS = 4.6, 0.9  # normal modules: to either side of the pitch point, below the roots
-FILLET, FLANK = 7, 8  # points of a tooth's side
+FILLET, FLANK = 8, 13  # points of a tooth's side
 DOT = 2.6  # px: radius of a point of contact
 WORDS = (
     "Transverse sections of the teeth as their tools cut them, touching at the pitch point C; the "

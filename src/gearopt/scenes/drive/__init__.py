@@ -21,8 +21,8 @@ from gearopt.optimise.solve import GAP, run
 from gearopt.optimise.typed import untyped
 from gearopt.scenes.drive.assumptions import assumptions, notes
 from gearopt.scenes.drive.examples import EXAMPLE, MORE_EXAMPLES
-from gearopt.scenes.drive.rated import rate, with_rating
-from gearopt.scenes.drive.rating_tables import MATERIAL, GivenTable
+from gearopt.scenes.drive.rating.rated import rate, with_rating
+from gearopt.scenes.drive.rating.tables import MATERIAL, GivenTable
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.stage_counts import best_count
 from gearopt.scenes.explaining.default import of_report

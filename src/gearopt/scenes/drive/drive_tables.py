@@ -11,7 +11,7 @@ from gearopt.formulations.gear_train import OBJECTIVES
 from gearopt.formulations.process import ProcessOne, ProcessTwo
 from gearopt.formulations.strength import Law
 from gearopt.formulations.strength.k_factor import K_FACTOR
-from gearopt.scenes.drive.rating_tables import GearKeys, GearTable, GivenTable
+from gearopt.scenes.drive.rating.tables import GearKeys, GearTable, GivenTable
 from gearopt.scenes.reading.fields import (
     Table,
     advised,

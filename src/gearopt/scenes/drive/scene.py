@@ -29,13 +29,13 @@ from gearopt.scenes.drive.layout_tables import (
     check_shared,
     gearbox,
 )
-from gearopt.scenes.drive.rating_checks import (
+from gearopt.scenes.drive.rating.checks import (
     check_given,
     check_rated,
     check_unrated,
     not_given,
 )
-from gearopt.scenes.drive.rating_tables import LoadTable, RatingTable
+from gearopt.scenes.drive.rating.tables import LoadTable, RatingTable
 from gearopt.scenes.drive.tooth_tables import check_mesh, check_teeth, toothing
 from gearopt.scenes.explaining.numbers import eased, in_reverse, written
 from gearopt.scenes.parts import Duty

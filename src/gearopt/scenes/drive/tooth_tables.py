@@ -7,7 +7,7 @@ from gearopt.formulations.gear_train import LENGTHS, Stage
 from gearopt.formulations.toothing import Toothing
 from gearopt.physics.gears import ISO_53_A, Rack
 from gearopt.scenes.drive.drive_tables import Gears, StageTable
-from gearopt.scenes.drive.rating_tables import GearTable, with_shared
+from gearopt.scenes.drive.rating.tables import GearTable, with_shared
 from gearopt.scenes.reading.fields import refuse
 
 MEMBERS = ("pinion", "wheel")

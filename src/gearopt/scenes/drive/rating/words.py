@@ -1,7 +1,7 @@
 """What factors of a rating are called, their units, and materials in words."""
 
 from gearopt.physics.agma.allowables import CURVES
-from gearopt.scenes.drive.rating_tables import GearTable
+from gearopt.scenes.drive.rating.tables import GearTable
 
 NAMES = {
     "K_o": "overload",

@@ -5,7 +5,7 @@ from typing import Any
 
 from gearopt.physics.agma.allowables import CONTACT, bending_allowable, contact_allowable
 from gearopt.scenes.drive.drive_tables import Gears, StageTable
-from gearopt.scenes.drive.rating_tables import (
+from gearopt.scenes.drive.rating.tables import (
     MATERIAL,
     GearTable,
     GivenTable,

@@ -8,7 +8,7 @@ from gearopt.physics.agma.rating_factors import Operation, Practice, Steel
 from gearopt.physics.gears import Gear, GearPair
 from gearopt.physics.shaft_forces import rpm
 from gearopt.scenes.drive.drive_tables import StageTable
-from gearopt.scenes.drive.rating_tables import GearTable, RatingTable, with_shared
+from gearopt.scenes.drive.rating.tables import GearTable, RatingTable, with_shared
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.tooth_tables import toothing
 

@@ -1,0 +1,70 @@
+"""One stage of a drive with its rating, at every level of load."""
+
+from dataclasses import dataclass
+from typing import Any
+
+from gearopt.errors import SolveError
+from gearopt.physics.agma.rating import Rating, rate, rate_spectrum
+from gearopt.physics.agma.rating_factors import Operation
+from gearopt.physics.gears import GearPair
+from gearopt.physics.geometry.flaws import flaws
+from gearopt.scenes.drive.rating import gears
+from gearopt.scenes.drive.scene import Scene
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """One stage (from 1) with its rating: hardest of all levels, and safety against all of them."""
+
+    stage: int
+    pair: GearPair
+    tables: tuple[Any, Any]
+    operations: tuple[Operation, ...]
+    levels: tuple[Rating, ...]
+    bending_safety: tuple[float, float]
+    contact_safety: tuple[float, float]
+    damages: tuple[tuple[float, float], tuple[float, float]] | None  # of bending, of contact
+
+    @property
+    def hardest(self) -> Rating:
+        """Return the rating at the level of the largest load."""
+        return max(self.levels, key=lambda level: level.load)
+
+    @property
+    def hardest_operation(self) -> Operation:
+        """Return the level of the largest load."""
+        return self.operations[self.levels.index(self.hardest)]
+
+
+def rated_meshes(scene: Scene, pairs: tuple[GearPair, ...]) -> list[Mesh]:
+    """Rate all stages; SolveError names the one that has no rating, and why."""
+    meshes, slower = [], 1.0
+    for k, pair in enumerate(pairs):
+        found = flaws(pair)
+        told = [flaw.sentence[0].lower() + flaw.sentence[1:].rstrip(".") for flaw in found]
+        if found and found[0].fatal:
+            raise SolveError(f"stage {k + 1} cannot be rated: {told[0]}")
+        try:
+            meshes.append(_mesh(scene, k, pair, slower))
+        except ValueError as reason:
+            why = "; ".join([str(reason), *told])
+            raise SolveError(f"stage {k + 1} cannot be rated: {why}") from None
+        slower *= float(pair.ratio)
+    return meshes
+
+
+def _mesh(scene: Scene, k: int, pair: GearPair, slower: float) -> Mesh:
+    """Rate one stage (from 0); slower: input over pinion speed."""
+    tables = gears.own(scene, k, "pinion"), gears.own(scene, k, "wheel")
+    steels = gears.steel(tables[0]), gears.steel(tables[1])
+    made = gears.practice(scene, pair, tables)
+    levels = gears.operations(scene, slower, tables)
+    given = gears.given_factors(scene, k)
+    if not scene.load:
+        one = rate(pair, levels[0], steels, made, given)
+        both = one.bending_safety, one.contact_safety
+        return Mesh(k + 1, pair, tables, levels, (one,), *both, None)
+    found = rate_spectrum(pair, levels, steels, made, given)
+    damages = found.bending_damage, found.contact_damage
+    both = found.bending_safety, found.contact_safety
+    return Mesh(k + 1, pair, tables, levels, found.levels, *both, damages)

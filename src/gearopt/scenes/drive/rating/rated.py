@@ -1,0 +1,177 @@
+"""The rating of a drive: of gears that are all given, and of those that were chosen."""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+from gearopt.errors import SolveError
+from gearopt.formulations.design import StageDesign, drive_design, of_pairs
+from gearopt.formulations.rating import DriveRating, GearRating, MeshRating
+from gearopt.optimise.clock import Clock
+from gearopt.optimise.result import FEASIBLE, Result, versions
+from gearopt.optimise.typed import untyped
+from gearopt.physics.gears import GearPair
+from gearopt.physics.loads import torque
+from gearopt.physics.shaft_forces import hands
+from gearopt.scenes.drive.assumptions import rating_assumptions
+from gearopt.scenes.drive.rating import gears as rated_gears
+from gearopt.scenes.drive.rating.checks import not_given
+from gearopt.scenes.drive.rating.geometry import tooth_geometry
+from gearopt.scenes.drive.rating.mesh import rated_meshes
+from gearopt.scenes.drive.rating.rows import (
+    factor_rows,
+    gear_row,
+    level_rows,
+    mesh_row,
+    shaft_rows,
+)
+from gearopt.scenes.drive.scene import Scene
+from gearopt.scenes.parts import tooth_warnings
+from gearopt.scenes.reading.ask import Ask
+from gearopt.scenes.reading.toml import dotted
+
+STANDARD = "ANSI/AGMA 2001-{} (2101), geometry factors of AGMA 908-B89"
+
+
+def rate(scene: Scene, ask: Ask) -> Result:
+    """Return the rating of gears that are all given, status `evaluated`; SolveError why not."""
+    if scene.rating is None:
+        raise SolveError("there is no table [rating]: write one; gearopt new rating shows how")
+    if missing := [dotted(place) for place in not_given(scene.gears, scene.stage)]:
+        raise SolveError(
+            f"the gears are not all given, which a rating needs: write {', '.join(missing)}; or "
+            "gearopt solve FILE, which sizes them and rates what it finds"
+        )
+    clock = Clock(ask.budget, ask.watch)
+    pairs = rated_gears.given_pairs(scene)
+    found = rating(scene, pairs)
+    limits = utilisations(found)
+    speed = scene.duty.input_speed.value
+    asked = scene.duty.total_ratio if scene.duty.asks_ratio else None
+    density = scene.objective.density
+    made = of_pairs(
+        scene.limits.LAW,
+        pairs,
+        torque(scene.duty.power.value, speed),
+        speed,
+        asked,
+        density.value if density else None,
+    )
+    return Result(
+        name="rating",
+        status="evaluated",
+        method=scene.rating.standard,
+        objective={},
+        certificate={"feasibility": max(0.0, max(limits.values()) - 1.0)},
+        design=untyped(replace(made, rating=found)),
+        limits=limits,
+        report={"assumptions": rating_assumptions(scene)},
+        evaluations=1,
+        seconds=clock.seconds,
+        seed=ask.seed,
+        versions=versions("numpy"),
+    )
+
+
+def with_rating(scene: Scene, result: Result) -> Result:
+    """Return the answer with the rating of its gears, or with the reason why there is none."""
+    if scene.rating is None or result.value is None:
+        return result
+    held = scene.held(len(result.design["stages"]))
+    try:
+        found = rating(held, chosen_pairs(held, drive_design(result.design).stages))
+    except SolveError as reason:
+        notes = [*result.report.get("notes", []), f"There is no rating: {reason}."]
+        return replace(result, report=result.report | {"notes": notes})
+    found = replace(found, flaws=())  # they stand in the notes of the drive
+    return replace(result, design=result.design | {"rating": untyped(found)})
+
+
+def chosen_pairs(scene: Scene, stages: Sequence[StageDesign]) -> tuple[GearPair, ...]:
+    """Return the pairs of a design, with the tools of the file."""
+    return tuple(
+        rated_gears.pair_of(
+            scene, k, s.normal_module_mm, (s.pinion_teeth, s.wheel_teeth), s.face_width_mm
+        )
+        for k, s in enumerate(stages)
+    )
+
+
+def utilisations(found: DriveRating) -> dict[str, float]:
+    """Return what of its safety factors every gear uses: asked for over there, of stress."""
+    limits = {}
+    for gear in found.gears:
+        bending = found.minimum_bending_safety / gear.bending_safety
+        contact = found.minimum_contact_safety / gear.contact_safety
+        limits[f"{gear.member}_bending[{gear.stage}]"] = bending
+        limits[f"{gear.member}_contact[{gear.stage}]"] = contact
+    return limits
+
+
+def rating(scene: Scene, pairs: tuple[GearPair, ...]) -> DriveRating:
+    """Return the rating of all stages; SolveError names the stage that has none, and why."""
+    asked = scene.rating
+    assert asked
+    meshes = rated_meshes(scene, pairs)
+    wanted = float(asked.minimum_bending_safety), float(asked.minimum_contact_safety)
+    rows = tuple(mesh_row(scene, mesh, wanted) for mesh in meshes)
+    least = min(rows, key=lambda row: row.power_capacity_kW)
+    gears = tuple(gear_row(mesh, k) for mesh in meshes for k in (0, 1))
+    factors = tuple(row for mesh in meshes for row in factor_rows(mesh))
+    turned = hands([table.pinion_hand for table in scene.stage] or [None] * len(pairs))
+    lives = [gear.life_h for gear in gears if gear.life_h is not None]
+    efficiency, error = _efficiency(rows)
+    return DriveRating(
+        standard=STANDARD.format(asked.edition),
+        safe=all(map(_meets(wanted), gears)),
+        governs=f"{least.governs}, stage {least.stage}",
+        minimum_bending_safety=wanted[0],
+        minimum_contact_safety=wanted[1],
+        power_capacity_kW=least.power_capacity_kW,
+        required_life_h=rated_gears.required_hours(scene),
+        life_h=min(lives, default=None),
+        efficiency_percent=efficiency,
+        efficiency_error_percent=error,
+        gears=gears,
+        meshes=rows,
+        factors=factors,
+        shafts=shaft_rows(pairs, turned, *_largest_load(scene)),
+        teeth=tuple(
+            tooth_geometry(mesh.stage, mesh.pair, k, turned[mesh.stage - 1])
+            for mesh in meshes
+            for k in (0, 1)
+        ),
+        levels=tuple(row for mesh in meshes if scene.load for row in level_rows(scene, mesh)),
+        unverified=tuple(
+            dict.fromkeys(f"{r.symbol} of stage {r.stage}" for r in factors if not r.verified)
+        ),
+        flaws=tuple(tooth_warnings(pairs)),
+    )
+
+
+def _meets(wanted: tuple[float, float]) -> Callable[[GearRating], bool]:
+    """Return whether a gear meets the safety factors asked for, within `FEASIBLE`."""
+
+    def meets(gear: GearRating) -> bool:
+        bending, contact = (
+            (1.0 + FEASIBLE) * s for s in (gear.bending_safety, gear.contact_safety)
+        )
+        return wanted[0] <= bending and wanted[1] <= contact
+
+    return meets
+
+
+def _efficiency(rows: Sequence[MeshRating]) -> tuple[float | None, float | None]:
+    """Return the efficiency of all meshes and its error [%]; None where one is not known."""
+    known = [p for row in rows if (p := row.mesh_efficiency_percent) is not None]
+    errors = [e for row in rows if (e := row.mesh_efficiency_error_percent) is not None]
+    whole = 100.0 * math.prod(p / 100.0 for p in known) if len(known) == len(rows) else None
+    return whole, sum(errors) if errors else None
+
+
+def _largest_load(scene: Scene) -> tuple[float, float]:
+    """Return torque [N mm] and speed [rad/s] of the input at the level of the largest torque."""
+    usual = scene.duty.input_speed
+    levels = [(level.power.value, (level.input_speed or usual).value) for level in scene.load]
+    levels = levels or [(scene.duty.power.value, usual.value)]
+    return max((torque(power, speed), speed) for power, speed in levels)

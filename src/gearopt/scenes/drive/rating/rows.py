@@ -1,0 +1,204 @@
+"""The rows of a rating's tables: gears, meshes, factors, shafts, levels of load."""
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+from gearopt.formulations.rating import (
+    GearRating,
+    LoadLevel,
+    MeshRating,
+    RatingFactor,
+    ShaftRating,
+)
+from gearopt.physics.agma.life import LONGEST
+from gearopt.physics.gears import GearPair
+from gearopt.physics.geometry.contact import total_contact_ratio
+from gearopt.physics.geometry.tooth import (
+    circumferential_backlash,
+    helix_angle_at,
+    normal_backlash,
+)
+from gearopt.physics.loads import torque
+from gearopt.physics.mesh_loss import (
+    FRICTION_ERROR,
+    friction_coefficient,
+    mesh_efficiency,
+    tooth_loss_factor,
+)
+from gearopt.physics.shaft_forces import mesh_forces, rotation, rpm, train_forces
+from gearopt.scenes.drive.rating.gears import MEMBERS, steel
+from gearopt.scenes.drive.rating.mesh import Mesh
+from gearopt.scenes.drive.rating.words import NAMES, UNITS, material
+from gearopt.scenes.drive.scene import Scene
+
+
+def gear_row(mesh: Mesh, k: int) -> GearRating:
+    """Return the pinion (0) or the wheel (1) of a mesh."""
+    one = mesh.hardest
+    stresses = one.bending_stress[k], one.contact_stress[k]
+    safeties = one.bending_safety[k], one.contact_safety[k]
+    cycles = sum(level.cycles[k] for level in mesh.levels)
+    lives, life = _lives(mesh, k, cycles)
+    return GearRating(
+        stage=mesh.stage,
+        member=MEMBERS[k],
+        material=material(mesh.tables[k]),
+        bending_stress_MPa=stresses[0],
+        permissible_bending_stress_MPa=stresses[0] * safeties[0],
+        bending_safety=mesh.bending_safety[k],
+        contact_stress_MPa=stresses[1],
+        permissible_contact_stress_MPa=stresses[1] * safeties[1],
+        contact_safety=mesh.contact_safety[k],
+        cycles=cycles,
+        bending_life_cycles=lives[0],
+        contact_life_cycles=lives[1],
+        life_h=life,
+        bending_damage=None if mesh.damages is None else mesh.damages[0][k],
+        contact_damage=None if mesh.damages is None else mesh.damages[1][k],
+    )
+
+
+def _lives(mesh: Mesh, k: int, cycles: float) -> tuple[list[float | None], float | None]:
+    """Return the lives in cycles, of bending and contact, and the shorter one in hours.
+
+    None: beyond the end of the curves. Of a spectrum by Miner: cycles over the sum.
+    """
+    one = mesh.levels[0]
+    if mesh.damages is None:
+        lives = [one.bending_life[k], one.contact_life[k]]
+    else:
+        sums = (mesh.damages[0][k], mesh.damages[1][k])
+        lives = [cycles / s if s > 0.0 else math.inf for s in sums]
+    hours = sum(level.hours for level in mesh.operations)
+    within = [life if life <= LONGEST else None for life in lives]
+    known = [life for life in within if life is not None]
+    return within, min(known) / cycles * hours if known else None
+
+
+def mesh_row(scene: Scene, mesh: Mesh, wanted: tuple[float, float]) -> MeshRating:
+    """Return a mesh; wanted: the safety factors asked for, of bending and contact."""
+    pair, one, operation = mesh.pair, mesh.hardest, mesh.hardest_operation
+    least, governs = _margins(mesh, wanted)
+    forces = mesh_forces(pair, torque(operation.power, operation.pinion_speed))
+    strongest = max(level.power for level in mesh.operations)
+    return MeshRating(
+        stage=mesh.stage,
+        governs=governs,
+        power_capacity_kW=1e-6 * least * strongest,
+        tangential_force_N=float(forces.tangential),
+        radial_force_N=float(forces.radial),
+        axial_force_N=float(forces.axial),
+        pitch_line_velocity_m_per_s=1e-3 * one.speed,
+        working_pressure_angle_deg=math.degrees(pair.working_angle),
+        working_helix_angle_deg=math.degrees(
+            helix_angle_at(pair.pinion, pair.working_diameters[0])
+        ),
+        transverse_contact_ratio=float(pair.transverse_contact_ratio),
+        overlap_ratio=float(pair.overlap_ratio),
+        total_contact_ratio=float(total_contact_ratio(pair)),
+        circumferential_backlash_mm=float(circumferential_backlash(pair)),
+        normal_backlash_mm=float(normal_backlash(pair)),
+        **_losses(scene, mesh),
+    )
+
+
+def _losses(scene: Scene, mesh: Mesh) -> dict[str, Any]:
+    """Return what is lost by the sliding of teeth, where the friction is known."""
+    loss, (friction, sure) = float(tooth_loss_factor(mesh.pair)), _friction(scene, mesh)
+    found: dict[str, Any] = {"tooth_loss_factor": loss, "friction_coefficient": friction}
+    if friction is not None:
+        found["mesh_efficiency_percent"] = 100.0 * float(mesh_efficiency(loss, friction))
+        if not sure:
+            found["mesh_efficiency_error_percent"] = 100.0 * FRICTION_ERROR * friction * loss
+    return found
+
+
+def _margins(mesh: Mesh, wanted: tuple[float, float]) -> tuple[float, str]:
+    """Return the least margin of load against the safety factors asked for, and whose it is."""
+    rows = []
+    for k, member in enumerate(MEMBERS):
+        rows.append((mesh.bending_safety[k] / wanted[0], f"bending of the {member}"))
+        rows.append(((mesh.contact_safety[k] / wanted[1]) ** 2, f"contact of the {member}"))
+    return min(rows)
+
+
+def _friction(scene: Scene, mesh: Mesh) -> tuple[float | None, bool]:
+    """Return the coefficient of friction, None where nothing is known; whether it is given."""
+    asked, one = scene.rating, mesh.hardest
+    assert asked
+    if asked.friction_coefficient is not None:
+        return float(asked.friction_coefficient), True
+    if asked.oil_viscosity is None:
+        return None, False
+    roughness = 0.5 * sum(steel(table).finish for table in mesh.tables)
+    known = one.load, one.speed, asked.oil_viscosity.value, roughness
+    return float(friction_coefficient(mesh.pair, *known)), False
+
+
+def factor_rows(mesh: Mesh) -> list[RatingFactor]:
+    """Return the factors of a mesh at its hardest level."""
+    rows = []
+    for symbol, factor in mesh.hardest.factors.items():
+        value = factor.value
+        first, second = value if isinstance(value, tuple) else (value, None)
+        rows.append(
+            RatingFactor(
+                stage=mesh.stage,
+                symbol=symbol,
+                name=NAMES[symbol],
+                pinion=first,
+                wheel=second,
+                unit=UNITS.get(symbol, ""),
+                source=factor.clause,
+                verified=factor.verified,
+                remark=factor.remark,
+            )
+        )
+    return rows
+
+
+def shaft_rows(
+    pairs: Sequence[GearPair], pinion_hands: Sequence[str], moved: float, speed: float
+) -> tuple[ShaftRating, ...]:
+    """Return what every shaft carries; moved: torque [N mm] of the input, speed [rad/s]."""
+    forces = train_forces(pairs, moved, pinion_hands)
+    ratios = [float(pair.ratio) for pair in pairs]
+    return tuple(
+        ShaftRating(
+            shaft=shaft,
+            torque_Nm=1e-3 * moved * math.prod(ratios[: shaft - 1]),
+            speed_rpm=rpm(speed / math.prod(ratios[: shaft - 1])),
+            rotation=rotation(shaft),
+            axial_force_N=sum(f.axial for f in forces if f.shaft == shaft),
+        )
+        for shaft in range(1, len(pairs) + 2)
+    )
+
+
+def level_rows(scene: Scene, mesh: Mesh) -> list[LoadLevel]:
+    """Return the levels of a load spectrum, for each gear of a mesh."""
+    rows = []
+    for n, (level, one) in enumerate(zip(scene.load, mesh.levels, strict=True), 1):
+        for k in (0, 1):
+            rows.append(
+                LoadLevel(
+                    stage=mesh.stage,
+                    member=MEMBERS[k],
+                    level=n,
+                    power_kW=1e-6 * level.power.value,
+                    input_speed_rpm=rpm((level.input_speed or scene.duty.input_speed).value),
+                    share_percent=100.0 * float(level.share),
+                    cycles=one.cycles[k],
+                    bending_stress_MPa=one.bending_stress[k],
+                    contact_stress_MPa=one.contact_stress[k],
+                    bending_damage=_damage(one.cycles[k], one.bending_life[k]),
+                    contact_damage=_damage(one.cycles[k], one.contact_life[k]),
+                )
+            )
+    return rows
+
+
+def _damage(cycles: float, life: float) -> float | None:
+    """Return a level's part of Miner's sum; None where it breaks or pits at once."""
+    return cycles / life if life > 0.0 else None
