@@ -3,8 +3,6 @@
 import math
 from collections.abc import Iterator
 
-import numpy as np
-
 from gearopt.formulations.design import drive_design
 from gearopt.optimise.result import Result
 from gearopt.physics.gears import Gear, GearPair
@@ -85,8 +83,8 @@ def _rim(gear: Gear, r: float, sign: float, reach: float) -> Iterator[tuple[floa
 
     reach: angle [rad] up to which teeth are seen; the sector ends beyond.
     """
-    x, y = profile(gear, FILLET, FLANK)
-    side = list(zip(np.arctan2(x, y), np.hypot(x, y), strict=True))  # from the root to the tip
+    points = zip(*profile(gear, FILLET, FLANK), strict=True)  # from the root to the tip
+    side = [(math.atan2(x, y), math.hypot(x, y)) for x, y in points]
     pitch = 2.0 * math.pi / gear.teeth
     start = -sign * float(half_angle(gear, r))  # its flank at the pitch point touches the mate's
     count = min(math.ceil(reach / pitch) + 1, int(gear.teeth) // 2)
