@@ -33,3 +33,14 @@ def without(tables, table, key):
     place = tables[table][0] if table == "stage" else tables[table]
     del place[key]
     return tables
+
+
+def numbers_of(held, place=""):
+    """Every number of nested tables by its place."""
+    if isinstance(held, dict):
+        return {k: v for n, h in held.items() for k, v in numbers_of(h, f"{place}.{n}").items()}
+    if isinstance(held, list):
+        rows = enumerate(held)
+        return {k: v for n, h in rows for k, v in numbers_of(h, f"{place}[{n}]").items()}
+    number = isinstance(held, int | float) and not isinstance(held, bool)
+    return {place: held} if number else {}

@@ -4,7 +4,7 @@ import math
 from pathlib import Path
 
 import pytest
-from rated_files import pair, two_stages, without
+from rated_files import numbers_of, pair, two_stages, without
 
 import gearopt
 from gearopt.scenes.explaining.numbers import numbers
@@ -22,17 +22,6 @@ def of(rows, **which):
     """The one row of a table with these values."""
     (row,) = (r for r in rows if which.items() <= r.items())
     return row
-
-
-def numbers_of(held, place=""):
-    """Every number of nested tables by its place."""
-    if isinstance(held, dict):
-        return {k: v for n, h in held.items() for k, v in numbers_of(h, f"{place}.{n}").items()}
-    if isinstance(held, list):
-        rows = enumerate(held)
-        return {k: v for n, h in rows for k, v in numbers_of(h, f"{place}[{n}]").items()}
-    number = isinstance(held, int | float) and not isinstance(held, bool)
-    return {place: held} if number else {}
 
 
 def test_safety_factors_are_the_limits_as_utilisations():
@@ -258,6 +247,23 @@ def test_the_optimum_of_a_sized_drive_is_rated_as_its_gears_are(solved):
     tables = two_stages(stages[0], stages[1], gears={"helix_angle": "25 deg"})
     ours, theirs = (numbers_of(d) for d in (rated(tables), result.design["rating"]))
     assert ours == pytest.approx(theirs, rel=1e-9, abs=1e-12)
+
+
+def test_the_best_number_of_stages_is_rated():
+    """`stages` as a range, continuous sizes; the example's duty."""
+    tables = {
+        "gearopt": 1,
+        "kind": "drive",
+        "stages": [1, 2],
+        "duty": {"power": "7.5 kW", "input_speed": "1450 rpm", "ratio": 8},
+        "gears": {"face_width_over_diameter": 0.6, "treatment": "carburised"},
+        "limits": {"preset": "chong-lee-elevator", "pinion_teeth": [20, 40]},
+        "rating": {"life": "20000 h", "quality": 8},
+    }
+    result = gearopt.solve(tables)
+    gears = result.design["rating"]["gears"]
+    assert result.status == "optimal" and len(gears) == 2 * len(result.design["stages"])
+    assert all(g["material"] == "carburised, grade 1" for g in gears)
 
 
 def test_without_its_rating_a_sized_drive_is_the_same(solved):
