@@ -191,6 +191,19 @@ WRONG = {  # the mistake: what stands there, what is written, key and value as t
         "stage[1].wheel_teeth",
         "is missing: a rating takes given gears",
     ),
+    "rating misspelt": ("[rating]", "[ratings]", "ratings", "Did you mean rating?"),
+    "symbol of 2101": (
+        GIVEN,
+        "[rating.given]\nY_J = 0.3\n#",
+        "rating.given.Y_J = 0.3",
+        "Here it is called J, in [rating.given]",
+    ),
+    "teeth in the table of the pinion": (
+        "profile_shift = 0.2",
+        "teeth = 20",
+        "stage[1].pinion.teeth = 20",
+        "Here it is called pinion_teeth",
+    ),
     "no rating": (RATING, "", "limits", "to rate given gears, write a table [rating]"),
 }
 

@@ -117,7 +117,8 @@ class Scene(Table):
     def _needed(cls, value: Any, handler: Callable[[Any], Limits], info: ValidationInfo) -> Limits:
         """Refuse a file without limits, unless it has a rating."""
         if value is None and info.data.get("rating", "wrong") is None:
-            raise refuse("is missing (or, to rate given gears, write a table [rating])")
+            rule = "is missing (or, to rate given gears, write a table [rating])"
+            raise refuse(rule, instead="rating")
         return Limits.open() if value is None else handler(value)
 
     @model_validator(mode="after")

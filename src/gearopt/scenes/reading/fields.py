@@ -71,16 +71,21 @@ class Reads:
 
 
 def refuse(
-    rule: str, write: Any = None, at: tuple[Any, ...] = (), action: str = "set"
+    rule: str,
+    write: Any = None,
+    at: tuple[Any, ...] = (),
+    action: str = "set",
+    instead: str = "",
 ) -> PydanticCustomError:
     """Return the error for a value: what is wrong, and what to do.
 
     write: the value to set (None: the field's example), or for `swap` the key to exchange with.
     at: the place below the checked table, for checks of several keys. action: as in
     errors.Fix, or sample: to set, but one right value of many; or tell: `write` is the sentence
-    that says what to do, where that takes edits of several keys.
+    that says what to do, where that takes edits of several keys. instead: a key beside it that
+    would do in its place; where that one is only misspelt, this is not told.
     """
-    context = {"rule": rule, "write": write, "at": at, "action": action}
+    context = {"rule": rule, "write": write, "at": at, "action": action, "instead": instead}
     return PydanticCustomError("gearopt", "{rule}", context)
 
 

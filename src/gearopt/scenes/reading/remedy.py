@@ -60,7 +60,12 @@ def translate(
         for place, _, mistake in mistakes
         if mistake.fix is not None and mistake.fix.action == "rename"
     }
-    real = [m for m in mistakes if m[1]["type"] != "missing" or m[0] not in renamed]
+
+    def follows(place: tuple[Any, ...], error: Any) -> bool:
+        instead = (*place[:-1], error.get("ctx", {}).get("instead"))
+        return instead in renamed or (error["type"] == "missing" and place in renamed)
+
+    real = [m for m in mistakes if not follows(m[0], m[1])]
     return [mistake for *_, mistake in sorted(real, key=lambda m: _order(content, m[0]))]
 
 
@@ -139,7 +144,8 @@ def _unknown(
     name, key, shown = str(place[-1]), dotted(place), cut(dotted(place), 80)
     if way := nearest(kind, name):
         return SceneError(file, shown, short(value), "is not supported yet", way)
-    if there := called(kind, name):
+    above = next((part for part in reversed(place[:-1]) if isinstance(part, str)), "")
+    if there := called(kind, f"{above}.{name}") or called(kind, name):
         return SceneError(file, shown, short(value), "unknown key", f"Here it is called {there}")
     what = "unknown table" if isinstance(_first(value), dict) else "unknown key"
     if homes := _homes(model, name):
