@@ -11,6 +11,7 @@ import gearopt
 from gearopt.formulations.rating import DriveRating
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import typed
+from gearopt.physics.mesh_loss import FRICTION_ERROR
 from gearopt.physics.shaft_forces import OTHER
 from gearopt.report.terminal import show
 from gearopt.scenes.reading.load import examples
@@ -38,7 +39,7 @@ The first command prints this file. A pair is a drive of one stage:
 
 With all teeth, modules and widths given, `[limits]` and the ratio of `[duty]` are left out. What
 both gears share stands in `[gears]`; what one has of its own in `[stage.pinion]`, `[stage.wheel]`.
-It is cut by the tool of ISO 53 profile A unless a tool is given, and runs at the centre distance
+They are cut by the tool of ISO 53 profile A unless a tool is given, and run at the centre distance
 without backlash unless `centre_distance` and `thickness_allowance` say otherwise. The same in
 inches: `diametral_pitch = 10`, `"1.5 in"`, `"4 hp"`, `"50 ksi"`.
 
@@ -58,7 +59,7 @@ inches: `diametral_pitch = 10`, `"1.5 in"`, `"4 hp"`, `"50 ksi"`.
 - **life**: until a safety factor has fallen to 1. The curves of Y_N and Z_N end at 1e10 cycles;
   beyond them no number is told.
 - **efficiency**: of the mesh alone, from `oil_viscosity` or `friction_coefficient`. A computed
-  coefficient of friction may be wrong by a third.
+  coefficient of friction may be {friction} % off, which is what ± stands for.
 - **unverified**: a single source or memory alone has it, or no published value confirms it. I and J
   of helical gears are.
 
@@ -108,8 +109,9 @@ left-handed one take the left hand. The mate has the other hand and the opposite
 ones are such that the two thrusts of an intermediate shaft oppose each other. Seen from the input
 end, where the input turns clockwise, → is away from the eye (`problems/two_stages_rated.toml`):
 
-```
-{forces}```
+| shaft | turns | thrusts of its gears | sum |
+|---|---|---|---|
+{forces}
 
 The sum is what the bearings of a shaft hold. Turned the other way round all thrusts change sides.
 
@@ -141,6 +143,7 @@ def page() -> str:
         used=f"`{used[0]}`",
         used_value=f"{used[1]:.3f}",
         square=f"{pair.gears[0].contact_safety ** 2:.2f}",
+        friction=f"{100 * FRICTION_ERROR:.0f}",
         given=_table("shigley_14_4", r"\[rating\.given\].*?\n(?=\n|\Z)"),
         books=_books(),
         higher=f"{100 * (_contact('shigley_14_4_by_908') / _contact('shigley_14_4') - 1):.0f}",
@@ -157,8 +160,8 @@ def _rating(result: Result) -> DriveRating:
 
 
 def _printed(result: Result) -> str:
-    """What the terminal shows, 110 columns wide."""
-    screen = Console(width=110, record=True, file=io.StringIO())
+    """What a terminal of 88 columns shows."""
+    screen = Console(width=88, record=True, file=io.StringIO())
     show(result, screen)
     lines = [line.rstrip() for line in screen.export_text().splitlines()]
     return "\n".join(lines).strip("\n") + "\n"
@@ -218,11 +221,10 @@ def _forces(rating: DriveRating) -> str:
                 continue
             force = rating.meshes[stage - 1].axial_force_N
             gears.append((stage, member, hands[stage, member], _along(stage, hands, member), force))
-        told = [f"{m} {k} {h:5} {a} {f:7,.1f} N" for k, m, h, a, f in gears]
+        told = [f"{m} {k}, {h}: {a} {f:,.1f} N" for k, m, h, a, f in gears]
         whole = f"{'→' if shaft.axial_force_N > 0 else '←'} {abs(shaft.axial_force_N):,.1f} N"
-        words = f"shaft {shaft.shaft}, {shaft.rotation:13}  {'   '.join(told):56}  sum {whole}"
-        lines.append(words)
-    return "\n".join(lines) + "\n"
+        lines.append(f"| {shaft.shaft} | {shaft.rotation} | {'; '.join(told)} | {whole} |")
+    return "\n".join(lines)
 
 
 def _along(stage: int, hands: dict[tuple[int, str], str], member: str) -> str:
