@@ -277,3 +277,11 @@ def test_numbers_of_a_rating_size_nothing_and_are_not_explained():
     keys = {n.key for n in numbers(unrated(scene))}
     assert "duty.power" in keys and "gears.helix_angle" in keys
     assert not any("rating" in key or "treatment" in key or "load" in key for key in keys)
+
+
+@pytest.mark.slow
+def test_explain_of_a_sized_drive_lists_no_number_of_its_rating():
+    found = gearopt.explain(PROBLEMS / "sized_and_rated.toml")
+    keys = {influence.key for influence in found.influences}
+    assert {"duty.power", "limits.k_factor"} <= keys
+    assert not any("rating" in key or "treatment" in key for key in keys)
