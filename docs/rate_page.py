@@ -59,7 +59,7 @@ inches: `diametral_pitch = 10`, `"1.5 in"`, `"4 hp"`, `"50 ksi"`.
 - **life**: until a safety factor has fallen to 1. The curves of Y_N and Z_N end at 1e10 cycles;
   beyond them no number is told.
 - **efficiency**: of the mesh alone, from `oil_viscosity` or `friction_coefficient`. A computed
-  coefficient of friction may be {friction} % off, which is what ± stands for.
+  coefficient of friction may be {friction} % off, which is what ± stands for and is unverified.
 - **unverified**: a single source or memory alone has it, or no published value confirms it. I and J
   of helical gears are.
 
@@ -92,7 +92,8 @@ if it is another one), each with its share of the life. The shares add up to 100
 
 The damage of a level is its number of cycles over the life at its stress; Miner's sum of all levels
 is 1 at the end of the life. S_F and S_H are the factors by which all stresses may grow until then.
-Stresses and forces that are shown are those of the hardest level. The first pinion of
+Stresses and factors that are shown are those of the level of largest stress, forces those of the
+level of largest force: K_v rises with speed. The first pinion of
 `problems/two_stages_rated.toml`, beside one load for the whole life:
 
 | load | S_F | S_H |

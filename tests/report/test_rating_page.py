@@ -112,6 +112,15 @@ def test_the_terminal_has_every_factor_and_what_is_given_or_unverified():
     assert "F_t 732.94 N" in single and "F_t 164.77 lbf" in told(cases.shigley(), INCH)
 
 
+def test_the_terminal_says_where_factors_leave_their_range():
+    (file,) = (path for path in FILES if path.stem == "catalogue_pair")
+    hot = gearopt.rate(file, {"rating.temperature": "130 degC", "duty.input_speed": "30000 rpm"})
+    words = " ".join(told(hot).split())
+    assert "K_T: above 120 °C the standard has no value." in words
+    assert "K_v: beyond the curve, which ends at " in words
+    assert re.search(r"Efficiency of the meshes: [\d.]+ ± [\d.]+ %, unverified\.", words)
+
+
 @pytest.mark.parametrize("make", RATED, ids=lambda f: f.__name__)
 @pytest.mark.parametrize("measures", [METRIC, INCH], ids=lambda m: m.name)
 def test_no_number_stands_twice(make, measures):

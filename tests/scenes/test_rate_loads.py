@@ -85,6 +85,19 @@ def test_levels_have_their_own_speed():
     assert [r["input_speed_rpm"] for r in rows] == pytest.approx([1450, 725], rel=1e-12)
 
 
+def test_stresses_are_those_of_the_largest_and_forces_of_the_largest_force():
+    """K_v makes a fast level with less force the harder one."""
+    load = [level("10 kW", 0.5, input_speed="500 rpm"), level("70 kW", 0.5, input_speed="4000 rpm")]
+    found = rated(pair({"quality": 5}, load=load))
+    for row in found["gears"]:
+        for name in ("bending_stress_MPa", "contact_stress_MPa"):
+            own = [r[name] for r in found["levels"] if r["member"] == row["member"]]
+            assert row[name] == max(own) == own[1]
+    force = 10e6 / (500 * math.pi / 30) * 2.0 / 60.0  # T/r
+    assert found["meshes"][0]["tangential_force_N"] == pytest.approx(force, rel=1e-12)
+    assert found["shafts"][0]["torque_Nm"] == pytest.approx(1e-3 * force * 30.0, rel=1e-12)
+
+
 OVERLOADED = {  # lives within the curves: on both branches, of a spectrum, of a later stage
     "short": pair(duty={"power": "40 kW"}),
     "long": pair(duty={"power": "16.5 kW"}),

@@ -11,9 +11,9 @@ class GearRating:
     """One gear in its mesh.
 
     permissible stresses: allowable stress numbers times factors of life, hardness, temperature and
-    reliability, without a safety factor. Of a load spectrum stresses are those of the hardest
-    level, safety factors those of all levels. Lives: None beyond the end of the curves; 0 where it
-    fails at once. damages: Miner's sums, of a spectrum.
+    reliability, without a safety factor. Of a load spectrum stresses are those of the level where
+    they are largest, safety factors those of all levels. Lives: None beyond the end of the
+    curves; 0 where it fails at once. damages: Miner's sums, of a spectrum.
     """
 
     stage: int
@@ -55,6 +55,7 @@ class RatingFactor:
 class MeshRating:
     """One mesh: contact, forces at the working pitch circles, losses, what it may transmit.
 
+    Of a load spectrum forces, velocity and friction are those of the level of largest force.
     governs: member and mode of the least safety, against the safety factors that are asked for;
     power_capacity: at which it is just met. friction, efficiency: None where nothing is known of
     the oil; the error, up or down, is that of a computed friction.

@@ -27,12 +27,26 @@ def factors(result: Result, measures: Measures) -> Section | None:
     rows = [_factor_row(found, own, measures) for own in symbols.values()]
     hidden = ["unit", "unverified"] + ([] if any(row[-1] for row in rows) else ["remark"])
     table = Table("factors", heads, rows, csv_only=hidden, texts=("factor", "source", "remark"))
-    level = " Of a load spectrum factors are those of the hardest level." if found.levels else ""
+    level = (
+        " Of a load spectrum factors are those of the level of largest stress."
+        if found.levels
+        else ""
+    )
     words = [f"A value below a pinion alone holds for its wheel, too.{level}"]
     words += map(measures.words, unverified(found))
     told: list[str | Table] = [*_factors_told(found, list(symbols.values()), measures)]
-    told += words[1:]
+    told += [*words[1:], *_remarks(rows)]
     return Section("Factors", words=words, tables=(table,), terminal=told)
+
+
+def _remarks(rows: Sequence[Sequence[Any]]) -> list[str]:
+    """Return what limits factors, for the terminal; what limits several once."""
+    symbols: dict[str, list[str]] = {}
+    for symbol, *_, remark in rows:
+        if remark:
+            symbols.setdefault(remark, []).append(symbol.value)
+    lines = [f"{series_of(own)}: {remark}." for remark, own in symbols.items()]
+    return ["\n".join(lines)] if lines else []
 
 
 def _factor_row(found: DriveRating, own: Sequence[RatingFactor], measures: Measures) -> list[Any]:

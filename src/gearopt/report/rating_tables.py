@@ -18,6 +18,7 @@ from gearopt.report.rating_words import (
     life,
     rating_of,
     told,
+    unsure,
     unverified,
 )
 from gearopt.report.section import Cell, Section, Table, cell, percent
@@ -248,7 +249,7 @@ def _told(result: Result, found: DriveRating, measures: Measures) -> list[str | 
     table = Table("gears", ["gear", *heads], rows, short=read, wrap=9)
     lasts = f"Life: {life(found.life_h)}, {life(found.required_life_h)} asked for."
     if found.efficiency_percent is not None:
-        lasts += f" Efficiency of the meshes: {efficiency(found)}."
+        lasts += f" Efficiency of the meshes: {efficiency(found)}{unsure(found)}."
     first = [] if result.name == RATING else [measures.words(told(found))]
     end = unverified(found) if first else []
     return [*first, table, "\n".join([lasts, f"By {found.standard}.", *end])]

@@ -133,6 +133,11 @@ def efficiency(found: DriveRating) -> str:
     return f"{rounded(found.efficiency_percent, 4)}{about} %"
 
 
+def unsure(found: DriveRating) -> str:
+    """Return that the error of an efficiency is unverified; nothing where friction is given."""
+    return "" if found.efficiency_error_percent is None else ", unverified"
+
+
 def tiles(result: Result, measures: Measures) -> list[Tile]:
     """Return least safety factors, power capacity, life and efficiency as key figures."""
     if (found := rating_of(result)) is None:

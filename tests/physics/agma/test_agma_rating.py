@@ -165,6 +165,21 @@ def test_rating_at_the_life_it_prints_is_safe_by_1(pair, treatment):
                     assert safety == pytest.approx(1.0, abs=1e-9)
 
 
+@pytest.mark.parametrize("given", [0.5, 1.0, 2.0])
+def test_a_given_life_factor_leaves_lives_on_the_side_of_their_safety(given):
+    """As long as asked for where S is 1, longer where it is above."""
+    factors = {"Y_N": (given, given), "Z_N": (given, given)}
+    for power in (0.3, 1.0, 4.0):
+        case = replace(EXAMPLE, power=power * EXAMPLE.power)
+        found = rate(spur(), case, STEELS, None, factors)
+        for lives, safety in (
+            (found.bending_life, found.bending_safety),
+            (found.contact_life, found.contact_safety),
+        ):
+            for k in (0, 1):
+                assert (lives[k] >= found.cycles[k]) == (safety[k] >= 1.0)
+
+
 def test_at_its_permissible_power_the_pair_is_just_safe():
     found = rate(spur(), EXAMPLE, STEELS)
     limit = rate(spur(), replace(EXAMPLE, power=found.power), STEELS)
@@ -257,7 +272,18 @@ def test_what_is_usual_where_nothing_is_said():
     assert found["K_R"].value == found["K_T"].value == found["K_o"].value == 1.0
     assert found["K_T"].clause == "2001-D04, 19"
     hot = rate(spur(), replace(EXAMPLE, temperature_C=121.0), STEELS).factors["K_T"]
-    assert hot.value > 1.1 and "customary" in hot.clause
+    assert hot.value > 1.1 and "customary" in hot.clause and not hot.verified
+
+
+def test_what_lies_beyond_tables_and_charts_is_unverified():
+    """Strengths off the lines' hardness, C_H of a large ratio; within them nothing is."""
+    harder = Steel(hardness=390.0), Steel(hardness=280.0)
+    inside = rate(spur(), EXAMPLE, harder)
+    wide = rate(GearPair.of_teeth(2.54, 17, 357, 38.1), EXAMPLE, harder)
+    assert inside.unverified == () and wide.unverified == ("C_H",)
+    assert "ratio of 20" in wide.factors["C_H"].remark
+    off = rate(spur(), EXAMPLE, (Steel(hardness=600.0), Steel(hardness=280.0)))
+    assert off.unverified == ("s_at", "s_ac")
 
 
 def test_strengths_may_be_given_without_a_hardness():

@@ -17,6 +17,7 @@ FEET_PER_MINUTE = 12.0 * INCH / 60.0  # mm/s, of one ft/min
 QUALITIES = (5.0, 11.0)  # of the curves of K_v
 WIDEST = 40.0 * INCH  # face width of the curves of K_m, mm
 THINNEST = 0.5  # backup ratio at which the chart of K_B begins
+WARM = 120.0  # degrees C up to which K_T is 1
 
 # C_ma = A + B F + C F^2, F in inches. Source: AGMA 2001-D04, clause 15, in a public program with
 # the metric constants of 2101-D04 (0.0380; -1.69e-7/mm^2; efirvida/python-gearbox), and in three
@@ -220,7 +221,7 @@ def temperature_factor(temperature_C: Any) -> Any:
     machine design; a public program has it at all temperatures); it starts with a jump to 1.14.
     """
     fahrenheit = 1.8 * temperature_C + 32.0
-    hot = choose(temperature_C > 120.0, 1.0, 0.0)
+    hot = choose(temperature_C > WARM, 1.0, 0.0)
     return 1.0 + hot * np.maximum(0.0, (460.0 + fahrenheit) / 620.0 - 1.0)
 
 

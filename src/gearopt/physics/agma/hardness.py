@@ -11,6 +11,7 @@ from gearopt.physics.agma.factors import INCH
 from gearopt.physics.agma.mesh import choose
 
 WHEELS = (180.0, 400.0)  # HB of wheels against surface hardened pinions
+LARGEST_RATIO = 20.0  # where the chart of through-hardened pairs ends
 MICROINCH = 1e-6 * INCH  # mm
 
 
@@ -23,7 +24,7 @@ def hardness_ratio_factor(pinion_hardness: Any, wheel_hardness: Any, ratio: Any)
     """
     harder = pinion_hardness / wheel_hardness
     slope = choose(harder < 1.2, 0.0, choose(harder > 1.7, 0.00698, 8.98e-3 * harder - 8.29e-3))
-    return 1.0 + slope * (np.minimum(ratio, 20.0) - 1.0)
+    return 1.0 + slope * (np.minimum(ratio, LARGEST_RATIO) - 1.0)
 
 
 def surface_hardened_factor(finish: Any, wheel_hardness: Any) -> Any:

@@ -34,8 +34,8 @@ class Rating:
 
     factors by symbol; load W_t [N]; speed v [mm/s]; stresses [MPa]; safety factors of bending S_F
     and of contact S_H (of stress; S_H^2 is of load); cycles asked for; lives [cycles] at which S_F
-    and S_H are 1; power [N mm/s] at which the least of all safety factors is 1; governs: member and
-    mode.
+    and S_H are 1 (a given Y_N or Z_N scales its curve); power [N mm/s] at which the
+    least of all safety factors is 1; governs: member and mode.
     """
 
     factors: dict[str, Factor]
@@ -116,8 +116,9 @@ def _results(case: Case, found: dict[str, Factor]) -> Rating:
         strong = one["s_ac"][k], one["Z_N"][k], one["C_H"][k]
         s_h.append(stress.contact_safety(*strong, *weaker, pressed[k]))
     bending, contact = (life_curves(case, mode) for mode in (False, True))
-    lives_f = [float(stress.bending_life(bending[k], one["Y_N"][k], s_f[k])) for k in (0, 1)]
-    lives_h = [float(stress.contact_life(contact[k], one["Z_N"][k], s_h[k])) for k in (0, 1)]
+    y_n, z_n = ([float(c[k].factor(case.cycles[k])) for k in (0, 1)] for c in (bending, contact))
+    lives_f = [float(stress.bending_life(bending[k], y_n[k], s_f[k])) for k in (0, 1)]
+    lives_h = [float(stress.contact_life(contact[k], z_n[k], s_h[k])) for k in (0, 1)]
     modes = [(s_f[k], MEMBERS[k], "bending") for k in (0, 1)]
     least, *governs = min(modes + [(s_h[k] ** 2, MEMBERS[k], "contact") for k in (0, 1)])
     return Rating(

@@ -171,8 +171,11 @@ def _reliability(case: Case) -> Factor:
 
 def _temperature(case: Case) -> Factor:
     celsius = case.operation.temperature_C
-    clause = "2001-D04, 19" if celsius <= 120.0 else "customary; the standard has no value"
-    return Factor("K_T", float(factors.temperature_factor(celsius)), clause)
+    value = float(factors.temperature_factor(celsius))
+    if celsius <= factors.WARM:
+        return Factor("K_T", value, "2001-D04, 19")
+    remark = f"above {factors.WARM:g} °C the standard has no value"
+    return Factor("K_T", value, "customary", "", False, remark)
 
 
 def _elastic(case: Case) -> Factor:
@@ -246,7 +249,7 @@ def _strength(case: Case, contact: bool) -> Factor:
     first, second = (a.stress * u for a, u in zip(made, used, strict=True))
     remark = "" if all(a.within for a in made) else "hardness outside the range of its line"
     sources = "; ".join(dict.fromkeys(a.source for a in made))
-    verified = all(a.verified for a in made)
+    verified = all(a.verified and a.within for a in made)
     return Factor("s_ac" if contact else "s_at", (first, second), sources, "MPa", verified, remark)
 
 
@@ -287,10 +290,11 @@ def _hardness_ratio(case: Case) -> Factor:
         low, high = hardness.WHEELS
         remark = "" if low <= wheel.hardness <= high else f"wheels of {low:g} to {high:g} HB"
     else:
-        value = hardness.hardness_ratio_factor(
-            pinion.hardness, wheel.hardness, float(case.pair.ratio)
-        )
-    return Factor("C_H", (1.0, float(value)), clause, remark=remark)
+        ratio, most = float(case.pair.ratio), hardness.LARGEST_RATIO
+        value = hardness.hardness_ratio_factor(pinion.hardness, wheel.hardness, ratio)
+        if ratio > most and value > 1.0:
+            remark = f"that of a ratio of {most:g}, where the chart ends"
+    return Factor("C_H", (1.0, float(value)), clause, "", not remark, remark)
 
 
 _COMPUTED = {

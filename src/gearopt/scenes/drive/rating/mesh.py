@@ -27,13 +27,13 @@ class Mesh:
 
     @property
     def hardest(self) -> Rating:
-        """Return the rating at the level of the largest load."""
-        return max(self.levels, key=lambda level: level.load)
+        """Return the rating at the level of the largest stresses, which K_v raises with speed."""
+        return max(self.levels, key=lambda level: level.bending_stress)
 
     @property
-    def hardest_operation(self) -> Operation:
-        """Return the level of the largest load."""
-        return self.operations[self.levels.index(self.hardest)]
+    def largest_load(self) -> Rating:
+        """Return the rating at the level of the largest tangential force."""
+        return max(self.levels, key=lambda level: level.load)
 
 
 def rated_meshes(scene: Scene, pairs: tuple[GearPair, ...]) -> list[Mesh]:

@@ -19,7 +19,6 @@ from gearopt.physics.geometry.tooth import (
     helix_angle_at,
     normal_backlash,
 )
-from gearopt.physics.loads import torque
 from gearopt.physics.mesh_loss import (
     FRICTION_ERROR,
     friction_coefficient,
@@ -78,9 +77,9 @@ def _lives(mesh: Mesh, k: int, cycles: float) -> tuple[list[float | None], float
 
 def mesh_row(scene: Scene, mesh: Mesh, wanted: tuple[float, float]) -> MeshRating:
     """Return a mesh; wanted: the safety factors asked for, of bending and contact."""
-    pair, one, operation = mesh.pair, mesh.hardest, mesh.hardest_operation
+    pair, one = mesh.pair, mesh.largest_load
     least, governs = _margins(mesh, wanted)
-    forces = mesh_forces(pair, torque(operation.power, operation.pinion_speed))
+    forces = mesh_forces(pair, 0.5 * one.load * float(pair.working_diameters[0]))
     strongest = max(level.power for level in mesh.operations)
     return MeshRating(
         stage=mesh.stage,
@@ -125,7 +124,7 @@ def _margins(mesh: Mesh, wanted: tuple[float, float]) -> tuple[float, str]:
 
 def _friction(scene: Scene, mesh: Mesh) -> tuple[float | None, bool]:
     """Return the coefficient of friction, None where nothing is known; whether it is given."""
-    asked, one = scene.rating, mesh.hardest
+    asked, one = scene.rating, mesh.largest_load
     assert asked
     if asked.friction_coefficient is not None:
         return float(asked.friction_coefficient), True
