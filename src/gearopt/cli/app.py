@@ -18,14 +18,17 @@ HELP = "\n\n".join(
         "A text file says what is needed: power, speeds, limits. gearopt finds the smallest or "
         "lightest gears that do it, and how much smaller any other design could be: mostly not at "
         "all. It does so for drives of up to six stages and the box around them, for servo axes, "
-        "for compound trains of a given ratio, and for packings of cylinders.",
+        "for compound trains of a given ratio, and for packings of cylinders. "
+        "Gears that are given it rates by AGMA.",
         "Begin with three commands: [bold]new[/] prints a file to start from, [bold]solve[/] finds "
         "the best design for it, and [bold]explain[/] says how much each number of it matters.",
         "Examples:",
         "[bold]gearopt new drive > my.toml[/]               a file with comments, to be edited\n"
-        "[bold]gearopt solve my.toml[/]                     the best gears for it, with the proof\n"
+        "[bold]gearopt solve my.toml[/]                     the best gears, with the proof\n"
         "[bold]gearopt solve my.toml --html page.html[/]    the same as a page with drawings\n"
-        "[bold]gearopt explain my.toml[/]                   what would change it, and how much",
+        "[bold]gearopt explain my.toml[/]                   what would change it, and how much\n"
+        "[bold]gearopt new rating > pair.toml[/]            a pair of gears that is given\n"
+        "[bold]gearopt rate pair.toml[/]                    its stresses, safety and life",
     )
 )
 FIRST, MORE, TOOLS = "To begin with", "More of files and results", "For editors and machines"

@@ -32,6 +32,9 @@ FINE = _series("20 24 32 40 48 64 80 96 120 150 200")
 DIAMETRAL_PITCHES = {"DP coarse": COARSE, "DP fine": FINE, "DP coarse+fine": COARSE + FINE}
 
 
+MEMBERS = ("pinion", "wheel")  # of a pair, in this order
+
+
 @dataclass(frozen=True)
 class Rack:
     """Basic rack: normal pressure angle alpha_P [rad]; all else in normal modules.

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gearopt.physics.gears import Gear, GearPair
+from gearopt.physics.gears import MEMBERS, Gear, GearPair
 from gearopt.physics.geometry.contact import active_root_diameters, contact_path, usable_path
 from gearopt.physics.geometry.fillet import (
     NEGLIGIBLE,
@@ -22,7 +22,6 @@ from gearopt.physics.geometry.fillet import (
 from gearopt.physics.geometry.tooth import circumferential_backlash, tip_clearances, tip_thickness
 
 THIN_TIP = 0.2  # normal modules of tip thickness; 0.3 to 0.4 if case hardened (recommendation)
-MEMBERS = ("pinion", "wheel")
 
 
 @dataclass(frozen=True)

@@ -5,12 +5,11 @@ from fractions import Fraction
 
 from gearopt.formulations.gear_train import LENGTHS, Stage
 from gearopt.formulations.toothing import Toothing
-from gearopt.physics.gears import ISO_53_A, Rack
+from gearopt.physics.gears import ISO_53_A, MEMBERS, Rack
 from gearopt.scenes.drive.drive_tables import Gears, StageTable
 from gearopt.scenes.drive.rating.tables import GearTable, with_shared
 from gearopt.scenes.reading.fields import refuse
 
-MEMBERS = ("pinion", "wheel")
 USUAL = {"profile_shift": 0, "tip_alteration": 0, "addendum": 1, "tool_addendum": 1.25}
 ROOT: tuple[str, ...] = ("profile_shift", "tool_addendum")  # what sets a root circle
 TIP: tuple[str, ...] = ("profile_shift", "tip_alteration", "addendum")

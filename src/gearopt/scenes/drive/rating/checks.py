@@ -4,6 +4,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from gearopt.physics.agma.allowables import CONTACT, bending_allowable, contact_allowable
+from gearopt.physics.gears import MEMBERS
 from gearopt.scenes.drive.drive_tables import Gears, StageTable
 from gearopt.scenes.drive.rating.tables import (
     MATERIAL,
@@ -16,7 +17,6 @@ from gearopt.scenes.drive.rating.tables import (
 from gearopt.scenes.reading.fields import Table, refuse
 
 Place = tuple[Any, ...]
-MEMBERS = ("pinion", "wheel")
 NEED_HARDNESS = ("through-hardened",)  # of the life curves and the hardness ratio too
 CYCLES = ("Y_N", "Z_N")  # factors that follow from the levels of a spectrum
 

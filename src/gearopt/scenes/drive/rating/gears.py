@@ -12,7 +12,6 @@ from gearopt.scenes.drive.rating.tables import GearTable, RatingTable, with_shar
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.tooth_tables import toothing
 
-MEMBERS = ("pinion", "wheel")
 HOUR = 3600.0  # s
 
 

@@ -4,7 +4,7 @@ import math
 from typing import Any
 
 from gearopt.formulations.rating import ToothGeometry
-from gearopt.physics.gears import Gear, GearPair
+from gearopt.physics.gears import MEMBERS, Gear, GearPair
 from gearopt.physics.geometry.contact import active_root_diameters, contact_path, specific_sliding
 from gearopt.physics.geometry.fillet import form_diameter
 from gearopt.physics.geometry.tooth import (
@@ -17,7 +17,6 @@ from gearopt.physics.geometry.tooth import (
 )
 from gearopt.physics.shaft_forces import OTHER
 
-MEMBERS = ("pinion", "wheel")
 BALL = 1.728  # diameter over normal module; usual for measurement over balls of 20 degrees
 
 

@@ -12,7 +12,7 @@ from gearopt.formulations.rating import (
     ShaftRating,
 )
 from gearopt.physics.agma.life import LONGEST
-from gearopt.physics.gears import GearPair
+from gearopt.physics.gears import MEMBERS, GearPair
 from gearopt.physics.geometry.contact import total_contact_ratio
 from gearopt.physics.geometry.tooth import (
     circumferential_backlash,
@@ -26,7 +26,7 @@ from gearopt.physics.mesh_loss import (
     tooth_loss_factor,
 )
 from gearopt.physics.shaft_forces import mesh_forces, rotation, rpm, train_forces
-from gearopt.scenes.drive.rating.gears import MEMBERS, steel
+from gearopt.scenes.drive.rating.gears import steel
 from gearopt.scenes.drive.rating.mesh import Mesh
 from gearopt.scenes.drive.rating.words import NAMES, UNITS, material
 from gearopt.scenes.drive.scene import Scene
