@@ -24,7 +24,7 @@ def _table(**units: Fraction | int) -> dict[str, tuple[Fraction, int]]:
 
 _LENGTHS = {
     **_table(mm=1, cm=10, m=1000, um=Fraction(1, 1000)),
-    **_table(**{"in": _INCH, "ft": 12 * _INCH}),
+    **_table(**{"in": _INCH, "ft": 12 * _INCH, "uin": _INCH / 10**6}),
 }
 RECIPROCALS = ("1/in",)  # units that count how often a length goes into theirs: diametral pitches
 

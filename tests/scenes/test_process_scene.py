@@ -155,7 +155,7 @@ WRONG = {  # what is written -> where, rule, remedy
     "a bare centre distance": (
         ('"150 mm"', "150"),
         "process_two.first_centre_distance = 150: is a bare number: length needs a unit "
-        '(mm, cm, m, um, in, ft). Write first_centre_distance = "150 mm"',
+        '(mm, cm, m, um, in, ft, uin). Write first_centre_distance = "150 mm"',
     ),
     "no teeth": (
         ('[teeth]\nmodules = "ISO 54 I"', ""),

@@ -53,7 +53,7 @@ def test_inches_are_millimetres():
     inch = pair(
         {"temperature": "284 degF", "given": {"s_at": "50 ksi", "C_p": "2300 sqrt(psi)"}},
         {"power": "20 hp"},
-        {"elastic_modulus": "30000 ksi", "roughness": f"{32e-6!r} in"},
+        {"elastic_modulus": "30000 ksi", "roughness": "32 uin"},
         {"profile_shift": 0.2, "thickness_allowance": "-0.002 in", "rim_thickness": "0.25 in"},
         face_width="1.5 in",
         helix_angle="15 deg",
@@ -115,6 +115,22 @@ def test_helix_and_pressure_angle_are_those_of_the_stage():
         assert mesh["working_pressure_angle_deg"] == pytest.approx(transverse, rel=1e-12)
         thrust = mesh["axial_force_N"] / mesh["tangential_force_N"]
         assert thrust == pytest.approx(math.tan(beta), rel=1e-12)
+
+
+SPAN, BALLS = ("span_teeth", "span_mm"), ("ball_diameter_mm", "over_balls_mm")
+
+
+@pytest.mark.parametrize(
+    ("pinion", "stage", "missing"),
+    [
+        ({}, {}, ()),
+        ({}, {"helix_angle": "30 deg", "face_width": "8 mm"}, SPAN),  # three teeth lie 12 mm apart
+        ({"profile_shift": 0.8}, {}, BALLS),  # 1.728 m_n, below the tips of the pinion
+    ],
+)
+def test_measurements_that_cannot_be_made_are_not_told(pinion, stage, missing):
+    row = rated(pair(pinion=pinion, **stage))["teeth"][0]
+    assert {key for key in (*SPAN, *BALLS) if row.get(key) is None} == set(missing)
 
 
 LOADS = ("K_o", "K_v", "K_m")  # in both stresses, with K_s of each gear

@@ -102,7 +102,7 @@ class ToothGeometry:
 
     generating shift: of the tool, with the thickness allowance. active root: where contact with the
     mate ends; largest specific sliding, at the ends of contact. Span and balls of whole teeth
-    only; ball of 1.7 m_n or so.
+    only, and where they touch the flanks; ball of 1.7 m_n or so.
     """
 
     stage: int

@@ -8,6 +8,8 @@ from gearopt.physics.gears import MEMBERS, Gear, GearPair
 from gearopt.physics.geometry.contact import active_root_diameters, contact_path, specific_sliding
 from gearopt.physics.geometry.fillet import form_diameter
 from gearopt.physics.geometry.tooth import (
+    ball_contact_diameter,
+    base_helix_angle,
     over_balls,
     span,
     span_diameter,
@@ -53,14 +55,19 @@ def _finite(value: float) -> float | None:
 
 
 def _measured(gear: Gear) -> dict[str, Any]:
-    """Return span and dimension over balls, where they touch the flanks."""
+    """Return span and dimension over balls, where they touch the flanks.
+
+    Both ends of the span of helical teeth lie within the face width; balls stand out of the tips.
+    """
     teeth = span_teeth(gear)
     low, high = float(form_diameter(gear)), float(gear.tip_diameter)
-    touches = low <= float(span_diameter(gear, teeth)) <= high
+    found: dict[str, Any] = {}
+    width = float(span(gear, teeth))
+    helical = width * abs(math.sin(base_helix_angle(gear)))  # along the axis
+    if low <= float(span_diameter(gear, teeth)) <= high and helical < gear.face_width:
+        found |= {"span_teeth": teeth, "span_mm": width}
     ball = BALL * gear.normal_module
-    return {
-        "span_teeth": teeth if touches else None,
-        "span_mm": float(span(gear, teeth)) if touches else None,
-        "ball_diameter_mm": ball,
-        "over_balls_mm": float(over_balls(gear, ball)),
-    }
+    over = float(over_balls(gear, ball))
+    if low <= float(ball_contact_diameter(gear, ball)) <= high < over:
+        found |= {"ball_diameter_mm": ball, "over_balls_mm": over}
+    return found
