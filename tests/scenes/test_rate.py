@@ -117,6 +117,19 @@ def test_helix_and_pressure_angle_are_those_of_the_stage():
         assert thrust == pytest.approx(math.tan(beta), rel=1e-12)
 
 
+def test_a_ratio_that_is_not_met_is_said():
+    """60/20 = 3, 25 % below 4; within its tolerance nothing is said."""
+    said = "The gears have a ratio of 3, 25 % below the one asked for."
+    assert rated(pair(duty={"ratio": 4}))["flaws"] == [said]
+    near = {"ratio": 3.01, "ratio_tolerance": "1 %"}
+    assert "flaws" not in rated(pair(duty=near)) and "flaws" not in rated(pair())
+
+
+def test_cold_gears_are_rated():
+    cold = rated(pair({"temperature": "-20 degC"}))
+    assert of(cold["factors"], symbol="K_T")["pinion"] == 1.0
+
+
 SPAN, BALLS = ("span_teeth", "span_mm"), ("ball_diameter_mm", "over_balls_mm")
 
 

@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from gearopt.errors import SolveError
-from gearopt.formulations.design import StageDesign, drive_design, of_pairs
+from gearopt.formulations.design import DriveDesign, StageDesign, drive_design, of_pairs
 from gearopt.formulations.rating import DriveRating, GearRating, MeshRating
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import FEASIBLE, Result, versions
@@ -57,13 +57,14 @@ def rate(scene: Scene, ask: Ask) -> Result:
         asked,
         density.value if density else None,
     )
+    told = replace(found, flaws=(*_off_ratio(scene, made), *found.flaws))
     return Result(
         name="rating",
         status="evaluated",
         method=scene.rating.standard,
         objective={},
         certificate={"feasibility": max(0.0, max(limits.values()) - 1.0)},
-        design=untyped(replace(made, rating=found)),
+        design=untyped(replace(made, rating=told)),
         limits=limits,
         report={"assumptions": rating_assumptions(scene)},
         evaluations=1,
@@ -71,6 +72,17 @@ def rate(scene: Scene, ask: Ask) -> Result:
         seed=ask.seed,
         versions=versions("numpy"),
     )
+
+
+def _off_ratio(scene: Scene, made: DriveDesign) -> list[str]:
+    """Return how far given gears are off the ratio that is asked for, beyond its tolerance."""
+    off = made.ratio_error_percent
+    if abs(off) <= 100.0 * float(scene.duty.ratio_tolerance):
+        return []
+    way = "above" if off > 0.0 else "below"
+    return [
+        f"The gears have a ratio of {made.ratio:.5g}, {abs(off):.3g} % {way} the one asked for."
+    ]
 
 
 def with_rating(scene: Scene, result: Result) -> Result:

@@ -231,7 +231,9 @@ class RatingTable(Table):
         description="K_o: loads beyond the nominal one, of driving and driven machine",
         json_schema_extra={"default": 1},
     )
-    temperature: Annotated[Quantity | None, quantity("temperature", "80 degC")] = Field(
+    temperature: Annotated[
+        Quantity | None, quantity("temperature", "80 degC", zero=True, signed=True)
+    ] = Field(
         None, description="Temperature of the gear blanks; by default below 120 degC, K_T = 1"
     )
     quality: Annotated[Fraction | None, QUALITY] = Field(
