@@ -26,8 +26,9 @@ result too (`Rating.unverified`).
 import math
 
 from gearopt.physics.agma.rating import rate
-from gearopt.physics.agma.rating_factors import Operation, Practice, Steel
+from gearopt.physics.agma.rating_factors import Practice, Steel
 from gearopt.physics.gears import GearPair
+from gearopt.physics.rating import Operation
 
 pair = GearPair.of_teeth(3.0, 21, 63, 30.0, profile_shifts=(0.2, 0.0))  # m_n, z1, z2, b in mm
 operation = Operation(power=7.5e6, pinion_speed=1450 * math.pi / 30, hours=20000)  # N mm/s, rad/s

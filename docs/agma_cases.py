@@ -13,14 +13,15 @@ from gearopt.physics.agma.allowables import PSI
 from gearopt.physics.agma.bending import thinned
 from gearopt.physics.agma.factors import FEET_PER_MINUTE, INCH
 from gearopt.physics.agma.mesh import mean_load_sharing, mesh_of, pitch_point_factor
-from gearopt.physics.agma.rating import Rating, rate
-from gearopt.physics.agma.rating_factors import Operation, Practice, Steel
+from gearopt.physics.agma.rating import rate
+from gearopt.physics.agma.rating_factors import Practice, Steel
 from gearopt.physics.agma.refusals import single_factors
 from gearopt.physics.gears import GearPair, Rack
 from gearopt.physics.geometry.contact import active_root_diameters, contact_path, usable_path
 from gearopt.physics.geometry.fillet import form_diameter
 from gearopt.physics.geometry.tooth import base_helix_angle, tip_thickness, virtual_teeth
 from gearopt.physics.loads import pitch_line_velocity
+from gearopt.physics.rating import Operation, Rating
 
 POUND = 4.4482216152605  # N
 HORSEPOWER = 550.0 * 12.0 * POUND * INCH  # N mm/s

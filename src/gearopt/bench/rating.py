@@ -1,20 +1,26 @@
-"""Ratings by AGMA: a pair at a time against rows with tabulated geometry factors, beside the error.
+"""Ratings by AGMA and by ISO 6336: a pair at a time against rows of them, beside the error.
 
 Published: I and J of AGMA 908-B89 at 20 degrees, spur, load at the highest point of single tooth
 contact, as in Norton, Machine Design, table 12-9, which the method itself has to meet.
 """
 
 import math
+from dataclasses import replace
 from typing import Any
 
 from gearopt.bench import timed
 from gearopt.physics.agma.bending import thinned
 from gearopt.physics.agma.life import bending_curve, pitting_curve
-from gearopt.physics.agma.rating import Rating, rate
-from gearopt.physics.agma.rating_factors import Operation, Practice, Steel
+from gearopt.physics.agma.rating import rate
+from gearopt.physics.agma.rating_factors import Practice, Steel
 from gearopt.physics.agma.refusals import geometry_factors
 from gearopt.physics.agma.table import Duty, FactorTable, factor_table, rate_rows
 from gearopt.physics.gears import GearPair, Rack
+from gearopt.physics.iso6336 import batch as iso_batch
+from gearopt.physics.iso6336 import case as iso
+from gearopt.physics.iso6336.materials import Material
+from gearopt.physics.iso6336.rating import rate as iso_rate
+from gearopt.physics.rating import Operation, Rating
 
 TOOL, THINNING = Rack(tip_radius=0.25), 0.024  # behind the tables
 # z1, z2, I, J1, J2
@@ -46,12 +52,14 @@ def run(repeat: int) -> list[dict[str, Any]]:
     """Return rows: case, method, ms, ratings, ratings a second, largest error.
 
     error: of I and J against the published tables, absolute; of rows against pairs one at a time,
-    relative, the largest of all safety factors of 30 pairs.
+    relative, the largest of all safety factors of 30 pairs. ISO 6336: one at a time, of sigma_H and
+    S_H against ISO/TR 6336-30, example 1; of rows against pairs one at a time; of the smooth form
+    against rows with the steps of ISO 1328-1:1995, the median.
     """
     rows = _published(repeat)
     for case, helix in HELIX.items():
         rows += _speeds(case, helix, repeat)
-    return rows
+    return rows + _iso(repeat)
 
 
 def _published(repeat: int) -> list[dict[str, Any]]:
@@ -100,6 +108,66 @@ def _speeds(case: str, helix: float, repeat: int) -> list[dict[str, Any]]:
         _row(case, "table of pairs", making, table.contact.size, None),
         _row(case, "rows of the table", fast, ROWS, error),
     ]
+
+
+def iso_example() -> iso.Case:
+    """Return ISO/TR 6336-30:2017, example 1: inputs as a public program has them.
+
+    x1 = 0.145, of which c' follows to every printed digit; tips as printed, 159.66 and 872.35.
+    Source: gfsReboucas/Drivetrain, MATISO_6336.m; a public test of the edition of 2022.
+    """
+    rack, helix = Rack(dedendum=1.4, tip_radius=0.39), math.radians(15.8)
+    made = GearPair.of_teeth(8.0, 17, 103, 100.0, helix, rack, (0.145, 0.0), 500.0)
+    tips = zip(made.gears, (159.66, 872.35), strict=True)
+    first, second = (replace(g, tip_alteration=(d - g.tip_diameter) / 16.0) for g, d in tips)
+    steel = Material("Eh", "MQ", flank=6e-3)
+    speed = 360.0 * math.pi / 30.0
+    practice = iso.Practice(grades=(5.0, 5.0), viscosity=320.0, relief=70e-3)
+    operation = Operation(9e6 * speed, speed, 50000.0)
+    return iso.Case(GearPair(first, second, 500.0), operation, (steel, steel), practice)
+
+
+ISO_PRINTED = {"sigma_H": 1301.35343, "S_H1": 1.02853, "S_H2": 1.08696}
+ISO_ROWS, ISO_PRACTICE = 100_000, iso.Practice()
+
+
+def _iso(repeat: int) -> list[dict[str, Any]]:
+    """Return ratings by ISO 6336: the published example, rows, the smooth form."""
+    import numpy as np
+
+    case = iso_example()
+    own = case.pair, case.operation, case.materials, case.practice
+    one, slow = timed(lambda: iso_rate(*own), repeat)
+    made = one.contact_stress[0], *one.contact_safety
+    known = ISO_PRINTED.values()
+    error = max(abs(a / b - 1.0) for a, b in zip(made, known, strict=True))
+    rng = np.random.default_rng(0)
+    steels = (Material("Eh", "MQ"),) * 2
+    numbers = rng.integers(17, 61, ISO_ROWS), rng.integers(61, 201, ISO_ROWS)
+    module, helix = rng.uniform(1.0, 6.0, ISO_ROWS), HELIX["helical, 17 deg"]
+    pair = GearPair.of_teeth(module, *numbers, 12.0 * module, helix)
+    ask = pair, OPERATION, steels, ISO_PRACTICE
+    rows, fast = timed(lambda: iso_batch.rate_rows(*ask), repeat)
+    smooth, smoothed = timed(lambda: iso_batch.smooth_safeties(*ask, "subcritical"), repeat)
+    exact = *rows.bending, *rows.contact
+    apart = np.abs(np.array(smooth) / np.array(exact) - 1.0)
+    return [
+        _row("ISO 6336", "one at a time", slow, 1, error),
+        _row("ISO 6336", "rows", fast, ISO_ROWS, _apart(exact, numbers, module, helix, steels)),
+        _row("ISO 6336", "smooth form", smoothed, ISO_ROWS, float(np.nanmedian(apart))),
+    ]
+
+
+def _apart(exact: Any, numbers: Any, module: Any, helix: float, steels: Any) -> float:
+    """Return the largest relative difference between rows and pairs one at a time."""
+    worst = 0.0
+    for k in range(CHECKED):
+        teeth = float(numbers[0][k]), float(numbers[1][k])
+        pair = GearPair.of_teeth(float(module[k]), *teeth, float(12.0 * module[k]), helix)
+        one = iso_rate(pair, OPERATION, steels, ISO_PRACTICE)
+        known = *one.bending_safety, *one.contact_safety
+        worst = max(worst, *(abs(float(a[k]) / b - 1.0) for a, b in zip(exact, known, strict=True)))
+    return worst
 
 
 def _pair(table: FactorTable, helix: float, place: list[float]) -> GearPair:

@@ -8,8 +8,9 @@ import pytest
 from gearopt.physics.agma.allowables import PSI
 from gearopt.physics.agma.mesh import mean_load_sharing, mesh_of, pitch_point_factor
 from gearopt.physics.agma.rating import rate, rate_spectrum
-from gearopt.physics.agma.rating_factors import PAIRED, SHARED, Operation, Practice, Steel
+from gearopt.physics.agma.rating_factors import PAIRED, SHARED, Practice, Steel
 from gearopt.physics.gears import GearPair, Rack
+from gearopt.physics.rating import Operation
 
 POUND = 4.4482216152605  # N
 HORSEPOWER = 550.0 * 12.0 * POUND * 25.4  # N mm/s

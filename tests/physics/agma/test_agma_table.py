@@ -13,7 +13,7 @@ from gearopt.physics.agma.bending import critical_theta, loaded_tooth, seen_from
 from gearopt.physics.agma.life import bending_curve, pitting_curve
 from gearopt.physics.agma.mesh import REGIMES, mesh_of
 from gearopt.physics.agma.rating import rate
-from gearopt.physics.agma.rating_factors import Operation, Practice, Steel
+from gearopt.physics.agma.rating_factors import Practice, Steel
 from gearopt.physics.agma.refusals import (
     REFUSALS,
     SENTENCES,
@@ -25,6 +25,7 @@ from gearopt.physics.agma.table import Duty, factor_table, rate_rows, tabled_fac
 from gearopt.physics.gears import GearPair, Rack
 from gearopt.physics.geometry.fillet import fillet_point
 from gearopt.physics.geometry.flaws import flaws
+from gearopt.physics.rating import Operation
 
 OVERLAPS = {"spur": 0.0, "low": 0.7, "conventional": 1.4}
 

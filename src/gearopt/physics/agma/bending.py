@@ -11,7 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from gearopt.physics.agma.mesh import Mesh, choose, mesh_of, virtual_gear
+from gearopt.physics.agma.mesh import Mesh, mesh_of, virtual_gear
+from gearopt.physics.choosing import choose
 from gearopt.physics.gears import Gear, GearPair
 from gearopt.physics.geometry.fillet import (
     base_half_angle,

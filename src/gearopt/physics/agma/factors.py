@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from gearopt.physics.agma.mesh import choose
+from gearopt.physics.choosing import choose
 
 INCH = 25.4  # mm
 FEET_PER_MINUTE = 12.0 * INCH / 60.0  # mm/s, of one ft/min

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from gearopt.physics.agma.factors import INCH
-from gearopt.physics.agma.mesh import choose
+from gearopt.physics.choosing import choose
 
 WHEELS = (180.0, 400.0)  # HB of wheels against surface hardened pinions
 LARGEST_RATIO = 20.0  # where the chart of through-hardened pairs ends

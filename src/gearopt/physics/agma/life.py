@@ -1,17 +1,14 @@
-"""Stress cycle factors Y_N and Z_N, the lives that follow from them, and Miner's sum.
+"""Stress cycle factors Y_N and Z_N, and the lives that follow from them.
 
 A curve is a power law of the numbers of cycles to 1e7 (or 3e6) and another beyond, joined where
 they cross, so that it is continuous and has an inverse: the standard's join is off by up to 2e-4
 there. Numbers of cycles are floats or arrays; hardness is a float.
 """
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-
-from gearopt.physics.agma.mesh import choose
 
 # Y = A N^-B below 3e6 cycles, by Brinell hardness of through-hardened steel, and by treatment.
 # Source: AGMA 2001-D04, figure 18 (Shigley, figure 14-14); two public programs have the same
@@ -101,39 +98,3 @@ def _between(hardness: float) -> tuple[float, float]:
 def cycles_of(hours: Any, speed_rpm: Any, contacts: Any = 1.0) -> Any:
     """Return the number of stress cycles 60 L n q of a tooth; contacts q a revolution."""
     return 60.0 * hours * speed_rpm * contacts
-
-
-def miner_sum(cycles: Iterable[Any], lives: Iterable[Any]) -> Any:
-    """Return Miner's sum of n_i/N_i: 1 at the end of life; infinite where a life is 0.
-
-    cycles n_i of each level, lives N_i at its stress. A level without cycles adds nothing.
-    Source: Palmgren and Miner; AGMA 2001-D04 refers to it for load spectra (annex of 2101).
-    """
-    rows = [(np.asarray(n), np.asarray(life)) for n, life in zip(cycles, lives, strict=True)]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return sum(choose(n > 0.0, n / life, 0.0) for n, life in rows)
-
-
-def spectrum_safety(
-    curve: Curve, cycles: tuple[float, ...], stresses: tuple[float, ...], allowable: float
-) -> float:
-    """Return the factor by which all stresses of a spectrum may grow until Miner's sum is 1.
-
-    cycles n_i; stresses s_i and the allowable stress at a cycle factor of 1, in one unit: of
-    pitting take contact stresses, and square the result for a factor of load. Life of level i at a
-    factor f: that of Y_N = f s_i/allowable. By halving; one level gives allowable Y_N(n)/s. Below
-    the shortest life the curve is flat, so that a level may at most reach the factor there.
-    """
-    levels = [(n, s / allowable) for n, s in zip(cycles, stresses, strict=True) if n > 0 and s > 0]
-    if not levels:
-        return float("inf")
-    total = sum(n for n, _ in levels)
-    high = min(float(curve.factor(n)) / s for n, s in levels)  # of the worst level alone
-    low = float(curve.factor(total)) / max(s for _, s in levels)  # all at the largest stress
-    if low == high:
-        return high
-    for _ in range(200):
-        middle = 0.5 * (low + high)
-        damage = miner_sum(*zip(*((n, curve.life(middle * s)) for n, s in levels), strict=True))
-        low, high = (middle, high) if damage <= 1.0 else (low, middle)
-    return low

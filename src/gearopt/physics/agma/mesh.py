@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from gearopt.physics.choosing import choose
 from gearopt.physics.gears import Gear, GearPair
 from gearopt.physics.geometry.contact import ContactPath, contact_path
 from gearopt.physics.geometry.tooth import base_helix_angle
@@ -40,12 +41,6 @@ class Mesh:
             values = (low if spur is None else spur, low, conventional)
             return dict(zip(REGIMES, values, strict=True))[self.regime]
         return choose(self.overlap > 1.0, conventional, low)
-
-
-def choose(condition: Any, yes: Any, no: Any) -> Any:
-    """Return numpy.where, as a number of numbers; casadi scalars stay casadi scalars."""
-    found = np.where(condition, yes, no)
-    return found[()] if isinstance(found, np.ndarray) else found
 
 
 @np.errstate(invalid="ignore", divide="ignore")

@@ -5,56 +5,32 @@ Of floats. What is given replaces what is computed, factor by factor.
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from gearopt.physics.agma import life, stress
+from gearopt.physics.agma import stress
 from gearopt.physics.agma.rating_factors import (
     EDITIONS,
     PAIRED,
     SHARED,
     Case,
-    Factor,
-    Operation,
     Practice,
     Steel,
     all_factors,
     life_curves,
 )
 from gearopt.physics.gears import GearPair
-
-MEMBERS = ("pinion", "wheel")
-
-
-@dataclass(frozen=True)
-class Rating:
-    """The rating of a pair; tuples are of pinion and wheel.
-
-    factors by symbol; load W_t [N]; speed v [mm/s]; stresses [MPa]; safety factors of bending S_F
-    and of contact S_H (of stress; S_H^2 is of load); cycles asked for; lives [cycles] at which S_F
-    and S_H are 1 (a given Y_N or Z_N scales its curve); power [N mm/s] at which the
-    least of all safety factors is 1; governs: member and mode.
-    """
-
-    factors: dict[str, Factor]
-    load: float
-    speed: float
-    bending_stress: tuple[float, float]
-    contact_stress: tuple[float, float]
-    bending_safety: tuple[float, float]
-    contact_safety: tuple[float, float]
-    cycles: tuple[float, float]
-    bending_life: tuple[float, float]
-    contact_life: tuple[float, float]
-    power: float
-    governs: tuple[str, str]
-
-    @property
-    def unverified(self) -> tuple[str, ...]:
-        """Symbols of the factors that a single source or memory alone has."""
-        return tuple(name for name, factor in self.factors.items() if not factor.verified)
+from gearopt.physics.rating import (
+    Factor,
+    Level,
+    Operation,
+    Rating,
+    Spectrum,
+    damage,
+    governing,
+    spectrum_safety,
+)
 
 
 def rate(
@@ -119,8 +95,7 @@ def _results(case: Case, found: dict[str, Factor]) -> Rating:
     y_n, z_n = ([float(c[k].factor(case.cycles[k])) for k in (0, 1)] for c in (bending, contact))
     lives_f = [float(stress.bending_life(bending[k], y_n[k], s_f[k])) for k in (0, 1)]
     lives_h = [float(stress.contact_life(contact[k], z_n[k], s_h[k])) for k in (0, 1)]
-    modes = [(s_f[k], MEMBERS[k], "bending") for k in (0, 1)]
-    least, *governs = min(modes + [(s_h[k] ** 2, MEMBERS[k], "contact") for k in (0, 1)])
+    least, governs = governing(s_f, s_h)
     return Rating(
         found,
         float(load),
@@ -133,24 +108,8 @@ def _results(case: Case, found: dict[str, Factor]) -> Rating:
         (lives_f[0], lives_f[1]),
         (lives_h[0], lives_h[1]),
         power * least,
-        (governs[0], governs[1]),
+        governs,
     )
-
-
-@dataclass(frozen=True)
-class Spectrum:
-    """The rating of a load spectrum; tuples are of pinion and wheel.
-
-    levels: the rating of each level alone, at its own number of cycles. damage: Miner's sums of
-    bending and contact, infinite where a level breaks a tooth at once. safety factors S_F and S_H
-    by which all stresses may grow until the sum is 1.
-    """
-
-    levels: tuple[Rating, ...]
-    bending_damage: tuple[float, float]
-    contact_damage: tuple[float, float]
-    bending_safety: tuple[float, float]
-    contact_safety: tuple[float, float]
 
 
 def rate_spectrum(
@@ -186,11 +145,9 @@ def _miner(
 ) -> tuple[float, float]:
     """Return Miner's sum and the safety factor of one gear."""
     curve = life_curves(case, contact)[member]
-    cycles = tuple(level.cycles[member] for level in levels)
-    needed = []
+    loads = []
     for level in levels:  # the cycle factor at which a safety factor is 1
         safety = (level.contact_safety if contact else level.bending_safety)[member]
         value: Any = level.factors["Z_N" if contact else "Y_N"].value
-        needed.append(value[member] / safety)
-    damage = life.miner_sum(cycles, [curve.life(factor) for factor in needed])
-    return float(damage), life.spectrum_safety(curve, cycles, tuple(needed), 1.0)
+        loads.append(Level(level.cycles[member], curve, value[member] / safety))
+    return damage(loads), spectrum_safety(loads)

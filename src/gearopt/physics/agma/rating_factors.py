@@ -9,6 +9,7 @@ from typing import Any
 from gearopt.physics.agma import allowables, factors, hardness, life
 from gearopt.physics.agma.refusals import GeometryFactors, single_factors
 from gearopt.physics.gears import GearPair
+from gearopt.physics.rating import Factor, Operation
 
 SURFACE_HARD_KINDS = ("carburised", "nitrided")  # whose pinions count as 48 HRC and more
 EDITIONS = ("D04", "B88")
@@ -41,23 +42,6 @@ class Steel:
 
 
 @dataclass(frozen=True)
-class Operation:
-    """What the pair does: power [N mm/s], pinion_speed [rad/s], hours of life.
-
-    overload K_o; temperature [degrees C]; reliability R; contacts: load cycles a revolution of
-    pinion and wheel.
-    """
-
-    power: float
-    pinion_speed: float
-    hours: float
-    overload: float = 1.0
-    temperature_C: float = 60.0
-    reliability: float = 0.99
-    contacts: tuple[float, float] = (1.0, 1.0)
-
-
-@dataclass(frozen=True)
 class Practice:
     """How it is made and rated.
 
@@ -79,21 +63,6 @@ class Practice:
 
 
 @dataclass(frozen=True)
-class Factor:
-    """A factor by its symbol: its value, or those of pinion and wheel; where it is from.
-
-    unit: "" of plain numbers. verified: whether two sources have it; remark: what limits it, or "".
-    """
-
-    symbol: str
-    value: float | tuple[float, float]
-    clause: str
-    unit: str = ""
-    verified: bool = True
-    remark: str = ""
-
-
-@dataclass(frozen=True)
 class Case:
     """What the factors are computed from."""
 
@@ -111,7 +80,7 @@ class Case:
     @property
     def speed(self) -> float:
         """Pitch line velocity [mm/s]."""
-        return 0.5 * self.operation.pinion_speed * self.diameter
+        return float(0.5 * self.operation.pinion_speed * self.diameter)
 
     @cached_property
     def geometry(self) -> GeometryFactors:

@@ -18,7 +18,7 @@ from gearopt.physics.agma.bending import (
 )
 from gearopt.physics.agma.factors import dynamic_factor, load_distribution_factor
 from gearopt.physics.agma.life import Curve
-from gearopt.physics.agma.mesh import choose, mesh_of, pitting_factor
+from gearopt.physics.agma.mesh import mesh_of, pitting_factor
 from gearopt.physics.agma.refusals import geometry_factors
 from gearopt.physics.agma.stress import (
     bending_safety,
@@ -27,6 +27,7 @@ from gearopt.physics.agma.stress import (
     contact_stress,
     tangential_load,
 )
+from gearopt.physics.choosing import choose
 from gearopt.physics.gears import ISO_53_A, GearPair, Rack
 from gearopt.physics.geometry.tooth import base_helix_angle
 

@@ -4,8 +4,9 @@ from dataclasses import replace
 from typing import Any
 
 from gearopt.physics.agma.factors import quality_of_accuracy
-from gearopt.physics.agma.rating_factors import Operation, Practice, Steel
+from gearopt.physics.agma.rating_factors import Practice, Steel
 from gearopt.physics.gears import Gear, GearPair
+from gearopt.physics.rating import Operation
 from gearopt.physics.shaft_forces import rpm
 from gearopt.scenes.drive.drive_tables import StageTable
 from gearopt.scenes.drive.rating.tables import GearTable, RatingTable, with_shared

@@ -4,10 +4,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from gearopt.errors import SolveError
-from gearopt.physics.agma.rating import Rating, rate, rate_spectrum
-from gearopt.physics.agma.rating_factors import Operation
+from gearopt.physics.agma.rating import rate, rate_spectrum
 from gearopt.physics.gears import GearPair
 from gearopt.physics.geometry.flaws import flaws
+from gearopt.physics.rating import Operation, Rating
 from gearopt.scenes.drive.rating import gears
 from gearopt.scenes.drive.scene import Scene
 

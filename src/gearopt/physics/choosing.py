@@ -1,0 +1,11 @@
+"""Branches of laws whose arguments are floats, arrays or casadi scalars."""
+
+from typing import Any
+
+import numpy as np
+
+
+def choose(condition: Any, yes: Any, no: Any) -> Any:
+    """Return numpy.where, as a number of numbers; casadi scalars stay casadi scalars."""
+    found = np.where(condition, yes, no)
+    return found[()] if isinstance(found, np.ndarray) else found

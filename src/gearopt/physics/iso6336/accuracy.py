@@ -1,0 +1,108 @@
+"""Deviations of the teeth that part 1 takes, from tolerances of ISO 1328-1:1995 or 2013.
+
+The standard of 1995 takes the geometric means of ranges of module, diameter and face width, and
+rounds: the exact form has these steps, the smooth one takes the sizes as they are, unrounded.
+Grades may be fractions. Deviations [mm], sizes [mm]; floats or arrays.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from gearopt.physics import tolerances
+from gearopt.physics.gears import GearPair
+
+TOLERANCES = ("1995", "2013")
+# Ends of the ranges [mm]. Source: ISO 1328-1:1995, 5.2; gfsReboucas/Drivetrain, Gear.m
+DIAMETERS = (5.0, 20, 50, 125, 280, 560, 1000, 1600, 2500, 4000, 6000, 8000, 10000)
+MODULES = (0.5, 2.0, 3.5, 6, 10, 16, 25, 40, 70)
+WIDTHS = (4.0, 10, 20, 40, 80, 160, 250, 400, 650, 1000)
+
+
+@dataclass(frozen=True)
+class Deviations:
+    """Deviations of a pair [mm].
+
+    base_pitch f_pb, transverse, and profile_form f_falpha: the larger of both gears; alignment
+    f_ma = hypot(f_Hbeta1, f_Hbeta2), the mesh misalignment of manufacture; helix_slope: the larger
+    f_Hbeta.
+    """
+
+    base_pitch: Any
+    profile_form: Any
+    alignment: Any
+    helix_slope: Any
+
+
+def range_mean(size: Any, ends: tuple[float, ...]) -> Any:
+    """Return the geometric mean of the range in which a size lies; upper ends belong to it.
+
+    A size beyond the ranges counts to the nearest one. Source: ISO 1328-1:1995, 5.2.
+    """
+    bounds = np.asarray(ends, float)
+    place = np.clip(np.searchsorted(bounds, size), 1, len(bounds) - 1)
+    return np.sqrt(bounds[place - 1] * bounds[place])[()]
+
+
+def single_pitch_1995(diameter: Any, module: Any, grade: Any) -> Any:
+    """Return f_pt = 0.3 (m + 0.4 sqrt(d)) + 4 um at grade 5 [mm]. ISO 1328-1:1995, 6.1."""
+    unit = 0.3 * (module + 0.4 * diameter**0.5) + 4.0
+    return tolerances.MICROMETRE * unit * tolerances.grade_factor(grade)
+
+
+def profile_form_1995(diameter: Any, module: Any, grade: Any) -> Any:
+    """Return f_falpha = 2.5 sqrt(m) + 0.17 sqrt(d) + 0.5 um at grade 5 [mm]. 1995, annex B."""
+    unit = 2.5 * module**0.5 + 0.17 * diameter**0.5 + 0.5
+    return tolerances.MICROMETRE * unit * tolerances.grade_factor(grade)
+
+
+def helix_slope_1995(diameter: Any, face_width: Any, grade: Any) -> Any:
+    """Return f_Hbeta = 0.07 sqrt(d) + 0.45 sqrt(b) + 3 um at grade 5 [mm]. 1995, annex B."""
+    unit = 0.07 * diameter**0.5 + 0.45 * face_width**0.5 + 3.0
+    return tolerances.MICROMETRE * unit * tolerances.grade_factor(grade)
+
+
+def deviations(
+    pair: GearPair, grades: tuple[Any, Any], edition: str = "1995", smooth: bool = False
+) -> Deviations:
+    """Return the deviations of a pair whose gears have accuracy grades of ISO 1328.
+
+    edition: one of TOLERANCES; smooth: without ranges and rounding. f_pb = f_pt cos(alpha_t).
+    ValueError for another edition. Source: ISO 6336-1:2006, 6.5, 7.5 and 8.3; a printed report
+    (KISSsoft, NREL 5 MW) has its f_pb and f_falpha so.
+    """
+    if edition not in TOLERANCES:
+        raise ValueError(f"no tolerances {edition!r}; known: {', '.join(TOLERANCES)}")
+    found = [
+        _of_gear(gear, grade, edition, smooth)
+        for gear, grade in zip(pair.gears, grades, strict=True)
+    ]
+    pitch, form, slope = (np.maximum(a, b) for a, b in zip(*found, strict=True))
+    cosine = np.cos(pair.pinion.transverse_pressure_angle)
+    (_, _, first), (_, _, second) = found
+    return Deviations(pitch * cosine, form, (first**2 + second**2) ** 0.5, slope)
+
+
+def _of_gear(gear: Any, grade: Any, edition: str, smooth: bool) -> tuple[Any, Any, Any]:
+    """Return f_pt, f_falpha, f_Hbeta of a gear."""
+    diameter, module, width = gear.reference_diameter, gear.normal_module, gear.face_width
+    if edition == "2013":
+        made = (
+            tolerances.single_pitch_tolerance(diameter, module, grade),
+            tolerances.profile_form_tolerance(module, grade),
+            tolerances.helix_slope_tolerance(diameter, width, grade),
+        )
+    else:
+        if not smooth:
+            diameter = range_mean(diameter, DIAMETERS)
+            module, width = range_mean(module, MODULES), range_mean(width, WIDTHS)
+        made = (
+            single_pitch_1995(diameter, module, grade),
+            profile_form_1995(diameter, module, grade),
+            helix_slope_1995(diameter, width, grade),
+        )
+    if smooth:
+        return made
+    first, second, third = (tolerances.rounded_tolerance(value) for value in made)
+    return first, second, third

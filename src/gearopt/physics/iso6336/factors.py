@@ -1,0 +1,257 @@
+"""The factors of a rating by ISO 6336 with clause and method, unit, doubts."""
+
+from collections.abc import Callable
+from typing import Any
+
+from gearopt.physics.iso6336.case import Case
+from gearopt.physics.iso6336.contact_factors import HARD_LIMIT
+from gearopt.physics.iso6336.curves import LONGEST
+from gearopt.physics.iso6336.load_factors import MAIN, lower_limit
+from gearopt.physics.iso6336.materials import SURFACE_HARDENED, Material, strength
+from gearopt.physics.iso6336.running_in import TEMPERED
+from gearopt.physics.iso6336.stiffness import LEAST_LINE_LOAD
+from gearopt.physics.rating import Factor
+
+Found = dict[str, Any]
+RANGE = 3000.0  # mm/s of v z1/100 sqrt(u^2/(1 + u^2)): below, K_v by method B is hardly above 1
+
+# symbol: clause and method, unit
+CLAUSES = {
+    "K_A": ("6336-1, 5, method B", ""),
+    "K_v": ("6336-1, 6.5, method B", ""),
+    "K_Hbeta": ("6336-1, 7.5, method C", ""),
+    "K_Fbeta": ("6336-1, 7.6", ""),
+    "K_Halpha": ("6336-1, 8.3, method B", ""),
+    "K_Falpha": ("6336-1, 8.3, method B", ""),
+    "c_prime": ("6336-1, 9.3, method B", "MPa"),
+    "c_gamma_alpha": ("6336-1, 9.3, method B", "MPa"),
+    "c_gamma_beta": ("6336-1, 9.3, method B", "MPa"),
+    "N": ("6336-1, 6.5, method B", ""),
+    "f_pb": ("ISO 1328-1", "mm"),
+    "f_falpha": ("ISO 1328-1", "mm"),
+    "f_ma": ("6336-1, 7.5, method C", "mm"),
+    "C_a": ("6336-1, 6.5", "mm"),
+    "Z_H": ("6336-2, 6", ""),
+    "Z_E": ("6336-2, 7", "sqrt(MPa)"),
+    "Z_eps": ("6336-2, 8", ""),
+    "Z_beta": ("6336-2, 9", ""),
+    "Y_beta": ("6336-3, 8", ""),
+    "Y_DT": ("6336-3, 10", ""),
+    "Y_ST": ("6336-3, 5", ""),
+    "Z_X": ("6336-2, 14, method B", ""),
+    "Z_BD": ("6336-2, 6", ""),
+    "Z_NT": ("6336-2, 11, method B", ""),
+    "Z_L": ("6336-2, 12, method B", ""),
+    "Z_v": ("6336-2, 12, method B", ""),
+    "Z_R": ("6336-2, 12, method B", ""),
+    "Z_W": ("6336-2, 13, method B", ""),
+    "sigma_Hlim": ("6336-5, table 1", "MPa"),
+    "Y_F": ("6336-3, 6, method B", ""),
+    "Y_S": ("6336-3, 7, method B", ""),
+    "Y_B": ("6336-3, 9, method B", ""),
+    "Y_NT": ("6336-3, 5, method B", ""),
+    "Y_deltarelT": ("6336-3, 11, method B", ""),
+    "Y_RrelT": ("6336-3, 12, method B", ""),
+    "Y_X": ("6336-3, 13, method B", ""),
+    "Y_M": ("6336-5, 5.3", ""),
+    "sigma_Flim": ("6336-5, table 1", "MPa"),
+}
+PAIRED = tuple(CLAUSES)[list(CLAUSES).index("Z_BD") :]  # one value for each gear
+SHARED = tuple(CLAUSES)[: list(CLAUSES).index("Z_BD")]
+
+
+def factors(case: Case, found: Found) -> dict[str, Factor]:
+    """Return the factors of quantities that were found, by symbol."""
+    made = {}
+    for symbol, (clause, unit) in CLAUSES.items():
+        value = _plain(found[symbol], symbol in PAIRED)
+        if symbol in case.given:
+            made[symbol] = Factor(symbol, value, "given", unit)
+            continue
+        verified, remark = DOUBTS.get(symbol, _none)(case, found)
+        if clause.startswith("ISO 1328-1"):
+            clause = f"{clause}:{case.practice.tolerances}"
+        elif not clause.startswith("6336-5"):
+            clause = clause.replace(",", f":{case.practice.edition},", 1)
+        made[symbol] = Factor(symbol, value, clause, unit, verified, remark)
+    return made
+
+
+def _plain(value: Any, paired: bool) -> float | tuple[float, float]:
+    if not paired:
+        return float(value)
+    first, second = value if isinstance(value, tuple | list) else (value, value)
+    return float(first), float(second)
+
+
+Doubt = tuple[bool, str]
+
+
+def _none(case: Case, found: Found) -> Doubt:
+    return True, ""
+
+
+def _of_2019(case: Case, what: str) -> Doubt:
+    """Return the doubt of what only the edition of 2019 has."""
+    return (False, f"{what}: 2019, from memory") if case.practice.edition == "2019" else (True, "")
+
+
+def _stiffness(case: Case, found: Found) -> Doubt:
+    line = case.load * found["K_A"] / case.pair.face_width
+    if line < LEAST_LINE_LOAD:
+        return False, "below 100 N/mm: the law of memory alone"
+    return True, ""
+
+
+def _tempered(case: Case) -> bool:
+    """Return whether running-in is of a law without a second source."""
+    return any(material.family not in SURFACE_HARDENED for material in case.materials)
+
+
+def _dynamic(case: Case, found: Found) -> Doubt:
+    sound, remark = _stiffness(case, found)
+    line = case.load * found["K_A"] / case.pair.face_width
+    resonance = found["N"]
+    if resonance > lower_limit(line):
+        name = "main resonance" if resonance <= MAIN else "above the main resonance"
+        return False, f"{name}, N = {resonance:.2f}: no published value"
+    if _tempered(case):
+        return False, "running-in of these materials: from memory"
+    ratio = case.pair.ratio
+    travel = case.speed * case.pair.pinion_teeth / 100.0 * (ratio**2 / (1.0 + ratio**2)) ** 0.5
+    slow = "slow: below the range where method B is of use" if travel < RANGE else ""
+    return sound, remark or slow
+
+
+def _face(case: Case, found: Found) -> Doubt:
+    if case.practice.helix_modification != "none":
+        return False, "helix modification: from memory"
+    if case.practice.offset:
+        return False, "pinion off the middle: from memory"
+    return _stiffness(case, found)
+
+
+def _transverse(case: Case, found: Found) -> Doubt:
+    if _tempered(case):
+        return False, "running-in of these materials: from memory"
+    return _stiffness(case, found)
+
+
+def _transverse_root(case: Case, found: Found) -> Doubt:
+    changed = _of_2019(case, "its limit")
+    return _transverse(case, found) if changed[0] else changed
+
+
+def _form(case: Case, found: Found) -> Doubt:
+    return _of_2019(case, "load sharing f_eps")
+
+
+def _notch(case: Case, found: Found) -> Doubt:
+    off = [f for f in case.forms if not 1.0 <= f.notch < 8.0]
+    return True, "q_s outside 1 to 8" if off else ""
+
+
+def _helix(case: Case, found: Found) -> Doubt:
+    return _of_2019(case, "cos(beta)^3")
+
+
+def _single(case: Case, found: Found) -> Doubt:
+    if not case.pair.overlap_ratio:
+        return True, ""
+    return _of_2019(case, "f_ZCa of helical gears")
+
+
+def _rim(case: Case, found: Found) -> Doubt:
+    return (True, "") if max(_both(found["Y_B"])) == 1.0 else (False, "thin rim: from memory")
+
+
+def _deep(case: Case, found: Found) -> Doubt:
+    return (True, "") if found["Y_DT"] == 1.0 else (False, "deep teeth: from memory")
+
+
+def _both(value: Any) -> tuple[Any, Any]:
+    first, second = value if isinstance(value, tuple | list) else (value, value)
+    return first, second
+
+
+def _hardening(case: Case, found: Found) -> Doubt:
+    plain = all(value == 1.0 for value in _both(found["Z_W"]))
+    return (True, "") if plain else (False, "part of its law is from memory")
+
+
+def _confirmed(material: Material, stress: str) -> bool:
+    """Return whether a second source has the line: data.js of waa552, or a printed report."""
+    if material.quality == "ME":
+        return material.family in ("St", "V")
+    return (material.name, material.quality, stress) == ("Eh", "MQ", "H")
+
+
+def _strength(stress: str) -> Callable[[Case, Found], Doubt]:
+    def doubt(case: Case, found: Found) -> Doubt:
+        within = all(strength(m, stress).within for m in case.materials)
+        known = all(_confirmed(m, stress) for m in case.materials)
+        remark = "" if within else "hardness outside the range of its line: its end is taken"
+        return known, remark or ("" if known else "pictures of the table alone")
+
+    return doubt
+
+
+def _life(case: Case, found: Found) -> Doubt:
+    return True, f"beyond {LONGEST:g} cycles" if max(case.cycles) > LONGEST else ""
+
+
+def _slip(case: Case, found: Found) -> Doubt:
+    if all(m.family in ("Eh", "IF") for m in case.materials):
+        return True, ""
+    guessed = any(
+        m.yield_strength <= 0.0 and m.family in (*TEMPERED, "GG", "GGG ferritic")
+        for m in case.materials
+    )
+    guess = "; yield point estimated from hardness" if guessed else ""
+    return False, f"slip layer from memory{guess}"
+
+
+def _surface(case: Case, found: Found) -> Doubt:
+    if all(m.family in ("V", "GTS", "GGG", "Eh", "IF") for m in case.materials):
+        coarse = max(m.root for m in case.materials) > 40e-3
+        return True, "roughness above 40 um" if coarse else ""
+    return False, "line of these materials from memory"
+
+
+def _mean(case: Case, found: Found) -> Doubt:
+    idle = any(m.reversed_load for m in case.materials)
+    return (False, "0.7 for reversed loads") if idle else (True, "")
+
+
+def _lubrication(case: Case, found: Found) -> Doubt:
+    between = 850.0 < min(_both(found["sigma_Hlim"])) < HARD_LIMIT
+    return True, "sigma_Hlim between 850 and 1200 MPa: no published value" if between else ""
+
+
+DOUBTS: dict[str, Callable[[Case, Found], Doubt]] = {
+    "c_prime": _stiffness,
+    "c_gamma_alpha": _stiffness,
+    "c_gamma_beta": _stiffness,
+    "N": _stiffness,
+    "K_v": _dynamic,
+    "K_Hbeta": _face,
+    "K_Halpha": _transverse,
+    "K_Falpha": _transverse_root,
+    "Z_BD": _single,
+    "Z_NT": _life,
+    "Y_NT": _life,
+    "Z_L": _lubrication,
+    "Z_v": _lubrication,
+    "Z_R": _lubrication,
+    "Z_W": _hardening,
+    "sigma_Hlim": _strength("H"),
+    "sigma_Flim": _strength("F"),
+    "Y_F": _form,
+    "Y_S": _notch,
+    "Y_beta": _helix,
+    "Y_B": _rim,
+    "Y_DT": _deep,
+    "Y_deltarelT": _slip,
+    "Y_RrelT": _surface,
+    "Y_M": _mean,
+}

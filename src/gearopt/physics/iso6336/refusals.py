@@ -1,0 +1,91 @@
+"""Pairs of gears for which ISO 6336 has no answer, by name, for one pair or arrays of them."""
+
+from typing import Any
+
+import numpy as np
+
+from gearopt.physics.gears import GearPair
+from gearopt.physics.geometry.contact import contact_path, usable_path
+from gearopt.physics.geometry.fillet import has_tip
+from gearopt.physics.geometry.tooth import tip_thickness
+from gearopt.physics.iso6336.case import Practice
+from gearopt.physics.iso6336.contact_factors import single_contact_ratios
+from gearopt.physics.iso6336.stiffness import theoretical_stiffness
+from gearopt.physics.iso6336.tooth_form import tooth_forms
+
+SENTENCES = {
+    "internal gear": "internal gears are not covered, only external ones",
+    "no centre distance": "the sum of the profile shifts is too small for any centre distance, or "
+    "a given one makes the base circles overlap",
+    "pointed tool": "the flanks of a tool meet before its tip round begins",
+    "no root": "a root circle has no diameter",
+    "no involute": "a tip circle lies inside its base circle",
+    "pointed tooth": "a tooth is pointed below its tip circle",
+    "contact ratio below 1": "the transverse contact ratio is below 1; ISO 6336 has no factors "
+    "for it",
+    "usable contact ratio below 1": "undercut or interference leaves a transverse contact ratio "
+    "below 1, and the overlap does not make up for it",
+    "contact ratio of 2.5 or more": "ISO 6336 covers transverse contact ratios below 2.5",
+    "contact at the base circle": "an inner point of single tooth contact lies at or below a base "
+    "circle",
+    "no critical section": "no tangent of 30 degrees touches the root fillet, or the load acts "
+    "below it",
+    "no stiffness": "the law of c' of ISO 6336-1 has no positive value for these profile shifts",
+}
+REFUSALS = ("", *SENTENCES)
+
+
+@np.errstate(invalid="ignore", divide="ignore", over="ignore")
+def refusal(pair: GearPair, shift: str = "nominal") -> Any:
+    """Return an index of REFUSALS for a pair of floats, or arrays of one shape; 0: none.
+
+    shift: as of `tooth_form.tooth_forms`. No exception for any finite numbers.
+    """
+    path = contact_path(pair)
+    ratio, overlap = np.asarray(path.transverse_ratio), pair.overlap_ratio
+    first, second = single_contact_ratios(pair, ratio)
+    pressed = np.isfinite(first) & np.isfinite(second)
+    flags = [
+        np.less_equal(pair.pinion_teeth, 0) | np.less_equal(pair.wheel_teeth, 0),
+        ~np.isfinite(pair.working_angle) | ~(np.asarray(pair.working_angle) > 0.0),
+        *_of_gears(pair),
+        ~(ratio >= 1.0),
+        ~(usable_path(pair).transverse_ratio + overlap >= 1.0),
+        ~(ratio < 2.5),
+        ~pressed & np.less(overlap, 1.0),
+        ~_section(pair, ratio, shift),
+        ~(np.asarray(theoretical_stiffness(pair)) > 0.0),
+    ]
+    shaped = np.broadcast_arrays(*flags, np.zeros(ratio.shape, bool))[:-1]
+    return np.select(shaped, range(1, len(REFUSALS)), 0)[()]
+
+
+def _section(pair: GearPair, ratio: Any, shift: str) -> Any:
+    """Return whether both teeth have a critical section below their load."""
+    sound = np.True_
+    for form in tooth_forms(pair, ratio, shift):
+        sizes = (form.height, form.thickness, form.fillet_radius, np.cos(form.load_angle))
+        for size in sizes:
+            sound = sound & (np.asarray(size) > 0.0) & np.isfinite(size)
+    return sound
+
+
+def _of_gears(pair: GearPair) -> list[Any]:
+    """Return whether a gear has a pointed tool, no root, no involute, a pointed tooth."""
+    gears = pair.gears
+    made = []
+    for fault in (
+        lambda g: ~np.asarray(has_tip(g)),
+        lambda g: np.less_equal(g.root_diameter, 0.0),
+        lambda g: np.less_equal(g.tip_diameter, g.base_diameter),
+        lambda g: ~(np.asarray(tip_thickness(g)) > 0.0),
+    ):
+        made.append(fault(gears[0]) | fault(gears[1]))
+    return made
+
+
+def refuse(pair: GearPair, practice: Practice) -> None:
+    """Raise ValueError with the name of what refuses a pair of floats."""
+    if found := int(refusal(pair, practice.shift)):
+        name = REFUSALS[found]
+        raise ValueError(f"{name}: {SENTENCES[name]}")

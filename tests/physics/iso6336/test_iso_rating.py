@@ -1,0 +1,235 @@
+"""Whole ratings: what is given, refusals, doubts, lives that close, spectra, limits of geometry."""
+
+import math
+from dataclasses import replace
+
+import pytest
+from iso6336_cases import case_report
+
+from gearopt.bench.rating import iso_example
+from gearopt.physics.gears import GearPair, Rack
+from gearopt.physics.iso6336.case import Practice
+from gearopt.physics.iso6336.factors import CLAUSES, PAIRED, SHARED
+from gearopt.physics.iso6336.materials import Material
+from gearopt.physics.iso6336.rating import rate, rate_spectrum
+from gearopt.physics.iso6336.refusals import SENTENCES
+from gearopt.physics.rating import Operation
+
+EH = Material("Eh", "MQ")
+V = Material("V alloy", "ML", 300.0, yield_strength=700.0)
+LOAD = Operation(5e7, 150.0, 2000.0, overload=1.25)
+
+
+def spur(**more):
+    return GearPair.of_teeth(4.0, 21, 63, 40.0, **more)
+
+
+def helical(angle=0.25):
+    return GearPair.of_teeth(4.0, 21, 63, 40.0, angle, profile_shifts=(0.2, 0.0))
+
+
+def steels(material):
+    return material, material
+
+
+def test_every_factor_can_be_given():
+    """What is given is taken, and named so; each moves some safety factor, up or down."""
+    plain = rate(helical(), LOAD, steels(EH))
+    for symbol in CLAUSES:
+        value = plain.factors[symbol].value
+        changed = tuple(1.1 * v for v in value) if symbol in PAIRED else 1.1 * value
+        found = rate(helical(), LOAD, steels(EH), given={symbol: changed})
+        assert found.factors[symbol].clause == "given" and found.factors[symbol].value == changed
+        moved = found.bending_safety + found.contact_safety
+        assert moved != plain.bending_safety + plain.contact_safety, symbol
+    assert set(CLAUSES) == {*SHARED, *PAIRED}
+
+
+def test_giving_what_is_computed_changes_nothing():
+    plain = rate(helical(), LOAD, steels(EH))
+    given = {symbol: factor.value for symbol, factor in plain.factors.items()}
+    found = rate(helical(), LOAD, steels(EH), given=given)
+    assert found.bending_safety == pytest.approx(plain.bending_safety, rel=1e-14)
+    assert found.contact_life == pytest.approx(plain.contact_life, rel=1e-9)
+
+
+def test_lives_are_where_safety_factors_are_1():
+    """Rated for the life that is found, a gear has a safety factor of 1."""
+    for material, power in ((EH, 4e8), (V, 2e7)):
+        heavy = replace(LOAD, power=power)
+        first = rate(spur(), heavy, steels(material))
+        for lives, safeties in (
+            (first.bending_life, "bending_safety"),
+            (first.contact_life, "contact_safety"),
+        ):
+            for k in (0, 1):
+                if not 0.0 < lives[k] < math.inf:
+                    continue
+                hours = heavy.hours * lives[k] / first.cycles[k]
+                again = rate(spur(), replace(heavy, hours=hours), steels(material))
+                assert getattr(again, safeties)[k] == pytest.approx(1.0, rel=1e-9)
+    assert 0.0 < first.contact_life[0] < math.inf
+
+
+def test_static_strength_has_static_factors():
+    """At a turn or two: 1.6 sigma_Hlim, 2.5 2 sigma_Flim (0.44 Y_S + 0.12), no film, no size."""
+    found = rate(spur(), replace(LOAD, hours=1e-4), steels(EH))
+    value = {symbol: factor.value for symbol, factor in found.factors.items()}
+    assert value["Z_NT"] == pytest.approx((1.6, 1.6)) and value["Y_NT"] == pytest.approx((2.5, 2.5))
+    for symbol in ("Z_L", "Z_v", "Z_R", "Y_RrelT", "Y_X"):
+        assert value[symbol] == (1.0, 1.0)
+    assert value["Y_deltarelT"][0] == pytest.approx(0.44 * value["Y_S"][0] + 0.12)
+
+
+def test_soft_wheels_harden_against_hard_pinions():
+    wheel = Material("V alloy", "MQ", 300.0, yield_strength=700.0)
+    found = rate(spur(), replace(LOAD, hours=2e4), (EH, wheel))
+    assert found.factors["Z_W"].value[0] == 1.0
+    assert found.factors["Z_W"].value[1] == pytest.approx(1.1 * (3.0 / _film()) ** 0.15, rel=1e-9)
+    assert not found.factors["Z_W"].verified
+    both = replace(wheel, hardness=360.0), replace(wheel, hardness=240.0)
+    known = 1.0 + 2.0 * (0.00898 * 1.5 - 0.00829)
+    found = rate(spur(), replace(LOAD, hours=2e4), both)
+    assert found.factors["Z_W"].value == pytest.approx((1.0, known))
+
+
+def _film():
+    """R_zH [um] of 4.8/4.8 um, v 6.3 m/s, 220 mm2/s, rho_red 10.774 mm, within 3 to 16."""
+    rho = 42.0 * 126.0 / 168.0 * math.sin(math.radians(20.0))
+    film = (6.3 * 220.0 / 1500.0) ** 0.33
+    return max(4.8 * (10.0 / rho) ** 0.33 * film, 3.0)
+
+
+def test_idlers_have_seven_tenths():
+    idle = replace(EH, reversed_load=True)
+    one, two = rate(spur(), LOAD, (EH, EH)), rate(spur(), LOAD, (idle, EH))
+    assert two.bending_safety[0] == pytest.approx(0.7 * one.bending_safety[0])
+    assert two.bending_safety[1] == one.bending_safety[1]
+
+
+def test_rims_and_deep_teeth():
+    thin = rate(spur(), LOAD, steels(EH), Practice(backup=(None, 0.8)))
+    plain = rate(spur(), LOAD, steels(EH))
+    assert thin.bending_stress[0] == plain.bending_stress[0]
+    ratio = thin.bending_stress[1] / plain.bending_stress[1]
+    assert ratio == pytest.approx(1.6 * math.log(2.242 / 0.8))
+    assert "Y_B" in thin.unverified and "Y_B" not in plain.unverified
+    deep = GearPair.of_teeth(4.0, 60, 80, 40.0, rack=Rack(addendum=1.35, dedendum=1.6))
+    fine = rate(deep, LOAD, steels(EH), Practice(grades=(4.0, 4.0))).factors["Y_DT"]
+    coarse = rate(deep, LOAD, steels(EH)).factors["Y_DT"]
+    assert fine.value < 1.0 == coarse.value and not fine.verified
+
+
+def test_doubts_are_named():
+    """Below 100 N/mm, tempered steel, main resonance, modification, 2019: each marks its factor."""
+    light = rate(spur(), replace(LOAD, power=1e5), steels(EH))
+    assert {"c_prime", "c_gamma_alpha", "K_v"} <= set(light.unverified)
+    soft = rate(spur(), LOAD, steels(V))
+    assert {"K_v", "K_Halpha", "Y_deltarelT"} <= set(soft.unverified)
+    guess = rate(spur(), LOAD, steels(replace(V, yield_strength=0.0)))
+    assert "estimated" in guess.factors["Y_deltarelT"].remark
+    fast = rate(spur(), replace(LOAD, pinion_speed=2000.0, power=7e8), steels(EH))
+    assert fast.factors["N"].value > 0.85 and "K_v" in fast.unverified
+    crowned = rate(spur(), LOAD, steels(EH), Practice(helix_modification="crowned"))
+    assert "K_Hbeta" in crowned.unverified
+    assert (
+        crowned.factors["K_Hbeta"].value < rate(spur(), LOAD, steels(EH)).factors["K_Hbeta"].value
+    )
+    new = rate(helical(), LOAD, steels(EH), Practice(edition="2019"))
+    assert {"Y_F", "Y_beta", "Z_BD", "K_Falpha"} <= set(new.unverified)
+    assert new.factors["Z_H"].clause == "6336-2:2019, 6"
+    assert new.factors["f_pb"].clause == "ISO 1328-1:1995"
+
+
+def test_numbers_and_words_that_mean_nothing_are_refused():
+    for what, message in (
+        ({"power": 0.0}, "a level without load does no damage"),
+        ({"pinion_speed": -1.0}, "pinion speed is -1"),
+        ({"overload": 0.0}, "application factor is 0"),
+        ({"hours": -1.0}, "cannot be below 0"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            rate(spur(), replace(LOAD, **what), steels(EH))
+    for practice, message in (
+        (Practice(edition="1996"), "no edition '1996'; known: 2006, 2019"),
+        (Practice(tolerances="1962"), "no tolerances"),
+        (Practice(shift="real"), "no shift 'real'"),
+        (Practice(helix_modification="bent"), "no helix modification"),
+        (Practice(profile_modification="some"), "no profile modification"),
+        (Practice(grades=(6.0, 13.0)), "no accuracy grade"),
+        (Practice(viscosity=0.0), "viscosity"),
+        (Practice(backup=(0.4, None)), "backup ratio"),
+        (Practice(lowest=0.1), "at 1e10 cycles"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            rate(spur(), LOAD, steels(EH), practice)
+    with pytest.raises(ValueError, match="no factor 'K_x'; known: K_A"):
+        rate(spur(), LOAD, steels(EH), given={"K_x": 1.0})
+    with pytest.raises(ValueError, match="K_v is 0"):
+        rate(spur(), LOAD, steels(EH), given={"K_v": 0.0})
+    assert rate(spur(), LOAD, steels(EH), given={"C_a": 0.0, "f_ma": 0.0})
+
+
+@pytest.mark.parametrize(
+    ("name", "pair"),
+    [
+        ("no centre distance", GearPair.of_teeth(4.0, 20, 40, 40.0, profile_shifts=(-2.0, -2.0))),
+        ("pointed tool", GearPair.of_teeth(4.0, 20, 40, 40.0, rack=Rack(dedendum=2.5))),
+        ("pointed tooth", GearPair.of_teeth(4.0, 8, 40, 40.0, profile_shifts=(1.5, 0.0))),
+        (
+            "contact ratio below 1",
+            GearPair.of_teeth(4.0, 20, 40, 40.0, rack=Rack(addendum=0.4)),
+        ),
+        (
+            "contact ratio of 2.5 or more",
+            GearPair.of_teeth(
+                4.0, 150, 150, 40.0, rack=Rack(math.radians(15.0), 1.6, 1.9, tip_radius=0.2)
+            ),
+        ),
+    ],
+)
+def test_a_pair_without_a_rating_is_refused_by_name(name, pair):
+    with pytest.raises(ValueError, match=f"^{name}: "):
+        rate(pair, LOAD, steels(EH))
+    assert name in SENTENCES
+
+
+def test_one_level_of_a_spectrum_is_a_rating():
+    heavy = replace(LOAD, power=3e8)
+    one, spectrum = rate(spur(), heavy, steels(EH)), rate_spectrum(spur(), (heavy,), steels(EH))
+    assert spectrum.bending_safety == pytest.approx(one.bending_safety, rel=1e-9)
+    assert spectrum.contact_safety == pytest.approx(one.contact_safety, rel=1e-9)
+    damage = [n / life for n, life in zip(one.cycles, one.contact_life, strict=True)]
+    assert spectrum.contact_damage == pytest.approx(damage, rel=1e-9)
+
+
+def test_two_levels_of_a_spectrum_by_hand():
+    """N = 5e7 (sigma_Hlim/sigma)^p between 1e5 and 5e7 cycles, p = ln(500)/ln(1.6)."""
+    names = ("K_v", "K_Hbeta", "K_Fbeta", "K_Halpha", "K_Falpha")
+    given = dict.fromkeys(names, 1.0) | dict.fromkeys(("Z_L", "Z_v", "Z_R"), (1.0, 1.0))
+    first = replace(LOAD, power=1.5e8, pinion_speed=100.0, hours=100.0)
+    second = replace(first, power=1.2e8, hours=200.0)
+    found = rate_spectrum(spur(), (first, second), steels(EH), given=given)
+    limit, power = 1500.0, math.log(500.0) / math.log(1.6)
+    cycles = [100.0 * hours * 3600.0 / (2.0 * math.pi) for hours in (100.0, 200.0)]
+    stress = [level.contact_stress[0] for level in found.levels]
+    lives = [5e7 * (limit / s) ** power for s in stress]
+    assert all(1e5 < life < 5e7 for life in lives)
+    expected = sum(n / life for n, life in zip(cycles, lives, strict=True))
+    assert found.contact_damage[0] == pytest.approx(expected, rel=1e-9)
+    assert found.contact_safety[0] == pytest.approx(expected ** (-1.0 / power), rel=1e-6)
+    with pytest.raises(ValueError, match="follow from the levels"):
+        rate_spectrum(spur(), (first,), steels(EH), given={"Z_NT": (1.0, 1.0)})
+
+
+def test_published_designs_are_safe_by_either_edition():
+    """2019 changes sigma_F of the report by f_eps and cos(beta)^3: Y_F 18 % lower, Y_beta 4.7 %."""
+    case = case_report()
+    old = rate(case.pair, case.operation, case.materials, case.practice, case.given)
+    new = replace(case.practice, edition="2019", profile_modification="by analysis")
+    found = rate(case.pair, case.operation, case.materials, new, case.given)
+    sharing = 1.50275**-0.5
+    known = old.bending_stress[0] * sharing / math.cos(math.radians(10.0)) ** 3
+    assert found.bending_stress[0] == pytest.approx(known, rel=1e-4)
+    assert found.contact_stress == old.contact_stress
+    assert iso_example().practice.shift == "nominal"
