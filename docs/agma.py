@@ -3,6 +3,7 @@
 import math
 
 import agma_cases
+from agma_cases import digits, printed
 from agma_tables import J20_TIP, J25, J25_TIP
 
 from gearopt.bench.rating import PUBLISHED, THINNING, TOOL
@@ -198,7 +199,7 @@ def page() -> str:
     """Return the page as the program computes it now."""
     heads = "quantity", "formula", "source", "function"
     parts = (
-        HEAD + "\n## Formulas\n\n" + _grid(heads, list(FORMULAS)) + REMARKS,
+        HEAD + "\n## Formulas\n\n" + grid(heads, list(FORMULAS)) + REMARKS,
         _tables(),
         _helical(),
         _cases(),
@@ -208,7 +209,8 @@ def page() -> str:
     return "".join(parts) + _refusals()
 
 
-def _grid(heads: tuple[str, ...], rows: list[tuple[object, ...]]) -> str:
+def grid(heads: tuple[str, ...], rows: list[tuple[object, ...]]) -> str:
+    """Return a table of Markdown."""
     lines = [heads, tuple("---" for _ in heads), *rows]
     return "\n".join("| " + " | ".join(str(cell) for cell in line) + " |" for line in lines) + "\n"
 
@@ -231,7 +233,7 @@ def _tables() -> str:
         f"Largest difference: I {worst[0]:.4f}, J {worst[1]:.4f}; the tables have three and two "
         "decimals,\nand most J are truncated rather than rounded: they are met within 0.0006 and "
         "0.007.\nSource: AGMA 908-B89, as in Norton, Machine Design, table 12-9.\n\n"
-        + _grid(heads, rows)
+        + grid(heads, rows)
         + _tables_25()
         + _tips()
     )
@@ -252,7 +254,7 @@ def _tables_25() -> str:
     return (
         "\nThe same of 25 degrees, tool h_a0 1.35, rho_a0 0.27 (with 1.25 and 0.25 it is missed by "
         f"0.022).\nLargest difference: {worst:.4f}. Norton, table 12-13.\n\n"
-        + _grid(("z1/z2", "J1", "computed", "J2", "computed"), rows)
+        + grid(("z1/z2", "J1", "computed", "J2", "computed"), rows)
     )
 
 
@@ -262,7 +264,7 @@ def _tips() -> str:
         for teeth, known in table:
             made = bending_factors(_thin(teeth, teeth, tool), "tip")[0].value
             rows.append((degrees, teeth, f"{known:.2f}", f"{float(made):.4f}"))
-    return "\nLoad at the tip, spur. Norton, tables 12-8 and 12-12.\n\n" + _grid(
+    return "\nLoad at the tip, spur. Norton, tables 12-8 and 12-12.\n\n" + grid(
         ("alpha_n [deg]", "z", "J", "computed"), rows
     )
 
@@ -286,7 +288,7 @@ def _helical() -> str:
         "the sign of M and the end of its iteration\nmended, give I and J within 1e-6 of these, of "
         "spur gears and of m_F up to 1 and above, at 14.5, 20 and\n25 degrees, where the section "
         "lies on the fillet; where it lies above, J is up to 0.5 % less there.\n\n"
-        + _grid(("z1/z2", "psi [deg]", "I", "J1", "J2"), rows)
+        + grid(("z1/z2", "psi [deg]", "I", "J1", "J2"), rows)
     )
 
 
@@ -295,7 +297,7 @@ def _cases() -> str:
     heads = "quantity", "printed", "computed", "off by", "tolerance", "remark"
     made = (
         f"\n### {case.title}\n\n{case.given}. Source: {case.source}.\n\n"
-        + _grid(heads, [_compared(row) for row in case.rows])
+        + grid(heads, [_compared(row) for row in case.rows])
         for case in agma_cases.cases()
     )
     return (
@@ -310,25 +312,14 @@ def _cases() -> str:
 def _compared(row: agma_cases.Row) -> tuple[object, ...]:
     pairs = list(zip(row.computed, row.printed, strict=True))
     off = max(abs(made / known - 1.0) for made, known in pairs)
-    digits = [_digits(known) for known in row.printed]
-    shown = " / ".join(f"{made:.{n}f}" for made, n in zip(row.computed, digits, strict=True))
+    places = [digits(known) for known in row.printed]
+    shown = " / ".join(f"{made:.{n}f}" for made, n in zip(row.computed, places, strict=True))
     known = " / ".join(
-        f"{k:.{n}f}" for k, n in zip(row.printed, map(_printed, row.printed), strict=True)
+        f"{k:.{n}f}" for k, n in zip(row.printed, map(printed, row.printed), strict=True)
     )
     away = f"{100 * off:.2g} %" if off > 1e-4 else "< 0.01 %"
     held = f"{row.within:g}" if row.within else f"{100 * row.tolerance:g} %"
     return row.quantity, known, shown, away, held, row.reason
-
-
-def _printed(value: float) -> int:
-    """Return how many decimals a value has."""
-    text = f"{value:.6f}".rstrip("0")
-    return len(text) - text.index(".") - 1
-
-
-def _digits(value: float) -> int:
-    """Return decimals to show of a computed value: those of the printed one and one more."""
-    return _printed(value) + (1 if abs(value) < 1000 else 0)
 
 
 def _smooth() -> str:
@@ -344,7 +335,7 @@ def _smooth() -> str:
         )
     return (
         "\n## The smooth form\n\nI and J of `smooth_factors` against the exact ones, z 25/75, beta "
-        "0.3 rad:\n\n" + _grid(("m_F", "regime", "smooth less exact"), rows)
+        "0.3 rad:\n\n" + grid(("m_F", "regime", "smooth less exact"), rows)
     )
 
 
@@ -358,7 +349,7 @@ def _strengths() -> str:
     return (
         "\n## Allowable stress numbers\n\npsi, at 1e7 cycles and a reliability of 0.99; MPa are "
         "0.00689476 of it. Flame hardening counts as induction\nhardening.\n\n"
-        + _grid(("", "treatment", "surface", "grade", "psi", "source"), rows)
+        + grid(("", "treatment", "surface", "grade", "psi", "source"), rows)
     )
 
 
@@ -368,5 +359,5 @@ def _refusals() -> str:
     return (
         "\n## What is refused\n\nA pair is refused by name; `geometry.flaws` warns of what a "
         "designer may accept: undercut, interference,\nthin tips, no tip clearance, "
-        "no backlash.\n\n" + _grid(("name", "because"), rows)
+        "no backlash.\n\n" + grid(("name", "because"), rows)
     )

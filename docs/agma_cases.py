@@ -335,3 +335,14 @@ def _shifted() -> Case:
     given = "z 19/104, m_n 4, x 0.5/0.15, rack 1.25/0.25/1.0; lengths in mm"
     source = "hanslhansl/din3990, `tests/test_1.py`: a public program's own values"
     return Case("A shifted pair by another program: geometry", given, source, rows)
+
+
+def printed(value: float) -> int:
+    """Return how many decimals a value has."""
+    text = f"{value:.6f}".rstrip("0")
+    return len(text) - text.index(".") - 1
+
+
+def digits(value: float) -> int:
+    """Return decimals to show of a computed value: those of the printed one and one more."""
+    return printed(value) + (1 if abs(value) < 1000 else 0)

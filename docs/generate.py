@@ -12,6 +12,7 @@ from pathlib import Path
 import agma
 import commands
 import gallery
+import iso6336
 import notebook
 import pictures
 import python_api
@@ -25,6 +26,7 @@ PAGES = {
     "agma.md": agma.page,
     "commands.md": commands.page,
     "gallery.md": gallery.page,
+    "iso6336.md": iso6336.page,
     "python.md": python_api.page,
     "rate.md": rate_page.page,
 }

@@ -104,10 +104,11 @@ def test_the_compound_page_shows_the_code_as_it_is():
     assert page("compound.md").count("def exact(") == 1
 
 
-def test_python_of_the_page_on_ratings_runs(capsys):
+@pytest.mark.parametrize("name", ["agma.md", "iso6336.md"])
+def test_python_of_the_pages_on_ratings_runs(capsys, name):
     """What it prints are safety factors, the least of which governs."""
-    block = page("agma.md").split("```python\n")[1].split("```")[0]
-    exec(compile(block, "agma.md", "exec"), {})
+    block = page(name).split("```python\n")[1].split("```")[0]
+    exec(compile(block, name, "exec"), {})
     numbers, member, mode = re.search(
         r"\[(.*)\] \('(\w+)', '(\w+)'\)", capsys.readouterr().out
     ).groups()

@@ -214,7 +214,9 @@ def test_work_hardening():
     assert contact.static_hardening_factor(100.0) == pytest.approx(1.05)
     rough = contact.equivalent_roughness(6e-3, 12e-3, 10.0, 5e3, 300.0)
     assert rough == pytest.approx(6e-3 * 0.5**0.66)
-    assert contact.equivalent_roughness(6e-3, 6e-3, 10.0, 5e6, 300.0) == 16e-3
+    rough = contact.equivalent_roughness(6e-3, 6e-3, 10.0, 1e4, 300.0)
+    assert rough == pytest.approx(6e-3 * 0.5**0.33)
+    assert contact.equivalent_roughness(6e-3, 6e-3, 10.0, 5.0, 300.0) == 16e-3
     assert contact.equivalent_roughness(1e-3, 6e-3, 10.0, 5e3, 300.0) == 3e-3
     assert contact.tempered_hardening_factor(300.0, 200.0, 4.0) == pytest.approx(
         1.0 + 3.0 * (0.00898 * 1.5 - 0.00829)

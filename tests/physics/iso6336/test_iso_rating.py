@@ -96,7 +96,7 @@ def test_soft_wheels_harden_against_hard_pinions():
 def _film():
     """R_zH [um] of 4.8/4.8 um, v 6.3 m/s, 220 mm2/s, rho_red 10.774 mm, within 3 to 16."""
     rho = 42.0 * 126.0 / 168.0 * math.sin(math.radians(20.0))
-    film = (6.3 * 220.0 / 1500.0) ** 0.33
+    film = (1500.0 / (6.3 * 220.0)) ** 0.33
     return max(4.8 * (10.0 / rho) ** 0.33 * film, 3.0)
 
 

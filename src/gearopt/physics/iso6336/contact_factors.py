@@ -125,10 +125,10 @@ def roughness_factor(limit: Any, roughness: Any, curvature: Any) -> Any:
 def equivalent_roughness(hard: Any, soft: Any, curvature: Any, speed: Any, viscosity: Any) -> Any:
     """Return R_zH [mm] of a hard pinion against a soft wheel, 3 to 16 um.
 
-    R_z1 (10/rho_red)^0.33 (v nu_40/1500)^0.33 (R_z1/R_z2)^0.66. roughness hard, soft [mm]; speed
-    [mm/s], viscosity [mm2/s]. Part 2, 13 [memory].
+    R_z1 (10/rho_red)^0.33 (1500/(v nu_40))^0.33 (R_z1/R_z2)^0.66: a film hides roughness.
+    roughness hard, soft [mm]; speed [mm/s], viscosity [mm2/s]. Part 2, 13 [memory].
     """
-    film = (1e-3 * speed * viscosity / 1500.0) ** 0.33
+    film = (1500.0 / (1e-3 * speed * viscosity)) ** 0.33
     found = hard * (10.0 / curvature) ** 0.33 * film * (hard / soft) ** 0.66
     return np.clip(found, 3e-3, 16e-3)
 

@@ -1,0 +1,323 @@
+"""The page "Rating by ISO 6336": formulas, choices, published values beside computed ones."""
+
+import iso6336_cases
+from agma import grid
+from agma_cases import digits, printed
+
+from gearopt.physics.iso6336.factors import CLAUSES
+from gearopt.physics.iso6336.materials import MATERIALS
+from gearopt.physics.iso6336.refusals import SENTENCES
+from gearopt.physics.iso6336.strength_table import LINES
+
+HEAD = """\
+# Rating by ISO 6336
+
+External spur and helical gears by ISO 6336, parts 1, 2, 3 and 5, method B, and 6, so far from
+Python: `gearopt.physics.iso6336`. `edition` is 2006 or 2019, tolerances are those of ISO
+1328-1:1995 or 2013. The standards themselves were not read: formulas and values are from public
+programs, printed reports, tables and memory. What a single source or memory alone has is marked
+*unverified*, in the result too (`Rating.unverified`). Scuffing and micropitting are not rated.
+
+```python
+import math
+
+from gearopt.physics.gears import GearPair
+from gearopt.physics.iso6336.case import Practice
+from gearopt.physics.iso6336.materials import Material
+from gearopt.physics.iso6336.rating import rate
+from gearopt.physics.rating import Operation
+
+pair = GearPair.of_teeth(3.0, 21, 63, 30.0, profile_shifts=(0.2, 0.0))  # m_n, z1, z2, b in mm
+operation = Operation(power=7.5e6, pinion_speed=1450 * math.pi / 30, hours=20000)  # N mm/s, rad/s
+steel = Material("Eh", "MQ")  # case-hardened
+rating = rate(pair, operation, (steel, steel), Practice(grades=(7, 7)))
+print([round(s, 2) for s in rating.bending_safety + rating.contact_safety], rating.governs)
+```
+
+Inside everything is mm, N, MPa, rad, s; stiffness per face width is in MPa: 1 N/(mm um) is 1000
+MPa. `given={"K_Hbeta": 1.15}` puts a factor of yours in the place of a computed one, any of them;
+what follows from it is computed from it.
+"""
+
+# quantity, formula, source, function
+FORMULAS = (
+    (
+        "sigma_H0",
+        "Z_H Z_E Z_eps Z_beta sqrt(F_t (u + 1)/(d_1 b u))",
+        "part 2, 5",
+        "`contact_factors.contact_stress`",
+    ),
+    (
+        "sigma_H",
+        "Z_B sigma_H0 sqrt(K_A K_v K_Hbeta K_Halpha), Z_D of the wheel",
+        "part 2, 5",
+        "`chain`",
+    ),
+    ("sigma_HG", "sigma_Hlim Z_NT Z_L Z_v Z_R Z_W Z_X", "part 2, 5", "`chain`"),
+    (
+        "sigma_F0",
+        "F_t/(b m_n) Y_F Y_S Y_beta Y_B Y_DT",
+        "part 3, 5",
+        "`bending_factors.root_stress`",
+    ),
+    ("sigma_F", "sigma_F0 K_A K_v K_Fbeta K_Falpha", "part 3, 5", "`chain`"),
+    ("sigma_FG", "sigma_Flim Y_ST Y_NT Y_deltarelT Y_RrelT Y_X Y_M", "part 3, 5", "`chain`"),
+    ("S_H, of stress; S_F", "sigma_HG/sigma_H; sigma_FG/sigma_F", "parts 2, 3", "`rating.rate`"),
+    (
+        "c'",
+        "c'_th C_M C_R C_B cos(beta) E/E_st; times (w/100)^0.25 below w = F_t K_A/b = 100 N/mm "
+        "(*unverified*: memory; DIN 3990 is linear there)",
+        "part 1, 9.3",
+        "`stiffness.single_stiffness`",
+    ),
+    (
+        "c_gamma_alpha, c_gamma_beta",
+        "c' (0.75 eps_alpha + 0.25); 0.85 of it",
+        "part 1, 9.3",
+        "`stiffness.mesh_stiffness`",
+    ),
+    (
+        "K_v, N ≤ N_S",
+        "1 + N (C_v1 B_p + C_v2 B_f + C_v3 B_k)",
+        "part 1, 6.5",
+        "`load_factors.dynamic_factor`",
+    ),
+    (
+        "K_v, N to 1.15; from 1.5",
+        "1 + C_v1 B_p + C_v2 B_f + C_v4 B_k; C_v5 B_p + C_v6 B_f + C_v7; straight between "
+        "(*unverified*: no published value)",
+        "part 1, 6.5",
+        "`load_factors.dynamic_factor`",
+    ),
+    (
+        "K_Hbeta",
+        "1 + x, 2 sqrt(x) from x = 1; x = F_betay c_gamma_beta/(2 F_m/b), F_betax = 1.33 B_1 f_sh "
+        "+ B_2 f_ma",
+        "part 1, 7.5, method C",
+        "`load_factors.face_load_factor`",
+    ),
+    (
+        "K_Fbeta",
+        "K_Hbeta^(1/(1 + h/b + (h/b)²))",
+        "part 1, 7.6",
+        "`load_factors.root_face_load_factor`",
+    ),
+    (
+        "K_Halpha, K_Falpha",
+        "eps_gamma/2 (0.9 + 0.4 q), or 0.9 + 0.4 sqrt(2 (eps_gamma - 1)/eps_gamma) q above "
+        "eps_gamma = 2; q = c_gamma_alpha (f - y_alpha)/(F_tH/b)",
+        "part 1, 8.3",
+        "`load_factors.transverse_load_factor`",
+    ),
+    (
+        "y_alpha, y_beta, C_ay",
+        "by material, sigma_Hlim and speed; y_alpha of steels that are not surface hardened and "
+        "of cast iron *unverified*",
+        "part 1, 6.5, 7.5, 8.3",
+        "`running_in`",
+    ),
+    (
+        "Z_H",
+        "sqrt(2 cos(beta_b) cos(alpha_wt)/sin(alpha_wt))/cos(alpha_t)",
+        "part 2, 6",
+        "`contact_factors.zone_factor`",
+    ),
+    (
+        "Z_B, Z_D",
+        "M_1, M_2, at least 1, for spur gears; 1 for eps_beta ≥ 1 (2019: sqrt(f_ZCa), "
+        "*unverified*); straight in eps_beta between",
+        "part 2, 6",
+        "`contact_factors.single_contact_factor`",
+    ),
+    (
+        "Z_eps",
+        "sqrt((4 - eps_alpha)/3 (1 - eps_beta) + eps_beta/eps_alpha)",
+        "part 2, 8",
+        "`contact_factors.contact_ratio_factor`",
+    ),
+    ("Z_beta", "1/sqrt(cos(beta))", "part 2, 9", "`contact_factors.helix_factor`"),
+    (
+        "Z_L, Z_v, Z_R",
+        "by nu_40, v, R_z10 and C_ZL, C_ZR of the softer gear",
+        "part 2, 12",
+        "`contact_factors`",
+    ),
+    (
+        "Z_W",
+        "(1.2 - (HB - 130)/1700) (3 um/R_zH)^0.15; 1 + A (u - 1) of two tempered gears "
+        "(*unverified* but for the line in HB)",
+        "part 2, 13",
+        "`contact_factors.work_hardening_factor`",
+    ),
+    (
+        "Y_F",
+        "6 h_F cos(alpha_Fen)/(s_Fn² cos(alpha_n)) at the 30-degree tangent of the rack's fillet; "
+        "2019: times f_eps (*unverified*)",
+        "part 3, 6",
+        "`tooth_form.tooth_form`",
+    ),
+    (
+        "Y_S",
+        "(1.2 + 0.13 L) q_s^(1/(1.21 + 2.3/L)), L = s_Fn/h_F, q_s = s_Fn/(2 rho_F)",
+        "part 3, 7",
+        "`tooth_form.tooth_form`",
+    ),
+    (
+        "Y_beta",
+        "1 - eps_beta beta/120°; 2019: over cos(beta)³ (*unverified*)",
+        "part 3, 8",
+        "`bending_factors.helix_factor`",
+    ),
+    (
+        "Y_B, Y_DT",
+        "1.6 ln(2.242 h_t/s_R); 2.366 - 0.666 eps_alphan of grades to 4 (*unverified*)",
+        "part 3, 9, 10",
+        "`bending_factors.rim_factor`, `deep_tooth_factor`",
+    ),
+    (
+        "Y_deltarelT",
+        "(1 + sqrt(rho' chi))/(1 + sqrt(rho' chi_T)); rho' of steels that are not case or "
+        "induction hardened *unverified*",
+        "part 3, 11",
+        "`bending_factors.notch_factor`",
+    ),
+    (
+        "Y_RrelT",
+        "1.674 - 0.529 (R_z + 1)^0.1 and two more, *unverified*",
+        "part 3, 12",
+        "`bending_factors.surface_factor`",
+    ),
+    ("Y_X", "1.05 - 0.01 m_n and two more", "part 3, 13", "`bending_factors.size_factor`"),
+    (
+        "Z_NT, Y_NT",
+        "straight in log-log from static to reference strength, to 0.85 at 1e10 cycles",
+        "parts 2, 3",
+        "`curves`",
+    ),
+    ("load spectrum", "sum n_i/N_i = 1 (*unverified*)", "part 6", "`rating.rate_spectrum`"),
+)
+CHOICES = """
+## Choices
+
+Correct programs differ in these; this one does as follows.
+
+1. The pinion of c' is the gear with fewer teeth. c_gamma_alpha is not reduced for eps_alpha < 1.2.
+2. K_Halpha and K_Falpha take the larger of f_pb and f_falpha, less y_alpha of f_pb; q stands
+   outside the square root, so that both branches meet at eps_gamma = 2.
+3. K_Fbeta takes h = (h_aP + h_fP) m_n of the rack, without tip alteration, as both published
+   cases do.
+4. The load's angle is that of the standard's z_n = z/(cos² beta_b cos beta). The printed report is
+   met to its last digit by z/cos³ beta: 0.015° of alpha_Fen, 0.16 % of h_F, 0.1 % of Y_F.
+5. Y_F takes the nominal shift x; `shift="generating"` the one that thins the tooth, x_E: Y_F is 1.5
+   to 4 % larger. c' takes x.
+6. Z_beta is 1/sqrt(cos beta), of the corrigendum of 2008 and of 2019. Z_X is 1.
+7. Between static and reference strength every factor follows Z_NT or Y_NT in log-log, so that the
+   strength is straight there. Beyond 1e10 cycles it is constant, and a life below it infinite.
+8. f_ma = hypot(f_Hbeta1, f_Hbeta2). Tolerances of 1995 take the means of their ranges and are
+   rounded; upper ends belong to a range.
+9. The yield point of St and V that is not given is estimated from the hardness, 3.2 MPa of tensile
+   strength a unit and 0.55 (St) or 0.75 of it: at a ratio of 1.5 Y_deltarelT moves by 1 %.
+10. Hardness outside the range of a line of part 5 counts as its end. Vickers hardness counts as
+    Brinell hardness in Z_W.
+11. K factors depend on the load: the power at which the least safety factor is 1 is that with the
+    factors of the load asked for, on the safe side.
+12. A transverse contact ratio below 1 is refused, with any overlap.
+"""
+
+
+def page() -> str:
+    """Return the page as the program computes it now."""
+    heads = "quantity", "formula", "source", "function"
+    parts = (
+        HEAD + "\n## Formulas\n\n" + grid(heads, list(FORMULAS)),
+        CHOICES,
+        _cases(),
+        _smooth(),
+        _factors(),
+        _strengths(),
+        _refusals(),
+    )
+    return "".join(parts)
+
+
+def _cases() -> str:
+    """Return the published cases value by value."""
+    titles = {
+        "tr30": "ISO/TR 6336-30:2017, example 1\n\nz 17/103, m_n 8, beta 15.8°, b 100, a 500, x "
+        "0.145/0, d_a 159.66/872.35, rack 1.4/0.39/1.0; 9000 N m, 360 1/min, 50 000 h;\nISO "
+        "1328-1:1995 grade 5, R_z 6 um, ISO VG 320, C_a 70 um, case-hardened 1500 MPa. 2006. Its "
+        "bending values were not\nfound in print. Source: gfsReboucas/Drivetrain, `MATISO_6336.m`; "
+        "a public test of the edition of 2022.",
+        "report": "A printed report: NREL 5 MW, high-speed pair\n\nz 24/95, m_n 14, beta 10°, b "
+        "360, a 861, x 0.48/0.6691, k m_n -0.938, rack 1.25/0.38/1.0; 5 MW, 1165.9 1/min, 175 200 "
+        "h,\nK_A 1.25; grade 6, R_z 4.8/20 um, ISO VG 220, C_a 2 um, webs 0.25 b and 5 m_n, "
+        "case-hardened 430/1500 MPa; K_Hbeta 1.15\ngiven. 2006. Source: gfsReboucas/Drivetrain, "
+        "`@NREL_5MW/stage_03.rtf` (KISSsoft 03/2017).",
+    }
+    parts = ["\n## Published cases\n\n" + UNITS]
+    for name, (make, rows) in iso6336_cases.CASES.items():
+        found = iso6336_cases.computed(make())
+        table = [_row(symbol, known, found[symbol]) for symbol, known in rows.items()]
+        heads = "quantity", "printed", "computed", "off by", "tolerance"
+        parts.append(f"\n### {titles[name]}\n\n" + grid(heads, table))
+    return "".join(parts)
+
+
+UNITS = """\
+Off by: the largest relative difference of a row. A tolerance is half a unit of the last printed
+digit, or what the input's rounding is worth; alpha_Fen, h_F, Y_F, Y_S and the stresses of the
+report follow choice 4, its m_red, n_E1 and N diameters with allowances. h_F, s_Fn and rho_F are in
+normal modules, stiffness in N/(mm um), f in um, v in m/s, m_red in kg/mm, n_E1 in 1/min, angles in
+degrees. sigma_H follows from the unrounded K_v and K_Hbeta.
+"""
+
+
+def _row(symbol: str, known: tuple, found: tuple[float, ...]) -> tuple[object, ...]:
+    values, tolerance = known
+    off = max(abs(a / b - 1.0) for a, b in zip(found, values, strict=True))
+    told = " / ".join(_text(v, printed(v)) for v in values)
+    made = " / ".join(_text(a, digits(b)) for a, b in zip(found, values, strict=True))
+    return symbol, told, made, f"{off:.1e}" if off > 1e-12 else "0", f"{tolerance:.1g}"
+
+
+def _text(value: float, places: int) -> str:
+    return f"{value:.4g}" if abs(value) >= 1e7 else f"{value:.{places}f}"
+
+
+def _smooth() -> str:
+    return (
+        "\n## Rows and the smooth form\n\n`batch.rate_rows` rates arrays by the same text, with a "
+        "code where a pair is refused. `batch.smooth_safeties` is\nthat text for an optimiser, of "
+        "floats, arrays or casadi scalars: deviations without the ranges and the rounding of\nISO "
+        "1328, and the law of one range of K_v, so that there is no jump at N_S; kinks of the "
+        "standard's limits stay.\nAgainst the exact form, of 400 helical pairs of modules 1 to 12 "
+        "and grades 5 to 8: S_F -7.2 to +4.2 %, S_H -4.0 to\n+2.3 %, half of them within 1.5 and "
+        "0.8 % (`batch.smooth_error`; tests/physics/iso6336).\n"
+    )
+
+
+def _factors() -> str:
+    """Return the symbols that may be given."""
+    rows = [(f"`{symbol}`", clause, unit or "1") for symbol, (clause, unit) in CLAUSES.items()]
+    return "\n## Factors that may be given\n\n" + grid(("symbol", "clause, method", "unit"), rows)
+
+
+def _strengths() -> str:
+    rows = []
+    for name, stress, quality, core, slope, base, low, high in LINES:
+        line = f"{slope:g} x + {base:g}" if slope else f"{base:g}"
+        symbol = {"H": "sigma_Hlim", "F": "sigma_Flim"}[stress]
+        rows.append((name, symbol, quality, core, line, f"{low:g} to {high:g}"))
+    heads = "material", "stress", "quality", "core", "MPa", "hardness x"
+    return (
+        "\n## Allowable stress numbers\n\nISO 6336-5:2016, table 1: x in Brinell of St, St cast, "
+        "GTS, GGG and GG, else in Vickers. sigma_Flim is without Y_ST.\n`GGG ferritic` has the "
+        f"lines of GGG and life curves of its own; {len(MATERIALS)} materials. Source: pictures of "
+        "the table in a\npublic repository (waa552/fyp-website): *unverified* but for the ME lines "
+        "of wrought steels, which its `data.js` repeats,\nand 1500 MPa of Eh, MQ, which a printed "
+        "report has.\n\n" + grid(heads, rows)
+    )
+
+
+def _refusals() -> str:
+    return "\n## What is refused\n\n" + grid(("name", "because"), list(SENTENCES.items()))
