@@ -11,6 +11,7 @@ import math
 import re
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cached_property, lru_cache
 
 _INCH = Fraction("25.4")  # mm
 _POUND = Fraction("0.45359237")  # kg
@@ -134,7 +135,7 @@ class Quantity:
     unit: str
     dimension: str
 
-    @property
+    @cached_property
     def exact(self) -> tuple[Fraction, int]:
         """Return the value in the inside unit as (rational number, power of pi)."""
         factor, power = UNITS[self.dimension][self.unit] if self.unit else (Fraction(1), 0)
@@ -152,7 +153,7 @@ class Quantity:
         number = factor / value if self.reciprocal else value / factor
         return replace(self, number=number - OFFSETS.get(self.unit, 0))
 
-    @property
+    @cached_property
     def value(self) -> float:
         """Return the value in the inside unit."""
         rational, power = self.exact
@@ -191,6 +192,7 @@ def named(text: str, dimension: str, flags: int = 0) -> str | None:
     )
 
 
+@lru_cache(4096)
 def parse(text: str, dimension: str) -> Quantity:
     """Read "7.5 kW"; ValueError with a sentence naming the rule where it cannot be read."""
     known = ", ".join(UNITS[dimension])

@@ -5,7 +5,6 @@ with u = 6.931 and 12 to 60 teeth, where it is a standard case of discrete optim
 """
 
 import math
-from bisect import bisect_left
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
@@ -93,17 +92,21 @@ def nearest(
     """
     clock = Clock(budget or Budget(), watch)
     pairs, whole = _pairs(train, clock)
-    ratios, target = sorted(pairs), 1 / train.ratio
+    ratios, target = sorted(sorted(pairs, key=float)), 1 / train.ratio  # floats are compared faster
     best: tuple[Fraction, int, tuple[int, ...]] = (target + train.teeth[1] ** 2, 0, ())
+    place = len(ratios)
     for looked, first in enumerate(ratios, 1):
-        place = bisect_left(ratios, target / first)
+        missing = target / first
+        while place and ratios[place - 1] >= missing:
+            place -= 1
         for second in ratios[max(0, place - 1) : place + 1]:
             miss = abs(target - first * second)
             if miss <= best[0]:
                 (a, c), (b, d) = pairs[first], pairs[second]
                 teeth = (*sorted((a, b)), *sorted((c, d)))
                 best = min(best, (miss, sum(teeth), teeth))
-        clock.evaluations, clock.best = looked, float(best[0] ** 2)
+                clock.best = float(best[0] ** 2)
+        clock.evaluations = looked
         if (looked % LOOK == 0 or looked == clock.budget.evaluations) and not clock.tell():
             break
     return best[0], best[2], looked, whole and looked == len(ratios)

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import MISSING, fields, is_dataclass
+from functools import cache
 from types import NoneType, UnionType
 from typing import Any, get_args, get_origin, get_type_hints
 
@@ -56,9 +57,8 @@ def untyped(value: Any) -> Any:
 
 def _filled(kind: Any, data: Any, where: str) -> Any:
     """Return A dataclass with all its fields and no other."""
-    hints, held = get_type_hints(kind), _mapping(data, where)
-    needed = {f.name for f in fields(kind) if f.default is f.default_factory is MISSING}
-    for inline in (f.name for f in fields(kind) if f.metadata):
+    (hints, needed, inlined), held = _declared(kind), _mapping(data, where)
+    for inline in inlined:
         others = {k: v for k, v in held.items() if k not in hints}
         held = {k: v for k, v in held.items() if k in hints} | {inline: others}
     if unknown := sorted(set(held) - set(hints)):
@@ -67,6 +67,13 @@ def _filled(kind: Any, data: Any, where: str) -> Any:
         raise ValueError(f"lacks keys in {where or 'it'}: {', '.join(missing)}")
     head = f"{where}." if where else ""
     return kind(**{k: typed(hints[k], v, f"{head}{k}") for k, v in held.items()})
+
+
+@cache
+def _declared(kind: Any) -> tuple[Mapping[str, Any], frozenset[str], tuple[str, ...]]:
+    """Return the types of a dataclass's fields; those without a default; those with metadata."""
+    needed = frozenset(f.name for f in fields(kind) if f.default is f.default_factory is MISSING)
+    return get_type_hints(kind), needed, tuple(f.name for f in fields(kind) if f.metadata)
 
 
 def _mapping(data: Any, where: str) -> Mapping[str, Any]:

@@ -1,9 +1,11 @@
 """The frame of a page: header, sections, tables, figures, footer; light and dark; printable."""
 
 from collections.abc import Mapping
+from functools import cache
 from typing import Any
 
 
+@cache
 def templates() -> Any:
     """Return the jinja2 environment of our templates; all that is put into them is escaped."""
     from jinja2 import Environment, PackageLoader, StrictUndefined

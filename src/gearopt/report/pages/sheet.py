@@ -67,7 +67,9 @@ class Ink:
         lines = sum(
             self.cells.get((column + i, row + j), 0) for i in (-1, 0, 1) for j in (-1, 0, 1)
         )  # the height of a letter
-        texts = sum(1 for u, v, r in self.texts if max(abs(u - x), abs(v - y)) < reach + r)
+        texts = sum(
+            1 for u, v, r in self.texts if abs(u - x) < reach + r and abs(v - y) < reach + r
+        )
         edge = 0.6 * SIZE
         outside = not (edge <= x <= self.width - edge and edge <= y <= self.height - edge)
         return min(lines, 6) + 100.0 * texts + 120.0 * outside

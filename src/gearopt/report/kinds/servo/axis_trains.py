@@ -277,6 +277,8 @@ def _head(goal: Goal, measures: Measures) -> str:
 
 def _caption(result: Result, trains: Sequence[ListedTrain], goal: Goal) -> str:
     """Say what the points are."""
+    if goal.name == "mass":  # the second plot, of the same trains
+        return "The same trains by mass."
     goals = _weighed(result)
     worth = [
         tuple((-1.0 if g is LARGEST else 1.0) * getattr(t, g.key) for g in goals) for t in trains
@@ -284,8 +286,6 @@ def _caption(result: Result, trains: Sequence[ListedTrain], goal: Goal) -> str:
     dominated = any(
         a != b and all(x <= y for x, y in zip(a, b, strict=True)) for a in worth for b in worth
     )
-    if goal.name == "mass":  # the second plot, of the same trains
-        return "The same trains by mass."
     which = f"{len(trains)} of the best trains"
     if not dominated:
         *names, last = (goal.word for goal in goals)
