@@ -275,7 +275,7 @@ runpy.run_module("gearopt", run_name="__main__", alter_sys=True)
         ("numpy", 1, 130, "gearopt: interrupted\n"),
         ("typer", 1, 130, "gearopt: interrupted\n"),
         ("casadi", 1, 4, ""),
-        ("casadi", 2, 130, "gearopt: interrupted\n"),
+        pytest.param("casadi", 2, 130, "gearopt: interrupted\n", marks=pytest.mark.slow),
         ("gearopt.report.terminal", 1, 130, "gearopt: interrupted\n"),
     ],
 )

@@ -4,6 +4,7 @@ import ast
 import re
 import subprocess
 import sys
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -29,35 +30,36 @@ OUTSIDE = {  # at module level; what is imported inside functions is free
 TOP = {"units": set(), "errors": set()}
 
 
+@cache
+def _statements(path: Path):
+    """(import, at module level) of every import of a file; TYPE_CHECKING blocks are left out."""
+
+    def of(node, top):
+        if isinstance(node, ast.Import | ast.ImportFrom):
+            yield node, top
+        elif not (isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING"):
+            top = top and not isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)
+            for child in ast.iter_child_nodes(node):
+                if not isinstance(child, ast.expr):  # which hold no import
+                    yield from of(child, top)
+
+    return tuple(of(ast.parse(path.read_text(encoding="utf-8")), True))
+
+
 def _imports(path: Path, whole: bool = False):
-    """(module, at module level) of every import of a file; TYPE_CHECKING blocks are left out.
+    """(module, at module level) of every import of a file.
 
     whole: with the imported name, which may be a module.
     """
-    tree = ast.parse(path.read_text(encoding="utf-8"))
-    skipped = {
-        child
-        for node in ast.walk(tree)
-        if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING"
-        for child in ast.walk(node)
-    }
-    inner = {
-        child
-        for node in ast.walk(tree)
-        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)
-        for child in ast.walk(node)
-    }
-    for node in ast.walk(tree):
-        if node in skipped:
-            continue
+    for node, top in _statements(path):
         if isinstance(node, ast.ImportFrom):
             assert node.level == 0, f"{path}: relative import"
             names = [f"{node.module}.{a.name}" for a in node.names]
             for name in names if whole or node.module == "gearopt" else [node.module]:
-                yield name, node not in inner
-        elif isinstance(node, ast.Import):
+                yield name, top
+        else:
             for alias in node.names:
-                yield alias.name, node not in inner
+                yield alias.name, top
 
 
 def _files():

@@ -21,17 +21,17 @@ KINDS = ("drive", "layout", "packing", "servo", "compound", "impossible", "compa
 
 
 @pytest.fixture(scope="module")
-def kept():
+def kept(solved):
     """One file of every kind as plain data."""
     small = {"seeds": 2, "seconds": 0.01, "evaluations": 64}
     compared = gearopt.compare(
         ROOT / "problems" / "elevator.toml", methods="ipopt,annealing", **small
     )
     pictures = {"drive": "elevator", "layout": "elevator_box", "packing": "six_cylinders"}
-    solved = {"servo": "servo_gimbal_swing", "compound": "sandgren_train"}
+    others = {"servo": "servo_gimbal_swing", "compound": "sandgren_train"}
     found = {k: json.loads((PICTURES / f"{n}.json").read_text()) for k, n in pictures.items()}
-    for kind, name in solved.items():
-        found[kind] = gearopt.solve(ROOT / "problems" / f"{name}.toml").to_dict()
+    for kind, name in others.items():
+        found[kind] = solved(name).to_dict()
     impossible = gearopt.solve(
         ROOT / "problems" / "elevator_small_wheels.toml", budget=gearopt.Budget(0.5)
     )

@@ -286,7 +286,7 @@ def test_annealing_on_angles_is_near_the_optimum():
 @pytest.mark.parametrize("method", ["exact", "sa", "sa-polish", "sa-paper", "multistart", "nsga2"])
 def test_a_seed_decides_the_answer(method):
     box = gearbox("elevator")
-    few = Budget(evaluations={"multistart": 300, "nsga2": 1000}.get(method, 5000))
+    few = Budget(evaluations={"multistart": 100, "nsga2": 1000}.get(method, 5000))
     runs = [run(problem(box, method), method, few, seed)[1] for seed in (3, 3, 4)]
     assert (runs[0].x == runs[1].x).all()
     assert runs[0].evaluations == runs[1].evaluations

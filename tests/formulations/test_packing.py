@@ -193,7 +193,12 @@ def test_points_in_a_square(count, distance):
 
 
 @pytest.mark.parametrize(
-    ("count", "ratio"), [(2, 2.0), (3, 1 + 2 / math.sqrt(3)), (4, 1 + math.sqrt(2))]
+    ("count", "ratio"),
+    [
+        (2, 2.0),
+        pytest.param(3, 1 + 2 / math.sqrt(3), marks=pytest.mark.slow),
+        (4, 1 + math.sqrt(2)),
+    ],
 )
 def test_few_circles_in_a_circle(count, ratio):
     plan = Plan(cylinders(*[2.0] * count), shape="circle", objective="area")
@@ -300,7 +305,13 @@ def test_kernel_is_compiled_before_the_clock_starts(method, monkeypatch):
     assert order == ["compiled", "clock"]
 
 
-@pytest.mark.parametrize("plan", PLANS.values(), ids=PLANS)
+APART = ("one layer", "circle around fixed", "fixed", "unlike heights")  # others are near these
+
+
+@pytest.mark.parametrize(
+    "plan",
+    [pytest.param(p, id=n, marks=[pytest.mark.slow] * (n not in APART)) for n, p in PLANS.items()],
+)
 def test_what_is_compiled_before_is_what_a_search_calls(plan, monkeypatch):
     """Machine code belongs to types: a search of others would compile within its time."""
     seen, compiled = [], kernel(KERNEL).anneal

@@ -264,7 +264,10 @@ def best_list(train, count):
 
 
 @pytest.mark.parametrize(
-    ("stages", "number"), [(2, n) for n in (0, 3, 10, 11, 12, 15)] + [(3, n) for n in (0, 5, 7, 14)]
+    ("stages", "number"),
+    [(2, 0), (2, 3), (2, 10), (3, 0), (3, 5)]
+    + [pytest.param(2, n, marks=pytest.mark.slow) for n in (11, 12, 15)]
+    + [pytest.param(3, n, marks=pytest.mark.slow) for n in (7, 14)],
 )
 def test_list_of_the_best_twenty(stages, number):
     assert best_list(some_drive(number, stages), 20) == 20

@@ -6,6 +6,7 @@ the closed form t = E w / |s w|_p, w = (a/s^p)^(1/(k + p)).
 
 import math
 import warnings
+from itertools import product
 
 import cvxpy as cp
 import numpy as np
@@ -82,7 +83,10 @@ def test_coefficient_spreads(solver, low, high, status, too_high):
     assert certify(problem, Outcome(t, leaves=outcome.leaves), 1e-6).gap > too_high / (1 + too_high)
 
 
-@pytest.mark.parametrize(("half", "best"), [(3, 1348784.8608242690), (5, 10789376447.824598)])
+@pytest.mark.parametrize(
+    ("half", "best"),
+    [pytest.param(3, 1348784.8608242690, marks=pytest.mark.slow), (5, 10789376447.824598)],
+)
 def test_cost_rising_with_sensitivity(half, best):
     """C* = (sum sqrt(a s))^2; Clarabel fails or is far off, SCS too."""
     problem = allocation(*spread(-half, half, rising=True))
@@ -103,10 +107,14 @@ def test_cost_rising_with_sensitivity(half, best):
     assert max(ours.certificate.values()) < 1e-9
 
 
-@pytest.mark.parametrize("rising", [False, True])
-@pytest.mark.parametrize("rss", [False, True])
-@pytest.mark.parametrize("k", [1, 2])
-@pytest.mark.parametrize("half", [pytest.param(3, marks=pytest.mark.slow), 5])
+@pytest.mark.parametrize(
+    ("half", "k", "rss", "rising"),
+    [
+        pytest.param(half, k, rss, rising, marks=[pytest.mark.slow] * slow)
+        for half, k, rss, rising in product((3, 5), (1, 2), (False, True), (False, True))
+        for slow in [half == 3 or (k + rss + rising) % 2]  # any two of the others in all ways
+    ],
+)
 def test_every_law_at_wide_spreads(half, k, rss, rising):
     """Costs up to 1e15: the answer to 1e-6, within our own gap."""
     a, s = spread(-half, half, rising)
@@ -119,7 +127,7 @@ def test_every_law_at_wide_spreads(half, k, rss, rising):
     assert shares == pytest.approx(a / t**k / best, abs=1e-4)
 
 
-@pytest.mark.parametrize("rss", [False, True])
+@pytest.mark.parametrize("rss", [pytest.param(False, marks=pytest.mark.slow), True])
 def test_square_law_in_millimetres(rss):
     """t of 0.02 mm, every term costs 1: SCS says optimal at 149 and 10 % more."""
     t0 = np.array([18, 24, 29, 20, 27, 33, 18, 24, 29, 20, 27, 33, 25, 30]) * 1e-3

@@ -36,6 +36,11 @@ def found(result):
     return {s.heading: s for s in sections(result)}
 
 
+@pytest.fixture(scope="module")
+def html(result):
+    return page(result, "x")
+
+
 def read(text):
     return list(csv.reader(io.StringIO(text)))
 
@@ -96,8 +101,7 @@ def test_every_plot_has_its_csv(result):
     assert sum(int(row[2]) for row in bars[1:]) == 400_000
 
 
-def test_a_table_behind_a_plot_is_a_link_only(result):
-    html = page(result, "x")
+def test_a_table_behind_a_plot_is_a_link_only(html):
     assert 'download="errors.csv"' in html and ">of the sum, %</th>" not in html
 
 
@@ -129,9 +133,9 @@ def test_an_acceleration_is_told_as_one():
     assert "Lower bound of the move time: 1.196" in bound_words(replace(move, gap=0.1), METRIC)[0]
 
 
-def test_on_paper_tiles_stay_with_what_follows(result):
+def test_on_paper_tiles_stay_with_what_follows(html):
     """Stiffness was cut between its tiles and its chart."""
-    paper = page(result, "x").split("@media print")
+    paper = html.split("@media print")
     tiles = [rule for part in paper for rule in part.split("\n") if rule.startswith("  .tiles {")]
     assert any("break-inside: avoid; break-after: avoid;" in rule for rule in tiles)
     assert any(".card > figure { zoom: 0.8; }" in part for part in paper)  # two plots on a sheet

@@ -54,12 +54,10 @@ def cut(one, other):
     """Whether points of one outline lie inside the polygon of the other."""
     a, b = other, np.roll(other, -1, axis=0)
     low, high = np.minimum(a[:, 1], b[:, 1]), np.maximum(a[:, 1], b[:, 1])
-    for y, z in one:
-        row = np.flatnonzero((low <= z) & (z < high))
-        share = (z - a[row, 1]) / (b[row, 1] - a[row, 1])
-        if np.sum(a[row, 0] + share * (b[row, 0] - a[row, 0]) > y) % 2:
-            return True
-    return False
+    point, row = np.nonzero((low <= one[:, 1, None]) & (one[:, 1, None] < high))
+    (y, z), step = one[point].T, b[row] - a[row]
+    beyond = a[row, 0] + (z - a[row, 1]) / step[:, 1] * step[:, 0] > y
+    return bool((np.bincount(point[beyond], minlength=1) % 2).any())
 
 
 def meets(solids, x, turned):

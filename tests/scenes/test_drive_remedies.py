@@ -168,7 +168,7 @@ def ratio_chosen(text, found):
 @pytest.mark.parametrize(
     ("text", "key", "write"),
     [
-        (GIVEN_PAIR, "duty.ratio", "3.15"),
+        pytest.param(GIVEN_PAIR, "duty.ratio", "3.15", marks=pytest.mark.slow),
         (FEW_PINIONS, "duty.ratio", "5.125"),
         pytest.param(TWO_OF_TEN, "duty.output_speed", '"14.5 rpm"', marks=pytest.mark.slow),
     ],

@@ -122,7 +122,9 @@ def test_compound_prices_the_first_wider_range_that_gains(train):
     assert narrower == train.result.value
 
 
-@pytest.mark.parametrize("text, kind", [(TRAIN, "train"), (ROW, "row")])
+@pytest.mark.parametrize(
+    ("text", "kind"), [pytest.param(TRAIN, "train", marks=pytest.mark.slow), (ROW, "row")]
+)
 def test_solve_brings_the_sensitivities_of_explain_along(text, kind, request):
     known = request.getfixturevalue(kind).prices
     found = gearopt.solve(scene(text), prices=True).report["prices"]

@@ -171,7 +171,9 @@ def ways_by(monkeypatch, text, answer):
     return gearopt.solve(scene).report["ways_out"], asked
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize(
+    "seed", [0, 1, *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(2, 6))]
+)
 def test_the_smallest_size_known_to_fit_is_told_where_less_stays_undecided(monkeypatch, seed):
     """Undecided from 26 mm less some band up to 26 mm; a few questions at most take long."""
     low = 26.0 - np.random.default_rng(seed).uniform(0.03, 0.15)
@@ -225,7 +227,7 @@ def test_what_was_tried_is_said_where_nothing_helps():
     ("text", "key"),
     [
         (f"[[keep_out]]\n{BLOCK}[[keep_out]]\n{BLOCK}", "keep_out[2]"),
-        (f"[[keep_out]]\n{BLOCK}{POST}", "keep_out[2].y"),
+        pytest.param(f"[[keep_out]]\n{BLOCK}{POST}", "keep_out[2].y", marks=pytest.mark.slow),
     ],
 )
 def test_a_keep_out_is_left_out_beside_another_change_of_keep_outs(text, key):

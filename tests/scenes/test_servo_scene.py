@@ -132,7 +132,12 @@ def test_landmarks_of_a_ratio_count_the_losses_of_the_train():
 
 
 @pytest.mark.parametrize(
-    ("frequency", "grams"), [("150 Hz", 70.59627), ("250 Hz", 128.15908), ("300 Hz", 181.12544)]
+    ("frequency", "grams"),
+    [
+        ("150 Hz", 70.59627),
+        pytest.param("250 Hz", 128.15908, marks=pytest.mark.slow),
+        pytest.param("300 Hz", 181.12544, marks=pytest.mark.slow),
+    ],
 )
 def test_lightest_trains_known_independently(frequency, grams):
     result = solved(STIFF, (("stiffness", "frequency"), frequency))
