@@ -126,6 +126,15 @@ def test_lives_beyond_the_curves_are_not_told():
     assert rated(pair(duty={"power": "500 kW"}))["life_h"] == 0.0
 
 
+def test_the_gear_that_fails_first_has_the_life_of_the_drive():
+    """A pinion beyond the curves, 1.2e10 cycles, before its wheel of 8e9, with a third of them."""
+    stress = rated(pair())["gears"][0]["contact_stress_MPa"]
+    strengths = [f"{stress / (1.4488 * n**-0.023)!r} MPa" for n in (1.2e10, 8e9)]
+    found = rated(pair({"given": {"s_ac": strengths}}))
+    assert [g.get("life_h") for g in found["gears"]] == [None, pytest.approx(8e9 / 60 / 1450 * 3)]
+    assert found.get("life_h") is None
+
+
 def test_a_life_in_revolutions_of_the_input():
     hours = rated(pair({"life": "1000 h"}))
     turns = pair({"input_revolutions": 1000 * 60 * 1450})

@@ -22,6 +22,7 @@ from gearopt.scenes.drive.rating.rows import (
     factor_rows,
     gear_row,
     level_rows,
+    life_hours,
     mesh_row,
     shaft_rows,
 )
@@ -131,7 +132,8 @@ def rating(scene: Scene, pairs: tuple[GearPair, ...]) -> DriveRating:
     gears = tuple(gear_row(mesh, k) for mesh in meshes for k in (0, 1))
     factors = tuple(row for mesh in meshes for row in factor_rows(mesh))
     turned = hands([table.pinion_hand for table in scene.stage] or [None] * len(pairs))
-    lives = [gear.life_h for gear in gears if gear.life_h is not None]
+    hours = [life_hours(mesh, k) for mesh in meshes for k in (0, 1)]
+    shortest = gears[min(range(len(gears)), key=hours.__getitem__)]
     efficiency, error = _efficiency(rows)
     return DriveRating(
         standard=STANDARD.format(asked.edition),
@@ -141,7 +143,7 @@ def rating(scene: Scene, pairs: tuple[GearPair, ...]) -> DriveRating:
         minimum_contact_safety=wanted[1],
         power_capacity_kW=least.power_capacity_kW,
         required_life_h=rated_gears.required_hours(scene),
-        life_h=min(lives, default=None),
+        life_h=shortest.life_h,
         efficiency_percent=efficiency,
         efficiency_error_percent=error,
         gears=gears,

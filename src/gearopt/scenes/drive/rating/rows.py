@@ -38,7 +38,7 @@ def gear_row(mesh: Mesh, k: int) -> GearRating:
     stresses = one.bending_stress[k], one.contact_stress[k]
     safeties = one.bending_safety[k], one.contact_safety[k]
     cycles = sum(level.cycles[k] for level in mesh.levels)
-    lives, life = _lives(mesh, k, cycles)
+    lives, life = _lives(mesh, k), life_hours(mesh, k)
     return GearRating(
         stage=mesh.stage,
         member=MEMBERS[k],
@@ -50,29 +50,35 @@ def gear_row(mesh: Mesh, k: int) -> GearRating:
         permissible_contact_stress_MPa=stresses[1] * safeties[1],
         contact_safety=mesh.contact_safety[k],
         cycles=cycles,
-        bending_life_cycles=lives[0],
-        contact_life_cycles=lives[1],
-        life_h=life,
+        bending_life_cycles=_within(lives[0]),
+        contact_life_cycles=_within(lives[1]),
+        life_h=None if _within(min(lives)) is None else life,
         bending_damage=None if mesh.damages is None else mesh.damages[0][k],
         contact_damage=None if mesh.damages is None else mesh.damages[1][k],
     )
 
 
-def _lives(mesh: Mesh, k: int, cycles: float) -> tuple[list[float | None], float | None]:
-    """Return the lives in cycles, of bending and contact, and the shorter one in hours.
-
-    None: beyond the end of the curves. Of a spectrum by Miner: cycles over the sum.
-    """
-    one = mesh.levels[0]
+def _lives(mesh: Mesh, k: int) -> tuple[float, float]:
+    """Return the lives in cycles, of bending and contact; of a spectrum cycles over Miner's sum."""
     if mesh.damages is None:
-        lives = [one.bending_life[k], one.contact_life[k]]
-    else:
-        sums = (mesh.damages[0][k], mesh.damages[1][k])
-        lives = [cycles / s if s > 0.0 else math.inf for s in sums]
+        return mesh.levels[0].bending_life[k], mesh.levels[0].contact_life[k]
+    cycles = sum(level.cycles[k] for level in mesh.levels)
+    bent, pressed = (
+        cycles / s if s > 0.0 else math.inf for s in (sums[k] for sums in mesh.damages)
+    )
+    return bent, pressed
+
+
+def _within(life: float) -> float | None:
+    """Return a life in cycles; None beyond the end of the curves."""
+    return life if life <= LONGEST else None
+
+
+def life_hours(mesh: Mesh, k: int) -> float:
+    """Return the shorter life of a gear in hours, extrapolated beyond the end of the curves."""
+    cycles = sum(level.cycles[k] for level in mesh.levels)
     hours = sum(level.hours for level in mesh.operations)
-    within = [life if life <= LONGEST else None for life in lives]
-    known = [life for life in within if life is not None]
-    return within, min(known) / cycles * hours if known else None
+    return float(min(_lives(mesh, k)) / cycles * hours)
 
 
 def mesh_row(scene: Scene, mesh: Mesh, wanted: tuple[float, float]) -> MeshRating:
