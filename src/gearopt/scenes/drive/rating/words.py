@@ -25,9 +25,8 @@ UNITS = {"s_at": "MPa", "s_ac": "MPa", "C_p": "sqrt_MPa"}  # as suffixes of keys
 
 
 def material(table: GearTable) -> str:
-    """Return a gear's material in words; "given strength" without a treatment."""
-    if table.treatment is None:
-        return "given strength"
+    """Return a gear's material in words."""
+    assert table.treatment
     words = [table.treatment, f"grade {table.grade or 1}"]
     core = " core" if CURVES.get(table.treatment) == "nitrided" else ""
     words += [f"{table.hardness}{core}"] if table.hardness else []
