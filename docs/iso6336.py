@@ -111,8 +111,8 @@ FORMULAS = (
     ),
     (
         "y_alpha, y_beta, C_ay",
-        "by material, sigma_Hlim and speed; y_alpha of steels that are not surface hardened and "
-        "of cast iron *unverified*",
+        "by material, sigma_Hlim and speed; y_alpha of cast iron, and of tempered steel "
+        "above 5 m/s, *unverified*",
         "part 1, 6.5, 7.5, 8.3",
         "`running_in`",
     ),
@@ -253,6 +253,13 @@ def _cases() -> str:
         "h,\nK_A 1.25; grade 6, R_z 4.8/20 um, ISO VG 220, C_a 2 um, webs 0.25 b and 5 m_n, "
         "case-hardened 430/1500 MPa; K_Hbeta 1.15\ngiven. 2006. Source: gfsReboucas/Drivetrain, "
         "`@NREL_5MW/stage_03.rtf` (KISSsoft 03/2017).",
+        "stage 2": "The same report: sun and planet of stage 2\n\nz 18/36, m_n 21, spur, b 550, a "
+        "584, x 0.3890/0.5039, k m_n -1.75, rack 1.25/0.38/1.0; F_t 285.9 kN a planet of three, "
+        "v 4.88 m/s,\nK_A 1.25, webs 0.25 b and 3.5 m_n (inferred from C_R), otherwise as stage 3; "
+        "K_gamma 1.10, K_v 1.06, K_Hbeta 2.06 given as\nprinted. `stage_02.rtf`.",
+        "stage 1": "The same report: sun and planet of stage 1\n\nz 19/17, m_n 45, spur, b 491, a "
+        "863, x 0.6170/0.8021, k m_n -10.861; F_t 779.5 kN a planet, v 1.60 m/s; K_v 1.01, K_Hbeta "
+        "1.15\ngiven as printed, otherwise as stage 2. `stage_01.rtf`.",
     }
     parts = ["\n## Published cases\n\n" + UNITS]
     for name, (make, rows) in iso6336_cases.CASES.items():
@@ -265,10 +272,11 @@ def _cases() -> str:
 
 UNITS = """\
 Off by: the largest relative difference of a row. A tolerance is half a unit of the last printed
-digit, or what the input's rounding is worth; alpha_Fen, h_F, Y_F, Y_S and the stresses of the
-report follow choice 4, its m_red, n_E1 and N diameters with allowances. h_F, s_Fn and rho_F are in
-normal modules, stiffness in N/(mm um), f in um, v in m/s, m_red in kg/mm, n_E1 in 1/min, angles in
-degrees. sigma_H follows from the unrounded K_v and K_Hbeta.
+digit, or what the rounding of inputs is worth (shifts, speeds and given K factors). In the report's
+helical pair alpha_Fen, h_F, Y_F, Y_S and stresses follow choice 4; m_red, n_E1 and N are of
+diameters with allowances. h_F, s_Fn and rho_F are in normal modules, stiffness in N/(mm um), f in
+um, v in m/s, m_red in kg/mm, n_E1 in 1/min, angles in degrees. sigma_H follows from the unrounded
+K_v and K_Hbeta.
 """
 
 

@@ -9,6 +9,8 @@ gfsReboucas/Drivetrain, @NREL_5MW/stage_03.rtf.
 import math
 from dataclasses import replace
 
+from iso6336_reports import STAGE_1, STAGE_2, case_stage_1, case_stage_2
+
 from gearopt.bench.rating import iso_example
 from gearopt.physics.gears import GearPair, Rack
 from gearopt.physics.geometry.contact import active_root_diameters, contact_path
@@ -136,7 +138,12 @@ REPORT = {
     "S_H": ((1.81, 1.88), 3e-3),
     "s_an": ((8.8, 11.034), 5e-5),
 }
-CASES = {"tr30": (iso_example, TR30), "report": (case_report, REPORT)}
+CASES = {
+    "tr30": (iso_example, TR30),
+    "report": (case_report, REPORT),
+    "stage 2": (case_stage_2, STAGE_2),
+    "stage 1": (case_stage_1, STAGE_1),
+}
 
 
 def computed(case: Case) -> dict[str, tuple[float, ...]]:

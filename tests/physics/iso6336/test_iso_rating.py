@@ -126,6 +126,8 @@ def test_doubts_are_named():
     assert {"c_prime", "c_gamma_alpha", "K_v"} <= set(light.unverified)
     soft = rate(spur(), LOAD, steels(V))
     assert {"K_v", "K_Halpha", "Y_deltarelT"} <= set(soft.unverified)
+    slow = rate(spur(), replace(LOAD, pinion_speed=100.0), steels(V))
+    assert not {"K_v", "K_Halpha"} & set(slow.unverified)
     guess = rate(spur(), LOAD, steels(replace(V, yield_strength=0.0)))
     assert "estimated" in guess.factors["Y_deltarelT"].remark
     fast = rate(spur(), replace(LOAD, pinion_speed=2000.0, power=7e8), steels(EH))

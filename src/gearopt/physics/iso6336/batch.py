@@ -60,7 +60,7 @@ def range_of(case: Case) -> str:
     Between the main resonance and the supercritical range the nearer one.
     """
     found = quantities(case)
-    line = case.load * found["K_A"] / case.pair.face_width
+    line = case.load * found["K_A"] * found["K_gamma"] / case.pair.face_width
     if found["N"] <= lower_limit(line):
         return RANGES[0]
     return RANGES[1] if found["N"] < 0.5 * (MAIN + SUPER) else RANGES[2]

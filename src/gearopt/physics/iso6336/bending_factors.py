@@ -49,7 +49,7 @@ def root_stress(load: Any, width: Any, module: Any, product: Any) -> Any:
 
 
 # rho' [mm] of the slip layer by yield point (tensile strength of cast iron) [MPa].
-# Source: ISO 6336-3:2006, table 2 [memory; 0.0030 is met by a printed report]
+# Source: ISO 6336-3:2006, table 2 [memory; 0.0030 and 0.0014 are met by printed reports]
 SLIP_LAYERS: dict[str, tuple[tuple[float, float], ...]] = {
     **dict.fromkeys(("GG", "GGG ferritic"), ((150.0, 0.3124), (300.0, 0.3095))),
     **dict.fromkeys(("NT", "NV", "NV nitrocarburised"), ((0.0, 0.1005),)),

@@ -34,7 +34,7 @@ def quantities(case: Case) -> Found:
 def _line_load(case: Case, found: Found, *factors: str) -> Any:
     """Return F_t times factors per face width [N/mm]."""
     load = case.load / case.pair.face_width
-    for factor in ("K_A", *factors):
+    for factor in ("K_A", "K_gamma", *factors):
         load = load * found[factor]
     return load
 
@@ -157,7 +157,8 @@ def _nominal_contact(case: Case, found: Found) -> Any:
 
 
 def _pressed(case: Case, found: Found) -> Any:
-    product = found["K_A"] * found["K_v"] * found["K_Hbeta"] * found["K_Halpha"]
+    product = found["K_A"] * found["K_gamma"] * found["K_v"]
+    product = product * found["K_Hbeta"] * found["K_Halpha"]
     first, second = (z * found["sigma_H0"] * np.sqrt(product) for z in found["Z_BD"])
     return first, second
 
@@ -274,7 +275,8 @@ def _nominal_root(case: Case, found: Found) -> Any:
 
 
 def _bent(case: Case, found: Found) -> Any:
-    product = found["K_A"] * found["K_v"] * found["K_Fbeta"] * found["K_Falpha"]
+    product = found["K_A"] * found["K_gamma"] * found["K_v"]
+    product = product * found["K_Fbeta"] * found["K_Falpha"]
     first, second = (stress * product for stress in found["sigma_F0"])
     return first, second
 
@@ -323,6 +325,7 @@ CONTACT_STRENGTH = ("sigma_Hlim", "Z_NT", "Z_L", "Z_v", "Z_R", "Z_W", "Z_X")
 BENDING_STRENGTH = ("sigma_Flim", "Y_ST", "Y_NT", "Y_deltarelT", "Y_RrelT", "Y_X", "Y_M")
 LAWS: dict[str, Callable[[Case, Found], Any]] = {
     "K_A": lambda case, found: case.operation.overload,
+    "K_gamma": lambda case, found: 1.0,
     "sigma_Hlim": lambda case, found: _strengths(case, "H"),
     "sigma_Flim": lambda case, found: _strengths(case, "F"),
     "f_pb": lambda case, found: case.deviations.base_pitch,

@@ -7,8 +7,8 @@ from gearopt.physics.iso6336.case import Case
 from gearopt.physics.iso6336.contact_factors import HARD_LIMIT
 from gearopt.physics.iso6336.curves import LONGEST
 from gearopt.physics.iso6336.load_factors import MAIN, lower_limit
-from gearopt.physics.iso6336.materials import SURFACE_HARDENED, Material, strength
-from gearopt.physics.iso6336.running_in import TEMPERED
+from gearopt.physics.iso6336.materials import Material, strength
+from gearopt.physics.iso6336.running_in import CAST, SLOW, TEMPERED
 from gearopt.physics.iso6336.stiffness import LEAST_LINE_LOAD
 from gearopt.physics.rating import Factor
 
@@ -18,6 +18,7 @@ RANGE = 3000.0  # mm/s of v z1/100 sqrt(u^2/(1 + u^2)): below, K_v by method B i
 # symbol: clause and method, unit
 CLAUSES = {
     "K_A": ("6336-1, 5, method B", ""),
+    "K_gamma": ("6336-1, 5: one mesh", ""),
     "K_v": ("6336-1, 6.5, method B", ""),
     "K_Hbeta": ("6336-1, 7.5, method C", ""),
     "K_Fbeta": ("6336-1, 7.6", ""),
@@ -97,20 +98,21 @@ def _of_2019(case: Case, what: str) -> Doubt:
 
 
 def _stiffness(case: Case, found: Found) -> Doubt:
-    line = case.load * found["K_A"] / case.pair.face_width
+    line = case.load * found["K_A"] * found["K_gamma"] / case.pair.face_width
     if line < LEAST_LINE_LOAD:
         return False, "below 100 N/mm: the law of memory alone"
     return True, ""
 
 
 def _tempered(case: Case) -> bool:
-    """Return whether running-in is of a law without a second source."""
-    return any(material.family not in SURFACE_HARDENED for material in case.materials)
+    """Return whether running-in is of a law, or of a limit above 5 m/s, without a second source."""
+    fast = case.speed > SLOW
+    return any(m.family in CAST or fast and m.family in TEMPERED for m in case.materials)
 
 
 def _dynamic(case: Case, found: Found) -> Doubt:
     sound, remark = _stiffness(case, found)
-    line = case.load * found["K_A"] / case.pair.face_width
+    line = case.load * found["K_A"] * found["K_gamma"] / case.pair.face_width
     resonance = found["N"]
     if resonance > lower_limit(line):
         name = "main resonance" if resonance <= MAIN else "above the main resonance"
@@ -204,8 +206,7 @@ def _slip(case: Case, found: Found) -> Doubt:
     if all(m.family in ("Eh", "IF") for m in case.materials):
         return True, ""
     guessed = any(
-        m.yield_strength <= 0.0 and m.family in (*TEMPERED, "GG", "GGG ferritic")
-        for m in case.materials
+        m.yield_strength <= 0.0 and m.family in (*TEMPERED, *CAST) for m in case.materials
     )
     guess = "; yield point estimated from hardness" if guessed else ""
     return False, f"slip layer from memory{guess}"

@@ -21,8 +21,8 @@ def pitch_allowance(family: str, deviation: Any, contact_limit: Any, speed: Any)
 
     St, V, GTS, GGG: 160/sigma_Hlim of it, above 5 m/s up to 12800/sigma_Hlim um, above 10 m/s
     6400/sigma_Hlim um; GG, GGG ferritic: 0.275, 22, 11 um; others: 0.075, up to 3 um. Never more
-    than the deviation. Source: ISO 6336-1:2006, 8.3.5; of surface hardened gears two printed
-    reports have it, of the others memory alone.
+    than the deviation. Source: ISO 6336-1:2006, 8.3.5; printed reports have it of
+    surface hardened gears and, below 5 m/s, of tempered steel; the rest is of memory.
     """
     if family in TEMPERED:
         return _allowance(deviation, 160.0 / contact_limit, 80.0, speed)

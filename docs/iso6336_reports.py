@@ -1,0 +1,144 @@
+"""Sun and planet of both planetary stages of a printed report: for docs/iso6336.md and its tests.
+
+KISSsoft 03/2017, ISO 6336:2006 method B, NREL 5 MW gearbox: gfsReboucas/Drivetrain,
+@NREL_5MW/stage_01.rtf and stage_02.rtf. External spur pairs, in stage 1 of 19 and 17 teeth; load of
+one planet, speed against the carrier. Shifts, K_v and K_Hbeta are as printed, rounded; s_R/m_n 3.5
+of the webs is inferred from C_R. m_red is that of planetary gears, which is not covered.
+"""
+
+import math
+from dataclasses import replace
+
+from gearopt.physics.gears import GearPair, Rack
+from gearopt.physics.iso6336.case import Case, Practice
+from gearopt.physics.iso6336.materials import Material
+from gearopt.physics.rating import Operation
+
+RPM = math.pi / 30.0
+HOURS = 175200.0
+PLANETS = 3.0
+
+
+def _sun_and_planet(
+    pair: GearPair, shortening: float, load: float, rpm: float, given: dict[str, float]
+) -> Case:
+    """Return the case of a tip alteration [mm], a tangential load F_t [N] and a relative speed."""
+    first, second = (replace(g, tip_alteration=shortening / g.normal_module) for g in pair.gears)
+    pair = GearPair(first, second, pair.working_distance)
+    power = 0.5 * load * first.reference_diameter * rpm * RPM
+    operation = Operation(power, rpm * RPM, HOURS, overload=1.25, contacts=(PLANETS, 1.0))
+    practice = Practice(webs=((0.25, 3.5),) * 2, relief=2e-3)
+    sun = Material("Eh", "MQ")
+    planet = Material("Eh", "MQ", reversed_load=True)
+    strengths = {"sigma_Flim": (430.0, 430.0), "K_gamma": 1.10}
+    return Case(pair, operation, (sun, planet), practice, strengths | given)
+
+
+def case_stage_2() -> Case:
+    """Z 18/36, m_n 21, b 550, a 584; F_t 285.9 kN a planet."""
+    pair = GearPair.of_teeth(21.0, 18, 36, 550.0, 0.0, Rack(), (0.3890, 0.5039), 584.0)
+    rpm = 7782.3e6 / PLANETS / HOURS / 60.0
+    return _sun_and_planet(pair, -1.750, 285900.438, rpm, {"K_v": 1.06, "K_Hbeta": 2.06})
+
+
+def case_stage_1() -> Case:
+    """Z 19/17, m_n 45, b 491, a 863; F_t 779.5 kN a planet."""
+    pair = GearPair.of_teeth(45.0, 19, 17, 491.0, 0.0, Rack(), (0.6170, 0.8021), 863.0)
+    rpm = 1124.7e6 / PLANETS / HOURS / 60.0
+    return _sun_and_planet(pair, -10.861, 1587.48 * 491.0, rpm, {"K_v": 1.01, "K_Hbeta": 1.15})
+
+
+# symbol: printed, relative tolerance
+STAGE_2 = {
+    "alpha_wt": ((24.169,), 3e-5),
+    "d_b": ((355.204, 710.408), 2e-6),
+    "d_a": ((432.838, 815.663), 3e-6),
+    "d_w": ((389.333, 778.667), 2e-6),
+    "d_f": ((341.838, 724.663), 3e-6),
+    "d_Ff": ((359.324, 737.389), 3e-6),
+    "d_Nf": ((363.547, 746.983), 3e-6),
+    "s_an": ((12.910, 14.858), 1e-4),
+    "g_alpha": ((84.952,), 2e-5),
+    "eps_alpha": ((1.370,), 4e-4),
+    "F_t": ((285900.438,), 1e-8),
+    "v": ((4.88,), 2e-3),
+    "N_L": ((7782.3e6, 1297.1e6), 5e-5),
+    "C_R": ((0.862,), 6e-4),
+    "c_prime": ((12.240,), 1e-3),
+    "c_gamma_alpha": ((15.640,), 1e-3),
+    "c_gamma_beta": ((13.294,), 1e-3),
+    "K_Fbeta": ((1.94,), 3e-3),
+    "K_Halpha": ((1.0,), 5e-3),
+    "K_Falpha": ((1.0,), 5e-3),
+    "Y_F": ((1.47, 1.38), 4e-3),
+    "Y_S": ((2.04, 2.18), 3e-3),
+    "h_F": ((1.159, 1.225), 5e-4),
+    "s_Fn": ((2.132, 2.271), 3e-4),
+    "rho_F": ((0.453, 0.414), 1.2e-3),
+    "alpha_Fen": ((25.74, 24.68), 2e-4),
+    "sigma_F0": ((73.95, 74.21), 1e-4),
+    "sigma_F": ((209.38, 210.14), 5e-3),
+    "Y_deltarelT": ((0.999, 1.002), 6e-4),
+    "Y_RrelT": ((0.957, 0.957), 6e-4),
+    "Y_X": ((0.84, 0.84), 5e-4),
+    "Y_NT": ((0.854, 0.886), 6e-4),
+    "Y_M": ((1.0, 0.7), 5e-4),
+    "sigma_FG": ((589.60, 429.38), 2e-5),
+    "S_F": ((2.82, 2.04), 5e-3),
+    "Z_H": ((2.25,), 3e-3),
+    "Z_E": ((189.81,), 3e-5),
+    "Z_eps": ((0.936,), 6e-4),
+    "Z_beta": ((1.0,), 5e-4),
+    "Z_BD": ((1.08, 1.0), 5e-3),
+    "sigma_H0": ((573.40,), 2e-5),
+    "sigma_H": ((1071.17, 994.13), 1e-3),
+    "Z_L": ((1.020, 1.020), 5e-4),
+    "Z_v": ((0.982, 0.982), 6e-4),
+    "Z_R": ((1.007, 1.007), 6e-4),
+    "Z_W": ((1.0, 1.0), 5e-4),
+    "Z_NT": ((0.857, 0.905), 6e-4),
+    "sigma_HG": ((1295.42, 1368.61), 1e-5),
+    "S_H": ((1.21, 1.38), 4e-3),
+}
+STAGE_1 = {
+    "d_b": ((803.437, 718.865), 2e-6),
+    "d_a": ((978.808, 905.470), 5e-6),
+    "d_w": ((910.944, 815.056), 2e-6),
+    "d_f": ((798.030, 724.692), 6e-6),
+    "d_Ff": ((825.979, 748.795), 6e-6),
+    "d_Nf": ((845.350, 762.541), 3e-6),
+    "s_an": ((32.599, 26.588), 1e-4),
+    "v": ((1.60,), 4e-3),
+    "N_L": ((1124.7e6, 419.0e6), 2e-4),
+    "C_R": ((0.862,), 6e-4),
+    "c_prime": ((12.362,), 1e-3),
+    "c_gamma_alpha": ((13.426,), 1e-3),
+    "c_gamma_beta": ((11.412,), 1e-3),
+    "K_Fbeta": ((1.12,), 5e-3),
+    "K_Halpha": ((1.0,), 5e-3),
+    "K_Falpha": ((1.0,), 5e-3),
+    "Y_F": ((1.56, 1.44), 4e-3),
+    "Y_S": ((2.06, 2.14), 3e-3),
+    "h_F": ((1.441, 1.450), 5e-4),
+    "s_Fn": ((2.248, 2.314), 3e-4),
+    "rho_F": ((0.403, 0.382), 1.4e-3),
+    "alpha_Fen": ((30.75, 33.33), 2e-4),
+    "sigma_F0": ((113.46, 108.94), 1e-4),
+    "sigma_F": ((175.90, 168.90), 6e-3),
+    "Y_deltarelT": ((1.003, 1.005), 6e-4),
+    "Y_RrelT": ((0.957, 0.957), 6e-4),
+    "Y_X": ((0.80, 0.80), 5e-4),
+    "Y_NT": ((0.888, 0.906), 6e-4),
+    "sigma_FG": ((586.11, 419.35), 5e-5),
+    "S_F": ((3.33, 2.48), 6e-3),
+    "Z_H": ((2.06,), 3e-3),
+    "Z_eps": ((0.981,), 6e-4),
+    "Z_BD": ((1.04, 1.05), 5e-3),
+    "sigma_H0": ((759.92,), 1e-5),
+    "sigma_H": ((996.13, 1002.73), 3e-3),
+    "Z_L": ((1.020, 1.020), 5e-4),
+    "Z_v": ((0.961, 0.961), 6e-4),
+    "Z_R": ((1.024, 1.024), 6e-4),
+    "Z_NT": ((0.909, 0.937), 6e-4),
+    "sigma_HG": ((1368.61, 1410.69), 5e-5),
+}
