@@ -142,3 +142,12 @@ def test_grades_are_in_order():
             if (treatment, surface, grade + 1) in table:
                 low, high = (table[treatment, surface, g] for g in (grade, grade + 1))
                 assert low[0] * 300 + low[1] <= high[0] * 300 + high[1]
+
+
+def test_lines_end_with_their_hardness():
+    """Beyond 400 HB no through-hardened steel is stronger: the end of the line counts."""
+    for law in (bending_allowable, contact_allowable):
+        end, beyond = law("through-hardened", 1, 400.0), law("through-hardened", 1, 600.0)
+        assert beyond.stress == end.stress and end.within and not beyond.within
+    for old in (bending_allowable_b88, contact_allowable_b88):
+        assert old(1, 600.0).stress == old(1, 400.0).stress and not old(1, 600.0).within

@@ -134,7 +134,8 @@ def _old(
     if not hardness > 0.0:
         raise ValueError("the strength of through-hardened steel needs its hardness in HB")
     base, slope, bend, source = lines[grade]
-    psi = base + slope * hardness + bend * hardness**2
+    at = min(hardness, HARDNESS[1])
+    psi = base + slope * at + bend * at**2
     within = HARDNESS[0] <= hardness <= HARDNESS[1]
     return Allowable(PSI * psi, source, source != SINGLE, within)
 
@@ -159,9 +160,9 @@ def _found(
 def _allowable(
     slope: float, base: float, source: str, hardness: float, treatment: str
 ) -> Allowable:
-    """Return base + slope HB; a hardness is asked for where it matters."""
+    """Return base + slope HB, beyond the line its end; a hardness is asked for where it matters."""
     if slope and hardness <= 0.0:
         raise ValueError(f"the strength of {treatment} steel needs its hardness in HB")
     low, high = NITRIDED_CORE.get(treatment, HARDNESS)
     within = not slope or low <= hardness <= high
-    return Allowable(PSI * (base + slope * hardness), source, source != SINGLE, within)
+    return Allowable(PSI * (base + slope * min(hardness, high)), source, source != SINGLE, within)

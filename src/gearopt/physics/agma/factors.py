@@ -205,14 +205,6 @@ def reliability_factor(reliability: Any) -> Any:
     return choose(reliability < 0.99, 0.658 - 0.0759 * unreliable, 0.50 - 0.109 * unreliable)
 
 
-def tabled_reliability_factor(reliability: float) -> float:
-    """Return K_R of RELIABILITY; ValueError for a reliability that the table does not have."""
-    if reliability not in RELIABILITY:
-        known = ", ".join(f"{r:g}" for r in RELIABILITY)
-        raise ValueError(f"no K_R of {reliability:g} in the table: {known}")
-    return RELIABILITY[reliability]
-
-
 def temperature_factor(temperature_C: Any) -> Any:
     """Return K_T: 1 up to 120 degrees C, (460 + T)/620 above, T in degrees F; at least 1.
 

@@ -74,16 +74,6 @@ def contact_safety(
     return allowable * cycle_factor * hardness_ratio / (temperature * reliability * stress)
 
 
-def permissible_power(power: Any, bending: Any, contact: Any, wanted: tuple[Any, Any]) -> Any:
-    """Return the power that a gear may transmit: P min(S_F/S_Fmin, (S_H/S_Hmin)^2).
-
-    power P, at which the safety factors bending S_F and contact S_H are; wanted (S_Fmin, S_Hmin).
-    Stress grows with load and its root; K_v depends on speed alone. Source: AGMA 2001-D04, clause
-    5.
-    """
-    return power * np.minimum(bending / wanted[0], (contact / wanted[1]) ** 2)
-
-
 def bending_life(curve: Curve, cycle_factor: Any, safety: Any) -> Any:
     """Return the cycles at which S_F is 1: Y_N(N) = Y_N/S_F.
 

@@ -31,7 +31,11 @@ from gearopt.scenes.parts import tooth_warnings
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.toml import dotted
 
-STANDARD = "ANSI/AGMA 2001-{} (2101), geometry factors of AGMA 908-B89"
+STANDARDS = {  # by edition
+    "D04": "ANSI/AGMA 2001-D04 (2101), geometry factors of AGMA 908-B89",
+    "B88": "ANSI/AGMA 2001-B88 for rims and the strength of through-hardened steel, else 2001-D04, "
+    "geometry factors of AGMA 908-B89",
+}
 
 
 def rate(scene: Scene, ask: Ask) -> Result:
@@ -136,7 +140,7 @@ def rating(scene: Scene, pairs: tuple[GearPair, ...]) -> DriveRating:
     shortest = gears[min(range(len(gears)), key=hours.__getitem__)]
     efficiency, error = _efficiency(rows)
     return DriveRating(
-        standard=STANDARD.format(asked.edition),
+        standard=STANDARDS[asked.edition],
         safe=all(map(_meets(wanted), gears)),
         governs=f"{least.governs}, stage {least.stage}",
         minimum_bending_safety=wanted[0],

@@ -112,7 +112,7 @@ def _losses(scene: Scene, mesh: Mesh) -> dict[str, Any]:
     """Return what is lost by the sliding of teeth, where the friction is known."""
     loss, (friction, sure) = float(tooth_loss_factor(mesh.pair)), _friction(scene, mesh)
     found: dict[str, Any] = {"tooth_loss_factor": loss, "friction_coefficient": friction}
-    if friction is not None:
+    if friction is not None and friction * loss < 1.0:  # else the formula is far from its tests
         found["mesh_efficiency_percent"] = 100.0 * float(mesh_efficiency(loss, friction))
         if not sure:
             found["mesh_efficiency_error_percent"] = 100.0 * FRICTION_ERROR * friction * loss
