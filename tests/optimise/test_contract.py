@@ -327,8 +327,16 @@ def test_a_back_end_stops_when_its_watcher_says_no(name, stop):
     assert not known or outcome.x is not None  # the best point is kept
 
 
-@pytest.mark.parametrize("evaluations", [1, 40])
-@pytest.mark.parametrize("name", POSED)
+@pytest.mark.parametrize(
+    ("name", "evaluations"),
+    [
+        pytest.param(
+            n, most, marks=[pytest.mark.slow] * ((n, most) == ("conic with whole numbers", 40))
+        )
+        for n in POSED
+        for most in (1, 40)
+    ],
+)
 def test_a_back_end_keeps_to_its_evaluations(name, evaluations):
     method, (pose, beyond) = name.split(" with ")[0], POSED[name]
     problem, seen = pose(), []

@@ -3,7 +3,6 @@
 import csv
 import io
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 from rich.console import Console
@@ -22,8 +21,6 @@ from gearopt.report.kinds.servo.axis_housing import box
 from gearopt.report.measures import METRIC
 from gearopt.report.pages.result import page, sections, tables
 from gearopt.report.terminal import show
-
-FILE = Path(__file__).parents[2] / "problems" / "servo_gimbal.toml"
 
 
 @pytest.fixture(scope="module")
@@ -120,16 +117,16 @@ def test_without_given_gears_there_is_no_such_section(result):
     assert not headings & {"The given train", "Number of stages"}
 
 
-def test_an_acceleration_is_told_as_one():
+def test_an_acceleration_is_told_as_one(solved):
     """47.287 rad/s2 is the most; its inverse is what is minimised."""
-    result = gearopt.solve(FILE.with_name("servo_gimbal_ratio.toml"))
+    result = solved("servo_gimbal_ratio")
     assert result.objective["name"] == "inverse_acceleration"
     near = replace(result, gap=0.02, status="feasible")
     assert bound_words(near, METRIC)[0].startswith("Upper bound of the acceleration: 47.288 rad/s²")
     tiles = {t.name: t.value for t in sections(near)[0].tiles}
     assert (tiles["acceleration"], tiles["proven bound"]) == ("47.287 rad/s²", "47.288 rad/s²")
     assert [t.name for t in sections(result)[0].tiles] == ["acceleration", "best total ratio"]
-    move = gearopt.solve(FILE.with_name("servo_gimbal_move.toml"))
+    move = solved("servo_gimbal_move")
     assert "Lower bound of the move time: 1.196" in bound_words(replace(move, gap=0.1), METRIC)[0]
 
 
