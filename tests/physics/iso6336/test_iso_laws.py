@@ -12,6 +12,8 @@ from gearopt.physics.iso6336 import load_factors as loads
 from gearopt.physics.iso6336 import running_in, stiffness
 from gearopt.physics.iso6336.accuracy import (
     DIAMETERS,
+    MODULES,
+    WIDTHS,
     deviations,
     helix_slope_1995,
     profile_form_1995,
@@ -322,3 +324,72 @@ def test_yield_points_are_estimated_where_they_are_not_given():
     assert Material("V alloy", "ML", 300.0).strength_for_notches == pytest.approx(720.0)
     assert Material("V alloy", "ML", 300.0, yield_strength=800.0).strength_for_notches == 800.0
     assert Material("GG", "MQ", 220.0).strength_for_notches == 300.0
+
+
+def test_ranges_of_sizes_are_those_of_iso_1328():
+    """Every end, from below and above: the mean jumps there, and nowhere between."""
+    for ends, known in (
+        (DIAMETERS, (5, 20, 50, 125, 280, 560, 1000, 1600, 2500, 4000, 6000, 8000, 10000)),
+        (MODULES, (0.5, 2, 3.5, 6, 10, 16, 25, 40, 70)),
+        (WIDTHS, (4, 10, 20, 40, 80, 160, 250, 400, 650, 1000)),
+    ):
+        for low, high in zip(known[:-1], known[1:], strict=True):
+            for size in (low * 1.0001, high):
+                assert range_mean(size, ends) == pytest.approx(math.sqrt(low * high), rel=1e-12)
+
+
+def test_ends_of_tables():
+    """Slip layers and deep teeth hold still beyond the ends of their tables."""
+    assert bending.slip_layer("St", 300.0) == bending.slip_layer("St", 200.0) == 0.0833
+    assert bending.slip_layer("St", 350.0) == pytest.approx(0.5 * (0.0833 + 0.0445))
+    assert bending.slip_layer("V", 500.0) == bending.slip_layer("V", 400.0) == 0.0281
+    assert bending.slip_layer("V", 600.0) == 0.0194 and bending.slip_layer("V", 800.0) == 0.0064
+    assert bending.slip_layer("V", 550.0) == pytest.approx(0.5 * (0.0281 + 0.0194))
+    assert bending.slip_layer("V", 900.0) == pytest.approx(0.5 * (0.0064 + 0.0014))
+    assert bending.slip_layer("GG", 300.0) == bending.slip_layer("GGG ferritic", 400.0) == 0.3095
+    assert bending.slip_layer("GG", 225.0) == pytest.approx(0.5 * (0.3124 + 0.3095))
+    assert bending.deep_tooth_factor(2.5, 4.0) == pytest.approx(2.366 - 0.666 * 2.5)
+    assert bending.deep_tooth_factor(2.051, 4.0) == pytest.approx(2.366 - 0.666 * 2.051)
+    for families, known in (
+        (("St", "V", "GTS", "GGG", "Eh", "IF"), ((1e5, 1.6), (5e7, 1.0), (1e10, 0.85))),
+        (("GG", "GGG ferritic", "NT", "NV"), ((1e5, 1.3), (2e6, 1.0), (1e10, 0.85))),
+    ):
+        for family in families:
+            curve = pitting_curve(family)
+            assert tuple(zip(curve.cycles, curve.values, strict=True)) == known
+    for families, first in (
+        (("St", "V", "GTS", "GGG"), (1e4, 2.5)),
+        (("Eh", "IF"), (1e3, 2.5)),
+        (("GG", "GGG ferritic", "NT", "NV"), (1e3, 1.6)),
+        (("NV nitrocarburised",), (1e3, 1.1)),
+    ):
+        for family in families:
+            curve = bending_curve(family)
+            known = (first, (3e6, 1.0), (1e10, 0.85))
+            assert tuple(zip(curve.cycles, curve.values, strict=True)) == known
+
+
+def test_parts_of_helix_modifications():
+    """B_1 and B_2: f_sh 100 and f_ma 1000 um count apart."""
+    parts = {
+        "none": (1.0, 1.0),
+        "crowned": (1.0, 0.5),
+        "crowned for deflection": (0.5, 0.5),
+        "helix corrected": (0.1, 1.0),
+        "helix corrected and crowned": (0.1, 0.5),
+        "end relief": (0.7, 0.7),
+    }
+    assert set(parts) == set(loads.HELIX_MODIFICATIONS)
+    for word, (first, second) in parts.items():
+        found = loads.initial_misalignment(0.1, 1.0, 1.0, 0.0, word)
+        assert found == pytest.approx(0.133 * first + second)
+    assert contact.PROFILE_MODIFICATIONS == {"none": 1.2, "by experience": 1.07, "by analysis": 1.0}
+
+
+@pytest.mark.parametrize(
+    ("name", "hardness", "known"),
+    [("St", 150.0, 264.0), ("V carbon", 200.0, 480.0), ("GTS", 200.0, 416.0), ("GG", 180.0, 150.0)],
+)
+def test_estimated_yield_points(name, hardness, known):
+    """3.2 MPa a unit of hardness, 0.55 of it (St), 0.75 (V), 0.65 (GTS); GG by its two grades."""
+    assert Material(name, "MQ", hardness).strength_for_notches == pytest.approx(known)

@@ -235,3 +235,54 @@ def test_published_designs_are_safe_by_either_edition():
     assert found.bending_stress[0] == pytest.approx(known, rel=1e-4)
     assert found.contact_stress == old.contact_stress
     assert iso_example().practice.shift == "nominal"
+
+
+def test_load_shares_are_limited():
+    """Pitch off by 1 mm: K_Halpha is eps_gamma/(eps_alpha Z_eps^2), K_Falpha with Y_eps."""
+    given = {"f_pb": 1.0}
+    for pair in (spur(), helical()):
+        coarse = rate(pair, LOAD, steels(EH), given=given).factors
+        ratio, total = pair.transverse_contact_ratio, pair.overlap_ratio
+        total = total + ratio
+        most = total / (ratio * coarse["Z_eps"].value ** 2)
+        assert coarse["K_Halpha"].value == pytest.approx(most, rel=1e-12)
+        assert coarse["K_Falpha"].value == pytest.approx(total / (0.25 * ratio + 0.75), rel=1e-12)
+    new = rate(helical(), LOAD, steels(EH), Practice("2019"), given)
+    found = new.factors["K_Falpha"].value
+    base = math.cos(math.asin(math.sin(0.25) * math.cos(math.radians(20.0)))) ** 2
+    assert found == pytest.approx(total / (ratio * (0.25 + 0.75 * base / ratio)), rel=1e-12)
+
+
+def test_remarks_say_what_leaves_its_range():
+    """Coarse roots, slow gears, sharp notches, long lives, hardness and strengths off lines."""
+    coarse = replace(EH, root=41e-3)
+    assert rate(spur(), LOAD, (EH, coarse)).factors["Y_RrelT"].remark == "roughness above 40 um"
+    assert not rate(spur(), LOAD, (EH, replace(EH, root=40e-3))).factors["Y_RrelT"].remark
+    # v z1/100 sqrt(u^2/(1 + u^2)) = 3 m/s at v 15.06 m/s, 358.5 rad/s
+    for speed, said in ((358.0, True), (359.0, False)):
+        remark = rate(spur(), replace(LOAD, pinion_speed=speed), steels(EH)).factors["K_v"].remark
+        assert remark.startswith("slow") == said
+    for resonance, name in ((1.1, "main resonance,"), (1.2, "above the main resonance,")):
+        found = rate(spur(), LOAD, steels(EH), given={"N": resonance}).factors["K_v"]
+        assert found.remark.startswith(name) and not found.verified
+    long = rate(spur(), replace(LOAD, hours=2e5), steels(EH)).factors
+    assert long["Z_NT"].remark == long["Y_NT"].remark == "beyond 1e+10 cycles"
+    assert not rate(spur(), LOAD, steels(EH)).factors["Z_NT"].remark
+    soft = rate(spur(), LOAD, steels(replace(V, hardness=100.0))).factors["sigma_Hlim"]
+    assert "its end is taken" in soft.remark
+    between = rate(spur(), LOAD, steels(EH), given={"sigma_Hlim": (1000.0, 1500.0)})
+    assert "between 850 and 1200" in between.factors["Z_L"].remark
+    for limit in (850.0, 1200.0):
+        found = rate(spur(), LOAD, steels(EH), given={"sigma_Hlim": (limit, 1500.0)})
+        assert not found.factors["Z_R"].remark
+    sharp = GearPair.of_teeth(4.0, 200, 200, 40.0, rack=Rack(tip_radius=0.02))
+    assert rate(sharp, LOAD, steels(EH)).factors["Y_S"].remark == "q_s outside 1 to 8"
+
+
+def test_wear_gives_the_tips_a_relief():
+    """C_ay of 1500 and 700 MPa, 1.995 and 8.511 um: their mean, where none is given."""
+    hard = rate(spur(), LOAD, steels(EH)).factors["C_a"].value
+    assert hard == pytest.approx(1.995e-3, abs=1e-6)
+    mixed = rate(spur(), LOAD, steels(EH), given={"sigma_Hlim": (1500.0, 700.0)})
+    assert mixed.factors["C_a"].value == pytest.approx(0.5 * (1.995e-3 + 8.511e-3), abs=1e-6)
+    assert rate(spur(), LOAD, steels(EH), Practice(relief=0.01)).factors["C_a"].value == 0.01

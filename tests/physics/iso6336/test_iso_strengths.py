@@ -100,6 +100,18 @@ def test_a_line_of_the_table(line):
             assert found.within
 
 
+@pytest.mark.parametrize("line", LINES, ids=lambda line: " ".join(line[:4] + line[6:7]))
+def test_a_range_of_the_table(line):
+    """A thousandth beyond the ends of all lines of a material nothing is within."""
+    name, stress, qualities, core = line[:4]
+    same = [other for other in LINES if other[:4] == line[:4]]
+    low, high = min(float(o[6]) for o in same), max(float(o[7]) for o in same)
+    for quality in qualities.split("/"):
+        for hardness, end in ((0.999 * low, low), (1.001 * high, high)):
+            found = strength(Material(name, quality, hardness, core or "25 HRC"), stress)
+            assert not found.within and found.nearest == end
+
+
 def test_beyond_a_range_its_end_counts():
     soft = strength(Material("V alloy", "ML", 100.0), "H")
     assert soft.stress == strength(Material("V alloy", "ML", 200.0), "H").stress
