@@ -149,6 +149,7 @@ def test_numbers_and_words_that_mean_nothing_are_refused():
         ({"pinion_speed": -1.0}, "pinion speed is -1"),
         ({"overload": 0.0}, "application factor is 0"),
         ({"hours": -1.0}, "cannot be below 0"),
+        ({"power": math.inf}, "power is inf"),
     ):
         with pytest.raises(ValueError, match=message):
             rate(spur(), replace(LOAD, **what), steels(EH))
@@ -177,6 +178,12 @@ def test_numbers_and_words_that_mean_nothing_are_refused():
     [
         ("no centre distance", GearPair.of_teeth(4.0, 20, 40, 40.0, profile_shifts=(-2.0, -2.0))),
         ("pointed tool", GearPair.of_teeth(4.0, 20, 40, 40.0, rack=Rack(dedendum=2.5))),
+        (
+            "usable contact ratio below 1",
+            GearPair.of_teeth(4.0, 20, 40, 40.0, rack=Rack(tip_radius=1.6)),
+        ),
+        ("no root", GearPair.of_teeth(4.0, 6, 90, 40.0, profile_shifts=(-2.0, 2.0))),
+        ("no involute", GearPair.of_teeth(4.0, 20, 40, 40.0, rack=Rack(addendum=-1.0))),
         ("pointed tooth", GearPair.of_teeth(4.0, 8, 40, 40.0, profile_shifts=(1.5, 0.0))),
         (
             "contact ratio below 1",

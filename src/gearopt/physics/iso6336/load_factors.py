@@ -47,9 +47,9 @@ class Dynamics:
 def coefficients(total_ratio: Any) -> tuple[Any, ...]:
     """Return C_v1 to C_v7 of a total contact ratio eps_gamma.
 
-    Up to 2: 0.32, 0.34, 0.23, 0.90, 0.47, 0.47; above it the hyperbolas in eps_gamma, of which
-    those of C_v2 and C_v6 do not quite meet there. Source: ISO 6336-1:2006, table 8 (6.5);
-    gfsReboucas/Drivetrain has it.
+    Up to 2: 0.32, 0.34, 0.23, 0.90, 0.47, 0.47; above it hyperbolas in eps_gamma, which do
+    not quite meet there: C_v2, C_v3, C_v4, C_v6 jump by -1.4, -5.1, -6.7, -1.8 %.
+    Source: ISO 6336-1:2006, table 8 (6.5); gfsReboucas/Drivetrain has it.
     """
     e = np.maximum(total_ratio, 2.0)
     laws = (

@@ -13,7 +13,6 @@ FAMILIES = {name: name for name in MATERIALS} | {
     **dict.fromkeys(("V carbon", "V alloy", "V cast carbon", "V cast alloy"), "V"),
 }
 SURFACE_HARDENED = ("Eh", "IF", "NT", "NV", "NV nitrocarburised")
-SOFT = ("St", "V", "GTS", "GGG", "GGG ferritic", "GG")  # families that are not
 VICKERS_TENSILE = 3.2  # MPa of tensile strength a unit of hardness; unverified, from memory
 YIELD_RATIO = {"St": 0.55, "V": 0.75}  # of yield point and tensile strength; unverified, memory
 

@@ -3,7 +3,6 @@
 Deviations and allowances [mm], sigma_Hlim [MPa], speed [mm/s]; floats, arrays, casadi scalars.
 """
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -59,9 +58,3 @@ def tip_relief(contact_limit: Any) -> Any:
     Source: ISO 6336-1:2006, 6.5; a printed report has 2.0 um of 1500 MPa.
     """
     return ((contact_limit / 97.0 - 18.45) ** 2 / 18.0 + 1.5) * MICROMETRE
-
-
-def of_both(law: Callable[[Any], Any], materials: tuple[Any, Any]) -> Any:
-    """Return the mean of an allowance over both gears; law: of one material."""
-    first, second = (law(material) for material in materials)
-    return 0.5 * (first + second)

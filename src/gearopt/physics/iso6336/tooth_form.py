@@ -63,8 +63,8 @@ def tangent_theta(gear: Gear) -> Any:
     of steps. Source: ISO 6336-3:2006, 6.2; DIN 3990-11, annex D, of hanslhansl/din3990.
     """
     tip, teeth = tool_tip(gear), gear.teeth
-    depth, shape = -tip.depth, 2.0 / teeth * (np.pi / 2.0 - tip.half_width) - np.pi / 3.0
-    theta = np.pi / 6.0 + 0.0 * depth
+    depth, shape = -tip.depth, 2.0 / teeth * (np.pi / 2.0 - tip.half_width) - np.pi / 2.0 + TANGENT
+    theta = TANGENT + 0.0 * depth
     for _ in range(NEWTON_STEPS):
         tangent = np.tan(theta)
         error = theta - 2.0 * depth / teeth * tangent + shape
