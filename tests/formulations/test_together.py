@@ -343,7 +343,7 @@ def test_kernels_bound_what_they_measure():
             torque = float(rng.choice([1e3, 1e4, 3e4]))
             for k in range(drive.first[p], drive.last[p] + 1):
                 z1, z2, m = int(drive.z1[p]), int(drive.z2[p]), float(drive.modules[0, k])
-                wanted = face_width(train, train.stages[0], torque, m, (z1, z2))
+                wanted = face_width(train.stages[0], torque, m, (z1, z2))
                 enough = k >= nodes.module(drive, 0, p, torque)
                 b = nodes.width(drive, 0, p, k, torque) if enough else math.inf
                 assert b == pytest.approx(math.inf if wanted is None else wanted, rel=1e-12)
