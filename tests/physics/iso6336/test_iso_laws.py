@@ -43,6 +43,13 @@ def test_deviations_of_1995_by_the_tables():
     assert helix_slope_1995(396.0, 316.2, 5.0) == pytest.approx(12.395 * UM, rel=1e-4)
 
 
+def test_formulas_of_1995_by_hand():
+    """d 100, m 4, b 64 at grade 5, unrounded: 6.4, 7.2 and 7.3 um; twice that at grade 7."""
+    assert single_pitch_1995(100.0, 4.0, 5.0) == pytest.approx(6.4 * UM, rel=1e-12)
+    assert profile_form_1995(100.0, 4.0, 5.0) == pytest.approx(7.2 * UM, rel=1e-12)
+    assert helix_slope_1995(100.0, 64.0, 7.0) == pytest.approx(14.6 * UM, rel=1e-12)
+
+
 def test_deviations_of_a_pair_by_either_edition():
     """2013: f_pT (0.001 d + 0.4 m + 5) cos(alpha_t) of the wheel, 0.1 + 2 + 5 um = 7 um."""
     pair = GearPair.of_teeth(5.0, 20, 20, 40.0)
