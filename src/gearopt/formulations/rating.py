@@ -151,7 +151,7 @@ class DriveRating:
     safe: whether every gear meets the safety factors that are asked for; life_h: the shortest of
     all gears, None beyond the end of the curves. unverified: symbols of factors, and what else a
     single source or memory alone has. flaws: sentences on teeth that a designer may accept, and on
-    the ratio of given gears that is not the one asked for.
+    the ratio of given gears that is not the one asked for. beside: the rating by another standard.
     """
 
     standard: str
@@ -172,3 +172,4 @@ class DriveRating:
     levels: tuple[LoadLevel, ...] = ()
     unverified: tuple[str, ...] = ()
     flaws: tuple[str, ...] = ()
+    beside: "DriveRating | None" = None

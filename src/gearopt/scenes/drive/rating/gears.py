@@ -3,17 +3,16 @@
 from dataclasses import replace
 from typing import Any
 
-from gearopt.physics.agma.factors import quality_of_accuracy
-from gearopt.physics.agma.rating_factors import Practice, Steel
 from gearopt.physics.gears import Gear, GearPair
 from gearopt.physics.rating import Operation
 from gearopt.physics.shaft_forces import rpm
 from gearopt.scenes.drive.drive_tables import StageTable
-from gearopt.scenes.drive.rating.tables import GearTable, RatingTable, with_shared
+from gearopt.scenes.drive.rating.tables import GearTable, with_shared
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.tooth_tables import toothing
 
 HOUR = 3600.0  # s
+Tables = tuple[GearTable, GearTable]  # of pinion and wheel
 
 
 def own(scene: Scene, stage: int, member: str) -> GearTable:
@@ -51,51 +50,11 @@ def given_pairs(scene: Scene) -> tuple[GearPair, ...]:
     return tuple(found)
 
 
-def steel(table: GearTable) -> Steel:
-    """Return the material of a gear; it has a treatment, or its strengths are given."""
-    usual = Steel()
-    return Steel(
-        table.treatment or usual.treatment,
-        table.grade or usual.grade,
-        table.hardness.value if table.hardness else usual.hardness,
-        table.surface_hardness or usual.surface,
-        table.elastic_modulus.value if table.elastic_modulus else usual.modulus,
-        usual.poisson if table.poisson_ratio is None else float(table.poisson_ratio),
-        table.roughness.value if table.roughness else usual.finish,
-        bool(table.reversed_load),
-    )
-
-
 def backup(gear: Gear, table: GearTable) -> float | None:
     """Return the backup ratio m_B = t_R/h_t of a rim; None of a solid gear."""
     if table.rim_thickness is None:
         return None
     return float(table.rim_thickness.value / (0.5 * (gear.tip_diameter - gear.root_diameter)))
-
-
-def practice(scene: Scene, pair: GearPair, gears: tuple[GearTable, GearTable]) -> Practice:
-    """Return how a pair is made and rated."""
-    asked = scene.rating
-    assert asked
-    return Practice(
-        quality=_quality(asked),
-        curve=asked.mounting,
-        crowned=asked.crowned,
-        offset=float(asked.pinion_offset),
-        adjusted=asked.adjusted,
-        backup=(backup(pair.pinion, gears[0]), backup(pair.wheel, gears[1])),
-        size=asked.size_factor == "shigley",
-        service=asked.service,
-        load=asked.bending_load,
-        edition=asked.edition,
-    )
-
-
-def _quality(asked: RatingTable) -> float:
-    """Return Q_v, by whichever key; any where K_v is given."""
-    if asked.accuracy is not None:
-        return float(quality_of_accuracy(float(asked.accuracy)))
-    return Practice().quality if asked.quality is None else float(asked.quality)
 
 
 def required_hours(scene: Scene) -> float:
@@ -108,9 +67,7 @@ def required_hours(scene: Scene) -> float:
     return float(asked.input_revolutions) / (60.0 * rpm(scene.duty.input_speed.value))
 
 
-def operations(
-    scene: Scene, slower: float, gears: tuple[GearTable, GearTable]
-) -> tuple[Operation, ...]:
+def operations(scene: Scene, slower: float, gears: Tables) -> tuple[Operation, ...]:
     """Return what a pair does at every level of load; slower: input over pinion speed."""
     asked, hours = scene.rating, required_hours(scene)
     assert asked
@@ -134,10 +91,3 @@ def operations(
         for level in scene.load
     ]
     return tuple(levels) or (one,)
-
-
-def given_factors(scene: Scene, stage: int) -> dict[str, Any]:
-    """Return the factors that a file gives for a stage (from 0), those of all stages below."""
-    assert scene.rating
-    mine = scene.stage[stage].given.factors() if scene.stage else {}
-    return scene.rating.given.factors() | mine

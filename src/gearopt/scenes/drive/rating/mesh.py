@@ -1,24 +1,28 @@
-"""One stage of a drive with its rating, at every level of load."""
+"""One stage of a drive with its rating by a standard, at every level of load."""
 
 from dataclasses import dataclass
 from typing import Any
 
 from gearopt.errors import SolveError
-from gearopt.physics.agma.rating import rate, rate_spectrum
 from gearopt.physics.gears import GearPair
 from gearopt.physics.geometry.flaws import flaws
 from gearopt.physics.rating import Operation, Rating
 from gearopt.scenes.drive.rating import gears
+from gearopt.scenes.drive.rating.gears import Tables
 from gearopt.scenes.drive.scene import Scene
 
 
 @dataclass(frozen=True)
 class Mesh:
-    """One stage (from 1) with its rating: hardest of all levels, and safety against all of them."""
+    """One stage (from 1) with its rating: hardest of all levels, and safety against all of them.
 
+    standard: a module of `by_agma` and its like.
+    """
+
+    standard: Any
     stage: int
     pair: GearPair
-    tables: tuple[Any, Any]
+    tables: Tables
     operations: tuple[Operation, ...]
     levels: tuple[Rating, ...]
     bending_safety: tuple[float, float]
@@ -36,7 +40,7 @@ class Mesh:
         return max(self.levels, key=lambda level: level.load)
 
 
-def rated_meshes(scene: Scene, pairs: tuple[GearPair, ...]) -> list[Mesh]:
+def rated_meshes(scene: Scene, pairs: tuple[GearPair, ...], standard: Any) -> list[Mesh]:
     """Rate all stages; SolveError names the one that has no rating, and why."""
     meshes, slower = [], 1.0
     for k, pair in enumerate(pairs):
@@ -45,7 +49,7 @@ def rated_meshes(scene: Scene, pairs: tuple[GearPair, ...]) -> list[Mesh]:
         if found and found[0].fatal:
             raise SolveError(f"stage {k + 1} cannot be rated: {told[0]}")
         try:
-            meshes.append(_mesh(scene, k, pair, slower))
+            meshes.append(_mesh(scene, k, pair, slower, standard))
         except ValueError as reason:
             why = "; ".join([str(reason), *told])
             raise SolveError(f"stage {k + 1} cannot be rated: {why}") from None
@@ -53,18 +57,18 @@ def rated_meshes(scene: Scene, pairs: tuple[GearPair, ...]) -> list[Mesh]:
     return meshes
 
 
-def _mesh(scene: Scene, k: int, pair: GearPair, slower: float) -> Mesh:
+def _mesh(scene: Scene, k: int, pair: GearPair, slower: float, standard: Any) -> Mesh:
     """Rate one stage (from 0); slower: input over pinion speed."""
     tables = gears.own(scene, k, "pinion"), gears.own(scene, k, "wheel")
-    steels = gears.steel(tables[0]), gears.steel(tables[1])
-    made = gears.practice(scene, pair, tables)
+    steels = standard.steel(tables[0]), standard.steel(tables[1])
+    made = standard.practice(scene, pair, tables)
     levels = gears.operations(scene, slower, tables)
-    given = gears.given_factors(scene, k)
+    given = standard.given(scene, k)
     if not scene.load:
-        one = rate(pair, levels[0], steels, made, given)
+        one = standard.rate(pair, levels[0], steels, made, given)
         both = one.bending_safety, one.contact_safety
-        return Mesh(k + 1, pair, tables, levels, (one,), *both, None)
-    found = rate_spectrum(pair, levels, steels, made, given)
+        return Mesh(standard, k + 1, pair, tables, levels, (one,), *both, None)
+    found = standard.rate_spectrum(pair, levels, steels, made, given)
     damages = found.bending_damage, found.contact_damage
     both = found.bending_safety, found.contact_safety
-    return Mesh(k + 1, pair, tables, levels, found.levels, *both, damages)
+    return Mesh(standard, k + 1, pair, tables, levels, found.levels, *both, damages)

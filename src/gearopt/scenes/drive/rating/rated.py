@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import Any
 
 from gearopt.errors import SolveError
 from gearopt.formulations.design import DriveDesign, StageDesign, drive_design, of_pairs
@@ -14,6 +15,7 @@ from gearopt.physics.gears import GearPair
 from gearopt.physics.loads import torque
 from gearopt.physics.shaft_forces import hands
 from gearopt.scenes.drive.assumptions import rating_assumptions
+from gearopt.scenes.drive.rating import by_agma
 from gearopt.scenes.drive.rating import gears as rated_gears
 from gearopt.scenes.drive.rating.checks import not_given
 from gearopt.scenes.drive.rating.geometry import tooth_geometry
@@ -31,11 +33,7 @@ from gearopt.scenes.parts import tooth_warnings
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.toml import dotted
 
-STANDARDS = {  # by edition
-    "D04": "ANSI/AGMA 2001-D04 (2101), geometry factors of AGMA 908-B89",
-    "B88": "ANSI/AGMA 2001-B88 for rims and the strength of through-hardened steel, else 2001-D04, "
-    "geometry factors of AGMA 908-B89",
-}
+STANDARDS = {"agma": (by_agma,)}  # of the key standard
 
 
 def rate(scene: Scene, ask: Ask) -> Result:
@@ -126,10 +124,17 @@ def utilisations(found: DriveRating) -> dict[str, float]:
 
 
 def rating(scene: Scene, pairs: tuple[GearPair, ...]) -> DriveRating:
+    """Return the rating of all stages by all standards asked for; SolveError why there is none."""
+    assert scene.rating
+    first, *others = (_by(scene, pairs, one) for one in STANDARDS[scene.rating.standard])
+    return replace(first, beside=others[0]) if others else first
+
+
+def _by(scene: Scene, pairs: tuple[GearPair, ...], standard: Any) -> DriveRating:
     """Return the rating of all stages; SolveError names the stage that has none, and why."""
     asked = scene.rating
     assert asked
-    meshes = rated_meshes(scene, pairs)
+    meshes = rated_meshes(scene, pairs, standard)
     wanted = float(asked.minimum_bending_safety), float(asked.minimum_contact_safety)
     rows = tuple(mesh_row(scene, mesh, wanted) for mesh in meshes)
     least = min(rows, key=lambda row: row.power_capacity_kW)
@@ -140,7 +145,7 @@ def rating(scene: Scene, pairs: tuple[GearPair, ...]) -> DriveRating:
     shortest = gears[min(range(len(gears)), key=hours.__getitem__)]
     efficiency, error = _efficiency(rows)
     return DriveRating(
-        standard=STANDARDS[asked.edition],
+        standard=standard.title(asked),
         safe=all(map(_meets(wanted), gears)),
         governs=f"{least.governs}, stage {least.stage}",
         minimum_bending_safety=wanted[0],

@@ -26,9 +26,7 @@ from gearopt.physics.mesh_loss import (
     tooth_loss_factor,
 )
 from gearopt.physics.shaft_forces import mesh_forces, rotation, rpm, train_forces
-from gearopt.scenes.drive.rating.gears import steel
 from gearopt.scenes.drive.rating.mesh import Mesh
-from gearopt.scenes.drive.rating.words import NAMES, UNITS, material
 from gearopt.scenes.drive.scene import Scene
 
 
@@ -42,7 +40,7 @@ def gear_row(mesh: Mesh, k: int) -> GearRating:
     return GearRating(
         stage=mesh.stage,
         member=MEMBERS[k],
-        material=material(mesh.tables[k]),
+        material=mesh.standard.material(mesh.tables[k]),
         bending_stress_MPa=stresses[0],
         permissible_bending_stress_MPa=stresses[0] * safeties[0],
         bending_safety=mesh.bending_safety[k],
@@ -136,7 +134,7 @@ def _friction(scene: Scene, mesh: Mesh) -> tuple[float | None, bool]:
         return float(asked.friction_coefficient), True
     if asked.oil_viscosity is None:
         return None, False
-    roughness = 0.5 * sum(steel(table).finish for table in mesh.tables)
+    roughness = 0.5 * sum(mesh.standard.finish(table) for table in mesh.tables)
     known = one.load, one.speed, asked.oil_viscosity.value, roughness
     return float(friction_coefficient(mesh.pair, *known)), False
 
@@ -151,10 +149,10 @@ def factor_rows(mesh: Mesh) -> list[RatingFactor]:
             RatingFactor(
                 stage=mesh.stage,
                 symbol=symbol,
-                name=NAMES[symbol],
+                name=mesh.standard.NAMES[symbol],
                 pinion=first,
                 wheel=second,
-                unit=UNITS.get(symbol, ""),
+                unit=mesh.standard.UNITS.get(symbol, ""),
                 source=factor.clause,
                 verified=factor.verified,
                 remark=factor.remark,

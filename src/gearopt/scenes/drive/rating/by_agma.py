@@ -1,0 +1,105 @@
+"""Rating by AGMA 2001: what its tables say of a stage, its factors by name, materials in words."""
+
+from typing import Any
+
+from gearopt.physics.agma.allowables import CURVES
+from gearopt.physics.agma.factors import quality_of_accuracy
+from gearopt.physics.agma.rating import rate, rate_spectrum
+from gearopt.physics.agma.rating_factors import Practice, Steel
+from gearopt.physics.gears import GearPair
+from gearopt.scenes.drive.rating.gears import Tables, backup
+from gearopt.scenes.drive.rating.tables import GearTable, RatingTable
+from gearopt.scenes.drive.scene import Scene
+
+__all__ = ["NAMES", "UNITS", "finish", "given", "material", "rate", "rate_spectrum"]
+__all__ += ["practice", "steel", "title"]
+NAMES = {
+    "K_o": "overload",
+    "K_v": "dynamic",
+    "K_m": "load distribution",
+    "K_R": "reliability",
+    "K_T": "temperature",
+    "C_f": "surface condition",
+    "C_p": "elastic coefficient",
+    "I": "geometry, pitting",
+    "K_B": "rim thickness",
+    "K_s": "size",
+    "J": "geometry, bending",
+    "s_at": "allowable bending stress number",
+    "s_ac": "allowable contact stress number",
+    "Y_N": "stress cycles, bending",
+    "Z_N": "stress cycles, pitting",
+    "C_H": "hardness ratio",
+}
+UNITS = {"s_at": "MPa", "s_ac": "MPa", "C_p": "sqrt_MPa"}  # as suffixes of keys
+TITLES = {  # by edition
+    "D04": "ANSI/AGMA 2001-D04 (2101)",
+    "B88": "ANSI/AGMA 2001-B88 for rims and the strength of through-hardened steel, else 2001-D04",
+}
+
+
+def title(asked: RatingTable) -> str:
+    """Return what the rating follows."""
+    return f"{TITLES[asked.edition]}, geometry factors of AGMA 908-B89"
+
+
+def material(table: GearTable) -> str:
+    """Return a gear's material in words."""
+    assert table.treatment
+    words = [table.treatment, f"grade {table.grade or 1}"]
+    core = " core" if CURVES.get(table.treatment) == "nitrided" else ""
+    words += [f"{table.hardness}{core}"] if table.hardness else []
+    words += [table.surface_hardness] if table.surface_hardness else []
+    return ", ".join(words)
+
+
+def steel(table: GearTable) -> Steel:
+    """Return the material of a gear; it has a treatment, or its strengths are given."""
+    usual = Steel()
+    return Steel(
+        table.treatment or usual.treatment,
+        table.grade or usual.grade,
+        table.hardness.value if table.hardness else usual.hardness,
+        table.surface_hardness or usual.surface,
+        table.elastic_modulus.value if table.elastic_modulus else usual.modulus,
+        usual.poisson if table.poisson_ratio is None else float(table.poisson_ratio),
+        table.roughness.value if table.roughness else usual.finish,
+        bool(table.reversed_load),
+    )
+
+
+def finish(table: GearTable) -> float:
+    """Return the roughness R_a of the flanks [mm]."""
+    return steel(table).finish
+
+
+def practice(scene: Scene, pair: GearPair, gears: Tables) -> Practice:
+    """Return how a pair is made and rated."""
+    asked = scene.rating
+    assert asked
+    return Practice(
+        quality=_quality(asked),
+        curve=asked.mounting,
+        crowned=asked.crowned,
+        offset=float(asked.pinion_offset),
+        adjusted=asked.adjusted,
+        backup=(backup(pair.pinion, gears[0]), backup(pair.wheel, gears[1])),
+        size=asked.size_factor == "shigley",
+        service=asked.service,
+        load=asked.bending_load,
+        edition=asked.edition,
+    )
+
+
+def _quality(asked: RatingTable) -> float:
+    """Return Q_v, by whichever key; any where K_v is given."""
+    if asked.accuracy is not None:
+        return float(quality_of_accuracy(float(asked.accuracy)))
+    return Practice().quality if asked.quality is None else float(asked.quality)
+
+
+def given(scene: Scene, stage: int) -> dict[str, Any]:
+    """Return the factors that a file gives for a stage (from 0), those of all stages below."""
+    assert scene.rating
+    mine = scene.stage[stage].given.factors() if scene.stage else {}
+    return scene.rating.given.factors() | mine
