@@ -83,7 +83,9 @@ UNITS: dict[str, dict[str, tuple[Fraction, int]]] = {
     "time": _table(s=1, min=60, h=3600),  # s
     "temperature": _table(degC=1, degF=Fraction(5, 9)),  # degrees C, above OFFSETS
     "viscosity": _table(**{"mPa s": 1, "Pa s": 1000, "cP": 1}),  # mPa s, dynamic
+    "kinematic viscosity": _table(**{"mm^2/s": 1, "cSt": 1}),  # mm2/s
     "hardness": _table(HB=1),  # Brinell
+    "Vickers hardness": _table(HV=1),
     "elastic coefficient": {  # sqrt(MPa)
         "sqrt(MPa)": (Fraction(1), 0),
         "sqrt(psi)": (Fraction(math.sqrt(_POUND_FORCE / _INCH**2)), 0),

@@ -11,6 +11,7 @@ from gearopt.formulations.gear_train import OBJECTIVES
 from gearopt.formulations.process import ProcessOne, ProcessTwo
 from gearopt.formulations.strength import Law
 from gearopt.formulations.strength.k_factor import K_FACTOR
+from gearopt.scenes.drive.rating.iso_tables import IsoGiven
 from gearopt.scenes.drive.rating.tables import GearKeys, GearTable, GivenTable
 from gearopt.scenes.reading.fields import (
     Table,
@@ -157,6 +158,9 @@ class StageTable(Loaded):
     wheel: GearTable = Field(default_factory=GearTable, description="What the wheel has of its own")
     given: GivenTable = Field(
         default_factory=GivenTable, description="Factors of a rating, instead of computed ones"
+    )
+    given_iso6336: IsoGiven = Field(
+        default_factory=IsoGiven, description="Those of a rating by ISO 6336"
     )
 
     @model_validator(mode="after")

@@ -172,7 +172,7 @@ def tables(model: type[BaseModel], above: str = "") -> Iterator[tuple[str, type[
         if table := table_of(info.annotation):
             many = get_origin(info.annotation) is tuple
             yield (f"[[{name}]]" if many else f"[{above}{name}]"), table
-            yield from tables(table, f"{name}.")
+            yield from tables(table, f"{above}{name}.")
 
 
 def _near_name(

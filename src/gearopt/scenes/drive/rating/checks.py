@@ -5,7 +5,9 @@ from typing import Any
 
 from gearopt.physics.agma.allowables import CONTACT, bending_allowable, contact_allowable
 from gearopt.physics.gears import MEMBERS
+from gearopt.physics.iso6336.materials import SURFACE_HARDENED, strength
 from gearopt.scenes.drive.drive_tables import Gears, StageTable
+from gearopt.scenes.drive.rating.iso_material import steel
 from gearopt.scenes.drive.rating.tables import (
     MATERIAL,
     GearTable,
@@ -84,7 +86,11 @@ def check_rated(
         for member in MEMBERS:
             own = getattr(stage, member)
             place = ("stage", k, member) if own.model_fields_set & set(MATERIAL) else ("gears",)
-            _check_steel(with_shared(own, gears), place, given)
+            gear = with_shared(own, gears)
+            if rating.by_agma:
+                _check_steel(gear, place, given)
+            if rating.by_iso6336:
+                _check_material(gear, place)
     total = sum(level.share for level in load)
     if load and total != 1:
         rest = load[-1].share + 1 - total
@@ -99,6 +105,24 @@ def _check_pinion(stage: StageTable, k: int) -> None:
     if pinion and wheel and wheel[1] < pinion[0]:
         rule = "is below pinion_teeth: the pinion is the gear with fewer teeth"
         raise refuse(rule, "pinion_teeth", ("stage", k, "wheel_teeth"), "swap")
+
+
+def _check_material(gear: GearTable, place: Place) -> None:
+    """Refuse a gear whose material has no strength in ISO 6336-5."""
+    if gear.treatment is None and gear.iso_material is None:
+        rule = "is missing: a rating needs the material of every gear (or give treatment)"
+        raise refuse(rule, "Eh", (*place, "iso_material"), "sample")
+    found = steel(gear)
+    for stress in ("H", "F"):
+        try:
+            strength(found, stress)
+        except ValueError as reason:
+            key = "hardness" if found.name not in SURFACE_HARDENED else "flank_hardness"
+            key = "iso_quality" if "quality" in str(reason) else key
+            write = {"hardness": "240 HB", "flank_hardness": "600 HV", "iso_quality": "MQ"}[key]
+            missing = key != "iso_quality"
+            rule = f"is missing: {reason}" if missing else str(reason)
+            raise refuse(rule, write, (*place, key), "sample") from None
 
 
 def _check_steel(gear: GearTable, place: Place, given: dict[str, Any]) -> None:

@@ -15,7 +15,7 @@ from gearopt.physics.gears import GearPair
 from gearopt.physics.loads import torque
 from gearopt.physics.shaft_forces import hands
 from gearopt.scenes.drive.assumptions import rating_assumptions
-from gearopt.scenes.drive.rating import by_agma
+from gearopt.scenes.drive.rating import by_agma, by_iso6336
 from gearopt.scenes.drive.rating import gears as rated_gears
 from gearopt.scenes.drive.rating.checks import not_given
 from gearopt.scenes.drive.rating.geometry import tooth_geometry
@@ -33,7 +33,11 @@ from gearopt.scenes.parts import tooth_warnings
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.toml import dotted
 
-STANDARDS = {"agma": (by_agma,)}  # of the key standard
+STANDARDS = {  # of the key standard
+    "agma": (by_agma,),
+    "iso6336": (by_iso6336,),
+    "both": (by_agma, by_iso6336),
+}
 
 
 def rate(scene: Scene, ask: Ask) -> Result:

@@ -10,6 +10,7 @@ from gearopt.physics.agma.bending import LOADS
 from gearopt.physics.agma.factors import ALIGNMENT, QUALITIES
 from gearopt.physics.agma.life import SERVICES
 from gearopt.physics.agma.rating_factors import EDITIONS
+from gearopt.scenes.drive.rating.iso_tables import ISO_KEYS, IsoGearKeys, IsoTable
 from gearopt.scenes.reading.fields import (
     Table,
     advised,
@@ -33,6 +34,7 @@ Stresses = Annotated[
 MATERIAL = (  # keys of a gear that only a rating needs
     *("treatment", "grade", "hardness", "surface_hardness", "elastic_modulus", "poisson_ratio"),
     *("roughness", "reversed_load", "rim_thickness", "contacts"),
+    *ISO_KEYS,
 )
 TREATMENT = choice(
     *TREATMENTS,
@@ -82,15 +84,16 @@ QUALITY = advised(
     },
 )
 STANDARD = advised(
-    choice("agma", means={"AGMA": "agma"}),
+    choice("agma", "iso6336", "both", means={"AGMA": "agma", "ISO 6336": "iso6336"}),
     {
-        "(iso|din).*": 'ISO 6336 and DIN 3990 are not supported yet. Nearest: standard = "agma"',
+        "din.*": 'DIN 3990 is not supported. Nearest: standard = "iso6336"',
+        "iso.*": 'Write standard = "iso6336"; [rating.iso6336] has its edition',
         ".*agma.*": 'Write standard = "agma"; edition = "D04" or "B88" says which',
     },
 )
 
 
-class GearKeys(Table):
+class GearKeys(IsoGearKeys):
     """What gears share unless they have their own: the tool that cuts them, and their steel."""
 
     addendum: Annotated[Fraction | None, number(1.0, 0, 3)] = Field(
@@ -210,7 +213,9 @@ class RatingTable(Table):
     """How the gears are rated: standard, service, quality, mounting, oil."""
 
     standard: Annotated[str, STANDARD] = Field(
-        "agma", description="agma: ANSI/AGMA 2001 (2101) with AGMA 908"
+        "agma",
+        description="agma: ANSI/AGMA 2001 (2101) with AGMA 908; iso6336: ISO 6336; both: side by "
+        "side",
     )
     edition: Annotated[str, choice(*EDITIONS)] = Field(
         "D04", description="Edition of AGMA 2001: rim factors and strengths differ"
@@ -288,6 +293,17 @@ class RatingTable(Table):
     given: GivenTable = Field(
         default_factory=GivenTable, description="Factors of all stages, instead of computed ones"
     )
+    iso6336: IsoTable = Field(default_factory=IsoTable, description="What ISO 6336 asks for beside")
+
+    @property
+    def by_agma(self) -> bool:
+        """Return whether AGMA is a standard of the rating."""
+        return self.standard != "iso6336"
+
+    @property
+    def by_iso6336(self) -> bool:
+        """Return whether ISO 6336 is."""
+        return self.standard != "agma"
 
     @model_validator(mode="after")
     def _one_of_two(self) -> "RatingTable":
@@ -302,7 +318,8 @@ class RatingTable(Table):
         if self.quality is not None and self.accuracy is not None:
             rule = "stands beside quality; one is enough"
             raise refuse(rule, at=("accuracy",), action="remove")
-        if self.quality is None and self.accuracy is None and self.given.K_v is None:
+        bare = self.quality is None and self.accuracy is None and self.given.K_v is None
+        if bare and self.by_agma:
             raise refuse("is missing (or give accuracy)", 8, ("quality",), "sample")
         if not Fraction(1, 2) <= self.reliability <= Fraction(9999, 10000):
             raise refuse("is not from 50 % to 99.99 %", "99 %", ("reliability",), "sample")

@@ -1,0 +1,50 @@
+"""Rating by ISO 6336: what its tables say of a stage, its factors by name, materials in words."""
+
+from typing import Any
+
+from gearopt.physics.gears import GearPair
+from gearopt.physics.iso6336.case import Practice
+from gearopt.physics.iso6336.factors import CLAUSES
+from gearopt.physics.iso6336.rating import rate, rate_spectrum
+from gearopt.scenes.drive.rating.gears import Tables, backup
+from gearopt.scenes.drive.rating.iso_material import finish, material, steel
+from gearopt.scenes.drive.rating.iso_tables import NAMES
+from gearopt.scenes.drive.rating.tables import RatingTable
+from gearopt.scenes.drive.scene import Scene
+
+__all__ = ["NAMES", "UNITS", "finish", "given", "material", "rate", "rate_spectrum"]
+__all__ += ["practice", "steel", "title"]
+SUFFIXES = {"MPa": "MPa", "mm": "mm", "sqrt(MPa)": "sqrt_MPa"}
+UNITS = {symbol: SUFFIXES[unit] for symbol, (_, unit) in CLAUSES.items() if unit}
+
+
+def title(asked: RatingTable) -> str:
+    """Return what the rating follows."""
+    return f"ISO 6336 parts 1, 2, 3 and 5, method B, edition {asked.iso6336.edition}"
+
+
+def practice(scene: Scene, pair: GearPair, gears: Tables) -> Practice:
+    """Return how a pair is made and rated."""
+    assert scene.rating
+    asked, usual = scene.rating.iso6336, Practice()
+    first, second = asked.accuracy_grade or usual.grades
+    return Practice(
+        edition=asked.edition,
+        tolerances=asked.tolerances,
+        grades=(float(first), float(second)),
+        shift=asked.shift,
+        viscosity=asked.oil_grade.value if asked.oil_grade else usual.viscosity,
+        relief=asked.tip_relief.value if asked.tip_relief else None,
+        helix_modification=asked.helix_modification,
+        profile_modification=asked.profile_modification,
+        backup=(backup(pair.pinion, gears[0]), backup(pair.wheel, gears[1])),
+        limited_pitting=asked.limited_pitting,
+    )
+
+
+def given(scene: Scene, stage: int) -> dict[str, Any]:
+    """Return the factors that a file gives for a stage (from 0), those of all stages below."""
+    assert scene.rating
+    mine = scene.stage[stage].given_iso6336.factors() if scene.stage else {}
+    found: dict[str, Any] = scene.rating.iso6336.given.factors() | mine
+    return found

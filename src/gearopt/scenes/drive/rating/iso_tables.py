@@ -1,0 +1,160 @@
+"""What a rating by ISO 6336 needs beside what ratings share: materials, accuracy, oil, factors."""
+
+from fractions import Fraction
+from typing import Annotated, Any
+
+from pydantic import Field, create_model
+
+from gearopt.physics.iso6336.accuracy import TOLERANCES
+from gearopt.physics.iso6336.case import EDITIONS
+from gearopt.physics.iso6336.contact_factors import PROFILE_MODIFICATIONS
+from gearopt.physics.iso6336.factors import CLAUSES, PAIRED
+from gearopt.physics.iso6336.load_factors import HELIX_MODIFICATIONS
+from gearopt.physics.iso6336.materials import MATERIALS, QUALITIES
+from gearopt.physics.iso6336.tooth_form import SHIFTS
+from gearopt.scenes.reading.fields import Table, choice, number, quantity, truth, whole
+from gearopt.scenes.reading.lists import each_gear
+from gearopt.units import Quantity
+
+NAMES = {  # of the factors
+    "K_A": "application",
+    "K_v": "dynamic",
+    "K_Hbeta": "face load, contact",
+    "K_Fbeta": "face load, bending",
+    "K_Halpha": "transverse load, contact",
+    "K_Falpha": "transverse load, bending",
+    "c_prime": "single stiffness c'",
+    "c_gamma_alpha": "mesh stiffness, for K_v and K_Halpha",
+    "c_gamma_beta": "mesh stiffness, for K_Hbeta",
+    "N": "resonance ratio",
+    "f_pb": "base pitch deviation",
+    "f_falpha": "profile form deviation",
+    "f_ma": "mesh misalignment of manufacture",
+    "C_a": "tip relief",
+    "Z_H": "zone",
+    "Z_E": "elasticity",
+    "Z_eps": "contact ratio, contact",
+    "Z_beta": "helix angle, contact",
+    "Y_beta": "helix angle, bending",
+    "Y_DT": "deep tooth",
+    "Y_ST": "stress correction of the test gear",
+    "Z_X": "size, contact",
+    "Z_BD": "single pair contact, Z_B and Z_D",
+    "Z_NT": "life, contact",
+    "Z_L": "lubricant",
+    "Z_v": "velocity",
+    "Z_R": "roughness of the flanks",
+    "Z_W": "work hardening",
+    "sigma_Hlim": "allowable contact stress number",
+    "Y_F": "form",
+    "Y_S": "stress correction",
+    "Y_B": "rim thickness",
+    "Y_NT": "life, bending",
+    "Y_deltarelT": "relative notch sensitivity",
+    "Y_RrelT": "relative surface of the root",
+    "Y_X": "size, bending",
+    "Y_M": "mean stress",
+    "sigma_Flim": "nominal bending stress number",
+}
+READS = {  # by unit of a factor
+    "": number(1.1, 0, 10**6),
+    "MPa": quantity("stress", "500 MPa", "100 GPa"),
+    "mm": quantity("length", "8 um", "1 mm", zero=True),
+    "sqrt(MPa)": quantity("elastic coefficient", "189.8 sqrt(MPa)"),
+}
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, tuple):
+        return tuple(map(_plain, value))
+    return value.value if isinstance(value, Quantity) else float(value)
+
+
+class _Given(Table):
+    """Factors that stand in the place of computed ones; [pinion, wheel], or one for both."""
+
+    def factors(self) -> dict[str, Any]:
+        """Return the given factors by symbol, as plain numbers in mm and MPa."""
+        held = ((name, getattr(self, name)) for name in type(self).model_fields)
+        return {name: _plain(value) for name, value in held if value is not None}
+
+
+def _field(symbol: str) -> Any:
+    """Return the field of a factor: a value, or one for each gear."""
+    reads = READS[CLAUSES[symbol][1]]
+    kind: Any = Fraction if CLAUSES[symbol][1] == "" else Quantity
+    if symbol in PAIRED:
+        kind, reads = tuple[kind, kind], each_gear(reads)
+    text = NAMES[symbol]
+    described = f"Factor of {text}" if CLAUSES[symbol][1] == "" else text.capitalize()
+    return (Annotated[kind | None, reads], Field(None, description=described))
+
+
+IsoGiven = create_model(
+    "IsoGiven",
+    __base__=_Given,
+    __doc__=_Given.__doc__,
+    **{symbol: _field(symbol) for symbol in CLAUSES if symbol != "K_A"},
+)
+
+
+class IsoGearKeys(Table):
+    """What a gear has for a rating by ISO 6336."""
+
+    iso_material: Annotated[str | None, choice(*MATERIALS)] = Field(
+        None,
+        description="Material of ISO 6336-5; by default V alloy, Eh, IF or NV, as the treatment is",
+    )
+    iso_quality: Annotated[str | None, choice(*QUALITIES)] = Field(
+        None, description="Quality of material of ISO 6336-5; by default MQ"
+    )
+    flank_hardness: Annotated[Quantity | None, quantity("Vickers hardness", "650 HV")] = Field(
+        None, description="Vickers hardness of the flanks, of hardened ones; else from hardness"
+    )
+    yield_strength: Annotated[Quantity | None, quantity("stress", "600 MPa")] = Field(
+        None, description="Yield point or 0.2 % proof stress, for Y_deltarelT; else estimated"
+    )
+    flank_rz: Annotated[Quantity | None, quantity("length", "4.8 um", "1 mm")] = Field(
+        None, description="Roughness R_z of the flanks; by default 6 R_a"
+    )
+    root_rz: Annotated[Quantity | None, quantity("length", "20 um", "1 mm")] = Field(
+        None, description="Roughness R_z of the roots; by default 20 um"
+    )
+
+
+ISO_KEYS = tuple(IsoGearKeys.model_fields)
+
+
+class IsoTable(Table):
+    """How gears are rated by ISO 6336, beside what [rating] says of life and loads."""
+
+    edition: Annotated[str, choice(*EDITIONS)] = Field(
+        "2006", description="Edition of parts 2 and 3: 2006 or 2019"
+    )
+    accuracy_grade: Annotated[tuple[int, int] | None, each_gear(whole(6, 0, 12))] = Field(
+        None, description="Accuracy grade of ISO 1328-1, of both gears or [pinion, wheel]"
+    )
+    tolerances: Annotated[str, choice(*TOLERANCES)] = Field(
+        "1995", description="Edition of ISO 1328-1 whose tolerances are meant"
+    )
+    shift: Annotated[str, choice(*SHIFTS)] = Field(
+        "nominal", description="Profile shift that Y_F takes: nominal, or generating"
+    )
+    oil_grade: Annotated[Quantity | None, quantity("kinematic viscosity", "220 mm^2/s")] = Field(
+        None, description="Kinematic viscosity of the oil at 40 degC; by default 220 mm^2/s"
+    )
+    tip_relief: Annotated[Quantity | None, quantity("length", "30 um", "5 mm", zero=True)] = Field(
+        None, description="Tip relief C_a; by default what running-in gives"
+    )
+    helix_modification: Annotated[str, choice(*HELIX_MODIFICATIONS)] = Field(
+        "none", description="Crowning, correction or end relief, in K_Hbeta"
+    )
+    profile_modification: Annotated[str, choice(*PROFILE_MODIFICATIONS)] = Field(
+        "none", description="How tip relief was chosen, in Z_B and Z_D of 2019"
+    )
+    limited_pitting: Annotated[bool, truth()] = Field(
+        False, description="Some pitting is permitted, in Z_NT"
+    )
+    given: IsoGiven = Field(
+        default_factory=IsoGiven, description="Factors of all stages, instead of computed ones"
+    )
