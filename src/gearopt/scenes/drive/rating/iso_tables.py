@@ -18,6 +18,7 @@ from gearopt.units import Quantity
 
 NAMES = {  # of the factors
     "K_A": "application",
+    "K_gamma": "mesh load, of several paths",
     "K_v": "dynamic",
     "K_Hbeta": "face load, contact",
     "K_Fbeta": "face load, bending",
