@@ -12,7 +12,7 @@ KEYS = {  # of [x-expected], as the tests below read them
     "drive": {
         *("status", "objective", "sizing", "least_factor", "gap"),
         *("process_one", "process_two"),
-        *("safe", "governs", "power_capacity_kW", "printed", "tolerance"),
+        *("safe", "governs", "power_capacity_kW", "printed", "tolerance", "digits", "within"),
     },
     "packing": {"status", "objective", "tolerance", "bound"},
     "compound": {"status", "objective"},
@@ -32,6 +32,8 @@ SI = {  # of numbers as a source prints them: their suffix, its value, the suffi
     "_lbf": (0.45359237 * 9.80665, "_N"),
     "_psi": (0.45359237 * 9.80665 / 25.4**2, "_MPa"),
     "_in": (25.4, "_mm"),
+    "_N_per_mm_um": (1000.0, "_MPa"),
+    "_um": (1e-3, "_mm"),
 }
 DIGIT = {"objective": 0.06, "sizing": 0.006}  # the values are printed to tenths and hundredths
 
@@ -127,7 +129,8 @@ def test_expected_value(path, solved):
     for name in ruled.keys() & expected.keys():
         check_process(ruled[name], expected[name], result)
     if "governs" in expected:
-        check_rating(result.design["rating"], expected)
+        text = tomllib.loads(path.read_text(encoding="utf-8"), parse_float=str)
+        check_rating(result.design["rating"], expected, text["x-expected"].get("printed", {}))
     if "least_factor" in expected:
         ways = result.report["ways_out"]
         assert ways["conflict"] and ways["remedies"][0]["kind"] == "least"
@@ -136,18 +139,27 @@ def test_expected_value(path, solved):
     assert result.file == str(path) and len(result.file_sha256) == 64
 
 
-def check_rating(rating, expected):
-    """What a source prints of the only stage, pinion and wheel or both, within its tolerance."""
+def check_rating(rating, expected, printed):
+    """What a source prints of the only stage, pinion and wheel or both, within its tolerance.
+
+    tolerance: relative; digits: units of the last printed digit, instead; within: relative, of what
+    follows from more digits than are printed.
+    """
     assert rating["safe"] == expected["safe"] and rating["governs"] == expected["governs"]
     if "power_capacity_kW" in expected:
         capacity = rating["power_capacity_kW"]
         assert capacity == pytest.approx(expected["power_capacity_kW"], abs=0.006)
-    for name, printed in expected.get("printed", {}).items():
+    for name, texts in printed.items():
         ending = next((s for s in SI if name.endswith(s)), "")
         unit, ours = SI.get(ending, (1.0, ""))
-        values = [unit * v for v in (printed if isinstance(printed, list) else [printed])]
-        found = of_rating(rating, name.removesuffix(ending), ours)[: len(values)]
-        assert found == pytest.approx(values, rel=expected["tolerance"]), name
+        held = [Decimal(text) for text in (texts if isinstance(texts, list) else [texts])]
+        found = of_rating(rating, name.removesuffix(ending), ours)[: len(held)]
+        for value, one in zip(found, held, strict=True):
+            last = 10.0 ** one.as_tuple().exponent
+            near = {"abs": expected["digits"] * last} if "digits" in expected else {}
+            rel = expected.get("within", {}).get(name, expected.get("tolerance"))
+            near = pytest.approx(float(one), **({"rel": rel} if rel else near))
+            assert value / unit == near, name
 
 
 def of_rating(rating, name, ending):

@@ -9,7 +9,7 @@ from gearopt.physics.iso6336.rating import rate, rate_spectrum
 from gearopt.scenes.drive.rating.gears import Tables, backup
 from gearopt.scenes.drive.rating.iso_material import finish, material, steel
 from gearopt.scenes.drive.rating.iso_tables import NAMES
-from gearopt.scenes.drive.rating.tables import RatingTable
+from gearopt.scenes.drive.rating.tables import GearTable, RatingTable
 from gearopt.scenes.drive.scene import Scene
 
 __all__ = ["NAMES", "UNITS", "finish", "given", "material", "rate", "rate_spectrum"]
@@ -37,9 +37,26 @@ def practice(scene: Scene, pair: GearPair, gears: Tables) -> Practice:
         relief=asked.tip_relief.value if asked.tip_relief else None,
         helix_modification=asked.helix_modification,
         profile_modification=asked.profile_modification,
+        webs=(web(pair, gears[0]), web(pair, gears[1])),
+        bores=(bore(gears[0]), bore(gears[1])),
         backup=(backup(pair.pinion, gears[0]), backup(pair.wheel, gears[1])),
         limited_pitting=asked.limited_pitting,
     )
+
+
+def web(pair: GearPair, table: GearTable) -> tuple[float, float] | None:
+    """Return b_s/b and s_R/m_n of a gear with a web; None of a solid gear."""
+    if table.web_thickness is None or table.rim_thickness is None:
+        return None
+    return (
+        float(table.web_thickness.value / pair.face_width),
+        float(table.rim_thickness.value / pair.normal_module),
+    )
+
+
+def bore(table: GearTable) -> float:
+    """Return the diameter [mm] inside which a gear has no mass."""
+    return table.bore.value if table.bore else 0.0
 
 
 def given(scene: Scene, stage: int) -> dict[str, Any]:

@@ -118,6 +118,12 @@ class IsoGearKeys(Table):
     flank_rz: Annotated[Quantity | None, quantity("length", "4.8 um", "1 mm")] = Field(
         None, description="Roughness R_z of the flanks; by default 6 R_a"
     )
+    web_thickness: Annotated[Quantity | None, quantity("length", "12 mm")] = Field(
+        None, description="Thickness of the web under rim_thickness, in c'; else solid"
+    )
+    bore: Annotated[Quantity | None, quantity("length", "40 mm", zero=True)] = Field(
+        None, description="Diameter inside which the gear has no mass, in K_v; by default 0"
+    )
     root_rz: Annotated[Quantity | None, quantity("length", "20 um", "1 mm")] = Field(
         None, description="Roughness R_z of the roots; by default 20 um"
     )

@@ -35,9 +35,19 @@ class Mesh:
         return max(self.levels, key=lambda level: level.bending_stress)
 
     @property
-    def largest_load(self) -> Rating:
-        """Return the rating at the level of the largest tangential force."""
-        return max(self.levels, key=lambda level: level.load)
+    def largest_load(self) -> Operation:
+        """Return the level of the largest torque."""
+        return max(self.operations, key=lambda level: level.power / level.pinion_speed)
+
+    @property
+    def torque(self) -> float:
+        """Return the largest torque of the pinion [N mm]."""
+        return float(self.largest_load.power / self.largest_load.pinion_speed)
+
+    @property
+    def velocity(self) -> float:
+        """Return the velocity at the working pitch circles [mm/s], of the largest torque."""
+        return 0.5 * float(self.largest_load.pinion_speed * self.pair.working_diameters[0])
 
 
 def rated_meshes(scene: Scene, pairs: tuple[GearPair, ...], standard: Any) -> list[Mesh]:
