@@ -40,6 +40,9 @@ GROUPS = {  # heading: {file: what it shows, in a line}
         "shigley_14_4_by_908": "The same with I and J by AGMA 908: the contact stress is higher.",
         "shigley_14_5": "A textbook's helical pair; its I and J given.",
         "shigley_14_5_by_908": "The same with I and J by AGMA 908.",
+        "pair_by_both": "One pair by AGMA and by ISO 6336, side by side.",
+        "iso_tr_6336_30": "The example of ISO/TR 6336-30, pitting met to every printed digit.",
+        "wind_pair": "A pair of a wind turbine beside the report of another program, ISO 6336.",
     },
     "Inches": {
         "inch_drive": "Diametral pitches, horsepower and psi; shown by `--units inch`.",

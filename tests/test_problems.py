@@ -12,7 +12,7 @@ KEYS = {  # of [x-expected], as the tests below read them
     "drive": {
         *("status", "objective", "sizing", "least_factor", "gap"),
         *("process_one", "process_two"),
-        *("safe", "governs", "power_capacity_kW", "printed", "tolerance", "digits", "within"),
+        *("safe", "governs", "power_capacity_kW", "printed", "tolerance", "digits", "within", "beside"),
     },
     "packing": {"status", "objective", "tolerance", "bound"},
     "compound": {"status", "objective"},
@@ -149,6 +149,8 @@ def check_rating(rating, expected, printed):
     if "power_capacity_kW" in expected:
         capacity = rating["power_capacity_kW"]
         assert capacity == pytest.approx(expected["power_capacity_kW"], abs=0.006)
+    if "beside" in expected:
+        check_rating(rating["beside"], expected["beside"], {})
     for name, texts in printed.items():
         ending = next((s for s in SI if name.endswith(s)), "")
         unit, ours = SI.get(ending, (1.0, ""))
