@@ -54,13 +54,75 @@ def optimum(count):
     return gearopt.solve(paper.PROBLEMS / f"{'elevator' if count == 2 else 'three_stage'}.toml").design
 
 
-def rated(name):
-    """The rating of a design by AGMA, that by ISO 6336 beside it."""
+def rated(name, quality=None, grade=None):
+    """The rating of a design by AGMA, that by ISO 6336 beside it.
+
+    quality of material and accuracy grade of ISO, if they are not those of `GEARS` and `RATING`.
+    """
     made = stages()[name]
     tables = [
         {"module": f"{m} mm", "pinion_teeth": z1, "wheel_teeth": z2, "face_width": f"{b} mm"}
         | HARDNESS
         for m, z1, z2, b in made
     ]
-    file = {"gearopt": 1, "kind": "drive", "duty": DUTIES[len(made)], "gears": GEARS}
-    return gearopt.rate(file | {"stage": tables, "rating": RATING}).design["rating"]
+    gears = GEARS | ({"iso_quality": quality} if quality else {})
+    iso = RATING["iso6336"] | ({"accuracy_grade": grade} if grade else {})
+    file = {"gearopt": 1, "kind": "drive", "duty": DUTIES[len(made)], "gears": gears}
+    asked = {"stage": tables, "rating": RATING | {"iso6336": iso}}
+    return gearopt.rate(file | asked).design["rating"]
+
+
+@cache
+def least(name, quality=None, grade=None):
+    """Of both standards: least S_F, least S_H, what governs, power [kW], whether safe."""
+    found = rated(name, quality, grade)
+    return [
+        (
+            min(gear["bending_safety"] for gear in one["gears"]),
+            min(gear["contact_safety"] for gear in one["gears"]),
+            one["governs"],
+            one["power_capacity_kW"],
+            one["safe"],
+        )
+        for one in (found, found["beside"])
+    ]
+
+
+def rated_rows():
+    """The least safety factors of every design by both standards."""
+    found = []
+    for name in stages():
+        for words, row in zip(("AGMA", "ISO 6336"), least(name), strict=True):
+            root, flank, governs, power, safe = row
+            said = "safe" if safe else "not safe"
+            head = name if words == "AGMA" else ""
+            cells = f"{root:.2f} | {flank:.2f} | {governs} | {power:.1f} | {said}"
+            found.append(f"| {head} | {words} | {cells} |".replace("|  |", "| |"))
+    return found
+
+
+def rated_sentences():
+    """Sentences of the page on safety, with their numbers."""
+    names = list(stages())
+    agma, iso = zip(*(least(name) for name in names), strict=True)
+    better = [least(name, "MQ", 5)[1] for name in names]
+    factors = rated(OPTIMA[2])["beside"]["factors"]
+    first = {f["symbol"]: f for f in factors if f["stage"] == 1}
+    limits = [f for f in rated(OPTIMA[2])["factors"] if f["symbol"] == "s_ac"]
+    spread = [f for f in rated(OPTIMA[2])["factors"] if f["symbol"] == "K_m"]
+    return [
+        f"S_H of {span(row[1] for row in agma)} and S_F of {span(row[0] for row in agma)}",
+        f"S_H of {span(row[1] for row in iso)}",
+        f"{span(row[3] for row in iso)} kW of the",
+        f"({first['sigma_Hlim']['wheel']:.0f} MPa for the wheels, {limits[0]['wheel']:.0f} MPa)",
+        f"K_Hbeta K_Halpha of {first['K_Hbeta']['pinion']:.2f} and "
+        f"{first['K_Halpha']['pinion']:.2f} beside K_m of {spread[0]['pinion']:.2f}",
+        f"S_H rises to {span(row[1] for row in better)}, and "
+        f"{sum(row[4] for row in better)} of the {len(names)} designs is safe",
+    ]
+
+
+def span(values):
+    """Least and most of numbers, in words."""
+    found = list(values)
+    return f"{min(found):.2f} to {max(found):.2f}"

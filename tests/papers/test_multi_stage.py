@@ -7,6 +7,7 @@ from importlib import import_module
 from pathlib import Path
 
 import chong_lee as paper
+import chong_lee_rated as rated
 import chong_lee_words as words
 import numpy as np
 import pytest
@@ -36,6 +37,7 @@ ROWS = (
     paper.total_rows,
     paper.split_rows,
     paper.optimum_rows,
+    rated.rated_rows,
     words.rule_rows,
     words.errata_lines,
 )
@@ -48,7 +50,7 @@ def test_every_row_of_every_table_is_recomputed(rows):
 
 
 def test_every_sentence_with_numbers_is_recomputed():
-    missing = [sentence for sentence in words.sentences() if sentence not in PLAIN]
+    missing = [sentence for sentence in words.sentences() + rated.rated_sentences() if sentence not in PLAIN]
     assert not missing
 
 

@@ -8,6 +8,7 @@ from gearopt.physics.gears import MEMBERS
 from gearopt.physics.iso6336.materials import SURFACE_HARDENED, strength
 from gearopt.scenes.drive.drive_tables import Gears, StageTable
 from gearopt.scenes.drive.rating.iso_material import steel
+from gearopt.scenes.drive.rating.iso_tables import ISO_KEYS, IsoTable
 from gearopt.scenes.drive.rating.tables import (
     MATERIAL,
     GearTable,
@@ -20,6 +21,11 @@ from gearopt.scenes.reading.fields import Table, refuse
 
 Place = tuple[Any, ...]
 NEED_HARDNESS = ("through-hardened",)  # of the life curves and the hardness ratio too
+AGMA = (  # keys of [rating] that only AGMA has
+    *("edition", "reliability", "temperature", "quality", "accuracy", "mounting", "crowned"),
+    *("adjusted", "pinion_offset", "size_factor", "bending_load", "service", "given"),
+)
+AGMA_KEYS = ("grade", "surface_hardness")  # of gears
 CYCLES = ("Y_N", "Z_N")  # factors that follow from the levels of a spectrum
 
 
@@ -62,6 +68,7 @@ def _only_rated(
     tables: list[tuple[Place, Table]] = [(("gears",), gears)]
     for k, stage in enumerate(stages):
         yield from [("stage", k, "given")] * (stage.given != GivenTable())
+        yield from [("stage", k, "given_iso6336")] * bool(stage.given_iso6336.factors())
         yield from [("stage", k, "pinion_hand")] * (stage.pinion_hand is not None)
         tables += [(("stage", k, member), getattr(stage, member)) for member in MEMBERS]
     for place, table in tables:
@@ -75,6 +82,7 @@ def check_rated(
     load: Sequence[LoadTable],
 ) -> None:
     """Refuse a rating whose gears lack their strength, or whose loads do not fit together."""
+    _check_standard(rating, gears, stages)
     for k, stage in enumerate(stages or (StageTable(),)):
         given = rating.given.factors() | stage.given.factors()
         for name in CYCLES:
@@ -83,6 +91,9 @@ def check_rated(
                 rule = "follows from the levels [[load]] and cannot be given"
                 raise refuse(rule, at=(*at, name), action="remove")
         _check_pinion(stage, k)
+        made = rating.iso6336.given.factors() | stage.given_iso6336.factors()
+        if rating.by_iso6336:
+            _check_accuracy(rating, made)
         for member in MEMBERS:
             own = getattr(stage, member)
             place = ("stage", k, member) if own.model_fields_set & set(MATERIAL) else ("gears",)
@@ -90,7 +101,7 @@ def check_rated(
             if rating.by_agma:
                 _check_steel(gear, place, given)
             if rating.by_iso6336:
-                _check_material(gear, place)
+                _check_material(gear, place, made)
     total = sum(level.share for level in load)
     if load and total != 1:
         rest = load[-1].share + 1 - total
@@ -107,13 +118,68 @@ def _check_pinion(stage: StageTable, k: int) -> None:
         raise refuse(rule, "pinion_teeth", ("stage", k, "wheel_teeth"), "swap")
 
 
-def _check_material(gear: GearTable, place: Place) -> None:
+def _check_accuracy(rating: RatingTable, given: dict[str, Any]) -> None:
+    """Refuse a rating by ISO 6336 without accuracy, unless what follows from it is given."""
+    asked = rating.iso6336
+    if asked.accuracy_grade is not None:
+        return
+    names = given.keys()
+    pitch = names >= {"f_pb", "f_falpha"} or names >= {"K_v", "K_Halpha", "K_Falpha"}
+    helix = "K_Hbeta" in names or (asked.helix_modification == "none" and "f_ma" in names)
+    if not (pitch and helix):
+        rule = "is missing (or give f_pb, f_falpha and f_ma in [rating.iso6336.given])"
+        raise refuse(rule, 6, ("rating", "iso6336", "accuracy_grade"), "sample")
+
+
+def _check_standard(rating: RatingTable, gears: Gears, stages: Sequence[StageTable]) -> None:
+    """Refuse what changes nothing because its standard is not the one asked for."""
+    places = [
+        *((place, "iso6336") for place in _of_iso6336(rating, gears, stages)),
+        *((place, "agma") for place in _of_agma(rating, gears, stages)),
+    ]
+    for place, standard in places:
+        if rating.standard not in (standard, "both"):
+            rule = f'changes nothing with standard = "{rating.standard}", but with "{standard}"'
+            raise refuse(f'{rule} or "both"', at=place, action="remove")
+
+
+def _of_iso6336(rating: RatingTable, gears: Gears, stages: Sequence[StageTable]) -> Iterator[Place]:
+    yield from [("rating", "iso6336")] * (rating.iso6336 != IsoTable())
+    for k, stage in enumerate(stages):
+        yield from [("stage", k, "given_iso6336")] * bool(stage.given_iso6336.factors())
+    yield from _written(gears, stages, ISO_KEYS)
+
+
+def _of_agma(rating: RatingTable, gears: Gears, stages: Sequence[StageTable]) -> Iterator[Place]:
+    yield from (("rating", name) for name in AGMA if name in rating.model_fields_set)
+    for k, stage in enumerate(stages):
+        yield from [("stage", k, "given")] * bool(stage.given.factors())
+    yield from _written(gears, stages, AGMA_KEYS)
+
+
+def _written(
+    gears: Gears, stages: Sequence[StageTable], names: Sequence[str]
+) -> Iterator[Place]:
+    """Yield the places of keys of gears."""
+    tables: list[tuple[Place, Table]] = [(("gears",), gears)]
+    for k, stage in enumerate(stages):
+        tables += [(("stage", k, member), getattr(stage, member)) for member in MEMBERS]
+    for place, table in tables:
+        yield from ((*place, name) for name in names if getattr(table, name) is not None)
+
+
+def _check_material(gear: GearTable, place: Place, given: dict[str, Any]) -> None:
     """Refuse a gear whose material has no strength in ISO 6336-5."""
     if gear.treatment is None and gear.iso_material is None:
         rule = "is missing: a rating needs the material of every gear (or give treatment)"
         raise refuse(rule, "Eh", (*place, "iso_material"), "sample")
     found = steel(gear)
+    if gear.web_thickness is not None and gear.rim_thickness is None:
+        rule = "is missing: a gear with a web has a rim"
+        raise refuse(rule, "12 mm", (*place, "rim_thickness"), "sample")
     for stress in ("H", "F"):
+        if f"sigma_{stress}lim" in given:
+            continue
         try:
             strength(found, stress)
         except ValueError as reason:
