@@ -12,7 +12,16 @@ KEYS = {  # of [x-expected], as the tests below read them
     "drive": {
         *("status", "objective", "sizing", "least_factor", "gap"),
         *("process_one", "process_two"),
-        *("safe", "governs", "power_capacity_kW", "printed", "tolerance", "digits", "within", "beside"),
+        *(
+            "safe",
+            "governs",
+            "power_capacity_kW",
+            "printed",
+            "tolerance",
+            "digits",
+            "within",
+            "beside",
+        ),
     },
     "packing": {"status", "objective", "tolerance", "bound"},
     "compound": {"status", "objective"},

@@ -25,7 +25,9 @@ INSIDE = {  # dimension -> what one is inside
     "time": "second",
     "temperature": "degree_Celsius",
     "viscosity": "millipascal * second",
+    "kinematic viscosity": "millimeter**2 / second",
     "hardness": "dimensionless",
+    "Vickers hardness": "dimensionless",
     "elastic coefficient": "megapascal**0.5",
 }
 NAMES = {  # where pint's name is another; a speed of 1/min or 1/s counts revolutions

@@ -51,7 +51,9 @@ def stages():
 @cache
 def optimum(count):
     """The design of minimum volume of two or three stages."""
-    return gearopt.solve(paper.PROBLEMS / f"{'elevator' if count == 2 else 'three_stage'}.toml").design
+    return gearopt.solve(
+        paper.PROBLEMS / f"{'elevator' if count == 2 else 'three_stage'}.toml"
+    ).design
 
 
 def rated(name, quality=None, grade=None):

@@ -50,7 +50,11 @@ def test_every_row_of_every_table_is_recomputed(rows):
 
 
 def test_every_sentence_with_numbers_is_recomputed():
-    missing = [sentence for sentence in words.sentences() + rated.rated_sentences() if sentence not in PLAIN]
+    missing = [
+        sentence
+        for sentence in words.sentences() + rated.rated_sentences()
+        if sentence not in PLAIN
+    ]
     assert not missing
 
 

@@ -114,9 +114,9 @@ WRONG = {  # the mistake: what stands there, what is written, key and value as t
     ),
     "another standard": (
         '"agma"',
-        '"iso6336"',
-        'rating.standard = "iso6336"',
-        'ISO 6336 and DIN 3990 are not supported yet. Nearest: standard = "agma"',
+        '"DIN 3990"',
+        'rating.standard = "DIN 3990"',
+        'DIN 3990 is not supported. Nearest: standard = "iso6336"',
     ),
     "application factor": (
         "overload_factor",

@@ -68,7 +68,7 @@ treatment = "carburised"       # or through-hardened with hardness = "300 HB", n
 grade = 1
 
 [rating]                       # gearopt rate FILE
-standard = "agma"
+standard = "agma"              # or "iso6336", or "both" with accuracy_grade in [rating.iso6336]
 life = "20000 h"
 quality = 8                    # Q_v; larger is better
 overload_factor = 1.25

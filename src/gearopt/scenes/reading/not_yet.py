@@ -64,8 +64,8 @@ NEAREST: dict[str, dict[str, str]] = {  # kind -> names -> what stands nearest
         _but_keys(SHIFT): "Nearest: profile_shift, in [stage.pinion] and [stage.wheel]",
         _but_keys(
             QUALITY
-        ): 'Nearest: quality of [rating]; or kind = "servo", which counts deviations and '
-        "grades of gears",
+        ): "Nearest: quality of [rating], or accuracy_grade of [rating.iso6336]; or kind = "
+        '"servo", which counts deviations and grades of gears',
         _but_keys(
             OIL
         ): "Nearest: oil_viscosity and temperature of [rating]; scuffing is not checked",
@@ -159,6 +159,15 @@ CALLED: dict[str, dict[str, str]] = {  # kind -> other names of its keys -> what
         "z_i": "I, in [rating.given]",
         "k_h": "K_m, in [rating.given]",
         "z_e": "C_p, in [rating.given]",
+        "k_hb k_h_beta khbeta": "K_Hbeta, in [rating.iso6336.given]",  # of ISO 6336
+        "k_fb k_f_beta kfbeta": "K_Fbeta, in [rating.iso6336.given]",
+        "k_ha k_h_alpha khalpha": "K_Halpha, in [rating.iso6336.given]",
+        "k_fa k_f_alpha kfalpha": "K_Falpha, in [rating.iso6336.given]",
+        "z_epsilon": "Z_eps, in [rating.iso6336.given]",
+        "z_b z_d": "Z_BD, in [rating.iso6336.given]",
+        "y_drelt y_delta_rel_t": "Y_deltarelT, in [rating.iso6336.given]",
+        "y_rrel y_r_rel_t": "Y_RrelT, in [rating.iso6336.given]",
+        "nu_40 nu40": "oil_grade, in [rating.iso6336]",
         "z_r": "C_f, in [rating.given]",
         "z_w": "C_H, in [rating.given]",
         "y_z": "K_R, in [rating.given]",

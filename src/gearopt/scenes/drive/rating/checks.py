@@ -26,7 +26,7 @@ AGMA = (  # keys of [rating] that only AGMA has
     *("adjusted", "pinion_offset", "size_factor", "bending_load", "service", "given"),
 )
 AGMA_KEYS = ("grade", "surface_hardness")  # of gears
-CYCLES = ("Y_N", "Z_N")  # factors that follow from the levels of a spectrum
+CYCLES = ("Y_N", "Z_N", "Y_NT", "Z_NT")  # factors that follow from the levels of a spectrum
 
 
 def not_given(gears: Gears, stages: Sequence[StageTable]) -> Iterator[Place]:
@@ -85,13 +85,12 @@ def check_rated(
     _check_standard(rating, gears, stages)
     for k, stage in enumerate(stages or (StageTable(),)):
         given = rating.given.factors() | stage.given.factors()
-        for name in CYCLES:
-            if load and name in given:
-                at = ("stage", k, "given") if getattr(stage.given, name) else ("rating", "given")
-                rule = "follows from the levels [[load]] and cannot be given"
-                raise refuse(rule, at=(*at, name), action="remove")
-        _check_pinion(stage, k)
         made = rating.iso6336.given.factors() | stage.given_iso6336.factors()
+        for name in CYCLES if load else ():
+            if name in given or name in made:
+                rule = "follows from the levels [[load]] and cannot be given"
+                raise refuse(rule, at=_given_at(rating, stage, k, name), action="remove")
+        _check_pinion(stage, k)
         if rating.by_iso6336:
             _check_accuracy(rating, made)
         for member in MEMBERS:
@@ -108,6 +107,17 @@ def check_rated(
         rule = f"makes the shares of all levels {float(100 * total):.6g} %, not 100 %"
         write = f"{float(100 * rest):.6g} %" if 0 < rest <= 1 else None
         raise refuse(rule, write, ("load", len(load) - 1, "share"))
+
+
+def _given_at(rating: RatingTable, stage: StageTable, k: int, name: str) -> Place:
+    """Return where a factor is given: for the stage (from 0), or for all."""
+    places: list[tuple[Place, dict[str, Any]]] = [
+        (("stage", k, "given"), stage.given.factors()),
+        (("stage", k, "given_iso6336"), stage.given_iso6336.factors()),
+        (("rating", "given"), rating.given.factors()),
+        (("rating", "iso6336", "given"), rating.iso6336.given.factors()),
+    ]
+    return (*next(place for place, held in places if name in held), name)
 
 
 def _check_pinion(stage: StageTable, k: int) -> None:
@@ -157,9 +167,7 @@ def _of_agma(rating: RatingTable, gears: Gears, stages: Sequence[StageTable]) ->
     yield from _written(gears, stages, AGMA_KEYS)
 
 
-def _written(
-    gears: Gears, stages: Sequence[StageTable], names: Sequence[str]
-) -> Iterator[Place]:
+def _written(gears: Gears, stages: Sequence[StageTable], names: Sequence[str]) -> Iterator[Place]:
     """Yield the places of keys of gears."""
     tables: list[tuple[Place, Table]] = [(("gears",), gears)]
     for k, stage in enumerate(stages):

@@ -12,7 +12,7 @@ from gearopt.physics.iso6336.factors import CLAUSES, PAIRED
 from gearopt.physics.iso6336.load_factors import HELIX_MODIFICATIONS
 from gearopt.physics.iso6336.materials import MATERIALS, QUALITIES
 from gearopt.physics.iso6336.tooth_form import SHIFTS
-from gearopt.scenes.reading.fields import Table, choice, number, quantity, truth, whole
+from gearopt.scenes.reading.fields import Table, advised, choice, number, quantity, truth, whole
 from gearopt.scenes.reading.lists import each_gear
 from gearopt.units import Quantity
 
@@ -63,6 +63,20 @@ READS = {  # by unit of a factor
     "mm": quantity("length", "8 um", "1 mm", zero=True),
     "sqrt(MPa)": quantity("elastic coefficient", "189.8 sqrt(MPa)"),
 }
+GRADES = advised(
+    each_gear(whole(6, 0, 12)),
+    {
+        rf"(?:iso|din|grade|q|iso 1328)[ -]*{grade}": f"Write accuracy_grade = {grade}"
+        for grade in range(13)
+    },
+)
+MATERIAL = advised(
+    choice(*MATERIALS),
+    {
+        r".*\d.*": 'Write the kind of steel: "Eh" case-hardened, "V alloy" through-hardened, "IF" '
+        'induction hardened, "NT" nitriding steel, "NV" nitrided through-hardening steel'
+    },
+)
 
 
 def _plain(value: Any) -> Any:
@@ -102,7 +116,7 @@ IsoGiven = create_model(
 class IsoGearKeys(Table):
     """What a gear has for a rating by ISO 6336."""
 
-    iso_material: Annotated[str | None, choice(*MATERIALS)] = Field(
+    iso_material: Annotated[str | None, MATERIAL] = Field(
         None,
         description="Material of ISO 6336-5; by default V alloy, Eh, IF or NV, as the treatment is",
     )
@@ -138,7 +152,7 @@ class IsoTable(Table):
     edition: Annotated[str, choice(*EDITIONS)] = Field(
         "2006", description="Edition of parts 2 and 3: 2006 or 2019"
     )
-    accuracy_grade: Annotated[tuple[int, int] | None, each_gear(whole(6, 0, 12))] = Field(
+    accuracy_grade: Annotated[tuple[int, int] | None, GRADES] = Field(
         None, description="Accuracy grade of ISO 1328-1, of both gears or [pinion, wheel]"
     )
     tolerances: Annotated[str, choice(*TOLERANCES)] = Field(

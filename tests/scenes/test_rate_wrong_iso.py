@@ -1,0 +1,120 @@
+"""Mistakes in a file to be rated by ISO 6336: one message, with what to write; exit 2."""
+
+from pathlib import Path
+
+import pytest
+
+PROBLEMS = Path(__file__).parents[2] / "problems"
+RIGHT = (PROBLEMS / "iso_tr_6336_30.toml").read_text(encoding="utf-8").split("[x-expected]")[0]
+TREATMENT, GRADE = 'treatment = "carburised"', "accuracy_grade = 5"
+LIFE = 'life = "50000 h"'
+LOAD = '[[load]]\npower = "300 kW"\nshare = "100 %"\n'
+
+WRONG = {  # the mistake: what stands there, what is written, key and value as told, what to write
+    "no accuracy": (
+        GRADE,
+        "",
+        "rating.iso6336.accuracy_grade",
+        "is missing (or give f_pb, f_falpha and f_ma in [rating.iso6336.given])",
+    ),
+    "accuracy beyond the tables": (
+        GRADE,
+        "accuracy_grade = 13",
+        "rating.iso6336.accuracy_grade = 13",
+        "0 to 12",
+    ),
+    "accuracy by words": (
+        GRADE,
+        'accuracy_grade = "ISO 6"',
+        'rating.iso6336.accuracy_grade = "ISO 6"',
+        "Write accuracy_grade = 6",
+    ),
+    "edition": ('"2006"', '"2012"', 'rating.iso6336.edition = "2012"', "2006"),
+    "tolerances": ('"1995"', '"2010"', 'rating.iso6336.tolerances = "2010"', '"1995"'),
+    "oil grade without a unit": ('"320 mm^2/s"', "320", "rating.iso6336.oil_grade = 320", "mm^2/s"),
+    "material": (
+        TREATMENT,
+        'iso_material = "18CrNiMo7-6"',
+        'gears.iso_material = "18CrNiMo7-6"',
+        'Write the kind of steel: "Eh" case-hardened',
+    ),
+    "no material": (
+        TREATMENT,
+        "",
+        "gears.iso_material",
+        'Write, for example, iso_material = "Eh"',
+    ),
+    "no hardness": (
+        TREATMENT,
+        'iso_material = "V alloy"',
+        "gears.hardness",
+        'Write, for example, hardness = "240 HB"',
+    ),
+    "no hardness of a case": (
+        TREATMENT,
+        'iso_material = "IF"',
+        "gears.flank_hardness",
+        'Write, for example, flank_hardness = "600 HV"',
+    ),
+    "quality of AGMA": (
+        TREATMENT,
+        f"{TREATMENT}\niso_quality = 2",
+        "gears.iso_quality = 2",
+        "ML",
+    ),
+    "grade of AGMA": (
+        TREATMENT,
+        f"{TREATMENT}\ngrade = 2",
+        "gears.grade = 2",
+        'changes nothing with standard = "iso6336", but with "agma" or "both". Remove it',
+    ),
+    "quality number of AGMA": (
+        LIFE,
+        f"{LIFE}\nquality = 8",
+        "rating.quality = 8",
+        'changes nothing with standard = "iso6336"',
+    ),
+    "material of ISO for AGMA": (
+        'standard = "iso6336"',
+        'standard = "agma"\nquality = 8',
+        "rating.iso6336",
+        'changes nothing with standard = "agma", but with "iso6336" or "both". Remove it',
+    ),
+    "web without a rim": (
+        TREATMENT,
+        f'{TREATMENT}\nweb_thickness = "20 mm"',
+        "gears.rim_thickness",
+        "a gear with a web has a rim",
+    ),
+    "life factor of a spectrum": (
+        GRADE,
+        f"{GRADE}\ngiven = {{ Z_NT = 1 }}",
+        "rating.iso6336.given.Z_NT",
+        "follows from the levels [[load]] and cannot be given. Remove it",
+    ),
+    "factor of AGMA": (
+        GRADE,
+        f"{GRADE}\ngiven = {{ K_m = 1.3 }}",
+        "rating.iso6336.given.K_m",
+        "it belongs in [stage.given] or in [rating.given]",
+    ),
+    "factor with other letters": (
+        GRADE,
+        f"{GRADE}\ngiven = {{ K_Hb = 1.3 }}",
+        "rating.iso6336.given.K_Hb = 1.3",
+        "K_Hbeta",
+    ),
+}
+
+
+@pytest.mark.parametrize("mistake", WRONG)
+def test_a_wrong_file_is_told_in_one_line(mistake, tmp_path, here):
+    old, new, key, write = WRONG[mistake]
+    assert old in RIGHT
+    path = tmp_path / "pair.toml"
+    text = RIGHT.replace(old, new, 1) + (LOAD if "spectrum" in mistake else "")
+    path.write_text(text, encoding="utf-8")
+    said = here("rate", path)
+    assert said.returncode == 2 and said.stdout == ""
+    (line,) = said.stderr.splitlines()
+    assert line.startswith(f"gearopt: {path}: {key}") and write in line
