@@ -222,6 +222,14 @@ def _answer(file: Mapping[str, Any]) -> str:
     return ", ".join(parts + rated)
 
 
+def _near(expected: Mapping[str, Any]) -> str:
+    if "tolerance" in expected:
+        return f"{expected['tolerance']:.1%}"
+    most = max(expected.get("within", {}).values(), default=0.0)
+    stresses = f", or {most:.1%} where more digits count" if most else ""
+    return f"{expected['digits']} of the last digit{stresses}"
+
+
 def _rated(expected: Mapping[str, Any]) -> list[str]:
     """What a file expects of a rating, in words."""
     words = "**rated: safe**" if expected["safe"] else "**rated: not safe**"
@@ -229,7 +237,5 @@ def _rated(expected: Mapping[str, Any]) -> list[str]:
     if "power_capacity_kW" in expected:
         parts.append(f"power capacity {expected['power_capacity_kW']:g} kW")
     if "printed" in expected:
-        parts.append(
-            f"{len(expected['printed'])} quantities met within {expected['tolerance']:.1%}"
-        )
+        parts.append(f"{len(expected['printed'])} quantities met within {_near(expected)}")
     return parts

@@ -11,19 +11,28 @@ import gearopt
 from gearopt.formulations.rating import DriveRating
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import typed
+from gearopt.physics.iso6336.materials import CORES, QUALITIES, SURFACE_HARDENED
+from gearopt.physics.iso6336.strength_table import LINES
 from gearopt.physics.mesh_loss import FRICTION_ERROR
 from gearopt.physics.shaft_forces import OTHER
 from gearopt.report.terminal import show
+from gearopt.scenes.drive.rating.iso_material import OF_TREATMENT
 from gearopt.scenes.reading.load import examples
 
+HARDNESS = """\
+`hardness` in HB counts as HV; of hardened flanks `flank_hardness` is asked for where the strength
+depends on it (IF, NV nitrocarburised). Two lines meet inside the range; GGG ferritic has those of
+GGG. Eh at MQ is that of a core of 25 HRC; for others give `sigma_Flim`. Most strengths are
+unverified: pictures of the table alone have them."""
 PROBLEMS = Path(__file__).parents[1] / "problems"
 TEXT = """\
 # Rate gears
 
 `gearopt rate FILE` judges gears that are given: stresses, safety factors, lives, every factor with
 its clause, forces on the shafts, and the geometry of the teeth, by AGMA 2001-D04 (2101-D04 in
-metric terms) with the geometry factors of AGMA 908-B89. Formulas, sources and published values
-beside computed ones: [Rating by AGMA](agma.md). All keys: [drive](drive.md).
+metric terms) with the geometry factors of AGMA 908-B89, by ISO 6336, method B, or by both.
+Formulas, sources and published values beside computed ones: [Rating by AGMA](agma.md), [Rating by
+ISO 6336](iso6336.md). All keys: [drive](drive.md).
 
 ## A pair
 
@@ -82,6 +91,47 @@ Shigley's example 14-4 takes I from a formula and J from a chart:
 The book's I is that of the pitch point. AGMA 908 takes the lowest point of single tooth contact,
 where the pair is stressed {higher} % higher: check what a given factor stands for.
 
+## By ISO 6336
+
+`standard = "iso6336"`, or `"both"` for the two side by side. Beside the keys that both share ISO
+asks for an accuracy grade (`problems/pair_by_both.toml`):
+
+```toml
+{both}```
+
+It prints:
+
+```
+{printed}```
+
+| | AGMA 2001 | ISO 6336 |
+|---|---|---|
+| overload | `overload_factor` is K_o | the same number is K_A |
+| accuracy | `quality`, `accuracy`: K_v | `accuracy_grade`: K_v, K_Hbeta, K_Halpha |
+| mounting | `mounting`, `crowned`, `adjusted` | `helix_modification` |
+| steel | `treatment`, `grade` | `iso_material` or `treatment`; `iso_quality` |
+| reliability | `reliability`: K_R | that of the strengths, 99 % |
+| oil, roughness | | `oil_grade`, `flank_rz` (or 6 `roughness`), `root_rz` |
+| given, all stages | `[rating.given]` | `[rating.iso6336.given]` |
+| given, one stage | `[stage.given]` | `[stage.given_iso6336]` |
+
+A key of the one standard is refused where only the other is asked for. Of `[rating.iso6336]`
+`edition` is 2006 or 2019, `tolerances` the ISO 1328-1 of 1995 or 2013, `shift` what Y_F takes: the
+nominal profile shift or the generating one. What programs choose differently, and what gearopt
+chose: [Rating by ISO 6336](iso6336.md). Without helix modification K_Hbeta grows as the load falls.
+Materials, with their strengths in MPa at quality ML, MQ and ME by table 1 of ISO 6336-5; x is the
+hardness of the flanks:
+
+| `iso_material` | `treatment` | hardness x | sigma_Hlim | sigma_Flim |
+|---|---|---|---|---|
+{materials}
+
+{hardness}
+
+Gears that are safe by AGMA may not be so by ISO 6336: small through-hardened ones of a coarse grade
+[are an example](multi_stage.md#are-these-gears-safe). Published cases in `problems/`, held to what
+is printed: `iso_tr_6336_30.toml` and `wind_pair.toml`.
+
 ## A load spectrum
 
 Tables `[[load]]` stand in the place of the power of `[duty]`: levels of power (and `input_speed`,
@@ -125,7 +175,7 @@ limits can be set to what the steel bears (`problems/sized_and_rated.toml`: {siz
 ## What is not rated
 
 Scuffing, micropitting, wear, flank fracture, shafts, bearings and housings; internal gears, bevel
-gears and worms; ISO 6336. Gears that have no rating are refused by name: pointed teeth, contact
+gears and worms. Gears that have no rating are refused by name: pointed teeth, contact
 that breaks off, a transverse contact ratio of 2 or more of spur gears. What a designer may accept
 is a warning: undercut, thin tips, no backlash.
 """
@@ -152,7 +202,41 @@ def page() -> str:
         levels=_levels(_rating(rated["two_stages_rated"])),
         forces=_forces(_rating(rated["two_stages_rated"])),
         sized=_sized(),
+        both=_table("pair_by_both", r"\[gears\].*?\n(?=\n\[x-)"),
+        printed=_printed(gearopt.rate(PROBLEMS / "pair_by_both.toml")),
+        materials=_materials(),
+        hardness=HARDNESS,
     )
+
+
+def _materials() -> str:
+    """The materials of ISO 6336-5 with the treatments that stand for them and their strengths."""
+    rows = []
+    for name in dict.fromkeys(line[0] for line in LINES):
+        treatments = ", ".join(t for t, material in OF_TREATMENT.items() if material == name)
+        ends = [end for line in LINES if line[0] == name for end in line[6:]]
+        said = [_strengths(name, stress) for stress in "HF"]
+        unit = "HV" if name in SURFACE_HARDENED or name.startswith("V ") else "HB"
+        rows.append(
+            f"| {name} | {treatments} | {min(ends):.0f} to {max(ends):.0f} {unit} | "
+            f"{said[0]} | {said[1]} |"
+        )
+    return "\n".join(rows)
+
+
+def _strengths(name: str, stress: str) -> str:
+    """The lines of a material, one of each quality."""
+    told = {}
+    for quality in QUALITIES:
+        lines = [
+            line
+            for line in LINES
+            if line[:2] == (name, stress) and quality in line[2] and line[3] in ("", CORES[0])
+        ]
+        told[quality] = " and ".join(
+            f"{line[4]:g} x + {line[5]:g}" if line[4] else f"{line[5]:g}" for line in lines
+        )
+    return "; ".join(told.values())
 
 
 def _rating(result: Result) -> DriveRating:

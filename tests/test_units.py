@@ -72,6 +72,7 @@ NAMES = {  # where pint's name is another; a speed of 1/min or 1/s counts revolu
     "degC": "degree_Celsius",
     "degF": "degree_Fahrenheit",
     "HB": "dimensionless",
+    "HV": "dimensionless",
     "sqrt(MPa)": "megapascal**0.5",
     "sqrt(psi)": "pound_force_per_square_inch**0.5",
 }

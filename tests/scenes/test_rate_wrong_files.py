@@ -114,8 +114,8 @@ WRONG = {  # the mistake: what stands there, what is written, key and value as t
     ),
     "another standard": (
         '"agma"',
-        '"DIN 3990"',
-        'rating.standard = "DIN 3990"',
+        '"din3990"',
+        'rating.standard = "din3990"',
         'DIN 3990 is not supported. Nearest: standard = "iso6336"',
     ),
     "application factor": (

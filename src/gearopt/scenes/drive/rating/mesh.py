@@ -35,19 +35,14 @@ class Mesh:
         return max(self.levels, key=lambda level: level.bending_stress)
 
     @property
-    def largest_load(self) -> Operation:
-        """Return the level of the largest torque."""
-        return max(self.operations, key=lambda level: level.power / level.pinion_speed)
+    def largest_load(self) -> tuple[float, float]:
+        """Return torque of the pinion [N mm] and pitch-line velocity [mm/s] at the largest torque.
 
-    @property
-    def torque(self) -> float:
-        """Return the largest torque of the pinion [N mm]."""
-        return float(self.largest_load.power / self.largest_load.pinion_speed)
-
-    @property
-    def velocity(self) -> float:
-        """Return the velocity at the working pitch circles [mm/s], of the largest torque."""
-        return 0.5 * float(self.largest_load.pinion_speed * self.pair.working_diameters[0])
+        At the working pitch circles, whichever circles the standard has its load at.
+        """
+        found = max(self.operations, key=lambda one: float(one.power / one.pinion_speed))
+        moved = float(found.power / found.pinion_speed)
+        return moved, 0.5 * float(self.pair.working_diameters[0] * found.pinion_speed)
 
 
 def rated_meshes(scene: Scene, pairs: tuple[GearPair, ...], standard: Any) -> list[Mesh]:

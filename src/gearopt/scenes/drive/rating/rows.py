@@ -81,9 +81,9 @@ def life_hours(mesh: Mesh, k: int) -> float:
 
 def mesh_row(scene: Scene, mesh: Mesh, wanted: tuple[float, float]) -> MeshRating:
     """Return a mesh; wanted: the safety factors asked for, of bending and contact."""
-    pair = mesh.pair
+    pair, (moved, speed) = mesh.pair, mesh.largest_load
     least, governs = _margins(mesh, wanted)
-    forces = mesh_forces(pair, mesh.torque)
+    forces = mesh_forces(pair, moved)
     strongest = max(level.power for level in mesh.operations)
     return MeshRating(
         stage=mesh.stage,
@@ -92,7 +92,7 @@ def mesh_row(scene: Scene, mesh: Mesh, wanted: tuple[float, float]) -> MeshRatin
         tangential_force_N=float(forces.tangential),
         radial_force_N=float(forces.radial),
         axial_force_N=float(forces.axial),
-        pitch_line_velocity_m_per_s=1e-3 * mesh.velocity,
+        pitch_line_velocity_m_per_s=1e-3 * speed,
         working_pressure_angle_deg=math.degrees(pair.working_angle),
         working_helix_angle_deg=math.degrees(
             helix_angle_at(pair.pinion, pair.working_diameters[0])
@@ -128,15 +128,15 @@ def _margins(mesh: Mesh, wanted: tuple[float, float]) -> tuple[float, str]:
 
 def _friction(scene: Scene, mesh: Mesh) -> tuple[float | None, bool]:
     """Return the coefficient of friction, None where nothing is known; whether it is given."""
-    asked = scene.rating
+    asked, (moved, speed) = scene.rating, mesh.largest_load
     assert asked
     if asked.friction_coefficient is not None:
         return float(asked.friction_coefficient), True
     if asked.oil_viscosity is None:
         return None, False
     roughness = 0.5 * sum(mesh.standard.finish(table) for table in mesh.tables)
-    force = 2.0 * mesh.torque / float(mesh.pair.working_diameters[0])
-    known = force, mesh.velocity, asked.oil_viscosity.value, roughness
+    load = 2.0 * moved / float(mesh.pair.working_diameters[0])
+    known = load, speed, asked.oil_viscosity.value, roughness
     return float(friction_coefficient(mesh.pair, *known)), False
 
 
