@@ -151,7 +151,8 @@ class DriveRating:
     safe: whether every gear meets the safety factors that are asked for; life_h: the shortest of
     all gears, None beyond the end of the curves. unverified: symbols of factors, and what else a
     single source or memory alone has. flaws: sentences on teeth that a designer may accept, and on
-    the ratio of given gears that is not the one asked for. beside: the rating by another standard.
+    the ratio of given gears that is not the one asked for. by: the standard in short; beside: the
+    rating by another one.
     """
 
     standard: str
@@ -172,4 +173,15 @@ class DriveRating:
     levels: tuple[LoadLevel, ...] = ()
     unverified: tuple[str, ...] = ()
     flaws: tuple[str, ...] = ()
+    by: str = "AGMA"
     beside: "DriveRating | None" = None
+
+    @property
+    def each(self) -> tuple["DriveRating", ...]:
+        """Return the ratings by all standards, this one first."""
+        return (self,) if self.beside is None else (self, self.beside)
+
+    @property
+    def safe_by_all(self) -> bool:
+        """Return whether every gear meets the safety factors by all standards."""
+        return all(one.safe for one in self.each)

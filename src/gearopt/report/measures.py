@@ -166,6 +166,8 @@ METRIC = Measures(
         "m_per_s": ("m/s", 1.0),
         "kg": ("kg", 1.0),
         "um": ("µm", 1e3),  # of mm
+        "um_or_uin": ("µm", 1e3),  # of mm
+        "N_per_mm_um": ("N/(mm µm)", 1e-3),  # of MPa
         "kg_m2": ("g cm²", 1e7),
         "Nm_per_rad": ("N m/rad", 1.0),
         "deg_per_mm": ("°/mm", 1.0),
@@ -195,6 +197,8 @@ INCH = Measures(
         "Nm": ("lbf in", 1000.0 / (_POUND_FORCE * _INCH)),
         "kg": ("lb", 1.0 / _POUND),
         "um": ("mil", 1000.0 / _INCH),  # of mm
+        "um_or_uin": ("µin", 1e6 / _INCH),  # of mm
+        "N_per_mm_um": ("lbf/(in µin)", 1e-6 / _PSI),  # of MPa
         "kg_m2": ("oz in²", 16e6 / (_POUND * _INCH**2)),
         "Nm_per_rad": ("lbf in/rad", 1000.0 / (_POUND_FORCE * _INCH)),
         "deg_per_mm": ("°/in", _INCH),

@@ -7,26 +7,21 @@ from typing import Any
 from gearopt.formulations.rating import DriveRating, RatingFactor
 from gearopt.optimise.result import Result
 from gearopt.report.measures import Measures
+from gearopt.report.rating_symbols import FINE, SHORT, greek
 from gearopt.report.rating_tables import names
 from gearopt.report.rating_words import rating_of, unverified
 from gearopt.report.section import Cell, Section, Table, cell
 from gearopt.report.words import series_of
 
 GIVEN = "given"  # source of a factor of the file
-ABREAST = 3  # stages whose factors fit beside each other on a terminal
+ABREAST = {"AGMA": 3, "ISO 6336": 2}  # stages whose factors fit side by side on a terminal
 
 
 def factors(result: Result, measures: Measures) -> Section | None:
     """Return every factor with its source; None without a rating."""
     if (found := rating_of(result)) is None:
         return None
-    symbols: dict[str, list[RatingFactor]] = {}
-    for factor in found.factors:
-        symbols.setdefault(factor.symbol, []).append(factor)
-    heads = ["symbol", "factor", "unit", *names(found), "unverified", "source", "remark"]
-    rows = [_factor_row(found, own, measures) for own in symbols.values()]
-    hidden = ["unit", "unverified"] + ([] if any(row[-1] for row in rows) else ["remark"])
-    table = Table("factors", heads, rows, csv_only=hidden, texts=("factor", "source", "remark"))
+    tables = [_table(one, found.beside is not None, measures) for one in found.each]
     level = (
         " Of a load spectrum factors are those of the level of largest stress."
         if found.levels
@@ -34,34 +29,70 @@ def factors(result: Result, measures: Measures) -> Section | None:
     )
     words = [f"A value below a pinion alone holds for its wheel, too.{level}"]
     words += map(measures.words, unverified(found))
-    told: list[str | Table] = [*_factors_told(found, list(symbols.values()), measures)]
-    told += [*words[1:], *_remarks(rows)]
-    return Section("Factors", words=words, tables=(table,), terminal=told)
+    told: list[str | Table] = []
+    for one in found.each:
+        told += _factors_told(one, found.beside is not None, measures)
+    told += words[1:]
+    for table in tables:
+        told += _remarks(table.rows)
+    return Section("Factors", words=words, tables=tables, terminal=told)
+
+
+def _symbols(found: DriveRating) -> list[list[RatingFactor]]:
+    """Return the factors of a standard, those of one symbol together."""
+    symbols: dict[str, list[RatingFactor]] = {}
+    for factor in found.factors:
+        symbols.setdefault(factor.symbol, []).append(factor)
+    return list(symbols.values())
+
+
+def _table(found: DriveRating, named: bool, measures: Measures) -> Table:
+    """Return the factors of a standard, which is named beside another one."""
+    heads = ["symbol", "factor", "unit", *names(found), "unverified", "source", "remark"]
+    rows = [_factor_row(found, own, measures) for own in _symbols(found)]
+    hidden = ["unit", "unverified"] + ([] if any(row[-1].value for row in rows) else ["remark"])
+    return Table(
+        f"factors by {found.by}" if named else "factors",
+        heads,
+        rows,
+        caption=f"Factors by {found.by}" if named else "",
+        csv_only=hidden,
+        texts=("factor", "source", "remark"),
+    )
 
 
 def _remarks(rows: Sequence[Sequence[Any]]) -> list[str]:
     """Return what limits factors, for the terminal; what limits several once."""
     symbols: dict[str, list[str]] = {}
     for symbol, *_, remark in rows:
-        if remark:
-            symbols.setdefault(remark, []).append(symbol.value)
+        if remark.value:
+            symbols.setdefault(remark.text, []).append(greek(symbol.value))
     lines = [f"{series_of(own)}: {remark}." for remark, own in symbols.items()]
     return ["\n".join(lines)] if lines else []
 
 
 def _factor_row(found: DriveRating, own: Sequence[RatingFactor], measures: Measures) -> list[Any]:
     """Return a factor of all stages: its values, where they are from, what limits them."""
-    one, remarks = own[0], _by_stage(found, own, "remark")
-    sign = measures.unit(one.unit)
+    one = own[0]
+    sign, symbol, remarks = (
+        measures.unit(_unit(one)),
+        greek(one.symbol),
+        measures.words(_by_stage(found, own, "remark")),
+    )
     return [
-        Cell(one.symbol, f"{one.symbol} [{sign}]" if sign else one.symbol),
-        one.name,
+        Cell(one.symbol, f"{symbol} [{sign}]" if sign else symbol),
+        Cell(one.name, greek(one.name)),
         sign,
         *(value for factor in own for value in _values(factor, measures)),
         ", ".join(str(factor.stage) for factor in own if not factor.verified),
         _by_stage(found, own, "source"),
-        measures.words(remarks),
+        Cell(remarks, greek(remarks)),
     ]
+
+
+def _unit(factor: RatingFactor) -> str:
+    """Return the unit that a factor is shown in, as `Measures` calls it."""
+    return FINE.get(factor.symbol, factor.unit)
 
 
 def _by_stage(found: DriveRating, own: Sequence[RatingFactor], key: str) -> str:
@@ -76,27 +107,26 @@ def _by_stage(found: DriveRating, own: Sequence[RatingFactor], key: str) -> str:
 
 def _values(factor: RatingFactor, measures: Measures) -> list[Cell]:
     """Return the values of pinion and wheel; of a factor of the mesh the page shows one."""
-    first = cell(factor.pinion, factor.unit, measures)
+    first = cell(factor.pinion, _unit(factor), measures)
     if not factor.verified:
         first = replace(first, text=f"{first.text}\nunverified", short=first.text)
     if factor.wheel is None:
         return [first, replace(first, text="", short=None)]
-    second = cell(factor.wheel, factor.unit, measures)
+    second = cell(factor.wheel, _unit(factor), measures)
     if not factor.verified:
         second = replace(second, text=f"{second.text}\nunverified", short=second.text)
     return [first, second]
 
 
-def _factors_told(
-    found: DriveRating, symbols: Sequence[Sequence[RatingFactor]], measures: Measures
-) -> list[Table]:
+def _factors_told(found: DriveRating, named: bool, measures: Measures) -> list[Table]:
     """Return the factors as the terminal shows them, of so many stages as fit side by side."""
-    made, alone = [], len(found.meshes) == 1
-    for start in range(0, len(found.meshes), ABREAST):
-        heads = ["", *[""] * alone, *names(found)[2 * start : 2 * (start + ABREAST)], ""]
+    made, alone, abreast = [], len(found.meshes) == 1, ABREAST[found.by]
+    of = SHORT[found.by] if named else ""
+    for start in range(0, len(found.meshes), abreast):
+        heads = [of, *[""] * alone, *names(found)[2 * start : 2 * (start + abreast)], ""]
         rows = []
-        for own in symbols:
-            part = own[start : start + ABREAST]
+        for own in _symbols(found):
+            part = own[start : start + abreast]
             symbol, what = _factor_row(found, part, measures)[:2]
             values = [value for factor in part for value in _values(factor, measures)]
             rows.append([symbol, *[what] * alone, *values, _state(part)])

@@ -1,49 +1,20 @@
-"""A rating as sections of tables: gears, factors, forces and contact, teeth, load spectrum."""
+"""A rating as sections of tables: forces and contact, teeth; names and rows of its tables."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from math import isclose
 from typing import Any
 
-from gearopt.formulations.rating import DriveRating, LoadLevel
+from gearopt.formulations.rating import DriveRating
 from gearopt.optimise.result import Result
 from gearopt.report.design_tables import stage_label, tables
-from gearopt.report.measures import Measures, rounded
-from gearopt.report.rating_words import (
-    AT_ONCE,
-    FRICTION,
-    LONGEST,
-    ROUNDING,
-    efficiency,
-    life,
-    rating_of,
-    told,
-    unsure,
-    unverified,
-)
-from gearopt.report.section import Cell, Section, Table, cell, percent
-from gearopt.report.words import MODULE, RATING, heading, module_words, number, parted
+from gearopt.report.measures import Measures
+from gearopt.report.rating_words import FRICTION, ROUNDING, rating_of
+from gearopt.report.section import Section, Table, cell
+from gearopt.report.words import MODULE, heading, module_words, number, parted
 
-GEARS = {  # keys of a gear's rating: what they are called
-    "material": "material",
-    "bending_stress_MPa": "bending stress s_t",
-    "permissible_bending_stress_MPa": "permissible s_t",
-    "bending_safety": "S_F",
-    "contact_stress_MPa": "contact stress s_c",
-    "permissible_contact_stress_MPa": "permissible s_c",
-    "contact_safety": "S_H",
-    "cycles": "load cycles",
-    "bending_damage": "Miner's sum, bending",
-    "contact_damage": "Miner's sum, contact",
-    "bending_life_cycles": "life, bending",
-    "contact_life_cycles": "life, contact",
-    "life_h": "life",
-}
-STRESSES = [key for key in GEARS if key.endswith("_MPa")]
-LIVES = [key for key in GEARS if "life" in key]
+LEAST = {"governs": "governs", "power_capacity_kW": "power capacity"}
 MESHES = {
-    "governs": "governs",
-    "power_capacity_kW": "power capacity",
     "tangential_force_N": "tangential force F_t",
     "radial_force_N": "radial force F_r",
     "axial_force_N": "axial force F_a",
@@ -86,23 +57,6 @@ TEETH = {  # ISO 21771
     "ball_diameter_mm": "ball diameter D_M",
     "over_balls_mm": "diameter over balls M_dK",
 }
-LEVELS = {
-    "level": "level",
-    "power_kW": "power",
-    "input_speed_rpm": "input speed",
-    "share_percent": "share of life",
-    "cycles": "cycles",
-    "bending_stress_MPa": "s_t",
-    "contact_stress_MPa": "s_c",
-    "bending_damage": "damage, bending",
-    "contact_damage": "damage, contact",
-}
-ONCE = (
-    "level",
-    "power_kW",
-    "input_speed_rpm",
-    "share_percent",
-)  # of a level, for all gears
 IN_DESIGN = {  # keys of stages and totals that tables of a rating show
     *("pinion_diameter_mm", "wheel_diameter_mm", "pinion_tip_diameter_mm"),
     *("wheel_tip_diameter_mm", "pinion_root_diameter_mm", "wheel_root_diameter_mm"),
@@ -110,30 +64,10 @@ IN_DESIGN = {  # keys of stages and totals that tables of a rating show
     *("working_pressure_angle_deg", "pinion_profile_shift", "wheel_profile_shift"),
     *("pinion_torque_Nm", "output_torque_Nm"),
 }
-DAMAGE_DIGITS = 3
 ABREAST = 2  # stages whose teeth fit beside another table
 
 
-def gears(result: Result, measures: Measures) -> Section | None:
-    """Return stresses, safety factors and lives of every gear; None without a rating."""
-    if (found := rating_of(result)) is None:
-        return None
-    rows = list(_gear_rows(found, measures))
-    hidden = [label(key, GEARS, measures) for key in STRESSES] if found.levels else []
-    table = Table("gears", ["", *names(found)], rows, csv_only=hidden, across=True)
-    words = [
-        f"By {found.standard}.",
-        "S_F and S_H are permissible over present stress; S_H squared is the safety of the load.",
-    ]
-    if found.levels:
-        words.append("Safety factors are those of all load levels together, by Miner's rule.")
-    if any(None in (g.bending_life_cycles, g.contact_life_cycles) for g in found.gears):
-        words.append(f"Beyond: more than {LONGEST}, where the life curves end.")
-    shown = _told(result, found, measures)
-    return Section("Rating", words=words, tables=(table,), half=_single(found), terminal=shown)
-
-
-def _single(found: DriveRating) -> bool:
+def single(found: DriveRating) -> bool:
     """Return whether there is one stage, whose tables leave room beside them."""
     return len(found.meshes) == 1
 
@@ -174,7 +108,7 @@ def label(key: str, words: Mapping[str, str], measures: Measures) -> str:
     return f"{words[key]} [{measures.unit(unit)}]" if unit else words[key]
 
 
-def _rows(
+def rows_of(
     items: Sequence[Any], words: Mapping[str, str], measures: Measures
 ) -> Iterator[tuple[str, list[Any]]]:
     """Yield key and row of everything that is known of some item."""
@@ -192,67 +126,8 @@ def _across(
     measures: Measures,
 ) -> Table:
     """Return a table of items side by side."""
-    rows = [row for _, row in _rows(items, words, measures)]
+    rows = [row for _, row in rows_of(items, words, measures)]
     return Table(name, ["", *heads], rows, across=True)
-
-
-def _gear_rows(found: DriveRating, measures: Measures) -> Iterator[list[Any]]:
-    """Yield the rows of gears, and below every safety factor how much of it is used."""
-    asked = {
-        "bending_safety": found.minimum_bending_safety,
-        "contact_safety": found.minimum_contact_safety,
-    }
-    known = dict(_rows(found.gears, GEARS, measures))
-    steels = (gear.material for gear in found.gears)
-    known["material"] = ["material", *(Cell(s, s.replace(", ", "\n")) for s in steels)]
-    for key in GEARS:
-        if key in LIVES:
-            lives = (_life(getattr(gear, key), key, measures) for gear in found.gears)
-            yield [label(key, GEARS, measures), *lives]
-        elif found.levels and key.endswith("_damage"):
-            yield [GEARS[key], *(_damage(getattr(gear, key)) for gear in found.gears)]
-        elif key in known:
-            yield known[key]
-        if key in asked:
-            used = (_used(asked[key], getattr(gear, key)) for gear in found.gears)
-            yield [f"utilisation, {GEARS[key]} {asked[key]:g} asked for [%]", *used]
-
-
-def _used(asked: float, own: float) -> Cell:
-    return percent(asked / own) if own > 0.0 else Cell(None, AT_ONCE, 1.0)
-
-
-def _life(value: float | None, key: str, measures: Measures) -> Cell:
-    """Return a life; None beyond the end of the curves, 0 before they begin."""
-    if not value:
-        return Cell(value, "beyond" if value is None else AT_ONCE)
-    return cell(value, parted(key)[1], measures)
-
-
-def _damage(value: float | None) -> Cell:
-    """Return a part of Miner's sum; None where the tooth breaks or pits at once."""
-    return Cell(None, AT_ONCE) if value is None else Cell(value, rounded(value, DAMAGE_DIGITS))
-
-
-def _told(result: Result, found: DriveRating, measures: Measures) -> list[str | Table]:
-    """Return what the terminal shows of all gears; of an optimum first how it is rated."""
-    keys = [key for key in GEARS if key.endswith(("_MPa", "_safety"))]
-    sign = measures.unit("MPa")
-    strong = f"permissible\n{sign}"
-    short = (f"bending\n{sign}", strong, "S_F", f"contact\n{sign}", strong, "S_H")
-    rows = [
-        [name, *(cell(getattr(gear, key), parted(key)[1], measures) for key in keys)]
-        for name, gear in zip(names(found), found.gears, strict=True)
-    ]
-    heads = [label(key, GEARS, measures) for key in keys]
-    read = dict(zip(heads, short, strict=True))
-    table = Table("gears", ["gear", *heads], rows, short=read, wrap=9)
-    lasts = f"Life: {life(found.life_h)}, {life(found.required_life_h)} asked for."
-    if found.efficiency_percent is not None:
-        lasts += f" Efficiency of the meshes: {efficiency(found)}{unsure(found)}."
-    first = [] if result.name == RATING else [measures.words(told(found))]
-    end = unverified(found) if first else []
-    return [*first, table, "\n".join([lasts, f"By {found.standard}.", *end])]
 
 
 def forces(result: Result, measures: Measures) -> Section | None:
@@ -261,6 +136,7 @@ def forces(result: Result, measures: Measures) -> Section | None:
         return None
     heads = [f"stage {mesh.stage}" for mesh in found.meshes]
     meshes = _across("meshes", heads, found.meshes, MESHES, measures)
+    meshes = replace(meshes, rows=[*_least_rows(found, measures), *meshes.rows])
     heads = [f"shaft {shaft.shaft}" for shaft in found.shafts]
     shafts = _across("shafts", heads, found.shafts, SHAFTS, measures)
     axial = [label("axial_force_N", SHAFTS, measures), *_end_words(found, measures)]
@@ -278,10 +154,18 @@ def forces(result: Result, measures: Measures) -> Section | None:
         )
     stages = result.design["stages"]
     told = "\n".join(f"{_mesh_words(found, stage, k, measures)}" for k, stage in enumerate(stages))
-    half = _single(found)
+    half = single(found)
     return Section(
         "Forces and contact", words=words, tables=(meshes, shafts), half=half, terminal=(told,)
     )
+
+
+def _least_rows(found: DriveRating, measures: Measures) -> Iterator[list[Any]]:
+    """Yield what governs every mesh and what it may transmit, by every standard."""
+    for key, words in LEAST.items():
+        for one in found.each:
+            of = "" if found.beside is None else f" by {one.by}"
+            yield from (row for _, row in rows_of(one.meshes, {key: words + of}, measures))
 
 
 def _mesh_words(found: DriveRating, stage: Mapping[str, Any], k: int, measures: Measures) -> str:
@@ -312,38 +196,6 @@ def teeth(result: Result, measures: Measures) -> Section | None:
         "diameter."
     ]
     return Section("Teeth", words=words, tables=(table,), half=len(found.meshes) <= ABREAST)
-
-
-def levels(result: Result, measures: Measures) -> Section | None:
-    """Return the load spectrum with the damage of every level; None without one."""
-    found = rating_of(result)
-    if found is None or not found.levels:
-        return None
-    of_gear = [key for key in LEVELS if key not in ONCE]
-    heads = [label(key, LEVELS, measures) for key in (*ONCE, *of_gear)]
-    heads.insert(len(ONCE), "gear")
-    ordered = sorted(found.levels, key=lambda level: level.level)
-    rows = [_level_row(found, level, of_gear, measures) for level in ordered]
-    words = (
-        "A level's damage is its load cycles over those that the gear would bear at this level "
-        "alone; it fails where their sum (Miner's) is 1.",
-    )
-    return Section("Load spectrum", words=words, tables=(Table("levels", heads, rows),))
-
-
-def _level_row(
-    found: DriveRating, level: LoadLevel, of_gear: Sequence[str], measures: Measures
-) -> list[Any]:
-    """Return a level of a gear; the page shows its load once, at the first gear."""
-    load = [cell(getattr(level, key), parted(key)[1], measures) for key in ONCE]
-    if name(found, level) != names(found)[0]:
-        load = [replace(one, text="") for one in load]
-    values = ((key, getattr(level, key)) for key in of_gear)
-    cells = (
-        _damage(value) if key.endswith("damage") else cell(value, parted(key)[1], measures)
-        for key, value in values
-    )
-    return [*load, name(found, level), *cells]
 
 
 def _end_words(found: DriveRating, measures: Measures) -> list[Any]:

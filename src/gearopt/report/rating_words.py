@@ -9,6 +9,7 @@ from gearopt.optimise.typed import typed
 from gearopt.physics.agma import life as life_curves
 from gearopt.physics.mesh_loss import FRICTION_ERROR
 from gearopt.report.measures import Measures, rounded
+from gearopt.report.rating_symbols import greek, of_standards
 from gearopt.report.section import Tile
 from gearopt.report.words import counted, series_of
 
@@ -45,25 +46,48 @@ def warns(result: Result) -> list[str]:
     """Return that an optimum is not safe, and flaws of teeth."""
     if (found := rating_of(result)) is None:
         return []
-    unsafe = [] if found.safe or not result.objective else [sentence_of(found)]
+    unsafe = [] if found.safe_by_all or not result.objective else [sentence_of(found)]
     return [*unsafe, *found.flaws]
 
 
 def sentence_of(found: DriveRating) -> str:
     """Return whether an optimum is safe, and what governs, in a sentence."""
-    return f"{'Safe' if found.safe else 'Not safe'} by its rating: {_verdict(found)}."
+    return f"{'Safe' if found.safe_by_all else 'Not safe'} by its rating: {_verdict(found)}."
 
 
 def told(found: DriveRating) -> str:
     """Return the rating of an optimum with its figures; what a warning said is not said again."""
-    first = sentence_of(found).rstrip(".") if found.safe else "Rating"
+    first = sentence_of(found).rstrip(".") if found.safe_by_all else "Rating"
     return f"{first}{_figures(found)}."
 
 
 def _verdict(found: DriveRating) -> str:
+    """Return what meets the safety factors that are asked for and what does not; what governs."""
+    if found.safe_by_all:
+        return f"all safety factors are met{_by_both(found)}; {_governs(found)}"
+    parts = [
+        _short(one) if found.beside is None else f"by {one.by} {_short(one)}"
+        for one in found.each
+        if not one.safe
+    ]
+    return "; ".join([*parts, *(f"safe by {one.by} alone" for one in found.each if one.safe)])
+
+
+def _by_both(found: DriveRating) -> str:
+    return "" if found.beside is None else " by " + " and by ".join(o.by for o in found.each)
+
+
+def _governs(found: DriveRating) -> str:
+    """Return what governs by every standard; what is the same once."""
+    words = [f"{_governing(one)[0]} governs" for one in found.each]
+    if len(set(words)) == 1:
+        return f"{words[0]}{' both' * (len(words) > 1)}"
+    return of_standards(found, words)
+
+
+def _short(found: DriveRating) -> str:
+    """Return which safety factors of a standard fall short."""
     words = _governing(found)[0]
-    if found.safe:
-        return f"all safety factors are met; {words} governs"
     short = sum((1.0 + FEASIBLE) * own < asked for _, own, asked in _all(found))
     return (
         f"{words} falls short" if short < 2 else f"{short} safety factors fall short, {words} most"
@@ -71,11 +95,16 @@ def _verdict(found: DriveRating) -> str:
 
 
 def _figures(found: DriveRating) -> str:
-    _, symbol, own, asked = _governing(found)
+    """Return least safety factor and power capacity by every standard, and what is asked for."""
+    least = [_governing(one)[1:] for one in found.each]
+    values = [f"{symbol} {safety(own)}" for symbol, own, _ in least]
+    asked = dict.fromkeys(f"{symbol} {asked:g}" for symbol, _, asked in least)
+    wanted = f"{least[0][2]:g}" if len(asked) == 1 else " and ".join(asked)
+    capacities = [f"{safety(one.power_capacity_kW)} kW" for one in found.each]
     power = rounded(required(found), SAFETY_DIGITS)
     return (
-        f": {symbol} {safety(own)}, {asked:g} asked for; power capacity "
-        f"{safety(found.power_capacity_kW)} kW, {power} kW asked for"
+        f": {of_standards(found, values)}, {wanted} asked for; power capacity "
+        f"{of_standards(found, capacities)}, {power} kW asked for"
     )
 
 
@@ -142,15 +171,13 @@ def tiles(result: Result, measures: Measures) -> list[Tile]:
     """Return least safety factors, power capacity, life and efficiency as key figures."""
     if (found := rating_of(result)) is None:
         return []
+    capacities = [measures.amount(one.power_capacity_kW, "kW") for one in found.each]
+    lives = [life(one.life_h) for one in found.each]
     made = [
-        _safety_tile(found, "bending", found.minimum_bending_safety),
-        _safety_tile(found, "contact", found.minimum_contact_safety),
-        Tile(
-            "power capacity",
-            measures.amount(found.power_capacity_kW, "kW"),
-            f"{measures.amount(required(found), 'kW')} asked for",
-        ),
-        Tile("life", life(found.life_h), f"{life(found.required_life_h)} asked for"),
+        *(_safety_tile(one, "bending", found) for one in found.each),
+        *(_safety_tile(one, "contact", found) for one in found.each),
+        _tile(found, "power capacity", capacities, measures.amount(required(found), "kW")),
+        _tile(found, "life", lives, life(found.required_life_h)),
     ]
     if found.efficiency_percent is not None:
         remark = "tooth friction alone"
@@ -158,11 +185,22 @@ def tiles(result: Result, measures: Measures) -> list[Tile]:
     return made
 
 
-def _safety_tile(found: DriveRating, mode: str, asked: float) -> Tile:
-    key = f"{mode}_safety"
+def _safety_tile(found: DriveRating, mode: str, whole: DriveRating) -> Tile:
+    """Return the least safety factor of a mode by one of the standards of the whole rating."""
+    key, asked = f"{mode}_safety", float(getattr(found, f"minimum_{mode}_safety"))
     least = min(found.gears, key=lambda gear: float(getattr(gear, key)))
     remark = f"{gear_words(found, least)}; {asked:g} asked for"
-    return Tile(f"least {MODES[mode]}, {mode}", safety(getattr(least, key)), remark)
+    of = "" if whole.beside is None else f" by {found.by}"
+    return Tile(f"least {MODES[mode]}, {mode}{of}", safety(getattr(least, key)), remark)
+
+
+def _tile(found: DriveRating, name: str, values: Sequence[str], asked: str) -> Tile:
+    """Return a key figure: its value, or by each of two standards in the remark the second."""
+    if found.beside is None:
+        return Tile(name, values[0], f"{asked} asked for")
+    first, second = found.each
+    remark = f"{values[1]} by {second.by}; {asked} asked for"
+    return Tile(f"{name} by {first.by}", values[0], remark)
 
 
 def life(hours: float | None) -> str:
@@ -173,7 +211,12 @@ def life(hours: float | None) -> str:
 
 
 def unverified(found: DriveRating) -> list[str]:
-    """Return a sentence with the symbols of unverified values; nothing without any."""
+    """Return a sentence with the symbols of unverified values, by every standard that has any."""
+    return [line for one in found.each for line in _unverified(one, found.beside is not None)]
+
+
+def _unverified(found: DriveRating, named: bool) -> list[str]:
+    """Return the sentence of one standard, which is named."""
     stages: dict[str, list[str]] = {}
     for name in found.unverified:
         symbol, _, stage = name.partition(" of stage ")
@@ -182,9 +225,10 @@ def unverified(found: DriveRating) -> list[str]:
         return []
     several = len(found.meshes) > 1
     names = [_of_stages(symbol, own if several else []) for symbol, own in stages.items()]
+    of = f" by {found.by}" if named else ""
     return [
-        "Unverified, because a single source has it or no published value confirms it: "
-        f"{series_of(names)}."
+        f"Unverified{of}, because a single source has it or no published value confirms it: "
+        f"{series_of(list(map(greek, names)))}."
     ]
 
 

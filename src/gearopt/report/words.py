@@ -48,7 +48,9 @@ def _stem_words(stem: str) -> str:
     for end, words in (("_low", "minimum"), ("_high", "maximum")):
         if stem.endswith(end):
             return f"{words} {stem.removesuffix(end).replace('_', ' ')}"
-    return known.get(stem, stem.replace("_", " "))
+    own = stem.removesuffix("_iso")
+    words = known.get(own, own.replace("_", " "))
+    return words if own == stem else f"{words} by ISO 6336"
 
 
 def grouped(names: Iterable[str], staged: bool = True) -> list[str]:

@@ -193,7 +193,7 @@ def _strength(stress: str) -> Callable[[Case, Found], Doubt]:
         within = all(strength(m, stress).within for m in case.materials)
         known = all(_confirmed(m, stress) for m in case.materials)
         remark = "" if within else "hardness outside the range of its line: its end is taken"
-        return known, remark or ("" if known else "pictures of the table alone")
+        return known, remark or ("" if known else "read from pictures of the table")
 
     return doubt
 
@@ -215,7 +215,7 @@ def _slip(case: Case, found: Found) -> Doubt:
 def _surface(case: Case, found: Found) -> Doubt:
     if all(m.family in ("V", "GTS", "GGG", "Eh", "IF") for m in case.materials):
         coarse = max(m.root for m in case.materials) > 40e-3
-        return True, "roughness above 40 um" if coarse else ""
+        return True, "roughness above 40 µm" if coarse else ""
     return False, "line of these materials from memory"
 
 
@@ -226,7 +226,7 @@ def _mean(case: Case, found: Found) -> Doubt:
 
 def _lubrication(case: Case, found: Found) -> Doubt:
     between = 850.0 < min(_both(found["sigma_Hlim"])) < HARD_LIMIT
-    return True, "sigma_Hlim between 850 and 1200 MPa: no published value" if between else ""
+    return True, "sigma_Hlim between 850 MPa and 1200 MPa: no published value" if between else ""
 
 
 DOUBTS: dict[str, Callable[[Case, Found], Doubt]] = {

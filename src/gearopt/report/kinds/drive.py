@@ -7,7 +7,7 @@ from typing import Any
 from gearopt.formulations.design import drive_design
 from gearopt.formulations.layout.layout_design import LayoutDesign
 from gearopt.optimise.result import Result
-from gearopt.report import rating_factors, rating_tables, rating_words
+from gearopt.report import rating_factors, rating_gears, rating_tables, rating_words
 from gearopt.report.answer import asked, assumptions, limits, summary
 from gearopt.report.deciding import of_limits
 from gearopt.report.design_tables import (
@@ -354,12 +354,12 @@ def _in_one_line(result: Result, measures: Measures) -> Section | None:
 
 DRAWINGS = (layout_views.section, layout_solid.section, _in_one_line)
 RATINGS = (
-    *(rating_tables.gears, rating_tables.forces, rating_factors.factors),
-    *(rating_tables.levels, mesh_view.section, rating_tables.teeth),
+    *(rating_gears.gears, rating_tables.forces, rating_factors.factors),
+    *(rating_gears.levels, mesh_view.section, rating_tables.teeth),
 )
 GIVEN = Kind(
     sections=(summary, *RATINGS[:2], *DRAWINGS, *RATINGS[2:], numbers, asked, assumptions),
-    terminal=(rating_tables.gears, rating_factors.factors, rating_tables.forces),
+    terminal=(rating_gears.gears, rating_factors.factors, rating_tables.forces),
     tiles=rating_words.tiles,
     decides=rating_words.decides,
     figures=rating_words.figures,
@@ -384,7 +384,7 @@ KIND = Kind(
         places,
         counts,
         limits,
-        rating_tables.gears,
+        rating_gears.gears,
         trains,
         processes,
         *TOLD,

@@ -12,7 +12,8 @@ from gearopt.scenes.drive.rating.tables import GearTable, RatingTable
 from gearopt.scenes.drive.scene import Scene
 
 __all__ = ["NAMES", "UNITS", "finish", "given", "material", "rate", "rate_spectrum"]
-__all__ += ["practice", "steel", "title"]
+__all__ += ["NAME", "practice", "steel", "title"]
+NAME = "AGMA"  # in short
 NAMES = {
     "K_o": "overload",
     "K_v": "dynamic",

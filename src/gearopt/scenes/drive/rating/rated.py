@@ -117,13 +117,17 @@ def chosen_pairs(scene: Scene, stages: Sequence[StageDesign]) -> tuple[GearPair,
 
 
 def utilisations(found: DriveRating) -> dict[str, float]:
-    """Return what of its safety factors every gear uses: asked for over there, of stress."""
+    """Return what of its safety factors every gear uses: asked for over there, of stress.
+
+    Of two standards those of the second, which is ISO 6336, have names of their own.
+    """
     limits = {}
-    for gear in found.gears:
-        bending = found.minimum_bending_safety / gear.bending_safety
-        contact = found.minimum_contact_safety / gear.contact_safety
-        limits[f"{gear.member}_bending[{gear.stage}]"] = bending
-        limits[f"{gear.member}_contact[{gear.stage}]"] = contact
+    for one, of_second in zip(found.each, ("", "_iso"), strict=False):
+        for gear in one.gears:
+            bending = one.minimum_bending_safety / gear.bending_safety
+            contact = one.minimum_contact_safety / gear.contact_safety
+            limits[f"{gear.member}_bending{of_second}[{gear.stage}]"] = bending
+            limits[f"{gear.member}_contact{of_second}[{gear.stage}]"] = contact
     return limits
 
 
@@ -131,7 +135,7 @@ def rating(scene: Scene, pairs: tuple[GearPair, ...]) -> DriveRating:
     """Return the rating of all stages by all standards asked for; SolveError why there is none."""
     assert scene.rating
     first, *others = (_by(scene, pairs, one) for one in STANDARDS[scene.rating.standard])
-    return replace(first, beside=others[0]) if others else first
+    return replace(first, beside=replace(others[0], flaws=())) if others else first
 
 
 def _by(scene: Scene, pairs: tuple[GearPair, ...], standard: Any) -> DriveRating:
@@ -173,6 +177,7 @@ def _by(scene: Scene, pairs: tuple[GearPair, ...], standard: Any) -> DriveRating
             dict.fromkeys(f"{r.symbol} of stage {r.stage}" for r in factors if not r.verified)
         ),
         flaws=tuple(tooth_warnings(pairs)),
+        by=standard.NAME,
     )
 
 
