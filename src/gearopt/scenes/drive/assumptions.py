@@ -3,9 +3,13 @@
 from dataclasses import replace
 
 from gearopt.formulations.design import STEEL_DENSITY
-from gearopt.physics.gears import ISO_53_A
+from gearopt.physics.gears import ISO_53_A, MEMBERS
+from gearopt.physics.iso6336.case import Practice
 from gearopt.scenes.drive.drive_tables import ORIGINS, StageTable
 from gearopt.scenes.drive.layout_tables import Layout
+from gearopt.scenes.drive.rating.gears import own
+from gearopt.scenes.drive.rating.iso_material import steel
+from gearopt.scenes.drive.rating.tables import RatingTable
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.tooth_tables import toothing
 from gearopt.scenes.reading.modules import unverified
@@ -89,34 +93,68 @@ def rating_assumptions(scene: Scene) -> list[str]:
     """Return what a rating takes for granted, in sentences."""
     asked = scene.rating
     assert asked
-    load = (
-        "at the highest point of single tooth contact"
-        if asked.bending_load == "highest single"
-        else "at the tip"
-    )
+    by_agma, by_iso = asked.standard != "iso6336", asked.standard != "agma"
     found = [
         "External cylindrical gears on parallel shafts, steel, whose pinions drive; no losses but "
         "those of the mesh, where they are reported.",
         "The standards themselves were not read: formulas and values are those of textbooks, "
         "tables and public programs; what a single source has is marked unverified.",
-        f"K_m by the curve of {asked.mounting} gearing"
-        + (", crowned" if asked.crowned else ", teeth without crowning")
-        + f"; pinion offset S_1/S {float(asked.pinion_offset):g}.",
-        f"Bending of spur teeth and of low overlap: load {load}.",
+        *(_agma_assumptions(asked) if by_agma else []),
+        *(_iso_assumptions(scene, asked) if by_iso else []),
         "Scuffing, micropitting, wear, shafts and bearings are not rated.",
         "Safety against contact is of stress: its square is of load. Lives are those at which a "
         "safety factor is 1.",
     ]
-    unstated = [
-        f"{words} {value} (default)"
-        for name, words, value in (
-            ("overload_factor", "overload factor", "1"),
-            ("reliability", "reliability", "99 %"),
-            ("mounting", "mounting", asked.mounting),
-        )
-        if name not in asked.model_fields_set
-    ]
+    unstated = _unstated(asked, by_agma, by_iso)
     return [*found, f"Not in the file: {', '.join(unstated)}."] if unstated else found
+
+
+def _agma_assumptions(asked: RatingTable) -> list[str]:
+    """Return what a rating by AGMA takes for granted."""
+    load = (
+        "at the highest point of single tooth contact"
+        if asked.bending_load == "highest single"
+        else "at the tip"
+    )
+    return [
+        f"K_m by the curve of {asked.mounting} gearing"
+        + (", crowned" if asked.crowned else ", teeth without crowning")
+        + f"; pinion offset S_1/S {float(asked.pinion_offset):g}.",
+        f"Bending of spur teeth and of low overlap: load {load}"
+        f"{' (AGMA)' * (asked.standard == 'both')}.",
+    ]
+
+
+def _iso_assumptions(scene: Scene, asked: RatingTable) -> list[str]:
+    """Return what a rating by ISO 6336 takes for granted: materials, misalignment."""
+    tables = [own(scene, k, member) for k in range(max(1, len(scene.stage))) for member in MEMBERS]
+    chosen = dict.fromkeys(
+        f"{table.treatment or 'none given'} as {steel(table).name}"
+        for table in tables
+        if table.iso_material is None
+    )
+    helix = asked.iso6336.helix_modification
+    modified = "without helix modification" if helix == "none" else f"helix modification: {helix}"
+    words = [f"Materials of ISO 6336-5 by treatment: {', '.join(chosen)}."] if chosen else []
+    return [
+        *words,
+        "K_Hβ by method C of ISO 6336-1, for a pinion midway between its bearings on a solid "
+        f"shaft; {modified}. Bending by method B: load at the outer point of single pair contact.",
+    ]
+
+
+def _unstated(asked: RatingTable, by_agma: bool, by_iso: bool) -> list[str]:
+    """Return defaults that a rating takes where the file says nothing."""
+    given, iso = asked.model_fields_set, asked.iso6336.model_fields_set
+    usual = Practice()
+    rows = (
+        (True, "overload_factor" in given, "overload factor 1"),
+        (by_agma, "reliability" in given, "reliability 99 %"),
+        (by_agma, "mounting" in given, f"mounting {asked.mounting}"),
+        (by_iso, "accuracy_grade" in iso, f"ISO 1328 accuracy grade {usual.grades[0]:g}"),
+        (by_iso, "oil_grade" in iso, f"oil of {usual.viscosity:g} mm²/s at 40 °C"),
+    )
+    return [f"{words} (default)" for enters, stated, words in rows if enters and not stated]
 
 
 def _layout_assumptions(layout: Layout) -> list[str]:
