@@ -111,7 +111,6 @@ flank_rz = "6 um"
 [rating]
 standard = "iso6336"
 life = "50000 h"
-quality = 11
 [rating.iso6336]
 accuracy_grade = 5
 oil_grade = "320 mm^2/s"
@@ -182,7 +181,14 @@ def sized(hardness="200 HB"):
     return gearopt.solve(_tables(SIZED, {"200 HB": hardness}))
 
 
-BOTH = {'iso6336"': 'both"'}
+BOTH = {'iso6336"': 'both"\nquality = 11'}
+
+
+AGMA = {  # of ISO, the keys of AGMA in the place of those of ISO 6336
+    'iso6336"\n': 'agma"\nquality = 11\n',
+    'iso_quality = "MQ"\nflank_rz = "6 um"\n': 'roughness = "1 um"\n',
+    '[rating.iso6336]\naccuracy_grade = 5\noil_grade = "320 mm^2/s"\ntip_relief = "70 um"\n': "",
+}
 
 
 @functools.cache
@@ -204,4 +210,5 @@ def both_safe():
 @functools.cache
 def train_by_both():
     """Two stages, a load spectrum, a through-hardened wheel, by both standards."""
-    return rated(TRAIN, {"[rating]": '[rating]\nstandard = "both"'})
+    grade = "[rating.iso6336]\naccuracy_grade = 6\n"
+    return rated(TRAIN, {"[rating]": f'{grade}[rating]\nstandard = "both"'})

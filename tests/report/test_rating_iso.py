@@ -102,7 +102,7 @@ def test_each_standard_beside_the_other_is_as_it_is_alone():
     """In the table of gears, a column each; and in the limits."""
     found, alone = rows(cases.both(), "gears"), rows(cases.iso(), "gears")
     assert found[""] == ["pinion, AGMA", "pinion, ISO", "wheel, AGMA", "wheel, ISO"]
-    agma = rows(cases.rated(cases.ISO, {'"iso6336"': '"agma"'}), "gears")
+    agma = rows(cases.rated(cases.ISO, cases.AGMA), "gears")
     for key in ("S_F", "S_H", "life [h]"):
         assert found[key] == [v for both in zip(agma[key], alone[key], strict=True) for v in both]
     assert found["bending stress s_t, sigma_F [MPa]"][1] == alone["bending stress sigma_F [MPa]"][0]
@@ -185,7 +185,7 @@ def test_what_is_taken_for_granted_is_that_of_the_standard():
 
 def test_both_are_kept_and_told_by_the_command(here, tmp_path):
     file = tmp_path / "both.toml"
-    file.write_text(cases.ISO.replace('"iso6336"', '"both"'), encoding="utf-8")
+    file.write_text(cases.ISO.replace('"iso6336"', '"both"\nquality = 11'), encoding="utf-8")
     done = here("rate", file)
     assert done.returncode == 0 and "safe by ISO 6336 alone" in " ".join(done.stdout.split())
     again = gearopt.Result.from_json(cases.both().to_json())
