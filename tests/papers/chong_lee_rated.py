@@ -116,11 +116,11 @@ def rated_sentences():
         f"S_H of {span(row[1] for row in agma)} and S_F of {span(row[0] for row in agma)}",
         f"S_H of {span(row[1] for row in iso)}",
         f"{span(row[3] for row in iso)} kW of the",
-        f"({first['sigma_Hlim']['wheel']:.0f} MPa for the wheels, {limits[0]['wheel']:.0f} MPa)",
+        f"({first['sigma_Hlim']['wheel']:.0f} against {limits[0]['wheel']:.0f} MPa, of the wheels)",
         f"K_Hbeta K_Halpha of {first['K_Hbeta']['pinion']:.2f} and "
         f"{first['K_Halpha']['pinion']:.2f} beside K_m of {spread[0]['pinion']:.2f}",
-        f"S_H rises to {span(row[1] for row in better)}, and "
-        f"{sum(row[4] for row in better)} of the {len(names)} designs is safe",
+        f"S_H rises to {span(row[1] for row in better)}, and of the {len(names)} designs "
+        f"{' and '.join(n for n, row in zip(names, better, strict=True) if row[4])} alone is safe",
     ]
 
 

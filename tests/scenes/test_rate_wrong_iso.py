@@ -1,8 +1,12 @@
 """Mistakes in a file to be rated by ISO 6336: one message, with what to write; exit 2."""
 
+import math
+import tomllib
 from pathlib import Path
 
 import pytest
+
+import gearopt
 
 PROBLEMS = Path(__file__).parents[2] / "problems"
 RIGHT = (PROBLEMS / "iso_tr_6336_30.toml").read_text(encoding="utf-8").split("[x-expected]")[0]
@@ -118,3 +122,29 @@ def test_a_wrong_file_is_told_in_one_line(mistake, tmp_path, here):
     assert said.returncode == 2 and said.stdout == ""
     (line,) = said.stderr.splitlines()
     assert line.startswith(f"gearopt: {path}: {key}") and write in line
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        'f_pb = "9 um", f_falpha = "12 um", f_ma = "13 um"',
+        "K_v = 1.1, K_Halpha = 1, K_Falpha = 1, K_Hbeta = 1.2",
+    ],
+)
+def test_accuracy_is_asked_for_unless_all_that_follows_from_it_is_given(given):
+    """A file without it is rated, and a deviation or factor less is missed."""
+    rated = gearopt.rate(tomllib.loads(RIGHT.replace(GRADE, f"given = {{ {given} }}")))
+    grade = {f["source"] for f in rated.design["rating"]["factors"]}
+    assert "given" in grade
+    less = given.rpartition(", ")[0]
+    with pytest.raises(gearopt.SceneError, match="accuracy_grade: is missing"):
+        gearopt.rate(tomllib.loads(RIGHT.replace(GRADE, f"given = {{ {less} }}")))
+
+
+def test_forces_do_not_depend_on_the_standard():
+    """At the working pitch circles: 9000 N m at 500 mm/(1 + 103/17), by AGMA as by ISO 6336."""
+    found = gearopt.rate(tomllib.loads(RIGHT)).design["rating"]["meshes"][0]
+    assert found["tangential_force_N"] == pytest.approx(9e6 * (1 + 103 / 17) / 500, rel=1e-12)
+    assert found["pitch_line_velocity_m_per_s"] == pytest.approx(
+        6 * 2 * math.pi * 0.5 / (1 + 103 / 17), rel=1e-12
+    )
