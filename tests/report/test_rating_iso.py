@@ -95,6 +95,8 @@ def test_the_first_sentence_has_both_verdicts():
     assert opening(cases.both()) == said
     safe = "Safe: all safety factors are met by AGMA and by ISO 6336; contact of the pinion "
     assert opening(cases.both_safe()) == f"{safe}governs both."
+    fails = "Not safe: by AGMA and by ISO 6336 contact of the wheel of stage 1 falls short."
+    assert opening(cases.train_by_both()) == fails
     assert "S_H 0.834 by AGMA, S_H 1.02 by ISO 6336, 1 asked for; power" in decided(cases.both())
 
 

@@ -65,11 +65,12 @@ def _verdict(found: DriveRating) -> str:
     """Return what meets the safety factors that are asked for and what does not; what governs."""
     if found.safe_by_all:
         return f"all safety factors are met{_by_both(found)}; {_governs(found)}"
-    parts = [
-        _short(one) if found.beside is None else f"by {one.by} {_short(one)}"
-        for one in found.each
-        if not one.safe
-    ]
+    short = [(one.by, _short(one)) for one in found.each if not one.safe]
+    if found.beside is None:
+        return short[0][1]
+    if len(short) == 2 and short[0][1] == short[1][1]:
+        return f"by {short[0][0]} and by {short[1][0]} {short[0][1]}"
+    parts = [f"by {by} {words}" for by, words in short]
     return "; ".join([*parts, *(f"safe by {one.by} alone" for one in found.each if one.safe)])
 
 
