@@ -132,6 +132,15 @@ Gears that are safe by AGMA may not be so by ISO 6336: small through-hardened on
 [are an example](multi_stage.md#are-these-gears-safe). Published cases in `problems/`, held to what
 is printed: `iso_tr_6336_30.toml` and `wind_pair.toml`.
 
+- By both, the pair is safe if every safety factor of either standard is met; the first sentence
+  says by which it is. The table of gears has both beside each other, factors a table each. `limits`
+  holds those of ISO as `pinion_bending_iso[1]` and so on.
+- Symbols are those of ISO: sigma_F and sigma_H against sigma_FG and sigma_HG. Pages and terminal
+  show them in Greek; `--json` and `--csv` have them in letters. Deviations are in µm or µin,
+  stiffnesses in N/(mm µm) or lbf/(in µin); `--json` has both in mm and MPa, as its key `unit` says.
+- Power capacity by ISO takes K_v and the other load factors at the load asked for, on which they
+  depend.
+
 ## A load spectrum
 
 Tables `[[load]]` stand in the place of the power of `[duty]`: levels of power (and `input_speed`,
