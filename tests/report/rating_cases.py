@@ -212,3 +212,9 @@ def train_by_both():
     """Two stages, a load spectrum, a through-hardened wheel, by both standards."""
     grade = "[rating.iso6336]\naccuracy_grade = 6\n"
     return rated(TRAIN, {"[rating]": f'{grade}[rating]\nstandard = "both"'})
+
+
+def sized_by_both():
+    """The tables of a drive that is sized, then rated by both standards."""
+    grade = "[rating.iso6336]\naccuracy_grade = 6\n"
+    return _tables(SIZED, {"[rating]": f'{grade}[rating]\nstandard = "both"'})

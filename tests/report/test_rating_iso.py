@@ -89,13 +89,13 @@ def test_forces_are_those_of_the_working_circles_by_either_standard():
 
 def test_the_first_sentence_has_both_verdicts():
     said = (
-        "Not safe: by AGMA 3 safety factors fall short, contact of the pinion most; "
+        "Not safe: by AGMA, 3 safety factors fall short, contact of the pinion most; "
         "safe by ISO 6336 alone."
     )
     assert opening(cases.both()) == said
     safe = "Safe: all safety factors are met by AGMA and by ISO 6336; contact of the pinion "
     assert opening(cases.both_safe()) == f"{safe}governs both."
-    fails = "Not safe: by AGMA and by ISO 6336 contact of the wheel of stage 1 falls short."
+    fails = "Not safe: by AGMA and by ISO 6336, contact of the wheel of stage 1 falls short."
     assert opening(cases.train_by_both()) == fails
     assert "S_H 0.834 by AGMA, S_H 1.02 by ISO 6336, 1 asked for; power" in decided(cases.both())
 
@@ -192,3 +192,10 @@ def test_both_are_kept_and_told_by_the_command(here, tmp_path):
     assert done.returncode == 0 and "safe by ISO 6336 alone" in " ".join(done.stdout.split())
     again = gearopt.Result.from_json(cases.both().to_json())
     assert page(again, "") == page(cases.both(), "")
+
+
+def test_an_optimum_that_is_not_safe_by_either_is_warned_of():
+    result = gearopt.solve(cases.sized_by_both())
+    words = "Not safe by its rating: by AGMA and by ISO 6336, 2 safety factors fall short, contact"
+    (note,) = sections(result)[0].notes
+    assert note.startswith(words) and max(map(len, told(result).splitlines())) <= 80

@@ -69,8 +69,8 @@ def _verdict(found: DriveRating) -> str:
     if found.beside is None:
         return short[0][1]
     if len(short) == 2 and short[0][1] == short[1][1]:
-        return f"by {short[0][0]} and by {short[1][0]} {short[0][1]}"
-    parts = [f"by {by} {words}" for by, words in short]
+        return f"by {short[0][0]} and by {short[1][0]}, {short[0][1]}"
+    parts = [f"by {by}, {words}" for by, words in short]
     return "; ".join([*parts, *(f"safe by {one.by} alone" for one in found.each if one.safe)])
 
 
