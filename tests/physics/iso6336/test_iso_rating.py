@@ -263,7 +263,7 @@ def test_load_shares_are_limited():
 def test_remarks_say_what_leaves_its_range():
     """Coarse roots, slow gears, sharp notches, long lives, hardness and strengths off lines."""
     coarse = replace(EH, root=41e-3)
-    assert rate(spur(), LOAD, (EH, coarse)).factors["Y_RrelT"].remark == "roughness above 40 um"
+    assert rate(spur(), LOAD, (EH, coarse)).factors["Y_RrelT"].remark == "roughness above 40 µm"
     assert not rate(spur(), LOAD, (EH, replace(EH, root=40e-3))).factors["Y_RrelT"].remark
     # v z1/100 sqrt(u^2/(1 + u^2)) = 3 m/s at v 15.06 m/s, 358.5 rad/s
     for speed, said in ((358.0, True), (359.0, False)):

@@ -151,7 +151,6 @@ def _unstated(asked: RatingTable, by_agma: bool, by_iso: bool) -> list[str]:
         (True, "overload_factor" in given, "overload factor 1"),
         (by_agma, "reliability" in given, "reliability 99 %"),
         (by_agma, "mounting" in given, f"mounting {asked.mounting}"),
-        (by_iso, "accuracy_grade" in iso, f"ISO 1328 accuracy grade {usual.grades[0]:g}"),
         (by_iso, "oil_grade" in iso, f"oil of {usual.viscosity:g} mm²/s at 40 °C"),
     )
     return [f"{words} (default)" for enters, stated, words in rows if enters and not stated]
