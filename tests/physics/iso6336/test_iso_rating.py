@@ -278,7 +278,7 @@ def test_remarks_say_what_leaves_its_range():
     soft = rate(spur(), LOAD, steels(replace(V, hardness=100.0))).factors["sigma_Hlim"]
     assert "its end is taken" in soft.remark
     between = rate(spur(), LOAD, steels(EH), given={"sigma_Hlim": (1000.0, 1500.0)})
-    assert "between 850 and 1200" in between.factors["Z_L"].remark
+    assert "between 850 MPa and 1200 MPa" in between.factors["Z_L"].remark
     for limit in (800.0, 850.0, 1200.0):
         found = rate(spur(), LOAD, steels(EH), given={"sigma_Hlim": (limit, 1500.0)})
         assert not found.factors["Z_R"].remark
