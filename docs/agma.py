@@ -18,10 +18,10 @@ HEAD = """\
 # Rating by AGMA
 
 External spur and helical gears by ANSI/AGMA 2001-D04 (2101-D04 in metric terms), with the
-geometry factors of AGMA 908-B89 by its analytic method: by [gearopt rate](rate.md), and
-from Python by `gearopt.physics.agma`. The standards themselves were not read: formulas and values are
-from textbooks, tables and public programs. What a single source has is marked *unverified*, in the
-result too (`Rating.unverified`).
+geometry factors of AGMA 908-B89 by its analytic method: by [gearopt rate](rate.md), and from
+Python by `gearopt.physics.agma`. The standards themselves were not read: formulas and values are
+from textbooks, tables and public programs. What a single source has is marked *unverified*, in
+the result too (`Rating.unverified`).
 
 ```python
 import math
