@@ -220,8 +220,8 @@ Correct programs differ in these; this one does as follows.
    strength a unit and 0.55 (St) or 0.75 of it: at a ratio of 1.5 Y_deltarelT moves by 1 %.
 10. Hardness outside the range of a line of part 5 counts as its end. Vickers hardness counts as
     Brinell hardness in Z_W.
-11. K factors depend on the load: the power at which the least safety factor is 1 is that with the
-    factors of the load asked for, on the safe side.
+11. K factors depend on the load: `Rating.power` is that with the factors of the load asked for;
+    `gearopt rate` finds the power at which the least safety factor is the one asked for.
 12. A transverse contact ratio below 1 is refused, with any overlap.
 13. K_v is continuous at N = 1.15 and 1.5 and jumps at N_S, by the standard: of 21/63 teeth, m_n 4,
     grade 6, 50 kW at 1432 1/min from 1.47 to 2.15, were it to run there. Its table makes C_v2,

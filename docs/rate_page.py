@@ -138,8 +138,7 @@ is printed: `iso_tr_6336_30.toml` and `wind_pair.toml`.
 - Symbols are those of ISO: sigma_F and sigma_H against sigma_FG and sigma_HG. Pages and terminal
   show them in Greek; `--json` and `--csv` have them in letters. Deviations are in µm or µin,
   stiffnesses in N/(mm µm) or lbf/(in µin); `--json` has both in mm and MPa, as its key `unit` says.
-- Power capacity by ISO takes K_v and the other load factors at the load asked for, on which they
-  depend.
+- Power capacity by ISO is rated at that power: K_v and the other load factors depend on the load.
 
 ## A load spectrum
 

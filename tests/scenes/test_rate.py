@@ -314,3 +314,27 @@ def test_explain_of_a_sized_drive_lists_no_number_of_its_rating():
     keys = {influence.key for influence in found.influences}
     assert {"duty.power", "limits.k_factor"} <= keys
     assert not any("rating" in key or "treatment" in key for key in keys)
+
+
+@pytest.mark.parametrize("power", ["20 kW", "400 kW"])
+@pytest.mark.parametrize("file", ["pair_by_both", "two_stages_rated"])
+def test_the_power_capacity_by_iso_6336_is_rated_at_that_power(file, power):
+    """Its load factors depend on the load: rated at its capacity a stage is just safe."""
+    changes = {"rating.standard": "both", "duty.power": power}
+    if file == "two_stages_rated":
+        changes |= {"rating.iso6336": {"accuracy_grade": 7}}
+    path = PROBLEMS / f"{file}.toml"
+    found = gearopt.rate(path, changes).design["rating"]["beside"]
+    levels = gearopt.rate(path, changes).asked.get("load", [])
+    capacity, least = found["power_capacity_kW"], found["minimum_bending_safety"]
+    if levels:
+        largest = max(float(level["power"].split()[0]) for level in levels)
+        changes |= {
+            f"load[{k}].power": f"{float(level['power'].split()[0]) * capacity / largest!r} kW"
+            for k, level in enumerate(levels, 1)
+        }
+    again = gearopt.rate(path, changes | {"duty.power": f"{capacity!r} kW"})
+    gears = again.design["rating"]["beside"]["gears"]
+    used = [least / gear["bending_safety"] for gear in gears]
+    used += [found["minimum_contact_safety"] / gear["contact_safety"] for gear in gears]
+    assert max(used) == pytest.approx(1.0, abs=1e-9)

@@ -54,7 +54,7 @@ ONCE = ("level", "power_kW", "input_speed_rpm", "share_percent")  # of a level, 
 DAMAGE_DIGITS = 3
 LOAD_FACTORS = (
     "By ISO 6336 K_v and the factors of face and transverse load depend on the load: its power "
-    "capacity is that with their values at the load that is asked for."
+    "capacity is rated with their values at that power."
 )
 
 

@@ -11,7 +11,7 @@ from gearopt.scenes.drive.rating.gears import Tables, backup
 from gearopt.scenes.drive.rating.tables import GearTable, RatingTable
 from gearopt.scenes.drive.scene import Scene
 
-__all__ = ["NAMES", "UNITS", "finish", "given", "material", "rate", "rate_spectrum"]
+__all__ = ["NAMES", "PROPORTIONAL", "UNITS", "finish", "given", "material", "rate", "rate_spectrum"]
 __all__ += ["NAME", "practice", "steel", "title"]
 NAME = "AGMA"  # in short
 NAMES = {
@@ -37,6 +37,7 @@ TITLES = {  # by edition
     "D04": "ANSI/AGMA 2001-D04 (2101)",
     "B88": "ANSI/AGMA 2001-B88 for rims and the strength of through-hardened steel, else 2001-D04",
 }
+PROPORTIONAL = True  # stresses, or their squares, grow with the load
 
 
 def title(asked: RatingTable) -> str:

@@ -12,11 +12,12 @@ from gearopt.scenes.drive.rating.iso_tables import NAMES
 from gearopt.scenes.drive.rating.tables import GearTable, RatingTable
 from gearopt.scenes.drive.scene import Scene
 
-__all__ = ["NAMES", "UNITS", "finish", "given", "material", "rate", "rate_spectrum"]
+__all__ = ["NAMES", "PROPORTIONAL", "UNITS", "finish", "given", "material", "rate", "rate_spectrum"]
 __all__ += ["NAME", "practice", "steel", "title"]
 NAME = "ISO 6336"  # in short
 SUFFIXES = {"MPa": "MPa", "mm": "mm", "sqrt(MPa)": "sqrt_MPa"}
 UNITS = {symbol: SUFFIXES[unit] for symbol, (_, unit) in CLAUSES.items() if unit}
+PROPORTIONAL = False  # stresses, or their squares, grow with the load
 
 
 def title(asked: RatingTable) -> str:

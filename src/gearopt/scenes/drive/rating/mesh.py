@@ -1,6 +1,7 @@
 """One stage of a drive with its rating by a standard, at every level of load."""
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from typing import Any
 
 from gearopt.errors import SolveError
@@ -28,6 +29,7 @@ class Mesh:
     bending_safety: tuple[float, float]
     contact_safety: tuple[float, float]
     damages: tuple[tuple[float, float], tuple[float, float]] | None  # of bending, of contact
+    grown: Callable[[float], "Mesh"]  # the same with all powers times a factor
 
     @property
     def hardest(self) -> Rating:
@@ -69,11 +71,16 @@ def _mesh(scene: Scene, k: int, pair: GearPair, slower: float, standard: Any) ->
     made = standard.practice(scene, pair, tables)
     levels = gears.operations(scene, slower, tables)
     given = standard.given(scene, k)
-    if not scene.load:
-        one = standard.rate(pair, levels[0], steels, made, given)
-        both = one.bending_safety, one.contact_safety
-        return Mesh(standard, k + 1, pair, tables, levels, (one,), *both, None)
-    found = standard.rate_spectrum(pair, levels, steels, made, given)
-    damages = found.bending_damage, found.contact_damage
-    both = found.bending_safety, found.contact_safety
-    return Mesh(standard, k + 1, pair, tables, levels, found.levels, *both, damages)
+
+    def grown(factor: float) -> Mesh:
+        own = tuple(replace(one, power=factor * one.power) for one in levels)
+        if not scene.load:
+            one = standard.rate(pair, own[0], steels, made, given)
+            both = one.bending_safety, one.contact_safety
+            return Mesh(standard, k + 1, pair, tables, own, (one,), *both, None, grown)
+        found = standard.rate_spectrum(pair, own, steels, made, given)
+        damages = found.bending_damage, found.contact_damage
+        both = found.bending_safety, found.contact_safety
+        return Mesh(standard, k + 1, pair, tables, own, found.levels, *both, damages, grown)
+
+    return grown(1.0)

@@ -29,6 +29,13 @@ from gearopt.physics.shaft_forces import mesh_forces, rotation, rpm, train_force
 from gearopt.scenes.drive.rating.mesh import Mesh
 from gearopt.scenes.drive.scene import Scene
 
+SAME = 1e-10  # margin of load at which a capacity is found
+MOST_STEPS, FLATTEST, LARGEST = (
+    100,
+    0.05,
+    30.0,
+)  # of the search: steps, slope, logarithm of a factor
+
 
 def gear_row(mesh: Mesh, k: int) -> GearRating:
     """Return the pinion (0) or the wheel (1) of a mesh."""
@@ -82,13 +89,13 @@ def life_hours(mesh: Mesh, k: int) -> float:
 def mesh_row(scene: Scene, mesh: Mesh, wanted: tuple[float, float]) -> MeshRating:
     """Return a mesh; wanted: the safety factors asked for, of bending and contact."""
     pair, (moved, speed) = mesh.pair, mesh.largest_load
-    least, governs = _margins(mesh, wanted)
+    growth, governs = _capacity(mesh, wanted), _margins(mesh, wanted)[1]
     forces = mesh_forces(pair, moved)
     strongest = max(level.power for level in mesh.operations)
     return MeshRating(
         stage=mesh.stage,
         governs=governs,
-        power_capacity_kW=1e-6 * least * strongest,
+        power_capacity_kW=1e-6 * growth * strongest,
         tangential_force_N=float(forces.tangential),
         radial_force_N=float(forces.radial),
         axial_force_N=float(forces.axial),
@@ -124,6 +131,28 @@ def _margins(mesh: Mesh, wanted: tuple[float, float]) -> tuple[float, str]:
         rows.append((mesh.bending_safety[k] / wanted[0], f"bending of the {member}"))
         rows.append(((mesh.contact_safety[k] / wanted[1]) ** 2, f"contact of the {member}"))
     return min(rows)
+
+
+def _capacity(mesh: Mesh, wanted: tuple[float, float]) -> float:
+    """Return the factor by which all loads may grow until the least margin is 1.
+
+    The margin itself where factors of load do not depend on it, as by AGMA; else by secants of its
+    logarithm over that of the load. 0 where no load is small enough.
+    """
+    low, of_low = 0.0, math.log(_margins(mesh, wanted)[0])
+    if mesh.standard.PROPORTIONAL:
+        return math.exp(of_low)
+    at = of_low
+    for _ in range(MOST_STEPS):
+        margin = math.log(_margins(mesh.grown(math.exp(at)), wanted)[0])
+        if abs(margin) < SAME:
+            return math.exp(at)
+        slope = (margin - of_low) / (at - low) if at != low else -1.0
+        low, of_low = at, margin
+        at -= margin / min(slope, -FLATTEST)
+        if at < -LARGEST:
+            break
+    return 0.0
 
 
 def _friction(scene: Scene, mesh: Mesh) -> tuple[float | None, bool]:
