@@ -293,3 +293,27 @@ def test_wear_gives_the_tips_a_relief():
     mixed = rate(spur(), LOAD, steels(EH), given={"sigma_Hlim": (1500.0, 700.0)})
     assert mixed.factors["C_a"].value == pytest.approx(0.5 * (1.995e-3 + 8.511e-3), abs=1e-6)
     assert rate(spur(), LOAD, steels(EH), Practice(relief=0.01)).factors["C_a"].value == 0.01
+
+
+def test_a_spectrum_tells_damages_and_safety_of_both_gears_apart():
+    """One level: Miner's sum is cycles over life, of bending and of contact, of each gear."""
+    hard = replace(LOAD, power=6.0 * LOAD.power)
+    one, found = rate(spur(), hard, steels(EH)), rate_spectrum(spur(), (hard,), steels(EH))
+    for k in (0, 1):
+        for damage, life in (
+            (found.bending_damage, one.bending_life),
+            (found.contact_damage, one.contact_life),
+        ):
+            wanted = one.cycles[k] / life[k] if life[k] > 0.0 else math.inf
+            assert damage[k] == pytest.approx(wanted, rel=1e-9)
+    assert found.bending_safety == pytest.approx(one.bending_safety, rel=1e-9)
+    assert found.contact_safety == pytest.approx(one.contact_safety, rel=1e-9)
+
+
+def test_the_roughness_of_both_flanks_counts():
+    rough, fine = replace(EH, flank=8e-3), replace(EH, flank=4e-3)
+    ways = [
+        rate(spur(), LOAD, pair).factors["Z_R"].value for pair in ((rough, fine), (fine, rough))
+    ]
+    between = rate(spur(), LOAD, steels(replace(EH, flank=6e-3))).factors["Z_R"].value
+    assert ways[0] == ways[1] == between
