@@ -85,4 +85,4 @@ minimum_contact_safety = 1.1
 # power = "7.5 kW"
 # share = "30 %"
 """
-MORE_EXAMPLES = {"rating": ("gears that are given, rated by AGMA", RATING)}
+MORE_EXAMPLES = {"rating": ("gears that are given, rated by AGMA or ISO 6336", RATING)}
