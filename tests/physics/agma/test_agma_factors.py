@@ -28,6 +28,7 @@ from gearopt.physics.agma.factors import (
     temperature_factor,
 )
 from gearopt.physics.agma.hardness import hardness_ratio_factor, surface_hardened_factor
+from gearopt.physics.agma.life import bending_curve, pitting_curve
 from gearopt.physics.agma.stress import (
     bending_safety,
     bending_stress,
@@ -254,6 +255,13 @@ LAWS = [
     lambda a, b: surface_hardened_factor(1e-3 * a, 200.0 * b),
     lambda a, b: bending_stress(1e3 * a, 20.0, 3.0, 0.4 * b),
     lambda a, b: contact_stress(190.0, 1e3 * a, 20.0, 50.0 * b, 0.1),
+    lambda a, b: rim_factor_b88(0.8 * a + 0.1 * b),
+    lambda a, b: bending_safety(250.0 * a, 0.9, 1.0, 1.0, 125.0 * b),
+    lambda a, b: contact_safety(1000.0 * a, 0.95, 1.0, 1.0, 1.0, 900.0 * b),
+    lambda a, b: bending_curve("through-hardened", 250.0).factor(1e5 * a * b),
+    lambda a, b: bending_curve("carburised").factor(1e8 * a * b),
+    lambda a, b: pitting_curve("through-hardened").factor(1e6 * a * b),
+    lambda a, b: pitting_curve("nitrided", "critical").factor(1e8 * a * b),
 ]
 
 
