@@ -91,6 +91,12 @@ class Spectrum:
     contact_safety: tuple[float, float]
 
 
+def check_symbols(given: Iterable[str], known: Sequence[str]) -> None:
+    """Refuse a factor that is given by a symbol that is not known, by ValueError."""
+    if unknown := sorted(set(given) - set(known)):
+        raise ValueError(f"no factor {unknown[0]!r}; known: {', '.join(known)}")
+
+
 def governing(bending: Sequence[float], contact: Sequence[float]) -> tuple[float, tuple[str, str]]:
     """Return the least safety factor of load, min(S_F, S_H^2), and whose it is: member and mode."""
     modes = [(bending[k], MEMBERS[k], "bending") for k in (0, 1)]

@@ -6,6 +6,7 @@ from dataclasses import replace
 import casadi as ca
 import numpy as np
 import pytest
+from iso6336_pairs import EH, LOAD, V, helical, spur, steels
 
 from gearopt.optimise.tape import legacy_numpy
 from gearopt.physics.gears import GearPair, Rack
@@ -16,22 +17,6 @@ from gearopt.physics.iso6336.load_factors import RANGES
 from gearopt.physics.iso6336.materials import Material
 from gearopt.physics.iso6336.rating import rate
 from gearopt.physics.rating import Operation
-
-EH = Material("Eh", "MQ")
-V = Material("V alloy", "ML", 300.0, yield_strength=700.0)
-LOAD = Operation(5e7, 150.0, 2000.0, overload=1.25)
-
-
-def spur(**more):
-    return GearPair.of_teeth(4.0, 21, 63, 40.0, **more)
-
-
-def helical(angle=0.25):
-    return GearPair.of_teeth(4.0, 21, 63, 40.0, angle, profile_shifts=(0.2, 0.0))
-
-
-def steels(material):
-    return material, material
 
 
 def test_spur_gears_are_the_limit_of_small_helix_angles():

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import pytest
 from iso6336_cases import case_report
+from iso6336_pairs import EH, LOAD, V, helical, spur, steels
 
 from gearopt.bench.rating import iso_example
 from gearopt.physics.gears import GearPair, Rack
@@ -13,23 +14,6 @@ from gearopt.physics.iso6336.factors import CLAUSES, PAIRED, SHARED
 from gearopt.physics.iso6336.materials import Material
 from gearopt.physics.iso6336.rating import rate, rate_spectrum
 from gearopt.physics.iso6336.refusals import SENTENCES
-from gearopt.physics.rating import Operation
-
-EH = Material("Eh", "MQ")
-V = Material("V alloy", "ML", 300.0, yield_strength=700.0)
-LOAD = Operation(5e7, 150.0, 2000.0, overload=1.25)
-
-
-def spur(**more):
-    return GearPair.of_teeth(4.0, 21, 63, 40.0, **more)
-
-
-def helical(angle=0.25):
-    return GearPair.of_teeth(4.0, 21, 63, 40.0, angle, profile_shifts=(0.2, 0.0))
-
-
-def steels(material):
-    return material, material
 
 
 def test_every_factor_can_be_given():

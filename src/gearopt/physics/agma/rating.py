@@ -27,6 +27,7 @@ from gearopt.physics.rating import (
     Operation,
     Rating,
     Spectrum,
+    check_symbols,
     damage,
     governing,
     spectrum_safety,
@@ -47,10 +48,7 @@ def rate(
     is not known, a power, speed, K_o or given factor that is not above 0, and what the laws refuse.
     """
     practice, given = practice or Practice(), dict(given or {})
-    if unknown := set(given) - {*PAIRED, *SHARED}:
-        raise ValueError(
-            f"no factor {sorted(unknown)[0]!r}; known: {', '.join((*SHARED, *PAIRED))}"
-        )
+    check_symbols(given, (*SHARED, *PAIRED))
     if practice.edition not in EDITIONS:
         raise ValueError(f"no edition {practice.edition!r}; known: {', '.join(EDITIONS)}")
     _check(operation, given)

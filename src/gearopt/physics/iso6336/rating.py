@@ -22,6 +22,7 @@ from gearopt.physics.rating import (
     Operation,
     Rating,
     Spectrum,
+    check_symbols,
     damage,
     governing,
     spectrum_safety,
@@ -56,10 +57,7 @@ def _case(
 ) -> Case:
     """Return the case of a rating, checked."""
     practice, given = practice or Practice(), dict(given or {})
-    if unknown := set(given) - {*PAIRED, *SHARED}:
-        raise ValueError(
-            f"no factor {sorted(unknown)[0]!r}; known: {', '.join((*SHARED, *PAIRED))}"
-        )
+    check_symbols(given, (*SHARED, *PAIRED))
     check(practice)
     _numbers(operation, given)
     refuse(pair, practice)

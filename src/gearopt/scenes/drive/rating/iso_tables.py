@@ -12,6 +12,7 @@ from gearopt.physics.iso6336.factors import CLAUSES, PAIRED
 from gearopt.physics.iso6336.load_factors import HELIX_MODIFICATIONS
 from gearopt.physics.iso6336.materials import MATERIALS, QUALITIES
 from gearopt.physics.iso6336.tooth_form import SHIFTS
+from gearopt.scenes.drive.rating.given import Given
 from gearopt.scenes.reading.fields import Table, advised, choice, number, quantity, truth, whole
 from gearopt.scenes.reading.lists import each_gear
 from gearopt.units import Quantity
@@ -79,21 +80,6 @@ MATERIAL = advised(
 )
 
 
-def _plain(value: Any) -> Any:
-    if isinstance(value, tuple):
-        return tuple(map(_plain, value))
-    return value.value if isinstance(value, Quantity) else float(value)
-
-
-class _Given(Table):
-    """Factors that stand in the place of computed ones; [pinion, wheel], or one for both."""
-
-    def factors(self) -> dict[str, Any]:
-        """Return the given factors by symbol, as plain numbers in mm and MPa."""
-        held = ((name, getattr(self, name)) for name in type(self).model_fields)
-        return {name: _plain(value) for name, value in held if value is not None}
-
-
 def _field(symbol: str) -> Any:
     """Return the field of a factor: a value, or one for each gear."""
     reads = READS[CLAUSES[symbol][1]]
@@ -107,8 +93,8 @@ def _field(symbol: str) -> Any:
 
 IsoGiven = create_model(
     "IsoGiven",
-    __base__=_Given,
-    __doc__=_Given.__doc__,
+    __base__=Given,
+    __doc__=Given.__doc__,
     **{symbol: _field(symbol) for symbol in CLAUSES if symbol != "K_A"},
 )
 

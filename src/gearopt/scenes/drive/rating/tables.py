@@ -1,7 +1,7 @@
 """What a rating needs beside the gears: materials and tools of gears, service, factors, loads."""
 
 from fractions import Fraction
-from typing import Annotated, Any
+from typing import Annotated
 
 from pydantic import Field, model_validator
 
@@ -10,6 +10,7 @@ from gearopt.physics.agma.bending import LOADS
 from gearopt.physics.agma.factors import ALIGNMENT, QUALITIES
 from gearopt.physics.agma.life import SERVICES
 from gearopt.physics.agma.rating_factors import EDITIONS
+from gearopt.scenes.drive.rating.given import Given
 from gearopt.scenes.drive.rating.iso_tables import ISO_KEYS, IsoGearKeys, IsoTable
 from gearopt.scenes.reading.fields import (
     Table,
@@ -175,7 +176,7 @@ def with_shared(own: GearTable, shared: GearKeys) -> GearTable:
     return own.model_copy(update={n: getattr(shared, n) for n in names})
 
 
-class GivenTable(Table):
+class GivenTable(Given):
     """Factors that stand in the place of computed ones; [pinion, wheel], or one for both."""
 
     K_o: Number = Field(None, description="Overload factor")
@@ -196,17 +197,6 @@ class GivenTable(Table):
     Y_N: Numbers = Field(None, description="Stress cycle factor of bending")
     Z_N: Numbers = Field(None, description="Stress cycle factor of pitting")
     C_H: Numbers = Field(None, description="Hardness ratio factor")
-
-    def factors(self) -> dict[str, Any]:
-        """Return the given factors by symbol, as plain numbers in MPa."""
-        held = ((name, getattr(self, name)) for name in type(self).model_fields)
-        return {name: _plain(value) for name, value in held if value is not None}
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, tuple):
-        return tuple(map(_plain, value))
-    return value.value if isinstance(value, Quantity) else float(value)
 
 
 class RatingTable(Table):
