@@ -99,7 +99,7 @@ FORMULAS = (
     ),
     (
         "K_Fbeta",
-        "K_Hbeta^(1/(1 + h/b + (h/b)²))",
+        "K_Hbeta^(1/(1 + h/b + (h/b)²)); K_Hbeta of crowned teeth and end relief",
         "part 1, 7.6",
         "`load_factors.root_face_load_factor`",
     ),
@@ -146,7 +146,7 @@ FORMULAS = (
     (
         "Z_W",
         "(1.2 - (HB - 130)/1700) (3 um/R_zH)^0.15; 1 + A (u - 1) of two tempered gears "
-        "(*unverified* but for the line in HB)",
+        "(static strength *unverified*)",
         "part 2, 13",
         "`contact_factors.work_hardening_factor`",
     ),
@@ -171,20 +171,20 @@ FORMULAS = (
     ),
     (
         "Y_B, Y_DT",
-        "1.6 ln(2.242 h_t/s_R); 2.366 - 0.666 eps_alphan of grades to 4 (*unverified*)",
+        "1.6 ln(2.242 h_t/s_R); 2.366 - 0.666 eps_alphan of grades to 4",
         "part 3, 9, 10",
         "`bending_factors.rim_factor`, `deep_tooth_factor`",
     ),
     (
         "Y_deltarelT",
-        "(1 + sqrt(rho' chi))/(1 + sqrt(rho' chi_T)); rho' of steels that are not case or "
-        "induction hardened *unverified*",
+        "(1 + sqrt(rho' chi))/(1 + sqrt(rho' chi_T)); rho' of St and cast iron, and a yield "
+        "point that is estimated, *unverified*",
         "part 3, 11",
         "`bending_factors.notch_factor`",
     ),
     (
         "Y_RrelT",
-        "1.674 - 0.529 (R_z + 1)^0.1 and two more, *unverified*",
+        "1.674 - 0.529 (R_z + 1)^0.1 and two more, of cast iron *unverified*",
         "part 3, 12",
         "`bending_factors.surface_factor`",
     ),

@@ -22,8 +22,9 @@ from gearopt.scenes.reading.load import examples
 HARDNESS = """\
 `hardness` in HB counts as HV; of hardened flanks `flank_hardness` is asked for where the strength
 depends on it (IF, NV nitrocarburised). Two lines meet inside the range; GGG ferritic has those of
-GGG. Eh at MQ is that of a core of 25 HRC; for others give `sigma_Flim`. Most strengths are
-unverified: pictures of the table alone have them."""
+GGG. Eh at MQ is that of a core of 25 HRC; `iso_core = "25 HRC, Jominy"` (28 HRC at J = 12 mm, too)
+has 461 and `"30 HRC"` 500 MPa. Most strengths are unverified: pictures of the table alone have
+them. They are those of a failure probability of 1 % or less (IACS UR M56, 2.8 and 3.8)."""
 PROBLEMS = Path(__file__).parents[1] / "problems"
 TEXT = """\
 # Rate gears
@@ -109,8 +110,8 @@ It prints:
 | overload | `overload_factor` is K_o | the same number is K_A |
 | accuracy | `quality`, `accuracy`: K_v | `accuracy_grade`: K_v, K_Hbeta, K_Halpha |
 | mounting | `mounting`, `crowned`, `adjusted` | `helix_modification` |
-| steel | `treatment`, `grade` | `iso_material` or `treatment`; `iso_quality` |
-| reliability | `reliability`: K_R | that of the strengths, 99 % |
+| steel | `treatment`, `grade` | `iso_material` or `treatment`; `iso_quality`, `iso_core` |
+| reliability | `reliability`: K_R | that of the strengths, 99 % or more |
 | oil, roughness | | `oil_grade`, `flank_rz` (or 6 `roughness`), `root_rz` |
 | given, all stages | `[rating.given]` | `[rating.iso6336.given]` |
 | given, one stage | `[stage.given]` | `[stage.given_iso6336]` |
@@ -150,8 +151,9 @@ if it is another one), each with its share of the life. The shares add up to 100
 
 The damage of a level is its number of cycles over the life at its stress; Miner's sum of all levels
 is 1 at the end of the life. S_F and S_H are the factors by which all stresses may grow until then.
-Stresses and factors that are shown are those of the level of largest stress, forces those of the
-level of largest force: K_v rises with speed. The first pinion of
+By ISO 6336 (part 6) they are marked unverified: no published case has a spectrum. Stresses and
+factors that are shown are those of the level of largest stress, forces those of the level of
+largest force: K_v rises with speed. The first pinion of
 `problems/two_stages_rated.toml`, beside one load for the whole life:
 
 | load | S_F | S_H |

@@ -192,10 +192,15 @@ def levels(result: Result, measures: Measures) -> Section | None:
         row = _level_row(found, level, of_gear, measures, one is found)
         at = len(ONCE) + 1
         rows.append([*row[:at], *[SHORT[one.by]] * named, *row[at:]])
-    said = (
+    said = [
         "A level's damage is its load cycles over those that the gear would bear at this level "
-        "alone; it fails where their sum (Miner's) is 1.",
-    )
+        "alone; it fails where their sum (Miner's) is 1."
+    ]
+    said += [
+        f"Unverified by {one.by}: no published case confirms a load spectrum."
+        for one in found.each
+        if any(name.startswith("load spectrum") for name in one.unverified)
+    ]
     return Section("Load spectrum", words=said, tables=(Table("levels", heads, rows),))
 
 

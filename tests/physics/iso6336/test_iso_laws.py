@@ -3,6 +3,7 @@
 import math
 
 import pytest
+from iso6336_pairs import EH, LOAD, spur, steels
 
 from gearopt.physics.gears import GearPair, Rack
 from gearopt.physics.iso6336 import bending_factors as bending
@@ -19,8 +20,10 @@ from gearopt.physics.iso6336.accuracy import (
     range_mean,
     single_pitch_1995,
 )
+from gearopt.physics.iso6336.case import Practice
 from gearopt.physics.iso6336.curves import bending_curve, pitting_curve
 from gearopt.physics.iso6336.materials import Material
+from gearopt.physics.iso6336.rating import rate
 from gearopt.physics.iso6336.tooth_form import load_sharing, tangent_theta, virtual_gear
 from gearopt.physics.tolerances import rounded_tolerance
 
@@ -370,3 +373,21 @@ def test_the_table_of_coefficients_jumps_at_a_total_ratio_of_2():
     below, above = loads.coefficients(2.0), loads.coefficients(2.0 + 1e-12)
     jumps = [b / a - 1.0 for a, b in zip(below, above, strict=True)]
     assert jumps == pytest.approx([0.0, -0.0138, -0.0514, -0.0675, 0.0, -0.0180, 0.0], abs=1e-4)
+
+
+@pytest.mark.parametrize("word", loads.HELIX_MODIFICATIONS)
+def test_light_ends_leave_the_root_the_factor_of_the_flank(word):
+    """K_Fbeta = K_Hbeta with crowning or end relief. Source: IACS UR M56, 1.6.4."""
+    found = rate(spur(), LOAD, steels(EH), Practice(helix_modification=word)).factors
+    flank, root = found["K_Hbeta"].value, found["K_Fbeta"].value
+    assert root == flank if "crowned" in word or "relief" in word else 1.0 < root < flank
+
+
+@pytest.mark.parametrize(
+    ("name", "verified"),
+    [("St", True), ("St cast", False), ("V alloy", True), ("V cast alloy", False)],
+)
+def test_strengths_of_cast_steels_are_unverified(name, verified):
+    steel = Material(name, "ME", 205.0, yield_strength=600.0)
+    found = rate(spur(), LOAD, steels(steel)).factors
+    assert found["sigma_Hlim"].verified == found["sigma_Flim"].verified == verified

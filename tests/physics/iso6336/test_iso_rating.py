@@ -70,7 +70,9 @@ def test_soft_wheels_harden_against_hard_pinions():
     found = rate(spur(), replace(LOAD, hours=2e4), (EH, wheel))
     assert found.factors["Z_W"].value[0] == 1.0
     assert found.factors["Z_W"].value[1] == pytest.approx(1.1 * (3.0 / _film()) ** 0.15, rel=1e-9)
-    assert not found.factors["Z_W"].verified
+    assert found.factors["Z_W"].verified
+    short = rate(spur(), replace(LOAD, hours=1.0), (EH, wheel)).factors["Z_W"]
+    assert not short.verified and "static" in short.remark
     both = replace(wheel, hardness=360.0), replace(wheel, hardness=240.0)
     known = 1.0 + 2.0 * (0.00898 * 1.5 - 0.00829)
     found = rate(spur(), replace(LOAD, hours=2e4), both)
@@ -97,11 +99,11 @@ def test_rims_and_deep_teeth():
     assert thin.bending_stress[0] == plain.bending_stress[0]
     ratio = thin.bending_stress[1] / plain.bending_stress[1]
     assert ratio == pytest.approx(1.6 * math.log(2.242 / 0.8))
-    assert "Y_B" in thin.unverified and "Y_B" not in plain.unverified
+    assert thin.factors["Y_B"].verified
     deep = GearPair.of_teeth(4.0, 60, 80, 40.0, rack=Rack(addendum=1.35, dedendum=1.6))
     fine = rate(deep, LOAD, steels(EH), Practice(grades=(4.0, 4.0))).factors["Y_DT"]
     coarse = rate(deep, LOAD, steels(EH)).factors["Y_DT"]
-    assert fine.value < 1.0 == coarse.value and not fine.verified
+    assert fine.value < 1.0 == coarse.value
 
 
 def test_doubts_are_named():
@@ -109,15 +111,25 @@ def test_doubts_are_named():
     light = rate(spur(), replace(LOAD, power=1e5), steels(EH))
     assert {"c_prime", "c_gamma_alpha", "K_v"} <= set(light.unverified)
     soft = rate(spur(), LOAD, steels(V))
-    assert {"K_v", "K_Halpha", "Y_deltarelT"} <= set(soft.unverified)
+    assert {"K_v", "K_Halpha"} <= set(soft.unverified)
     slow = rate(spur(), replace(LOAD, pinion_speed=100.0), steels(V))
     assert not {"K_v", "K_Halpha"} & set(slow.unverified)
     guess = rate(spur(), LOAD, steels(replace(V, yield_strength=0.0)))
     assert "estimated" in guess.factors["Y_deltarelT"].remark
+    assert "Y_deltarelT" in guess.unverified and "Y_deltarelT" not in soft.unverified
+    iron = rate(spur(), LOAD, steels(Material("GG", "MQ", 200.0)))
+    assert {"Y_deltarelT", "Y_RrelT"} <= set(iron.unverified)
+    weak = rate(spur(), LOAD, steels(replace(V, yield_strength=400.0)))
+    assert (
+        weak.factors["Y_deltarelT"].remark
+        == "yield point outside 500 to 1000 MPa: its end is taken"
+    )
     fast = rate(spur(), replace(LOAD, pinion_speed=2000.0, power=7e8), steels(EH))
     assert fast.factors["N"].value > 0.85 and "K_v" in fast.unverified
     crowned = rate(spur(), LOAD, steels(EH), Practice(helix_modification="crowned"))
-    assert "K_Hbeta" in crowned.unverified
+    assert {"K_Hbeta", "K_Fbeta"} <= set(crowned.unverified)
+    given = rate(spur(), LOAD, steels(EH), Practice(helix_modification="crowned"), {"K_Hbeta": 1.2})
+    assert "K_Fbeta" not in given.unverified
     assert (
         crowned.factors["K_Hbeta"].value < rate(spur(), LOAD, steels(EH)).factors["K_Hbeta"].value
     )

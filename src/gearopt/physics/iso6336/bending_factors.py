@@ -10,7 +10,7 @@ import numpy as np
 from gearopt.physics.choosing import choose
 
 TEST_GEAR = 2.0  # Y_ST, stress correction factor of the test gears
-REVERSED = 0.7  # Y_M of idlers and fully reversed loads. ISO 6336-5, 5.3, and 6336-3, annex B
+REVERSED = 0.7  # Y_M of idlers and fully reversed loads. ISO 6336-5, 5.3; IACS UR M56, 3.9
 
 
 def helix_factor(helix: Any, overlap: Any, edition: str = "2006") -> Any:
@@ -26,8 +26,8 @@ def helix_factor(helix: Any, overlap: Any, edition: str = "2006") -> Any:
 def rim_factor(backup: Any) -> Any:
     """Return Y_B = 1.6 ln(2.242 h_t/s_R), 1 from s_R/h_t = 1.2; backup s_R/h_t above 0.5.
 
-    The two do not quite meet: 1.0000 against 1.0001. Source: ISO 6336-3:2006, 9 [memory; K_B of
-    AGMA 2001 is the same].
+    The two do not quite meet: 1.0000 against 1.0001. Source: ISO 6336-3:2006, 9; IACS UR M56, 3.6,
+    has it, and K_B of AGMA 2001 is the same.
     """
     found = 1.6 * np.log(2.242 / np.minimum(backup, 1.2))
     return choose(backup >= 1.2, 1.0, found)
@@ -36,7 +36,7 @@ def rim_factor(backup: Any) -> Any:
 def deep_tooth_factor(virtual_ratio: Any, grade: Any) -> Any:
     """Return Y_DT: 1 to eps_alphan = 2.05, then, of grades to 4, 2.366 - 0.666 eps_alphan.
 
-    0.7 above 2.5; 1 for grades from 5 on. Source: ISO 6336-3:2006, 10 [memory].
+    0.7 above 2.5; 1 for grades from 5 on. Source: ISO 6336-3:2006, 10; IACS UR M56, 3.7.
     """
     found = 2.366 - 0.666 * np.clip(virtual_ratio, 2.05, 2.5)
     found = choose(virtual_ratio > 2.5, 0.7, found)
@@ -49,7 +49,8 @@ def root_stress(load: Any, width: Any, module: Any, product: Any) -> Any:
 
 
 # rho' [mm] of the slip layer by yield point (tensile strength of cast iron) [MPa].
-# Source: ISO 6336-3:2006, table 2 [memory; 0.0030 and 0.0014 are met by printed reports]
+# Source: ISO 6336-3:2006, table 2; IACS UR M56, 3.11, has those of V, NT, NV, Eh and IF, the rest
+# is of memory; 0.0030 and 0.0014 are met by printed reports
 SLIP_LAYERS: dict[str, tuple[tuple[float, float], ...]] = {
     **dict.fromkeys(("GG", "GGG ferritic"), ((150.0, 0.3124), (300.0, 0.3095))),
     **dict.fromkeys(("NT", "NV", "NV nitrocarburised"), ((0.0, 0.1005),)),
@@ -96,8 +97,8 @@ def static_notch_factor(family: str, concentration: Any, yield_strength: float) 
     return (1.0 + slope * (concentration - 1.0)) / (1.0 + slope)
 
 
-# Y_RrelT: value below 1 um, then a - b (R_z + 1)^c. Source: ISO 6336-3:2006, 12 [memory; the line
-# of V, Eh, IF is met by a printed report]
+# Y_RrelT: value below 1 um, then a - b (R_z + 1)^c. Source: ISO 6336-3:2006, 12; rules of the
+# Korean Register, part 5, have all three lines (IACS UR M56, 3.12), of nitrided steels the third
 SURFACES = {
     **dict.fromkeys(("V", "GTS", "GGG", "Eh", "IF"), (1.12, 1.674, 0.529, 0.1)),
     "St": (1.07, 5.306, 4.203, 0.01),

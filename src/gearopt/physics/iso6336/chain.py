@@ -107,7 +107,12 @@ def _face(case: Case, found: Found) -> Any:
 
 
 def _root_face(case: Case, found: Found) -> Any:
-    """Return K_Fbeta of the deeper tooth: h = (h_aP + h_fP) m_n, without tip alteration."""
+    """Return K_Fbeta of the deeper tooth: h = (h_aP + h_fP) m_n, without tip alteration.
+
+    K_Hbeta where crowning or end relief takes load off the ends. Source: IACS UR M56, 1.6.4.
+    """
+    if case.practice.helix_modification in loads.LIGHT_ENDS:
+        return found["K_Hbeta"]
     deep = [g.rack.addendum + g.rack.dedendum for g in case.pair.gears]
     depth = np.maximum(*deep) * case.pair.normal_module
     return loads.root_face_load_factor(found["K_Hbeta"], case.pair.face_width, depth)

@@ -126,7 +126,7 @@ def equivalent_roughness(hard: Any, soft: Any, curvature: Any, speed: Any, visco
     """Return R_zH [mm] of a hard pinion against a soft wheel, 3 to 16 um.
 
     R_z1 (10/rho_red)^0.33 (1500/(v nu_40))^0.33 (R_z1/R_z2)^0.66: a film hides roughness.
-    roughness hard, soft [mm]; speed [mm/s], viscosity [mm2/s]. Part 2, 13 [memory].
+    roughness hard, soft [mm]; speed [mm/s], viscosity [mm2/s]. Part 2, 13; IACS UR M56, 2.11.
     """
     film = (1500.0 / (1e-3 * speed * viscosity)) ** 0.33
     found = hard * (10.0 / curvature) ** 0.33 * film * (hard / soft) ** 0.66
@@ -136,8 +136,8 @@ def equivalent_roughness(hard: Any, soft: Any, curvature: Any, speed: Any, visco
 def work_hardening_factor(brinell: Any, roughness: Any) -> Any:
     """Return Z_W = (1.2 - (HB - 130)/1700) (3 um/R_zH)^0.15 of a soft gear against a hard one.
 
-    HB from 130 to 470, beyond which the ends count; roughness R_zH [mm]. Part 2, 13; the line in HB
-    is that of hanslhansl/din3990 too, the roughness is of memory.
+    HB from 130 to 470, beyond which the ends count; roughness R_zH [mm]. Part 2, 13; IACS UR M56,
+    2.11, has it, but takes at least 1.
     """
     counted = np.clip(brinell, STEEPEST, HARDEST)
     return (1.2 - (counted - 130.0) / 1700.0) * (3e-3 / roughness) ** 0.15
@@ -147,7 +147,7 @@ def tempered_hardening_factor(pinion: Any, wheel: Any, ratio: Any) -> Any:
     """Return Z_W = 1 + A (u - 1) of a through-hardened wheel against a harder pinion.
 
     A = 0.00898 HB1/HB2 - 0.00829 for HB1/HB2 from 1.2 to 1.7, beyond which it is 0 and 0.00698; u
-    counts up to 20. Part 2, 13 [memory; C_H of AGMA 2001 is the same].
+    counts up to 20. Part 2, 13; IACS UR M56, 2.11; C_H of AGMA 2001 is the same.
     """
     harder = pinion / wheel
     slope = 0.00898 * np.minimum(harder, 1.7) - 0.00829

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from typing import Any
 
 from gearopt.physics.iso6336.case import Case
+from gearopt.physics.iso6336.chain import shared
 from gearopt.physics.iso6336.contact_factors import HARD_LIMIT
 from gearopt.physics.iso6336.curves import LONGEST
 from gearopt.physics.iso6336.load_factors import MAIN, lower_limit
@@ -13,6 +14,7 @@ from gearopt.physics.iso6336.stiffness import LEAST_LINE_LOAD
 from gearopt.physics.rating import Factor
 
 Found = dict[str, Any]
+NITROCARBURISED = "NV nitrocarburised"
 RANGE = 3000.0  # mm/s of v z1/100 sqrt(u^2/(1 + u^2)): below, K_v by method B is hardly above 1
 
 # symbol: clause and method, unit
@@ -133,6 +135,10 @@ def _face(case: Case, found: Found) -> Doubt:
     return _stiffness(case, found)
 
 
+def _root_face(case: Case, found: Found) -> Doubt:
+    return (True, "") if "K_Hbeta" in case.given else _face(case, found)
+
+
 def _transverse(case: Case, found: Found) -> Doubt:
     if _tempered(case):
         return False, "running-in of these materials: from memory"
@@ -163,28 +169,22 @@ def _single(case: Case, found: Found) -> Doubt:
     return _of_2019(case, "f_ZCa of helical gears")
 
 
-def _rim(case: Case, found: Found) -> Doubt:
-    return (True, "") if max(_both(found["Y_B"])) == 1.0 else (False, "thin rim: from memory")
-
-
-def _deep(case: Case, found: Found) -> Doubt:
-    return (True, "") if found["Y_DT"] == 1.0 else (False, "deep teeth: from memory")
-
-
 def _both(value: Any) -> tuple[Any, Any]:
     first, second = value if isinstance(value, tuple | list) else (value, value)
     return first, second
 
 
 def _hardening(case: Case, found: Found) -> Doubt:
-    plain = all(value == 1.0 for value in _both(found["Z_W"]))
-    return (True, "") if plain else (False, "part of its law is from memory")
+    values = _both(found["Z_W"])
+    if any(value != 1.0 and shared(case, k, True) < 1.0 for k, value in enumerate(values)):
+        return False, "short lives: static strength from memory"
+    return True, "below 1, where rules of ship classes take 1" if min(values) < 1.0 else ""
 
 
 def _confirmed(material: Material, stress: str) -> bool:
     """Return whether a second source has the line: data.js of waa552, or a printed report."""
     if material.quality == "ME":
-        return material.family in ("St", "V")
+        return material.name in ("St", "V carbon", "V alloy")
     return (material.name, material.quality, stress) == ("Eh", "MQ", "H")
 
 
@@ -203,25 +203,19 @@ def _life(case: Case, found: Found) -> Doubt:
 
 
 def _slip(case: Case, found: Found) -> Doubt:
-    if all(m.family in ("Eh", "IF") for m in case.materials):
-        return True, ""
-    guessed = any(
-        m.yield_strength <= 0.0 and m.family in (*TEMPERED, *CAST) for m in case.materials
-    )
-    guess = "; yield point estimated from hardness" if guessed else ""
-    return False, f"slip layer from memory{guess}"
+    if any(m.family in ("St", "GTS", "GGG", *CAST, NITROCARBURISED) for m in case.materials):
+        return False, "slip layer from memory"
+    tempered = [m for m in case.materials if m.family == "V"]
+    if any(m.yield_strength <= 0.0 for m in tempered):
+        return False, "yield point estimated from hardness"
+    off = any(not 500.0 <= m.yield_strength <= 1000.0 for m in tempered)
+    return True, "yield point outside 500 to 1000 MPa: its end is taken" if off else ""
 
 
 def _surface(case: Case, found: Found) -> Doubt:
-    if all(m.family in ("V", "GTS", "GGG", "Eh", "IF") for m in case.materials):
-        coarse = max(m.root for m in case.materials) > 40e-3
-        return True, "roughness above 40 µm" if coarse else ""
-    return False, "line of these materials from memory"
-
-
-def _mean(case: Case, found: Found) -> Doubt:
-    idle = any(m.reversed_load for m in case.materials)
-    return (False, "0.7 for reversed loads") if idle else (True, "")
+    if any(m.family in (*CAST, NITROCARBURISED) for m in case.materials):
+        return False, "line of these materials from memory"
+    return True, "roughness above 40 µm" if max(m.root for m in case.materials) > 40e-3 else ""
 
 
 def _lubrication(case: Case, found: Found) -> Doubt:
@@ -236,6 +230,7 @@ DOUBTS: dict[str, Callable[[Case, Found], Doubt]] = {
     "N": _stiffness,
     "K_v": _dynamic,
     "K_Hbeta": _face,
+    "K_Fbeta": _root_face,
     "K_Halpha": _transverse,
     "K_Falpha": _transverse_root,
     "Z_BD": _single,
@@ -250,9 +245,6 @@ DOUBTS: dict[str, Callable[[Case, Found], Doubt]] = {
     "Y_F": _form,
     "Y_S": _notch,
     "Y_beta": _helix,
-    "Y_B": _rim,
-    "Y_DT": _deep,
     "Y_deltarelT": _slip,
     "Y_RrelT": _surface,
-    "Y_M": _mean,
 }

@@ -99,6 +99,7 @@ HELIX_MODIFICATIONS = {
     "helix corrected and crowned": (0.1, 0.5),
     "end relief": (0.7, 0.7),
 }
+LIGHT_ENDS = ("crowned", "crowned for deflection", "helix corrected and crowned", "end relief")
 PER_LOAD = 0.023e-3  # mm of f_sh per N/mm
 LEAST_PER_LOAD = 0.005e-3  # mm of F_betax per N/mm, at least
 

@@ -47,6 +47,11 @@ class Material:
         return FAMILIES[self.name]
 
     @property
+    def by_core(self) -> bool:
+        """Whether sigma_Flim depends on the core."""
+        return (self.name, self.quality) == ("Eh", "MQ")
+
+    @property
     def brinell(self) -> float:
         """Hardness as Brinell: Vickers hardness counts as Brinell hardness, below 400 or so."""
         return self.hardness

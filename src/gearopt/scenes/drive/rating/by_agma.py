@@ -12,7 +12,7 @@ from gearopt.scenes.drive.rating.tables import GearTable, RatingTable
 from gearopt.scenes.drive.scene import Scene
 
 __all__ = ["NAMES", "PROPORTIONAL", "UNITS", "finish", "given", "material", "rate", "rate_spectrum"]
-__all__ += ["NAME", "practice", "steel", "title"]
+__all__ += ["NAME", "UNVERIFIED_SPECTRUM", "practice", "steel", "title"]
 NAME = "AGMA"  # in short
 NAMES = {
     "K_o": "overload",
@@ -38,6 +38,7 @@ TITLES = {  # by edition
     "B88": "ANSI/AGMA 2001-B88 for rims and the strength of through-hardened steel, else 2001-D04",
 }
 PROPORTIONAL = True  # stresses, or their squares, grow with the load
+UNVERIFIED_SPECTRUM = ()  # of a load spectrum: what no second source has
 
 
 def title(asked: RatingTable) -> str:

@@ -92,6 +92,7 @@ def check_rated(
                 raise refuse(rule, at=_given_at(rating, stage, k, name), action="remove")
         _check_pinion(stage, k)
         if rating.by_iso6336:
+            _check_core(gears, stage, k)
             _check_accuracy(rating, made)
         for member in MEMBERS:
             own = getattr(stage, member)
@@ -174,6 +175,16 @@ def _written(gears: Gears, stages: Sequence[StageTable], names: Sequence[str]) -
         tables += [(("stage", k, member), getattr(stage, member)) for member in MEMBERS]
     for place, table in tables:
         yield from ((*place, name) for name in names if getattr(table, name) is not None)
+
+
+def _check_core(gears: Gears, stage: StageTable, k: int) -> None:
+    """Refuse a core of a gear whose strength does not depend on it."""
+    for member in MEMBERS:
+        own = getattr(stage, member)
+        table = with_shared(own, gears)
+        if own.iso_core and (table.treatment or table.iso_material) and not steel(table).by_core:
+            rule = "changes nothing: only Eh of quality MQ has strengths by core"
+            raise refuse(rule, at=("stage", k, member, "iso_core"), action="remove")
 
 
 def _check_material(gear: GearTable, place: Place, given: dict[str, Any]) -> None:

@@ -25,6 +25,7 @@ def steel(table: GearTable) -> Material:
         name,
         table.iso_quality or usual.quality,
         hardness.value if hardness else 0.0,
+        table.iso_core or usual.core,
         yield_strength=table.yield_strength.value if table.yield_strength else 0.0,
         modulus=table.elastic_modulus.value if table.elastic_modulus else usual.modulus,
         poisson=usual.poisson if table.poisson_ratio is None else float(table.poisson_ratio),
@@ -51,4 +52,5 @@ def material(table: GearTable) -> str:
     found = steel(table)
     hardness = table.flank_hardness or (table.hardness if found.hardness else None)
     words = [found.name, found.quality, *([str(hardness)] if hardness else [])]
+    words += [f"core {table.iso_core}"] if table.iso_core and found.by_core else []
     return ", ".join(words)

@@ -10,7 +10,7 @@ from gearopt.physics.iso6336.case import EDITIONS
 from gearopt.physics.iso6336.contact_factors import PROFILE_MODIFICATIONS
 from gearopt.physics.iso6336.factors import CLAUSES, PAIRED
 from gearopt.physics.iso6336.load_factors import HELIX_MODIFICATIONS
-from gearopt.physics.iso6336.materials import MATERIALS, QUALITIES
+from gearopt.physics.iso6336.materials import CORES, MATERIALS, QUALITIES
 from gearopt.physics.iso6336.tooth_form import SHIFTS
 from gearopt.scenes.drive.rating.given import Given
 from gearopt.scenes.reading.fields import Table, advised, choice, number, quantity, truth, whole
@@ -108,6 +108,11 @@ class IsoGearKeys(Table):
     )
     iso_quality: Annotated[str | None, choice(*QUALITIES)] = Field(
         None, description="Quality of material of ISO 6336-5; by default MQ"
+    )
+    iso_core: Annotated[str | None, choice(*CORES)] = Field(
+        None,
+        description="Core of Eh of quality MQ, in sigma_Flim: its least hardness; Jominy: and 28 "
+        "HRC or more at J = 12 mm (unverified); by default 25 HRC",
     )
     flank_hardness: Annotated[Quantity | None, quantity("Vickers hardness", "650 HV")] = Field(
         None, description="Vickers hardness of the flanks, of hardened ones; else from hardness"

@@ -173,8 +173,9 @@ def _by(scene: Scene, pairs: tuple[GearPair, ...], standard: Any) -> DriveRating
             for k in (0, 1)
         ),
         levels=tuple(row for mesh in meshes if scene.load for row in level_rows(scene, mesh)),
-        unverified=tuple(
-            dict.fromkeys(f"{r.symbol} of stage {r.stage}" for r in factors if not r.verified)
+        unverified=(
+            *dict.fromkeys(f"{r.symbol} of stage {r.stage}" for r in factors if not r.verified),
+            *(standard.UNVERIFIED_SPECTRUM if scene.load else ()),
         ),
         flaws=tuple(tooth_warnings(pairs)),
         by=standard.NAME,
