@@ -15,9 +15,9 @@ HEAD = """\
 External spur and helical gears by ISO 6336, parts 1, 2, 3 and 5, method B, and 6: by
 [gearopt rate](rate.md), and from Python by `gearopt.physics.iso6336`. `edition` is 2006 or 2019,
 tolerances are those of ISO 1328-1:1995 or 2013. The standards themselves were not read: formulas
-and values are from public programs, printed reports, tables and memory. What a single source or
-memory alone has is marked *unverified*, in the result too (`Rating.unverified`). Scuffing and
-micropitting are not rated.
+and values are from public programs, printed reports, rules of ship classes that repeat parts of
+them (IACS UR M56), tables and memory. What a single source or memory alone has is marked
+*unverified*, in the result too (`Rating.unverified`). Scuffing and micropitting are not rated.
 
 ```python
 import math

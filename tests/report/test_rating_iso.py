@@ -173,6 +173,18 @@ def test_a_spectrum_by_both_has_the_damages_of_each():
         assert sum(r["damage, contact"] for r in own) == pytest.approx(row["Miner's sum, contact"])
 
 
+def test_a_spectrum_by_iso_is_unverified():
+    """In the result, on the page beside the levels and on the terminal; not by AGMA."""
+    result = cases.train_by_both()
+    agma = result.design["rating"]
+    assert "load spectrum by part 6" in agma["beside"]["unverified"]
+    assert not any("spectrum" in name for name in agma["unverified"])
+    said = "Unverified by ISO 6336: no published case confirms a load spectrum."
+    assert text(page(result, "")).count(said) == 1
+    assert "load spectrum by part 6" in " ".join(told(result).split())
+    assert "load spectrum" not in str(cases.iso().design["rating"]["unverified"])
+
+
 def test_what_is_taken_for_granted_is_that_of_the_standard():
     agma, iso, both = (
         " ".join(make().report["assumptions"])

@@ -66,6 +66,18 @@ WRONG = {  # the mistake: what stands there, what is written, key and value as t
         "gears.iso_quality = 2",
         "ML",
     ),
+    "core of another steel": (
+        "profile_shift = 0.145",
+        'profile_shift = 0.145\niso_core = "30 HRC"\niso_quality = "ME"',
+        "stage[1].pinion.iso_core",
+        "changes nothing: only Eh of quality MQ has strengths by core. Remove it",
+    ),
+    "core by a number": (
+        TREATMENT,
+        f'{TREATMENT}\niso_core = "35 HRC"',
+        'gears.iso_core = "35 HRC"',
+        '"30 HRC"',
+    ),
     "grade of AGMA": (
         TREATMENT,
         f"{TREATMENT}\ngrade = 2",
@@ -139,6 +151,17 @@ def test_accuracy_is_asked_for_unless_all_that_follows_from_it_is_given(given):
     less = given.rpartition(", ")[0]
     with pytest.raises(gearopt.SceneError, match="accuracy_grade: is missing"):
         gearopt.rate(tomllib.loads(RIGHT.replace(GRADE, f"given = {{ {less} }}")))
+
+
+@pytest.mark.parametrize(
+    ("core", "known"), [("25 HRC", 425.0), ("25 HRC, Jominy", 461.0), ("30 HRC", 500.0)]
+)
+def test_the_core_decides_the_strength_of_the_root(core, known):
+    """Table 1 of ISO 6336-5:2016, Eh, MQ; without the key the lowest line."""
+    tables = tomllib.loads(RIGHT.replace(TREATMENT, f'{TREATMENT}\niso_core = "{core}"'))
+    found = gearopt.rate(tables).design["rating"]
+    assert next(f for f in found["factors"] if f["symbol"] == "sigma_Flim")["pinion"] == known
+    assert [gear["material"] for gear in found["gears"]] == [f"Eh, MQ, core {core}"] * 2
 
 
 def test_forces_do_not_depend_on_the_standard():
