@@ -23,8 +23,9 @@ HARDNESS = """\
 `hardness` in HB counts as HV; of hardened flanks `flank_hardness` is asked for where the strength
 depends on it (IF, NV nitrocarburised). Two lines meet inside the range; GGG ferritic has those of
 GGG. Eh at MQ is that of a core of 25 HRC; `iso_core = "25 HRC, Jominy"` (28 HRC at J = 12 mm, too)
-has 461 and `"30 HRC"` 500 MPa. Most strengths are unverified: pictures of the table alone have
-them. They are those of a failure probability of 1 % or less (IACS UR M56, 2.8 and 3.8)."""
+has 461 and `"30 HRC"` 500 MPa. IF is hardened at the roots, too: with "induction, flanks" give
+`sigma_Flim`. Most strengths are unverified: pictures of the table alone have them. They are those
+of a failure probability of 1 % or less (IACS UR M56, 2.8 and 3.8)."""
 PROBLEMS = Path(__file__).parents[1] / "problems"
 TEXT = """\
 # Rate gears

@@ -34,6 +34,30 @@ WRONG = {  # the mistake: what stands there, what is written, key and value as t
         "Write accuracy_grade = 6",
     ),
     "edition": ('"2006"', '"2012"', 'rating.iso6336.edition = "2012"', "2006"),
+    "edition by a number": (
+        '"2006"',
+        "2019",
+        "rating.iso6336.edition = 2019",
+        'Write edition = "2019"',
+    ),
+    "oil by its grade": (
+        '"320 mm^2/s"',
+        '"ISO VG 320"',
+        'rating.iso6336.oil_grade = "ISO VG 320"',
+        'Write oil_grade = "320 mm^2/s"',
+    ),
+    "soft roots": (
+        TREATMENT,
+        'treatment = "induction, flanks"\nflank_hardness = "550 HV"',
+        'gears.treatment = "induction, flanks"',
+        "Give sigma_Flim in [rating.iso6336.given]",
+    ),
+    "core of no gear": (
+        TREATMENT,
+        'treatment = "nitrided"\niso_core = "30 HRC"',
+        "gears.iso_core",
+        "changes nothing: only Eh of quality MQ has strengths by core. Remove it",
+    ),
     "tolerances": ('"1995"', '"2010"', 'rating.iso6336.tolerances = "2010"', '"1995"'),
     "oil grade without a unit": ('"320 mm^2/s"', "320", "rating.iso6336.oil_grade = 320", "mm^2/s"),
     "material": (

@@ -234,7 +234,7 @@ def choice(
             raise refuse(f"is not one of {known}", ways, action="tell")
         if value not in names or not isinstance(value, str):
             known = ", ".join(f'"{n}"' for n in names)
-            close = near(value, names) if isinstance(value, str) else None
+            close = near(str(value), names)
             raise refuse(f"is not {'one of ' * (len(names) > 1)}{known}", close)
         return value
 

@@ -7,7 +7,7 @@ from gearopt.physics.agma.allowables import CONTACT, bending_allowable, contact_
 from gearopt.physics.gears import MEMBERS
 from gearopt.physics.iso6336.materials import SURFACE_HARDENED, strength
 from gearopt.scenes.drive.drive_tables import Gears, StageTable
-from gearopt.scenes.drive.rating.iso_material import steel
+from gearopt.scenes.drive.rating.iso_material import SOFT_ROOTS, steel
 from gearopt.scenes.drive.rating.iso_tables import ISO_KEYS, IsoTable
 from gearopt.scenes.drive.rating.tables import (
     MATERIAL,
@@ -26,6 +26,7 @@ AGMA = (  # keys of [rating] that only AGMA has
     *("adjusted", "pinion_offset", "size_factor", "bending_load", "service", "given"),
 )
 AGMA_KEYS = ("grade", "surface_hardness")  # of gears
+CORELESS = "changes nothing: only Eh of quality MQ has strengths by core"
 CYCLES = ("Y_N", "Z_N", "Y_NT", "Z_NT")  # factors that follow from the levels of a spectrum
 
 
@@ -83,6 +84,8 @@ def check_rated(
 ) -> None:
     """Refuse a rating whose gears lack their strength, or whose loads do not fit together."""
     _check_standard(rating, gears, stages)
+    if rating.by_iso6336:
+        _check_core(gears, stages)
     for k, stage in enumerate(stages or (StageTable(),)):
         given = rating.given.factors() | stage.given.factors()
         made = rating.iso6336.given.factors() | stage.given_iso6336.factors()
@@ -92,7 +95,6 @@ def check_rated(
                 raise refuse(rule, at=_given_at(rating, stage, k, name), action="remove")
         _check_pinion(stage, k)
         if rating.by_iso6336:
-            _check_core(gears, stage, k)
             _check_accuracy(rating, made)
         for member in MEMBERS:
             own = getattr(stage, member)
@@ -177,14 +179,19 @@ def _written(gears: Gears, stages: Sequence[StageTable], names: Sequence[str]) -
         yield from ((*place, name) for name in names if getattr(table, name) is not None)
 
 
-def _check_core(gears: Gears, stage: StageTable, k: int) -> None:
-    """Refuse a core of a gear whose strength does not depend on it."""
-    for member in MEMBERS:
-        own = getattr(stage, member)
-        table = with_shared(own, gears)
-        if own.iso_core and (table.treatment or table.iso_material) and not steel(table).by_core:
-            rule = "changes nothing: only Eh of quality MQ has strengths by core"
-            raise refuse(rule, at=("stage", k, member, "iso_core"), action="remove")
+def _check_core(gears: Gears, stages: Sequence[StageTable]) -> None:
+    """Refuse a core of gears whose strength does not depend on it."""
+    counts = []  # whether the core that all gears share is that of one
+    for k, stage in enumerate(stages or (StageTable(),)):
+        for member in MEMBERS:
+            own = getattr(stage, member)
+            table = with_shared(own, gears)
+            known = table.treatment is not None or table.iso_material is not None
+            counts.append(own.iso_core is None and not (known and not steel(table).by_core))
+            if own.iso_core and known and not steel(table).by_core:
+                raise refuse(CORELESS, at=("stage", k, member, "iso_core"), action="remove")
+    if gears.iso_core and not any(counts):
+        raise refuse(CORELESS, at=("gears", "iso_core"), action="remove")
 
 
 def _check_material(gear: GearTable, place: Place, given: dict[str, Any]) -> None:
@@ -192,6 +199,10 @@ def _check_material(gear: GearTable, place: Place, given: dict[str, Any]) -> Non
     if gear.treatment is None and gear.iso_material is None:
         rule = "is missing: a rating needs the material of every gear (or give treatment)"
         raise refuse(rule, "Eh", (*place, "iso_material"), "sample")
+    if gear.treatment == SOFT_ROOTS and not gear.iso_material and "sigma_Flim" not in given:
+        rule = "leaves the roots soft: ISO 6336-5 has the bending strength of hardened ones alone"
+        tell = 'Give sigma_Flim in [rating.iso6336.given], or write treatment = "induction, roots"'
+        raise refuse(rule, tell, (*place, "treatment"), "tell")
     found = steel(gear)
     if gear.web_thickness is not None and gear.rim_thickness is None:
         rule = "is missing: a gear with a web has a rim"

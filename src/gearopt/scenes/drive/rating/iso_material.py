@@ -12,6 +12,7 @@ OF_TREATMENT = {  # treatment of AGMA: the nearest material of ISO 6336-5
     "nitralloy": "NT",
     "2.5 % chrome": "NT",
 }
+SOFT_ROOTS = "induction, flanks"  # IF of table 1 is hardened at the roots, too (memory)
 RZ = 6.0  # R_z over R_a. Source: ISO 6336-2:2006, 12.3.1.3.1: R_a = R_z/6
 
 

@@ -64,6 +64,7 @@ READS = {  # by unit of a factor
     "mm": quantity("length", "8 um", "1 mm", zero=True),
     "sqrt(MPa)": quantity("elastic coefficient", "189.8 sqrt(MPa)"),
 }
+VG = (32, 46, 68, 100, 150, 220, 320, 460, 680, 1000)  # viscosity grades of ISO 3448
 GRADES = advised(
     each_gear(whole(6, 0, 12)),
     {
@@ -77,6 +78,10 @@ MATERIAL = advised(
         r".*\d.*": 'Write the kind of steel: "Eh" case-hardened, "V alloy" through-hardened, "IF" '
         'induction hardened, "NT" nitriding steel, "NV" nitrided through-hardening steel'
     },
+)
+OIL = advised(
+    quantity("kinematic viscosity", "220 mm^2/s"),
+    {rf"(iso )?vg[ -]?{grade}": f'Write oil_grade = "{grade} mm^2/s"' for grade in VG},
 )
 
 
@@ -152,7 +157,7 @@ class IsoTable(Table):
     shift: Annotated[str, choice(*SHIFTS)] = Field(
         "nominal", description="Profile shift that Y_F takes: nominal, or generating"
     )
-    oil_grade: Annotated[Quantity | None, quantity("kinematic viscosity", "220 mm^2/s")] = Field(
+    oil_grade: Annotated[Quantity | None, OIL] = Field(
         None, description="Kinematic viscosity of the oil at 40 degC; by default 220 mm^2/s"
     )
     tip_relief: Annotated[Quantity | None, quantity("length", "30 um", "5 mm", zero=True)] = Field(
