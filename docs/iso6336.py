@@ -226,6 +226,10 @@ Correct programs differ in these; this one does as follows.
 13. K_v is continuous at N = 1.15 and 1.5 and jumps at N_S, by the standard: of 21/63 teeth, m_n 4,
     grade 6, 50 kW at 1432 1/min from 1.47 to 2.15, were it to run there. Its table makes C_v2,
     C_v3, C_v4 and C_v6 jump by -1.4, -5.1, -6.7 and -1.8 % at eps_gamma = 2.
+14. Sizes outside ISO 1328-1 (for 1995 its nearest range is taken), x_1 + x_2 outside -0.5 to 2 in
+    c', alpha_n above 25° and beta above 30° are rated, and said beside the factor.
+15. K_Fbeta is K_Hbeta of crowned teeth and of end relief. Z_W may fall below 1 against a rough
+    pinion; ship classes (IACS UR M56) take at least 1.
 """
 
 

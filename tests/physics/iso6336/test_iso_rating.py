@@ -282,6 +282,42 @@ def test_remarks_say_what_leaves_its_range():
     assert rate(sharp, LOAD, steels(EH)).factors["Y_S"].remark == "q_s outside 1 to 8"
 
 
+@pytest.mark.parametrize(
+    ("sizes", "practice", "said"),
+    [
+        ((0.4, 21, 63, 30.0), Practice(), "module outside ISO 1328-1"),
+        ((1.0, 21, 63, 3.0), Practice(), "face width outside ISO 1328-1"),
+        ((0.2, 21, 63, 3.0), Practice(), "module, diameter, face width outside ISO 1328-1"),
+        ((3.0, 21, 63, 30.0), Practice(grades=(6.0, 12.0), tolerances="2013"), "grade outside"),
+        ((3.0, 21, 63, 30.0), Practice(grades=(6.0, 12.0)), ""),
+        ((0.5, 21, 63, 4.0), Practice(tolerances="2013"), ""),
+    ],
+)
+def test_tolerances_beyond_their_standard_are_unverified(sizes, practice, said):
+    """1995: m 0.5 to 70, d 5 to 10,000, b 4 to 1000 mm, grades 0 to 12; 2013: grades 1 to 11."""
+    found = rate(GearPair.of_teeth(*sizes), replace(LOAD, power=1e5), steels(EH), practice).factors
+    for symbol in ("f_pb", "f_falpha", "f_ma"):
+        assert found[symbol].remark.startswith(said) and found[symbol].verified == (not said)
+        assert bool(found[symbol].remark) == bool(said)
+
+
+def test_steep_angles_and_large_shifts_are_told():
+    """IACS UR M56, 3.1: normal pressure angles up to 25, helix angles up to 30 degrees."""
+
+    def told(symbol, helix=0.0, angle=20.0, shift=0.0):
+        rack = Rack(pressure_angle=math.radians(angle), tip_radius=0.2)
+        pair = GearPair.of_teeth(
+            4.0, 40, 80, 40.0, math.radians(helix), rack, profile_shifts=(shift, shift)
+        )
+        return rate(pair, LOAD, steels(EH)).factors[symbol]
+
+    assert told("Y_beta", 31.0).remark.startswith("beta above 30 degrees")
+    assert told("Y_F", angle=26.0).remark.startswith("alpha_n above 25 degrees")
+    assert not told("Y_beta", 30.0).remark and not told("Y_F", angle=25.0).remark
+    for shift, sound in ((-0.26, False), (-0.25, True), (1.0, True), (1.01, False)):
+        assert told("c_prime", shift=shift).verified == sound
+
+
 def test_wear_gives_the_tips_a_relief():
     """C_ay of 1500 and 700 MPa, 1.995 and 8.511 um: their mean, where none is given."""
     hard = rate(spur(), LOAD, steels(EH)).factors["C_a"].value

@@ -18,6 +18,12 @@ TOLERANCES = ("1995", "2013")
 DIAMETERS = (5.0, 20, 50, 125, 280, 560, 1000, 1600, 2500, 4000, 6000, 8000, 10000)
 MODULES = (0.5, 2.0, 3.5, 6, 10, 16, 25, 40, 70)
 WIDTHS = (4.0, 10, 20, 40, 80, 160, 250, 400, 650, 1000)
+RANGES_1995 = {
+    "grade": (0.0, 12.0),
+    "module": (MODULES[0], MODULES[-1]),
+    "diameter": (DIAMETERS[0], DIAMETERS[-1]),
+    "face_width": (WIDTHS[0], WIDTHS[-1]),
+}
 
 
 @dataclass(frozen=True)
@@ -82,6 +88,28 @@ def deviations(
     cosine = np.cos(pair.pinion.transverse_pressure_angle)
     (_, _, first), (_, _, second) = found
     return Deviations(pitch * cosine, form, (first**2 + second**2) ** 0.5, slope)
+
+
+def beyond(pair: GearPair, grades: tuple[Any, Any], edition: str = "1995") -> list[str]:
+    """Return which sizes of a pair of floats lie outside the ranges of ISO 1328-1.
+
+    Source: ISO 1328-1:1995, 1, of the diameters, modules and widths above, and `tolerances.SCOPE`.
+    """
+    ranges = tolerances.SCOPE if edition == "2013" else RANGES_1995
+    outside = []
+    for gear, grade in zip(pair.gears, grades, strict=True):
+        sizes = {
+            "grade": grade,
+            "module": gear.normal_module,
+            "diameter": gear.reference_diameter,
+            "face_width": gear.face_width,
+        }
+        outside += [name for name, size in sizes.items() if not _within(size, ranges[name])]
+    return [name.replace("_", " ") for name in dict.fromkeys(outside)]
+
+
+def _within(size: Any, ends: tuple[float, float]) -> bool:
+    return bool(ends[0] <= size <= ends[1])
 
 
 def _of_gear(gear: Any, grade: Any, edition: str, smooth: bool) -> tuple[Any, Any, Any]:

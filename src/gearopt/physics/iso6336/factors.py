@@ -1,8 +1,10 @@
 """The factors of a rating by ISO 6336 with clause and method, unit, doubts."""
 
+import math
 from collections.abc import Callable
 from typing import Any
 
+from gearopt.physics.iso6336.accuracy import beyond
 from gearopt.physics.iso6336.case import Case
 from gearopt.physics.iso6336.chain import shared
 from gearopt.physics.iso6336.contact_factors import HARD_LIMIT
@@ -14,6 +16,10 @@ from gearopt.physics.iso6336.stiffness import LEAST_LINE_LOAD
 from gearopt.physics.rating import Factor
 
 Found = dict[str, Any]
+SHIFTS = -0.5, 2.0  # x_1 + x_2 for which c' holds. Source: part 1, 9.3 [memory]
+# angles above which results want experience. Source: IACS UR M56, 3.1, of parts 2 and 3
+PRESSURE_ANGLE, HELIX_ANGLE = math.radians(25.0) + 1e-9, math.radians(30.0) + 1e-9
+EXPERIENCE = "to be confirmed by experience"
 NITROCARBURISED = "NV nitrocarburised"
 RANGE = 3000.0  # mm/s of v z1/100 sqrt(u^2/(1 + u^2)): below, K_v by method B is hardly above 1
 
@@ -103,7 +109,15 @@ def _stiffness(case: Case, found: Found) -> Doubt:
     line = case.load * found["K_A"] * found["K_gamma"] / case.pair.face_width
     if line < LEAST_LINE_LOAD:
         return False, "below 100 N/mm: the law of memory alone"
+    shifts = sum(gear.profile_shift for gear in case.pair.gears)
+    if not SHIFTS[0] <= shifts <= SHIFTS[1]:
+        return False, "x_1 + x_2 outside -0.5 to 2: beyond the range of c'"
     return True, ""
+
+
+def _tolerance(case: Case, found: Found) -> Doubt:
+    outside = beyond(case.pair, case.practice.grades, case.practice.tolerances)
+    return not outside, f"{', '.join(outside)} outside ISO 1328-1" if outside else ""
 
 
 def _tempered(case: Case) -> bool:
@@ -151,7 +165,9 @@ def _transverse_root(case: Case, found: Found) -> Doubt:
 
 
 def _form(case: Case, found: Found) -> Doubt:
-    return _of_2019(case, "load sharing f_eps")
+    sound, remark = _of_2019(case, "load sharing f_eps")
+    steep = max(gear.rack.pressure_angle for gear in case.pair.gears) > PRESSURE_ANGLE
+    return sound, remark or (f"alpha_n above 25 degrees: {EXPERIENCE}" if steep else "")
 
 
 def _notch(case: Case, found: Found) -> Doubt:
@@ -160,7 +176,9 @@ def _notch(case: Case, found: Found) -> Doubt:
 
 
 def _helix(case: Case, found: Found) -> Doubt:
-    return _of_2019(case, "cos(beta)^3")
+    sound, remark = _of_2019(case, "cos(beta)^3")
+    steep = abs(case.pair.pinion.helix_angle) > HELIX_ANGLE
+    return sound, remark or (f"beta above 30 degrees: {EXPERIENCE}" if steep else "")
 
 
 def _single(case: Case, found: Found) -> Doubt:
@@ -224,6 +242,7 @@ def _lubrication(case: Case, found: Found) -> Doubt:
 
 
 DOUBTS: dict[str, Callable[[Case, Found], Doubt]] = {
+    **dict.fromkeys(("f_pb", "f_falpha", "f_ma"), _tolerance),
     "c_prime": _stiffness,
     "c_gamma_alpha": _stiffness,
     "c_gamma_beta": _stiffness,
