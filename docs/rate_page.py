@@ -152,8 +152,9 @@ if it is another one), each with its share of the life. The shares add up to 100
 
 The damage of a level is its number of cycles over the life at its stress; Miner's sum of all levels
 is 1 at the end of the life. S_F and S_H are the factors by which all stresses may grow until then.
-By ISO 6336 (part 6) they are marked unverified: no published case has a spectrum. Stresses and
-factors that are shown are those of the level of largest stress, forces those of the level of
+By ISO 6336 they are marked unverified: the one published spectrum, annex C of part 6, is of
+contact. Its levels hold all overloads, K_A = 1: `overload_factor` multiplies every level. Stresses
+and factors that are shown are those of the level of largest stress, forces those of the level of
 largest force: K_v rises with speed. The first pinion of
 `problems/two_stages_rated.toml`, beside one load for the whole life:
 

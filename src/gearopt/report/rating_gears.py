@@ -197,7 +197,8 @@ def levels(result: Result, measures: Measures) -> Section | None:
         "alone; it fails where their sum (Miner's) is 1."
     ]
     said += [
-        f"Unverified by {one.by}: no published case confirms a load spectrum."
+        f"Unverified by {one.by}: a published spectrum confirms the sum for contact, none for "
+        "bending."
         for one in found.each
         if any(name.startswith("load spectrum") for name in one.unverified)
     ]

@@ -149,8 +149,8 @@ def rate_spectrum(
     """Return the rating of a pair under levels of load, each with its hours, speed and power.
 
     Load factors are those of each level, K_v and K_Hbeta by its own load. Z_NT and Y_NT may not be
-    given (ValueError). One level gives what `rate` gives. Source: ISO 6336-6 (unverified: no
-    published case); Palmgren and Miner.
+    given (ValueError). One level gives what `rate` gives. Source: ISO 6336-6 (its annex C
+    confirms the sum for contact; of bending unverified); Palmgren and Miner.
     """
     if set(LIVES) & set(given or {}):
         raise ValueError("Y_NT and Z_NT follow from the levels of a spectrum and cannot be given")

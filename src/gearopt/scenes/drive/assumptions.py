@@ -135,11 +135,13 @@ def _iso_assumptions(scene: Scene, asked: RatingTable) -> list[str]:
     )
     helix = asked.iso6336.helix_modification
     modified = "without helix modification" if helix == "none" else f"helix modification: {helix}"
+    overloaded = bool(scene.load) and asked.overload_factor != 1
     words = [f"Materials of ISO 6336-5 by treatment: {', '.join(chosen)}."] if chosen else []
     return [
         *words,
         "K_Hβ by method C of ISO 6336-1, for a pinion midway between its bearings on a solid "
         f"shaft; {modified}. Bending by method B: load at the outer point of single pair contact.",
+        *[f"K_A = {float(asked.overload_factor):g} multiplies every level of load."][:overloaded],
     ]
 
 
