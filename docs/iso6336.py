@@ -126,7 +126,7 @@ FORMULAS = (
     (
         "Z_B, Z_D",
         "M_1, M_2, at least 1, for spur gears; 1 for eps_beta ≥ 1 (2019: sqrt(f_ZCa), "
-        "*unverified*); straight in eps_beta between",
+        "*unverified* but for 1.2); straight in eps_beta between",
         "part 2, 6",
         "`contact_factors.single_contact_factor`",
     ),
@@ -153,7 +153,8 @@ FORMULAS = (
     (
         "Y_F",
         "6 h_F cos(alpha_Fen)/(s_Fn² cos(alpha_n)) at the 30-degree tangent of the rack's fillet; "
-        "2019: times f_eps (*unverified*)",
+        "2019: times f_eps (*unverified* "
+        "for eps_beta < 1 and eps_alphan ≥ 2)",
         "part 3, 6",
         "`tooth_form.tooth_form`",
     ),
@@ -165,7 +166,7 @@ FORMULAS = (
     ),
     (
         "Y_beta",
-        "1 - eps_beta beta/120°; 2019: over cos(beta)³ (*unverified*)",
+        "1 - eps_beta beta/120°; 2019: over cos(beta)³",
         "part 3, 8",
         "`bending_factors.helix_factor`",
     ),
@@ -239,6 +240,8 @@ Correct programs differ in these; this one does as follows.
     rounding of the stresses (0.7 %, beyond 5e7 cycles 1.8 %) but five, up to 0.8 % above static
     strength, to which the annex draws the line of Z_NT on and which end the life here. The annex
     keeps Z_L, Z_v and Z_R of reference strength at all lives, as given factors do here.
+17. Edition 2019 is held to two printed reports (suns and planets of m_n 40, beta 15°): f_eps,
+    Y_F, Y_S, h_F, s_Fn, rho_F to the last digit, sigma_H with f_ZCa = 1.2, sigma_F to 0.2 %.
 """
 
 

@@ -16,7 +16,7 @@ REVERSED = 0.7  # Y_M of idlers and fully reversed loads. ISO 6336-5, 5.3; IACS 
 def helix_factor(helix: Any, overlap: Any, edition: str = "2006") -> Any:
     """Return Y_beta = 1 - eps_beta beta/120 degrees, eps_beta up to 1, beta up to 30 degrees.
 
-    2019: over cos(beta)^3 (unverified). helix [rad]. Source: ISO 6336-3:2006, 8.
+    2019: over cos(beta)^3. helix [rad]. Source: ISO 6336-3:2006, 8; a printed report of 2019.
     """
     degrees = np.minimum(np.degrees(np.abs(helix)), 30.0)
     found = 1.0 - np.minimum(overlap, 1.0) * degrees / 120.0

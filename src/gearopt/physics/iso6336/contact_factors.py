@@ -11,7 +11,7 @@ from gearopt.physics.choosing import choose
 from gearopt.physics.gears import GearPair
 from gearopt.physics.geometry.tooth import base_helix_angle
 
-# f_ZCa of 2019 by what is known of the profile modification [memory, unverified]
+# f_ZCa of 2019 by what is known of the profile modification [memory; a printed report has 1.2]
 PROFILE_MODIFICATIONS = {"none": 1.2, "by experience": 1.07, "by analysis": 1.0}
 SOFT_LIMIT, HARD_LIMIT = 850.0, 1200.0  # MPa, between which C_ZL and C_ZR change
 STEEPEST, HARDEST = 130.0, 470.0  # HB between which Z_W falls

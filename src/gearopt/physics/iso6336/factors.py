@@ -165,7 +165,8 @@ def _transverse_root(case: Case, found: Found) -> Doubt:
 
 
 def _form(case: Case, found: Found) -> Doubt:
-    sound, remark = _of_2019(case, "load sharing f_eps")
+    light = case.pair.overlap_ratio < 1.0 or case.forms[0].virtual_ratio >= 2.0
+    sound, remark = _of_2019(case, "load sharing f_eps") if light else (True, "")
     steep = max(gear.rack.pressure_angle for gear in case.pair.gears) > PRESSURE_ANGLE
     return sound, remark or (f"alpha_n above 25 degrees: {EXPERIENCE}" if steep else "")
 
@@ -176,13 +177,13 @@ def _notch(case: Case, found: Found) -> Doubt:
 
 
 def _helix(case: Case, found: Found) -> Doubt:
-    sound, remark = _of_2019(case, "cos(beta)^3")
     steep = abs(case.pair.pinion.helix_angle) > HELIX_ANGLE
-    return sound, remark or (f"beta above 30 degrees: {EXPERIENCE}" if steep else "")
+    return True, f"beta above 30 degrees: {EXPERIENCE}" if steep else ""
 
 
 def _single(case: Case, found: Found) -> Doubt:
-    if not case.pair.overlap_ratio:
+    overlap, chosen = case.pair.overlap_ratio, case.practice.profile_modification
+    if not overlap or overlap >= 1.0 and chosen == "none":
         return True, ""
     return _of_2019(case, "f_ZCa of helical gears")
 

@@ -117,7 +117,8 @@ def load_sharing(virtual_ratio: Any, overlap: Any) -> Any:
     """Return f_eps of the edition of 2019, a factor of Y_F.
 
     sqrt((1 - eps_beta) f + eps_beta/eps_alphan), eps_beta up to 1; f 1, and for eps_alphan >= 2
-    1/2 (with eps_beta = 0: 0.7). 2006 has none. Source: ISO 6336-3:2019, 6.2 [memory].
+    1/2 (with eps_beta = 0: 0.7). 2006 has none. Source: ISO 6336-3:2019, 6.2 [memory; printed
+    reports have it of eps_beta above 1 and eps_alphan below 2].
     """
     share = np.minimum(overlap, 1.0)
     part = choose(virtual_ratio >= 2.0, 0.5, 1.0)
