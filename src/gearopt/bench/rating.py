@@ -9,18 +9,18 @@ from dataclasses import replace
 from typing import Any
 
 from gearopt.bench import timed
+from gearopt.physics.agma.batch import safeties
 from gearopt.physics.agma.bending import thinned
-from gearopt.physics.agma.life import bending_curve, pitting_curve
 from gearopt.physics.agma.rating import rate
-from gearopt.physics.agma.rating_factors import Practice, Steel
+from gearopt.physics.agma.rating_factors import Case, Practice, Steel
 from gearopt.physics.agma.refusals import geometry_factors
-from gearopt.physics.agma.table import Duty, FactorTable, factor_table, rate_rows
+from gearopt.physics.agma.table import factor_table
 from gearopt.physics.gears import GearPair, Rack
 from gearopt.physics.iso6336 import batch as iso_batch
 from gearopt.physics.iso6336 import case as iso
 from gearopt.physics.iso6336.materials import Material
 from gearopt.physics.iso6336.rating import rate as iso_rate
-from gearopt.physics.rating import Operation, Rating
+from gearopt.physics.rating import Operation
 
 TOOL, THINNING = Rack(tip_radius=0.25), 0.024  # behind the tables
 # z1, z2, I, J1, J2
@@ -44,7 +44,7 @@ PUBLISHED = (
 OPERATION = Operation(1.5e7, 150.0, 5000.0, overload=1.25)  # 15 kW
 STEEL, PRACTICE = Steel("carburised", 1), Practice(quality=8)
 HELIX = {"spur": 0.0, "helical, 17 deg": math.radians(17.0)}
-TEETH = range(17, 61), range(61, 201)
+TEETH = (17, 61), (61, 201)
 ROWS, CHECKED = 1_000_000, 30
 
 
@@ -82,32 +82,42 @@ def _speeds(case: str, helix: float, repeat: int) -> list[dict[str, Any]]:
     """Return the table, a million rows of it, and pairs one at a time."""
     import numpy as np
 
-    table, making = timed(lambda: factor_table(*TEETH, helix), repeat)
+    teeth = [z.ravel() for z in np.meshgrid(*(np.arange(*ends) for ends in TEETH), indexing="ij")]
+    table, making = timed(lambda: factor_table(_pairs(helix, *teeth, 1.0, 1.0)), repeat)
     rng = np.random.default_rng(0)
-    row, column = (rng.integers(0, len(z), ROWS) for z in (table.pinions, table.wheels))
-    module = rng.uniform(1.0, 6.0, ROWS)
-    width = module * rng.uniform(6.0, 20.0, ROWS)
-    places = row, column, module, width
-    pairs = [_pair(table, helix, [float(v[k]) for v in places]) for k in range(CHECKED)]
-    single, slow = timed(
-        lambda: [rate(p, OPERATION, (STEEL,) * 2, PRACTICE) for p in pairs], repeat
-    )
-    duty = duty_of(single[0])
-    found, fast = timed(lambda: rate_rows(table, duty, *places), repeat)
+    place = rng.integers(0, len(teeth[0]), ROWS)
+    chosen = _pairs(helix, teeth[0][place], teeth[1][place], 1.0, rng.uniform(6.0, 20.0, ROWS))
+    steels = (STEEL,) * 2
+
+    def rows() -> Any:
+        factors = table.take(place).factors(chosen.face_width)
+        return safeties(Case(chosen, OPERATION, steels, PRACTICE), factors[0], factors[1:])
+
+    one = [
+        _pairs(
+            helix,
+            *(float(z[k]) for z in (teeth[0][place], teeth[1][place])),
+            1.0,
+            float(chosen.face_width[k]),
+        )
+        for k in range(CHECKED)
+    ]
+    single, slow = timed(lambda: [rate(p, OPERATION, steels, PRACTICE) for p in one], repeat)
+    found, fast = timed(rows, repeat)
     error = max(
         abs(float(ours[k]) / theirs - 1.0)
-        for k, one in enumerate(single)
-        for ours, theirs in zip(
-            (*found.bending, *found.contact),
-            (*one.bending_safety, *one.contact_safety),
-            strict=True,
-        )
+        for k, made in enumerate(single)
+        for ours, theirs in zip(found, (*made.bending_safety, *made.contact_safety), strict=True)
     )
     return [
         _row(case, "one at a time", slow, CHECKED, 0.0),
-        _row(case, "table of pairs", making, table.contact.size, None),
+        _row(case, "table of pairs", making, len(teeth[0]), None),
         _row(case, "rows of the table", fast, ROWS, error),
     ]
+
+
+def _pairs(helix: float, pinion: Any, wheel: Any, module: Any, width: Any) -> GearPair:
+    return GearPair.of_teeth(module, pinion, wheel, width, helix)
 
 
 def iso_example() -> iso.Case:
@@ -168,31 +178,6 @@ def _apart(exact: Any, numbers: Any, module: Any, helix: float, steels: Any) -> 
         known = *one.bending_safety, *one.contact_safety
         worst = max(worst, *(abs(float(a[k]) / b - 1.0) for a, b in zip(exact, known, strict=True)))
     return worst
-
-
-def _pair(table: FactorTable, helix: float, place: list[float]) -> GearPair:
-    row, column, module, width = place
-    teeth = float(table.pinions[int(row)]), float(table.wheels[int(column)])
-    return GearPair.of_teeth(module, *teeth, width, helix)
-
-
-def duty_of(rating: Rating) -> Duty:
-    """Return the duty of rows whose factors are those of a rating."""
-    value: dict[str, Any] = {symbol: factor.value for symbol, factor in rating.factors.items()}
-    return Duty(
-        OPERATION.power,
-        OPERATION.pinion_speed,
-        OPERATION.overload,
-        PRACTICE.quality,
-        PRACTICE.curve,
-        value["C_p"],
-        value["s_at"],
-        value["s_ac"],
-        rating.cycles[0],
-        (bending_curve("carburised"),) * 2,
-        (pitting_curve("carburised"),) * 2,
-        value["K_R"],
-    )
 
 
 def _row(

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from gearopt.optimise.tape import legacy_numpy
+from gearopt.physics.agma.batch import rate_rows
 from gearopt.physics.agma.bending import critical_theta, loaded_tooth, seen_from_wheel, tangency
-from gearopt.physics.agma.life import bending_curve, pitting_curve
 from gearopt.physics.agma.mesh import REGIMES, mesh_of
 from gearopt.physics.agma.rating import rate
 from gearopt.physics.agma.rating_factors import Practice, Steel
@@ -21,7 +21,7 @@ from gearopt.physics.agma.refusals import (
     single_factors,
 )
 from gearopt.physics.agma.smooth import smooth_error, smooth_factors
-from gearopt.physics.agma.table import Duty, factor_table, rate_rows, tabled_factors
+from gearopt.physics.agma.table import factor_table
 from gearopt.physics.gears import GearPair, Rack
 from gearopt.physics.geometry.fillet import fillet_point
 from gearopt.physics.geometry.flaws import flaws
@@ -130,51 +130,72 @@ def test_a_regime_or_load_that_is_not_known():
 @pytest.mark.parametrize("helix", [0.0, 0.3])
 def test_tables_hold_what_pairs_have(helix):
     """Every pair of a table at random widths, both sides of m_F = 1, refusals included."""
-    table = factor_table(range(12, 40), range(33, 96, 7), helix, profile_shifts=(0.3, 0.1))
     rng = np.random.default_rng(3)
-    row, column = rng.integers(0, 28, 500), rng.integers(0, 9, 500)
-    width = rng.uniform(2.0, 40.0, 500)
-    pair = GearPair.of_teeth(
-        1.0,
-        table.pinions[row],
-        table.wheels[column],
-        width,
-        helix,
-        profile_shifts=(0.3, 0.1),
-    )
-    exact = geometry_factors(pair)
-    found = tabled_factors(table, row, column, width)
+    teeth = rng.integers(12, 40, 500), rng.integers(33, 96, 500)
+    width, module = rng.uniform(2.0, 40.0, 500), rng.uniform(0.5, 2.0, 500)
+
+    def pair(width):
+        return GearPair.of_teeth(module, *teeth, width, helix, profile_shifts=(0.3, 0.1))
+
+    exact = geometry_factors(pair(width))
+    some = rng.permutation(500)[:300]
+    found = factor_table(pair(1.0)).take(some).factors(width[some])
     for one, other in zip(found, (exact.pitting, *exact.bending), strict=True):
-        assert np.array_equal(np.isnan(one), np.isnan(other))
-        assert np.allclose(one, other, rtol=1e-12, atol=0, equal_nan=True)
+        assert np.array_equal(np.isnan(one), np.isnan(other[some]))
+        assert np.allclose(one, other[some], rtol=1e-12, atol=0, equal_nan=True)
 
 
-def test_rows_are_ratings():
-    """Safety factors of `rate`, row by row."""
-    table = factor_table(range(18, 30), range(40, 80), 0.2)
-    curves = [curve("carburised") for curve in (bending_curve, pitting_curve)]
-    steel, practice = Steel("carburised", 2), Practice(quality=8, curve="precision")
-    operation = Operation(2e7, 150.0, 5000.0, overload=1.25)
-    row, column = np.array([0, 5, 11]), np.array([3, 30, 39])
-    module, width = np.array([2.0, 3.0, 4.0]), np.array([15.0, 60.0, 90.0])
-    single = [
-        rate(
-            GearPair.of_teeth(module[k], 18 + row[k], 40 + column[k], width[k], 0.2),
-            operation,
-            (steel, steel),
-            practice,
-        )
-        for k in range(3)
-    ]
-    value = {symbol: factor.value for symbol, factor in single[0].factors.items()}
-    duty = Duty(
-        2e7, 150.0, 1.25, 8, "precision", value["C_p"], value["s_at"], value["s_ac"],
-        single[0].cycles[0], (curves[0],) * 2, (curves[1],) * 2, value["K_R"],
-    )  # fmt: skip
-    found = rate_rows(table, duty, row, column, module, width)
-    for k in range(3):
-        assert [s[k] for s in found.bending] == pytest.approx(single[k].bending_safety, rel=1e-11)
-        assert [s[k] for s in found.contact] == pytest.approx(single[k].contact_safety, rel=1e-11)
+STEELS = {
+    "carburised": (Steel("carburised", 2),) * 2,
+    "through-hardened": (Steel(hardness=300.0), Steel(hardness=240.0)),
+    "carburised pinion": (Steel("carburised", 2), Steel(hardness=240.0)),
+}
+PRACTICES = (
+    Practice(quality=8, curve="precision"),
+    Practice(quality=6, crowned=True, size=True, backup=(None, 0.9), edition="B88"),
+)
+
+
+@pytest.mark.parametrize("practice", PRACTICES)
+@pytest.mark.parametrize("steels", STEELS.values(), ids=STEELS)
+@pytest.mark.parametrize("helix", [0.0, 0.25])
+def test_rows_are_ratings(helix, steels, practice):
+    """Safety factors of `rate`, row by row; of refused pairs, none."""
+    rng = np.random.default_rng(5)
+    teeth = rng.integers(14, 40, 30), rng.integers(33, 96, 30)
+    module, width = rng.uniform(1.0, 5.0, 30), rng.uniform(8.0, 90.0, 30)
+    operation = Operation(2e7, rng.uniform(5.0, 300.0, 30), 5000.0, overload=1.25)
+    found = rate_rows(GearPair.of_teeth(module, *teeth, width, helix), operation, steels, practice)
+    for k in range(30):
+        numbers = [float(v[k]) for v in (module, *teeth, width)]
+        one = replace(operation, pinion_speed=float(operation.pinion_speed[k]))
+        if teeth[0][k] > teeth[1][k]:
+            assert found.refusal[k]
+            assert np.isnan(found.contact[0][k])
+            continue
+        single = rate(GearPair.of_teeth(*numbers, helix), one, steels, practice)
+        assert [s[k] for s in found.bending] == pytest.approx(single.bending_safety, rel=1e-12)
+        assert [s[k] for s in found.contact] == pytest.approx(single.contact_safety, rel=1e-12)
+
+
+def test_given_factors_stand_in_the_place_of_computed_ones():
+    given = {
+        "I": 0.1,
+        "J": (0.3, 0.35),
+        "K_v": 1.2,
+        "K_m": 1.5,
+        "K_s": (1.1, 1.2),
+        "K_B": (1.0, 2.0),
+    }
+    given |= {"Y_N": (0.9, 0.95), "Z_N": (0.8, 0.85), "C_H": (1.0, 1.01), "s_at": (200.0, 210.0)}
+    pair, operation = GearPair.of_teeth(2.0, 20.0, 60.0, 25.0), Operation(2e7, 100.0, 5000.0)
+    steels = (Steel(hardness=300.0), Steel(hardness=240.0))
+    rows, single = (
+        rate_rows(pair, operation, steels, given=given),
+        rate(pair, operation, steels, given=given),
+    )
+    assert rows.bending == pytest.approx(single.bending_safety, rel=1e-13)
+    assert rows.contact == pytest.approx(single.contact_safety, rel=1e-13)
 
 
 def random_pairs(count, seed):

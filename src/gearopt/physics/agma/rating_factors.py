@@ -88,24 +88,25 @@ class Case:
         return single_factors(self.pair, self.practice.load)
 
     @property
-    def cycles(self) -> tuple[float, float]:
+    def cycles(self) -> tuple[Any, Any]:
         """Stress cycles of pinion and wheel."""
         rpm = self.operation.pinion_speed * 30.0 / math.pi
         first, second = self.operation.contacts
         hours = self.operation.hours
-        wheel = life.cycles_of(hours, rpm / float(self.pair.ratio), second)
-        return float(life.cycles_of(hours, rpm, first)), float(wheel)
+        wheel = life.cycles_of(hours, rpm / self.pair.ratio, second)
+        return life.cycles_of(hours, rpm, first), wheel
 
 
 def all_factors(case: Case) -> list[Factor]:
     """Return all factors of a case, given ones in the place of computed ones."""
-    found = []
-    for symbol in (*SHARED, *PAIRED):
-        if symbol in case.given:
-            found.append(Factor(symbol, case.given[symbol], "given"))
-        else:
-            found.append(_COMPUTED[symbol](case))
-    return found
+    return [computed(case, symbol) for symbol in (*SHARED, *PAIRED)]
+
+
+def computed(case: Case, symbol: str) -> Factor:
+    """Return a factor of a case by its symbol, of SHARED or PAIRED; as it is given, if it is."""
+    if symbol in case.given:
+        return Factor(symbol, case.given[symbol], "given")
+    return _COMPUTED[symbol](case)
 
 
 def _dynamic(case: Case) -> Factor:

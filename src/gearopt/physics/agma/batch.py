@@ -1,0 +1,161 @@
+"""Many ratings by AGMA 2001 at once, and the smooth form: of arrays or of casadi scalars.
+
+The laws are those of `rating`, factor by factor; I and J come from `refusals.geometry_factors`, a
+table of them, or the smooth form.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from gearopt.physics.agma import factors, hardness, stress
+from gearopt.physics.agma.rating_factors import (
+    SURFACE_HARD_KINDS,
+    Case,
+    Practice,
+    Steel,
+    computed,
+    life_curves,
+    unknown_hardness,
+)
+from gearopt.physics.agma.refusals import GeometryFactors, geometry_factors
+from gearopt.physics.gears import Gear, GearPair
+from gearopt.physics.rating import Operation
+
+CONSTANT = ("K_o", "K_R", "K_T", "C_f", "C_p", "s_at", "s_ac")  # of all pairs of a batch
+
+
+@dataclass(frozen=True)
+class Ratings:
+    """Safety factors of rows: S_F and S_H (of stress) of pinion and wheel.
+
+    refusal: indices of `refusals.REFUSALS`; safety factors are NaN where it is not 0.
+    """
+
+    bending: tuple[Any, Any]
+    contact: tuple[Any, Any]
+    refusal: Any
+
+
+def rate_rows(
+    pair: GearPair,
+    operation: Operation,
+    steels: tuple[Steel, Steel],
+    practice: Practice | None = None,
+    given: Mapping[str, Any] | None = None,
+) -> Ratings:
+    """Return the safety factors of a pair and an operation of arrays, one shape each or floats.
+
+    given: as of `rating.rate`. Row by row the same as `rating.rate`, but that pairs without I and J
+    have a refusal, unless both are given. ValueError for words and steels.
+    """
+    practice, given = practice or Practice(), given or {}
+    geometry = GeometryFactors(given.get("I"), given.get("J", ()), np.zeros(np.shape(pair.ratio)))
+    if not {"I", "J"} <= set(given):
+        geometry = geometry_factors(pair, practice.load)
+    case = Case(pair, operation, steels, practice, given)
+    made = safeties(case, geometry.pitting, geometry.bending)
+    return Ratings((made[0], made[1]), (made[2], made[3]), geometry.refusal)
+
+
+def safeties(case: Case, pitting: Any, bending: tuple[Any, Any]) -> tuple[Any, Any, Any, Any]:
+    """Return S_F1, S_F2, S_H1, S_H2 of a case of floats, arrays or casadi scalars with I and J.
+
+    Those that are given come first.
+    """
+    given = case.given
+    pitting, bending = given.get("I", pitting), given.get("J", bending)
+    one: dict[str, Any] = {symbol: computed(case, symbol).value for symbol in CONSTANT}
+    diameter, load = working_load(case)
+    shared = one["K_o"] * shared_factors(case)
+    size, rim = paired_factors(case)
+    strong_f, strong_h = strengths(case, one)
+    width = case.pair.face_width
+    transverse = case.pair.pinion.reference_diameter / case.pair.pinion_teeth
+    found = []
+    for k in (0, 1):
+        used = stress.bending_stress(load, width, transverse, bending[k], shared * size[k] * rim[k])
+        found.append(strong_f[k] / used)
+    for k in (0, 1):
+        used = stress.contact_stress(
+            one["C_p"], load, width, diameter, pitting, shared * size[k] * one["C_f"]
+        )
+        found.append(strong_h[k] / used)
+    return found[0], found[1], found[2], found[3]
+
+
+def working_load(case: Case) -> tuple[Any, Any]:
+    """Return the working pitch diameter of the pinion [mm] and W_t there [N]."""
+    diameter = case.pair.working_diameters[0]
+    operation = case.operation
+    return diameter, stress.tangential_load(operation.power, operation.pinion_speed, diameter)
+
+
+def shared_factors(case: Case) -> Any:
+    """Return K_v K_m."""
+    diameter, given, practice = case.pair.working_diameters[0], case.given, case.practice
+    dynamic, spread = given.get("K_v"), given.get("K_m")
+    if dynamic is None:
+        speed = 0.5 * case.operation.pinion_speed * diameter
+        dynamic = factors.dynamic_factor(speed, practice.quality)
+    return dynamic * (distribution(practice, case.pair, diameter) if spread is None else spread)
+
+
+def distribution(practice: Practice, pair: GearPair, diameter: Any) -> Any:
+    """Return K_m of a pair at the working pitch diameter of its pinion [mm]."""
+    made = practice.curve, practice.crowned, practice.offset, practice.adjusted
+    return factors.load_distribution_factor(pair.face_width, diameter, *made)
+
+
+def paired_factors(case: Case) -> tuple[Any, Any]:
+    """Return K_s and K_B of pinion and wheel."""
+    given = case.given
+    size, rim = given.get("K_s"), given.get("K_B")
+    if size is None:
+        size = tuple(_size(case, gear) for gear in case.pair.gears)
+    if rim is None:
+        new = case.practice.edition == "D04"
+        law = factors.rim_factor if new else factors.rim_factor_b88
+        rim = tuple(1.0 if ratio is None else law(ratio) for ratio in case.practice.backup)
+    return size, rim
+
+
+def _size(case: Case, gear: Gear) -> Any:
+    if not case.practice.size:
+        return 1.0
+    form = factors.lewis_form(gear.teeth)
+    return factors.size_factor(gear.face_width, gear.reference_diameter / gear.teeth, form)
+
+
+def strengths(case: Case, one: Mapping[str, Any]) -> tuple[list[Any], list[Any]]:
+    """Return s_at Y_N/(K_T K_R) and s_ac Z_N C_H/(K_T K_R) of pinion and wheel [MPa].
+
+    one: constant factors by symbol.
+    """
+    weaker = one["K_T"] * one["K_R"]
+    ratios = case.given.get("C_H") or (1.0, _hardness_ratio(case))
+    made: list[list[Any]] = []
+    for contact in (False, True):
+        name = "Z_N" if contact else "Y_N"
+        life = case.given.get(name) or life_factors(case, contact)
+        strong = one["s_ac" if contact else "s_at"]
+        made.append([strong[k] * life[k] / weaker for k in (0, 1)])
+    return made[0], [made[1][k] * ratios[k] for k in (0, 1)]
+
+
+def life_factors(case: Case, contact: bool) -> tuple[Any, Any]:
+    """Return Z_N or Y_N of pinion and wheel at the cycles of the operation."""
+    curves, (first, second) = life_curves(case, contact), case.cycles
+    return curves[0].factor(first), curves[1].factor(second)
+
+
+def _hardness_ratio(case: Case) -> Any:
+    """Return C_H of the wheel."""
+    pinion, wheel = case.steels
+    if wheel.kind != "through-hardened" or unknown_hardness(pinion) or unknown_hardness(wheel):
+        return 1.0
+    if pinion.kind in SURFACE_HARD_KINDS:
+        return hardness.surface_hardened_factor(pinion.finish, wheel.hardness)
+    return hardness.hardness_ratio_factor(pinion.hardness, wheel.hardness, case.pair.ratio)
