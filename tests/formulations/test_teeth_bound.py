@@ -12,6 +12,7 @@ from small_drives import FACES, drive, tables_of
 
 from gearopt.errors import SolveError
 from gearopt.formulations.teeth import later_stages as bounds
+from gearopt.formulations.teeth import stage as staging
 from gearopt.formulations.teeth.later_stages import EDGE, bound, ragged, slices
 from gearopt.formulations.teeth.progress import Progress
 from gearopt.optimise.clock import Clock
@@ -77,6 +78,7 @@ def naive(train, tables, delta):
 def test_the_bound_is_its_definition(stages, objective, total, face, edge, torque, monkeypatch):
     """Also where cells overlap by so much that one sees it, and where any pair carries the load."""
     monkeypatch.setattr(bounds, "EDGE", edge)
+    monkeypatch.setattr(staging, "EDGE", edge)
     train = drive(stages, face, total, objective=objective, pinion_teeth=(15, 17))
     train = replace(train, torque=torque)
     tables, delta = tables_of(train), 0.07
@@ -141,8 +143,8 @@ def test_the_bound_is_below_every_train_and_close(number):
 
 def test_equal_inner_stages_share_what_was_made(monkeypatch):
     made = []
-    real = bounds._least
-    monkeypatch.setattr(bounds, "_least", lambda *a: made.append(1) or real(*a))
+    real = staging.Table.grid
+    monkeypatch.setattr(staging.Table, "grid", lambda *a: made.append(1) or real(*a))
     same = tuple(replace(s, allowable=(2.0, 40.0)) for s in drive(5).stages)
     train = replace(drive(5, total=F(40)), stages=same)
     tables = searching._tables(train, train.highest_ratio, Progress(1, Clock()))

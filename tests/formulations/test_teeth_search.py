@@ -280,7 +280,9 @@ def test_no_more_than_a_slice_is_sized_between_two_looks_at_the_clock(monkeypatc
     sized, most = [0], []
     real = staging.Table.cost
     monkeypatch.setattr(
-        staging.Table, "cost", lambda t, q, p: sized.append(sized.pop() + len(p)) or real(t, q, p)
+        staging.Table,
+        "cost",
+        lambda t, q, p, most=math.inf: sized.append(sized.pop() + len(p)) or real(t, q, p),
     )
 
     def watch(event):

@@ -118,13 +118,13 @@ def test_of_equal_costs_the_smaller_module_is_taken_on_steps():
     wide = {"modules": (F(2), F(3)), "pinion_teeth": (20, 30), "face_width": face}
     train = Train(1e-3, F(3), F(0), (Stage((1.0, 1.0), **wide),), law=K_FACTOR)
     own = table(train, 0, train.highest_ratio)
-    module, width = own.choose(1e-3, 0)
+    module, width, _ = own.choose(1e-3, 0)
     assert (module, width) == (2.0, 1.0)
     assert own.steps[0].min() == 1  # no width of no step, however small the load
     # 9 steps of d = 40 are as much as 4 of d = 60; the load needs 8.9 and 3.96 of them
     torque = 8.9 * 40**2 / (2.0 * (1.0 + 1.0 / 3.0))
     carried = replace(train, stages=(replace(train.stages[0], allowable=(1.0, 1e9)),))
-    assert table(carried, 0, train.highest_ratio).choose(torque, 0) == (2.0, 9.0)
+    assert table(carried, 0, train.highest_ratio).choose(torque, 0) == (2.0, 9.0, 0)
     assert own.first.tolist() == [0] * len(own.z1) and own.last.tolist() == [1] * len(own.z1)
 
 

@@ -83,7 +83,7 @@ def _speeds(case: str, helix: float, repeat: int) -> list[dict[str, Any]]:
     import numpy as np
 
     teeth = [z.ravel() for z in np.meshgrid(*(np.arange(*ends) for ends in TEETH), indexing="ij")]
-    table, making = timed(lambda: factor_table(_pairs(helix, *teeth, 1.0, 1.0)), repeat)
+    table, making = timed(lambda: factor_table(_pairs(helix, teeth[0], teeth[1], 1.0, 1.0)), repeat)
     rng = np.random.default_rng(0)
     place = rng.integers(0, len(teeth[0]), ROWS)
     chosen = _pairs(helix, teeth[0][place], teeth[1][place], 1.0, rng.uniform(6.0, 20.0, ROWS))
@@ -96,7 +96,8 @@ def _speeds(case: str, helix: float, repeat: int) -> list[dict[str, Any]]:
     one = [
         _pairs(
             helix,
-            *(float(z[k]) for z in (teeth[0][place], teeth[1][place])),
+            float(teeth[0][place[k]]),
+            float(teeth[1][place[k]]),
             1.0,
             float(chosen.face_width[k]),
         )

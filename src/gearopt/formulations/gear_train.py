@@ -11,6 +11,7 @@ from fractions import Fraction
 from typing import Any
 
 from gearopt.formulations.strength import Law
+from gearopt.formulations.strength.rated import Option
 from gearopt.formulations.toothing import Toothing
 from gearopt.optimise.terms import Terms, each
 from gearopt.physics.gears import GearPair
@@ -70,6 +71,7 @@ class Stage:
     [mm], increasing (for the continuous form its first and last are limits; empty: any).
     pinion_teeth, wheel_teeth, ratio u = z2/z1 >= 1: minimum and maximum (None: no
     limit). wheel_diameter: maximum [mm] of the wheel's reference diameter. toothing: of its gears.
+    options: ways of making them that are rated, of which one is chosen; none: the law limits alone.
     """
 
     allowable: tuple[float, ...]
@@ -80,6 +82,7 @@ class Stage:
     ratio: tuple[Fraction, Fraction | None] = (Fraction(1), None)
     wheel_diameter: Fraction | None = None
     toothing: Toothing = Toothing()
+    options: tuple[Option, ...] = ()
 
     @property
     def pinion_fixed(self) -> bool:
@@ -98,8 +101,9 @@ class Train:
 
     coprime: z1 and z2 without common divisor (hunting teeth). objective: a key of OBJECTIVES; mass
     needs density [t/mm3]; LENGTHS are those of reference circles: profile shifts must cancel. law:
-    what limits the stages. speed: that of the input [rad/s], for laws that depend on it. keys:
-    places of `numbers` in a problem file, one per stage for what a stage has of its own.
+    what limits the stages. speed: that of the input [rad/s], for laws that depend on it. safety:
+    S_F and S_H asked for of stages with options. keys: places of `numbers` in a problem file, one
+    per stage for what a stage has of its own.
     """
 
     torque: float
@@ -111,6 +115,7 @@ class Train:
     density: float | None = None
     law: Law = field(kw_only=True)
     speed: float = 0.0
+    safety: tuple[float, float] = (1.0, 1.0)
     keys: Mapping[str, str | tuple[str, ...]] = field(default_factory=dict, compare=False)
 
     def __post_init__(self) -> None:
@@ -127,6 +132,16 @@ class Train:
             raise ValueError(f"the objective {self.objective} needs profile shifts that cancel")
         if self.objective == "mass" and self.density is None:
             raise ValueError("the objective mass needs a density")
+
+    @property
+    def rated(self) -> bool:
+        """Whether ratings limit the stages."""
+        return any(stage.options for stage in self.stages)
+
+    @property
+    def by_width(self) -> bool:
+        """Whether the share of a stage is proportional to its face width."""
+        return self.objective not in LENGTHS
 
     @property
     def on_reference(self) -> bool:
@@ -179,6 +194,8 @@ class Train:
             "lowest_ratio": float(self.lowest_ratio),
             "highest_ratio": float(self.highest_ratio),
             "speed": self.speed,
+            "bending_safety": self.safety[0],
+            "contact_safety": self.safety[1],
             **{n: tuple(s.allowable[i] for s in stages) for i, n in enumerate(self.law.names)},
             "width_low": tuple(float(s.face_width.low) for s in stages),
             "width_high": tuple(s.face_width.widest for s in stages),
@@ -231,6 +248,10 @@ def terms(train: Train, numbers: Any, pairs: tuple[GearPair, ...]) -> Terms:
         total = total + share(train, k, pair, numbers.density)
         allowable = [own[name] for name in train.law.names]
         rows = train.law.utilisations(pair, torque, numbers.speed / product, allowable)
+        if train.stages[k].options:
+            option = train.stages[k].options[0]
+            safety = numbers.bending_safety, numbers.contact_safety
+            rows |= option.utilisations(pair, torque, numbers.speed / product, safety)
         rows |= _choices(train.stages[k], own, pair)
         if train.stages[k].wheel_fixed and not train.stages[k].pinion_fixed:
             equal[f"wheel_teeth[{k + 1}]"] = pair.wheel_teeth / own["wheel_low"]

@@ -125,4 +125,7 @@ def laws() -> tuple[Law, ...]:
     """Return the laws that the files of this folder hold."""
     names = [f"{__name__}.{module.name}" for module in pkgutil.iter_modules(__path__)]
     held = [value for name in names for value in vars(import_module(name)).values()]
-    return tuple(value for value in held if isinstance(value, Law))
+    return tuple(value for value in held if isinstance(value, Law) and value.limits)
+
+
+RATED = Law("ratings", (), lambda pair, torque, speed: (), kind="ratings")  # of stages with options

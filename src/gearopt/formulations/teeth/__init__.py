@@ -79,7 +79,7 @@ def problem(train: Train, count: int = 1, floor: float = -math.inf) -> Problem:
         evaluate,
         methods={"exact": exact},
         vectorised=True,
-        relaxed=sizing.relaxed(train),
+        relaxed=None if train.rated else sizing.relaxed(train),
     )
 
 
@@ -262,7 +262,7 @@ def best_pairs(train: Train, teeth: Teeth) -> tuple[GearPair, ...]:
     torque, found = train.torque, []
     for k, (z1, z2) in enumerate(teeth):
         only = table(train.fixed_teeth(k, z1, z2), k, train.highest_ratio)
-        module, width = only.choose(torque, 0)
+        module, width, _ = only.choose(torque, 0)
         found.append(train.pair(k, module, z1, z2, width))
         torque *= z2 / z1
     return tuple(found)

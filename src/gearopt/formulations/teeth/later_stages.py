@@ -17,12 +17,11 @@ from numpy.typing import NDArray
 
 from gearopt.errors import SolveError
 from gearopt.formulations.gear_train import Train
-from gearopt.formulations.teeth.stage import Table
+from gearopt.formulations.teeth.stage import EDGE, Table
 from gearopt.optimise.terms import Array
 
 ENTRIES = 10_000_000  # of the last stage's table
 SLICE = 500_000  # of them, between two checks of the clock
-EDGE = 1e-9  # cells overlap by this much in log ratio, so that rounding never misses a neighbour
 
 
 @dataclass(frozen=True)
@@ -65,7 +64,7 @@ def bound(train: Train, tables: list[Table], delta: float, tick: Callable[[], No
     minimum: list[Array | None] = [None] * count
     for k in range(1, count - 1):
         alike = k > 1 and train.stages[k] == train.stages[k - 1]
-        minimum[k] = minimum[k - 1] if alike else _least(tables[k], cells, ratio_cells, delta, tick)
+        minimum[k] = minimum[k - 1] if alike else tables[k].grid(cells, ratio_cells, delta, tick)
     to_go = [np.full(cells + ratio_cells + 2, np.inf) for _ in range(count)]
     to_go[-1][:cells] = _last(train, tables[-1], cells, delta, tick)
     for k in range(count - 2, 0, -1):
@@ -85,30 +84,6 @@ def _ahead(to_go: Array, ratio_cells: int) -> Array:
     return sliding_window_view(np.minimum(to_go[:-1], to_go[1:]), ratio_cells)
 
 
-def _least(
-    table: Table, cells: int, ratio_cells: int, delta: float, tick: Callable[[], None]
-) -> Array:
-    """Return the minimum cost of one stage for every torque cell and ratio cell."""
-    column = _cell(table.log_ratio, delta)
-    found = np.full(cells * ratio_cells, np.inf)
-    for k in range(len(table.modules)):
-        tick()
-        with np.errstate(divide="ignore"):
-            reach = np.log(table.capacity(k) / table.train.torque) + EDGE
-        carries = reach >= 0.0
-        row = np.minimum(reach[carries] / delta, cells - 1).astype(np.int64)
-        np.minimum.at(found, row * ratio_cells + column[carries], table.floor(k)[carries])
-    grid = found.reshape(cells, ratio_cells)
-    grid = np.minimum.accumulate(grid[::-1], axis=0)[::-1]  # what carries more carries less
-    tick()
-    slope = np.full(ratio_cells, np.inf)
-    np.minimum.at(slope, column, table.slope)
-    torque = table.train.torque * np.exp(np.arange(cells) * delta - EDGE)
-    loaded = np.zeros_like(grid)
-    np.multiply(torque[:, None], slope, out=loaded, where=np.isfinite(slope))
-    return np.asarray(np.maximum(grid, loaded))
-
-
 def _last(train: Train, table: Table, cells: int, delta: float, tick: Callable[[], None]) -> Array:
     """Return the last stage's minimum cost from every cell: exact pairs, lowest possible torque."""
     low, high = math.log(train.lowest_ratio), math.log(train.highest_ratio)
@@ -125,8 +100,13 @@ def _last(train: Train, table: Table, cells: int, delta: float, tick: Callable[[
     for part in slices(count, SLICE):
         tick()
         cell, pair = ragged(start[part], count[part])
-        reached = np.maximum(edge[part][cell], low - table.log_ratio[pair])
-        cost = table.cost(train.torque * np.exp(reached - EDGE), pair)
+        ratio = table.log_ratio[pair]
+        reached = (
+            np.maximum(edge[part][cell], low - ratio),
+            np.minimum(edge[part][cell] + delta, high - ratio),
+        )
+        ends = [train.torque * np.exp(r) for r in (reached[0] - EDGE, reached[1] + EDGE)]
+        cost = table.least_cost(ends[0], ends[1], pair, cell)
         np.minimum.at(found[part], cell, cost)
     return found
 

@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 
 from gearopt.errors import SolveError
 from gearopt.formulations.gear_train import Train, share
-from gearopt.formulations.teeth.later_stages import EDGE, SLICE, Bound, bound, ragged
+from gearopt.formulations.teeth.later_stages import SLICE, Bound, bound, ragged
 from gearopt.formulations.teeth.progress import MARGIN, TIE, Progress, Spent, Teeth
-from gearopt.formulations.teeth.stage import Table, spans, table
+from gearopt.formulations.teeth.stage import EDGE, Table, spans, table
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget, Event, Watch
 from gearopt.optimise.terms import Array
@@ -157,13 +157,17 @@ def _expand(
         group, pair = ragged(start, rest.starts[level][cell + 1] - start)
         node = owner[group]
     progress.clock.evaluations += len(pair)
-    own = _costs(train, stage, chunk, node, pair, progress)
+    log_ratio = chunk.log_ratio[node] + stage.log_ratio[pair]
+    ahead = rest.to_go[level + 1][rest.cell(log_ratio)]
+    most = np.where(np.isfinite(ahead), progress.threshold - chunk.cost[node], -np.inf)
+    most -= np.where(np.isfinite(ahead), ahead, 0.0)
+    own = _costs(train, stage, chunk, (node, pair), most, progress)
     if progress.wanted == 1:
         keep = _best_of_ratio(node, stage.ratio[pair], own)
         node, pair, own = node[keep], pair[keep], own[keep]
+        log_ratio, ahead = log_ratio[keep], ahead[keep]
     cost = chunk.cost[node] + own
-    log_ratio = chunk.log_ratio[node] + stage.log_ratio[pair]
-    lower = cost + rest.to_go[level + 1][rest.cell(log_ratio)]
+    lower = cost + ahead
     use = np.flatnonzero(np.isfinite(lower) & (lower <= progress.threshold))
     use = use[np.argsort(lower[use], kind="stable")]
     if not len(use):
@@ -176,18 +180,19 @@ def _costs(
     train: Train,
     stage: Table,
     chunk: Chunk,
-    node: NDArray[np.int64],
-    pair: NDArray[np.int64],
+    places: tuple[NDArray[np.int64], NDArray[np.int64]],
+    most: Array,
     progress: Progress,
 ) -> Array:
-    """Return the cost of pairs of a stage behind nodes of a chunk."""
+    """Return the cost of pairs of a stage behind nodes of a chunk, where it is at most so much."""
+    node, pair = places
     torque = train.torque * np.exp(chunk.log_ratio)
     found = np.empty(len(pair))
     for start in range(0, len(pair), SLICE):
         if start:  # a first dive, however short the budget, ends with a train
             progress.tick()
         part = slice(start, start + SLICE)
-        found[part] = stage.cost(torque[node[part]], pair[part])
+        found[part] = stage.cost(torque[node[part]], pair[part], most[part])
     return found
 
 
@@ -215,7 +220,8 @@ def _complete(train: Train, tables: list[Table], chunk: Chunk, progress: Progres
     stop = np.searchsorted(stage.log_ratio, high - chunk.log_ratio + EDGE)
     node, pair = ragged(start, stop - start)
     progress.clock.evaluations += len(pair)
-    total = chunk.cost[node] + _costs(train, stage, chunk, node, pair, progress)
+    most = progress.threshold - chunk.cost[node]
+    total = chunk.cost[node] + _costs(train, stage, chunk, (node, pair), most, progress)
     progress.compared += int(np.isfinite(total).sum())
     use = np.flatnonzero(np.isfinite(total) & (total <= progress.threshold))
     use = use[np.argsort(total[use], kind="stable")]

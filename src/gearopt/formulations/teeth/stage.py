@@ -22,6 +22,7 @@ from gearopt.physics.gears import GearPair
 
 Index = NDArray[np.int64]
 
+EDGE = 1e-9  # cells overlap by this much in log ratio, so that rounding never misses a neighbour
 PAIRS = 3_000_000  # tooth pairs of one stage: about 1 GB of tables
 
 
@@ -66,14 +67,48 @@ class Table:
         """Return the gear pairs (indices) with modules [mm], of face width 1 mm."""
         return self.train.pair(self.position, module, self.z1[pair], self.z2[pair], 1.0)
 
-    def cost(self, torque: Array, pair: Index) -> Array:
-        """Return the minimum share of pairs at torques [N mm]; inf where nothing carries them."""
+    def cost(self, torque: Array, pair: Index, most: Array | float = np.inf) -> Array:
+        """Return the minimum share of pairs at torques [N mm]; inf where nothing carries them.
+
+        most: values above which any is as good as inf.
+        """
         return self._best(torque, pair)[0]
 
-    def choose(self, torque: float, pair: int) -> tuple[float, float]:
-        """Return the module and face width [mm] behind `cost`."""
+    def choose(self, torque: float, pair: int) -> tuple[float, float, int]:
+        """Return the module, the face width [mm] and the option behind `cost`."""
         _, module, width = self._best(np.array([torque]), np.array([pair]))
-        return module.item(), width.item()
+        return module.item(), width.item(), 0
+
+    def least_cost(self, low: Array, high: Array, pair: Index, group: Index) -> Array:
+        """Return lower bounds of `cost` at torques [N mm] from low to high.
+
+        The least of every group (n,) of pairs is of use.
+        """
+        return self.cost(low, pair)
+
+    def grid(self, cells: int, ratio_cells: int, delta: float, tick: Callable[[], None]) -> Array:
+        """Return the minimum cost for every cell of torque and of ratio, each delta wide in logs.
+
+        A lower bound: of the torques of a cell the smallest, of its pairs the best.
+        """
+        column = (self.log_ratio / delta).astype(np.int64)
+        found = np.full(cells * ratio_cells, np.inf)
+        for k in range(len(self.modules)):
+            tick()
+            with np.errstate(divide="ignore"):
+                reach = np.log(self.capacity(k) / self.train.torque) + EDGE
+            carries = reach >= 0.0
+            row = np.minimum(reach[carries] / delta, cells - 1).astype(np.int64)
+            np.minimum.at(found, row * ratio_cells + column[carries], self.floor(k)[carries])
+        grid = found.reshape(cells, ratio_cells)
+        grid = np.minimum.accumulate(grid[::-1], axis=0)[::-1]  # what carries more carries less
+        tick()
+        slope = np.full(ratio_cells, np.inf)
+        np.minimum.at(slope, column, self.slope)
+        torque = self.train.torque * np.exp(np.arange(cells) * delta - EDGE)
+        loaded = np.zeros_like(grid)
+        np.multiply(torque[:, None], slope, out=loaded, where=np.isfinite(slope))
+        return np.asarray(np.maximum(grid, loaded))
 
     def capacity(self, module: int) -> Array:
         """Return the largest torque [N mm] of each pair with a module (index); 0 where not allowed.
@@ -198,7 +233,10 @@ def table(
     load, need, exponent, slope = _closed(train, position, z1, ratio)
     tick()
     first, last = _allowed(stage, z1, z2, cosine)
-    return Table(
+    kind = Table
+    if stage.options:
+        from gearopt.formulations.teeth.rated import RatedTable as kind
+    return kind(
         train,
         position,
         z1,

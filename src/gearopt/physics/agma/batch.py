@@ -100,13 +100,15 @@ def shared_factors(case: Case) -> Any:
     if dynamic is None:
         speed = 0.5 * case.operation.pinion_speed * diameter
         dynamic = factors.dynamic_factor(speed, practice.quality)
-    return dynamic * (distribution(practice, case.pair, diameter) if spread is None else spread)
+    if spread is None:
+        spread = distribution(practice, case.pair.face_width, diameter)
+    return dynamic * spread
 
 
-def distribution(practice: Practice, pair: GearPair, diameter: Any) -> Any:
-    """Return K_m of a pair at the working pitch diameter of its pinion [mm]."""
+def distribution(practice: Practice, width: Any, diameter: Any) -> Any:
+    """Return K_m of a face width and the working pitch diameter of the pinion [mm]."""
     made = practice.curve, practice.crowned, practice.offset, practice.adjusted
-    return factors.load_distribution_factor(pair.face_width, diameter, *made)
+    return factors.load_distribution_factor(width, diameter, *made)
 
 
 def paired_factors(case: Case) -> tuple[Any, Any]:

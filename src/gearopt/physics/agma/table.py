@@ -4,7 +4,7 @@ For searches over numbers of teeth, modules and face widths: I and J depend on t
 helical gears, on the overlap ratio by closed forms, which a table holds.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -55,6 +55,10 @@ class FactorTable:
         return FactorTable(
             of(self.low), self.slope[place], of(self.high), contact, axial, self.cosine, codes
         )
+
+    def scaled(self, factor: Any) -> "FactorTable":
+        """Return the table of pairs whose lengths are all greater by a factor."""
+        return replace(self, axial=self.axial * factor)
 
     def factors(self, width: Any) -> Three:
         """Return I, J_1, J_2 at face widths [mm] of the table's shape.

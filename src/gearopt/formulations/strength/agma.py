@@ -1,0 +1,156 @@
+"""AGMA 2001 as a standard of rated stages: at one power a slower, stronger torque is the worse one.
+
+With torque T and speed 1/T the load grows as T, K_v falls more slowly than T^-0.3, the squares of
+life factors more slowly than T^-0.3. All else is constant for a given pair and width.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from gearopt.formulations.strength.rated import Load
+from gearopt.optimise.terms import Array
+from gearopt.physics.agma import factors
+from gearopt.physics.agma.batch import distribution, rate_rows, safeties
+from gearopt.physics.agma.rating_factors import Case, Practice, Steel
+from gearopt.physics.agma.table import FactorTable, factor_table
+from gearopt.physics.gears import GearPair
+from gearopt.physics.rating import Operation
+
+
+@dataclass(frozen=True)
+class Agma:
+    """The rating of stages made in one way by AGMA 2001.
+
+    operation: its overload, temperature, reliability and contacts count. rims: thickness [mm], or
+    None for solid gears, of pinion and wheel. given: as of `agma.rating.rate`.
+    """
+
+    loads: tuple[Load, ...]
+    operation: Operation
+    steels: tuple[Steel, Steel]
+    practice: Practice
+    rims: tuple[float | None, float | None] = (None, None)
+    given: Mapping[str, Any] = field(default_factory=dict)
+    suffix: str = ""
+    monotone: bool = True
+
+    def case(self, pair: GearPair, torque: Any, speed: Any, given: Mapping[str, Any]) -> Case:
+        """Return the case of the first level of load with what is given beside."""
+        load = self.loads[0]
+        operation = replace(
+            self.operation,
+            power=load.power * torque * speed,
+            pinion_speed=load.speed * speed,
+            hours=load.hours,
+        )
+        return Case(pair, operation, self.steels, self._practice(pair), {**given, **self.given})
+
+    def _practice(self, pair: GearPair) -> Practice:
+        ratios = [
+            None if rim is None else rim / (0.5 * (gear.tip_diameter - gear.root_diameter))
+            for gear, rim in zip(pair.gears, self.rims, strict=True)
+        ]
+        return replace(self.practice, backup=(ratios[0], ratios[1]))
+
+    def safeties(self, pair: GearPair, torque: Any, speed: Any) -> tuple[Any, Any, Any, Any]:
+        """Return S_F1, S_F2, S_H1, S_H2; NaN where AGMA 908 refuses the pair."""
+        case = self.case(pair, torque, speed, {})
+        found = rate_rows(pair, case.operation, case.steels, case.practice, case.given)
+        return (*found.bending, *found.contact)
+
+    def like(self, other: Any) -> bool:
+        """Return whether `prepared` of another standard is the same."""
+        return isinstance(other, Agma) and other.practice.load == self.practice.load
+
+    def prepared(self, pair: GearPair) -> FactorTable:
+        """Return the geometry factors of pairs (n,) whatever their width."""
+        return factor_table(pair, self.practice.load)
+
+    def rows(
+        self,
+        prepared: FactorTable,
+        pair: GearPair,
+        torque: tuple[Array, Array],
+        speed: tuple[Array, Array],
+        safety: tuple[float, float],
+    ) -> "AgmaRows":
+        """Return rows at the smaller torque, which is the least loaded one."""
+        bare = {"I": 1.0, "J": (1.0, 1.0), "K_m": 1.0, "K_s": (1.0, 1.0)}
+        unit = pair.of_width(1.0)
+        case = self.case(unit, torque[0], speed[0], bare)
+        made = safeties(case, 1.0, (1.0, 1.0))
+        used = [safety[0] / made[0], safety[0] / made[1]]
+        used += [(safety[1] / made[2]) ** 2, (safety[1] / made[3]) ** 2]
+        lengths = [
+            gear.reference_diameter / gear.teeth * factors.lewis_form(gear.teeth) ** 0.5
+            for gear in pair.gears
+        ]
+        columns = (*used, pair.working_diameters[0], *lengths)
+        shape = np.shape(torque[0])
+        table = np.array([np.broadcast_to(np.asarray(c, float), shape) for c in columns])
+        return AgmaRows(self, prepared, table)
+
+
+@dataclass(frozen=True)
+class AgmaRows:
+    """Rows of pairs (n,).
+
+    columns (7, n): what is used at K_m = K_s = b = I = J = 1 by bending and by contact of pinion
+    and wheel; working pitch diameter of the pinion [mm]; transverse module times the root of the
+    Lewis form factor of both [mm].
+    """
+
+    standard: Agma
+    table: FactorTable
+    columns: Array
+
+    def used(self, low: Array, high: Array) -> Array:
+        """Return K_m K_s at the low width over b I and b J at the high one, times the columns.
+
+        K_m and K_s do not fall with the width; b I and b J follow the least length of the lines of
+        contact above m_F = 1, which does not fall; below, I and J are largest at one of the ends.
+        """
+        given, made = self.standard.given, self.columns
+        spread = self._spread(low, made[4])
+        geometry = self._geometry(low, high)
+        found = np.zeros(len(low))
+        for k in (0, 1):
+            own = spread * self._size(low, made[5 + k])
+            bent = 1.0 if "J" in given else geometry[1 + k]
+            pressed = 1.0 if "I" in given else geometry[0]
+            found = np.maximum(found, own * made[k] / (high * bent))
+            found = np.maximum(found, own * made[2 + k] / (high * pressed))
+        return np.asarray(found)
+
+    def _spread(self, width: Array, diameter: Array) -> Any:
+        if "K_m" in self.standard.given:
+            return 1.0
+        return distribution(self.standard.practice, width, diameter)
+
+    def _size(self, width: Array, length: Array) -> Any:
+        if "K_s" in self.standard.given or not self.standard.practice.size:
+            return 1.0
+        return factors.size_factor(width, length, 1.0)
+
+    def _geometry(self, low: Array, high: Array) -> tuple[Any, Any, Any]:
+        """Return the largest I, J_1, J_2 of use between two widths."""
+        at = self.table.factors(high)
+        if self.table.cosine == 1.0:
+            return at
+        before = self.table.factors(low)
+        conventional = high > self.table.axial
+        first, second, third = (
+            np.where(conventional, a, np.maximum(a, b)) for a, b in zip(at, before, strict=True)
+        )
+        return first, second, third
+
+    def border(self, width: Array) -> Array:
+        """Return the width of m_F = 1 for those up to it."""
+        return np.where(width <= self.table.axial, self.table.axial, np.inf)
+
+    def take(self, place: Any) -> "AgmaRows":
+        """Return some of the rows."""
+        return AgmaRows(self.standard, self.table.take(place), self.columns[:, place])

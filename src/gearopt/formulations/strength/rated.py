@@ -1,0 +1,103 @@
+"""Ratings as limits: what the gears of a stage are made of, and the standards that rate them.
+
+A stage may choose between options, each of one material a gear, accuracy and so on. An option is
+rated by one standard or two; a standard gives safety factors of any pair, and rows of pairs whose
+face widths are sought (`widths`).
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+
+from gearopt.optimise.terms import Array
+from gearopt.physics.gears import GearPair
+
+MODES = ("pinion_bending", "wheel_bending", "pinion_contact", "wheel_contact")
+REFUSED = 1e9  # utilisation of pairs that a standard refuses to rate
+
+
+@dataclass(frozen=True)
+class Load:
+    """One level of what a drive does: power and input speed over those of its duty, hours."""
+
+    hours: float
+    power: float = 1.0
+    speed: float = 1.0
+
+
+class Rows(Protocol):
+    """Gear pairs (n,) at torques, whose face widths are sought."""
+
+    def used(self, low: Array, high: Array) -> Array:
+        """Return a lower bound of what of the load capacity is used at widths from low to high.
+
+        Load over what gives the safety factors asked for: above 1 no width between them carries.
+        Exact where both are one. low, high (n,) [mm], with no `border` between them.
+        """
+
+    def border(self, width: Array) -> Array:
+        """Return the next width [mm] above which another law holds; inf: none."""
+
+    def take(self, place: Any) -> "Rows":
+        """Return some of the rows."""
+
+
+class Standard(Protocol):
+    """A standard that rates a pair made in one way; frozen, so that equal stages are equal."""
+
+    @property
+    def suffix(self) -> str:
+        """Return what tells its limits from those of others, "" or "_iso"."""
+
+    @property
+    def monotone(self) -> bool:
+        """Return whether at one power what is used rises with the torque, for every width."""
+
+    def safeties(self, pair: GearPair, torque: Any, speed: Any) -> tuple[Any, Any, Any, Any]:
+        """Return S_F1, S_F2, S_H1, S_H2 (of stress); NaN where the standard refuses the pair.
+
+        torque [N mm] and speed [rad/s] of the pinion; arrays of one shape or floats.
+        """
+
+    def like(self, other: Any) -> bool:
+        """Return whether what `prepared` returns of another standard is the same."""
+
+    def prepared(self, pair: GearPair) -> Any:
+        """Return what `rows` takes of pairs (n,) whatever their load and width."""
+
+    def rows(
+        self,
+        prepared: Any,
+        pair: GearPair,
+        torque: tuple[Array, Array],
+        speed: tuple[Array, Array],
+        safety: tuple[float, float],
+    ) -> Rows:
+        """Return rows of pairs at torques between two ends, at the power of the first.
+
+        speed: at the two ends, the first of which is the faster one.
+        """
+
+
+@dataclass(frozen=True)
+class Option:
+    """One way of making the gears of a stage: its standards, and what tells it from others."""
+
+    standards: tuple[Standard, ...]
+    words: str = ""
+
+    def utilisations(
+        self, pair: GearPair, torque: Any, speed: Any, safety: Sequence[Any]
+    ) -> dict[str, Any]:
+        """Return required over actual safety factors by name; safety: S_F and S_H asked for."""
+        found = {}
+        asked = safety[0], safety[0], safety[1], safety[1]
+        for standard in self.standards:
+            made = standard.safeties(pair, torque, speed)
+            for mode, wanted, actual in zip(MODES, asked, made, strict=True):
+                with np.errstate(divide="ignore", invalid="ignore"):
+                    used = wanted / np.asarray(actual)
+                found[f"{mode}{standard.suffix}"] = np.where(used < REFUSED, used, REFUSED)[()]
+        return found

@@ -1,0 +1,69 @@
+"""The least face width that carries, proven: no width below it does.
+
+What of the load capacity is used may rise with the width, and jump. It is followed from the
+narrowest width on: as long as the lower bound of a step is above 1, no width in it carries.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from gearopt.formulations.strength import ALLOWANCE
+from gearopt.formulations.strength.rated import Rows
+from gearopt.optimise.terms import Array
+
+BEYOND = 1.0 + 1e-12  # a border is passed by this factor
+ROUNDING = 1e-13  # of a bound
+STEPS = 2000  # of a row; a bound of 1 is reached in some tens
+ROUGH = 1e-4  # of what is used above 1 where a lower bound on the width is close enough
+SHORT = 1e-14  # relative length of a step that ends a row
+
+
+def used(rows: Sequence[Rows], low: Array, high: Array) -> Array:
+    """Return the lower bound of rows by several standards."""
+    found = rows[0].used(low, high)
+    for one in rows[1:]:
+        found = np.maximum(found, one.used(low, high))
+    return np.asarray(np.where(np.isnan(found), np.inf, found))
+
+
+def first_width(
+    rows: Sequence[Rows], low: Array, high: Array, close: float = ALLOWANCE, steps: int = STEPS
+) -> Array:
+    """Return the first face width [mm] (n,) from low to high that carries; inf: none.
+
+    A lower bound of it where close, what may be used above 1, is more than rounding, or after so
+    many steps.
+    """
+    found, here, top = np.full(len(low), np.inf), np.array(low, float), np.asarray(high, float)
+    active = np.flatnonzero(here <= top * (1.0 + ALLOWANCE))
+    rows = [one.take(active) for one in rows]
+    here, top, power = here[active], top[active], np.ones(len(active))
+    for _ in range(steps):
+        if not len(active):
+            break
+        now = used(rows, here, here)
+        carries = now <= 1.0 + close
+        found[active[carries]] = here[carries]
+        goes = ~carries & (here < top)
+        if not goes.all():
+            active, rows = active[goes], [one.take(goes) for one in rows]
+            here, top, power, now = here[goes], top[goes], power[goes], now[goes]
+        here, power = _on(rows, here, top, now, power)
+    found[active] = here  # what is left is bounded from below
+    return found
+
+
+def _on(
+    rows: Sequence[Rows], here: Array, top: Array, now: Array, power: Array
+) -> tuple[Array, Array]:
+    """Return the widths after one step, and the powers of `now` that the next one tries."""
+    border = np.min([one.border(here) for one in rows], axis=0)
+    end = np.minimum(top, border)
+    there = np.minimum(here * np.maximum(now, BEYOND) ** power, end)
+    proven = used(rows, here, there) >= 1.0 - ROUNDING
+    at_border = here >= border
+    there = np.where(at_border, border * BEYOND, there)
+    goes = proven | at_border | (there <= here * (1.0 + SHORT))
+    here = np.where(goes, there, here)
+    return here, np.where(proven, np.minimum(1.0, 2.0 * power), 0.5 * power)

@@ -1,0 +1,254 @@
+"""The choices of a stage whose limits are ratings: tooth pairs, modules, ways of making them.
+
+Rows are (pair, module, option); each needs the first face width that carries. Every module is
+tried, as a larger one may be the better one where the load-distribution factor falls.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from gearopt.formulations.strength import ALLOWANCE
+from gearopt.formulations.strength.rated import Rows, Standard
+from gearopt.formulations.strength.widths import STEPS, first_width, used
+from gearopt.formulations.teeth.stage import EDGE, Index, Table
+from gearopt.optimise.terms import Array
+from gearopt.physics.gears import GearPair
+
+FEW = 2  # steps towards a width, for a first lower bound
+NEAR = 1.05  # times the least of these: what is bounded again
+CLOSE = 1e-4  # of what is used above 1, for that
+
+
+@dataclass(frozen=True)
+class Found:
+    """The best choice of rows (n,): cost, module [mm], face width [mm], option.
+
+    first: index of the first module that carries at all, of one option; else 0.
+    """
+
+    cost: Array
+    module: Array
+    width: Array
+    option: Index
+    first: Index
+
+
+@dataclass(frozen=True)
+class RatedTable(Table):
+    """Tooth pairs (n,) of a stage with options."""
+
+    @cached_property
+    def _prepared(self) -> list[list[Any]]:
+        """What standards take of the pairs, by option and standard; (modules n,) by module."""
+        modules = self.modules if self._by_module else self.modules[:1]
+        z1, z2 = (np.tile(z, len(modules)) for z in (self.z1, self.z2))
+        pair = self.train.pair(self.position, np.repeat(modules, len(self.z1)), z1, z2, 1.0)
+        found: list[list[Any]] = []
+        known: list[tuple[Standard, Any]] = []
+        for option in self.stage.options:
+            made = []
+            for standard in option.standards:
+                same = next((p for s, p in known if s.like(standard)), None)
+                made.append(standard.prepared(pair) if same is None else same)
+                known.append((standard, made[-1]))
+            found.append(made)
+        return found
+
+    @property
+    def _by_module(self) -> bool:
+        """Whether teeth of different modules have different shapes."""
+        own = self.stage.toothing
+        return own.working_distance is not None or any(own.thickness_allowances)
+
+    @property
+    def monotone(self) -> bool:
+        """Whether at one power a stronger torque never takes less."""
+        return all(s.monotone for o in self.stage.options for s in o.standards)
+
+    def cost(self, torque: Array, pair: Index, most: Array | float = np.inf) -> Array:
+        """Return the minimum share of pairs at torques [N mm]; inf where nothing carries them.
+
+        most: values above which any is as good as inf.
+        """
+        return self._found((torque, torque), pair, most).cost
+
+    def choose(self, torque: float, pair: int) -> tuple[float, float, int]:
+        """Return the module, the face width [mm] and the option behind `cost`."""
+        at = np.array([torque])
+        found = self._found((at, at), np.array([pair]))
+        return found.module.item(), found.width.item(), found.option.item()
+
+    def least_cost(self, low: Array, high: Array, pair: Index, group: Index) -> Array:
+        """Return lower bounds of `cost` at torques [N mm] from low to high.
+
+        Only the least of every group (n,) of pairs is close.
+        """
+        cost = self._found((low, high), pair, steps=FEW).cost
+        return self._closer((low, high), pair, group, cost)
+
+    def _closer(self, torque: tuple[Array, Array], pair: Index, group: Index, cost: Array) -> Array:
+        """Return lower bounds of which the least ones of every group are close."""
+        least = np.full(group.max(initial=-1) + 1, np.inf)
+        np.minimum.at(least, group, cost)
+        near = np.flatnonzero(cost <= least[group] * NEAR)
+        near = near[np.isfinite(cost[near])]
+        ends = torque[0][near], torque[1][near]
+        cost[near] = np.maximum(cost[near], self._found(ends, pair[near], close=CLOSE).cost)
+        return cost
+
+    def grid(self, cells: int, ratio_cells: int, delta: float, tick: Callable[[], None]) -> Array:
+        """Return the minimum cost for every cell of torque and of ratio, each delta wide in logs.
+
+        A lower bound: the least over the torques of a cell, of its pairs the best.
+        """
+        found = np.full((cells, ratio_cells), np.inf)
+        column = (self.log_ratio / delta).astype(np.int64)
+        most = math.log(self.train.highest_ratio)
+        first = np.zeros(len(self.ratio), np.int64)
+        for cell in range(cells):
+            tick()
+            low = cell * delta
+            count = np.searchsorted(self.log_ratio, most - low + EDGE, side="right")
+            pair = np.arange(count)
+            ends = [
+                np.full(count, self.train.torque * math.exp(e))
+                for e in (low - EDGE, low + delta + EDGE)
+            ]
+            made = self._found((ends[0], ends[1]), pair, first=first[pair], steps=FEW)
+            if self.monotone:
+                first[pair] = made.first
+            cost = self._closer((ends[0], ends[1]), pair, column[pair], made.cost)
+            np.minimum.at(found[cell], column[pair], cost)
+        return found
+
+    def width(self, torque: Array, pair: Index, module: int) -> Array:
+        """Return the minimum face width [mm] of pairs of a module (index) at torques; inf: none."""
+        at = np.full(len(pair), module)
+        ends = self._ends(self.made(self.modules[module], pair), at, pair)
+        widths = [
+            self._narrowest((torque, torque), pair, at, option, ends)
+            for option in range(len(self.stage.options))
+        ]
+        possible = (self.first[pair] <= module) & (module <= self.last[pair])
+        return np.where(possible, np.minimum.reduce(widths), np.inf)
+
+    def _found(
+        self,
+        torque: tuple[Array, Array],
+        pair: Index,
+        most: Array | float = np.inf,
+        first: Index | int = 0,
+        close: float = ALLOWANCE,
+        steps: int = STEPS,
+    ) -> Found:
+        """Return the best choices at torques between two ends.
+
+        most: costs above which none counts; first: index of the module to begin with; close,
+        steps: as of `first_width`, for lower bounds.
+        """
+        best = _none(len(pair), len(self.modules))
+        for option in range(len(self.stage.options)):
+            at = np.maximum(self.first[pair], first)
+            rows = np.arange(len(pair))
+            while True:
+                rows = rows[at[rows] <= self.last[pair[rows]]]
+                own, module = pair[rows], at[rows]
+                one = self.made(self.modules[module], own)
+                low, high = self._ends(one, module, own)
+                least = self._share(one, low)
+                limit = np.minimum(np.broadcast_to(most, len(pair))[rows], best.cost[rows])
+                keep = least <= limit
+                if not keep.any():
+                    break
+                if self.train.by_width:
+                    high = np.minimum(high, low * (limit / least) * (1.0 + EDGE))
+                rows = rows[keep]
+                ends = low[keep], high[keep]
+                loads = torque[0][rows], torque[1][rows]
+                widths = self._narrowest(loads, pair[rows], at[rows], option, ends, close, steps)
+                self._improve(best, rows, pair[rows], at[rows], option, widths)
+                at[rows] += 1
+        return best
+
+    def _improve(
+        self, best: Found, rows: Index, pair: Index, module: Index, option: int, width: Array
+    ) -> None:
+        """Put what carries and costs less in the place of what was best so far."""
+        some = np.isfinite(width)
+        rows, pair, module, width = rows[some], pair[some], module[some], width[some]
+        best.first[rows] = np.minimum(best.first[rows], module)
+        cost = self._share(self.made(self.modules[module], pair), width)
+        some = cost < best.cost[rows] * (1.0 - ALLOWANCE)
+        place = rows[some]
+        best.cost[place], best.width[place] = cost[some], width[some]
+        best.module[place], best.option[place] = self.modules[module[some]], option
+
+    def _ends(self, one: GearPair, module: Index, pair: Index) -> tuple[Array, Array]:
+        """Return the minimum and maximum face width [mm] of pairs with modules (indices)."""
+        if self.steps is None:
+            return self._widths(one)
+        low, high = (count[module, pair] * self.step for count in self.steps)
+        return low, high
+
+    def _narrowest(
+        self,
+        torque: tuple[Array, Array],
+        pair: Index,
+        module: Index,
+        option: int,
+        ends: tuple[Array, Array],
+        close: float = ALLOWANCE,
+        steps: int = STEPS,
+    ) -> Array:
+        """Return the minimum face widths [mm] of pairs with modules (indices); inf: none."""
+        one = self.made(self.modules[module], pair)
+        rows = self._rows(torque, one, pair, module, option)
+        found = first_width(rows, *ends, close, steps)
+        if self.steps is None:
+            return found
+        return self._stepped(rows, found, ends[1], close)
+
+    def _rows(
+        self,
+        torque: tuple[Array, Array],
+        one: GearPair,
+        pair: Index,
+        module: Index,
+        option: int,
+    ) -> list[Rows]:
+        place = module * len(self.ratio) + pair if self._by_module else pair
+        speed = self.train.speed_at(torque[0]), self.train.speed_at(torque[1])
+        scale = np.ones(len(pair)) if self._by_module else self.modules[module] / self.modules[0]
+        return [
+            standard.rows(prepared.take(place).scaled(scale), one, torque, speed, self.train.safety)
+            for standard, prepared in zip(
+                self.stage.options[option].standards, self._prepared[option], strict=True
+            )
+        ]
+
+    def _stepped(self, rows: list[Rows], width: Array, high: Array, close: float) -> Array:
+        """Return the first widths on the step from those on that carry; close: as `first_width`."""
+        step, found = self.step, np.full(len(width), np.inf)
+        active = np.flatnonzero(np.isfinite(width))
+        while len(active):
+            now = [one.take(active) for one in rows]
+            on = np.ceil(width[active] / step * (1.0 - ALLOWANCE)) * step
+            inside = on <= high[active] * (1.0 + ALLOWANCE)
+            carries = inside & (used(now, on, on) <= 1.0 + close)
+            found[active[carries]] = on[carries]
+            goes = inside & ~carries
+            active, now = active[goes], [one.take(goes) for one in now]
+            width[active] = first_width(now, on[goes] + step, high[active], close)
+            active = active[np.isfinite(width[active])]
+        return found
+
+
+def _none(count: int, modules: int) -> Found:
+    """Return that nothing carries."""
+    cost, module, width = (np.full(count, np.inf) for _ in range(3))
+    return Found(cost, module, width, np.zeros(count, np.int64), np.full(count, modules))

@@ -1,0 +1,96 @@
+"""Whole teeth under ratings: against every candidate rated exactly."""
+
+import math
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from rated_drives import FREE, MODULES, TIED, F, rated_drive
+
+from gearopt.formulations import teeth
+from gearopt.formulations.gear_train import FaceWidth, share
+from gearopt.formulations.teeth.search import search, within
+from gearopt.formulations.teeth.stage import spans
+from gearopt.optimise.result import Budget
+from gearopt.physics.agma.rating import rate
+from gearopt.physics.rating import Operation
+
+STEPPED = FaceWidth(F(3, 10), F(3, 4), step=F(5))
+
+
+def safe(train, k, pair, torque):
+    """Return whether the exact rating of a pair meets the safety factors."""
+    standard = train.stages[k].options[0].standards[0]
+    speed = train.speed * train.torque / torque
+    life = standard.loads[0].hours
+    operation = Operation(torque * speed, speed, life, overload=standard.operation.overload)
+    found = rate(pair, operation, standard.steels, standard.practice)
+    least = min(found.bending_safety) / train.safety[0], min(found.contact_safety) / train.safety[1]
+    return min(least) >= 1.0 - 1e-11
+
+
+def widths(train, k, module, z1):
+    """Return the face widths to be tried: those on the step, or a fine grid."""
+    face = train.stages[k].face_width
+    d = float(module) * z1 / train.stages[k].toothing.cosine
+    low, high = float(face.low) * d, float(face.high) * d
+    if face.step:
+        step = float(face.step)
+        return step * np.arange(math.ceil(low / step - 1e-12), math.floor(high / step + 1e-12) + 1)
+    return np.linspace(low, high, 1 if face.tied else 60)
+
+
+def least_share(train, k, torque, z1, z2):
+    """Return the least share of a pair over modules and widths, every one rated."""
+    best = math.inf
+    for module in train.stages[k].modules:
+        for width in widths(train, k, module, z1):
+            pair = train.pair(k, float(module), z1, z2, float(width))
+            value = share(train, k, pair)
+            if value < best and safe(train, k, pair, torque):
+                best = value
+    return best
+
+
+@pytest.mark.parametrize("face", [TIED, STEPPED], ids=["tied", "stepped"])
+@pytest.mark.parametrize("helix", [0.0, 0.4])
+def test_the_best_of_one_stage_is_that_of_all_candidates(face, helix):
+    choice = {"pinion_teeth": (20, 23), "modules": MODULES[3:7], "helix": helix}
+    train = rated_drive(F(3), [face], **choice)
+    found = search(train, 1, Budget())
+    pairs = [
+        (z1, z2)
+        for z1, start, stop in spans(train, 0, train.highest_ratio)
+        for z2 in range(start, stop + 1)
+        if within(train, ((z1, z2),))
+    ]
+    best = min(least_share(train, 0, train.torque, *pair) for pair in pairs)
+    assert found.found[0][0] == pytest.approx(best, rel=1e-11)
+    made = teeth.best_pairs(train, found.found[0][1])
+    assert safe(train, 0, made[0], train.torque)
+
+
+def test_no_narrower_width_carries():
+    """Of every pair of a stage, each width on a fine grid below the one found is rated unsafe."""
+    train = rated_drive(F(3), [FREE], pinion_teeth=(20, 21), modules=MODULES[4:6], helix=0.3)
+    for z1, start, _ in spans(train, 0, train.highest_ratio):
+        only = train.fixed_teeth(0, z1, start)
+        pair = teeth.best_pairs(only, ((z1, start),))[0]
+        assert safe(train, 0, pair, train.torque)
+        low = 0.3 * pair.pinion.reference_diameter
+        for width in np.linspace(low, pair.face_width * (1.0 - 1e-9), 40):
+            narrower = pair.of_width(float(width))
+            assert (
+                width == pytest.approx(pair.face_width, rel=1e-8)
+                or not safe(train, 0, narrower, train.torque)
+                or pair.face_width == pytest.approx(low)
+            )
+
+
+def test_a_train_is_feasible_by_its_own_text():
+    train = rated_drive(Fraction(20), [TIED, TIED])
+    found = search(train, 1, Budget())
+    point = teeth.point(train, teeth.best_pairs(train, found.found[0][1]))
+    batch = teeth.problem(train).batch(point[None])
+    assert batch.G.max() <= 1.0 + 1e-11
+    assert batch.F[0, 0] == pytest.approx(found.found[0][0], rel=1e-12)
