@@ -44,7 +44,7 @@ PUBLISHED = (
 OPERATION = Operation(1.5e7, 150.0, 5000.0, overload=1.25)  # 15 kW
 STEEL, PRACTICE = Steel("carburised", 1), Practice(quality=8)
 HELIX = {"spur": 0.0, "helical, 17 deg": math.radians(17.0)}
-TEETH = (17, 61), (61, 201)
+TEETH = range(17, 61), range(61, 201)
 ROWS, CHECKED = 1_000_000, 30
 
 
@@ -82,7 +82,7 @@ def _speeds(case: str, helix: float, repeat: int) -> list[dict[str, Any]]:
     """Return the table, a million rows of it, and pairs one at a time."""
     import numpy as np
 
-    teeth = [z.ravel() for z in np.meshgrid(*(np.arange(*ends) for ends in TEETH), indexing="ij")]
+    teeth = [z.ravel() for z in np.meshgrid(*TEETH, indexing="ij")]
     table, making = timed(lambda: factor_table(_pairs(helix, teeth[0], teeth[1], 1.0, 1.0)), repeat)
     rng = np.random.default_rng(0)
     place = rng.integers(0, len(teeth[0]), ROWS)
