@@ -78,6 +78,8 @@ def side(toothing, module, teeth, length):
 def width(stage, module, z1, needed):
     """Least face width that carries the load, inf where the limits allow none."""
     face, toothing = stage.face_width, stage.toothing
+    if not face.plain:
+        return limited_width(stage, module, z1, needed)
     d = float(module) * z1 / math.cos(toothing.helix_angle)
     if face.fixed is not None:
         b = np.full(len(z1), float(face.fixed))
@@ -99,6 +101,27 @@ def width(stage, module, z1, needed):
         steps = np.maximum(np.maximum(low, 1), np.ceil(needed / step * (1 - SAME)))
         b, allowed = steps * step, steps <= high
     return np.where(allowed, b, np.inf)
+
+
+def limited_width(stage, module, z1, needed):
+    """`width` where b/m and b are limited too: row by row, in fractions of the diameter."""
+    face, found = stage.face_width, []
+    for z, load in zip(z1.tolist(), np.broadcast_to(needed, len(z1)).tolist(), strict=True):
+        d = module * z / Fraction(math.cos(stage.toothing.helix_angle))
+        ends = [e * module for e in face.over_module]
+        low, high = max(face.low * d, ends[0], face.least), min(face.high * d, ends[1])
+        step = face.step
+        if face.fixed is not None:
+            allowed = low <= face.fixed <= high and load <= face.fixed * (1 + SAME)
+            found.append(float(face.fixed) if allowed else math.inf)
+        elif step is not None:
+            loaded = min(load, 1e9) / float(step) * (1 - SAME)
+            steps = max(1, math.ceil(low / step), math.ceil(loaded))
+            found.append(steps * float(step) if steps <= math.floor(high / step) else math.inf)
+        else:
+            allowed = low <= high and load <= float(high) * (1 + SAME)
+            found.append(min(max(load, float(low)), float(high)) if allowed else math.inf)
+    return np.array(found)
 
 
 def cost(train, k, d, b, u):

@@ -16,15 +16,22 @@ FACES = {
     "fixed": FaceWidth(F(1, 5), F(4, 5), fixed=F(24)),
     "fixed alone": FaceWidth(F(0), None, fixed=F(24)),
 }
+LIMITED = {  # by the module and at least so wide
+    "free": FaceWidth(F(1, 5), F(3, 5), over_module=(F(8), F(10)), least=F(14)),
+    "tied": FaceWidth(F(3, 5), F(3, 5), over_module=(F(9), F(11)), least=F(15)),
+    "stepped": FaceWidth(F(1, 2), F(3, 5), F(2), None, (F(9), F(10)), F(20)),
+    "fixed": FaceWidth(F(0), F(1), None, F(24), (F(12), F(16)), F(24)),
+}
 OBJECTIVES = ("gear_volume", "mass", "sum_of_centre_distances", "total_length")
 
 
 def drive(stages=2, face="tied", total=12, tolerance=None, **changes):
+    face = FACES[face] if isinstance(face, str) else face
     toothing = Toothing(changes.pop("helix_angle", 0.0))
     given = {"modules": (F(1), F(3, 2), F(2), F(3)), "pinion_teeth": (15, 20)}
     of_train = {k: changes.pop(k) for k in ("objective", "coprime") if k in changes}
     made = tuple(
-        Stage((1.5 + 0.2 * k, 40.0 + k), FACES[face], toothing=toothing, **given | changes)
+        Stage((1.5 + 0.2 * k, 40.0 + k), face, toothing=toothing, **given | changes)
         for k in range(stages)
     )
     tolerance = F(1, 50) if tolerance is None else tolerance

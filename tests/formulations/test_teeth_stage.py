@@ -7,7 +7,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 from brute_force import SAME, best_choice, cost
-from small_drives import FACES, OBJECTIVES, drive
+from small_drives import FACES, LIMITED, OBJECTIVES, drive
 
 from gearopt.errors import SolveError
 from gearopt.formulations.gear_train import FaceWidth, Stage, Train
@@ -18,8 +18,12 @@ from gearopt.formulations.teeth.stage import ALLOWANCE, table
 F = Fraction
 
 
-@pytest.mark.parametrize("face", FACES)
-@pytest.mark.parametrize("objective", OBJECTIVES)
+LIMITS = [pytest.param(face, id=f"limited {name}") for name, face in LIMITED.items()]
+CASES = [(face, objective) for face in FACES for objective in OBJECTIVES]
+CASES += [pytest.param(f, "gear_volume", id=f"limited {n}") for n, f in LIMITED.items()]
+
+
+@pytest.mark.parametrize(("face", "objective"), CASES)
 def test_the_best_module_and_width_of_every_pair(face, objective):
     train = drive(3, face, F(30), objective=objective, wheel_diameter=F(150), helix_angle=0.2)
     for k, own in enumerate(table(train, k, F(5, 2)) for k in range(3)):
@@ -34,8 +38,7 @@ def test_the_best_module_and_width_of_every_pair(face, objective):
             assert (own.cost(np.full(len(index), torque), index) == found[0]).all()
 
 
-@pytest.mark.parametrize("face", FACES)
-@pytest.mark.parametrize("objective", OBJECTIVES)
+@pytest.mark.parametrize(("face", "objective"), CASES)
 def test_capacity_floor_and_slope_of_every_module(face, objective):
     """Of one module alone: what it carries at most, and what it costs at least."""
     whole = drive(2, face, objective=objective, wheel_diameter=F(120), helix_angle=0.2)
@@ -54,7 +57,7 @@ def test_capacity_floor_and_slope_of_every_module(face, objective):
             floor = own.floor(m)
             assert (floor <= price(np.full(len(index), 1e-3)) * (1.0 + SAME)).all()
             assert not np.isfinite(price(most * (1.0 + 1e-9)))[most > 0.0].any()
-            if face != "stepped":  # the last step may be less than the widest face
+            if own.steps is None:  # the last step may be less than the widest face
                 assert np.isfinite(price(most * (1.0 - 1e-9)))[most > 0.0].all()
             least = price(np.full(len(index), 1e-9))
             good = allowed & np.isfinite(least)
@@ -129,7 +132,7 @@ def test_of_equal_costs_the_smaller_module_is_taken_on_steps():
 
 
 @pytest.mark.parametrize("helix", [0.0, 0.25])
-@pytest.mark.parametrize("face", FACES)
+@pytest.mark.parametrize("face", [*FACES, *LIMITS])
 def test_modules_and_steps_by_fractions(face, helix):
     """Limits in whole numbers, with ties: m z = 60 of the wheel, b = low d, b = high d."""
     chosen = {"modules": tuple(F(m, 4) for m in (4, 6, 8, 10)), "pinion_teeth": (16, 32)}
@@ -141,13 +144,16 @@ def test_modules_and_steps_by_fractions(face, helix):
         for m, module in enumerate(stage.modules):
             d = module * a / cosine
             good = module * b / cosine <= 60
+            low = max(face.low * d, (face.over_module[0] or 0) * module, face.least)
+            high = [x * y for x, y in ((face.high, d), (face.over_module[1], module)) if x]
             if face.fixed is not None:
-                good &= face.low * d <= face.fixed
-                good &= face.high is None or face.fixed <= face.high * d
+                good &= low <= face.fixed and all(face.fixed <= most for most in high)
+            elif not face.plain:
+                good &= low <= min(high)
             if good:
                 allowed.append(m)
             if face.step is not None:
-                ends = math.ceil(face.low * d / face.step), math.floor(face.high * d / face.step)
+                ends = math.ceil(low / face.step), math.floor(min(high) / face.step)
                 assert (own.steps[0][m][k], own.steps[1][m][k]) == (max(1, ends[0]), ends[1])
         assert list(range(own.first[k], own.last[k] + 1)) == allowed
     assert (own.steps is None) == (face.step is None)

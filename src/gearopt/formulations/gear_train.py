@@ -37,6 +37,7 @@ CHOICES = (  # of `Train.numbers`, those that limit what a stage may choose
     "ratio_high",
     "wheel_diameter",
 )
+WIDTHS = ("over_module_low", "over_module_high", "least_width")  # where a stage has these limits
 
 
 @dataclass(frozen=True)
@@ -44,13 +45,16 @@ class FaceWidth:
     """How the face width b of a stage is chosen, from the pinion reference diameter d1.
 
     low, high: limits of b/d1 (high may be None with `fixed`); equal ones tie b to d1. step: b is
-    a whole multiple of it [mm]. fixed: b itself is given [mm] (low and high still limit it).
+    a whole multiple of it [mm]. fixed: b itself is given [mm] (the limits still hold).
+    over_module: limits of b/m_n, None: no limit; least: minimum b [mm], 0: no limit.
     """
 
     low: Fraction
     high: Fraction | None
     step: Fraction | None = None
     fixed: Fraction | None = None
+    over_module: tuple[Fraction | None, Fraction | None] = (None, None)
+    least: Fraction = Fraction(0)
 
     @property
     def tied(self) -> bool:
@@ -61,6 +65,17 @@ class FaceWidth:
     def widest(self) -> float:
         """Largest b/d1; inf where there is no limit."""
         return _or_inf(self.high)
+
+    @property
+    def plain(self) -> bool:
+        """Whether b has no limits but those of b/d1."""
+        return self.over_module == (None, None) and not self.least
+
+    def proportions(self, slenderness: Fraction) -> tuple[Fraction, Fraction | None]:
+        """Return the limits of b/m_n, least aside, of a pinion with d1/m_n = slenderness."""
+        low, high = self.over_module
+        most = [x for x in (high, self.high and self.high * slenderness) if x is not None]
+        return max(self.low * slenderness, low or Fraction(0)), min(most, default=None)
 
 
 @dataclass(frozen=True)
@@ -177,7 +192,7 @@ class Train:
     @property
     def by_stage(self) -> tuple[str, ...]:
         """The names in `numbers` with a value for every stage."""
-        return (*self.law.names, *CHOICES)
+        return (*self.law.names, *CHOICES, *self._widths())
 
     @property
     def unit(self) -> str:
@@ -208,7 +223,17 @@ class Train:
             "ratio_low": tuple(float(s.ratio[0]) for s in stages),
             "ratio_high": tuple(_or_inf(s.ratio[1]) for s in stages),
             "wheel_diameter": tuple(_or_inf(s.wheel_diameter) for s in stages),
+            **self._widths(),
         }
+
+    def _widths(self) -> dict[str, tuple[float, ...]]:
+        """Return the numbers of WIDTHS; none where no stage has such a limit."""
+        faces = [stage.face_width for stage in self.stages]
+        if all(face.plain for face in faces):
+            return {}
+        low = tuple(float(face.over_module[0] or 0) for face in faces)
+        high = tuple(_or_inf(face.over_module[1]) for face in faces)
+        return dict(zip(WIDTHS, (low, high, tuple(float(f.least) for f in faces)), strict=True))
 
 
 def _or_inf(number: Fraction | int | None) -> float:
@@ -280,6 +305,10 @@ def _choices(stage: Stage, own: dict[str, Any], pair: GearPair) -> dict[str, Any
         low = own["width_low"] * d if face.low > 0 else None
         high = None if face.high is None else own["width_high"] * d
         between("face_width", pair.face_width, low, high)
+    ends = (own[n] if end else None for n, end in zip(WIDTHS[:2], face.over_module, strict=True))
+    between("face_width_over_module", pair.face_width / pair.normal_module, *ends)
+    if face.least:
+        limits["least_face_width"] = own["least_width"] / pair.face_width
     if len(stage.modules) > 1:
         between("module", pair.normal_module, own["module_low"], own["module_high"])
     if not stage.pinion_fixed:

@@ -30,6 +30,7 @@ _PARAMETER_UNITS = {
     "wheel_diameter": "mm",
     "module_low": "mm",
     "module_high": "mm",
+    "least_width": "mm",
 }
 
 
@@ -113,7 +114,7 @@ def _with_wheels(train: Train) -> tuple[Var, ...]:
 
 def _role(train: Train, name: str, tied: str) -> str | tuple[str, ...]:
     """Return the role of a parameter: the ratio is a duty; `tied`: that of a width tied to d1."""
-    if name.startswith("width"):
+    if name in ("width_low", "width_high"):
         return tuple(tied if s.face_width.tied else "limit" for s in train.stages)
     if name in ("lowest_ratio", "highest_ratio", "torque"):
         return "given"
@@ -195,7 +196,8 @@ def _lengths(train: Train) -> tuple[float, float]:
         for limit in stage.allowable
     ]
     for stage in train.stages:
-        given = (*stage.modules, stage.face_width.fixed, stage.wheel_diameter)
+        face = stage.face_width
+        given = (*stage.modules, face.fixed, face.least, stage.wheel_diameter)
         sizes += [float(length) for length in given if length]
     return min(sizes) / BEYOND, max(sizes) * BEYOND
 

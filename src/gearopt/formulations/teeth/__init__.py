@@ -147,7 +147,7 @@ def _widths(stage: Stage) -> tuple[float, float]:
     minimum, maximum = (reference_diameter(float(m), z, angle) for m, z in ends)
     face = stage.face_width
     low = float(face.low) or 1e-6 * face.widest  # thinner than paper
-    return 0.999 * low * minimum, 1.001 * face.widest * maximum
+    return 0.999 * low * minimum, 1.001 * max(face.widest * maximum, float(face.least))
 
 
 def _ends(span: tuple[int, int | None]) -> tuple[float, float]:

@@ -190,7 +190,12 @@ class Table:
         if face.fixed is not None:
             fixed = np.full_like(d, float(face.fixed))
             return fixed, fixed
-        return float(face.low) * d, face.widest * d
+        low, high = float(face.low) * d, face.widest * d
+        if face.plain:
+            return low, high
+        ends, m = face.over_module, one.normal_module
+        low = np.maximum(low, np.maximum(float(ends[0] or 0) * m, float(face.least)))
+        return low, high if ends[1] is None else np.minimum(high, float(ends[1]) * m)
 
     def _share(self, pair: GearPair, width: Any) -> Array:
         """Return what pairs of these face widths [mm] add to the objective."""
@@ -271,7 +276,10 @@ def _closed(
     face = stage.face_width
     if face.fixed is not None:
         return load, (load / float(face.fixed)) ** 0.5, 0.5, slope
-    return load, (load * cosine / (face.widest * z1)) ** (1.0 / 3.0), 1.0 / 3.0, slope
+    widest = face.widest * z1 / cosine  # b/m_n
+    if face.over_module[1] is not None:
+        widest = np.minimum(widest, float(face.over_module[1]))
+    return load, (load / widest) ** (1.0 / 3.0), 1.0 / 3.0, slope
 
 
 def _pairs(train: Train, position: int, cut: Fraction) -> tuple[Index, Index]:
@@ -317,26 +325,30 @@ def spans(train: Train, position: int, cut: Fraction) -> list[tuple[int, int, in
 
 
 def _allowed(stage: Stage, z1: Index, z2: Index, cosine: float) -> tuple[Index, Index]:
-    """Return the first and last module index by wheel diameter and fixed-width proportions."""
-    first = np.zeros(len(z1), dtype=np.int64)
+    """Return the first and last module index by wheel diameter and limits of the face width."""
     last = np.full(len(z1), len(stage.modules) - 1, dtype=np.int64)
     exact_cosine = Fraction(cosine)
-
-    def most_teeth(length: Fraction) -> Index:
-        """Return the most teeth of a wheel of a diameter, for every module (decreasing)."""
-        return np.array([math.floor(length * exact_cosine / m) for m in stage.modules])
-
     if stage.wheel_diameter is not None:
-        maximum = most_teeth(stage.wheel_diameter)
-        last = np.minimum(last, (maximum[:, None] >= z2).sum(axis=0) - 1)
+        teeth = [math.floor(stage.wheel_diameter * exact_cosine / m) for m in stage.modules]
+        last = np.minimum(last, (np.array(teeth)[:, None] >= z2).sum(axis=0) - 1)
     face = stage.face_width
-    if face.fixed is not None and face.low > 0:
-        last = np.minimum(last, (most_teeth(face.fixed / face.low)[:, None] >= z1).sum(axis=0) - 1)
-    if face.fixed is not None and face.high is not None:
-        length = face.fixed / face.high
-        minimum = np.array([math.ceil(length * exact_cosine / m) for m in stage.modules])
-        first = (minimum[:, None] > z1).sum(axis=0)
-    return first, last
+    if face.fixed is None and face.plain:
+        return np.zeros_like(last), last
+    pinions, place = np.unique(z1, return_inverse=True)
+    ends = [_modules(stage, face.proportions(int(z) / exact_cosine)) for z in pinions]
+    first, end = np.array(ends, dtype=np.int64).reshape(-1, 2).T
+    return first[place], np.minimum(last, end[place])
+
+
+def _modules(stage: Stage, span: tuple[Fraction, Fraction | None]) -> tuple[int, int]:
+    """Return the first and last index of modules with which some b has b/m in a span."""
+    face, (low, high) = stage.face_width, span
+    narrow, wide = (face.least, None) if face.fixed is None else (face.fixed, face.fixed)
+    possible = high is None or low <= high
+    possible &= wide is None or wide >= face.least
+    first = sum(high is not None and high * m < narrow for m in stage.modules)
+    last = sum(wide is None or low * m <= wide for m in stage.modules) - 1
+    return first, last if possible else -1
 
 
 def _steps(stage: Stage, z1: Index, cosine: float) -> tuple[Array, Array] | None:
@@ -344,7 +356,6 @@ def _steps(stage: Stage, z1: Index, cosine: float) -> tuple[Array, Array] | None
     face = stage.face_width
     if face.step is None:
         return None
-    assert face.high is not None
     exact_cosine = Fraction(cosine)
     teeth = np.unique(z1)
     place = np.searchsorted(teeth, z1)
@@ -352,7 +363,8 @@ def _steps(stage: Stage, z1: Index, cosine: float) -> tuple[Array, Array] | None
     maximum = np.empty_like(minimum)
     for k, module in enumerate(stage.modules):
         for i, z in enumerate(teeth):
-            diameter = module * int(z) / exact_cosine
-            minimum[k, i] = max(1, math.ceil(face.low * diameter / face.step))
-            maximum[k, i] = math.floor(face.high * diameter / face.step)
+            low, high = face.proportions(int(z) / exact_cosine)
+            assert high is not None
+            minimum[k, i] = max(1, math.ceil(max(low * module, face.least) / face.step))
+            maximum[k, i] = math.floor(high * module / face.step)
     return minimum[:, place], maximum[:, place]

@@ -168,6 +168,8 @@ def _slab(slabs: Slabs, stage: int) -> int:
 def _refuse(train: Train, box: Gearbox) -> None:
     if not train.on_reference:
         raise SolveError("together with its layout, a drive needs profile shifts that cancel")
+    if not all(s.face_width.plain for s in train.stages):
+        raise SolveError("together with its layout, face widths have limits of b/d1 alone")
     choice = any(not s.face_width.tied and s.face_width.fixed is None for s in train.stages)
     shared = box.slabs is None or any(len(s) > 1 for s in box.slabs)
     widest = max(s.bearing_width for s in box.shafts)  # up to the gap, a bearing stays in it
