@@ -4,7 +4,7 @@ from fractions import Fraction
 
 from gearopt.formulations.gear_train import FaceWidth, Stage, Train
 from gearopt.formulations.strength.k_factor import K_FACTOR
-from gearopt.formulations.teeth.stage import table
+from gearopt.formulations.teeth.tables import table
 from gearopt.formulations.toothing import Toothing
 
 F = Fraction

@@ -3,7 +3,6 @@
 import math
 from dataclasses import replace
 from fractions import Fraction
-from importlib import import_module
 
 import numpy as np
 import pytest
@@ -14,11 +13,9 @@ from gearopt.errors import SolveError
 from gearopt.formulations.teeth import later_stages as bounds
 from gearopt.formulations.teeth import stage as staging
 from gearopt.formulations.teeth.later_stages import EDGE, bound, ragged, slices
-from gearopt.formulations.teeth.progress import Progress
-from gearopt.optimise.clock import Clock
+from gearopt.formulations.teeth.tables import stage_tables
 
 F = Fraction
-searching = import_module("gearopt.formulations.teeth.search")  # `teeth.search` is its function
 
 
 def naive(train, tables, delta):
@@ -147,7 +144,7 @@ def test_equal_inner_stages_share_what_was_made(monkeypatch):
     monkeypatch.setattr(staging.Table, "grid", lambda *a: made.append(1) or real(*a))
     same = tuple(replace(s, allowable=(2.0, 40.0)) for s in drive(5).stages)
     train = replace(drive(5, total=F(40)), stages=same)
-    tables = searching._tables(train, train.highest_ratio, Progress(1, Clock()))
+    tables = stage_tables(train, train.highest_ratio)
     assert tables[1] is tables[2] is tables[3]
     assert tables[0] is not tables[1] and tables[3] is not tables[4]
     assert [t.position for t in tables] == [0, 1, 1, 1, 4]
@@ -159,11 +156,11 @@ def test_equal_inner_stages_share_what_was_made(monkeypatch):
     assert len(made) == 2
     made.clear()
     pair = replace(train, stages=(same[0], ends[0], same[2], same[3], same[4]))
-    tables = searching._tables(pair, pair.highest_ratio, Progress(1, Clock()))
+    tables = stage_tables(pair, pair.highest_ratio)
     assert tables[2] is tables[3] and tables[1] is not tables[2]
     assert [t.position for t in tables] == [0, 1, 2, 2, 4]
     other = replace(train, stages=(*same[:2], replace(same[2], allowable=(1.0, 40.0)), *same[3:]))
-    tables = searching._tables(other, other.highest_ratio, Progress(1, Clock()))
+    tables = stage_tables(other, other.highest_ratio)
     assert len({id(t) for t in tables}) == 5
     bound(other, tables, 0.1, lambda: None)
     assert len(made) == 3

@@ -17,7 +17,7 @@ from gearopt.formulations.teeth import stage as staging
 from gearopt.formulations.teeth.later_stages import bound
 from gearopt.formulations.teeth.progress import TIE
 from gearopt.formulations.teeth.search import possible, search, within
-from gearopt.formulations.teeth.stage import table
+from gearopt.formulations.teeth.tables import table
 from gearopt.optimise.result import Budget
 
 F = Fraction
@@ -207,7 +207,7 @@ def test_grids_are_halved_while_they_fit(stages, number, first, monkeypatch):
     """
     train, made, looked = some_drive(number, stages), [], []
 
-    def noted(train, tables, delta, tick):
+    def noted(train, tables, delta, tick, *others):
         made.append(delta)
         looked.append(tick.__self__.clock.evaluations)
         return bound(train, tables, delta, tick)
@@ -282,7 +282,7 @@ def test_no_more_than_a_slice_is_sized_between_two_looks_at_the_clock(monkeypatc
     monkeypatch.setattr(
         staging.Table,
         "cost",
-        lambda t, q, p, most=math.inf: sized.append(sized.pop() + len(p)) or real(t, q, p),
+        lambda t, q, p, most=math.inf: sized.append(sized.pop() + len(p)) or real(t, q, p, *others),
     )
 
     def watch(event):

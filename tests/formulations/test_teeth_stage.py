@@ -13,7 +13,8 @@ from gearopt.errors import SolveError
 from gearopt.formulations.gear_train import FaceWidth, Stage, Train
 from gearopt.formulations.strength.k_factor import K_FACTOR
 from gearopt.formulations.teeth import stage as staging
-from gearopt.formulations.teeth.stage import ALLOWANCE, table
+from gearopt.formulations.teeth.stage import ALLOWANCE
+from gearopt.formulations.teeth.tables import table
 
 F = Fraction
 

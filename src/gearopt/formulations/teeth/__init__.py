@@ -16,7 +16,7 @@ from gearopt.formulations import sizing
 from gearopt.formulations.gear_train import Stage, Train, terms
 from gearopt.formulations.teeth.progress import MARGIN, TIE, Progress, Teeth
 from gearopt.formulations.teeth.search import BEAM, narrowed, search, trimmed
-from gearopt.formulations.teeth.stage import table
+from gearopt.formulations.teeth.tables import table
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch

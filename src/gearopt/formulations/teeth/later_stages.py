@@ -23,6 +23,8 @@ from gearopt.optimise.terms import Array
 ENTRIES = 10_000_000  # of the last stage's table
 SLICE = 500_000  # of them, between two checks of the clock
 
+Mask = NDArray[np.bool_]
+
 
 @dataclass(frozen=True)
 class Bound:
@@ -52,10 +54,19 @@ def _cell(log_ratio: Array, delta: float) -> NDArray[np.int64]:
     return (log_ratio / delta).astype(np.int64)
 
 
-def bound(train: Train, tables: list[Table], delta: float, tick: Callable[[], None]) -> Bound:
+def bound(
+    train: Train,
+    tables: list[Table],
+    delta: float,
+    tick: Callable[[], None],
+    useful: list[Mask] | None = None,
+    most: float = math.inf,
+) -> Bound:
     """Return the bound of all stages but the first, on cells of `delta` in log ratio.
 
     Every table has a pair. tick: called several times a second; what it raises ends the work.
+    useful: of `useful_cells`, outside of which everything counts as inf, as may what costs more
+    than so much.
     """
     cells = int((math.log(train.highest_ratio) + EDGE) / delta) + 1
     widest = max(float(t.log_ratio[-1]) for t in tables)
@@ -63,10 +74,15 @@ def bound(train: Train, tables: list[Table], delta: float, tick: Callable[[], No
     count = len(tables)
     minimum: list[Array | None] = [None] * count
     for k in range(1, count - 1):
-        alike = k > 1 and train.stages[k] == train.stages[k - 1]
-        minimum[k] = minimum[k - 1] if alike else tables[k].grid(cells, ratio_cells, delta, tick)
+        alike = k > 1 and train.stages[k] == train.stages[k - 1] and useful is None
+        mask = None if useful is None else useful[k]
+        made = minimum[k - 1] if alike else None
+        minimum[k] = (
+            tables[k].grid(cells, ratio_cells, delta, tick, mask, most) if made is None else made
+        )
     to_go = [np.full(cells + ratio_cells + 2, np.inf) for _ in range(count)]
-    to_go[-1][:cells] = _last(train, tables[-1], cells, delta, tick)
+    last = None if useful is None else useful[-1]
+    to_go[-1][:cells] = _last(train, tables[-1], cells, delta, tick, last)
     for k in range(count - 2, 0, -1):
         ahead = _ahead(to_go[k + 1], ratio_cells)[:cells]
         now = minimum[k]
@@ -79,18 +95,59 @@ def bound(train: Train, tables: list[Table], delta: float, tick: Callable[[], No
     return Bound(delta, to_go, minimum, starts)
 
 
+def useful_cells(train: Train, tables: list[Table], rest: Bound, most: float) -> list[Mask]:
+    """Return the cells of a grid half as wide that trains of at most so much pass through.
+
+    By stage: of torque and ratio (cells, ratio cells); of the last stage (cells,); the first has
+    none. What the stages before cost at least is found forwards, as `to_go` is backwards.
+    """
+    first, torque = tables[0], np.full(len(tables[0].ratio), train.torque)
+    place = rest.cell(first.log_ratio)
+    before = np.full(len(rest.to_go[-1]), np.inf)
+    np.minimum.at(before, place, first.least_cost(torque, torque, np.arange(len(place)), place))
+    masks: list[Mask] = [np.empty(0, bool)]
+    for k in range(1, len(tables) - 1):
+        now = rest.minimum[k]
+        assert now is not None
+        reached = before[: len(now), None] + now
+        ahead = _ahead(rest.to_go[k + 1], now.shape[1])[: len(now)]
+        masks.append(_halved(reached + ahead <= most))
+        row, column = np.nonzero(np.isfinite(reached))
+        before = np.full_like(before, np.inf)
+        for one in (0, 1):
+            np.minimum.at(before, row + column + one, reached[row, column])
+    masks.append(_halved(before + rest.to_go[-1] <= most))
+    return masks
+
+
+def _halved(mask: Mask) -> Mask:
+    """Return a mask of cells half as wide."""
+    for axis in range(mask.ndim):
+        mask = np.repeat(mask, 2, axis)
+    return mask
+
+
 def _ahead(to_go: Array, ratio_cells: int) -> Array:
     """to_go after a ratio cell r from a cell x: the sum lies in cell x + r or x + r + 1."""
     return sliding_window_view(np.minimum(to_go[:-1], to_go[1:]), ratio_cells)
 
 
-def _last(train: Train, table: Table, cells: int, delta: float, tick: Callable[[], None]) -> Array:
+def _last(
+    train: Train,
+    table: Table,
+    cells: int,
+    delta: float,
+    tick: Callable[[], None],
+    useful: Mask | None,
+) -> Array:
     """Return the last stage's minimum cost from every cell: exact pairs, lowest possible torque."""
     low, high = math.log(train.lowest_ratio), math.log(train.highest_ratio)
     edge = np.arange(cells) * delta
     start = np.searchsorted(table.log_ratio, low - edge - delta - EDGE)
     stop = np.searchsorted(table.log_ratio, high - edge + EDGE)
     count = stop - start
+    if useful is not None:
+        count = np.where(useful[:cells], count, 0)
     if count.sum() > ENTRIES:
         raise SolveError(
             "the ratio tolerance leaves too many pairs to the last stage: narrow it, or limit "

@@ -5,12 +5,13 @@ tried, as a larger one may be the better one where the load-distribution factor 
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gearopt.formulations.strength import ALLOWANCE
 from gearopt.formulations.strength.rated import Rows, Standard
@@ -19,9 +20,11 @@ from gearopt.formulations.teeth.stage import EDGE, Index, Table
 from gearopt.optimise.terms import Array
 from gearopt.physics.gears import GearPair
 
-FEW = 2  # steps towards a width, for a first lower bound
-NEAR = 1.05  # times the least of these: what is bounded again
-CLOSE = 1e-4  # of what is used above 1, for that
+FEW = 4  # steps towards a width, for a first lower bound
+NEAR = 1.01  # times the least of these: what is bounded again
+BATCH = 20_000  # pairs bounded at once
+CLOSE = 0.02  # of what is used above 1, for that, over the width of a cell
+FINEST = 0.005  # width of a cell where none is given
 
 
 @dataclass(frozen=True)
@@ -40,16 +43,18 @@ class Found:
 
 @dataclass(frozen=True)
 class RatedTable(Table):
-    """Tooth pairs (n,) of a stage with options."""
+    """Tooth pairs (n,) of a stage with options; others: tables that may have the same pairs."""
+
+    others: tuple["RatedTable", ...] = ()
 
     @cached_property
     def _prepared(self) -> list[list[Any]]:
         """What standards take of the pairs, by option and standard; (modules n,) by module."""
-        modules = self.modules if self._by_module else self.modules[:1]
+        modules = self.modules if self._by_module else np.ones(1)
         z1, z2 = (np.tile(z, len(modules)) for z in (self.z1, self.z2))
         pair = self.train.pair(self.position, np.repeat(modules, len(self.z1)), z1, z2, 1.0)
         found: list[list[Any]] = []
-        known: list[tuple[Standard, Any]] = []
+        known = [pair for table in self.others for pair in table.known(self)]
         for option in self.stage.options:
             made = []
             for standard in option.standards:
@@ -58,6 +63,17 @@ class RatedTable(Table):
                 known.append((standard, made[-1]))
             found.append(made)
         return found
+
+    def known(self, other: "RatedTable") -> list[tuple[Standard, Any]]:
+        """Return what the standards took of the pairs, where another table has the same."""
+        alike = (
+            self.stage.toothing == other.stage.toothing
+            and np.array_equal(self.z1, other.z1)
+            and np.array_equal(self.z2, other.z2)
+            and (not self._by_module or np.array_equal(self.modules, other.modules))
+        )
+        made = zip(self.stage.options, self._prepared, strict=True) if alike else ()
+        return [one for o, p in made for one in zip(o.standards, p, strict=True)]
 
     @property
     def _by_module(self) -> bool:
@@ -89,41 +105,75 @@ class RatedTable(Table):
         Only the least of every group (n,) of pairs is close.
         """
         cost = self._found((low, high), pair, steps=FEW).cost
-        return self._closer((low, high), pair, group, cost)
+        return self._closer((low, high), pair, group, cost, CLOSE * FINEST)
 
-    def _closer(self, torque: tuple[Array, Array], pair: Index, group: Index, cost: Array) -> Array:
-        """Return lower bounds of which the least ones of every group are close."""
-        least = np.full(group.max(initial=-1) + 1, np.inf)
-        np.minimum.at(least, group, cost)
-        near = np.flatnonzero(cost <= least[group] * NEAR)
-        near = near[np.isfinite(cost[near])]
-        ends = torque[0][near], torque[1][near]
-        cost[near] = np.maximum(cost[near], self._found(ends, pair[near], close=CLOSE).cost)
+    def useful_ratio(self, least: float, most: float) -> float:
+        """Return the largest ratio whose share of a train is at most so much; at least `least`.
+
+        Any stage carries at least the input torque.
+        """
+        pair = np.flatnonzero(self.ratio > least)
+        low = np.full(len(pair), self.train.torque)
+        ends = low, low * float(self.train.highest_ratio)
+        cost = self._found(ends, pair, most, steps=FEW).cost
+        near = np.flatnonzero(cost <= most)
+        ends = ends[0][near], ends[1][near]
+        cost = self._found(ends, pair[near], most, close=CLOSE * FINEST).cost
+        return float(self.ratio[pair[near]][cost <= most].max(initial=least))
+
+    def _closer(
+        self,
+        torque: tuple[Array, Array],
+        pair: Index,
+        group: Index,
+        cost: Array,
+        close: float,
+    ) -> Array:
+        """Return lower bounds of which the least one of every group is close."""
+        rough = np.isfinite(cost)
+        while rough.any():
+            least = np.full(group.max(initial=-1) + 1, np.inf)
+            np.minimum.at(least, group, cost)
+            near = np.flatnonzero(rough & (cost <= least[group] * NEAR))
+            if not len(near):
+                break
+            ends = torque[0][near], torque[1][near]
+            cost[near] = np.maximum(cost[near], self._found(ends, pair[near], close=close).cost)
+            rough[near] = False
         return cost
 
-    def grid(self, cells: int, ratio_cells: int, delta: float, tick: Callable[[], None]) -> Array:
+    def grid(
+        self,
+        cells: int,
+        ratio_cells: int,
+        delta: float,
+        tick: Callable[[], None],
+        useful: NDArray[np.bool_] | None = None,
+        most: float = np.inf,
+    ) -> Array:
         """Return the minimum cost for every cell of torque and of ratio, each delta wide in logs.
 
-        A lower bound: the least over the torques of a cell, of its pairs the best.
+        A lower bound: the least over the torques of a cell, of its pairs the best. useful: which
+        cells are asked for; others are inf, as is what costs more than so much.
         """
         found = np.full((cells, ratio_cells), np.inf)
         column = (self.log_ratio / delta).astype(np.int64)
-        most = math.log(self.train.highest_ratio)
+        highest = math.log(self.train.highest_ratio)
         first = np.zeros(len(self.ratio), np.int64)
-        for cell in range(cells):
+        for rows in _batches(cells, useful, len(self.ratio)):
             tick()
-            low = cell * delta
-            count = np.searchsorted(self.log_ratio, most - low + EDGE, side="right")
-            pair = np.arange(count)
-            ends = [
-                np.full(count, self.train.torque * math.exp(e))
-                for e in (low - EDGE, low + delta + EDGE)
-            ]
-            made = self._found((ends[0], ends[1]), pair, first=first[pair], steps=FEW)
-            if self.monotone:
-                first[pair] = made.first
-            cost = self._closer((ends[0], ends[1]), pair, column[pair], made.cost)
-            np.minimum.at(found[cell], column[pair], cost)
+            inside = self.log_ratio <= highest - rows[:, None] * delta + EDGE
+            if useful is not None:
+                inside &= useful[rows[:, None], column]
+            row, pair = np.nonzero(inside)
+            low = rows[row] * delta
+            ends = [self.train.torque * np.exp(e) for e in (low - EDGE, low + delta + EDGE)]
+            place = row * ratio_cells + column[pair]
+            made = self._found((ends[0], ends[1]), pair, most, first[pair], steps=FEW)
+            if self.monotone and most == np.inf:
+                first[pair[row == 0]] = made.first[row == 0]
+            cost = self._closer((ends[0], ends[1]), pair, place, made.cost, CLOSE * delta)
+            np.minimum.at(found, (rows[row], column[pair]), cost)
         return found
 
     def width(self, torque: Array, pair: Index, module: int) -> Array:
@@ -223,7 +273,7 @@ class RatedTable(Table):
     ) -> list[Rows]:
         place = module * len(self.ratio) + pair if self._by_module else pair
         speed = self.train.speed_at(torque[0]), self.train.speed_at(torque[1])
-        scale = np.ones(len(pair)) if self._by_module else self.modules[module] / self.modules[0]
+        scale = np.ones(len(pair)) if self._by_module else self.modules[module]
         return [
             standard.rows(prepared.take(place).scaled(scale), one, torque, speed, self.train.safety)
             for standard, prepared in zip(
@@ -252,3 +302,15 @@ def _none(count: int, modules: int) -> Found:
     """Return that nothing carries."""
     cost, module, width = (np.full(count, np.inf) for _ in range(3))
     return Found(cost, module, width, np.zeros(count, np.int64), np.full(count, modules))
+
+
+def _batches(
+    cells: int, useful: NDArray[np.bool_] | None, pairs: int
+) -> Iterator[NDArray[np.int64]]:
+    """Yield cells in order, as many at once as have about BATCH pairs."""
+    every = np.arange(cells)
+    size = np.full(cells, pairs)
+    if useful is not None:
+        size = np.ceil(useful[:cells].mean(axis=1) * pairs).astype(np.int64)
+    every, size = every[size > 0], np.cumsum(size[size > 0])
+    yield from np.split(every, np.flatnonzero(np.diff(size // BATCH)) + 1)

@@ -17,9 +17,10 @@ from numpy.typing import NDArray
 
 from gearopt.errors import SolveError
 from gearopt.formulations.gear_train import Train, share
-from gearopt.formulations.teeth.later_stages import SLICE, Bound, bound, ragged
+from gearopt.formulations.teeth.later_stages import SLICE, Bound, bound, ragged, useful_cells
 from gearopt.formulations.teeth.progress import MARGIN, TIE, Progress, Spent, Teeth
-from gearopt.formulations.teeth.stage import EDGE, Table, spans, table
+from gearopt.formulations.teeth.stage import EDGE, Table, spans
+from gearopt.formulations.teeth.tables import stage_tables
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget, Event, Watch
 from gearopt.optimise.terms import Array
@@ -30,6 +31,8 @@ BEAM = 4  # nodes followed down at once; measured best for two to four stages
 LEAVES = 256  # nodes completed at once
 FIRST_LOOK = 20_000  # pairs examined for a first train
 PATIENCE = 2_000_000  # pairs examined before a finer grid pays
+COARSE, FINE = 32.0, 0.006  # first cells of rated drives, times usual ones; the last coarse ones
+DIVE = 1000  # pairs examined on each of these grids, for a train
 CELLS = 10_000_000  # largest grid of a stage, 80 MB
 
 
@@ -86,30 +89,26 @@ def first_cut(train: Train) -> Fraction:
 
 def _look(train: Train, cut: Fraction, progress: Progress, patience: float) -> bool:
     """Search all ratios up to a cut, on ever finer grids; False when patience ran out."""
-    tables = _tables(train, cut, progress)
+    tables = stage_tables(train, cut, progress.tick)
     if any(len(t.ratio) == 0 for t in tables):
         return True
-    delta = 0.01 if len(tables) <= 3 else 0.005
+    delta, useful = 0.01 if len(tables) <= 3 else 0.005, None
+    coarse = train.rated  # whose bounds take long: few cells at first, then those of use
+    delta *= COARSE if coarse else 1.0
     while True:
         finer = math.log(train.highest_ratio) * tables[-1].log_ratio[-1] / (delta / 2) ** 2
-        last = len(tables) <= 2 or finer > CELLS
-        enough = progress.clock.evaluations + min(patience, math.inf if last else PATIENCE)
-        rest = bound(train, tables, delta, progress.tick)
+        last = not coarse and (len(tables) <= 2 or finer > CELLS)
+        own = DIVE if coarse else math.inf if last else PATIENCE
+        enough = progress.clock.evaluations + min(patience, own)
+        rest = bound(train, tables, delta, progress.tick, useful, progress.threshold)
         if _closed(train, tables, rest, progress, enough):
             return True
-        if patience <= PATIENCE:
+        if patience <= PATIENCE and not coarse:
             return False
+        if train.rated:
+            useful = useful_cells(train, tables, rest, progress.threshold)
         delta /= 2
-
-
-def _tables(train: Train, cut: Fraction, progress: Progress) -> list[Table]:
-    """Return the tables of all stages; equal inner stages share one."""
-    tables: list[Table] = []
-    for k in range(len(train.stages)):
-        inner = 1 < k < len(train.stages) - 1
-        same = inner and train.stages[k] == train.stages[k - 1]
-        tables.append(tables[-1] if same else table(train, k, cut, progress.tick))
-    return tables
+        coarse = coarse and delta > FINE
 
 
 def _closed(
@@ -259,6 +258,9 @@ def _reach(train: Train, cut: Fraction, maximum: Fraction, threshold: float) -> 
     Any stage carries at least the input torque; its share alone then grows with its ratio, where
     its law is proportional.
     """
+    if train.rated:
+        every = stage_tables(train, maximum)
+        return Fraction(max(t.useful_ratio(float(cut), threshold) for t in every))
     if not train.law.proportional:
         return maximum
     ratios = np.geomspace(float(cut), float(maximum), 2000)

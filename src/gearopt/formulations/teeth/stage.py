@@ -21,6 +21,7 @@ from gearopt.optimise.terms import Array
 from gearopt.physics.gears import GearPair
 
 Index = NDArray[np.int64]
+Columns = tuple[Any, ...]
 
 EDGE = 1e-9  # cells overlap by this much in log ratio, so that rounding never misses a neighbour
 PAIRS = 3_000_000  # tooth pairs of one stage: about 1 GB of tables
@@ -86,10 +87,23 @@ class Table:
         """
         return self.cost(low, pair)
 
-    def grid(self, cells: int, ratio_cells: int, delta: float, tick: Callable[[], None]) -> Array:
+    def useful_ratio(self, least: float, most: float) -> float:
+        """Return the largest ratio whose share of a train is at most so much; at least `least`."""
+        return float(max(self.ratio.max(initial=0.0), least))
+
+    def grid(
+        self,
+        cells: int,
+        ratio_cells: int,
+        delta: float,
+        tick: Callable[[], None],
+        useful: NDArray[np.bool_] | None = None,
+        most: float = np.inf,
+    ) -> Array:
         """Return the minimum cost for every cell of torque and of ratio, each delta wide in logs.
 
-        A lower bound: of the torques of a cell the smallest, of its pairs the best.
+        A lower bound: of the torques of a cell the smallest, of its pairs the best. useful: which
+        cells are asked for; others may be inf, as may be what costs more than so much.
         """
         column = (self.log_ratio / delta).astype(np.int64)
         found = np.full(cells * ratio_cells, np.inf)
@@ -222,10 +236,8 @@ class Table:
         return np.where(some, np.where(all_, np.inf, high), 0.0)
 
 
-def table(
-    train: Train, position: int, cut: Fraction, tick: Callable[[], None] = lambda: None
-) -> Table:
-    """Return the table of a stage (counted from 0) for ratios up to `cut`.
+def columns(train: Train, position: int, cut: Fraction, tick: Callable[[], None]) -> Columns:
+    """Return the fields of the table of a stage (counted from 0) for ratios up to `cut`.
 
     tick: called several times a second; what it raises ends the work.
     """
@@ -238,10 +250,7 @@ def table(
     load, need, exponent, slope = _closed(train, position, z1, ratio)
     tick()
     first, last = _allowed(stage, z1, z2, cosine)
-    kind = Table
-    if stage.options:
-        from gearopt.formulations.teeth.rated import RatedTable as kind
-    return kind(
+    return (
         train,
         position,
         z1,

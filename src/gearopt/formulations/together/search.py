@@ -18,7 +18,7 @@ from gearopt.formulations.layout.exact import first_cell
 from gearopt.formulations.layout.gearbox import Gearbox
 from gearopt.formulations.layout.slabs import TOUCH, Arrangement, arrangements, clashes
 from gearopt.formulations.teeth.search import within
-from gearopt.formulations.teeth.stage import table
+from gearopt.formulations.teeth.tables import table
 from gearopt.formulations.together.tables import (
     KERNELS,
     Drive,

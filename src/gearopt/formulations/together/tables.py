@@ -18,7 +18,8 @@ from gearopt.formulations.gear_train import Train
 from gearopt.formulations.layout.chain import Chain
 from gearopt.formulations.layout.gearbox import ANYWHERE, Gearbox, Shaft
 from gearopt.formulations.layout.slabs import Slabs, arrange, face_each_other, orders
-from gearopt.formulations.teeth.stage import Table, table
+from gearopt.formulations.teeth.stage import Table
+from gearopt.formulations.teeth.tables import table
 from gearopt.optimise.kernels import kernel
 from gearopt.optimise.terms import Array
 from gearopt.physics.gears import GearPair
