@@ -210,7 +210,7 @@ def test_grids_are_halved_while_they_fit(stages, number, first, monkeypatch):
     def noted(train, tables, delta, tick, *others):
         made.append(delta)
         looked.append(tick.__self__.clock.evaluations)
-        return bound(train, tables, delta, tick)
+        return bound(train, tables, delta, tick, *others)
 
     monkeypatch.setattr(searching, "bound", noted)
     monkeypatch.setattr(searching, "FIRST_LOOK", 0)
