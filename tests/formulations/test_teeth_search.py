@@ -282,7 +282,7 @@ def test_no_more_than_a_slice_is_sized_between_two_looks_at_the_clock(monkeypatc
     monkeypatch.setattr(
         staging.Table,
         "cost",
-        lambda t, q, p, most=math.inf: sized.append(sized.pop() + len(p)) or real(t, q, p, *others),
+        lambda t, q, p, most=math.inf: sized.append(sized.pop() + len(p)) or real(t, q, p),
     )
 
     def watch(event):
