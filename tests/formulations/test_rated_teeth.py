@@ -1,18 +1,22 @@
 """Whole teeth under ratings: against every candidate rated exactly."""
 
 import math
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
 import pytest
-from rated_drives import FREE, MODULES, TIED, F, rated_drive
+from rated_drives import FREE, MODULES, TIED, F, agma, rated_drive
 
 from gearopt.formulations import teeth
 from gearopt.formulations.gear_train import FaceWidth, share
+from gearopt.formulations.strength.k_factor import K_FACTOR
+from gearopt.formulations.strength.rated import Option
 from gearopt.formulations.teeth.search import search, within
 from gearopt.formulations.teeth.stage import spans
 from gearopt.optimise.result import Budget
 from gearopt.physics.agma.rating import rate
+from gearopt.physics.agma.rating_factors import Steel
 from gearopt.physics.rating import Operation
 
 STEPPED = FaceWidth(F(3, 10), F(3, 4), step=F(5))
@@ -88,9 +92,62 @@ def test_no_narrower_width_carries():
 
 
 def test_a_train_is_feasible_by_its_own_text():
-    train = rated_drive(Fraction(20), [TIED, TIED])
+    train = rated_drive(Fraction(9), [TIED, TIED], pinion_teeth=(20, 24))
     found = search(train, 1, Budget())
     point = teeth.point(train, teeth.best_pairs(train, found.found[0][1]))
     batch = teeth.problem(train).batch(point[None])
     assert batch.G.max() <= 1.0 + 1e-11
     assert batch.F[0, 0] == pytest.approx(found.found[0][0], rel=1e-12)
+
+
+CARBURISED = (Steel("carburised", 2),) * 2
+
+
+@pytest.mark.parametrize("objective", ["gear_volume", "mass", "cost", "total_length"])
+def test_the_best_material_is_that_of_all_of_them(objective):
+    """Options alone, one after the other; a dear steel that is stronger, a light one."""
+    made = (
+        Option((agma(),), "soft", (7.85e-9, 7.85e-9), (1.0, 1.2)),
+        Option((agma(CARBURISED),), "hard", (7.85e-9, 7.85e-9), (6.0, 6.0)),
+        Option((agma((CARBURISED[0], Steel(hardness=300.0))),), "mixed", (None, 7e-9), (2.5, 1.0)),
+    )
+    narrow = {"pinion_teeth": (20, 21), "modules": MODULES[1:5]}
+    train = rated_drive(F(9), [TIED, STEPPED], options=made, **narrow)
+    train = replace(train, objective=objective, density=7.8e-9)
+    found = search(train, 1, Budget())
+    alone = []
+    for first in made:
+        for second in made:
+            stages = [
+                replace(s, options=(o,)) for s, o in zip(train.stages, (first, second), strict=True)
+            ]
+            alone.append(search(replace(train, stages=tuple(stages)), 1, Budget()).found[0][0])
+    assert found.found[0][0] == pytest.approx(min(alone), rel=1e-12)
+    assert len({round(v, 9) for v in alone}) > 2
+    point = teeth.point(train, *teeth.best_choices(train, found.found[0][1]))
+    batch = teeth.problem(train).batch(np.stack([point, point]))
+    assert batch.F[:, 0] == pytest.approx(found.found[0][0], rel=1e-12)
+    assert batch.G.max() <= 1.0 + 1e-11
+    names = [(o + 1) for o in teeth.options(train, point)]
+    assert names == [alone.index(min(alone)) // 3 + 1, alone.index(min(alone)) % 3 + 1]
+
+
+def test_index_limits_beside_ratings():
+    """Each alone is a relaxation; where one of them does not bind, it changes nothing."""
+    rated = rated_drive(F(9), [FREE, FREE], pinion_teeth=(20, 22), modules=MODULES[1:6])
+    loose, tight = (1e3, 1e3), (2.0, 48.0)
+    values = {}
+    for name, limits, options in (
+        ("rated", None, rated.stages[0].options),
+        ("loose", loose, rated.stages[0].options),
+        ("both", tight, rated.stages[0].options),
+        ("index", tight, ()),
+    ):
+        stages = tuple(replace(s, allowable=limits or (), options=options) for s in rated.stages)
+        train = replace(rated, stages=stages, law=K_FACTOR if limits else rated.law)
+        found = search(train, 1, Budget()).found[0]
+        point = teeth.point(train, *teeth.best_choices(train, found[1]))
+        assert teeth.problem(train).batch(point[None]).G.max() <= 1.0 + 1e-11
+        values[name] = found[0]
+    assert values["loose"] == pytest.approx(values["rated"], rel=1e-12)
+    assert values["both"] >= max(values["rated"], values["index"]) * (1.0 - 1e-12)

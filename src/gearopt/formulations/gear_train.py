@@ -5,10 +5,12 @@ fractions; the rest are floats in mm, N, rad, MPa.
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any
+
+import numpy as np
 
 from gearopt.formulations.strength import Law
 from gearopt.formulations.strength.rated import Option
@@ -21,6 +23,7 @@ OBJECTIVES = {  # name -> unit
     "mass": "kg",
     "sum_of_centre_distances": "mm",
     "total_length": "mm",
+    "cost": "",
 }
 LENGTHS = ("sum_of_centre_distances", "total_length")  # objectives along the line of centres
 
@@ -145,13 +148,24 @@ class Train:
             raise ValueError("a drive needs stages, ratio >= 1 and a tolerance from 0 to below 1")
         if self.objective in LENGTHS and not self.on_reference:
             raise ValueError(f"the objective {self.objective} needs profile shifts that cancel")
-        if self.objective == "mass" and self.density is None:
-            raise ValueError("the objective mass needs a density")
+        solid = self.density is not None or all(
+            stage.options and all(all(option.densities) for option in stage.options)
+            for stage in self.stages
+        )
+        if self.objective in ("mass", "cost") and not solid:
+            raise ValueError(f"the objective {self.objective} needs a density")
+        if self.objective == "cost" and not all(stage.options for stage in self.stages):
+            raise ValueError("the objective cost needs the price of every stage's materials")
 
     @property
     def rated(self) -> bool:
         """Whether ratings limit the stages."""
         return any(stage.options for stage in self.stages)
+
+    @property
+    def several_options(self) -> bool:
+        """Whether a stage has a choice of options."""
+        return any(len(stage.options) > 1 for stage in self.stages)
 
     @property
     def by_width(self) -> bool:
@@ -240,17 +254,22 @@ def _or_inf(number: Fraction | int | None) -> float:
     return math.inf if number is None else float(number)
 
 
-def share(train: Train, stage: int, pair: GearPair, density: Any = None) -> Any:
+def share(train: Train, stage: int, pair: GearPair, density: Any = None, option: int = 0) -> Any:
     """Return what the pair of a stage (counted from 0) adds to the objective, in its unit.
 
-    density [t/mm3], by default the train's. total_length is that of the shafts in one line, from
-    the rim of the first pinion to that of the last wheel over reference circles: d1/2 + sum of
-    centre distances + d2/2.
+    density [t/mm3], by default the train's; those of the stage's option come first. total_length is
+    that of the shafts in one line, from the rim of the first pinion to that of the last wheel over
+    reference circles: d1/2 + sum of centre distances + d2/2.
     """
     if train.objective == "gear_volume":
         return pair.volume
-    if train.objective == "mass":
-        return 1000.0 * pair.mass(train.density if density is None else density)
+    if train.objective in ("mass", "cost"):
+        usual = train.density if density is None else density
+        options = train.stages[stage].options
+        own = options[option] if options else Option(())
+        rows = zip(pair.gears, own.densities, own.prices, strict=True)
+        masses = [(1000.0 * gear.mass(rho or usual), price) for gear, rho, price in rows]
+        return sum(kg if train.objective == "mass" else kg * price for kg, price in masses)
     length = pair.centre_distance
     if train.objective == "total_length" and stage == 0:
         length = length + 0.5 * pair.pinion.reference_diameter
@@ -259,26 +278,33 @@ def share(train: Train, stage: int, pair: GearPair, density: Any = None) -> Any:
     return length
 
 
-def terms(train: Train, numbers: Any, pairs: tuple[GearPair, ...]) -> Terms:
+def terms(
+    train: Train, numbers: Any, pairs: tuple[GearPair, ...], options: Sequence[Any] = ()
+) -> Terms:
     """Return objective and limits of a drive made of these pairs, as terms of a geometric program.
 
-    numbers: `train.numbers()` as attributes, floats or parameters. A limit is left out where the
-    drive leaves it open or fixes the quantity.
+    numbers: `train.numbers()` as attributes, floats or parameters; options: of every stage, counted
+    from 0, floats or arrays; none: the first. A limit is left out where the drive leaves it open or
+    fixes the quantity.
     """
     total, product, torque = 0.0, 1.0, numbers.torque
     limits: dict[str, Any] = {}
     equal: dict[str, Any] = {}
     for k, pair in enumerate(pairs):
         own = {name: each(getattr(numbers, name))[k] for name in train.by_stage}
-        total = total + share(train, k, pair, numbers.density)
+        stage, option = train.stages[k], options[k] if options else 0
+        several = range(max(1, len(stage.options)))
+        shares = [share(train, k, pair, numbers.density, one) for one in several]
+        total = total + _chosen(shares, option)
         allowable = [own[name] for name in train.law.names]
         rows = train.law.utilisations(pair, torque, numbers.speed / product, allowable)
-        if train.stages[k].options:
-            option = train.stages[k].options[0]
+        if stage.options:
             safety = numbers.bending_safety, numbers.contact_safety
-            rows |= option.utilisations(pair, torque, numbers.speed / product, safety)
-        rows |= _choices(train.stages[k], own, pair)
-        if train.stages[k].wheel_fixed and not train.stages[k].pinion_fixed:
+            load = torque, numbers.speed / product
+            rated = [one.utilisations(pair, *load, safety) for one in stage.options]
+            rows |= {name: _chosen([r[name] for r in rated], option) for name in rated[0]}
+        rows |= _choices(stage, own, pair)
+        if stage.wheel_fixed and not stage.pinion_fixed:
             equal[f"wheel_teeth[{k + 1}]"] = pair.wheel_teeth / own["wheel_low"]
         limits |= {f"{name}[{k + 1}]": value for name, value in rows.items()}
         torque = torque * pair.ratio
@@ -289,6 +315,11 @@ def terms(train: Train, numbers: Any, pairs: tuple[GearPair, ...]) -> Terms:
     else:
         equal["ratio"] = product / numbers.highest_ratio
     return Terms({train.objective: total}, limits, equal=equal)
+
+
+def _chosen(values: Sequence[Any], option: Any) -> Any:
+    """Return the value of an option, by its number from 0."""
+    return values[0] if len(values) == 1 else np.choose(np.rint(option).astype(int), values)
 
 
 def _choices(stage: Stage, own: dict[str, Any], pair: GearPair) -> dict[str, Any]:

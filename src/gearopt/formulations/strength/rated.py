@@ -83,10 +83,15 @@ class Standard(Protocol):
 
 @dataclass(frozen=True)
 class Option:
-    """One way of making the gears of a stage: its standards, and what tells it from others."""
+    """One way of making the gears of a stage: its standards, and what tells it from others.
+
+    densities [t/mm3], or None for that of the drive, and prices of a kilogram, of pinion and wheel.
+    """
 
     standards: tuple[Standard, ...]
     words: str = ""
+    densities: tuple[float | None, float | None] = (None, None)
+    prices: tuple[float, float] = (1.0, 1.0)
 
     def utilisations(
         self, pair: GearPair, torque: Any, speed: Any, safety: Sequence[Any]
@@ -101,3 +106,22 @@ class Option:
                     used = wanted / np.asarray(actual)
                 found[f"{mode}{standard.suffix}"] = np.where(used < REFUSED, used, REFUSED)[()]
         return found
+
+
+@dataclass(frozen=True)
+class IndexRows:
+    """Rows of a proportional law beside ratings: minimum widths (n,) [mm]."""
+
+    widths: Array
+
+    def used(self, low: Array, high: Array) -> Array:
+        """Return the minimum width over the larger one."""
+        return np.asarray(self.widths / high)
+
+    def border(self, width: Array) -> Array:
+        """Return that there is none."""
+        return np.full(len(width), np.inf)
+
+    def take(self, place: Any) -> "IndexRows":
+        """Return some of the rows."""
+        return IndexRows(self.widths[place])

@@ -29,6 +29,7 @@ VARIABLES = {
     "wheel_teeth": "",
     "face_width": "mm",
     "width_steps": "",
+    "option": "",
 }
 NO_TRAIN = (
     "Proof: every choice of teeth and modules was compared or excluded; none meets all limits."
@@ -48,19 +49,22 @@ def problem(train: Train, count: int = 1, floor: float = -math.inf) -> Problem:
 
     Trains are distinct when a tooth number differs; each has its best modules and face widths.
     Variables, one component per stage: module [mm], pinion_teeth, wheel_teeth, and face_width [mm]
-    or width_steps where the width is not tied to d1. Numbers are constants of the text; those with
-    a key in `train.keys` are parameters of the relaxed problem.
+    or width_steps where the width is not tied to d1; option, from 1, where a stage has several.
+    Numbers are constants of the text; those with a key in `train.keys` are parameters of the
+    relaxed problem.
     """
     numbers = SimpleNamespace(**train.numbers())
 
     def evaluate(x: Any, p: Any) -> Terms:
-        found = terms(train, numbers, _pairs(train, x))
+        if train.several_options and not _is_plain(each(x.option)[0]):
+            raise SolveError("lists of materials are for exact, annealing and nsga2 only")
+        found = terms(train, numbers, _pairs(train, x), _options(train, x))
         # A module is one of a set: the ends of the set are no limits of their own here.
         limits = {n: v for n, v in found.limits.items() if not n.startswith("module_")}
         if not train.coprime:
             return Terms(found.minimise, limits, equal=found.equal)
         teeth = zip(each(x.pinion_teeth), each(x.wheel_teeth), strict=True)
-        if not isinstance(each(x.pinion_teeth)[0], float | np.ndarray | np.generic):
+        if not _is_plain(each(x.pinion_teeth)[0]):
             raise SolveError("hunting teeth (coprime) are for exact, annealing and nsga2 only")
         divisors = {
             f"common_divisor[{k}]": np.gcd(np.rint(a).astype(int), np.rint(b).astype(int))
@@ -86,6 +90,21 @@ def problem(train: Train, count: int = 1, floor: float = -math.inf) -> Problem:
 def pairs(train: Train, x: Array) -> tuple[GearPair, ...]:
     """Return the gear pairs of a point of `problem`."""
     return _pairs(train, namespace(_variables(train), [float(v) for v in x]))
+
+
+def options(train: Train, x: Array) -> tuple[int, ...]:
+    """Return the option of every stage at a point of `problem`, counted from 0."""
+    made = namespace(_variables(train), [float(v) for v in x])
+    return tuple(round(option) for option in _options(train, made)) or (0,) * len(train.stages)
+
+
+def _options(train: Train, x: Any) -> list[Any]:
+    return [option - 1.0 for option in each(x.option)] if train.several_options else []
+
+
+def _is_plain(value: Any) -> bool:
+    """Return whether a value is a number or an array, not the scalar of a tracer."""
+    return isinstance(value, float | np.ndarray | np.generic)
 
 
 def _pairs(train: Train, x: Any) -> tuple[GearPair, ...]:
@@ -121,10 +140,13 @@ def _variables(train: Train) -> tuple[Var, ...]:
         free = not face.tied and face.step is None and face.fixed is None
         ranges["face_width"].append(_widths(stage) if free else (given, given))
         ranges["width_steps"].append((1.0, MOST if face.step else 1.0))
+        ranges["option"].append((1.0, float(max(1, len(stage.options)))))
     if all(s.face_width.tied or s.face_width.step for s in stages):
         del ranges["face_width"]
     if not any(s.face_width.step for s in stages):
         del ranges["width_steps"]
+    if not train.several_options:
+        del ranges["option"]
     kinds: dict[str, dict[str, Any]] = {"module": {"values": series}, "face_width": {}}
     return tuple(
         Var(
@@ -167,7 +189,7 @@ def _outcome(
         progress.nodes += more.nodes
         if more.clock.stopped:
             found = found[:1]
-    points = [point(train, best_pairs(train, teeth)) for teeth in found]
+    points = [point(train, *best_choices(train, teeth)) for teeth in found]
     proof = {
         "method": "exhausted",
         "arithmetic": "ratios, teeth, diameters and width steps rational; loads and volumes double",
@@ -259,19 +281,29 @@ def _in_order(progress: Progress) -> list[Teeth]:
 
 def best_pairs(train: Train, teeth: Teeth) -> tuple[GearPair, ...]:
     """Return the gear pairs of a train: the best module and face width for its teeth."""
-    torque, found = train.torque, []
+    return best_choices(train, teeth)[0]
+
+
+def best_choices(train: Train, teeth: Teeth) -> tuple[tuple[GearPair, ...], tuple[int, ...]]:
+    """Return gear pairs and options (from 0) of a train: the best ones for its teeth."""
+    torque, found, chosen = train.torque, [], []
     for k, (z1, z2) in enumerate(teeth):
         only = table(train.fixed_teeth(k, z1, z2), k, train.highest_ratio)
-        module, width, _ = only.choose(torque, 0)
+        module, width, option = only.choose(torque, 0)
         found.append(train.pair(k, module, z1, z2, width))
+        chosen.append(option)
         torque *= z2 / z1
-    return tuple(found)
+    return tuple(found), tuple(chosen)
 
 
-def point(train: Train, pairs: Iterable[GearPair]) -> Array:
-    """Return the point of `problem` of gear pairs; what ties their face widths is ignored."""
+def point(train: Train, pairs: Iterable[GearPair], options: Iterable[int] | None = None) -> Array:
+    """Return the point of `problem` of gear pairs; what ties their face widths is ignored.
+
+    options: of every stage, from 0; by default the first ones.
+    """
     columns: dict[str, list[float]] = {name: [] for name in VARIABLES}
-    for pair, stage in zip(pairs, train.stages, strict=True):
+    chosen = (0,) * len(train.stages) if options is None else options
+    for pair, stage, option in zip(pairs, train.stages, chosen, strict=True):
         face = stage.face_width
         given = face.tied or face.step is not None  # by d1 or as width_steps
         columns["module"].append(pair.normal_module)
@@ -280,4 +312,5 @@ def point(train: Train, pairs: Iterable[GearPair]) -> Array:
         columns["face_width"].append(1.0 if given else pair.face_width)
         steps = round(pair.face_width / float(face.step)) if face.step else 1
         columns["width_steps"].append(steps)
+        columns["option"].append(option + 1)
     return np.array([float(value) for v in _variables(train) for value in columns[v.name]])

@@ -13,8 +13,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from gearopt.formulations.gear_train import share
 from gearopt.formulations.strength import ALLOWANCE
-from gearopt.formulations.strength.rated import Rows, Standard
+from gearopt.formulations.strength.rated import IndexRows, Rows, Standard
 from gearopt.formulations.strength.widths import STEPS, first_width, used
 from gearopt.formulations.teeth.stage import EDGE, Index, Table
 from gearopt.optimise.terms import Array
@@ -210,7 +211,7 @@ class RatedTable(Table):
                 own, module = pair[rows], at[rows]
                 one = self.made(self.modules[module], own)
                 low, high = self._ends(one, module, own)
-                least = self._share(one, low)
+                least = self._worth(one, low, option)
                 limit = np.minimum(np.broadcast_to(most, len(pair))[rows], best.cost[rows])
                 keep = least <= limit
                 if not keep.any():
@@ -225,6 +226,11 @@ class RatedTable(Table):
                 at[rows] += 1
         return best
 
+    def _worth(self, pair: GearPair, width: Array, option: int) -> Array:
+        """Return what pairs of these face widths [mm] add to the objective."""
+        made = share(self.train, self.position, pair.of_width(width), option=option)
+        return np.asarray(made)
+
     def _improve(
         self, best: Found, rows: Index, pair: Index, module: Index, option: int, width: Array
     ) -> None:
@@ -232,7 +238,7 @@ class RatedTable(Table):
         some = np.isfinite(width)
         rows, pair, module, width = rows[some], pair[some], module[some], width[some]
         best.first[rows] = np.minimum(best.first[rows], module)
-        cost = self._share(self.made(self.modules[module], pair), width)
+        cost = self._worth(self.made(self.modules[module], pair), width, option)
         some = cost < best.cost[rows] * (1.0 - ALLOWANCE)
         place = rows[some]
         best.cost[place], best.width[place] = cost[some], width[some]
@@ -274,12 +280,15 @@ class RatedTable(Table):
         place = module * len(self.ratio) + pair if self._by_module else pair
         speed = self.train.speed_at(torque[0]), self.train.speed_at(torque[1])
         scale = np.ones(len(pair)) if self._by_module else self.modules[module]
-        return [
+        standards = zip(self.stage.options[option].standards, self._prepared[option], strict=True)
+        found: list[Rows] = [
             standard.rows(prepared.take(place).scaled(scale), one, torque, speed, self.train.safety)
-            for standard, prepared in zip(
-                self.stage.options[option].standards, self._prepared[option], strict=True
-            )
+            for standard, prepared in standards
         ]
+        if self.train.law.limits:
+            assert self.load is not None
+            found.append(IndexRows(self.load[pair] * torque[0] / self.modules[module] ** 2))
+        return found
 
     def _stepped(self, rows: list[Rows], width: Array, high: Array, close: float) -> Array:
         """Return the first widths on the step from those on that carry; close: as `first_width`."""
