@@ -112,25 +112,31 @@ def _within(size: Any, ends: tuple[float, float]) -> bool:
     return bool(ends[0] <= size <= ends[1])
 
 
+def helix_slope(
+    diameter: Any, face_width: Any, grade: Any, edition: str = "1995", smooth: bool = False
+) -> Any:
+    """Return f_Hbeta of a gear [mm], as `deviations` has it; diameter, face_width [mm]."""
+    if edition == "2013":
+        found = tolerances.helix_slope_tolerance(diameter, face_width, grade)
+    else:
+        if not smooth:
+            diameter, face_width = range_mean(diameter, DIAMETERS), range_mean(face_width, WIDTHS)
+        found = helix_slope_1995(diameter, face_width, grade)
+    return found if smooth else tolerances.rounded_tolerance(found)
+
+
 def _of_gear(gear: Any, grade: Any, edition: str, smooth: bool) -> tuple[Any, Any, Any]:
     """Return f_pt, f_falpha, f_Hbeta of a gear."""
     diameter, module, width = gear.reference_diameter, gear.normal_module, gear.face_width
+    slope = helix_slope(diameter, width, grade, edition, smooth)
     if edition == "2013":
-        made = (
-            tolerances.single_pitch_tolerance(diameter, module, grade),
-            tolerances.profile_form_tolerance(module, grade),
-            tolerances.helix_slope_tolerance(diameter, width, grade),
-        )
+        pitch = tolerances.single_pitch_tolerance(diameter, module, grade)
+        form = tolerances.profile_form_tolerance(module, grade)
     else:
         if not smooth:
-            diameter = range_mean(diameter, DIAMETERS)
-            module, width = range_mean(module, MODULES), range_mean(width, WIDTHS)
-        made = (
-            single_pitch_1995(diameter, module, grade),
-            profile_form_1995(diameter, module, grade),
-            helix_slope_1995(diameter, width, grade),
-        )
+            diameter, module = range_mean(diameter, DIAMETERS), range_mean(module, MODULES)
+        pitch = single_pitch_1995(diameter, module, grade)
+        form = profile_form_1995(diameter, module, grade)
     if smooth:
-        return made
-    first, second, third = (tolerances.rounded_tolerance(value) for value in made)
-    return first, second, third
+        return pitch, form, slope
+    return tolerances.rounded_tolerance(pitch), tolerances.rounded_tolerance(form), slope

@@ -65,7 +65,7 @@ def check(practice: Practice) -> None:
         raise ValueError(f"no accuracy grade {practice.grades}: 0 to 12")
     if not practice.viscosity > 0.0:
         raise ValueError(f"the viscosity is {practice.viscosity:g}, and has to be above 0")
-    if min(ratio for ratio in (*practice.backup, 1.0) if ratio is not None) <= 0.5:
+    if any(np.any(np.less_equal(r, 0.5)) for r in practice.backup if r is not None):
         raise ValueError("no Y_B of a backup ratio of 0.5 and less: rate the rim by other means")
     if not 0.5 <= practice.lowest <= 1.0:
         raise ValueError(f"the life factor at 1e10 cycles is {practice.lowest:g}: 0.5 to 1")

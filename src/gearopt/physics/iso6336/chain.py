@@ -224,10 +224,11 @@ def roughness(case: Case, found: Found) -> Any:
 
 def hardening(case: Case, found: Found) -> Any:
     """Return Z_W of reference strength, of pinion and wheel: 1 but of the softer gear."""
-    return tuple(_hardened(case, k, False) for k in GEARS)
+    return tuple(hardened(case, k, False) for k in GEARS)
 
 
-def _hardened(case: Case, member: int, static: bool) -> Any:
+def hardened(case: Case, member: int, static: bool) -> Any:
+    """Return Z_W of a gear, of static or of reference strength."""
     own, other = case.materials[member], case.materials[1 - member]
     if own.family not in ("St", "V", "GGG") or own.hardness <= 0.0:
         return 1.0
@@ -359,7 +360,7 @@ LAWS: dict[str, Callable[[Case, Found], Any]] = {
     "Z_L": _at_cycles(lubricant, True),
     "Z_v": _at_cycles(velocity, True),
     "Z_R": _at_cycles(roughness, True),
-    "Z_W": _at_cycles(hardening, True, lambda case, found, k: _hardened(case, k, True)),
+    "Z_W": _at_cycles(hardening, True, lambda case, found, k: hardened(case, k, True)),
     "Z_X": lambda case, found: 1.0,
     "sigma_HG": _permissible(CONTACT_STRENGTH),
     "Y_F": _form,

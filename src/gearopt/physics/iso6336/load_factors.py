@@ -141,8 +141,13 @@ def root_face_load_factor(contact: Any, width: Any, depth: Any) -> Any:
 
     face width b, tooth depth h [mm]. Source: ISO 6336-1:2006, 7.6.
     """
+    return contact ** root_exponent(width, depth)
+
+
+def root_exponent(width: Any, depth: Any) -> Any:
+    """Return N_F of `root_face_load_factor`, 9/13 to 1."""
     slim = np.minimum(depth / width, 1.0 / 3.0)
-    return contact ** (1.0 / (1.0 + slim + slim**2))
+    return 1.0 / (1.0 + slim + slim**2)
 
 
 def transverse_load_factor(stiffness: Any, deviation: Any, line_load: Any, total_ratio: Any) -> Any:

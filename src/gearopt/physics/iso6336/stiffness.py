@@ -82,8 +82,12 @@ def single_stiffness(
     modulus = 2.0 * moduli[0] * moduli[1] / (moduli[0] + moduli[1])
     racks = pair.pinion.rack, pair.wheel.rack
     product = THEORETICAL * blank * rack_factor(racks) * np.cos(pair.pinion.helix_angle)
-    low = np.minimum(line_load / LEAST_LINE_LOAD, 1.0) ** 0.25
-    return theoretical_stiffness(pair) * product * modulus / STEEL * low
+    return theoretical_stiffness(pair) * product * modulus / STEEL * light_load(line_load)
+
+
+def light_load(line_load: Any) -> Any:
+    """Return what is left of c' at a line load F_t K_A/b [N/mm], as `single_stiffness` has it."""
+    return np.minimum(line_load / LEAST_LINE_LOAD, 1.0) ** 0.25
 
 
 def mesh_stiffness(single: Any, transverse_ratio: Any) -> tuple[Any, Any]:

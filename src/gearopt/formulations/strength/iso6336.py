@@ -1,0 +1,269 @@
+"""ISO 6336 as a standard of rated stages.
+
+At one power a slower, stronger torque may take less: it can leave the main resonance.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from gearopt.formulations.strength.iso6336_rows import Columns, IsoRows
+from gearopt.formulations.strength.rated import Load
+from gearopt.optimise.terms import Array
+from gearopt.physics.gears import GearPair
+from gearopt.physics.iso6336 import bending_factors as bending
+from gearopt.physics.iso6336 import chain, contact_factors, running_in, stiffness
+from gearopt.physics.iso6336.batch import rate_rows
+from gearopt.physics.iso6336.case import Case, Practice
+from gearopt.physics.iso6336.materials import Material
+from gearopt.physics.iso6336.table import ToothTable, tooth_table
+from gearopt.physics.rating import Operation
+
+GEARS = (0, 1)
+Law = Callable[[Case, dict[str, Any]], Any]
+
+
+@dataclass(frozen=True)
+class Iso6336:
+    """The rating of stages made in one way by ISO 6336.
+
+    operation: its overload and contacts count. rims: thickness s_R, webs: thickness b_s [mm], None
+    for solid gears; bores: diameters [mm]; all of pinion and wheel. practice: without these three.
+    given: as of `iso6336.rating.rate`.
+    """
+
+    loads: tuple[Load, ...]
+    operation: Operation
+    materials: tuple[Material, Material]
+    practice: Practice
+    rims: tuple[float | None, float | None] = (None, None)
+    webs: tuple[float | None, float | None] = (None, None)
+    bores: tuple[float, float] = (0.0, 0.0)
+    given: Mapping[str, Any] = field(default_factory=dict)
+    suffix: str = ""
+    monotone: bool = False
+
+    def case(self, pair: GearPair, torque: Any, speed: Any) -> Case:
+        """Return the case of the first level of load."""
+        load = self.loads[0]
+        operation = replace(
+            self.operation,
+            power=load.power * torque * speed,
+            pinion_speed=load.speed * speed,
+            hours=load.hours,
+        )
+        return Case(pair, operation, self.materials, self._practice(pair), self.given)
+
+    def _practice(self, pair: GearPair) -> Practice:
+        backup: list[Any] = [None, None]
+        webs: list[Any] = [None, None]
+        for k, gear in enumerate(pair.gears):
+            if (rim := self.rims[k]) is None:
+                continue
+            ratio = rim / (0.5 * (gear.tip_diameter - gear.root_diameter))
+            backup[k] = np.where(np.greater(ratio, 0.5), ratio, np.nan)[()]
+            if (web := self.webs[k]) is not None:
+                webs[k] = web / pair.face_width, rim / pair.normal_module
+        return replace(
+            self.practice,
+            webs=(webs[0], webs[1]),
+            bores=self.bores,
+            backup=(backup[0], backup[1]),
+        )
+
+    def safeties(self, pair: GearPair, torque: Any, speed: Any) -> tuple[Any, Any, Any, Any]:
+        """Return S_F1, S_F2, S_H1, S_H2; NaN where ISO 6336 refuses the pair, or a rim."""
+        case = self.case(pair, torque, speed)
+        found = rate_rows(pair, case.operation, case.materials, case.practice, case.given)
+        return (*found.bending, *found.contact)
+
+    def like(self, other: Any) -> bool:
+        """Return whether `prepared` of another standard is the same."""
+        return isinstance(other, Iso6336) and other.practice.shift == self.practice.shift
+
+    def prepared(self, pair: GearPair) -> ToothTable:
+        """Return what the teeth of pairs (n,) have whatever their width."""
+        return tooth_table(pair, self.practice.shift)
+
+    @np.errstate(invalid="ignore", divide="ignore", over="ignore")
+    def rows(
+        self,
+        prepared: ToothTable,
+        pair: GearPair,
+        torque: tuple[Array, Array],
+        speed: tuple[Array, Array],
+        safety: tuple[float, float],
+    ) -> IsoRows:
+        """Return rows; of two values at the ends of the torques that of the least load is first.
+
+        Loads are least at the weakest torque; deviations, N and cycles at the slowest speed.
+        """
+        unit = pair.of_width(1.0)
+        slow, fast = (self.case(unit, torque[0], s) for s in (speed[1], speed[0]))
+        same = np.array_equal(*torque)
+        high = slow if same else fast
+        columns = self._teeth(prepared, slow) | self._loads(slow, high, torque)
+        found = self._found(slow)
+        contact, bent = (_strengths(self, slow, high, prepared, c, found) for c in (True, False))
+        of_pair = self._contact(prepared, slow, found)
+        root = self._bending(prepared, slow, found)
+        for k in GEARS:
+            columns[f"contact_used{k}"] = of_pair * (safety[1] / contact[k]) ** 2
+            columns[f"bending_used{k}"] = root[k] * (safety[0] / bent[k])
+            columns[f"limit{k}"] = found["sigma_Hlim"][k]
+        columns["relief"] = found["C_a"]
+        shape = np.shape(torque[0])
+        return IsoRows(
+            self, {n: np.broadcast_to(np.asarray(v, float), shape) for n, v in columns.items()}
+        )
+
+    def _found(self, case: Case) -> dict[str, Any]:
+        """Return what the materials alone have."""
+        names = ("K_A", "K_gamma", "sigma_Hlim", "sigma_Flim", "C_a", "Z_E", "Z_X", "Y_ST", "Y_M")
+        found: dict[str, Any] = {}
+        for name in names:
+            found[name] = self.given[name] if name in self.given else chain.LAWS[name](case, found)
+        return found
+
+    def _teeth(self, table: ToothTable, case: Case) -> Columns:
+        """Return what the teeth have, lengths [mm]."""
+        pair = case.pair
+        first, second = (m.modulus for m in self.materials)
+        modulus = 2.0 * first * second / (first + second) / stiffness.STEEL
+        deep = np.maximum(*(g.rack.addendum + g.rack.dedendum for g in pair.gears))
+        return {
+            "contact": table.contact,
+            "virtual": table.virtual,
+            "single0": table.singles[0],
+            "single1": table.singles[1],
+            "overlap": table.overlap,
+            "axial": table.axial,
+            "stiffness": table.stiffness * modulus,
+            "depth": deep * pair.normal_module,
+            "module": pair.normal_module,
+            "helix": pair.pinion.helix_angle,
+            "diameter0": pair.pinion.reference_diameter,
+            "diameter1": pair.wheel.reference_diameter,
+        }
+
+    def _loads(self, slow: Case, fast: Case, torque: tuple[Array, Array]) -> Columns:
+        """Return loads [N], speeds, and deviations after running-in [mm], at both ends."""
+        load, d1 = self.loads[0], slow.pair.pinion.reference_diameter
+        found = self._found(slow)
+        force = 2.0 * found["K_A"] * found["K_gamma"] * load.power / load.speed / d1
+        densities = self.materials[0].density, self.materials[1].density
+        mass = stiffness.reduced_mass(slow.pair, densities, self.bores)
+        made = slow.deviations
+        pitch = self.given.get("f_pb", made.base_pitch)
+        form = self.given.get("f_falpha", made.profile_form)
+        columns = {}
+        for k, case in enumerate((slow, fast)):
+            worn = [self._worn(case, found, value) for value in (pitch, form)]
+            columns[f"force{k}"] = force * torque[k]
+            columns[f"pace{k}"] = case.operation.pinion_speed * slow.pair.pinion_teeth * mass**0.5
+            columns[f"speed{k}"] = case.speed
+            columns[f"pitch{k}"] = pitch - worn[0]
+            columns[f"form{k}"] = form - worn[1]
+            columns[f"deviation{k}"] = np.maximum(pitch, form) - worn[0]
+        return columns
+
+    def _worn(self, case: Case, found: dict[str, Any], deviation: Any) -> Any:
+        limits = found["sigma_Hlim"]
+        first, second = (
+            running_in.pitch_allowance(m.family, deviation, limits[k], case.speed)
+            for k, m in enumerate(self.materials)
+        )
+        return 0.5 * (first + second)
+
+    def _contact(self, table: ToothTable, case: Case, found: dict[str, Any]) -> Any:
+        """Return sigma_H^2 at w = K_v = K_H = Z_eps = Z_BD = 1."""
+        beta = self.given.get("Z_beta", contact_factors.helix_factor(case.pair.pinion.helix_angle))
+        product = self.given.get("Z_H", table.zone) * found["Z_E"] * beta
+        ratio, d1 = case.pair.ratio, case.pair.pinion.reference_diameter
+        return contact_factors.contact_stress(1.0, d1, 1.0, ratio, product) ** 2
+
+    def _bending(self, table: ToothTable, case: Case, found: dict[str, Any]) -> tuple[Any, Any]:
+        """Return sigma_F at w = K_v = K_F = f_eps = Y_beta = 1."""
+        deep = bending.deep_tooth_factor(table.virtual, max(self.practice.grades))
+        both = self.given.get("Y_DT", deep)
+        rims = _two(self.given.get("Y_B", chain.LAWS["Y_B"](case, found)))
+        forms = _two(self.given.get("Y_F", table.forms))
+        shapes = _two(self.given.get("Y_S", table.concentrations))
+        first, second = (
+            bending.root_stress(
+                1.0, 1.0, case.pair.normal_module, both * forms[k] * shapes[k] * rims[k]
+            )
+            for k in GEARS
+        )
+        return first, second
+
+
+def _two(value: Any) -> Any:
+    return value if isinstance(value, tuple | list) else (value, value)
+
+
+def _notches(standard: Iso6336, table: ToothTable) -> tuple[Law, Callable[..., Any]]:
+    """Return the laws of Y_deltarelT of reference and of static strength."""
+
+    def reference(case: Case, found: dict[str, Any]) -> Any:
+        rows = zip(standard.materials, table.notches, strict=True)
+        return tuple(
+            bending.notch_factor(bending.slip_layer(m.family, m.strength_for_notches), q)
+            for m, q in rows
+        )
+
+    def static(case: Case, k: int) -> Any:
+        shape = _two(standard.given.get("Y_S", table.concentrations))[k]
+        material = standard.materials[k]
+        return bending.static_notch_factor(material.family, shape, material.strength_for_notches)
+
+    return reference, static
+
+
+def _strengths(
+    standard: Iso6336,
+    slow: Case,
+    fast: Case,
+    table: ToothTable,
+    contact: bool,
+    found: dict[str, Any],
+) -> list[Any]:
+    """Return the greatest sigma_HG or sigma_FG [MPa] of both gears between two speeds.
+
+    Life factors are greatest at the slow one, other factors of reference strength at the fast one;
+    their exponent follows the cycles.
+    """
+    given = standard.given
+    notch, static_notch = _notches(standard, table)
+    laws: dict[str, Law] = {"Y_deltarelT": notch, "Y_RrelT": chain.surfaces, "Y_X": chain.sizes}
+    static = {"Y_deltarelT": static_notch}
+    if contact:
+        laws = {
+            "Z_L": chain.lubricant,
+            "Z_v": chain.velocity,
+            "Z_R": chain.roughness,
+            "Z_W": chain.hardening,
+        }
+        static = {"Z_W": lambda case, k: chain.hardened(case, k, True)}
+    made = {n: _two(law(fast, found)) for n, law in laws.items() if n not in given}
+    names = chain.CONTACT_STRENGTH if contact else chain.BENDING_STRENGTH
+    life = "Z_NT" if contact else "Y_NT"
+    strengths = []
+    for k in GEARS:
+        fixed, reference, still = 1.0, 1.0, 1.0
+        for name in names:
+            if name in made:
+                reference = reference * made[name][k]
+                still = still * (static[name](slow, k) if name in static else 1.0)
+            elif name in given or name != life:
+                fixed = fixed * _two(given[name] if name in given else found[name])[k]
+        if life not in given:
+            fixed = fixed * slow.curve(k, contact).factor(slow.cycles[k])
+        shares = [
+            chain.shared(case, k, contact) for case in ([slow] if slow is fast else [slow, fast])
+        ]
+        powers = [reference**t * still ** (1.0 - t) for t in shares]
+        strengths.append(fixed * np.maximum.reduce(powers))
+    return strengths

@@ -1,0 +1,312 @@
+"""What of the load capacity is used by ISO 6336, at least, between two widths and two torques.
+
+Line loads W0 = F_t K_A K_gamma/b, W1 = W0 K_v, W2 = W1 K_Hbeta rise with the load; what they are
+at the ends bounds them: of two values the first is the least, the second the greatest.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from gearopt.optimise.terms import Array
+from gearopt.physics.iso6336 import bending_factors as bending
+from gearopt.physics.iso6336 import contact_factors as contact
+from gearopt.physics.iso6336 import load_factors as loads
+from gearopt.physics.iso6336 import running_in, stiffness
+from gearopt.physics.iso6336.accuracy import WIDTHS, helix_slope
+from gearopt.physics.iso6336.tooth_form import load_sharing
+
+if TYPE_CHECKING:
+    from gearopt.formulations.strength.iso6336 import Iso6336
+
+Columns = dict[str, Any]
+Two = tuple[Any, Any]
+LEAST, MOST = 0, 1
+PICK = np.minimum, np.maximum
+TINY = 1e-300
+
+
+@dataclass(frozen=True)
+class IsoRows:
+    """Rows of pairs; columns (n,) by name.
+
+    contact (eps_alpha), virtual (eps_alphan), singles (Z_B, Z_D of spur gears), overlap (the least
+    eps_beta that is rated), axial pitch, stiffness c' from 100 N/mm on, tooth depth, module, both
+    diameters; at both ends of the torques force (F_t K_A K_gamma), pace (omega z1 sqrt(m_red)),
+    speed v, deviations after running-in (pitch f_pb, form f_falpha, the one of K_Halpha); contact0,
+    contact1 and bending0, bending1: what is used by pinion and wheel at W = Z_eps = Z_BD = 1 and at
+    W = f_eps = Y_beta = 1.
+    """
+
+    standard: "Iso6336"
+    columns: Columns
+
+    @np.errstate(invalid="ignore", divide="ignore", over="ignore")
+    def used(self, low: Array, high: Array) -> Array:
+        """Return the lower bound of the greatest part that is used: of load, so of S_H squared."""
+        at = self.columns
+        box = Box(self.standard, at, (low, high))
+        before = box.dynamic(LEAST)
+        after = box.spread(LEAST, before)
+        pressed = box.pressed(after) * box.ratio_factor(MOST) ** 2
+        bent = box.bent(before, after) * box.root_factor()
+        found = np.zeros(len(low))
+        for k in (0, 1):
+            found = np.maximum(found, pressed * box.single(k) ** 2 * at[f"contact_used{k}"])
+            found = np.maximum(found, bent * at[f"bending_used{k}"])
+        rated = (box.overlap[MOST] >= at["overlap"]) & (at["contact"] >= 1.0)
+        return np.where(rated & ~np.isnan(found), found, np.inf)
+
+    def border(self, width: Array) -> Array:
+        """Return the next width at which a refusal ends, K_v has other laws, or f_Hbeta a step."""
+        at = self.columns
+        ends = [at["overlap"] * at["axial"], (2.0 - at["contact"]) * at["axial"]]
+        found = np.full(len(width), np.inf)
+        for end in ends:
+            found = np.where((width <= end) & (end < found), end, found)
+        if self.standard.practice.tolerances == "1995":
+            steps = np.array((*WIDTHS[1:-1], np.inf))
+            found = np.minimum(found, steps[np.searchsorted(steps, width)])
+        return found
+
+    def take(self, place: Any) -> "IsoRows":
+        """Return some of the rows."""
+        return IsoRows(self.standard, {n: v[place] for n, v in self.columns.items()})
+
+
+@dataclass(frozen=True)
+class Box:
+    """Rows between two widths [mm] and two torques."""
+
+    standard: "Iso6336"
+    columns: Columns
+    widths: Two
+
+    @property
+    def given(self) -> Mapping[str, Any]:
+        """Factors that are given."""
+        return self.standard.given
+
+    @cached_property
+    def line(self) -> Two:
+        """F_t K_A K_gamma/b [N/mm]."""
+        at = self.columns
+        return at["force0"] / self.widths[MOST], at["force1"] / self.widths[LEAST]
+
+    @cached_property
+    def overlap(self) -> Two:
+        """eps_beta."""
+        low, high = self.widths
+        axial = self.columns["axial"]
+        return _both(low / axial, low is high, lambda: high / axial)
+
+    @cached_property
+    def total(self) -> Two:
+        """eps_gamma."""
+        first, second = self.overlap
+        ratio = self.columns["contact"]
+        return _both(ratio + first, first is second, lambda: ratio + second)
+
+    def singles(self, end: int) -> Two:
+        """Return c' [MPa], least and greatest by webs, at an end of the line loads."""
+        if "c_prime" in self.given:
+            return self.given["c_prime"], self.given["c_prime"]
+        bare = self.columns["stiffness"] * stiffness.light_load(self.line[end])
+        if not any(self._webs):
+            return bare, bare
+        return bare * self._blank(self.widths[MOST]), bare * self._blank(self.widths[LEAST])
+
+    @property
+    def _webs(self) -> list[tuple[float, float] | None]:
+        """Web and rim thickness [mm] of both gears."""
+        rows = zip(self.standard.webs, self.standard.rims, strict=True)
+        return [(w, r) if w is not None and r is not None else None for w, r in rows]
+
+    def _blank(self, width: Any) -> Any:
+        """Return the mean C_R, which does not rise with the width."""
+        module = self.columns["module"]
+        made = [
+            1.0 if one is None else stiffness.blank_factor(one[0] / width, one[1] / module)
+            for one in self._webs
+        ]
+        return 0.5 * (made[0] + made[1])
+
+    def mesh(self, single: Any) -> Any:
+        """Return c_gamma_alpha [MPa]."""
+        if "c_gamma_alpha" in self.given:
+            return self.given["c_gamma_alpha"]
+        return stiffness.mesh_stiffness(single, self.columns["contact"])[0]
+
+    def resonance(self, end: int, single: Any) -> Any:
+        """Return N at an end of the speeds."""
+        if "N" in self.given:
+            return self.given["N"]
+        return self.columns[f"pace{end}"] / np.sqrt(self.mesh(single))
+
+    def dynamic(self, end: int) -> Any:
+        """Return a bound of W1 = W0 K_v: of the ranges that N may lie in, and between them."""
+        if "K_v" in self.given:
+            return self.line[end] * self.given["K_v"]
+        low, main, high = self._ranges(end)
+        slowest = self.resonance(LEAST, self.singles(MOST)[MOST])
+        fastest = self.resonance(MOST, self.singles(LEAST)[LEAST])
+        limits = [loads.lower_limit(line) for line in self.line]
+        rises = [
+            np.clip((n - loads.MAIN) / (loads.SUPER - loads.MAIN), 0.0, 1.0)
+            for n in (slowest, fastest)
+        ]
+        passed = [main + (high - main) * rise for rise in rises]
+        none = (np.inf, -np.inf)[end]
+        return PICK[end](
+            np.where(slowest <= limits[MOST], low, none),
+            np.where(fastest > limits[LEAST], PICK[end](*passed), none),
+        )
+
+    def _ranges(self, end: int) -> tuple[Any, Any, Any]:
+        """Return bounds of W1 by the laws below, at and above the main resonance.
+
+        C_v1 to C_v6 do not rise with eps_gamma, C_v7 does not fall.
+        """
+        at, line, single = self.columns, self.line[end], self.singles(end)
+        c1, c2, c3, c4, c5, c6, _ = made = loads.coefficients(self.total[1 - end])
+        c7 = made[6] if self.total[0] is self.total[1] else loads.coefficients(self.total[end])[6]
+        pitch, form = at[f"pitch{end}"], at[f"form{end}"]
+        same = single[0] is single[1]
+        paces = _both(self.resonance(end, single[0]), same, lambda: self.resonance(end, single[1]))
+        left = _both(line - single[0] * at["relief"], same, lambda: line - single[1] * at["relief"])
+        slow = _sizes(paces[0] * left[0], same, lambda: paces[1] * left[1])
+        fast = _sizes(left[0], same, lambda: left[1])
+        shared = single[end] * (c1 * pitch + c2 * form)
+        low = line + paces[end] * shared + c3 * slow[end]
+        main = line + shared + PICK[end](c4 * fast[LEAST], c4 * fast[MOST])
+        return low, main, single[end] * (c5 * pitch + c6 * form) + c7 * line
+
+    def spread(self, end: int, dynamic: Any) -> Any:
+        """Return a bound of W2 = W1 K_Hbeta from that of W1."""
+        if "K_Hbeta" in self.given:
+            return dynamic * self.given["K_Hbeta"]
+        at, practice, width = self.columns, self.standard.practice, self.widths[end]
+        shaft = loads.shaft_misalignment(dynamic, width / at["diameter0"], practice.offset)
+        first, second = (
+            helix_slope(at[f"diameter{k}"], width, practice.grades[k], practice.tolerances)
+            for k in (0, 1)
+        )
+        alignment = self.given["f_ma"] if "f_ma" in self.given else (first**2 + second**2) ** 0.5
+        before = loads.initial_misalignment(
+            shaft, alignment, dynamic, np.maximum(first, second), practice.helix_modification
+        )
+        worn = [
+            running_in.helix_allowance(m.family, before, at[f"limit{k}"], at[f"speed{end}"])
+            for k, m in enumerate(self.standard.materials)
+        ]
+        after = before - 0.5 * (worn[0] + worn[1])
+        return dynamic * loads.face_load_factor(after, self._tilting(end), dynamic)
+
+    def _tilting(self, end: int) -> Any:
+        """Return c_gamma_beta [MPa]."""
+        if "c_gamma_beta" in self.given:
+            return self.given["c_gamma_beta"]
+        return 0.85 * self.mesh(self.singles(end)[end])
+
+    def pressed(self, spread: Any) -> Any:
+        """Return the least W2 K_Halpha from that of W2."""
+        if "K_Halpha" in self.given:
+            return spread * self.given["K_Halpha"]
+        found, _ = self._transverse(spread)
+        most = self.total[LEAST] / (self.columns["contact"] * self.ratio_factor(LEAST) ** 2)
+        return spread * loads.limited(found, most)
+
+    def _transverse(self, spread: Any) -> Two:
+        """Return K_alpha without limits of the least line load, and of an endless one."""
+        mesh, total = self.mesh(self.singles(LEAST)[LEAST]), self.total[LEAST]
+        made = [
+            loads.transverse_load_factor(mesh, deviation, spread, total)
+            for deviation in (self.columns["deviation0"], 0.0)
+        ]
+        return made[0], made[1]
+
+    def bent(self, dynamic: Any, spread: Any) -> Any:
+        """Return the least W1 K_Fbeta K_Falpha from those of W1 and W2.
+
+        W2^N_F K_alpha(W2) is least at a W2 that may be above the least one.
+        """
+        given, at, power = self.given, self.columns, self._root_power()
+        face = given["K_Fbeta"] if "K_Fbeta" in given else (spread / dynamic) ** power
+        if "K_Falpha" in given:
+            return dynamic * face * given["K_Falpha"]
+        found, endless = self._transverse(spread)
+        above = self._least_at(power, spread, found / endless - 1.0)
+        factor = above**power * (endless + (found - endless) / above)
+        ratio = at["virtual"] if self.standard.practice.edition == "2019" else at["contact"]
+        most = self.total[LEAST] / (at["contact"] * (0.25 + 0.75 / ratio))
+        return dynamic * face * loads.limited(factor, most)
+
+    def _root_power(self) -> Any:
+        """Return the least N_F with which K_Fbeta follows K_Hbeta; 0 where K_Fbeta is given."""
+        if "K_Fbeta" in self.given:
+            return 0.0 if "K_Hbeta" not in self.given else 1.0
+        if self.standard.practice.helix_modification in loads.LIGHT_ENDS:
+            return 1.0
+        return loads.root_exponent(self.widths[LEAST], self.columns["depth"])
+
+    def _least_at(self, power: Any, spread: Any, excess: Any) -> Any:
+        """Return W2 over its least value where W2^N_F (1 + excess/W2) is least, at least 1."""
+        wanted = np.broadcast_to(excess * (1.0 - power), np.shape(spread)) / np.maximum(power, TINY)
+        at, (low, high) = self.columns, self.widths
+        free = (low != high) | (at["force0"] != at["force1"])
+        some = np.flatnonzero(free & (wanted > 1.0))
+        found = np.ones(len(low))
+        if len(some):
+            part = Box(self.standard, {n: v[some] for n, v in at.items()}, (low[some], high[some]))
+            most = part.spread(MOST, part.dynamic(MOST)) / spread[some]
+            found[some] = np.clip(wanted[some], 1.0, np.maximum(most, 1.0))
+        return found
+
+    def ratio_factor(self, end: int) -> Any:
+        """Return Z_eps at an end of the widths; it does not rise with them."""
+        if "Z_eps" in self.given:
+            return self.given["Z_eps"]
+        return contact.contact_ratio_factor(self.columns["contact"], self.overlap[end])
+
+    def single(self, member: int) -> Any:
+        """Return the least Z_B or Z_D, which is at an end of the widths."""
+        if "Z_BD" in self.given:
+            return self.given["Z_BD"][member]
+        helical, practice = 1.0, self.standard.practice
+        if practice.edition == "2019":
+            helical = contact.PROFILE_MODIFICATIONS[practice.profile_modification] ** 0.5
+        spur = self.columns[f"single{member}"]
+        return self._least(lambda o: contact.single_contact_factor(spur, o, helical))
+
+    def root_factor(self) -> Any:
+        """Return the least Y_beta f_eps."""
+        given, edition = self.given, self.standard.practice.edition
+        factor = 1.0
+        if edition == "2019" and "Y_F" not in given:
+            factor = self._least(lambda o: load_sharing(self.columns["virtual"], o))
+        if "Y_beta" in given:
+            return factor * given["Y_beta"]
+        return factor * bending.helix_factor(self.columns["helix"], self.overlap[MOST], edition)
+
+    def _least(self, law: Callable[[Any], Any]) -> Any:
+        """Return the least value of a law that is monotone in eps_beta."""
+        first, second = self.overlap
+        value = law(first)
+        return value if first is second else np.minimum(value, law(second))
+
+
+def _both(first: Any, same: bool, second: Callable[[], Any]) -> Two:
+    return first, first if same else second()
+
+
+def _sizes(first: Any, same: bool, second: Callable[[], Any]) -> Two:
+    """Return the least and the greatest magnitude between two numbers."""
+    size = np.abs(first)
+    if same:
+        return size, size
+    other = second()
+    sizes = size, np.abs(other)
+    return np.where(first * other < 0.0, 0.0, np.minimum(*sizes)), np.maximum(*sizes)

@@ -1,0 +1,146 @@
+"""What is used by ISO 6336 between widths and torques: a lower bound, exact where they are one."""
+
+import math
+
+import numpy as np
+import pytest
+from rated_drives import RACK, iso
+
+from gearopt.formulations.toothing import Toothing
+from gearopt.physics.iso6336.case import Practice
+from gearopt.physics.iso6336.materials import Material
+from gearopt.physics.iso6336.rating import rate
+from gearopt.physics.rating import Operation
+
+ASKED = (1.3, 1.1)
+EH, GREY = Material("Eh", "MQ"), Material("GG", "MQ", 200.0)
+SOFT, NITRIDED = Material("V alloy", "ML", 300.0), Material("NV nitrocarburised", "MQ", 400.0)
+MANY = {"c_gamma_alpha": 2e4, "C_a": 0.02, "Z_v": (1.0, 1.1), "Y_NT": (1.0, 1.1), "f_ma": 0.01}
+MANY |= {"f_pb": 0.02, "N": 0.9, "Z_eps": 0.8, "Y_B": (1.1, 1.2)}
+OTHERS = {"K_Halpha": 1.2, "Z_BD": (1.1, 1.0), "Z_NT": (1.0, 1.1), "Y_beta": 0.9}
+OTHERS |= {"sigma_Hlim": (900.0, 800.0), "c_gamma_beta": 15e3, "Y_S": (1.6, 1.7), "Z_W": (1, 1.1)}
+OTHERS |= {"K_Falpha": 1.3, "c_prime": 14e3, "Y_F": (1.5, 1.4)}
+NEW = Practice(edition="2019", tolerances="2013", grades=(7.0, 6.0))
+KINDS = {
+    "tempered": (iso(), 0.4363),
+    "spur": (iso(), 0.0),
+    "hardened": (iso((EH, EH)), 0.25),
+    "hard on soft": (iso((EH, SOFT)), 0.3),
+    "2019": (iso(practice=NEW), 0.35),
+    "2019, spur, fine": (iso(practice=Practice(edition="2019", grades=(4.0, 4.0))), 0.0),
+    "crowned": (iso(practice=Practice(helix_modification="crowned", offset=-2.0)), 0.2),
+    "webs": (iso((EH, EH), rims=(None, 12.0), webs=(None, 20.0), bores=(10.0, 30.0)), 0.3),
+    "cast": (iso((GREY, GREY), practice=Practice(grades=(9.0, 9.0))), 0.1),
+    "short life": (iso((NITRIDED, EH), hours=1.0, practice=Practice(relief=0.03)), 0.15),
+    "K_Fbeta given": (iso(given={"K_Fbeta": 1.2}), 0.3),
+    "K_Hbeta given": (iso(given={"K_Hbeta": 1.2}), 0.3),
+    "K_v given": (iso(given={"K_v": 1.2}), 0.3),
+    "many given": (iso(given=MANY), 0.3),
+    "others given": (iso(given=OTHERS), 0.3),
+}
+COUNT = 300
+
+
+def pairs(helix, seed, shifts=(0.0, 0.0)):
+    """Return random pairs of unit width, their widths, torques and powers."""
+    rng = np.random.default_rng(seed)
+    z1 = rng.integers(18, 45, COUNT).astype(float)
+    z2 = np.round(z1 * rng.uniform(1.0, 7.0, COUNT))
+    module = rng.choice([1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0], COUNT)
+    pair = Toothing(helix, (RACK, RACK), shifts).pair(module, z1, z2, 1.0)
+    d = pair.pinion.reference_diameter
+    width = d * rng.uniform(0.2, 1.2, COUNT)
+    torque = 0.5 * rng.uniform(0.1, 6.0, COUNT) * d**2 * width
+    return pair, width, torque, torque * 10.0 ** rng.uniform(0.0, 3.0, COUNT), rng
+
+
+def exact(standard, pair, width, torque, power):
+    """Return the greatest part that is used; inf of refused pairs."""
+    made = standard.safeties(pair.of_width(width), torque, power / torque)
+    used = [ASKED[k // 2] / s for k, s in enumerate(made)]
+    found = np.max([used[0], used[1], used[2] ** 2, used[3] ** 2], axis=0)
+    return np.where(np.isnan(found), np.inf, found)
+
+
+def rows(standard, pair, torque, power):
+    """Return rows at torques between two ends."""
+    speed = power / torque[0], power / torque[1]
+    return standard.rows(standard.prepared(pair), pair, torque, speed, ASKED)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_one_width_and_torque_give_what_is_rated(kind):
+    standard, helix = KINDS[kind]
+    pair, width, torque, power, _ = pairs(helix, 1)
+    found = rows(standard, pair, (torque, torque), power).used(width, width)
+    np.testing.assert_allclose(found, exact(standard, pair, width, torque, power), rtol=1e-12)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("wide", [1.0003, 1.01, 1.5])
+def test_no_width_and_torque_of_a_box_use_less(kind, wide):
+    standard, helix = KINDS[kind]
+    pair, width, torque, power, rng = pairs(helix, 2, (0.2, -0.1))
+    found = rows(standard, pair, (torque, torque * wide), power).used(width, width * wide)
+    least = np.full(COUNT, np.inf)
+    for k in range(8):  # corners first
+        share = (k & 1, k >> 1) if k < 4 else rng.uniform(0.0, 1.0, (2, COUNT))
+        one = exact(standard, pair, width * wide ** share[0], torque * wide ** share[1], power)
+        least = np.minimum(least, one)
+    assert np.all(found <= least * (1.0 + 1e-12))
+    sound = np.isfinite(least)
+    loose = np.median(1.0 - found[sound] / least[sound])
+    assert loose < (0.4 if wide == 1.01 else 0.5) * (wide - 1.0)
+
+
+def test_it_is_the_rating_of_one_pair():
+    """Against `rate`, the text of floats."""
+    standard, helix = KINDS["tempered"]
+    pair, width, torque, power, _ = pairs(helix, 3)
+    found = rows(standard, pair, (torque, torque), power).used(width, width)
+    for k in range(3):
+        teeth = pair.pinion.teeth[k], pair.wheel.teeth[k]
+        one = Toothing(helix, (RACK, RACK)).pair(pair.normal_module[k], *teeth, width[k])
+        life = standard.loads[0].hours
+        operation = Operation(power[k], power[k] / torque[k], life, overload=1.25)
+        made = rate(one, operation, standard.materials, standard.practice)
+        parts = [ASKED[0] / s for s in made.bending_safety]
+        parts += [(ASKED[1] / s) ** 2 for s in made.contact_safety]
+        assert found[k] == pytest.approx(max(parts), rel=1e-12)
+
+
+def test_borders_are_where_another_law_begins():
+    """Ranges of f_Hbeta, eps_gamma = 2, where C_v jump."""
+    standard, helix = KINDS["tempered"]
+    pair, width, torque, power, _ = pairs(helix, 4)
+    made = rows(standard, pair, (torque, torque), power)
+    assert made.border(np.full(COUNT, 40.0)).max() <= 40.0
+    assert made.border(np.full(COUNT, 40.1)).max() <= 80.0
+    ends = made.border(width)
+    assert np.all(ends >= width)
+    ratio = pair.of_width(ends).overlap_ratio + pair.transverse_contact_ratio
+    stepped = np.isin(ends, (10.0, 20.0, 40.0, 80.0, 160.0, 250.0, 400.0, 650.0, np.inf))
+    np.testing.assert_allclose(ratio[~stepped], 2.0)
+
+
+def test_a_narrow_pair_is_refused_until_its_overlap_suffices():
+    """Undercut leaves a contact ratio below 1, which the overlap has to make up for."""
+    standard = iso()
+    helix = math.radians(10.0)
+    pair = Toothing(helix, (RACK, RACK), (-0.6, -0.6)).pair(
+        np.full(2, 4.0), np.array([12.0, 40.0]), np.array([14.0, 60.0]), 1.0
+    )
+    torque, power = np.full(2, 1e5), np.full(2, 1e7)
+    made = rows(standard, pair, (torque, torque), power)
+    for width in (5.0, 20.0, 60.0, 90.0):
+        at = np.full(2, width)
+        expected = exact(standard, pair, at, torque, power)
+        np.testing.assert_allclose(made.used(at, at), expected, rtol=1e-12)
+
+
+def test_thin_rims_are_refused():
+    """Y_B has no value from a backup ratio of 0.5 on."""
+    standard = iso(rims=(None, 8.0))
+    pair, width, torque, power, _ = pairs(0.2, 5)
+    refused = np.isinf(rows(standard, pair, (torque, torque), power).used(width, width))
+    np.testing.assert_array_equal(refused, 8.0 <= 0.5 * 2.25 * pair.normal_module)
