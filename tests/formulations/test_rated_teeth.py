@@ -1,59 +1,23 @@
 """Whole teeth under ratings: against every candidate rated exactly."""
 
-import math
 from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
 import pytest
+from rated_brute_force import least_share, safe
 from rated_drives import FREE, MODULES, TIED, F, agma, rated_drive
 
 from gearopt.formulations import teeth
-from gearopt.formulations.gear_train import FaceWidth, share
+from gearopt.formulations.gear_train import FaceWidth
 from gearopt.formulations.strength.k_factor import K_FACTOR
 from gearopt.formulations.strength.rated import Option
 from gearopt.formulations.teeth.search import search, within
 from gearopt.formulations.teeth.stage import spans
 from gearopt.optimise.result import Budget
-from gearopt.physics.agma.rating import rate
 from gearopt.physics.agma.rating_factors import Steel
-from gearopt.physics.rating import Operation
 
 STEPPED = FaceWidth(F(3, 10), F(3, 4), step=F(5))
-
-
-def safe(train, k, pair, torque):
-    """Return whether the exact rating of a pair meets the safety factors."""
-    standard = train.stages[k].options[0].standards[0]
-    speed = train.speed * train.torque / torque
-    life = standard.loads[0].hours
-    operation = Operation(torque * speed, speed, life, overload=standard.operation.overload)
-    found = rate(pair, operation, standard.steels, standard.practice)
-    least = min(found.bending_safety) / train.safety[0], min(found.contact_safety) / train.safety[1]
-    return min(least) >= 1.0 - 1e-11
-
-
-def widths(train, k, module, z1):
-    """Return the face widths to be tried: those on the step, or a fine grid."""
-    face = train.stages[k].face_width
-    d = float(module) * z1 / train.stages[k].toothing.cosine
-    low, high = float(face.low) * d, float(face.high) * d
-    if face.step:
-        step = float(face.step)
-        return step * np.arange(math.ceil(low / step - 1e-12), math.floor(high / step + 1e-12) + 1)
-    return np.linspace(low, high, 1 if face.tied else 60)
-
-
-def least_share(train, k, torque, z1, z2):
-    """Return the least share of a pair over modules and widths, every one rated."""
-    best = math.inf
-    for module in train.stages[k].modules:
-        for width in widths(train, k, module, z1):
-            pair = train.pair(k, float(module), z1, z2, float(width))
-            value = share(train, k, pair)
-            if value < best and safe(train, k, pair, torque):
-                best = value
-    return best
 
 
 @pytest.mark.parametrize("face", [TIED, STEPPED], ids=["tied", "stepped"])

@@ -1,0 +1,76 @@
+"""Every candidate of a small rated drive, each rated by the standard one at a time."""
+
+import math
+from functools import cache
+
+import numpy as np
+
+from gearopt.formulations.gear_train import share
+from gearopt.formulations.teeth.search import within
+from gearopt.formulations.teeth.stage import spans
+from gearopt.physics.agma.rating import rate
+from gearopt.physics.rating import Operation
+
+
+def safe(train, k, pair, torque):
+    """Return whether the exact rating of a pair meets the safety factors."""
+    standard = train.stages[k].options[0].standards[0]
+    speed = train.speed * train.torque / torque
+    life = standard.loads[0].hours
+    operation = Operation(torque * speed, speed, life, overload=standard.operation.overload)
+    found = rate(pair, operation, standard.steels, standard.practice)
+    least = min(found.bending_safety) / train.safety[0], min(found.contact_safety) / train.safety[1]
+    return min(least) >= 1.0 - 1e-11
+
+
+def widths(train, k, module, z1):
+    """Return the face widths to be tried: those on the step, or a fine grid."""
+    face = train.stages[k].face_width
+    if face.fixed:
+        return np.array([float(face.fixed)])
+    d = float(module) * z1 / train.stages[k].toothing.cosine
+    low, high = float(face.low) * d, float(face.high) * d
+    if face.step:
+        step = float(face.step)
+        return step * np.arange(math.ceil(low / step - 1e-12), math.floor(high / step + 1e-12) + 1)
+    return np.linspace(low, high, 1 if face.tied else 60)
+
+
+def least_share(train, k, torque, z1, z2):
+    """Return the least share of a pair over modules and widths, every one rated."""
+    best = math.inf
+    for module in train.stages[k].modules:
+        for width in widths(train, k, module, z1):
+            pair = train.pair(k, float(module), z1, z2, float(width))
+            value = share(train, k, pair)
+            if value < best and safe(train, k, pair, torque):
+                best = value
+    return best
+
+
+def cheapest(train):
+    """Return the least objective of all trains; inf where none is safe."""
+
+    @cache
+    def least(k, torque, z1, z2):
+        return least_share(train, k, torque, z1, z2)
+
+    every = [
+        [(z1, z2) for z1, a, b in spans(train, k, train.highest_ratio) for z2 in range(a, b + 1)]
+        for k in range(len(train.stages))
+    ]
+
+    def onward(k, torque, teeth):
+        if k == len(every):
+            return 0.0 if within(train, teeth) else math.inf
+        best = math.inf
+        for z1, z2 in every[k]:
+            last = k == len(every) - 1
+            if last and not within(train, (*teeth, (z1, z2))):
+                continue
+            own = least(k, torque, z1, z2)
+            if own < best:
+                best = min(best, own + onward(k + 1, torque * (z2 / z1), (*teeth, (z1, z2))))
+        return best
+
+    return onward(0, train.torque, ())

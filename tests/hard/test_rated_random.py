@@ -1,0 +1,65 @@
+"""Random rated drives against every candidate, and impossible ones by construction."""
+
+import math
+
+import numpy as np
+import pytest
+from rated_brute_force import cheapest, safe
+from rated_drives import impossible, some_rated_drive
+
+from gearopt.formulations import teeth
+from gearopt.optimise.solve import run, solve
+from gearopt.optimise.terms import each
+
+PLAIN = ("tied", "stepped", "fixed")  # widths that can be listed
+
+
+def seeds(count):
+    """Return so many seeds, of which all but two are slow."""
+    return [0, 1, *(pytest.param(s, marks=pytest.mark.slow) for s in range(2, count))]
+
+
+@pytest.mark.parametrize("seed", seeds(60))
+def test_small_drives_equal_to_every_candidate_rated_alone(seed):
+    train = some_rated_drive(seed, stages=1 if seed < 40 else 2, kinds=PLAIN)
+    best, result = cheapest(train), solve(teeth.problem(train))
+    if math.isinf(best):
+        assert result.status == "infeasible"
+        return
+    assert result.status == "optimal"
+    assert result.value == pytest.approx(best, rel=1e-10)
+
+
+@pytest.mark.parametrize("seed", seeds(100))
+def test_impossible_drives_are_told(seed):
+    train = impossible(some_rated_drive(1000 + seed), seed)
+    assert solve(teeth.problem(train)).status == "infeasible"
+
+
+@pytest.mark.parametrize("seed", seeds(200))
+def test_no_random_candidate_is_better(seed):
+    """Free widths among them; the best one is rated alone, candidates by the text."""
+    train = some_rated_drive(2000 + seed)
+    problem = teeth.problem(train)
+    result, outcome = run(problem)
+    assert result.status == "optimal"
+    torque = train.torque
+    for k, pair in enumerate(teeth.pairs(train, outcome.x)):
+        assert safe(train, k, pair, torque)
+        torque *= pair.ratio
+    rng = np.random.default_rng(seed)
+    points = np.tile(outcome.x, (2000, 1))
+    at = 0
+    for v in problem.variables:
+        for k in range(v.size):
+            low, high = float(each(v.lower)[k]), float(each(v.upper)[k])
+            near = points[:, at] * rng.uniform(0.8, 1.25, 2000)
+            if v.values:
+                near = rng.choice(v.values, 2000)
+            elif v.integer:
+                near = np.rint(near)
+            points[:, at] = np.clip(near, low, high)
+            at += 1
+    found = problem.batch(points)
+    feasible = (found.G.max(axis=1) <= 1.0) & np.isclose(found.H, 1.0).all(axis=1)
+    assert (found.F[feasible, 0] >= result.value * (1.0 - 1e-11)).all()
