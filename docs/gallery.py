@@ -34,6 +34,8 @@ GROUPS = {  # heading: {file: what it shows, in a line}
         "catalogue_pair": "A carburised pair with profile shift and backlash: safety, forces, "
         "efficiency, tooth geometry.",
         "two_stages_rated": "Two helical stages under a load spectrum, `[[load]]`.",
+        "elevator_by_agma": "Sized by the safety factors of AGMA 2001: `[rating]` as the limit.",
+        "three_stage_by_agma": "One stage more.",
         "sized_and_rated": "Sized by load limits, and the optimum rated: `[rating]` beside "
         "`[limits]`.",
         "shigley_14_4": "A textbook's pair, met factor by factor; its I and J given.",

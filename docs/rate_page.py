@@ -180,8 +180,24 @@ The sum is what the bearings of a shaft hold. Turned the other way round all thr
 
 ## A drive that is sized
 
-Beside `[limits]` a table `[rating]` changes nothing of what is chosen: sizes follow from the
-K-factor and the unit load. `gearopt solve` then reports the rating of its optimum, so that the load
+Where `[limits]` has neither a K-factor and unit load nor their preset, the safety factors of
+`[rating]` at the life that is asked for are the limits: `gearopt solve` finds the teeth, modules
+and face widths of least volume, mass or length whose gears are all safe, and proves it by
+exhausting all others (`problems/elevator_by_agma.toml`, `problems/three_stage_by_agma.toml`). The
+winner is rated once more by the exact form, and its rating stands in the answer. `gearopt new
+sizing` prints a file to start from.
+
+```toml
+{start}```
+
+Every module of `[teeth]` is tried, as a larger one can be the better one, and of every pair the
+first face width that carries. `gearopt explain FILE` says what a better steel, another quality or
+a tenth less life brings, each solved again; of an impossible file it moves each number alone. ISO
+6336, load spectra and real-valued sizes (without `[teeth]`) are no such limits yet; gears and box
+at once and the two processes take load limits.
+
+With a K-factor and unit load in `[limits]` they alone limit the gears; the rating then changes
+nothing of what is chosen. `gearopt solve` reports the rating of its optimum, so that the load
 limits can be set to what the steel bears (`problems/sized_and_rated.toml`: {sized}).
 
 ## What is not rated
@@ -202,6 +218,7 @@ def page() -> str:
     used = max(rated["catalogue_pair"].limits.items(), key=lambda item: item[1])
     return TEXT.format(
         example=examples()["rating"],
+        start=examples()["sizing"],
         catalogue=_printed(rated["catalogue_pair"]),
         used=f"`{used[0]}`",
         used_value=f"{used[1]:.3f}",

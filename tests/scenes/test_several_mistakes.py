@@ -50,8 +50,8 @@ bearing_diameters and bearing_widths of [layout]
 gearopt: wrong.toml: gears.helix_angle = "95 deg": is above 45 deg. Write, for example, \
 helix_angle = "25 deg"
 gearopt: wrong.toml: stage[1].material = "16MnCr5": is not supported yet. Nearest: treatment, \
-grade and hardness in [gears] or [stage.pinion], for a [rating]; sizes follow from k_factor and \
-unit_load in [limits]
+grade and hardness in [gears] or [stage.pinion], for a [rating], which limits sizes where [limits] \
+has no k_factor
 gearopt: wrong.toml: limits.k_factor = "2 N": has the unknown unit N; units of stress: MPa, Pa, \
 kPa, GPa, bar, N/mm^2, psi, ksi. Write, for example, k_factor = "2.07 MPa"
 gearopt: wrong.toml: limits.pinion_teeth: is missing. Write, for example, pinion_teeth = [20, 40]

@@ -21,9 +21,10 @@ from gearopt.optimise.solve import GAP, run
 from gearopt.optimise.typed import untyped
 from gearopt.scenes.drive.assumptions import assumptions, notes
 from gearopt.scenes.drive.examples import EXAMPLE, MORE_EXAMPLES
+from gearopt.scenes.drive.rating.limits import check_safe
 from gearopt.scenes.drive.rating.rated import rate, with_rating
 from gearopt.scenes.drive.rating.tables import MATERIAL, GivenTable
-from gearopt.scenes.drive.scene import Scene
+from gearopt.scenes.drive.scene import PROCESSES, Scene
 from gearopt.scenes.drive.stage_counts import best_count
 from gearopt.scenes.explaining.default import of_report
 from gearopt.scenes.parts import tooth_warnings
@@ -40,9 +41,9 @@ __all__ = [
     "rate",
     "solve",
 ]
-PROCESSES = ("process_one", "process_two")  # tables; as methods with a hyphen
 WEAKER = " Its contact ratio is less than the one given, its root is weaker."
 METHODS = ("exact", "process-one", "process-two", "sa", "sa-polish", "sa-paper")  # its own
+ANY = 1e9  # gap of a design that need not be the best
 CONTINUOUS = ("ipopt", "gp", "multistart")  # methods that take no whole teeth
 
 
@@ -55,7 +56,9 @@ def solve(scene: Scene, ask: Ask) -> Result:
     """
     result = _solved(_to_size(scene), ask)
     result = replace(result, report=result.report | {"assumptions": assumptions(scene)})
-    return with_rating(scene, result)
+    result = with_rating(scene, result)
+    check_safe(scene, result)
+    return result
 
 
 def _to_size(scene: Scene) -> Scene:
@@ -111,21 +114,33 @@ def _chosen(scene: Scene, result: Result) -> Scene:
 
 def _with_ways_out(scene: Scene, ask: Ask, result: Result) -> Result:
     """Return an impossible result with its remedies, those of a box where it has them already."""
-    if result.status != "infeasible" or "ways_out" in result.report:
-        return result
+    if result.status != "infeasible" or "ways_out" in result.report or scene.by_ratings:
+        return result  # the remedies of ratings take long: `explain` seeks them
     ways = asdict(_ways_out(scene, _others(ask, result.seconds)))
     return replace(result, report=result.report | {"ways_out": ways})
 
 
 def _ways_out(scene: Scene, clock: Clock) -> Remedies:
+    if scene.by_ratings:
+        from gearopt.scenes.drive.explaining.rated import remedies
+
+        return remedies(bare(scene), clock, lambda other: _status(other, clock))
     from gearopt.scenes.drive.explaining.counts import remedies_of_counts
 
     return remedies_of_counts(scene, _unruled(bare(scene)), clock)
 
 
+def _status(scene: Scene, clock: Clock) -> str:
+    """Return whether a drive that ratings limit is possible, in what is left of the time."""
+    ask = Ask(budget=replace(clock.left, gap=ANY), watch=clock.watch)
+    found = best_count(scene, ask, _real, _answer) if scene.several else _answer(scene, ask)
+    return found.status if found.value is None else "feasible"
+
+
 def explain(scene: Scene, ask: Ask, result: Result | None = None) -> Explanation:
     """Return the sensitivities of the drive, or what would make it possible, in its numbers."""
-    scene = unrated(_unruled(_to_size(scene)))
+    scene = _unruled(_to_size(scene))
+    scene = scene if scene.by_ratings else unrated(scene)
     if result is not None:
         return _explained(scene, ask, result, _others(ask))
     if scene.layout is not None:
@@ -203,6 +218,8 @@ def _answer(scene: Scene, ask: Ask, ideal: Result | None = None) -> Result:
     train = scene.train()
     if _continuous(scene, ask.method):
         return _sized(scene, train, ask, sizing.problem(train))
+    if train.rated:
+        return _sized(scene, train, ask, _discrete(scene, train, ask.top))
     known, ideal = ideal is not None, ideal or _real(scene, ask)
     if ideal.status == "infeasible":  # then no whole teeth do either
         return replace(ideal, name="drive")
@@ -217,6 +234,8 @@ def _answer(scene: Scene, ask: Ask, ideal: Result | None = None) -> Result:
 def _discrete(scene: Scene, train: Train, top: int = 1, floor: float = -math.inf) -> Problem:
     """Return the problem of whole teeth, with all methods that a drive has for it."""
     problem = teeth.problem(train, top, floor)
+    if train.rated:
+        return problem
     return replace(problem, methods={**problem.methods, **scene.processes()})
 
 
@@ -297,7 +316,13 @@ def _continuous(scene: Scene, method: str | None) -> bool:
     """Return whether a method gets real-valued teeth."""
     if scene.teeth is None and method in ("exact", *(n.replace("_", "-") for n in PROCESSES)):
         raise SolveError(f"the method {method} needs a [teeth] table in the file")
-    return scene.teeth is None or method in CONTINUOUS
+    continuous = scene.teeth is None or method in CONTINUOUS
+    if continuous and scene.by_ratings:
+        raise SolveError(
+            "gears that [rating] limits have no real-valued sizes yet: write a table [teeth], and "
+            "use a method of whole teeth"
+        )
+    return continuous
 
 
 def _sized(scene: Scene, train: Train, ask: Ask, problem: Problem) -> Result:

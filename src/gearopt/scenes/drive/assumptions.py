@@ -54,18 +54,31 @@ def assumptions(scene: Scene) -> list[str]:
         if density
         else "the density of steel, because the file gives none"
     )
-    law = scene.limits.LAW
-    alone = f"and {law.title}" if law.pressure_angle else f"alone; {law.title} do not depend on it"
     found = [
         *_teeth(scene),
-        f"Loads are limited by {law.title} alone: {law.kind}.",
-        f"The normal pressure angle of {angle}{assumed} enters contact ratio and undercut {alone}.",
+        *_loads(scene, angle, assumed),
         f"Volumes and masses are those of solid reference cylinders; masses with {mass}.",
     ]
     if scene.limits.preset is not None:
         name = scene.limits.preset
         found.insert(3, f"The load limits are those of preset {name}: {ORIGINS[name]}.")
     return found if scene.layout is None else [*found, *_layout_assumptions(scene.layout)]
+
+
+def _loads(scene: Scene, angle: str, assumed: str) -> list[str]:
+    """Return what limits the loads, and what the pressure angle enters."""
+    if scene.by_ratings:
+        return [
+            "Loads are limited by the safety factors of the rating alone, at nominal sizes.",
+            f"The normal pressure angle is {angle}{assumed}.",
+            *rating_assumptions(scene),
+        ]
+    law = scene.limits.LAW
+    alone = f"and {law.title}" if law.pressure_angle else f"alone; {law.title} do not depend on it"
+    return [
+        f"Loads are limited by {law.title} alone: {law.kind}.",
+        f"The normal pressure angle of {angle}{assumed} enters contact ratio and undercut {alone}.",
+    ]
 
 
 def _teeth(scene: Scene) -> list[str]:
@@ -84,7 +97,7 @@ def _teeth(scene: Scene) -> list[str]:
         )
     else:
         found.append("Tip and root circles by the tools of the file; nominal sizes.")
-    if shifted and "limits" in scene.model_fields_set:
+    if shifted and scene.limits.loaded:
         found.append(f"{scene.limits.LAW.title} are those of the reference circles.")
     return found
 

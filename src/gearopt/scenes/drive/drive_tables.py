@@ -193,7 +193,7 @@ class Limits(Loaded):
     preset: Annotated[str | None, choice(*PRESETS)] = Field(
         None,
         description="K-factor and unit load that a source states: chong-lee-elevator is 300 psi "
-        "and 7000 psi",
+        "and 7000 psi. They or their source are needed, but where [rating] limits the gears",
     )
     pinion_teeth: Annotated[tuple[int, int], span(TOOTH_COUNT, [20, 40])] = Field(
         description="Range of the number of pinion teeth"
@@ -217,14 +217,18 @@ class Limits(Loaded):
     @model_validator(mode="after")
     def _loads(self) -> "Limits":
         given = [name for name in self.LAW.names if getattr(self, name) is not None]
-        if self.preset is None and not given:
-            raise refuse(f"is missing (or give {' and '.join(self.LAW.names)})", at=("preset",))
         for name in self.LAW.names:
             if name in given and self.preset is not None:
                 raise refuse("stands beside preset, which sets it", at=(name,), action="remove")
-            if name not in given and self.preset is None:
+            if given and name not in given:
                 raise refuse("is missing (or give preset)", at=(name,))
         return self
+
+    @property
+    def loaded(self) -> bool:
+        """Return whether they limit the loads by the strength law: else a rating does."""
+        names = ("preset", *self.LAW.names)
+        return any(getattr(self, name) is not None for name in names)
 
     def load(self, name: str) -> Quantity:
         """Return a limit of the strength law, from the file or the preset."""

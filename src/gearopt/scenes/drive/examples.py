@@ -1,4 +1,4 @@
-"""Problem files to start from: a drive to be sized, and gears to be rated."""
+"""Problem files to start from: drives to be sized by load limits or ratings; gears to be rated."""
 
 EXAMPLE = """\
 gearopt = 1
@@ -85,4 +85,47 @@ minimum_contact_safety = 1.1
 # power = "7.5 kW"
 # share = "30 %"
 """
-MORE_EXAMPLES = {"rating": ("gears that are given, rated by AGMA or ISO 6336", RATING)}
+SIZING = """\
+gearopt = 1
+kind = "drive"
+title = "A helical unit, sized by its rating"
+
+[duty]
+power = "15 kW"
+input_speed = "1480 rpm"
+output_speed = "45 rpm"        # or: ratio = 32.9
+ratio_tolerance = "3 %"
+
+[gears]                        # what all gears share
+helix_angle = "15 deg"
+treatment = "carburised"       # or through-hardened with hardness = "300 HB", nitrided ...
+grade = 2
+
+[[stage]]                      # from the input on; what is fixed or differs in this stage
+face_width_over_diameter = 0.7 # b/d1; a range [0.4, 1.0] leaves the width free
+
+[[stage]]
+face_width_over_diameter = 0.7
+
+[limits]                       # k_factor and unit_load would limit the gears instead of [rating]
+pinion_teeth = [17, 40]
+
+[teeth]                        # whole teeth, standard modules
+modules = "ISO 54 I"
+
+[rating]                       # whose safety factors limit the gears
+standard = "agma"
+life = "20000 h"
+quality = 10                   # Q_v; larger is better
+overload_factor = 1.25
+mounting = "precision"         # or open, commercial, "extra precision"
+minimum_bending_safety = 1.4
+minimum_contact_safety = 1.1
+
+[objective]
+minimise = "gear_volume"       # or mass, sum_of_centre_distances, total_length
+"""
+MORE_EXAMPLES = {
+    "rating": ("gears that are given, rated by AGMA or ISO 6336", RATING),
+    "sizing": ("a drive of least volume that is safe by its rating", SIZING),
+}

@@ -1,6 +1,7 @@
 """A drive's file as a whole: its tables, how they fit together, and the drive they describe."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from fractions import Fraction
 from typing import Annotated, Any
 
@@ -10,6 +11,7 @@ from gearopt.formulations.design import DriveDesign, describe
 from gearopt.formulations.gear_train import FaceWidth, Stage, Train
 from gearopt.formulations.layout.gearbox import Gearbox
 from gearopt.formulations.process import methods
+from gearopt.formulations.strength import RATED, Law
 from gearopt.optimise.result import Outcome
 from gearopt.physics.gears import GearPair
 from gearopt.physics.loads import torque
@@ -32,6 +34,7 @@ from gearopt.scenes.drive.layout_tables import (
 from gearopt.scenes.drive.rating.checks import (
     check_given,
     check_rated,
+    check_sized,
     check_unrated,
     not_given,
 )
@@ -49,6 +52,8 @@ KEYS: dict[
     "speed": "duty.input_speed",
     **dict.fromkeys(("lowest_ratio", "highest_ratio"), "duty.ratio_tolerance"),
     "density": "objective.density",
+    "bending_safety": "rating.minimum_bending_safety",
+    "contact_safety": "rating.minimum_contact_safety",
 }
 RANGES = {  # stem of the two limits of a stage: the key of their range
     "width": "face_width_over_diameter",
@@ -70,6 +75,7 @@ RANGE = (
     "[limits] instead, or one number"
 )
 MOST_STAGES = 6
+PROCESSES = ("process_one", "process_two")  # tables; as methods with a hyphen
 STAGES = span(whole(2, 1, MOST_STAGES), 2, single=True)
 
 
@@ -140,9 +146,11 @@ class Scene(Table):
                 place = ("stage", k, "module") if own.size else ("limits", "module")
                 raise refuse("holds no module that [teeth] allows", self._around(own), place)
         self._check_layout()
+        self._check_loads()
         self._check_teeth()
         self._check_rating()
-        for name, table in (("process_one", self.process_one), ("process_two", self.process_two)):
+        for name in PROCESSES:
+            table = getattr(self, name)
             if table is not None and self.teeth is None:
                 raise refuse("needs a table [teeth]", at=(name,), action="remove")
             if table is not None and self.several:
@@ -173,6 +181,23 @@ class Scene(Table):
         """Return whether there is anything to size: limits, and a ratio to be met."""
         return "limits" in self.model_fields_set and self.duty.asks_ratio
 
+    @property
+    def by_ratings(self) -> bool:
+        """Return whether the safety factors of [rating] limit the gears that are to be sized."""
+        return self.rating is not None and self.limited and not self.limits.loaded
+
+    @property
+    def law(self) -> Law:
+        """Return what limits the loads of the gears beside ratings."""
+        return RATED if self.by_ratings else self.limits.LAW
+
+    def _check_loads(self) -> None:
+        """Check that something limits the loads: the strength law, or a rating."""
+        if self.rating is None and not self.limits.loaded:
+            names = " and ".join(self.limits.LAW.names)
+            rule = f"is missing (or give {names}, or write a table [rating], which limits gears)"
+            raise refuse(rule, at=("limits", "preset"))
+
     def _check_rating(self) -> None:
         """Check that what is not to be sized is to be rated, and what only a rating needs."""
         sized = "limits" in self.model_fields_set or self.duty.asks_ratio
@@ -189,6 +214,10 @@ class Scene(Table):
             check_unrated(self.gears, self.stage, self.load)
         else:
             check_rated(self.rating, self.gears, self.stage, self.load)
+        if self.by_ratings:
+            together = self.layout is not None and self.layout.together
+            ruled = [n for n in PROCESSES if getattr(self, n) is not None]
+            check_sized(self.limits.LAW, self.stage, self.load, together, ruled)
 
     def _check_teeth(self) -> None:
         """Check that gears have a centre distance, and that what is sought can take it."""
@@ -278,16 +307,24 @@ class Scene(Table):
         assert not self.several
         stages = self.stage or (StageTable(),) * self.counts[0]
         density, speed = self.objective.density, self.duty.input_speed.value
+        sized = tuple(self._stage(s) for s in stages)
+        safety = (1.0, 1.0)
+        if self.by_ratings:
+            from gearopt.scenes.drive.rating.limits import options, required
+
+            sized = tuple(replace(s, options=options(self, k)) for k, s in enumerate(sized))
+            safety = required(self)
         return Train(
             torque=torque(self.duty.power.value, speed),
             ratio=self.duty.total_ratio,
             tolerance=self.duty.ratio_tolerance,
-            stages=tuple(self._stage(s) for s in stages),
+            stages=sized,
             coprime=bool(self.teeth and self.teeth.coprime),
             objective=self.objective.minimise,
             density=density.value if density else None,
-            law=self.limits.LAW,
+            law=self.law,
             speed=speed,
+            safety=safety,
             keys=KEYS | self._keys(stages),
         )
 
@@ -304,9 +341,9 @@ class Scene(Table):
                         return f"{name}.{field}"
                     end = 3 - end if in_reverse(value, (field,)) else end
                     return f"{name}.{field}[{end}]"
-            return f"limits.{field}" if field in self.limits.LAW.names else ""  # of a preset
+            return f"limits.{field}" if field in self.law.names else ""  # of a preset
 
-        ends = {name: (name, None) for name in self.limits.LAW.names} | ENDS
+        ends = {name: (name, None) for name in self.law.names} | ENDS
         return {n: tuple(place(k, *ends[n]) for k in range(len(stages))) for n in ends}
 
     def design(self, pairs: tuple[GearPair, ...]) -> DriveDesign:
@@ -328,7 +365,7 @@ class Scene(Table):
         diameter = own.wheel_diameter or limits.wheel_diameter
         return Stage(
             allowable=tuple(
-                (getattr(own, name) or limits.load(name)).value for name in limits.LAW.names
+                (getattr(own, name) or limits.load(name)).value for name in self.law.names
             ),
             face_width=self._face_width(own),
             modules=self._modules(own),

@@ -143,7 +143,7 @@ def remedies(scene: Any, problem: Problem, clock: Clock, status: Callable[[Any],
     """
     relaxed, problem = problem.relaxed is not None, problem.relaxed or problem
     known = _handles(problem)
-    found = [r for n, h in _keyed(scene, known) if (r := _alone(scene, n, h, clock, status))]
+    found = [r for n, h in _keyed(scene, known) if (r := alone(scene, n, h, clock, status))]
     own = sorted((r for r in found if r.kind != "less"), key=lambda r: r.factor)
     if own:
         tried = "not all known" if clock.over else "need more"
@@ -172,10 +172,13 @@ def _keyed(scene: Any, known: Sequence[Handle]) -> Iterator[tuple[Number, Handle
         yield places[key], handle
 
 
-def _alone(
+def alone(
     scene: Any, number: Number, handle: Handle, clock: Clock, status: Callable[[Any], str]
 ) -> Remedy | None:
-    """Return a number moved alone as little as that takes; None where it does not help."""
+    """Return a number moved alone as little as that takes; None where it does not help.
+
+    handle: its direction, and whether it is given; status(scene): of a changed file, solved.
+    """
     way = handle.direction
     words: dict[str, bool] = dict.fromkeys(THERE, True) | {"infeasible": False}
 

@@ -55,9 +55,9 @@ NEAREST: dict[str, dict[str, str]] = {  # kind -> names -> what stands nearest
         _but_keys(CENTRES): "Nearest: centre_distance of a [[stage]], or objective.minimise = "
         '"sum_of_centre_distances", or a [[place]] beside [layout], which says where a shaft is',
         _but_keys(MATERIAL + " " + STRESS): "Nearest: treatment, grade and hardness in [gears] or "
-        "[stage.pinion], for a [rating]; sizes follow from k_factor and unit_load in [limits]",
-        SAFETY: "Nearest: minimum_bending_safety and minimum_contact_safety of [rating]; sizes are "
-        "limited by k_factor and unit_load in [limits]",
+        "[stage.pinion], for a [rating], which limits sizes where [limits] has no k_factor",
+        SAFETY: "Nearest: minimum_bending_safety and minimum_contact_safety of [rating], which "
+        "limit sizes where [limits] has no k_factor and unit_load",
         _but_keys(
             FACTORS
         ): "Nearest: overload_factor of [rating]; of sizes duty.power: multiply it by the factor",
@@ -73,10 +73,7 @@ NEAREST: dict[str, dict[str, str]] = {  # kind -> names -> what stands nearest
             LOSS
         ): "Nearest: friction_coefficient or oil_viscosity of [rating]; sizes are those of "
         "loss-free gears",
-        _but_keys(
-            LIFE
-        ): "Nearest: life of [rating], and tables [[load]]; sizes are limited by k_factor and "
-        "unit_load in [limits], which are chosen for a life",
+        _but_keys(LIFE): "Nearest: life of [rating], and tables [[load]]",
         _but_keys(
             RACK
         ): "Nearest: addendum, tool_addendum and tool_tip_radius, in [gears], [stage.pinion] or "

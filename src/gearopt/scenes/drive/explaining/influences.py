@@ -22,6 +22,19 @@ BASIS = (
     " with real-valued teeth and modules, by multipliers, checked by solving again. "
     "Effect of relaxing a limit: the drive itself solved again"
 )
+RATED = (  # of drives that ratings limit
+    ". Effect of relaxing a limit: the drive itself solved again; numbers that ease no limit are "
+    "not listed"
+)
+OF_RATING = {  # keys of ratings: the direction that eases them
+    **dict.fromkeys(("life", "input_revolutions", "overload_factor", "reliability"), -1),
+    **dict.fromkeys(("minimum_bending_safety", "minimum_contact_safety", "pinion_offset"), -1),
+    **dict.fromkeys(("accuracy", "accuracy_grade", "roughness", "flank_rz", "root_rz"), -1),
+    **dict.fromkeys(("quality", "hardness", "grade", "flank_hardness"), 1),
+}
+GRADES = ("quality", "accuracy")
+LIVES = ("life", "input_revolutions")
+LESS_LIFE = 0.1  # relative: life enters by small powers
 SAME = 1e-6  # gap of an answer that may be compared with another
 
 
@@ -44,10 +57,12 @@ def explained(
     wanted = [
         n for n in numbers(spelt) if not (n.path[:2] == ("teeth", "modules") and _is_series(scene))
     ]
+    if scene.by_ratings:
+        wanted = [n for n in wanted if eases(scene, n)]
     found = tuple(
         influences(
             spelt,
-            _basis(spelt, clock),
+            None if scene.by_ratings else _basis(spelt, clock),
             clock,
             wanted,
             lambda number: _easing(spelt, number, result, solved),
@@ -63,7 +78,7 @@ def explained(
         influences=found,
         message=late,
         seconds=clock.seconds,
-        basis=BASIS,
+        basis=RATED if scene.by_ratings else BASIS,
     )
 
 
@@ -112,7 +127,7 @@ def _is_series(scene: Scene) -> bool:
 
 def _easing(scene: Scene, number: Number, result: Result, solved: Any) -> tuple[str, float | None]:
     """Return the step that eases a limit of the file, and what it brings; "" for no limit."""
-    direction = _eases(scene, number)
+    direction = eases(scene, number)
     if direction == 0 or result.value is None:
         return "", None
     value: Any
@@ -120,6 +135,10 @@ def _easing(scene: Scene, number: Number, result: Result, solved: Any) -> tuple[
         value = next_module(scene, number.value, direction)
         step = f"to {value}"
     elif isinstance(number.value, int):
+        value, step = number.value + direction, f"{direction:+d}"
+    elif number.path[-1] in LIVES:
+        value, step = eased(number.value, 1.0 + LESS_LIFE, direction), f"{-LESS_LIFE:+.0%}"
+    elif number.path[-1] in GRADES:
         value, step = number.value + direction, f"{direction:+d}"
     else:
         value = eased(number.value, 1.0 + EASE, direction)
@@ -131,13 +150,15 @@ def _easing(scene: Scene, number: Number, result: Result, solved: Any) -> tuple[
     return step, None if found is None else (found - result.value) / abs(result.value)
 
 
-def _eases(scene: Scene, number: Number) -> int:
+def eases(scene: Scene, number: Number) -> int:
     """Return +1 or -1: the direction that eases a limit of the file; 0 for what is no limit."""
     path = number.path
     if path == ("duty", "ratio_tolerance"):
         return 1 if number.value else 0
     end = path[-1] if isinstance(path[-1], int) else None
     field = path[-2] if end is not None else path[-1]
+    if scene.by_ratings and (way := OF_RATING.get(str(field))):
+        return way
     alone = (*scene.limits.LAW.names, "wheel_diameter")  # limits that are no end of a range
     for name, place in fields(scene).items():
         if place == (field, end) and path[0] in ("limits", "stage", "gears"):

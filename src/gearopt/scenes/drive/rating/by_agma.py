@@ -1,18 +1,22 @@
 """Rating by AGMA 2001: what its tables say of a stage, its factors by name, materials in words."""
 
+from dataclasses import replace
 from typing import Any
 
+from gearopt.formulations.strength.agma import Agma
+from gearopt.formulations.strength.rated import Load
 from gearopt.physics.agma.allowables import CURVES
 from gearopt.physics.agma.factors import quality_of_accuracy
 from gearopt.physics.agma.rating import rate, rate_spectrum
 from gearopt.physics.agma.rating_factors import Practice, Steel
 from gearopt.physics.gears import GearPair
+from gearopt.physics.rating import Operation
 from gearopt.scenes.drive.rating.gears import Tables, backup
 from gearopt.scenes.drive.rating.tables import GearTable, RatingTable
 from gearopt.scenes.drive.scene import Scene
 
 __all__ = ["NAMES", "PROPORTIONAL", "UNITS", "finish", "given", "material", "rate", "rate_spectrum"]
-__all__ += ["NAME", "UNVERIFIED_SPECTRUM", "practice", "steel", "title"]
+__all__ += ["NAME", "UNVERIFIED_SPECTRUM", "limits", "practice", "steel", "title"]
 NAME = "AGMA"  # in short
 NAMES = {
     "K_o": "overload",
@@ -78,15 +82,38 @@ def finish(table: GearTable) -> float:
 
 def practice(scene: Scene, pair: GearPair, gears: Tables) -> Practice:
     """Return how a pair is made and rated."""
-    asked = scene.rating
-    assert asked
+    assert scene.rating
+    rims = backup(pair.pinion, gears[0]), backup(pair.wheel, gears[1])
+    return replace(_practice(scene.rating), backup=rims)
+
+
+def limits(
+    scene: Scene, stage: int, gears: Tables, one: Operation, loads: tuple[Load, ...]
+) -> Agma:
+    """Return the rating as what limits a stage (from 0).
+
+    one: its operation, at no power; loads: levels relative to the duty.
+    """
+    assert scene.rating
+    rims = [None if t.rim_thickness is None else t.rim_thickness.value for t in gears]
+    return Agma(
+        loads,
+        one,
+        (steel(gears[0]), steel(gears[1])),
+        _practice(scene.rating),
+        (rims[0], rims[1]),
+        given(scene, stage),
+    )
+
+
+def _practice(asked: RatingTable) -> Practice:
+    """Return how gears are made and rated, but for their rims."""
     return Practice(
         quality=_quality(asked),
         curve=asked.mounting,
         crowned=asked.crowned,
         offset=float(asked.pinion_offset),
         adjusted=asked.adjusted,
-        backup=(backup(pair.pinion, gears[0]), backup(pair.wheel, gears[1])),
         size=asked.size_factor == "shigley",
         service=asked.service,
         load=asked.bending_load,

@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Sequence
 from typing import Any
 
+from gearopt.formulations.strength import Law
 from gearopt.physics.agma.allowables import CONTACT, bending_allowable, contact_allowable
 from gearopt.physics.gears import MEMBERS
 from gearopt.physics.iso6336.materials import SURFACE_HARDENED, strength
@@ -54,6 +55,30 @@ def check_given(gears: Gears, stages: Sequence[StageTable]) -> None:
         what = "is a range" if held else "is missing"
         rule = f"{what}: a rating takes given gears, and to size them takes [limits] and a ratio"
         raise refuse(rule, at=place, action="sample")
+
+
+def check_sized(
+    law: Law,
+    stages: Sequence[StageTable],
+    load: Sequence[LoadTable],
+    together: bool,
+    ruled: Sequence[str],
+) -> None:
+    """Refuse what gears that ratings limit cannot have: limits of the law, rules of processes.
+
+    together: whether gears and box are asked for at once; ruled: names of the processes asked for.
+    """
+    for k, own in enumerate(stages):
+        for name in law.names:
+            if getattr(own, name) is not None:
+                rule = f"changes nothing: [limits] has no {name}, so that ratings limit the gears"
+                raise refuse(rule, at=("stage", k, name), action="remove")
+    if together:
+        rule = "is for gears that K-factor and unit load limit, and here [rating] does"
+        raise refuse(rule, False, ("layout", "together"))
+    for name in ruled:
+        rule = f"is a process by {law.title}, and [limits] has none: [rating] limits the gears"
+        raise refuse(rule, at=(name,), action="remove")
 
 
 def check_unrated(gears: Gears, stages: Sequence[StageTable], load: Sequence[LoadTable]) -> None:

@@ -3,11 +3,12 @@
 from dataclasses import replace
 from typing import Any
 
+from gearopt.formulations.strength.rated import Load
 from gearopt.physics.gears import Gear, GearPair
 from gearopt.physics.rating import Operation
 from gearopt.physics.shaft_forces import rpm
 from gearopt.scenes.drive.drive_tables import StageTable
-from gearopt.scenes.drive.rating.tables import GearTable, with_shared
+from gearopt.scenes.drive.rating.tables import GearTable, RatingTable, with_shared
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.tooth_tables import toothing
 
@@ -71,16 +72,8 @@ def operations(scene: Scene, slower: float, gears: Tables) -> tuple[Operation, .
     """Return what a pair does at every level of load; slower: input over pinion speed."""
     asked, hours = scene.rating, required_hours(scene)
     assert asked
-    one = Operation(
-        scene.duty.power.value,
-        scene.duty.input_speed.value / slower,
-        hours,
-        float(asked.overload_factor),
-        reliability=float(asked.reliability),
-        contacts=(float(gears[0].contacts or 1), float(gears[1].contacts or 1)),
-    )
-    if asked.temperature is not None:
-        one = replace(one, temperature_C=asked.temperature.value)
+    duty = scene.duty.power.value, scene.duty.input_speed.value / slower
+    one = _operation(asked, *duty, hours, gears)
     levels: list[Any] = [
         replace(
             one,
@@ -91,3 +84,39 @@ def operations(scene: Scene, slower: float, gears: Tables) -> tuple[Operation, .
         for level in scene.load
     ]
     return tuple(levels) or (one,)
+
+
+def unit_operation(scene: Scene, gears: Tables) -> Operation:
+    """Return what a pair does at unit power and speed, as what limits its stage takes it."""
+    assert scene.rating
+    return _operation(scene.rating, 1.0, 1.0, required_hours(scene), gears)
+
+
+def _operation(
+    asked: RatingTable, power: float, speed: float, hours: float, gears: Tables
+) -> Operation:
+    one = Operation(
+        power,
+        speed,
+        hours,
+        float(asked.overload_factor),
+        reliability=float(asked.reliability),
+        contacts=(float(gears[0].contacts or 1), float(gears[1].contacts or 1)),
+    )
+    if asked.temperature is None:
+        return one
+    return replace(one, temperature_C=asked.temperature.value)
+
+
+def loads(scene: Scene) -> tuple[Load, ...]:
+    """Return the levels of load relative to the duty, with their hours."""
+    hours, duty = required_hours(scene), scene.duty
+    levels = [
+        Load(
+            hours * float(level.share),
+            level.power.value / duty.power.value,
+            (level.input_speed or duty.input_speed).value / duty.input_speed.value,
+        )
+        for level in scene.load
+    ]
+    return tuple(levels) or (Load(hours),)

@@ -1,0 +1,46 @@
+"""The rating of a file as what limits the gears that are to be sized."""
+
+from gearopt.errors import CertificateError, SolveError
+from gearopt.formulations.design import drive_design
+from gearopt.formulations.strength.rated import Option
+from gearopt.optimise.result import Result
+from gearopt.scenes.drive.rating import by_agma
+from gearopt.scenes.drive.rating.gears import loads, own, unit_operation
+from gearopt.scenes.drive.scene import Scene
+
+
+def options(scene: Scene, stage: int) -> tuple[Option, ...]:
+    """Return the ways of making the gears of a stage (from 0); SolveError for none that limit."""
+    asked = scene.rating
+    assert asked
+    if asked.by_iso6336:
+        raise SolveError(
+            "gears cannot be sized by ISO 6336 yet: give K-factor and unit load in [limits], by "
+            'which they are sized and then rated, or size them with standard = "agma"'
+        )
+    if scene.load:
+        raise SolveError(
+            "gears cannot be sized under a load spectrum yet: give K-factor and unit load in "
+            "[limits], by which they are sized and then rated, or leave [[load]] out"
+        )
+    gears = own(scene, stage, "pinion"), own(scene, stage, "wheel")
+    operation = unit_operation(scene, gears)
+    standard = by_agma.limits(scene, stage, gears, operation, loads(scene))
+    return (Option((standard,)),)
+
+
+def required(scene: Scene) -> tuple[float, float]:
+    """Return the safety factors asked for against bending and against pitting."""
+    asked = scene.rating
+    assert asked
+    return float(asked.minimum_bending_safety), float(asked.minimum_contact_safety)
+
+
+def check_safe(scene: Scene, result: Result) -> None:
+    """Refuse gears that the rating was to limit and that it finds unsafe: an error of ours."""
+    if not scene.by_ratings or result.value is None:
+        return
+    found = drive_design(result.design).rating
+    if found is None or not found.safe_by_all:
+        why = "has no rating" if found is None else f"is unsafe: {found.governs}"
+        raise CertificateError(f"the design that ratings limit {why}")
