@@ -32,7 +32,8 @@ FREE = FaceWidth(F(3, 10), F(3, 4))
 def agma(steels=STEELS, quality=7.0, hours=20000.0, **given):
     """Return the standard of both gears at full load."""
     operation = Operation(1.0, 1.0, hours, overload=1.25)
-    return Agma((Load(hours),), operation, steels, Practice(quality=quality), **given)
+    practice = given.pop("practice", Practice(quality=quality))
+    return Agma((Load(hours),), operation, steels, practice, **given)
 
 
 def iso(materials=MATERIALS, practice=EIGHT, hours=20000.0, **given):

@@ -9,11 +9,13 @@ from rated_brute_force import least_share, safe
 from rated_drives import FREE, MODULES, TIED, F, agma, rated_drive
 
 from gearopt.formulations import teeth
-from gearopt.formulations.gear_train import FaceWidth
+from gearopt.formulations.gear_train import FaceWidth, share
 from gearopt.formulations.strength.k_factor import K_FACTOR
 from gearopt.formulations.strength.rated import Option
+from gearopt.formulations.teeth.later_stages import bound, useful_cells
 from gearopt.formulations.teeth.search import search, within
 from gearopt.formulations.teeth.stage import spans
+from gearopt.formulations.teeth.tables import stage_tables
 from gearopt.optimise.result import Budget
 from gearopt.physics.agma.rating_factors import Steel
 
@@ -115,3 +117,24 @@ def test_index_limits_beside_ratings():
         values[name] = found[0]
     assert values["loose"] == pytest.approx(values["rated"], rel=1e-12)
     assert values["both"] >= max(values["rated"], values["index"]) * (1.0 - 1e-12)
+
+
+def test_cells_of_use_hold_the_best_train():
+    """The best train's value lies above what every grid says of the cells it passes through."""
+    train = rated_drive(F(30), [TIED] * 3, pinion_teeth=(20, 23), modules=MODULES[:8])
+    found = search(train, 1, Budget())
+    value, chosen = found.found[0]
+    tables = stage_tables(train, train.highest_ratio)
+    useful, delta = None, 0.32
+    for _ in range(4):
+        rest = bound(train, tables, delta, lambda: None, useful, value * 1.001)
+        ratios = np.log([z2 / z1 for z1, z2 in chosen])
+        cells = rest.cell(np.concatenate([[0.0], np.cumsum(ratios)]))
+        pairs = teeth.best_pairs(train, chosen)
+        costs = [float(share(train, k, p)) for k, p in enumerate(pairs)]
+        assert rest.minimum[1][cells[1], rest.cell(ratios[1:2])[0]] <= costs[1]
+        assert rest.to_go[1][cells[1]] <= sum(costs[1:])
+        assert rest.to_go[2][cells[2]] <= costs[2]
+        useful = useful_cells(train, tables, rest, value * 1.001)
+        delta /= 2.0
+    assert useful[1].mean() < 0.2

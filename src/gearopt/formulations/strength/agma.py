@@ -1,7 +1,7 @@
 """AGMA 2001 as a standard of rated stages: at one power a slower, stronger torque is the worse one.
 
-With torque T and speed 1/T the load grows as T, K_v falls more slowly than T^-0.3, the squares of
-life factors more slowly than T^-0.3. All else is constant for a given pair and width.
+The load grows with the torque T, K_v falls no faster than T^-0.5, what life factors give grows no
+faster than T^0.148. All else is constant for a given pair and width.
 """
 
 from collections.abc import Mapping

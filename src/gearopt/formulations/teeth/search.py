@@ -352,4 +352,5 @@ def _least(train: Train, k: int, teeth: NDArray[np.int64]) -> Array:
     d = reference_diameter(module, teeth, stage.toothing.helix_angle)
     width = float(face.low) * d if face.fixed is None else np.full(len(d), float(face.fixed))
     pair = train.pair(k, module, teeth, teeth * float(stage.ratio[0]), width)
-    return np.asarray(share(train, k, pair))
+    shares = [share(train, k, pair, option=o) for o in range(max(1, len(stage.options)))]
+    return np.asarray(np.minimum.reduce(shares))
