@@ -6,21 +6,28 @@ from functools import cache
 import numpy as np
 
 from gearopt.formulations.gear_train import share
+from gearopt.formulations.strength.iso6336 import Iso6336
 from gearopt.formulations.teeth.search import within
 from gearopt.formulations.teeth.stage import spans
-from gearopt.physics.agma.rating import rate
+from gearopt.physics.agma.rating import rate as by_agma
+from gearopt.physics.iso6336.rating import rate as by_iso
 from gearopt.physics.rating import Operation
 
 
 def safe(train, k, pair, torque):
-    """Return whether the exact rating of a pair meets the safety factors."""
-    standard = train.stages[k].options[0].standards[0]
+    """Return whether the exact ratings of a pair meet the safety factors."""
     speed = train.speed * train.torque / torque
-    life = standard.loads[0].hours
-    operation = Operation(torque * speed, speed, life, overload=standard.operation.overload)
-    found = rate(pair, operation, standard.steels, standard.practice)
-    least = min(found.bending_safety) / train.safety[0], min(found.contact_safety) / train.safety[1]
-    return min(least) >= 1.0 - 1e-11
+    for standard in train.stages[k].options[0].standards:
+        life = standard.loads[0].hours
+        operation = Operation(torque * speed, speed, life, overload=standard.operation.overload)
+        if isinstance(standard, Iso6336):
+            found = by_iso(pair, operation, standard.materials, standard.practice)
+        else:
+            found = by_agma(pair, operation, standard.steels, standard.practice)
+        bending, contact = min(found.bending_safety), min(found.contact_safety)
+        if min(bending / train.safety[0], contact / train.safety[1]) < 1.0 - 1e-11:
+            return False
+    return True
 
 
 def widths(train, k, module, z1):

@@ -42,6 +42,12 @@ def iso(materials=MATERIALS, practice=EIGHT, hours=20000.0, **given):
     return Iso6336((Load(hours),), operation, materials, practice, **given)
 
 
+def by(*standards):
+    """Return the only way of making gears, rated by "agma", "iso" or both."""
+    made = {"agma": agma(), "iso": iso(suffix="_iso")}
+    return (Option(tuple(made[name] for name in standards)),)
+
+
 def rated_drive(ratio, faces, power=7.5e6, rpm=1450.0, helix=0.4363, options=None, **choice):
     """Return a drive of power [N mm/s], one stage a face width; choice: of every `Stage`."""
     speed = rpm * math.pi / 30.0

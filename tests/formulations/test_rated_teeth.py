@@ -5,8 +5,8 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from rated_brute_force import least_share, safe
-from rated_drives import FREE, MODULES, TIED, F, agma, rated_drive
+from rated_brute_force import cheapest, least_share, safe
+from rated_drives import FREE, MODULES, TIED, F, agma, by, rated_drive
 
 from gearopt.formulations import teeth
 from gearopt.formulations.gear_train import FaceWidth, share
@@ -24,9 +24,10 @@ STEPPED = FaceWidth(F(3, 10), F(3, 4), step=F(5))
 
 @pytest.mark.parametrize("face", [TIED, STEPPED], ids=["tied", "stepped"])
 @pytest.mark.parametrize("helix", [0.0, 0.4])
-def test_the_best_of_one_stage_is_that_of_all_candidates(face, helix):
-    choice = {"pinion_teeth": (20, 23), "modules": MODULES[3:7], "helix": helix}
-    train = rated_drive(F(3), [face], **choice)
+@pytest.mark.parametrize("options", [by("agma"), by("iso"), by("agma", "iso")])
+def test_the_best_of_one_stage_is_that_of_all_candidates(face, helix, options):
+    choice = {"pinion_teeth": (20, 23), "modules": MODULES[4:9], "helix": helix}
+    train = rated_drive(F(3), [face], options=options, **choice)
     found = search(train, 1, Budget())
     pairs = [
         (z1, z2)
@@ -40,9 +41,11 @@ def test_the_best_of_one_stage_is_that_of_all_candidates(face, helix):
     assert safe(train, 0, made[0], train.torque)
 
 
-def test_no_narrower_width_carries():
+@pytest.mark.parametrize("options, modules", [(by("agma"), (4, 6)), (by("iso"), (7, 9))])
+def test_no_narrower_width_carries(options, modules):
     """Of every pair of a stage, each width on a fine grid below the one found is rated unsafe."""
-    train = rated_drive(F(3), [FREE], pinion_teeth=(20, 21), modules=MODULES[4:6], helix=0.3)
+    choice = {"pinion_teeth": (20, 21), "modules": MODULES[slice(*modules)], "helix": 0.3}
+    train = rated_drive(F(3), [FREE], options=options, **choice)
     for z1, start, _ in spans(train, 0, train.highest_ratio):
         only = train.fixed_teeth(0, z1, start)
         pair = teeth.best_pairs(only, ((z1, start),))[0]
@@ -57,8 +60,17 @@ def test_no_narrower_width_carries():
             )
 
 
-def test_a_train_is_feasible_by_its_own_text():
-    train = rated_drive(Fraction(9), [TIED, TIED], pinion_teeth=(20, 24))
+@pytest.mark.parametrize("standards", [("iso",), ("agma", "iso")])
+def test_the_best_of_two_stages_by_iso_is_that_of_all_candidates(standards):
+    choice = {"pinion_teeth": (20, 20), "modules": MODULES[8:11], "options": by(*standards)}
+    train = rated_drive(F(4), [TIED, TIED], **choice)
+    found = search(train, 1, Budget())
+    assert found.found[0][0] == pytest.approx(cheapest(train), rel=1e-11)
+
+
+@pytest.mark.parametrize("options", [by("agma"), by("iso"), by("agma", "iso")])
+def test_a_train_is_feasible_by_its_own_text(options):
+    train = rated_drive(Fraction(9), [TIED, TIED], pinion_teeth=(20, 24), options=options)
     found = search(train, 1, Budget())
     point = teeth.point(train, teeth.best_pairs(train, found.found[0][1]))
     batch = teeth.problem(train).batch(point[None])

@@ -63,7 +63,8 @@ class IsoRows:
     def border(self, width: Array) -> Array:
         """Return the next width at which a refusal ends, K_v has other laws, or f_Hbeta a step."""
         at = self.columns
-        ends = [at["overlap"] * at["axial"], (2.0 - at["contact"]) * at["axial"]]
+        with np.errstate(invalid="ignore"):  # of spur gears
+            ends = [share * at["axial"] for share in (at["overlap"], 2.0 - at["contact"])]
         found = np.full(len(width), np.inf)
         for end in ends:
             found = np.where((width <= end) & (end < found), end, found)

@@ -16,6 +16,8 @@ BEYOND = 1.0 + 1e-12  # a border is passed by this factor
 ROUNDING = 1e-13  # of a bound
 STEPS = 2000  # of a row; a bound of 1 is reached in some tens
 ROUGH = 1e-4  # of what is used above 1 where a lower bound on the width is close enough
+SHY = 0.97  # of a step that would lead to a bound of 1
+LONGEST = 4.0  # power of what is used, of a step
 SHORT = 1e-14  # relative length of a step that ends a row
 
 
@@ -57,13 +59,17 @@ def first_width(
 def _on(
     rows: Sequence[Rows], here: Array, top: Array, now: Array, power: Array
 ) -> tuple[Array, Array]:
-    """Return the widths after one step, and the powers of `now` that the next one tries."""
+    """Return the widths after one step, and the powers of `now` that the next one tries.
+
+    A power is that at which the bound, falling as it did in this step, would be near 1.
+    """
     border = np.min([one.border(here) for one in rows], axis=0)
     end = np.minimum(top, border)
     there = np.minimum(here * np.maximum(now, BEYOND) ** power, end)
-    proven = used(rows, here, there) >= 1.0 - ROUNDING
+    bound = used(rows, here, there)
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        falls = np.log(now / bound) / np.log(there / here)
     at_border = here >= border
-    there = np.where(at_border, border * BEYOND, there)
-    goes = proven | at_border | (there <= here * (1.0 + SHORT))
-    here = np.where(goes, there, here)
-    return here, np.where(proven, np.minimum(1.0, 2.0 * power), 0.5 * power)
+    goes = (bound >= 1.0 - ROUNDING) | at_border | (there <= here * (1.0 + SHORT))
+    here = np.where(goes, np.where(at_border, border * BEYOND, there), here)
+    return here, np.where(np.isfinite(falls), SHY / np.maximum(falls, SHY / LONGEST), 1.0)

@@ -23,6 +23,7 @@ from gearopt.physics.gears import GearPair
 
 FEW = 4  # steps towards a width, for a first lower bound
 NEAR = 1.01  # times the least of these: what is bounded again
+TOGETHER = 500  # pairs bounded again at once, at least
 BATCH = 20_000  # pairs bounded at once
 CLOSE = 0.02  # of what is used above 1, for that, over the width of a cell
 FINEST = 0.005  # width of a cell where none is given
@@ -135,9 +136,11 @@ class RatedTable(Table):
         while rough.any():
             least = np.full(group.max(initial=-1) + 1, np.inf)
             np.minimum.at(least, group, cost)
-            near = np.flatnonzero(rough & (cost <= least[group] * NEAR))
-            if not len(near):
+            above = np.divide(cost, least[group], np.full_like(cost, np.inf), where=rough)
+            if above.min() > NEAR:
                 break
+            few = min(TOGETHER, len(above)) - 1
+            near = np.flatnonzero(rough & (above <= max(NEAR, np.partition(above, few)[few])))
             ends = torque[0][near], torque[1][near]
             cost[near] = np.maximum(cost[near], self._found(ends, pair[near], close=close).cost)
             rough[near] = False
