@@ -36,8 +36,8 @@ GROUPS = {  # heading: {file: what it shows, in a line}
         "two_stages_rated": "Two helical stages under a load spectrum, `[[load]]`.",
         "elevator_by_agma": "Sized by the safety factors of AGMA 2001: `[rating]` as the limit.",
         "three_stage_by_agma": "One stage more.",
-        "sized_and_rated": "Sized by load limits, and the optimum rated: `[rating]` beside "
-        "`[limits]`.",
+        "minimum_volume_pair": "A spur pair of minimum volume, as a paper has it, proven.",
+        "sized_and_rated": "Sized by load limits and ratings; here the load limits bind.",
         "shigley_14_4": "A textbook's pair, met factor by factor; its I and J given.",
         "shigley_14_4_by_908": "The same with I and J by AGMA 908: the contact stress is higher.",
         "shigley_14_5": "A textbook's helical pair; its I and J given.",

@@ -180,25 +180,27 @@ The sum is what the bearings of a shaft hold. Turned the other way round all thr
 
 ## A drive that is sized
 
-Where `[limits]` has neither a K-factor and unit load nor their preset, the safety factors of
-`[rating]` at the life that is asked for are the limits: `gearopt solve` finds the teeth, modules
-and face widths of least volume, mass or length whose gears are all safe, and proves it by
-exhausting all others (`problems/elevator_by_agma.toml`, `problems/three_stage_by_agma.toml`). The
-winner is rated once more by the exact form, and its rating stands in the answer. `gearopt new
-sizing` prints a file to start from.
+With a table `[rating]` beside `[limits]` its safety factors, at the life that is asked for, are
+limits: `gearopt solve` finds the teeth, modules and face widths of least volume, mass or length
+whose gears are all safe, by AGMA, by ISO 6336 or by both, and proves it by exhausting all others
+(`problems/elevator_by_agma.toml`, `problems/minimum_volume_pair.toml`). The winner is rated once
+more by the exact form, and its rating stands in the answer; one that it found unsafe would be
+refused. `gearopt new sizing` prints a file to start from.
 
 ```toml
 {start}```
 
 Every module of `[teeth]` is tried, as a larger one can be the better one, and of every pair the
-first face width that carries. `gearopt explain FILE` says what a better steel, another quality or
-a tenth less life brings, each solved again; of an impossible file it moves each number alone. ISO
-6336, load spectra and real-valued sizes (without `[teeth]`) are no such limits yet; gears and box
-at once and the two processes take load limits.
+first face width that carries. `face_width_over_module` and `minimum_face_width` limit the widths
+beside `face_width_over_diameter`. `gearopt explain FILE` says what a better steel, another
+quality or a tenth less life brings, each solved again; of an impossible file it moves each number
+alone.
 
-With a K-factor and unit load in `[limits]` they alone limit the gears; the rating then changes
-nothing of what is chosen. `gearopt solve` reports the rating of its optimum, so that the load
-limits can be set to what the steel bears (`problems/sized_and_rated.toml`: {sized}).
+A K-factor and unit load in `[limits]` are limits beside the ratings
+(`problems/sized_and_rated.toml`: {sized}, so that they alone bind). Of gears that are sized
+without `[teeth]`, or under a load spectrum, they are the only limits yet, and the rating is told
+of what they give: a note says so where it is not safe. Gears and box at once (`together`) and the
+two processes size by load limits alone and are refused beside `[rating]`.
 
 ## What is not rated
 

@@ -134,8 +134,6 @@ face_width_over_diameter = 0.6
 k_factor = "2.07 MPa"
 unit_load = "48 MPa"
 pinion_teeth = [20, 40]
-[teeth]
-modules = "ISO 54 I"
 [rating]
 quality = 7
 life = "20000 h"

@@ -92,9 +92,22 @@ def _solved(scene: Scene, ask: Ask) -> Result:
 
 
 def _real(scene: Scene, ask: Ask) -> Result:
-    """Return the drive with real-valued teeth and modules, without its layout."""
-    train = scene.train()
+    """Return the drive with real-valued teeth and modules, without its layout.
+
+    Of a drive that ratings limit, too, it is that of its load limits, whose bound holds.
+    """
+    train = _without_ratings(scene.train())
+    if train is None:
+        objective = {"name": scene.objective.minimise, "value": None, "unit": scene.train().unit}
+        return Result("sizing", "limit", "", objective)
     return _sized(bare(scene), train, Ask(None, ask.budget, watch=ask.watch), sizing.problem(train))
+
+
+def _without_ratings(train: Train) -> Train | None:
+    """Return a drive with its load limits alone; None where it has none, or prices."""
+    if not train.law.limits or train.objective in ("mass", "cost") and train.rated:
+        return None
+    return replace(train, stages=tuple(replace(s, options=()) for s in train.stages))
 
 
 def _boxed(scene: Scene, ask: Ask, ideal: Result) -> Result:
@@ -218,7 +231,7 @@ def _answer(scene: Scene, ask: Ask, ideal: Result | None = None) -> Result:
     train = scene.train()
     if _continuous(scene, ask.method):
         return _sized(scene, train, ask, sizing.problem(train))
-    if train.rated:
+    if _without_ratings(train) is None:
         return _sized(scene, train, ask, _discrete(scene, train, ask.top))
     known, ideal = ideal is not None, ideal or _real(scene, ask)
     if ideal.status == "infeasible":  # then no whole teeth do either

@@ -68,8 +68,10 @@ def assumptions(scene: Scene) -> list[str]:
 def _loads(scene: Scene, angle: str, assumed: str) -> list[str]:
     """Return what limits the loads, and what the pressure angle enters."""
     if scene.by_ratings:
+        title = scene.limits.LAW.title
+        beside = f"and by {title}" if scene.limits.loaded else "alone"
         return [
-            "Loads are limited by the safety factors of the rating alone, at nominal sizes.",
+            f"Loads are limited by the safety factors of the rating {beside}, at nominal sizes.",
             f"The normal pressure angle is {angle}{assumed}.",
             *rating_assumptions(scene),
         ]

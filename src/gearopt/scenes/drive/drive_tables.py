@@ -50,10 +50,12 @@ AIM = choice(
         "cost": 'Costs are not supported yet. Nearest: "mass" or "gear_volume"',
     },
 )
+OVER_MODULE = span(number(10, 0, 1000), [8, 14])
 RATIOS = span(number(5, 1, 10**6), [1, 10])
 
 Proportion = Annotated[tuple[Fraction, Fraction] | None, PROPORTION]
 Ratios = Annotated[tuple[Fraction, Fraction] | None, RATIOS]
+OverModule = Annotated[tuple[Fraction, Fraction] | None, OVER_MODULE]
 Length = Annotated[Quantity | None, LENGTH]
 Step = Annotated[Quantity | None, STEP]
 Lengths = tuple[Quantity, Quantity]
@@ -61,6 +63,8 @@ Lengths = tuple[Quantity, Quantity]
 PROPORTION_IS = (
     "Face width over pinion diameter b/d1: a number ties b to d1, a range leaves it free within it"
 )
+OVER_MODULE_IS = "Range of face width over normal module b/m_n"
+LEAST_IS = "Minimum face width"
 STEP_IS = "Face widths are whole multiples of this"
 WHEEL_IS = "Largest reference diameter of a wheel"
 
@@ -110,6 +114,8 @@ class Gears(GearKeys):
         description=f"{PROPORTION_IS}; needed, here or in every [[stage]] without face_width",
     )
     face_width_step: Step = Field(None, description=STEP_IS)
+    face_width_over_module: OverModule = Field(None, description=OVER_MODULE_IS)
+    minimum_face_width: Length = Field(None, description=LEAST_IS)
 
 
 @limited_by(LAW)
@@ -136,6 +142,8 @@ class StageTable(Loaded):
         description=f"{PROPORTION_IS}; without face_width needed, here or in [gears]",
     )
     face_width_step: Step = Field(None, description=STEP_IS)
+    face_width_over_module: OverModule = Field(None, description=OVER_MODULE_IS)
+    minimum_face_width: Length = Field(None, description=LEAST_IS)
     stage_ratio: Ratios = Field(None, description="Range of the stage's ratio")
     wheel_diameter: Length = Field(None, description=WHEEL_IS)
     helix_angle: Annotated[Quantity | None, HELIX] = Field(

@@ -107,14 +107,14 @@ face_width_over_diameter = 0.7 # b/d1; a range [0.4, 1.0] leaves the width free
 [[stage]]
 face_width_over_diameter = 0.7
 
-[limits]                       # k_factor and unit_load would limit the gears instead of [rating]
+[limits]                       # k_factor and unit_load here would be limits beside [rating]
 pinion_teeth = [17, 40]
 
 [teeth]                        # whole teeth, standard modules
 modules = "ISO 54 I"
 
 [rating]                       # whose safety factors limit the gears
-standard = "agma"
+standard = "agma"              # or "iso6336", or "both" with accuracy_grade in [rating.iso6336]
 life = "20000 h"
 quality = 10                   # Q_v; larger is better
 overload_factor = 1.25

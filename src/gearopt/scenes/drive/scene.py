@@ -8,7 +8,7 @@ from typing import Annotated, Any
 from pydantic import ConfigDict, Field, ValidationInfo, field_validator, model_validator
 
 from gearopt.formulations.design import DriveDesign, describe
-from gearopt.formulations.gear_train import FaceWidth, Stage, Train
+from gearopt.formulations.gear_train import Stage, Train
 from gearopt.formulations.layout.gearbox import Gearbox
 from gearopt.formulations.process import methods
 from gearopt.formulations.strength import RATED, Law
@@ -24,6 +24,7 @@ from gearopt.scenes.drive.drive_tables import (
     StageTable,
     Teeth,
 )
+from gearopt.scenes.drive.face_widths import check_width, face_width
 from gearopt.scenes.drive.layout_tables import (
     KeepOutTable,
     Layout,
@@ -65,6 +66,9 @@ RANGES = {  # stem of the two limits of a stage: the key of their range
 ENDS: dict[str, tuple[str, int | None]] = {
     **{f"{stem}_low": (key, 1) for stem, key in RANGES.items()},
     **{f"{stem}_high": (key, 2) for stem, key in RANGES.items()},
+    "over_module_low": ("face_width_over_module", 1),
+    "over_module_high": ("face_width_over_module", 2),
+    "least_width": ("minimum_face_width", None),
     "wheel_diameter": ("wheel_diameter", None),
     "helix_cosine": ("helix_angle", None),
 }
@@ -141,7 +145,7 @@ class Scene(Table):
             rule = f"differs from the {number} [[stage]] tables"
             raise refuse(RANGE if self.several else rule, number, ("stages",))
         for k, own in enumerate(self.stage or (StageTable(),)):
-            self._check_width(own, ("stage", k) if self.stage else ("gears",))
+            check_width(own, self.gears, ("stage", k) if self.stage else ("gears",))
             if self.teeth is not None and not self._modules(own):
                 place = ("stage", k, "module") if own.size else ("limits", "module")
                 raise refuse("holds no module that [teeth] allows", self._around(own), place)
@@ -183,13 +187,17 @@ class Scene(Table):
 
     @property
     def by_ratings(self) -> bool:
-        """Return whether the safety factors of [rating] limit the gears that are to be sized."""
-        return self.rating is not None and self.limited and not self.limits.loaded
+        """Return whether the safety factors of [rating] limit the gears that are to be sized.
+
+        Load limits beside them size alone what ratings cannot: real-valued teeth, spectra.
+        """
+        alone = self.limits.loaded and (self.teeth is None or bool(self.load))
+        return self.rating is not None and self.limited and not alone
 
     @property
     def law(self) -> Law:
         """Return what limits the loads of the gears beside ratings."""
-        return RATED if self.by_ratings else self.limits.LAW
+        return RATED if self.rating is not None and not self.limits.loaded else self.limits.LAW
 
     def _check_loads(self) -> None:
         """Check that something limits the loads: the strength law, or a rating."""
@@ -217,7 +225,7 @@ class Scene(Table):
         if self.by_ratings:
             together = self.layout is not None and self.layout.together
             ruled = [n for n in PROCESSES if getattr(self, n) is not None]
-            check_sized(self.limits.LAW, self.stage, self.load, together, ruled)
+            check_sized(self.law, self.limits.LAW, self.stage, together, ruled)
 
     def _check_teeth(self) -> None:
         """Check that gears have a centre distance, and that what is sought can take it."""
@@ -245,36 +253,6 @@ class Scene(Table):
                 raise refuse(f"is above {last}, the output shaft", last, at, "sample")
         if self.layout.together and self.teeth is None:
             raise refuse("needs a table [teeth]", False, ("layout", "together"))
-
-    def _check_width(self, own: StageTable, place: tuple[Any, ...]) -> None:
-        """Check that one rule sets the face width, and that it is a range where one is needed."""
-        key = (*place, "face_width_over_diameter")
-        if own.face_width is not None:
-            if own.face_width_step is not None:
-                raise refuse(
-                    "stands beside face_width, which fixes the width",
-                    at=(*place, "face_width_step"),
-                    action="remove",
-                )
-            span = own.face_width_over_diameter
-            if span is not None and span[0] == span[1]:
-                raise refuse(
-                    "stands beside face_width: only a range can limit a fixed width",
-                    [float(span[1] / 2), float(span[1])],
-                    key,
-                )
-            return
-        step = own.face_width_step or self.gears.face_width_step
-        span = own.face_width_over_diameter or self.gears.face_width_over_diameter
-        if span is None:
-            ways = " (or give face_width, or set it in [gears])" if place[0] == "stage" else ""
-            raise refuse(f"is missing{ways}", 0.6 if step is None else None, key)
-        if step is not None and span[0] == span[1]:
-            raise refuse(
-                "ties the width, so that it cannot keep to face_width_step: give a range",
-                [float(span[0] / 2), float(span[1])],
-                key,
-            )
 
     def _modules(self, own: StageTable) -> tuple[Fraction, ...]:
         span = own.size or self.limits.module
@@ -367,7 +345,7 @@ class Scene(Table):
             allowable=tuple(
                 (getattr(own, name) or limits.load(name)).value for name in self.law.names
             ),
-            face_width=self._face_width(own),
+            face_width=face_width(own, self.gears),
             modules=self._modules(own),
             pinion_teeth=own.pinion_teeth or limits.pinion_teeth,
             wheel_teeth=own.wheel_teeth or limits.wheel_teeth or (1, None),
@@ -375,13 +353,3 @@ class Scene(Table):
             wheel_diameter=diameter.exact[0] if diameter else None,
             toothing=toothing(own, self.gears),
         )
-
-    def _face_width(self, own: StageTable) -> FaceWidth:
-        proportion = own.face_width_over_diameter
-        if own.face_width is not None:
-            low, high = proportion or (Fraction(0), None)
-            return FaceWidth(low, high, fixed=own.face_width.exact[0])
-        span = proportion or self.gears.face_width_over_diameter
-        assert span is not None  # checked by _check_width
-        step = own.face_width_step or self.gears.face_width_step
-        return FaceWidth(span[0], span[1], step=step.exact[0] if step else None)

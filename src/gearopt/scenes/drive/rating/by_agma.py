@@ -92,7 +92,7 @@ def limits(
 ) -> Agma:
     """Return the rating as what limits a stage (from 0).
 
-    one: its operation, at no power; loads: levels relative to the duty.
+    one: its operation, at unit power; loads: levels relative to the duty.
     """
     assert scene.rating
     rims = [None if t.rim_thickness is None else t.rim_thickness.value for t in gears]

@@ -1,19 +1,24 @@
 """Rating by ISO 6336: what its tables say of a stage, its factors by name, materials in words."""
 
+from dataclasses import replace
 from typing import Any
 
+from gearopt.formulations.strength.iso6336 import Iso6336
+from gearopt.formulations.strength.rated import Load
 from gearopt.physics.gears import GearPair
 from gearopt.physics.iso6336.case import Practice
 from gearopt.physics.iso6336.factors import CLAUSES
 from gearopt.physics.iso6336.rating import rate, rate_spectrum
+from gearopt.physics.rating import Operation
 from gearopt.scenes.drive.rating.gears import Tables, backup
 from gearopt.scenes.drive.rating.iso_material import finish, material, steel
 from gearopt.scenes.drive.rating.iso_tables import NAMES
 from gearopt.scenes.drive.rating.tables import GearTable, RatingTable
 from gearopt.scenes.drive.scene import Scene
+from gearopt.units import Quantity
 
 __all__ = ["NAMES", "PROPORTIONAL", "UNITS", "finish", "given", "material", "rate", "rate_spectrum"]
-__all__ += ["NAME", "UNVERIFIED_SPECTRUM", "practice", "steel", "title"]
+__all__ += ["NAME", "UNVERIFIED_SPECTRUM", "limits", "practice", "steel", "title"]
 NAME = "ISO 6336"  # in short
 SUFFIXES = {"MPa": "MPa", "mm": "mm", "sqrt(MPa)": "sqrt_MPa"}
 UNITS = {symbol: SUFFIXES[unit] for symbol, (_, unit) in CLAUSES.items() if unit}
@@ -29,7 +34,41 @@ def title(asked: RatingTable) -> str:
 def practice(scene: Scene, pair: GearPair, gears: Tables) -> Practice:
     """Return how a pair is made and rated."""
     assert scene.rating
-    asked, usual = scene.rating.iso6336, Practice()
+    return replace(
+        _practice(scene.rating),
+        webs=(web(pair, gears[0]), web(pair, gears[1])),
+        bores=(bore(gears[0]), bore(gears[1])),
+        backup=(backup(pair.pinion, gears[0]), backup(pair.wheel, gears[1])),
+    )
+
+
+def limits(
+    scene: Scene, stage: int, gears: Tables, one: Operation, loads: tuple[Load, ...]
+) -> Iso6336:
+    """Return the rating as what limits a stage (from 0).
+
+    one: its operation, at unit power; loads: levels relative to the duty.
+    """
+    assert scene.rating
+    return Iso6336(
+        loads,
+        one,
+        (steel(gears[0]), steel(gears[1])),
+        _practice(scene.rating),
+        (_length(gears[0].rim_thickness), _length(gears[1].rim_thickness)),
+        (_length(gears[0].web_thickness), _length(gears[1].web_thickness)),
+        (bore(gears[0]), bore(gears[1])),
+        given(scene, stage),
+    )
+
+
+def _length(value: Quantity | None) -> float | None:
+    return None if value is None else value.value
+
+
+def _practice(rating: RatingTable) -> Practice:
+    """Return how gears are made and rated, but for rims, webs and bores."""
+    asked, usual = rating.iso6336, Practice()
     first, second = asked.accuracy_grade or usual.grades
     return Practice(
         edition=asked.edition,
@@ -40,9 +79,6 @@ def practice(scene: Scene, pair: GearPair, gears: Tables) -> Practice:
         relief=asked.tip_relief.value if asked.tip_relief else None,
         helix_modification=asked.helix_modification,
         profile_modification=asked.profile_modification,
-        webs=(web(pair, gears[0]), web(pair, gears[1])),
-        bores=(bore(gears[0]), bore(gears[1])),
-        backup=(backup(pair.pinion, gears[0]), backup(pair.wheel, gears[1])),
         limited_pitting=asked.limited_pitting,
     )
 

@@ -58,26 +58,23 @@ def check_given(gears: Gears, stages: Sequence[StageTable]) -> None:
 
 
 def check_sized(
-    law: Law,
-    stages: Sequence[StageTable],
-    load: Sequence[LoadTable],
-    together: bool,
-    ruled: Sequence[str],
+    law: Law, own: Law, stages: Sequence[StageTable], together: bool, ruled: Sequence[str]
 ) -> None:
-    """Refuse what gears that ratings limit cannot have: limits of the law, rules of processes.
+    """Refuse what gears that ratings limit cannot have: box at once, processes, own load limits.
 
+    law: what limits the loads beside ratings; own: of which stages have limits of their own;
     together: whether gears and box are asked for at once; ruled: names of the processes asked for.
     """
-    for k, own in enumerate(stages):
-        for name in law.names:
-            if getattr(own, name) is not None:
-                rule = f"changes nothing: [limits] has no {name}, so that ratings limit the gears"
+    for k, stage in enumerate(stages):
+        for name in own.names if not law.limits else ():
+            if getattr(stage, name) is not None:
+                rule = f"needs {name} in [limits], without which ratings alone limit the gears"
                 raise refuse(rule, at=("stage", k, name), action="remove")
     if together:
-        rule = "is for gears that K-factor and unit load limit, and here [rating] does"
+        rule = "is for gears that load limits alone size, and [rating] limits them here"
         raise refuse(rule, False, ("layout", "together"))
     for name in ruled:
-        rule = f"is a process by {law.title}, and [limits] has none: [rating] limits the gears"
+        rule = f"is a process by {own.title} alone, and [rating] limits the gears here"
         raise refuse(rule, at=(name,), action="remove")
 
 

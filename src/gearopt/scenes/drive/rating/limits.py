@@ -1,23 +1,28 @@
 """The rating of a file as what limits the gears that are to be sized."""
 
+from dataclasses import replace
+from typing import Any
+
 from gearopt.errors import CertificateError, SolveError
 from gearopt.formulations.design import drive_design
 from gearopt.formulations.strength.rated import Option
 from gearopt.optimise.result import Result
-from gearopt.scenes.drive.rating import by_agma
+from gearopt.scenes.drive.rating import by_agma, by_iso6336
 from gearopt.scenes.drive.rating.gears import loads, own, unit_operation
 from gearopt.scenes.drive.scene import Scene
+
+STANDARDS: dict[str, tuple[Any, ...]] = {  # of the key standard
+    "agma": (by_agma,),
+    "iso6336": (by_iso6336,),
+    "both": (by_agma, by_iso6336),
+}
+SECOND = "_iso"  # after the names of limits by the second of two standards
 
 
 def options(scene: Scene, stage: int) -> tuple[Option, ...]:
     """Return the ways of making the gears of a stage (from 0); SolveError for none that limit."""
     asked = scene.rating
     assert asked
-    if asked.by_iso6336:
-        raise SolveError(
-            "gears cannot be sized by ISO 6336 yet: give K-factor and unit load in [limits], by "
-            'which they are sized and then rated, or size them with standard = "agma"'
-        )
     if scene.load:
         raise SolveError(
             "gears cannot be sized under a load spectrum yet: give K-factor and unit load in "
@@ -25,8 +30,13 @@ def options(scene: Scene, stage: int) -> tuple[Option, ...]:
         )
     gears = own(scene, stage, "pinion"), own(scene, stage, "wheel")
     operation = unit_operation(scene, gears)
-    standard = by_agma.limits(scene, stage, gears, operation, loads(scene))
-    return (Option((standard,)),)
+    made = [
+        one.limits(scene, stage, gears, operation, loads(scene))
+        for one in STANDARDS[asked.standard]
+    ]
+    if len(made) > 1:
+        made[1] = replace(made[1], suffix=SECOND)
+    return (Option(tuple(made)),)
 
 
 def required(scene: Scene) -> tuple[float, float]:

@@ -15,10 +15,10 @@ from gearopt.physics.gears import GearPair
 from gearopt.physics.loads import torque
 from gearopt.physics.shaft_forces import hands
 from gearopt.scenes.drive.assumptions import rating_assumptions
-from gearopt.scenes.drive.rating import by_agma, by_iso6336
 from gearopt.scenes.drive.rating import gears as rated_gears
 from gearopt.scenes.drive.rating.checks import not_given
 from gearopt.scenes.drive.rating.geometry import tooth_geometry
+from gearopt.scenes.drive.rating.limits import SECOND, STANDARDS
 from gearopt.scenes.drive.rating.mesh import rated_meshes
 from gearopt.scenes.drive.rating.rows import (
     factor_rows,
@@ -32,12 +32,6 @@ from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.parts import tooth_warnings
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.toml import dotted
-
-STANDARDS = {  # of the key standard
-    "agma": (by_agma,),
-    "iso6336": (by_iso6336,),
-    "both": (by_agma, by_iso6336),
-}
 
 
 def rate(scene: Scene, ask: Ask) -> Result:
@@ -122,7 +116,7 @@ def utilisations(found: DriveRating) -> dict[str, float]:
     Of two standards those of the second, which is ISO 6336, have names of their own.
     """
     limits = {}
-    for one, of_second in zip(found.each, ("", "_iso"), strict=False):
+    for one, of_second in zip(found.each, ("", SECOND), strict=False):
         for gear in one.gears:
             bending = one.minimum_bending_safety / gear.bending_safety
             contact = one.minimum_contact_safety / gear.contact_safety
