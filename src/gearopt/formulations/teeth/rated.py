@@ -23,7 +23,7 @@ from gearopt.physics.gears import GearPair
 
 FEW = 4  # steps towards a width, for a first lower bound
 NEAR = 1.01  # times the least of these: what is bounded again
-TOGETHER = 500  # pairs bounded again at once, at least
+TOGETHER = 2000  # pairs bounded again at once, at least
 BATCH = 20_000  # pairs bounded at once
 CLOSE = 0.02  # of what is used above 1, for that, over the width of a cell
 FINEST = 0.005  # width of a cell where none is given
