@@ -9,8 +9,10 @@ from gearopt.formulations.gear_train import share
 from gearopt.formulations.strength.iso6336 import Iso6336
 from gearopt.formulations.teeth.search import within
 from gearopt.formulations.teeth.stage import spans
-from gearopt.physics.agma.rating import rate as by_agma
-from gearopt.physics.iso6336.rating import rate as by_iso
+from gearopt.physics.agma.rating import rate as agma_rate
+from gearopt.physics.agma.rating import rate_spectrum as agma_spectrum
+from gearopt.physics.iso6336.rating import rate as iso_rate
+from gearopt.physics.iso6336.rating import rate_spectrum as iso_spectrum
 from gearopt.physics.rating import Operation
 
 
@@ -18,12 +20,19 @@ def safe(train, k, pair, torque):
     """Return whether the exact ratings of a pair meet the safety factors."""
     speed = train.speed * train.torque / torque
     for standard in train.stages[k].options[0].standards:
-        life = standard.loads[0].hours
-        operation = Operation(torque * speed, speed, life, overload=standard.operation.overload)
-        if isinstance(standard, Iso6336):
-            found = by_iso(pair, operation, standard.materials, standard.practice)
+        iso = isinstance(standard, Iso6336)
+        made = standard.materials if iso else standard.steels, standard.practice
+        overload = standard.operation.overload
+        operations = [
+            Operation(
+                load.power * torque * speed, load.speed * speed, load.hours, overload=overload
+            )
+            for load in standard.loads
+        ]
+        if len(operations) > 1:
+            found = (iso_spectrum if iso else agma_spectrum)(pair, tuple(operations), *made)
         else:
-            found = by_agma(pair, operation, standard.steels, standard.practice)
+            found = (iso_rate if iso else agma_rate)(pair, operations[0], *made)
         bending, contact = min(found.bending_safety), min(found.contact_safety)
         if min(bending / train.safety[0], contact / train.safety[1]) < 1.0 - 1e-11:
             return False

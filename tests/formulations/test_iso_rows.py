@@ -1,11 +1,13 @@
 """What is used by ISO 6336 between widths and torques: a lower bound, exact where they are one."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from rated_drives import RACK, iso
 
+from gearopt.formulations.strength.rated import Load
 from gearopt.formulations.toothing import Toothing
 from gearopt.physics.iso6336.case import Practice
 from gearopt.physics.iso6336.materials import Material
@@ -37,6 +39,12 @@ KINDS = {
     "K_v given": (iso(given={"K_v": 1.2}), 0.3),
     "many given": (iso(given=MANY), 0.3),
     "others given": (iso(given=OTHERS), 0.3),
+}
+LEVELS = Load(2000.0), Load(9000.0, 0.6, 0.9), Load(9000.0, 0.3, 1.1)
+BRIEF = Load(0.2), Load(2.0, 0.7), Load(0.0, 0.5)
+KINDS |= {
+    "three levels": (replace(iso(), loads=LEVELS), 0.3),
+    "brief levels": (replace(iso((EH, SOFT)), loads=BRIEF), 0.2),
 }
 COUNT = 300
 
@@ -90,7 +98,7 @@ def test_no_width_and_torque_of_a_box_use_less(kind, wide):
     assert np.all(found <= least * (1.0 + 1e-12))
     sound = np.isfinite(least)
     loose = np.median(1.0 - found[sound] / least[sound])
-    assert loose < (0.4 if wide == 1.01 else 0.5) * (wide - 1.0)
+    assert loose < (0.45 if wide == 1.01 else 0.5) * (wide - 1.0)
 
 
 def test_it_is_the_rating_of_one_pair():

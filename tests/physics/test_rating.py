@@ -2,9 +2,11 @@
 
 import math
 
+import numpy as np
 import pytest
 
 from gearopt.physics.agma.life import bending_curve, pitting_curve
+from gearopt.physics.iso6336.curves import pitting_curve as iso_curve
 from gearopt.physics.rating import Level, damage, governing, miner_sum, spectrum_safety
 
 BENT, PRESSED = bending_curve("carburised"), pitting_curve("carburised")
@@ -49,6 +51,28 @@ def test_levels_with_curves_of_their_own():
     own = [Level(1e5, BENT, 1.2), Level(2e5, PRESSED, 0.9)]
     assert damage(own) == pytest.approx(1e5 / BENT.life(1.2) + 2e5 / PRESSED.life(0.9))
     assert damage(own, spectrum_safety(own)) == pytest.approx(1.0, rel=1e-9)
+
+
+def test_many_spectra_at_once():
+    """Arrays row by row as floats; what is no number stays none."""
+    rng = np.random.default_rng(1)
+    cycles, stresses = 10.0 ** rng.uniform(2.0, 9.0, (3, 40)), rng.uniform(0.3, 1.5, (3, 40))
+    cycles[0, :5], stresses[1, 5:10], stresses[2, 39] = 0.0, 0.0, np.nan
+    for curve in (
+        BENT,
+        PRESSED,
+        pitting_curve("nitrided"),
+        iso_curve("Eh"),
+        iso_curve("GG", lowest=1.0),
+    ):
+        found = spectrum_safety(levels(curve, *zip(cycles, stresses, strict=True)))
+        for k in range(39):
+            rows = zip(cycles[:, k], stresses[:, k], strict=True)
+            made = levels(curve, *((float(n), float(s)) for n, s in rows))
+            assert found[k] == pytest.approx(spectrum_safety(made), rel=1e-14)
+            assert damage(made, found[k] * (1.0 - 1e-9)) <= 1.0
+            assert damage(made, found[k] * (1.0 + 1e-9)) > 1.0
+        assert np.isnan(found[39])
 
 
 def test_what_governs_is_compared_by_load():

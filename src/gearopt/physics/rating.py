@@ -3,13 +3,16 @@
 A rating is of floats; tuples are of pinion and wheel.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
 
 from gearopt.physics.gears import MEMBERS
+
+STEPS = 200  # of a root, at most
+ROUNDING = 2e-16  # of its logarithm
 
 
 @dataclass(frozen=True)
@@ -117,11 +120,14 @@ class LifeCurve(Protocol):
 
 @dataclass(frozen=True)
 class Level:
-    """A level of load: its cycles, the curve of strength there, its stress in the curve's unit."""
+    """A level of load: its cycles, the curve of strength there, its stress in the curve's unit.
 
-    cycles: float
+    Floats or arrays.
+    """
+
+    cycles: Any
     curve: LifeCurve
-    stress: float
+    stress: Any
 
 
 def miner_sum(cycles: Iterable[Any], lives: Iterable[Any]) -> Any:
@@ -135,27 +141,63 @@ def miner_sum(cycles: Iterable[Any], lives: Iterable[Any]) -> Any:
         return sum(np.where(n > 0.0, n / life, 0.0)[()] for n, life in rows)
 
 
-def damage(levels: Sequence[Level], growth: float = 1.0) -> float:
-    """Return Miner's sum of levels whose stresses grow by a factor."""
+def damage(levels: Sequence[Level], growth: Any = 1.0) -> Any:
+    """Return Miner's sum of levels whose stresses grow by a factor; floats or arrays."""
     lives = [level.curve.life(growth * level.stress) for level in levels]
-    return float(miner_sum([level.cycles for level in levels], lives))
+    return miner_sum([level.cycles for level in levels], lives)
 
 
-def spectrum_safety(levels: Sequence[Level]) -> float:
+@np.errstate(divide="ignore", invalid="ignore", over="ignore")
+def spectrum_safety(levels: Sequence[Level]) -> Any:
     """Return the factor by which all stresses of a spectrum may grow until Miner's sum is 1.
 
-    By halving; one level gives strength at its cycles over stress. Curves are flat below their
-    shortest life, so that a level may at most reach the strength there. Infinite without load.
+    Of floats or arrays. One level gives strength at its cycles over stress. Curves are flat below
+    their shortest life, so that a level may at most reach the strength there. Infinite without
+    load.
     """
-    loaded = [level for level in levels if level.cycles > 0.0 and level.stress > 0.0]
-    if not loaded:
-        return float("inf")
-    total = sum(level.cycles for level in loaded)
-    high = min(float(level.curve.factor(level.cycles)) / level.stress for level in loaded)
-    low = min(float(level.curve.factor(total)) / level.stress for level in loaded)
-    if low == high:
-        return high
-    for _ in range(200):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if damage(loaded, middle) <= 1.0 else (low, middle)
-    return low
+    loaded = [~(np.less_equal(x.cycles, 0.0) | np.less_equal(x.stress, 0.0)) for x in levels]
+    total = sum(np.where(on, x.cycles, 0.0) for on, x in zip(loaded, levels, strict=True))
+
+    def least(cycles: Any) -> Any:
+        ends = [
+            np.where(on, x.curve.factor(x.cycles if cycles is None else cycles) / x.stress, np.inf)
+            for on, x in zip(loaded, levels, strict=True)
+        ]
+        return np.minimum.reduce(np.broadcast_arrays(*ends))
+
+    def excess(growth: Any) -> Any:
+        return np.log(damage(levels, np.exp(growth)))
+
+    low, high = least(total), least(None)
+    known = ~(low < high)
+    found = np.exp(_root(excess, np.log(np.where(known, 1.0, low)), np.log(high)))
+    return np.where(known, high, np.clip(found, low, high))[()]
+
+
+def _root(law: Callable[[Any], Any], low: Any, high: Any) -> Any:
+    """Return where a rising law crosses 0, or jumps past it; the higher end where it does neither.
+
+    low, high: arrays of numbers.
+    Source: T. R. Chandrupatla, Advances in Engineering Software 28 (1997) 145-149.
+    """
+    a, b = np.array(high, float), np.array(low, float)
+    fa, fb, share = law(a), law(b), np.full(a.shape, 0.5)
+    below = fa <= 0.0
+    for _ in range(STEPS):
+        x = a + share * (b - a)
+        f = law(x)
+        same = np.sign(f) == np.sign(fa)
+        c, fc = np.where(same, a, b), np.where(same, fa, fb)
+        b, fb = np.where(same, b, a), np.where(same, fb, fa)
+        a, fa = x, f
+        least = ROUNDING * (1.0 + np.abs(a)) / np.abs(b - a)
+        done = below | ~(least < 0.5) | (fa == 0.0)
+        if done.all():
+            break
+        xi, phi = (a - b) / (c - b), (fa - fb) / (fc - fb)
+        share = fa / (fb - fa) * fc / (fb - fc)
+        share = share + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
+        curved = (phi**2 < xi) & ((1.0 - phi) ** 2 < 1.0 - xi) & np.isfinite(share)
+        share = np.clip(np.where(curved, share, 0.5), np.where(done, 0.0, least), 1.0 - least)
+        share = np.where(done, 0.0, share)
+    return np.where(below, high, np.where(fa <= 0.0, a, b))

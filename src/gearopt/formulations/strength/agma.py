@@ -13,7 +13,13 @@ import numpy as np
 from gearopt.formulations.strength.rated import Load
 from gearopt.optimise.terms import Array
 from gearopt.physics.agma import factors
-from gearopt.physics.agma.batch import distribution, rate_rows, safeties
+from gearopt.physics.agma.batch import (
+    distribution,
+    rate_rows,
+    safeties,
+    spectrum_rows,
+    spectrum_safeties,
+)
 from gearopt.physics.agma.rating_factors import Case, Practice, Steel
 from gearopt.physics.agma.table import FactorTable, factor_table
 from gearopt.physics.gears import GearPair
@@ -37,15 +43,11 @@ class Agma:
     suffix: str = ""
     monotone: bool = True
 
-    def case(self, pair: GearPair, torque: Any, speed: Any, given: Mapping[str, Any]) -> Case:
-        """Return the case of the first level of load with what is given beside."""
-        load = self.loads[0]
-        operation = replace(
-            self.operation,
-            power=load.power * torque * speed,
-            pinion_speed=load.speed * speed,
-            hours=load.hours,
-        )
+    def case(
+        self, pair: GearPair, torque: Any, speed: Any, given: Mapping[str, Any], level: int = 0
+    ) -> Case:
+        """Return the case of a level of load with what is given beside."""
+        operation = self.loads[level].of(self.operation, torque, speed)
         return Case(pair, operation, self.steels, self._practice(pair), {**given, **self.given})
 
     def _practice(self, pair: GearPair) -> Practice:
@@ -57,8 +59,12 @@ class Agma:
 
     def safeties(self, pair: GearPair, torque: Any, speed: Any) -> tuple[Any, Any, Any, Any]:
         """Return S_F1, S_F2, S_H1, S_H2; NaN where AGMA 908 refuses the pair."""
-        case = self.case(pair, torque, speed, {})
-        found = rate_rows(pair, case.operation, case.steels, case.practice, case.given)
+        operations = [load.of(self.operation, torque, speed) for load in self.loads]
+        made = self.steels, self._practice(pair), self.given
+        if len(operations) == 1:
+            found = rate_rows(pair, operations[0], *made)
+        else:
+            found = spectrum_rows(pair, operations, *made)
         return (*found.bending, *found.contact)
 
     def like(self, other: Any) -> bool:
@@ -80,8 +86,12 @@ class Agma:
         """Return rows at the smaller torque, which is the least loaded one."""
         bare = {"I": 1.0, "J": (1.0, 1.0), "K_m": 1.0, "K_s": (1.0, 1.0)}
         unit = pair.of_width(1.0)
-        case = self.case(unit, torque[0], speed[0], bare)
-        made = safeties(case, 1.0, (1.0, 1.0))
+        places = range(len(self.loads))
+        cases = [self.case(unit, torque[0], speed[0], bare, place) for place in places]
+        if len(cases) == 1:
+            made = safeties(cases[0], 1.0, (1.0, 1.0))
+        else:
+            made = spectrum_safeties(cases, 1.0, (1.0, 1.0))
         used = [safety[0] / made[0], safety[0] / made[1]]
         used += [(safety[1] / made[2]) ** 2, (safety[1] / made[3]) ** 2]
         lengths = [

@@ -15,9 +15,11 @@ from gearopt.optimise.terms import Array
 from gearopt.physics.gears import GearPair
 from gearopt.physics.iso6336 import bending_factors as bending
 from gearopt.physics.iso6336 import chain, contact_factors, running_in, stiffness
-from gearopt.physics.iso6336.batch import rate_rows
+from gearopt.physics.iso6336.batch import rate_rows, spectrum_rows
 from gearopt.physics.iso6336.case import Case, Practice
+from gearopt.physics.iso6336.curves import Curve, reference_share
 from gearopt.physics.iso6336.materials import Material
+from gearopt.physics.iso6336.rating import check_lives
 from gearopt.physics.iso6336.table import ToothTable, tooth_table
 from gearopt.physics.rating import Operation
 
@@ -45,15 +47,9 @@ class Iso6336:
     suffix: str = ""
     monotone: bool = False
 
-    def case(self, pair: GearPair, torque: Any, speed: Any) -> Case:
-        """Return the case of the first level of load."""
-        load = self.loads[0]
-        operation = replace(
-            self.operation,
-            power=load.power * torque * speed,
-            pinion_speed=load.speed * speed,
-            hours=load.hours,
-        )
+    def case(self, pair: GearPair, torque: Any, speed: Any, level: int = 0) -> Case:
+        """Return the case of a level of load."""
+        operation = self.loads[level].of(self.operation, torque, speed)
         return Case(pair, operation, self.materials, self._practice(pair), self.given)
 
     def _practice(self, pair: GearPair) -> Practice:
@@ -75,8 +71,12 @@ class Iso6336:
 
     def safeties(self, pair: GearPair, torque: Any, speed: Any) -> tuple[Any, Any, Any, Any]:
         """Return S_F1, S_F2, S_H1, S_H2; NaN where ISO 6336 refuses the pair, or a rim."""
-        case = self.case(pair, torque, speed)
-        found = rate_rows(pair, case.operation, case.materials, case.practice, case.given)
+        operations = [load.of(self.operation, torque, speed) for load in self.loads]
+        made = self.materials, self._practice(pair), self.given
+        if len(operations) == 1:
+            found = rate_rows(pair, operations[0], *made)
+        else:
+            found = spectrum_rows(pair, operations, *made)
         return (*found.bending, *found.contact)
 
     def like(self, other: Any) -> bool:
@@ -100,24 +100,44 @@ class Iso6336:
 
         Loads are least at the weakest torque; deviations, N and cycles at the slowest speed.
         """
-        unit = pair.of_width(1.0)
-        slow, fast = (self.case(unit, torque[0], s) for s in (speed[1], speed[0]))
-        same = np.array_equal(*torque)
-        high = slow if same else fast
-        columns = self._teeth(prepared, slow) | self._loads(slow, high, torque)
-        found = self._found(slow)
-        contact, bent = (_strengths(self, slow, high, prepared, c, found) for c in (True, False))
-        of_pair = self._contact(prepared, slow, found)
-        root = self._bending(prepared, slow, found)
-        for k in GEARS:
-            columns[f"contact_used{k}"] = of_pair * (safety[1] / contact[k]) ** 2
-            columns[f"bending_used{k}"] = root[k] * (safety[0] / bent[k])
-            columns[f"limit{k}"] = found["sigma_Hlim"][k]
+        if len(self.loads) > 1:
+            check_lives(self.given)
+        unit, shape = pair.of_width(1.0), np.shape(torque[0])
+        levels = []
+        for place in range(len(self.loads)):
+            ends = [self.case(unit, torque[0], s, place) for s in (speed[1], speed[0])]
+            fast = ends[0] if np.array_equal(*torque) else ends[1]
+            made = self._level(prepared, (ends[0], fast), self.loads[place], torque, safety)
+            levels.append({n: np.broadcast_to(v, shape) for n, v in made.items()})
+        return IsoRows(self, tuple(levels))
+
+    def _level(
+        self,
+        table: ToothTable,
+        cases: tuple[Case, Case],
+        load: Load,
+        torque: tuple[Array, Array],
+        safety: tuple[float, float],
+    ) -> Columns:
+        """Return the columns of a level of load; cases: of unit width at the slow and fast end."""
+        slow, found = cases[0], self._found(cases[0])
+        columns = self._teeth(table, slow) | self._loads(cases, load, torque)
         columns["relief"] = found["C_a"]
-        shape = np.shape(torque[0])
-        return IsoRows(
-            self, {n: np.broadcast_to(np.asarray(v, float), shape) for n, v in columns.items()}
-        )
+        pressed, bent = self._contact(table, slow, found), self._bending(table, slow, found)
+        for k in GEARS:
+            columns[f"limit{k}"] = found["sigma_Hlim"][k]
+            columns[f"contact_used{k}"] = pressed * safety[1] ** 2
+            columns[f"bending_used{k}"] = bent[k] * safety[0]
+            for contact, name in ((True, "contact"), (False, "bending")):
+                strength = _strength(self, cases, table, k, contact, found)
+                if len(self.loads) == 1:
+                    most = strength.greatest(cases)
+                    columns[f"{name}_used{k}"] /= most**2 if contact else most
+                    continue
+                columns[f"cycles{k}"] = slow.cycles[k]
+                for place, value in enumerate(strength.knots()):
+                    columns[f"{name}{k}_{place}"] = value
+        return columns
 
     def _found(self, case: Case) -> dict[str, Any]:
         """Return what the materials alone have."""
@@ -148,10 +168,10 @@ class Iso6336:
             "diameter1": pair.wheel.reference_diameter,
         }
 
-    def _loads(self, slow: Case, fast: Case, torque: tuple[Array, Array]) -> Columns:
+    def _loads(self, cases: tuple[Case, Case], load: Load, torque: tuple[Array, Array]) -> Columns:
         """Return loads [N], speeds, and deviations after running-in [mm], at both ends."""
-        load, d1 = self.loads[0], slow.pair.pinion.reference_diameter
-        found = self._found(slow)
+        slow = cases[0]
+        found, d1 = self._found(slow), slow.pair.pinion.reference_diameter
         force = 2.0 * found["K_A"] * found["K_gamma"] * load.power / load.speed / d1
         densities = self.materials[0].density, self.materials[1].density
         mass = stiffness.reduced_mass(slow.pair, densities, self.bores)
@@ -159,7 +179,7 @@ class Iso6336:
         pitch = self.given.get("f_pb", made.base_pitch)
         form = self.given.get("f_falpha", made.profile_form)
         columns = {}
-        for k, case in enumerate((slow, fast)):
+        for k, case in enumerate(cases):
             worn = [self._worn(case, found, value) for value in (pitch, form)]
             columns[f"force{k}"] = force * torque[k]
             columns[f"pace{k}"] = case.operation.pinion_speed * slow.pair.pinion_teeth * mass**0.5
@@ -222,23 +242,77 @@ def _notches(standard: Iso6336, table: ToothTable) -> tuple[Law, Callable[..., A
     return reference, static
 
 
-def _strengths(
+@dataclass(frozen=True)
+class Strength:
+    """The greatest sigma_HG or sigma_FG [MPa] of a gear at any speed between two ends.
+
+    fixed: of what does not depend on the cycles; reference and static: other factors at the fast
+    end; life: the given factor, or 0.
+    """
+
+    fixed: Any
+    reference: Any
+    static: Any
+    life: Any
+    member: int
+    contact: bool
+    curve: Curve
+
+    def greatest(self, cases: tuple[Case, Case]) -> Any:
+        """Return it at the cycles of cases: life factors of the slow end, exponents of the better.
+
+        cases: at the slow and at the fast end.
+        """
+        slow, fast = cases
+        life = self.life or self.curve.factor(slow.cycles[self.member])
+        found = self._other(reference_share(self.curve, slow.cycles[self.member]))
+        if slow is not fast:
+            other = self._other(reference_share(self.curve, fast.cycles[self.member]))
+            found = np.maximum(found, other)
+        return self.fixed * life * found
+
+    def knots(self) -> list[Any]:
+        """Return it at the knots of the life curve."""
+        shares = [float(reference_share(self.curve, n)) for n in self.curve.cycles]
+        rows = zip(self.curve.values, shares, strict=True)
+        return [self.fixed * value * self._other(share) for value, share in rows]
+
+    def _other(self, share: Any) -> Any:
+        return self.reference**share * self.static ** (1.0 - share)
+
+
+def _strength(
     standard: Iso6336,
-    slow: Case,
-    fast: Case,
+    cases: tuple[Case, Case],
     table: ToothTable,
+    member: int,
     contact: bool,
     found: dict[str, Any],
-) -> list[Any]:
-    """Return the greatest sigma_HG or sigma_FG [MPa] of both gears between two speeds.
+) -> Strength:
+    """Return the strength of a gear; cases: at the slow and at the fast end."""
+    given, slow = standard.given, cases[0]
+    laws, static = _laws(standard, table, contact)
+    names = chain.CONTACT_STRENGTH if contact else chain.BENDING_STRENGTH
+    life = "Z_NT" if contact else "Y_NT"
+    fixed, reference, still = 1.0, 1.0, 1.0
+    for name in names:
+        if name in given:
+            fixed = fixed * (1.0 if name == life else _two(given[name])[member])
+        elif name in laws:
+            reference = reference * _two(laws[name](cases[1], found))[member]
+            still = still * (static[name](slow, member) if name in static else 1.0)
+        elif name != life:
+            fixed = fixed * _two(found[name])[member]
+    known = _two(given[life])[member] if life in given else 0.0
+    curve = slow.curve(member, contact)
+    return Strength(fixed, reference, still, known, member, contact, curve)
 
-    Life factors are greatest at the slow one, other factors of reference strength at the fast one;
-    their exponent follows the cycles.
-    """
-    given = standard.given
-    notch, static_notch = _notches(standard, table)
-    laws: dict[str, Law] = {"Y_deltarelT": notch, "Y_RrelT": chain.surfaces, "Y_X": chain.sizes}
-    static = {"Y_deltarelT": static_notch}
+
+def _laws(
+    standard: Iso6336, table: ToothTable, contact: bool
+) -> tuple[dict[str, Law], dict[str, Callable[..., Any]]]:
+    """Return the laws of factors of reference strength, and of those of static strength."""
+    laws: dict[str, Law]
     if contact:
         laws = {
             "Z_L": chain.lubricant,
@@ -246,24 +320,7 @@ def _strengths(
             "Z_R": chain.roughness,
             "Z_W": chain.hardening,
         }
-        static = {"Z_W": lambda case, k: chain.hardened(case, k, True)}
-    made = {n: _two(law(fast, found)) for n, law in laws.items() if n not in given}
-    names = chain.CONTACT_STRENGTH if contact else chain.BENDING_STRENGTH
-    life = "Z_NT" if contact else "Y_NT"
-    strengths = []
-    for k in GEARS:
-        fixed, reference, still = 1.0, 1.0, 1.0
-        for name in names:
-            if name in made:
-                reference = reference * made[name][k]
-                still = still * (static[name](slow, k) if name in static else 1.0)
-            elif name in given or name != life:
-                fixed = fixed * _two(given[name] if name in given else found[name])[k]
-        if life not in given:
-            fixed = fixed * slow.curve(k, contact).factor(slow.cycles[k])
-        shares = [
-            chain.shared(case, k, contact) for case in ([slow] if slow is fast else [slow, fast])
-        ]
-        powers = [reference**t * still ** (1.0 - t) for t in shares]
-        strengths.append(fixed * np.maximum.reduce(powers))
-    return strengths
+        return laws, {"Z_W": lambda case, k: chain.hardened(case, k, True)}
+    notch, static = _notches(standard, table)
+    laws = {"Y_deltarelT": notch, "Y_RrelT": chain.surfaces, "Y_X": chain.sizes}
+    return laws, {"Y_deltarelT": static}

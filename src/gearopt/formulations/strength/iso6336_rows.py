@@ -17,7 +17,10 @@ from gearopt.physics.iso6336 import contact_factors as contact
 from gearopt.physics.iso6336 import load_factors as loads
 from gearopt.physics.iso6336 import running_in, stiffness
 from gearopt.physics.iso6336.accuracy import WIDTHS, helix_slope
+from gearopt.physics.iso6336.case import life_curve
+from gearopt.physics.iso6336.curves import Curve
 from gearopt.physics.iso6336.tooth_form import load_sharing
+from gearopt.physics.rating import Level, spectrum_safety
 
 if TYPE_CHECKING:
     from gearopt.formulations.strength.iso6336 import Iso6336
@@ -27,42 +30,54 @@ Two = tuple[Any, Any]
 LEAST, MOST = 0, 1
 PICK = np.minimum, np.maximum
 TINY = 1e-300
+MODES = ("bending", 0), ("bending", 1), ("contact", 0), ("contact", 1)
 
 
 @dataclass(frozen=True)
 class IsoRows:
-    """Rows of pairs; columns (n,) by name.
+    """Rows of pairs; of every level of load columns (n,) by name.
 
     contact (eps_alpha), virtual (eps_alphan), singles (Z_B, Z_D of spur gears), overlap (the least
     eps_beta that is rated), axial pitch, stiffness c' from 100 N/mm on, tooth depth, module, both
     diameters; at both ends of the torques force (F_t K_A K_gamma), pace (omega z1 sqrt(m_red)),
-    speed v, deviations after running-in (pitch f_pb, form f_falpha, the one of K_Halpha); contact0,
-    contact1 and bending0, bending1: what is used by pinion and wheel at W = Z_eps = Z_BD = 1 and at
-    W = f_eps = Y_beta = 1.
+    speed v, deviations after running-in (pitch f_pb, form f_falpha, the one of K_Halpha);
+    contact_used and bending_used of both gears: what is used at W = Z_eps = Z_BD = 1 and at W =
+    f_eps = Y_beta = 1. Of several levels these are stresses (of contact squared) times the safety
+    factors asked for; contact0_0 and so on are strengths at the knots of life curves, cycles0 and
+    cycles1 least numbers of cycles.
     """
 
     standard: "Iso6336"
-    columns: Columns
+    levels: tuple[Columns, ...]
 
     @np.errstate(invalid="ignore", divide="ignore", over="ignore")
     def used(self, low: Array, high: Array) -> Array:
         """Return the lower bound of the greatest part that is used: of load, so of S_H squared."""
-        at = self.columns
-        box = Box(self.standard, at, (low, high))
-        before = box.dynamic(LEAST)
-        after = box.spread(LEAST, before)
-        pressed = box.pressed(after) * box.ratio_factor(MOST) ** 2
-        bent = box.bent(before, after) * box.root_factor()
-        found = np.zeros(len(low))
-        for k in (0, 1):
-            found = np.maximum(found, pressed * box.single(k) ** 2 * at[f"contact_used{k}"])
-            found = np.maximum(found, bent * at[f"bending_used{k}"])
-        rated = (box.overlap[MOST] >= at["overlap"]) & (at["contact"] >= 1.0)
+        boxes = [Box(self.standard, at, (low, high)) for at in self.levels]
+        parts = [box.parts() for box in boxes]
+        made = parts[0] if len(parts) == 1 else self._spectrum(parts)
+        found = np.maximum(np.maximum(made[0], made[1]), np.maximum(made[2], made[3]))
+        at = self.levels[0]
+        rated = (boxes[0].overlap[MOST] >= at["overlap"]) & (at["contact"] >= 1.0)
         return np.where(rated & ~np.isnan(found), found, np.inf)
+
+    def _spectrum(self, parts: list[list[Any]]) -> list[Any]:
+        """Return what all levels use together, from the stresses of each."""
+        found = []
+        for place, (name, k) in enumerate(MODES):
+            material, loads = self.standard.materials[k], []
+            curve = life_curve(material, self.standard.practice, name == "contact")
+            for at, part in zip(self.levels, parts, strict=True):
+                values = [at[f"{name}{k}_{j}"] for j in range(len(curve.cycles))]
+                stress = part[place] ** (0.5 if name == "contact" else 1.0)
+                loads.append(Level(at[f"cycles{k}"], Curve(curve.cycles, tuple(values)), stress))
+            power = 2.0 if name == "contact" else 1.0
+            found.append(spectrum_safety(loads) ** -power)
+        return found
 
     def border(self, width: Array) -> Array:
         """Return the next width at which a refusal ends, K_v has other laws, or f_Hbeta a step."""
-        at = self.columns
+        at = self.levels[0]
         with np.errstate(invalid="ignore"):  # of spur gears
             ends = [share * at["axial"] for share in (at["overlap"], 2.0 - at["contact"])]
         found = np.full(len(width), np.inf)
@@ -75,7 +90,8 @@ class IsoRows:
 
     def take(self, place: Any) -> "IsoRows":
         """Return some of the rows."""
-        return IsoRows(self.standard, {n: v[place] for n, v in self.columns.items()})
+        levels = [{n: v[place] for n, v in at.items()} for at in self.levels]
+        return IsoRows(self.standard, tuple(levels))
 
 
 @dataclass(frozen=True)
@@ -90,6 +106,15 @@ class Box:
     def given(self) -> Mapping[str, Any]:
         """Factors that are given."""
         return self.standard.given
+
+    def parts(self) -> list[Any]:
+        """Return the least of what is used, or of stress where there are more loads; see MODES."""
+        at, before = self.columns, self.dynamic(LEAST)
+        after = self.spread(LEAST, before)
+        bent = self.bent(before, after) * self.root_factor()
+        pressed = self.pressed(after) * self.ratio_factor(MOST) ** 2
+        found = [bent * at[f"bending_used{k}"] for k in (0, 1)]
+        return found + [pressed * self.single(k) ** 2 * at[f"contact_used{k}"] for k in (0, 1)]
 
     @cached_property
     def line(self) -> Two:

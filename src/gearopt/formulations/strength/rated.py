@@ -6,13 +6,14 @@ face widths are sought (`widths`).
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
 import numpy as np
 
 from gearopt.optimise.terms import Array
 from gearopt.physics.gears import GearPair
+from gearopt.physics.rating import Operation
 
 MODES = ("pinion_bending", "wheel_bending", "pinion_contact", "wheel_contact")
 REFUSED = 1e9  # utilisation of pairs that a standard refuses to rate
@@ -25,6 +26,11 @@ class Load:
     hours: float
     power: float = 1.0
     speed: float = 1.0
+
+    def of(self, operation: Operation, torque: Any, speed: Any) -> Operation:
+        """Return what a pair does at this level; torque [N mm] and speed [rad/s] of full load."""
+        power = self.power * torque * speed
+        return replace(operation, power=power, pinion_speed=self.speed * speed, hours=self.hours)
 
 
 class Rows(Protocol):

@@ -4,7 +4,7 @@ The laws are those of `rating`, factor by factor; I and J come from `refusals.ge
 table of them, or the smooth form.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,14 +16,16 @@ from gearopt.physics.agma.rating_factors import (
     Case,
     Practice,
     Steel,
+    check_lives,
     computed,
     life_curves,
     unknown_hardness,
 )
 from gearopt.physics.agma.refusals import GeometryFactors, geometry_factors
 from gearopt.physics.gears import Gear, GearPair
-from gearopt.physics.rating import Operation
+from gearopt.physics.rating import Level, Operation, spectrum_safety
 
+MODES = (False, 0), (False, 1), (True, 0), (True, 1)  # contact, member: order of safety factors
 CONSTANT = ("K_o", "K_R", "K_T", "C_f", "C_p", "s_at", "s_ac")  # of all pairs of a batch
 
 
@@ -52,12 +54,17 @@ def rate_rows(
     have a refusal, unless both are given. ValueError for words and steels.
     """
     practice, given = practice or Practice(), given or {}
-    geometry = GeometryFactors(given.get("I"), given.get("J", ()), np.zeros(np.shape(pair.ratio)))
-    if not {"I", "J"} <= set(given):
-        geometry = geometry_factors(pair, practice.load)
+    geometry = _geometry(pair, practice, given)
     case = Case(pair, operation, steels, practice, given)
     made = safeties(case, geometry.pitting, geometry.bending)
     return Ratings((made[0], made[1]), (made[2], made[3]), geometry.refusal)
+
+
+def _geometry(pair: GearPair, practice: Practice, given: Mapping[str, Any]) -> GeometryFactors:
+    """Return I and J, given ones without a refusal."""
+    if {"I", "J"} <= set(given):
+        return GeometryFactors(given["I"], given["J"], np.zeros(np.shape(pair.ratio)))
+    return geometry_factors(pair, practice.load)
 
 
 def safeties(case: Case, pitting: Any, bending: tuple[Any, Any]) -> tuple[Any, Any, Any, Any]:
@@ -83,6 +90,43 @@ def safeties(case: Case, pitting: Any, bending: tuple[Any, Any]) -> tuple[Any, A
             one["C_p"], load, width, diameter, pitting, shared * size[k] * one["C_f"]
         )
         found.append(strong_h[k] / used)
+    return found[0], found[1], found[2], found[3]
+
+
+def spectrum_rows(
+    pair: GearPair,
+    operations: Sequence[Operation],
+    steels: tuple[Steel, Steel],
+    practice: Practice | None = None,
+    given: Mapping[str, Any] | None = None,
+) -> Ratings:
+    """Return the safety factors under levels of load, of arrays of one shape each or floats.
+
+    Row by row the same as `rating.rate_spectrum`; refusals and ValueError as of `rate_rows`, and
+    ValueError for life factors that are given.
+    """
+    practice, given = practice or Practice(), given or {}
+    geometry = _geometry(pair, practice, given)
+    cases = [Case(pair, one, steels, practice, given) for one in operations]
+    made = spectrum_safeties(cases, geometry.pitting, geometry.bending)
+    return Ratings((made[0], made[1]), (made[2], made[3]), geometry.refusal)
+
+
+def spectrum_safeties(
+    cases: Sequence[Case], pitting: Any, bending: tuple[Any, Any]
+) -> tuple[Any, Any, Any, Any]:
+    """Return S_F1, S_F2, S_H1, S_H2 under levels of load with I and J, of floats or arrays."""
+    check_lives(cases[0].given)
+    made = [safeties(case, pitting, bending) for case in cases]
+    found = []
+    for place, (contact, k) in enumerate(MODES):
+        curve = life_curves(cases[0], contact)[k]
+        cycles = [case.cycles[k] for case in cases]
+        levels = [  # stress: the cycle factor at which a safety factor is 1
+            Level(n, curve, curve.factor(n) / one[place])
+            for n, one in zip(cycles, made, strict=True)
+        ]
+        found.append(spectrum_safety(levels))
     return found[0], found[1], found[2], found[3]
 
 

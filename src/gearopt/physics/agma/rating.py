@@ -18,6 +18,7 @@ from gearopt.physics.agma.rating_factors import (
     Practice,
     Steel,
     all_factors,
+    check_lives,
     life_curves,
 )
 from gearopt.physics.gears import GearPair
@@ -122,8 +123,7 @@ def rate_spectrum(
     Temperature and reliability enter each level's strength; Y_N and Z_N may not be given
     (ValueError). One level gives what `rate` gives. Source: Palmgren and Miner.
     """
-    if {"Y_N", "Z_N"} & set(given or {}):
-        raise ValueError("Y_N and Z_N follow from the levels of a spectrum and cannot be given")
+    check_lives(given or {})
     practice = practice or Practice()
     levels = tuple(rate(pair, one, steels, practice, given) for one in operations)
     case = Case(pair, operations[0], steels, practice)
@@ -148,4 +148,4 @@ def _miner(
         safety = (level.contact_safety if contact else level.bending_safety)[member]
         value: Any = level.factors["Z_N" if contact else "Y_N"].value
         loads.append(Level(level.cycles[member], curve, value[member] / safety))
-    return damage(loads), spectrum_safety(loads)
+    return float(damage(loads)), float(spectrum_safety(loads))

@@ -236,6 +236,12 @@ def _cycle_factor(case: Case, contact: bool) -> Factor:
     return Factor(symbol, (first, second), "2001-D04, 17", "", not induction, remark)
 
 
+def check_lives(given: Mapping[str, Any]) -> None:
+    """Refuse life factors that are given for a spectrum, by ValueError."""
+    if {"Y_N", "Z_N"} & set(given):
+        raise ValueError("Y_N and Z_N follow from the levels of a spectrum and cannot be given")
+
+
 def life_curves(case: Case, contact: bool) -> tuple[life.Curve, life.Curve]:
     """Return the life curves of pinion and wheel, of contact or of bending."""
     service = case.practice.service

@@ -5,7 +5,7 @@ law of one range of K_v, and so has no jumps but the standard's small ones (C_v 
 Y_RrelT at 1 um, f_eps of 2019); its kinks are those of the limits in the laws.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,8 +16,9 @@ from gearopt.physics.iso6336.case import Case, Practice, check
 from gearopt.physics.iso6336.chain import quantities
 from gearopt.physics.iso6336.load_factors import MAIN, RANGES, SUPER, lower_limit
 from gearopt.physics.iso6336.materials import Material
+from gearopt.physics.iso6336.rating import check_lives, levels_of
 from gearopt.physics.iso6336.refusals import refusal
-from gearopt.physics.rating import Operation
+from gearopt.physics.rating import Operation, spectrum_safety
 
 
 @dataclass(frozen=True)
@@ -51,6 +52,32 @@ def rate_rows(
     bending = [a / b for a, b in zip(found["sigma_FG"], found["sigma_F"], strict=True)]
     contact = [a / b for a, b in zip(found["sigma_HG"], found["sigma_H"], strict=True)]
     values = [np.where(code == 0, value, np.nan)[()] for value in (*bending, *contact)]
+    return Ratings((values[0], values[1]), (values[2], values[3]), code)
+
+
+def spectrum_rows(
+    pair: GearPair,
+    operations: Sequence[Operation],
+    materials: tuple[Material, Material],
+    practice: Practice | None = None,
+    given: Mapping[str, Any] | None = None,
+) -> Ratings:
+    """Return the safety factors under levels of load, of arrays of one shape each or floats.
+
+    Row by row the same as `rating.rate_spectrum`; ValueError as of `rate_rows`, and for life
+    factors that are given.
+    """
+    practice, given = practice or Practice(), given or {}
+    check(practice)
+    check_lives(given)
+    cases = [Case(pair, one, materials, practice, given) for one in operations]
+    found = [quantities(case) for case in cases]
+    code = refusal(pair, practice.shift)
+    values = [
+        np.where(code == 0, spectrum_safety(levels_of(cases, found, k, contact)), np.nan)[()]
+        for contact in (False, True)
+        for k in (0, 1)
+    ]
     return Ratings((values[0], values[1]), (values[2], values[3]), code)
 
 

@@ -126,7 +126,11 @@ class Case:
 
     def curve(self, member: int, contact: bool) -> Curve:
         """Return the curve of Z_NT or Y_NT of a gear."""
-        family, practice = self.materials[member].family, self.practice
-        if contact:
-            return pitting_curve(family, practice.limited_pitting, practice.lowest)
-        return bending_curve(family, practice.lowest)
+        return life_curve(self.materials[member], self.practice, contact)
+
+
+def life_curve(material: Material, practice: Practice, contact: bool) -> Curve:
+    """Return the curve of Z_NT or Y_NT of a gear."""
+    if contact:
+        return pitting_curve(material.family, practice.limited_pitting, practice.lowest)
+    return bending_curve(material.family, practice.lowest)

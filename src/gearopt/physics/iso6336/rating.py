@@ -4,7 +4,7 @@ Of floats. What is given replaces what is computed, factor by factor.
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -116,7 +116,7 @@ def _two(value: Any) -> tuple[float, float]:
 
 
 def strength_curve(case: Case, found: dict[str, Any], member: int, contact: bool) -> Curve:
-    """Return sigma_HG or sigma_FG of a gear over its number of cycles [MPa].
+    """Return sigma_HG or sigma_FG of a gear over its number of cycles [MPa], of floats or arrays.
 
     It passes through the strength that was found at N_L, whatever was given for it.
     """
@@ -130,13 +130,13 @@ def strength_curve(case: Case, found: dict[str, Any], member: int, contact: bool
 
 def _strength_at(
     case: Case, found: dict[str, Any], member: int, contact: bool, cycles: float
-) -> float:
+) -> Any:
     """Return the strength [MPa] of a gear at another number of cycles."""
     hours = float(case.operation.hours) if case.operation.hours > 0.0 else 1.0
     one = replace(case, operation=replace(case.operation, hours=hours))
-    hours = hours * cycles / float(one.cycles[member])
+    hours = hours * cycles / one.cycles[member]
     other = replace(case, operation=replace(case.operation, hours=hours))
-    return float(chain.strength_of(other, found, contact)[member])
+    return chain.strength_of(other, found, contact)[member]
 
 
 def rate_spectrum(
@@ -152,22 +152,14 @@ def rate_spectrum(
     given (ValueError). One level gives what `rate` gives. Source: ISO 6336-6 (its annex C
     confirms the sum for contact; of bending unverified); Palmgren and Miner.
     """
-    if set(LIVES) & set(given or {}):
-        raise ValueError("Y_NT and Z_NT follow from the levels of a spectrum and cannot be given")
+    check_lives(given or {})
     cases = [_case(pair, one, materials, practice, given) for one in operations]
     found = [chain.quantities(case) for case in cases]
     sums = {}
-    for contact, symbol in ((False, "sigma_F"), (True, "sigma_H")):
+    for contact in (False, True):
         for k in (0, 1):
-            levels = [
-                Level(
-                    float(case.cycles[k]),
-                    strength_curve(case, one, k, contact),
-                    float(one[symbol][k]),
-                )
-                for case, one in zip(cases, found, strict=True)
-            ]
-            sums[contact, k] = damage(levels), spectrum_safety(levels)
+            levels = levels_of(cases, found, k, contact)
+            sums[contact, k] = float(damage(levels)), float(spectrum_safety(levels))
     return Spectrum(
         tuple(_results(case, one) for case, one in zip(cases, found, strict=True)),
         (sums[False, 0][0], sums[False, 1][0]),
@@ -175,3 +167,20 @@ def rate_spectrum(
         (sums[False, 0][1], sums[False, 1][1]),
         (sums[True, 0][1], sums[True, 1][1]),
     )
+
+
+def check_lives(given: Mapping[str, Any]) -> None:
+    """Refuse life factors that are given for a spectrum, by ValueError."""
+    if set(LIVES) & set(given):
+        raise ValueError("Y_NT and Z_NT follow from the levels of a spectrum and cannot be given")
+
+
+def levels_of(
+    cases: Sequence[Case], found: Sequence[dict[str, Any]], member: int, contact: bool
+) -> list[Level]:
+    """Return the levels of load of a gear, of floats or arrays; found: quantities of the cases."""
+    symbol = "sigma_H" if contact else "sigma_F"
+    return [
+        Level(case.cycles[member], strength_curve(case, one, member, contact), one[symbol][member])
+        for case, one in zip(cases, found, strict=True)
+    ]
