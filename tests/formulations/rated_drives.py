@@ -66,6 +66,22 @@ TREATMENTS = (
 )
 
 
+OF_STEEL = {
+    "through-hardened": Material("V alloy", "MQ", 320.0),
+    "carburised": Material("Eh", "MQ"),
+    "nitrided": Material("NV", "MQ", 500.0),
+}
+
+
+def some_iso(steels=STEELS, quality=7.0, hours=20000.0):
+    """Return the standard ISO 6336 for what `agma` takes."""
+    materials = tuple(OF_STEEL[steel.kind] for steel in steels)
+    grades = 15.0 - quality, 14.0 - quality
+    edition = "2019" if quality % 2 else "2006"
+    practice = IsoPractice(edition, "2013" if quality > 8 else "1995", grades)
+    return iso(materials, practice, hours, suffix="_iso")
+
+
 def some_face(rng, module, teeth):
     """Return a face width of any kind that fits about a module [mm] and a number of teeth."""
     low = F(int(rng.integers(2, 7)), 10)

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 from rated_brute_force import cheapest, safe
-from rated_drives import impossible, some_rated_drive
+from rated_drives import agma, impossible, some_iso, some_rated_drive
 
 from gearopt.formulations import teeth
 from gearopt.optimise.solve import run, solve
@@ -19,9 +19,10 @@ def seeds(count):
     return [0, 1, *(pytest.param(s, marks=pytest.mark.slow) for s in range(2, count))]
 
 
+@pytest.mark.parametrize("standard", [agma, some_iso])
 @pytest.mark.parametrize("seed", seeds(60))
-def test_small_drives_equal_to_every_candidate_rated_alone(seed):
-    train = some_rated_drive(seed, stages=1 if seed < 40 else 2, kinds=PLAIN)
+def test_small_drives_equal_to_every_candidate_rated_alone(seed, standard):
+    train = some_rated_drive(seed, 1 if seed < 40 else 2, PLAIN, standard)
     best, result = cheapest(train), solve(teeth.problem(train))
     if math.isinf(best):
         assert result.status == "infeasible"
@@ -36,10 +37,11 @@ def test_impossible_drives_are_told(seed):
     assert solve(teeth.problem(train)).status == "infeasible"
 
 
+@pytest.mark.parametrize("standard", [agma, some_iso])
 @pytest.mark.parametrize("seed", seeds(200))
-def test_no_random_candidate_is_better(seed):
+def test_no_random_candidate_is_better(seed, standard):
     """Free widths among them; the best one is rated alone, candidates by the text."""
-    train = some_rated_drive(2000 + seed)
+    train = some_rated_drive(2000 + seed, standard=standard)
     problem = teeth.problem(train)
     result, outcome = run(problem)
     assert result.status == "optimal"

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from gearopt.formulations.strength.iso6336_rows import Columns, IsoRows
+from gearopt.formulations.strength.iso6336_rows import AT_ENDS, Columns, IsoRows
 from gearopt.formulations.strength.rated import Load
 from gearopt.optimise.terms import Array
 from gearopt.physics.gears import GearPair
@@ -106,9 +106,11 @@ class Iso6336:
         levels = []
         for place in range(len(self.loads)):
             ends = [self.case(unit, torque[0], s, place) for s in (speed[1], speed[0])]
-            fast = ends[0] if np.array_equal(*torque) else ends[1]
-            made = self._level(prepared, (ends[0], fast), self.loads[place], torque, safety)
-            levels.append({n: np.broadcast_to(v, shape) for n, v in made.items()})
+            same = np.array_equal(*torque)
+            cases = ends[0], ends[0] if same else ends[1]
+            made = self._level(prepared, cases, self.loads[place], torque, safety)
+            columns = {n: np.broadcast_to(v, shape) for n, v in made.items()}
+            levels.append(columns | {f"{n}1": columns[f"{n}0"] for n in AT_ENDS if same})
         return IsoRows(self, tuple(levels))
 
     def _level(
@@ -179,7 +181,7 @@ class Iso6336:
         pitch = self.given.get("f_pb", made.base_pitch)
         form = self.given.get("f_falpha", made.profile_form)
         columns = {}
-        for k, case in enumerate(cases):
+        for k, case in enumerate(cases[: 1 if cases[0] is cases[1] else 2]):
             worn = [self._worn(case, found, value) for value in (pitch, form)]
             columns[f"force{k}"] = force * torque[k]
             columns[f"pace{k}"] = case.operation.pinion_speed * slow.pair.pinion_teeth * mass**0.5

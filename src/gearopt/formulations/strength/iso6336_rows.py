@@ -30,6 +30,7 @@ Two = tuple[Any, Any]
 LEAST, MOST = 0, 1
 PICK = np.minimum, np.maximum
 TINY = 1e-300
+AT_ENDS = "force", "pace", "speed", "pitch", "form", "deviation"  # of the torques
 MODES = ("bending", 0), ("bending", 1), ("contact", 0), ("contact", 1)
 
 
@@ -90,8 +91,16 @@ class IsoRows:
 
     def take(self, place: Any) -> "IsoRows":
         """Return some of the rows."""
-        levels = [{n: v[place] for n, v in at.items()} for at in self.levels]
-        return IsoRows(self.standard, tuple(levels))
+        return IsoRows(self.standard, tuple(taken(at, place) for at in self.levels))
+
+
+def taken(columns: Columns, place: Any) -> Columns:
+    """Return some rows of columns; equal ends stay one array."""
+    made: dict[int, Any] = {}
+    for value in columns.values():
+        if id(value) not in made:
+            made[id(value)] = value[place]
+    return {name: made[id(value)] for name, value in columns.items()}
 
 
 @dataclass(frozen=True)
@@ -111,16 +120,18 @@ class Box:
         """Return the least of what is used, or of stress where there are more loads; see MODES."""
         at, before = self.columns, self.dynamic(LEAST)
         after = self.spread(LEAST, before)
-        bent = self.bent(before, after) * self.root_factor()
-        pressed = self.pressed(after) * self.ratio_factor(MOST) ** 2
+        transverse = self._transverse(after)
+        bent = self.bent(before, after, transverse) * self.root_factor()
+        pressed = self.pressed(after, transverse[0]) * self.ratio_factor(MOST) ** 2
         found = [bent * at[f"bending_used{k}"] for k in (0, 1)]
         return found + [pressed * self.single(k) ** 2 * at[f"contact_used{k}"] for k in (0, 1)]
 
     @cached_property
     def line(self) -> Two:
         """F_t K_A K_gamma/b [N/mm]."""
-        at = self.columns
-        return at["force0"] / self.widths[MOST], at["force1"] / self.widths[LEAST]
+        at, (low, high) = self.columns, self.widths
+        same = low is high and at["force0"] is at["force1"]
+        return _both(at["force0"] / high, same, lambda: at["force1"] / low)
 
     @cached_property
     def overlap(self) -> Two:
@@ -136,11 +147,16 @@ class Box:
         ratio = self.columns["contact"]
         return _both(ratio + first, first is second, lambda: ratio + second)
 
-    def singles(self, end: int) -> Two:
-        """Return c' [MPa], least and greatest by webs, at an end of the line loads."""
+    @cached_property
+    def singles(self) -> tuple[Two, Two]:
+        """Return c' [MPa], least and greatest by webs, at both ends of the line loads."""
+        line = self.line
+        return _both(self._singles(line[0]), line[0] is line[1], lambda: self._singles(line[1]))
+
+    def _singles(self, line: Any) -> Two:
         if "c_prime" in self.given:
             return self.given["c_prime"], self.given["c_prime"]
-        bare = self.columns["stiffness"] * stiffness.light_load(self.line[end])
+        bare = self.columns["stiffness"] * stiffness.light_load(line)
         if not any(self._webs):
             return bare, bare
         return bare * self._blank(self.widths[MOST]), bare * self._blank(self.widths[LEAST])
@@ -177,18 +193,20 @@ class Box:
         if "K_v" in self.given:
             return self.line[end] * self.given["K_v"]
         low, main, high = self._ranges(end)
-        slowest = self.resonance(LEAST, self.singles(MOST)[MOST])
-        fastest = self.resonance(MOST, self.singles(LEAST)[LEAST])
-        limits = [loads.lower_limit(line) for line in self.line]
-        rises = [
-            np.clip((n - loads.MAIN) / (loads.SUPER - loads.MAIN), 0.0, 1.0)
-            for n in (slowest, fastest)
-        ]
+        line, at, none = self.line, self.columns, (np.inf, -np.inf)[end]
+        same = line[0] is line[1] and at["pace0"] is at["pace1"]
+        slowest = self.resonance(LEAST, self.singles[MOST][MOST])
+        fastest = slowest if same else self.resonance(MOST, self.singles[LEAST][LEAST])
+        limits = _both(loads.lower_limit(line[0]), same, lambda: loads.lower_limit(line[1]))
+        ends = (slowest,) if same else (slowest, fastest)
+        rises = [np.clip((n - loads.MAIN) / (loads.SUPER - loads.MAIN), 0.0, 1.0) for n in ends]
         passed = [main + (high - main) * rise for rise in rises]
-        none = (np.inf, -np.inf)[end]
+        above = passed[0] if same else PICK[end](*passed)
+        if same:
+            return np.where(slowest <= limits[MOST], low, above)
         return PICK[end](
             np.where(slowest <= limits[MOST], low, none),
-            np.where(fastest > limits[LEAST], PICK[end](*passed), none),
+            np.where(fastest > limits[LEAST], above, none),
         )
 
     def _ranges(self, end: int) -> tuple[Any, Any, Any]:
@@ -196,7 +214,7 @@ class Box:
 
         C_v1 to C_v6 do not rise with eps_gamma, C_v7 does not fall.
         """
-        at, line, single = self.columns, self.line[end], self.singles(end)
+        at, line, single = self.columns, self.line[end], self.singles[end]
         c1, c2, c3, c4, c5, c6, _ = made = loads.coefficients(self.total[1 - end])
         c7 = made[6] if self.total[0] is self.total[1] else loads.coefficients(self.total[end])[6]
         pitch, form = at[f"pitch{end}"], at[f"form{end}"]
@@ -235,26 +253,25 @@ class Box:
         """Return c_gamma_beta [MPa]."""
         if "c_gamma_beta" in self.given:
             return self.given["c_gamma_beta"]
-        return 0.85 * self.mesh(self.singles(end)[end])
+        return 0.85 * self.mesh(self.singles[end][end])
 
-    def pressed(self, spread: Any) -> Any:
-        """Return the least W2 K_Halpha from that of W2."""
+    def pressed(self, spread: Any, transverse: Any) -> Any:
+        """Return the least W2 K_Halpha from that of W2; transverse: K_alpha without limits."""
         if "K_Halpha" in self.given:
             return spread * self.given["K_Halpha"]
-        found, _ = self._transverse(spread)
         most = self.total[LEAST] / (self.columns["contact"] * self.ratio_factor(LEAST) ** 2)
-        return spread * loads.limited(found, most)
+        return spread * loads.limited(transverse, most)
 
     def _transverse(self, spread: Any) -> Two:
         """Return K_alpha without limits of the least line load, and of an endless one."""
-        mesh, total = self.mesh(self.singles(LEAST)[LEAST]), self.total[LEAST]
+        mesh, total = self.mesh(self.singles[LEAST][LEAST]), self.total[LEAST]
         made = [
             loads.transverse_load_factor(mesh, deviation, spread, total)
             for deviation in (self.columns["deviation0"], 0.0)
         ]
         return made[0], made[1]
 
-    def bent(self, dynamic: Any, spread: Any) -> Any:
+    def bent(self, dynamic: Any, spread: Any, transverse: Two) -> Any:
         """Return the least W1 K_Fbeta K_Falpha from those of W1 and W2.
 
         W2^N_F K_alpha(W2) is least at a W2 that may be above the least one.
@@ -263,7 +280,7 @@ class Box:
         face = given["K_Fbeta"] if "K_Fbeta" in given else (spread / dynamic) ** power
         if "K_Falpha" in given:
             return dynamic * face * given["K_Falpha"]
-        found, endless = self._transverse(spread)
+        found, endless = transverse
         above = self._least_at(power, spread, found / endless - 1.0)
         factor = above**power * (endless + (found - endless) / above)
         ratio = at["virtual"] if self.standard.practice.edition == "2019" else at["contact"]
@@ -286,7 +303,7 @@ class Box:
         some = np.flatnonzero(free & (wanted > 1.0))
         found = np.ones(len(low))
         if len(some):
-            part = Box(self.standard, {n: v[some] for n, v in at.items()}, (low[some], high[some]))
+            part = Box(self.standard, taken(at, some), (low[some], high[some]))
             most = part.spread(MOST, part.dynamic(MOST)) / spread[some]
             found[some] = np.clip(wanted[some], 1.0, np.maximum(most, 1.0))
         return found
