@@ -12,7 +12,7 @@ from gearopt.formulations import teeth
 from gearopt.formulations.gear_train import FaceWidth, share
 from gearopt.formulations.strength.k_factor import K_FACTOR
 from gearopt.formulations.strength.rated import Option
-from gearopt.formulations.teeth.later_stages import bound, useful_cells
+from gearopt.formulations.teeth.later_stages import bound, first_costs, useful_cells
 from gearopt.formulations.teeth.search import search, within
 from gearopt.formulations.teeth.stage import spans
 from gearopt.formulations.teeth.tables import stage_tables
@@ -138,6 +138,7 @@ def test_cells_of_use_hold_the_best_train():
     value, chosen = found.found[0]
     tables = stage_tables(train, train.highest_ratio)
     useful, delta = None, 0.32
+    first = first_costs(train, tables[0], 0.01, np.inf)
     for _ in range(4):
         rest = bound(train, tables, delta, lambda: None, useful, value * 1.001)
         ratios = np.log([z2 / z1 for z1, z2 in chosen])
@@ -147,6 +148,6 @@ def test_cells_of_use_hold_the_best_train():
         assert rest.minimum[1][cells[1], rest.cell(ratios[1:2])[0]] <= costs[1]
         assert rest.to_go[1][cells[1]] <= sum(costs[1:])
         assert rest.to_go[2][cells[2]] <= costs[2]
-        useful = useful_cells(train, tables, rest, value * 1.001)
+        useful = useful_cells(tables, rest, first, value * 1.001)
         delta /= 2.0
     assert useful[1].mean() < 0.2

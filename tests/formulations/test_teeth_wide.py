@@ -1,9 +1,9 @@
 """Wide tooth ranges: what is left out by its definition, and that what is told of it is true."""
 
 import math
-import sys
 from dataclasses import replace
 from fractions import Fraction
+from importlib import import_module
 
 import numpy as np
 import pytest
@@ -19,7 +19,7 @@ from gearopt.optimise.solve import method_of
 
 F = Fraction
 FEW = 3000
-searching = sys.modules[search.__module__]
+wide = import_module("gearopt.formulations.teeth.wide")
 
 
 def wide_drive():
@@ -40,7 +40,7 @@ def whole():
 
 @pytest.fixture
 def few(monkeypatch):
-    monkeypatch.setattr(searching, "FEW", FEW)
+    monkeypatch.setattr(wide, "FEW", FEW)
 
 
 @pytest.mark.parametrize(
@@ -60,11 +60,11 @@ def test_so_few_pinions_that_their_pairs_are_few(stages, limits, monkeypatch):
     ]
     pairs = np.cumsum(each)
     for limit in (pairs[0] - 1, pairs[0], pairs[4] - 1, pairs[4], pairs[5], pairs[-1] - 1):
-        monkeypatch.setattr(searching, "FEW", limit)
+        monkeypatch.setattr(wide, "FEW", limit)
         last = max(15, 14 + int((pairs <= limit).sum()))
-        assert {s.pinion_teeth for s in searching.narrowed(train).stages} == {(15, last)}
-    monkeypatch.setattr(searching, "FEW", pairs[-1])
-    assert searching.narrowed(train) == train
+        assert {s.pinion_teeth for s in wide.narrowed(train).stages} == {(15, last)}
+    monkeypatch.setattr(wide, "FEW", pairs[-1])
+    assert wide.narrowed(train) == train
 
 
 @pytest.mark.parametrize("face", FACES)
@@ -81,22 +81,22 @@ def test_pinions_that_alone_cost_more_than_a_train_are_left_out(face, objective)
     costs = [cost(train, k, d, width, u) for k, u in enumerate((1.0, 2.0, 1.0))]
     for value in (0.5 * costs[0][0], costs[0][0], costs[0][9], costs[1][9], 2.0 * costs[1][-1]):
         for most in (value, value * (1.0 - 0.5 * MARGIN), value * (1.0 - 3.0 * MARGIN)):
-            found = [s.pinion_teeth for s in searching.trimmed(train, float(most)).stages]
+            found = [s.pinion_teeth for s in wide.trimmed(train, float(most)).stages]
             kept = [c <= most * (1.0 + MARGIN) for c in costs]
             assert found == [(15, teeth[k].max(initial=15)) for k in kept]
-    assert searching.trimmed(train, math.inf) == train
+    assert wide.trimmed(train, math.inf) == train
 
 
 def test_a_wide_drive_is_that_of_all_its_pinions_and_tells_no_bound_of_a_part(few, whole):
     """What both searches spent is counted."""
     train, seen = wide_drive(), []
     found = outcome(train, watch=seen.append)
-    first = search(searching.narrowed(train), 1, Budget())
+    first = search(wide.narrowed(train), 1, Budget())
     assert first.bound > 1.1 * whole.bound
     assert found.bound == whole.bound and (found.x == whole.x).all() and found.finished
     assert all(e.bound is None or e.bound <= whole.bound * (1.0 + 1e-12) for e in seen)
     assert any(e.bound is not None for e in seen)
-    second = search(searching.trimmed(train, first.threshold), 1, Budget())
+    second = search(wide.trimmed(train, first.threshold), 1, Budget())
     assert found.evaluations == first.clock.evaluations + second.clock.evaluations
     assert found.proof["nodes"] == first.nodes + second.nodes
 
@@ -107,7 +107,7 @@ def test_nor_where_the_first_look_is_at_all_ratios(few):
     seen, best = [], outcome(train).bound
     found = outcome(train, watch=seen.append)
     assert found.bound == best and all(e.bound is None or e.bound <= best for e in seen)
-    assert search(searching.narrowed(train), 1, Budget()).found[0][0] > 1.01 * best
+    assert search(wide.narrowed(train), 1, Budget()).found[0][0] > 1.01 * best
 
 
 def test_a_watcher_that_says_stop_once_stops_both_searches_of_a_wide_drive(few, whole):
@@ -130,7 +130,7 @@ def test_a_watcher_that_says_stop_once_stops_both_searches_of_a_wide_drive(few, 
 
 def test_both_searches_share_a_budget_and_a_gap(few, whole):
     train = wide_drive()
-    first = search(searching.narrowed(train), 1, Budget())
+    first = search(wide.narrowed(train), 1, Budget())
     short = outcome(train, evaluations=first.clock.evaluations + 1)
     enough = outcome(train, seconds=1e3, evaluations=2 * whole.evaluations)
     assert not short.finished and short.evaluations < enough.evaluations and enough.finished
@@ -153,9 +153,9 @@ def test_pairs_beyond_memory_leave_the_best_of_few_pinions_and_no_claim(few, mon
     train = wide_drive()
     narrow = replace(train.stages[0], pinion_teeth=(15, 30))
     train = replace(train, stages=(narrow, *train.stages[1:]))
-    few_teeth = [s.pinion_teeth[1] for s in searching.narrowed(train).stages]
+    few_teeth = [s.pinion_teeth[1] for s in wide.narrowed(train).stages]
     assert few_teeth == [30, 33, 33]
-    first = search(searching.narrowed(train), 1, Budget())
+    first = search(wide.narrowed(train), 1, Budget())
     for gap in (0.0, 0.5):
         found = outcome(train, floor=1.0, gap=gap)
         assert not found.finished and not found.infeasible and found.bound == 1.0

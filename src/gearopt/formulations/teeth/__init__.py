@@ -15,8 +15,9 @@ from gearopt.errors import SolveError
 from gearopt.formulations import sizing
 from gearopt.formulations.gear_train import Stage, Train, terms
 from gearopt.formulations.teeth.progress import MARGIN, TIE, Progress, Teeth
-from gearopt.formulations.teeth.search import BEAM, narrowed, search, trimmed
+from gearopt.formulations.teeth.search import BEAM, search
 from gearopt.formulations.teeth.tables import table
+from gearopt.formulations.teeth.wide import narrowed, trimmed
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch

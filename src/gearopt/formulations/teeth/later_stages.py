@@ -82,7 +82,7 @@ def bound(
         )
     to_go = [np.full(cells + ratio_cells + 2, np.inf) for _ in range(count)]
     last = None if useful is None else useful[-1]
-    to_go[-1][:cells] = _last(train, tables[-1], cells, delta, tick, last)
+    to_go[-1][:cells] = _last(train, tables[-1], cells, delta, tick, last, most)
     for k in range(count - 2, 0, -1):
         ahead = _ahead(to_go[k + 1], ratio_cells)[:cells]
         now = minimum[k]
@@ -95,16 +95,22 @@ def bound(
     return Bound(delta, to_go, minimum, starts)
 
 
-def useful_cells(train: Train, tables: list[Table], rest: Bound, most: float) -> list[Mask]:
+def first_costs(train: Train, table: Table, delta: float, most: float) -> Array:
+    """Return lower bounds of the first stage's pairs, close for the least of a cell of ratio."""
+    torque, every = np.full(len(table.ratio), train.torque), np.arange(len(table.ratio))
+    place = _cell(table.log_ratio, delta)
+    return table.least_cost((torque, torque), every, place, delta, most)
+
+
+def useful_cells(tables: list[Table], rest: Bound, first: Array, most: float) -> list[Mask]:
     """Return the cells of a grid half as wide that trains of at most so much pass through.
 
     By stage: of torque and ratio (cells, ratio cells); of the last stage (cells,); the first has
-    none. What the stages before cost at least is found forwards, as `to_go` is backwards.
+    none. What the stages before cost at least is found forwards, as `to_go` is backwards; first:
+    `first_costs`.
     """
-    first, torque = tables[0], np.full(len(tables[0].ratio), train.torque)
-    place = rest.cell(first.log_ratio)
     before = np.full(len(rest.to_go[-1]), np.inf)
-    np.minimum.at(before, place, first.least_cost(torque, torque, np.arange(len(place)), place))
+    np.minimum.at(before, rest.cell(tables[0].log_ratio), first)
     masks: list[Mask] = [np.empty(0, bool)]
     for k in range(1, len(tables) - 1):
         now = rest.minimum[k]
@@ -139,6 +145,7 @@ def _last(
     delta: float,
     tick: Callable[[], None],
     useful: Mask | None,
+    most: float,
 ) -> Array:
     """Return the last stage's minimum cost from every cell: exact pairs, lowest possible torque."""
     low, high = math.log(train.lowest_ratio), math.log(train.highest_ratio)
@@ -163,7 +170,7 @@ def _last(
             np.minimum(edge[part][cell] + delta, high - ratio),
         )
         ends = [train.torque * np.exp(r) for r in (reached[0] - EDGE, reached[1] + EDGE)]
-        cost = table.least_cost(ends[0], ends[1], pair, cell)
+        cost = table.least_cost((ends[0], ends[1]), pair, cell, delta, most)
         np.minimum.at(found[part], cell, cost)
     return found
 

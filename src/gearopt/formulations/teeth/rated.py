@@ -24,6 +24,7 @@ from gearopt.physics.gears import GearPair
 FEW = 4  # steps towards a width, for a first lower bound
 NEAR = 1.01  # times the least of these: what is bounded again
 TOGETHER = 2000  # pairs bounded again at once, at least
+ROUGH = 0.01  # of what is used above 1, where a bound is only to compare
 BATCH = 20_000  # pairs bounded at once
 CLOSE = 0.02  # of what is used above 1, for that, over the width of a cell
 FINEST = 0.005  # width of a cell where none is given
@@ -101,13 +102,25 @@ class RatedTable(Table):
         found = self._found((at, at), np.array([pair]))
         return found.module.item(), found.width.item(), found.option.item()
 
-    def least_cost(self, low: Array, high: Array, pair: Index, group: Index) -> Array:
-        """Return lower bounds of `cost` at torques [N mm] from low to high.
+    def rough_cost(self, torque: Array, pair: Index) -> Array:
+        """Return a rough lower bound of `cost`."""
+        return self._found((torque, torque), pair, close=ROUGH, steps=2 * FEW).cost
 
-        Only the least of every group (n,) of pairs is close.
+    def least_cost(
+        self,
+        torque: tuple[Array, Array],
+        pair: Index,
+        group: Index,
+        delta: float,
+        most: float = np.inf,
+    ) -> Array:
+        """Return lower bounds of `cost` at torques [N mm] between two ends.
+
+        Only the least of every group (n,) of pairs is close, as cells of delta need it. most: costs
+        above which any is as good as inf.
         """
-        cost = self._found((low, high), pair, steps=FEW).cost
-        return self._closer((low, high), pair, group, cost, CLOSE * FINEST)
+        cost = self._found(torque, pair, most, steps=FEW).cost
+        return self._closer(torque, pair, group, cost, CLOSE * delta, most)
 
     def useful_ratio(self, least: float, most: float) -> float:
         """Return the largest ratio whose share of a train is at most so much; at least `least`.
@@ -130,6 +143,7 @@ class RatedTable(Table):
         group: Index,
         cost: Array,
         close: float,
+        most: float,
     ) -> Array:
         """Return lower bounds of which the least one of every group is close."""
         rough = np.isfinite(cost)
@@ -142,7 +156,9 @@ class RatedTable(Table):
             few = min(TOGETHER, len(above)) - 1
             near = np.flatnonzero(rough & (above <= max(NEAR, np.partition(above, few)[few])))
             ends = torque[0][near], torque[1][near]
-            cost[near] = np.maximum(cost[near], self._found(ends, pair[near], close=close).cost)
+            cost[near] = np.maximum(
+                cost[near], self._found(ends, pair[near], most, close=close).cost
+            )
             rough[near] = False
         return cost
 
@@ -176,7 +192,7 @@ class RatedTable(Table):
             made = self._found((ends[0], ends[1]), pair, most, first[pair], steps=FEW)
             if self.monotone and most == np.inf:
                 first[pair[row == 0]] = made.first[row == 0]
-            cost = self._closer((ends[0], ends[1]), pair, place, made.cost, CLOSE * delta)
+            cost = self._closer((ends[0], ends[1]), pair, place, made.cost, CLOSE * delta, most)
             np.minimum.at(found, (rows[row], column[pair]), cost)
         return found
 

@@ -9,7 +9,7 @@ train.
 import heapq
 import itertools
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
@@ -17,21 +17,28 @@ from numpy.typing import NDArray
 
 from gearopt.errors import SolveError
 from gearopt.formulations.gear_train import Train, share
-from gearopt.formulations.teeth.later_stages import SLICE, Bound, bound, ragged, useful_cells
-from gearopt.formulations.teeth.progress import MARGIN, TIE, Progress, Spent, Teeth
-from gearopt.formulations.teeth.stage import EDGE, Table, spans
+from gearopt.formulations.teeth.later_stages import (
+    SLICE,
+    Bound,
+    bound,
+    first_costs,
+    ragged,
+    useful_cells,
+)
+from gearopt.formulations.teeth.progress import TIE, Progress, Spent, Teeth
+from gearopt.formulations.teeth.stage import EDGE, Table
 from gearopt.formulations.teeth.tables import stage_tables
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget, Event, Watch
 from gearopt.optimise.terms import Array
-from gearopt.physics.gears import GearPair, reference_diameter
+from gearopt.physics.gears import GearPair
 
-FEW = 200_000  # tooth pairs of a stage that are searched at once
 BEAM = 4  # nodes followed down at once; measured best for two to four stages
 LEAVES = 256  # nodes completed at once
 FIRST_LOOK = 20_000  # pairs examined for a first train
 PATIENCE = 2_000_000  # pairs examined before a finer grid pays
 COARSE, FINE = 32.0, 0.006  # first cells of rated drives, times usual ones; the last coarse ones
+PROMISING = 32  # children of a node that a first dive looks at
 DIVE = 1000  # pairs examined on each of these grids, for a train
 CELLS = 10_000_000  # largest grid of a stage, 80 MB
 
@@ -95,20 +102,39 @@ def _look(train: Train, cut: Fraction, progress: Progress, patience: float) -> b
     delta, useful = 0.01 if len(tables) <= 3 else 0.005, None
     coarse = train.rated  # whose bounds take long: few cells at first, then those of use
     delta *= COARSE if coarse else 1.0
+    first: Array | None = None
     while True:
         finer = math.log(train.highest_ratio) * tables[-1].log_ratio[-1] / (delta / 2) ** 2
         last = not coarse and (len(tables) <= 2 or finer > CELLS)
         own = DIVE if coarse else math.inf if last else PATIENCE
         enough = progress.clock.evaluations + min(patience, own)
         rest = bound(train, tables, delta, progress.tick, useful, progress.threshold)
+        if train.rated and math.isinf(progress.threshold):
+            _dive(train, tables, rest, progress)
         if _closed(train, tables, rest, progress, enough):
             return True
         if patience <= PATIENCE and not coarse:
             return False
         if train.rated:
-            useful = useful_cells(train, tables, rest, progress.threshold)
+            if first is None:
+                first = first_costs(train, tables[0], FINE, progress.threshold)
+            useful = useful_cells(tables, rest, first, progress.threshold)
         delta /= 2
         coarse = coarse and delta > FINE
+
+
+def _dive(train: Train, tables: list[Table], rest: Bound, progress: Progress) -> None:
+    """Look for a train among the most promising nodes, so that a search knows what is of use."""
+    chunk: Chunk | None = _root()
+    while chunk is not None:
+        width = LEAVES if chunk.level == len(tables) - 1 else BEAM
+        chunk = _expand(train, tables, rest, chunk.part(slice(0, width)), progress, PROMISING)
+
+
+def _root() -> Chunk:
+    """Return the node of no choice."""
+    zero = np.zeros(1)
+    return Chunk(0, np.array([-math.inf]), zero, zero, np.empty((1, 0), dtype=np.int64))
 
 
 def _closed(
@@ -122,8 +148,7 @@ def _closed(
         if len(chunk.bound):
             heapq.heappush(heap, (float(chunk.bound[0]), next(order), chunk))
 
-    zero = np.zeros(1)
-    wait(Chunk(0, np.array([-math.inf]), zero, zero, np.empty((1, 0), dtype=np.int64)))
+    wait(_root())
     while heap and heap[0][0] <= progress.threshold:
         progress.raise_lower(heap[0][0])
         progress.tick()
@@ -139,13 +164,21 @@ def _closed(
 
 
 def _expand(
-    train: Train, tables: list[Table], rest: Bound, chunk: Chunk, progress: Progress
+    train: Train,
+    tables: list[Table],
+    rest: Bound,
+    chunk: Chunk,
+    progress: Progress,
+    few: int = 0,
 ) -> Chunk | None:
-    """Return the useful children of some nodes, or None (complete trains are kept)."""
+    """Return the useful children of some nodes, or None (complete trains are kept).
+
+    few: of the most promising children only, for each node; 0: of all.
+    """
     chunk = chunk.part(chunk.bound <= progress.threshold)
     level, stage = chunk.level, tables[chunk.level]
     if level == len(tables) - 1:
-        _complete(train, tables, chunk, progress)
+        _complete(train, tables, rest, chunk, progress, few)
         return None
     if level == 0:
         node, pair = np.zeros(len(stage.ratio), dtype=np.int64), np.arange(len(stage.ratio))
@@ -155,6 +188,8 @@ def _expand(
         start = rest.starts[level][cell]
         group, pair = ragged(start, rest.starts[level][cell + 1] - start)
         node = owner[group]
+    if few:
+        node, pair = _promising(train, stage, rest, chunk, (node, pair), few)
     progress.clock.evaluations += len(pair)
     log_ratio = chunk.log_ratio[node] + stage.log_ratio[pair]
     ahead = rest.to_go[level + 1][rest.cell(log_ratio)]
@@ -175,11 +210,28 @@ def _expand(
     return Chunk(level + 1, lower[use], cost[use], log_ratio[use], path)
 
 
+Places = tuple[NDArray[np.int64], NDArray[np.int64]]
+
+
+def _promising(
+    train: Train, stage: Table, rest: Bound, chunk: Chunk, places: Places, few: int
+) -> Places:
+    """Return the nodes and pairs of the least rough bounds, a few for each node."""
+    node, pair = places
+    torque = (train.torque * np.exp(chunk.log_ratio))[node]
+    rough = chunk.cost[node] + stage.rough_cost(torque, pair)
+    if chunk.level < len(rest.to_go) - 1:
+        cell = rest.cell(chunk.log_ratio[node] + stage.log_ratio[pair])
+        rough = rough + rest.to_go[chunk.level + 1][cell]
+    best = np.sort(np.argsort(rough, kind="stable")[: few * len(chunk.cost)])
+    return node[best], pair[best]
+
+
 def _costs(
     train: Train,
     stage: Table,
     chunk: Chunk,
-    places: tuple[NDArray[np.int64], NDArray[np.int64]],
+    places: Places,
     most: Array,
     progress: Progress,
 ) -> Array:
@@ -211,13 +263,22 @@ def _best_of_ratio(node: NDArray[np.int64], ratio: Array, cost: Array) -> NDArra
     return keep
 
 
-def _complete(train: Train, tables: list[Table], chunk: Chunk, progress: Progress) -> None:
+def _complete(
+    train: Train,
+    tables: list[Table],
+    rest: Bound,
+    chunk: Chunk,
+    progress: Progress,
+    few: int,
+) -> None:
     """Add the last stage to nodes and keep the best trains that meet the ratio limits exactly."""
     stage = tables[-1]
     low, high = math.log(train.lowest_ratio), math.log(train.highest_ratio)
     start = np.searchsorted(stage.log_ratio, low - chunk.log_ratio - EDGE)
     stop = np.searchsorted(stage.log_ratio, high - chunk.log_ratio + EDGE)
     node, pair = ragged(start, stop - start)
+    if few:
+        node, pair = _promising(train, stage, rest, chunk, (node, pair), few)
     progress.clock.evaluations += len(pair)
     most = progress.threshold - chunk.cost[node]
     total = chunk.cost[node] + _costs(train, stage, chunk, (node, pair), most, progress)
@@ -313,44 +374,3 @@ def any_train(train: Train, seconds: float, watch: Watch | None) -> Teeth | None
     if progress.found:
         return progress.found[0][1]
     return None if progress.clock.stopped else ()
-
-
-def narrowed(train: Train) -> Train:
-    """Return the drive with so few of its smallest pinions that no stage has more than FEW pairs.
-
-    A pinion alone may have more. The drive itself where its ranges are not wide.
-    """
-    stages = []
-    for k, stage in enumerate(train.stages):
-        low, _ = stage.pinion_teeth
-        found = spans(train, k, first_cut(train))
-        pairs = np.cumsum([stop - start + 1 for _, start, stop in found])
-        few = int(np.searchsorted(pairs, FEW, side="right"))
-        stages.append(replace(stage, pinion_teeth=(low, low + max(few - 1, 0))))
-    return replace(train, stages=tuple(stages))
-
-
-def trimmed(train: Train, maximum: float) -> Train:
-    """Return the drive without pinions whose stage alone costs more than `maximum`.
-
-    Exact: of a train of at most that objective nothing is left out.
-    """
-    stages = []
-    for k, stage in enumerate(train.stages):
-        low, high = stage.pinion_teeth
-        assert high is not None
-        teeth = np.arange(low, high + 1)
-        useful = np.flatnonzero(_least(train, k, teeth) <= maximum * (1.0 + MARGIN))
-        stages.append(replace(stage, pinion_teeth=(low, low + int(useful.max(initial=0)))))
-    return replace(train, stages=tuple(stages))
-
-
-def _least(train: Train, k: int, teeth: NDArray[np.int64]) -> Array:
-    """Return the minimum share (n,) of a stage (counted from 0) with pinions of so many teeth."""
-    stage = train.stages[k]
-    module, face = float(stage.modules[0]), stage.face_width
-    d = reference_diameter(module, teeth, stage.toothing.helix_angle)
-    width = float(face.low) * d if face.fixed is None else np.full(len(d), float(face.fixed))
-    pair = train.pair(k, module, teeth, teeth * float(stage.ratio[0]), width)
-    shares = [share(train, k, pair, option=o) for o in range(max(1, len(stage.options)))]
-    return np.asarray(np.minimum.reduce(shares))

@@ -80,12 +80,23 @@ class Table:
         _, module, width = self._best(np.array([torque]), np.array([pair]))
         return module.item(), width.item(), 0
 
-    def least_cost(self, low: Array, high: Array, pair: Index, group: Index) -> Array:
-        """Return lower bounds of `cost` at torques [N mm] from low to high.
+    def rough_cost(self, torque: Array, pair: Index) -> Array:
+        """Return a rough lower bound of `cost`."""
+        return self.cost(torque, pair)
 
-        The least of every group (n,) of pairs is of use.
+    def least_cost(
+        self,
+        torque: tuple[Array, Array],
+        pair: Index,
+        group: Index,
+        delta: float,
+        most: float = np.inf,
+    ) -> Array:
+        """Return lower bounds of `cost` at torques [N mm] between two ends.
+
+        The least of every group (n,) of pairs is of use, in cells of delta, up to so much.
         """
-        return self.cost(low, pair)
+        return self.cost(torque[0], pair)
 
     def useful_ratio(self, least: float, most: float) -> float:
         """Return the largest ratio whose share of a train is at most so much; at least `least`."""

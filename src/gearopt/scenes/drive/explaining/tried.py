@@ -6,7 +6,8 @@ from dataclasses import dataclass, field
 from gearopt.formulations import sizing
 from gearopt.formulations.gear_train import Train
 from gearopt.formulations.teeth.progress import Teeth
-from gearopt.formulations.teeth.search import any_train, narrowed, possible
+from gearopt.formulations.teeth.search import any_train, possible
+from gearopt.formulations.teeth.wide import narrowed
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.explain import THERE
 from gearopt.optimise.explaining.repair import WIDEST, Works, least_between, least_value
