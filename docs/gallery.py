@@ -37,6 +37,7 @@ GROUPS = {  # heading: {file: what it shows, in a line}
         "elevator_by_agma": "Sized by the safety factors of AGMA 2001: `[rating]` as the limit.",
         "three_stage_by_agma": "One stage more.",
         "minimum_volume_pair": "A spur pair of minimum volume, as a paper has it, proven.",
+        "materials_by_cost": "Materials chosen of a list, `[[material]]`, at least cost.",
         "sized_and_rated": "Sized by load limits and ratings; here the load limits bind.",
         "shigley_14_4": "A textbook's pair, met factor by factor; its I and J given.",
         "shigley_14_4_by_908": "The same with I and J by AGMA 908: the contact stress is higher.",

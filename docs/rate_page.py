@@ -196,11 +196,18 @@ beside `face_width_over_diameter`. `gearopt explain FILE` says what a better ste
 quality or a tenth less life brings, each solved again; of an impossible file it moves each number
 alone.
 
-A K-factor and unit load in `[limits]` are limits beside the ratings
-(`problems/sized_and_rated.toml`: {sized}, so that they alone bind). Of gears that are sized
-without `[teeth]`, or under a load spectrum, they are the only limits yet, and the rating is told
-of what they give: a note says so where it is not safe. Gears and box at once (`together`) and the
-two processes size by load limits alone and are refused beside `[rating]`.
+Gears may choose of materials: tables `[[material]]` have a name, the keys of a steel, a density
+and the price of a kilogram, and `materials = ["a", "b"]` in `[gears]`, `[stage.pinion]` or
+`[stage.wheel]` names those that a gear may have. Pinion and wheel choose freely, each of its own
+list: all combinations are compared, and `minimise = "cost"` takes the sum of masses times prices
+(`problems/materials_by_cost.toml`). Volumes and masses are those of solid reference cylinders;
+rims and webs enter the ratings alone.
+
+A load spectrum is what the gears carry: Miner's sum of all levels `[[load]]` gives the safety
+factors. A K-factor and unit load in `[limits]` are limits beside the ratings
+(`problems/sized_and_rated.toml`: {sized}, so that they alone bind). Without `[teeth]` they are
+the only limits yet, and the rating tells whether the gears are safe. Gears and box at once
+(`together`) and the two processes size by load limits alone and are refused beside `[rating]`.
 
 ## What is not rated
 

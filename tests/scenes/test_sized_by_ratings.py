@@ -93,13 +93,29 @@ def test_load_limits_beside_a_rating_are_limits_too(factor):
     assert both.value == pytest.approx(binding.value, rel=1e-12)
 
 
-def test_under_a_spectrum_load_limits_size_alone():
+def test_real_valued_teeth_are_sized_by_load_limits_alone():
     """The rating then only tells whether the gears are safe."""
-    load = [{"power": "7.5 kW", "share": 1}]
     more = {"minimum_contact_safety": 9}
-    both = gearopt.solve(drive(limits=LOADS, rating=more, load=load))
-    alone = gearopt.solve(drive(limits=LOADS, rating=None, gears=None))
+    both = gearopt.solve(drive(limits=LOADS, rating=more, teeth=None))
+    alone = gearopt.solve(drive(limits=LOADS, rating=None, gears=None, teeth=None))
     assert both.value == alone.value and not both.design["rating"]["safe"]
+
+
+@pytest.mark.parametrize("standard", ["agma", "both"])
+def test_a_spectrum_is_what_gears_carry(standard):
+    """Half of the life at half the power takes no more than all of it at full power."""
+    rating = {"standard": standard}
+    rating |= {"iso6336": {"accuracy_grade": 6}} if standard == "both" else {}
+    levels = [{"power": "7.5 kW", "share": 0.5}, {"power": "3.75 kW", "share": 0.5}]
+    stage = [{"face_width_over_diameter": [0.2, 1]}]
+    light, heavy = (
+        gearopt.solve(drive(rating=rating, load=load, stage=stage)) for load in (levels, [])
+    )
+    assert light.value < heavy.value
+    assert light.design["rating"]["safe"] and light.design["rating"]["levels"]
+    for gear in light.design["rating"]["gears"]:
+        used = light.limits[f"{gear['member']}_contact[1]"]
+        assert used == pytest.approx(1.0 / gear["contact_safety"], rel=1e-8)
 
 
 @pytest.mark.parametrize("standard", ["iso6336", "both"])
@@ -179,19 +195,84 @@ def test_mistakes_are_one_message(name):
     assert len(refused.value.errors) == 1
 
 
-@pytest.mark.parametrize(
-    ("tables", "told"),
-    [
-        ({"teeth": None}, "a table [teeth]"),
-        ({"load": [{"power": "5 kW", "share": 1}]}, "load spectrum"),
-    ],
-    ids=["real-valued", "spectrum"],
-)
-def test_what_limits_no_gears_yet_is_named(tables, told):
-    with pytest.raises(SolveError, match=told.replace("[", r"\[")):
-        gearopt.solve(drive(**tables))
+def test_real_valued_teeth_are_not_sized_by_ratings_yet():
+    with pytest.raises(SolveError, match=r"a table \[teeth\]"):
+        gearopt.solve(drive(teeth=None))
 
 
 def test_the_file_to_start_from_has_a_safe_answer():
     result = gearopt.solve(tomllib.loads(examples()["sizing"]))
     assert result.status == "optimal" and result.design["rating"]["safe"]
+
+
+HARD = {"name": "hard", "treatment": "carburised", "grade": 2, "price": 9}
+TOUGH = {"name": "tough", "treatment": "through-hardened", "hardness": "300 HB", "price": 4}
+STEELS = {"hard": HARD, "tough": TOUGH}
+
+
+def of_materials(pinion, wheel, minimise="cost", materials=(HARD, TOUGH)):
+    """The tables of the small drive whose gears choose of materials."""
+    made = drive(
+        gears=None,
+        objective={"minimise": minimise, "density": "7.85 kg/dm^3"},
+        rating={"minimum_bending_safety": 1.4},
+    )
+    made["stage"][0] |= {"pinion": {"materials": pinion}, "wheel": {"materials": wheel}}
+    return made | {"material": [dict(one) for one in materials]}
+
+
+@pytest.mark.parametrize("minimise", ["cost", "mass", "gear_volume"])
+def test_the_best_of_lists_is_that_of_every_pair_of_materials(minimise):
+    both = gearopt.solve(of_materials([*STEELS], [*STEELS], minimise))
+    alone = {
+        (a, b): gearopt.solve(of_materials([a], [b], minimise)).value
+        for a in STEELS
+        for b in STEELS
+    }
+    best = min(alone, key=alone.get)
+    stage = both.design["stages"][0]
+    assert both.value == pytest.approx(alone[best], rel=1e-12)
+    assert (stage["pinion_material"], stage["wheel_material"]) == best
+    prices = STEELS[best[0]]["price"], STEELS[best[1]]["price"]
+    cost = stage["pinion_mass_kg"] * prices[0] + stage["wheel_mass_kg"] * prices[1]
+    assert minimise != "cost" or both.value == pytest.approx(cost, rel=1e-12)
+    assert minimise != "mass" or both.value == pytest.approx(both.design["mass_kg"], rel=1e-12)
+    assert both.design["rating"]["safe"]
+
+
+def test_a_material_weighs_as_its_density_says():
+    light = TOUGH | {"name": "light", "density": "4 kg/dm^3"}
+    tables = of_materials(["light"], ["tough"], "mass", (light, TOUGH))
+    stage = gearopt.solve(tables).design["stages"][0]
+    squares = stage["pinion_diameter_mm"] ** 2 / stage["wheel_diameter_mm"] ** 2
+    ratio = stage["pinion_mass_kg"] / stage["wheel_mass_kg"]
+    assert ratio == pytest.approx(squares * 4 / 7.85, rel=1e-9)
+
+
+WRONG = {
+    "unknown": ({}, ["soft"], "stage[1].pinion.materials", "the name of no [[material]]"),
+    "no price": ({"price": None}, ["hard"], "material[1].price", "cost needs it"),
+    "no steel": ({"treatment": None}, ["hard"], "material[1].treatment", "steel"),
+    "name twice": ({"name": "tough"}, ["tough"], "material[2].name", "another material"),
+    "misspelt": ({"densty": "7 kg/dm^3"}, ["hard"], "material[1].densty", "Did you mean density"),
+}
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_mistakes_in_materials_are_one_message(name):
+    more, pinion, key, told = WRONG[name]
+    hard = {k: v for k, v in (HARD | more).items() if v is not None}
+    with pytest.raises(SceneError) as refused:
+        gearopt.load(of_materials(pinion, ["tough"], materials=(hard, TOUGH)))
+    assert refused.value.key == key and told in str(refused.value)
+
+
+def test_gears_that_may_choose_are_not_rated():
+    tables = of_materials([*STEELS], ["tough"])
+    for name in ("limits", "objective", "teeth"):
+        del tables[name]
+    del tables["duty"]["ratio"]
+    given = {"module": "2 mm", "pinion_teeth": 20, "wheel_teeth": 80, "face_width": "30 mm"}
+    tables["stage"][0] = given | {k: tables["stage"][0][k] for k in ("pinion", "wheel")}
+    with pytest.raises(SolveError, match="no material yet, one of hard, tough"):
+        gearopt.rate(tables)

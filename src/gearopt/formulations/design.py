@@ -1,8 +1,8 @@
 """The design of a drive for its drawing: diameters, distances and loads of every stage."""
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any
 
@@ -10,6 +10,7 @@ from gearopt.formulations.gear_train import Train
 from gearopt.formulations.layout.layout_design import LayoutDesign
 from gearopt.formulations.rating import DriveRating
 from gearopt.formulations.strength import Law
+from gearopt.formulations.strength.rated import Option
 from gearopt.optimise.typed import INLINE, typed
 from gearopt.physics.gears import ISO_53_A, Gear, GearPair, Rack
 from gearopt.physics.loads import pitch_line_velocity
@@ -24,7 +25,8 @@ STEEL_DENSITY = 7.85e-9  # t/mm3: EN 1991-1-1 table A.4 (to 78.5 kN/m3), Steel f
 class StageDesign:
     """A gear pair with its loads; fields are the keys of a result, with their units.
 
-    Fields with a default say how its teeth are cut; a result leaves out those that hold it.
+    Fields with a default say how its teeth are cut and of which materials, of several, its gears
+    are; a result leaves out those that hold it.
     """
 
     normal_module_mm: float
@@ -65,6 +67,8 @@ class StageDesign:
     wheel_tool_tip_radius: float = ISO_53_A.tip_radius
     pinion_tool_protuberance: float = ISO_53_A.protuberance
     wheel_tool_protuberance: float = ISO_53_A.protuberance
+    pinion_material: str = ""
+    wheel_material: str = ""
 
     @property
     def pair(self) -> GearPair:
@@ -108,10 +112,33 @@ def drive_design(data: Mapping[str, Any]) -> DriveDesign:
     return found
 
 
-def describe(train: Train, pairs: tuple[GearPair, ...]) -> DriveDesign:
-    """Return stages and totals of a drive; masses as of `of_pairs`."""
+def describe(train: Train, pairs: tuple[GearPair, ...], options: Sequence[int] = ()) -> DriveDesign:
+    """Return stages and totals of a drive; masses as of `of_pairs`, or of the options' materials.
+
+    options: of every stage, from 0; none: the first.
+    """
     loaded = float(train.torque), float(train.speed)
-    return of_pairs(train.law, pairs, *loaded, train.ratio, train.density)
+    made = of_pairs(train.law, pairs, *loaded, train.ratio, train.density)
+    if not train.rated:
+        return made
+    chosen = zip(made.stages, train.stages, options or (0,) * len(pairs), strict=True)
+    usual = train.density or STEEL_DENSITY
+    stages = tuple(_of_materials(one, stage.options[k], usual) for one, stage, k in chosen)
+    return replace(made, stages=stages, mass_kg=sum(s.mass_kg for s in stages))
+
+
+def _of_materials(stage: StageDesign, option: Option, usual: float) -> StageDesign:
+    """Return a stage of the materials of an option; usual: the density [t/mm3] of others."""
+    first, second = ((own or usual) / usual for own in option.densities)
+    masses = first * stage.pinion_mass_kg, second * stage.wheel_mass_kg
+    return replace(
+        stage,
+        pinion_mass_kg=masses[0],
+        wheel_mass_kg=masses[1],
+        mass_kg=sum(masses),
+        pinion_material=option.materials[0],
+        wheel_material=option.materials[1],
+    )
 
 
 def of_pairs(

@@ -43,6 +43,8 @@ STAGE_ROWS = {  # what a key is called, and its unit
     "pinion_mass_kg": ("pinion mass", "kg"),
     "wheel_mass_kg": ("wheel mass", "kg"),
     "mass_kg": ("mass of the pair", "kg"),
+    "pinion_material": ("pinion material", ""),
+    "wheel_material": ("wheel material", ""),
 }
 OF_TEETH = {f.name: f.default for f in fields(StageDesign) if f.default is not MISSING}
 OF_FILE = ("helix_angle_deg", "pressure_angle_deg")  # said by the file where stages are alike

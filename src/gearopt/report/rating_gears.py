@@ -14,6 +14,7 @@ from gearopt.report.rating_words import (
     LONGEST,
     efficiency,
     life,
+    nearest,
     rating_of,
     told,
     unsure,
@@ -80,6 +81,8 @@ def _said(found: DriveRating) -> list[str]:
     ]
     if any(one.by == "ISO 6336" for one in found.each):
         words.append(LOAD_FACTORS)
+    if len(found.meshes) > 1:
+        words.append(f"Nearest to what is asked for are {'; '.join(nearest(found))}.")
     if found.levels:
         words.append("Safety factors are those of all load levels together, by Miner's rule.")
     lives = [(g.bending_life_cycles, g.contact_life_cycles) for _, g in _columns(found)]

@@ -131,6 +131,26 @@ def _governing(found: DriveRating) -> tuple[str, str, float, float]:
     return words, MODES[mode], own, asked
 
 
+def nearest(found: DriveRating) -> list[str]:
+    """Return of every stage what comes nearest to the safety factors asked for, in words."""
+    words = []
+    for mesh in found.meshes:
+        rows = [
+            (own / asked, f"{mode} of the {gear.member}", one.by)
+            for one in found.each
+            for gear in one.gears
+            if gear.stage == mesh.stage
+            for mode, own, asked in (
+                ("bending", gear.bending_safety, one.minimum_bending_safety),
+                ("contact", gear.contact_safety, one.minimum_contact_safety),
+            )
+        ]
+        _, what, by = min(rows)
+        of = f" by {by}" if found.beside is not None else ""
+        words.append(f"of stage {mesh.stage} {what}{of}")
+    return words
+
+
 def weakest(found: DriveRating) -> MeshRating:
     """Return the mesh that may transmit least."""
     return min(found.meshes, key=lambda mesh: mesh.power_capacity_kW)

@@ -91,13 +91,15 @@ class Standard(Protocol):
 class Option:
     """One way of making the gears of a stage: its standards, and what tells it from others.
 
-    densities [t/mm3], or None for that of the drive, and prices of a kilogram, of pinion and wheel.
+    densities [t/mm3], or None for that of the drive, prices of a kilogram, and names of materials,
+    of pinion and wheel.
     """
 
     standards: tuple[Standard, ...]
     words: str = ""
     densities: tuple[float | None, float | None] = (None, None)
     prices: tuple[float, float] = (1.0, 1.0)
+    materials: tuple[str, str] = ("", "")
 
     def utilisations(
         self, pair: GearPair, torque: Any, speed: Any, safety: Sequence[Any]

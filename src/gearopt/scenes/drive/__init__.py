@@ -349,7 +349,8 @@ def _sized(scene: Scene, train: Train, ask: Ask, problem: Problem) -> Result:
         return result
     points = (outcome.x, *outcome.others)
     gears = [formulation.pairs(train, x) for x in points]
-    designs = [untyped(scene.design(pairs)) for pairs in gears]
+    chosen = [teeth.options(train, x) if exact and train.several_options else () for x in points]
+    designs = [untyped(scene.design(*made)) for made in zip(gears, chosen, strict=True)]
     values = [float(problem.batch(x[None]).F[0, 0]) for x in points]
     trains = [
         {"objective": value, "ratio": design["ratio"], "stages": design["stages"]}

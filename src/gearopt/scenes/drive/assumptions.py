@@ -7,7 +7,7 @@ from gearopt.physics.gears import ISO_53_A, MEMBERS
 from gearopt.physics.iso6336.case import Practice
 from gearopt.scenes.drive.drive_tables import ORIGINS, StageTable
 from gearopt.scenes.drive.layout_tables import Layout
-from gearopt.scenes.drive.rating.gears import own
+from gearopt.scenes.drive.rating.gears import gear_choices
 from gearopt.scenes.drive.rating.iso_material import steel
 from gearopt.scenes.drive.rating.tables import RatingTable
 from gearopt.scenes.drive.scene import Scene
@@ -35,9 +35,15 @@ def notes(scene: Scene, exact: bool) -> list[str]:
         found.append("No limit on wheel teeth, stage ratio or wheel diameter was set.")
     if exact and scene.teeth is not None:
         found += unverified(scene.teeth.modules)
-    if scene.objective.density is None:
+    if scene.objective.density is None and not _dense(scene):
         found.append(f"Masses are those of steel, {1e9 * STEEL_DENSITY:g} kg/dm³ (assumed).")
     return found
+
+
+def _dense(scene: Scene) -> bool:
+    """Return whether every gear has the density of its material."""
+    known = [gear_choices(scene, k, m) for k in range(len(scene.stage) or 1) for m in MEMBERS]
+    return all(one and one.density for choices in known for _, one in choices)
 
 
 def assumptions(scene: Scene) -> list[str]:
@@ -54,6 +60,8 @@ def assumptions(scene: Scene) -> list[str]:
         if density
         else "the density of steel, because the file gives none"
     )
+    if scene.material:
+        mass = f"the densities of the materials, else with {mass}"
     found = [
         *_teeth(scene),
         *_loads(scene, angle, assumed),
@@ -142,7 +150,12 @@ def _agma_assumptions(asked: RatingTable) -> list[str]:
 
 def _iso_assumptions(scene: Scene, asked: RatingTable) -> list[str]:
     """Return what a rating by ISO 6336 takes for granted: materials, misalignment."""
-    tables = [own(scene, k, member) for k in range(max(1, len(scene.stage))) for member in MEMBERS]
+    tables = [
+        table
+        for k in range(max(1, len(scene.stage)))
+        for member in MEMBERS
+        for table, _ in gear_choices(scene, k, member)
+    ]
     chosen = dict.fromkeys(
         f"{table.treatment or 'none given'} as {steel(table).name}"
         for table in tables

@@ -39,7 +39,7 @@ WHEEL_TEETH = advised(
 )
 PROPORTION = span(number(0.6, 0, 10), [0.3, 0.6], single=True)
 AIM = choice(
-    *(name for name in OBJECTIVES if name != "cost"),
+    *OBJECTIVES,
     means={"weight": "mass"},
     other={
         "volume": 'Write "gear_volume" for that of the gears; for that of the box minimise = '
@@ -47,7 +47,6 @@ AIM = choice(
         "size": 'Write "gear_volume" or "total_length" for that of the gears; for that of the box '
         'minimise = "box_volume" in a table [layout]',
         "centre_distance": 'Write "sum_of_centre_distances", of all stages',
-        "cost": 'Costs are not supported yet. Nearest: "mass" or "gear_volume"',
     },
 )
 OVER_MODULE = span(number(10, 0, 1000), [8, 14])
@@ -268,18 +267,13 @@ class Objective(Table):
 
     minimise: Annotated[str, AIM] = Field(
         "gear_volume",
-        description="gear_volume (solid reference cylinders), mass (or weight), "
+        description="gear_volume (solid reference cylinders), mass (or weight), cost (mass times "
+        "the prices of [[material]]), "
         "sum_of_centre_distances, or total_length (shafts in one line, over reference circles)",
     )
     density: Annotated[Quantity | None, quantity("density", "7.85 kg/dm^3")] = Field(
-        None, description="Density of the gears; mass needs it"
+        None, description="Density of the gears; mass and cost need it, or that of every material"
     )
-
-    @model_validator(mode="after")
-    def _mass_needs_density(self) -> "Objective":
-        if self.minimise == "mass" and self.density is None:
-            raise refuse("is missing: mass needs it", at=("density",))
-        return self
 
 
 EACH_RATIO = several(number(5, 1, 10**6), [4.96, 4.36])

@@ -123,7 +123,13 @@ minimum_bending_safety = 1.4
 minimum_contact_safety = 1.1
 
 [objective]
-minimise = "gear_volume"       # or mass, sum_of_centre_distances, total_length
+minimise = "gear_volume"       # or mass, cost, sum_of_centre_distances, total_length
+
+# [[material]]                 # to choose from: materials = ["hard"] in [gears]
+# name = "hard"
+# treatment = "carburised"
+# density = "7.85 kg/dm^3"
+# price = 9                    # of a kilogram, for minimise = "cost"
 """
 MORE_EXAMPLES = {
     "rating": ("gears that are given, rated by AGMA or ISO 6336", RATING),

@@ -34,11 +34,13 @@ from gearopt.scenes.drive.layout_tables import (
 )
 from gearopt.scenes.drive.rating.checks import (
     check_given,
+    check_objective,
     check_rated,
     check_sized,
     check_unrated,
     not_given,
 )
+from gearopt.scenes.drive.rating.materials import MaterialTable, check_materials
 from gearopt.scenes.drive.rating.tables import LoadTable, RatingTable
 from gearopt.scenes.drive.tooth_tables import check_mesh, check_teeth, toothing
 from gearopt.scenes.explaining.numbers import eased, in_reverse, written
@@ -108,6 +110,9 @@ class Scene(Table):
     gears: Gears = Field(default_factory=Gears)
     stage: tuple[StageTable, ...] = Field((), description="One table per stage, from the input on")
     rating: RatingTable | None = None
+    material: tuple[MaterialTable, ...] = Field(
+        (), description="One table per material of which gears may choose"
+    )
     load: tuple[LoadTable, ...] = Field((), description="One table per level of a load spectrum")
     limits: Limits = Field(
         None,
@@ -189,9 +194,9 @@ class Scene(Table):
     def by_ratings(self) -> bool:
         """Return whether the safety factors of [rating] limit the gears that are to be sized.
 
-        Load limits beside them size alone what ratings cannot: real-valued teeth, spectra.
+        Load limits beside them size real-valued teeth alone.
         """
-        alone = self.limits.loaded and (self.teeth is None or bool(self.load))
+        alone = self.limits.loaded and self.teeth is None
         return self.rating is not None and self.limited and not alone
 
     @property
@@ -219,9 +224,12 @@ class Scene(Table):
             if "limits" not in self.model_fields_set:
                 raise refuse("is missing", at=("limits",))
         if self.rating is None:
-            check_unrated(self.gears, self.stage, self.load)
+            check_unrated(self.gears, self.stage, self.load, self.material)
         else:
-            check_rated(self.rating, self.gears, self.stage, self.load)
+            places = [(("stage", k), stage) for k, stage in enumerate(self.stage)]
+            check_materials(places, self.gears, self.material)
+            check_rated(self.rating, self.gears, self.stage, self.load, self.material)
+        check_objective(self.objective, self.gears, self.stage, self.material)
         if self.by_ratings:
             together = self.layout is not None and self.layout.together
             ruled = [n for n in PROCESSES if getattr(self, n) is not None]
@@ -324,9 +332,12 @@ class Scene(Table):
         ends = {name: (name, None) for name in self.law.names} | ENDS
         return {n: tuple(place(k, *ends[n]) for k in range(len(stages))) for n in ends}
 
-    def design(self, pairs: tuple[GearPair, ...]) -> DriveDesign:
-        """Return the drive of these gear pairs in the words of its drawing."""
-        return describe(self.train(), pairs)
+    def design(self, pairs: tuple[GearPair, ...], options: tuple[int, ...] = ()) -> DriveDesign:
+        """Return the drive of these gear pairs in the words of its drawing.
+
+        options: of every stage with materials to choose from, from 0; none: the first.
+        """
+        return describe(self.train(), pairs, options)
 
     def processes(self) -> dict[str, Callable[..., Outcome]]:
         """Return the two design processes, with their tables, as methods for whole teeth."""

@@ -7,9 +7,10 @@ from gearopt.formulations.strength import Law
 from gearopt.physics.agma.allowables import CONTACT, bending_allowable, contact_allowable
 from gearopt.physics.gears import MEMBERS
 from gearopt.physics.iso6336.materials import SURFACE_HARDENED, strength
-from gearopt.scenes.drive.drive_tables import Gears, StageTable
+from gearopt.scenes.drive.drive_tables import Gears, Objective, StageTable
 from gearopt.scenes.drive.rating.iso_material import SOFT_ROOTS, steel
 from gearopt.scenes.drive.rating.iso_tables import ISO_KEYS, IsoTable
+from gearopt.scenes.drive.rating.materials import Named, choices
 from gearopt.scenes.drive.rating.tables import (
     MATERIAL,
     GearTable,
@@ -78,8 +79,38 @@ def check_sized(
         raise refuse(rule, at=(name,), action="remove")
 
 
-def check_unrated(gears: Gears, stages: Sequence[StageTable], load: Sequence[LoadTable]) -> None:
+def check_objective(
+    asked: Objective, gears: Gears, stages: Sequence[StageTable], materials: Sequence[Named]
+) -> None:
+    """Refuse mass without densities, and cost without prices."""
+    if asked.minimise not in ("mass", "cost"):
+        return
+    used = [
+        one
+        for stage in stages or (StageTable(),)
+        for member in MEMBERS
+        for _, one in choices(getattr(stage, member), gears, materials)
+    ]
+    if asked.minimise == "cost" and None in used:
+        rule = "needs materials of every gear, with their prices in [[material]]"
+        raise refuse(rule, "gear_volume", ("objective", "minimise"))
+    for one in used:
+        if asked.minimise == "cost" and one and one.price is None:
+            at = ("material", materials.index(one), "price")
+            raise refuse("is missing: cost needs it", at=at)
+        if asked.density is None and (one is None or one.density is None):
+            raise refuse(f"is missing: {asked.minimise} needs it", at=("objective", "density"))
+
+
+def check_unrated(
+    gears: Gears,
+    stages: Sequence[StageTable],
+    load: Sequence[LoadTable],
+    materials: Sequence[Named],
+) -> None:
     """Refuse what changes nothing without a table [rating]."""
+    if materials:
+        raise refuse("needs a table [rating]", at=("material",), action="remove")
     for place in _only_rated(gears, stages, load):
         raise refuse("needs a table [rating]", at=place, action="remove")
 
@@ -103,6 +134,7 @@ def check_rated(
     gears: Gears,
     stages: Sequence[StageTable],
     load: Sequence[LoadTable],
+    materials: Sequence[Named],
 ) -> None:
     """Refuse a rating whose gears lack their strength, or whose loads do not fit together."""
     _check_standard(rating, gears, stages)
@@ -121,11 +153,12 @@ def check_rated(
         for member in MEMBERS:
             own = getattr(stage, member)
             place = ("stage", k, member) if own.model_fields_set & set(MATERIAL) else ("gears",)
-            gear = with_shared(own, gears)
-            if rating.by_agma:
-                _check_steel(gear, place, given)
-            if rating.by_iso6336:
-                _check_material(gear, place, made)
+            for gear, one in choices(own, gears, materials):
+                at = place if one is None else ("material", materials.index(one))
+                if rating.by_agma:
+                    _check_steel(gear, at, given)
+                if rating.by_iso6336:
+                    _check_material(gear, at, made)
     total = sum(level.share for level in load)
     if load and total != 1:
         rest = load[-1].share + 1 - total

@@ -3,12 +3,14 @@
 from dataclasses import replace
 from typing import Any
 
+from gearopt.errors import SolveError
 from gearopt.formulations.strength.rated import Load
 from gearopt.physics.gears import Gear, GearPair
 from gearopt.physics.rating import Operation
 from gearopt.physics.shaft_forces import rpm
 from gearopt.scenes.drive.drive_tables import StageTable
-from gearopt.scenes.drive.rating.tables import GearTable, RatingTable, with_shared
+from gearopt.scenes.drive.rating.materials import Named, choices
+from gearopt.scenes.drive.rating.tables import GearTable, RatingTable
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.tooth_tables import toothing
 
@@ -16,10 +18,26 @@ HOUR = 3600.0  # s
 Tables = tuple[GearTable, GearTable]  # of pinion and wheel
 
 
-def own(scene: Scene, stage: int, member: str) -> GearTable:
-    """Return what one gear has, of its own or of all gears; stage from 0."""
+def own(scene: Scene, stage: int, member: str, material: str = "") -> GearTable:
+    """Return what one gear has, of its own or of all gears; stage from 0.
+
+    material: the name of the one that was chosen, where it could choose; SolveError where that is
+    open.
+    """
+    known = gear_choices(scene, stage, member)
+    found = [table for table, one in known if len(known) == 1 or (one and one.name == material)]
+    if not found:
+        names = ", ".join(one.name for _, one in known if one)
+        raise SolveError(f"the {member} of stage {stage + 1} has no material yet, one of {names}")
+    return found[0]
+
+
+def gear_choices(
+    scene: Scene, stage: int, member: str
+) -> tuple[tuple[GearTable, Named | None], ...]:
+    """Return what one gear has with each material that it may have, and that material."""
     table = getattr(scene.stage[stage], member) if scene.stage else GearTable()
-    return with_shared(table, scene.gears)
+    return choices(table, scene.gears, scene.material)
 
 
 def pair_of(

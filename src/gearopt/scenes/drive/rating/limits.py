@@ -3,12 +3,14 @@
 from dataclasses import replace
 from typing import Any
 
-from gearopt.errors import CertificateError, SolveError
+from gearopt.errors import CertificateError
 from gearopt.formulations.design import drive_design
 from gearopt.formulations.strength.rated import Option
 from gearopt.optimise.result import Result
+from gearopt.physics.gears import MEMBERS
 from gearopt.scenes.drive.rating import by_agma, by_iso6336
-from gearopt.scenes.drive.rating.gears import loads, own, unit_operation
+from gearopt.scenes.drive.rating.gears import gear_choices, loads, unit_operation
+from gearopt.scenes.drive.rating.tables import GearTable
 from gearopt.scenes.drive.scene import Scene
 
 STANDARDS: dict[str, tuple[Any, ...]] = {  # of the key standard
@@ -20,23 +22,33 @@ SECOND = "_iso"  # after the names of limits by the second of two standards
 
 
 def options(scene: Scene, stage: int) -> tuple[Option, ...]:
-    """Return the ways of making the gears of a stage (from 0); SolveError for none that limit."""
-    asked = scene.rating
-    assert asked
-    if scene.load:
-        raise SolveError(
-            "gears cannot be sized under a load spectrum yet: give K-factor and unit load in "
-            "[limits], by which they are sized and then rated, or leave [[load]] out"
-        )
-    gears = own(scene, stage, "pinion"), own(scene, stage, "wheel")
+    """Return the ways of making the gears of a stage (from 0)."""
+    first, second = (gear_choices(scene, stage, member) for member in MEMBERS)
+    return tuple(_option(scene, stage, a, b) for a in first for b in second)
+
+
+def _option(
+    scene: Scene, stage: int, pinion: tuple[GearTable, Any], wheel: tuple[GearTable, Any]
+) -> Option:
+    """Return one way of making the gears of a stage: what each has, and its material or None."""
+    assert scene.rating
+    gears, materials = zip(pinion, wheel, strict=True)
     operation = unit_operation(scene, gears)
     made = [
         one.limits(scene, stage, gears, operation, loads(scene))
-        for one in STANDARDS[asked.standard]
+        for one in STANDARDS[scene.rating.standard]
     ]
     if len(made) > 1:
         made[1] = replace(made[1], suffix=SECOND)
-    return (Option(tuple(made)),)
+    named = tuple(one.name if one else "" for one in materials)
+    densities = tuple(one.density.value if one and one.density else None for one in materials)
+    prices = tuple(float(one.price) if one and one.price is not None else 1.0 for one in materials)
+    words = " and ".join(filter(None, named))
+    return Option(tuple(made), words, _two(densities), _two(prices), _two(named))
+
+
+def _two(values: tuple[Any, ...]) -> tuple[Any, Any]:
+    return values[0], values[1]
 
 
 def required(scene: Scene) -> tuple[float, float]:

@@ -1,6 +1,6 @@
 """One stage of a drive with its rating by a standard, at every level of load."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -11,6 +11,8 @@ from gearopt.physics.rating import Operation, Rating
 from gearopt.scenes.drive.rating import gears
 from gearopt.scenes.drive.rating.gears import Tables
 from gearopt.scenes.drive.scene import Scene
+
+Materials = Sequence[tuple[str, str]]
 
 
 @dataclass(frozen=True)
@@ -47,8 +49,13 @@ class Mesh:
         return moved, 0.5 * float(self.pair.working_diameters[0] * found.pinion_speed)
 
 
-def rated_meshes(scene: Scene, pairs: tuple[GearPair, ...], standard: Any) -> list[Mesh]:
-    """Rate all stages; SolveError names the one that has no rating, and why."""
+def rated_meshes(
+    scene: Scene, pairs: tuple[GearPair, ...], standard: Any, materials: Materials
+) -> list[Mesh]:
+    """Rate all stages; SolveError names the one that has no rating, and why.
+
+    materials: names of those chosen, of pinion and wheel of every stage; "": there was no choice.
+    """
     meshes, slower = [], 1.0
     for k, pair in enumerate(pairs):
         found = flaws(pair)
@@ -56,7 +63,7 @@ def rated_meshes(scene: Scene, pairs: tuple[GearPair, ...], standard: Any) -> li
         if found and found[0].fatal:
             raise SolveError(f"stage {k + 1} cannot be rated: {told[0]}")
         try:
-            meshes.append(_mesh(scene, k, pair, slower, standard))
+            meshes.append(_mesh(scene, k, pair, slower, standard, materials[k]))
         except ValueError as reason:
             why = "; ".join([str(reason), *told])
             raise SolveError(f"stage {k + 1} cannot be rated: {why}") from None
@@ -64,9 +71,11 @@ def rated_meshes(scene: Scene, pairs: tuple[GearPair, ...], standard: Any) -> li
     return meshes
 
 
-def _mesh(scene: Scene, k: int, pair: GearPair, slower: float, standard: Any) -> Mesh:
-    """Rate one stage (from 0); slower: input over pinion speed."""
-    tables = gears.own(scene, k, "pinion"), gears.own(scene, k, "wheel")
+def _mesh(
+    scene: Scene, k: int, pair: GearPair, slower: float, standard: Any, named: tuple[str, str]
+) -> Mesh:
+    """Rate one stage (from 0); slower: input over pinion speed; named: its materials."""
+    tables = gears.own(scene, k, "pinion", named[0]), gears.own(scene, k, "wheel", named[1])
     steels = standard.steel(tables[0]), standard.steel(tables[1])
     made = standard.practice(scene, pair, tables)
     levels = gears.operations(scene, slower, tables)

@@ -19,7 +19,7 @@ from gearopt.scenes.drive.rating import gears as rated_gears
 from gearopt.scenes.drive.rating.checks import not_given
 from gearopt.scenes.drive.rating.geometry import tooth_geometry
 from gearopt.scenes.drive.rating.limits import SECOND, STANDARDS
-from gearopt.scenes.drive.rating.mesh import rated_meshes
+from gearopt.scenes.drive.rating.mesh import Materials, rated_meshes
 from gearopt.scenes.drive.rating.rows import (
     factor_rows,
     gear_row,
@@ -92,7 +92,9 @@ def with_rating(scene: Scene, result: Result) -> Result:
         return result
     held = scene.held(len(result.design["stages"]))
     try:
-        found = rating(held, chosen_pairs(held, drive_design(result.design).stages))
+        stages = drive_design(result.design).stages
+        materials = [(s.pinion_material, s.wheel_material) for s in stages]
+        found = rating(held, chosen_pairs(held, stages), materials)
     except SolveError as reason:
         notes = [*result.report.get("notes", []), f"There is no rating: {reason}."]
         return replace(result, report=result.report | {"notes": notes})
@@ -125,18 +127,26 @@ def utilisations(found: DriveRating) -> dict[str, float]:
     return limits
 
 
-def rating(scene: Scene, pairs: tuple[GearPair, ...]) -> DriveRating:
-    """Return the rating of all stages by all standards asked for; SolveError why there is none."""
+def rating(
+    scene: Scene, pairs: tuple[GearPair, ...], materials: Materials | None = None
+) -> DriveRating:
+    """Return the rating of all stages by all standards asked for; SolveError why there is none.
+
+    materials: as of `rated_meshes`; by default there was no choice.
+    """
     assert scene.rating
-    first, *others = (_by(scene, pairs, one) for one in STANDARDS[scene.rating.standard])
+    names = materials or [("", "")] * len(pairs)
+    first, *others = (_by(scene, pairs, one, names) for one in STANDARDS[scene.rating.standard])
     return replace(first, beside=replace(others[0], flaws=())) if others else first
 
 
-def _by(scene: Scene, pairs: tuple[GearPair, ...], standard: Any) -> DriveRating:
+def _by(
+    scene: Scene, pairs: tuple[GearPair, ...], standard: Any, materials: Materials
+) -> DriveRating:
     """Return the rating of all stages; SolveError names the stage that has none, and why."""
     asked = scene.rating
     assert asked
-    meshes = rated_meshes(scene, pairs, standard)
+    meshes = rated_meshes(scene, pairs, standard, materials)
     wanted = float(asked.minimum_bending_safety), float(asked.minimum_contact_safety)
     rows = tuple(mesh_row(scene, mesh, wanted) for mesh in meshes)
     least = min(rows, key=lambda row: row.power_capacity_kW)

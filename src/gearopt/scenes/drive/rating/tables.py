@@ -21,8 +21,9 @@ from gearopt.scenes.reading.fields import (
     refuse,
     truth,
     whole,
+    words,
 )
-from gearopt.scenes.reading.lists import each_gear
+from gearopt.scenes.reading.lists import each_gear, several
 from gearopt.units import Quantity
 
 SURFACES = tuple(dict.fromkeys(surface for _, surface, _ in CONTACT if surface))
@@ -34,9 +35,10 @@ Stresses = Annotated[
 ]
 MATERIAL = (  # keys of a gear that only a rating needs
     *("treatment", "grade", "hardness", "surface_hardness", "elastic_modulus", "poisson_ratio"),
-    *("roughness", "reversed_load", "rim_thickness", "contacts"),
+    *("roughness", "reversed_load", "rim_thickness", "contacts", "materials"),
     *ISO_KEYS,
 )
+MATERIALS = several(words(), ["case-hardened", "through-hardened"])
 TREATMENT = choice(
     *TREATMENTS,
     means={
@@ -142,6 +144,10 @@ class GearKeys(IsoGearKeys):
     )
     contacts: Annotated[int | None, whole(1, 1, 100)] = Field(
         None, description="Load cycles of a tooth a revolution; by default 1"
+    )
+    materials: Annotated[tuple[str, ...] | None, MATERIALS] = Field(
+        None,
+        description="Names of [[material]], of which the best one is chosen, instead of a steel",
     )
 
 

@@ -1,0 +1,91 @@
+"""Materials by name, of which the gears of a stage choose: tables, checks, and a file with one."""
+
+from collections.abc import Iterator, Sequence
+from fractions import Fraction
+from typing import Annotated, Any
+
+from pydantic import Field, create_model
+
+from gearopt.physics.gears import MEMBERS
+from gearopt.scenes.drive.rating.tables import GearKeys, GearTable, with_shared
+from gearopt.scenes.reading.fields import Table, number, quantity, refuse, words
+from gearopt.units import Quantity
+
+STEEL = (  # keys of a gear that its material has
+    *("treatment", "grade", "hardness", "surface_hardness", "elastic_modulus", "poisson_ratio"),
+    *("iso_material", "iso_quality", "iso_core", "flank_hardness", "yield_strength"),
+)
+Place = tuple[Any, ...]
+
+
+class Named(Table):
+    """A material by its name; gears choose it by materials."""
+
+    name: Annotated[str, words()] = Field(description="Its name, which materials of gears hold")
+    density: Annotated[Quantity | None, quantity("density", "7.85 kg/dm^3")] = Field(
+        None, description="Density, for mass and cost; by default that of [objective]"
+    )
+    price: Annotated[Fraction | None, number(2.5, 0, 10**9)] = Field(
+        None, description="Price of a kilogram of finished gear, in any currency; cost needs it"
+    )
+
+
+_FIELDS: dict[str, Any] = {
+    key: (GearKeys.model_fields[key].annotation, GearKeys.model_fields[key]) for key in STEEL
+}
+MaterialTable = create_model("MaterialTable", __base__=Named, __doc__=Named.__doc__, **_FIELDS)
+
+
+def names(own: GearTable, shared: GearKeys) -> tuple[str, ...]:
+    """Return the materials that a gear may have; none where its steel is its own or of all."""
+    if own.materials is not None:
+        return own.materials
+    if any(getattr(own, key) is not None for key in STEEL):
+        return ()
+    return shared.materials or ()
+
+
+def choices(
+    own: GearTable, shared: GearKeys, materials: Sequence[Named]
+) -> tuple[tuple[GearTable, Named | None], ...]:
+    """Return what a gear has with each material that it may have, and that material."""
+    table = with_shared(own, shared)
+    table = table.model_copy(update={"materials": None})
+    known = {one.name: one for one in materials}
+    found = [known[name] for name in names(own, shared)]
+    if not found:
+        return ((table, None),)
+    return tuple(
+        (table.model_copy(update={key: getattr(one, key) for key in STEEL}), one) for one in found
+    )
+
+
+def check_materials(
+    stages: Sequence[tuple[Place, Any]], gears: GearKeys, materials: Sequence[Named]
+) -> None:
+    """Refuse names twice or unknown, and a steel beside materials.
+
+    stages: their places and tables.
+    """
+    known = [one.name for one in materials]
+    for k, name in enumerate(known):
+        if name in known[:k]:
+            raise refuse("is the name of another material, too", at=("material", k, "name"))
+    for place, table in _tables(stages, gears):
+        for name in table.materials or ():
+            if name not in known:
+                told = f"Known: {', '.join(known)}" if known else "Write a table [[material]]"
+                rule = f'has "{name}", which is the name of no [[material]]'
+                raise refuse(rule, told, (*place, "materials"), "tell")
+        for key in STEEL if table.materials else ():
+            if getattr(table, key) is not None:
+                rule = "stands beside materials, which set it"
+                raise refuse(rule, at=(*place, key), action="remove")
+
+
+def _tables(
+    stages: Sequence[tuple[Place, Any]], gears: GearKeys
+) -> Iterator[tuple[Place, GearKeys]]:
+    yield ("gears",), gears
+    for place, stage in stages:
+        yield from (((*place, member), getattr(stage, member)) for member in MEMBERS)
