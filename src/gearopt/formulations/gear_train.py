@@ -5,7 +5,7 @@ fractions; the rest are floats in mm, N, rad, MPa.
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any
@@ -279,13 +279,18 @@ def share(train: Train, stage: int, pair: GearPair, density: Any = None, option:
 
 
 def terms(
-    train: Train, numbers: Any, pairs: tuple[GearPair, ...], options: Sequence[Any] = ()
+    train: Train,
+    numbers: Any,
+    pairs: tuple[GearPair, ...],
+    options: Sequence[Any] = (),
+    rated: Callable[..., Mapping[str, Any]] | None = None,
 ) -> Terms:
     """Return objective and limits of a drive made of these pairs, as terms of a geometric program.
 
     numbers: `train.numbers()` as attributes, floats or parameters; options: of every stage, counted
-    from 0, floats or arrays; none: the first. A limit is left out where the drive leaves it open or
-    fixes the quantity.
+    from 0, floats or arrays; none: the first. rated(stage, pair, torque, speed, safety): limits in
+    the place of those of the ratings. A limit is left out where the drive leaves it open or fixes
+    the quantity.
     """
     total, product, torque = 0.0, 1.0, numbers.torque
     limits: dict[str, Any] = {}
@@ -301,8 +306,11 @@ def terms(
         if stage.options:
             safety = numbers.bending_safety, numbers.contact_safety
             load = torque, numbers.speed / product
-            rated = [one.utilisations(pair, *load, safety) for one in stage.options]
-            rows |= {name: _chosen([r[name] for r in rated], option) for name in rated[0]}
+            if rated is not None:
+                rows |= rated(k, pair, *load, safety)
+            else:
+                made = [one.utilisations(pair, *load, safety) for one in stage.options]
+                rows |= {name: _chosen([r[name] for r in made], option) for name in made[0]}
         rows |= _choices(stage, own, pair)
         if stage.wheel_fixed and not stage.pinion_fixed:
             equal[f"wheel_teeth[{k + 1}]"] = pair.wheel_teeth / own["wheel_low"]

@@ -13,6 +13,7 @@ from types import SimpleNamespace
 from typing import Any
 
 from gearopt.formulations.gear_train import Train, terms
+from gearopt.formulations.strength.k_factor import K_FACTOR
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Array, Param, Terms, Var, each, namespace
 from gearopt.physics.gears import GearPair, reference_diameter
@@ -21,6 +22,7 @@ BEYOND = 1e6  # factor between any length of a drive and the ends of the search:
 BAND = Fraction(1, 10**10)  # half width of the band of a ratio that is given: far below 1e-8
 TEETH = (1.0, 1e6)
 RATIO = (1.0, 1e7)
+TYPICAL = 1.0  # MPa, K-factor of rated gears from which a search starts
 VARIABLES = {"module": "mm", "pinion_teeth": "", "ratio": "", "face_width": "mm"}
 
 _PARAMETER_UNITS = {
@@ -38,12 +40,31 @@ def problem(train: Train) -> Problem:
     """Return the continuous problem of a drive.
 
     Variables, one component per stage: module [mm], pinion_teeth, ratio and, where it is not tied
-    to d1, face_width [mm].
+    to d1, face_width [mm]. Of a rated drive the text is for numbers only; its own method finds a
+    design (`rated_sizing`).
     """
+    if train.rated:
+        from gearopt.formulations.rated_sizing import smooth
+
+        return replace(exact_text(train), methods={"smooth": smooth(train)})
+    return exact_text(train)
+
+
+def exact_text(train: Train) -> Problem:
+    """Return the continuous problem of a drive without methods of its own."""
+
+    def evaluate(x: Any, p: Any) -> Terms:
+        return terms(train, p, text_pairs(train, x, p))
+
+    return Problem("sizing", variables(train), parameters(train), evaluate)
+
+
+def parameters(train: Train) -> tuple[Param, ...]:
+    """Return the numbers of a drive as parameters of its continuous problem."""
     count = len(train.stages)
     numbers = train.numbers()
     units = _PARAMETER_UNITS | {limit.name: limit.unit for limit in train.law.limits}
-    parameters = tuple(
+    return tuple(
         Param(
             name,
             units.get(name, ""),
@@ -55,11 +76,6 @@ def problem(train: Train) -> Problem:
         for name, value in numbers.items()
     )
 
-    def evaluate(x: Any, p: Any) -> Terms:
-        return terms(train, p, text_pairs(train, x, p))
-
-    return Problem("sizing", _variables(train), parameters, evaluate)
-
 
 def movable(train: Train) -> Problem:
     """Return the limits of `problem` with every given number as one that may be moved.
@@ -69,7 +85,7 @@ def movable(train: Train) -> Problem:
     """
     own = problem(train)
     wheels = given_wheels(train)
-    parameters = tuple(replace(q, role=_role(train, q.name, "given")) for q in own.parameters)
+    numbers = tuple(replace(q, role=_role(train, q.name, "given")) for q in own.parameters)
 
     def evaluate(x: Any, p: Any) -> Terms:
         found = own.evaluate(x, p)
@@ -80,8 +96,8 @@ def movable(train: Train) -> Problem:
         }
         return Terms({"module": each(x.module)[0]}, found.limits, equal={**found.equal, **rows})
 
-    variables = _with_wheels(train) if wheels else own.variables
-    return Problem("sizing", variables, parameters, evaluate)
+    columns = _with_wheels(train) if wheels else own.variables
+    return Problem("sizing", columns, numbers, evaluate)
 
 
 def relaxed(train: Train) -> Problem:
@@ -108,7 +124,7 @@ def _with_wheels(train: Train) -> tuple[Var, ...]:
         guess = tuple(max(u, RATIO[0]) for u in each(v.guess))
         return replace(v, lower=low, upper=high, guess=guess)
 
-    found = (free(v) if v.name == "ratio" else v for v in _variables(train))
+    found = (free(v) if v.name == "ratio" else v for v in variables(train))
     return (*found, Var("wheel_teeth", "", teeth, teeth, teeth, len(teeth), log=True, search=True))
 
 
@@ -123,7 +139,7 @@ def _role(train: Train, name: str, tied: str) -> str | tuple[str, ...]:
 
 def pairs(train: Train, point: Array) -> tuple[GearPair, ...]:
     """Return the gear pairs of a point of `problem`."""
-    x = namespace(_variables(train), [float(v) for v in point])
+    x = namespace(variables(train), [float(v) for v in point])
     return text_pairs(train, x, SimpleNamespace(**train.numbers()))
 
 
@@ -145,7 +161,8 @@ def text_pairs(train: Train, x: Any, numbers: Any) -> tuple[GearPair, ...]:
     return tuple(found)
 
 
-def _variables(train: Train) -> tuple[Var, ...]:
+def variables(train: Train) -> tuple[Var, ...]:
+    """Return the variables of the continuous problem of a drive."""
     columns: dict[str, list[tuple[float, float, float]]] = {name: [] for name in VARIABLES}
     lengths = _lengths(train)
     numbers = SimpleNamespace(**train.numbers())
@@ -159,7 +176,9 @@ def _variables(train: Train) -> tuple[Var, ...]:
         proportion = min(numbers.width_high[k], 1.0)
         cosine = numbers.helix_cosine[k]
         unit = stage.toothing.of_diameter(cosine / z, z, 1.0, u, proportion)
-        load = train.law.indices(unit, torque, train.speed_at(torque))[0] / stage.allowable[0]
+        law = train.law if stage.allowable else K_FACTOR
+        allowable = (stage.allowable or (TYPICAL,))[0]
+        load = law.indices(unit, torque, train.speed_at(torque))[0] / allowable
         d = load ** (1.0 / 3.0)
         m_fixed = len(stage.modules) == 1
         m = numbers.module_low[k] if m_fixed else d * cosine / z
@@ -174,13 +193,11 @@ def _variables(train: Train) -> tuple[Var, ...]:
         torque *= u
     if all(s.face_width.tied for s in train.stages):
         del columns["face_width"]
-    variables = []
+    found = []
     for name, rows in columns.items():
         low, high, guess = zip(*rows, strict=True)
-        variables.append(
-            Var(name, VARIABLES[name], low, high, guess, len(rows), log=True, search=True)
-        )
-    return tuple(variables)
+        found.append(Var(name, VARIABLES[name], low, high, guess, len(rows), log=True, search=True))
+    return tuple(found)
 
 
 def _lengths(train: Train) -> tuple[float, float]:
@@ -193,7 +210,7 @@ def _lengths(train: Train) -> tuple[float, float]:
         (torque / limit) ** (1.0 / 3.0)
         for stage in train.stages
         for torque in torques
-        for limit in stage.allowable
+        for limit in stage.allowable or (TYPICAL,)
     ]
     for stage in train.stages:
         face = stage.face_width

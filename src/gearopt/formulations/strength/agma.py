@@ -10,7 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from gearopt.formulations.strength.rated import Load
+from gearopt.formulations.strength import agma_smooth
+from gearopt.formulations.strength.agma_floor import AgmaFloor, agma_floor
+from gearopt.formulations.strength.rated import Box, Load, Smooth
 from gearopt.optimise.terms import Array
 from gearopt.physics.agma import factors
 from gearopt.physics.agma.batch import (
@@ -66,6 +68,34 @@ class Agma:
         else:
             found = spectrum_rows(pair, operations, *made)
         return (*found.bending, *found.contact)
+
+    def choices(self, helical: bool) -> tuple[str, ...]:
+        """Return the regimes of which one is fixed beforehand in the smooth form."""
+        return agma_smooth.REGIMES[helical]
+
+    def smooth(
+        self, pair: GearPair, torque: Any, speed: Any, choice: str, unknown: dict[str, Any]
+    ) -> Smooth:
+        """Return the rating in a regime, without branches; unknown: by name of `unknowns`."""
+        return agma_smooth.smooth(self, pair, torque, speed, choice, unknown)
+
+    @property
+    def unknowns(self) -> dict[str, tuple[float, float, bool]]:
+        """Return the ends of the unknowns of the smooth form, and whether they are log."""
+        angle = 0.01, 0.5 * np.pi, False
+        return dict(zip(agma_smooth.UNKNOWNS, (angle, angle, (1.0, 100.0, True)), strict=True))
+
+    def guess(self, pair: GearPair, choice: str) -> dict[str, float]:
+        """Return the unknowns of a pair of floats in a regime."""
+        return agma_smooth.guess(self, pair, choice)
+
+    def refined(self, pair: GearPair, choice: str) -> tuple[str, ...]:
+        """Return choices near a pair of floats that are closer to the exact rating."""
+        return agma_smooth.branches(pair, choice)
+
+    def floor(self, box: Box, choice: str) -> AgmaFloor | None:
+        """Return lower bounds of what is used, as posynomials; None where there are none."""
+        return agma_floor(self, box, choice)
 
     def like(self, other: Any) -> bool:
         """Return whether `prepared` of another standard is the same."""

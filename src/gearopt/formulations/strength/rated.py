@@ -67,6 +67,27 @@ class Standard(Protocol):
         torque [N mm] and speed [rad/s] of the pinion; arrays of one shape or floats.
         """
 
+    @property
+    def unknowns(self) -> dict[str, tuple[float, float, bool]]:
+        """Return the ends of the unknowns of `smooth` by name, and whether they are log."""
+
+    def choices(self, helical: bool) -> tuple[str, ...]:
+        """Return what `smooth` needs fixed beforehand: one of these."""
+
+    def refined(self, pair: GearPair, choice: str) -> tuple[str, ...]:
+        """Return choices near a pair of floats that are closer to the exact rating."""
+
+    def guess(self, pair: GearPair, choice: str) -> dict[str, float]:
+        """Return the unknowns of a pair of floats."""
+
+    def smooth(
+        self, pair: GearPair, torque: Any, speed: Any, choice: str, unknown: dict[str, Any]
+    ) -> "Smooth":
+        """Return the rating without branches, of casadi scalars or floats."""
+
+    def floor(self, box: "Box", choice: str) -> "Floor | None":
+        """Return lower bounds of what is used over a box; None where there are none."""
+
     def like(self, other: Any) -> bool:
         """Return whether what `prepared` returns of another standard is the same."""
 
@@ -133,3 +154,42 @@ class IndexRows:
     def take(self, place: Any) -> "IndexRows":
         """Return some of the rows."""
         return IndexRows(self.widths[place])
+
+
+@dataclass(frozen=True)
+class Box:
+    """What is known of the designs that a bound has to hold for.
+
+    teeth: least and most of the pinion; ratio: least and most; speed [rad/s] of the pinion, least
+    and most; widest: largest face width [mm], inf: unknown; toothing: of the gears.
+    """
+
+    teeth: tuple[float, float]
+    ratio: tuple[float, float]
+    speed: tuple[float, float]
+    widest: float
+    toothing: Any
+
+
+class Floor(Protocol):
+    """Lower bounds of what is used of a load capacity, as posynomials."""
+
+    def utilisations(self, pair: GearPair, torque: Any, speed: Any, safety: Any) -> dict[str, Any]:
+        """Return them by name, at required safety factors (S_F, S_H)."""
+
+    def limits(self, pair: GearPair) -> dict[str, Any]:
+        """Return the limits that keep to what was chosen beforehand."""
+
+
+@dataclass(frozen=True)
+class Smooth:
+    """A rating without branches, as terms of a problem.
+
+    safeties: S_F1, S_F2, S_H1, S_H2; limits: rows by name that keep to what was chosen beforehand;
+    defines and equal: rows of the unknowns.
+    """
+
+    safeties: tuple[Any, Any, Any, Any]
+    limits: dict[str, Any]
+    defines: dict[str, Any]
+    equal: dict[str, Any]

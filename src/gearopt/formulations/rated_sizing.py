@@ -1,0 +1,378 @@
+"""Continuous sizing of stages that ratings limit: a smooth form, its bound, and the exact rating.
+
+Ipopt minimises the ratings' smooth form in every combination of what it needs fixed beforehand
+(regimes of AGMA 908, ranges of K_v of ISO 6336), from the optimum of a geometric program whose
+limits are below the true ones. The dual bound of that program is one of the drive, in real-valued
+and in whole teeth. What is returned was rated by the exact form.
+"""
+
+import heapq
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from itertools import count, product
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+
+from gearopt.errors import SolveError
+from gearopt.formulations import sizing
+from gearopt.formulations.gear_train import Train, share, terms
+from gearopt.formulations.strength.rated import MODES, Box
+from gearopt.optimise.clock import Clock
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.result import FEASIBLE, Budget, Outcome, Result, Watch
+from gearopt.optimise.solve import solve
+from gearopt.optimise.terms import Array, Terms, Var, each, namespace
+from gearopt.physics.gears import GearPair
+
+Choice = tuple[tuple[str, ...], ...]  # of every stage and standard
+
+ROUNDS = 4  # of correcting the smooth form by the exact one
+SAFE = 1.0 + FEASIBLE  # utilisation up to which the exact rating accepts a design
+EQUAL = 1e-7  # relative; of safety factors that are those of the exact rating
+SAME = 1e-9  # of corrections that no longer change
+REFINED = 3  # designs whose choices are refined
+CLOSE = 1e-7  # gap at which a bound is close enough
+CELLS = 40  # of teeth and ratios, by which a bound is made better
+NARROW = 1.01  # ratio of the ends of a cell that is not halved
+FAR = 8  # times the least teeth of a pinion, where a range without an end is halved
+MOST = 1e6  # teeth and ratios beyond which no bound holds: the ends of the search
+
+
+def smooth(train: Train) -> Callable[..., Outcome]:
+    """Return the method of `sizing.problem` for a rated drive.
+
+    It returns the best design that the exact rating accepts, with a bound.
+    """
+
+    def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
+        """Ipopt on the smooth form from the bounding program; the seed changes nothing."""
+        return _outcome(train, problem, Clock(budget, watch))
+
+    return run
+
+
+def choices(train: Train) -> Iterator[Choice]:
+    """Return every combination of what the smooth form needs fixed beforehand."""
+    stages = [
+        product(*(s.choices(bool(stage.toothing.helix_angle)) for s in stage.options[0].standards))
+        if stage.options
+        else [()]
+        for stage in train.stages
+    ]
+    return product(*stages)
+
+
+def smooth_problem(train: Train, choice: Choice, trims: Array | None = None) -> Problem:
+    """Return the smooth problem in one combination.
+
+    trims (stages, standards, 4): factors of the smooth safeties, by default 1. Variables are those
+    of `sizing.problem` and the unknowns of the standards, one component a stage.
+    """
+    unknowns = _unknowns(train)
+    trims = np.ones((len(train.stages), 2, 4)) if trims is None else trims
+
+    def evaluate(x: Any, p: Any) -> Terms:
+        extra: dict[str, dict[str, Any]] = {"defines": {}, "equal": {}}
+
+        def rated(k: int, pair: GearPair, torque: Any, speed: Any, safety: Any) -> dict[str, Any]:
+            rows: dict[str, Any] = {}
+            for j, standard in enumerate(train.stages[k].options[0].standards):
+                suffix = standard.suffix
+                own = {n: each(getattr(x, n + suffix))[k] for n in standard.unknowns}
+                made = standard.smooth(pair, torque, speed, choice[k][j], own)
+                for i, (mode, actual) in enumerate(zip(MODES, made.safeties, strict=True)):
+                    rows[mode + suffix] = safety[i // 2] / (actual * trims[k, j, i])
+                rows |= {n + suffix: v for n, v in made.limits.items()}
+                for part in extra:
+                    found = getattr(made, part).items()
+                    extra[part] |= {f"{n}{suffix}[{k + 1}]": v for n, v in found}
+            return rows
+
+        found = terms(train, p, sizing.text_pairs(train, x, p), rated=rated)
+        equal = {**found.equal, **extra["equal"]}
+        return Terms(found.minimise, found.limits, extra["defines"], equal)
+
+    columns = (*sizing.variables(train), *unknowns)
+    return Problem("sizing", columns, sizing.parameters(train), evaluate)
+
+
+def _unknowns(train: Train) -> tuple[Var, ...]:
+    size, found = len(train.stages), {}
+    for stage in train.stages:
+        for standard in stage.options[0].standards if stage.options else ():
+            for name, (low, high, log) in standard.unknowns.items():
+                at = max(low, 1.0) if log else 0.5 * (low + high)
+                own = name + standard.suffix
+                lower, upper, guess = ((end,) * size for end in (low, high, at))
+                found[own] = Var(own, "", lower, upper, guess, size, log=log, search=True)
+    return tuple(found.values())
+
+
+def bounding(train: Train, choice: Choice, most: float = math.inf) -> Problem | None:
+    """Return a geometric program below the drive in one combination; None where there is none.
+
+    most: the bound need only hold for designs of at most this objective.
+    """
+    floors: list[list[Any]] = []
+    for k, stage in enumerate(train.stages):
+        box = _box(train, k, most)
+        standards = stage.options[0].standards if stage.options else ()
+        floors.append([s.floor(box, choice[k][j]) for j, s in enumerate(standards)])
+    if any(floor is None for row in floors for floor in row):
+        return None
+
+    def evaluate(x: Any, p: Any) -> Terms:
+        def rated(k: int, pair: GearPair, torque: Any, speed: Any, safety: Any) -> dict[str, Any]:
+            rows: dict[str, Any] = {}
+            for standard, floor in zip(
+                train.stages[k].options[0].standards, floors[k], strict=True
+            ):
+                used = floor.utilisations(pair, torque, speed, safety)
+                rows |= {n + standard.suffix: v for n, v in used.items()}
+                rows |= {n + standard.suffix: v for n, v in floor.limits(pair).items()}
+            return rows
+
+        return terms(train, p, sizing.text_pairs(train, x, p), rated=rated)
+
+    return Problem("bounding", sizing.variables(train), sizing.parameters(train), evaluate)
+
+
+def _box(train: Train, k: int, most: float) -> Box:
+    """Return what holds for a stage of every design of at most an objective."""
+    stage, highest = train.stages[k], float(train.highest_ratio)
+    numbers = SimpleNamespace(**train.numbers())
+    teeth = max(1.0, numbers.pinion_low[k]), min(MOST, numbers.pinion_high[k])
+    alone = len(train.stages) == 1
+    low = max(float(train.lowest_ratio) if alone else 1.0, numbers.ratio_low[k])
+    ratio = low, max(low, min(highest, numbers.ratio_high[k]))
+    speed = train.speed if k == 0 else train.speed / highest, train.speed
+    return Box(teeth, ratio, speed, _widest(train, k, low, most), stage.toothing)
+
+
+def _widest(train: Train, k: int, ratio: float, most: float) -> float:
+    """Return the largest face width [mm] of a stage of at most this share; inf: unknown."""
+    face = train.stages[k].face_width
+    if face.fixed is not None:
+        return float(face.fixed)
+    if not math.isfinite(most) or not math.isfinite(face.widest):
+        return math.inf
+    stage = train.stages[k].toothing
+    one = stage.of_diameter(stage.cosine / 20.0, 20.0, 1.0, ratio, face.widest)
+    alone = float(share(train, k, one))  # of d1 = 1 mm and the widest face
+    power = 1.0 / 3.0 if train.by_width else 1.0
+    return float(face.widest * (most / alone) ** power * (1.0 + FEASIBLE))
+
+
+@dataclass(frozen=True)
+class _Design:
+    """A design in real-valued teeth that the exact rating accepts.
+
+    x: point of `sizing.problem`; same: whether the smooth form is exact there; status: of Ipopt's
+    point, as certified.
+    """
+
+    value: float
+    x: Array
+    choice: Choice
+    same: bool
+    status: str
+
+
+def _outcome(train: Train, exact: Problem, clock: Clock) -> Outcome:
+    """Return the best design of all combinations with the bound of all."""
+    if train.several_options:
+        raise SolveError("lists of materials are for whole teeth: give a table [teeth]")
+    possible, designs = [], []
+    for choice in choices(train):
+        start, impossible = _start(train, choice, clock)
+        if impossible:
+            continue
+        possible.append(choice)
+        found = _design(train, exact, choice, start, clock)
+        if found is not None:
+            designs.append(found)
+            clock.best = min(d.value for d in designs)
+    designs.sort(key=lambda design: design.value)
+    designs += [_refined(train, exact, design, clock) for design in designs[:REFINED]]
+    best = min(designs, key=lambda design: design.value, default=None)
+    most = math.inf if best is None else best.value
+    return _claim(best, _bound(train, possible, most, clock), clock)
+
+
+def _refined(train: Train, exact: Problem, best: _Design, clock: Clock) -> _Design:
+    """Return the best design in choices that are closer to the exact rating, stage by stage."""
+    for k, pair in enumerate(sizing.pairs(train, best.x)):
+        for j, standard in enumerate(train.stages[k].options[0].standards):
+            row = best.choice[k]
+            for closer in standard.refined(pair, row[j]):
+                changed = (*row[:j], closer, *row[j + 1 :])
+                own = (*best.choice[:k], changed, *best.choice[k + 1 :])
+                made = _design(train, exact, own, best.x, clock)
+                if made is not None and made.value < best.value:
+                    best = made
+    return best
+
+
+def _claim(best: _Design | None, bound: float, clock: Clock) -> Outcome:
+    proof = {
+        "method": "dual",
+        "arithmetic": "double, with a rounding allowance",
+        "sentence": "Proof: a geometric program whose limits are below those of the ratings; its "
+        "bound is a dual one, computed from our own derivatives.",
+    }
+    done = not clock.stopped
+    if best is None:
+        if bound == math.inf and done:
+            return Outcome(None, infeasible=True, proof=proof, evaluations=clock.evaluations)
+        words = "no start led to a design that the ratings accept"
+        return Outcome(None, done, evaluations=clock.evaluations, message=words)
+    known = min(bound, best.value) if bound > -math.inf else None
+    words = "" if best.same else "the smooth form of the ratings was corrected by the exact one"
+    return Outcome(
+        best.x,
+        done,
+        bound=known,
+        proof=proof if known is not None else None,
+        stationary=best.same and best.status in ("optimal", "stationary"),
+        evaluations=clock.evaluations,
+        message=words,
+    )
+
+
+def _solved(clock: Clock, made: Problem) -> Result:
+    found = solve(made, "ipopt", clock.left)
+    clock.evaluations += found.evaluations
+    clock.tell()
+    return found
+
+
+def _start(train: Train, choice: Choice, clock: Clock) -> tuple[Array | None, bool]:
+    """Return the optimum of the bounding program, and whether that is proven impossible."""
+    made = bounding(train, choice)
+    if made is None:
+        return None, False
+    found = _solved(clock, made)
+    return _point(made, found), found.status == "infeasible"
+
+
+def _bound(train: Train, every: list[Choice], most: float, clock: Clock) -> float:
+    """Return a bound on designs of at most an objective, over cells of teeth and ratios.
+
+    The cell with the least bound is halved where its range is the widest, CELLS times at most.
+    """
+    if not every:
+        return math.inf
+    order = count()
+    cells = [(_cell_bound(train, c, most, clock), next(order), train, c) for c in every]
+    heapq.heapify(cells)
+    for _ in range(CELLS):
+        least, _, worst, choice = cells[0]
+        halves = _halved(worst)
+        if clock.stopped or not halves or not -math.inf < least < most * (1.0 - CLOSE):
+            break
+        heapq.heappop(cells)
+        for half in halves:
+            own = max(least, _cell_bound(half, choice, most, clock))
+            heapq.heappush(cells, (own, next(order), half, choice))
+    return float(cells[0][0])
+
+
+def _halved(train: Train) -> list[Train]:
+    """Return a drive with half the range of a stage's teeth or ratios, twice; none: too narrow."""
+    highest, spans = train.highest_ratio, list[tuple[int, str, Fraction, Fraction]]()
+    for k, stage in enumerate(train.stages):
+        low, high = stage.pinion_teeth
+        spans.append((k, "pinion_teeth", Fraction(low), Fraction(high or FAR * low)))
+        if len(train.stages) > 1:
+            spans.append((k, "ratio", stage.ratio[0], min(highest, stage.ratio[1] or highest)))
+    k, name, least, most = max(spans, key=lambda span: float(span[3] / span[2]))
+    if most < least * NARROW:
+        return []
+    stage, middle = train.stages[k], Fraction(math.sqrt(least * most))
+    last = getattr(stage, name)[1]
+    halves: list[Any] = [{name: ends} for ends in ((least, middle), (middle, last))]
+    stages = [train.stages[:k] + (replace(stage, **h),) + train.stages[k + 1 :] for h in halves]
+    return [replace(train, stages=made) for made in stages]
+
+
+def _cell_bound(train: Train, choice: Choice, most: float, clock: Clock) -> float:
+    made = bounding(train, choice, most)
+    if made is None or clock.stopped:
+        return -math.inf
+    found = _solved(clock, made)
+    if found.status == "infeasible":
+        return math.inf
+    return -math.inf if found.bound is None else found.bound
+
+
+def _point(made: Problem, found: Result) -> Array | None:
+    if not found.design:
+        return None
+    values = [np.atleast_1d(v) for v in found.design.values()]
+    return np.concatenate(values).astype(float)
+
+
+def _design(
+    train: Train,
+    exact: Problem,
+    choice: Choice,
+    start: Array | None,
+    clock: Clock,
+) -> _Design | None:
+    """Return the best design in a combination, as the exact rating accepts it."""
+    at = exact.bounds()[2] if start is None else start
+    trims, size = np.ones((len(train.stages), 2, 4)), len(at)
+    best: _Design | None = None
+    for _ in range(ROUNDS):
+        made = smooth_problem(train, choice, trims)
+        found = _solved(clock, made.starting(np.concatenate([at, _guess(train, at, choice)])))
+        point = _point(made, found)
+        if point is None or clock.stopped:
+            break
+        at = np.clip(point[:size], *exact.bounds()[:2])
+        ratio = _errors(train, at, choice, made, point, trims)
+        worst = exact.batch(at[None])
+        if max(worst.G.max(initial=0.0), 1.0 + np.abs(worst.H - 1.0).max(initial=0.0)) <= SAFE:
+            value, same = float(worst.F[0, 0]), bool(np.all(np.abs(trims * ratio - 1.0) <= EQUAL))
+            if best is None or value < best.value:
+                best = _Design(value, at, choice, same, found.status)
+        if not np.isfinite(ratio).all() or np.abs(ratio - 1.0).max() <= SAME:
+            break
+        trims = trims * ratio
+    return best
+
+
+def _loads(train: Train, pairs: tuple[GearPair, ...]) -> Iterator[tuple[GearPair, float, float]]:
+    torque = train.torque
+    for pair in pairs:
+        yield pair, torque, float(train.speed_at(torque))
+        torque *= float(pair.ratio)
+
+
+def _guess(train: Train, at: Array, choice: Choice) -> Array:
+    """Return the unknowns of the standards at a point, in the order of the variables."""
+    columns: dict[str, list[float]] = {v.name: list(each(v.guess)) for v in _unknowns(train)}
+    for k, pair in enumerate(sizing.pairs(train, at)):
+        for j, standard in enumerate(train.stages[k].options[0].standards):
+            for name, value in standard.guess(pair, choice[k][j]).items():
+                columns[name + standard.suffix][k] = value
+    return np.array([v for column in columns.values() for v in column])
+
+
+def _errors(
+    train: Train, at: Array, choice: Choice, made: Problem, point: Array, trims: Array
+) -> Array:
+    """Return the exact safeties over the trimmed smooth ones (stages, standards, 4)."""
+    ratio = np.ones_like(trims)
+    x = namespace(made.variables, [float(v) for v in point])
+    for k, (pair, torque, speed) in enumerate(_loads(train, sizing.pairs(train, at))):
+        for j, standard in enumerate(train.stages[k].options[0].standards):
+            own = {n: each(getattr(x, n + standard.suffix))[k] for n in standard.unknowns}
+            smooth = standard.smooth(pair, torque, speed, choice[k][j], own).safeties
+            exact = standard.safeties(pair, torque, speed)
+            ratio[k, j] = np.array(exact, float) / (np.array(smooth, float) * trims[k, j])
+    return ratio
