@@ -31,6 +31,7 @@ KEYS = {  # of [x-expected], as the tests below read them
 }
 LONG = (
     "three_stage_by_agma",
+    "three_stage_by_both",
     "thousand_in_two_stages",
     "three_stage_small_wheels",
     "elevator_small_wheels",
