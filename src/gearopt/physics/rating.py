@@ -3,7 +3,7 @@
 A rating is of floats; tuples are of pinion and wheel.
 """
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -117,6 +117,9 @@ class LifeCurve(Protocol):
     def life(self, factor: Any) -> Any:
         """Return the number of cycles at which a strength is reached: 0 above all of them."""
 
+    def take(self, place: Any) -> "LifeCurve":
+        """Return that of some rows of arrays."""
+
 
 @dataclass(frozen=True)
 class Level:
@@ -128,6 +131,11 @@ class Level:
     cycles: Any
     curve: LifeCurve
     stress: Any
+
+    def take(self, place: Any) -> "Level":
+        """Return that of some rows of arrays."""
+        cycles, stress = (x[place] if np.ndim(x) else x for x in (self.cycles, self.stress))
+        return Level(cycles, self.curve.take(place), stress)
 
 
 def miner_sum(cycles: Iterable[Any], lives: Iterable[Any]) -> Any:
@@ -148,6 +156,26 @@ def damage(levels: Sequence[Level], growth: Any = 1.0) -> Any:
 
 
 @np.errstate(divide="ignore", invalid="ignore", over="ignore")
+def safety_ends(levels: Sequence[Level]) -> tuple[Any, Any]:
+    """Return between what numbers the safety factor of a spectrum lies, of floats or arrays.
+
+    Above: no level may reach its strength at its own cycles; below: none reaches that at the
+    cycles of all.
+    """
+    loaded = [~(np.less_equal(x.cycles, 0.0) | np.less_equal(x.stress, 0.0)) for x in levels]
+    total = sum(np.where(on, x.cycles, 0.0) for on, x in zip(loaded, levels, strict=True))
+    ends = []
+    for cycles in ([total] * len(levels), [x.cycles for x in levels]):
+        made = [
+            np.where(on, x.curve.factor(n) / x.stress, np.inf)
+            for on, x, n in zip(loaded, levels, cycles, strict=True)
+        ]
+        ends.append(np.minimum.reduce(np.broadcast_arrays(*made)))
+    low, high = np.broadcast_arrays(*ends)
+    return low, high
+
+
+@np.errstate(divide="ignore", invalid="ignore", over="ignore")
 def spectrum_safety(levels: Sequence[Level]) -> Any:
     """Return the factor by which all stresses of a spectrum may grow until Miner's sum is 1.
 
@@ -155,49 +183,41 @@ def spectrum_safety(levels: Sequence[Level]) -> Any:
     their shortest life, so that a level may at most reach the strength there. Infinite without
     load.
     """
-    loaded = [~(np.less_equal(x.cycles, 0.0) | np.less_equal(x.stress, 0.0)) for x in levels]
-    total = sum(np.where(on, x.cycles, 0.0) for on, x in zip(loaded, levels, strict=True))
-
-    def least(cycles: Any) -> Any:
-        ends = [
-            np.where(on, x.curve.factor(x.cycles if cycles is None else cycles) / x.stress, np.inf)
-            for on, x in zip(loaded, levels, strict=True)
-        ]
-        return np.minimum.reduce(np.broadcast_arrays(*ends))
-
-    def excess(growth: Any) -> Any:
-        return np.log(damage(levels, np.exp(growth)))
-
-    low, high = least(total), least(None)
-    known = ~(low < high)
-    found = np.exp(_root(excess, np.log(np.where(known, 1.0, low)), np.log(high)))
-    return np.where(known, high, np.clip(found, low, high))[()]
+    low, high = safety_ends(levels)
+    found, some = np.array(high), low < high
+    root = _root([x.take(some) for x in levels], low[some], high[some])
+    found[some] = np.clip(root, low[some], high[some])
+    return found[()]
 
 
-def _root(law: Callable[[Any], Any], low: Any, high: Any) -> Any:
-    """Return where a rising law crosses 0, or jumps past it; the higher end where it does neither.
+def _root(levels: Sequence[Level], low: Any, high: Any) -> Any:
+    """Return where Miner's sum is 1 or jumps past it, between low and high (n,).
 
-    low, high: arrays of numbers.
+    high where it stays below.
     Source: T. R. Chandrupatla, Advances in Engineering Software 28 (1997) 145-149.
     """
-    a, b = np.array(high, float), np.array(low, float)
-    fa, fb, share = law(a), law(b), np.full(a.shape, 0.5)
-    below = fa <= 0.0
+    found, place = np.array(high), np.arange(len(high))
+    a, b, share = np.log(high), np.log(low), np.full(len(high), 0.5)
+    fa, fb = (np.log(damage(levels, np.exp(x))) for x in (a, b))
+    done = fa <= 0.0
     for _ in range(STEPS):
+        if (keep := ~done).sum() < len(done):
+            place, levels = place[keep], [x.take(keep) for x in levels]
+            a, b, fa, fb, share = (v[keep] for v in (a, b, fa, fb, share))
+        if not len(place):
+            break
         x = a + share * (b - a)
-        f = law(x)
+        f = np.log(damage(levels, np.exp(x)))
         same = np.sign(f) == np.sign(fa)
         c, fc = np.where(same, a, b), np.where(same, fa, fb)
         b, fb = np.where(same, b, a), np.where(same, fb, fa)
         a, fa = x, f
         least = ROUNDING * (1.0 + np.abs(a)) / np.abs(b - a)
-        done = below | ~(least < 0.5) | (fa == 0.0)
-        if done.all():
-            break
+        done = ~(least < 0.5) | (fa == 0.0)
+        found[place] = np.exp(np.where(fa <= 0.0, a, b))
         xi, phi = (a - b) / (c - b), (fa - fb) / (fc - fb)
         share = fa / (fb - fa) * fc / (fb - fc)
         share = share + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
         curved = (phi**2 < xi) & ((1.0 - phi) ** 2 < 1.0 - xi) & np.isfinite(share)
-        share = np.clip(np.where(curved, share, 0.5), np.where(done, 0.0, least), 1.0 - least)
-        share = np.where(done, 0.0, share)
-    return np.where(below, high, np.where(fa <= 0.0, a, b))
+        share = np.clip(np.where(curved, share, 0.5), least, 1.0 - least)
+    return found

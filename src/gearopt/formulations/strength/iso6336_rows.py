@@ -20,7 +20,7 @@ from gearopt.physics.iso6336.accuracy import WIDTHS, helix_slope
 from gearopt.physics.iso6336.case import life_curve
 from gearopt.physics.iso6336.curves import Curve
 from gearopt.physics.iso6336.tooth_form import load_sharing
-from gearopt.physics.rating import Level, spectrum_safety
+from gearopt.physics.rating import Level, safety_ends, spectrum_safety
 
 if TYPE_CHECKING:
     from gearopt.formulations.strength.iso6336 import Iso6336
@@ -56,25 +56,34 @@ class IsoRows:
         """Return the lower bound of the greatest part that is used: of load, so of S_H squared."""
         boxes = [Box(self.standard, at, (low, high)) for at in self.levels]
         parts = [box.parts() for box in boxes]
-        made = parts[0] if len(parts) == 1 else self._spectrum(parts)
-        found = np.maximum(np.maximum(made[0], made[1]), np.maximum(made[2], made[3]))
+        found = np.maximum.reduce(parts[0]) if len(parts) == 1 else self._spectrum(parts)
         at = self.levels[0]
         rated = (boxes[0].overlap[MOST] >= at["overlap"]) & (at["contact"] >= 1.0)
         return np.where(rated & ~np.isnan(found), found, np.inf)
 
-    def _spectrum(self, parts: list[list[Any]]) -> list[Any]:
-        """Return what all levels use together, from the stresses of each."""
-        found = []
-        for place, (name, k) in enumerate(MODES):
-            material, loads = self.standard.materials[k], []
-            curve = life_curve(material, self.standard.practice, name == "contact")
-            for at, part in zip(self.levels, parts, strict=True):
-                values = [at[f"{name}{k}_{j}"] for j in range(len(curve.cycles))]
-                stress = part[place] ** (0.5 if name == "contact" else 1.0)
-                loads.append(Level(at[f"cycles{k}"], Curve(curve.cycles, tuple(values)), stress))
-            power = 2.0 if name == "contact" else 1.0
-            found.append(spectrum_safety(loads) ** -power)
+    def _spectrum(self, parts: list[list[Any]]) -> Any:
+        """Return the greatest part that all levels use together, from the stresses of each."""
+        made = [self._mode(parts, place) for place in range(len(MODES))]
+        powers = [-2.0 if name == "contact" else -1.0 for name, _ in MODES]
+        ends = [safety_ends(loads) for loads in made]
+        found = np.maximum.reduce([e[1] ** p for e, p in zip(ends, powers, strict=True)])
+        least = found.copy()
+        for levels, (low, _), power in zip(made, ends, powers, strict=True):
+            some = low**power > least  # else another one governs
+            used = spectrum_safety([one.take(some) for one in levels]) ** power
+            found[some] = np.maximum(found[some], used)
         return found
+
+    def _mode(self, parts: list[list[Any]], place: int) -> list[Level]:
+        """Return the levels of load of a gear by one mode."""
+        (name, k), standard = MODES[place], self.standard
+        curve = life_curve(standard.materials[k], standard.practice, name == "contact")
+        loads = []
+        for at, part in zip(self.levels, parts, strict=True):
+            values = tuple(at[f"{name}{k}_{j}"] for j in range(len(curve.cycles)))
+            stress = np.sqrt(part[place]) if name == "contact" else part[place]
+            loads.append(Level(at[f"cycles{k}"], Curve(curve.cycles, values), stress))
+        return loads
 
     def border(self, width: Array) -> Array:
         """Return the next width at which a refusal ends, K_v has other laws, or f_Hbeta a step."""

@@ -5,6 +5,7 @@ Numbers of cycles and strengths are floats or arrays.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -39,20 +40,29 @@ class Curve:
 
     def factor(self, cycles: Any) -> Any:
         """Return the strength at a number of cycles."""
-        at = np.log(np.maximum(cycles, self.cycles[0]))
-        found = np.log(self.values[0])
+        at, logs = np.log(np.maximum(cycles, self.cycles[0])), self._logs
+        found = logs[0]
         for k in range(len(self.cycles) - 1):
             first, second = np.log(self.cycles[k]), np.log(self.cycles[k + 1])
-            drop = np.log(self.values[k + 1]) - np.log(self.values[k])
+            drop = logs[k + 1] - logs[k]
             found = found + drop * np.clip((at - first) / (second - first), 0.0, 1.0)
         return np.exp(found)
+
+    def take(self, place: Any) -> "Curve":
+        """Return the curves of some rows of arrays."""
+        return Curve(self.cycles, tuple(v[place] if np.ndim(v) else v for v in self.values))
+
+    @cached_property
+    def _logs(self) -> list[Any]:
+        """Logarithms of the values."""
+        return [np.log(each) for each in self.values]
 
     def life(self, value: Any) -> Any:
         """Return the number of cycles at which a strength is reached; the inverse of `factor`.
 
         0 above the static strength, infinite below that of the last knot.
         """
-        logs = [np.log(each) for each in self.values]
+        logs = self._logs
         with np.errstate(divide="ignore", invalid="ignore"):
             at = np.log(value)
             found = np.log(self.cycles[0]) + 0.0 * logs[0]
