@@ -205,8 +205,10 @@ rims and webs enter the ratings alone.
 
 A load spectrum is what the gears carry: Miner's sum of all levels `[[load]]` gives the safety
 factors. A K-factor and unit load in `[limits]` are limits beside the ratings
-(`problems/sized_and_rated.toml`: {sized}, so that they alone bind). Without `[teeth]` they are
-the only limits yet, and the rating tells whether the gears are safe. Gears and box at once
+(`problems/sized_and_rated.toml`: {sized}, so that they alone bind). Without `[teeth]`, or by the
+method `smooth`, sizes are real numbers, with a proven lower bound; ISO 6336, spectra and
+`materials` limit whole teeth alone, and of real-valued ones only a K-factor and unit load, where
+they are given: the rating then tells whether the gears are safe. Gears and box at once
 (`together`) and the two processes size by load limits alone and are refused beside `[rating]`.
 
 ## What is not rated

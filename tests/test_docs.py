@@ -171,7 +171,7 @@ def test_schema_command_prints_what_the_library_holds():
 
 def test_every_method_has_its_row():
     page = text("docs/methods.md")
-    own = ("exact", "process-one", "process-two", "hop", "sa", "sa-polish", "sa-paper")
+    own = ("exact", "process-one", "process-two", "hop", "sa", "sa-polish", "sa-paper", "smooth")
     for name in (*own, *back_ends()):
         assert f"| `{name}` |" in page, name
 

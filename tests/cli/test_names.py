@@ -56,7 +56,13 @@ def test_words_begin_as_typed():
     assert tuple(word for word, _ in names.kind_words("")) == KINDS
     assert [word for word, _ in names.kind_words("d")] == ["drive"]
     assert tuple(word for word, _ in names.bench_words("")) == BENCHES
-    assert [w for w, _ in names.method_words("s")] == ["sa", "sa-polish", "sa-paper", "scip"]
+    assert [w for w, _ in names.method_words("s")] == [
+        "sa",
+        "sa-polish",
+        "sa-paper",
+        "smooth",
+        "scip",
+    ]
     assert dict(names.method_words("exact"))["exact"] == "compound, drive, servo"
     assert names.method_lists("exact,an") == ["exact,annealing"]
     assert names.system_words("i") == ["inch"]

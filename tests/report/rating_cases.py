@@ -126,6 +126,9 @@ input_speed = "1450 rpm"
 output_speed = "300 rpm"
 ratio_tolerance = "1 %"
 [gears]
+materials = ["steel"]
+[[material]]
+name = "steel"
 treatment = "through-hardened"
 hardness = "200 HB"
 [[stage]]

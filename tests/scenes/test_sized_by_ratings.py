@@ -93,12 +93,12 @@ def test_load_limits_beside_a_rating_are_limits_too(factor):
     assert both.value == pytest.approx(binding.value, rel=1e-12)
 
 
-def test_real_valued_teeth_are_sized_by_load_limits_alone():
-    """The rating then only tells whether the gears are safe."""
-    more = {"minimum_contact_safety": 9}
-    both = gearopt.solve(drive(limits=LOADS, rating=more, teeth=None))
-    alone = gearopt.solve(drive(limits=LOADS, rating=None, gears=None, teeth=None))
-    assert both.value == alone.value and not both.design["rating"]["safe"]
+@pytest.mark.slow
+def test_real_valued_teeth_are_below_whole_ones_and_above_their_bound():
+    whole = gearopt.solve(drive())
+    real = gearopt.solve(drive(teeth=None, limits={"module": ["1 mm", "10 mm"]}))
+    assert real.method == "smooth" and real.design["rating"]["safe"]
+    assert real.bound <= real.value <= whole.value * (1.0 + 1e-9)
 
 
 @pytest.mark.parametrize("standard", ["agma", "both"])
@@ -195,9 +195,34 @@ def test_mistakes_are_one_message(name):
     assert len(refused.value.errors) == 1
 
 
-def test_real_valued_teeth_are_not_sized_by_ratings_yet():
-    with pytest.raises(SolveError, match=r"a table \[teeth\]"):
-        gearopt.solve(drive(teeth=None))
+@pytest.mark.parametrize(
+    ("tables", "told"),
+    [
+        ({"load": [{"power": "5 kW", "share": 1}]}, "limit whole teeth alone"),
+        ({"rating": {"standard": "both", "iso6336": {"accuracy_grade": 6}}}, "ISO 6336"),
+    ],
+    ids=["spectrum", "ISO"],
+)
+def test_what_limits_no_real_valued_teeth_is_named(tables, told):
+    with pytest.raises(SolveError, match=told):
+        gearopt.solve(drive(teeth=None, **tables))
+
+
+def test_load_limits_alone_size_real_valued_teeth_that_ratings_cannot():
+    """The rating then only tells whether the gears are safe."""
+    iso = {"standard": "both", "iso6336": {"accuracy_grade": 6}, "minimum_contact_safety": 9}
+    both = gearopt.solve(drive(limits=LOADS, rating=iso, teeth=None))
+    alone = gearopt.solve(drive(limits=LOADS, rating=None, gears=None, teeth=None))
+    assert both.value == alone.value and not both.design["rating"]["safe"]
+
+
+def test_the_best_number_of_stages_is_that_of_each():
+    of_all = {"face_width_over_diameter": 0.6}
+    tables = drive(stage=[], gears=of_all, duty={"ratio": 8}) | {"stages": [1, 2]}
+    del tables["stage"]
+    found = gearopt.solve(tables)
+    alone = [gearopt.solve(tables | {"stages": n}).value for n in (1, 2)]
+    assert found.status == "optimal" and found.value == pytest.approx(min(alone), rel=1e-12)
 
 
 def test_the_file_to_start_from_has_a_safe_answer():

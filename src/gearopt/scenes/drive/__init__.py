@@ -42,9 +42,18 @@ __all__ = [
     "solve",
 ]
 WEAKER = " Its contact ratio is less than the one given, its root is weaker."
-METHODS = ("exact", "process-one", "process-two", "sa", "sa-polish", "sa-paper")  # its own
+METHODS = (
+    "exact",
+    "process-one",
+    "process-two",
+    "sa",
+    "sa-polish",
+    "sa-paper",
+    "smooth",
+)  # its own
 ANY = 1e9  # gap of a design that need not be the best
-CONTINUOUS = ("ipopt", "gp", "multistart")  # methods that take no whole teeth
+SMOOTH = "smooth"  # of real-valued sizes that ratings limit
+CONTINUOUS = ("ipopt", "gp", "multistart", SMOOTH)  # methods that take no whole teeth
 
 
 def solve(scene: Scene, ask: Ask) -> Result:
@@ -288,7 +297,8 @@ def compared(scene: Scene) -> tuple[str, ...]:
     """Return the methods of a comparison that names none."""
     if scene.layout is None:
         asked = (name.replace("_", "-") for name in PROCESSES if getattr(scene, name) is not None)
-        return ("exact", *asked, "ipopt", "annealing", "nsga2")
+        real = ("ipopt",) if not scene.by_ratings else (SMOOTH,) * scene.rated_real
+        return ("exact", *asked, *real, "annealing", "nsga2")
     if scene.layout.together:
         return ("exact", "ipopt")
     return ("exact", "sa", "sa-polish", "multistart", "nsga2")
@@ -330,11 +340,13 @@ def _continuous(scene: Scene, method: str | None) -> bool:
     if scene.teeth is None and method in ("exact", *(n.replace("_", "-") for n in PROCESSES)):
         raise SolveError(f"the method {method} needs a [teeth] table in the file")
     continuous = scene.teeth is None or method in CONTINUOUS
-    if continuous and scene.by_ratings:
+    if continuous and scene.by_ratings and not scene.rated_real:
         raise SolveError(
-            "gears that [rating] limits have no real-valued sizes yet: write a table [teeth], and "
-            "use a method of whole teeth"
+            "ISO 6336, load spectra and materials to choose from limit whole teeth alone: write a "
+            "table [teeth], and use a method of whole teeth"
         )
+    if continuous and scene.by_ratings and method not in (None, SMOOTH):
+        raise SolveError(f"{method} takes no real-valued gears that ratings limit; smooth does")
     return continuous
 
 

@@ -194,10 +194,16 @@ class Scene(Table):
     def by_ratings(self) -> bool:
         """Return whether the safety factors of [rating] limit the gears that are to be sized.
 
-        Load limits beside them size real-valued teeth alone.
+        Load limits beside them size alone what ratings cannot.
         """
-        alone = self.limits.loaded and self.teeth is None
+        alone = self.limits.loaded and self.teeth is None and not self.rated_real
         return self.rating is not None and self.limited and not alone
+
+    @property
+    def rated_real(self) -> bool:
+        """Return whether ratings can limit real-valued teeth: by AGMA, one load, no choice."""
+        asked = self.rating
+        return asked is not None and not (asked.by_iso6336 or self.load or self.material)
 
     @property
     def law(self) -> Law:
