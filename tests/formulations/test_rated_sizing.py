@@ -6,7 +6,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from rated_drives import FREE, agma, rated_drive
+from rated_drives import FREE, agma, by, rated_drive
 
 from gearopt.formulations import rated_sizing, sizing, teeth
 from gearopt.formulations.gear_train import FaceWidth, Stage, Train
@@ -158,3 +158,17 @@ def test_what_the_bounding_law_excludes_is_impossible():
     stage = replace(train.stages[0], wheel_diameter=F(150))
     found = solve(sizing.problem(replace(train, stages=(stage,))))
     assert found.status == "infeasible" and found.value is None
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("names", [("iso",), ("agma", "iso")])
+def test_what_iso_6336_limits_is_rated_by_it(names):
+    """Its own rating, with steps, accepts what the smooth form found; no bound is known."""
+    train = rated_drive(4, [FREE], helix=0.0, options=by(*names))
+    found = solve(sizing.problem(train))
+    (pair,) = sizing.pairs(train, np.array(list(found.design.values()), float))
+    standard = train.stages[0].options[0].standards[-1]
+    assert min(standard.safeties(pair, train.torque, train.speed)) >= 1.0 - 1e-8
+    assert found.status in ("feasible", "stationary")
+    assert (found.bound is None) == (names == ("iso",))
+    assert found.value < 1.05 * solve(teeth.problem(train)).value

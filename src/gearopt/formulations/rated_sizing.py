@@ -25,16 +25,19 @@ from gearopt.optimise.clock import Clock
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import FEASIBLE, Budget, Outcome, Result, Watch
 from gearopt.optimise.solve import solve
-from gearopt.optimise.terms import Array, Terms, Var, each, namespace
+from gearopt.optimise.terms import Array, Param, Terms, Var, each, namespace
 from gearopt.physics.gears import GearPair
 
 Choice = tuple[tuple[str, ...], ...]  # of every stage and standard
 
 ROUNDS = 4  # of correcting the smooth form by the exact one
 SAFE = 1.0 + FEASIBLE  # utilisation up to which the exact rating accepts a design
+GROWTH = tuple(10.0 ** (0.5 * k) for k in range(-14, -3))  # of lengths, in a repair
 EQUAL = 1e-7  # relative; of safety factors that are those of the exact rating
 SAME = 1e-9  # of corrections that no longer change
-REFINED = 3  # designs whose choices are refined
+ITERATIONS = 300  # of Ipopt, of which smooth problems take some tens
+FINER = (1.0, 1.4, 2.0)  # times the least teeth, of starts without a bounding program
+REFINED = 4  # best designs whose choices are refined
 CLOSE = 1e-7  # gap at which a bound is close enough
 CELLS = 40  # of teeth and ratios, by which a bound is made better
 NARROW = 1.01  # ratio of the ends of a cell that is not halved
@@ -66,14 +69,14 @@ def choices(train: Train) -> Iterator[Choice]:
     return product(*stages)
 
 
-def smooth_problem(train: Train, choice: Choice, trims: Array | None = None) -> Problem:
+def smooth_problem(train: Train, choice: Choice) -> Problem:
     """Return the smooth problem in one combination.
 
-    trims (stages, standards, 4): factors of the smooth safeties, by default 1. Variables are those
-    of `sizing.problem` and the unknowns of the standards, one component a stage.
+    Variables are those of `sizing.problem` and the unknowns of the standards, one component a
+    stage. The parameter trim has factors of the smooth safeties, by default 1, by stage, standard
+    (two) and mode.
     """
-    unknowns = _unknowns(train)
-    trims = np.ones((len(train.stages), 2, 4)) if trims is None else trims
+    unknowns, size = _unknowns(train), 8 * len(train.stages)
 
     def evaluate(x: Any, p: Any) -> Terms:
         extra: dict[str, dict[str, Any]] = {"defines": {}, "equal": {}}
@@ -85,7 +88,7 @@ def smooth_problem(train: Train, choice: Choice, trims: Array | None = None) -> 
                 own = {n: each(getattr(x, n + suffix))[k] for n in standard.unknowns}
                 made = standard.smooth(pair, torque, speed, choice[k][j], own)
                 for i, (mode, actual) in enumerate(zip(MODES, made.safeties, strict=True)):
-                    rows[mode + suffix] = safety[i // 2] / (actual * trims[k, j, i])
+                    rows[mode + suffix] = safety[i // 2] / (actual * p.trim[8 * k + 4 * j + i])
                 rows |= {n + suffix: v for n, v in made.limits.items()}
                 for part in extra:
                     found = getattr(made, part).items()
@@ -97,7 +100,8 @@ def smooth_problem(train: Train, choice: Choice, trims: Array | None = None) -> 
         return Terms(found.minimise, found.limits, extra["defines"], equal)
 
     columns = (*sizing.variables(train), *unknowns)
-    return Problem("sizing", columns, sizing.parameters(train), evaluate)
+    trim = Param("trim", "", (1.0,) * size, size)
+    return Problem("sizing", columns, (*sizing.parameters(train), trim), evaluate)
 
 
 def _unknowns(train: Train) -> tuple[Var, ...]:
@@ -122,7 +126,7 @@ def bounding(train: Train, choice: Choice, most: float = math.inf) -> Problem | 
         box = _box(train, k, most)
         standards = stage.options[0].standards if stage.options else ()
         floors.append([s.floor(box, choice[k][j]) for j, s in enumerate(standards)])
-    if any(floor is None for row in floors for floor in row):
+    if any(row and all(floor is None for floor in row) for row in floors):
         return None
 
     def evaluate(x: Any, p: Any) -> Terms:
@@ -131,6 +135,8 @@ def bounding(train: Train, choice: Choice, most: float = math.inf) -> Problem | 
             for standard, floor in zip(
                 train.stages[k].options[0].standards, floors[k], strict=True
             ):
+                if floor is None:
+                    continue
                 used = floor.utilisations(pair, torque, speed, safety)
                 rows |= {n + standard.suffix: v for n, v in used.items()}
                 rows |= {n + standard.suffix: v for n, v in floor.limits(pair).items()}
@@ -192,9 +198,11 @@ def _outcome(train: Train, exact: Problem, clock: Clock) -> Outcome:
         if impossible:
             continue
         possible.append(choice)
-        found = _design(train, exact, choice, start, clock)
-        if found is not None:
-            designs.append(found)
+        made = smooth_problem(train, choice)
+        starts = [start] if start is not None else _starts(exact)
+        found = [_design(train, exact, choice, one, clock, made) for one in starts]
+        designs += [design for design in found if design is not None]
+        if designs:
             clock.best = min(d.value for d in designs)
     designs.sort(key=lambda design: design.value)
     designs += [_refined(train, exact, design, clock) for design in designs[:REFINED]]
@@ -243,8 +251,25 @@ def _claim(best: _Design | None, bound: float, clock: Clock) -> Outcome:
     )
 
 
+def _starts(exact: Problem) -> list[Array]:
+    """Return starts of more and more, smaller teeth."""
+    lower, upper, guess = exact.bounds()
+    names = [v.name for v, _ in exact.columns]
+    found = []
+    for factor in FINER:
+        change = {"module": 1.0 / factor, "pinion_teeth": factor}
+        found.append(
+            np.clip(
+                [g * change.get(n, 1.0) for g, n in zip(guess, names, strict=True)], lower, upper
+            )
+        )
+    return found
+
+
 def _solved(clock: Clock, made: Problem) -> Result:
-    found = solve(made, "ipopt", clock.left)
+    left = clock.left
+    most = ITERATIONS if left.evaluations is None else min(ITERATIONS, left.evaluations)
+    found = solve(made, "ipopt", replace(left, evaluations=most))
     clock.evaluations += found.evaluations
     clock.tell()
     return found
@@ -320,30 +345,47 @@ def _design(
     train: Train,
     exact: Problem,
     choice: Choice,
-    start: Array | None,
+    start: Array,
     clock: Clock,
+    made: Problem | None = None,
 ) -> _Design | None:
-    """Return the best design in a combination, as the exact rating accepts it."""
-    at = exact.bounds()[2] if start is None else start
-    trims, size = np.ones((len(train.stages), 2, 4)), len(at)
+    """Return the best design in a combination, as the exact rating accepts it.
+
+    made: the smooth problem of the combination, where it is known.
+    """
+    made = made or smooth_problem(train, choice)
+    trims, size, at = np.ones((len(train.stages), 2, 4)), len(start), start
     best: _Design | None = None
     for _ in range(ROUNDS):
-        made = smooth_problem(train, choice, trims)
+        made = made.at(trim=tuple(trims.ravel().tolist()))
         found = _solved(clock, made.starting(np.concatenate([at, _guess(train, at, choice)])))
         point = _point(made, found)
         if point is None or clock.stopped:
             break
         at = np.clip(point[:size], *exact.bounds()[:2])
         ratio = _errors(train, at, choice, made, point, trims)
-        worst = exact.batch(at[None])
-        if max(worst.G.max(initial=0.0), 1.0 + np.abs(worst.H - 1.0).max(initial=0.0)) <= SAFE:
-            value, same = float(worst.F[0, 0]), bool(np.all(np.abs(trims * ratio - 1.0) <= EQUAL))
+        safe = _grown(exact, at)
+        if safe is not None:
+            value = float(exact.batch(safe[None]).F[0, 0])
+            same = bool(np.all(np.abs(trims * ratio - 1.0) <= EQUAL)) and safe is at
             if best is None or value < best.value:
-                best = _Design(value, at, choice, same, found.status)
+                best = _Design(value, safe, choice, same, found.status)
         if not np.isfinite(ratio).all() or np.abs(ratio - 1.0).max() <= SAME:
             break
         trims = trims * ratio
     return best
+
+
+def _grown(exact: Problem, at: Array) -> Array | None:
+    """Return a design as it is, or as much larger as the exact rating needs; None: by too much."""
+    lengths = np.array([v.unit == "mm" for v, _ in exact.columns])
+    lower, upper, _ = exact.bounds()
+    for more in (0.0, *GROWTH):
+        here = at if more == 0.0 else np.where(lengths, at * (1.0 + more), at)
+        made = exact.batch(np.clip(here, lower, upper)[None])
+        if max(made.G.max(initial=0.0), 1.0 + np.abs(made.H - 1.0).max(initial=0.0)) <= SAFE:
+            return np.clip(here, lower, upper) if more else at
+    return None
 
 
 def _loads(train: Train, pairs: tuple[GearPair, ...]) -> Iterator[tuple[GearPair, float, float]]:

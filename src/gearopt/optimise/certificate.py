@@ -60,7 +60,7 @@ def certify(problem: Problem, outcome: Outcome, gap: float, exact: bool = False)
     point, or where a further point of the list is not feasible.
     """
     if not exact:
-        outcome = replace(outcome, bound=None, proof=None, stationary=False)
+        outcome = replace(outcome, bound=None, proof=None, stationary=None)
     for other in outcome.others:
         excess, worst = violation(problem, other, problem.batch(other[None]))
         if not excess <= FEASIBLE:
@@ -88,7 +88,7 @@ def certify(problem: Problem, outcome: Outcome, gap: float, exact: bool = False)
     before = Verdict(status, value, certificate=certificate, message=outcome.message)
     if outcome.bound is not None and math.isfinite(outcome.bound):
         return _claimed(problem, outcome, before, gap)
-    if outcome.stationary:
+    if outcome.stationary is not None:
         return before
     several = len(problem.rows.objectives) > 1  # then the first counts, and no multipliers do
     if several or any(v.discrete for v, _ in problem.columns):

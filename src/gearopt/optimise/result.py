@@ -95,8 +95,8 @@ class Outcome:
     proof["sentence"] states it for a reader, beside a bound or an impossibility.
     others: further points, of an exact algorithm in proven order, of several objectives the rest of
     the Pareto front. leaves: of a conic problem, the parts of its box with
-    their multipliers. message: what it has to say. stationary: of an own algorithm, that x was
-    certified as stationary in a traced form that equals the text there.
+    their multipliers. message: what it has to say. stationary: of an own algorithm, whether x was
+    certified as stationary in a traced form that equals the text there; None: to be judged.
     """
 
     x: Array | None
@@ -110,7 +110,7 @@ class Outcome:
     leaves: tuple["Leaf", ...] = ()
     evaluations: int = 0
     message: str = ""
-    stationary: bool = False
+    stationary: bool | None = None
 
 
 @dataclass(frozen=True)

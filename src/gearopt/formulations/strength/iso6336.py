@@ -10,14 +10,15 @@ from typing import Any
 import numpy as np
 
 from gearopt.formulations.strength.iso6336_rows import AT_ENDS, Columns, IsoRows
-from gearopt.formulations.strength.rated import Load
+from gearopt.formulations.strength.rated import Box, Load, Smooth
 from gearopt.optimise.terms import Array
 from gearopt.physics.gears import GearPair
 from gearopt.physics.iso6336 import bending_factors as bending
 from gearopt.physics.iso6336 import chain, contact_factors, running_in, stiffness
-from gearopt.physics.iso6336.batch import rate_rows, spectrum_rows
+from gearopt.physics.iso6336.batch import rate_rows, smooth_safeties, spectrum_rows
 from gearopt.physics.iso6336.case import Case, Practice
 from gearopt.physics.iso6336.curves import Curve, reference_share
+from gearopt.physics.iso6336.load_factors import RANGES
 from gearopt.physics.iso6336.materials import Material
 from gearopt.physics.iso6336.rating import check_lives
 from gearopt.physics.iso6336.table import ToothTable, tooth_table
@@ -78,6 +79,35 @@ class Iso6336:
         else:
             found = spectrum_rows(pair, operations, *made)
         return (*found.bending, *found.contact)
+
+    @property
+    def unknowns(self) -> dict[str, tuple[float, float, bool]]:
+        """Return that the smooth form has none."""
+        return {}
+
+    def choices(self, helical: bool) -> tuple[str, ...]:
+        """Return the range of K_v in which a search begins."""
+        return RANGES[:1]
+
+    def refined(self, pair: GearPair, choice: str) -> tuple[str, ...]:
+        """Return the other ranges of K_v."""
+        return tuple(other for other in RANGES if other != choice)
+
+    def guess(self, pair: GearPair, choice: str) -> dict[str, float]:
+        """Return no unknowns."""
+        return {}
+
+    def smooth(
+        self, pair: GearPair, torque: Any, speed: Any, choice: str, unknown: dict[str, Any]
+    ) -> Smooth:
+        """Return the rating in a range of K_v, with deviations that have no steps."""
+        operation = self.loads[0].of(self.operation, torque, speed)
+        practice = self._practice(pair)
+        made = smooth_safeties(pair, operation, self.materials, practice, choice, self.given)
+        return Smooth(made, {}, {}, {})
+
+    def floor(self, box: Box, choice: str) -> None:
+        """Return that no posynomials below it are known."""
 
     def like(self, other: Any) -> bool:
         """Return whether `prepared` of another standard is the same."""
