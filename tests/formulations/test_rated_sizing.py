@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from rated_drives import FREE, agma, by, rated_drive
 
-from gearopt.formulations import rated_sizing, sizing, teeth
+from gearopt.formulations import rated_bound, rated_sizing, sizing, teeth
 from gearopt.formulations.gear_train import FaceWidth, Stage, Train
 from gearopt.formulations.strength import RATED
 from gearopt.formulations.strength.rated import Box, Option
@@ -36,7 +36,7 @@ def published_pair():
 
 @pytest.fixture(autouse=True)
 def few_cells(monkeypatch):
-    monkeypatch.setattr(rated_sizing, "CELLS", 2)
+    monkeypatch.setattr(rated_bound, "CELLS", 2)
 
 
 def test_a_published_pair_of_least_volume(monkeypatch):
@@ -109,7 +109,7 @@ def test_no_bounding_law_exceeds_the_rating(helix, choice, kind):
 def test_the_bounding_law_is_a_geometric_program():
     train = rated_drive(20, [FREE, FREE])
     for choice in rated_sizing.choices(train):
-        assert form(rated_sizing.bounding(train, choice, 1e7)).convex
+        assert form(rated_bound.bounding(train, choice, 1e7)).convex
 
 
 def test_the_smooth_form_is_the_rating_of_its_regime():

@@ -1,0 +1,148 @@
+"""Lower bounds of drives that ratings limit, by geometric programs over cells of teeth and ratios.
+
+The limits of a program are below those of the ratings (`strength.rated.Floor`), so its dual bound
+is one of the drive, in real-valued and in whole teeth.
+"""
+
+import heapq
+import math
+from dataclasses import replace
+from fractions import Fraction
+from itertools import count
+from types import SimpleNamespace
+from typing import Any
+
+from gearopt.formulations import sizing
+from gearopt.formulations.gear_train import Train, share, terms
+from gearopt.formulations.strength.rated import Box
+from gearopt.optimise.clock import Clock
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.result import FEASIBLE, Result
+from gearopt.optimise.solve import solve
+from gearopt.optimise.terms import Terms
+from gearopt.physics.gears import GearPair
+
+Choice = tuple[tuple[str, ...], ...]  # of every stage and standard
+
+ITERATIONS = 300  # of Ipopt, of which smooth problems take some tens
+CLOSE = 1e-7  # gap at which a bound is close enough
+CELLS = 40  # of teeth and ratios, by which a bound is made better
+NARROW = 1.01  # ratio of the ends of a cell that is not halved
+FAR = 8  # times the least teeth of a pinion, where a range without an end is halved
+MOST = 1e6  # teeth and ratios beyond which no bound holds: the ends of the search
+
+
+def bounding(train: Train, choice: Choice, most: float = math.inf) -> Problem | None:
+    """Return a geometric program below the drive in one combination; None where there is none.
+
+    most: the bound need only hold for designs of at most this objective.
+    """
+    floors: list[list[Any]] = []
+    for k, stage in enumerate(train.stages):
+        box = _box(train, k, most)
+        standards = stage.options[0].standards if stage.options else ()
+        floors.append([s.floor(box, choice[k][j]) for j, s in enumerate(standards)])
+    if any(row and all(floor is None for floor in row) for row in floors):
+        return None
+
+    def evaluate(x: Any, p: Any) -> Terms:
+        def rated(k: int, pair: GearPair, torque: Any, speed: Any, safety: Any) -> dict[str, Any]:
+            rows: dict[str, Any] = {}
+            for standard, floor in zip(
+                train.stages[k].options[0].standards, floors[k], strict=True
+            ):
+                if floor is None:
+                    continue
+                used = floor.utilisations(pair, torque, speed, safety)
+                rows |= {n + standard.suffix: v for n, v in used.items()}
+                rows |= {n + standard.suffix: v for n, v in floor.limits(pair).items()}
+            return rows
+
+        return terms(train, p, sizing.text_pairs(train, x, p), rated=rated)
+
+    return Problem("bounding", sizing.variables(train), sizing.parameters(train), evaluate)
+
+
+def _box(train: Train, k: int, most: float) -> Box:
+    """Return what holds for a stage of every design of at most an objective."""
+    stage, highest = train.stages[k], float(train.highest_ratio)
+    numbers = SimpleNamespace(**train.numbers())
+    teeth = max(1.0, numbers.pinion_low[k]), min(MOST, numbers.pinion_high[k])
+    alone = len(train.stages) == 1
+    low = max(float(train.lowest_ratio) if alone else 1.0, numbers.ratio_low[k])
+    ratio = low, max(low, min(highest, numbers.ratio_high[k]))
+    speed = train.speed if k == 0 else train.speed / highest, train.speed
+    return Box(teeth, ratio, speed, _widest(train, k, low, most), stage.toothing)
+
+
+def _widest(train: Train, k: int, ratio: float, most: float) -> float:
+    """Return the largest face width [mm] of a stage of at most this share; inf: unknown."""
+    face = train.stages[k].face_width
+    if face.fixed is not None:
+        return float(face.fixed)
+    if not math.isfinite(most) or not math.isfinite(face.widest):
+        return math.inf
+    stage = train.stages[k].toothing
+    one = stage.of_diameter(stage.cosine / 20.0, 20.0, 1.0, ratio, face.widest)
+    alone = float(share(train, k, one))  # of d1 = 1 mm and the widest face
+    power = 1.0 / 3.0 if train.by_width else 1.0
+    return float(face.widest * (most / alone) ** power * (1.0 + FEASIBLE))
+
+
+def lower_bound(train: Train, every: list[Choice], most: float, clock: Clock) -> float:
+    """Return a bound on designs of at most an objective, over cells of teeth and ratios.
+
+    The cell with the least bound is halved where its range is the widest, CELLS times at most.
+    """
+    if not every:
+        return math.inf
+    order = count()
+    cells = [(_cell_bound(train, c, most, clock), next(order), train, c) for c in every]
+    heapq.heapify(cells)
+    for _ in range(CELLS):
+        least, _, worst, choice = cells[0]
+        halves = _halved(worst)
+        if clock.stopped or not halves or not -math.inf < least < most * (1.0 - CLOSE):
+            break
+        heapq.heappop(cells)
+        for half in halves:
+            own = max(least, _cell_bound(half, choice, most, clock))
+            heapq.heappush(cells, (own, next(order), half, choice))
+    return float(cells[0][0])
+
+
+def _halved(train: Train) -> list[Train]:
+    """Return a drive with half the range of a stage's teeth or ratios, twice; none: too narrow."""
+    highest, spans = train.highest_ratio, list[tuple[int, str, Fraction, Fraction]]()
+    for k, stage in enumerate(train.stages):
+        low, high = stage.pinion_teeth
+        spans.append((k, "pinion_teeth", Fraction(low), Fraction(high or FAR * low)))
+        if len(train.stages) > 1:
+            spans.append((k, "ratio", stage.ratio[0], min(highest, stage.ratio[1] or highest)))
+    k, name, least, most = max(spans, key=lambda span: float(span[3] / span[2]))
+    if most < least * NARROW:
+        return []
+    stage, middle = train.stages[k], Fraction(math.sqrt(least * most))
+    last = getattr(stage, name)[1]
+    halves: list[Any] = [{name: ends} for ends in ((least, middle), (middle, last))]
+    stages = [train.stages[:k] + (replace(stage, **h),) + train.stages[k + 1 :] for h in halves]
+    return [replace(train, stages=made) for made in stages]
+
+
+def _cell_bound(train: Train, choice: Choice, most: float, clock: Clock) -> float:
+    made = bounding(train, choice, most)
+    if made is None or clock.stopped:
+        return -math.inf
+    found = solved(clock, made)
+    if found.status == "infeasible":
+        return math.inf
+    return -math.inf if found.bound is None else found.bound
+
+
+def solved(clock: Clock, made: Problem) -> Result:
+    left = clock.left
+    most = ITERATIONS if left.evaluations is None else min(ITERATIONS, left.evaluations)
+    found = solve(made, "ipopt", replace(left, evaluations=most))
+    clock.evaluations += found.evaluations
+    clock.tell()
+    return found
