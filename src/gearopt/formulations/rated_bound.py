@@ -140,6 +140,7 @@ def _cell_bound(train: Train, choice: Choice, most: float, clock: Clock) -> floa
 
 
 def solved(clock: Clock, made: Problem) -> Result:
+    """Return the certified answer of Ipopt within ITERATIONS and what a clock has left."""
     left = clock.left
     most = ITERATIONS if left.evaluations is None else min(ITERATIONS, left.evaluations)
     found = solve(made, "ipopt", replace(left, evaluations=most))
