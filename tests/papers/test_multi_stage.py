@@ -8,6 +8,7 @@ from pathlib import Path
 
 import chong_lee as paper
 import chong_lee_rated as rated
+import chong_lee_sized as by_rating
 import chong_lee_words as words
 import numpy as np
 import pytest
@@ -47,6 +48,12 @@ ROWS = (
 def test_every_row_of_every_table_is_recomputed(rows):
     """All rows of a table stand in the page, together, and no other row is among them."""
     assert "|---|\n" + "\n".join(rows()) + "\n\n" in PAGE
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("rows", [by_rating.sized_rows, by_rating.widened_rows])
+def test_every_row_of_drives_sized_by_their_rating_is_recomputed(rows):
+    assert "|---|\n" + "\n".join(rows()) + "\n" in PAGE
 
 
 def test_every_sentence_with_numbers_is_recomputed():
