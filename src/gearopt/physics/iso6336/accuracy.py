@@ -6,6 +6,7 @@ Grades may be fractions. Deviations [mm], sizes [mm]; floats or arrays.
 """
 
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -46,9 +47,30 @@ def range_mean(size: Any, ends: tuple[float, ...]) -> Any:
 
     A size beyond the ranges counts to the nearest one. Source: ISO 1328-1:1995, 5.2.
     """
+    return _means(ends)[_place(size, ends)]
+
+
+@cache
+def _means(ends: tuple[float, ...]) -> Any:
     bounds = np.asarray(ends, float)
-    place = np.clip(np.searchsorted(bounds, size), 1, len(bounds) - 1)
-    return np.sqrt(bounds[place - 1] * bounds[place])[()]
+    return np.sqrt(bounds[:-1] * bounds[1:])
+
+
+def _place(size: Any, ends: tuple[float, ...]) -> Any:
+    """Return the index of the range in which a size lies."""
+    return np.searchsorted(_inner(ends), size)
+
+
+@cache
+def _inner(ends: tuple[float, ...]) -> Any:
+    return np.asarray(ends[1:-1], float)
+
+
+@cache
+def _slopes_1995(grade: float) -> Any:
+    """Return f_Hbeta of every range of diameter and of face width [mm]."""
+    means = _means(DIAMETERS)[:, None], _means(WIDTHS)
+    return tolerances.rounded_tolerance(helix_slope_1995(*means, grade))
 
 
 def single_pitch_1995(diameter: Any, module: Any, grade: Any) -> Any:
@@ -116,12 +138,11 @@ def helix_slope(
     diameter: Any, face_width: Any, grade: Any, edition: str = "1995", smooth: bool = False
 ) -> Any:
     """Return f_Hbeta of a gear [mm], as `deviations` has it; diameter, face_width [mm]."""
-    if edition == "2013":
-        found = tolerances.helix_slope_tolerance(diameter, face_width, grade)
-    else:
-        if not smooth:
-            diameter, face_width = range_mean(diameter, DIAMETERS), range_mean(face_width, WIDTHS)
-        found = helix_slope_1995(diameter, face_width, grade)
+    if smooth and edition == "1995":
+        return helix_slope_1995(diameter, face_width, grade)
+    if edition == "1995":
+        return _slopes_1995(grade)[_place(diameter, DIAMETERS), _place(face_width, WIDTHS)]
+    found = tolerances.helix_slope_tolerance(diameter, face_width, grade)
     return found if smooth else tolerances.rounded_tolerance(found)
 
 
