@@ -172,3 +172,45 @@ def test_what_iso_6336_limits_is_rated_by_it(names):
     assert found.status in ("feasible", "stationary")
     assert (found.bound is None) == (names == ("iso",))
     assert found.value < 1.05 * solve(teeth.problem(train)).value
+
+
+GIVEN = {"s_at": (300.0, 300.0), "s_ac": (1100.0, 1100.0), "Y_N": (1.0, 1.0), "Z_N": (1.0, 1.0)}
+
+
+def two_helical_stages(power):
+    """The digest's allowables; 25 degrees, b/d from 0.3 to 0.6, 22:1 exact."""
+    option = Option((agma((Steel("carburised"),) * 2, given=GIVEN | {"C_H": (1.0, 1.0)}),))
+    toothing = Toothing(math.radians(25.0), (SHARP, SHARP))
+    face = FaceWidth(F(3, 10), F(3, 5))
+    stage = Stage((), face, (), (20, 60), toothing=toothing, options=(option,))
+    speed = 150.0
+    return Train(power / speed, F(22), F(0), (stage, stage), speed=speed, law=RATED)
+
+
+@pytest.mark.slow
+def test_the_bounding_program_by_two_solvers():
+    """Clarabel through cvxpy and Ipopt: one optimum to 1e-9, the dual bound at it."""
+    train = two_helical_stages(15e6)
+    for choice in rated_sizing.choices(train):
+        made = rated_bound.bounding(train, choice)
+        first, second = solve(made, "ipopt"), solve(made, "gp")
+        assert first.value == pytest.approx(second.value, rel=1e-9)
+        assert first.bound == pytest.approx(first.value, rel=1e-9)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("power", [1e3, 1e6, 20e9])
+def test_random_starts_of_a_watt_to_20_megawatts_end_at_one_design(power):
+    """N mm/s; lengths a factor of e around the optimum of the bounding program."""
+    train, rng = two_helical_stages(power), np.random.default_rng(5)
+    choice = (("conventional",),) * 2
+    made, smooth = rated_bound.bounding(train, choice), rated_sizing.smooth_problem(train, choice)
+    known = solve(made, "ipopt")
+    middle = np.concatenate([np.ravel(v) for v in known.design.values()])
+    values = []
+    for _ in range(20):
+        x = middle * np.exp(rng.uniform(-1.0, 1.0, len(middle)))
+        assert solve(made.starting(x), "ipopt").value == pytest.approx(known.value, rel=1e-9)
+        guess = np.concatenate([x, rated_sizing.guess(train, x, choice)])
+        values.append(solve(smooth.starting(guess), "ipopt").value)
+    assert values == pytest.approx([values[0]] * 20, rel=1e-7)

@@ -231,7 +231,7 @@ def _design(
     best: _Design | None = None
     for _ in range(ROUNDS):
         made = made.at(trim=tuple(trims.ravel().tolist()))
-        found = solved(clock, made.starting(np.concatenate([at, _guess(train, at, choice)])))
+        found = solved(clock, made.starting(np.concatenate([at, guess(train, at, choice)])))
         point = _point(made, found)
         if point is None or clock.stopped:
             break
@@ -268,7 +268,7 @@ def _loads(train: Train, pairs: tuple[GearPair, ...]) -> Iterator[tuple[GearPair
         torque *= float(pair.ratio)
 
 
-def _guess(train: Train, at: Array, choice: Choice) -> Array:
+def guess(train: Train, at: Array, choice: Choice) -> Array:
     """Return the unknowns of the standards at a point, in the order of the variables."""
     columns: dict[str, list[float]] = {v.name: list(each(v.guess)) for v in _unknowns(train)}
     for k, pair in enumerate(sizing.pairs(train, at)):

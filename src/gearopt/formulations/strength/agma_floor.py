@@ -43,8 +43,10 @@ class Line:
 
     def inverse(self, teeth: Any) -> Any:
         """Return a posynomial below 1/(constant - slope/z): the head of its geometric series."""
+        if self.slope == 0.0:
+            return 1.0 / self.constant
         part = self.slope / self.constant / teeth
-        return sum(part**k for k in range(1, SERIES + 1)) / self.constant + 1.0 / self.constant
+        return sum((part**k for k in range(1, SERIES + 1)), 1.0) / self.constant
 
 
 @dataclass(frozen=True)
@@ -56,7 +58,7 @@ class Monomial:
 
     def at(self, value: Any) -> Any:
         """Return the bound."""
-        return self.factor * value**self.exponent
+        return self.factor * value**self.exponent if self.exponent else self.factor
 
 
 @dataclass(frozen=True)
@@ -86,7 +88,9 @@ class AgmaFloor:
         shared = torque / (d * b)
         if "K_v" not in given:
             velocity = 0.5 * load.speed * speed * d
-            shared = shared * factors.dynamic_factor(velocity, standard.practice.quality)
+            exponent, offset = factors.dynamic_curve(standard.practice.quality)
+            root = (velocity / factors.FEET_PER_MINUTE) ** 0.5  # text of cvxpy, too
+            shared = shared * (1.0 + root / offset) ** exponent
         rpm = load.speed * speed * (30.0 / math.pi)
         contacts = standard.operation.contacts
         own = zip((rpm, rpm / u), contacts, strict=True)
@@ -110,7 +114,9 @@ class AgmaFloor:
         if not self.spreads:
             return [1.0]
         slender = width / (10.0 * diameter), 0.05
-        return [a + b * width + c * s for a, b, c in self.spreads for s in slender]
+        bases = [a + b * width if b else a for a, b, _ in self.spreads]
+        slopes = [c for _, _, c in self.spreads]
+        return [a + c * s for a, c in zip(bases, slopes, strict=True) for s in slender]
 
     def limits(self, pair: GearPair) -> dict[str, Any]:
         """Return the limits that keep to the regime."""
@@ -272,7 +278,7 @@ def _shared(lines: list[Line], box: Box) -> Callable[[Any, Any], Any]:
 
     def law(z: Any, u: Any) -> Any:
         part = (lines[0].slope + lines[1].slope / u) / constant / z
-        return (1.0 + sum(part**k for k in range(1, SERIES + 1))) / constant
+        return sum((part**k for k in range(1, SERIES + 1)), 1.0) / constant
 
     return law
 

@@ -74,7 +74,7 @@ def dynamic_factor(speed: Any, quality: Any) -> Any:
     """
     if isinstance(quality, int | float) and not QUALITIES[0] <= quality <= QUALITIES[1]:
         raise ValueError(f"no curve of K_v for Q_v = {quality:g}: 5 to 11; above, give K_v itself")
-    exponent, offset = _dynamic(quality)
+    exponent, offset = dynamic_curve(quality)
     return ((offset + np.sqrt(speed / FEET_PER_MINUTE)) / offset) ** exponent
 
 
@@ -96,12 +96,12 @@ def highest_speed(quality: Any) -> Any:
 
     2500 ft/min for Q_v of 5 to below 6. Source: AGMA 2001-D04, clause 8.
     """
-    offset = _dynamic(quality)[1]
+    offset = dynamic_curve(quality)[1]
     return FEET_PER_MINUTE * choose(quality < 6.0, 2500.0, (offset + quality - 3.0) ** 2)
 
 
-def _dynamic(quality: Any) -> tuple[Any, Any]:
-    """Return B and A of the curve of a quality."""
+def dynamic_curve(quality: Any) -> tuple[Any, Any]:
+    """Return B and A of the curve of K_v of a quality; see `dynamic_factor`."""
     exponent = 0.25 * (12.0 - quality) ** (2.0 / 3.0)
     offset = 50.0 + 56.0 * (1.0 - exponent)
     return choose(quality < 6.0, 1.0, exponent), choose(quality < 6.0, 50.0, offset)
