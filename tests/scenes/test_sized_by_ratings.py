@@ -301,3 +301,11 @@ def test_gears_that_may_choose_are_not_rated():
     tables["stage"][0] = given | {k: tables["stage"][0][k] for k in ("pinion", "wheel")}
     with pytest.raises(SolveError, match="no material yet, one of hard, tough"):
         gearopt.rate(tables)
+
+
+def test_a_box_around_rated_gears_offers_no_choice_at_once():
+    tables = drive(layout={"shaft_diameters": ["60 mm", "60 mm"]})
+    result = gearopt.solve(tables)
+    told = [result.message, *result.report.get("notes", ())]
+    told += [result.report.get("ways_out", {}).get("message", "")]
+    assert result.status in ("optimal", "infeasible") and "together" not in " ".join(told)

@@ -82,7 +82,7 @@ def _said(found: DriveRating) -> list[str]:
     if any(one.by == "ISO 6336" for one in found.each):
         words.append(LOAD_FACTORS)
     if len(found.meshes) > 1:
-        words.append(f"Nearest to what is asked for are {'; '.join(nearest(found))}.")
+        words.append(f"Nearest to the safety factors asked for: {', '.join(nearest(found))}.")
     if found.levels:
         words.append("Safety factors are those of all load levels together, by Miner's rule.")
     lives = [(g.bending_life_cycles, g.contact_life_cycles) for _, g in _columns(found)]

@@ -147,7 +147,7 @@ def nearest(found: DriveRating) -> list[str]:
         ]
         _, what, by = min(rows)
         of = f" by {by}" if found.beside is not None else ""
-        words.append(f"of stage {mesh.stage} {what}{of}")
+        words.append(f"in stage {mesh.stage} {what}{of}")
     return words
 
 

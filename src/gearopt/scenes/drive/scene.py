@@ -200,6 +200,11 @@ class Scene(Table):
         return self.rating is not None and self.limited and not alone
 
     @property
+    def may_be_together(self) -> bool:
+        """Return whether gears and box may be chosen at once."""
+        return self.teeth is not None and not self.by_ratings
+
+    @property
     def rated_real(self) -> bool:
         """Return whether ratings can limit real-valued teeth: by AGMA, one load, no choice."""
         asked = self.rating

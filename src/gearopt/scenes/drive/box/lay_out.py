@@ -173,7 +173,7 @@ def _message(scene: Scene, sized: Result, box: Gearbox, notes: list[str]) -> str
     if scene.layout.together or not others_may_fit(scene, box):
         return why
     least = str(sized.objective["name"]).replace("_", " ")
-    others = "" if scene.teeth is None else ": write together = true in [layout]"
+    others = ": write together = true in [layout]" if scene.may_be_together else ""
     return f"These gears, chosen first for the least {least}, do not fit: {why} Others may{others}."
 
 
@@ -219,10 +219,9 @@ def _reached(box: Gearbox, found: LayoutDesign) -> list[str]:
 def _notes(scene: Scene, sized: Result) -> list[str]:
     notes = list(sized.report.get("notes", []))
     if not scene.given and not (scene.layout and scene.layout.together):
-        notes.append(
-            "The gears were chosen first, for their own objective; with together = true in "
-            "[layout] they are chosen for the box."
-        )
+        words = "The gears were chosen first, for their own objective"
+        more = "; with together = true in [layout] they are chosen for the box"
+        notes.append(f"{words}{'' if scene.by_ratings else more}.")
     return notes
 
 

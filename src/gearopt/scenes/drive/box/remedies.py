@@ -148,7 +148,8 @@ def _of_gears(
     if not scene.layout.together:
         if not others_may_fit(scene, scene.gearbox(pairs)):
             return Remedies((), found, message)
-        return Remedies((), found, "; ".join(filter(None, (message, APART))))
+        told = TOGETHER if scene.by_ratings else APART
+        return Remedies((), found, "; ".join(filter(None, (message, told))))
     found = tuple(
         replace(r, verified={k: v if k == "with" else "undecided" for k, v in r.verified.items()})
         for r in found
