@@ -79,6 +79,18 @@ class Rating:
 
 
 @dataclass(frozen=True)
+class Ratings:
+    """Safety factors of rows: S_F and S_H (of stress) of pinion and wheel.
+
+    refusal: indices of the `REFUSALS` of the standard; safety factors are NaN where it is not 0.
+    """
+
+    bending: tuple[Any, Any]
+    contact: tuple[Any, Any]
+    refusal: Any
+
+
+@dataclass(frozen=True)
 class Spectrum:
     """The rating of a load spectrum; tuples are of pinion and wheel.
 

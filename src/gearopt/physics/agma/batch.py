@@ -5,7 +5,6 @@ table of them, or the smooth form.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -23,22 +22,10 @@ from gearopt.physics.agma.rating_factors import (
 )
 from gearopt.physics.agma.refusals import GeometryFactors, geometry_factors
 from gearopt.physics.gears import Gear, GearPair
-from gearopt.physics.rating import Level, Operation, spectrum_safety
+from gearopt.physics.rating import Level, Operation, Ratings, spectrum_safety
 
 MODES = (False, 0), (False, 1), (True, 0), (True, 1)  # contact, member: order of safety factors
 CONSTANT = ("K_o", "K_R", "K_T", "C_f", "C_p", "s_at", "s_ac")  # of all pairs of a batch
-
-
-@dataclass(frozen=True)
-class Ratings:
-    """Safety factors of rows: S_F and S_H (of stress) of pinion and wheel.
-
-    refusal: indices of `refusals.REFUSALS`; safety factors are NaN where it is not 0.
-    """
-
-    bending: tuple[Any, Any]
-    contact: tuple[Any, Any]
-    refusal: Any
 
 
 def rate_rows(

@@ -6,7 +6,6 @@ Y_RrelT at 1 um, f_eps of 2019); its kinks are those of the limits in the laws.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -18,19 +17,7 @@ from gearopt.physics.iso6336.load_factors import MAIN, RANGES, SUPER, lower_limi
 from gearopt.physics.iso6336.materials import Material
 from gearopt.physics.iso6336.rating import check_lives, levels_of
 from gearopt.physics.iso6336.refusals import refusal
-from gearopt.physics.rating import Operation, spectrum_safety
-
-
-@dataclass(frozen=True)
-class Ratings:
-    """Safety factors of rows: S_F and S_H (of stress) of pinion and wheel.
-
-    refusal: indices of `refusals.REFUSALS`; safety factors are NaN where it is not 0.
-    """
-
-    bending: tuple[Any, Any]
-    contact: tuple[Any, Any]
-    refusal: Any
+from gearopt.physics.rating import Operation, Ratings, spectrum_safety
 
 
 def rate_rows(
