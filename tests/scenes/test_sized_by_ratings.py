@@ -265,6 +265,22 @@ def test_the_best_of_lists_is_that_of_every_pair_of_materials(minimise):
     assert both.design["rating"]["safe"]
 
 
+@pytest.mark.parametrize("minimise", ["cost", "gear_volume"])
+def test_a_grade_is_chosen_by_what_it_costs(minimise):
+    """Finer gears are smaller, and dearer; each grade alone is solved beside."""
+    grades = {q: HARD | {"name": f"Q{q}", "quality": q, "price": 5 + 0.4 * q} for q in (7, 9, 11)}
+    names, tables = [one["name"] for one in grades.values()], tuple(grades.values())
+    found = gearopt.solve(of_materials(names, names, minimise, tables))
+    alone = {a: gearopt.solve(of_materials([a], [a], minimise, tables)).value for a in names}
+    assert found.value <= min(alone.values()) * (1.0 + 1e-12)
+    assert minimise == "cost" or found.value == pytest.approx(alone["Q11"], rel=1e-12)
+    for name, quality in zip(names, grades, strict=True):
+        plain = of_materials(["hard"], ["hard"], "gear_volume")
+        plain["rating"]["quality"] = quality
+        own = of_materials([name], [name], "gear_volume", tables)
+        assert gearopt.solve(plain).value == pytest.approx(gearopt.solve(own).value, rel=1e-12)
+
+
 def test_a_material_weighs_as_its_density_says():
     light = TOUGH | {"name": "light", "density": "4 kg/dm^3"}
     tables = of_materials(["light"], ["tough"], "mass", (light, TOUGH))

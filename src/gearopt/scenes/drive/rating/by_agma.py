@@ -57,6 +57,7 @@ def material(table: GearTable) -> str:
     core = " core" if CURVES.get(table.treatment) == "nitrided" else ""
     words += [f"{table.hardness}{core}"] if table.hardness else []
     words += [table.surface_hardness] if table.surface_hardness else []
+    words += [f"Q_v {float(table.quality):g}"] if table.quality is not None else []
     return ", ".join(words)
 
 
@@ -84,7 +85,7 @@ def practice(scene: Scene, pair: GearPair, gears: Tables) -> Practice:
     """Return how a pair is made and rated."""
     assert scene.rating
     rims = backup(pair.pinion, gears[0]), backup(pair.wheel, gears[1])
-    return replace(_practice(scene.rating), backup=rims)
+    return replace(_practice(scene.rating, gears), backup=rims)
 
 
 def limits(
@@ -100,16 +101,16 @@ def limits(
         loads,
         one,
         (steel(gears[0]), steel(gears[1])),
-        _practice(scene.rating),
+        _practice(scene.rating, gears),
         (rims[0], rims[1]),
         given(scene, stage),
     )
 
 
-def _practice(asked: RatingTable) -> Practice:
+def _practice(asked: RatingTable, gears: Tables) -> Practice:
     """Return how gears are made and rated, but for their rims."""
     return Practice(
-        quality=_quality(asked),
+        quality=min(_quality(asked) if t.quality is None else float(t.quality) for t in gears),
         curve=asked.mounting,
         crowned=asked.crowned,
         offset=float(asked.pinion_offset),

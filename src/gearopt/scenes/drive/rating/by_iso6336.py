@@ -35,7 +35,7 @@ def practice(scene: Scene, pair: GearPair, gears: Tables) -> Practice:
     """Return how a pair is made and rated."""
     assert scene.rating
     return replace(
-        _practice(scene.rating),
+        _practice(scene.rating, gears),
         webs=(web(pair, gears[0]), web(pair, gears[1])),
         bores=(bore(gears[0]), bore(gears[1])),
         backup=(backup(pair.pinion, gears[0]), backup(pair.wheel, gears[1])),
@@ -54,7 +54,7 @@ def limits(
         loads,
         one,
         (steel(gears[0]), steel(gears[1])),
-        _practice(scene.rating),
+        _practice(scene.rating, gears),
         (_length(gears[0].rim_thickness), _length(gears[1].rim_thickness)),
         (_length(gears[0].web_thickness), _length(gears[1].web_thickness)),
         (bore(gears[0]), bore(gears[1])),
@@ -66,10 +66,12 @@ def _length(value: Quantity | None) -> float | None:
     return None if value is None else value.value
 
 
-def _practice(rating: RatingTable) -> Practice:
+def _practice(rating: RatingTable, gears: Tables) -> Practice:
     """Return how gears are made and rated, but for rims, webs and bores."""
     asked, usual = rating.iso6336, Practice()
-    first, second = asked.accuracy_grade or usual.grades
+    grades = asked.accuracy_grade or usual.grades
+    rows = zip(gears, grades, strict=True)
+    first, second = (g if t.accuracy_grade is None else t.accuracy_grade for t, g in rows)
     return Practice(
         edition=asked.edition,
         tolerances=asked.tolerances,

@@ -27,7 +27,7 @@ AGMA = (  # keys of [rating] that only AGMA has
     *("edition", "reliability", "temperature", "quality", "accuracy", "mounting", "crowned"),
     *("adjusted", "pinion_offset", "size_factor", "bending_load", "service", "given"),
 )
-AGMA_KEYS = ("grade", "surface_hardness")  # of gears
+AGMA_KEYS = ("grade", "surface_hardness", "quality")  # of gears
 CORELESS = "changes nothing: only Eh of quality MQ has strengths by core"
 CYCLES = ("Y_N", "Z_N", "Y_NT", "Z_NT")  # factors that follow from the levels of a spectrum
 

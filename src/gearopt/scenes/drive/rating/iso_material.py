@@ -54,4 +54,5 @@ def material(table: GearTable) -> str:
     hardness = table.flank_hardness or (table.hardness if found.hardness else None)
     words = [found.name, found.quality, *([str(hardness)] if hardness else [])]
     words += [f"core {table.iso_core}"] if table.iso_core and found.by_core else []
+    words += [f"grade {table.accuracy_grade}"] if table.accuracy_grade is not None else []
     return ", ".join(words)

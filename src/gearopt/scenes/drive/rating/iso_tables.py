@@ -134,6 +134,11 @@ class IsoGearKeys(Table):
     bore: Annotated[Quantity | None, quantity("length", "40 mm", zero=True)] = Field(
         None, description="Diameter inside which the gear has no mass, in K_v; by default 0"
     )
+    accuracy_grade: Annotated[int | None, whole(6, 0, 12)] = Field(
+        None,
+        description="Accuracy grade of ISO 1328-1 of this gear; by default that of "
+        "[rating.iso6336]",
+    )
     root_rz: Annotated[Quantity | None, quantity("length", "20 um", "1 mm")] = Field(
         None, description="Roughness R_z of the roots; by default 20 um"
     )

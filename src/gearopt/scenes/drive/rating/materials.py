@@ -15,6 +15,7 @@ STEEL = (  # keys of a gear that its material has
     *("treatment", "grade", "hardness", "surface_hardness", "elastic_modulus", "poisson_ratio"),
     *("iso_material", "iso_quality", "iso_core", "flank_hardness", "yield_strength"),
 )
+MADE = ("quality", "accuracy_grade")  # keys that a material may have, else the gear
 Place = tuple[Any, ...]
 
 
@@ -31,7 +32,8 @@ class Named(Table):
 
 
 _FIELDS: dict[str, Any] = {
-    key: (GearKeys.model_fields[key].annotation, GearKeys.model_fields[key]) for key in STEEL
+    key: (GearKeys.model_fields[key].annotation, GearKeys.model_fields[key])
+    for key in (*STEEL, *MADE)
 }
 MaterialTable = create_model("MaterialTable", __base__=Named, __doc__=Named.__doc__, **_FIELDS)
 
@@ -55,9 +57,14 @@ def choices(
     found = [known[name] for name in names(own, shared)]
     if not found:
         return ((table, None),)
-    return tuple(
-        (table.model_copy(update={key: getattr(one, key) for key in STEEL}), one) for one in found
-    )
+    return tuple((table.model_copy(update=_of(one)), one) for one in found)
+
+
+def _of(material: Named) -> dict[str, Any]:
+    """Return what a gear has of its material: its steel, and its accuracy where it has one."""
+    steel = {key: getattr(material, key) for key in STEEL}
+    made = {key: getattr(material, key) for key in MADE}
+    return steel | {key: value for key, value in made.items() if value is not None}
 
 
 def check_materials(

@@ -35,7 +35,7 @@ Stresses = Annotated[
 ]
 MATERIAL = (  # keys of a gear that only a rating needs
     *("treatment", "grade", "hardness", "surface_hardness", "elastic_modulus", "poisson_ratio"),
-    *("roughness", "reversed_load", "rim_thickness", "contacts", "materials"),
+    *("roughness", "reversed_load", "rim_thickness", "contacts", "materials", "quality"),
     *ISO_KEYS,
 )
 MATERIALS = several(words(), ["case-hardened", "through-hardened"])
@@ -144,6 +144,10 @@ class GearKeys(IsoGearKeys):
     )
     contacts: Annotated[int | None, whole(1, 1, 100)] = Field(
         None, description="Load cycles of a tooth a revolution; by default 1"
+    )
+    quality: Annotated[Fraction | None, QUALITY] = Field(
+        None,
+        description="Q_v of this gear, the lower of a pair counts; by default that of [rating]",
     )
     materials: Annotated[tuple[str, ...] | None, MATERIALS] = Field(
         None,
