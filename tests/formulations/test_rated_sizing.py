@@ -14,6 +14,7 @@ from gearopt.formulations.strength import RATED
 from gearopt.formulations.strength.rated import Box, Option
 from gearopt.formulations.toothing import Toothing
 from gearopt.optimise.form import form
+from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import solve
 from gearopt.physics.agma import factors
 from gearopt.physics.agma.rating_factors import Steel
@@ -222,3 +223,11 @@ def test_random_starts_of_a_watt_to_20_megawatts_end_at_one_design(power):
         guess = np.concatenate([x, rated_sizing.guess(train, x, choice)])
         values.append(solve(smooth.starting(guess), "ipopt").value)
     assert values == pytest.approx([values[0]] * 20, rel=1e-7)
+
+
+@pytest.mark.slow
+def test_a_budget_is_kept_and_its_bound_holds():
+    train = rated_drive(20, [FREE, FREE])
+    early = solve(sizing.problem(train), budget=Budget(seconds=1.5))
+    assert early.status == "limit" and early.seconds < 2.5
+    assert early.bound is None or early.bound <= solve(teeth.problem(train)).value

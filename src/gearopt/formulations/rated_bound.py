@@ -17,7 +17,7 @@ from gearopt.formulations.gear_train import Train, share, terms
 from gearopt.formulations.strength.rated import Box
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.result import FEASIBLE, Result
+from gearopt.optimise.result import FEASIBLE, Budget, Result
 from gearopt.optimise.solve import solve
 from gearopt.optimise.terms import Terms
 from gearopt.physics.gears import GearPair
@@ -141,9 +141,10 @@ def _cell_bound(train: Train, choice: Choice, most: float, clock: Clock) -> floa
 
 def solved(clock: Clock, made: Problem) -> Result:
     """Return the certified answer of Ipopt within ITERATIONS and what a clock has left."""
-    left = clock.left
+    before, left = clock.evaluations, clock.left
     most = ITERATIONS if left.evaluations is None else min(ITERATIONS, left.evaluations)
-    found = solve(made, "ipopt", replace(left, evaluations=most))
-    clock.evaluations += found.evaluations
+    own = Budget(left.seconds, most)
+    found = solve(made, "ipopt", own, watch=clock.inner(values=False))
+    clock.evaluations = before + found.evaluations
     clock.tell()
     return found

@@ -124,12 +124,11 @@ def _outcome(train: Train, exact: Problem, clock: Clock) -> Outcome:
     """Return the best design of all combinations with the bound of all."""
     if train.several_options:
         raise SolveError("lists of materials are for whole teeth: give a table [teeth]")
-    possible, designs = [], []
-    for choice in choices(train):
-        start, impossible = _start(train, choice, clock)
-        if impossible:
-            continue
-        possible.append(choice)
+    begun = {choice: _start(train, choice, clock) for choice in choices(train)}
+    possible = {choice: start for choice, (start, least) in begun.items() if least < math.inf}
+    bound = min(least for _, least in begun.values())
+    designs: list[_Design] = []
+    for choice, start in possible.items():
         made = smooth_problem(train, choice)
         starts = [start] if start is not None else _starts(exact)
         found = [_design(train, exact, choice, one, clock, made) for one in starts]
@@ -140,7 +139,9 @@ def _outcome(train: Train, exact: Problem, clock: Clock) -> Outcome:
     designs += [_refined(train, exact, design, clock) for design in designs[:REFINED]]
     best = min(designs, key=lambda design: design.value, default=None)
     most = math.inf if best is None else best.value
-    return _claim(best, lower_bound(train, possible, most, clock), clock)
+    if not clock.stopped:
+        bound = max(bound, lower_bound(train, list(possible), most, clock))
+    return _claim(best, bound, clock)
 
 
 def _refined(train: Train, exact: Problem, best: _Design, clock: Clock) -> _Design:
@@ -148,7 +149,7 @@ def _refined(train: Train, exact: Problem, best: _Design, clock: Clock) -> _Desi
     for k, pair in enumerate(sizing.pairs(train, best.x)):
         for j, standard in enumerate(train.stages[k].options[0].standards):
             row = best.choice[k]
-            for closer in standard.refined(pair, row[j]):
+            for closer in () if clock.stopped else standard.refined(pair, row[j]):
                 changed = (*row[:j], closer, *row[j + 1 :])
                 own = (*best.choice[:k], changed, *best.choice[k + 1 :])
                 made = _design(train, exact, own, best.x, clock)
@@ -190,21 +191,20 @@ def _starts(exact: Problem) -> list[Array]:
     found = []
     for factor in FINER:
         change = {"module": 1.0 / factor, "pinion_teeth": factor}
-        found.append(
-            np.clip(
-                [g * change.get(n, 1.0) for g, n in zip(guess, names, strict=True)], lower, upper
-            )
-        )
+        moved = [g * change.get(n, 1.0) for g, n in zip(guess, names, strict=True)]
+        found.append(np.clip(moved, lower, upper))
     return found
 
 
-def _start(train: Train, choice: Choice, clock: Clock) -> tuple[Array | None, bool]:
-    """Return the optimum of the bounding program, and whether that is proven impossible."""
-    made = bounding(train, choice)
+def _start(train: Train, choice: Choice, clock: Clock) -> tuple[Array | None, float]:
+    """Return the optimum of the bounding program, or None, and its bound; inf: impossible."""
+    made = None if clock.stopped else bounding(train, choice)
     if made is None:
-        return None, False
+        return None, -math.inf
     found = solved(clock, made)
-    return _point(made, found), found.status == "infeasible"
+    if found.status == "infeasible":
+        return None, math.inf
+    return _point(made, found), -math.inf if found.bound is None else found.bound
 
 
 def _point(made: Problem, found: Result) -> Array | None:
@@ -226,14 +226,18 @@ def _design(
 
     made: the smooth problem of the combination, where it is known.
     """
+    if clock.stopped:
+        return None
     made = made or smooth_problem(train, choice)
     trims, size, at = np.ones((len(train.stages), 2, 4)), len(start), start
     best: _Design | None = None
     for _ in range(ROUNDS):
+        if clock.stopped:
+            break
         made = made.at(trim=tuple(trims.ravel().tolist()))
         found = solved(clock, made.starting(np.concatenate([at, guess(train, at, choice)])))
         point = _point(made, found)
-        if point is None or clock.stopped:
+        if point is None:
             break
         at = np.clip(point[:size], *exact.bounds()[:2])
         ratio = _errors(train, at, choice, made, point, trims)
