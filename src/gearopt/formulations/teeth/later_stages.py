@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from gearopt.errors import SolveError
 from gearopt.formulations.gear_train import Train
-from gearopt.formulations.teeth.stage import EDGE, Table
+from gearopt.formulations.teeth.stage import EDGE, Cells, Table
 from gearopt.optimise.terms import Array
 
 ENTRIES = 10_000_000  # of the last stage's table
@@ -77,9 +77,9 @@ def bound(
         alike = k > 1 and train.stages[k] == train.stages[k - 1] and useful is None
         mask = None if useful is None else useful[k]
         made = minimum[k - 1] if alike else None
-        minimum[k] = (
-            tables[k].grid(cells, ratio_cells, delta, tick, mask, most) if made is None else made
-        )
+        if made is None:
+            made = tables[k].grid(Cells(cells, ratio_cells, delta, mask, most), tick)
+        minimum[k] = made
     to_go = [np.full(cells + ratio_cells + 2, np.inf) for _ in range(count)]
     last = None if useful is None else useful[-1]
     to_go[-1][:cells] = _last(train, tables[-1], cells, delta, tick, last, most)

@@ -17,7 +17,7 @@ from gearopt.formulations.gear_train import share
 from gearopt.formulations.strength import ALLOWANCE
 from gearopt.formulations.strength.rated import IndexRows, Rows, Standard
 from gearopt.formulations.strength.widths import STEPS, first_width, used
-from gearopt.formulations.teeth.stage import EDGE, Index, Table
+from gearopt.formulations.teeth.stage import EDGE, Cells, Index, Table
 from gearopt.optimise.terms import Array
 from gearopt.physics.gears import GearPair
 
@@ -162,33 +162,25 @@ class RatedTable(Table):
             rough[near] = False
         return cost
 
-    def grid(
-        self,
-        cells: int,
-        ratio_cells: int,
-        delta: float,
-        tick: Callable[[], None],
-        useful: NDArray[np.bool_] | None = None,
-        most: float = np.inf,
-    ) -> Array:
-        """Return the minimum cost for every cell of torque and of ratio, each delta wide in logs.
+    def grid(self, cells: Cells, tick: Callable[[], None]) -> Array:
+        """Return the minimum cost (torque cells, ratio cells).
 
-        A lower bound: the least over the torques of a cell, of its pairs the best. useful: which
-        cells are asked for; others are inf, as is what costs more than so much.
+        A lower bound: the least over the torques of a cell, of its pairs the best.
         """
-        found = np.full((cells, ratio_cells), np.inf)
+        found = np.full((cells.torque, cells.ratio), np.inf)
+        delta, most = cells.delta, cells.most
         column = (self.log_ratio / delta).astype(np.int64)
         highest = math.log(self.train.highest_ratio)
         first = np.zeros(len(self.ratio), np.int64)
-        for rows in _batches(cells, useful, len(self.ratio)):
+        for rows in _batches(cells, len(self.ratio)):
             tick()
             inside = self.log_ratio <= highest - rows[:, None] * delta + EDGE
-            if useful is not None:
-                inside &= useful[rows[:, None], column]
+            if cells.useful is not None:
+                inside &= cells.useful[rows[:, None], column]
             row, pair = np.nonzero(inside)
             low = rows[row] * delta
             ends = [self.train.torque * np.exp(e) for e in (low - EDGE, low + delta + EDGE)]
-            place = row * ratio_cells + column[pair]
+            place = row * cells.ratio + column[pair]
             made = self._found((ends[0], ends[1]), pair, most, first[pair], steps=FEW)
             if self.monotone and most == np.inf:
                 first[pair[row == 0]] = made.first[row == 0]
@@ -332,13 +324,10 @@ def _none(count: int, modules: int) -> Found:
     return Found(cost, module, width, np.zeros(count, np.int64), np.full(count, modules))
 
 
-def _batches(
-    cells: int, useful: NDArray[np.bool_] | None, pairs: int
-) -> Iterator[NDArray[np.int64]]:
-    """Yield cells in order, as many at once as have about BATCH pairs."""
-    every = np.arange(cells)
-    size = np.full(cells, pairs)
-    if useful is not None:
-        size = np.ceil(useful[:cells].mean(axis=1) * pairs).astype(np.int64)
+def _batches(cells: Cells, pairs: int) -> Iterator[NDArray[np.int64]]:
+    """Yield cells of torque in order, as many at once as have about BATCH pairs."""
+    every, size = np.arange(cells.torque), np.full(cells.torque, pairs)
+    if cells.useful is not None:
+        size = np.ceil(cells.useful[: cells.torque].mean(axis=1) * pairs).astype(np.int64)
     every, size = every[size > 0], np.cumsum(size[size > 0])
     yield from np.split(every, np.flatnonzero(np.diff(size // BATCH)) + 1)

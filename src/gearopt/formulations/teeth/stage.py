@@ -28,6 +28,21 @@ PAIRS = 3_000_000  # tooth pairs of one stage: about 1 GB of tables
 
 
 @dataclass(frozen=True)
+class Cells:
+    """Cells of torque and of ratio, so many of each, all `delta` wide in logarithms.
+
+    useful (torque, ratio): those asked for, None: all; others may count as inf, as may what costs
+    more than `most`.
+    """
+
+    torque: int
+    ratio: int
+    delta: float
+    useful: NDArray[np.bool_] | None = None
+    most: float = np.inf
+
+
+@dataclass(frozen=True)
 class Table:
     """Tooth pairs (n,) of one stage with ratios up to a cut, increasing.
 
@@ -102,35 +117,26 @@ class Table:
         """Return the largest ratio whose share of a train is at most so much; at least `least`."""
         return float(max(self.ratio.max(initial=0.0), least))
 
-    def grid(
-        self,
-        cells: int,
-        ratio_cells: int,
-        delta: float,
-        tick: Callable[[], None],
-        useful: NDArray[np.bool_] | None = None,
-        most: float = np.inf,
-    ) -> Array:
-        """Return the minimum cost for every cell of torque and of ratio, each delta wide in logs.
+    def grid(self, cells: Cells, tick: Callable[[], None]) -> Array:
+        """Return the minimum cost (torque cells, ratio cells).
 
-        A lower bound: of the torques of a cell the smallest, of its pairs the best. useful: which
-        cells are asked for; others may be inf, as may be what costs more than so much.
+        A lower bound: of the torques of a cell the smallest, of its pairs the best.
         """
-        column = (self.log_ratio / delta).astype(np.int64)
-        found = np.full(cells * ratio_cells, np.inf)
+        column = (self.log_ratio / cells.delta).astype(np.int64)
+        found = np.full(cells.torque * cells.ratio, np.inf)
         for k in range(len(self.modules)):
             tick()
             with np.errstate(divide="ignore"):
                 reach = np.log(self.capacity(k) / self.train.torque) + EDGE
             carries = reach >= 0.0
-            row = np.minimum(reach[carries] / delta, cells - 1).astype(np.int64)
-            np.minimum.at(found, row * ratio_cells + column[carries], self.floor(k)[carries])
-        grid = found.reshape(cells, ratio_cells)
+            row = np.minimum(reach[carries] / cells.delta, cells.torque - 1).astype(np.int64)
+            np.minimum.at(found, row * cells.ratio + column[carries], self.floor(k)[carries])
+        grid = found.reshape(cells.torque, cells.ratio)
         grid = np.minimum.accumulate(grid[::-1], axis=0)[::-1]  # what carries more carries less
         tick()
-        slope = np.full(ratio_cells, np.inf)
+        slope = np.full(cells.ratio, np.inf)
         np.minimum.at(slope, column, self.slope)
-        torque = self.train.torque * np.exp(np.arange(cells) * delta - EDGE)
+        torque = self.train.torque * np.exp(np.arange(cells.torque) * cells.delta - EDGE)
         loaded = np.zeros_like(grid)
         np.multiply(torque[:, None], slope, out=loaded, where=np.isfinite(slope))
         return np.asarray(np.maximum(grid, loaded))
