@@ -1,6 +1,5 @@
 """What is used by ISO 6336 between widths and torques: a lower bound, exact where they are one."""
 
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -8,7 +7,9 @@ import pytest
 from rated_drives import RACK, iso
 
 from gearopt.formulations.strength.rated import Load
+from gearopt.formulations.strength.widths import first_width
 from gearopt.formulations.toothing import Toothing
+from gearopt.physics.geometry.contact import usable_path
 from gearopt.physics.iso6336.case import Practice
 from gearopt.physics.iso6336.materials import Material
 from gearopt.physics.iso6336.rating import rate
@@ -131,19 +132,36 @@ def test_borders_are_where_another_law_begins():
     np.testing.assert_allclose(ratio[~stepped], 2.0)
 
 
+def undercut():
+    """Pairs that are refused up to an overlap of 0.25, 0.16, 0.3 and 1."""
+    z1, z2 = np.array([12.0, 13.0, 14.0, 12.0]), np.array([14.0, 14.0, 14.0, 40.0])
+    shifts = np.array([-0.2, -0.2, -0.25, -0.5])
+    pair = Toothing(0.3, (RACK, RACK), (shifts, shifts)).pair(np.full(4, 4.0), z1, z2, 1.0)
+    return pair, np.full(4, 1e3), np.full(4, 1e2)
+
+
 def test_a_narrow_pair_is_refused_until_its_overlap_suffices():
     """Undercut leaves a contact ratio below 1, which the overlap has to make up for."""
-    standard = iso()
-    helix = math.radians(10.0)
-    pair = Toothing(helix, (RACK, RACK), (-0.6, -0.6)).pair(
-        np.full(2, 4.0), np.array([12.0, 40.0]), np.array([14.0, 60.0]), 1.0
-    )
-    torque, power = np.full(2, 1e5), np.full(2, 1e7)
-    made = rows(standard, pair, (torque, torque), power)
-    for width in (5.0, 20.0, 60.0, 90.0):
-        at = np.full(2, width)
-        expected = exact(standard, pair, at, torque, power)
+    pair, torque, power = undercut()
+    made = rows(iso(), pair, (torque, torque), power)
+    for width in (5.0, 15.0, 25.0, 60.0):
+        at = np.full(4, width)
+        expected = exact(iso(), pair, at, torque, power)
         np.testing.assert_allclose(made.used(at, at), expected, rtol=1e-12)
+        assert np.isinf(expected).any() == (width < 40.0)
+
+
+def test_the_first_width_may_be_where_a_refusal_ends():
+    """A light load on such pairs."""
+    pair, torque, power = undercut()
+    found = first_width(
+        [rows(iso(), pair, (torque, torque), power)], np.full(4, 5.0), np.full(4, 90.0)
+    )
+    least = 1.0 - usable_path(pair).transverse_ratio
+    least[3] = 1.0  # of contact at a base circle
+    np.testing.assert_allclose(pair.of_width(found).overlap_ratio, least, rtol=1e-11)
+    assert (exact(iso(), pair, found, torque, power) < 1.0).all()
+    assert np.isinf(exact(iso(), pair, found * (1.0 - 1e-9), torque, power)).all()
 
 
 def test_thin_rims_are_refused():

@@ -30,6 +30,7 @@ Two = tuple[Any, Any]
 LEAST, MOST = 0, 1
 PICK = np.minimum, np.maximum
 TINY = 1e-300
+BEFORE = 1.0 - 4e-13  # of a border: up to it the law before it holds, roundings included
 AT_ENDS = "force", "pace", "speed", "pitch", "form", "deviation"  # of the torques
 MODES = ("bending", 0), ("bending", 1), ("contact", 0), ("contact", 1)
 
@@ -89,7 +90,8 @@ class IsoRows:
         """Return the next width at which a refusal ends, K_v has other laws, or f_Hbeta a step."""
         at = self.levels[0]
         with np.errstate(invalid="ignore"):  # of spur gears
-            ends = [share * at["axial"] for share in (at["overlap"], 2.0 - at["contact"])]
+            shares = at["overlap"], 2.0 - at["contact"]
+            ends = [share * at["axial"] * BEFORE for share in shares]
         found = np.full(len(width), np.inf)
         for end in ends:
             found = np.where((width <= end) & (end < found), end, found)

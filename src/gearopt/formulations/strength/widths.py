@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from gearopt.formulations.strength import ALLOWANCE
-from gearopt.formulations.strength.rated import Rows
+from gearopt.formulations.strength.rated import REFUSED, Rows
 from gearopt.optimise.terms import Array
 
 BEYOND = 1.0 + 1e-12  # a border is passed by this factor
@@ -65,11 +65,13 @@ def _on(
     """
     border = np.min([one.border(here) for one in rows], axis=0)
     end = np.minimum(top, border)
-    there = np.minimum(here * np.maximum(now, BEYOND) ** power, end)
+    now = np.clip(now, BEYOND, REFUSED)
+    there = np.minimum(here * now**power, end)
     bound = used(rows, here, there)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        falls = np.log(now / bound) / np.log(there / here)
+        falls = np.log(now / np.minimum(bound, REFUSED)) / np.log(there / here)
     at_border = here >= border
     goes = (bound >= 1.0 - ROUNDING) | at_border | (there <= here * (1.0 + SHORT))
+    falls = np.where(~goes & (now == REFUSED), 2.0 * falls, falls)  # where a refusal ends
     here = np.where(goes, np.where(at_border, border * BEYOND, there), here)
     return here, np.where(np.isfinite(falls), SHY / np.maximum(falls, SHY / LONGEST), 1.0)
