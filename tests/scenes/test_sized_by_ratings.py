@@ -101,7 +101,7 @@ def test_real_valued_teeth_are_below_whole_ones_and_above_their_bound():
     assert real.bound <= real.value <= whole.value * (1.0 + 1e-9)
 
 
-@pytest.mark.parametrize("standard", ["agma", "both"])
+@pytest.mark.parametrize("standard", ["agma", pytest.param("both", marks=pytest.mark.slow)])
 def test_a_spectrum_is_what_gears_carry(standard):
     """Half of the life at half the power takes no more than all of it at full power."""
     rating = {"standard": standard}
@@ -148,6 +148,7 @@ def test_explain_says_what_steel_and_life_bring():
     assert "limits.pinion_teeth[2]" in brings
 
 
+@pytest.mark.slow
 def test_an_impossible_drive_is_proven_so_and_every_remedy_works():
     tables = drive(limits={"wheel_diameter": "100 mm", "pinion_teeth": [20, 22]})
     found = gearopt.explain(tables)
@@ -225,6 +226,7 @@ def test_the_best_number_of_stages_is_that_of_each():
     assert found.status == "optimal" and found.value == pytest.approx(min(alone), rel=1e-12)
 
 
+@pytest.mark.slow
 def test_the_file_to_start_from_has_a_safe_answer():
     result = gearopt.solve(tomllib.loads(examples()["sizing"]))
     assert result.status == "optimal" and result.design["rating"]["safe"]
@@ -265,6 +267,7 @@ def test_the_best_of_lists_is_that_of_every_pair_of_materials(minimise):
     assert both.design["rating"]["safe"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("minimise", ["cost", "gear_volume"])
 def test_a_grade_is_chosen_by_what_it_costs(minimise):
     """Finer gears are smaller, and dearer; each grade alone is solved beside."""

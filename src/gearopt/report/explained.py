@@ -18,6 +18,7 @@ PAGE_ONLY = ("effect, %", "sensitivity, % per %")
 READ_ONLY = PAGE_ONLY[1:]
 CSV_ONLY = ("sensitivity", "sensitivity, re-solved below", "sensitivity, re-solved above")
 HEADS = (*BOTH, *TERMINAL_ONLY[:2], "relaxed by", TERMINAL_ONLY[2], *PAGE_ONLY, *CSV_ONLY)
+SLOPES = (*TERMINAL_ONLY[:2], PAGE_ONLY[1], *CSV_ONLY)  # left out where no number has one
 KINDS = {
     "least": "smallest change",
     "alone": "or this alone",
@@ -46,10 +47,12 @@ def of_influences(found: Mapping[str, Any], result: Result, measures: Measures =
     found: influences, message and basis, see `optimise.explaining.explanation`.
     """
     rows = [_row(one) for one in found["influences"]]
+    steps = [k for k, head in enumerate(HEADS) if _sloped(found) or head not in SLOPES]
+    rows = [[row[k] for k in steps] for row in rows]
     idle = [one["key"] for one in found["influences"] if _is_idle(one)]
     table = Table(
         "sensitivities",
-        HEADS,
+        [HEADS[k] for k in steps],
         rows,
         page_only=PAGE_ONLY,
         terminal_only=TERMINAL_ONLY,
@@ -64,6 +67,13 @@ def of_influences(found: Mapping[str, Any], result: Result, measures: Measures =
         words.append(f"Small changes of these leave the {name} as it is: {', '.join(idle)}.")
     terminal = (*tables, "\n".join(words))
     return Section("Sensitivities", words=words, tables=tables, half=True, terminal=terminal)
+
+
+def _sloped(found: Mapping[str, Any]) -> bool:
+    """Return whether some number has a sensitivity, by multipliers or by solving again."""
+    return any(
+        s is not None for i in found["influences"] for s in (i["sensitivity"], *i["resolved"])
+    )
 
 
 def _is_idle(one: Mapping[str, Any]) -> bool:
@@ -90,6 +100,8 @@ def influence_words(found: Mapping[str, Any], result: Result) -> list[str]:
     lines = [found["message"][0].upper() + found["message"][1:] + "."] if found["message"] else []
     if not found["influences"]:
         return lines or ["No number of the file was examined."]
+    if not _sloped(found):
+        return [*lines, f"Effect of a step on the {name}: solved again with each number alone."]
     slope = f"Sensitivity of the {name}: d ln objective / d ln number, % per %"
     if any(i["sensitivity"] is not None for i in found["influences"]):
         return [*lines, f"{slope}{found.get('basis', '')}."]
