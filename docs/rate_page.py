@@ -207,10 +207,11 @@ are those of solid reference cylinders; rims and webs enter the ratings alone.
 A load spectrum is what the gears carry: Miner's sum of all levels `[[load]]` gives the safety
 factors. A K-factor and unit load in `[limits]` are limits beside the ratings
 (`problems/sized_and_rated.toml`: {sized}, so that they alone bind). Without `[teeth]`, or by the
-method `smooth`, sizes are real numbers, with a proven lower bound; ISO 6336, spectra and
-`materials` limit whole teeth alone, and of real-valued ones only a K-factor and unit load, where
-they are given: the rating then tells whether the gears are safe. Gears and box at once
-(`together`) and the two processes size by load limits alone and are refused beside `[rating]`.
+method `smooth`, sizes are real numbers, by AGMA with a proven lower bound; by ISO 6336 they are
+the best of several starts without one, and whole teeth may be better. Spectra and `materials` are
+for whole teeth alone: real-valued sizes then follow from a K-factor and unit load, where they are
+given, and the rating tells whether the gears are safe. Gears and box at once (`together`) and the
+two processes size by load limits alone and are refused beside `[rating]`.
 
 ## What is not rated
 

@@ -24,6 +24,16 @@ DRIVE = {
 }
 
 
+HARD = {"name": "hard", "treatment": "carburised", "grade": 2, "price": 9}
+TOUGH = {"name": "tough", "treatment": "through-hardened", "hardness": "300 HB", "price": 4}
+STEELS = {"hard": HARD, "tough": TOUGH}
+WITH_HARD = {
+    "face_width_over_diameter": 0.6,
+    "pinion": {"materials": ["hard"]},
+    "wheel": {"materials": ["hard"]},
+}
+
+
 def drive(**tables):
     """The tables of a small drive with keys of its tables changed; None takes a table away."""
     made = copy.deepcopy(DRIVE)
@@ -199,10 +209,10 @@ def test_mistakes_are_one_message(name):
 @pytest.mark.parametrize(
     ("tables", "told"),
     [
-        ({"load": [{"power": "5 kW", "share": 1}]}, "limit whole teeth alone"),
-        ({"rating": {"standard": "both", "iso6336": {"accuracy_grade": 6}}}, "ISO 6336"),
+        ({"load": [{"power": "5 kW", "share": 1}]}, "load spectra"),
+        ({"gears": None, "material": [HARD], "stage": [WITH_HARD]}, "materials to choose from"),
     ],
-    ids=["spectrum", "ISO"],
+    ids=["spectrum", "materials"],
 )
 def test_what_limits_no_real_valued_teeth_is_named(tables, told):
     with pytest.raises(SolveError, match=told):
@@ -211,8 +221,8 @@ def test_what_limits_no_real_valued_teeth_is_named(tables, told):
 
 def test_load_limits_alone_size_real_valued_teeth_that_ratings_cannot():
     """The rating then only tells whether the gears are safe."""
-    iso = {"standard": "both", "iso6336": {"accuracy_grade": 6}, "minimum_contact_safety": 9}
-    both = gearopt.solve(drive(limits=LOADS, rating=iso, teeth=None))
+    more, load = {"minimum_contact_safety": 9}, [{"power": "7.5 kW", "share": 1}]
+    both = gearopt.solve(drive(limits=LOADS, rating=more, load=load, teeth=None))
     alone = gearopt.solve(drive(limits=LOADS, rating=None, gears=None, teeth=None))
     assert both.value == alone.value and not both.design["rating"]["safe"]
 
@@ -230,11 +240,6 @@ def test_the_best_number_of_stages_is_that_of_each():
 def test_the_file_to_start_from_has_a_safe_answer():
     result = gearopt.solve(tomllib.loads(examples()["sizing"]))
     assert result.status == "optimal" and result.design["rating"]["safe"]
-
-
-HARD = {"name": "hard", "treatment": "carburised", "grade": 2, "price": 9}
-TOUGH = {"name": "tough", "treatment": "through-hardened", "hardness": "300 HB", "price": 4}
-STEELS = {"hard": HARD, "tough": TOUGH}
 
 
 def of_materials(pinion, wheel, minimise="cost", materials=(HARD, TOUGH)):

@@ -342,8 +342,8 @@ def _continuous(scene: Scene, method: str | None) -> bool:
     continuous = scene.teeth is None or method in CONTINUOUS
     if continuous and scene.by_ratings and not scene.rated_real:
         raise SolveError(
-            "ISO 6336, load spectra and materials to choose from limit whole teeth alone: write a "
-            "table [teeth], and use a method of whole teeth"
+            "load spectra and materials to choose from are for whole teeth alone: write a table "
+            "[teeth], and use a method of whole teeth"
         )
     if continuous and scene.by_ratings and method not in (None, SMOOTH):
         raise SolveError(f"{method} takes no real-valued gears that ratings limit; smooth does")

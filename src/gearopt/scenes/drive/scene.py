@@ -206,9 +206,8 @@ class Scene(Table):
 
     @property
     def rated_real(self) -> bool:
-        """Return whether ratings can limit real-valued teeth: by AGMA, one load, no choice."""
-        asked = self.rating
-        return asked is not None and not (asked.by_iso6336 or self.load or self.material)
+        """Return whether ratings can limit real-valued teeth: under one load, without a choice."""
+        return self.rating is not None and not (self.load or self.material)
 
     @property
     def law(self) -> Law:
