@@ -39,9 +39,9 @@ def bounding(train: Train, choice: Choice, most: float = math.inf) -> Problem | 
     """
     floors: list[list[Any]] = []
     for k, stage in enumerate(train.stages):
-        box = _box(train, k, most)
+        own = box(train, k, most)
         standards = stage.options[0].standards if stage.options else ()
-        floors.append([s.floor(box, choice[k][j]) for j, s in enumerate(standards)])
+        floors.append([s.floor(own, choice[k][j]) for j, s in enumerate(standards)])
     if any(row and all(floor is None for floor in row) for row in floors):
         return None
 
@@ -63,7 +63,7 @@ def bounding(train: Train, choice: Choice, most: float = math.inf) -> Problem | 
     return Problem("bounding", sizing.variables(train), sizing.parameters(train), evaluate)
 
 
-def _box(train: Train, k: int, most: float) -> Box:
+def box(train: Train, k: int, most: float) -> Box:
     """Return what holds for a stage of every design of at most an objective."""
     stage, highest = train.stages[k], float(train.highest_ratio)
     numbers = SimpleNamespace(**train.numbers())
@@ -71,7 +71,10 @@ def _box(train: Train, k: int, most: float) -> Box:
     alone = len(train.stages) == 1
     low = max(float(train.lowest_ratio) if alone else 1.0, numbers.ratio_low[k])
     ratio = low, max(low, min(highest, numbers.ratio_high[k]))
-    speed = train.speed if k == 0 else train.speed / highest, train.speed
+    before = train.stages[:k]
+    fast = math.prod(float(stage.ratio[0]) for stage in before)
+    slow = math.prod(float(stage.ratio[1] or highest) for stage in before)
+    speed = train.speed / min(highest, slow), train.speed / fast
     return Box(teeth, ratio, speed, _widest(train, k, low, most), stage.toothing)
 
 

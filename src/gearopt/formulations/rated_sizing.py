@@ -8,29 +8,33 @@ and in whole teeth. What is returned was rated by the exact form.
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 from typing import Any
 
 import numpy as np
 
 from gearopt.errors import SolveError
-from gearopt.formulations import sizing
+from gearopt.formulations import sizing, teeth
 from gearopt.formulations.gear_train import Train, terms
-from gearopt.formulations.rated_bound import Choice, bounding, lower_bound, solved
+from gearopt.formulations.rated_bound import Choice, bounding, box, lower_bound, solved
 from gearopt.formulations.strength.rated import MODES
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import FEASIBLE, Budget, Outcome, Result, Watch
+from gearopt.optimise.solve import solve
 from gearopt.optimise.terms import Array, Param, Terms, Var, each, namespace
-from gearopt.physics.gears import GearPair
+from gearopt.physics.gears import SERIES_I, GearPair
 
 ROUNDS = 4  # of correcting the smooth form by the exact one
 SAFE = 1.0 + FEASIBLE  # utilisation up to which the exact rating accepts a design
 GROWTH = tuple(10.0 ** (0.5 * k) for k in range(-14, -3))  # of lengths, in a repair
+LESS, SMALLEST, HALVINGS = 1e-5, 0.7, 24  # of lengths that an exact rating finds too large
 EQUAL = 1e-7  # relative; of safety factors that are those of the exact rating
 SAME = 1e-9  # of corrections that no longer change
 FINER = (1.0, 1.4, 2.0)  # times the least teeth, of starts without a bounding program
+FEW = 20  # teeth above the least of a pinion without a limit, of a search among whole teeth
+SECONDS = 5.0  # at most, for that search
 REFINED = 4  # best designs whose choices are refined
 
 
@@ -127,10 +131,19 @@ def _outcome(train: Train, exact: Problem, clock: Clock) -> Outcome:
     begun = {choice: _start(train, choice, clock) for choice in choices(train)}
     possible = {choice: start for choice, (start, least) in begun.items() if least < math.inf}
     bound = min(least for _, least in begun.values())
-    designs: list[_Design] = []
+    others: list[Array] = []
+    if any(start is None for start in possible.values()) or not _all_bounded(train):
+        others = [*_whole(train, clock), *_starts(exact)]
+    designs = [
+        _Design(float(exact.batch(x[None]).F[0, 0]), x, choice, False, "feasible")
+        for x in others[:1]
+        for choice in list(possible)[:1]
+        if _safe(exact, x)
+    ]
     for choice, start in possible.items():
         made = smooth_problem(train, choice)
-        starts = [start] if start is not None else _starts(exact)
+        starts = [start] if start is not None else others
+        starts = [*starts, *(others if start is not None else [])]
         found = [_design(train, exact, choice, one, clock, made) for one in starts]
         designs += [design for design in found if design is not None]
         if designs:
@@ -184,6 +197,16 @@ def _claim(best: _Design | None, bound: float, clock: Clock) -> Outcome:
     )
 
 
+def _all_bounded(train: Train) -> bool:
+    """Return whether every standard has a bounding law, from whose optimum a search may start."""
+    boxes = [(stage, box(train, k, math.inf)) for k, stage in enumerate(train.stages)]
+    return all(
+        standard.floor(own, standard.choices(bool(stage.toothing.helix_angle))[0]) is not None
+        for stage, own in boxes
+        for standard in (stage.options[0].standards if stage.options else ())
+    )
+
+
 def _starts(exact: Problem) -> list[Array]:
     """Return starts of more and more, smaller teeth."""
     lower, upper, guess = exact.bounds()
@@ -194,6 +217,34 @@ def _starts(exact: Problem) -> list[Array]:
         moved = [g * change.get(n, 1.0) for g, n in zip(guess, names, strict=True)]
         found.append(np.clip(moved, lower, upper))
     return found
+
+
+def _whole(train: Train, clock: Clock) -> list[Array]:
+    """Return the best train of whole teeth and standard modules as a point, if one is found."""
+    stages = []
+    for stage in train.stages:
+        least, most = min(stage.modules, default=None), max(stage.modules, default=None)
+        if least is None or most is None:
+            series = SERIES_I
+        else:
+            series = tuple(sorted({least, most, *(m for m in SERIES_I if least < m < most)}))
+        low, high = stage.pinion_teeth
+        stages.append(replace(stage, modules=series, pinion_teeth=(low, high or low + FEW)))
+    near = replace(train, stages=tuple(stages))
+    found = solve(teeth.problem(near), budget=Budget(clock.within(SECONDS)))
+    point = _point(teeth.problem(near), found)
+    if point is None:
+        return []
+    rows = [
+        {
+            "module": pair.normal_module,
+            "pinion_teeth": pair.pinion_teeth,
+            "ratio": pair.ratio,
+            "face_width": pair.face_width,
+        }
+        for pair in teeth.pairs(near, point)
+    ]
+    return [np.array([float(r[v.name]) for v in sizing.variables(train) for r in rows])]
 
 
 def _start(train: Train, choice: Choice, clock: Clock) -> tuple[Array | None, float]:
@@ -241,10 +292,10 @@ def _design(
             break
         at = np.clip(point[:size], *exact.bounds()[:2])
         ratio = _errors(train, at, choice, made, point, trims)
-        safe = _grown(exact, at)
+        safe = _repaired(exact, at)
         if safe is not None:
             value = float(exact.batch(safe[None]).F[0, 0])
-            same = bool(np.all(np.abs(trims * ratio - 1.0) <= EQUAL)) and safe is at
+            same = bool(np.all(np.abs(trims * ratio - 1.0) <= EQUAL)) and np.array_equal(safe, at)
             if best is None or value < best.value:
                 best = _Design(value, safe, choice, same, found.status)
         if not np.isfinite(ratio).all() or np.abs(ratio - 1.0).max() <= SAME:
@@ -253,16 +304,37 @@ def _design(
     return best
 
 
-def _grown(exact: Problem, at: Array) -> Array | None:
-    """Return a design as it is, or as much larger as the exact rating needs; None: by too much."""
+def _safe(exact: Problem, x: Array) -> bool:
+    made = exact.batch(x[None])
+    return bool(max(made.G.max(initial=0.0), 1.0 + np.abs(made.H - 1.0).max(initial=0.0)) <= SAFE)
+
+
+def _repaired(exact: Problem, at: Array) -> Array | None:
+    """Return a design as it is, or as much larger as the exact rating needs; None: by too much.
+
+    Stages that could be smaller by LESS are made so.
+    """
     lengths = np.array([v.unit == "mm" for v, _ in exact.columns])
+    stage = [int(n.rsplit("[", 1)[1][:-1]) if v.size > 1 else 1 for v, n in exact.columns]
     lower, upper, _ = exact.bounds()
-    for more in (0.0, *GROWTH):
-        here = at if more == 0.0 else np.where(lengths, at * (1.0 + more), at)
-        made = exact.batch(np.clip(here, lower, upper)[None])
-        if max(made.G.max(initial=0.0), 1.0 + np.abs(made.H - 1.0).max(initial=0.0)) <= SAFE:
-            return np.clip(here, lower, upper) if more else at
-    return None
+
+    def scaled(x: Array, factor: float, chosen: Array) -> Array:
+        return np.clip(np.where(chosen, x * factor, x), lower, upper)
+
+    here = next((s for g in (0.0, *GROWTH) if _safe(exact, s := scaled(at, 1 + g, lengths))), None)
+    if here is None:
+        return None
+    for k in range(1, max(stage) + 1):
+        own = lengths & (np.array(stage) == k)
+        if not _safe(exact, scaled(here, 1.0 - LESS, own)):
+            continue
+        low, high = SMALLEST, 1.0 - LESS
+        for _ in range(HALVINGS):
+            middle = 0.5 * (low + high)
+            good = _safe(exact, scaled(here, middle, own))
+            low, high = (low, middle) if good else (middle, high)
+        here = scaled(here, high, own)
+    return here
 
 
 def _loads(train: Train, pairs: tuple[GearPair, ...]) -> Iterator[tuple[GearPair, float, float]]:
