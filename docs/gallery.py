@@ -58,7 +58,9 @@ GROUPS = {  # heading: {file: what it shows, in a line}
     "The paper's processes": {
         "elevator_processes": "The rules of a paper beside the optimum, `[process_one]` and "
         "`[process_two]`.",
-        "three_stage_processes": "The same for three stages, with the widths of the paper's table.",
+        "elevator_processes_rated": "The same beside a table `[rating]`: rule and optimum are both "
+        "rated.",
+        "three_stage_processes": "The rules for three stages, widths of the paper's table.",
     },
     "Ratio and widths": {
         "elevator_fine_ratio": "A tolerance of the ratio ten times finer.",

@@ -168,6 +168,25 @@ def required(found: DriveRating) -> float:
     return max((level.power_kW for level in found.levels), default=duty)
 
 
+def least_safeties(results: Sequence[Result]) -> list[list[str]]:
+    """Return a row for S_F and S_H of every standard: its name, the least of every design."""
+    found = [rating_of(result) for result in results]
+    first = found[0]
+    if first is None:
+        return []
+    rows = []
+    for k, one in enumerate(first.each):
+        by = f", {one.by}" if first.beside else ""
+        for mode, symbol in MODES.items():
+            key = f"{mode}_safety"
+            least = [
+                "" if other is None else safety(min(getattr(g, key) for g in other.each[k].gears))
+                for other in found
+            ]
+            rows.append([f"least {symbol}{by}", *least])
+    return rows
+
+
 def safety(factor: float) -> str:
     """Return a safety factor, or a capacity, for reading: never larger than it is."""
     text = rounded(factor, SAFETY_DIGITS)

@@ -52,6 +52,8 @@ def first_width(
             active, rows = active[goes], [one.take(goes) for one in rows]
             here, top, power, now = here[goes], top[goes], power[goes], now[goes]
         here, power = _on(rows, here, top, now, power)
+    if len(active) and steps == STEPS:
+        raise ArithmeticError(f"no least face width was found in {STEPS} steps")
     found[active] = here  # what is left is bounded from below
     return found
 

@@ -151,6 +151,7 @@ def processes(result: Result, measures: Measures) -> Section | None:
     designs = [best, *(part for part in ruled if part.design)]
     heads = ["", best.method, *(part.name for part in designs[1:])]
     rows = [*_stages(designs, measures), *_totals(designs, best.bound, measures)]
+    rows += rating_words.least_safeties(designs)
     words = "The processes follow design rules, without a search; limits and bound are the same."
     stages = len(best.design["stages"])
     table = Table(

@@ -256,7 +256,7 @@ def _answer(scene: Scene, ask: Ask, ideal: Result | None = None) -> Result:
 def _discrete(scene: Scene, train: Train, top: int = 1, floor: float = -math.inf) -> Problem:
     """Return the problem of whole teeth, with all methods that a drive has for it."""
     problem = teeth.problem(train, top, floor)
-    if train.rated:
+    if not train.law.limits:
         return problem
     return replace(problem, methods={**problem.methods, **scene.processes()})
 
@@ -279,7 +279,8 @@ def _with_processes(scene: Scene, ask: Ask, best: Result) -> Result:
             continue
         made = {} if outcome.x is None else untyped(scene.design(teeth.pairs(train, outcome.x)))
         part = replace(part, objective=part.objective | {"unit": train.unit}, design=made)
-        parts.append(reconcile(replace(part, name=words), best, ask.gap))
+        part = with_rating(scene, reconcile(replace(part, name=words), best, ask.gap))
+        parts.append(part)
     return replace(best, parts=(*best.parts, *parts), report=best.report | {"notes": remarks})
 
 

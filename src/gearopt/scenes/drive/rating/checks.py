@@ -74,8 +74,8 @@ def check_sized(
     if together:
         rule = "is for gears that load limits alone size, and [rating] limits them here"
         raise refuse(rule, False, ("layout", "together"))
-    for name in ruled:
-        rule = f"is a process by {own.title} alone, and [rating] limits the gears here"
+    for name in ruled if not law.limits else ():
+        rule = f"is a process by {own.title}, which [limits] does not have (give preset)"
         raise refuse(rule, at=(name,), action="remove")
 
 
