@@ -149,7 +149,7 @@ def test_the_command_refuses_random_mistakes(here, tmp_path):
     [
         ("limits", 'center_distance = "120 mm"', "sum_of_centre_distances"),
         ("stage[1]", "addendum_modification = 0.5", "profile_shift, in [stage.pinion]"),
-        ("gears", "accuracy_grade = 6", 'kind = "servo"'),
+        ("gears", "gear_quality = 6", 'kind = "servo"'),
         ("limits", "safety_factor = 1.5", "minimum_bending_safety"),
         ("duty", "application_factor = 1.25", "multiply it by the factor"),
         ("gears", 'lubricant = "VG 220"', "scuffing is not checked"),

@@ -42,7 +42,7 @@ MONEY = "cost price costs budget maximum_cost"
 
 KEYS = frozenset(  # of the names above, those that a drive has as keys
     "hardness surface_hardness overload_factor centre_distance profile_shift quality grade life "
-    "temperature friction_coefficient addendum rim_thickness".split()
+    "temperature friction_coefficient addendum rim_thickness accuracy_grade".split()
 )
 
 
