@@ -1,8 +1,10 @@
 """Sizing as geometric programs of rows: two solvers and a dual bound, and the rows are safe."""
 
 import math
+from pathlib import Path
 
 import gp_rows
+import gp_rows_iso
 import numpy as np
 import pytest
 from gp_rows import BETA, ELEVATOR, FIVE, THREE
@@ -12,15 +14,29 @@ from gearopt.optimise.solve import solve
 from gearopt.physics.agma import factors
 from gearopt.physics.agma.bending import bending_factor, critical_theta, loaded_tooth
 from gearopt.physics.agma.mesh import mesh_of, pitting_factor
-from gearopt.physics.geometry.contact import contact_path
+from gearopt.physics.geometry.contact import contact_path, total_contact_ratio
+from gearopt.physics.iso6336 import (
+    accuracy,
+    bending_factors,
+    load_factors,
+    running_in,
+    stiffness,
+)
 
 CASES = {
     "elevator, AGMA": lambda: gp_rows.agma(ELEVATOR),
+    "elevator, ISO": lambda: gp_rows_iso.iso(ELEVATOR),
+    "elevator, ISO, helix free": lambda: gp_rows_iso.iso(ELEVATOR, free=True),
     "three stages, AGMA": lambda: gp_rows.agma(THREE),
+    "three stages, ISO": lambda: gp_rows_iso.iso(THREE),
     "1000:1 in five, AGMA": lambda: gp_rows.agma(FIVE),
 }
-QUICK = ("elevator, AGMA",)
+QUICK = ("elevator, AGMA", "elevator, ISO")
 ALL = [c if c in QUICK else pytest.param(c, marks=pytest.mark.slow) for c in CASES]
+
+
+MEMORY = (2211.6, 3905.0, 3796.9, 4823.4, 8538.1, 58469.4)  # cm3, with coefficients of memory
+PAGE = (Path(__file__).parents[2] / "docs" / "multi_stage.md").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize("case", ALL)
@@ -31,6 +47,15 @@ def test_cvxpy_and_ipopt_agree(case):
     assert cone.value == pytest.approx(found.value, rel=1e-9)
     assert 0.0 <= found.gap < 1e-9
     assert found.bound <= min(found.value, cone.value)
+
+
+def test_the_table_of_the_page_is_recomputed():
+    for name, memory in zip(CASES, MEMORY, strict=True):
+        drive, rows = name.split(", ", 1)
+        found = solve(CASES[name]())
+        ratios = " ".join(f"{u:.3f}" for u in found.design["u"])
+        row = f"| {drive} | {rows} | {found.value / 1e3:,.1f} | {ratios} | {memory:,.1f} |\n"
+        assert row in PAGE
 
 
 def random_starts(problem, count):
@@ -93,3 +118,60 @@ def test_the_usual_contact_ratio_is_no_lower_bound():
         taken = np.cos(np.radians(degrees)) * (1.88 - 3.2 * inverse)
         over.append(float(np.max(taken / contact_path(pair).transverse_ratio)))
     assert over == pytest.approx([1.0082, 1.0467, 1.1001], abs=1e-4)
+    taken = gp_rows.contact_ratio(25.0), gp_rows.contact_ratio(*gp_rows_iso.GRID)
+    assert taken == pytest.approx((1.803, 1.714), abs=5e-4)
+
+
+def test_the_rows_of_iso_are_safe():
+    """Factors of the answers against physics.iso6336, whose K_v is below resonance there."""
+    for drive in (ELEVATOR, THREE):
+        got, gears = pairs(solve(gp_rows_iso.iso(drive)))
+        torque, speed = drive.torque, drive.speed
+        for k, pair in enumerate(gears):
+            exact = iso_factors(pair, torque, speed)
+            taken = [got[n][k] for n in ("kv", "kb", "ka", "e")]
+            over = np.array(taken) / exact
+            assert np.all(over[:3] >= 1.0) and np.all(over[:3] < [1.265, 1.365, 1.175])
+            assert 0.98 < over[3] <= 1.0
+            torque, speed = torque * got["u"][k], speed / got["u"][k]
+
+
+def iso_factors(pair, torque, speed):
+    """K_v, K_Hbeta, K_Halpha of carburised gears of grade 8 without relief, and eps_alpha."""
+    width, d = pair.face_width, pair.pinion.reference_diameter
+    w = 2.0 * torque * 1.25 / (d * width)
+    ratio, total = contact_path(pair).transverse_ratio, total_contact_ratio(pair)
+    single = stiffness.single_stiffness(pair, w)
+    mesh, along = stiffness.mesh_stiffness(single, ratio)
+    mass = stiffness.reduced_mass(pair, (7.83e-9, 7.83e-9), (0.0, 0.0))
+    resonance = speed / load_factors.resonance_speed(pair.pinion_teeth, mesh, mass)
+    assert resonance < load_factors.lower_limit(w)
+    off = accuracy.deviations(pair, (8.0, 8.0), smooth=True)
+    left = [f - running_in.pitch_allowance("Eh", f, 1100.0, 0.0) for f in off_pair(off)]
+    waves = load_factors.Dynamics(single * left[0] / w, single * left[1] / w, 1.0, total)
+    kv = load_factors.dynamic_factor(waves, resonance, w)
+    shaft = load_factors.shaft_misalignment(w * kv, width / d)
+    skew = load_factors.initial_misalignment(shaft, off.alignment, w * kv, off.helix_slope)
+    skew = skew - running_in.helix_allowance("Eh", skew, 1100.0, 0.0)
+    kb = load_factors.face_load_factor(skew, along, w * kv)
+    rough = max(off_pair(off)) - running_in.pitch_allowance("Eh", off.base_pitch, 1100.0, 0.0)
+    ka = load_factors.transverse_load_factor(mesh, rough, w * kv * kb, total)
+    return np.array([kv, kb, max(1.0, float(ka)), ratio], float)
+
+
+def off_pair(deviations):
+    return deviations.base_pitch, deviations.profile_form
+
+
+def test_the_monomials_of_the_helix_angle_are_upper_bounds():
+    """Of Z_H^2 and Y_beta, within 0.7 and 22 % up to 35 degrees, Y_beta from 6 degrees."""
+    given = gp_rows_iso.numbers(*gp_rows_iso.GRID)
+    angles = np.radians(np.linspace(0.0, 35.0, 701))
+    zones = given.zone[0] * np.cos(angles) ** given.zone[1]
+    over = zones / [gp_rows_iso.zone(beta) for beta in angles]
+    assert 1.0 <= over.min() and over.max() < 1.007
+    assert given.zone == pytest.approx((6.2364, 1.5915), rel=1e-3)  # of the digest
+    angles = angles[np.sin(angles) > 0.1]
+    relief = given.helix[0] * np.sin(angles) ** given.helix[1]
+    over = relief / bending_factors.helix_factor(angles, 1.0)
+    assert 1.0 <= over.min() and over.max() < 1.22
