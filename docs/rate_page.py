@@ -144,8 +144,9 @@ is printed: `iso_tr_6336_30.toml` and `wind_pair.toml`.
 
 ## A load spectrum
 
-Tables `[[load]]` stand in the place of the power of `[duty]`: levels of power (and `input_speed`,
-if it is another one), each with its share of the life. The shares add up to 100 %.
+Tables `[[load]]` stand in the place of the power of `[duty]`, which a file still has but which is
+not rated then: levels of power (and `input_speed`, if it is another one), each with its share of
+the life. The shares add up to 100 %.
 
 ```toml
 {load}```

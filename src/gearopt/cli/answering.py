@@ -1,6 +1,7 @@
 """`solve`, `explain`, `compare`: the best design, why it is what it is, methods side by side."""
 
 from collections.abc import Callable, Mapping
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -26,7 +27,7 @@ from gearopt.cli.writing import check_html
 from gearopt.errors import GearoptError
 from gearopt.optimise.comparing.compare import EVALUATIONS, SEEDS, Progress
 from gearopt.optimise.comparing.compare import SECONDS as EACH
-from gearopt.optimise.result import Budget
+from gearopt.optimise.result import Budget, Result
 from gearopt.report.command import SECONDS, TOP_ON_PAGE
 
 Seconds = Annotated[float, typer.Option(min=0.0, help="Stop after this time.")]
@@ -100,10 +101,17 @@ def solve(
         )
     lines: list[str] = []
     try:
-        lines = written(result, files)
+        lines = [*_advice(result, file), *written(result, files)]
     finally:  # what took long to find is shown even where no file can be written
         answer(result, as_json, lines, files.measures)
     raise typer.Exit(exit_code(result))
+
+
+def _advice(result: Result, file: Path) -> list[str]:
+    """Return what to run for remedies of an impossible file, where the answer has none."""
+    if result.status != "infeasible" or result.report.get("ways_out"):
+        return []
+    return [f"\nWhat to write instead: gearopt explain {file}"]
 
 
 def _metric(as_json: bool, units: str) -> None:

@@ -69,13 +69,16 @@ def of_limits(result: Result, shown: Collection[str] = ()) -> str:
     """Return which limits decide, else which is nearest; shown: limits that are not named here.
 
     Of whole teeth and standard sizes, which come in steps, the limits that decide are those that
-    their real-valued relaxation reaches.
+    their real-valued relaxation reaches; without one, as under ratings, those that are reached
+    may decide or not.
     """
     left_out = {*GIVEN, *ENDS, *shown}
     own = {n: u for n, u in result.limits.items() if _stem(n) not in left_out}
     reached = [n for n, u in own.items() if u >= 1.0 - REACHED]
     relaxed = next((part.limits for part in result.parts if part.name == "sizing"), {})
     decisive = [n for n in own if relaxed.get(n, 0.0) >= 1.0 - REACHED] or reached
+    if result.method == "exact" and result.design.get("rating") and not relaxed:
+        decisive = []
     ends = [n for n in reached if n not in decisive]
     rest = {n: u for n, u in own.items() if n not in (*decisive, *ends) and not _is_end(n)}
     parts = [_decided(result, decisive)] if decisive else []
@@ -84,7 +87,7 @@ def of_limits(result: Result, shown: Collection[str] = ()) -> str:
         if ends
         else []
     )
-    parts += _nearest(rest, not decisive, has_stages(result)) + _tolerance(result)
+    parts += _nearest(rest, not decisive and not ends, has_stages(result)) + _tolerance(result)
     return "; ".join(parts) or _free(result)
 
 
