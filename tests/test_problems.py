@@ -30,7 +30,8 @@ KEYS = {  # of [x-expected], as the tests below read them
     },
 }
 LONG = (
-    "three_stage_by_agma",
+    *("three_stage_by_agma", "helical_unit", "elevator_by_both", "materials_by_cost"),
+    "elevator_processes_rated",
     "three_stage_by_both",
     "thousand_in_two_stages",
     "three_stage_small_wheels",

@@ -86,7 +86,9 @@ def test_one_width_and_torque_give_what_is_rated(kind):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("wide", [1.0003, 1.01, 1.5])
+@pytest.mark.parametrize(
+    "wide", [1.01, *(pytest.param(w, marks=pytest.mark.slow) for w in (1.0003, 1.5))]
+)
 def test_no_width_and_torque_of_a_box_use_less(kind, wide):
     standard, helix = KINDS[kind]
     pair, width, torque, power, rng = pairs(helix, 2, (0.2, -0.1))

@@ -120,6 +120,7 @@ def test_arrangements_against_all_weak_orders(stages, seed):
     assert not any(better(a, b) for a in kept for b in kept if a is not b)
 
 
+@pytest.mark.slow
 def test_the_best_arrangement_is_that_of_every_one_tried():
     box = some_box(3, 4, partial=False, slabs=None)
     orders = arrangements(box)

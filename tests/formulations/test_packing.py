@@ -97,6 +97,7 @@ def test_both_texts_say_the_same_of_the_row(plan):
     assert np.ptp(back.x - found.x) < 1e-12 and np.ptp(back.y - found.y) < 1e-12
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("plan", PLANS.values(), ids=PLANS)
 def test_a_short_run_is_feasible_never_below_its_bound_and_repeatable(plan):
     problem = packing.problem(plan)

@@ -58,6 +58,7 @@ def test_life_factors_that_are_given_are_refused(standard):
         wrong.rows(wrong.prepared(pair()), pair(), (TORQUE,) * 2, (POWER / TORQUE,) * 2, (1.0, 1.0))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("standards", [(AGMA,), (replace(ISO, suffix="_iso"),)])
 def test_the_best_under_a_spectrum_is_that_of_all_candidates(standards):
     choice = {"pinion_teeth": (20, 22), "modules": MODULES[4:9]}

@@ -19,12 +19,16 @@ from gearopt.formulations.teeth.tables import stage_tables
 from gearopt.optimise.result import Budget
 from gearopt.physics.agma.rating_factors import Steel
 
+SLOW = pytest.mark.slow
 STEPPED = FaceWidth(F(3, 10), F(3, 4), step=F(5))
 
 
 @pytest.mark.parametrize("face", [TIED, STEPPED], ids=["tied", "stepped"])
 @pytest.mark.parametrize("helix", [0.0, 0.4])
-@pytest.mark.parametrize("options", [by("agma"), by("iso"), by("agma", "iso")])
+@pytest.mark.parametrize(
+    "options",
+    [by("agma"), *(pytest.param(by(*n), marks=SLOW) for n in (("iso",), ("agma", "iso")))],
+)
 def test_the_best_of_one_stage_is_that_of_all_candidates(face, helix, options):
     choice = {"pinion_teeth": (20, 23), "modules": MODULES[4:9], "helix": helix}
     train = rated_drive(F(3), [face], options=options, **choice)
@@ -60,6 +64,7 @@ def test_no_narrower_width_carries(options, modules):
             )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("standards", [("iso",), ("agma", "iso")])
 def test_the_best_of_two_stages_by_iso_is_that_of_all_candidates(standards):
     choice = {"pinion_teeth": (20, 20), "modules": MODULES[8:11], "options": by(*standards)}
@@ -81,7 +86,10 @@ def test_a_train_is_feasible_by_its_own_text(options):
 CARBURISED = (Steel("carburised", 2),) * 2
 
 
-@pytest.mark.parametrize("objective", ["gear_volume", "mass", "cost", "total_length"])
+@pytest.mark.parametrize(
+    "objective",
+    ["cost", *(pytest.param(o, marks=SLOW) for o in ("gear_volume", "mass", "total_length"))],
+)
 def test_the_best_material_is_that_of_all_of_them(objective):
     """Options alone, one after the other; a dear steel that is stronger, a light one."""
     made = (

@@ -225,6 +225,7 @@ SLOW = [pytest.param(face, marks=pytest.mark.slow) for face in ("tied", "stepped
 SLOWER = [pytest.param(face, marks=pytest.mark.slow) for face in ("free", "stepped")]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("face", ["fixed", *SLOW, SLOWER[0]])
 def test_laws_in_gears_and_box_at_once(face):
     """A pressure is a K-factor without its ratio; unpromised, its widths are bounds in cells."""

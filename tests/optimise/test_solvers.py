@@ -88,6 +88,7 @@ def test_integers_and_finite_sets(method):
     assert isinstance(result.design["n"], int)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", [*SAMPLERS, "multistart"])
 def test_the_same_seed_gives_the_same_answer(method):
     budget = Budget(evaluations=2000)

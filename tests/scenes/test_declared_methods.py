@@ -148,6 +148,7 @@ CURVES = [  # file, method, evaluations, points of the curve at the least
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "method", "evaluations", "least"), CURVES)
 def test_a_curve_tells_of_the_way_to_the_best(name, method, evaluations, least):
     assert len(curve(name, method, evaluations).steps) >= least

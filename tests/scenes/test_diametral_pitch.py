@@ -162,6 +162,7 @@ def test_an_explanation_in_inches_names_no_metric_unit(here):
     assert not re.search(r"\bmm|MPa|\bkg\b|N m\b", done.stdout)
 
 
+@pytest.mark.slow
 def test_a_file_in_inches_is_answered_in_inches(here, tmp_path):
     """5,566,260.9 mm3 are 339.67 in3; pitches of 16 and 8 to the inch, without a rounding error."""
     done = here("solve", PROBLEMS / "inch_drive.toml", "--units", "inch", "--csv", tmp_path)

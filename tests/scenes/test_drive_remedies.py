@@ -121,6 +121,7 @@ def test_teeth_that_do_not_suffice_alone_move_together():
     assert way.verified["with_less"] == "infeasible"
 
 
+@pytest.mark.slow
 def test_a_module_is_added_to_a_list():
     """Between 1 mm and 8 mm: a module of series I, and both series instead of the list."""
     found = explained(SHORT_LIST)

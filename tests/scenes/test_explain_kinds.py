@@ -101,6 +101,7 @@ def test_compound_slope_is_that_of_the_same_teeth(train):
     assert ratio.resolved == pytest.approx((known, known), rel=1e-3)
 
 
+@pytest.mark.slow
 def test_compound_says_where_other_teeth_are_nearest(train):
     words, low, _, high = train.message.rsplit(" ", 3)
     assert words.endswith("best with train.ratio from")

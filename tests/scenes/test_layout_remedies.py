@@ -60,6 +60,7 @@ def keys(found):
     return [tuple(c.key for c in r.changes) for r in found.remedies]
 
 
+@pytest.mark.slow
 def test_a_place_out_of_reach_is_moved_to_where_the_links_reach():
     found, content = told(BARE + FAR)
     first = found.remedies[0]
@@ -82,6 +83,7 @@ def test_the_side_of_a_keep_out_is_moved():
     assert_least(found, content)
 
 
+@pytest.mark.slow
 def test_a_range_of_places_is_widened():
     text = BARE + '[[place]]\nshaft = 4\nz = ["700 mm", "720 mm"]\n'
     found, content = told(text)
@@ -100,6 +102,7 @@ def test_two_faults_at_once_are_both_told_and_get_pairs_of_edits():
     assert_least(found, content)
 
 
+@pytest.mark.slow
 def test_too_long_and_too_close_are_both_told():
     """Stages 1 and 3 side by side: 95.3 + 47.8 + 3 x 10 mm; that clashes too."""
     text = THICK.replace("[layout]\n", '[layout]\nlargest_length = "150 mm"\n')
@@ -118,6 +121,7 @@ def test_what_no_designer_would_write_is_not_proposed():
     assert all(c.factor <= 10.0 for c in moved if np.isfinite(c.factor))
 
 
+@pytest.mark.slow
 def test_a_split_line_that_a_place_contradicts():
     text = BARE.replace("[layout]\n", "[layout]\nsplit_line = [1, 4]\n")
     found, content = told(text + '[[place]]\nshaft = 4\nz = "100 mm"\n')
@@ -236,6 +240,7 @@ def test_a_keep_out_is_left_out_beside_another_change_of_keep_outs(text, key):
     assert_least(found, content)
 
 
+@pytest.mark.slow
 def test_a_number_is_moved_as_far_as_another_lets_it():
     """Ten times the width is above the largest one; a part of that is not."""
     text = BARE.replace("[layout]\n", '[layout]\nwidth = "200 mm"\nlargest_width = "460 mm"\n')

@@ -147,6 +147,7 @@ def test_stages_1_and_3_in_one_slab_are_43_mm_too_close():
     assert (change["was"], change["factor"]) == ("[[1, 3], [2]]", 1.0)
 
 
+@pytest.mark.slow
 def test_a_shaft_through_a_wheel_is_told_with_cures_that_work():
     _, content = scene_of(with_layout(shaft_diameters='["16 mm", "30 mm", "52 mm", "70 mm"]'))
     found = gearopt.explain(scene_of(with_layout())[0].model_validate(content))
@@ -399,6 +400,7 @@ def test_a_stop_is_heard_while_the_gears_chosen_first_are_laid_out(small):
     assert "real-valued" not in [part.name for part in result.parts]  # a start is no answer
 
 
+@pytest.mark.slow
 def test_every_answer_makes_a_page(small, tmp_path):
     """Also of gears and box at once, and of what is impossible; numbers of numpy never reach it."""
     from dataclasses import replace

@@ -40,6 +40,7 @@ def at_an_end(end, whole=""):
     return scene_of("\n".join([*heads, whole]))[0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("end", ["ratio 1", "equal speeds", "largest pinion", "close modules"])
 def test_a_probe_that_the_file_would_refuse_counts_as_no_design_there(end):
     scene = at_an_end(end)

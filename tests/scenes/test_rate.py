@@ -278,6 +278,7 @@ def test_the_optimum_of_a_sized_drive_is_rated_as_its_gears_are(solved):
     assert ours == pytest.approx(theirs, rel=1e-9, abs=1e-12)
 
 
+@pytest.mark.slow
 def test_the_best_number_of_stages_is_rated():
     """`stages` as a range, continuous sizes; the example's duty."""
     tables = {
@@ -316,6 +317,7 @@ def test_explain_of_a_sized_drive_lists_the_numbers_of_its_rating():
     assert {"rating.life", "rating.quality"} <= keys
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("power", ["20 kW", "400 kW"])
 @pytest.mark.parametrize("file", ["pair_by_both", "two_stages_rated"])
 def test_the_power_capacity_by_iso_6336_is_rated_at_that_power(file, power):

@@ -48,6 +48,7 @@ def test_pruned_search_counts_no_feasible_trains():
     assert "combinations" not in told(result)
 
 
+@pytest.mark.slow
 def test_what_an_enumeration_does_not_look_at_is_said():
     result = gearopt.solve(scene("gimbal_stiff"), method="enumeration")
     assert result.value == pytest.approx(gearopt.solve(scene("gimbal_stiff")).value, rel=1e-12)
