@@ -52,9 +52,8 @@ def numbers(*degrees):
     """Constants of the rows, each the worst over helix angles [degrees].
 
     zone: (f, p) of Z_H^2 <= f cos(beta)^p; helix: (f, q) of Y_beta <= f sin(beta)^q; root: (a, s)
-    of Y_F Y_S <= a + s/z1; stiff: (least, most) c'/cos(beta) [MPa]; phase: C_v1, C_v2, C_v3;
-    fast: 1/cos(alpha_t), pitch: cos(alpha_t); most: of `contact_ratio`; upper:
-    of `_most_contact`.
+    of Y_F Y_S <= a + s/z1 of both; stiff: (least, most) c'/cos(beta) [MPa]; phase: C_v1 to C_v3;
+    fast: 1/cos(alpha_t), pitch: cos(alpha_t); most: of `contact_ratio`; upper: of `_most_contact`.
     """
     gears = [lattice(math.radians(d)) for d in degrees]
     cosines, sines = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
@@ -90,8 +89,9 @@ def _most_contact(pair, cosine):
 
 
 def _root(pair):
-    form = tooth_forms(pair, contact_path(pair).transverse_ratio)[0]
-    return line(pair.pinion_teeth, form.form * form.concentration, above=True)
+    forms = tooth_forms(pair, contact_path(pair).transverse_ratio)
+    both = np.maximum(*(form.form * form.concentration for form in forms))
+    return line(pair.pinion_teeth, both, above=True)
 
 
 def iso(drive, free=False):
