@@ -5,7 +5,9 @@ import typer
 
 from gearopt.api import solve
 from gearopt.cli.answering import solve as solve_command
+from gearopt.optimise.result import Result
 from gearopt.report.answer import decided
+from gearopt.report.words import certainty
 
 PAIR = """gearopt = 1
 kind = "drive"
@@ -59,3 +61,11 @@ def test_teeth_at_an_end_of_their_range_are_reached_and_not_said_to_decide(pair)
     first = decided(result)
     assert result.limits["pinion_teeth_low[1]"] == 1.0
     assert "reached" in first and "decide" not in first and "no limit" not in first
+
+
+@pytest.mark.parametrize(
+    ("bound", "told"), [(None, "locally optimal (no bound)"), (0.9, "locally optimal")]
+)
+def test_a_local_optimum_with_a_bound_is_not_said_to_have_none(bound, told):
+    objective = {"name": "volume", "value": 1.0, "unit": "mm3"}
+    assert certainty(Result("drive", "stationary", "smooth", objective, bound))[0] == told

@@ -147,6 +147,8 @@ def certainty(result: Result) -> tuple[str, str]:
         words, colour = "evaluated, a limit is exceeded", "red"
     if result.name == RATING:
         words, colour = ("safe", "green") if result.feasible else ("not safe", "red")
+    if result.status == "stationary" and result.bound is not None:
+        words = "locally optimal"  # its gap is told beside
     if of_gears_first(result):
         words = "impossible with these gears, proven"
     if result.status == "optimal" and (result.gap or 0.0) > EXACT:
