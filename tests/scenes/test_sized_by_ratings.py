@@ -333,3 +333,25 @@ def test_a_box_around_rated_gears_offers_no_choice_at_once():
     told = [result.message, *result.report.get("notes", ())]
     told += [result.report.get("ways_out", {}).get("message", "")]
     assert result.status in ("optimal", "infeasible") and "together" not in " ".join(told)
+
+
+@pytest.mark.slow
+def test_a_range_of_modules_is_widened_to_the_next_one_that_takes():
+    """Every module below it is tried, and none takes; the answer is one of the series."""
+
+    def file(module):
+        return drive(limits={"pinion_teeth": [20, 21], "module": ["1 mm", module]})
+
+    series = [f"{m} mm" for m in (1.25, 1.5, 2, 2.5, 3, 4, 5)]
+    least = next(m for m in series if gearopt.solve(file(m)).value is not None)
+    found = {r.what: r for r in gearopt.explain(file("1 mm")).remedies}["limits.module[2]"]
+    assert [c.write for c in found.changes] == [f'"{least}"']
+
+
+@pytest.mark.slow
+def test_a_minimum_face_width_is_eased():
+    stage = [{"face_width_over_diameter": [0.3, 1], "minimum_face_width": "900 mm"}]
+    tables = drive(stage=stage, limits={"pinion_teeth": [20, 21], "module": ["1 mm", "4 mm"]})
+    found = {r.what: r for r in gearopt.explain(tables).remedies}
+    remedy = found["stage[1].minimum_face_width"]
+    assert gearopt.solve(tables, remedy.edits).value is not None

@@ -159,9 +159,9 @@ def eases(scene: Scene, number: Number) -> int:
     field = path[-2] if end is not None else path[-1]
     if scene.by_ratings and (way := OF_RATING.get(str(field))):
         return way
-    alone = (*scene.limits.LAW.names, "wheel_diameter")  # limits that are no end of a range
+    ways = dict.fromkeys((*scene.limits.LAW.names, "wheel_diameter"), 1)  # no ends of a range
+    ways["least_face_width"] = -1
     for name, place in fields(scene).items():
         if place == (field, end) and path[0] in ("limits", "stage", "gears"):
-            ranged = end is not None or name in alone
-            return 0 if not ranged else (-1 if end == 0 else 1)
+            return ways.get(name, 0) if end is None else (-1 if end == 0 else 1)
     return 0
