@@ -234,7 +234,8 @@ def choice(
             raise refuse(f"is not one of {known}", ways, action="tell")
         if value not in names or not isinstance(value, str):
             known = ", ".join(f'"{n}"' for n in names)
-            close = near(str(value), names)
+            year = isinstance(value, int) and abs(value) < 10_000  # a word that is written as one
+            close = near(str(value), names) if isinstance(value, str) or year else None
             raise refuse(f"is not {'one of ' * (len(names) > 1)}{known}", close)
         return value
 
