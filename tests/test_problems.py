@@ -30,7 +30,13 @@ KEYS = {  # of [x-expected], as the tests below read them
     },
 }
 LONG = (
-    *("three_stage_by_agma", "helical_unit", "elevator_by_both", "materials_by_cost"),
+    *(
+        "three_stage_by_agma",
+        "helical_unit",
+        "elevator_by_both",
+        "materials_by_cost",
+        "same_materials",
+    ),
     "elevator_processes_rated",
     "three_stage_by_both",
     "thousand_in_two_stages",

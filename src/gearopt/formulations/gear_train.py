@@ -120,8 +120,9 @@ class Train:
     coprime: z1 and z2 without common divisor (hunting teeth). objective: a key of OBJECTIVES; mass
     needs density [t/mm3]; LENGTHS are those of reference circles: profile shifts must cancel. law:
     what limits the stages. speed: that of the input [rad/s], for laws that depend on it. safety:
-    S_F and S_H asked for of stages with options. keys: places of `numbers` in a problem file, one
-    per stage for what a stage has of its own.
+    S_F and S_H asked for of stages with options. same_option: all stages take their options of
+    one and the same number, which have the same materials. keys: places of `numbers` in a problem
+    file, one per stage for what a stage has of its own.
     """
 
     torque: float
@@ -134,6 +135,7 @@ class Train:
     law: Law = field(kw_only=True)
     speed: float = 0.0
     safety: tuple[float, float] = (1.0, 1.0)
+    same_option: bool = False
     keys: Mapping[str, str | tuple[str, ...]] = field(default_factory=dict, compare=False)
 
     def __post_init__(self) -> None:
@@ -156,6 +158,9 @@ class Train:
             raise ValueError(f"the objective {self.objective} needs a density")
         if self.objective == "cost" and not all(stage.options for stage in self.stages):
             raise ValueError("the objective cost needs the price of every stage's materials")
+        made = {tuple(option.materials for option in stage.options) for stage in self.stages}
+        if self.same_option and len(made) > 1:
+            raise ValueError("stages that take the same option need options of the same materials")
 
     @property
     def rated(self) -> bool:
@@ -166,6 +171,15 @@ class Train:
     def several_options(self) -> bool:
         """Whether a stage has a choice of options."""
         return any(len(stage.options) > 1 for stage in self.stages)
+
+    @property
+    def of_one_option(self) -> tuple["Train", ...]:
+        """The drives of which this one is the best: one for each option that all stages take."""
+        if not (self.same_option and self.several_options):
+            return (self,)
+        count = len(self.stages[0].options)
+        made = [[replace(s, options=(s.options[k],)) for s in self.stages] for k in range(count)]
+        return tuple(replace(self, stages=tuple(stages)) for stages in made)
 
     @property
     def by_width(self) -> bool:

@@ -13,7 +13,7 @@ import numpy as np
 
 from gearopt.errors import SolveError
 from gearopt.formulations import sizing
-from gearopt.formulations.gear_train import Stage, Train, terms
+from gearopt.formulations.gear_train import Stage, Train, share, terms
 from gearopt.formulations.teeth.progress import MARGIN, TIE, Progress, Teeth
 from gearopt.formulations.teeth.search import BEAM, search
 from gearopt.formulations.teeth.tables import table
@@ -50,7 +50,8 @@ def problem(train: Train, count: int = 1, floor: float = -math.inf) -> Problem:
 
     Trains are distinct when a tooth number differs; each has its best modules and face widths.
     Variables, one component per stage: module [mm], pinion_teeth, wheel_teeth, and face_width [mm]
-    or width_steps where the width is not tied to d1; option, from 1, where a stage has several.
+    or width_steps where the width is not tied to d1; option, from 1, where a stage has several; one
+    for all stages where they take the same.
     Numbers are constants of the text; those with a key in `train.keys` are parameters of the
     relaxed problem.
     """
@@ -100,7 +101,10 @@ def options(train: Train, x: Array) -> tuple[int, ...]:
 
 
 def _options(train: Train, x: Any) -> list[Any]:
-    return [option - 1.0 for option in each(x.option)] if train.several_options else []
+    if not train.several_options:
+        return []
+    found = [option - 1.0 for option in each(x.option)]
+    return found * len(train.stages) if train.same_option else found
 
 
 def _is_plain(value: Any) -> bool:
@@ -148,6 +152,8 @@ def _variables(train: Train) -> tuple[Var, ...]:
         del ranges["width_steps"]
     if not train.several_options:
         del ranges["option"]
+    elif train.same_option:
+        ranges["option"] = ranges["option"][:1]
     kinds: dict[str, dict[str, Any]] = {"module": {"values": series}, "face_width": {}}
     return tuple(
         Var(
@@ -156,7 +162,7 @@ def _variables(train: Train) -> tuple[Var, ...]:
             tuple(low for low, _ in ends),
             tuple(high for _, high in ends),
             tuple(low for low, _ in ends),
-            len(stages),
+            len(ends),
             **kinds.get(name, {"integer": True}),
         )
         for name, ends in ranges.items()
@@ -287,14 +293,24 @@ def best_pairs(train: Train, teeth: Teeth) -> tuple[GearPair, ...]:
 
 def best_choices(train: Train, teeth: Teeth) -> tuple[tuple[GearPair, ...], tuple[int, ...]]:
     """Return gear pairs and options (from 0) of a train: the best ones for its teeth."""
-    torque, found, chosen = train.torque, [], []
+    every = train.of_one_option
+    made = [_choices(one, teeth) for one in every]
+    least = min(range(len(every)), key=lambda k: made[k][0])
+    _, found, chosen = made[least]
+    return found, chosen if len(every) == 1 else (least,) * len(teeth)
+
+
+def _choices(train: Train, teeth: Teeth) -> tuple[float, tuple[GearPair, ...], tuple[int, ...]]:
+    """Return the objective of a train with the best pairs and options, and these; inf: none."""
+    torque, value, found, chosen = train.torque, 0.0, [], []
     for k, (z1, z2) in enumerate(teeth):
         only = table(train.fixed_teeth(k, z1, z2), k, train.highest_ratio)
         module, width, option = only.choose(torque, 0)
         found.append(train.pair(k, module, z1, z2, width))
         chosen.append(option)
+        value += float(share(train, k, found[-1], option=option)) if module < math.inf else math.inf
         torque *= z2 / z1
-    return tuple(found), tuple(chosen)
+    return value, tuple(found), tuple(chosen)
 
 
 def point(train: Train, pairs: Iterable[GearPair], options: Iterable[int] | None = None) -> Array:
@@ -314,4 +330,5 @@ def point(train: Train, pairs: Iterable[GearPair], options: Iterable[int] | None
         steps = round(pair.face_width / float(face.step)) if face.step else 1
         columns["width_steps"].append(steps)
         columns["option"].append(option + 1)
-    return np.array([float(value) for v in _variables(train) for value in columns[v.name]])
+    made = [(columns[v.name], v.size) for v in _variables(train)]
+    return np.array([float(value) for values, size in made for value in values[:size]])

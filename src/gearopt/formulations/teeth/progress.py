@@ -23,6 +23,7 @@ class Progress:
 
     found: (objective, teeth) of the best trains; wanted: how many of them. floor: a bound on the
     objective known from elsewhere; lower: that of this search, once it covers all trains (whole).
+    beside: a bound on the trains of drives that are searched in turn with the present one.
     clock: counts tooth pairs sized.
     enough: the budget's gap is reached.
     """
@@ -32,6 +33,7 @@ class Progress:
     floor: float = -math.inf
     found: list[tuple[float, Teeth]] = field(default_factory=list)
     lower: float = -math.inf
+    beside: float = math.inf
     whole: bool = False
     compared: int = 0
     nodes: int = 0
@@ -52,9 +54,11 @@ class Progress:
 
     def add(self, totals: Array, trains: Iterator[Teeth]) -> None:
         """Keep the wanted best (and, for a single one, its ties)."""
-        known = {teeth for _, teeth in self.found}
-        fresh = [(float(v), t) for v, t in zip(totals, trains, strict=True) if t not in known]
-        best = sorted(self.found + fresh)
+        least = {teeth: value for value, teeth in self.found}
+        for value, teeth in zip(totals, trains, strict=True):
+            known = least.get(teeth, math.inf)
+            least[teeth] = float(value) if value < known * (1.0 - TIE) else known
+        best = sorted((value, teeth) for teeth, value in least.items())
         if self.wanted == 1:
             self.found = [f for f in best if f[0] <= best[0][0] * (1.0 + TIE)]
         else:
@@ -63,7 +67,7 @@ class Progress:
     def raise_lower(self, bound: float) -> None:
         """Raise the bound to the lowest open one of a search, if that search covers all trains."""
         if self.whole:
-            self.lower = max(self.lower, bound)
+            self.lower = max(self.lower, min(bound, self.beside))
 
     def tick(self) -> None:
         """Raise Spent where budget and watcher stop the search."""

@@ -9,6 +9,7 @@ train.
 import heapq
 import itertools
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -95,10 +96,33 @@ def first_cut(train: Train) -> Fraction:
 
 
 def _look(train: Train, cut: Fraction, progress: Progress, patience: float) -> bool:
-    """Search all ratios up to a cut, on ever finer grids; False when patience ran out."""
-    tables = stage_tables(train, cut, progress.tick)
-    if any(len(t.ratio) == 0 for t in tables):
-        return True
+    """Search all ratios up to a cut, on ever finer grids; False when patience ran out.
+
+    Where all stages take the same option, the drives of one option each are searched in turn, that
+    of the least bound first.
+    """
+    tables: list[Table] = []
+    waiting: list[tuple[float, int, Iterator[float]]] = []
+    for k, one in enumerate(train.of_one_option):
+        own = stage_tables(one, cut, progress.tick, tables)
+        tables += own
+        if all(len(t.ratio) for t in own):
+            waiting.append((-math.inf, k, _rounds(one, own, progress, patience)))
+    while waiting and waiting[0][0] <= progress.threshold:
+        _, k, rounds = heapq.heappop(waiting)
+        progress.beside = waiting[0][0] if waiting else math.inf
+        lower = next(rounds, None)
+        if lower is None:
+            return False
+        if lower < math.inf:
+            heapq.heappush(waiting, (lower, k, rounds))
+    return True
+
+
+def _rounds(
+    train: Train, tables: list[Table], progress: Progress, patience: float
+) -> Iterator[float]:
+    """Search on ever finer grids; yield the bound of what is left, inf: none; end impatiently."""
     delta, useful = 0.01 if len(tables) <= 3 else 0.005, None
     coarse = train.rated  # whose bounds take long: few cells at first, then those of use
     delta *= COARSE if coarse else 1.0
@@ -111,10 +135,10 @@ def _look(train: Train, cut: Fraction, progress: Progress, patience: float) -> b
         rest = bound(train, tables, delta, progress.tick, useful, progress.threshold)
         if train.rated and math.isinf(progress.threshold):
             _dive(train, tables, rest, progress)
-        if _closed(train, tables, rest, progress, enough):
-            return True
-        if patience <= PATIENCE and not coarse:
-            return False
+        lower = _closed(train, tables, rest, progress, enough)
+        if lower < math.inf and patience <= PATIENCE and not coarse:
+            return
+        yield lower
         if train.rated:
             if first is None:
                 first = first_costs(train, tables[0], FINE, progress.threshold)
@@ -139,8 +163,8 @@ def _root() -> Chunk:
 
 def _closed(
     train: Train, tables: list[Table], rest: Bound, progress: Progress, patience: float
-) -> bool:
-    """Run one search; return False when it should continue on a finer grid."""
+) -> float:
+    """Run one search; return the bound of what is left for a finer grid, inf where nothing is."""
     order = itertools.count()
     heap: list[tuple[float, int, Chunk]] = []
 
@@ -153,14 +177,14 @@ def _closed(
         progress.raise_lower(heap[0][0])
         progress.tick()
         if progress.clock.evaluations > patience:
-            return False
+            return heap[0][0]
         chunk: Chunk | None = heapq.heappop(heap)[2]
         while chunk is not None:
             progress.nodes += 1
             width = LEAVES if chunk.level == len(tables) - 1 else BEAM
             wait(chunk.part(slice(width, None)))
             chunk = _expand(train, tables, rest, chunk.part(slice(0, width)), progress)
-    return True
+    return math.inf
 
 
 def _expand(

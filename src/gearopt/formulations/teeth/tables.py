@@ -29,12 +29,15 @@ def table(
 
 
 def stage_tables(
-    train: Train, cut: Fraction, tick: Callable[[], None] = lambda: None
+    train: Train,
+    cut: Fraction,
+    tick: Callable[[], None] = lambda: None,
+    others: Sequence[Table] = (),
 ) -> list[Table]:
-    """Return the tables of all stages; equal inner stages share one."""
+    """Return the tables of all stages; equal inner stages share one. others: as of `table`."""
     tables: list[Table] = []
     for k in range(len(train.stages)):
         inner = 1 < k < len(train.stages) - 1
         same = inner and train.stages[k] == train.stages[k - 1]
-        tables.append(tables[-1] if same else table(train, k, cut, tick, tables))
+        tables.append(tables[-1] if same else table(train, k, cut, tick, (*others, *tables)))
     return tables

@@ -33,6 +33,8 @@ def notes(scene: Scene, exact: bool) -> list[str]:
     names = ("wheel_teeth", "stage_ratio", "wheel_diameter")
     if not any(getattr(table, name) for table in (limits, *stages) for name in names):
         found.append("No limit on wheel teeth, stage ratio or wheel diameter was set.")
+    if exact and scene.gears.same_materials and scene.by_ratings:
+        found.append("All pinions have one material, and all wheels have one.")
     if exact and scene.teeth is not None:
         found += unverified(scene.teeth.modules)
     if scene.objective.density is None and not _dense(scene):

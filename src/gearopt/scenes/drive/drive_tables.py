@@ -115,6 +115,11 @@ class Gears(GearKeys):
     face_width_step: Step = Field(None, description=STEP_IS)
     face_width_over_module: OverModule = Field(None, description=OVER_MODULE_IS)
     minimum_face_width: Length = Field(None, description=LEAST_IS)
+    same_materials: Annotated[bool, truth()] = Field(
+        False,
+        description="One material for the pinions of all stages and one for all wheels, of those "
+        "in their materials",
+    )
 
 
 @limited_by(LAW)

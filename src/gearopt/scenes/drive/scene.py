@@ -40,7 +40,7 @@ from gearopt.scenes.drive.rating.checks import (
     check_unrated,
     not_given,
 )
-from gearopt.scenes.drive.rating.materials import MaterialTable, check_materials
+from gearopt.scenes.drive.rating.materials import MaterialTable, check_materials, check_same
 from gearopt.scenes.drive.rating.tables import LoadTable, RatingTable
 from gearopt.scenes.drive.tooth_tables import check_mesh, check_teeth, toothing
 from gearopt.scenes.explaining.numbers import eased, in_reverse, written
@@ -238,6 +238,7 @@ class Scene(Table):
         else:
             places = [(("stage", k), stage) for k, stage in enumerate(self.stage)]
             check_materials(places, self.gears, self.material)
+            check_same(self.gears, self.stage)
             check_rated(self.rating, self.gears, self.stage, self.load, self.material)
         check_objective(self.objective, self.gears, self.stage, self.material)
         if self.by_ratings:
@@ -306,9 +307,10 @@ class Scene(Table):
         sized = tuple(self._stage(s) for s in stages)
         safety = (1.0, 1.0)
         if self.by_ratings:
-            from gearopt.scenes.drive.rating.limits import options, required
+            from gearopt.scenes.drive.rating.limits import of_stages, required
 
-            sized = tuple(replace(s, options=options(self, k)) for k, s in enumerate(sized))
+            made = zip(sized, of_stages(self, len(sized)), strict=True)
+            sized = tuple(replace(stage, options=options) for stage, options in made)
             safety = required(self)
         return Train(
             torque=torque(self.duty.power.value, speed),
@@ -321,6 +323,7 @@ class Scene(Table):
             law=self.law,
             speed=speed,
             safety=safety,
+            same_option=self.gears.same_materials and self.by_ratings,
             keys=KEYS | self._keys(stages),
         )
 

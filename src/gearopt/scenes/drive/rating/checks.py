@@ -119,6 +119,7 @@ def _only_rated(
     gears: Gears, stages: Sequence[StageTable], load: Sequence[LoadTable]
 ) -> Iterator[Place]:
     yield from [("load",)] * bool(load)
+    yield from [("gears", "same_materials")] * gears.same_materials
     tables: list[tuple[Place, Table]] = [(("gears",), gears)]
     for k, stage in enumerate(stages):
         yield from [("stage", k, "given")] * (stage.given != GivenTable())

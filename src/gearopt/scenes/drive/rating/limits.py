@@ -21,6 +21,19 @@ STANDARDS: dict[str, tuple[Any, ...]] = {  # of the key standard
 SECOND = "_iso"  # after the names of limits by the second of two standards
 
 
+def of_stages(scene: Scene, count: int) -> tuple[tuple[Option, ...], ...]:
+    """Return the ways of making the gears of every stage.
+
+    Where all stages have the same materials these alone, in the order of the first stage.
+    """
+    found = tuple(options(scene, k) for k in range(count))
+    if not scene.gears.same_materials:
+        return found
+    named = [{option.materials: option for option in stage} for stage in found]
+    shared = [names for names in named[0] if all(names in stage for stage in named)]
+    return tuple(tuple(stage[names] for names in shared) for stage in named)
+
+
 def options(scene: Scene, stage: int) -> tuple[Option, ...]:
     """Return the ways of making the gears of a stage (from 0)."""
     first, second = (gear_choices(scene, stage, member) for member in MEMBERS)

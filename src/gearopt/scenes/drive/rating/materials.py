@@ -90,6 +90,25 @@ def check_materials(
                 raise refuse(rule, at=(*place, key), action="remove")
 
 
+def check_same(gears: Any, stages: Sequence[Any]) -> None:
+    """Refuse the same materials for all stages where gears have none, or none in common."""
+    if not gears.same_materials:
+        return
+    at = ("gears", "same_materials")
+    if len(stages) == 1:
+        raise refuse("changes nothing: there is one stage", at=at, action="remove")
+    for member in MEMBERS:
+        known = [names(getattr(stage, member), gears) for stage in stages]
+        for k, found in enumerate(known or [gears.materials or ()]):
+            if not found:
+                place = ("stage", k, member, "materials") if stages else ("gears", "materials")
+                raise refuse("is missing: same_materials chooses of the materials of all", at=place)
+        if known and not set(known[0]).intersection(*known):
+            words = "; ".join(f"stage {k}: {', '.join(own)}" for k, own in enumerate(known, 1))
+            rule = f"leaves no material that the {member}s of all stages may have ({words})"
+            raise refuse(rule, at=at, action="remove")
+
+
 def _tables(
     stages: Sequence[tuple[Place, Any]], gears: GearKeys
 ) -> Iterator[tuple[Place, GearKeys]]:

@@ -1,0 +1,143 @@
+"""One material for all pinions and one for all wheels: every choice, and brute force."""
+
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from rated_brute_force import cheapest
+from rated_drives import MODULES, TIED, TREATMENTS, agma, rated_drive, some_rated_drive
+
+from gearopt.formulations import teeth
+from gearopt.formulations.gear_train import FaceWidth
+from gearopt.formulations.strength.rated import Option
+from gearopt.formulations.teeth.search import search
+from gearopt.optimise.result import Budget
+from gearopt.optimise.solve import run
+from gearopt.physics.agma.rating_factors import Steel
+
+F = Fraction
+STEPPED = FaceWidth(F(2, 5), F(3, 5), step=F(4))
+HARD, SOFT = Steel("carburised", 2), Steel(hardness=300.0)
+
+
+def made_of(quality, *steels):
+    """Return options of one accuracy by the steels of pinion and wheel, named after them."""
+    dear = {"carburised": 6.0, "nitrided": 3.0}
+    return tuple(
+        Option(
+            (agma(pair, quality=quality),),
+            prices=tuple(dear.get(s.kind, 1.0) for s in pair),
+            materials=tuple(f"{s.kind} {s.grade} {s.hardness}" for s in pair),
+        )
+        for pair in steels
+    )
+
+
+def with_options(train, *options):
+    """Return the drive with options for each of its stages."""
+    stages = (replace(s, options=o) for s, o in zip(train.stages, options, strict=True))
+    return replace(train, stages=tuple(stages))
+
+
+def small(objective="cost"):
+    """Return a drive whose dear steel pays in the second stage alone."""
+    narrow = {"pinion_teeth": (20, 21), "modules": MODULES[1:5]}
+    train = rated_drive(F(9), [TIED, STEPPED], **narrow)
+    steels = (SOFT, SOFT), (HARD, HARD), (HARD, SOFT)
+    train = with_options(train, made_of(7.0, *steels), made_of(8.0, *steels))
+    return replace(train, objective=objective, density=7.8e-9)
+
+
+def of_each(train):
+    """Return the drives that may take one option alone, the same in all stages."""
+    count = len(train.stages[0].options)
+    return [with_options(train, *([s.options[k]] for s in train.stages)) for k in range(count)]
+
+
+def test_the_best_of_the_same_materials_is_the_best_of_each():
+    train = small()
+    alike = replace(train, same_option=True)
+    found = search(alike, 1, Budget())
+    alone = [search(one, 1, Budget()).found[0][0] for one in of_each(train)]
+    assert found.found[0][0] == pytest.approx(min(alone), rel=1e-12)
+    assert found.found[0][0] > search(train, 1, Budget()).found[0][0] * 1.001
+    pairs, options = teeth.best_choices(alike, found.found[0][1])
+    assert options == (alone.index(min(alone)),) * 2
+    point = teeth.point(alike, pairs, options)
+    assert teeth.options(alike, point) == options
+    batch = teeth.problem(alike).batch(np.stack([point, point]))
+    assert batch.F[:, 0] == pytest.approx(found.found[0][0], rel=1e-12)
+    assert batch.G.max() <= 1.0 + 1e-11
+
+
+def test_the_next_best_of_the_same_materials_are_in_order():
+    """Trains of equal teeth count once, with the materials that are best for them."""
+    train = small()
+    found = search(replace(train, same_option=True), 6, Budget()).found
+    alone = {}
+    for one in of_each(train):
+        for value, made in search(one, 6, Budget()).found:
+            alone[made] = min(value, alone.get(made, np.inf))
+    best = sorted(alone.values())[:6]
+    assert [value for value, _ in found] == pytest.approx(best, rel=1e-12)
+
+
+def test_a_stop_leaves_a_bound_of_all_materials():
+    """Whenever it ends, its bound is below the best drive of every material."""
+    train = replace(small(), same_option=True)
+    best = search(train, 1, Budget()).found[0][0]
+    for most in (3, 6, 12, 25):
+        asked = []
+        stopped = search(train, 1, Budget(), lambda e, n=most, a=asked: a.append(e) or len(a) < n)
+        assert stopped.bound <= best * (1.0 + 1e-12)
+    result = run(teeth.problem(train), "exact", Budget(gap=0.2), gap=0.2)[0]
+    assert result.status == "optimal" and result.bound <= best <= result.value
+
+
+@pytest.mark.parametrize("method", ["annealing", "nsga2"])
+def test_samplers_take_the_same_materials(method):
+    train = replace(small(), same_option=True)
+    result, outcome = run(teeth.problem(train), method, Budget(evaluations=150), 0)
+    best = search(train, 1, Budget()).found[0][0]
+    assert result.value is None or result.value >= best * (1.0 - 1e-9)
+    assert outcome.x is None or len(set(teeth.options(train, outcome.x))) == 1
+
+
+def test_options_of_other_materials_are_refused():
+    train = small()
+    swapped = with_options(train, train.stages[0].options, train.stages[1].options[::-1])
+    with pytest.raises(ValueError, match="same materials"):
+        replace(swapped, same_option=True)
+
+
+def random_drive(seed):
+    """Return a random drive of two stages with two or three pairs of steels, and an objective."""
+    rng = np.random.default_rng([17, seed])
+    train = some_rated_drive(seed, stages=2)
+    several = rng.permutation(len(TREATMENTS))[: int(rng.integers(2, 4))]
+    steels = [TREATMENTS[k] for k in several]
+    options = [made_of(float(rng.integers(6, 11)), *steels) for _ in train.stages]
+    aims = ["cost", "gear_volume", "mass", "sum_of_centre_distances"]
+    return replace(with_options(train, *options), objective=aims[seed % 4])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [0, 1, 2, 4, 6, 7, 8, 9, 10, 12, 13, 14, 15, 16, 17])
+def test_random_drives_of_the_same_materials_as_by_brute_force(seed):
+    train = random_drive(seed)
+    free, alike = (search(t, 1, Budget()) for t in (train, replace(train, same_option=True)))
+    least = min(cheapest(one) for one in of_each(train))
+    if not alike.found:
+        assert least == np.inf
+        return
+    value = alike.found[0][0]
+    continuous = any(
+        not (s.face_width.tied or s.face_width.step or s.face_width.fixed) for s in train.stages
+    )
+    assert value <= least * (1.0 + 1e-9)
+    assert least <= value * (1.05 if continuous else 1.0 + 1e-9)  # brute force has a grid of widths
+    assert free.found[0][0] <= value * (1.0 + 1e-12)
+    chosen = teeth.best_choices(train, free.found[0][1])[1]
+    if len(set(chosen)) == 1:
+        assert value == pytest.approx(free.found[0][0], rel=1e-12)
