@@ -159,3 +159,23 @@ def test_cells_of_use_hold_the_best_train():
         useful = useful_cells(tables, rest, first, value * 1.001)
         delta /= 2.0
     assert useful[1].mean() < 0.2
+
+
+@pytest.mark.parametrize("standards", [("agma",), ("iso",)])
+def test_what_like_drives_have_in_common_is_computed_once(standards, monkeypatch):
+    """Other safety factors, fewer teeth: the costs are those of a table alone."""
+    wide = rated_drive(4, [TIED], options=by(*standards), pinion_teeth=(20, 24))
+    shelf = []
+    (first,) = stage_tables(wide, F(4), shelf=shelf)
+    pair = np.arange(len(first.ratio))
+    first.cost(np.full(len(pair), wide.torque), pair)
+    stage = replace(wide.stages[0], pinion_teeth=(21, 22), wheel_diameter=F(900))
+    other = replace(wide, stages=(stage,), safety=(1.3, 1.1))
+    alone, shared = stage_tables(other, F(4))[0], stage_tables(other, F(4), shelf=shelf)[0]
+    pair = np.arange(len(alone.ratio))
+    torque = np.full(len(pair), other.torque)
+    expected = alone.cost(torque, pair)
+    standard = type(other.stages[0].options[0].standards[0])
+    monkeypatch.setattr(standard, "prepared", lambda *a: pytest.fail("computed again"))
+    assert np.array_equal(shared.cost(torque, pair), expected) and np.isfinite(expected).any()
+    assert shelf == [first]

@@ -16,6 +16,7 @@ from gearopt.formulations.teeth import later_stages as bounds
 from gearopt.formulations.teeth import stage as staging
 from gearopt.formulations.teeth.later_stages import bound
 from gearopt.formulations.teeth.progress import TIE
+from gearopt.formulations.teeth.reach import first_cut, reach
 from gearopt.formulations.teeth.search import possible, search, within
 from gearopt.formulations.teeth.tables import table
 from gearopt.optimise.result import Budget
@@ -75,21 +76,19 @@ def test_the_reach_of_a_stage_is_where_its_load_alone_costs_too_much(face, objec
         return cost(train, k, d, 1.0, u)
 
     for value in [min(least(k, u) for k in range(3)) for u in (20.0, 60.0, 150.0)]:
-        found = float(searching._reach(train, cut, most, value))
+        found = float(reach(train, cut, most, value))
         ratios = np.geomspace(float(cut), float(most), 2000)
         useful = [u for u in ratios if min(least(k, u) for k in range(3)) <= value]
         step = ratios[1] / ratios[0]
         assert found == pytest.approx(useful[-1] * step, rel=1e-9)
     tie = min(least(k, ratios[700]) for k in range(3))
-    found = [
-        float(searching._reach(train, cut, most, tie * part)) for part in (1 - 1e-14, 1 + 1e-14)
-    ]
+    found = [float(reach(train, cut, most, tie * part)) for part in (1 - 1e-14, 1 + 1e-14)]
     assert ratios[700] == pytest.approx(found[0], rel=1e-12)
     assert ratios[701] == pytest.approx(found[1], rel=1e-12)
-    assert searching._reach(train, cut, most, 1e-9) == cut
-    assert searching._reach(train, cut, most, math.inf) == most
-    assert searching._reach(train, cut, most, 1e30) == most
-    assert searching._reach(train, most, most, 1e-9) == most
+    assert reach(train, cut, most, 1e-9) == cut
+    assert reach(train, cut, most, math.inf) == most
+    assert reach(train, cut, most, 1e30) == most
+    assert reach(train, most, most, 1e-9) == most
 
 
 WORK = {  # stages, seed, trains wanted: pairs looked at, nodes, trains compared
@@ -101,17 +100,17 @@ WORK = {  # stages, seed, trains wanted: pairs looked at, nodes, trains compared
     (2, 13, 1): (3349, 2, 1189),
     (2, 15, 1): (18397, 4, 2575),
     (2, 13, 10): (3257, 2, 1143),
-    (3, 2, 1): (1158, 8, 7),
-    (3, 2, 10): (6299, 94, 36),
-    (3, 5, 1): (4874, 74, 6),
-    (3, 5, 10): (24508, 168, 39),
-    (3, 8, 1): (946, 38, 30),
-    (3, 8, 10): (1614, 74, 55),
-    (3, 9, 1): (2614, 16, 157),
-    (3, 9, 10): (2903, 16, 244),
-    (3, 12, 1): (1010, 50, 5),
-    (3, 12, 10): (4014, 90, 29),
-    (4, 0, 1): (7467, 69, 6),
+    (3, 2, 1): (879, 4, 6),
+    (3, 2, 10): (4150, 47, 26),
+    (3, 5, 1): (2721, 37, 3),
+    (3, 5, 10): (14531, 84, 20),
+    (3, 8, 1): (746, 19, 29),
+    (3, 8, 10): (1145, 37, 46),
+    (3, 9, 1): (2298, 8, 150),
+    (3, 9, 10): (2542, 8, 223),
+    (3, 12, 1): (673, 25, 4),
+    (3, 12, 10): (2681, 45, 19),
+    (4, 0, 1): (7150, 35, 5),
     (4, 3, 1): (153016, 1052, 0),
 }
 IMPATIENT = {  # the same with finer grids sooner
@@ -149,7 +148,7 @@ def test_finer_grids_find_the_same_with_less(case, monkeypatch):
 def test_a_look_that_is_cut_short_proves_nothing(face, total, tolerance, patience, monkeypatch):
     """Where patience ends before the trains do, the search goes on, up to the same ratio too."""
     train = drive(3, face, total, tolerance=F(tolerance), pinion_teeth=(15, 18))
-    assert searching.first_cut(train) == train.highest_ratio
+    assert first_cut(train) == train.highest_ratio
     monkeypatch.setattr(searching, "FIRST_LOOK", patience)
     monkeypatch.setattr(searching, "PATIENCE", 1000)
     found = search(train, 1, Budget())
@@ -179,7 +178,7 @@ def test_what_a_first_look_proves_is_not_told_as_a_bound_of_all(tolerance):
     )
     train, seen = replace(train, stages=stages), []
     best, (first, *_) = search(train, 1, Budget(), seen.append).found[0]
-    assert F(first[1], first[0]) > searching.first_cut(train)
+    assert F(first[1], first[0]) > first_cut(train)
     told = [event.bound for event in seen if event.bound is not None]
     assert told and max(told) <= best
     near = search(train, 1, Budget(gap=0.1))

@@ -13,7 +13,8 @@ from small_drives import FACES, OBJECTIVES, drive
 from gearopt.formulations.teeth import problem
 from gearopt.formulations.teeth import stage as staging
 from gearopt.formulations.teeth.progress import MARGIN
-from gearopt.formulations.teeth.search import first_cut, search
+from gearopt.formulations.teeth.reach import first_cut
+from gearopt.formulations.teeth.search import search
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import method_of
 

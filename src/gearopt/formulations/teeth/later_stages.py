@@ -73,20 +73,20 @@ def bound(
     ratio_cells = int(widest / delta) + 1
     count = len(tables)
     minimum: list[Array | None] = [None] * count
-    for k in range(1, count - 1):
-        alike = k > 1 and train.stages[k] == train.stages[k - 1] and useful is None
-        mask = None if useful is None else useful[k]
-        made = minimum[k - 1] if alike else None
-        if made is None:
-            made = tables[k].grid(Cells(cells, ratio_cells, delta, mask, most), tick)
-        minimum[k] = made
     to_go = [np.full(cells + ratio_cells + 2, np.inf) for _ in range(count)]
     last = None if useful is None else useful[-1]
     to_go[-1][:cells] = _last(train, tables[-1], cells, delta, tick, last, most)
     for k in range(count - 2, 0, -1):
         ahead = _ahead(to_go[k + 1], ratio_cells)[:cells]
-        now = minimum[k]
-        assert now is not None
+        mask = None if useful is None else useful[k][:cells, :ratio_cells]
+        alike = [train.stages[k] == train.stages[j] for j in (k - 1, k + 1)]
+        now = minimum[k + 1] if alike[1] and mask is None else None
+        if now is None:
+            if not (alike[0] and k > 1):  # else it is that of the stage before, too
+                on = np.isfinite(ahead)  # beyond it no train goes on
+                mask = on if mask is None else mask & on
+            now = tables[k].grid(Cells(cells, ratio_cells, delta, mask, most), tick)
+        minimum[k] = now
         tick()
         to_go[k][:cells] = (now + ahead).min(axis=1)
     columns = [_cell(t.log_ratio, delta) for t in tables]

@@ -8,6 +8,7 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -27,6 +28,7 @@ TOGETHER = 2000  # pairs bounded again at once, at least
 ROUGH = 0.01  # of what is used above 1, where a bound is only to compare
 BATCH = 20_000  # pairs bounded at once
 CLOSE = 0.02  # of what is used above 1, for that, over the width of a cell
+TEETH = 10**8  # more than a wheel has: pairs are told apart by z1 TEETH + z2
 FINEST = 0.005  # width of a cell where none is given
 
 
@@ -46,7 +48,7 @@ class Found:
 
 @dataclass(frozen=True)
 class RatedTable(Table):
-    """Tooth pairs (n,) of a stage with options; others: tables that may have the same pairs."""
+    """Tooth pairs (n,) of a stage with options; others: tables that may have these pairs, too."""
 
     others: tuple["RatedTable", ...] = ()
 
@@ -57,26 +59,46 @@ class RatedTable(Table):
         z1, z2 = (np.tile(z, len(modules)) for z in (self.z1, self.z2))
         pair = self.train.pair(self.position, np.repeat(modules, len(self.z1)), z1, z2, 1.0)
         found: list[list[Any]] = []
-        known = [pair for table in self.others for pair in table.known(self)]
+        known: list[tuple[Standard, Any]] = []
         for option in self.stage.options:
             made = []
             for standard in option.standards:
-                same = next((p for s, p in known if s.like(standard)), None)
-                made.append(standard.prepared(pair) if same is None else same)
+                others = (p for table in self.others for p in table.known(self, standard))
+                own = (p for s, p in known if s.like(standard))
+                one = next(chain(own, others), None)
+                made.append(standard.prepared(pair) if one is None else one)
                 known.append((standard, made[-1]))
             found.append(made)
         return found
 
-    def known(self, other: "RatedTable") -> list[tuple[Standard, Any]]:
-        """Return what the standards took of the pairs, where another table has the same."""
-        alike = (
-            self.stage.toothing == other.stage.toothing
-            and np.array_equal(self.z1, other.z1)
-            and np.array_equal(self.z2, other.z2)
-            and (not self._by_module or np.array_equal(self.modules, other.modules))
+    def known(self, other: "RatedTable", standard: Standard) -> Iterator[Any]:
+        """Yield what a like standard took of another table's pairs, where this one has them all."""
+        place = self._place(other)
+        if place is None:
+            return
+        if self._by_module:
+            rows = np.arange(len(self.modules))[:, None] * len(self.ratio)
+            place = (rows + place).ravel()
+        for option, made in zip(self.stage.options, self._prepared, strict=True):
+            for one, own in zip(option.standards, made, strict=True):
+                if one.like(standard):
+                    yield own if len(other.ratio) == len(self.ratio) else own.take(place)
+
+    def covers(self, other: Table) -> bool:
+        """Return whether this table has all pairs of another one, of the same toothing."""
+        return isinstance(other, RatedTable) and self._place(other) is not None
+
+    def _place(self, other: Table) -> Index | None:
+        """Return where the pairs of another table are in this one; None where one is not."""
+        alike = self.stage.toothing == other.stage.toothing and (
+            not self._by_module or np.array_equal(self.modules, other.modules)
         )
-        made = zip(self.stage.options, self._prepared, strict=True) if alike else ()
-        return [one for o, p in made for one in zip(o.standards, p, strict=True)]
+        if not alike or len(other.ratio) > len(self.ratio):
+            return None
+        own, asked = (t.z1 * TEETH + t.z2 for t in (self, other))
+        order = np.argsort(own, kind="stable")
+        place: Index = order[np.searchsorted(own, asked, sorter=order) % max(1, len(own))]
+        return place if np.array_equal(own[place], asked) else None
 
     @property
     def _by_module(self) -> bool:

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearopt.errors import SolveError
-from gearopt.formulations.gear_train import Train, share
+from gearopt.formulations.gear_train import Train
 from gearopt.formulations.teeth.later_stages import (
     SLICE,
     Bound,
@@ -27,12 +27,13 @@ from gearopt.formulations.teeth.later_stages import (
     useful_cells,
 )
 from gearopt.formulations.teeth.progress import TIE, Progress, Spent, Teeth
+from gearopt.formulations.teeth.rated import RatedTable
+from gearopt.formulations.teeth.reach import first_cut, largest_ratio, reach
 from gearopt.formulations.teeth.stage import EDGE, Table
 from gearopt.formulations.teeth.tables import stage_tables
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget, Event, Watch
 from gearopt.optimise.terms import Array
-from gearopt.physics.gears import GearPair
 
 BEAM = 4  # nodes followed down at once; measured best for two to four stages
 LEAVES = 256  # nodes completed at once
@@ -68,44 +69,42 @@ def search(
     watch: Watch | None = None,
     floor: float = -math.inf,
     whole: bool = True,
+    shelf: list[RatedTable] | None = None,
 ) -> Progress:
     """Return the `wanted` best trains; `stopped` or `enough` where the search was not exhausted.
 
     A first look at stage ratios near the even split gives a train; what it does not exclude by
     the ratio of a single stage is then searched to the end. floor: a bound known from elsewhere.
-    whole: False where its own bound is of no use, as that of a part of the caller's drive.
+    whole: False where its own bound is of no use, as that of a part of the caller's drive. shelf:
+    tables of like drives, which spare this one work; its own are added.
     """
+    shelf = [] if shelf is None else shelf
     progress = Progress(wanted, Clock(budget, watch), floor)
-    maximum, cut = train.highest_ratio, first_cut(train)
+    maximum = largest_ratio(train)
+    cut = min(maximum, first_cut(train))
     progress.whole = whole and cut == maximum
     try:
-        closed = _look(train, cut, progress, FIRST_LOOK)
-        reach = _reach(train, cut, maximum, progress.threshold)
+        closed = _look(train, cut, progress, FIRST_LOOK, shelf)
+        far = reach(train, cut, maximum, progress.threshold, shelf)
         progress.whole = whole
-        if not (closed and reach <= cut):
-            _look(train, max(cut, reach), progress, math.inf)
+        if not (closed and far <= cut):
+            _look(train, max(cut, far), progress, math.inf, shelf)
     except Spent:
         pass  # `stopped` or `enough` holds the reason
     return progress
 
 
-def first_cut(train: Train) -> Fraction:
-    """Return the largest stage ratio of a first look: three times that of an even split."""
-    even = float(train.ratio) ** (1.0 / len(train.stages))
-    return min(train.highest_ratio, Fraction(3.0 * even))
-
-
-def _look(train: Train, cut: Fraction, progress: Progress, patience: float) -> bool:
+def _look(
+    train: Train, cut: Fraction, progress: Progress, patience: float, shelf: list[RatedTable]
+) -> bool:
     """Search all ratios up to a cut, on ever finer grids; False when patience ran out.
 
     Where all stages take the same option, the drives of one option each are searched in turn, that
     of the least bound first.
     """
-    tables: list[Table] = []
     waiting: list[tuple[float, int, Iterator[float]]] = []
     for k, one in enumerate(train.of_one_option):
-        own = stage_tables(one, cut, progress.tick, tables)
-        tables += own
+        own = stage_tables(one, cut, progress.tick, shelf)
         if all(len(t.ratio) for t in own):
             waiting.append((-math.inf, k, _rounds(one, own, progress, patience)))
     while waiting and waiting[0][0] <= progress.threshold:
@@ -337,62 +336,26 @@ def within(train: Train, teeth: Teeth) -> bool:
     )
 
 
-def _reach(train: Train, cut: Fraction, maximum: Fraction, threshold: float) -> Fraction:
-    """Return the largest stage ratio that a train at least as good as `threshold` may have.
-
-    Any stage carries at least the input torque; its share alone then grows with its ratio, where
-    its law is proportional.
-    """
-    if train.rated:
-        every = stage_tables(train, maximum)
-        return Fraction(max(t.useful_ratio(float(cut), threshold) for t in every))
-    if not train.law.proportional:
-        return maximum
-    ratios = np.geomspace(float(cut), float(maximum), 2000)
-    useful = np.zeros(len(ratios), dtype=bool)
-    for k, stage in enumerate(train.stages):
-        load = _least_size(train, k, ratios)
-        if train.objective in ("gear_volume", "mass"):
-            lower = share(train, k, GearPair.of_teeth(1.0, 1.0, ratios, load))  # d1 is 1 mm
-        else:
-            face = stage.face_width
-            d = (
-                (load / float(face.fixed)) ** 0.5
-                if face.fixed
-                else (load / face.widest) ** (1.0 / 3.0)
-            )
-            lower = share(
-                train, k, GearPair.of_teeth(d, 1.0, ratios, math.nan)
-            )  # a length, whatever the width
-        useful |= np.asarray(lower) <= threshold
-    beyond = [*ratios[1:], maximum]  # the next of the grid; at its end `maximum` itself, unrounded
-    last = np.flatnonzero(useful)
-    return Fraction(beyond[last[-1]]) if len(last) else cut
-
-
-def _least_size(train: Train, k: int, ratios: Array) -> Array:
-    """Return the minimum b d1^2 [mm3] for the input torque at given ratios, of the fewest teeth."""
-    stage = train.stages[k]
-    z = float(stage.pinion_teeth[0])
-    unit = stage.toothing.of_diameter(stage.toothing.cosine / z, z, 1.0, ratios, 1.0)
-    return train.law.load(unit, train.torque, train.speed, stage.allowable)
-
-
 def possible(train: Train, seconds: float, watch: Watch | None) -> bool | None:
     """Return whether any train meets all limits; None where that is not known in time."""
     found = any_train(train, seconds, watch)
     return found if found is None else bool(found)
 
 
-def any_train(train: Train, seconds: float, watch: Watch | None) -> Teeth | None:
-    """Return the teeth of a train that meets all limits, () if there is none; None: not known."""
+def any_train(
+    train: Train, seconds: float, watch: Watch | None, shelf: list[RatedTable] | None = None
+) -> Teeth | None:
+    """Return the teeth of a train that meets all limits, () if there is none; None: not known.
+
+    shelf: as of `search`.
+    """
 
     def first(event: Event) -> bool:
         wanted = watch is None or watch(event) is not False
         return event.best is None and wanted  # one train is enough
 
     try:
-        progress = search(train, 1, Budget(seconds=seconds), first)
+        progress = search(train, 1, Budget(seconds=seconds), first, shelf=shelf)
     except SolveError:  # too many pairs to examine
         return None
     if progress.found:

@@ -333,12 +333,16 @@ def _pairs(train: Train, position: int, cut: Fraction) -> tuple[Index, Index]:
 def spans(train: Train, position: int, cut: Fraction) -> list[tuple[int, int, int]]:
     """Return every pinion z1 of a stage with its minimum and maximum wheel teeth up to a ratio.
 
-    The maximum is one below the minimum where there are none.
+    The maximum is one below the minimum where there are none. Wheels that are too large with the
+    smallest module are left out.
     """
     stage = train.stages[position]
     low = max(stage.ratio[0], train.lowest_ratio) if len(train.stages) == 1 else stage.ratio[0]
     high = cut if stage.ratio[1] is None else min(cut, stage.ratio[1])
     most_wheel = stage.wheel_teeth[1]
+    if stage.wheel_diameter is not None:
+        most = math.floor(stage.wheel_diameter * Fraction(stage.toothing.cosine) / stage.modules[0])
+        most_wheel = most if most_wheel is None else min(most_wheel, most)
     least_z1, most_z1 = stage.pinion_teeth
     assert most_z1 is not None
     found = []

@@ -14,30 +14,37 @@ def table(
     position: int,
     cut: Fraction,
     tick: Callable[[], None] = lambda: None,
-    others: Sequence[Table] = (),
+    others: Sequence[RatedTable] = (),
 ) -> Table:
     """Return the table of a stage (counted from 0) for ratios up to `cut`.
 
-    tick: called several times a second; what it raises ends the work. others: tables of other
-    stages, whose tooth pairs may be the same.
+    tick: called several times a second; what it raises ends the work. others: tables that may have
+    these tooth pairs, too.
     """
     made = columns(train, position, cut, tick)
     if not train.stages[position].options:
         return Table(*made)
-    rated = tuple(t for t in others if isinstance(t, RatedTable))
-    return replace(RatedTable(*made), others=rated)
+    return replace(RatedTable(*made), others=tuple(others))
 
 
 def stage_tables(
     train: Train,
     cut: Fraction,
     tick: Callable[[], None] = lambda: None,
-    others: Sequence[Table] = (),
+    shelf: list[RatedTable] | None = None,
 ) -> list[Table]:
-    """Return the tables of all stages; equal inner stages share one. others: as of `table`."""
+    """Return the tables of all stages; equal inner stages share one.
+
+    tick: as of `table`. shelf: tables of like drives, which spare these work; they are added
+    themselves where they hold other pairs.
+    """
     tables: list[Table] = []
+    shelf = [] if shelf is None else shelf
     for k in range(len(train.stages)):
         inner = 1 < k < len(train.stages) - 1
         same = inner and train.stages[k] == train.stages[k - 1]
-        tables.append(tables[-1] if same else table(train, k, cut, tick, (*others, *tables)))
+        tables.append(tables[-1] if same else table(train, k, cut, tick, shelf))
+        made = tables[-1]
+        if isinstance(made, RatedTable) and not any(one.covers(made) for one in shelf):
+            shelf.append(made)
     return tables
