@@ -2,6 +2,7 @@
 
 import math
 import re
+from decimal import Decimal
 from fractions import Fraction
 
 import pint
@@ -86,6 +87,17 @@ def test_every_unit_agrees_with_pint(dimension, unit):
     theirs = PINT.Quantity(7.25, name) if offset else 7.25 * PINT.parse_expression(name)
     theirs = (1 / theirs if unit in RECIPROCALS else theirs).to(INSIDE[dimension]).magnitude
     assert parse(f"7.25 {unit}", dimension).value == pytest.approx(theirs, rel=1e-12)
+
+
+@pytest.mark.parametrize("mm", ["20", "38.1", "63", "0.3", "1234.56789", "25.4", "84"])
+def test_a_length_converted_to_inches_is_the_one_in_mm(mm):
+    """The nearest double, and 28 digits; but not fewer than 15, nor another length."""
+    exact, inches = Fraction(mm), float(mm) / 25.4
+    texts = f"{inches!r}", str((Decimal(mm) / Decimal("25.4")).normalize())
+    for text in texts:
+        assert parse(f"{text} in", "length").exact == (exact, 0)
+    for text in (f"{inches:.9g}", "0.78740157480315", "0.787401574803171"):
+        assert parse(f"{text} in", "length").exact[0] == Fraction(text) * Fraction("25.4")
 
 
 def test_a_quotient_in_one_unit_is_exact():

@@ -1,7 +1,8 @@
 """Units, converted once at the border: inside everything is mm, N, s, rad, MPa, t.
 
 A factor is exact: a rational number times a power of pi, so that the quotient of two speeds in
-rpm is a rational number and a ratio limit can be decided without rounding. Definitions: inch,
+rpm is a rational number and a ratio limit can be decided without rounding. Only a length that was
+converted to inches, and cut to 15 digits or more, is taken for the one it was. Definitions: inch,
 pound, standard gravity, horsepower (550 ft lbf/s) and metric horsepower (75 kgf m/s) as fixed by
 international agreement (NIST SP 811, appendix B), an ounce is a pound/16; checked against pint in
 the tests.
@@ -10,6 +11,7 @@ the tests.
 import math
 import re
 from dataclasses import dataclass, replace
+from decimal import Decimal, localcontext
 from fractions import Fraction
 from functools import cached_property, lru_cache
 
@@ -120,6 +122,9 @@ SIGNS = {  # within any unit: a raised digit, a product with a point or without
     " ": "[ \u00b7\u22c5.*-]?",
 }
 
+CUT = 15  # digits from which on a length in inches is taken for a converted one
+WHOLE = 12  # digits at most that it had in mm
+SLIP = Fraction(1, 10**14)  # relative, by which the digits that were cut change it
 _NUMBER = r"([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,4})?)"
 _UNIT = r"((?![eE][+-]?[0-9])[^\s\d.,].*?|1/\S+)?"  # it may hold spaces: N m
 _PATTERN = re.compile(rf"{_NUMBER}\s*{_UNIT}")
@@ -142,7 +147,8 @@ class Quantity:
         """Return the value in the inside unit as (rational number, power of pi)."""
         factor, power = UNITS[self.dimension][self.unit] if self.unit else (Fraction(1), 0)
         number = self.number + OFFSETS.get(self.unit, 0)
-        return (factor / number if self.reciprocal else number * factor), power
+        value = factor / number if self.reciprocal else number * factor
+        return (_converted(value, self.number) if self.unit == "in" else value), power
 
     @property
     def reciprocal(self) -> bool:
@@ -163,6 +169,19 @@ class Quantity:
 
     def __str__(self) -> str:
         return f"{float(self.number):.12g} {self.unit}".rstrip()
+
+
+def _converted(value: Fraction, number: Fraction) -> Fraction:
+    """Return the length of few digits [mm] that a number of many was converted from, else `value`.
+
+    0.7874015748031497 in is 20 mm, though it is above it by 1e-16 of it.
+    """
+    with localcontext(prec=40):
+        written = Decimal(number.numerator) / number.denominator
+        if len(written.normalize().as_tuple().digits) < CUT:
+            return value
+        near = Fraction(f"{Decimal(value.numerator) / value.denominator:.{WHOLE - 1}e}")
+    return near if abs(near - value) <= SLIP * abs(value) else value
 
 
 def quotient(above: Quantity, below: Quantity) -> Fraction:

@@ -1,11 +1,13 @@
-"""What must follow when a rated drive changes: more power, stronger steel."""
+"""What must follow when a rated drive changes: more power, stronger steel, other units."""
 
 import math
+import random
 from dataclasses import replace
 
 import pytest
 from rated_drives import agma, some_iso, some_rated_drive
 
+import gearopt
 from gearopt.formulations import teeth
 from gearopt.optimise.solve import run
 
@@ -60,3 +62,36 @@ def test_stronger_steel_never_takes_more(seed):
         assert strong <= other * (1.0 + 1e-11)
     easier = best(replace(train, safety=tuple(0.9 * s for s in train.safety)))[0]
     assert easier <= value * (1.0 + 1e-11)
+
+
+def on_a_tie(seed, unit, mm):
+    """Return a rated stage whose limits of width and wheel lie on its steps and teeth exactly."""
+    draw = random.Random(seed)
+    step, module = draw.choice([1, 3, 5, 7]), draw.choice([3, 4, 5])
+    least, wheel = step * draw.randint(1, 20 * module // step), module * draw.randint(80, 90)
+    return {
+        "gearopt": 1,
+        "kind": "drive",
+        "duty": {"power": "7.5 kW", "input_speed": "1450 rpm", "ratio": 4, "ratio_tolerance": 0.02},
+        "limits": {"pinion_teeth": [20, 30], "wheel_diameter": f"{wheel / mm!r} {unit}"},
+        "teeth": {"modules": [f"{m} mm" for m in (1.5, 2, 2.5, 3, 4, 5)]},
+        "rating": {"quality": 7, "life": "20000 h"},
+        "gears": {
+            "treatment": "carburised",
+            "face_width_over_diameter": [0.2, 1],
+            "face_width_step": f"{step / mm!r} {unit}",
+            "minimum_face_width": f"{least / mm!r} {unit}",
+        },
+        "stage": [{}],
+    }
+
+
+@pytest.mark.parametrize("seed", [5, 6, 8, 9])
+def test_lengths_in_inches_tie_as_those_in_mm_do(seed):
+    """Inches of 16 digits are not quite these lengths; of these drives the answer hangs on it."""
+    there, here = (gearopt.solve(on_a_tie(seed, *own)) for own in (("mm", 1), ("in", 25.4)))
+    assert here.status == there.status == "optimal"
+    assert here.value == pytest.approx(there.value, rel=1e-9)
+    one, other = (r.design["stages"][0] for r in (there, here))
+    for key in ("pinion_teeth", "wheel_teeth", "normal_module_mm"):
+        assert one[key] == other[key]

@@ -302,7 +302,12 @@ WRONG = {
     "unknown": ({}, ["soft"], "stage[1].pinion.materials", "the name of no [[material]]"),
     "no price": ({"price": None}, ["hard"], "material[1].price", "cost needs it"),
     "no steel": ({"treatment": None}, ["hard"], "material[1].treatment", "steel"),
-    "name twice": ({"name": "tough"}, ["tough"], "material[2].name", "another material"),
+    "name twice": (
+        {"name": "tough"},
+        ["tough"],
+        "material[2].name",
+        "that of material[1], too. Rename",
+    ),
     "misspelt": ({"densty": "7 kg/dm^3"}, ["hard"], "material[1].densty", "Did you mean density"),
 }
 
@@ -314,6 +319,13 @@ def test_mistakes_in_materials_are_one_message(name):
     with pytest.raises(SceneError) as refused:
         gearopt.load(of_materials(pinion, ["tough"], materials=(hard, TOUGH)))
     assert refused.value.key == key and told in str(refused.value)
+
+
+def test_a_material_in_no_list_is_told():
+    note = "[[material]] in no list of a gear: tough."
+    assert note in gearopt.solve(of_materials(["hard"], ["hard"])).report["notes"]
+    both = gearopt.solve(of_materials(["hard"], ["tough"]))
+    assert not any("[[material]]" in line for line in both.report["notes"])
 
 
 def test_gears_that_may_choose_are_not_rated():

@@ -357,11 +357,11 @@ def _choices(stage: Stage, own: dict[str, Any], pair: GearPair) -> dict[str, Any
     if not face.tied:
         low = own["width_low"] * d if face.low > 0 else None
         high = None if face.high is None else own["width_high"] * d
-        between("face_width", pair.face_width, low, high)
+        between("face_width_over_diameter", pair.face_width, low, high)
     ends = (own[n] if end else None for n, end in zip(WIDTHS[:2], face.over_module, strict=True))
     between("face_width_over_module", pair.face_width / pair.normal_module, *ends)
     if face.least:
-        limits["least_face_width"] = own["least_width"] / pair.face_width
+        limits["minimum_face_width"] = own["least_width"] / pair.face_width
     if len(stage.modules) > 1:
         between("module", pair.normal_module, own["module_low"], own["module_high"])
     if not stage.pinion_fixed:

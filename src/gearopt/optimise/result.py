@@ -117,10 +117,10 @@ class Outcome:
 class Result:
     """The answer to a problem, as `--json` prints it.
 
-    status: optimal (our bound within the stated gap), stationary (a local minimum, no bound),
-    feasible, evaluated (nothing was minimised; `feasible` says whether the design given meets all
-    limits), infeasible (proven), limit (stopped early), failed. objective: {name, value, unit}; of
-    status evaluated it may be empty.
+    status: optimal (our bound within the stated gap), stationary (a local minimum, its bound, if
+    there is one, further off), feasible, evaluated (nothing was minimised; `feasible` says whether
+    the design given meets all limits), infeasible (proven), limit (stopped early), failed.
+    objective: {name, value, unit}; of status evaluated it may be empty.
     bound: nothing feasible is better; gap: (objective - bound)/|objective|, of an objective of zero
     relative to certificate["scale"], its own scale. proof: {method, sentence, ...}. certificate:
     {feasibility, stationarity, complementarity}. limits: utilisations by name. multipliers: shadow

@@ -1,7 +1,7 @@
 """What limits a gear pair at a torque and a speed: one file per law, and what all of them compute.
 
 A law gives indices (stresses, load factors) of a loaded pair, each with a limit that a stage sets.
-Searches ask it for utilisations or minimum face widths and know no formula.
+Searches ask it for utilisations or narrowest face widths and know no formula.
 """
 
 import pkgutil
@@ -59,7 +59,7 @@ class Law:
     Promised of every law: an index falls as the face width grows, and at one power (torque times
     speed) it rises with the torque. proportional: for given teeth, helix angle and rack it is
     c T/(b m_n^2); for a given pinion diameter it does not fall as the teeth become more and
-    smaller, and as the ratio u grows it falls no faster than 1 + 1/u: then minimum widths and
+    smaller, and as the ratio u grows it falls no faster than 1 + 1/u: then narrowest widths and
     modules have closed forms, which are bisected otherwise. minimum_teeth: number of teeth of a
     pinion from which on the law and its promises hold. pressure_angle: whether an index depends on
     it. relaxed: of a law that is no posynomial, a lower bound of its indices that is one, for
@@ -88,7 +88,7 @@ class Law:
         return {n: i / a for n, i, a in zip(self.names, found, allowable, strict=True)}
 
     def load(self, pair: GearPair, torque: Any, speed: Any, allowable: Sequence[float]) -> Array:
-        """Return the largest utilisation, at unit width the minimum width of a proportional law."""
+        """Return the largest utilisation, at unit width the narrowest one of a proportional law."""
         found = tuple(self.utilisations(pair, torque, speed, allowable).values())
         return np.asarray(np.maximum.reduce(np.broadcast_arrays(*found)))
 
@@ -100,7 +100,7 @@ class Law:
         allowable: Sequence[float],
         ends: tuple[Array, Array],
     ) -> Array:
-        """Return the minimum face width [mm] (n,) that carries, between two ends; inf: none.
+        """Return the narrowest face width [mm] (n,) that carries, between two ends; inf: none.
 
         pair: of any face width; ends (n,): the narrowest and the widest.
         """

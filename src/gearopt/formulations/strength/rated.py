@@ -139,12 +139,12 @@ class Option:
 
 @dataclass(frozen=True)
 class IndexRows:
-    """Rows of a proportional law beside ratings: minimum widths (n,) [mm]."""
+    """Rows of a proportional law beside ratings: narrowest widths (n,) [mm]."""
 
     widths: Array
 
     def used(self, low: Array, high: Array) -> Array:
-        """Return the minimum width over the larger one."""
+        """Return the narrowest width over the larger one."""
         return np.asarray(self.widths / high)
 
     def border(self, width: Array) -> Array:

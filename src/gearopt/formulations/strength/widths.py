@@ -1,4 +1,4 @@
-"""The least face width that carries, proven: no width below it does.
+"""The narrowest face width that carries, proven: no width below it does.
 
 What of the load capacity is used may rise with the width, and jump. It is followed from the
 narrowest width on: as long as the lower bound of a step is above 1, no width in it carries.
@@ -53,7 +53,7 @@ def first_width(
             here, top, power, now = here[goes], top[goes], power[goes], now[goes]
         here, power = _on(rows, here, top, now, power)
     if len(active) and steps == STEPS:
-        raise ArithmeticError(f"no least face width was found in {STEPS} steps")
+        raise ArithmeticError(f"no narrowest face width was found in {STEPS} steps")
     found[active] = here  # what is left is bounded from below
     return found
 

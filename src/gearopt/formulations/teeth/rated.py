@@ -211,7 +211,7 @@ class RatedTable(Table):
         return found
 
     def width(self, torque: Array, pair: Index, module: int) -> Array:
-        """Return the minimum face width [mm] of pairs of a module (index) at torques; inf: none."""
+        """Return the narrowest face width [mm] of pairs of a module (index); inf: none."""
         at = np.full(len(pair), module)
         ends = self._ends(self.made(self.modules[module], pair), at, pair)
         widths = [
@@ -294,7 +294,7 @@ class RatedTable(Table):
         close: float = ALLOWANCE,
         steps: int = STEPS,
     ) -> Array:
-        """Return the minimum face widths [mm] of pairs with modules (indices); inf: none."""
+        """Return the narrowest face widths [mm] of pairs with modules (indices); inf: none."""
         one = self.made(self.modules[module], pair)
         rows = self._rows(torque, one, pair, module, option)
         found = first_width(rows, *ends, close, steps)

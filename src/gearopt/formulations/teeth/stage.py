@@ -160,7 +160,7 @@ class Table:
         return self._share(one, self._widths(one, module, every)[0])
 
     def width(self, torque: Array, pair: Index, module: int) -> Array:
-        """Return the minimum face width [mm] of pairs of a module (index) at torques; inf: none."""
+        """Return the narrowest face width [mm] of pairs of a module (index); inf: none."""
         return self._width(torque, pair, module, self.made(self.modules[module], pair))
 
     def _best(self, torque: Array, pair: Index) -> tuple[Array, Array, Array]:
@@ -194,7 +194,7 @@ class Table:
         return best, best_module, best_width
 
     def _width(self, torque: Array, pair: Index, module: int, one: GearPair) -> Array:
-        """Return the minimum face width [mm] of the pairs `one`, which are `pair` with a module."""
+        """Return the narrowest face width [mm] of the pairs `one`: `pair` with a module."""
         ends = self._widths(one, module, pair)
         if self.load is not None:
             needed = self.load[pair] * torque / self.modules[module] ** 2

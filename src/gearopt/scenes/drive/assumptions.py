@@ -9,6 +9,7 @@ from gearopt.scenes.drive.drive_tables import ORIGINS, StageTable
 from gearopt.scenes.drive.layout_tables import Layout
 from gearopt.scenes.drive.rating.gears import gear_choices
 from gearopt.scenes.drive.rating.iso_material import steel
+from gearopt.scenes.drive.rating.materials import unused
 from gearopt.scenes.drive.rating.tables import RatingTable
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.tooth_tables import toothing
@@ -39,7 +40,13 @@ def notes(scene: Scene, exact: bool) -> list[str]:
         found += unverified(scene.teeth.modules)
     if scene.objective.density is None and not _dense(scene):
         found.append(f"Masses are those of steel, {1e9 * STEEL_DENSITY:g} kg/dm³ (assumed).")
-    return found
+    return found + unused_materials(scene)
+
+
+def unused_materials(scene: Scene) -> list[str]:
+    """Return a note on the materials of the file that no gear may have, if there are any."""
+    names = unused(scene.stage or (StageTable(),), scene.gears, scene.material)
+    return [f"[[material]] in no list of a gear: {', '.join(names)}."] if names else []
 
 
 def _dense(scene: Scene) -> bool:

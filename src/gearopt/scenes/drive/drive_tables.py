@@ -63,7 +63,7 @@ PROPORTION_IS = (
     "Face width over pinion diameter b/d1: a number ties b to d1, a range leaves it free within it"
 )
 OVER_MODULE_IS = "Range of face width over normal module b/m_n"
-LEAST_IS = "Minimum face width"
+LEAST_IS = "Smallest face width that a stage may have"
 STEP_IS = "Face widths are whole multiples of this"
 WHEEL_IS = "Largest reference diameter of a wheel"
 

@@ -160,7 +160,7 @@ def eases(scene: Scene, number: Number) -> int:
     if scene.by_ratings and (way := OF_RATING.get(str(field))):
         return way
     ways = dict.fromkeys((*scene.limits.LAW.names, "wheel_diameter"), 1)  # no ends of a range
-    ways["least_face_width"] = -1
+    ways["minimum_face_width"] = -1
     for name, place in fields(scene).items():
         if place == (field, end) and path[0] in ("limits", "stage", "gears"):
             return ways.get(name, 0) if end is None else (-1 if end == 0 else 1)

@@ -77,7 +77,9 @@ def check_materials(
     known = [one.name for one in materials]
     for k, name in enumerate(known):
         if name in known[:k]:
-            raise refuse("is the name of another material, too", at=("material", k, "name"))
+            told = f"Rename this one or material[{known.index(name) + 1}]: gears choose by name"
+            rule = f"is that of material[{known.index(name) + 1}], too"
+            raise refuse(rule, told, ("material", k, "name"), "tell")
     for place, table in _tables(stages, gears):
         for name in table.materials or ():
             if name not in known:
@@ -107,6 +109,13 @@ def check_same(gears: Any, stages: Sequence[Any]) -> None:
             words = "; ".join(f"stage {k}: {', '.join(own)}" for k, own in enumerate(known, 1))
             rule = f"leaves no material that the {member}s of all stages may have ({words})"
             raise refuse(rule, at=at, action="remove")
+
+
+def unused(stages: Sequence[Any], gears: GearKeys, materials: Sequence[Named]) -> list[str]:
+    """Return the names of materials that no gear may have."""
+    tables = [getattr(stage, member) for stage in stages for member in MEMBERS]
+    used = {name for table in tables for name in names(table, gears)}
+    return [one.name for one in materials if one.name not in used]
 
 
 def _tables(

@@ -14,7 +14,7 @@ from gearopt.optimise.typed import untyped
 from gearopt.physics.gears import GearPair
 from gearopt.physics.loads import torque
 from gearopt.physics.shaft_forces import hands
-from gearopt.scenes.drive.assumptions import rating_assumptions
+from gearopt.scenes.drive.assumptions import rating_assumptions, unused_materials
 from gearopt.scenes.drive.rating import gears as rated_gears
 from gearopt.scenes.drive.rating.checks import not_given
 from gearopt.scenes.drive.rating.geometry import tooth_geometry
@@ -59,6 +59,7 @@ def rate(scene: Scene, ask: Ask) -> Result:
         density.value if density else None,
     )
     told = replace(found, flaws=(*_off_ratio(scene, made), *found.flaws))
+    remarks = unused_materials(scene)
     return Result(
         name="rating",
         status="evaluated",
@@ -67,7 +68,7 @@ def rate(scene: Scene, ask: Ask) -> Result:
         certificate={"feasibility": max(0.0, max(limits.values()) - 1.0)},
         design=untyped(replace(made, rating=told)),
         limits=limits,
-        report={"assumptions": rating_assumptions(scene)},
+        report={"assumptions": rating_assumptions(scene)} | ({"notes": remarks} if remarks else {}),
         evaluations=1,
         seconds=clock.seconds,
         seed=ask.seed,

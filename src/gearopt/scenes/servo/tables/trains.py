@@ -176,7 +176,7 @@ class Lightest(Table):
     """
 
     face_width: Annotated[Quantity, quantity("length", "2 mm")] = Field(
-        description="Minimum face width of either stage"
+        description="Smallest face width that either stage may have"
     )
     shaft_diameter: Annotated[Quantity, quantity("length", "3 mm")] = Field(
         description="Minimum diameter of the shaft between the stages"
