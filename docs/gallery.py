@@ -43,6 +43,7 @@ GROUPS = {  # heading: {file: what it shows, in a line}
         "helical_unit": "A unit as of catalogues: hunting teeth, whole widths, both standards.",
         "minimum_volume_pair": "A spur pair of minimum volume, as a paper has it, proven.",
         "materials_by_cost": "Materials chosen of a list, `[[material]]`, at least cost.",
+        "light_wheels": "Least mass with rims, webs and hubs, which the rating knows, too.",
         "same_materials": "The same with one for all pinions and one for all wheels.",
         "sized_and_rated": "Sized by load limits and ratings; here the load limits bind.",
         "shigley_14_4": "A textbook's pair, met factor by factor; its I and J given.",

@@ -202,8 +202,9 @@ and the price of a kilogram, and `materials = ["a", "b"]` in `[gears]`, `[stage.
 `[stage.wheel]` names those that a gear may have. Pinion and wheel choose freely, each of its own
 list: all combinations are compared, and `minimise = "cost"` takes the sum of masses times prices
 (`problems/materials_by_cost.toml`). A material may have a `quality` or an `accuracy_grade`, so
-that finer gears have their own price; of Q_v the lower one of a pair counts. Volumes and masses
-are those of solid reference cylinders; rims and webs enter the ratings alone.
+that finer gears have their own price; of Q_v the lower one of a pair counts. Rims, webs and bores
+enter masses and costs as they enter the ratings: webs and rims of [drives](drive.md),
+`problems/light_wheels.toml`.
 
 A load spectrum is what the gears carry: Miner's sum of all levels `[[load]]` gives the safety
 factors. A K-factor and unit load in `[limits]` are limits beside the ratings

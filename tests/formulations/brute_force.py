@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 
 import numpy as np
+from blank_rings import volume
 
 from gearopt.formulations.gear_train import FaceWidth, Stage, Train
 from gearopt.formulations.strength.k_factor import K_FACTOR
@@ -124,8 +125,21 @@ def limited_width(stage, module, z1, needed):
     return np.array(found)
 
 
-def cost(train, k, d, b, u):
-    """Share of a stage in the objective."""
+def weight(train, k, d, b, u, module):
+    """Mass of a stage whose gears have webs or bores, one by one."""
+    each = zip(d, b, d * u, strict=True)
+    blanks = train.stages[k].blanks
+    pairs = [
+        sum(volume(o, module, e, b) for o, e in zip(blanks, (d, f), strict=True))
+        for d, b, f in each
+    ]
+    return 1000 * train.density * np.array(pairs)
+
+
+def cost(train, k, d, b, u, module=None):
+    """Share of a stage in the objective; module: of gears with webs."""
+    if train.hollow:
+        return weight(train, k, d, b, u, module)
     if train.objective in ("gear_volume", "mass"):
         density = 1.0 if train.objective == "gear_volume" else 1000 * train.density
         return density * math.pi / 4 * b * d**2 * (1 + u**2)
@@ -155,7 +169,7 @@ def best_choice(train, k, torque, z1, z2, needed=k_factor_width):
         b = width(stage, module, z1, load)
         if stage.wheel_diameter is not None:
             b[side(stage.toothing, module, z2, stage.wheel_diameter) > 0] = np.inf
-        value = np.where(np.isfinite(b), cost(train, k, d, b, u), np.inf)
+        value = np.where(np.isfinite(b), cost(train, k, d, b, u, float(module)), np.inf)
         better = value < best * (1 - SAME)
         best[better], with_width[better] = value[better], b[better]
         with_module[better] = float(module)

@@ -1,11 +1,13 @@
 """Every candidate of a small rated drive, each rated by the standard one at a time."""
 
 import math
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
+from blank_rings import backup, rings, volume
 
-from gearopt.formulations.gear_train import share
+from gearopt.formulations.shares import share
 from gearopt.formulations.strength.iso6336 import Iso6336
 from gearopt.formulations.teeth.search import within
 from gearopt.formulations.teeth.stage import spans
@@ -21,7 +23,7 @@ def safe(train, k, pair, torque):
     speed = train.speed * train.torque / torque
     for standard in train.stages[k].options[0].standards:
         iso = isinstance(standard, Iso6336)
-        made = standard.materials if iso else standard.steels, standard.practice
+        made = standard.materials if iso else standard.steels, practice(train, k, pair, standard)
         overload = standard.operation.overload
         operations = [
             Operation(
@@ -37,6 +39,23 @@ def safe(train, k, pair, torque):
         if min(bending / train.safety[0], contact / train.safety[1]) < 1.0 - 1e-11:
             return False
     return True
+
+
+def practice(train, k, pair, standard):
+    """Return how a pair of teeth without shift is rated, its rims as `blank_rings` has them."""
+    m, blanks = pair.normal_module, train.stages[k].blanks
+    each = list(zip(blanks, pair.gears, strict=True))
+    ratios = [backup(blank, m, gear.reference_diameter) for blank, gear in each]
+    made = replace(standard.practice, backup=tuple(ratios))
+    if not isinstance(standard, Iso6336):
+        return made
+    webs, bores = [], []
+    for blank, gear in each:
+        parts = rings(blank, m, gear.reference_diameter)
+        webbed, (d, inside, _) = len(parts) == 3, parts[0]
+        webs.append((blank.web_over_width, (d - inside) / 2 / m - 1.25) if webbed else None)
+        bores.append(inside if blank.web_over_width < 1.0 or not webbed else blank.bore)
+    return replace(made, webs=tuple(webs), bores=tuple(bores))
 
 
 def widths(train, k, module, z1):
@@ -58,10 +77,18 @@ def least_share(train, k, torque, z1, z2):
     for module in train.stages[k].modules:
         for width in widths(train, k, module, z1):
             pair = train.pair(k, float(module), z1, z2, float(width))
-            value = share(train, k, pair)
+            value = share(train, k, pair) if not train.hollow else mass(train, k, pair)
             if value < best and safe(train, k, pair, torque):
                 best = value
     return best
+
+
+def mass(train, k, pair):
+    """Return the mass of a pair in rings."""
+    m, b = pair.normal_module, pair.face_width
+    each = zip(train.stages[k].blanks, pair.gears, strict=True)
+    volumes = [volume(blank, m, gear.reference_diameter, b) for blank, gear in each]
+    return 1000 * train.density * sum(volumes)
 
 
 def cheapest(train):

@@ -9,6 +9,7 @@ from rated_drives import RACK, iso
 from gearopt.formulations.strength.rated import Load
 from gearopt.formulations.strength.widths import first_width
 from gearopt.formulations.toothing import Toothing
+from gearopt.physics.blanks import SOLID, Blank
 from gearopt.physics.geometry.contact import usable_path
 from gearopt.physics.iso6336.case import Practice
 from gearopt.physics.iso6336.materials import Material
@@ -32,7 +33,7 @@ KINDS = {
     "2019": (iso(practice=NEW), 0.35),
     "2019, spur, fine": (iso(practice=Practice(edition="2019", grades=(4.0, 4.0))), 0.0),
     "crowned": (iso(practice=Practice(helix_modification="crowned", offset=-2.0)), 0.2),
-    "webs": (iso((EH, EH), rims=(None, 12.0), webs=(None, 20.0), bores=(10.0, 30.0)), 0.3),
+    "webs": (iso((EH, EH), blanks=(Blank(bore=10.0), Blank(None, 12.0, 0.4, 30.0))), 0.3),
     "cast": (iso((GREY, GREY), practice=Practice(grades=(9.0, 9.0))), 0.1),
     "short life": (iso((NITRIDED, EH), hours=1.0, practice=Practice(relief=0.03)), 0.15),
     "K_Fbeta given": (iso(given={"K_Fbeta": 1.2}), 0.3),
@@ -168,7 +169,7 @@ def test_the_first_width_may_be_where_a_refusal_ends():
 
 def test_thin_rims_are_refused():
     """Y_B has no value from a backup ratio of 0.5 on."""
-    standard = iso(rims=(None, 8.0))
+    standard = iso(blanks=(SOLID, Blank(rim_thickness=8.0)))
     pair, width, torque, power, _ = pairs(0.2, 5)
     refused = np.isinf(rows(standard, pair, (torque, torque), power).used(width, width))
     np.testing.assert_array_equal(refused, 8.0 <= 0.5 * 2.25 * pair.normal_module)

@@ -9,7 +9,8 @@ from rated_brute_force import cheapest, least_share, safe
 from rated_drives import FREE, MODULES, TIED, F, agma, by, rated_drive
 
 from gearopt.formulations import teeth
-from gearopt.formulations.gear_train import FaceWidth, share
+from gearopt.formulations.gear_train import FaceWidth
+from gearopt.formulations.shares import share
 from gearopt.formulations.strength.k_factor import K_FACTOR
 from gearopt.formulations.strength.rated import Option
 from gearopt.formulations.teeth.later_stages import bound, first_costs, useful_cells

@@ -9,7 +9,8 @@ import pytest
 from brute_force import some_drive
 
 from gearopt.formulations import sizing, teeth
-from gearopt.formulations.gear_train import OBJECTIVES, FaceWidth, Stage, Train
+from gearopt.formulations.gear_train import FaceWidth, Stage, Train
+from gearopt.formulations.shares import OBJECTIVES
 from gearopt.formulations.strength.k_factor import K_FACTOR
 from gearopt.formulations.teeth.search import possible
 from gearopt.formulations.teeth.wide import narrowed

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 from fractions import Fraction
 from typing import Any
 
@@ -12,7 +12,8 @@ from gearopt.formulations.rating import DriveRating
 from gearopt.formulations.strength import Law
 from gearopt.formulations.strength.rated import Option
 from gearopt.optimise.typed import INLINE, typed
-from gearopt.physics.gears import ISO_53_A, Gear, GearPair, Rack
+from gearopt.physics.blanks import SOLID, Blank
+from gearopt.physics.gears import ISO_53_A, MEMBERS, Gear, GearPair, Rack
 from gearopt.physics.loads import pitch_line_velocity
 
 GEARS_FIRST = "the gears chosen first"  # of what alone a layout is proven impossible
@@ -25,8 +26,8 @@ STEEL_DENSITY = 7.85e-9  # t/mm3: EN 1991-1-1 table A.4 (to 78.5 kN/m3), Steel f
 class StageDesign:
     """A gear pair with its loads; fields are the keys of a result, with their units.
 
-    Fields with a default say how its teeth are cut and of which materials, of several, its gears
-    are; a result leaves out those that hold it.
+    Fields with a default say how its teeth are cut, of which materials, of several, its gears are,
+    and what their blanks have; a result leaves out those that hold it.
     """
 
     normal_module_mm: float
@@ -69,6 +70,14 @@ class StageDesign:
     wheel_tool_protuberance: float = ISO_53_A.protuberance
     pinion_material: str = ""
     wheel_material: str = ""
+    pinion_rim_thickness_mm: float | None = None  # None of what a gear does not have
+    wheel_rim_thickness_mm: float | None = None
+    pinion_web_thickness_mm: float | None = None
+    wheel_web_thickness_mm: float | None = None
+    pinion_hub_diameter_mm: float | None = None
+    wheel_hub_diameter_mm: float | None = None
+    pinion_bore_mm: float | None = None
+    wheel_bore_mm: float | None = None
 
     @property
     def pair(self) -> GearPair:
@@ -118,7 +127,8 @@ def describe(train: Train, pairs: tuple[GearPair, ...], options: Sequence[int] =
     options: of every stage, from 0; none: the first.
     """
     loaded = float(train.torque), float(train.speed)
-    made = of_pairs(train.law, pairs, *loaded, train.ratio, train.density)
+    blanks = [stage.blanks for stage in train.stages]
+    made = of_pairs(train.law, pairs, *loaded, train.ratio, train.density, blanks)
     if not train.rated:
         return made
     chosen = zip(made.stages, train.stages, options or (0,) * len(pairs), strict=True)
@@ -148,16 +158,17 @@ def of_pairs(
     speed: float,
     asked_ratio: Fraction | None = None,
     density: float | None = None,
+    blanks: Sequence[tuple[Blank, Blank]] = (),
 ) -> DriveDesign:
     """Return stages and totals of a drive.
 
     torque [N mm], speed [rad/s] of the input; asked_ratio: None where none is asked for. Masses are
-    those of solid reference cylinders, by default of steel; density [t/mm3].
+    those of the blanks of every stage, by default solid and of steel; density [t/mm3].
     """
     stages: list[StageDesign] = []
     density = density or STEEL_DENSITY
-    for pair in pairs:
-        stages.append(_stage(law, pair, torque, speed, density))
+    for pair, made in zip(pairs, blanks or [(SOLID, SOLID)] * len(pairs), strict=True):
+        stages.append(_stage(law, pair, torque, speed, density, made))
         torque, speed = torque * float(pair.ratio), speed / float(pair.ratio)
     ratio = math.prod(s.ratio for s in stages)
     volume = sum(s.gear_volume_mm3 for s in stages)
@@ -173,15 +184,23 @@ def of_pairs(
         gear_volume_mm3=volume,
         sum_of_centre_distances_mm=centres,
         total_length_mm=0.5 * ends + centres,
-        mass_kg=1000.0 * density * volume,
+        mass_kg=sum(s.mass_kg for s in stages),
     )
 
 
-def _stage(law: Law, pair: GearPair, torque: float, speed: float, density: float) -> StageDesign:
+def _stage(
+    law: Law,
+    pair: GearPair,
+    torque: float,
+    speed: float,
+    density: float,
+    blanks: tuple[Blank, Blank],
+) -> StageDesign:
     """Describe a pair; torque [N mm] and speed [rad/s] are its pinion's."""
     pinion, wheel = pair.gears
     d, loads = pinion.reference_diameter, law.indices(pair, torque, speed)
-    masses = [1000.0 * float(gear.mass(density)) for gear in pair.gears]
+    rows = zip(blanks, pair.gears, strict=True)
+    masses = [1000.0 * density * float(blank.volume(gear)) for blank, gear in rows]
     return StageDesign(
         normal_module_mm=float(pair.normal_module),
         pinion_teeth=_whole(pair.pinion_teeth),
@@ -207,6 +226,7 @@ def _stage(law: Law, pair: GearPair, torque: float, speed: float, density: float
         wheel_mass_kg=masses[1],
         mass_kg=sum(masses),
         **_teeth(pair),
+        **_bodies(pair, blanks),
     )
 
 
@@ -225,6 +245,15 @@ def _teeth(pair: GearPair) -> dict[str, Any]:
         rack = gear.rack
         tool = rack.addendum, rack.dedendum, rack.tip_radius, rack.protuberance
         found |= {f"{member}_{n}": float(v) for n, v in zip(TOOL, tool, strict=True)}
+    return found
+
+
+def _bodies(pair: GearPair, blanks: tuple[Blank, Blank]) -> dict[str, Any]:
+    """Return the dimensions of rims, webs, hubs and bores."""
+    found: dict[str, Any] = {}
+    for member, blank, gear in zip(MEMBERS, blanks, pair.gears, strict=True):
+        rows = asdict(blank.body(gear)).items()
+        found |= {f"{member}_{name}_mm": value for name, value in rows}
     return found
 
 

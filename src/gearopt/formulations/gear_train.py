@@ -12,20 +12,13 @@ from typing import Any
 
 import numpy as np
 
+from gearopt.formulations.shares import LENGTHS, MASSES, OBJECTIVES, share
 from gearopt.formulations.strength import Law
 from gearopt.formulations.strength.rated import Option
 from gearopt.formulations.toothing import Toothing
 from gearopt.optimise.terms import Terms, each
+from gearopt.physics.blanks import SOLID, Blank
 from gearopt.physics.gears import GearPair
-
-OBJECTIVES = {  # name -> unit
-    "gear_volume": "mm3",
-    "mass": "kg",
-    "sum_of_centre_distances": "mm",
-    "total_length": "mm",
-    "cost": "",
-}
-LENGTHS = ("sum_of_centre_distances", "total_length")  # objectives along the line of centres
 
 CHOICES = (  # of `Train.numbers`, those that limit what a stage may choose
     "width_low",
@@ -90,6 +83,7 @@ class Stage:
     pinion_teeth, wheel_teeth, ratio u = z2/z1 >= 1: minimum and maximum (None: no
     limit). wheel_diameter: maximum [mm] of the wheel's reference diameter. toothing: of its gears.
     options: ways of making them that are rated, of which one is chosen; none: the law limits alone.
+    blanks: of pinion and wheel.
     """
 
     allowable: tuple[float, ...]
@@ -101,6 +95,7 @@ class Stage:
     wheel_diameter: Fraction | None = None
     toothing: Toothing = Toothing()
     options: tuple[Option, ...] = ()
+    blanks: tuple[Blank, Blank] = (SOLID, SOLID)
 
     @property
     def pinion_fixed(self) -> bool:
@@ -154,7 +149,7 @@ class Train:
             stage.options and all(all(option.densities) for option in stage.options)
             for stage in self.stages
         )
-        if self.objective in ("mass", "cost") and not solid:
+        if self.objective in MASSES and not solid:
             raise ValueError(f"the objective {self.objective} needs a density")
         if self.objective == "cost" and not all(stage.options for stage in self.stages):
             raise ValueError("the objective cost needs the price of every stage's materials")
@@ -180,6 +175,12 @@ class Train:
         count = len(self.stages[0].options)
         made = [[replace(s, options=(s.options[k],)) for s in self.stages] for k in range(count)]
         return tuple(replace(self, stages=tuple(stages)) for stages in made)
+
+    @property
+    def hollow(self) -> bool:
+        """Whether the objective counts gears that are no solid discs."""
+        blanks = [blank for stage in self.stages for blank in stage.blanks]
+        return self.objective in MASSES and not all(blank.solid for blank in blanks)
 
     @property
     def by_width(self) -> bool:
@@ -268,43 +269,20 @@ def _or_inf(number: Fraction | int | None) -> float:
     return math.inf if number is None else float(number)
 
 
-def share(train: Train, stage: int, pair: GearPair, density: Any = None, option: int = 0) -> Any:
-    """Return what the pair of a stage (counted from 0) adds to the objective, in its unit.
-
-    density [t/mm3], by default the train's; those of the stage's option come first. total_length is
-    that of the shafts in one line, from the rim of the first pinion to that of the last wheel over
-    reference circles: d1/2 + sum of centre distances + d2/2.
-    """
-    if train.objective == "gear_volume":
-        return pair.volume
-    if train.objective in ("mass", "cost"):
-        usual = train.density if density is None else density
-        options = train.stages[stage].options
-        own = options[option] if options else Option(())
-        rows = zip(pair.gears, own.densities, own.prices, strict=True)
-        masses = [(1000.0 * gear.mass(rho or usual), price) for gear, rho, price in rows]
-        return sum(kg if train.objective == "mass" else kg * price for kg, price in masses)
-    length = pair.centre_distance
-    if train.objective == "total_length" and stage == 0:
-        length = length + 0.5 * pair.pinion.reference_diameter
-    if train.objective == "total_length" and stage == len(train.stages) - 1:
-        length = length + 0.5 * pair.wheel.reference_diameter
-    return length
-
-
 def terms(
     train: Train,
     numbers: Any,
     pairs: tuple[GearPair, ...],
     options: Sequence[Any] = (),
     rated: Callable[..., Mapping[str, Any]] | None = None,
+    shares: Callable[..., Any] = share,
 ) -> Terms:
     """Return objective and limits of a drive made of these pairs, as terms of a geometric program.
 
     numbers: `train.numbers()` as attributes, floats or parameters; options: of every stage, counted
     from 0, floats or arrays; none: the first. rated(stage, pair, torque, speed, safety): limits in
-    the place of those of the ratings. A limit is left out where the drive leaves it open or fixes
-    the quantity.
+    the place of those of the ratings. shares: what stages add to the objective, as `share`. A limit
+    is left out where the drive leaves it open or fixes the quantity.
     """
     total, product, torque = 0.0, 1.0, numbers.torque
     limits: dict[str, Any] = {}
@@ -313,8 +291,8 @@ def terms(
         own = {name: each(getattr(numbers, name))[k] for name in train.by_stage}
         stage, option = train.stages[k], options[k] if options else 0
         several = range(max(1, len(stage.options)))
-        shares = [share(train, k, pair, numbers.density, one) for one in several]
-        total = total + _chosen(shares, option)
+        worth = [shares(train, k, pair, numbers.density, one) for one in several]
+        total = total + _chosen(worth, option)
         allowable = [own[name] for name in train.law.names]
         rows = train.law.utilisations(pair, torque, numbers.speed / product, allowable)
         if stage.options:

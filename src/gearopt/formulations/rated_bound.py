@@ -13,7 +13,8 @@ from types import SimpleNamespace
 from typing import Any
 
 from gearopt.formulations import sizing
-from gearopt.formulations.gear_train import Train, share, terms
+from gearopt.formulations.gear_train import Train, terms
+from gearopt.formulations.shares import least_share
 from gearopt.formulations.strength.rated import Box
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.problem import Problem
@@ -58,9 +59,18 @@ def bounding(train: Train, choice: Choice, most: float = math.inf) -> Problem | 
                 rows |= {n + standard.suffix: v for n, v in floor.limits(pair).items()}
             return rows
 
-        return terms(train, p, sizing.text_pairs(train, x, p), rated=rated)
+        gears = sizing.text_pairs(train, x, p)
+        return terms(train, p, gears, rated=rated, shares=_least)
 
     return Problem("bounding", sizing.variables(train), sizing.parameters(train), evaluate)
+
+
+def _least(train: Train, k: int, pair: GearPair, density: Any, option: int) -> Any:
+    """Return the `least_share` of a stage, by the fewest teeth that it may have."""
+    stage = train.stages[k]
+    pinion = float(stage.pinion_teeth[0])
+    wheel = max(float(stage.wheel_teeth[0]), pinion * float(stage.ratio[0]))
+    return least_share(train, k, pair, density, option, (pinion, wheel))
 
 
 def box(train: Train, k: int, most: float) -> Box:
@@ -87,7 +97,7 @@ def _widest(train: Train, k: int, ratio: float, most: float) -> float:
         return math.inf
     stage = train.stages[k].toothing
     one = stage.of_diameter(stage.cosine / 20.0, 20.0, 1.0, ratio, face.widest)
-    alone = float(share(train, k, one))  # of d1 = 1 mm and the widest face
+    alone = float(least_share(train, k, one))  # of d1 = 1 mm and the widest face
     power = 1.0 / 3.0 if train.by_width else 1.0
     return float(face.widest * (most / alone) ** power * (1.0 + FEASIBLE))
 

@@ -16,9 +16,9 @@ import numpy as np
 
 from gearopt.errors import SolveError
 from gearopt.formulations import sizing, teeth
-from gearopt.formulations.gear_train import Train, terms
+from gearopt.formulations.gear_train import Stage, Train, terms
 from gearopt.formulations.rated_bound import Choice, bounding, box, lower_bound, solved
-from gearopt.formulations.strength.rated import MODES
+from gearopt.formulations.strength.rated import MODES, Standard
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import FEASIBLE, Budget, Outcome, Result, Watch
@@ -54,12 +54,15 @@ def smooth(train: Train) -> Callable[..., Outcome]:
 def choices(train: Train) -> Iterator[Choice]:
     """Return every combination of what the smooth form needs fixed beforehand."""
     stages = [
-        product(*(s.choices(bool(stage.toothing.helix_angle)) for s in stage.options[0].standards))
-        if stage.options
-        else [()]
+        product(*(s.choices(bool(stage.toothing.helix_angle)) for s in _standards(stage)))
         for stage in train.stages
     ]
     return product(*stages)
+
+
+def _standards(stage: Stage) -> tuple[Standard, ...]:
+    """Return the standards that rate a stage."""
+    return stage.options[0].standards if stage.options else ()
 
 
 def smooth_problem(train: Train, choice: Choice) -> Problem:
@@ -76,7 +79,7 @@ def smooth_problem(train: Train, choice: Choice) -> Problem:
 
         def rated(k: int, pair: GearPair, torque: Any, speed: Any, safety: Any) -> dict[str, Any]:
             rows: dict[str, Any] = {}
-            for j, standard in enumerate(train.stages[k].options[0].standards):
+            for j, standard in enumerate(_standards(train.stages[k])):
                 suffix = standard.suffix
                 own = {n: each(getattr(x, n + suffix))[k] for n in standard.unknowns}
                 made = standard.smooth(pair, torque, speed, choice[k][j], own)
@@ -100,7 +103,7 @@ def smooth_problem(train: Train, choice: Choice) -> Problem:
 def _unknowns(train: Train) -> tuple[Var, ...]:
     size, found = len(train.stages), {}
     for stage in train.stages:
-        for standard in stage.options[0].standards if stage.options else ():
+        for standard in _standards(stage):
             for name, (low, high, log) in standard.unknowns.items():
                 at = max(low, 1.0) if log else 0.5 * (low + high)
                 own = name + standard.suffix
@@ -132,7 +135,8 @@ def _outcome(train: Train, exact: Problem, clock: Clock) -> Outcome:
     possible = {choice: start for choice, (start, least) in begun.items() if least < math.inf}
     bound = min(least for _, least in begun.values())
     others: list[Array] = []
-    if any(start is None for start in possible.values()) or not _all_bounded(train):
+    none = any(start is None for start in possible.values())
+    if none or train.hollow or not _all_bounded(train):
         others = [*_whole(train, clock), *_starts(exact)]
     designs = [
         _Design(float(exact.batch(x[None]).F[0, 0]), x, choice, False, "feasible")
@@ -160,7 +164,7 @@ def _outcome(train: Train, exact: Problem, clock: Clock) -> Outcome:
 def _refined(train: Train, exact: Problem, best: _Design, clock: Clock) -> _Design:
     """Return the best design in choices that are closer to the exact rating, stage by stage."""
     for k, pair in enumerate(sizing.pairs(train, best.x)):
-        for j, standard in enumerate(train.stages[k].options[0].standards):
+        for j, standard in enumerate(_standards(train.stages[k])):
             row = best.choice[k]
             for closer in () if clock.stopped else standard.refined(pair, row[j]):
                 changed = (*row[:j], closer, *row[j + 1 :])
@@ -203,7 +207,7 @@ def _all_bounded(train: Train) -> bool:
     return all(
         standard.floor(own, standard.choices(bool(stage.toothing.helix_angle))[0]) is not None
         for stage, own in boxes
-        for standard in (stage.options[0].standards if stage.options else ())
+        for standard in _standards(stage)
     )
 
 
@@ -348,7 +352,7 @@ def guess(train: Train, at: Array, choice: Choice) -> Array:
     """Return the unknowns of the standards at a point, in the order of the variables."""
     columns: dict[str, list[float]] = {v.name: list(each(v.guess)) for v in _unknowns(train)}
     for k, pair in enumerate(sizing.pairs(train, at)):
-        for j, standard in enumerate(train.stages[k].options[0].standards):
+        for j, standard in enumerate(_standards(train.stages[k])):
             for name, value in standard.guess(pair, choice[k][j]).items():
                 columns[name + standard.suffix][k] = value
     return np.array([v for column in columns.values() for v in column])
@@ -361,7 +365,7 @@ def _errors(
     ratio = np.ones_like(trims)
     x = namespace(made.variables, [float(v) for v in point])
     for k, (pair, torque, speed) in enumerate(_loads(train, sizing.pairs(train, at))):
-        for j, standard in enumerate(train.stages[k].options[0].standards):
+        for j, standard in enumerate(_standards(train.stages[k])):
             own = {n: each(getattr(x, n + standard.suffix))[k] for n in standard.unknowns}
             smooth = standard.smooth(pair, torque, speed, choice[k][j], own).safeties
             exact = standard.safeties(pair, torque, speed)

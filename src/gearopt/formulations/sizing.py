@@ -40,10 +40,10 @@ def problem(train: Train) -> Problem:
     """Return the continuous problem of a drive.
 
     Variables, one component per stage: module [mm], pinion_teeth, ratio and, where it is not tied
-    to d1, face_width [mm]. Of a rated drive the text is for numbers only; its own method finds a
-    design (`rated_sizing`).
+    to d1, face_width [mm]. Of a rated drive the text is for numbers only, and of gears with webs
+    the objective is no posynomial: their own method finds a design (`rated_sizing`).
     """
-    if train.rated:
+    if train.rated or train.hollow:
         from gearopt.formulations.rated_sizing import smooth
 
         return replace(exact_text(train), methods={"smooth": smooth(train)})

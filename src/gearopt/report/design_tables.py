@@ -45,6 +45,14 @@ STAGE_ROWS = {  # what a key is called, and its unit
     "mass_kg": ("mass of the pair", "kg"),
     "pinion_material": ("pinion material", ""),
     "wheel_material": ("wheel material", ""),
+    "pinion_rim_thickness_mm": ("pinion rim thickness s_R1", "mm"),
+    "wheel_rim_thickness_mm": ("wheel rim thickness s_R2", "mm"),
+    "pinion_web_thickness_mm": ("pinion web thickness b_s1", "mm"),
+    "wheel_web_thickness_mm": ("wheel web thickness b_s2", "mm"),
+    "pinion_hub_diameter_mm": ("pinion hub diameter", "mm"),
+    "wheel_hub_diameter_mm": ("wheel hub diameter", "mm"),
+    "pinion_bore_mm": ("pinion bore", "mm"),
+    "wheel_bore_mm": ("wheel bore", "mm"),
 }
 OF_TEETH = {f.name: f.default for f in fields(StageDesign) if f.default is not MISSING}
 OF_FILE = ("helix_angle_deg", "pressure_angle_deg")  # said by the file where stages are alike
@@ -108,7 +116,12 @@ def stage_table(
 
 
 def _own_teeth(key: str, stages: Sequence[Mapping[str, Any]]) -> bool:
-    """Return whether a key of the teeth, or the mate's, says more than its default or the file."""
+    """Return whether a key of the teeth, or the mate's, says more than its default or the file.
+
+    Of blanks one that says anything.
+    """
+    if OF_TEETH[key] is None:
+        return any(s.get(key) is not None for s in stages)
     both = key, key.replace("pinion", "wheel"), key.replace("wheel", "pinion")
     values = {s.get(name, OF_TEETH[key]) for s in stages for name in both}
     return len(values) > 1 or not (key in OF_FILE or values == {OF_TEETH[key]})

@@ -24,6 +24,7 @@ from gearopt.physics.agma.batch import (
 )
 from gearopt.physics.agma.rating_factors import Case, Practice, Steel
 from gearopt.physics.agma.table import FactorTable, factor_table
+from gearopt.physics.blanks import SOLID, Blank
 from gearopt.physics.gears import GearPair
 from gearopt.physics.rating import Operation
 
@@ -32,15 +33,15 @@ from gearopt.physics.rating import Operation
 class Agma:
     """The rating of stages made in one way by AGMA 2001.
 
-    operation: its overload, temperature, reliability and contacts count. rims: thickness [mm], or
-    None for solid gears, of pinion and wheel. given: as of `agma.rating.rate`.
+    operation: its overload, temperature, reliability and contacts count. blanks: of pinion and
+    wheel, for K_B. given: as of `agma.rating.rate`.
     """
 
     loads: tuple[Load, ...]
     operation: Operation
     steels: tuple[Steel, Steel]
     practice: Practice
-    rims: tuple[float | None, float | None] = (None, None)
+    blanks: tuple[Blank, Blank] = (SOLID, SOLID)
     given: Mapping[str, Any] = field(default_factory=dict)
     suffix: str = ""
     monotone: bool = True
@@ -53,11 +54,9 @@ class Agma:
         return Case(pair, operation, self.steels, self._practice(pair), {**given, **self.given})
 
     def _practice(self, pair: GearPair) -> Practice:
-        ratios = [
-            None if rim is None else rim / (0.5 * (gear.tip_diameter - gear.root_diameter))
-            for gear, rim in zip(pair.gears, self.rims, strict=True)
-        ]
-        return replace(self.practice, backup=(ratios[0], ratios[1]))
+        rows = zip(self.blanks, pair.gears, strict=True)
+        first, second = (blank.backup(gear) for blank, gear in rows)
+        return replace(self.practice, backup=(first, second))
 
     def safeties(self, pair: GearPair, torque: Any, speed: Any) -> tuple[Any, Any, Any, Any]:
         """Return S_F1, S_F2, S_H1, S_H2; NaN where AGMA 908 refuses the pair."""

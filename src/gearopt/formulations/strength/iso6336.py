@@ -12,11 +12,13 @@ import numpy as np
 from gearopt.formulations.strength.iso6336_rows import AT_ENDS, Columns, IsoRows
 from gearopt.formulations.strength.rated import Box, Load, Smooth
 from gearopt.optimise.terms import Array
+from gearopt.physics.blanks import SOLID, Blank
+from gearopt.physics.choosing import choose
 from gearopt.physics.gears import GearPair
 from gearopt.physics.iso6336 import bending_factors as bending
 from gearopt.physics.iso6336 import chain, contact_factors, running_in, stiffness
 from gearopt.physics.iso6336.batch import rate_rows, smooth_safeties, spectrum_rows
-from gearopt.physics.iso6336.case import Case, Practice
+from gearopt.physics.iso6336.case import Case, Practice, of_blanks
 from gearopt.physics.iso6336.curves import Curve, reference_share
 from gearopt.physics.iso6336.load_factors import RANGES
 from gearopt.physics.iso6336.materials import Material
@@ -32,18 +34,15 @@ Law = Callable[[Case, dict[str, Any]], Any]
 class Iso6336:
     """The rating of stages made in one way by ISO 6336.
 
-    operation: its overload and contacts count. rims: thickness s_R, webs: thickness b_s [mm], None
-    for solid gears; bores: diameters [mm]; all of pinion and wheel. practice: without these three.
-    given: as of `iso6336.rating.rate`.
+    operation: its overload and contacts count. blanks: of pinion and wheel, for Y_B, C_R and m_red,
+    which practice does not have. given: as of `iso6336.rating.rate`.
     """
 
     loads: tuple[Load, ...]
     operation: Operation
     materials: tuple[Material, Material]
     practice: Practice
-    rims: tuple[float | None, float | None] = (None, None)
-    webs: tuple[float | None, float | None] = (None, None)
-    bores: tuple[float, float] = (0.0, 0.0)
+    blanks: tuple[Blank, Blank] = (SOLID, SOLID)
     given: Mapping[str, Any] = field(default_factory=dict)
     suffix: str = ""
     monotone: bool = False
@@ -54,21 +53,11 @@ class Iso6336:
         return Case(pair, operation, self.materials, self._practice(pair), self.given)
 
     def _practice(self, pair: GearPair) -> Practice:
-        backup: list[Any] = [None, None]
-        webs: list[Any] = [None, None]
-        for k, gear in enumerate(pair.gears):
-            if (rim := self.rims[k]) is None:
-                continue
-            ratio = rim / (0.5 * (gear.tip_diameter - gear.root_diameter))
-            backup[k] = np.where(np.greater(ratio, 0.5), ratio, np.nan)[()]
-            if (web := self.webs[k]) is not None:
-                webs[k] = web / pair.face_width, rim / pair.normal_module
-        return replace(
-            self.practice,
-            webs=(webs[0], webs[1]),
-            bores=self.bores,
-            backup=(backup[0], backup[1]),
+        made = of_blanks(self.practice, pair, self.blanks)
+        first, second = (
+            None if ratio is None else choose(ratio > 0.5, ratio, np.nan) for ratio in made.backup
         )
+        return replace(made, backup=(first, second))
 
     def safeties(self, pair: GearPair, torque: Any, speed: Any) -> tuple[Any, Any, Any, Any]:
         """Return S_F1, S_F2, S_H1, S_H2; NaN where ISO 6336 refuses the pair, or a rim."""
@@ -184,6 +173,7 @@ class Iso6336:
         pair = case.pair
         first, second = (m.modulus for m in self.materials)
         modulus = 2.0 * first * second / (first + second) / stiffness.STEEL
+        blank = stiffness.mean_blank_factor(case.practice.webs)
         deep = np.maximum(*(g.rack.addendum + g.rack.dedendum for g in pair.gears))
         return {
             "contact": table.contact,
@@ -192,9 +182,8 @@ class Iso6336:
             "single1": table.singles[1],
             "overlap": table.overlap,
             "axial": table.axial,
-            "stiffness": table.stiffness * modulus,
+            "stiffness": table.stiffness * modulus * blank,
             "depth": deep * pair.normal_module,
-            "module": pair.normal_module,
             "helix": pair.pinion.helix_angle,
             "diameter0": pair.pinion.reference_diameter,
             "diameter1": pair.wheel.reference_diameter,
@@ -206,7 +195,7 @@ class Iso6336:
         found, d1 = self._found(slow), slow.pair.pinion.reference_diameter
         force = 2.0 * found["K_A"] * found["K_gamma"] * load.power / load.speed / d1
         densities = self.materials[0].density, self.materials[1].density
-        mass = stiffness.reduced_mass(slow.pair, densities, self.bores)
+        mass = stiffness.reduced_mass(slow.pair, densities, slow.practice.bores)
         made = slow.deviations
         pitch = self.given.get("f_pb", made.base_pitch)
         form = self.given.get("f_falpha", made.profile_form)

@@ -40,7 +40,7 @@ class IsoRows:
     """Rows of pairs; of every level of load columns (n,) by name.
 
     contact (eps_alpha), virtual (eps_alphan), singles (Z_B, Z_D of spur gears), overlap (the least
-    eps_beta that is rated), axial pitch, stiffness c' from 100 N/mm on, tooth depth, module, both
+    eps_beta that is rated), axial pitch, stiffness c' from 100 N/mm on, tooth depth, both
     diameters; at both ends of the torques force (F_t K_A K_gamma), pace (omega z1 sqrt(m_red)),
     speed v, deviations after running-in (pitch f_pb, form f_falpha, the one of K_Halpha);
     contact_used and bending_used of both gears: what is used at W = Z_eps = Z_BD = 1 and at W =
@@ -159,33 +159,15 @@ class Box:
         return _both(ratio + first, first is second, lambda: ratio + second)
 
     @cached_property
-    def singles(self) -> tuple[Two, Two]:
-        """Return c' [MPa], least and greatest by webs, at both ends of the line loads."""
+    def singles(self) -> Two:
+        """Return c' [MPa] at both ends of the line loads."""
         line = self.line
-        return _both(self._singles(line[0]), line[0] is line[1], lambda: self._singles(line[1]))
+        return _both(self._single(line[0]), line[0] is line[1], lambda: self._single(line[1]))
 
-    def _singles(self, line: Any) -> Two:
+    def _single(self, line: Any) -> Any:
         if "c_prime" in self.given:
-            return self.given["c_prime"], self.given["c_prime"]
-        bare = self.columns["stiffness"] * stiffness.light_load(line)
-        if not any(self._webs):
-            return bare, bare
-        return bare * self._blank(self.widths[MOST]), bare * self._blank(self.widths[LEAST])
-
-    @property
-    def _webs(self) -> list[tuple[float, float] | None]:
-        """Web and rim thickness [mm] of both gears."""
-        rows = zip(self.standard.webs, self.standard.rims, strict=True)
-        return [(w, r) if w is not None and r is not None else None for w, r in rows]
-
-    def _blank(self, width: Any) -> Any:
-        """Return the mean C_R, which does not rise with the width."""
-        module = self.columns["module"]
-        made = [
-            1.0 if one is None else stiffness.blank_factor(one[0] / width, one[1] / module)
-            for one in self._webs
-        ]
-        return 0.5 * (made[0] + made[1])
+            return self.given["c_prime"]
+        return self.columns["stiffness"] * stiffness.light_load(line)
 
     def mesh(self, single: Any) -> Any:
         """Return c_gamma_alpha [MPa]."""
@@ -206,8 +188,8 @@ class Box:
         low, main, high = self._ranges(end)
         line, at, none = self.line, self.columns, (np.inf, -np.inf)[end]
         same = line[0] is line[1] and at["pace0"] is at["pace1"]
-        slowest = self.resonance(LEAST, self.singles[MOST][MOST])
-        fastest = slowest if same else self.resonance(MOST, self.singles[LEAST][LEAST])
+        slowest = self.resonance(LEAST, self.singles[MOST])
+        fastest = slowest if same else self.resonance(MOST, self.singles[LEAST])
         limits = _both(loads.lower_limit(line[0]), same, lambda: loads.lower_limit(line[1]))
         ends = (slowest,) if same else (slowest, fastest)
         rises = [np.clip((n - loads.MAIN) / (loads.SUPER - loads.MAIN), 0.0, 1.0) for n in ends]
@@ -229,15 +211,12 @@ class Box:
         c1, c2, c3, c4, c5, c6, _ = made = loads.coefficients(self.total[1 - end])
         c7 = made[6] if self.total[0] is self.total[1] else loads.coefficients(self.total[end])[6]
         pitch, form = at[f"pitch{end}"], at[f"form{end}"]
-        same = single[0] is single[1]
-        paces = _both(self.resonance(end, single[0]), same, lambda: self.resonance(end, single[1]))
-        left = _both(line - single[0] * at["relief"], same, lambda: line - single[1] * at["relief"])
-        slow = _sizes(paces[0] * left[0], same, lambda: paces[1] * left[1])
-        fast = _sizes(left[0], same, lambda: left[1])
-        shared = single[end] * (c1 * pitch + c2 * form)
-        low = line + paces[end] * shared + c3 * slow[end]
-        main = line + shared + PICK[end](c4 * fast[LEAST], c4 * fast[MOST])
-        return low, main, single[end] * (c5 * pitch + c6 * form) + c7 * line
+        pace, left = self.resonance(end, single), line - single * at["relief"]
+        slow, fast = np.abs(pace * left), np.abs(left)
+        shared = single * (c1 * pitch + c2 * form)
+        low = line + pace * shared + c3 * slow
+        main = line + shared + c4 * fast
+        return low, main, single * (c5 * pitch + c6 * form) + c7 * line
 
     def spread(self, end: int, dynamic: Any) -> Any:
         """Return a bound of W2 = W1 K_Hbeta from that of W1."""
@@ -264,7 +243,7 @@ class Box:
         """Return c_gamma_beta [MPa]."""
         if "c_gamma_beta" in self.given:
             return self.given["c_gamma_beta"]
-        return 0.85 * self.mesh(self.singles[end][end])
+        return 0.85 * self.mesh(self.singles[end])
 
     def pressed(self, spread: Any, transverse: Any) -> Any:
         """Return the least W2 K_Halpha from that of W2; transverse: K_alpha without limits."""
@@ -275,7 +254,7 @@ class Box:
 
     def _transverse(self, spread: Any) -> Two:
         """Return K_alpha without limits of the least line load, and of an endless one."""
-        mesh, total = self.mesh(self.singles[LEAST][LEAST]), self.total[LEAST]
+        mesh, total = self.mesh(self.singles[LEAST]), self.total[LEAST]
         made = [
             loads.transverse_load_factor(mesh, deviation, spread, total)
             for deviation in (self.columns["deviation0"], 0.0)
@@ -354,13 +333,3 @@ class Box:
 
 def _both(first: Any, same: bool, second: Callable[[], Any]) -> Two:
     return first, first if same else second()
-
-
-def _sizes(first: Any, same: bool, second: Callable[[], Any]) -> Two:
-    """Return the least and the greatest magnitude between two numbers."""
-    size = np.abs(first)
-    if same:
-        return size, size
-    other = second()
-    sizes = size, np.abs(other)
-    return np.where(first * other < 0.0, 0.0, np.minimum(*sizes)), np.maximum(*sizes)

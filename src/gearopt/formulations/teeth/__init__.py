@@ -13,7 +13,8 @@ import numpy as np
 
 from gearopt.errors import SolveError
 from gearopt.formulations import sizing
-from gearopt.formulations.gear_train import Stage, Train, share, terms
+from gearopt.formulations.gear_train import Stage, Train, terms
+from gearopt.formulations.shares import share
 from gearopt.formulations.teeth.progress import MARGIN, TIE, Progress, Teeth
 from gearopt.formulations.teeth.search import BEAM, search
 from gearopt.formulations.teeth.tables import table

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gearopt.formulations.gear_train import share
+from gearopt.formulations.shares import least_share, share
 from gearopt.formulations.strength import ALLOWANCE
 from gearopt.formulations.strength.rated import IndexRows, Rows, Standard
 from gearopt.formulations.strength.widths import STEPS, first_width, used
@@ -244,24 +244,36 @@ class RatedTable(Table):
                 own, module = pair[rows], at[rows]
                 one = self.made(self.modules[module], own)
                 low, high = self._ends(one, module, own)
-                least = self._worth(one, low, option)
+                worth = self._worth(one, low, option)
                 limit = np.minimum(np.broadcast_to(most, len(pair))[rows], best.cost[rows])
-                keep = least <= limit
-                if not keep.any():
+                larger, keep = self._floor(one, low, option) <= limit, worth <= limit
+                if not larger.any():
                     break
                 if self.train.by_width:
-                    high = np.minimum(high, low * (limit / least) * (1.0 + EDGE))
-                rows = rows[keep]
-                ends = low[keep], high[keep]
-                loads = torque[0][rows], torque[1][rows]
-                widths = self._narrowest(loads, pair[rows], at[rows], option, ends, close, steps)
-                self._improve(best, rows, pair[rows], at[rows], option, widths)
+                    high = np.minimum(high, low * (limit / worth) * (1.0 + EDGE))
+                if keep.any():
+                    tried, ends = rows[keep], (low[keep], high[keep])
+                    loads, own, module = (
+                        (torque[0][tried], torque[1][tried]),
+                        own[keep],
+                        module[keep],
+                    )
+                    widths = self._narrowest(loads, own, module, option, ends, close, steps)
+                    self._improve(best, tried, own, module, option, widths)
+                rows = rows[larger]
                 at[rows] += 1
         return best
 
     def _worth(self, pair: GearPair, width: Array, option: int) -> Array:
         """Return what pairs of these face widths [mm] add to the objective."""
         made = share(self.train, self.position, pair.of_width(width), option=option)
+        return np.asarray(made)
+
+    def _floor(self, pair: GearPair, width: Array, option: int) -> Array:
+        """Return a lower bound of `_worth` that larger modules do not fall below."""
+        fewest = pair.pinion_teeth, pair.wheel_teeth
+        one = pair.of_width(width)
+        made = least_share(self.train, self.position, one, option=option, fewest=fewest)
         return np.asarray(made)
 
     def _improve(

@@ -5,7 +5,8 @@ from fractions import Fraction
 
 import numpy as np
 
-from gearopt.formulations.gear_train import Train, share
+from gearopt.formulations.gear_train import Train
+from gearopt.formulations.shares import least_share, share
 from gearopt.formulations.teeth.rated import RatedTable
 from gearopt.formulations.teeth.stage import spans
 from gearopt.formulations.teeth.tables import stage_tables
@@ -48,7 +49,8 @@ def reach(
     for k, stage in enumerate(train.stages):
         load = _least_size(train, k, ratios)
         if train.objective in ("gear_volume", "mass"):
-            lower = share(train, k, GearPair.of_teeth(1.0, 1.0, ratios, load))  # d1 is 1 mm
+            one = GearPair.of_teeth(1.0, 1.0, ratios, load)  # d1 is 1 mm
+            lower = least_share(train, k, one)
         else:
             face = stage.face_width
             d = (load / float(face.fixed or face.widest)) ** (0.5 if face.fixed else 1.0 / 3.0)

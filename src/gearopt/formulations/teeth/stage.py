@@ -15,7 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearopt.errors import SolveError
-from gearopt.formulations.gear_train import Stage, Train, share
+from gearopt.formulations.gear_train import Stage, Train
+from gearopt.formulations.shares import least_share, share
 from gearopt.formulations.strength import ALLOWANCE, HALVINGS
 from gearopt.optimise.terms import Array
 from gearopt.physics.gears import GearPair
@@ -164,10 +165,9 @@ class Table:
         return self._width(torque, pair, module, self.made(self.modules[module], pair))
 
     def _best(self, torque: Array, pair: Index) -> tuple[Array, Array, Array]:
-        if self.load is None or self.steps is not None:
+        if self.load is None or self.steps is not None or self.train.hollow:
             return self._best_of_all(torque, pair)
-        # The smallest module that carries the torque is the best one: every objective grows
-        # with it, for a tied width, and for a free one once the width is at its minimum.
+        # The smallest module that carries is the best one: every objective grows with it.
         needed = self.need[pair] * (torque * (1.0 - ALLOWANCE)) ** self.exponent
         k = np.maximum(np.searchsorted(self.modules, needed), self.first[pair])
         possible = k <= self.last[pair]
@@ -181,7 +181,7 @@ class Table:
         return np.where(possible, value, np.inf), module, width
 
     def _best_of_all(self, torque: Array, pair: Index) -> tuple[Array, Array, Array]:
-        """Try every module: widths on a step, or the law, can make a larger one the better one."""
+        """Try every module: by steps of widths, the law or a web a larger one can be better."""
         best, best_module, best_width = (np.full(len(pair), np.inf) for _ in range(3))
         for k, module in enumerate(self.modules):
             one = self.made(module, pair)
@@ -298,7 +298,7 @@ def _closed(
     slope = np.zeros_like(ratio)
     if train.objective in ("gear_volume", "mass"):  # no module counts: d1 is 1 mm here
         size = load * (z1 / cosine) ** 2  # b d1^2 for a torque of 1 N mm
-        slope = np.asarray(share(train, position, GearPair.of_teeth(1.0, 1.0, ratio, size)))
+        slope = np.asarray(least_share(train, position, GearPair.of_teeth(1.0, 1.0, ratio, size)))
     face = stage.face_width
     if face.fixed is not None:
         return load, (load / float(face.fixed)) ** 0.5, 0.5, slope

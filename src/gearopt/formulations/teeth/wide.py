@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from gearopt.formulations.gear_train import Train, share
+from gearopt.formulations.gear_train import Train
+from gearopt.formulations.shares import least_share
 from gearopt.formulations.teeth.progress import MARGIN
 from gearopt.formulations.teeth.reach import first_cut
 from gearopt.formulations.teeth.stage import spans
@@ -52,5 +53,6 @@ def _least(train: Train, k: int, teeth: NDArray[np.int64]) -> Array:
     d = reference_diameter(module, teeth, stage.toothing.helix_angle)
     width = float(face.low) * d if face.fixed is None else np.full(len(d), float(face.fixed))
     pair = train.pair(k, module, teeth, teeth * float(stage.ratio[0]), width)
-    shares = [share(train, k, pair, option=o) for o in range(max(1, len(stage.options)))]
+    options = range(max(1, len(stage.options)))
+    shares = [least_share(train, k, pair, option=o) for o in options]
     return np.asarray(np.minimum.reduce(shares))

@@ -1,12 +1,13 @@
 """What a rating by ISO 6336 starts from, beside pair and operation."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from gearopt.physics.blanks import Blank
 from gearopt.physics.gears import GearPair
 from gearopt.physics.geometry.contact import contact_path
 from gearopt.physics.iso6336.accuracy import TOLERANCES, Deviations, deviations
@@ -29,7 +30,8 @@ class Practice:
     [mm2/s]; relief C_a of the tips [mm], or None for what wear gives; helix_modification: of
     `load_factors.HELIX_MODIFICATIONS`; profile_modification: of `contact_factors.
     PROFILE_MODIFICATIONS`, for 2019; offset: of `load_factors.shaft_misalignment`; webs: (b_s/b,
-    s_R/m_n) of gears with webs; bores: diameters d_i [mm]; backup: ratios s_R/h_t of rims;
+    s_R/m_n) of gears with webs; bores: inner diameters d_i [mm], of bore or rim; backup: ratios
+    s_R/h_t of rims;
     limited_pitting: permitted; lowest: Z_NT and Y_NT at 1e10 cycles, 0.85 to 1.
     """
 
@@ -47,6 +49,17 @@ class Practice:
     backup: tuple[float | None, float | None] = (None, None)
     limited_pitting: bool = False
     lowest: float = LOWEST
+
+
+def of_blanks(practice: Practice, pair: GearPair, blanks: tuple[Blank, Blank]) -> Practice:
+    """Return the practice with webs, inner diameters and backup ratios of a pair's blanks."""
+    (b1, b2), (g1, g2) = blanks, pair.gears
+    return replace(
+        practice,
+        webs=(b1.web(g1), b2.web(g2)),
+        bores=(b1.inner_diameter(g1), b2.inner_diameter(g2)),
+        backup=(b1.backup(g1), b2.backup(g2)),
+    )
 
 
 def check(practice: Practice) -> None:

@@ -45,10 +45,9 @@ def _strengths(case: Case, stress: str) -> tuple[float, float]:
 
 
 def _single_stiffness(case: Case, found: Found) -> Any:
-    made = [1.0 if web is None else stiffness.blank_factor(*web) for web in case.practice.webs]
     first, second = (material.modulus for material in case.materials)
-    blank = 0.5 * (made[0] + made[1])
     line = _line_load(case, found)
+    blank = stiffness.mean_blank_factor(case.practice.webs)
     return stiffness.single_stiffness(case.pair, line, (first, second), blank)
 
 

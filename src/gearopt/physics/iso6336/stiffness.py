@@ -67,6 +67,12 @@ def blank_factor(web: Any, rim: Any) -> Any:
     return 1.0 + np.log(np.clip(web, 0.2, 1.2)) / (5.0 * np.exp(np.maximum(rim, 1.0) / 5.0))
 
 
+def mean_blank_factor(webs: tuple[Any, Any]) -> Any:
+    """Return the mean C_R of both gears; webs: (b_s/b, s_R/m_n) of each, None: a solid disc."""
+    first, second = (1.0 if web is None else blank_factor(*web) for web in webs)
+    return 0.5 * (first + second)
+
+
 def single_stiffness(
     pair: GearPair,
     line_load: Any,

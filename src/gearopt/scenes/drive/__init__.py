@@ -11,6 +11,7 @@ from typing import Any
 from gearopt.errors import SolveError
 from gearopt.formulations import sizing, teeth
 from gearopt.formulations.gear_train import Train
+from gearopt.formulations.shares import MASSES
 from gearopt.optimise.certificate import reconcile
 from gearopt.optimise.clock import Clock, in_part, of_others
 from gearopt.optimise.comparing.compare import Model
@@ -20,6 +21,7 @@ from gearopt.optimise.result import Result
 from gearopt.optimise.solve import GAP, run
 from gearopt.optimise.typed import untyped
 from gearopt.scenes.drive.assumptions import assumptions, notes
+from gearopt.scenes.drive.blank_tables import BlankKeys, misfits
 from gearopt.scenes.drive.examples import EXAMPLE, MORE_EXAMPLES
 from gearopt.scenes.drive.rating.limits import check_safe
 from gearopt.scenes.drive.rating.rated import rate, with_rating
@@ -113,8 +115,11 @@ def _real(scene: Scene, ask: Ask) -> Result:
 
 
 def _without_ratings(train: Train) -> Train | None:
-    """Return a drive with its load limits alone; None where it has none, or prices."""
-    if not train.law.limits or train.objective in ("mass", "cost") and train.rated:
+    """Return a drive with its load limits alone; None where it has none, prices, or webs.
+
+    Those with webs take longer in real-valued sizes than in whole teeth.
+    """
+    if not train.law.limits or train.objective in MASSES and (train.rated or train.hollow):
         return None
     return replace(train, stages=tuple(replace(s, options=()) for s in train.stages))
 
@@ -149,7 +154,7 @@ def _ways_out(scene: Scene, clock: Clock) -> Remedies:
         return remedies(bare(scene), clock, lambda other: _status(other, clock))
     from gearopt.scenes.drive.explaining.counts import remedies_of_counts
 
-    return remedies_of_counts(scene, _unruled(bare(scene)), clock)
+    return remedies_of_counts(solid(scene), _unruled(bare(solid(scene))), clock)
 
 
 def _status(scene: Scene, clock: Clock) -> str:
@@ -219,20 +224,29 @@ def _unruled(scene: Scene) -> Scene:
 
 def unrated(scene: Scene) -> Scene:
     """Return the drive without what only its rating asks for: numbers that size nothing."""
-    none: dict[str, Any] = dict.fromkeys(MATERIAL)
-    bare = [
+    if scene.rating is None:
+        return scene
+    bare = _without(scene, MATERIAL)
+    stages = tuple(stage.model_copy(update={"given": GivenTable()}) for stage in bare.stage)
+    return bare.model_copy(update={"rating": None, "load": (), "stage": stages})
+
+
+def solid(scene: Scene) -> Scene:
+    """Return the drive with solid gears: the same limits, where no ratings limit it."""
+    return scene if scene.by_ratings else _without(scene, tuple(BlankKeys.model_fields))
+
+
+def _without(scene: Scene, keys: tuple[str, ...]) -> Scene:
+    """Return the drive without these keys of all gears and of each."""
+    none: dict[str, Any] = dict.fromkeys(keys)
+    stages = [
         stage.model_copy(
-            update={
-                "given": GivenTable(),
-                "pinion": stage.pinion.model_copy(update=none),
-                "wheel": stage.wheel.model_copy(update=none),
-            }
+            update={m: getattr(stage, m).model_copy(update=none) for m in ("pinion", "wheel")}
         )
         for stage in scene.stage
     ]
     gears = scene.gears.model_copy(update=none)
-    update = {"rating": None, "load": (), "gears": gears, "stage": tuple(bare)}
-    return scene.model_copy(update=update) if scene.rating else scene
+    return scene.model_copy(update={"gears": gears, "stage": tuple(stages)})
 
 
 def _answer(scene: Scene, ask: Ask, ideal: Result | None = None) -> Result:
@@ -240,6 +254,11 @@ def _answer(scene: Scene, ask: Ask, ideal: Result | None = None) -> Result:
     train = scene.train()
     if _continuous(scene, ask.method):
         return _sized(scene, train, ask, sizing.problem(train))
+    if train.hollow and not train.rated:  # limits are those of solid gears, masses are not
+        possible = _real(solid(scene), ask)
+        ask = replace(ask, budget=ask.budget.less(possible.seconds))
+        if possible.status == "infeasible":
+            return replace(possible, name="drive")
     if _without_ratings(train) is None:
         return _sized(scene, train, ask, _discrete(scene, train, ask.top))
     known, ideal = ideal is not None, ideal or _real(scene, ask)
@@ -370,6 +389,7 @@ def _sized(scene: Scene, train: Train, ask: Ask, problem: Problem) -> Result:
         for value, design in zip(values, designs, strict=True)
     ]
     report: dict[str, Any] = {"trains": trains} if exact and ask.top > 1 else {}
-    if remarks := [*notes(scene, exact), *tooth_warnings(gears[0], WEAKER)]:
+    solid = misfits([stage.blanks for stage in train.stages], gears[0])
+    if remarks := [*notes(scene, exact), *solid, *tooth_warnings(gears[0], WEAKER)]:
         report["notes"] = remarks
     return replace(result, name="drive", design=designs[0], report=report)

@@ -5,12 +5,13 @@ from dataclasses import replace
 from gearopt.formulations.design import STEEL_DENSITY
 from gearopt.physics.gears import ISO_53_A, MEMBERS
 from gearopt.physics.iso6336.case import Practice
+from gearopt.scenes.drive.blank_tables import blank
 from gearopt.scenes.drive.drive_tables import ORIGINS, StageTable
 from gearopt.scenes.drive.layout_tables import Layout
 from gearopt.scenes.drive.rating.gears import gear_choices
 from gearopt.scenes.drive.rating.iso_material import steel
 from gearopt.scenes.drive.rating.materials import unused
-from gearopt.scenes.drive.rating.tables import RatingTable
+from gearopt.scenes.drive.rating.tables import RatingTable, with_shared
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.tooth_tables import toothing
 from gearopt.scenes.reading.modules import unverified
@@ -74,12 +75,24 @@ def assumptions(scene: Scene) -> list[str]:
     found = [
         *_teeth(scene),
         *_loads(scene, angle, assumed),
-        f"Volumes and masses are those of solid reference cylinders; masses with {mass}.",
+        f"{_bodies(scene)}; masses with {mass}.",
     ]
     if scene.limits.preset is not None:
         name = scene.limits.preset
         found.insert(3, f"The load limits are those of preset {name}: {ORIGINS[name]}.")
     return found if scene.layout is None else [*found, *_layout_assumptions(scene.layout)]
+
+
+def _bodies(scene: Scene) -> str:
+    """Return what volumes and masses are those of."""
+    stages = scene.stage or (StageTable(),)
+    tables = [with_shared(getattr(own, m), scene.gears) for own in stages for m in MEMBERS]
+    if all(blank(table, None).solid and not table.web_thickness for table in tables):
+        return "Volumes and masses are those of solid reference cylinders"
+    return (
+        "Volumes are those of solid reference cylinders; masses those of rims, webs, hubs, teeth "
+        "being a ring between root and reference circle"
+    )
 
 
 def _loads(scene: Scene, angle: str, assumed: str) -> list[str]:

@@ -7,8 +7,8 @@ from typing import Annotated, Any, ClassVar, TypeVar, cast
 from pydantic import Field, create_model, model_validator
 
 from gearopt import units
-from gearopt.formulations.gear_train import OBJECTIVES
 from gearopt.formulations.process import ProcessOne, ProcessTwo
+from gearopt.formulations.shares import OBJECTIVES
 from gearopt.formulations.strength import Law
 from gearopt.formulations.strength.k_factor import K_FACTOR
 from gearopt.scenes.drive.rating.iso_tables import IsoGiven

@@ -13,8 +13,10 @@ from gearopt.formulations.layout.gearbox import Gearbox
 from gearopt.formulations.process import methods
 from gearopt.formulations.strength import RATED, Law
 from gearopt.optimise.result import Outcome
-from gearopt.physics.gears import GearPair
+from gearopt.physics.blanks import Blank
+from gearopt.physics.gears import MEMBERS, GearPair
 from gearopt.physics.loads import torque
+from gearopt.scenes.drive.blank_tables import blank, check_blanks
 from gearopt.scenes.drive.drive_tables import (
     Gears,
     Limits,
@@ -41,7 +43,7 @@ from gearopt.scenes.drive.rating.checks import (
     not_given,
 )
 from gearopt.scenes.drive.rating.materials import MaterialTable, check_materials, check_same
-from gearopt.scenes.drive.rating.tables import LoadTable, RatingTable
+from gearopt.scenes.drive.rating.tables import LoadTable, RatingTable, with_shared
 from gearopt.scenes.drive.tooth_tables import check_mesh, check_teeth, toothing
 from gearopt.scenes.explaining.numbers import eased, in_reverse, written
 from gearopt.scenes.parts import Duty
@@ -157,6 +159,7 @@ class Scene(Table):
         self._check_layout()
         self._check_loads()
         self._check_teeth()
+        self._check_blanks()
         self._check_rating()
         for name in PROCESSES:
             table = getattr(self, name)
@@ -220,6 +223,17 @@ class Scene(Table):
             names = " and ".join(self.limits.LAW.names)
             rule = f"is missing (or give {names}, or write a table [rating], which limits gears)"
             raise refuse(rule, at=("limits", "preset"))
+
+    def _check_blanks(self) -> None:
+        """Check that rims, webs, bores and hubs of every gear belong together."""
+        rows = []
+        for k, stage in enumerate(self.stage or (StageTable(),)):
+            open_width = stage.face_width is None and not self.given
+            for member in MEMBERS:
+                own = getattr(stage, member)
+                table = with_shared(own, self.gears)
+                rows.append((("stage", k, member), own, table, open_width))
+        check_blanks(rows)
 
     def _check_rating(self) -> None:
         """Check that what is not to be sized is to be rated, and what only a rating needs."""
@@ -376,4 +390,11 @@ class Scene(Table):
             ratio=own.stage_ratio or limits.stage_ratio or (Fraction(1), None),
             wheel_diameter=diameter.exact[0] if diameter else None,
             toothing=toothing(own, self.gears),
+            blanks=self._blanks(own),
         )
+
+    def _blanks(self, own: StageTable) -> tuple[Blank, Blank]:
+        """Return the blanks of a stage."""
+        width = own.face_width.value if own.face_width else None
+        pinion, wheel = (with_shared(getattr(own, m), self.gears) for m in MEMBERS)
+        return blank(pinion, width), blank(wheel, width)

@@ -3,7 +3,8 @@
 import math
 from fractions import Fraction
 
-from gearopt.formulations.gear_train import LENGTHS, Stage
+from gearopt.formulations.gear_train import Stage
+from gearopt.formulations.shares import LENGTHS
 from gearopt.formulations.toothing import Toothing
 from gearopt.physics.gears import ISO_53_A, MEMBERS, Rack
 from gearopt.scenes.drive.drive_tables import Gears, StageTable

@@ -42,7 +42,8 @@ MONEY = "cost price costs budget maximum_cost"
 
 KEYS = frozenset(  # of the names above, those that a drive has as keys
     "hardness surface_hardness overload_factor centre_distance profile_shift quality grade life "
-    "temperature friction_coefficient addendum rim_thickness accuracy_grade".split()
+    "temperature friction_coefficient addendum rim_thickness web_thickness bore "
+    "accuracy_grade".split()
 )
 
 
@@ -82,7 +83,8 @@ NEAREST: dict[str, dict[str, str]] = {  # kind -> names -> what stands nearest
         "gears.helix_angle",
         _but_keys(
             BODY
-        ): "Nearest: rim_thickness of a gear, for its [rating]; masses are those of solid gears",
+        ): "Nearest: rim_thickness, web_thickness, bore and hub_over_bore, in [gears], "
+        "[stage.pinion] or [stage.wheel]; holes in webs are not counted",
         BEARINGS: "Nearest: bearing_diameters and bearing_widths of [layout]",
         "backlash flank_clearance": "Nearest: thickness_allowance of a gear and centre_distance "
         'of a [[stage]]; kind = "servo" counts backlash and its causes',

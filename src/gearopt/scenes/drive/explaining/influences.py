@@ -4,6 +4,7 @@ from collections.abc import Callable
 from typing import Any
 
 from gearopt.formulations import sizing
+from gearopt.formulations.shares import MASSES
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.explain import EASE, STEP, binding
 from gearopt.optimise.explaining.explanation import Explanation
@@ -12,6 +13,7 @@ from gearopt.optimise.explaining.sensitivity import sensitivities
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run
+from gearopt.scenes.drive.blank_tables import HUBS, RIM, WEB
 from gearopt.scenes.drive.explaining.movable import fields, next_module
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.explaining.influences import Basis, influences, per_cent
@@ -22,7 +24,7 @@ BASIS = (
     " with real-valued teeth and modules, by multipliers, checked by solving again. "
     "Effect of relaxing a limit: the drive itself solved again"
 )
-RATED = (  # of drives that ratings limit
+RATED = (  # of drives that ratings limit, or whose gears have webs
     ". Effect of relaxing a limit: the drive itself solved again; numbers that ease no limit are "
     "not listed"
 )
@@ -33,8 +35,9 @@ OF_RATING = {  # keys of ratings: the direction that eases them
     **dict.fromkeys(("quality", "hardness", "grade", "flank_hardness"), 1),
 }
 GRADES = ("quality", "accuracy")
-LIVES = ("life", "input_revolutions")
-LESS_LIFE = 0.1  # relative: life enters by small powers
+OF_BLANKS = dict.fromkeys((*RIM, *WEB, HUBS), -1)  # keys of blanks: where gears get lighter
+TENTHS = ("life", "input_revolutions", *OF_BLANKS)  # of which a hundredth says little
+TENTH = 0.1  # relative
 SAME = 1e-6  # gap of an answer that may be compared with another
 
 
@@ -57,12 +60,13 @@ def explained(
     wanted = [
         n for n in numbers(spelt) if not (n.path[:2] == ("teeth", "modules") and _is_series(scene))
     ]
-    if scene.by_ratings:
+    stepped = scene.by_ratings or scene.train().hollow  # slopes are known of posynomials alone
+    if stepped:
         wanted = [n for n in wanted if eases(scene, n)]
     found = tuple(
         influences(
             spelt,
-            None if scene.by_ratings else _basis(spelt, clock),
+            None if stepped else _basis(spelt, clock),
             clock,
             wanted,
             lambda number: _easing(spelt, number, result, solved),
@@ -78,7 +82,7 @@ def explained(
         influences=found,
         message=late,
         seconds=clock.seconds,
-        basis=RATED if scene.by_ratings else BASIS,
+        basis=RATED if stepped else BASIS,
     )
 
 
@@ -136,8 +140,9 @@ def _easing(scene: Scene, number: Number, result: Result, solved: Any) -> tuple[
         step = f"to {value}"
     elif isinstance(number.value, int):
         value, step = number.value + direction, f"{direction:+d}"
-    elif number.path[-1] in LIVES:
-        value, step = eased(number.value, 1.0 + LESS_LIFE, direction), f"{-LESS_LIFE:+.0%}"
+    elif number.path[-1] in TENTHS:
+        value = eased(number.value, 1.0 + TENTH, direction)
+        step = f"{direction * TENTH:+.0%}"
     elif number.path[-1] in GRADES:
         value, step = number.value + direction, f"{direction:+d}"
     else:
@@ -151,13 +156,18 @@ def _easing(scene: Scene, number: Number, result: Result, solved: Any) -> tuple[
 
 
 def eases(scene: Scene, number: Number) -> int:
-    """Return +1 or -1: the direction that eases a limit of the file; 0 for what is no limit."""
+    """Return +1 or -1: the direction that eases a limit of the file, or makes its gears lighter.
+
+    0 for other numbers.
+    """
     path = number.path
     if path == ("duty", "ratio_tolerance"):
         return 1 if number.value else 0
     end = path[-1] if isinstance(path[-1], int) else None
     field = path[-2] if end is not None else path[-1]
     if scene.by_ratings and (way := OF_RATING.get(str(field))):
+        return way
+    if scene.objective.minimise in MASSES and (way := OF_BLANKS.get(str(field))):
         return way
     ways = dict.fromkeys((*scene.limits.LAW.names, "wheel_diameter"), 1)  # no ends of a range
     ways["minimum_face_width"] = -1

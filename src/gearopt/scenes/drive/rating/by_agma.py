@@ -11,7 +11,7 @@ from gearopt.physics.agma.rating import rate, rate_spectrum
 from gearopt.physics.agma.rating_factors import Practice, Steel
 from gearopt.physics.gears import GearPair
 from gearopt.physics.rating import Operation
-from gearopt.scenes.drive.rating.gears import Tables, backup
+from gearopt.scenes.drive.rating.gears import Tables, blanks
 from gearopt.scenes.drive.rating.tables import GearTable, RatingTable
 from gearopt.scenes.drive.scene import Scene
 
@@ -81,11 +81,12 @@ def finish(table: GearTable) -> float:
     return steel(table).finish
 
 
-def practice(scene: Scene, pair: GearPair, gears: Tables) -> Practice:
-    """Return how a pair is made and rated."""
+def practice(scene: Scene, stage: int, pair: GearPair, gears: Tables) -> Practice:
+    """Return how the pair of a stage (from 0) is made and rated."""
     assert scene.rating
-    rims = backup(pair.pinion, gears[0]), backup(pair.wheel, gears[1])
-    return replace(_practice(scene.rating, gears), backup=rims)
+    rows = zip(blanks(scene, stage, gears, pair), pair.gears, strict=True)
+    first, second = (blank.backup(gear) for blank, gear in rows)
+    return replace(_practice(scene.rating, gears), backup=(first, second))
 
 
 def limits(
@@ -96,19 +97,18 @@ def limits(
     one: its operation, at unit power; loads: levels relative to the duty.
     """
     assert scene.rating
-    rims = [None if t.rim_thickness is None else t.rim_thickness.value for t in gears]
     return Agma(
         loads,
         one,
         (steel(gears[0]), steel(gears[1])),
         _practice(scene.rating, gears),
-        (rims[0], rims[1]),
+        blanks(scene, stage, gears),
         given(scene, stage),
     )
 
 
 def _practice(asked: RatingTable, gears: Tables) -> Practice:
-    """Return how gears are made and rated, but for their rims."""
+    """Return how gears are made and rated, but for their blanks."""
     return Practice(
         quality=min(_quality(asked) if t.quality is None else float(t.quality) for t in gears),
         curve=asked.mounting,

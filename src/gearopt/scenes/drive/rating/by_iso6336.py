@@ -1,21 +1,19 @@
 """Rating by ISO 6336: what its tables say of a stage, its factors by name, materials in words."""
 
-from dataclasses import replace
 from typing import Any
 
 from gearopt.formulations.strength.iso6336 import Iso6336
 from gearopt.formulations.strength.rated import Load
 from gearopt.physics.gears import GearPair
-from gearopt.physics.iso6336.case import Practice
+from gearopt.physics.iso6336.case import Practice, of_blanks
 from gearopt.physics.iso6336.factors import CLAUSES
 from gearopt.physics.iso6336.rating import rate, rate_spectrum
 from gearopt.physics.rating import Operation
-from gearopt.scenes.drive.rating.gears import Tables, backup
+from gearopt.scenes.drive.rating.gears import Tables, blanks
 from gearopt.scenes.drive.rating.iso_material import finish, material, steel
 from gearopt.scenes.drive.rating.iso_tables import NAMES
-from gearopt.scenes.drive.rating.tables import GearTable, RatingTable
+from gearopt.scenes.drive.rating.tables import RatingTable
 from gearopt.scenes.drive.scene import Scene
-from gearopt.units import Quantity
 
 __all__ = ["NAMES", "PROPORTIONAL", "UNITS", "finish", "given", "material", "rate", "rate_spectrum"]
 __all__ += ["NAME", "UNVERIFIED_SPECTRUM", "limits", "practice", "steel", "title"]
@@ -31,15 +29,10 @@ def title(asked: RatingTable) -> str:
     return f"ISO 6336 parts 1, 2, 3 and 5, method B, edition {asked.iso6336.edition}"
 
 
-def practice(scene: Scene, pair: GearPair, gears: Tables) -> Practice:
-    """Return how a pair is made and rated."""
+def practice(scene: Scene, stage: int, pair: GearPair, gears: Tables) -> Practice:
+    """Return how the pair of a stage (from 0) is made and rated."""
     assert scene.rating
-    return replace(
-        _practice(scene.rating, gears),
-        webs=(web(pair, gears[0]), web(pair, gears[1])),
-        bores=(bore(gears[0]), bore(gears[1])),
-        backup=(backup(pair.pinion, gears[0]), backup(pair.wheel, gears[1])),
-    )
+    return of_blanks(_practice(scene.rating, gears), pair, blanks(scene, stage, gears, pair))
 
 
 def limits(
@@ -55,19 +48,13 @@ def limits(
         one,
         (steel(gears[0]), steel(gears[1])),
         _practice(scene.rating, gears),
-        (_length(gears[0].rim_thickness), _length(gears[1].rim_thickness)),
-        (_length(gears[0].web_thickness), _length(gears[1].web_thickness)),
-        (bore(gears[0]), bore(gears[1])),
+        blanks(scene, stage, gears),
         given(scene, stage),
     )
 
 
-def _length(value: Quantity | None) -> float | None:
-    return None if value is None else value.value
-
-
 def _practice(rating: RatingTable, gears: Tables) -> Practice:
-    """Return how gears are made and rated, but for rims, webs and bores."""
+    """Return how gears are made and rated, but for their blanks."""
     asked, usual = rating.iso6336, Practice()
     grades = asked.accuracy_grade or usual.grades
     rows = zip(gears, grades, strict=True)
@@ -83,21 +70,6 @@ def _practice(rating: RatingTable, gears: Tables) -> Practice:
         profile_modification=asked.profile_modification,
         limited_pitting=asked.limited_pitting,
     )
-
-
-def web(pair: GearPair, table: GearTable) -> tuple[float, float] | None:
-    """Return b_s/b and s_R/m_n of a gear with a web; None of a solid gear."""
-    if table.web_thickness is None or table.rim_thickness is None:
-        return None
-    return (
-        float(table.web_thickness.value / pair.face_width),
-        float(table.rim_thickness.value / pair.normal_module),
-    )
-
-
-def bore(table: GearTable) -> float:
-    """Return the diameter [mm] inside which a gear has no mass."""
-    return table.bore.value if table.bore else 0.0
 
 
 def given(scene: Scene, stage: int) -> dict[str, Any]:

@@ -260,9 +260,6 @@ def _check_material(gear: GearTable, place: Place, given: dict[str, Any]) -> Non
         tell = 'Give sigma_Flim in [rating.iso6336.given], or write treatment = "induction, roots"'
         raise refuse(rule, tell, (*place, "treatment"), "tell")
     found = steel(gear)
-    if gear.web_thickness is not None and gear.rim_thickness is None:
-        rule = "is missing: a gear with a web has a rim"
-        raise refuse(rule, "12 mm", (*place, "rim_thickness"), "sample")
     for stress in ("H", "F"):
         if f"sigma_{stress}lim" in given:
             continue

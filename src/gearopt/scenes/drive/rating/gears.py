@@ -5,9 +5,11 @@ from typing import Any
 
 from gearopt.errors import SolveError
 from gearopt.formulations.strength.rated import Load
-from gearopt.physics.gears import Gear, GearPair
+from gearopt.physics.blanks import Blank
+from gearopt.physics.gears import GearPair
 from gearopt.physics.rating import Operation
 from gearopt.physics.shaft_forces import rpm
+from gearopt.scenes.drive.blank_tables import blank
 from gearopt.scenes.drive.drive_tables import StageTable
 from gearopt.scenes.drive.rating.materials import Named, choices
 from gearopt.scenes.drive.rating.tables import GearTable, RatingTable
@@ -16,6 +18,7 @@ from gearopt.scenes.drive.tooth_tables import toothing
 
 HOUR = 3600.0  # s
 Tables = tuple[GearTable, GearTable]  # of pinion and wheel
+Blanks = tuple[Blank, Blank]
 
 
 def own(scene: Scene, stage: int, member: str, material: str = "") -> GearTable:
@@ -69,11 +72,14 @@ def given_pairs(scene: Scene) -> tuple[GearPair, ...]:
     return tuple(found)
 
 
-def backup(gear: Gear, table: GearTable) -> float | None:
-    """Return the backup ratio m_B = t_R/h_t of a rim; None of a solid gear."""
-    if table.rim_thickness is None:
-        return None
-    return float(table.rim_thickness.value / (0.5 * (gear.tip_diameter - gear.root_diameter)))
+def blanks(scene: Scene, stage: int, gears: Tables, pair: GearPair | None = None) -> Blanks:
+    """Return the blanks of the gears of a stage (from 0), whose face width is given, or a pair's.
+
+    gears: what they have.
+    """
+    given = scene.stage[stage].face_width if scene.stage else None
+    width = float(pair.face_width) if pair is not None else given.value if given else None
+    return blank(gears[0], width), blank(gears[1], width)
 
 
 def required_hours(scene: Scene) -> float:

@@ -128,12 +128,6 @@ class IsoGearKeys(Table):
     flank_rz: Annotated[Quantity | None, quantity("length", "4.8 um", "1 mm")] = Field(
         None, description="Roughness R_z of the flanks; by default 6 R_a"
     )
-    web_thickness: Annotated[Quantity | None, quantity("length", "12 mm")] = Field(
-        None, description="Thickness of the web under rim_thickness, in c'; else solid"
-    )
-    bore: Annotated[Quantity | None, quantity("length", "40 mm", zero=True)] = Field(
-        None, description="Diameter inside which the gear has no mass, in K_v; by default 0"
-    )
     accuracy_grade: Annotated[int | None, whole(6, 0, 12)] = Field(
         None,
         description="Accuracy grade of ISO 1328-1 of this gear; by default that of "

@@ -77,7 +77,7 @@ def _mesh(
     """Rate one stage (from 0); slower: input over pinion speed; named: its materials."""
     tables = gears.own(scene, k, "pinion", named[0]), gears.own(scene, k, "wheel", named[1])
     steels = standard.steel(tables[0]), standard.steel(tables[1])
-    made = standard.practice(scene, pair, tables)
+    made = standard.practice(scene, k, pair, tables)
     levels = gears.operations(scene, slower, tables)
     given = standard.given(scene, k)
 

@@ -11,10 +11,11 @@ from gearopt.formulations.rating import DriveRating, GearRating, MeshRating
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import FEASIBLE, Result, versions
 from gearopt.optimise.typed import untyped
-from gearopt.physics.gears import GearPair
+from gearopt.physics.gears import MEMBERS, GearPair
 from gearopt.physics.loads import torque
 from gearopt.physics.shaft_forces import hands
 from gearopt.scenes.drive.assumptions import rating_assumptions, unused_materials
+from gearopt.scenes.drive.blank_tables import misfits
 from gearopt.scenes.drive.rating import gears as rated_gears
 from gearopt.scenes.drive.rating.checks import not_given
 from gearopt.scenes.drive.rating.geometry import tooth_geometry
@@ -50,6 +51,8 @@ def rate(scene: Scene, ask: Ask) -> Result:
     speed = scene.duty.input_speed.value
     asked = scene.duty.total_ratio if scene.duty.asks_ratio else None
     density = scene.objective.density
+    tables = [[rated_gears.own(scene, k, m) for m in MEMBERS] for k in range(len(pairs))]
+    blanks = [rated_gears.blanks(scene, k, (a, b), pairs[k]) for k, (a, b) in enumerate(tables)]
     made = of_pairs(
         scene.limits.LAW,
         pairs,
@@ -57,9 +60,10 @@ def rate(scene: Scene, ask: Ask) -> Result:
         speed,
         asked,
         density.value if density else None,
+        blanks,
     )
     told = replace(found, flaws=(*_off_ratio(scene, made), *found.flaws))
-    remarks = unused_materials(scene)
+    remarks = [*misfits(blanks, pairs), *unused_materials(scene)]
     return Result(
         name="rating",
         status="evaluated",

@@ -10,6 +10,7 @@ from gearopt.physics.agma.bending import LOADS
 from gearopt.physics.agma.factors import ALIGNMENT, QUALITIES
 from gearopt.physics.agma.life import SERVICES
 from gearopt.physics.agma.rating_factors import EDITIONS
+from gearopt.scenes.drive.blank_tables import BlankKeys, beside
 from gearopt.scenes.drive.rating.given import Given
 from gearopt.scenes.drive.rating.iso_tables import ISO_KEYS, IsoGearKeys, IsoTable
 from gearopt.scenes.reading.fields import (
@@ -35,7 +36,7 @@ Stresses = Annotated[
 ]
 MATERIAL = (  # keys of a gear that only a rating needs
     *("treatment", "grade", "hardness", "surface_hardness", "elastic_modulus", "poisson_ratio"),
-    *("roughness", "reversed_load", "rim_thickness", "contacts", "materials", "quality"),
+    *("roughness", "reversed_load", "contacts", "materials", "quality"),
     *ISO_KEYS,
 )
 MATERIALS = several(words(), ["case-hardened", "through-hardened"])
@@ -96,7 +97,7 @@ STANDARD = advised(
 )
 
 
-class GearKeys(IsoGearKeys):
+class GearKeys(BlankKeys, IsoGearKeys):
     """What gears share unless they have their own: the tool that cuts them, and their steel."""
 
     addendum: Annotated[Fraction | None, number(1.0, 0, 3)] = Field(
@@ -139,9 +140,6 @@ class GearKeys(IsoGearKeys):
     reversed_load: Annotated[bool | None, truth()] = Field(
         None, description="The load reverses, as on idlers: 0.7 of the bending strength"
     )
-    rim_thickness: Annotated[Quantity | None, quantity("length", "12 mm")] = Field(
-        None, description="Thickness of the rim below the teeth; without it the gear is solid"
-    )
     contacts: Annotated[int | None, whole(1, 1, 100)] = Field(
         None, description="Load cycles of a tooth a revolution; by default 1"
     )
@@ -182,7 +180,8 @@ class GearTable(GearKeys):
 
 def with_shared(own: GearTable, shared: GearKeys) -> GearTable:
     """Return what a gear has, of its own or of all gears."""
-    names = [n for n in GearKeys.model_fields if getattr(own, n) is None]
+    fields = GearKeys.model_fields
+    names = [n for n in fields if all(getattr(own, key) is None for key in beside(n))]
     return own.model_copy(update={n: getattr(shared, n) for n in names})
 
 

@@ -1,0 +1,134 @@
+"""The bodies of gears in a file: keys of rim, web, bore and hub; checks; and what does not fit."""
+
+from collections.abc import Iterator, Sequence
+from fractions import Fraction
+from typing import Annotated, Any
+
+from pydantic import Field, model_validator
+
+from gearopt.physics.blanks import HUB, Blank
+from gearopt.physics.gears import MEMBERS, GearPair
+from gearopt.scenes.reading.fields import Table, number, quantity, refuse
+from gearopt.units import Quantity
+
+RIM = ("rim_thickness", "rim_over_module")  # two ways of saying one thing
+WEB = ("web_thickness", "web_over_face_width")
+HUBS = "hub_over_bore"
+THINNEST = Fraction(11, 10)  # hub over its bore
+
+Length = Annotated[Quantity | None, quantity("length", "12 mm")]
+Place = tuple[Any, ...]
+
+
+class BlankKeys(Table):
+    """What is left of a gear below its teeth; by default it is a solid disc."""
+
+    rim_thickness: Length = Field(
+        None,
+        description="Thickness of the rim below the root circle, for K_B and Y_B; where it does "
+        "not fit around the hub, and without it, the gear is solid",
+    )
+    rim_over_module: Annotated[Fraction | None, number(3, 0, 100)] = Field(
+        None, description="Rim thickness in normal modules, instead of rim_thickness"
+    )
+    web_thickness: Length = Field(
+        None,
+        description="Thickness of the web between rim and hub, for the mass and C_R, of a stage "
+        "whose face_width is given; by default the face width",
+    )
+    web_over_face_width: Annotated[Fraction | None, number(0.3, 0, 2)] = Field(
+        None, description="Web thickness over the face width, instead of web_thickness"
+    )
+    bore: Annotated[Quantity | None, quantity("length", "40 mm", zero=True)] = Field(
+        None,
+        description="Diameter of the bore; a gear whose hub would not lie inside its root circle "
+        "is solid, as on a pinion shaft. By default 0",
+    )
+    hub_over_bore: Annotated[Fraction | None, number(1.6, 1, 10)] = Field(
+        None, description=f"Diameter of the hub over the bore; by default {HUB}"
+    )
+
+    @model_validator(mode="after")
+    def _one_way(self) -> "BlankKeys":
+        for first, second in (RIM, WEB):
+            if getattr(self, first) is not None and getattr(self, second) is not None:
+                raise refuse(f"stands beside {first}; one is enough", at=(second,), action="remove")
+        if self.hub_over_bore is not None and self.hub_over_bore < THINNEST:
+            rule = f"leaves the hub hardly a wall: {float(THINNEST):g} is the least"
+            raise refuse(rule, HUB, (HUBS,), "sample")
+        return self
+
+    @property
+    def rimmed(self) -> bool:
+        """Return whether it says how thick a rim is."""
+        return any(getattr(self, key) is not None for key in RIM)
+
+
+def beside(key: str) -> tuple[str, ...]:
+    """Return the keys that say the same as one, itself first."""
+    other = next((way for way in (RIM, WEB) if key in way), (key,))
+    return (key, *(name for name in other if name != key))
+
+
+def blank(table: BlankKeys, face_width: float | None) -> Blank:
+    """Return the blank of gears with what all of them share; face_width [mm], where it is given."""
+    web = table.web_over_face_width
+    thick = 1.0 if web is None else float(web)
+    if table.web_thickness is not None and face_width:
+        thick = table.web_thickness.value / face_width
+    rim, hub = table.rim_over_module, table.hub_over_bore
+    return Blank(
+        None if rim is None else float(rim),
+        table.rim_thickness.value if table.rim_thickness else None,
+        thick,
+        table.bore.value if table.bore else 0.0,
+        HUB if hub is None else float(hub),
+    )
+
+
+def check_blanks(tables: Sequence[tuple[Place, BlankKeys, BlankKeys, bool]]) -> None:
+    """Refuse webs without rims, hubs without bores, and webs in mm of unknown face widths.
+
+    tables: of every gear the place of its own keys, these, those with what all gears share, and
+    whether its face width is to be chosen.
+    """
+    rims = any(table.rimmed for _, _, table, _ in tables)
+    bores = any(table.bore for _, _, table, _ in tables)
+    for place, own, table, open_width in tables:
+
+        def at(key: str, place: Place = place, own: BlankKeys = own) -> Place:
+            return (*place, key) if getattr(own, key) is not None else ("gears", key)
+
+        told = next((key for key in WEB if getattr(table, key) is not None), None)
+        if told and not (table.rimmed or rims and at(told)[0] == "gears"):
+            rim = RIM[WEB.index(told)]
+            rule = f"is missing (or give {RIM[1 - RIM.index(rim)]}): a gear with a web has a rim"
+            raise refuse(rule, "12 mm" if rim == RIM[0] else 3, (*at(told)[:-1], rim), "sample")
+        idle = not (table.bore or bores and at(HUBS)[0] == "gears")
+        if table.hub_over_bore is not None and idle:
+            raise refuse("needs bore, which the hub surrounds", at=at(HUBS), action="remove")
+        if told == WEB[0] and open_width:
+            rule = "is a length, and the face width of its gear is to be chosen"
+            tell = "Write web_over_face_width = 0.3, or give the stage a face_width"
+            raise refuse(rule, tell, at(told), "tell")
+
+
+def misfits(blanks: Sequence[tuple[Blank, Blank]], pairs: Sequence[GearPair]) -> Iterator[str]:
+    """Yield sentences about gears of a design, of floats, whose rim or bore does not fit."""
+    for k, (both, pair) in enumerate(zip(blanks, pairs, strict=True), 1):
+        for member, made, gear in zip(MEMBERS, both, pair.gears, strict=True):
+            yield from misfit(f"{member} of stage {k}", made, gear)
+
+
+def misfit(name: str, made: Blank, gear: Any) -> Iterator[str]:
+    """Yield a sentence about a gear whose rim or bore does not fit."""
+    found = made.body(gear)
+    if made.bore and not found.bore:
+        yield (
+            f"The {name} is solid, without its bore: a hub of {made.hub:.4g} mm does not lie "
+            f"inside the root circle of {float(gear.root_diameter):.4g} mm."
+        )
+    elif made.has_rim and not found.rim_thickness:
+        inside = f"{float(made.inside(gear)):.4g} mm inside its rim"
+        hub = f" for a hub of {made.hub:.4g} mm" if made.bore else ""
+        yield f"The {name} has no web: {inside} leave no room{hub}."
