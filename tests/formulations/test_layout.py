@@ -7,6 +7,7 @@ from itertools import product
 
 import numpy as np
 import pytest
+from campaigns import few
 from gearboxes import gearbox, law, places, some_box
 
 from gearopt.errors import SolveError
@@ -192,7 +193,7 @@ def best_on_grid(box):
 
 @pytest.mark.parametrize(
     "name",
-    [n if n in QUICK else pytest.param(n, marks=pytest.mark.slow) for n in GRID],
+    few(GRID, QUICK),
 )
 def test_exact_against_a_grid(name):
     box = GRID[name]
@@ -267,7 +268,7 @@ def test_no_local_optimum_is_below_the_bound(seed):
     assert result.value <= best * (1.0 + 1e-6)
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", few(range(12), 4))
 def test_random_trains_are_proven(seed):
     result = solve(problem(some_box(seed)))
     assert result.status == "optimal"
@@ -295,7 +296,7 @@ def test_a_seed_decides_the_answer(method):
     assert same or (runs[0].x != runs[2].x).any()
 
 
-@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("seed", few(range(5), 2))
 def test_polishing_never_loses(seed):
     box = gearbox("table4_p1")
     rough, fine = (solve(problem(box, m), m, seed=seed) for m in ("sa", "sa-polish"))

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from campaigns import few
 from gearboxes import gearbox, law, places, some_box
 from uncompiled import uncompiled
 
@@ -104,9 +105,7 @@ def some_cell(rng, links):
     return low, low + size
 
 
-@pytest.mark.parametrize(
-    ("seeds", "cells"), [((4, 5), 60), pytest.param(range(6, 26), 150, marks=pytest.mark.slow)]
-)
+@pytest.mark.parametrize(("seeds", "cells"), few([((4,), 60), (range(5, 26), 150)], 1))
 def test_no_layout_of_a_cell_is_below_its_bounds(seeds, cells):
     rng = np.random.default_rng(4)
     met = {"excluded": 0, "feasible": 0, "aimed": 0}

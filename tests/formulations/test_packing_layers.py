@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from campaigns import few
 from packing_brute_force import drawn_fault, least_at_random, least_of_two, random_plan
 from uncompiled import uncompiled
 
@@ -110,7 +111,9 @@ EIGHT = tuple(
 )
 
 
-@pytest.mark.parametrize("kind", [{}, {"shape": "square"}, {"width": 25.0}, {"shape": "circle"}])
+@pytest.mark.parametrize(
+    "kind", few([{}, {"shape": "circle"}, {"shape": "square"}, {"width": 25.0}], 2)
+)
 def test_a_bound_that_is_late_is_weaker_and_valid(kind):
     plan = Plan(EIGHT[:4], max_layers=2, **kind)
     whole = bound(plan)

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from campaigns import few
 from servo_tolerances import BASE, E_RSS, E_WC, S, components, stack
 
 from gearopt.errors import SolveError
@@ -187,9 +188,7 @@ def some(seed):
     return Stack(tuple(found), tuple(budgets))
 
 
-@pytest.mark.parametrize(
-    "seed", [*range(10), *(pytest.param(k, marks=pytest.mark.slow) for k in range(10, 40))]
-)
+@pytest.mark.parametrize("seed", few(range(40), 4))
 def test_random_stacks_by_three_solvers(seed):
     tolerances = some(seed)
     posed = problem(tolerances)
@@ -224,7 +223,7 @@ def test_no_multipliers_pass_the_optimum(seed):
         lower_bound(tolerances, -lam, best)
 
 
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("seed", few(range(20), 6))
 def test_the_ends_of_the_search_hold_no_optimum(seed):
     tolerances = some(seed)
     low, high, guess = search(tolerances)

@@ -7,6 +7,7 @@ from itertools import product
 
 import numpy as np
 import pytest
+from campaigns import few
 from servo_trains import PAPER
 from uncompiled import uncompiled
 
@@ -113,9 +114,7 @@ def full_enumeration(train):
     return count, best
 
 
-@pytest.mark.parametrize(
-    "seed", [*range(8), *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(8, 16))]
-)
+@pytest.mark.parametrize("seed", few(range(16), 3))
 def test_it_is_what_full_enumeration_by_other_code_finds(seed):
     rng = np.random.default_rng(seed)
     modules = tuple(sorted(F(int(k), 20) for k in rng.choice(np.arange(6, 20), 2, replace=False)))

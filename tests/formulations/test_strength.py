@@ -9,6 +9,7 @@ from itertools import product
 import numpy as np
 import pytest
 from brute_force import every_train
+from campaigns import few
 from gearboxes import smallest_box
 from small_drives import FACES, OBJECTIVES, drive
 
@@ -148,7 +149,7 @@ def test_a_law_keeps_its_promises(law):
 
 
 @pytest.mark.parametrize("face", FACES)
-@pytest.mark.parametrize("objective", OBJECTIVES)
+@pytest.mark.parametrize("objective", few(OBJECTIVES, 1))
 def test_what_is_bisected_is_what_has_a_closed_form(face, objective):
     """K-factor and unit load without their promise give the same trains."""
     train = drive(2, face, objective=objective, wheel_diameter=F(150), helix_angle=0.2)
@@ -174,7 +175,7 @@ def test_a_law_of_three_lines_in_whole_teeth(face):
 
 
 @pytest.mark.parametrize("face", FACES)
-@pytest.mark.parametrize("allowable", [1.2, 3.0])
+@pytest.mark.parametrize("allowable", few([1.2, 3.0], 1))
 def test_a_law_that_depends_on_speed_and_width_in_whole_teeth(face, allowable):
     train = pressed(FASTER, face=face, allowable=allowable)
     result = solve(teeth.problem(train))

@@ -7,6 +7,7 @@ from importlib import import_module
 
 import pytest
 from brute_force import some_drive
+from campaigns import few
 
 from gearopt.formulations import sizing, teeth
 from gearopt.formulations.gear_train import FaceWidth, Stage, Train
@@ -103,7 +104,7 @@ def test_more_pairs_than_memory_takes_are_a_limit_and_say_what_to_narrow():
     assert nothing.status == "limit" and nothing.value is None
 
 
-@pytest.mark.parametrize("number", range(20))
+@pytest.mark.parametrize("number", few(range(20), 5))
 def test_wide_ranges_are_searched_like_narrow_ones(number, monkeypatch):
     """Pinions left out for their cost change nothing: of random drives and their ten best."""
     train = some_drive(number, 2)

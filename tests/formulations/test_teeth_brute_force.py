@@ -8,6 +8,7 @@ from functools import cache
 import numpy as np
 import pytest
 from brute_force import ONE, SAME, every_train, log_uniform, own_teeth, some_drive
+from campaigns import few
 
 from gearopt.formulations.gear_train import FaceWidth, Stage, Train
 from gearopt.formulations.strength.k_factor import K_FACTOR
@@ -265,9 +266,10 @@ def best_list(train, count):
 
 @pytest.mark.parametrize(
     ("stages", "number"),
-    [(2, 0), (2, 3), (2, 10), (3, 0), (3, 5)]
-    + [pytest.param(2, n, marks=pytest.mark.slow) for n in (11, 12, 15)]
-    + [pytest.param(3, n, marks=pytest.mark.slow) for n in (7, 14)],
+    few(
+        [(2, n) for n in (0, 3, 10, 11, 12, 15)] + [(3, n) for n in (0, 5, 7, 14)],
+        [(2, 0), (2, 3), (3, 0)],
+    ),
 )
 def test_list_of_the_best_twenty(stages, number):
     assert best_list(some_drive(number, stages), 20) == 20

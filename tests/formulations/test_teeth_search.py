@@ -9,6 +9,7 @@ from itertools import product
 import numpy as np
 import pytest
 from brute_force import cost, every_train, some_drive
+from campaigns import few
 from small_drives import FACES, OBJECTIVES, drive
 
 from gearopt.formulations.teeth import _in_order
@@ -60,7 +61,7 @@ def test_the_cheapest_of_equal_ratios_and_of_those_the_first(number):
 
 
 @pytest.mark.parametrize("face", FACES)
-@pytest.mark.parametrize("objective", OBJECTIVES)
+@pytest.mark.parametrize("objective", few(OBJECTIVES, 2))
 def test_the_reach_of_a_stage_is_where_its_load_alone_costs_too_much(face, objective):
     train = drive(3, face, F(200), objective=objective)
     cut, most = F(18), train.highest_ratio
@@ -226,7 +227,7 @@ def test_grids_are_halved_while_they_fit(stages, number, first, monkeypatch):
         assert looked[0] == 0 and (np.diff(looked) > 0).all()
 
 
-@pytest.mark.parametrize(("stages", "number"), [(2, 3), (2, 6), (3, 2), (3, 8)])
+@pytest.mark.parametrize(("stages", "number"), few([(2, 3), (3, 2), (2, 6), (3, 8)], 2))
 @pytest.mark.parametrize("tolerance", [F(0), F(1, 1000), None])
 def test_what_is_near_an_end_of_the_ratio_is_decided_in_whole_numbers(
     stages, number, tolerance, monkeypatch

@@ -7,6 +7,7 @@ import gp_rows
 import gp_rows_iso
 import numpy as np
 import pytest
+from campaigns import few
 from gp_rows import BETA, ELEVATOR, FIVE, THREE
 
 from gearopt.formulations.toothing import Toothing
@@ -38,7 +39,7 @@ CASES = {
     "1000:1 in five, AGMA": lambda: gp_rows.agma(FIVE),
 }
 QUICK = ("elevator, AGMA", "elevator, ISO")
-ALL = [c if c in QUICK else pytest.param(c, marks=pytest.mark.slow) for c in CASES]
+ALL = few(CASES, QUICK)
 
 
 MEMORY = (2211.6, 3905.0, 3796.9, 4823.4, 8538.1, 58469.4)  # cm3, with coefficients of memory

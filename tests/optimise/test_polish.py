@@ -5,6 +5,7 @@ from itertools import product
 
 import numpy as np
 import pytest
+from campaigns import few
 
 from gearopt.errors import SolveError
 from gearopt.optimise.box import box
@@ -45,7 +46,7 @@ def vessel():
 
 
 @pytest.mark.parametrize("method", SAMPLERS)
-@pytest.mark.parametrize("seed", [0, pytest.param(1, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("seed", few([0, 1], 1))
 def test_the_pressure_vessel(method, seed):
     result = solve(vessel(), method, Budget(evaluations=6_000), seed=seed)
     assert result.value == pytest.approx(6059.714335048436, rel=1e-9)
@@ -163,7 +164,7 @@ def waves():
 
 
 @pytest.mark.parametrize("method", SAMPLERS)
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", few(range(3), 1))
 def test_a_polish_never_returns_worse_than_the_sampler_found(method, seed):
     told = []
     result = solve(waves(), method, SMALL, seed, watch=lambda e: told.append(e.best) is None)

@@ -4,6 +4,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from campaigns import few
 
 from gearopt.errors import SolveError
 from gearopt.optimise.certificate import certify
@@ -79,9 +80,7 @@ def exact_energy(k, e, load):
     raise AssertionError("no pair carries")
 
 
-@pytest.mark.parametrize(
-    "pairs", [2, *(pytest.param(n, marks=pytest.mark.slow) for n in (3, 4, 5)), 6]
-)
+@pytest.mark.parametrize("pairs", few(range(2, 7), 2))
 def test_load_sharing_is_the_closed_form(pairs):
     """Open bounds above: the proof rests on the curvature alone."""
     problem = sharing(pairs)

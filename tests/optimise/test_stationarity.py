@@ -7,6 +7,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from campaigns import few
 
 from gearopt.formulations import sizing
 from gearopt.formulations.gear_train import FaceWidth, Stage, Train
@@ -156,7 +157,7 @@ def same(name, factor, unit):
     assert again.x / unit == pytest.approx(outcome.x, rel=1e-6)
 
 
-@pytest.mark.parametrize(("factor", "unit"), [(1e-12, 1e6), (1e12, 1e-6)])
+@pytest.mark.parametrize(("factor", "unit"), few([(1e-12, 1e6), (1e12, 1e-6)], 1))
 @pytest.mark.parametrize("name", CASES)
 def test_neither_a_factor_nor_a_unit_changes_the_answer(name, factor, unit):
     same(name, factor, unit)

@@ -6,6 +6,7 @@ import xml.etree.ElementTree as ET
 import layout_cases as cases
 import numpy as np
 import pytest
+from campaigns import few
 from page_reader import extents, marks
 
 from gearopt.report.measures import METRIC
@@ -75,7 +76,7 @@ def test_what_is_drawn_last_is_nearest_to_the_eye(seed, axes):
     assert hit > 2
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", few(range(4), 2))
 def test_a_place_is_covered_where_its_line_of_sight_meets_a_rod(seed):
     seen, rng, count = view(), np.random.default_rng(seed), 0
     for rod in rods(seed):

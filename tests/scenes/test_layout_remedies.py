@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from campaigns import few
 from edits import edited, scene_of
 
 import gearopt
@@ -175,9 +176,7 @@ def ways_by(monkeypatch, text, answer):
     return gearopt.solve(scene).report["ways_out"], asked
 
 
-@pytest.mark.parametrize(
-    "seed", [0, 1, *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(2, 6))]
-)
+@pytest.mark.parametrize("seed", few(range(6), 1))
 def test_the_smallest_size_known_to_fit_is_told_where_less_stays_undecided(monkeypatch, seed):
     """Undecided from 26 mm less some band up to 26 mm; a few questions at most take long."""
     low = 26.0 - np.random.default_rng(seed).uniform(0.03, 0.15)

@@ -6,6 +6,7 @@ from fractions import Fraction as F
 
 import numpy as np
 import pytest
+from campaigns import few
 from servo_axes import SAME, held_against, random_axis, room, trains, worth
 
 import gearopt
@@ -136,10 +137,7 @@ def check(seed):
     return "optimal in a box" if axis.box is not None and axis.required else "optimal"
 
 
-MORE = [pytest.param(seed, marks=pytest.mark.slow) for seed in (9, 4, 10, 5, 17, 23)]
-
-
-@pytest.mark.parametrize("seed", [3, 6, 21, 1, *MORE])
+@pytest.mark.parametrize("seed", few([3, 6, 21, 1, 9, 4, 10, 5, 17, 23], 3))
 def test_the_best_train_for_a_duty_keeps_clear(seed):
     """Every goal, with and without a box; an enumeration under the same rules finds no better."""
     assert check(seed) in ("optimal", "optimal in a box")

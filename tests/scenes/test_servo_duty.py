@@ -276,11 +276,11 @@ def test_a_train_that_the_motor_cannot_drive_is_noted():
 
 
 @pytest.mark.slow
-def test_wide_ratios_are_held_to_box_and_stiffness():
+def test_wide_ratios_are_held_to_box_and_stiffness(solved):
     """127 million trains: as many as cannot be listed at once, so that they come in order."""
     box = {"width": "75 mm", "height": "130 mm", "motor_diameter": "24 mm", "hub_diameter": "16 mm"}
     box |= {"swept_angle": "180 deg"}
-    free = gearopt.solve(PROBLEMS / "servo_gimbal_fast.toml")
+    free = solved("servo_gimbal_fast")
     tight = gearopt.solve(scene(FAST, space=box), budget=Budget(seconds=60))
     assert tight.status == "optimal" and tight.design["box"]["fits"]
     assert tight.design["box"]["needed_width_mm"] <= 75.0 and tight.value > free.value

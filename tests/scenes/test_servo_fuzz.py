@@ -4,6 +4,7 @@ from collections import Counter
 from random import Random
 
 import pytest
+from campaigns import few
 from mutations import MUTATIONS
 from scene_files import dump, mended, parse
 
@@ -67,8 +68,9 @@ def test_the_bases_load(base):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_every_mutation_of_every_base(kind):
-    assert {fate(kind, base, seed) for base in BASES for seed in range(2)}
+@pytest.mark.parametrize("seed", few(range(2), 1))
+def test_every_mutation_of_every_base(kind, seed):
+    assert {fate(kind, base, seed) for base in BASES}
 
 
 def answer(kind, base, seed):

@@ -254,8 +254,8 @@ def gears_point(result):
 
 
 @pytest.mark.slow
-def test_neighbours_are_not_beaten_in_all_three():
-    result = gearopt.solve(PROBLEMS / "servo_gimbal_light.toml")
+def test_neighbours_are_not_beaten_in_all_three(solved):
+    result = solved("servo_gimbal_light")
     rows = result.report["trains"]
     worth = np.array([[r["inertia_kg_m2"], r["mass_kg"], r["error_deg"]] for r in rows])
     for k, own in enumerate(worth):
@@ -292,8 +292,8 @@ def test_trains_that_are_not_listed_are_said_to_be(monkeypatch):
     assert UNLISTED in result.report["notes"]
 
 
-def test_given_gears_stand_beside_the_best():
-    report = gearopt.solve(PROBLEMS / "servo_gimbal.toml").report
+def test_given_gears_stand_beside_the_best(solved):
+    report = solved("servo_gimbal").report
     assert report["given_inertia_kg_m2"] == pytest.approx(7.578e-7, abs=6e-11)
     assert report["given_mass_kg"] == pytest.approx(0.1914, abs=6e-5)
     assert report["given_error_deg"] == pytest.approx(0.10819, abs=6e-6)

@@ -5,6 +5,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
+from campaigns import few
 
 import gearopt
 from gearopt.errors import SceneError, SolveError
@@ -253,7 +254,7 @@ def of_materials(pinion, wheel, minimise="cost", materials=(HARD, TOUGH)):
     return made | {"material": [dict(one) for one in materials]}
 
 
-@pytest.mark.parametrize("minimise", ["cost", "mass", "gear_volume"])
+@pytest.mark.parametrize("minimise", few(["cost", "mass", "gear_volume"], 1))
 def test_the_best_of_lists_is_that_of_every_pair_of_materials(minimise):
     both = gearopt.solve(of_materials([*STEELS], [*STEELS], minimise))
     alone = {

@@ -7,6 +7,7 @@ from dataclasses import fields, replace
 import casadi as ca
 import numpy as np
 import pytest
+from campaigns import few
 
 from gearopt.optimise.tape import legacy_numpy
 from gearopt.physics.agma.batch import rate_rows
@@ -158,7 +159,7 @@ PRACTICES = (
 
 @pytest.mark.parametrize("practice", PRACTICES)
 @pytest.mark.parametrize("steels", STEELS.values(), ids=STEELS)
-@pytest.mark.parametrize("helix", [0.0, 0.25])
+@pytest.mark.parametrize("helix", few([0.25, 0.0], 1))
 def test_rows_are_ratings(helix, steels, practice):
     """Safety factors of `rate`, row by row; of refused pairs, none."""
     rng = np.random.default_rng(5)
