@@ -6,10 +6,11 @@ without one, or by the method ipopt, sizes are continuous and proven by a dual b
 
 import math
 from dataclasses import asdict, replace
+from functools import partial
 from typing import Any
 
 from gearopt.errors import SolveError
-from gearopt.formulations import rated_sizing, sizing, teeth
+from gearopt.formulations import sizing, teeth
 from gearopt.formulations.gear_train import Train
 from gearopt.formulations.shares import MASSES
 from gearopt.optimise.certificate import reconcile
@@ -17,12 +18,13 @@ from gearopt.optimise.clock import Clock, in_part, of_others
 from gearopt.optimise.comparing.compare import Model
 from gearopt.optimise.explaining.explanation import Explanation, Remedies
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.result import Budget, Result
+from gearopt.optimise.result import Result
 from gearopt.optimise.solve import GAP, run
 from gearopt.optimise.typed import untyped
 from gearopt.scenes.drive.assumptions import assumptions, notes
 from gearopt.scenes.drive.blank_tables import BlankKeys, misfits
 from gearopt.scenes.drive.examples import EXAMPLE, MORE_EXAMPLES
+from gearopt.scenes.drive.rating.cut_short import bounded
 from gearopt.scenes.drive.rating.limits import check_safe
 from gearopt.scenes.drive.rating.rated import rate, with_rating
 from gearopt.scenes.drive.rating.tables import MATERIAL, GivenTable
@@ -53,10 +55,6 @@ METHODS = (
     "sa-paper",
     "smooth",
 )  # its own
-KEPT, SHARE_KEPT = (
-    2.0,
-    0.3,
-)  # seconds, and share of all, for the bound of a search that is cut short
 ANY = 1e9  # gap of a design that need not be the best
 SMOOTH = "smooth"  # of real-valued sizes that ratings limit
 CONTINUOUS = ("ipopt", "gp", "multistart", SMOOTH)  # methods that take no whole teeth
@@ -264,7 +262,9 @@ def _answer(scene: Scene, ask: Ask, ideal: Result | None = None) -> Result:
         if possible.status == "infeasible":
             return replace(possible, name="drive")
     if _without_ratings(train) is None:
-        return _rated(scene, train, ask)
+        whole, sized = _discrete(scene, train, ask.top), partial(_sized, scene, train)
+        exact = ask.method in (None, "exact") and scene.rated_real
+        return bounded(train, ask, whole, sized) if exact else sized(ask, whole)
     known, ideal = ideal is not None, ideal or _real(scene, ask)
     if ideal.status == "infeasible":  # then no whole teeth do either
         return replace(ideal, name="drive")
@@ -274,27 +274,6 @@ def _answer(scene: Scene, ask: Ask, ideal: Result | None = None) -> Result:
     if found.status == "limit" and found.value is None:  # the continuous bound holds all the same
         found = replace(found, bound=ideal.bound)
     return reconcile(replace(found, parts=(replace(ideal, name="sizing"),)), ideal, ask.gap)
-
-
-def _rated(scene: Scene, train: Train, ask: Ask) -> Result:
-    """Return a drive that ratings alone limit, in whole teeth.
-
-    Of an exact search that ends with its seconds, real-valued sizes are a part, and their bound
-    holds: a share of the seconds is kept for them.
-    """
-    problem, seconds = _discrete(scene, train, ask.top), ask.budget.seconds
-    if seconds is None or ask.method not in (None, "exact") or not scene.rated_real:
-        return _sized(scene, train, ask, problem)
-    kept = min(KEPT, SHARE_KEPT * seconds)
-    found = _sized(scene, train, replace(ask, budget=ask.budget.less(kept)), problem)
-    if found.status != "limit":
-        return found
-    alone = replace(sizing.exact_text(train), methods={SMOOTH: rated_sizing.searched(train)})
-    real = _sized(scene, train, Ask(None, Budget(kept), watch=ask.watch), alone)
-    if found.value is None and real.status != "infeasible":
-        found = replace(found, bound=real.bound)
-    parts = (replace(real, name="sizing"),)
-    return reconcile(replace(found, parts=parts), real, ask.gap)
 
 
 def _discrete(scene: Scene, train: Train, top: int = 1, floor: float = -math.inf) -> Problem:
