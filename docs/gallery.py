@@ -94,6 +94,7 @@ GROUPS = {  # heading: {file: what it shows, in a line}
     },
     "Gears and box at once": {
         "three_stage_together": "Teeth, modules and places together make a smaller box.",
+        "elevator_box_rated": "Two stages, limited by the safety factors of AGMA 2001.",
     },
     "Packing of cylinders": {
         "six_cylinders": "Three large and three small ones; the number of layers is chosen too.",

@@ -202,8 +202,11 @@ and the price of a kilogram, and `materials = ["a", "b"]` in `[gears]`, `[stage.
 `[stage.wheel]` names those that a gear may have. Pinion and wheel choose freely, each of its own
 list: all combinations are compared, and `minimise = "cost"` takes the sum of masses times prices
 (`problems/materials_by_cost.toml`). A material may have a `quality` or an `accuracy_grade`, so
-that finer gears have their own price; of Q_v the lower one of a pair counts. Rims, webs and bores
-enter masses and costs as they enter the ratings: webs and rims of [drives](drive.md),
+that finer gears have their own price; of Q_v the lower one of a pair counts.
+`same_materials = true` in `[gears]` asks for one material for the pinions of all stages and one for
+all wheels: the best of all pairs that every stage may have, matched by name, proven
+(`problems/same_materials.toml`: 114.39, in place of 110.54 with a pair for each stage). Rims, webs
+and bores enter masses and costs as they enter the ratings: webs and rims of [drives](drive.md),
 `problems/light_wheels.toml`.
 
 A load spectrum is what the gears carry: Miner's sum of all levels `[[load]]` gives the safety
@@ -212,8 +215,9 @@ factors. A K-factor and unit load in `[limits]` are limits beside the ratings
 method `smooth`, sizes are real numbers, by AGMA with a proven lower bound; by ISO 6336 they are
 the best of several starts without one, and whole teeth may be better. Spectra and `materials` are
 for whole teeth alone: real-valued sizes then follow from a K-factor and unit load, where they are
-given, and the rating tells whether the gears are safe. Gears and box at once (`together`) and the
-two processes size by load limits alone and are refused beside `[rating]`.
+given, and the rating tells whether the gears are safe. Gears and box at once (`together`) are
+chosen by their ratings, too (`problems/elevator_box_rated.toml`); the two processes size by load
+limits alone and are refused beside `[rating]`.
 
 ## What is not rated
 

@@ -99,12 +99,16 @@ def face_width(stage, torque, module, teeth, needed=k_factor_width):
     return b if b < math.inf else None
 
 
-def every(train, needed=k_factor_width):
+def every(train, needed=k_factor_width, narrowest=None):
     """Gear pairs of all trains with every module that carries the load.
 
-    needed(stage, torque, d, m, u): the face width that the load needs.
+    needed(stage, torque, d, m, u): the face width that the load needs. narrowest(k, torque, module,
+    teeth): in its place the minimum face width of a choice for stage k, or None.
     """
     found = []
+
+    def of(k, torque, module, teeth):
+        return face_width(train.stages[k], torque, module, teeth, needed)
 
     def go(k, torque, ratio, rows):
         if k == len(train.stages):
@@ -119,7 +123,7 @@ def every(train, needed=k_factor_width):
                 if u > (stage.ratio[1] or u) or (train.coprime and math.gcd(z1, z2) > 1):
                     continue
                 for module in stage.modules:
-                    b = face_width(stage, torque, module, (z1, z2), needed)
+                    b = (narrowest or of)(k, torque, module, (z1, z2))
                     if b is not None:
                         row = train.pair(k, float(module), float(z1), float(z2), b)
                         go(k + 1, torque * z2 / z1, ratio * u, [*rows, row])
@@ -128,12 +132,12 @@ def every(train, needed=k_factor_width):
     return found
 
 
-def smallest_box(train, make, rel, needed=k_factor_width):
+def smallest_box(train, make, rel, needed=k_factor_width, narrowest=None):
     """The minimum objective of all trains in all arrangements, within rel; inf if none fits."""
     branch = kernel("gearopt.formulations.layout.branch_kernel").branch
     best, links = math.inf, len(train.stages)
     theta, cells, bounds = np.zeros(links), np.zeros((4000, 2, links)), np.zeros(4000)
-    for pairs in every(train, needed):
+    for pairs in every(train, needed, narrowest):
         box = make(pairs)
         for order in arrangements(box):
             if clashes(box, order):

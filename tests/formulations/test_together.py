@@ -279,10 +279,14 @@ def test_a_train_whose_layouts_are_not_exhausted_leaves_the_search_unproven(monk
     train = replace(train, stages=(stage, replace(train.stages[1], modules=(F(3), F(4)))))
     work = search.Search(train, frame(train, (10.0, 17.5, 30.0)), Clock(), 0)
     pairs = train.pair(0, 2.0, 21, 128, 25.0), train.pair(1, 3.0, 24, 85, 50.0)
-    assert search.lay(work, pairs, 0.3) and math.isfinite(work.value) and not work.clock.stopped
+    assert (
+        search.lay(work, (pairs, (0, 0)), 0.3)
+        and math.isfinite(work.value)
+        and not work.clock.stopped
+    )
     monkeypatch.setattr("gearopt.formulations.layout.exact.DEEP", 3)
     fresh = search.Search(train, work.make, Clock(), 0)
-    assert not search.lay(fresh, pairs, 0.003) and not fresh.clock.stopped
+    assert not search.lay(fresh, (pairs, (0, 0)), 0.003) and not fresh.clock.stopped
 
 
 def test_tables_of_the_rest_hold_ratios_at_the_edges_of_their_cells():

@@ -9,8 +9,6 @@ from campaigns import few
 
 import gearopt
 from gearopt.errors import SceneError, SolveError
-from gearopt.optimise.result import Budget
-from gearopt.scenes.drive.rating import cut_short
 from gearopt.scenes.reading.load import examples
 
 PROBLEMS = Path(__file__).parents[2] / "problems"
@@ -184,11 +182,6 @@ REFUSED = {  # the mistake: tables, key, what is said
         "limits.unit_load",
         "is missing (or give preset)",
     ),
-    "box at once": (
-        {"layout": {"together": True, "shaft_stress": "40 MPa"}},
-        "layout.together",
-        "load limits alone",
-    ),
     "process": ({"process_one": {"stage_ratios": [4]}}, "process_one", "is a process by"),
     "no steel": ({"gears": None}, "gears.treatment", "needs the steel"),
     "misspelt safety": (
@@ -342,12 +335,25 @@ def test_gears_that_may_choose_are_not_rated():
         gearopt.rate(tables)
 
 
-def test_a_box_around_rated_gears_offers_no_choice_at_once():
-    tables = drive(layout={"shaft_diameters": ["60 mm", "60 mm"]})
-    result = gearopt.solve(tables)
-    told = [result.message, *result.report.get("notes", ())]
-    told += [result.report.get("ways_out", {}).get("message", "")]
-    assert result.status in ("optimal", "infeasible") and "together" not in " ".join(told)
+@pytest.mark.slow
+def test_gears_and_box_at_once_are_rated_and_no_larger_than_one_after_the_other():
+    tables = of_materials([*STEELS], ["tough"], "gear_volume")
+    tables["layout"] = {"together": True, "shaft_diameters": ["20 mm", "30 mm"]}
+    found = gearopt.solve(tables)
+    assert found.status == "optimal" and found.design["rating"]["safe"]
+    (apart,) = (part for part in found.parts if part.name == "apart")
+    assert found.value <= apart.value * (1.0 + 1e-9)
+    assert found.design["stages"][0]["wheel_material"] == "tough"
+    assert found.design["stages"][0]["pinion_material"] in STEELS
+    with pytest.raises(SolveError, match="ipopt takes no gears and box at once"):
+        gearopt.solve(tables, method="ipopt")
+
+
+def test_methods_that_trace_ratings_say_that_they_cannot():
+    with pytest.raises(SolveError, match="annealing and nsga2 only: a rating finds roots"):
+        gearopt.solve(drive(), method="scip")
+    with pytest.raises(SolveError, match="smooth does"):
+        gearopt.solve(drive(), method="ipopt")
 
 
 @pytest.mark.slow
@@ -370,12 +376,3 @@ def test_a_minimum_face_width_is_eased():
     found = {r.what: r for r in gearopt.explain(tables).remedies}
     remedy = found["stage[1].minimum_face_width"]
     assert gearopt.solve(tables, remedy.edits).value is not None
-
-
-def test_a_search_that_is_cut_short_has_the_bound_of_real_valued_sizes(monkeypatch):
-    """No whole teeth in no time: the bound is that of real-valued sizes, which are a part."""
-    monkeypatch.setattr(cut_short, "SHARE", 0.999)
-    found = gearopt.solve(PROBLEMS / "elevator_by_both.toml", budget=Budget(0.4))
-    (real,) = found.parts
-    assert found.status == "limit" and real.name == "sizing"
-    assert 0.0 < found.bound == real.bound < 67020184.0

@@ -36,6 +36,10 @@ VARIABLES = {
 NO_TRAIN = (
     "Proof: every choice of teeth and modules was compared or excluded; none meets all limits."
 )
+RATED = (
+    "whole teeth that ratings limit are for exact, annealing and nsga2 only: a rating finds roots "
+    "by iteration and has ranges, and is no posynomial"
+)
 MOST = 1e18  # teeth, steps or mm: no limit
 
 RANDOM = False
@@ -59,8 +63,8 @@ def problem(train: Train, count: int = 1, floor: float = -math.inf) -> Problem:
     numbers = SimpleNamespace(**train.numbers())
 
     def evaluate(x: Any, p: Any) -> Terms:
-        if train.several_options and not _is_plain(each(x.option)[0]):
-            raise SolveError("lists of materials are for exact, annealing and nsga2 only")
+        if train.rated and not _is_plain(each(x.module)[0]):
+            raise SolveError(RATED)
         found = terms(train, numbers, _pairs(train, x), _options(train, x))
         # A module is one of a set: the ends of the set are no limits of their own here.
         limits = {n: v for n, v in found.limits.items() if not n.startswith("module_")}

@@ -211,15 +211,30 @@ class RatedTable(Table):
         return found
 
     def width(self, torque: Array, pair: Index, module: int) -> Array:
-        """Return the narrowest face width [mm] of pairs of a module (index); inf: none."""
-        at = np.full(len(pair), module)
-        ends = self._ends(self.made(self.modules[module], pair), at, pair)
-        widths = [
-            self._narrowest((torque, torque), pair, at, option, ends)
-            for option in range(len(self.stage.options))
-        ]
+        """Return the minimum face width [mm] of pairs of a module (index) at torques; inf: none."""
+        every = np.full(len(pair), module)
         possible = (self.first[pair] <= module) & (module <= self.last[pair])
-        return np.where(possible, np.minimum.reduce(widths), np.inf)
+        found = self.least_width((torque, torque), pair, every, ALLOWANCE)
+        return np.where(possible, found, np.inf)
+
+    def least_width(
+        self, torque: tuple[Array, Array], pair: Index, module: Index, close: float
+    ) -> Array:
+        """Return lower bounds of the minimum face widths [mm] at torques between two ends.
+
+        module: indices; close: as of `first_width`, with ALLOWANCE and one torque they are exact.
+        """
+        ends = self._ends(self.made(self.modules[module], pair), module, pair)
+        options = range(len(self.stage.options))
+        widths = [self._narrowest(torque, pair, module, o, ends, close) for o in options]
+        return np.asarray(np.minimum.reduce(widths))
+
+    def narrowest(self, module: int) -> Array:
+        """Return the narrowest face width [mm] (n,) that a module (index) allows; inf: none."""
+        every, at = np.arange(len(self.ratio)), np.full(len(self.ratio), module)
+        ends = self._ends(self.made(self.modules[module], every), at, every)
+        allowed = (self.first <= module) & (module <= self.last) & (ends[0] <= ends[1])
+        return np.where(allowed, ends[0], np.inf)
 
     def _found(
         self,

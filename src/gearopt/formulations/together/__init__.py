@@ -21,7 +21,7 @@ from gearopt.formulations.layout.layout_text import given_places, largest, posit
 from gearopt.formulations.layout.slabs import Arrangement, Slabs, arrange, orders
 from gearopt.formulations.strength.k_factor import K_FACTOR
 from gearopt.formulations.teeth.search import search as sizing
-from gearopt.formulations.together.search import MARGINS, Search, keep, lay, prepare, prove
+from gearopt.formulations.together.search import MARGINS, Made, Search, keep, lay, prepare, prove
 from gearopt.formulations.together.tables import KERNELS, Make, numbers
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.kernels import UNREADY, compiled, kernel
@@ -30,9 +30,10 @@ from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.terms import Array, Terms, Var, each
 from gearopt.physics.gears import GearPair
 
-Start = tuple[tuple[GearPair, ...], Arrangement, Array]
+Start = tuple[Made, Arrangement, Array]
 GAP = 1e-3  # proven where the budget requests none
 FIRST = 40  # best sizings that are laid out before the search
+FEW = 1  # the same of ratings, whose list takes long
 SLACK = 1e-6  # relative: margins are this much below the requested gap, for rounding
 
 RANDOM = False
@@ -46,7 +47,7 @@ def problem(train: Train, make: Make, start: Start | None = None) -> Problem:
     make(pairs) -> Gearbox of these gear pairs; shaft k may grow with the torque T1 u_1 ... u_k that
     it carries, and nothing else depends on the pairs. The objective is the
     gearbox's. Variables are those of `text`. start: a layout known before, which is kept
-    unless a better one is found: gear pairs, arrangement and link angles.
+    unless a better one is found: gear pairs and options, arrangement and link angles.
     """
     box = numbers(train, make)[1]
 
@@ -90,6 +91,8 @@ def _searched(search: Search, start: Start | None) -> Outcome:
     margins = [m for m in MARGINS if m > wanted] + [wanted]
     while possible and margins and not clock.stopped:
         work = prepare(search, drive, box, wanted)
+        if work is not None and search.train.rated:
+            drive = work.drive  # whose widths took long
         while work is not None and margins and prove(search, work, margins[0]):
             clock.bound = max(clock.bound, search.value * (1.0 - margins.pop(0)))
             possible = search.best is not None
@@ -100,11 +103,12 @@ def _searched(search: Search, start: Start | None) -> Outcome:
 
 def _first(search: Search) -> bool:
     """Lay out the best sizings; False if there is no train at all."""
-    progress = sizing(search.train, FIRST, Budget(), search.clock.inner(values=False))
-    for _, one in progress.found[:FIRST]:
+    count = FEW if search.train.rated else FIRST
+    progress = sizing(search.train, count, Budget(), search.clock.inner(values=False))
+    for _, one in progress.found[:count]:
         if search.clock.stopped:
             break
-        lay(search, teeth.best_pairs(search.train, one), MARGINS[3])
+        lay(search, teeth.best_choices(search.train, one), MARGINS[3])
     return bool(progress.found) or progress.clock.stopped
 
 
@@ -131,7 +135,13 @@ def _outcome(search: Search, known: tuple[Any, ...], possible: bool) -> Outcome:
             message="stopped before a layout was found" if stopped else "",
         )
     best = search.best
-    x = point(search.train, best.pairs, known.index(best.slabs), len(known) > 1, best.angles)
+    x = point(
+        search.train,
+        (best.pairs, best.options),
+        known.index(best.slabs),
+        len(known) > 1,
+        best.angles,
+    )
     return Outcome(
         x,
         not stopped,
@@ -214,18 +224,21 @@ def _clear(need: float, dy: float, dz: float) -> float:
     return 1.0 + (need**2 - there) / max(need**2, there, 1.0)
 
 
-def point(
-    train: Train, pairs: tuple[GearPair, ...], slabs: int, several: bool, angles: Array
-) -> Array:
+def point(train: Train, made: Made, slabs: int, several: bool, angles: Array) -> Array:
     """Return the point of a train with its layout."""
     order = [float(slabs)] if several else []
-    return np.concatenate([teeth.point(train, pairs), angles, order])
+    return np.concatenate([teeth.point(train, *made), angles, order])
 
 
 def pairs(train: Train, x: Array) -> tuple[GearPair, ...]:
     """Return the gear pairs of a point of `text`."""
     count = sum(v.size for v in teeth.problem(train).variables)
     return teeth.pairs(train, x[:count])
+
+
+def options(train: Train, x: Array) -> tuple[int, ...]:
+    """Return the option of every stage at a point of `text`, counted from 0."""
+    return teeth.options(train, x[: sum(v.size for v in teeth.problem(train).variables)])
 
 
 def laid_out(train: Train, make: Make, x: Array) -> tuple[Gearbox, tuple[float, ...], Arrangement]:

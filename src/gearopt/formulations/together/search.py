@@ -5,7 +5,9 @@ to pass, so that a search which is stopped has the bound of its last full pass.
 """
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -17,8 +19,10 @@ from gearopt.formulations.layout.chain import Chain, chain, turns
 from gearopt.formulations.layout.exact import first_cell
 from gearopt.formulations.layout.gearbox import Gearbox
 from gearopt.formulations.layout.slabs import TOUCH, Arrangement, arrangements, clashes
+from gearopt.formulations.teeth.rated import RatedTable
 from gearopt.formulations.teeth.search import within
-from gearopt.formulations.teeth.tables import table
+from gearopt.formulations.teeth.tables import stage_tables, table
+from gearopt.formulations.together.rated_widths import STEPS, narrower
 from gearopt.formulations.together.tables import (
     KERNELS,
     Drive,
@@ -44,14 +48,16 @@ CLOSE = 1e-3  # relative gap to which a train is laid out, or the margin where i
 LOOKS = (400, 20_000)  # cells spent on a node's layout, on a whole train's
 
 Nodes = NDArray[np.int64]  # (n, N, 2): pair and module of each stage
+Made = tuple[tuple[GearPair, ...], tuple[int, ...]]  # gear pairs and their options
 
 
 @dataclass(frozen=True)
 class Design:
-    """A train with its layout: gear pairs, slabs, link angles [rad]; its objective."""
+    """A train with its layout: gear pairs, their options, slabs, link angles [rad]; its value."""
 
     value: float
     pairs: tuple[GearPair, ...]
+    options: tuple[int, ...]
     slabs: tuple[tuple[int, ...], ...]
     angles: Array
 
@@ -74,6 +80,12 @@ class Search:
     made: dict[int, int] = field(default_factory=dict)
     left: dict[int, int] = field(default_factory=dict)
 
+    @cached_property
+    def tables(self) -> list[RatedTable]:
+        """The tables of the stages of a drive that ratings limit."""
+        made = stage_tables(self.train, self.train.highest_ratio)
+        return [t for t in made if isinstance(t, RatedTable)]
+
     @property
     def value(self) -> float:
         """The best value, inf without a design."""
@@ -88,21 +100,40 @@ def cuts(value: float, margin: float) -> tuple[float, float]:
     return value * (1.0 - margin), value * (1.0 - 0.8 * margin)
 
 
-def sized(train: Train, drive: Drive, node: Nodes) -> tuple[GearPair, ...] | None:
-    """Return the gear pairs of a whole node; None where one is too weak.
+def sized(train: Train, drive: Drive, node: Nodes) -> Iterator[Made]:
+    """Yield the gear pairs of a whole node with their options; none where one is too weak.
 
-    The widths of a node are bounds where the strength law has no closed form.
+    The widths of a node are bounds where the strength law has no closed form. Where all stages
+    take the same option, there are such pairs of each.
     """
-    torque, found = train.torque, []
+    for option, one in enumerate(train.of_one_option):
+        if (made := _sized(one, drive, node)) is not None:
+            yield made if one is train else (made[0], (option,) * len(node))
+
+
+def _sized(train: Train, drive: Drive, node: Nodes) -> Made | None:
+    torque, found, options = train.torque, [], []
     for j, (p, k) in enumerate(node):
         z1, z2 = float(drive.z1[p]), float(drive.z2[p])
-        only = table(train.fixed_teeth(j, round(z1), round(z2)), j, train.highest_ratio)
-        width = only.width(np.array([torque]), np.array([0]), int(k)).item()
-        if width == math.inf:
+        widths = widths_of(train.fixed_teeth(j, round(z1), round(z2)), j, torque, int(k))
+        option = min(range(len(widths)), key=widths.__getitem__)
+        if (width := widths[option]) == math.inf:
             return None
         found.append(train.pair(j, float(drive.modules[j, k]), z1, z2, width))
+        options.append(option)
         torque *= z2 / z1
-    return tuple(found)
+    return tuple(found), tuple(options)
+
+
+def widths_of(train: Train, stage: int, torque: float, module: int) -> list[float]:
+    """Return the minimum face widths [mm] of the options of a stage whose teeth are given."""
+    own, found = train.stages[stage], []
+    for way in [replace(own, options=(o,)) for o in own.options] or [own]:
+        stages = (*train.stages[:stage], way, *train.stages[stage + 1 :])
+        one = replace(train, stages=stages, same_option=False)
+        only = table(one, stage, train.highest_ratio)
+        found.append(only.width(np.array([torque]), np.array([0]), module).item())
+    return found
 
 
 def orders_of(box: Gearbox) -> list[Arrangement]:
@@ -111,12 +142,12 @@ def orders_of(box: Gearbox) -> list[Arrangement]:
     return [a for a in arrangements(box) if not clashes(box, a) and a.length <= longest]
 
 
-def lay(search: Search, pairs: tuple[GearPair, ...], margin: float) -> bool:
+def lay(search: Search, made: Made, margin: float) -> bool:
     """Keep the best layout of a train if it improves the best value by more than a margin.
 
     False where it is not proven that no other layout of the train does.
     """
-    box, proven = search.make(pairs), True
+    box, proven = search.make(made[0]), True
     search.trains += 1
     for order in orders_of(box):
         if not _below(search, box, order, margin):
@@ -126,17 +157,17 @@ def lay(search: Search, pairs: tuple[GearPair, ...], margin: float) -> bool:
         outcome = layout.problem(one).methods["exact"](None, budget, search.seed, watch)
         proven = proven and outcome.finished
         if outcome.x is not None:
-            keep(search, pairs, order, outcome.x)
+            keep(search, made, order, outcome.x)
     return proven
 
 
-def keep(search: Search, pairs: tuple[GearPair, ...], order: Arrangement, angles: Array) -> None:
+def keep(search: Search, made: Made, order: Arrangement, angles: Array) -> None:
     """Keep a layout if it is the best so far."""
-    text = layout.problem(replace(search.make(pairs), slabs=order.slabs))
+    text = layout.problem(replace(search.make(made[0]), slabs=order.slabs))
     value = float(text.batch(angles[None]).F[0, 0])
     if value < search.value:
         search.clock.best = value
-        search.best = Design(value, pairs, order.slabs, angles)
+        search.best = Design(value, *made, order.slabs, angles)
 
 
 def _below(search: Search, box: Gearbox, order: Arrangement, margin: float) -> bool:
@@ -169,7 +200,13 @@ class Work:
 
 def prepare(search: Search, drive: Drive, box: Gearbox, margin: float) -> Work | None:
     """Return the tables for all cuts down to a margin; None if stopped. box: one of any sizes."""
-    fewer = useful(drive, search.value * (1.0 - margin))
+    cut = search.value * (1.0 - margin)
+    fewer = useful(drive, cut)
+    for step in STEPS if search.train.rated else ():
+        closer = narrower(search.tables, fewer, step, search.clock.tell)
+        if closer is None:
+            return None
+        fewer = useful(closer, cut)
     tables = rest(fewer, search.clock.tell)
     # Before all shafts are there, only the sides of the box distinguish the directions.
     bare = turns(replace(box, places=(), keep_outs=(), level=()))
@@ -211,9 +248,9 @@ def _last_looks(search: Search, drive: Drive, nodes: Nodes, bounds: Array, margi
     for node, value in zip(nodes, bounds, strict=True):
         teeth = tuple((round(drive.z1[p]), round(drive.z2[p])) for p, _ in node)
         if value < search.value * (1.0 - margin) and within(search.train, teeth):
-            pairs = sized(search.train, drive, node)
-            proven = pairs is None or lay(search, pairs, margin)
-            search.clock.stopped = search.clock.stopped or not proven
+            for made in sized(search.train, drive, node):
+                proven = lay(search, made, margin)
+                search.clock.stopped = search.clock.stopped or not proven
         if search.clock.stopped:
             return
 

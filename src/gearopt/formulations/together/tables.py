@@ -18,6 +18,7 @@ from gearopt.formulations.gear_train import Train
 from gearopt.formulations.layout.chain import Chain
 from gearopt.formulations.layout.gearbox import ANYWHERE, Gearbox, Shaft
 from gearopt.formulations.layout.slabs import Slabs, arrange, face_each_other, orders
+from gearopt.formulations.teeth.rated import RatedTable
 from gearopt.formulations.teeth.stage import Table
 from gearopt.formulations.teeth.tables import table
 from gearopt.optimise.kernels import kernel
@@ -272,22 +273,28 @@ def _stages(train: Train, tables: list[Table]) -> tuple[Array, ...]:
 
 
 def _loads(train: Train, tables: list[Table]) -> tuple[Array, Array, float]:
-    """Return the loads of all pairs, or minimum widths by cells of torque (up to ENTRIES)."""
+    """Return the loads of all pairs, or minimum widths by cells of torque (up to ENTRIES).
+
+    Of ratings these are the narrowest widths, in one cell: `rated_widths` makes others of them.
+    """
     loads = [t.load for t in tables if t.load is not None]
     span = math.log(train.highest_ratio) + 2.0 * DELTA
-    if loads:
+    if loads and not train.rated:
         return np.concatenate(loads), np.empty((0, 0, 0)), span
     pairs, modules = sum(len(t.z1) for t in tables), max(len(t.modules) for t in tables)
     cells = max(1, min(math.ceil(span / DELTA), ENTRIES // max(1, pairs * modules)))
+    cells = 1 if train.rated else cells
     step = span / cells
     found = np.full((cells, modules, pairs), np.inf)
     stop = 0
     for t in tables:
         start, stop = stop, stop + len(t.z1)
+        every = np.arange(len(t.z1))
         for cell in range(cells):
             torque = np.full(len(t.z1), train.torque * math.exp(cell * step))
             for k in range(len(t.modules)):
-                found[cell, k, start:stop] = t.width(torque, np.arange(len(t.z1)), k)
+                own = t.narrowest(k) if isinstance(t, RatedTable) else t.width(torque, every, k)
+                found[cell, k, start:stop] = own
     return np.empty(0), found, step
 
 

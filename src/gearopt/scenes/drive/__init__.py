@@ -6,7 +6,6 @@ without one, or by the method ipopt, sizes are continuous and proven by a dual b
 
 import math
 from dataclasses import asdict, replace
-from functools import partial
 from typing import Any
 
 from gearopt.errors import SolveError
@@ -24,7 +23,6 @@ from gearopt.optimise.typed import untyped
 from gearopt.scenes.drive.assumptions import assumptions, notes
 from gearopt.scenes.drive.blank_tables import BlankKeys, misfits
 from gearopt.scenes.drive.examples import EXAMPLE, MORE_EXAMPLES
-from gearopt.scenes.drive.rating.cut_short import bounded
 from gearopt.scenes.drive.rating.limits import check_safe
 from gearopt.scenes.drive.rating.rated import rate, with_rating
 from gearopt.scenes.drive.rating.tables import MATERIAL, GivenTable
@@ -262,9 +260,7 @@ def _answer(scene: Scene, ask: Ask, ideal: Result | None = None) -> Result:
         if possible.status == "infeasible":
             return replace(possible, name="drive")
     if _without_ratings(train) is None:
-        whole, sized = _discrete(scene, train, ask.top), partial(_sized, scene, train)
-        exact = ask.method in (None, "exact") and scene.rated_real
-        return bounded(train, ask, whole, sized) if exact else sized(ask, whole)
+        return _sized(scene, train, ask, _discrete(scene, train, ask.top))
     known, ideal = ideal is not None, ideal or _real(scene, ask)
     if ideal.status == "infeasible":  # then no whole teeth do either
         return replace(ideal, name="drive")
@@ -324,7 +320,7 @@ def compared(scene: Scene) -> tuple[str, ...]:
         real = ("ipopt",) if not scene.by_ratings else (SMOOTH,) * scene.rated_real
         return ("exact", *asked, *real, "annealing", "nsga2")
     if scene.layout.together:
-        return ("exact", "ipopt")
+        return ("exact",) if scene.by_ratings else ("exact", "ipopt")
     return ("exact", "sa", "sa-polish", "multistart", "nsga2")
 
 

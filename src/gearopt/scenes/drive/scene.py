@@ -203,11 +203,6 @@ class Scene(Table):
         return self.rating is not None and self.limited and not alone
 
     @property
-    def may_be_together(self) -> bool:
-        """Return whether gears and box may be chosen at once."""
-        return self.teeth is not None and not self.by_ratings
-
-    @property
     def rated_real(self) -> bool:
         """Return whether ratings can limit real-valued teeth: under one load, without a choice."""
         return self.rating is not None and not (self.load or self.material)
@@ -256,9 +251,8 @@ class Scene(Table):
             check_rated(self.rating, self.gears, self.stage, self.load, self.material)
         check_objective(self.objective, self.gears, self.stage, self.material)
         if self.by_ratings:
-            together = self.layout is not None and self.layout.together
             ruled = [n for n in PROCESSES if getattr(self, n) is not None]
-            check_sized(self.law, self.limits.LAW, self.stage, together, ruled)
+            check_sized(self.law, self.limits.LAW, self.stage, ruled)
 
     def _check_teeth(self) -> None:
         """Check that gears have a centre distance, and that what is sought can take it."""

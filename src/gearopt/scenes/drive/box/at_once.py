@@ -7,6 +7,7 @@ from typing import Any
 from gearopt.errors import SolveError
 from gearopt.formulations import sizing, teeth, together
 from gearopt.formulations.design import drive_design
+from gearopt.formulations.gear_train import Train
 from gearopt.formulations.layout.slabs import Slabs, arrange
 from gearopt.formulations.together.continuous import angles_of, continuous
 from gearopt.optimise.clock import following, in_part
@@ -46,8 +47,11 @@ def at_once(scene: Scene, ask: Ask, sized: Result) -> Result:
     box, angles, order = together.laid_out(scene.train(), scene.gearbox, outcome.x)
     own, pairs = teeth.problem(scene.train()), together.pairs(scene.train(), outcome.x)
     point = outcome.x[: sum(v.size for v in own.variables)]
-    gears = replace(sized, design=untyped(scene.design(pairs)), limits=limits(own, point))
+    chosen = together.options(scene.train(), outcome.x)
+    gears = replace(sized, design=untyped(scene.design(pairs, chosen)), limits=limits(own, point))
     found = with_layout(scene, result, events, replace(gears, report={}), box, angles, order)
+    if scene.by_ratings:
+        return found
     left = replace(ask, budget=asked.less(result.seconds))
     smooth = _from(scene, (order.slabs, pairs, angles), left)
     return replace(found, parts=(*found.parts, *smooth))
@@ -75,11 +79,14 @@ def posed(scene: Scene, method: str, apart: Result) -> Model:
         known = None
         if apart.value is not None:
             slabs, pairs, angles = _start(scene, apart)
-            known = (pairs, arrange(scene.gearbox(pairs), slabs), np.array(angles))
+            made = pairs, _options(train, apart)
+            known = (made, arrange(scene.gearbox(pairs), slabs), np.array(angles))
         problem = together.problem(train, scene.gearbox, known)
         return Model(problem, "Gears and box at once", unit)
     if method not in REAL:
         raise SolveError(f"together = true is for exact and {' and '.join(REAL)}, not for {method}")
+    if scene.by_ratings:
+        raise SolveError(f"{method} takes no gears and box at once that ratings limit; exact does")
     if apart.value is None:
         raise SolveError(f"{method} needs a start: {apart.message}")
     slabs, pairs, angles = _start(scene, apart)
@@ -93,6 +100,17 @@ def _start(scene: Scene, apart: Result) -> Start:
     assert found is not None
     slabs = tuple(tuple(s - 1 for s in slab) for slab in found.slabs)
     return slabs, pairs_of(scene, apart), tuple(math.radians(t) for t in found.link_angles_deg)
+
+
+def _options(train: Train, found: Result) -> tuple[int, ...]:
+    """Return the option of every stage of a design, from 0, by its materials."""
+    stages = drive_design(found.design).stages
+    names = [(stage.pinion_material, stage.wheel_material) for stage in stages]
+    known = [
+        [option.materials for option in stage.options] or [n]
+        for stage, n in zip(train.stages, names, strict=True)
+    ]
+    return tuple(own.index(n) for own, n in zip(known, names, strict=True))
 
 
 def _from(scene: Scene, start: Start, ask: Ask) -> tuple[Result, ...]:

@@ -173,7 +173,7 @@ def _message(scene: Scene, sized: Result, box: Gearbox, notes: list[str]) -> str
     if scene.layout.together or not others_may_fit(scene, box):
         return why
     least = str(sized.objective["name"]).replace("_", " ")
-    others = ": write together = true in [layout]" if scene.may_be_together else ""
+    others = ": write together = true in [layout]" if scene.teeth is not None else ""
     return f"These gears, chosen first for the least {least}, do not fit: {why} Others may{others}."
 
 

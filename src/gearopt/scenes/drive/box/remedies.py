@@ -148,8 +148,7 @@ def _of_gears(
     if not scene.layout.together:
         if not others_may_fit(scene, scene.gearbox(pairs)):
             return Remedies((), found, message)
-        told = TOGETHER if scene.by_ratings else APART
-        return Remedies((), found, "; ".join(filter(None, (message, told))))
+        return Remedies((), found, "; ".join(filter(None, (message, APART))))
     found = tuple(
         replace(r, verified={k: v if k == "with" else "undecided" for k, v in r.verified.items()})
         for r in found

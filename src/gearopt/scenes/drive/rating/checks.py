@@ -58,22 +58,17 @@ def check_given(gears: Gears, stages: Sequence[StageTable]) -> None:
         raise refuse(rule, at=place, action="sample")
 
 
-def check_sized(
-    law: Law, own: Law, stages: Sequence[StageTable], together: bool, ruled: Sequence[str]
-) -> None:
-    """Refuse what gears that ratings limit cannot have: box at once, processes, own load limits.
+def check_sized(law: Law, own: Law, stages: Sequence[StageTable], ruled: Sequence[str]) -> None:
+    """Refuse what gears that ratings limit cannot have: processes, own load limits.
 
-    law: what limits the loads beside ratings; own: of which stages have limits of their own;
-    together: whether gears and box are asked for at once; ruled: names of the processes asked for.
+    law: what limits the loads beside ratings; own: of which stages have limits of their own; ruled:
+    names of the processes asked for.
     """
     for k, stage in enumerate(stages):
         for name in own.names if not law.limits else ():
             if getattr(stage, name) is not None:
                 rule = f"needs {name} in [limits], without which ratings alone limit the gears"
                 raise refuse(rule, at=("stage", k, name), action="remove")
-    if together:
-        rule = "is for gears that load limits alone size, and [rating] limits them here"
-        raise refuse(rule, False, ("layout", "together"))
     for name in ruled if not law.limits else ():
         rule = f"is a process by {own.title}, which [limits] does not have (give preset)"
         raise refuse(rule, at=(name,), action="remove")

@@ -1,0 +1,179 @@
+"""Gears that ratings limit and their box at once: brute force over every train and layout."""
+
+import math
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from gearboxes import smallest_box
+from rated_brute_force import safe, widths
+from rated_drives import TREATMENTS, agma, some_iso, some_rated_drive
+
+from gearopt.formulations import layout, teeth, together
+from gearopt.formulations.layout.gearbox import Clearances, Gearbox, Shaft
+from gearopt.formulations.layout.slabs import arrangements, clashes
+from gearopt.formulations.strength.rated import Option
+from gearopt.formulations.together.rated_widths import STEPS, narrower
+from gearopt.formulations.together.search import Search
+from gearopt.formulations.together.tables import numbers
+from gearopt.optimise.clock import Clock
+from gearopt.optimise.result import Budget
+from gearopt.optimise.solve import run
+
+KINDS = "tied", "stepped", "fixed"  # widths that can be counted
+AIMS = "box_volume", "plan_area", "longest_side", "height"
+
+
+def some_train(seed, standard=agma, options=1, stages=2):
+    """A random drive of few teeth and modules, with one or more ways of making its gears."""
+    rng = np.random.default_rng([31, seed])
+    train = some_rated_drive(seed, stages, KINDS, standard)
+    own = []
+    for stage in train.stages:
+        low = stage.pinion_teeth[0]
+        few = stage.modules[:: max(1, len(stage.modules) // 2)][-3:]
+        made = stage.options
+        if options > 1:
+            every = (standard(t, float(rng.integers(6, 11))) for t in TREATMENTS[:options])
+            made = tuple(Option((s,), materials=(f"{k}",) * 2) for k, s in enumerate(every))
+        own.append(replace(stage, pinion_teeth=(low, low + 1), modules=few, options=made))
+    train = replace(train, stages=tuple(own), tolerance=train.tolerance / 2)
+    return replace(train, stages=tuple(replace(s, wheel_teeth=(1, 120)) for s in train.stages))
+
+
+def some_frame(seed, train):
+    """A function that makes gearboxes whose shafts about fit the modules of a drive."""
+    rng = np.random.default_rng([32, seed])
+    middle = float(train.stages[0].modules[-1])
+    radii = middle * rng.uniform(3.0, 5.0) * 1.3 ** np.arange(len(train.stages) + 1)
+    kinds = {
+        "clearances": Clearances(*(float(g) for g in rng.uniform(1.0, 10.0, 4))),
+        "objective": AIMS[seed % 4],
+    }
+    return lambda pairs: Gearbox(pairs, tuple(Shaft(float(r)) for r in radii), **kinds)
+
+
+def narrowest_of(train):
+    """Minimum face widths by rating every candidate alone, of all options the best."""
+
+    @cache
+    def narrowest(k, torque, module, teeth):
+        best = None
+        for option in train.stages[k].options:
+            stages = [replace(s, options=(option,)) for s in train.stages]
+            one = replace(train, stages=tuple(stages), same_option=False)
+            for width in widths(one, k, module, teeth[0]):
+                if best is not None and width >= best:
+                    break
+                if safe(one, k, train.pair(k, float(module), *map(float, teeth), width), torque):
+                    best = float(width)
+        return best
+
+    return narrowest
+
+
+def brute_force(train, make, rel):
+    if not train.same_option:
+        return smallest_box(train, make, rel, narrowest=narrowest_of(train))
+    count = len(train.stages[0].options)
+    every = [
+        replace(train, stages=tuple(replace(s, options=(s.options[k],)) for s in train.stages))
+        for k in range(count)
+    ]
+    return min(smallest_box(one, make, rel, narrowest=narrowest_of(one)) for one in every)
+
+
+def same_as_brute_force(train, make, gap):
+    best = brute_force(train, make, 0.2 * gap)
+    result, outcome = run(together.problem(train, make), "exact", Budget(gap=gap), 0, None, gap)
+    if math.isinf(best):
+        assert result.status == "infeasible"
+        return result, outcome
+    assert result.status == "optimal"
+    assert result.value == pytest.approx(best, rel=1.2 * gap)
+    assert result.bound <= best * (1.0 + 1e-9)
+    return result, outcome
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(16))
+def test_two_stages_by_agma_as_by_brute_force(seed):
+    train = some_train(seed)
+    same_as_brute_force(train, some_frame(seed, train), 1e-3)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(6))
+def test_two_stages_by_iso_as_by_brute_force(seed):
+    train = some_train(seed, some_iso)
+    same_as_brute_force(train, some_frame(seed, train), 1e-3)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("same", [False, True])
+@pytest.mark.parametrize("seed", range(2))
+def test_materials_as_by_brute_force(seed, same):
+    train = replace(some_train(seed, options=3), same_option=same)
+    result, outcome = same_as_brute_force(train, some_frame(seed, train), 1e-3)
+    if result.value is not None and same:
+        assert len(set(together.options(train, outcome.x))) == 1
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [0, 1])
+def test_three_stages_as_by_brute_force(seed):
+    train = some_train(seed, stages=3)
+    few = [replace(s, modules=s.modules[-2:], wheel_teeth=(1, 60)) for s in train.stages]
+    train = replace(train, stages=tuple(few))
+    same_as_brute_force(train, some_frame(seed, train), 1e-2)
+
+
+@pytest.mark.parametrize("standard", [agma, pytest.param(some_iso, marks=pytest.mark.slow)])
+def test_widths_of_cells_are_below_those_of_every_torque(standard):
+    """At a torque and at all stronger ones that a stage may carry, in cells of any width."""
+    train = some_train(3, standard, stages=3)
+    make = some_frame(3, train)
+    search, (drive, _) = Search(train, make, Clock(), 0), numbers(train, make)
+    rng = np.random.default_rng(8)
+    for step in STEPS[:2]:
+        drive = narrower(search.tables, drive, step, lambda: True)
+        for _ in range(40):
+            stage = int(rng.integers(3))
+            table = search.tables[stage]
+            pair = int(rng.integers(len(table.z1)))
+            others = [t.log_ratio for t in search.tables]
+            reached = sum(float(rng.choice(o)) for o in others[:stage])
+            there, later = reached + table.log_ratio[pair], others[stage + 1 :]
+            low = math.log(train.lowest_ratio) - sum(o.max() for o in later)
+            if not low <= there <= math.log(train.highest_ratio) - sum(o.min() for o in later):
+                continue
+            torque = train.torque * math.exp(reached)
+            cell = int(max(reached - 1e-9, 0.0) / drive.step)
+            for module in range(len(table.modules)):
+                width = table.width(np.array([torque]), np.array([pair]), module).item()
+                bound = drive.bisected[cell, module, drive.start[stage] + pair]
+                assert bound <= width * (1.0 + 1e-9)
+    assert np.isfinite(drive.bisected).any()
+
+
+@pytest.mark.slow
+def test_the_answer_is_no_worse_than_gears_first():
+    train = some_train(1)
+    make = some_frame(1, train)
+    sized, outcome = run(teeth.problem(train), "exact")
+    result, _ = run(together.problem(train, make), "exact", Budget(gap=0.01), 0, None, 0.01)
+    if sized.value is not None:
+        first = teeth.pairs(train, outcome.x)
+        assert result.value <= smallest_of(make, first) * (1.0 + 1e-9)
+
+
+def smallest_of(make, pairs):
+    """The smallest box of gears that are given."""
+    box = make(pairs)
+    found = [
+        run(layout.problem(replace(box, slabs=a.slabs)), "exact", Budget(gap=1e-3))[0].value
+        for a in arrangements(box)
+        if not clashes(box, a)
+    ]
+    return min((v for v in found if v is not None), default=math.inf)
