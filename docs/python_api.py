@@ -16,8 +16,8 @@ solved in three lines ([How to start](start.md#from-python)); a problem of your 
 [a page](own_problem.md); the words are explained in [The contract](contract.md).
 """
 GROUPS = {  # heading: names, in reading order
-    "From a file to an answer": ("solve", "rate", "explain", "compare", "load"),
-    "Answers": ("Result", "Explanation", "Comparison"),
+    "From a file to an answer": ("solve", "rate", "explain", "pareto", "compare", "load"),
+    "Answers": ("Result", "Explanation", "Front", "Comparison"),
     "Problems of your own": (
         "Problem",
         "Var",

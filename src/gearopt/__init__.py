@@ -22,6 +22,7 @@ __all__ = [
     "Conic",
     "Event",
     "Explanation",
+    "Front",
     "GearoptError",
     "Outcome",
     "Param",
@@ -36,6 +37,7 @@ __all__ = [
     "evaluate",
     "explain",
     "load",
+    "pareto",
     "rate",
     "solve",
 ]

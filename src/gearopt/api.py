@@ -20,6 +20,8 @@ from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.explaining.explanation import Explanation, Remedy
 from gearopt.optimise.options import check, named
 from gearopt.optimise.own_problems import solve_own
+from gearopt.optimise.pareto.front import Front
+from gearopt.optimise.pareto.several import chosen_of, several, solved
 from gearopt.optimise.problem import Problem, one_objective
 from gearopt.optimise.result import Budget, Event, Outcome, Result, Watch, plain  # noqa: F401
 from gearopt.optimise.solve import GAP, evaluate  # noqa: F401
@@ -247,6 +249,52 @@ def compare(
     del names["asked"]
     names["changes"] = names.pop("options").get("changes", {})
     return replace(found, title=getattr(scene, "title", "") or names["scene"], **names)
+
+
+@named
+def pareto(
+    what: File | Problem | Conic,
+    changes: Changes = None,
+    *,
+    objectives: Sequence[str] | str | None = None,
+    most: Mapping[str, float] | None = None,
+    method: str | None = None,
+    points: int | None = None,
+    weights: Mapping[str, float] | None = None,
+    budget: Budget | None = None,
+    seed: int = 0,
+    watch: Watch | None = None,
+) -> Front:
+    """Return the Pareto front of two or three objectives: the designs that no other beats.
+
+    changes: of a file, as in `load`.
+    objectives: names, those of `objectives(what)`; of a Problem by default those it minimises.
+    most: largest values of interest by name, in the units of the objectives. method: exact (all
+    designs of whole teeth, proven), epsilon (real-valued sizes, point by point), nsga2, annealing
+    or hybrid; by default the one that proves most. points: sought, where a method has a choice: 60,
+    of three objectives 400. weights: by name, of the design to pick. SceneError for a wrong file,
+    SolveError where objectives or method do not fit.
+    """
+    check(method=method, budget=budget, seed=seed, watch=watch, points=points)
+    check(most=most, weights=weights)
+    budget, watch, most = budget or Budget(), whole(watch), dict(most or {})
+    names = objectives.split(",") if isinstance(objectives, str) else objectives
+    names = None if names is None else [name.strip() for name in names]
+    if isinstance(what, Problem | Conic):
+        _unchanged(what, changes)
+        posed = several(what, names)
+        about: dict[str, Any] = {"title": what.name}
+    else:
+        scene, module, about = _opened(what, changes)
+        known = module.objectives(scene) if hasattr(module, "objectives") else {}
+        chosen = chosen_of(names, list(known), f'this file of kind "{about["scene"]}"')
+        posed = module.several(scene, chosen, method)
+        about = about | {"title": getattr(scene, "title", "")}
+    options: dict[str, Any] = {"method": method, "seconds": budget.seconds, "points": points}
+    options |= {"most": most}
+    options |= {"weights": weights, "seed": seed} | about.get("options", {})
+    about["options"] = options
+    return solved(posed, most, method, points, weights, budget, seed, watch, **about)
 
 
 def _unchanged(problem: Problem | Conic, changes: Changes) -> None:

@@ -9,8 +9,8 @@ from blank_rings import backup, rings, volume
 
 from gearopt.formulations.shares import share
 from gearopt.formulations.strength.iso6336 import Iso6336
+from gearopt.formulations.teeth.columns import spans
 from gearopt.formulations.teeth.search import within
-from gearopt.formulations.teeth.stage import spans
 from gearopt.physics.agma.rating import rate as agma_rate
 from gearopt.physics.agma.rating import rate_spectrum as agma_spectrum
 from gearopt.physics.iso6336.rating import rate as iso_rate

@@ -8,8 +8,8 @@ from rated_brute_force import least_share
 from rated_drives import MODULES, RACK, TIED, F, agma, iso, rated_drive
 
 from gearopt.formulations.strength.rated import Load, Option
+from gearopt.formulations.teeth.columns import spans
 from gearopt.formulations.teeth.search import search, within
-from gearopt.formulations.teeth.stage import spans
 from gearopt.formulations.toothing import Toothing
 from gearopt.optimise.result import Budget
 from gearopt.physics.agma.rating import rate_spectrum as agma_spectrum

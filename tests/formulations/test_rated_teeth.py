@@ -14,9 +14,9 @@ from gearopt.formulations.gear_train import FaceWidth
 from gearopt.formulations.shares import share
 from gearopt.formulations.strength.k_factor import K_FACTOR
 from gearopt.formulations.strength.rated import Option
+from gearopt.formulations.teeth.columns import spans
 from gearopt.formulations.teeth.later_stages import bound, first_costs, useful_cells
 from gearopt.formulations.teeth.search import search, within
-from gearopt.formulations.teeth.stage import spans
 from gearopt.formulations.teeth.tables import stage_tables
 from gearopt.optimise.result import Budget
 from gearopt.physics.agma.rating_factors import Steel

@@ -13,7 +13,7 @@ from small_drives import FACES, LIMITED, OBJECTIVES, drive
 from gearopt.errors import SolveError
 from gearopt.formulations.gear_train import FaceWidth, Stage, Train
 from gearopt.formulations.strength.k_factor import K_FACTOR
-from gearopt.formulations.teeth import stage as staging
+from gearopt.formulations.teeth import columns as staging
 from gearopt.formulations.teeth.stage import ALLOWANCE
 from gearopt.formulations.teeth.tables import table
 

@@ -10,8 +10,8 @@ import pytest
 from brute_force import cost
 from small_drives import FACES, OBJECTIVES, drive
 
+from gearopt.formulations.teeth import columns as staging
 from gearopt.formulations.teeth import problem
-from gearopt.formulations.teeth import stage as staging
 from gearopt.formulations.teeth.progress import MARGIN
 from gearopt.formulations.teeth.reach import first_cut
 from gearopt.formulations.teeth.search import search

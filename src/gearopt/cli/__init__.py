@@ -5,7 +5,7 @@ import sys
 from typer.main import get_command
 
 # Importing registers the commands.
-from gearopt.cli import answering  # noqa: F401
+from gearopt.cli import answering, trading  # noqa: F401
 
 # isort: split
 from gearopt.cli import files, reporting  # noqa: F401
@@ -19,6 +19,7 @@ ORDER = (
     "solve",
     "rate",
     "explain",
+    "pareto",
     "check",
     "compare",
     "report",

@@ -14,6 +14,7 @@ from gearopt.cli.names import result_files
 from gearopt.cli.writing import check_csv, check_html, write
 from gearopt.errors import GearoptError
 from gearopt.optimise.comparing.comparison import Comparison
+from gearopt.optimise.pareto.front import Front
 from gearopt.optimise.result import Result, loads
 from gearopt.report.command import again
 from gearopt.report.measures import METRIC, SYSTEMS, Measures
@@ -74,17 +75,19 @@ def _again(kept: Result | Comparison, screen: Console, files: Files) -> list[str
     return written(kept, files) if isinstance(kept, Result) else compared(kept, files.html)
 
 
-def _show(found: Result | Comparison, screen: Console, measures: Measures) -> None:
-    from gearopt.report.terminal import show, show_comparison
+def _show(found: Result | Comparison | Front, screen: Console, measures: Measures) -> None:
+    from gearopt.report.terminal import show, show_comparison, show_front
 
     if isinstance(found, Result):
         show(found, screen, measures)
+    elif isinstance(found, Front):
+        show_front(found, screen, measures)
     else:
         show_comparison(found, screen)
 
 
 def answer(
-    found: Result | Comparison, as_json: bool, lines: list[str], measures: Measures = METRIC
+    found: Result | Comparison | Front, as_json: bool, lines: list[str], measures: Measures = METRIC
 ) -> None:
     """Print an answer as JSON, or show it with lines about what was written."""
     if as_json:
@@ -103,6 +106,19 @@ def compared(found: Comparison, html: Path | None) -> list[str]:
 
     write("--html", html, page(found))
     return [f"\nPage: {html}"]
+
+
+def traded(front: Front, files: Files) -> list[str]:
+    """Write the table of a Pareto front; return a line about it."""
+    if files.csv is None:
+        return []
+    from gearopt.report.front import table
+
+    _make(files.csv)
+    made = table(front, files.measures)
+    path = files.csv / f"{made.stem}.csv"
+    write("--csv", path, made.csv(), "utf-8-sig")  # for spreadsheets
+    return [f"\nTable: {path}"]
 
 
 def checked(html: Path | None, csv: Path | None, units: str, *given: Path) -> Files:

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from gearopt.formulations.shares import LENGTHS, MASSES, OBJECTIVES, share
+from gearopt.formulations.shares import BY_WIDTH, LENGTHS, MASSES, OBJECTIVES, WEIGHTED, share
 from gearopt.formulations.strength import Law
 from gearopt.formulations.strength.rated import Option
 from gearopt.formulations.toothing import Toothing
@@ -113,7 +113,8 @@ class Train:
     """A drive: input torque [N mm], total ratio and its relative tolerance, and its stages.
 
     coprime: z1 and z2 without common divisor (hunting teeth). objective: a key of OBJECTIVES; mass
-    needs density [t/mm3]; LENGTHS are those of reference circles: profile shifts must cancel. law:
+    needs density [t/mm3]; LENGTHS are those of reference circles: profile shifts must cancel.
+    others: further objectives, of a Pareto front; weights: what the objective WEIGHTED adds. law:
     what limits the stages. speed: that of the input [rad/s], for laws that depend on it. safety:
     S_F and S_H asked for of stages with options. same_option: all stages take their options of
     one and the same number, which have the same materials. keys: places of `numbers` in a problem
@@ -126,6 +127,8 @@ class Train:
     stages: tuple[Stage, ...]
     coprime: bool = False
     objective: str = "gear_volume"
+    others: tuple[str, ...] = ()
+    weights: tuple[tuple[str, float], ...] = ()
     density: float | None = None
     law: Law = field(kw_only=True)
     speed: float = 0.0
@@ -143,19 +146,38 @@ class Train:
             raise ValueError(f"{self.law.title} needs pinions of {self.law.minimum_teeth} teeth")
         if self.ratio < 1 or not 0 <= self.tolerance < 1 or not self.stages:
             raise ValueError("a drive needs stages, ratio >= 1 and a tolerance from 0 to below 1")
-        if self.objective in LENGTHS and not self.on_reference:
-            raise ValueError(f"the objective {self.objective} needs profile shifts that cancel")
+        for objective in (*self.objectives, *(name for name, _ in self.weights)):
+            self._check(objective)
+
+    def _check(self, objective: str) -> None:
+        """Raise ValueError where an objective needs what the drive lacks."""
+        if objective in LENGTHS and not self.on_reference:
+            raise ValueError(f"the objective {objective} needs profile shifts that cancel")
         solid = self.density is not None or all(
             stage.options and all(all(option.densities) for option in stage.options)
             for stage in self.stages
         )
-        if self.objective in MASSES and not solid:
-            raise ValueError(f"the objective {self.objective} needs a density")
-        if self.objective == "cost" and not all(stage.options for stage in self.stages):
+        if objective in MASSES and not solid:
+            raise ValueError(f"the objective {objective} needs a density")
+        if objective == "cost" and not all(stage.options for stage in self.stages):
             raise ValueError("the objective cost needs the price of every stage's materials")
         made = {tuple(option.materials for option in stage.options) for stage in self.stages}
         if self.same_option and len(made) > 1:
             raise ValueError("stages that take the same option need options of the same materials")
+
+    @property
+    def objectives(self) -> tuple[str, ...]:
+        """Return all objectives, the first one first."""
+        return (self.objective, *self.others)
+
+    def minimising(self, objective: str) -> "Train":
+        """Return the drive with one objective alone."""
+        return replace(self, objective=objective, others=(), weights=())
+
+    def weighing(self, weights: Sequence[float]) -> "Train":
+        """Return the drive that minimises a weighted sum of its objectives."""
+        named = tuple(zip(self.objectives, map(float, weights), strict=True))
+        return replace(self, objective=WEIGHTED, others=(), weights=named)
 
     @property
     def rated(self) -> bool:
@@ -178,14 +200,17 @@ class Train:
 
     @property
     def hollow(self) -> bool:
-        """Whether the objective counts gears that are no solid discs."""
+        """Whether an objective counts gears that are no solid discs."""
         blanks = [blank for stage in self.stages for blank in stage.blanks]
-        return self.objective in MASSES and not all(blank.solid for blank in blanks)
+        names = (*self.objectives, *(name for name, _ in self.weights))
+        counted = any(name in MASSES for name in names)
+        return counted and not all(blank.solid for blank in blanks)
 
     @property
     def by_width(self) -> bool:
         """Whether the share of a stage is proportional to its face width."""
-        return self.objective not in LENGTHS
+        named = [name for name, _ in self.weights] or [self.objective]
+        return all(name in BY_WIDTH for name in named)
 
     @property
     def on_reference(self) -> bool:
@@ -226,7 +251,7 @@ class Train:
     @property
     def unit(self) -> str:
         """Unit of the objective."""
-        return OBJECTIVES[self.objective]
+        return OBJECTIVES.get(self.objective, "")
 
     def numbers(self) -> dict[str, float | tuple[float, ...]]:
         """Return every number of the drive by name, a float; one per stage for what stages have."""
@@ -284,15 +309,17 @@ def terms(
     the place of those of the ratings. shares: what stages add to the objective, as `share`. A limit
     is left out where the drive leaves it open or fixes the quantity.
     """
-    total, product, torque = 0.0, 1.0, numbers.torque
+    totals: dict[str, Any] = dict.fromkeys(train.objectives, 0.0)
+    product, torque = 1.0, numbers.torque
     limits: dict[str, Any] = {}
     equal: dict[str, Any] = {}
     for k, pair in enumerate(pairs):
         own = {name: each(getattr(numbers, name))[k] for name in train.by_stage}
         stage, option = train.stages[k], options[k] if options else 0
         several = range(max(1, len(stage.options)))
-        worth = [shares(train, k, pair, numbers.density, one) for one in several]
-        total = total + _chosen(worth, option)
+        for name in totals:
+            worth = [shares(train, k, pair, numbers.density, one, name) for one in several]
+            totals[name] = totals[name] + _chosen(worth, option)
         allowable = [own[name] for name in train.law.names]
         rows = train.law.utilisations(pair, torque, numbers.speed / product, allowable)
         if stage.options:
@@ -314,7 +341,7 @@ def terms(
         limits["ratio_high"] = product / numbers.highest_ratio
     else:
         equal["ratio"] = product / numbers.highest_ratio
-    return Terms({train.objective: total}, limits, equal=equal)
+    return Terms(totals, limits, equal=equal)
 
 
 def _chosen(values: Sequence[Any], option: Any) -> Any:

@@ -14,7 +14,7 @@ from typing import Any
 
 from gearopt.formulations import sizing
 from gearopt.formulations.gear_train import Train, terms
-from gearopt.formulations.shares import least_share
+from gearopt.formulations.shares import BY_WIDTH, LENGTHS, least_share
 from gearopt.formulations.strength.rated import Box
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.problem import Problem
@@ -65,12 +65,12 @@ def bounding(train: Train, choice: Choice, most: float = math.inf) -> Problem | 
     return Problem("bounding", sizing.variables(train), sizing.parameters(train), evaluate)
 
 
-def _least(train: Train, k: int, pair: GearPair, density: Any, option: int) -> Any:
+def _least(train: Train, k: int, pair: GearPair, density: Any, option: int, objective: str) -> Any:
     """Return the `least_share` of a stage, by the fewest teeth that it may have."""
     stage = train.stages[k]
     pinion = float(stage.pinion_teeth[0])
     wheel = max(float(stage.wheel_teeth[0]), pinion * float(stage.ratio[0]))
-    return least_share(train, k, pair, density, option, (pinion, wheel))
+    return least_share(train, k, pair, density, option, (pinion, wheel), objective)
 
 
 def box(train: Train, k: int, most: float) -> Box:
@@ -93,7 +93,8 @@ def _widest(train: Train, k: int, ratio: float, most: float) -> float:
     face = train.stages[k].face_width
     if face.fixed is not None:
         return float(face.fixed)
-    if not math.isfinite(most) or not math.isfinite(face.widest):
+    sized = train.objective in (*BY_WIDTH, *LENGTHS)
+    if not sized or not math.isfinite(most) or not math.isfinite(face.widest):
         return math.inf
     stage = train.stages[k].toothing
     one = stage.of_diameter(stage.cosine / 20.0, 20.0, 1.0, ratio, face.widest)

@@ -18,6 +18,10 @@ def _whole(value: Any, minimum: int) -> bool:
     return isinstance(value, Integral) and not isinstance(value, bool) and int(value) >= minimum
 
 
+def _numbers(value: Any) -> bool:
+    return isinstance(value, Mapping) and all(is_number(v) for v in value.values())
+
+
 SORTS: dict[str, tuple[Callable[[Any], bool], str]] = {  # of options: what each is, in words
     "method": (lambda v: isinstance(v, str), 'the name of a method, such as method="ipopt"'),
     "budget": (lambda v: isinstance(v, Budget), BUDGET),
@@ -30,9 +34,22 @@ SORTS: dict[str, tuple[Callable[[Any], bool], str]] = {  # of options: what each
     "evaluations": (lambda v: _whole(v, 1), "a whole number of at least 1"),
     "seconds": (lambda v: is_number(v) and v > 0, "a number above 0"),
     "bound_from": (lambda v: isinstance(v, str), 'the name of a method, such as "exact"'),
+    "points": (lambda v: _whole(v, 2), "a whole number of at least 2"),
+    "most": (_numbers, 'numbers by name, such as most={"mass": 40}'),
+    "weights": (_numbers, 'numbers by name, such as weights={"mass": 1, "cost": 2}'),
     "start": (lambda v: isinstance(v, Mapping), 'values by name, such as start={"x": 1.0}'),
 }
-NONE = ("method", "budget", "watch", "gap", "bound_from", "start")  # options that may be None
+NONE = (
+    "method",
+    "budget",
+    "watch",
+    "gap",
+    "bound_from",
+    "start",
+    "points",
+    "most",
+    "weights",
+)  # options that may be None
 
 
 def check(**options: Any) -> None:

@@ -9,8 +9,10 @@ from rich.text import Text
 
 from gearopt.optimise.comparing.comparison import Comparison, Group
 from gearopt.optimise.explaining.explanation import Explanation
+from gearopt.optimise.pareto.front import Front
 from gearopt.optimise.result import Result
 from gearopt.report import comparison_words as words
+from gearopt.report import front
 from gearopt.report.answer import decided
 from gearopt.report.explained import of_influences
 from gearopt.report.kinds import kind_of
@@ -174,3 +176,23 @@ def _group(found: Comparison, group: Group, console: Console) -> None:
     for row in group.rows:
         if late := words.ended(found, row):
             console.print(Text(f"Equal evaluations: {late}.", style="yellow"))
+
+
+def show_front(found: Front, console: Console, measures: Measures = METRIC) -> None:
+    """Print a Pareto front."""
+    said, colour = front.VERDICTS[found.status]
+    console.print(Text.assemble((front.title(found), "bold"), ": ", (said, f"bold {colour}")))
+    for line in front.decided(found, measures):
+        console.print(Text(line))
+    if found.points:
+        console.print()
+        console.print(grid(front.table(found, measures, front.SHOWN), console.width))
+        hidden = len(found.points) - front.SHOWN
+        if hidden > 0:
+            console.print(Text("Some of the designs; --csv, --html and --json hold all.", "dim"))
+    for line in front.picked(found, measures):
+        console.print()
+        console.print(Text(line))
+    console.print()
+    spent = f"{found.method}, {found.evaluations:,} evaluations, {found.seconds:.3g} s."
+    console.print(Text(spent, style="dim"))

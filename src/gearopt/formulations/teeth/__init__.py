@@ -6,6 +6,7 @@ tied, free or on a step. `exact` proves its answer by exhausting all other train
 
 import math
 from collections.abc import Iterable
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -15,11 +16,13 @@ from gearopt.errors import SolveError
 from gearopt.formulations import sizing
 from gearopt.formulations.gear_train import Stage, Train, terms
 from gearopt.formulations.shares import share
+from gearopt.formulations.teeth.front import fronts
 from gearopt.formulations.teeth.progress import MARGIN, TIE, Progress, Teeth
 from gearopt.formulations.teeth.search import BEAM, search
 from gearopt.formulations.teeth.tables import table
 from gearopt.formulations.teeth.wide import narrowed, trimmed
 from gearopt.optimise.clock import Clock
+from gearopt.optimise.pareto.posed import caps
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.terms import Array, Terms, Var, each, namespace
@@ -58,7 +61,7 @@ def problem(train: Train, count: int = 1, floor: float = -math.inf) -> Problem:
     or width_steps where the width is not tied to d1; option, from 1, where a stage has several; one
     for all stages where they take the same.
     Numbers are constants of the text; those with a key in `train.keys` are parameters of the
-    relaxed problem.
+    relaxed problem. Of a drive with several objectives `exact` proves the whole front (`front`).
     """
     numbers = SimpleNamespace(**train.numbers())
 
@@ -81,6 +84,8 @@ def problem(train: Train, count: int = 1, floor: float = -math.inf) -> Problem:
 
     def exact(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
         """Branch and bound over the teeth; the seed changes nothing."""
+        if train.others:
+            return _front(train, problem, budget, watch)
         return _outcome(train, count, floor, budget, watch)
 
     return Problem(
@@ -90,7 +95,7 @@ def problem(train: Train, count: int = 1, floor: float = -math.inf) -> Problem:
         evaluate,
         methods={"exact": exact},
         vectorised=True,
-        relaxed=None if train.rated else sizing.relaxed(train),
+        relaxed=None if train.rated or train.others else sizing.relaxed(train),
     )
 
 
@@ -236,6 +241,34 @@ def _outcome(
         proof=proof | {"sentence": f"{compared} all others excluded by lower bounds {opened}"},
         others=tuple(points[1:]),
         evaluations=progress.clock.evaluations,
+    )
+
+
+def _front(train: Train, problem: Problem, budget: Budget, watch: Watch | None) -> Outcome:
+    """Return all trains that none beats in the objectives of a problem, within its limits."""
+    names, most = problem.rows.objectives, caps(problem)
+    asked = replace(train, objective=names[0], others=names[1:])
+    limits = np.array([most.get(name, math.inf) for name in names])
+    run = fronts(asked, limits, Clock(budget, watch))
+    chosen = run.trains()
+    opened = f"{run.compared:,} trains compared, nodes opened: {run.opened:,}"
+    finished = not run.clock.stopped
+    words = (
+        f"Proof: these are all designs that no other beats; {opened}, all others excluded by "
+        "lower bounds of every objective and of weighted sums."
+        if finished
+        else f"Stopped before the search was exhausted: {opened}."
+    )
+    method = "exhausted" if finished else "branch and bound, stopped early"
+    points = [point(train, *made) for made in chosen]
+    return Outcome(
+        points[0] if points else None,
+        finished,
+        infeasible=finished and not points,
+        proof={"method": method, "sentence": words if points or not finished else NO_TRAIN},
+        others=tuple(points[1:]),
+        evaluations=run.clock.evaluations,
+        message="" if finished else "stopped before the search was exhausted: allow more time",
     )
 
 

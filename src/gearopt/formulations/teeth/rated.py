@@ -6,7 +6,7 @@ tried, as a larger one may be the better one where the load-distribution factor 
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import chain
 from typing import Any
@@ -14,11 +14,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from gearopt.formulations.gear_train import Train
 from gearopt.formulations.shares import least_share, share
 from gearopt.formulations.strength import ALLOWANCE
 from gearopt.formulations.strength.rated import IndexRows, Rows, Standard
 from gearopt.formulations.strength.widths import STEPS, first_width, used
-from gearopt.formulations.teeth.stage import EDGE, Cells, Index, Table
+from gearopt.formulations.teeth.columns import Index
+from gearopt.formulations.teeth.stage import EDGE, Cells, Table
 from gearopt.optimise.terms import Array
 from gearopt.physics.gears import GearPair
 
@@ -105,6 +107,11 @@ class RatedTable(Table):
         """Whether teeth of different modules have different shapes."""
         own = self.stage.toothing
         return own.working_distance is not None or any(own.thickness_allowances)
+
+    @property
+    def one_module(self) -> bool:
+        """Return False: a larger module may be the better one."""
+        return False
 
     @property
     def monotone(self) -> bool:
@@ -236,6 +243,18 @@ class RatedTable(Table):
         allowed = (self.first <= module) & (module <= self.last) & (ends[0] <= ends[1])
         return np.where(allowed, ends[0], np.inf)
 
+    def of(self, train: Train) -> "RatedTable":
+        """Return the table of the same pairs for a drive with another objective."""
+        made = super().of(train)
+        assert isinstance(made, RatedTable)
+        return replace(made, others=(*self.others, self))
+
+    def narrowest(self, torque: Array, pair: Index, module: int, option: int) -> Array:
+        """Return the minimum face width [mm] of pairs of a module (index) made in one way."""
+        at = np.full(len(pair), module)
+        ends = self._ends(self.made(self.modules[module], pair), at, pair)
+        return self._narrowest((torque, torque), pair, at, option, ends)
+
     def _found(
         self,
         torque: tuple[Array, Array],
@@ -307,7 +326,7 @@ class RatedTable(Table):
     def _ends(self, one: GearPair, module: Index, pair: Index) -> tuple[Array, Array]:
         """Return the minimum and maximum face width [mm] of pairs with modules (indices)."""
         if self.steps is None:
-            return self._widths(one)
+            return self.width_ends(one)
         low, high = (count[module, pair] * self.step for count in self.steps)
         return low, high
 

@@ -6,9 +6,9 @@ from fractions import Fraction
 import numpy as np
 
 from gearopt.formulations.gear_train import Train
-from gearopt.formulations.shares import least_share, share
+from gearopt.formulations.shares import LENGTHS, least_share, share
+from gearopt.formulations.teeth.columns import spans
 from gearopt.formulations.teeth.rated import RatedTable
-from gearopt.formulations.teeth.stage import spans
 from gearopt.formulations.teeth.tables import stage_tables
 from gearopt.optimise.terms import Array
 from gearopt.physics.gears import GearPair
@@ -37,12 +37,12 @@ def reach(
     """Return the largest stage ratio that a train at least as good as `threshold` may have.
 
     Any stage carries at least the input torque; its share alone then grows with its ratio, where
-    its law is proportional.
+    its law is proportional and the objective a volume, mass or length.
     """
     if train.rated:
         every = stage_tables(train, maximum, shelf=shelf)
         return Fraction(max(t.useful_ratio(float(cut), threshold) for t in every))
-    if not train.law.proportional:
+    if not train.law.proportional or train.objective not in ("gear_volume", "mass", *LENGTHS):
         return maximum
     ratios = np.geomspace(float(cut), float(maximum), 2000)
     useful = np.zeros(len(ratios), dtype=bool)

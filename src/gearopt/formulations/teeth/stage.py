@@ -7,25 +7,20 @@ irrational except at 0, 60 and 90 (Niven's theorem), so no tie with a rational l
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
-from fractions import Fraction
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gearopt.errors import SolveError
 from gearopt.formulations.gear_train import Stage, Train
-from gearopt.formulations.shares import least_share, share
+from gearopt.formulations.shares import share
 from gearopt.formulations.strength import ALLOWANCE, HALVINGS
+from gearopt.formulations.teeth.columns import Index, closed
 from gearopt.optimise.terms import Array
 from gearopt.physics.gears import GearPair
 
-Index = NDArray[np.int64]
-Columns = tuple[Any, ...]
-
 EDGE = 1e-9  # cells overlap by this much in log ratio, so that rounding never misses a neighbour
-PAIRS = 3_000_000  # tooth pairs of one stage: about 1 GB of tables
 
 
 @dataclass(frozen=True)
@@ -158,23 +153,43 @@ class Table:
         """Return the minimum share of each pair with a module (index), whatever the torque."""
         every = np.arange(len(self.ratio))
         one = self.made(self.modules[module], every)
-        return self._share(one, self._widths(one, module, every)[0])
+        return self._share(one, self.width_ends(one, module, every)[0])
 
     def width(self, torque: Array, pair: Index, module: int) -> Array:
         """Return the narrowest face width [mm] of pairs of a module (index); inf: none."""
         return self._width(torque, pair, module, self.made(self.modules[module], pair))
 
+    def of(self, train: Train) -> "Table":
+        """Return the table of the same pairs for a drive with another objective."""
+        slope = closed(train, self.position, self.z1, self.ratio)[3]
+        return replace(self, train=train, slope=slope)
+
+    def narrowest(self, torque: Array, pair: Index, module: int, option: int) -> Array:
+        """Return the narrowest face width [mm] of pairs of a module (index) made in one way."""
+        return self.width(torque, pair, module)
+
+    @property
+    def one_module(self) -> bool:
+        """Whether the smallest module that carries is the best one, for every objective.
+
+        None falls as it grows, for a tied width, and for a free one once it is at its minimum; but
+        the mass of a gear with a web may.
+        """
+        return self.load is not None and self.steps is None and not self.train.hollow
+
     def _best(self, torque: Array, pair: Index) -> tuple[Array, Array, Array]:
-        if self.load is None or self.steps is not None or self.train.hollow:
-            return self._best_of_all(torque, pair)
-        # The smallest module that carries is the best one: every objective grows with it.
+        return (self.smallest if self.one_module else self._best_of_all)(torque, pair)
+
+    def smallest(self, torque: Array, pair: Index) -> tuple[Array, Array, Array]:
+        """Return cost (inf: none carries), module and face width [mm] of the smallest module."""
+        assert self.load is not None
         needed = self.need[pair] * (torque * (1.0 - ALLOWANCE)) ** self.exponent
         k = np.maximum(np.searchsorted(self.modules, needed), self.first[pair])
         possible = k <= self.last[pair]
         k = np.minimum(k, len(self.modules) - 1)
         module = self.modules[k]
         one = self.made(module, pair)
-        width, maximum = self._widths(one)
+        width, maximum = self.width_ends(one)
         if self.stage.face_width.fixed is None:
             width = np.clip(self.load[pair] * torque / module**2, width, maximum)
         value = self._share(one, width)
@@ -195,7 +210,7 @@ class Table:
 
     def _width(self, torque: Array, pair: Index, module: int, one: GearPair) -> Array:
         """Return the narrowest face width [mm] of the pairs `one`: `pair` with a module."""
-        ends = self._widths(one, module, pair)
+        ends = self.width_ends(one, module, pair)
         if self.load is not None:
             needed = self.load[pair] * torque / self.modules[module] ** 2
         else:
@@ -210,7 +225,7 @@ class Table:
         possible = possible & (self.first[pair] <= module) & (module <= self.last[pair])
         return np.where(possible, width, np.inf)
 
-    def _widths(
+    def width_ends(
         self, one: GearPair, module: int = 0, pair: Index | slice = slice(None)
     ) -> tuple[Array, Array]:
         """Return the minimum and maximum face width [mm] of the file; by module where on steps."""
@@ -236,7 +251,7 @@ class Table:
         """Return the largest torque [N mm] of every pair with a module (index), from above."""
         train, every = self.train, np.arange(len(self.ratio))
         one = self.made(self.modules[module], every)
-        widest = one.of_width(self._widths(one, module, every)[1])
+        widest = one.of_width(self.width_ends(one, module, every)[1])
 
         def carries(torque: Array) -> Any:
             speed = train.speed_at(torque)
@@ -251,150 +266,3 @@ class Table:
                 good = carries(middle)
                 low, high = np.where(good, middle, low), np.where(good, high, middle)
         return np.where(some, np.where(all_, np.inf, high), 0.0)
-
-
-def columns(train: Train, position: int, cut: Fraction, tick: Callable[[], None]) -> Columns:
-    """Return the fields of the table of a stage (counted from 0) for ratios up to `cut`.
-
-    tick: called several times a second; what it raises ends the work.
-    """
-    tick()
-    stage = train.stages[position]
-    cosine = stage.toothing.cosine
-    z1, z2 = _pairs(train, position, cut)
-    tick()
-    ratio = z2 / z1
-    load, need, exponent, slope = _closed(train, position, z1, ratio)
-    tick()
-    first, last = _allowed(stage, z1, z2, cosine)
-    return (
-        train,
-        position,
-        z1,
-        z2,
-        ratio,
-        np.log(ratio),
-        np.array([float(m) for m in stage.modules]),
-        first,
-        last,
-        _steps(stage, z1, cosine),
-        load,
-        need,
-        exponent,
-        slope,
-    )
-
-
-def _closed(
-    train: Train, position: int, z1: Index, ratio: Array
-) -> tuple[Array | None, Array, float, Array]:
-    """Return load, need, exponent and slope of a `Table`."""
-    stage = train.stages[position]
-    cosine = stage.toothing.cosine
-    if not train.law.proportional:
-        return None, np.zeros_like(ratio), 1.0, np.zeros_like(ratio)
-    one = stage.toothing.of_diameter(1.0, z1, z1 / cosine, ratio, 1.0)
-    load = train.law.load(one, 1.0, 0.0, stage.allowable)
-    slope = np.zeros_like(ratio)
-    if train.objective in ("gear_volume", "mass"):  # no module counts: d1 is 1 mm here
-        size = load * (z1 / cosine) ** 2  # b d1^2 for a torque of 1 N mm
-        slope = np.asarray(least_share(train, position, GearPair.of_teeth(1.0, 1.0, ratio, size)))
-    face = stage.face_width
-    if face.fixed is not None:
-        return load, (load / float(face.fixed)) ** 0.5, 0.5, slope
-    widest = face.widest * z1 / cosine  # b/m_n
-    if face.over_module[1] is not None:
-        widest = np.minimum(widest, float(face.over_module[1]))
-    return load, (load / widest) ** (1.0 / 3.0), 1.0 / 3.0, slope
-
-
-def _pairs(train: Train, position: int, cut: Fraction) -> tuple[Index, Index]:
-    """Return all (z1, z2) of a stage with ratios up to cut, by ratio, then by teeth.
-
-    SolveError where there are too many for the memory.
-    """
-    ranges = spans(train, position, cut)
-    count = sum(stop - start + 1 for _, start, stop in ranges)
-    if count > PAIRS:
-        raise SolveError(
-            f"a stage has {count:,} tooth pairs to choose from: narrow its pinion teeth, or limit "
-            "its wheel teeth or ratio (pinion_teeth, wheel_teeth, stage_ratio)"
-        )
-    wheels = [np.arange(start, stop + 1, dtype=np.int64) for _, start, stop in ranges]
-    z1 = np.repeat([z for z, _, _ in ranges], [len(w) for w in wheels]).astype(np.int64)
-    z2 = np.concatenate(wheels)
-    if train.coprime:
-        keep = np.gcd(z1, z2) == 1
-        z1, z2 = z1[keep], z2[keep]
-    order = np.argsort(z2 / z1, kind="stable")
-    return z1[order], z2[order]
-
-
-def spans(train: Train, position: int, cut: Fraction) -> list[tuple[int, int, int]]:
-    """Return every pinion z1 of a stage with its minimum and maximum wheel teeth up to a ratio.
-
-    The maximum is one below the minimum where there are none. Wheels that are too large with the
-    smallest module are left out.
-    """
-    stage = train.stages[position]
-    low = max(stage.ratio[0], train.lowest_ratio) if len(train.stages) == 1 else stage.ratio[0]
-    high = cut if stage.ratio[1] is None else min(cut, stage.ratio[1])
-    most_wheel = stage.wheel_teeth[1]
-    if stage.wheel_diameter is not None:
-        most = math.floor(stage.wheel_diameter * Fraction(stage.toothing.cosine) / stage.modules[0])
-        most_wheel = most if most_wheel is None else min(most_wheel, most)
-    least_z1, most_z1 = stage.pinion_teeth
-    assert most_z1 is not None
-    found = []
-    for z in range(least_z1, most_z1 + 1):
-        start = max(stage.wheel_teeth[0], math.ceil(low * z))
-        stop = math.floor(high * z)
-        stop = stop if most_wheel is None else min(stop, most_wheel)
-        found.append((z, start, max(stop, start - 1)))
-    return found
-
-
-def _allowed(stage: Stage, z1: Index, z2: Index, cosine: float) -> tuple[Index, Index]:
-    """Return the first and last module index by wheel diameter and limits of the face width."""
-    last = np.full(len(z1), len(stage.modules) - 1, dtype=np.int64)
-    exact_cosine = Fraction(cosine)
-    if stage.wheel_diameter is not None:
-        teeth = [math.floor(stage.wheel_diameter * exact_cosine / m) for m in stage.modules]
-        last = np.minimum(last, (np.array(teeth)[:, None] >= z2).sum(axis=0) - 1)
-    face = stage.face_width
-    if face.fixed is None and face.plain:
-        return np.zeros_like(last), last
-    pinions, place = np.unique(z1, return_inverse=True)
-    ends = [_modules(stage, face.proportions(int(z) / exact_cosine)) for z in pinions]
-    first, end = np.array(ends, dtype=np.int64).reshape(-1, 2).T
-    return first[place], np.minimum(last, end[place])
-
-
-def _modules(stage: Stage, span: tuple[Fraction, Fraction | None]) -> tuple[int, int]:
-    """Return the first and last index of modules with which some b has b/m in a span."""
-    face, (low, high) = stage.face_width, span
-    narrow, wide = (face.least, None) if face.fixed is None else (face.fixed, face.fixed)
-    possible = high is None or low <= high
-    possible &= wide is None or wide >= face.least
-    first = sum(high is not None and high * m < narrow for m in stage.modules)
-    last = sum(wide is None or low * m <= wide for m in stage.modules) - 1
-    return first, last if possible else -1
-
-
-def _steps(stage: Stage, z1: Index, cosine: float) -> tuple[Array, Array] | None:
-    """Return the minimum and maximum number of width steps for every module and pair."""
-    face = stage.face_width
-    if face.step is None:
-        return None
-    exact_cosine = Fraction(cosine)
-    teeth = np.unique(z1)
-    place = np.searchsorted(teeth, z1)
-    minimum = np.empty((len(stage.modules), len(teeth)))
-    maximum = np.empty_like(minimum)
-    for k, module in enumerate(stage.modules):
-        for i, z in enumerate(teeth):
-            low, high = face.proportions(int(z) / exact_cosine)
-            assert high is not None
-            minimum[k, i] = max(1, math.ceil(max(low * module, face.least) / face.step))
-            maximum[k, i] = math.floor(high * module / face.step)
-    return minimum[:, place], maximum[:, place]

@@ -5,8 +5,9 @@ from dataclasses import replace
 from fractions import Fraction
 
 from gearopt.formulations.gear_train import Train
+from gearopt.formulations.teeth.columns import columns
 from gearopt.formulations.teeth.rated import RatedTable
-from gearopt.formulations.teeth.stage import Table, columns
+from gearopt.formulations.teeth.stage import Table
 
 
 def table(

@@ -7,9 +7,9 @@ from numpy.typing import NDArray
 
 from gearopt.formulations.gear_train import Train
 from gearopt.formulations.shares import least_share
+from gearopt.formulations.teeth.columns import spans
 from gearopt.formulations.teeth.progress import MARGIN
 from gearopt.formulations.teeth.reach import first_cut
-from gearopt.formulations.teeth.stage import spans
 from gearopt.optimise.terms import Array
 from gearopt.physics.gears import reference_diameter
 

@@ -85,6 +85,12 @@ class Conic:
         """Return names of objectives, inequalities and equalities, in the order of `batch`."""
         return self.model().rows
 
+    @property
+    def objectives(self) -> tuple[str, ...]:
+        """Return the names of what the text minimises, which may be several."""
+        signs = tuple(_sign(spread(q.value, q.size)) for q in self.parameters)
+        return tuple(_symbols(self, signs)[-1].minimise)
+
     def bounds(self) -> tuple[Array, Array, Array]:
         """Return lower bounds, upper bounds and guess of a point (n,); not to be written to."""
         return self._declared.bounds()
@@ -138,7 +144,8 @@ def _sign(values: Array) -> str:
     return "nonneg" if (values >= 0).all() else "nonpos" if (values <= 0).all() else ""
 
 
-def _build(problem: Conic, signs: tuple[str, ...]) -> Model:
+def _symbols(problem: Conic, signs: tuple[str, ...]) -> tuple[Any, Any, Any, Terms]:
+    """Return variables, parameters and their inverses of cvxpy, and the text on them."""
     import cvxpy as cp
 
     variables = tuple(
@@ -158,7 +165,13 @@ def _build(problem: Conic, signs: tuple[str, ...]) -> Model:
     p = Named(**{"per": per, **dict(zip(names, parameters, strict=True))})
     with blaming(problem.evaluate, problem.name, "run on cvxpy variables"):
         terms = problem.evaluate(x, p)
-    terms = checked(terms, problem.name)
+    return variables, parameters, inverses, checked(terms, problem.name)
+
+
+def _build(problem: Conic, signs: tuple[str, ...]) -> Model:
+    import cvxpy as cp
+
+    variables, parameters, inverses, terms = _symbols(problem, signs)
     if not terms.minimise:
         raise SolveError(f"problem {problem.name} minimises nothing: Terms({{}}) is empty")
     one_objective(problem.name, tuple(terms.minimise))

@@ -34,13 +34,33 @@ SETTINGS = {
 def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
     """Evolve a population of POPULATION; the best feasible one of the last is polished."""
     from pymoo.algorithms.moo.nsga2 import NSGA2
+
+    clock, space = Clock(budget, watch), box(problem)
+    last = polish.prepared(problem, clock)
+    own, most = polish.sampling(clock, last.skipped is None)
+    size = min(POPULATION, most or POPULATION)
+    generations = GENERATIONS if most is None else most // size
+    algorithm = NSGA2(pop_size=size)
+    algorithm.setup(posed(problem, space), seed=seed, termination=("n_gen", max(1, generations)))
+    while algorithm.has_next() and not own.stopped:
+        algorithm.next()
+        own.evaluations = int(algorithm.evaluator.n_eval)
+        own.best = min((float(one.F[0]) for one in algorithm.opt if one.feas), default=math.inf)
+        own.tell()
+    several = len(problem.rows.objectives) > 1
+    found = _front(algorithm, space, several, not algorithm.has_next())
+    everyone = sorted(algorithm.pop, key=lambda one: (float(one.CV[0]), float(one.F[0])))
+    starts = space.points(np.array([one.X for one in everyone]))
+    return polish.polished(last, found, starts) if not own.refused else found
+
+
+def posed(problem: Problem, space: Box) -> Any:
+    """Return our batch as pymoo asks for it: F, G <= 0, with equalities as a pair of bounds."""
     from pymoo.core.problem import Problem as PymooProblem
 
-    clock, space, rows = Clock(budget, watch), box(problem), problem.rows
+    rows = problem.rows
 
     class Batch(PymooProblem):  # type: ignore[misc]
-        """Our batch as pymoo asks for it: F, G <= 0, with equalities as a pair of bounds."""
-
         def __init__(self) -> None:
             super().__init__(
                 n_var=len(space.low),
@@ -57,21 +77,7 @@ def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Out
             out["F"] = np.nan_to_num(found.F, nan=1e300, posinf=1e300)
             out["G"] = np.nan_to_num(np.hstack([found.G - 1.0, equal]), nan=1e300, posinf=1e300)
 
-    last = polish.prepared(problem, clock)
-    own, most = polish.sampling(clock, last.skipped is None)
-    size = min(POPULATION, most or POPULATION)
-    generations = GENERATIONS if most is None else most // size
-    algorithm = NSGA2(pop_size=size)
-    algorithm.setup(Batch(), seed=seed, termination=("n_gen", max(1, generations)))
-    while algorithm.has_next() and not own.stopped:
-        algorithm.next()
-        own.evaluations = int(algorithm.evaluator.n_eval)
-        own.best = min((float(one.F[0]) for one in algorithm.opt if one.feas), default=math.inf)
-        own.tell()
-    found = _front(algorithm, space, len(rows.objectives) > 1, not algorithm.has_next())
-    everyone = sorted(algorithm.pop, key=lambda one: (float(one.CV[0]), float(one.F[0])))
-    starts = space.points(np.array([one.X for one in everyone]))
-    return polish.polished(last, found, starts) if not own.refused else found
+    return Batch()
 
 
 def _front(algorithm: Any, space: Box, several: bool, finished: bool) -> Outcome:

@@ -23,6 +23,7 @@ from gearopt.optimise.typed import untyped
 from gearopt.scenes.drive.assumptions import assumptions, notes
 from gearopt.scenes.drive.blank_tables import BlankKeys, misfits
 from gearopt.scenes.drive.examples import EXAMPLE, MORE_EXAMPLES
+from gearopt.scenes.drive.front import objectives, several
 from gearopt.scenes.drive.rating.limits import check_safe
 from gearopt.scenes.drive.rating.rated import rate, with_rating
 from gearopt.scenes.drive.rating.tables import MATERIAL, GivenTable
@@ -40,7 +41,9 @@ __all__ = [
     "explain",
     "idle",
     "model",
+    "objectives",
     "rate",
+    "several",
     "solve",
 ]
 WEAKER = " Its contact ratio is less than the one given, its root is weaker."

@@ -1,0 +1,95 @@
+"""`pareto`: the designs that no other beats in two or three objectives, and one to pick."""
+
+from typing import Annotated
+
+import typer
+
+from gearopt.cli.app import FIRST, Csv, File, Json, Units, app
+from gearopt.cli.reporting import answer, checked, traded
+from gearopt.cli.watching import watching
+from gearopt.errors import GearoptError
+from gearopt.optimise.pareto.front import Front
+from gearopt.optimise.result import Budget
+from gearopt.report.command import SECONDS
+
+IMPOSSIBLE, UNFINISHED = 3, 4  # exit codes
+
+
+@app.command(rich_help_panel=FIRST)
+def pareto(
+    file: File,
+    objectives: Annotated[
+        str | None,
+        typer.Option(
+            help="Two or three names with commas between, as gear_volume,mesh_loss; the first is "
+            "minimised where others are limited. Without it the names that there are.",
+        ),
+    ] = None,
+    most: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="NAME=NUMBER: largest value of interest of an objective, in mm, mm3 or kg; may be "
+            "repeated."
+        ),
+    ] = None,
+    method: Annotated[
+        str | None,
+        typer.Option(
+            help="exact, epsilon, nsga2, annealing or hybrid; by default what proves most."
+        ),
+    ] = None,
+    points: Annotated[
+        int | None, typer.Option(min=2, max=10_000, help="Points sought, where there is a choice.")
+    ] = None,
+    weights: Annotated[
+        str | None,
+        typer.Option(help="NAME=NUMBER with commas between: pick by these weights, too."),
+    ] = None,
+    seconds: Annotated[float, typer.Option(min=0.0, help="Stop after this time.")] = SECONDS,
+    seed: Annotated[int, typer.Option(help="Seed of random methods.")] = 0,
+    csv: Csv = None,
+    units: Units = "metric",
+    as_json: Json = False,
+) -> None:
+    """Find the designs that no other beats in several objectives. Ctrl-C keeps those found."""
+    from gearopt.api import pareto as pareto_of
+
+    files = checked(None, csv, units, file)
+    with watching(seconds, quiet=as_json, measures=files.measures) as watch:
+        found = pareto_of(
+            file,
+            objectives=objectives,
+            most=_numbers("--most", most or []),
+            method=method,
+            points=points,
+            weights=_numbers("--weights", weights.split(",")) if weights else None,
+            budget=Budget(seconds),
+            seed=seed,
+            watch=watch,
+        )
+    lines: list[str] = []
+    try:
+        lines = traded(found, files)
+    finally:  # what took long to find is shown even where no file can be written
+        answer(found, as_json, lines, files.measures)
+    raise typer.Exit(code(found))
+
+
+def _numbers(option: str, pairs: list[str]) -> dict[str, float]:
+    """Return numbers by name; GearoptError for what is none."""
+    found = {}
+    for pair in pairs:
+        name, _, text = pair.partition("=")
+        try:
+            found[name.strip()] = float(text)
+        except ValueError:
+            example = f"{name.strip() or 'gear_volume'}=8.5e6"
+            raise GearoptError(f"{option} {pair}: is not NAME=NUMBER, such as {example}") from None
+    return found
+
+
+def code(front: Front) -> int:
+    """Return the exit code of a front: 0 where there is one, 3 proven impossible, 4 unknown."""
+    if front.status == "infeasible":
+        return IMPOSSIBLE
+    return 0 if front.points else UNFINISHED

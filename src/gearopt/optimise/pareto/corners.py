@@ -1,0 +1,69 @@
+"""What known points leave open: the corners below which a point that none beats may still lie.
+
+A point that no known one beats lies below one of the corners (local upper bounds). So a part of a
+search is of use only where its lower bounds lie below one; bounds of weighted sums count as well.
+Source: Klamroth, Lacour, Vanderpooten, European Journal of Operational Research 245 (2015) 767.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearopt.optimise.pareto.measures import TIE
+from gearopt.optimise.terms import Array
+
+BLOCK = 2_000_000  # comparisons at once
+
+
+def corners(values: Array, open_: Array) -> Array:
+    """Return the corners (n, k) that points (N, k) leave open of corners (m, k).
+
+    Without a point one corner is open, of the largest values that are allowed.
+    """
+    for one in values[np.argsort(values[:, 0], kind="stable")] if len(values) else ():
+        open_ = _without(open_, one)
+    return open_
+
+
+def _without(open_: Array, one: Array) -> Array:
+    """Return the corners that another point leaves open."""
+    cut = (one < open_).all(axis=1)
+    if not cut.any():
+        return open_
+    left, split = open_[~cut], open_[cut]
+    made = []
+    for k in range(len(one)):
+        moved = split.copy()
+        moved[:, k] = one[k]
+        made.append(moved[_largest(moved, left)])
+    return np.vstack([left, *made])
+
+
+def _largest(moved: Array, left: Array) -> NDArray[np.int64]:
+    """Return which of some corners, that share a coordinate, lie below no other one."""
+    kept: list[int] = []
+    for i in np.lexsort(-moved.T):
+        others = np.vstack([moved[kept], left])
+        if not (moved[i] <= others).all(axis=1).any():
+            kept.append(int(i))
+    return np.array(kept, dtype=np.int64)
+
+
+def weighed(points: Array, weights: Array) -> Array:
+    """Return points (n, k) with their weighted sums behind them (n, k + w); weights (w, k)."""
+    with np.errstate(invalid="ignore"):
+        sums = [np.where(w > 0.0, points * w, 0.0).sum(axis=1) for w in weights]
+    return np.column_stack([points, *sums])
+
+
+def useful(bounds: Array, open_: Array) -> NDArray[np.bool_]:
+    """Return which lower bounds (n, m) lie below one of the corners (L, m); a tie does."""
+    found = np.zeros(len(bounds), dtype=bool)
+    finite = np.flatnonzero(np.isfinite(bounds).all(axis=1))
+    limits = open_ * (1.0 + TIE)
+    count = max(1, len(finite) * len(open_) * bounds.shape[1] // BLOCK)
+    for part in np.array_split(finite, count):
+        here = np.ones((len(part), len(open_)), dtype=bool)
+        for column in range(bounds.shape[1]):
+            here &= bounds[part, column, None] <= limits[None, :, column]
+        found[part] = here.any(axis=1)
+    return found

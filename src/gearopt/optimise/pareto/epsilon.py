@@ -1,0 +1,264 @@
+"""Fronts of continuous problems by epsilon constraints: one objective is minimised, others limited.
+
+The ends of the front come first. Between two neighbours the next limit lies where their tangents
+meet; the pair whose box is largest comes next. Where every point is proven and the problem convex,
+tangents are below the front and chords above it, which gives its error.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from itertools import product
+
+import numpy as np
+
+from gearopt.optimise.clock import Clock
+from gearopt.optimise.conic.problem import Conic
+from gearopt.optimise.form import form
+from gearopt.optimise.pareto.found import Found, Point, Skipped, Step, sifted
+from gearopt.optimise.pareto.posed import MOST, Built, Limit, kept, scale, valued
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.result import Budget, Watch
+from gearopt.optimise.solve import GAP
+from gearopt.optimise.solve import run as solve_raw
+from gearopt.optimise.terms import Array
+
+SLACK = 1e-7  # relative, of the first end's objective while the others are minimised
+POINTS = 60  # of a front of two objectives
+CORNER = 0.1  # part of a chord next to its ends where no new limit is put
+
+Caps = dict[str, float]  # largest values of objectives that the user states
+
+
+@dataclass
+class _Run:
+    """The problems of a front, the points found so far, and the clock; it has state to fill."""
+
+    problem: Problem | Conic
+    names: tuple[str, ...]
+    caps: Caps
+    clock: Clock
+    method: str | None
+    built: Built = field(default_factory=dict)
+    points: list[Point] = field(default_factory=list)
+    skipped: list[Skipped] = field(default_factory=list)
+    steps: list[Step] = field(default_factory=list)
+    widths: dict[str, float] = field(default_factory=dict)
+    logarithmic: bool = True
+
+
+def front(
+    problem: Problem | Conic,
+    names: Sequence[str],
+    caps: Caps,
+    points: int,
+    budget: Budget,
+    watch: Watch | None = None,
+    method: str | None = None,
+) -> Found:
+    """Return points of the front of a continuous problem.
+
+    names: its objectives, of which the first is minimised under limits on the others. caps: largest
+    values that are of interest. points: how many are sought; of three objectives a grid of about so
+    many. method: that solves each, by default the usual one.
+    """
+    own = _Run(problem, tuple(names), caps, Clock(budget, watch), method)
+    ends = _ends(own)
+    if ends is None:
+        return _found(own)
+    if len(names) == 2:
+        _between(own, points)
+    else:
+        _grid(own, ends, points)
+    return _found(own)
+
+
+def _ends(run: _Run) -> list[Point] | None:
+    """Return the point of the least value of every objective; None where there is none."""
+    ends = []
+    for k, name in enumerate(run.names):
+        first = _solved(run, name, dict(run.caps))
+        if first is None:
+            return None
+        for other in (*run.names[:k], *run.names[k + 1 :]):
+            at = first.values[k]
+            held = {name: float(at + SLACK * abs(at))}
+            again = _solved(run, other, _least(run.caps, held), first.x)
+            first = again if again is not None else first
+        ends.append(first)
+    values = np.array([p.values for p in ends])
+    run.widths = dict(zip(run.names, np.ptp(values, axis=0).tolist(), strict=True))
+    if len(ends) == 2:  # their tangents are the sides of the box of the front
+        slopes = np.zeros(1), np.full(1, -math.inf)
+        ends = [replace(p, slopes=s) for p, s in zip(ends, slopes, strict=True)]
+    for p in ends:
+        _keep(run, p)
+    return ends
+
+
+def _keep(run: _Run, point: Point) -> None:
+    """Add a point, and note how the front has grown."""
+    run.points.append(point)
+    values = np.array([p.values for p in sifted(run.points)[0]])
+    run.steps.append(Step(run.clock.seconds, run.clock.evaluations, values))
+
+
+def _least(caps: Caps, held: Caps) -> Caps:
+    return {n: min(caps.get(n, math.inf), held.get(n, math.inf)) for n in {**caps, **held}}
+
+
+def _between(run: _Run, points: int) -> None:
+    """Add points of a front of two objectives, in the largest boxes between two neighbours."""
+    first, second = run.names
+    whole = math.prod(w or 1.0 for w in run.widths.values())
+    closed: set[tuple[float, float]] = set()
+    while len(run.points) < points and not run.clock.over:
+        ranked = sorted(run.points, key=lambda p: float(p.values[1]))
+        pairs = [p for p in zip(ranked, ranked[1:], strict=False) if _place(p) not in closed]
+        if not pairs:
+            break
+        left, right = max(pairs, key=_box)
+        if _box((left, right)) <= SLACK * whole:
+            break
+        level = _level(left, right)
+        made = _solved(run, first, _least(run.caps, {second: level}), right.x)
+        closed.add(_place((left, right)))
+        if made is not None:
+            _keep(run, made)
+
+
+def _place(pair: tuple[Point, Point]) -> tuple[float, float]:
+    return float(pair[0].values[1]), float(pair[1].values[1])
+
+
+def _box(pair: tuple[Point, Point]) -> float:
+    """Return the area between two neighbours that their points leave open."""
+    return float(np.prod(np.abs(pair[0].values - pair[1].values)))
+
+
+def _level(left: Point, right: Point) -> float:
+    """Return the limit of the second objective where tangents of two neighbours meet."""
+    (f0, g0), (f1, g1) = left.values, right.values
+    at = 0.5
+    if left.slopes is not None and right.slopes is not None:
+        s0, s1 = left.slopes[0], right.slopes[0]
+        if math.isfinite(s0) and s0 < s1:
+            at = ((f1 - f0) - s1 * (g1 - g0)) / ((s0 - s1) * (g1 - g0))
+    at = min(max(at, CORNER), 1.0 - CORNER) if math.isfinite(at) else 0.5
+    return float(g0 + at * (g1 - g0))
+
+
+def _grid(run: _Run, ends: list[Point], points: int) -> None:
+    """Add the points of an even grid of limits on all objectives but the first."""
+    values = np.array([p.values for p in ends])
+    low, high = values.min(axis=0)[1:], values.max(axis=0)[1:]
+    count = max(2, round(points ** (1.0 / (len(run.names) - 1))))
+    near: Array | None = ends[0].x
+    steps = [np.linspace(a, b, count) for a, b in zip(low, high, strict=True)]
+    for row in product(*(s[::-1] for s in steps)):
+        if run.clock.over:
+            break
+        held = dict(zip(run.names[1:], (float(v) for v in row), strict=True))
+        made = _solved(run, run.names[0], _least(run.caps, held), near)
+        if made is not None:
+            near = made.x
+            _keep(run, made)
+
+
+def _solved(run: _Run, name: str, most: Caps, near: Array | None = None) -> Point | None:
+    """Return the point of least value of one objective under limits on others; None: none found."""
+    if run.clock.stopped:
+        return None
+    limits = {n: Limit.of(value, run.widths.get(n, 0.0)) for n, value in most.items()}
+    at = kept(run.built, run.problem, (name,), limits)
+    if near is not None and isinstance(at, Problem) and not at.repeats:
+        at = at.starting(near)
+    before = run.clock.evaluations
+    result, outcome = solve_raw(at, run.method, run.clock.left, watch=run.clock.inner(values=False))
+    run.clock.evaluations = before + result.evaluations
+    run.clock.tell()
+    if result.value is None or outcome.x is None:
+        run.skipped.append(Skipped(most, result.status == "infeasible"))
+        return None
+    values = valued(result, run.names)
+    slopes = None
+    rows = [f"{MOST}_{n}" for n in run.names[1:]]
+    if name == run.names[0] and all(row in result.multipliers for row in rows):
+        scales = [scale(at, n) for n in run.names[1:]]
+        slopes = np.array([result.multipliers[r] / s for r, s in zip(rows, scales, strict=True)])
+    proven = result.status == "optimal"
+    if isinstance(at, Problem) and proven:
+        shape = form(at)
+        run.logarithmic = run.logarithmic and shape.convex and shape.log_objective
+    else:
+        run.logarithmic = False
+    return Point(outcome.x, values, proven, result.bound if proven else None, slopes)
+
+
+def _found(run: _Run) -> Found:
+    """Return the front of all points, with its error where it is proven."""
+    points, beaten = sifted(run.points)
+    all_proven = bool(points) and all(p.proven for p in points)
+    two = len(run.names) == 2
+    error = _error(points, run.logarithmic) if all_proven and two and len(points) > 1 else None
+    return Found(
+        points,
+        error=error,
+        beaten=beaten,
+        skipped=tuple(run.skipped),
+        infeasible=not points and bool(run.skipped) and run.skipped[0].proven,
+        finished=not run.clock.stopped,
+        steps=tuple(run.steps),
+        proof={"method": "epsilon constraints", "sentence": _sentence(points)},
+        evaluations=run.clock.evaluations,
+    )
+
+
+def _sentence(points: tuple[Point, ...]) -> str:
+    """Return what is proven of the points."""
+    count = sum(p.proven for p in points)
+    if not count:
+        return "Not proven: every point is the best that was found under its limits."
+    which = "Every point" if count == len(points) else f"{count} of {len(points)} points"
+    verb = "is" if count == len(points) else "are"
+    return f"{which} {verb} proven: nothing beats it by more than {GAP:g} of its first objective."
+
+
+def _error(points: tuple[Point, ...], logarithmic: bool) -> float | None:
+    """Return the largest distance between tangents and chords, in the ranges of the objectives.
+
+    In logarithms where the problem is convex in them; None where a tangent is missing.
+    """
+    values = np.array([p.values for p in points])
+    if any(p.slopes is None for p in points):
+        return None
+    slopes = np.array([p.slopes[0] for p in points if p.slopes is not None])
+    if logarithmic:
+        slopes = slopes * values[:, 1] / values[:, 0]
+        values = np.log(values)
+    width = np.ptp(values, axis=0)
+    if not (width > 0.0).all():
+        return 0.0
+    f, g = ((values - values.min(axis=0)) / width).T
+    slopes = slopes * width[1] / width[0]
+    worst = 0.0
+    for k in range(len(points) - 1):  # by the first objective: the second falls
+        df, dg = f[k + 1] - f[k], g[k + 1] - g[k]
+        meet = _meet(df, dg, float(slopes[k]), float(slopes[k + 1]))
+        worst = max(worst, abs(meet[0] * dg - meet[1] * df) / math.hypot(df, dg))
+    return worst
+
+
+def _meet(df: float, dg: float, first: float, second: float) -> tuple[float, float]:
+    """Return where the tangents of (0, 0) and (df, dg) meet: f = first g, f = df + second (g - dg).
+
+    The corner of their box where they meet outside of it, as roundings let them.
+    """
+    if math.isinf(second):
+        at = dg
+    elif first == second:
+        return 0.0, dg
+    else:
+        at = (df - second * dg) / (first - second)
+    at = min(max(at, min(0.0, dg)), max(0.0, dg))
+    return first * at, at

@@ -1,0 +1,79 @@
+"""What a method finds of a front: points with their values, and what was proven of each."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from gearopt.optimise.pareto.measures import unbeaten
+from gearopt.optimise.terms import Array
+
+
+@dataclass(frozen=True)
+class Point:
+    """One design: x (n,), its values (k,), and whether nothing beats it within the gap.
+
+    bound: least value that the first objective can have where the others are no larger; slopes
+    (k - 1,): its change by a unit more of each other one, None where it is not known.
+    """
+
+    x: Array
+    values: Array
+    proven: bool = False
+    bound: float | None = None
+    slopes: Array | None = None
+
+
+@dataclass(frozen=True)
+class Skipped:
+    """Limits of the other objectives under which no design was found; proven: there is none."""
+
+    limits: Mapping[str, float]
+    proven: bool
+
+
+@dataclass(frozen=True)
+class Step:
+    """The points (N, k) that a method has after so many seconds and evaluations."""
+
+    seconds: float
+    evaluations: int
+    values: Array
+
+
+@dataclass(frozen=True)
+class Found:
+    """What a method returns of a front; points by the first objective, none beaten by another.
+
+    complete: every design that none beats is among them, proven. error: largest distance of the
+    true front to the line through the points, in the ranges of the objectives; None: not known.
+    beaten (N, k): values of feasible points that others beat. infeasible: there is no point at all,
+    proven. steps: how the front grew. proof["sentence"] says it for a reader.
+    """
+
+    points: tuple[Point, ...]
+    complete: bool = False
+    error: float | None = None
+    beaten: Array = field(default_factory=lambda: np.empty((0, 0)))
+    skipped: tuple[Skipped, ...] = ()
+    infeasible: bool = False
+    finished: bool = True
+    steps: tuple[Step, ...] = ()
+    proof: Mapping[str, Any] = field(default_factory=dict)
+    evaluations: int = 0
+    message: str = ""
+
+    @property
+    def values(self) -> Array:
+        """Return the values of the points (N, k)."""
+        return np.array([p.values for p in self.points])
+
+
+def sifted(points: list[Point]) -> tuple[tuple[Point, ...], Array]:
+    """Return the points that no other beats, and the values of those that are beaten."""
+    if not points:
+        return (), np.empty((0, 0))
+    values = np.array([p.values for p in points])
+    kept = unbeaten(values)
+    return tuple(points[k] for k in kept), np.delete(values, kept, axis=0)

@@ -1,0 +1,143 @@
+"""Problems made of one with several objectives: one is minimised, others are limited."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from gearopt.optimise.conic.problem import Conic
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.result import Result
+from gearopt.optimise.terms import Array, Param, Terms
+
+MOST = "most"  # most_cost: the largest cost that is allowed
+SCALE = "scale"  # scale_cost: what its excess is measured by
+VALUE = "value"  # value_cost: the cost of a point, whatever is minimised
+
+
+@dataclass(frozen=True)
+class Limit:
+    """The largest value of an objective, and what an excess is measured by (above 0).
+
+    Where they are equal the row is a quotient, which keeps a posynomial what it is.
+    """
+
+    most: float
+    scale: float
+
+    @classmethod
+    def of(cls, most: float, width: float) -> "Limit":
+        """Return a limit of an objective that changes by so much along a front."""
+        return cls(most, most if most > 0.0 else max(width, abs(most)) or 1.0)
+
+
+def posed(
+    problem: Problem | Conic, minimise: Sequence[str], limits: Mapping[str, Limit]
+) -> Problem | Conic:
+    """Return the problem with some of its objectives, others limited; `moved` changes the limits.
+
+    A row `most_NAME` is the utilisation of a limit, a report term `value_NAME` the value of every
+    objective. Algorithms of the problem's own are kept where several are minimised: they read names
+    and limits from the problem (`caps`).
+    """
+    conic = isinstance(problem, Conic)
+    quotient = {name: limit.most == limit.scale for name, limit in limits.items()}
+    fixed = {name: limit.scale for name, limit in limits.items()} if conic else {}
+    own = problem.evaluate
+
+    def evaluate(x: Any, p: Any) -> Terms:
+        found = own(x, p)
+        rows = {
+            f"{MOST}_{name}": _row(found.minimise[name], p, name, whole, fixed.get(name))
+            for name, whole in quotient.items()
+        }
+        kept = {name: found.minimise[name] for name in minimise}
+        shown = {f"{VALUE}_{name}": value for name, value in found.minimise.items()}
+        return replace(
+            found,
+            minimise=kept,
+            limits={**found.limits, **rows},
+            report={**found.report, **shown},
+        )
+
+    parameters = [Param(f"{MOST}_{name}", "", 1.0) for name in limits]
+    parameters += [
+        Param(f"{SCALE}_{name}", "", limit.scale)
+        for name, limit in limits.items()
+        if conic or not quotient[name]
+    ]
+    every = (*problem.parameters, *parameters)
+    made: Problem | Conic
+    if isinstance(problem, Conic):
+        made = Conic(problem.name, problem.variables, every, evaluate)
+    else:
+        made = Problem(
+            problem.name,
+            problem.variables,
+            every,
+            evaluate,
+            problem.repeats,
+            methods=problem.methods if len(minimise) > 1 else {},
+            vectorised=problem.vectorised,
+        )
+    return moved(made, limits)
+
+
+Built = dict[tuple[str, ...], "Problem | Conic"]
+
+
+def kept(
+    built: Built, problem: Problem | Conic, minimise: Sequence[str], limits: Mapping[str, Limit]
+) -> Problem | Conic:
+    """Return `posed` from what was built before, which it fills."""
+    key = (*minimise, *(f"{n} {one.most == one.scale}" for n, one in sorted(limits.items())))
+    if key not in built:
+        built[key] = posed(problem, minimise, limits)
+    return moved(built[key], limits)
+
+
+def moved(problem: Problem | Conic, limits: Mapping[str, Limit]) -> Problem | Conic:
+    """Return what `posed` made with other limits of the same kind; what was built is kept.
+
+    The scales of a Conic are constants of its text, and stay.
+    """
+    known, values = _numbers(problem), {}
+    for name, limit in limits.items():
+        values[f"{MOST}_{name}"] = limit.most
+        if isinstance(problem, Conic):
+            values[f"{MOST}_{name}"] = limit.most / known[f"{SCALE}_{name}"]
+        elif f"{SCALE}_{name}" in known:
+            values[f"{SCALE}_{name}"] = limit.scale
+    found: Problem | Conic = problem.at(**values)
+    return found
+
+
+def scale(problem: Problem | Conic, name: str) -> float:
+    """Return what an excess of the limit of an objective is measured by."""
+    known = _numbers(problem)
+    return known.get(f"{SCALE}_{name}", known[f"{MOST}_{name}"])
+
+
+def _numbers(problem: Problem | Conic) -> dict[str, float]:
+    return {q.name: float(np.ravel(q.value)[0]) for q in problem.parameters}
+
+
+def caps(problem: Problem) -> dict[str, float]:
+    """Return the largest values of objectives that `posed` was given, by name."""
+    known = _numbers(problem)
+    limited = {name: known.get(f"{MOST}_{name}") for name in problem.rows.objectives}
+    return {name: most for name, most in limited.items() if most is not None}
+
+
+def valued(result: Result, names: Sequence[str]) -> Array:
+    """Return the values (k,) of objectives at the point of a result of `posed`."""
+    return np.array([float(result.report[f"{VALUE}_{name}"]) for name in names])
+
+
+def _row(value: Any, p: Any, name: str, quotient: bool, fixed: float | None) -> Any:
+    """Return the utilisation of a limit; fixed: its scale in cvxpy text, a constant there."""
+    most = getattr(p, f"{MOST}_{name}")
+    if fixed is not None:
+        return 1.0 + value * (1.0 / fixed) - most
+    return value / most if quotient else 1.0 + (value - most) / getattr(p, f"{SCALE}_{name}")

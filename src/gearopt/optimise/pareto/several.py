@@ -1,0 +1,74 @@
+"""Several objectives of one problem, as a file or a user poses them, to their front."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from difflib import get_close_matches
+from typing import Any
+
+from gearopt.errors import SolveError
+from gearopt.optimise.clock import Clock, in_part
+from gearopt.optimise.conic.problem import Conic
+from gearopt.optimise.pareto.front import Front, Objective
+from gearopt.optimise.pareto.judged import judged
+from gearopt.optimise.pareto.pareto import default, found
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.result import Budget, Watch
+from gearopt.optimise.terms import Array
+
+
+@dataclass(frozen=True)
+class Several:
+    """A problem, its objectives in order, and the design of a point as its file shows it."""
+
+    problem: Problem | Conic
+    objectives: tuple[Objective, ...]
+    drawn: Callable[[Array], Mapping[str, Any]] | None = None
+
+
+def several(problem: Problem | Conic, names: Sequence[str] | None) -> Several:
+    """Return the objectives of a problem of one's own; by default all that it minimises."""
+    known = problem.objectives if isinstance(problem, Conic) else problem.rows.objectives
+    chosen = chosen_of(names or known, known, problem.name)
+    return Several(problem, tuple(Objective(name) for name in chosen))
+
+
+def chosen_of(names: Sequence[str] | None, known: Sequence[str], of: str) -> tuple[str, ...]:
+    """Return names of two or three objectives; SolveError lists those that there are."""
+    listed = ", ".join(known) or "none"
+    if not names:
+        raise SolveError(f"name two or three objectives of {of}: {listed}")
+    for name in names:
+        if name not in known:
+            close = get_close_matches(name, known, 1)
+            meant = f" (did you mean {close[0]}?)" if close else ""
+            raise SolveError(f"{of} has no objective {name!r}{meant}; objectives: {listed}")
+    if len(set(names)) != len(names) or not 2 <= len(names) <= 3:
+        raise SolveError(
+            f"a front has two or three objectives, each once, not {', '.join(names)}; "
+            f"objectives of {of}: {listed}"
+        )
+    return tuple(names)
+
+
+def solved(
+    posed: Several,
+    most: Mapping[str, float],
+    method: str | None,
+    points: int | None,
+    weights: Mapping[str, float] | None,
+    budget: Budget,
+    seed: int,
+    watch: Watch | None,
+    **names: Any,
+) -> Front:
+    """Return the front of posed objectives, judged and measured; names: fields of a `Front`."""
+    clock, listed = Clock(), [one.name for one in posed.objectives]
+    for name in (*most, *(weights or ())):
+        if name not in listed:
+            raise SolveError(f"{name} is none of the objectives of this front: {', '.join(listed)}")
+    chosen = method or default(posed.problem)
+    watch = in_part(watch, posed.objectives[0].unit, "front")
+    made = found(posed.problem, listed, most, chosen, points, budget, seed, watch)
+    shown = [replace(one, most=most.get(one.name)) for one in posed.objectives]
+    front = judged(posed.problem, made, shown, chosen, clock, weights, posed.drawn, **names)
+    return replace(front, seed=seed)

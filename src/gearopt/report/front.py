@@ -1,0 +1,166 @@
+"""A Pareto front in words and tables, the same on the terminal and on its page."""
+
+import shlex
+from collections.abc import Mapping
+from typing import Any
+
+from gearopt.optimise.pareto.front import Front
+from gearopt.optimise.pareto.pick import neighbours
+from gearopt.report.measures import METRIC, Measures
+from gearopt.report.section import Cell, Table, cell
+from gearopt.report.words import MODULE, number
+
+SHOWN = 24  # rows on the terminal; the page and the CSV hold all
+VERDICTS = {
+    "complete": ("complete, proven: no other design is unbeaten", "green"),
+    "proven": ("every point proven", "green"),
+    "not proven": ("not proven", "yellow"),
+    "infeasible": ("impossible, proven", "red"),
+    "limit": ("stopped early", "yellow"),
+}
+DEFAULTS = {"seconds": 60.0, "seed": 0}
+
+
+def title(front: Front) -> str:
+    """Return the name of a front: that of its file or problem, and its objectives."""
+    of = front.title or front.file or front.name
+    return f"{of}: {' against '.join(words(name) for name in front.names)}"
+
+
+def words(name: str) -> str:
+    """Return the name of an objective as it is read."""
+    return name.replace("_", " ")
+
+
+def decided(front: Front, measures: Measures = METRIC) -> list[str]:
+    """Return in sentences what was found, and how sure it is."""
+    found = [str(front.proof.get("sentence", ""))]
+    count = len(front.points)
+    if count:
+        ends = "; ".join(
+            f"{words(one.name)} {_span(front, k, measures)}"
+            for k, one in enumerate(front.objectives)
+        )
+        designs = "1 design" if count == 1 else f"{count:,} designs"
+        found.insert(0, f"{designs}, none beaten by another: {ends}.")
+    if front.error is not None:
+        part = f"{100.0 * front.error:.2g} % of the ranges of its objectives"
+        found.append(f"The true front is within {part} of the line through these points.")
+    if front.impossible:
+        proven = sum(one.proven for one in front.impossible)
+        found.append(
+            f"{len(front.impossible)} limits on the objectives left no design "
+            f"({proven} of them proven impossible) and were skipped."
+        )
+    if front.message:
+        found.append(f"{front.message[0].upper()}{front.message[1:]}.")
+    return [one for one in found if one]
+
+
+def _span(front: Front, k: int, measures: Measures) -> str:
+    values, unit = [p.values[k] for p in front.points], front.objectives[k].unit
+    low, high = (measures.amount(v, unit) for v in (min(values), max(values)))
+    return low if low == high else f"{low} to {high}"
+
+
+def picked(front: Front, measures: Measures = METRIC) -> list[str]:
+    """Return for every design that a rule takes its reason, and what its neighbours cost."""
+    found: dict[int, list[str]] = {}
+    for pick in front.picks:
+        found.setdefault(pick.place, []).append(f"{pick.rule} ({pick.reason})")
+    return [
+        f"Design {place + 1}: {'; '.join(reasons)}. {_values(front, place, measures)}."
+        f"{_beside(front, place)}"
+        for place, reasons in found.items()
+    ]
+
+
+def _values(front: Front, place: int, measures: Measures) -> str:
+    point = front.points[place]
+    pairs = zip(front.objectives, point.values, strict=True)
+    text = ", ".join(f"{words(o.name)} {measures.amount(v, o.unit)}" for o, v in pairs)
+    return text[0].upper() + text[1:]
+
+
+def _beside(front: Front, place: int) -> str:
+    """Return what the designs next to one gain and lose, in per cent."""
+    import numpy as np
+
+    values = np.array([p.values for p in front.points])
+    rows = []
+    for other in neighbours(values, place):
+        changes = [
+            f"{words(one.name)} {100.0 * (after / before - 1.0):+.2g} %"
+            for one, before, after in zip(
+                front.objectives, values[place], values[other], strict=True
+            )
+            if before
+        ]
+        rows.append(f"design {other + 1}: {', '.join(changes)}")
+    return f" Next to it {'; '.join(rows)}." if rows else ""
+
+
+def table(front: Front, measures: Measures = METRIC, most: int | None = None) -> Table:
+    """Return the designs with their values, what is picked, and what they are made of.
+
+    most: rows; the picks and the ends are among them.
+    """
+    kept = _chosen(front, most)
+    heads = [_head(one.name, one.unit, measures) for one in front.objectives]
+    rules: dict[int, list[str]] = {}
+    for pick in front.picks:
+        rules.setdefault(pick.place, []).append(pick.rule)
+    gears = any("stages" in p.design for p in front.points)
+    rows = [
+        (
+            k + 1,
+            *(
+                cell(v, one.unit, measures)
+                for v, one in zip(front.points[k].values, front.objectives, strict=True)
+            ),
+            ", ".join(rules.get(k, ())),
+            *([_gears(front.points[k].design, measures)] if gears else []),
+        )
+        for k in kept
+    ]
+    made = [f"{measures.module[1]}, z1/z2"] if gears else []
+    return Table("front", ("", *heads, "pick", *made), rows, wrap=10)
+
+
+def _chosen(front: Front, most: int | None) -> list[int]:
+    """Return the places of rows: all, or evenly spread ones with the ends and the picks."""
+    count = len(front.points)
+    if most is None or count <= most:
+        return list(range(count))
+    spread = {round(k * (count - 1) / (most - 1)) for k in range(most)}
+    return sorted(spread | {pick.place for pick in front.picks})
+
+
+def _head(name: str, unit: str, measures: Measures) -> str:
+    sign = measures.unit(unit)
+    return f"{words(name)} [{sign}]" if sign else words(name)
+
+
+def _gears(design: Mapping[str, Any], measures: Measures) -> Cell:
+    """Return modules and teeth of the stages of a drive."""
+    rows = []
+    for stage in design.get("stages", ()):
+        module = number(measures.of_module(stage[MODULE]))
+        rows.append(f"{module}, {number(stage['pinion_teeth'])}/{number(stage['wheel_teeth'])}")
+    text = "; ".join(rows)
+    return Cell(text, text)
+
+
+def command(front: Front, html: str = "") -> str:
+    """Return the command that makes the front again; "" where it is Python's."""
+    options = front.options
+    if front.file is None or options.get("changes") or options.get("weights"):
+        return ""
+    parts = ["gearopt", "pareto", front.file, "--objectives", ",".join(front.names)]
+    for name, value in (options.get("most") or {}).items():
+        parts += ["--most", f"{name}={value:.12g}"]
+    for name in ("method", "points", "seconds", "seed"):
+        value = options.get(name)
+        if value is not None and value != DEFAULTS.get(name):
+            parts += [f"--{name}", f"{value:.12g}" if isinstance(value, float) else str(value)]
+    return shlex.join([*parts, "--html", html] if html else parts)

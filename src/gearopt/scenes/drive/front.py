@@ -1,0 +1,67 @@
+"""The objectives of a drive, and the problem of several of them at once."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+from gearopt.errors import SolveError
+from gearopt.formulations import sizing, teeth
+from gearopt.formulations.gear_train import Train
+from gearopt.formulations.shares import OBJECTIVES
+from gearopt.optimise.pareto.front import Objective
+from gearopt.optimise.pareto.pareto import EPSILON
+from gearopt.optimise.pareto.several import Several
+from gearopt.optimise.terms import Array
+from gearopt.optimise.typed import untyped
+from gearopt.scenes.drive.scene import Scene
+
+
+def objectives(scene: Scene) -> dict[str, str]:
+    """Return what a front of the drive may minimise: name and unit."""
+    found = {}
+    for name, unit in OBJECTIVES.items():
+        try:
+            replace(_train(scene), objective=name)
+        except ValueError:
+            continue
+        found[name] = unit
+    return found
+
+
+def several(scene: Scene, names: Sequence[str], method: str | None) -> Several:
+    """Return the problem of a front; SolveError where the drive has none.
+
+    With a [teeth] table it is of whole teeth, but for epsilon constraints, which are for
+    real-valued sizes.
+    """
+    if scene.several:
+        raise SolveError(
+            "a front is of one number of stages, and this file leaves it open: write stages = 2, "
+            "or another number, in [gears]"
+        )
+    train = replace(_train(scene), objective=names[0], others=tuple(names[1:]))
+    listed = tuple(Objective(name, OBJECTIVES[name]) for name in names)
+    whole = scene.teeth is not None and method != EPSILON
+    if not whole and train.rated:
+        raise SolveError(
+            "ratings limit whole teeth alone where there are several objectives: write a table "
+            f"[teeth], and a method other than {EPSILON}"
+        )
+    if not whole:
+        return Several(sizing.problem(train), listed, lambda x: _real(scene, train, x))
+    return Several(teeth.problem(train), listed, lambda x: _whole(scene, train, x))
+
+
+def _train(scene: Scene) -> Train:
+    return scene.held(scene.counts[0]).train()
+
+
+def _real(scene: Scene, train: Train, x: Array) -> Mapping[str, Any]:
+    found: Mapping[str, Any] = untyped(scene.design(sizing.pairs(train, x)))
+    return found
+
+
+def _whole(scene: Scene, train: Train, x: Array) -> Mapping[str, Any]:
+    chosen = teeth.options(train, x) if train.several_options else ()
+    found: Mapping[str, Any] = untyped(scene.design(teeth.pairs(train, x), chosen))
+    return found

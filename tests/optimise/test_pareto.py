@@ -1,0 +1,188 @@
+"""Fronts of problems of one's own, against fronts that are known in closed form."""
+
+import math
+
+import cvxpy as cp
+import numpy as np
+import pytest
+
+import gearopt
+from gearopt import Budget, Conic, Front, Param, Problem, SolveError, Terms, Var
+from gearopt.optimise.pareto.corners import corners, useful, weighed
+from gearopt.optimise.pareto.measures import hypervolume, igd, reference, unbeaten
+from gearopt.optimise.pareto.pick import knee, neighbours, picks
+
+
+def discs():
+    """Squared distances from (0, 0) and (2, 1): on the front sqrt(a) + sqrt(b) = sqrt(5)."""
+
+    def evaluate(x, p):
+        return Terms({"a": x.x**2 + x.y**2, "b": (x.x - 2) ** 2 + (x.y - 1) ** 2})
+
+    return Problem("discs", tuple(Var(n, "", -5.0, 5.0, 1.0) for n in "xy"), (), evaluate)
+
+
+def cone():
+    """Cost 1/t1 + 4/t2 against error t1 + t2: on the front cost = (1 + 2)^2/error."""
+
+    def evaluate(x, p):
+        cost = cp.sum(cp.multiply(p.a, cp.inv_pos(x.t)))
+        return Terms({"cost": cost, "error": cp.sum(x.t)}, {"room": x.t[0] * p.per.most})
+
+    t = Var("t", "", 1e-3, 10.0, 1.0, 2)
+    return Conic(
+        "tolerances", (t,), (Param("a", "", (1.0, 4.0), 2), Param("most", "", 8.0)), evaluate
+    )
+
+
+def product():
+    """Minimise x and 1/x, x in [1, 4]: a geometric program whose front is a b = 1."""
+
+    def evaluate(x, p):
+        return Terms({"a": x.x, "b": 1.0 / x.x})
+
+    return Problem("product", (Var("x", "", 1.0, 4.0, 2.0, log=True),), (), evaluate)
+
+
+def values(front):
+    return np.array([p.values for p in front.points])
+
+
+def test_epsilon_constraints_reach_the_known_front_of_a_plain_problem():
+    front = gearopt.pareto(discs(), points=15)
+    assert len(front.points) == 15
+    assert np.sqrt(values(front)).sum(axis=1) == pytest.approx(math.sqrt(5.0), abs=1e-5)
+    assert values(front)[0] == pytest.approx([0.0, 5.0], abs=1e-5)
+    assert (
+        front.status == "not proven" and front.error is None
+    )  # no bound: not a convex form of ours
+
+
+def test_a_geometric_program_is_proven_point_by_point_with_the_error_between():
+    front = gearopt.pareto(product(), points=9)
+    assert front.status == "proven" and all(p.proven for p in front.points)
+    assert values(front).prod(axis=1) == pytest.approx(1.0, abs=1e-7)
+    # log a + log b = 0 is a straight line: tangents and chords agree
+    assert front.error == pytest.approx(0.0, abs=1e-5)
+    middle = front.points[4]
+    assert middle.slopes[0] == pytest.approx(-middle.values[0] / middle.values[1], rel=1e-5)
+
+
+def test_the_front_of_a_conic_problem_is_proven_and_its_error_holds():
+    front = gearopt.pareto(cone(), points=25, most={"error": 12.0, "cost": 9.0})
+    found = values(front)
+    inside = found[:, 1] < 12.0 - 1e-6
+    assert front.status == "proven"
+    assert found[inside].prod(axis=1) == pytest.approx(9.0, rel=1e-6)
+    # the true front lies within the stated error of the line through the points
+    widths = np.ptp(found, axis=0)
+    worst = 0.0
+    for (a0, b0), (a1, b1) in zip(found, found[1:], strict=False):
+        for b in np.linspace(b0, b1, 20):
+            chord = a0 + (a1 - a0) * (b - b0) / (b1 - b0)
+            gap = (chord - 9.0 / b) / widths[0]
+            slope = (a1 - a0) / (b1 - b0) * widths[1] / widths[0]
+            worst = max(worst, gap / math.hypot(1.0, slope))
+    assert 0.2 * front.error < worst <= front.error * (1 + 1e-6) + 1e-7
+
+
+@pytest.mark.parametrize("method", ["nsga2", "hybrid", "annealing"])
+def test_samplers_come_near_the_known_front(method):
+    budget = Budget(evaluations=6000)
+    points = 24 if method == "hybrid" else None
+    front = gearopt.pareto(discs(), method=method, points=points, budget=budget, seed=1)
+    excess = np.sqrt(values(front)).sum(axis=1) - math.sqrt(5.0)
+    assert front.status == "not proven" and len(front.points) >= 5
+    assert -1e-6 <= excess.min() and np.median(excess) < 0.02
+    assert front.evaluations <= 6100 and front.growth[-1].hypervolume == pytest.approx(
+        front.hypervolume
+    )
+
+
+def test_a_limit_on_an_objective_cuts_the_front_and_an_impossible_one_is_proven():
+    front = gearopt.pareto(product(), points=5, most={"a": 2.0})
+    assert values(front)[:, 0].max() == pytest.approx(2.0, rel=1e-6)
+    nothing = gearopt.pareto(product(), points=5, most={"a": 2.0, "b": 0.4})
+    assert nothing.status == "infeasible" and not nothing.points
+    assert nothing.impossible[0].proven
+
+
+def test_three_objectives_by_a_grid_lie_on_the_known_surface():
+    def evaluate(x, p):
+        return Terms({"a": 1.0 / (x.x * x.y), "b": x.x, "c": x.y})
+
+    grid = tuple(Var(n, "", 0.5, 2.0, 1.0, log=True) for n in "xy")
+    front = gearopt.pareto(Problem("three", grid, (), evaluate), points=16)
+    assert values(front).prod(axis=1) == pytest.approx(1.0, abs=1e-6)
+    assert front.status == "proven" and len(front.points) >= 14
+
+
+def test_a_front_comes_back_from_its_json():
+    front = gearopt.pareto(product(), points=4)
+    again = Front.from_json(front.to_json())
+    assert again.to_json() == front.to_json() and again.points == front.points
+    with pytest.raises(ValueError, match="no Pareto front"):
+        Front.from_dict({})
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"objectives": "a,c"}, "no objective 'c'"),
+        ({"objectives": ["a"]}, "two or three objectives"),
+        ({"method": "nsga"}, "methods: epsilon, nsga2"),
+        ({"most": {"c": 1.0}}, "none of the objectives"),
+    ],
+)
+def test_what_does_not_fit_is_said_in_one_sentence(options, words):
+    with pytest.raises(SolveError, match=words):
+        gearopt.pareto(product(), **options)
+    with pytest.raises(ValueError, match="numbers by name"):
+        gearopt.pareto(product(), most=[1.0])
+
+
+def test_unbeaten_points_equal_the_definition_and_ties_come_once():
+    rng = np.random.default_rng(3)
+    points = rng.integers(1, 9, (300, 3)).astype(float)
+    kept = unbeaten(points)
+    front = {tuple(points[k]) for k in kept}
+    assert len(front) == len(kept)
+    for one in points:
+        beaten = ((points <= one).all(axis=1) & (points < one).any(axis=1)).any()
+        assert (tuple(one) in front) == (not beaten)
+    assert len(unbeaten(points, equal=True)) >= len(kept)
+
+
+@pytest.mark.parametrize("count", [2, 3])
+def test_corners_are_what_points_leave_open(count):
+    rng = np.random.default_rng(count)
+    points = rng.random((40, count))
+    found = corners(points, np.ones((1, count)))
+    for one in rng.random((500, count)):
+        free = not (points <= one).all(axis=1).any()
+        assert (one < found).all(axis=1).any() == free
+    some = rng.random((200, count))
+    weights = np.ones((1, count))
+    use = useful(weighed(some, weights), weighed(found, weights))
+    below = (some[:, None, :] <= found[None]).all(axis=2).any(axis=1)
+    assert (use == below).all()  # exact sums exclude nothing more
+    heavy = np.column_stack([some, np.full(len(some), 10.0)])
+    assert not useful(heavy, weighed(found, weights)).any()
+
+
+def test_hypervolume_and_distance_of_a_staircase():
+    front = np.array([[0.0, 2.0], [1.0, 1.0], [2.0, 0.0]])
+    corner = reference(front)
+    assert corner == pytest.approx([2.1, 2.1])
+    assert hypervolume(front, corner) == pytest.approx(2.1 * 0.1 + 1.1 * 1.0 + 0.1 * 1.0)
+    assert igd(front, front) == 0.0 and igd(front + 0.2, front) == pytest.approx(
+        math.hypot(0.1, 0.1)
+    )
+
+
+def test_picks_are_the_knee_the_compromise_and_the_best_of_weights():
+    line = np.array([[0.0, 1.0], [0.1, 0.2], [0.5, 0.1], [1.0, 0.0]])
+    assert knee(line) == 1 and knee(line[[0, 3]]) is None
+    found = picks(line, ["a", "b"], {"a": 0.0, "b": 1.0})
+    assert [(p.place, p.rule) for p in found] == [(3, "weights"), (1, "knee"), (1, "compromise")]
+    assert neighbours(line, 1) == [0, 2]
