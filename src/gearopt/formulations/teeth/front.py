@@ -284,7 +284,7 @@ def _rows(run: Search, level: int, torque: Array, pair: Index, lower: Array) -> 
             narrow = table.made(module, pair[some])
             narrow = narrow.of_width(table.width_ends(narrow, k, pair[some])[0])
             some = some[useful(lower[some] + _costs(run, level, narrow, option), run.open)]
-            width = table.narrowest(torque[some], pair[some], k, option)
+            width = table.carrying(torque[some], pair[some], k, option)
             some, width = some[np.isfinite(width)], width[np.isfinite(width)]
             yield _row(run, level, pair, some, np.full(len(some), module), width, option)
 

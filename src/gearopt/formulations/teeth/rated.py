@@ -249,7 +249,7 @@ class RatedTable(Table):
         assert isinstance(made, RatedTable)
         return replace(made, others=(*self.others, self))
 
-    def narrowest(self, torque: Array, pair: Index, module: int, option: int) -> Array:
+    def carrying(self, torque: Array, pair: Index, module: int, option: int) -> Array:
         """Return the minimum face width [mm] of pairs of a module (index) made in one way."""
         at = np.full(len(pair), module)
         ends = self._ends(self.made(self.modules[module], pair), at, pair)

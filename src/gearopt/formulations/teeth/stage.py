@@ -164,7 +164,7 @@ class Table:
         slope = closed(train, self.position, self.z1, self.ratio)[3]
         return replace(self, train=train, slope=slope)
 
-    def narrowest(self, torque: Array, pair: Index, module: int, option: int) -> Array:
+    def carrying(self, torque: Array, pair: Index, module: int, option: int) -> Array:
         """Return the narrowest face width [mm] of pairs of a module (index) made in one way."""
         return self.width(torque, pair, module)
 
