@@ -10,9 +10,10 @@ from collections.abc import Callable
 
 import numpy as np
 
+from gearopt.formulations.teeth.columns import Index
 from gearopt.formulations.teeth.later_stages import ragged, slices
 from gearopt.formulations.teeth.rated import RatedTable
-from gearopt.formulations.teeth.stage import EDGE, Index
+from gearopt.formulations.teeth.stage import EDGE
 from gearopt.formulations.together.tables import DELTA, ENTRIES, Drive
 from gearopt.optimise.terms import Array
 
