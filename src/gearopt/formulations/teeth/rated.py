@@ -287,11 +287,8 @@ class RatedTable(Table):
                     high = np.minimum(high, low * (limit / worth) * (1.0 + EDGE))
                 if keep.any():
                     tried, ends = rows[keep], (low[keep], high[keep])
-                    loads, own, module = (
-                        (torque[0][tried], torque[1][tried]),
-                        own[keep],
-                        module[keep],
-                    )
+                    loads = torque[0][tried], torque[1][tried]
+                    own, module = own[keep], module[keep]
                     widths = self._narrowest(loads, own, module, option, ends, close, steps)
                     self._improve(best, tried, own, module, option, widths)
                 rows = rows[larger]
