@@ -334,10 +334,6 @@ class GearPair:
         d = self.pinion.reference_diameter
         return 0.25 * np.pi * self.face_width * d**2 * (1.0 + self.ratio**2)
 
-    def mass(self, density: Any) -> Any:
-        """Return the mass [t] of both gears as solid reference cylinders; density [t/mm3]."""
-        return density * self.volume
-
     @property
     def base_pitch(self) -> Any:
         """Transverse base pitch p_bt = pi m_n cos(alpha_t)/cos(beta) [mm]."""

@@ -6,6 +6,7 @@ Y_RrelT at 1 um, f_eps of 2019); its kinks are those of the limits in the laws.
 """
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -95,7 +96,7 @@ def smooth_safeties(
     """
     if within not in RANGES:
         raise ValueError(f"no range {within!r}; known: {', '.join(RANGES)}")
-    check(practice)
+    check(replace(practice, backup=(None, None)))  # whose ratios may be no numbers here
     found = quantities(Case(pair, operation, materials, practice, given or {}, within))
     (b1, b2), (c1, c2) = (
         [a / b for a, b in zip(found[strong], found[stress], strict=True)]

@@ -64,7 +64,8 @@ def blank_factor(web: Any, rim: Any) -> Any:
     web b_s/b, from 0.2 to 1.2, beyond which the ends count; rim s_R/m_n, at least 1.
     Source: ISO 6336-1:2006, 9.3; met by a printed report (0.898).
     """
-    return 1.0 + np.log(np.clip(web, 0.2, 1.2)) / (5.0 * np.exp(np.maximum(rim, 1.0) / 5.0))
+    part = np.minimum(np.maximum(web, 0.2), 1.2)
+    return 1.0 + np.log(part) / (5.0 * np.exp(np.maximum(rim, 1.0) / 5.0))
 
 
 def mean_blank_factor(webs: tuple[Any, Any]) -> Any:
