@@ -91,7 +91,7 @@ def test_a_kept_file_is_shown_or_refused_in_one_line(kind, kept, tmp_path, capsy
     assert "Page: " in held(kept[kind], tmp_path, capsys)
     rng = random.Random(1)
     for _ in range(2):
-        held(edited(kept[kind], rng), tmp_path, capsys)
+        assert held(edited(kept[kind], rng), tmp_path, capsys)
 
 
 @pytest.mark.slow
@@ -100,7 +100,7 @@ def test_a_kept_file_is_shown_or_refused_in_one_line(kind, kept, tmp_path, capsy
 def test_many_edits_of_kept_files(kind, seed, kept, tmp_path, capsys):
     rng = random.Random(100 + seed)
     for _ in range(25):
-        held(edited(kept[kind], rng), tmp_path, capsys)
+        assert held(edited(kept[kind], rng), tmp_path, capsys)
 
 
 SET = [

@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import replace
-from functools import cache
 
 import numpy as np
 from blank_rings import backup, rings, volume
@@ -71,16 +70,18 @@ def widths(train, k, module, z1):
     return np.linspace(low, high, 1 if face.tied else 60)
 
 
-def least_share(train, k, torque, z1, z2):
-    """Return the least share of a pair over modules and widths, every one rated."""
-    best = math.inf
+def least_share(train, k, torque, z1, z2, most=math.inf):
+    """Return the least share of a pair over modules and widths, rated from the cheapest on.
+
+    inf where none below `most` is safe.
+    """
+    found = []
     for module in train.stages[k].modules:
         for width in widths(train, k, module, z1):
             pair = train.pair(k, float(module), z1, z2, float(width))
             value = share(train, k, pair) if not train.hollow else mass(train, k, pair)
-            if value < best and safe(train, k, pair, torque):
-                best = value
-    return best
+            found += [(value, len(found), pair)] if value < most else []
+    return next((value for value, _, p in sorted(found) if safe(train, k, p, torque)), math.inf)
 
 
 def mass(train, k, pair):
@@ -93,27 +94,23 @@ def mass(train, k, pair):
 
 def cheapest(train):
     """Return the least objective of all trains; inf where none is safe."""
-
-    @cache
-    def least(k, torque, z1, z2):
-        return least_share(train, k, torque, z1, z2)
-
     every = [
         [(z1, z2) for z1, a, b in spans(train, k, train.highest_ratio) for z2 in range(a, b + 1)]
         for k in range(len(train.stages))
     ]
 
-    def onward(k, torque, teeth):
+    def onward(k, torque, teeth, most):
+        """The least objective of the stages from k on; inf where it is not below `most`."""
         if k == len(every):
             return 0.0 if within(train, teeth) else math.inf
-        best = math.inf
+        best, last = most, k == len(every) - 1
         for z1, z2 in every[k]:
-            last = k == len(every) - 1
             if last and not within(train, (*teeth, (z1, z2))):
                 continue
-            own = least(k, torque, z1, z2)
+            own = least_share(train, k, torque, z1, z2, best)
             if own < best:
-                best = min(best, own + onward(k + 1, torque * (z2 / z1), (*teeth, (z1, z2))))
-        return best
+                rest = onward(k + 1, torque * (z2 / z1), (*teeth, (z1, z2)), best - own)
+                best = min(best, own + rest)
+        return best if best < most else math.inf
 
-    return onward(0, train.torque, ())
+    return onward(0, train.torque, (), math.inf)

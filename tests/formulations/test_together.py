@@ -119,7 +119,12 @@ def some_frame(rng, train):
     return make
 
 
-def same_as_brute_force(seed, stages, gap):
+TOGETHER = [(seed, 2, 1e-4) for seed in range(20)] + [(seed, 3, 1e-3) for seed in (0, 2, 3)]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("seed", "stages", "gap"), TOGETHER)  # 1 of 3 takes half a minute
+def test_gears_and_box_as_by_brute_force(seed, stages, gap):
     rng = np.random.default_rng([stages, seed])
     train = some_train(rng, stages)
     make = some_frame(rng, train)
@@ -131,18 +136,6 @@ def same_as_brute_force(seed, stages, gap):
     assert result.status == "optimal"
     assert result.value == pytest.approx(best, rel=1.2 * gap)
     assert result.bound <= best * (1 + 1e-9)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("seed", range(20))
-def test_two_stages_as_by_brute_force(seed):
-    same_as_brute_force(seed, 2, 1e-4)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("seed", [0, 2, 3])  # 1 takes half a minute
-def test_three_stages_as_by_brute_force(seed):
-    same_as_brute_force(seed, 3, 1e-3)
 
 
 @pytest.mark.slow

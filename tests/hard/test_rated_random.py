@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from campaigns import few
 from rated_brute_force import cheapest, safe
 from rated_drives import agma, impossible, some_iso, some_rated_drive
 
@@ -14,20 +15,13 @@ from gearopt.optimise.terms import each
 PLAIN = ("tied", "stepped", "fixed")  # widths that can be listed
 
 
-def seeds(count):
-    """Return so many seeds, of which all but two are slow."""
-    return [0, 1, *(pytest.param(s, marks=pytest.mark.slow) for s in range(2, count))]
-
-
-def range_of(first, last):
-    """Return these seeds, all slow."""
-    return [pytest.param(s, marks=pytest.mark.slow) for s in range(first, last)]
+TWO_STAGES = (40, 43, 44, 46, 47, 49, 50, 51, 52, 63)  # seeds of few candidates
 
 
 @pytest.mark.parametrize("standard", [agma, some_iso])
-@pytest.mark.parametrize("seed", [*seeds(20), *range_of(40, 50)])
+@pytest.mark.parametrize("seed", few([*range(20), *TWO_STAGES], 2))
 def test_small_drives_equal_to_every_candidate_rated_alone(seed, standard):
-    train = some_rated_drive(seed, 1 if seed < 40 else 2, PLAIN, standard)
+    train = some_rated_drive(seed, 2 if seed in TWO_STAGES else 1, PLAIN, standard)
     best, result = cheapest(train), solve(teeth.problem(train))
     if math.isinf(best):
         assert result.status == "infeasible"
@@ -36,14 +30,14 @@ def test_small_drives_equal_to_every_candidate_rated_alone(seed, standard):
     assert result.value == pytest.approx(best, rel=1e-10)
 
 
-@pytest.mark.parametrize("seed", seeds(30))
+@pytest.mark.parametrize("seed", few(range(30), 2))
 def test_impossible_drives_are_told(seed):
     train = impossible(some_rated_drive(1000 + seed), seed)
     assert solve(teeth.problem(train)).status == "infeasible"
 
 
 @pytest.mark.parametrize("standard", [agma, some_iso])
-@pytest.mark.parametrize("seed", seeds(30))
+@pytest.mark.parametrize("seed", few(range(30), 2))
 def test_no_random_candidate_is_better(seed, standard):
     """Free widths among them; the best one is rated alone, candidates by the text."""
     train = some_rated_drive(2000 + seed, standard=standard)

@@ -8,6 +8,7 @@ import warnings
 
 import numpy as np
 import pytest
+from campaigns import few
 from random_problems import FEASIBLE, case, reference, refined
 
 from gearopt import solve
@@ -19,18 +20,14 @@ METHODS = (*QUICK, "multistart", "nsga2", "scip")
 NEAR = 0.05  # of a variable's range: what lies farther off may be another minimum
 
 
-@pytest.mark.parametrize("seed", range(11))
-def test_a_problem_of_every_family(seed):
-    check(seed, QUICK, 2_000, starts=3)
+FAMILIES = [(seed, QUICK, 2_000, 3) for seed in range(11)]
+MORE = [(seed, METHODS, 20_000, 12) for seed in range(11, 22)]
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("seed", range(11, 22))
-def test_many_problems_by_every_method(seed):
-    check(seed, METHODS, 20_000, starts=12)
-
-
-def check(seed, methods, evaluations, starts):
+@pytest.mark.parametrize(
+    ("seed", "methods", "evaluations", "starts"), few([*FAMILIES, *MORE], len(FAMILIES))
+)
+def test_problems_of_every_family(seed, methods, evaluations, starts):
     own = case(seed)
     best, _ = reference(own, starts)
     for method in methods:

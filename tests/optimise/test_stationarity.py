@@ -4,6 +4,7 @@ import math
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache
+from itertools import product
 
 import numpy as np
 import pytest
@@ -148,27 +149,15 @@ def solved(name):
     return problem, result, outcome
 
 
-def same(name, factor, unit):
+@pytest.mark.parametrize(("factor", "unit"), few(product(FACTORS, UNITS), [(1e-12, 1e6)]))
+@pytest.mark.parametrize("name", CASES)
+def test_neither_a_factor_nor_a_unit_changes_the_answer(name, factor, unit):
     _, plain, outcome = solved(name)
     result, again = run(measured(CASES[name](), factor, unit))
     convex = name in ("cube", "elevator")
     assert result.status == plain.status == ("optimal" if convex else "stationary")
     assert result.value / factor == pytest.approx(plain.value, rel=1e-9, abs=1e-15)
     assert again.x / unit == pytest.approx(outcome.x, rel=1e-6)
-
-
-@pytest.mark.parametrize(("factor", "unit"), few([(1e-12, 1e6), (1e12, 1e-6)], 1))
-@pytest.mark.parametrize("name", CASES)
-def test_neither_a_factor_nor_a_unit_changes_the_answer(name, factor, unit):
-    same(name, factor, unit)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", CASES)
-def test_no_factor_and_no_unit_changes_the_answer(name):
-    for factor in FACTORS:
-        for unit in UNITS:
-            same(name, factor, unit)
 
 
 @pytest.mark.parametrize("name", [n for n in CASES if n not in ("cube", "elevator")])

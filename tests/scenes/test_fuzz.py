@@ -153,7 +153,7 @@ def gearopt(*words):
     )
 
 
-def assert_refused(path):
+def refused(path):
     done = gearopt("solve", path)
     assert done.returncode == 2 and done.stdout == ""
     assert done.stderr.endswith("\n") and "Traceback" not in done.stderr
@@ -168,7 +168,7 @@ def assert_refused(path):
 def test_the_command_refuses_in_a_line_for_each_mistake(kind, tmp_path):
     path = tmp_path / "my.toml"
     refused_file(kind, path)
-    lines = assert_refused(path)
+    lines = refused(path)
     assert lines == [f"gearopt: {line}" for line in str(refusal_of(path)).splitlines()]
 
 
@@ -185,14 +185,14 @@ def test_the_command_takes_what_editors_add(kind, tmp_path):
 @pytest.mark.slow
 def test_the_command_refuses_what_is_no_file(tmp_path):
     (tmp_path / "mine.toml").write_text(ELEVATOR)
-    assert_refused(tmp_path)
-    assert_refused(tmp_path / "nine.toml")
-    assert_refused(tmp_path / "none" / "mine.toml")
-    assert_refused(tmp_path / "mine.toml" / "mine.toml")
-    assert_refused(tmp_path / ("long" * 100))
+    assert refused(tmp_path)
+    assert refused(tmp_path / "nine.toml")
+    assert refused(tmp_path / "none" / "mine.toml")
+    assert refused(tmp_path / "mine.toml" / "mine.toml")
+    assert refused(tmp_path / ("long" * 100))
     if os.geteuid() != 0:  # root reads everything
         (tmp_path / "mine.toml").chmod(0)
-        assert_refused(tmp_path / "mine.toml")
+        assert refused(tmp_path / "mine.toml")
 
 
 def test_paths_that_are_no_file_name_one(tmp_path):
