@@ -21,7 +21,7 @@ def rings(blank, module, d, dedendum=1.25):
     if rim is not None and root - 2 * rim > hub * (1 + 1e-12):
         inside, web = root - 2 * rim, min(1.0, blank.web_over_width)
         return [(d, inside, 1.0), (inside, hub, web), (hub, blank.bore, 1.0)]
-    return [(d, blank.bore if hub <= root else 0.0, 1.0)]
+    return [(d, blank.bore if hub < root else 0.0, 1.0)]
 
 
 def volume(blank, module, d, b):

@@ -13,7 +13,7 @@ from gearopt.physics.choosing import choose
 from gearopt.physics.gears import Gear
 
 HUB = 1.6  # usual diameter of a hub over its bore
-SAME = 1e-9  # of the diameter: a rim this close to the hub counts as touching it
+SAME = 1e-9  # of the diameter: what is this close to the hub counts as touching it
 THICK = 10.0  # backup ratio of a solid gear; from 1.2 on no standard has a rim factor
 
 
@@ -36,7 +36,7 @@ class Blank:
     hub_over_bore h > 1: outer diameter of the hub, which is as wide as the gear, over the bore.
 
     The rim fits where it leaves a web: d_f - 2 s_R > h d_i. Else the gear is a solid disc, bored
-    where the hub is below its root circle, without a bore, as on a pinion shaft, where it is not.
+    where the hub is inside its root circle, without a bore, as on a pinion shaft, where it is not.
     """
 
     rim_over_module: float | None = None
@@ -87,7 +87,8 @@ class Blank:
         if not self.bore:
             return no
         d, root = gear.reference_diameter, gear.root_diameter
-        return choose(self.hub <= root, choose(self.hub <= d, yes, no), no)
+        hub = self.hub + SAME * d
+        return choose(hub < root, choose(hub < d, yes, no), no)
 
     def volume(self, gear: Gear) -> Any:
         """Return (pi/4) b (d^2 - (1 - b_s/b)((d_f - 2 s_R)^2 - (h d_i)^2) - d_i^2) [mm3].
