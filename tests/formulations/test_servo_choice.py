@@ -1,4 +1,4 @@
-"""Trains that are stiff enough and fit a box, and fronts of trains, against looking at all."""
+"""Trains that are stiff enough and fit a box, against looking at all."""
 
 import math
 from dataclasses import replace
@@ -10,7 +10,7 @@ from servo_trains import PAPER
 from uncompiled import uncompiled
 
 from gearopt.formulations.servo import choice, choice_search, servo_box, split
-from gearopt.formulations.servo.choice import Choice, Springs, front, train_problem
+from gearopt.formulations.servo.choice import Choice, Springs, train_problem
 from gearopt.formulations.servo.ratio import Drive, ServoDuty
 from gearopt.formulations.servo.servo_box import Room, ServoBox, first_that_fits, of_train
 from gearopt.formulations.servo.split.servo_train import pairs
@@ -129,24 +129,6 @@ def test_a_look_at_a_range_of_links_excludes_no_layout():
         wide = np.array([a, b * rng.uniform(0.3, 1.0), b * rng.uniform(1.0, 3.0)])
         assert not math.isnan(code.room(given._replace(link=wide), 1.0, low, high, 1e-12))
     assert tried > 100
-
-
-@pytest.mark.parametrize("goal", ["mass", FASTEST.goal])
-def test_the_front_is_that_of_all_trains(goal, monkeypatch):
-    monkeypatch.setattr(choice, "PART", 70)
-    for seed in range(6):
-        rng = np.random.default_rng(seed)
-        train = posed(rng)
-        train = replace(train, modules=train.modules[:1])
-        points = split.feasible(train, goal if goal == FASTEST.goal else "inertia")
-        chosen = Choice(train, goal)
-        found = front(chosen, Clock(Budget()))
-        if not len(points):
-            assert found is None
-            continue
-        worth = split.problem(train, *chosen.weighed).batch(points).F
-        kept = split.pareto_front(worth)
-        assert np.array_equal(found[1], worth[kept]) and np.array_equal(found[0], points[kept])
 
 
 def test_a_search_stops_when_told_and_pauses_change_nothing(monkeypatch):

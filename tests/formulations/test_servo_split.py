@@ -18,7 +18,6 @@ from gearopt.formulations.servo.split import (
     first_ratio,
     lightest_stage_ratio,
     order,
-    pareto_front,
     problem,
     relaxation,
     stage_counts,
@@ -26,7 +25,6 @@ from gearopt.formulations.servo.split import (
     trains,
 )
 from gearopt.formulations.servo.split.numbers import numbers
-from gearopt.formulations.servo.split.order import _one_by_one
 from gearopt.formulations.servo.split.teeth import KERNEL
 from gearopt.optimise import tape
 from gearopt.optimise.result import Budget
@@ -270,33 +268,6 @@ def test_all_feasible_trains_keep_all_limits():
     assert (batch.G <= 1.0 + 1e-12).all()
     assert batch.F.min() == solve(problem(PAPER)).value
     assert feasible(PAPER, maximum=62053) is None
-
-
-@pytest.mark.parametrize("seed", range(5))
-def test_the_pareto_front_is_that_of_all_pairs(seed):
-    worth = np.random.default_rng(seed).integers(0, 12, (200, 3)).astype(float)
-    unique = np.unique(worth, axis=0)
-    best = [row for row in unique if not ((unique <= row).all(1) & (unique < row).any(1)).any()]
-    found = worth[pareto_front(worth)]
-    assert np.array_equal(found[np.lexsort(found.T[::-1])], np.array(best))
-
-
-def test_many_rows_are_thinned_to_the_same_front():
-    """A row is dropped early only where another beats it; of equal rows the first one stays."""
-    rng = np.random.default_rng(9)
-    worth = np.exp(rng.normal(size=(20_000, 3)))
-    worth[::3] = np.round(worth[::3])
-    worth[5000:6000] = worth[:1000]
-    assert pareto_front(worth) == _one_by_one(worth)
-    pairs = np.column_stack([worth[:, :2], np.zeros(len(worth))])
-    assert pareto_front(worth[:, :2]) == _one_by_one(pairs)
-
-
-def test_columns_of_one_value_order_nothing():
-    """What is alike in all rows is left out of the scales, whatever its size."""
-    worth = np.array([[602.3, 4.5, 2e-4], [602.3, 4.5, 1e-4], [602.3, 4.0, 2e-4]])
-    assert pareto_front(worth[:1]) == [0]
-    assert pareto_front(worth) == [2, 1]
 
 
 def test_a_run_stops_when_told():

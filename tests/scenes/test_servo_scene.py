@@ -21,10 +21,10 @@ from servo_files import (
 
 import gearopt
 from gearopt.errors import SceneError
-from gearopt.formulations.servo import choice, servo_box, split
-from gearopt.formulations.servo.choice import front
+from gearopt.formulations.servo import choice, servo_box, split, train_front
 from gearopt.formulations.servo.servo_design import RatioDesign
 from gearopt.formulations.servo.split.servo_train import pairs
+from gearopt.formulations.servo.train_front import front
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget
 from gearopt.optimise.typed import typed
@@ -156,7 +156,7 @@ def test_the_whole_toothed_train_is_as_stiff_as_asked():
     assert result.limits["stiffness"] == pytest.approx(
         (230.0 / result.design["stiffness"]["frequency_Hz"]) ** 2, rel=1e-12
     )
-    points, worth = front(example.choice(), Clock(Budget()))
+    points, worth = front(example.choice(), WEIGHED, Clock(Budget()))
     assert 1e-3 * worth[:, 0].min() == pytest.approx(result.value, rel=1e-12)
     free = gearopt.solve(changed(EXAMPLE, drop=[("space",), ("lightest",)]))
     assert result.value > free.value
@@ -174,7 +174,7 @@ def test_a_box_that_is_required_changes_the_train():
     loose = gearopt.solve(changed(EXAMPLE, *NARROW, (("space", "required"), False), drop=BARE))
     assert loose.value < result.value and not loose.design["box"]["fits"]
     assert any("does not fit" in note for note in loose.report["notes"])
-    points, worth = front(scene.choice(), Clock(Budget()))
+    points, worth = front(scene.choice(boxed=False), WEIGHED, Clock(Budget()))
     better = [x for x, row in zip(points, worth, strict=True) if 1e-3 * row[0] < result.value]
     assert better and servo_box.first_that_fits([scene.box(pairs(x)) for x in better]) is None
     found = scene.box(pairs(gears_point(result)))
@@ -206,6 +206,7 @@ def test_the_output_shaft_is_told_and_may_be_given():
         assert any(said + words in line for line in assumptions(scene))
 
 
+WEIGHED = "inertia", "mass", "error"
 FEW = [
     (("train", "modules"), ["0.3 mm", "0.5 mm"]),
     (("train", "pinion_teeth"), [16, 24]),
@@ -272,17 +273,19 @@ def test_neighbours_are_not_beaten_in_all_three(solved):
 @pytest.mark.slow
 def test_a_look_for_neighbours_in_parts_finds_the_same_and_stops_in_time(monkeypatch):
     scene, seen = gearopt.load(PROBLEMS / "servo_gimbal_light.toml"), []
-    points, worth = front(scene.choice(), Clock(Budget()))
-    monkeypatch.setattr(choice, "PART", 1000)
-    monkeypatch.setattr(choice, "STEPS", 10_000)
-    again = front(scene.choice(), Clock(Budget(), lambda event: seen.append(event) or True))
+    points, worth = front(scene.choice(boxed=False), WEIGHED, Clock(Budget()))
+    monkeypatch.setattr(train_front, "PART", 1000)
+    monkeypatch.setattr(train_front, "STEPS", 10_000)
+    followed = Clock(Budget(), lambda event: seen.append(event) or True)
+    again = front(scene.choice(boxed=False), WEIGHED, followed)
     assert np.array_equal(again[0], points) and np.array_equal(again[1], worth)
     assert len(seen) > 10
-    assert front(scene.choice(), Clock(Budget(seconds=0.0))) is None
+    assert len(front(scene.choice(), WEIGHED, Clock(Budget(seconds=0.0)))[0]) == 0
     for count in (1, len(seen) // 2):
         left = iter(range(count))
         stopped = Clock(Budget(), lambda event, left=left: next(left, None) is not None)
-        assert front(scene.choice(), stopped) is None and stopped.stopped
+        some = front(scene.choice(), WEIGHED, stopped)[0]
+        assert stopped.stopped and len(some) < len(points)
 
 
 def test_trains_that_are_not_listed_are_said_to_be(monkeypatch):

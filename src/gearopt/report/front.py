@@ -1,7 +1,7 @@
 """A Pareto front in words and tables, the same on the terminal and on its page."""
 
 import shlex
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from gearopt.optimise.pareto.front import Front
@@ -110,7 +110,7 @@ def table(front: Front, measures: Measures = METRIC, most: int | None = None) ->
     rules: dict[int, list[str]] = {}
     for pick in front.picks:
         rules.setdefault(pick.place, []).append(pick.rule)
-    gears = any("stages" in p.design for p in front.points)
+    gears = any(_stages(p.design) for p in front.points)
     rows = [
         (
             k + 1,
@@ -141,10 +141,16 @@ def _head(name: str, unit: str, measures: Measures) -> str:
     return f"{words(name)} [{sign}]" if sign else words(name)
 
 
+def _stages(design: Mapping[str, Any]) -> Sequence[Mapping[str, Any]]:
+    """Return the stages of a drive, or of the train of a servo axis."""
+    found: Sequence[Mapping[str, Any]] = (design.get("train") or design).get("stages", ())
+    return found
+
+
 def _gears(design: Mapping[str, Any], measures: Measures) -> Cell:
     """Return modules and teeth of the stages of a drive."""
     rows = []
-    for stage in design.get("stages", ()):
+    for stage in _stages(design):
         module = number(measures.of_module(stage[MODULE]))
         rows.append(f"{module}, {number(stage['pinion_teeth'])}/{number(stage['wheel_teeth'])}")
     text = "; ".join(rows)

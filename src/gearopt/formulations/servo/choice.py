@@ -17,7 +17,6 @@ from gearopt.formulations.servo.split import teeth
 from gearopt.formulations.servo.split.bodies import Pairs
 from gearopt.formulations.servo.split.servo_train import pairs
 from gearopt.optimise.clock import Clock, in_part, of_others
-from gearopt.optimise.kernels import kernel
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.terms import Array, Terms
@@ -35,12 +34,8 @@ from gearopt.physics.stiffness import (
 RANDOM, COUNTS = teeth.RANDOM, teeth.COUNTS  # of the methods that are passed on here
 SLACK = teeth.ROUNDING, teeth.FLAT  # of an objective, and of that of a duty
 WANTED = {"stiffness": "has the stiffness that is required", "box": "fits the box"}
-FRONT = "gearopt.formulations.servo.front_kernel"
 TIE = 1e-9  # relative: a minimum backlash that is met exactly
-SAMPLE = 250  # trains of a Pareto front that others are held against
-STEPS = 1_000_000  # of the kernel between two checks of the clock
 SPRINGS = ("mesh of stage 2", "shaft between the stages", "mesh of stage 1")
-PART, FEW = 20_000, 50  # trains that wait for the next front, at most; before the first one
 
 
 @dataclass(frozen=True)
@@ -169,19 +164,6 @@ def train_problem(choice: Choice) -> Problem:
     """
     base, factor = split.problem(choice.train, choice.goal), GOALS[choice.goal].factor
 
-    def evaluate(x: Any, p: Any) -> Terms:
-        found = base.evaluate(x, p)
-        limits = dict(found.limits)
-        if choice.springs is not None and choice.springs.minimum is not None:
-            made = pairs((*x.pinion_teeth, *x.wheel_teeth, *x.module), choice.train.face_width)
-            limits["stiffness"] = choice.springs.minimum / choice.springs.output_stiffness(made)
-        for stage, there, asked in choice.backlash:
-            none = 0.0 * x.module[0]  # of the shape of a population
-            scale = there if there > 0.0 else asked  # required over actual, where gears have any
-            limits[f"minimum_backlash[{stage}]"] = 1.0 + (asked - there) / scale + none
-        goal = {choice.goal: factor * found.minimise[choice.goal]}
-        return replace(found, minimise=goal, limits=limits)
-
     def method(name: str) -> Callable[..., Outcome]:
         def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
             """Return the best train; where it breaks the limits apart, the best that keeps them."""
@@ -202,7 +184,29 @@ def train_problem(choice: Choice) -> Problem:
         return run
 
     methods = {name: method(name) for name in ("exact", "enumeration")}
-    return Problem("train", base.variables, (), evaluate, methods=methods)
+    return Problem("train", base.variables, (), text(choice, base), methods=methods)
+
+
+def text(choice: Choice, base: Problem) -> Callable[[Any, Any], Terms]:
+    """Return the text of a train's problem: that of `split.problem` in the units that are shown.
+
+    With the limits on stiffness and backlash.
+    """
+
+    def evaluate(x: Any, p: Any) -> Terms:
+        found = base.evaluate(x, p)
+        limits = dict(found.limits)
+        if choice.springs is not None and choice.springs.minimum is not None:
+            made = pairs((*x.pinion_teeth, *x.wheel_teeth, *x.module), choice.train.face_width)
+            limits["stiffness"] = choice.springs.minimum / choice.springs.output_stiffness(made)
+        for stage, there, asked in choice.backlash:
+            none = 0.0 * x.module[0]  # of the shape of a population
+            scale = there if there > 0.0 else asked  # required over actual, where gears have any
+            limits[f"minimum_backlash[{stage}]"] = 1.0 + (asked - there) / scale + none
+        goals = {name: GOALS[name].factor * value for name, value in found.minimise.items()}
+        return replace(found, minimise=goals, limits=limits)
+
+    return evaluate
 
 
 def binding(backlash: tuple[tuple[int, float, float], ...]) -> Outcome | None:
@@ -256,39 +260,3 @@ def _kept(choice: Choice, base: Problem, best: float, clock: Clock) -> Outcome:
         return Outcome(None, infeasible=True, proof=proof, evaluations=looked, message=text)
     bound = float(base.batch(x[None]).F[0, 0]) * (1.0 - SLACK[bool(GOALS[choice.goal].motion)])
     return Outcome(x, bound=bound, proof=proof, evaluations=looked)
-
-
-def front(choice: Choice, clock: Clock) -> tuple[Array, Array] | None:
-    """Return points and objectives (`weighed`) of the Pareto front of trains.
-
-    Stiffness is kept, a box left aside; None where there is no train, or time is up. Trains are
-    listed in parts, without those that a sample of the front so far beats.
-    """
-    goals, look = choice.weighed, kernel(FRONT).unbeaten
-    posed, (given, _) = split.problem(choice.train, *goals), split.posed(choice.train, goals[0])
-    aims, spring = np.array([list(GOALS).index(g) for g in goals]), choice.kept.spring
-    longest = int(given.wheel_2.max()) + 1
-    rows = np.empty((max(PART, 2 * longest), 6), np.int64)
-    at, end = np.array([0, -1, -1]), kernel(teeth.KERNEL).first_stages(given)[0]
-    best, worth, duty = np.empty((0, 6)), np.empty((0, len(goals))), np.zeros(1)
-    count, sample = 0, worth
-    while at[0] < end:
-        if not clock.tell():
-            return None
-        if not count:
-            sample = _sample(worth)
-        count += look(given, aims, spring, sample, at, duty, rows[count:], STEPS)
-        if at[0] < end and count < min(FEW + len(best), len(rows) - longest):
-            continue
-        found, count = split.points(given, rows[:count]), 0
-        if len(found):
-            best, worth = np.vstack([best, found]), np.vstack([worth, posed.batch(found).F])
-            kept = split.pareto_front(worth)
-            best, worth = best[kept], worth[kept]
-    return (best, worth) if len(best) else None
-
-
-def _sample(worth: Array) -> Array:
-    """Return some trains of a front that beat as many others as possible."""
-    rows = np.linspace(0, len(worth) - 1, min(SAMPLE, len(worth))).round().astype(int)
-    return np.ascontiguousarray(worth[rows])

@@ -29,6 +29,7 @@ from gearopt.physics.gears import disc_mass
 from gearopt.scenes.explaining.default import explained, of_report
 from gearopt.scenes.reading.ask import Ask, unseeded
 from gearopt.scenes.servo.assumptions import assumptions, notes
+from gearopt.scenes.servo.front import objectives, several
 from gearopt.scenes.servo.remedies import remedies
 from gearopt.scenes.servo.scene import EXAMPLE, Scene
 from gearopt.scenes.servo.tolerance_part import by_every_rule, named, old, tolerance_part
@@ -47,7 +48,17 @@ from gearopt.scenes.servo.train_part import (
     train_part,
 )
 
-__all__ = ["EXAMPLE", "Scene", "compared", "explain", "idle", "model", "solve"]
+__all__ = [
+    "EXAMPLE",
+    "Scene",
+    "compared",
+    "explain",
+    "idle",
+    "model",
+    "objectives",
+    "several",
+    "solve",
+]
 
 METHODS = ("exact", "enumeration")  # its own
 COUNTS = {"combinations": "trains_looked_at", "feasible_trains": "feasible_trains"}

@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass, replace
 
 from gearopt.formulations.servo import servo_box, split
-from gearopt.formulations.servo.choice import front, train_problem
+from gearopt.formulations.servo.choice import train_problem
 from gearopt.formulations.servo.ratio.achieved import (
     Candidate,
     achieved,
@@ -29,6 +29,7 @@ from gearopt.formulations.servo.servo_design import (
 )
 from gearopt.formulations.servo.split.bodies import Pairs
 from gearopt.formulations.servo.split.servo_train import bending_stress, objectives, pairs
+from gearopt.formulations.servo.train_front import front
 from gearopt.optimise.clock import Clock, in_part
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run, solve
@@ -176,17 +177,16 @@ def train_part(scene: Scene, ask: Ask) -> tuple[Result, Pairs | None]:
 def neighbours(scene: Scene, clock: Clock) -> tuple[ListedTrain, ...]:
     """Return the Pareto front of trains; nothing where time is up, at most PATIENCE.
 
-    Thinned if many. One that is the best by two goals stands there twice, each time named by one
-    of them.
+    A box is left aside. Thinned if many. One that is the best by two goals stands there twice,
+    each time named by one of them.
     """
     import numpy as np
 
-    choice = scene.choice()
+    choice = scene.choice(boxed=False)
     within = Clock(replace(clock.left, seconds=clock.within(PATIENCE)), clock.watch)
-    found = front(choice, within)
-    if found is None:
+    points, worth = front(choice, choice.weighed, within)
+    if within.stopped or not len(points):
         return ()
-    points, worth = found
     best = worth.argmin(0).tolist()
     many = np.linspace(0, len(points) - 1, min(LISTED, len(points))).round().astype(int)
     shown = [(k, "") for k in many.tolist() if k not in best]

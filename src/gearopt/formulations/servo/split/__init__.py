@@ -14,7 +14,7 @@ from gearopt.formulations.servo.split.core import (
     staged,
 )
 from gearopt.formulations.servo.split.numbers import posed
-from gearopt.formulations.servo.split.order import feasible, pareto_front, points, trains
+from gearopt.formulations.servo.split.order import feasible, points, trains
 from gearopt.formulations.servo.split.relaxation import relaxation
 from gearopt.formulations.servo.split.servo_train import ServoTrain
 from gearopt.formulations.servo.split.stiff import StiffTrain, stiff
@@ -36,5 +36,4 @@ __all__ = [
     "staged",
     "stiff",
     "trains",
-    "pareto_front",
 ]
