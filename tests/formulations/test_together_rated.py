@@ -149,10 +149,12 @@ def test_widths_of_cells_are_below_those_of_every_torque(standard):
             if not low <= there <= math.log(train.highest_ratio) - sum(o.min() for o in later):
                 continue
             torque = train.torque * math.exp(reached)
-            cell = int(max(reached - 1e-9, 0.0) / drive.step)
+            own = drive.start[stage] + pair
+            cell = max(int(max(reached - 1e-9, 0.0) / drive.step) - drive.cell[own], 0)
+            row = min(drive.row[own] + cell, drive.row[own + 1] - 1)
             for module in range(len(table.modules)):
                 width = table.width(np.array([torque]), np.array([pair]), module).item()
-                bound = drive.bisected[cell, module, drive.start[stage] + pair]
+                bound = drive.bisected[row, module]
                 assert bound <= width * (1.0 + 1e-9)
     assert np.isfinite(drive.bisected).any()
 

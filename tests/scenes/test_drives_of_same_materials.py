@@ -113,3 +113,21 @@ def test_next_best_trains_have_the_same_materials():
     assert [t["objective"] for t in trains] == sorted(t["objective"] for t in trains)
     for one in trains:
         assert len({(s["pinion_material"], s["wheel_material"]) for s in one["stages"]}) == 1
+
+
+@pytest.mark.slow
+def test_materials_of_its_own_for_every_stage_are_a_remedy():
+    """What all stages may have is too soft for the first one, whose module is small."""
+    soft = TOUGH | {"name": "soft", "hardness": "180 HB"}
+    stages = [
+        {"module": "2 mm", "wheel": {"materials": ["hard", "soft"]}},
+        {"wheel": {"materials": ["soft"]}},
+    ]
+    tables = drive(*stages) | {"material": [HARD, TOUGH, soft]}
+    tables["teeth"] = {"modules": ["2 mm", "4 mm", "5 mm"]}
+    found = gearopt.explain(tables, budget=gearopt.Budget(seconds=20.0))
+    assert found.result.status == "infeasible"
+    (change,) = found.remedies[0].changes
+    assert (change.key, change.write) == ("gears.same_materials", "false")
+    tables["gears"]["same_materials"] = False
+    assert gearopt.solve(tables).status == "optimal"

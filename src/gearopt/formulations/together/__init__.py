@@ -64,7 +64,9 @@ def ready(watch: Watch | None = None) -> bool:
     """Have every kernel compiled before a clock runs; False if the watcher ended that."""
     law = kernel(KERNELS)
     return compiled(
-        _tiny, (law.useful, law.fill, law.expand, law.sift, kernel(ANNEAL).anneal), watch
+        _tiny,
+        (law.useful, law.shorten, law.fill, law.expand, law.sift, kernel(ANNEAL).anneal),
+        watch,
     )
 
 
@@ -88,7 +90,7 @@ def _searched(search: Search, start: Start | None) -> Outcome:
     possible = _first(search)
     clock = search.clock
     wanted = (clock.budget.gap or GAP) * (1.0 - SLACK)
-    margins = [m for m in MARGINS if m > wanted] + [wanted]
+    margins = [m for m in MARGINS if m > 1.1 * wanted] + [wanted]
     while possible and margins and not clock.stopped:
         work = prepare(search, drive, box, wanted)
         if work is not None and search.train.rated:

@@ -34,8 +34,8 @@ def module(d, j, p, torque):
 def width(d, j, p, k, torque):
     """Least face width for a torque, with a module of `module`; inf if none carries it."""
     if d.load.size == 0:
-        cell = int(max(math.log(torque / d.torque) - EDGE, 0.0) / d.step)
-        return d.bisected[min(cell, d.bisected.shape[0] - 1), k, p]
+        cell = int(max(math.log(torque / d.torque) - EDGE, 0.0) / d.step) - d.cell[p]
+        return d.bisected[min(d.row[p] + max(cell, 0), d.row[p + 1] - 1), k]
     m = d.modules[j, k]
     if d.kind[j] == 2:
         return d.given[j]

@@ -11,14 +11,15 @@ from collections.abc import Callable
 import numpy as np
 
 from gearopt.formulations.teeth.columns import Index
-from gearopt.formulations.teeth.later_stages import ragged, slices
+from gearopt.formulations.teeth.later_stages import slices
 from gearopt.formulations.teeth.rated import RatedTable
 from gearopt.formulations.teeth.stage import EDGE
-from gearopt.formulations.together.tables import DELTA, ENTRIES, Drive
+from gearopt.formulations.together.tables import DELTA, ENTRIES, KERNELS, Drive
+from gearopt.optimise.kernels import kernel
 from gearopt.optimise.terms import Array
 
 STEPS = tuple(DELTA * factor for factor in (32.0, 8.0, 2.0, 0.5))  # widths of cells, one by one
-ROWS = 2_000_000  # pairs, modules and cells that are bounded, at most
+ROWS = 6_000_000  # pairs, modules and cells that are bounded, at most
 SLICE = 50_000  # of them, between two checks of the clock
 CLOSE = 0.02  # of what is used above 1, over the width of a cell
 
@@ -32,39 +33,74 @@ def narrower(
 
     The drive itself where that takes too long; None if stopped.
     """
-    cells = math.ceil((drive.log_high + 2.0 * DELTA) / step)
-    modules, pairs = drive.modules.shape[1], drive.z1.size
-    if cells * modules * pairs > ENTRIES:
+    count = drive.kind.size
+    windows = [_window(drive, k) for k in range(count)]
+    low, high = (np.concatenate(ends) for ends in zip(*windows, strict=True))
+    cell = (np.maximum(low - EDGE, 0.0) / step).astype(np.int64)
+    cells = np.maximum((np.maximum(high + EDGE, 0.0) / step).astype(np.int64) - cell + 1, 1)
+    row = np.concatenate([[0], np.cumsum(cells)])
+    if row[-1] * drive.modules.shape[1] > ENTRIES:
         return drive
-    work = [_rows(t, drive, k, step, cells) for k, t in enumerate(tables)]
-    if sum(len(w[0]) for w in work) > ROWS:
+    pair = np.repeat(np.arange(len(cells)), cells)
+    reached = (cell[pair] + np.arange(row[-1]) - row[pair]) * step  # log torque over the input's
+    rows, module = np.nonzero(np.isfinite(_known(drive, pair, reached)))
+    some = low[pair[rows]] <= high[pair[rows]] + EDGE
+    rows, module = rows[some], module[some]
+    if len(rows) > ROWS:
         return drive
-    found = np.full((cells, modules, pairs), np.inf)
-    for k, (table, rows) in enumerate(zip(tables, work, strict=True)):
-        if not _fill(table, drive, k, step, rows, found, goes_on):
-            return None
-    made = np.minimum.accumulate(found[::-1], axis=0)[::-1]
-    return drive._replace(bisected=np.ascontiguousarray(made), step=step)
+    found = np.full((int(row[-1]), drive.modules.shape[1]), np.inf)
+    for k, table in enumerate(tables):
+        first, stop = np.searchsorted(rows, row[[drive.start[k], drive.start[k + 1]]])
+        own, shy = _places(table, drive, k), EDGE if k else 0.0  # first: the input torque itself
+        for part in slices(np.ones(stop - first, np.int64), SLICE):
+            r, q = rows[first:stop][part], module[first:stop][part]
+            p = pair[r]
+            ends = np.maximum(reached[r], low[p]), np.minimum(reached[r] + step, high[p])
+            torques = [drive.torque * np.exp(e) for e in (ends[0] - shy, np.maximum(*ends) + shy)]
+            place = own[p - drive.start[k]]
+            found[r, q] = table.least_width((torques[0], torques[1]), place, q, CLOSE * step)
+            if not goes_on():
+                return None
+    _hold_stronger(found, row, cells)
+    return drive._replace(bisected=found, row=row, cell=cell, step=step)
 
 
-def _rows(
-    table: RatedTable, drive: Drive, stage: int, step: float, cells: int
-) -> tuple[Index, Index, Index]:
-    """Return cell, module and pair (of the drive) of all widths that may be asked of a stage."""
-    own = slice(drive.start[stage], drive.start[stage + 1])
-    low, high = _window(drive, stage)
-    first = (np.maximum(low - EDGE, 0.0) / step).astype(np.int64)
-    last = np.minimum((high + EDGE) / step, cells - 1).astype(np.int64)
-    count = np.where(high + EDGE >= low, np.maximum(last - first + 1, 0), 0)
-    pair, cell = ragged(first, count)
-    spans = drive.last[own][pair] - drive.first[own][pair] + 1
-    place, module = ragged(drive.first[own][pair], np.maximum(spans, 0))
-    pair, cell = pair[place] + own.start, cell[place]
-    if drive.bisected.size:
-        before = np.minimum(cell * step / drive.step, drive.bisected.shape[0] - 1)
-        some = np.isfinite(drive.bisected[before.astype(np.int64), module, pair])
-        cell, module, pair = cell[some], module[some], pair[some]
-    return cell, module, pair
+def shortened(drive: Drive, cut: float) -> Drive:
+    """Return the drive without the bisected widths with which a stage alone exceeds the cut.
+
+    Modules that a pair, or no stage, can have then are left out.
+    """
+    kernels = kernel(KERNELS)
+    drive = drive._replace(bisected=drive.bisected.copy())
+    for j in range(drive.kind.size):
+        kernels.shorten(drive, j, cut)
+    some = np.logical_or.reduceat(np.isfinite(drive.bisected), drive.row[:-1], axis=0)
+    most = int(np.flatnonzero(some.any(axis=0)).max(initial=0)) + 1
+    ends = some.argmax(axis=1), some.shape[1] - 1 - some[:, ::-1].argmax(axis=1)
+    steps = {n: getattr(drive, n) for n in ("least_steps", "most_steps")}
+    if drive.least_steps.shape[0] > most:
+        steps = {n: np.ascontiguousarray(v[:most]) for n, v in steps.items()}
+    return drive._replace(
+        bisected=np.ascontiguousarray(drive.bisected[:, :most]),
+        modules=np.ascontiguousarray(drive.modules[:, :most]),
+        first=ends[0],
+        last=np.where(some.any(axis=1), ends[1], 0),
+        **steps,
+    )
+
+
+def _known(drive: Drive, pair: Index, reached: Array) -> Array:
+    """Return the widths (n, modules) that are known of pairs at log torques over the input's."""
+    cell = (reached / drive.step).astype(np.int64) - drive.cell[pair]
+    place = np.minimum(drive.row[pair] + np.maximum(cell, 0), drive.row[pair + 1] - 1)
+    return np.asarray(drive.bisected[place])
+
+
+def _hold_stronger(found: Array, row: Index, cells: Index) -> None:
+    """Set every row of widths to the least of it and those of stronger torques of its pair."""
+    for back in range(2, int(cells.max(initial=1)) + 1):
+        place = row[1:][cells >= back] - back
+        found[place] = np.minimum(found[place], found[place + 1])
 
 
 def _window(drive: Drive, stage: int) -> tuple[Array, Array]:
@@ -79,32 +115,6 @@ def _window(drive: Drive, stage: int) -> tuple[Array, Array]:
     low = np.maximum(sum(least[:stage]), drive.log_low - own - sum(most[stage + 1 :]))
     high = np.minimum(sum(most[:stage]), drive.log_high - own - sum(least[stage + 1 :]))
     return low, high
-
-
-def _fill(
-    table: RatedTable,
-    drive: Drive,
-    stage: int,
-    step: float,
-    rows: tuple[Index, Index, Index],
-    found: Array,
-    goes_on: Callable[[], bool],
-) -> bool:
-    """Set the widths of a stage; False if stopped."""
-    cell, module, pair = rows
-    own = _places(table, drive, stage)
-    low, high = _window(drive, stage)
-    start = int(drive.start[stage])
-    for part in slices(np.ones(len(cell), np.int64), SLICE):
-        k, q, p = cell[part], module[part], pair[part]
-        ends = np.maximum(k * step, low[p - start]), np.minimum((k + 1) * step, high[p - start])
-        shy = EDGE if stage else 0.0  # the first stage carries the input torque
-        torques = [drive.torque * np.exp(e) for e in (ends[0] - shy, np.maximum(*ends) + shy)]
-        width = table.least_width((torques[0], torques[1]), own[p - start], q, CLOSE * step)
-        found[k, q, p] = width
-        if not goes_on():
-            return False
-    return True
 
 
 def _places(table: RatedTable, drive: Drive, stage: int) -> Index:

@@ -22,7 +22,7 @@ from gearopt.formulations.layout.slabs import TOUCH, Arrangement, arrangements, 
 from gearopt.formulations.teeth.rated import RatedTable
 from gearopt.formulations.teeth.search import within
 from gearopt.formulations.teeth.tables import stage_tables, table
-from gearopt.formulations.together.rated_widths import STEPS, narrower
+from gearopt.formulations.together.rated_widths import STEPS, narrower, shortened
 from gearopt.formulations.together.tables import (
     KERNELS,
     Drive,
@@ -203,7 +203,7 @@ def prepare(search: Search, drive: Drive, box: Gearbox, margin: float) -> Work |
     cut = search.value * (1.0 - margin)
     fewer = useful(drive, cut)
     for step in STEPS if search.train.rated else ():
-        closer = narrower(search.tables, fewer, step, search.clock.tell)
+        closer = narrower(search.tables, shortened(fewer, cut), step, search.clock.tell)
         if closer is None:
             return None
         fewer = useful(closer, cut)

@@ -41,8 +41,9 @@ class Drive(NamedTuple):
     """N stages with their pairs one after the other (start), M arrangements of the slabs.
 
     kind: of face widths, 0 tied, 1 free, 2 given, 3 on steps (given: the width or the step). load:
-    as in `teeth.stage.Table`; for a law without one (size 0), bisected holds minimum widths (cells,
-    modules, pairs) by log ratio reached, in cells of `step`. cosine (N,): of the helix angles;
+    as in `teeth.stage.Table`; for a law without one (size 0), bisected holds minimum widths (rows,
+    modules) by log ratio reached, in cells of `step`: the rows of pair p are row[p] : row[p + 1],
+    the first one that of `cell[p]`. cosine (N,): of the helix angles;
     addenda (N, 2): of pinion and wheel in modules. shaft, bearing (N+1, cells): minimum
     radius by log ratio reached. gap: between gears, from shafts, to the wall, along the axis. faces
     (M, N+1, 4, N+1, 4): whether bodies of two shafts face each other: wheel, pinion, shaft,
@@ -75,6 +76,8 @@ class Drive(NamedTuple):
     given: Array
     load: Array
     bisected: Array
+    row: Index
+    cell: Index
     step: float
     least_before: Array
     shaft: Array
@@ -272,20 +275,21 @@ def _stages(train: Train, tables: list[Table]) -> tuple[Array, ...]:
     )
 
 
-def _loads(train: Train, tables: list[Table]) -> tuple[Array, Array, float]:
+def _loads(train: Train, tables: list[Table]) -> tuple[Array, Array, Index, Index, float]:
     """Return the loads of all pairs, or minimum widths by cells of torque (up to ENTRIES).
 
     Of ratings these are the narrowest widths, in one cell: `rated_widths` makes others of them.
     """
     loads = [t.load for t in tables if t.load is not None]
     span = math.log(train.highest_ratio) + 2.0 * DELTA
+    none = np.zeros(1, np.int64)
     if loads and not train.rated:
-        return np.concatenate(loads), np.empty((0, 0, 0)), span
+        return np.concatenate(loads), np.empty((0, 0)), none, none, span
     pairs, modules = sum(len(t.z1) for t in tables), max(len(t.modules) for t in tables)
     cells = max(1, min(math.ceil(span / DELTA), ENTRIES // max(1, pairs * modules)))
     cells = 1 if train.rated else cells
     step = span / cells
-    found = np.full((cells, modules, pairs), np.inf)
+    found = np.full((pairs, cells, modules), np.inf)
     stop = 0
     for t in tables:
         start, stop = stop, stop + len(t.z1)
@@ -294,8 +298,9 @@ def _loads(train: Train, tables: list[Table]) -> tuple[Array, Array, float]:
             torque = np.full(len(t.z1), train.torque * math.exp(cell * step))
             for k in range(len(t.modules)):
                 own = t.narrowest(k) if isinstance(t, RatedTable) else t.width(torque, every, k)
-                found[cell, k, start:stop] = own
-    return np.empty(0), found, step
+                found[start:stop, cell, k] = own
+    rows = cells * np.arange(pairs + 1)
+    return np.empty(0), found.reshape(-1, modules), rows, np.zeros(pairs, np.int64), step
 
 
 def useful(drive: Drive, cut: float) -> Drive:
@@ -309,7 +314,11 @@ def useful(drive: Drive, cut: float) -> Drive:
         names = ("z1", "z2", "log_ratio", "need", "first", "last")
         fewer = {n: getattr(drive, n)[keep] for n in names}
         fewer["load"] = drive.load[keep] if drive.load.size else drive.load
-        fewer["bisected"] = drive.bisected if drive.load.size else drive.bisected[:, :, keep]
+        if not drive.load.size:
+            count_of = np.diff(drive.row)
+            fewer["bisected"] = drive.bisected[np.repeat(keep, count_of)]
+            fewer["row"] = np.concatenate([[0], np.cumsum(count_of[keep])])
+            fewer["cell"] = drive.cell[keep]
         if drive.least_steps.shape[1] == keep.size:
             steps = {n: getattr(drive, n)[:, keep] for n in ("least_steps", "most_steps")}
             fewer |= {n: np.ascontiguousarray(v) for n, v in steps.items()}

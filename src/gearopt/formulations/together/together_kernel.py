@@ -66,6 +66,29 @@ def useful(d, j, cut, keep):
 
 
 @entry
+def shorten(d, j, cut):
+    """Drop bisected widths of a stage that are not below `cut` by themselves: they become inf."""
+    node, body = np.zeros((d.kind.size, 3)), np.zeros((d.kind.size + 1, 4))
+    for i in range(d.kind.size):
+        node[i, 1] = d.widths[i]
+    for p in range(d.start[j], d.start[j + 1]):
+        for k in range(d.first[p], d.last[p] + 1):
+            put(d, j, p, k, node, body)
+            r = body[j + 1, 0] + d.gap[2]
+            area = least_area(body[j, 1] + d.gap[2], r, node[j, 0])
+            there = True  # widths rise with the cell
+            for row in range(d.row[p], d.row[p + 1]):
+                if there:
+                    node[j, 1] = d.bisected[row, k]
+                    least = math.inf
+                    for m in range(d.slabs.size):
+                        least = min(least, length(d, m, ZERO, node))
+                    there = worth(d.aim, least, area, 2.0 * r) < cut
+                if not there:
+                    d.bisected[row, k] = math.inf
+
+
+@entry
 def fill(d, k, start, stop, rest):
     """Tables of stages 0..k-1 with a total ratio of cells start to stop.
 

@@ -79,9 +79,7 @@ def of_report(result: Result) -> Explanation:
     )
     names, words = tuple(ways.get("conflict", ())), ways.get("message", "")
     sure = ways.get("any_resolves", False)
-    doubts = tuple(ways.get("unsure", ()))
-    told = (result, names, found, (), (), words, result.seconds)
-    return Explanation(*told, any_resolves=sure, unsure=doubts)
+    return Explanation(result, names, found, (), (), words, result.seconds, any_resolves=sure)
 
 
 def explained(
