@@ -219,6 +219,28 @@ given, and the rating tells whether the gears are safe. Gears and box at once (`
 chosen by their ratings, too (`problems/elevator_box_rated.toml`); the two processes size by load
 limits alone and are refused beside `[rating]`.
 
+Real-valued sizes are sought on a smooth form of the rating and judged by the exact one. Of 20,000
+random pairs a case, loaded so that the least safety factor is between 0.8 and 1.25, safety factors
+of the smooth form are off by so many per cent, and so many verdicts on a pinion and on a wheel
+would be wrong (`gearopt bench smooth`):
+
+| case | limit | median | 99.9 % | worst | unsafe called safe | safe called unsafe |
+|---|---|---|---|---|---|---|
+| AGMA, spur | bending | 0.0 | 0.0 | 0.0 | 0, 0 | 0, 0 |
+| AGMA, spur | contact | 0.0 | 0.0 | 0.0 | 0, 0 | 0, 0 |
+| AGMA, low | bending | 0.0 | 0.0 | 0.0 | 0, 0 | 0, 0 |
+| AGMA, low | contact | 0.0 | 0.0 | 0.0 | 0, 0 | 0, 0 |
+| AGMA, conventional | bending | 2.5 | 6.7 | 6.9 | 214, 193 | 562, 556 |
+| AGMA, conventional | contact | 1.3 | 3.3 | 3.4 | 127, 118 | 301, 260 |
+| ISO 6336, spur | bending | 0.5 | 34.9 | 46.7 | 69, 74 | 104, 96 |
+| ISO 6336, spur | contact | 0.3 | 15.8 | 20.7 | 71, 43 | 160, 74 |
+| ISO 6336, helical | bending | 0.5 | 16.1 | 34.1 | 78, 99 | 156, 165 |
+| ISO 6336, helical | contact | 0.3 | 7.7 | 15.5 | 82, 40 | 121, 94 |
+
+Above an overlap ratio of 1 the smooth form of AGMA has the mean load sharing (a search then takes
+its exact branches); that of ISO 6336 has no mixture of two laws of K_v above the resonance, no
+ranges and no rounding of ISO 1328.
+
 ## What is not rated
 
 Scuffing, micropitting, wear, flank fracture, shafts, bearings and housings; internal gears, bevel

@@ -30,6 +30,7 @@ GAP = 16.0  # px between the gears of two stages, at least
 ROWS, ROW = 3, 15.0  # of centre distances that do not fit above their line; px between them
 LOW, NAMES = 100.0, 46.0  # px: circles of radii below the one leave names the other above, below
 CHAIN = 30.0  # px from the lowest circle to the dimensions of the centre distances
+MODULES = 26.0  # px from the face widths up to the modules: two lines that keep apart
 SIDE = (24.0, 44.0, 24.0, 60.0)  # px kept free around the side view
 
 
@@ -241,7 +242,7 @@ def _side(found: Bodies, scale: float, measures: Measures) -> Drawing:
     for gear in (g for g in found.gears if g.member == "wheel"):
         x = sheet.at(0.5 * (gear.from_mm + gear.to_mm), 0.0)[0]
         module = measures.of_module(gear.normal_module_mm)
-        sheet.label(f"{measures.module[1]} {number(module)}", [Place(x, LEVEL - 24.0)], "size")
+        sheet.label(f"{measures.module[1]} {number(module)}", [Place(x, LEVEL - MODULES)], "size")
     face_widths(sheet, found, tops, measures)
     for shaft in shafts:
         x, y = sheet.at(shaft.to_mm, shaft.y_mm)
