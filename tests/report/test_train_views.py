@@ -15,6 +15,7 @@ from gearopt.formulations.gear_train import FaceWidth, Stage, Train
 from gearopt.formulations.strength.k_factor import K_FACTOR
 from gearopt.formulations.toothing import Toothing
 from gearopt.optimise.typed import untyped
+from gearopt.physics.blanks import Blank
 from gearopt.report.measures import METRIC
 from gearopt.report.pages.result import page
 from gearopt.report.pages.train_views import BESIDE, PITCH, WIDE, beside
@@ -45,9 +46,10 @@ TRAINS = {  # m_n, z1, z2, b of every stage
 }
 
 
-def result(rows):
+def result(rows, **blanks):
     width = FaceWidth(0, None)
-    stages = (Stage((1.0, 1.0), width, (), (1, None), toothing=Toothing(0.4)),) * len(rows)
+    stage = Stage((1.0, 1.0), width, (), (1, None), toothing=Toothing(0.4), **blanks)
+    stages = (stage,) * len(rows)
     train = Train(5e4, 1, 0, stages, law=K_FACTOR, speed=150.0)
     pairs = tuple(train.pair(k, *row) for k, row in enumerate(rows))
     design = untyped(describe(train, pairs))
@@ -161,6 +163,23 @@ def test_labels_are_inside_and_do_not_cover_each_other(name):
             assert (at - half >= 0.0).all() and (at + half <= size).all(), word
             for other, there, reach in texts[:k]:
                 assert (abs(at - there) >= half + reach).any(), (word, other)
+
+
+def test_rims_hubs_and_bores_are_circles():
+    """Of pinions of 20 teeth a bore alone: their rims leave no room for a hub of 33.6 mm."""
+    made = Blank(3.0, None, 0.3, 21.0)
+    found = result(TRAINS["six alike"][:1], blanks=(made, made))
+    html = page(found, "x")
+    front = drawings(html)[0]
+    (stage,) = found.design["stages"]
+    tips = [float(e.get("r")) for e in marks(front, "circle", "tip")]
+    scale = max(tips) / stage["wheel_tip_diameter_mm"]
+    inside = stage["wheel_root_diameter_mm"] - 2.0 * 7.5
+    sizes = sorted(float(e.get("r")) / scale for e in marks(front, "circle", "body"))
+    assert sizes == pytest.approx([21.0, 21.0, 33.6, inside], rel=1e-3)
+    words = "thin ones rims from inside, hubs and bores"
+    assert words in "".join(Reader(html).text)
+    assert words not in "".join(Reader(page(result(TRAINS["one stage"]), "x")).text)
 
 
 def test_words_say_that_nothing_is_optimised_and_how_it_would_be():

@@ -171,3 +171,18 @@ def test_an_impossible_drive_is_so_with_webs():
     assert found.status == other.status == "infeasible"
     ways, others = (r.report["ways_out"] for r in (found, other))
     assert ways["conflict"] == others["conflict"] and ways["remedies"] == others["remedies"]
+
+
+def test_a_rating_tells_what_does_not_fit():
+    """Hubs of 1.6 times 30 mm inside a root circle of 55 mm: a bore, but no web; of 40 mm: none."""
+    stage = {"module": "3 mm", "pinion_teeth": 20, "wheel_teeth": 80, "face_width": "30 mm"}
+    duty = {"power": "2 kW", "input_speed": "1450 rpm"}
+    for bore, told in (("30 mm", "has no web"), ("40 mm", "is solid, without its bore")):
+        body = STEEL | WEBBED | {"bore": bore}
+        tables = {"gearopt": 1, "kind": "drive", "duty": duty, "gears": body, "rating": RATED}
+        found = gearopt.rate(tables | {"stage": [stage]})
+        (flaw,) = found.design["rating"]["flaws"]
+        assert flaw.startswith(f"The pinion of stage 1 {told}")
+        (made,) = found.design["stages"]
+        assert made.get("pinion_bore_mm") == (30.0 if bore == "30 mm" else None)
+        assert made["wheel_hub_diameter_mm"] == pytest.approx(1.6 * float(bore[:2]))

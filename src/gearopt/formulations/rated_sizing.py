@@ -179,8 +179,8 @@ def _claim(best: _Design | None, bound: float, clock: Clock) -> Outcome:
     proof = {
         "method": "dual",
         "arithmetic": "double, with a rounding allowance",
-        "sentence": "Proof: a geometric program whose limits are below those of the ratings; its "
-        "bound is a dual one, computed from our own derivatives.",
+        "sentence": "Proof: a geometric program whose limits and objective are at most those of "
+        "the drive; its bound is a dual one, computed from our own derivatives.",
     }
     done = not clock.stopped
     if best is None:

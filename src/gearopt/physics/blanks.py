@@ -19,7 +19,7 @@ THICK = 10.0  # backup ratio of a solid gear; from 1.2 on no standard has a rim 
 
 @dataclass(frozen=True)
 class Body:
-    """The dimensions [mm] of one gear; None: it has none, or is as thick as it is wide."""
+    """The dimensions [mm] of one gear; None: it has none, as a disc has no web and no hub."""
 
     rim_thickness: float | None
     web_thickness: float | None
@@ -169,10 +169,11 @@ class Blank:
         """Return the dimensions of one gear, of floats."""
         bored = bool(self.where_bore(gear, True, False))
         rim = bool(self.where_rim(gear, True, False))
+        web = rim and self.has_web
         return Body(
             float(self.rim(gear)) if rim else None,
-            float(self.web_over_width * gear.face_width) if rim and self.has_web else None,
-            self.hub if bored else None,
+            float(self.web_over_width * gear.face_width) if web else None,
+            self.hub if bored and web else None,
             self.bore if bored else None,
         )
 

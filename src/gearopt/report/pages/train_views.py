@@ -8,6 +8,7 @@ from typing import Any
 from gearopt.formulations.layout.layout_design import GearDesign, ShaftDesign
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import typed
+from gearopt.physics.gears import MEMBERS
 from gearopt.report.measures import Measures
 from gearopt.report.pages.bodies import Bodies, meaning
 from gearopt.report.pages.layout_views import (
@@ -18,7 +19,7 @@ from gearopt.report.pages.layout_views import (
     gears_on,
     side_name,
 )
-from gearopt.report.pages.sheet import Drawing, Place, Sheet, Window
+from gearopt.report.pages.sheet import Drawing, Place, Sheet, Window, series
 from gearopt.report.section import Section
 from gearopt.report.words import number
 
@@ -58,14 +59,16 @@ def section(result: Result, measures: Measures, hint: str = "") -> Section | Non
     if not drawn or result.design.get("layout"):
         return None
     name, sign, one = measures.module
+    webs = [circles(s, m) for s in result.design["stages"] for m in MEMBERS]
+    inside = ", thin ones rims from inside, hubs and bores" if any(webs) else ""
     plural = f"modules {sign} in {one}" if one == "mm" else f"{name}es {sign} in {one}"
     words = (
         "All shafts are drawn in one line: their places are not optimised, and the gaps between "
         f"the stages are only as wide as the labels need.{hint}",
         f"Drawn to one scale; dimensions in {measures.lengths}: centre distances, length over "
         f"tip circles, face widths b; {plural}; teeth z. Solid lines are tip circles, "
-        "dash-dotted ones reference circles; numbers in circles are shafts, whose diameters are "
-        "not known.",
+        f"dash-dotted ones reference circles{inside}; numbers in circles are shafts, whose "
+        "diameters are not known.",
     )
     return Section("Gears in one line", words=words, drawings=drawn)
 
@@ -100,8 +103,18 @@ def views(stages: Sequence[Mapping[str, Any]], measures: Measures) -> tuple[Draw
     if not stages or not all(key in stage for stage in stages for key in keys):
         return ()
     found, scale = in_one_line(_picked(stages))
-    front = along_shafts(found, scale, measures.length, lambda gear: meaning(gear, measures))
+    inner = {g.name: circles(stages[g.stage - 1], g.member) for g in found.gears}
+    front = along_shafts(found, scale, measures.length, lambda g: meaning(g, measures), inner)
     return front, _side(found, scale, measures)
+
+
+def circles(stage: Mapping[str, Any], member: str) -> list[float]:
+    """Return the diameters [mm] inside the rim, of the hub and of the bore, of what a gear has."""
+    found = [stage.get(f"{member}_{name}_mm") for name in ("hub_diameter", "bore")]
+    if stage.get(f"{member}_web_thickness_mm") is not None:
+        rim: float = stage[f"{member}_rim_thickness_mm"]
+        found = [stage[f"{member}_root_diameter_mm"] - 2.0 * rim, *found]
+    return [diameter for diameter in found if diameter is not None]
 
 
 def in_one_line(stages: Sequence[DrawnStage]) -> tuple[Bodies, float]:
@@ -173,10 +186,12 @@ def along_shafts(
     scale: float,
     length: Callable[[float], str],
     title: Callable[[GearDesign], str],
+    inner: Mapping[str, Sequence[float]] | None = None,
 ) -> Drawing:
     """Draw the view along the shafts: circles in a row, centre distances and length below.
 
-    length: a length as it is written. title: what a gear says where the pointer rests.
+    length: a length as it is written. title: what a gear says where the pointer rests. inner:
+    diameters [mm] of circles inside the teeth, by the name of a gear.
     """
     left, right = _ends(found)
     high = max(0.5 * g.tip_diameter_mm for g in found.gears)
@@ -191,6 +206,9 @@ def along_shafts(
     sheet = Sheet(Window(left, right, -high, high, (EDGE, EDGE, below, 44.0)), scale)
     places = {s.shaft: (s.y_mm, 0.0) for s in found.shafts}
     gear_circles(sheet, found, places, title)
+    for gear in found.gears:
+        for diameter in (inner or {}).get(gear.name, ()):
+            sheet.circle(*places[gear.shaft], 0.5 * diameter, "body", series(gear.stage))
     level = sheet.at(0.0, -high)[1] + CHAIN
     for shaft in found.shafts:
         x = sheet.at(shaft.y_mm, 0.0)[0]

@@ -100,6 +100,8 @@ ratio_tolerance = "3 %"
 helix_angle = "15 deg"
 treatment = "carburised"       # or through-hardened with hardness = "300 HB", nitrided ...
 grade = 2
+# rim_over_module = 3          # rims and webs: lighter gears, for minimise = "mass" or "cost"
+# web_over_face_width = 0.3
 
 [[stage]]                      # from the input on; what is fixed or differs in this stage
 face_width_over_diameter = 0.7 # b/d1; a range [0.4, 1.0] leaves the width free

@@ -62,8 +62,9 @@ def rate(scene: Scene, ask: Ask) -> Result:
         density.value if density else None,
         blanks,
     )
-    told = replace(found, flaws=(*_off_ratio(scene, made), *found.flaws))
-    remarks = [*misfits(blanks, pairs), *unused_materials(scene)]
+    flaws = (*_off_ratio(scene, made), *misfits(blanks, pairs), *found.flaws)
+    told = replace(found, flaws=flaws)
+    remarks = unused_materials(scene)
     return Result(
         name="rating",
         status="evaluated",
