@@ -3,7 +3,7 @@
 All that `import gearopt` offers is to be found here, imported or defined.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, replace
 from pathlib import Path
 from types import NoneType
@@ -13,15 +13,17 @@ from pydantic import BaseModel
 
 from gearopt.errors import CertificateError, GearoptError, SceneError, SolveError  # noqa: F401
 from gearopt.optimise.clock import Clock, of_others, whole
-from gearopt.optimise.comparing.compare import EVALUATIONS, SECONDS, SEEDS, Follow, Model, Plan
 from gearopt.optimise.comparing.compare import compare as compare_methods
 from gearopt.optimise.comparing.comparison import Comparison
+from gearopt.optimise.comparing.fronts import compare_fronts
+from gearopt.optimise.comparing.runs import EVALUATIONS, SECONDS, SEEDS, Follow, Model, Plan
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.explaining.explanation import Explanation, Remedy
 from gearopt.optimise.options import check, named
 from gearopt.optimise.own_problems import solve_own
 from gearopt.optimise.pareto.front import Front
-from gearopt.optimise.pareto.several import chosen_of, several, solved
+from gearopt.optimise.pareto.pareto import traders
+from gearopt.optimise.pareto.several import Several, chosen_of, several, solved
 from gearopt.optimise.problem import Problem, one_objective
 from gearopt.optimise.result import Budget, Event, Outcome, Result, Watch, plain  # noqa: F401
 from gearopt.optimise.solve import GAP, evaluate  # noqa: F401
@@ -214,6 +216,8 @@ def compare(
     what: File | Problem | Conic,
     changes: Changes = None,
     *,
+    objectives: Sequence[str] | str | None = None,
+    most: Mapping[str, float] | None = None,
     methods: Sequence[str] | str | None = None,
     seeds: int = SEEDS,
     evaluations: int = EVALUATIONS,
@@ -224,8 +228,10 @@ def compare(
     """Compare methods on a problem file, its tables or scene, or a problem of your own.
 
     changes: of a file, as in `load`.
-    methods: by default those of the file's kind; of a problem its own exact ones, ipopt, annealing
-    and nsga2 (of a Conic: conic).
+    objectives: two or three names, of which whole fronts are compared, up to the values in `most`;
+    without them the one objective of the file. methods: by default those of the file's kind; of a
+    problem its own exact ones, ipopt, annealing and nsga2 (of a Conic: conic); of fronts the one
+    that proves most, nsga2, annealing and hybrid (of a Conic: epsilon).
     Every method is run by evaluations and by seconds, random ones once for each of the seeds 0, 1,
     ... bound_from: a method run once to prove a bound. watch(progress) ends the comparison by
     returning False, and what is finished is reported. SceneError for a wrong file, SolveError where
@@ -233,8 +239,15 @@ def compare(
     1.
     """
     check(seeds=seeds, evaluations=evaluations, seconds=seconds, bound_from=bound_from, watch=watch)
+    check(most=most)
     plan = Plan(evaluations, seconds, seeds)
     methods = methods.split(",") if isinstance(methods, str) else methods
+    if objectives is not None:
+        pose, names, about = _traded(what, changes, objectives)
+        found = _fronts(pose, names, most, methods, plan, watch, bound_from)
+        return replace(found, **_of_comparison(about))
+    if most is not None:
+        raise SolveError("most changes nothing here: it is for objectives of fronts; leave it out")
     if isinstance(what, Problem | Conic):
         _unchanged(what, changes)
         usual = ("conic",) if isinstance(what, Conic) else (*what.methods, *DEFAULT)
@@ -243,12 +256,47 @@ def compare(
         own = Model(what)
         found = compare_methods(chosen, lambda method: own, plan, watch, bound_from)
         return replace(found, title=what.name)
-    scene, module, names = _opened(what, changes)
+    scene, module, about = _opened(what, changes)
     chosen = module.compared(scene) if methods is None else methods
     found = compare_methods(chosen, lambda m: module.model(scene, m), plan, watch, bound_from)
-    del names["asked"]
-    names["changes"] = names.pop("options").get("changes", {})
-    return replace(found, title=getattr(scene, "title", "") or names["scene"], **names)
+    title = getattr(scene, "title", "") or about["scene"]
+    return replace(found, title=title, **_of_comparison(about))
+
+
+def _of_comparison(names: dict[str, Any]) -> dict[str, Any]:
+    """Return the names of a file as a comparison has them: what is changed, not the tables."""
+    kept = {k: v for k, v in names.items() if k not in ("asked", "options")}
+    return kept | {"changes": names.get("options", {}).get("changes", {})}
+
+
+def _fronts(
+    pose: Callable[[str | None], Several],
+    names: Sequence[str],
+    most: Mapping[str, float] | None,
+    methods: Sequence[str] | None,
+    *given: Any,
+) -> Comparison:
+    """Compare methods of fronts, as `compare` does those of one objective."""
+    words = f"Front of {', '.join(name.replace('_', ' ') for name in names)}"
+    listed = methods or traders(pose(None).problem)
+    return compare_fronts(listed, lambda m: Model(pose(m).problem, words), names, most, *given)
+
+
+def _traded(
+    what: File | Problem | Conic, changes: Changes, objectives: Sequence[str] | str | None
+) -> tuple[Callable[[str | None], Several], tuple[str, ...], dict[str, Any]]:
+    """Return how objectives are posed to a method, their names, and the names of a file."""
+    names = objectives.split(",") if isinstance(objectives, str) else objectives
+    names = None if names is None else [name.strip() for name in names]
+    if isinstance(what, Problem | Conic):
+        _unchanged(what, changes)
+        own = several(what, names)
+        return lambda method: own, tuple(o.name for o in own.objectives), {"title": what.name}
+    scene, module, about = _opened(what, changes)
+    known = module.objectives(scene) if hasattr(module, "objectives") else {}
+    chosen = chosen_of(names, list(known), f'this file of kind "{about["scene"]}"')
+    title = {"title": getattr(scene, "title", "")}
+    return lambda method: module.several(scene, chosen, method), chosen, about | title
 
 
 @named
@@ -278,18 +326,8 @@ def pareto(
     check(method=method, budget=budget, seed=seed, watch=watch, points=points)
     check(most=most, weights=weights)
     budget, watch, most = budget or Budget(), whole(watch), dict(most or {})
-    names = objectives.split(",") if isinstance(objectives, str) else objectives
-    names = None if names is None else [name.strip() for name in names]
-    if isinstance(what, Problem | Conic):
-        _unchanged(what, changes)
-        posed = several(what, names)
-        about: dict[str, Any] = {"title": what.name}
-    else:
-        scene, module, about = _opened(what, changes)
-        known = module.objectives(scene) if hasattr(module, "objectives") else {}
-        chosen = chosen_of(names, list(known), f'this file of kind "{about["scene"]}"')
-        posed = module.several(scene, chosen, method)
-        about = about | {"title": getattr(scene, "title", "")}
+    pose, _, about = _traded(what, changes, objectives)
+    posed = pose(method)
     options: dict[str, Any] = {"method": method, "seconds": budget.seconds, "points": points}
     options |= {"most": most}
     options |= {"weights": weights, "seed": seed} | about.get("options", {})

@@ -13,8 +13,8 @@ from campaigns import few
 import gearopt
 from gearopt import Comparison, Problem, SolveError, Terms, Var
 from gearopt.errors import CertificateError
-from gearopt.optimise.comparing.compare import KINDS, PATIENCE, WARM
 from gearopt.optimise.comparing.comparison import excess, quantile
+from gearopt.optimise.comparing.runs import KINDS, PATIENCE, WARM
 from gearopt.optimise.own_methods import back_ends
 from gearopt.optimise.result import Event, Outcome
 

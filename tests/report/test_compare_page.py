@@ -88,7 +88,7 @@ def test_every_method_its_verdict_numbers_and_settings_are_shown(found, read):
         for row in group.rows:
             assert f"{row.method}: {words.verdict(group, row)}." in text
             for sample in (row.equal_evaluations, row.equal_time):
-                for cell in words.cells(sample) if sample else ():
+                for cell in words.cells(found, sample) if sample else ():
                     assert cell in text
     assert "chains 32" in text and "deterministic" in text
     for line in words.FAIRNESS:

@@ -8,7 +8,8 @@ import pytest
 import gearopt
 from gearopt.errors import SolveError
 from gearopt.formulations.layout import annealing
-from gearopt.optimise.comparing.compare import Entry, attempt, enter
+from gearopt.optimise.comparing.compare import attempt, enter
+from gearopt.optimise.comparing.runs import Entry
 from gearopt.optimise.kernels import kernel
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import method_of

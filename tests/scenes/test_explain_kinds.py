@@ -15,7 +15,7 @@ from pydantic import Field
 
 import gearopt
 from gearopt import Param, Problem, SolveError, Terms, Var
-from gearopt.optimise.comparing.compare import Model
+from gearopt.optimise.comparing.runs import Model
 from gearopt.optimise.explaining.handles import each_word, handles
 from gearopt.optimise.result import Outcome
 from gearopt.optimise.solve import solve as solve_problem

@@ -14,7 +14,7 @@ from pydantic import Field
 from gearopt.formulations import teeth
 from gearopt.formulations.gear_train import FaceWidth, Stage, Train
 from gearopt.formulations.strength.lewis import LEWIS
-from gearopt.optimise.comparing.compare import Model
+from gearopt.optimise.comparing.runs import Model
 from gearopt.optimise.solve import run, solve
 from gearopt.physics.gears import MODULES, GearPair
 from gearopt.scenes.explaining.default import explain

@@ -14,8 +14,9 @@ from gearopt.formulations import sizing, teeth
 from gearopt.formulations.gear_train import FaceWidth, Stage, Train
 from gearopt.formulations.strength.k_factor import K_FACTOR
 from gearopt.formulations.toothing import Toothing
-from gearopt.optimise.comparing.compare import Model, Plan, compare
+from gearopt.optimise.comparing.compare import compare
 from gearopt.optimise.comparing.comparison import Comparison
+from gearopt.optimise.comparing.runs import Model, Plan
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Param, Terms, Var
 from gearopt.physics.gears import SERIES_I

@@ -14,10 +14,12 @@ from gearopt.cli.app import (
     File,
     Html,
     Json,
+    Most,
     Units,
     app,
     console,
     exit_code,
+    numbers,
     print_whole,
 )
 from gearopt.cli.names import method_lists, method_words
@@ -25,8 +27,8 @@ from gearopt.cli.reporting import answer, checked, compared, written
 from gearopt.cli.watching import following, reached, watching
 from gearopt.cli.writing import check_html
 from gearopt.errors import GearoptError
-from gearopt.optimise.comparing.compare import EVALUATIONS, SEEDS, Progress
-from gearopt.optimise.comparing.compare import SECONDS as EACH
+from gearopt.optimise.comparing.runs import EVALUATIONS, SEEDS, Progress
+from gearopt.optimise.comparing.runs import SECONDS as EACH
 from gearopt.optimise.result import Budget, Result
 from gearopt.report.command import SECONDS, TOP_ON_PAGE
 
@@ -181,6 +183,14 @@ def explain(
 @app.command(rich_help_panel=MORE)
 def compare(
     file: File,
+    objectives: Annotated[
+        str | None,
+        typer.Option(
+            help="Two or three names with commas between, as gear_volume,mesh_loss: whole fronts "
+            "are compared."
+        ),
+    ] = None,
+    most: Most = None,
     methods: Annotated[
         str | None,
         typer.Option(
@@ -216,6 +226,8 @@ def compare(
     with following(_words, quiet=as_json) as watch:
         found = compare_file(
             file,
+            objectives=objectives,
+            most=numbers("--most", most) if most else None,
             methods=named,
             seeds=seeds,
             evaluations=evaluations,

@@ -58,6 +58,15 @@ Html = Annotated[
 ]
 
 
+Most = Annotated[
+    list[str] | None,
+    typer.Option(
+        help="NAME=NUMBER: largest value of interest of an objective, in mm, mm3 or kg; may be "
+        "repeated."
+    ),
+]
+
+
 def _print_version(wanted: bool) -> None:
     if wanted:
         print(version("gearopt"))
@@ -100,3 +109,16 @@ def console() -> Console:
     """Return the terminal; wide where it is a pipe."""
     found = Console(highlight=False)
     return found if found.is_terminal else Console(highlight=False, width=110)
+
+
+def numbers(option: str, pairs: list[str]) -> dict[str, float]:
+    """Return numbers by name; GearoptError for what is none."""
+    found = {}
+    for pair in pairs:
+        name, _, text = pair.partition("=")
+        try:
+            found[name.strip()] = float(text)
+        except ValueError:
+            example = f"{name.strip() or 'gear_volume'}=8.5e6"
+            raise GearoptError(f"{option} {pair}: is not NAME=NUMBER, such as {example}") from None
+    return found

@@ -4,10 +4,9 @@ from typing import Annotated
 
 import typer
 
-from gearopt.cli.app import FIRST, Csv, File, Json, Units, app
+from gearopt.cli.app import FIRST, Csv, File, Json, Most, Units, app, numbers
 from gearopt.cli.reporting import answer, checked, traded
 from gearopt.cli.watching import watching
-from gearopt.errors import GearoptError
 from gearopt.optimise.pareto.front import Front
 from gearopt.optimise.result import Budget
 from gearopt.report.command import SECONDS
@@ -25,13 +24,7 @@ def pareto(
             "minimised where others are limited. Without it the names that there are.",
         ),
     ] = None,
-    most: Annotated[
-        list[str] | None,
-        typer.Option(
-            help="NAME=NUMBER: largest value of interest of an objective, in mm, mm3 or kg; may be "
-            "repeated."
-        ),
-    ] = None,
+    most: Most = None,
     method: Annotated[
         str | None,
         typer.Option(
@@ -59,10 +52,10 @@ def pareto(
         found = pareto_of(
             file,
             objectives=objectives,
-            most=_numbers("--most", most or []),
+            most=numbers("--most", most or []),
             method=method,
             points=points,
-            weights=_numbers("--weights", weights.split(",")) if weights else None,
+            weights=numbers("--weights", weights.split(",")) if weights else None,
             budget=Budget(seconds),
             seed=seed,
             watch=watch,
@@ -73,19 +66,6 @@ def pareto(
     finally:  # what took long to find is shown even where no file can be written
         answer(found, as_json, lines, files.measures)
     raise typer.Exit(code(found))
-
-
-def _numbers(option: str, pairs: list[str]) -> dict[str, float]:
-    """Return numbers by name; GearoptError for what is none."""
-    found = {}
-    for pair in pairs:
-        name, _, text = pair.partition("=")
-        try:
-            found[name.strip()] = float(text)
-        except ValueError:
-            example = f"{name.strip() or 'gear_volume'}=8.5e6"
-            raise GearoptError(f"{option} {pair}: is not NAME=NUMBER, such as {example}") from None
-    return found
 
 
 def code(front: Front) -> int:

@@ -27,13 +27,23 @@ COLUMNS = (  # of a table: heading, unit, what it says
     ("spent", "evals", "Median of evaluations; what counts as one differs by method"),
     ("time", "s", "Median wall time, start-up left out"),
 )
+DISTANCE = (
+    "IGD+",
+    "%",
+    "Mean distance of the reference front to the points, in the ranges of the objectives",
+)
 assert (CLOSE, TIGHT) == (1e-3, 1e-6)  # as the headings say
 
 
-def cells(sample: Sample) -> tuple[str, ...]:
-    """Return the row of a method, in the order of COLUMNS."""
+def columns(found: Comparison) -> tuple[tuple[str, str, str], ...]:
+    """Return the columns of its tables: heading, unit, what it says."""
+    return (*COLUMNS, DISTANCE) if found.objectives else COLUMNS
+
+
+def cells(found: Comparison, sample: Sample) -> tuple[str, ...]:
+    """Return the row of a method, in the order of `columns`."""
     s = sample.summary
-    return (
+    row = (
         percent(s.median_gap),
         percent(s.worst_gap),
         f"{round(s.close * s.seeds)}/{s.seeds}",
@@ -43,6 +53,7 @@ def cells(sample: Sample) -> tuple[str, ...]:
         f"{s.evaluations:,.0f}",
         f"{s.seconds:.3g}",
     )
+    return (*row, percent(s.distance)) if found.objectives else row
 
 
 def percent(gap: float | None) -> str:
@@ -70,6 +81,8 @@ def reference(group: Group) -> str:
     proving = [row.method for row in group.rows if _impossible(row)]
     if proving:
         return f"No design meets all limits, proven ({', '.join(proving)}): there are no gaps."
+    if group.front:
+        return group.front
     if group.reference is None:
         return "No method found a feasible point, and nothing is proven: there are no gaps."
     zero = not is_known(group.reference, group.scale)
@@ -130,18 +143,21 @@ def verdict(group: Group, row: Row) -> str:
     if s.without == s.seeds:
         return f"no feasible point in any of {s.seeds} seeds"
     than = "proven optimum" if _closed(group) else "bound" if group.proven else "best known"
+    reaches, apart = f"reaches the {than}", f"% above the {than}"
+    if group.front:
+        reaches, apart = "has the whole front", "% of the hypervolume is missing"
     if not row.random:
         once = "where the time ended its one run" if ended else "in the one run it needs"
         if s.median_gap is not None and s.median_gap <= TIGHT:
-            return f"reaches the {than} in {s.seconds:.2g} s, {once}"
-        return f"{percent(s.median_gap)} % above the {than}, {once}"
+            return f"{reaches} in {s.seconds:.2g} s, {once}"
+        return f"{percent(s.median_gap)} {apart}, {once}"
     missed = f", {s.without} without a feasible point" if s.without else ""
     close = f"{round(s.close * s.seeds)} of {s.seeds} seeds within 0.1 %{missed}"
     if s.median_gap is None:
         return f"no feasible point in the median seed; {close}"
     if s.median_gap <= TIGHT:
-        return f"reaches the {than} in the median seed, {s.seconds:.2g} s; {close}"
-    return f"median {percent(s.median_gap)} % above the {than}, {close}"
+        return f"{reaches} in the median seed, {s.seconds:.2g} s; {close}"
+    return f"median {percent(s.median_gap)} {apart}, {close}"
 
 
 def ended(found: Comparison, row: Row) -> str:
@@ -171,12 +187,16 @@ def command(found: Comparison) -> str:
     methods = [row.method for group in found.groups for row in group.rows]
     budget = found.budget
     if found.file is None or found.changes:
+        fronts = f"objectives={list(found.objectives)}, " if found.objectives else ""
+        fronts += f"most={dict(found.most)}, " if found.most else ""
         what = f"{found.file!r}, {found.changes!r}" if found.file else "problem"
         return (
-            f"gearopt.compare({what}, methods={methods}, seeds={len(found.seeds)}, "
+            f"gearopt.compare({what}, {fronts}methods={methods}, seeds={len(found.seeds)}, "
             f"evaluations={budget['evaluations']}, seconds={budget['seconds']:g})"
         )
     more = f" --bound-from {found.bound_from}" if found.bound_from else ""
+    more += f" --objectives {','.join(found.objectives)}" if found.objectives else ""
+    more += "".join(f" --most {name}={value:g}" for name, value in found.most.items())
     return (
         f"gearopt compare {shlex.quote(found.file)} --methods {','.join(methods)} "
         f"--seeds {len(found.seeds)} --evaluations {budget['evaluations']} "

@@ -172,9 +172,9 @@ def compared_fragment(found: Comparison) -> str:
         blocks += [comparison_words.reference(group)]
         blocks += [f"{r.method}: {comparison_words.verdict(group, r)}" for r in group.rows]
         for field, name, budget in comparison_words.kinds(found):
-            heads = [f"{head} {unit}".strip() for head, unit, _ in comparison_words.COLUMNS]
+            heads = [f"{head} {unit}".strip() for head, unit, _ in comparison_words.columns(found)]
             samples = ((row.method, getattr(row, field)) for row in group.rows)
-            rows = [(m, *comparison_words.cells(sample)) for m, sample in samples if sample]
+            rows = [(m, *comparison_words.cells(found, s)) for m, s in samples if s]
             blocks += [f"{name}: {budget}", Table(name, ("method", *heads), rows)] if rows else []
     return _html(f"{found.title}: methods compared", blocks)
 

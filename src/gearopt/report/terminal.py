@@ -165,9 +165,13 @@ def _group(found: Comparison, group: Group, console: Console) -> None:
     for row in group.rows:
         console.print(Text(f"- {row.method}: {words.verdict(group, row)}"))
     for field, name, budget in words.kinds(found):
-        heads = [f"{head}\n{unit}" for head, unit, _ in words.COLUMNS]
+        heads = [f"{head}\n{unit}" for head, unit, _ in words.columns(found)]
         samples = ((row.method, getattr(row, field)) for row in group.rows)
-        rows = [(method, *words.cells(sample)) for method, sample in samples if sample is not None]
+        rows = [
+            (method, *words.cells(found, sample))
+            for method, sample in samples
+            if sample is not None
+        ]
         if rows:
             console.print()
             console.print(Text(f"{name}: {budget}", style="bold"))

@@ -8,7 +8,7 @@ from pydantic import Field
 
 from gearopt.formulations import compound
 from gearopt.formulations.compound import wider
-from gearopt.optimise.comparing.compare import Model
+from gearopt.optimise.comparing.runs import Model
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run
 from gearopt.optimise.typed import untyped

@@ -32,7 +32,8 @@ class Run:
     objective and gap: None without a feasible point. violation: of the point it returned, None
     where it returned none. seconds: of the method alone. steps: (seconds, evaluations, best so far)
     as the method reported, no better than the objective it ended with; clipped: it reported better.
-    scale: the objective's own at the point, see `scale`.
+    scale: the objective's own at the point, see `scale`. distance: of a front, the mean one
+    from the reference front to it (IGD+), in the ranges of the objectives.
     """
 
     seed: int
@@ -47,6 +48,7 @@ class Run:
     steps: tuple[tuple[float, int, float], ...] = ()
     clipped: bool = False
     scale: float = 0.0
+    distance: float | None = None
 
 
 @dataclass(frozen=True)
@@ -55,7 +57,7 @@ class Summary:
 
     median_gap, worst_gap: None where that run has no feasible point. close, tight: share of seeds
     whose gap is at most CLOSE, TIGHT. without: number of seeds without a feasible point. violation:
-    the worst. evaluations, seconds, objective: medians.
+    the worst. evaluations, seconds, objective, distance: medians.
     """
 
     seeds: int
@@ -68,6 +70,7 @@ class Summary:
     violation: float | None
     evaluations: float
     seconds: float
+    distance: float | None = None
 
 
 @dataclass(frozen=True)
@@ -109,7 +112,8 @@ class Row:
 class Group:
     """The methods that solve one model; proven: the reference is a bound, else the best known.
 
-    scale: the objective's own at the best point.
+    scale: the objective's own at the best point. front: of fronts, what their reference is, in
+    words.
     """
 
     model: str
@@ -122,6 +126,7 @@ class Group:
     best: float | None
     rows: tuple[Row, ...]
     scale: float = 0.0
+    front: str = ""
 
 
 @dataclass(frozen=True)
@@ -129,8 +134,9 @@ class Comparison:
     """All groups with what they rest on.
 
     budget: {evaluations, seconds, patience_seconds}; settings: {method: {name: value}}. bound_from:
-    the method that was asked for a bound. complete: every run was made; else message says how many.
-    changes: what is otherwise than in the file, by key.
+    the method that was asked for a bound. objectives: of fronts, else (); most: largest values of
+    them by name. complete: every run was made; else message says how many. changes: what is
+    otherwise than in the file, by key.
     """
 
     groups: tuple[Group, ...]
@@ -138,6 +144,8 @@ class Comparison:
     budget: Mapping[str, float]
     settings: Mapping[str, Any]
     bound_from: str | None = None
+    objectives: tuple[str, ...] = ()
+    most: Mapping[str, float] = field(default_factory=dict)
     complete: bool = True
     message: str = ""
     title: str = ""
@@ -255,6 +263,7 @@ def _summary(runs: Sequence[Run]) -> Summary:
         violation=max(violations, default=None),
         evaluations=quantile([r.evaluations for r in runs], 0.5) or 0,
         seconds=quantile([r.seconds for r in runs], 0.5) or 0.0,
+        distance=quantile([math.inf if r.distance is None else r.distance for r in runs], 0.5),
     )
 
 

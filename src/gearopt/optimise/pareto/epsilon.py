@@ -24,7 +24,8 @@ from gearopt.optimise.solve import run as solve_raw
 from gearopt.optimise.terms import Array
 
 SLACK = 1e-7  # relative, of the first end's objective while the others are minimised
-POINTS = 60  # of a front of two objectives
+RANDOM = False
+COUNTS = "Ipopt iteration, or solve of a Conic"
 CORNER = 0.1  # part of a chord next to its ends where no new limit is put
 
 Caps = dict[str, float]  # largest values of objectives that the user states

@@ -15,6 +15,14 @@ from gearopt.optimise.solvers.nsga2 import GENERATIONS, POPULATION, posed
 from gearopt.optimise.terms import Array
 
 PARTITIONS = 12  # of the reference directions of NSGA-III: 91 of three objectives
+RANDOM = True
+PACED = True  # its generations are those that its evaluations pay for
+COUNTS = "point evaluated"
+SETTINGS = {
+    "population": POPULATION,
+    "reference directions of three objectives": f"Das and Dennis, {PARTITIONS} parts",
+    "crossover and mutation": "simulated binary, polynomial; pymoo's defaults",
+}
 SENTENCE = "Not proven: the best designs that evolution found."
 
 

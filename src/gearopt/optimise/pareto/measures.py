@@ -47,9 +47,14 @@ def nadir(values: Array) -> Array:
 
 
 def reference(front: Array) -> Array:
-    """Return the point (k,) from which the hypervolume of a front (N, k) is measured."""
+    """Return the point (k,) from which the hypervolume of a front (N, k) is measured.
+
+    An objective that is the same all along the front counts as ranging over its own size.
+    """
     low, high = ideal(front), nadir(front)
-    return low + BEYOND * (high - low)
+    width = high - low
+    size = np.where(low == 0.0, 1.0, np.abs(low))
+    return np.asarray(np.where(width > 0.0, low + BEYOND * width, low + size))
 
 
 def hypervolume(values: Array, corner: Array) -> float:

@@ -65,6 +65,14 @@ def default(problem: Problem | Conic) -> str:
     return NSGA if discrete else EPSILON
 
 
+def traders(problem: Problem | Conic) -> tuple[str, ...]:
+    """Return the methods that are compared where none are named."""
+    if isinstance(problem, Conic):
+        return (EPSILON,)
+    first = default(problem)
+    return (first, *(method for method in SAMPLERS if method != first))
+
+
 def _checked(problem: Problem, outcome: Any) -> Found:
     """Return the front of an exact algorithm, each point checked by the problem's own text."""
     every = () if outcome.x is None else (outcome.x, *outcome.others)

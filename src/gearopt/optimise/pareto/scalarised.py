@@ -13,10 +13,18 @@ from gearopt.optimise.pareto.posed import Built, Limit, kept, posed, valued
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Watch
 from gearopt.optimise.solve import run
+from gearopt.optimise.solvers import annealing
 from gearopt.optimise.terms import Array, Terms
 
 RUNS = 11  # weights along an edge between two objectives
 SHARE = 0.5  # of a budget is for evolution, where Ipopt polishes
+RANDOM = True
+PACED = True  # every weight has an equal part of its evaluations
+COUNTS = "point evaluated or Ipopt iteration"
+SETTINGS = {
+    "annealing": {"weights along an edge": RUNS, **annealing.SETTINGS},
+    "hybrid": {"part of evolution": SHARE, **evolution.SETTINGS},
+}
 SUM = "weighted_sum"
 ANNEALED = "Not proven: the best designs that annealing found for weighted sums of the objectives."
 POLISHED = "Not proven: designs that evolution found, each improved by Ipopt."

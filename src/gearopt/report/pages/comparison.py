@@ -31,7 +31,7 @@ def page(found: Comparison) -> str:
         words.command(found),
         found=found,
         blocks=[_block(found, group, colour) for group in found.groups],
-        columns=words.COLUMNS,
+        columns=words.columns(found),
         colours=colour,
         methods=[(row, words.settings(found.settings[row.method])) for row in rows],
         fairness=words.FAIRNESS,
@@ -70,7 +70,7 @@ def _block(found: Comparison, group: Group, colour: dict[str, str]) -> dict[str,
             figures = [anytime(samples, colour, floor, top, by_time=field == "equal_time")]
         if worst > SMALLEST:
             figures.append(final(samples, colour, floor, worst))
-        rows = [(method, words.cells(sample)) for method, sample in samples.items()]
+        rows = [(method, words.cells(found, sample)) for method, sample in samples.items()]
         late = [words.ended(found, row) for row in group.rows if field == "equal_evaluations"]
         side = {"heading": heading, "budget": budget, "rows": rows, "figures": figures}
         sides.append(side | {"ended": "; ".join(filter(None, late))})

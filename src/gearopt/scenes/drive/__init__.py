@@ -14,7 +14,7 @@ from gearopt.formulations.gear_train import Train
 from gearopt.formulations.shares import MASSES
 from gearopt.optimise.certificate import reconcile
 from gearopt.optimise.clock import Clock, in_part, of_others
-from gearopt.optimise.comparing.compare import Model
+from gearopt.optimise.comparing.runs import Model
 from gearopt.optimise.explaining.explanation import Explanation, Remedies
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result

@@ -20,7 +20,7 @@ from gearopt.formulations.servo.servo_design import (
 )
 from gearopt.formulations.servo.split.bodies import Pairs
 from gearopt.optimise.clock import Clock, of_others
-from gearopt.optimise.comparing.compare import Model
+from gearopt.optimise.comparing.runs import Model
 from gearopt.optimise.explaining.explanation import Explanation, Remedies
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result

@@ -11,7 +11,7 @@ from gearopt.formulations.gear_train import Train
 from gearopt.formulations.layout.slabs import Slabs, arrange
 from gearopt.formulations.together.continuous import angles_of, continuous
 from gearopt.optimise.clock import following, in_part
-from gearopt.optimise.comparing.compare import Model
+from gearopt.optimise.comparing.runs import Model
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Outcome, Result
 from gearopt.optimise.solve import limits, run

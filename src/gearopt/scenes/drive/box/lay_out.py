@@ -25,7 +25,7 @@ from gearopt.formulations.layout.layout_design import (
 from gearopt.formulations.layout.layout_text import Placed, placed, read
 from gearopt.formulations.layout.slabs import Arrangement, arrangements
 from gearopt.optimise.clock import Clock, following, in_part, of_others
-from gearopt.optimise.comparing.compare import Model
+from gearopt.optimise.comparing.runs import Model
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run
 from gearopt.optimise.terms import Array

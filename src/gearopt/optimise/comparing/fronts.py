@@ -1,0 +1,271 @@
+"""Methods compared by the fronts they find: how much hypervolume is missing, and how far they are.
+
+The reference is the proven front: all designs of an exact search, or points of epsilon constraints.
+Where it is not proven complete, whatever any run found is added to it. The objective of such a
+comparison is the part of its hypervolume that the points of a run lack, so that its gap is to zero.
+"""
+
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from gearopt.errors import GearoptError, SolveError
+from gearopt.optimise.clock import Clock, in_part
+from gearopt.optimise.comparing.compare import BOUND_SECONDS, clipped, compared
+from gearopt.optimise.comparing.comparison import POINTS, Comparison, Group, Row, Run, sample
+from gearopt.optimise.comparing.runs import (
+    KINDS,
+    WARM,
+    Entry,
+    Follow,
+    Model,
+    Plan,
+    Progress,
+    Runs,
+    by_model,
+    entered,
+    warmed,
+    work,
+)
+from gearopt.optimise.conic.problem import Conic
+from gearopt.optimise.pareto import epsilon
+from gearopt.optimise.pareto.found import Found, Step
+from gearopt.optimise.pareto.judged import status
+from gearopt.optimise.pareto.measures import hypervolume, igd, reference, unbeaten
+from gearopt.optimise.pareto.pareto import EPSILON, NSGA, SAMPLERS, default, found
+from gearopt.optimise.problem import Batch, Problem
+from gearopt.optimise.result import Budget, Event
+from gearopt.optimise.scale import violation
+from gearopt.optimise.terms import Array
+
+MISSING = "missing_hypervolume"
+FINE = {2: 600, 3: 400}  # points of a reference that is not of all designs
+
+
+@dataclass(frozen=True)
+class Goal:
+    """Two or three objectives by name, and their largest values of interest."""
+
+    names: tuple[str, ...]
+    most: Mapping[str, float]
+
+    def front(self, problem: Problem | Conic, method: str, *given: Any, **named: Any) -> Found:
+        """Return what a method finds of their front: `pareto.found`."""
+        return found(problem, self.names, self.most, method, *given, **named)
+
+
+@dataclass(frozen=True)
+class Trial:
+    """One run and what it found: values (N, k) of its points, and how they grew."""
+
+    run: Run
+    values: Array
+    steps: tuple[Step, ...]
+
+    @property
+    def seconds(self) -> float:
+        """Return seconds of the method alone."""
+        return self.run.seconds
+
+    @property
+    def evaluations(self) -> int:
+        """Return what the method counted."""
+        return self.run.evaluations
+
+
+def compare_fronts(
+    methods: Sequence[str],
+    model: Callable[[str], Model],
+    names: Sequence[str],
+    most: Mapping[str, float] | None = None,
+    plan: Plan | None = None,
+    watch: Follow | None = None,
+    bound_from: str | None = None,
+) -> Comparison:
+    """Run methods of fronts by evaluations and by time, and hold them against a reference.
+
+    names: two or three objectives; most: their largest values of interest. bound_from: the method
+    of the reference front, by default the one that proves most; it has BOUND_SECONDS. Else as
+    `compare`.
+    """
+    import casadi  # noqa: F401  # every check needs it: its import is no method's start-up
+
+    plan, goal = plan or Plan(), Goal(tuple(names), dict(most or {}))
+    entries = entered(methods, lambda method: _enter(method, model, goal))
+    models = {e.model.problem.name: e.model for e in entries if e.model is not None}
+    known = {name: _standard(one, goal, watch, bound_from) for name, one in models.items()}
+
+    def attempt(
+        entry: Entry, seed: int, budget: Budget, follow: Callable[[Event], bool]
+    ) -> Trial | None:
+        return _attempt(entry, goal, seed, budget, follow)
+
+    runs, message = work(entries, attempt, plan, watch)
+    groups = tuple(
+        _group(models[name], known[name], len(names), members, runs)
+        for name, members in by_model(entries).items()
+    )
+    about = {"bound_from": bound_from, "objectives": goal.names, "most": goal.most}
+    return compared(groups, entries, plan, message, **about)
+
+
+def _enter(method: str, model: Callable[[str], Model], goal: Goal) -> Entry:
+    """Pose the problem to a method and warm it up."""
+    try:
+        posed = model(method)
+    except SolveError as refusal:
+        return Entry(method, refused=str(refusal))
+    problem = replace(posed.problem)
+    run = {EPSILON: epsilon.front, **SAMPLERS, **problem.methods}.get(method)
+    return warmed(
+        Entry(method, posed, problem),
+        sys.modules.get(getattr(run, "__module__", "")),
+        lambda: goal.front(problem, method, budget=WARM),
+    )
+
+
+def _attempt(
+    entry: Entry, goal: Goal, seed: int, budget: Budget, follow: Callable[[Event], bool]
+) -> Trial | None:
+    """Make one run; None where `follow` ended it. An error of the method is the run's message."""
+    assert entry.problem is not None
+    clock, ended = Clock(), False
+
+    def continues(event: Event) -> bool:
+        nonlocal ended
+        ended = ended or not follow(event)
+        return not ended
+
+    try:
+        made = found(
+            entry.problem, goal.names, goal.most, entry.method, None, budget, seed, continues
+        )
+    except GearoptError as broken:
+        made = Found((), finished=False, message=str(broken))
+    seconds = clock.seconds
+    if ended:
+        return None
+    worst = _violation(entry.problem, made)
+    run = Run(seed, status(made), None, None, worst, made.evaluations, seconds, made.message)
+    return Trial(run, made.values, made.steps)
+
+
+def _violation(problem: Problem | Conic, made: Found) -> float | None:
+    """Return the largest violation of any limit at the points; None without one."""
+    if not made.points:
+        return None
+    points = np.array([p.x for p in made.points])
+    batch = problem.batch(points)
+    each = (
+        Batch(batch.F[k : k + 1], batch.G[k : k + 1], batch.H[k : k + 1], {})
+        for k in range(len(points))
+    )
+    return max(0.0, *(violation(problem, x, b)[0] for x, b in zip(points, each, strict=True)))
+
+
+def _standard(
+    model: Model, goal: Goal, watch: Follow | None, method: str | None
+) -> tuple[str, Found] | None:
+    """Return the method of the reference front and what it found; None where nothing proves one."""
+    problem = replace(model.problem)
+    chosen = method or default(problem)
+    if chosen == NSGA:
+        return None
+
+    def continues(event: Event) -> bool:
+        return watch is None or watch(Progress(0, 0, chosen, 0, 0.0, event)) is not False
+
+    follow = in_part(continues, model.unit, problem.name)
+    budget = Budget(BOUND_SECONDS)
+    return chosen, goal.front(problem, chosen, FINE[len(goal.names)], budget, watch=follow)
+
+
+def _group(
+    model: Model,
+    standard: tuple[str, Found] | None,
+    count: int,
+    members: Sequence[Entry],
+    runs: Runs[Trial],
+) -> Group:
+    """Return the methods of one model with their runs, judged by its reference front."""
+    own = [t for e in members for kind in KINDS for t in runs.get((e.method, kind), [])]
+    method, made = standard or ("", Found(()))
+    every = [made.values] if made.complete else [made.values, *(t.values for t in own)]
+    values = np.vstack([v for v in every if len(v)] or [np.empty((0, count))])
+    values = values[unbeaten(values)]
+    corner = reference(values) if len(values) else np.empty(0)
+    whole = hypervolume(values, corner) if len(values) else 0.0
+
+    def judged(trial: Trial) -> Run:
+        if not len(trial.values):
+            return trial.run
+        missing = _missing(trial.values, corner, whole)
+        steps = tuple(
+            (s.seconds, s.evaluations, _missing(s.values, corner, whole))
+            for s in _thin(trial.steps)
+        )
+        run = replace(trial.run, objective=missing, steps=steps, distance=igd(trial.values, values))
+        return clipped(run)
+
+    def row(entry: Entry) -> Row:
+        by_count, by_time = (
+            [judged(t) for t in runs.get((entry.method, kind), [])] for kind in KINDS
+        )
+        known = 0.0 if len(values) else None
+        return Row(
+            entry.method,
+            entry.random,
+            entry.counts,
+            None if entry.refused else entry.start_up,
+            entry.refused,
+            sample(by_count, known, 0.0, by_time=False),
+            sample(by_time, known, 0.0, by_time=True),
+        )
+
+    rows = tuple(row(e) for e in members)
+    samples = [s for r in rows for s in (r.equal_evaluations, r.equal_time) if s]
+    best = min(
+        (r.objective for s in samples for r in s.runs if r.objective is not None), default=None
+    )
+    proven = status(made) in ("complete", "proven")
+    return Group(
+        model.problem.name,
+        model.words,
+        MISSING,
+        "",
+        0.0 if len(values) else None,
+        proven,
+        method if proven else "",
+        best,
+        rows,
+        front=_words(method, made, len(values)),
+    )
+
+
+def _missing(values: Array, corner: Array, whole: float) -> float:
+    """Return the part of a hypervolume that points (N, k) lack."""
+    return min(1.0, max(0.0, 1.0 - hypervolume(values, corner) / whole)) if len(values) else 1.0
+
+
+def _thin(steps: Sequence[Step]) -> list[Step]:
+    """Return at most about POINTS steps, the last one included."""
+    every = max(1, len(steps) // POINTS)
+    return [*steps[::-1][::every][::-1]]
+
+
+def _words(method: str, made: Found, count: int) -> str:
+    """Say what the reference front is."""
+    start = "Gaps are the part of the hypervolume that is missing"
+    designs = f"{count} design" + ("" if count == 1 else "s")
+    if not count:
+        return "No method found a feasible point: there is no front."
+    if made.complete:
+        return f"{start}, of that of the {designs} that none beats, proven complete ({method})."
+    if status(made) == "proven":
+        error = "" if made.error is None else f", which leave an error of {made.error:.1g} between"
+        proven = f"{len(made.points)} of them each proven ({method}){error}"
+        return f"{start}, of that of {designs}, {proven}."
+    return f"{start}, of that of the best {designs} known: nothing is proven of this front."
