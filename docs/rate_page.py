@@ -212,11 +212,13 @@ and bores enter masses and costs as they enter the ratings: webs and rims of [dr
 A load spectrum is what the gears carry: Miner's sum of all levels `[[load]]` gives the safety
 factors. A K-factor and unit load in `[limits]` are limits beside the ratings
 (`problems/sized_and_rated.toml`: {sized}, so that they alone bind). Without `[teeth]`, or by the
-method `smooth`, sizes are real numbers, by AGMA with a proven lower bound; by ISO 6336 they are
-the best of several starts without one, and whole teeth may be better. Spectra and `materials` are
-for whole teeth alone: real-valued sizes then follow from a K-factor and unit load, where they are
-given, and the rating tells whether the gears are safe. Gears and box at once (`together`) are
-chosen by their ratings, too (`problems/elevator_box_rated.toml`); the two processes size by load
+method `smooth`, sizes are real numbers with a proven lower bound: 5 s are spent on it, 15 s
+from three stages on, or with `--gap 0.01` as long as that takes. The bound holds for whole
+teeth too; a search among them that its `--seconds` cut short has it, and the real-valued sizes
+as a part. Spectra and `materials` are for whole teeth alone: real-valued sizes then follow from
+a K-factor and unit load, where they are given, and the rating tells whether the gears are safe.
+Gears and box at once (`together`) are chosen by their ratings, too
+(`problems/elevator_box_rated.toml`); the two processes size by load
 limits alone and are refused beside `[rating]`.
 
 Real-valued sizes are sought on a smooth form of the rating and judged by the exact one. Of 20,000

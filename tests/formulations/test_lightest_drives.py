@@ -11,7 +11,7 @@ from rated_brute_force import cheapest
 from rated_drives import RACK, F, agma, rated_drive, some_iso, some_rated_drive
 from test_teeth_brute_force import agrees
 
-from gearopt.formulations import rated_bound, sizing
+from gearopt.formulations import rated_sizing, sizing
 from gearopt.formulations.gear_train import FaceWidth
 from gearopt.formulations.teeth import pairs, problem
 from gearopt.formulations.teeth.search import search
@@ -142,7 +142,7 @@ def test_smooth_forms_know_rims_that_fit(standard):
 @pytest.mark.slow
 def test_real_valued_masses_have_a_bound(monkeypatch):
     """It holds for whole teeth of standard modules, too."""
-    monkeypatch.setattr(rated_bound, "CELLS", 4)
+    monkeypatch.setattr(rated_sizing, "SEARCH", 0.3)
     for train in (pair_of_least_mass(), random_blanks(some_drive(11, 2), 11)):
         found = solve(sizing.problem(train))
         assert found.status in ("feasible", "stationary", "optimal") and found.bound > 0.0

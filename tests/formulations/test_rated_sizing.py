@@ -37,8 +37,8 @@ def published_pair(given=()):
 
 
 @pytest.fixture(autouse=True)
-def few_cells(monkeypatch):
-    monkeypatch.setattr(rated_bound, "CELLS", 2)
+def short_search(monkeypatch):
+    monkeypatch.setattr(rated_sizing, "SEARCH", 0.3)
 
 
 def test_a_published_pair_of_least_volume(monkeypatch):
@@ -63,7 +63,7 @@ def test_a_published_pair_of_least_volume(monkeypatch):
     whole = solve(teeth.problem(train))
     assert whole.value == pytest.approx(1717666, abs=0.5)
     assert found.bound < found.value < whole.value
-    assert found.gap < 0.02
+    assert found.gap < 0.05
 
 
 def test_with_the_constants_of_the_inch_form_that_pair_is_smaller():
@@ -154,12 +154,13 @@ def test_the_smooth_form_is_the_rating_of_its_regime():
 
 @pytest.mark.slow
 @pytest.mark.parametrize("helix", [0.0, 0.4363])
-def test_two_stages_are_below_whole_teeth_and_above_the_bound(helix):
+def test_two_stages_are_below_whole_teeth_and_above_the_bound(helix, monkeypatch):
+    monkeypatch.setattr(rated_sizing, "SEARCH", 5.0)
     train = rated_drive(20, [FREE, FREE], helix=helix)
     found, whole = solve(sizing.problem(train)), solve(teeth.problem(train))
     assert found.status in ("stationary", "feasible") and max(found.limits.values()) <= 1.0 + 1e-8
     assert found.bound <= whole.value and found.value <= whole.value
-    assert found.gap < 0.05
+    assert found.gap < 0.1
 
 
 def test_what_the_bounding_law_excludes_is_impossible():
@@ -171,15 +172,16 @@ def test_what_the_bounding_law_excludes_is_impossible():
 
 @pytest.mark.slow
 @pytest.mark.parametrize("names", [("iso",), ("agma", "iso")])
-def test_what_iso_6336_limits_is_rated_by_it(names):
-    """Its own rating, with steps, accepts what the smooth form found; no bound is known."""
+def test_what_iso_6336_limits_is_rated_by_it(names, monkeypatch):
+    """Its own rating, with steps, accepts what is found."""
+    monkeypatch.setattr(rated_sizing, "SEARCH", 5.0)
     train = rated_drive(4, [FREE], helix=0.0, options=by(*names))
     found = solve(sizing.problem(train))
     (pair,) = sizing.pairs(train, np.array(list(found.design.values()), float))
     standard = train.stages[0].options[0].standards[-1]
     assert min(standard.safeties(pair, train.torque, train.speed)) >= 1.0 - 1e-8
     assert found.status in ("feasible", "stationary")
-    assert (found.bound is None) == (names == ("iso",))
+    assert found.bound <= found.value and found.gap < 0.5
     assert found.value <= solve(teeth.problem(train)).value * (1.0 + 1e-9)
 
 

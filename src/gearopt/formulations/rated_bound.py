@@ -1,14 +1,10 @@
-"""Lower bounds of drives that ratings limit, by geometric programs over cells of teeth and ratios.
+"""A geometric program below a drive that ratings limit, from whose optimum its sizing starts.
 
-The limits of a program are below those of the ratings (`strength.rated.Floor`), so its dual bound
-is one of the drive, in real-valued and in whole teeth.
+Its limits are below those of the ratings (`strength.rated.Floor`), so its dual bound is one of the
+drive, in real-valued and in whole teeth.
 """
 
-import heapq
 import math
-from dataclasses import replace
-from fractions import Fraction
-from itertools import count
 from types import SimpleNamespace
 from typing import Any
 
@@ -26,10 +22,6 @@ from gearopt.physics.gears import GearPair
 Choice = tuple[tuple[str, ...], ...]  # of every stage and standard
 
 ITERATIONS = 300  # of Ipopt, of which smooth problems take some tens
-CLOSE = 1e-7  # gap at which a bound is close enough
-CELLS = 40  # of teeth and ratios, by which a bound is made better
-NARROW = 1.01  # ratio of the ends of a cell that is not halved
-FAR = 8  # times the least teeth of a pinion, where a range without an end is halved
 MOST = 1e6  # teeth and ratios beyond which no bound holds: the ends of the search
 
 
@@ -101,56 +93,6 @@ def _widest(train: Train, k: int, ratio: float, most: float) -> float:
     alone = float(least_share(train, k, one))  # of d1 = 1 mm and the widest face
     power = 1.0 / 3.0 if train.by_width else 1.0
     return float(face.widest * (most / alone) ** power * (1.0 + FEASIBLE))
-
-
-def lower_bound(train: Train, every: list[Choice], most: float, clock: Clock) -> float:
-    """Return a bound on designs of at most an objective, over cells of teeth and ratios.
-
-    The cell with the least bound is halved where its range is the widest, CELLS times at most.
-    """
-    if not every:
-        return math.inf
-    order = count()
-    cells = [(_cell_bound(train, c, most, clock), next(order), train, c) for c in every]
-    heapq.heapify(cells)
-    for _ in range(CELLS):
-        least, _, worst, choice = cells[0]
-        halves = _halved(worst)
-        if clock.stopped or not halves or not -math.inf < least < most * (1.0 - CLOSE):
-            break
-        heapq.heappop(cells)
-        for half in halves:
-            own = max(least, _cell_bound(half, choice, most, clock))
-            heapq.heappush(cells, (own, next(order), half, choice))
-    return float(cells[0][0])
-
-
-def _halved(train: Train) -> list[Train]:
-    """Return a drive with half the range of a stage's teeth or ratios, twice; none: too narrow."""
-    highest, spans = train.highest_ratio, list[tuple[int, str, Fraction, Fraction]]()
-    for k, stage in enumerate(train.stages):
-        low, high = stage.pinion_teeth
-        spans.append((k, "pinion_teeth", Fraction(low), Fraction(high or FAR * low)))
-        if len(train.stages) > 1:
-            spans.append((k, "ratio", stage.ratio[0], min(highest, stage.ratio[1] or highest)))
-    k, name, least, most = max(spans, key=lambda span: float(span[3] / span[2]))
-    if most < least * NARROW:
-        return []
-    stage, middle = train.stages[k], Fraction(math.sqrt(least * most))
-    last = getattr(stage, name)[1]
-    halves: list[Any] = [{name: ends} for ends in ((least, middle), (middle, last))]
-    stages = [train.stages[:k] + (replace(stage, **h),) + train.stages[k + 1 :] for h in halves]
-    return [replace(train, stages=made) for made in stages]
-
-
-def _cell_bound(train: Train, choice: Choice, most: float, clock: Clock) -> float:
-    made = bounding(train, choice, most)
-    if made is None or clock.stopped:
-        return -math.inf
-    found = solved(clock, made)
-    if found.status == "infeasible":
-        return math.inf
-    return -math.inf if found.bound is None else found.bound
 
 
 def solved(clock: Clock, made: Problem) -> Result:

@@ -2,8 +2,9 @@
 
 Ipopt minimises the ratings' smooth form in every combination of what it needs fixed beforehand
 (regimes of AGMA 908, ranges of K_v of ISO 6336), from the optimum of a geometric program whose
-limits are below the true ones. The dual bound of that program is one of the drive, in real-valued
-and in whole teeth. What is returned was rated by the exact form.
+limits are below the true ones (AGMA), or from what a search finds (ISO 6336 without steps in its
+tolerances). That search bounds the drive from below, in real-valued and in whole teeth, and looks
+for designs of its own (`rated_cells`). What is returned was rated by the exact form.
 """
 
 import math
@@ -15,26 +16,32 @@ from typing import Any
 import numpy as np
 
 from gearopt.errors import SolveError
-from gearopt.formulations import sizing, teeth
+from gearopt.formulations import sizing
 from gearopt.formulations.gear_train import Stage, Train, terms
-from gearopt.formulations.rated_bound import Choice, bounding, box, lower_bound, solved
+from gearopt.formulations.rated_bound import Choice, bounding, box, solved
+from gearopt.formulations.rated_cells import Searched, search
+from gearopt.formulations.rated_designs import polished
+from gearopt.formulations.rated_starts import (
+    point_of,
+    point_of_result,
+    repaired,
+    safe,
+    starts,
+    whole,
+)
 from gearopt.formulations.strength.rated import MODES, Standard
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.result import FEASIBLE, Budget, Outcome, Result, Watch
-from gearopt.optimise.solve import solve
+from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.terms import Array, Param, Terms, Var, each, namespace
-from gearopt.physics.gears import SERIES_I, GearPair
+from gearopt.physics.gears import GearPair
 
 ROUNDS = 4  # of correcting the smooth form by the exact one
-SAFE = 1.0 + FEASIBLE  # utilisation up to which the exact rating accepts a design
-GROWTH = tuple(10.0 ** (0.5 * k) for k in range(-14, -3))  # of lengths, in a repair
-LESS, SMALLEST, HALVINGS = 1e-5, 0.7, 24  # of lengths that an exact rating finds too large
 EQUAL = 1e-7  # relative; of safety factors that are those of the exact rating
 SAME = 1e-9  # of corrections that no longer change
-FINER = (1.0, 1.4, 2.0)  # times the least teeth, of starts without a bounding program
-FEW = 20  # teeth above the least of a pinion without a limit, of a search among whole teeth
-SECONDS = 5.0  # at most, for that search
+CLOSE = 5e-7  # relative gap that ends the search
+SEARCH = 5.0  # seconds of the search for a bound where no gap is asked for; 3-fold from 3 stages
+POLISHING = 0.2  # of these seconds, at most, for the best design before it
 REFINED = 4  # best designs whose choices are refined
 
 
@@ -127,38 +134,101 @@ class _Design:
     status: str
 
 
+def searched(train: Train) -> Callable[..., Outcome]:
+    """Return a method of `sizing.problem` for a rated drive: the search for its bound alone."""
+
+    def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
+        """Branch and bound; the seed changes nothing."""
+        clock = Clock(budget, watch)
+        found = _searched(train, None, clock, budget.seconds)
+        best = _of_pairs(train, problem, found)
+        return _claim(best, found.bound, clock)
+
+    return run
+
+
 def _outcome(train: Train, exact: Problem, clock: Clock) -> Outcome:
     """Return the best design of all combinations with the bound of all."""
     if train.several_options:
         raise SolveError("lists of materials are for whole teeth: give a table [teeth]")
+    bounded = _all_bounded(train)
+    designs, bound = _by_programs(train, exact, clock) if bounded else ([], -math.inf)
+    if not bounded or not designs or train.hollow:
+        made = [_Design(_value(exact, x), x, (), False, "feasible") for x in whole(train, clock)]
+        designs += [design for design in made if safe(exact, design.x)]
+    best = min(designs, key=lambda design: design.value, default=None)
+    long = SEARCH * (3.0 if len(train.stages) > 2 else 1.0)
+    seconds = None if clock.budget.gap > 0.0 else clock.within(long)
+    if bound < math.inf and not clock.stopped:
+        found = _searched(train, best, clock, seconds)
+        own = _of_pairs(train, exact, found)
+        bound, designs = max(bound, found.bound), [*designs, *([own] if own else [])]
+    more = train.hollow or not bounded and not (designs and _stepped(train))
+    if more and bound < math.inf:
+        designs += _by_ipopt(train, exact, [*(d.x for d in designs), *starts(exact)], clock)
+    return _claim(min(designs, key=lambda d: d.value, default=None), bound, clock)
+
+
+def _by_programs(train: Train, exact: Problem, clock: Clock) -> tuple[list[_Design], float]:
+    """Return designs from the optima of the bounding programs, and the least of their bounds."""
     begun = {choice: _start(train, choice, clock) for choice in choices(train)}
-    possible = {choice: start for choice, (start, least) in begun.items() if least < math.inf}
-    bound = min(least for _, least in begun.values())
-    others: list[Array] = []
-    none = any(start is None for start in possible.values())
-    if none or train.hollow or not _all_bounded(train):
-        others = [*_whole(train, clock), *_starts(exact)]
-    designs = [
-        _Design(float(exact.batch(x[None]).F[0, 0]), x, choice, False, "feasible")
-        for x in others[:1]
-        for choice in list(possible)[:1]
-        if _safe(exact, x)
-    ]
-    for choice, start in possible.items():
-        made = smooth_problem(train, choice)
-        starts = [start] if start is not None else others
-        starts = [*starts, *(others if start is not None else [])]
-        found = [_design(train, exact, choice, one, clock, made) for one in starts]
-        designs += [design for design in found if design is not None]
+    designs = []
+    for choice, (start, _) in begun.items():
+        made = None if start is None else _design(train, exact, choice, start, clock)
+        designs += [] if made is None else [made]
         if designs:
             clock.best = min(d.value for d in designs)
     designs.sort(key=lambda design: design.value)
     designs += [_refined(train, exact, design, clock) for design in designs[:REFINED]]
-    best = min(designs, key=lambda design: design.value, default=None)
+    return designs, min(least for _, least in begun.values())
+
+
+def _by_ipopt(train: Train, exact: Problem, begin: list[Array], clock: Clock) -> list[_Design]:
+    """Return designs from given starts."""
+    designs = []
+    for choice in choices(train):
+        made = smooth_problem(train, choice)
+        found = [_design(train, exact, choice, one, clock, made) for one in begin]
+        designs += [design for design in found if design is not None]
+    designs.sort(key=lambda design: design.value)
+    return designs + [_refined(train, exact, design, clock) for design in designs[:1]]
+
+
+def _searched(train: Train, best: _Design | None, clock: Clock, seconds: float | None) -> Searched:
+    """Return what the search over cells finds beside the best design so far."""
+    known = () if best is None else sizing.pairs(train, best.x)
     most = math.inf if best is None else best.value
-    if not clock.stopped:
-        bound = max(bound, lower_bound(train, list(possible), most, clock))
-    return _claim(best, bound, clock)
+    close = max(clock.budget.gap, CLOSE)
+    inner = Clock(replace(clock.left, seconds=seconds), clock.inner())
+    if known and _stepped(train):
+        spent = None if seconds is None else POLISHING * seconds
+        known, most = polished(train, (tuple(known), most), Clock(Budget(spent), clock.inner()))
+    found = search(train, known, most, inner, close)
+    if found.pairs is None and known and best is not None and most < best.value:
+        found = Searched(found.bound, tuple(known), most)
+    if found.pairs is not None and found.bound < found.value * (1.0 - close):
+        found = Searched(found.bound, *polished(train, (found.pairs, found.value), clock))
+    clock.best, clock.bound = min(clock.best, found.value), max(clock.bound, found.bound)
+    clock.tell()
+    return found
+
+
+def _of_pairs(train: Train, exact: Problem, found: Searched) -> _Design | None:
+    """Return the design of a search; None where it has none that the exact text accepts."""
+    if found.pairs is None:
+        return None
+    x = point_of(train, found.pairs)
+    x = np.clip(x, *exact.bounds()[:2])
+    return _Design(_value(exact, x), x, (), False, "feasible") if safe(exact, x) else None
+
+
+def _stepped(train: Train) -> bool:
+    """Return whether a rating jumps with sizes, which no smooth form follows."""
+    return any(one.steps for stage in train.stages for one in _standards(stage))
+
+
+def _value(exact: Problem, x: Array) -> float:
+    return float(exact.batch(x[None]).F[0, 0])
 
 
 def _refined(train: Train, exact: Problem, best: _Design, clock: Clock) -> _Design:
@@ -177,10 +247,10 @@ def _refined(train: Train, exact: Problem, best: _Design, clock: Clock) -> _Desi
 
 def _claim(best: _Design | None, bound: float, clock: Clock) -> Outcome:
     proof = {
-        "method": "dual",
+        "method": "branch and bound",
         "arithmetic": "double, with a rounding allowance",
-        "sentence": "Proof: a geometric program whose limits and objective are at most those of "
-        "the drive; its bound is a dual one, computed from our own derivatives.",
+        "sentence": "Proof: branch and bound over cells of teeth, ratios and sizes, in each of "
+        "which a geometric program with limits and objective at most those of the drive bounds it.",
     }
     done = not clock.stopped
     if best is None:
@@ -189,7 +259,9 @@ def _claim(best: _Design | None, bound: float, clock: Clock) -> Outcome:
         words = "no start led to a design that the ratings accept"
         return Outcome(None, done, evaluations=clock.evaluations, message=words)
     known = min(bound, best.value) if bound > -math.inf else None
-    words = "" if best.same else "the smooth form of the ratings was corrected by the exact one"
+    by_search = not best.choice
+    words = "the smooth form of the ratings was corrected by the exact one"
+    words = "" if best.same or by_search else words
     return Outcome(
         best.x,
         done,
@@ -211,46 +283,6 @@ def _all_bounded(train: Train) -> bool:
     )
 
 
-def _starts(exact: Problem) -> list[Array]:
-    """Return starts of more and more, smaller teeth."""
-    lower, upper, guess = exact.bounds()
-    names = [v.name for v, _ in exact.columns]
-    found = []
-    for factor in FINER:
-        change = {"module": 1.0 / factor, "pinion_teeth": factor}
-        moved = [g * change.get(n, 1.0) for g, n in zip(guess, names, strict=True)]
-        found.append(np.clip(moved, lower, upper))
-    return found
-
-
-def _whole(train: Train, clock: Clock) -> list[Array]:
-    """Return the best train of whole teeth and standard modules as a point, if one is found."""
-    stages = []
-    for stage in train.stages:
-        least, most = min(stage.modules, default=None), max(stage.modules, default=None)
-        if least is None or most is None:
-            series = SERIES_I
-        else:
-            series = tuple(sorted({least, most, *(m for m in SERIES_I if least < m < most)}))
-        low, high = stage.pinion_teeth
-        stages.append(replace(stage, modules=series, pinion_teeth=(low, high or low + FEW)))
-    near = replace(train, stages=tuple(stages))
-    found = solve(teeth.problem(near), budget=Budget(clock.within(SECONDS)))
-    point = _point(teeth.problem(near), found)
-    if point is None:
-        return []
-    rows = [
-        {
-            "module": pair.normal_module,
-            "pinion_teeth": pair.pinion_teeth,
-            "ratio": pair.ratio,
-            "face_width": pair.face_width,
-        }
-        for pair in teeth.pairs(near, point)
-    ]
-    return [np.array([float(r[v.name]) for v in sizing.variables(train) for r in rows])]
-
-
 def _start(train: Train, choice: Choice, clock: Clock) -> tuple[Array | None, float]:
     """Return the optimum of the bounding program, or None, and its bound; inf: impossible."""
     made = None if clock.stopped else bounding(train, choice)
@@ -259,14 +291,7 @@ def _start(train: Train, choice: Choice, clock: Clock) -> tuple[Array | None, fl
     found = solved(clock, made)
     if found.status == "infeasible":
         return None, math.inf
-    return _point(made, found), -math.inf if found.bound is None else found.bound
-
-
-def _point(made: Problem, found: Result) -> Array | None:
-    if not found.design:
-        return None
-    values = [np.atleast_1d(v) for v in found.design.values()]
-    return np.concatenate(values).astype(float)
+    return point_of_result(made, found), -math.inf if found.bound is None else found.bound
 
 
 def _design(
@@ -291,12 +316,12 @@ def _design(
             break
         made = made.at(trim=tuple(trims.ravel().tolist()))
         found = solved(clock, made.starting(np.concatenate([at, guess(train, at, choice)])))
-        point = _point(made, found)
-        if point is None:
+        at_end = point_of_result(made, found)
+        if at_end is None:
             break
-        at = np.clip(point[:size], *exact.bounds()[:2])
-        ratio = _errors(train, at, choice, made, point, trims)
-        safe = _repaired(exact, at)
+        at = np.clip(at_end[:size], *exact.bounds()[:2])
+        ratio = _errors(train, at, choice, made, at_end, trims)
+        safe = repaired(exact, at)
         if safe is not None:
             value = float(exact.batch(safe[None]).F[0, 0])
             same = bool(np.all(np.abs(trims * ratio - 1.0) <= EQUAL)) and np.array_equal(safe, at)
@@ -306,39 +331,6 @@ def _design(
             break
         trims = trims * ratio
     return best
-
-
-def _safe(exact: Problem, x: Array) -> bool:
-    made = exact.batch(x[None])
-    return bool(max(made.G.max(initial=0.0), 1.0 + np.abs(made.H - 1.0).max(initial=0.0)) <= SAFE)
-
-
-def _repaired(exact: Problem, at: Array) -> Array | None:
-    """Return a design as it is, or as much larger as the exact rating needs; None: by too much.
-
-    Stages that could be smaller by LESS are made so.
-    """
-    lengths = np.array([v.unit == "mm" for v, _ in exact.columns])
-    stage = [int(n.rsplit("[", 1)[1][:-1]) if v.size > 1 else 1 for v, n in exact.columns]
-    lower, upper, _ = exact.bounds()
-
-    def scaled(x: Array, factor: float, chosen: Array) -> Array:
-        return np.clip(np.where(chosen, x * factor, x), lower, upper)
-
-    here = next((s for g in (0.0, *GROWTH) if _safe(exact, s := scaled(at, 1 + g, lengths))), None)
-    if here is None:
-        return None
-    for k in range(1, max(stage) + 1):
-        own = lengths & (np.array(stage) == k)
-        if not _safe(exact, scaled(here, 1.0 - LESS, own)):
-            continue
-        low, high = SMALLEST, 1.0 - LESS
-        for _ in range(HALVINGS):
-            middle = 0.5 * (low + high)
-            good = _safe(exact, scaled(here, middle, own))
-            low, high = (low, middle) if good else (middle, high)
-        here = scaled(here, high, own)
-    return here
 
 
 def _loads(train: Train, pairs: tuple[GearPair, ...]) -> Iterator[tuple[GearPair, float, float]]:

@@ -11,7 +11,9 @@ from typing import Any
 import numpy as np
 
 from gearopt.formulations.strength import agma_smooth
+from gearopt.formulations.strength.agma_cells import needed
 from gearopt.formulations.strength.agma_floor import AgmaFloor, agma_floor
+from gearopt.formulations.strength.cells import Cells
 from gearopt.formulations.strength.rated import Box, Load, Smooth
 from gearopt.optimise.terms import Array
 from gearopt.physics.agma import factors
@@ -95,6 +97,15 @@ class Agma:
     def floor(self, box: Box, choice: str) -> AgmaFloor | None:
         """Return lower bounds of what is used, as posynomials; None where there are none."""
         return agma_floor(self, box, choice)
+
+    @property
+    def steps(self) -> dict[str, tuple[float, ...]]:
+        """Return that no size makes a rating jump."""
+        return {}
+
+    def needed(self, cells: Cells, safety: tuple[float, float]) -> tuple[Any, Any]:
+        """Return the least d1^2 b/(T (1 + 1/u)) of contact and d1^2 b/T of bending."""
+        return needed(self, cells, safety)
 
     def like(self, other: Any) -> bool:
         """Return whether `prepared` of another standard is the same."""

@@ -5,18 +5,22 @@ At one power a slower, stronger torque may take less: it can leave the main reso
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 
+from gearopt.formulations.strength.cells import Cells
+from gearopt.formulations.strength.iso6336_cells import IsoCells
 from gearopt.formulations.strength.iso6336_rows import AT_ENDS, Columns, IsoRows
 from gearopt.formulations.strength.rated import Box, Load, Smooth
+from gearopt.formulations.strength.teeth_alone import iso_teeth
 from gearopt.optimise.terms import Array
 from gearopt.physics.blanks import SOLID, Blank
 from gearopt.physics.choosing import choose
 from gearopt.physics.gears import GearPair
+from gearopt.physics.iso6336 import accuracy, chain, contact_factors, running_in, stiffness
 from gearopt.physics.iso6336 import bending_factors as bending
-from gearopt.physics.iso6336 import chain, contact_factors, running_in, stiffness
 from gearopt.physics.iso6336.batch import rate_rows, smooth_safeties, spectrum_rows
 from gearopt.physics.iso6336.case import Case, Practice, of_blanks
 from gearopt.physics.iso6336.curves import Curve, reference_share
@@ -51,6 +55,38 @@ class Iso6336:
         """Return the case of a level of load."""
         operation = self.loads[level].of(self.operation, torque, speed)
         return Case(pair, operation, self.materials, self._practice(pair), self.given)
+
+    @property
+    def steps(self) -> dict[str, tuple[float, ...]]:
+        """Return the sizes [mm] at which deviations jump, by name of `Cells`."""
+        if self.practice.tolerances != "1995":
+            return {}
+        across = accuracy.DIAMETERS[1:-1]
+        sizes = {"diameter": across, "wheel": across, "module": accuracy.MODULES[1:-1]}
+        return sizes | {"width": accuracy.WIDTHS[1:-1]}
+
+    def needed(self, cells: Cells, safety: tuple[float, float]) -> tuple[Any, Any]:
+        """Return the least d1^2 b/(T (1 + 1/u)) of contact and d1^2 b/T of bending."""
+        made = IsoCells(self, cells, cells.teeth_alone(iso_teeth(self.practice.shift)))
+        with np.errstate(all="ignore"):
+            return made.pressed(safety[1]), made.bent(safety[0])
+
+    def strongest(self, made: IsoCells, member: int, contact: bool) -> Any:
+        """Return the greatest sigma_HG or sigma_FG [MPa] of a gear in cells of designs."""
+        cells, teeth = made.cells, made.teeth
+        ends: Any = SimpleNamespace(
+            notches=[teeth[f"notch{k}"][1] for k in GEARS],
+            concentrations=[teeth[f"concentration{k}"][1] for k in GEARS],
+        )
+        (low, high), (u_low, u_high) = cells.teeth, cells.ratio
+        apart = sum(cells.toothing.profile_shifts) > 0.0
+        z = low * (1.0 + u_low) / (1.0 + u_high) if apart else high  # of the greatest alpha_wt
+        pair = cells.toothing.of_diameter(cells.module[0], z, cells.diameter[1], u_high, 1.0)
+        far = cells.toothing.of_diameter(cells.module[0], z, cells.diameter[1], u_low, 1.0)
+        slow, fast = (self.case(pair, 1.0, speed) for speed in cells.speed)
+        last = self.case(far, 1.0, cells.speed[1])
+        strength = _strength(self, (slow, fast), ends, member, contact, made.found)
+        return strength.greatest((slow, last))
 
     def _practice(self, pair: GearPair) -> Practice:
         made = of_blanks(self.practice, pair, self.blanks)
@@ -141,7 +177,7 @@ class Iso6336:
         safety: tuple[float, float],
     ) -> Columns:
         """Return the columns of a level of load; cases: of unit width at the slow and fast end."""
-        slow, found = cases[0], self._found(cases[0])
+        slow, found = cases[0], self.found(cases[0])
         columns = self._teeth(table, slow) | self._loads(cases, load, torque)
         columns["relief"] = found["C_a"]
         pressed, bent = self._contact(table, slow, found), self._bending(table, slow, found)
@@ -160,7 +196,7 @@ class Iso6336:
                     columns[f"{name}{k}_{place}"] = value
         return columns
 
-    def _found(self, case: Case) -> dict[str, Any]:
+    def found(self, case: Case) -> dict[str, Any]:
         """Return what the materials alone have."""
         names = ("K_A", "K_gamma", "sigma_Hlim", "sigma_Flim", "C_a", "Z_E", "Z_X", "Y_ST", "Y_M")
         found: dict[str, Any] = {}
@@ -192,7 +228,7 @@ class Iso6336:
     def _loads(self, cases: tuple[Case, Case], load: Load, torque: tuple[Array, Array]) -> Columns:
         """Return loads [N], speeds, and deviations after running-in [mm], at both ends."""
         slow = cases[0]
-        found, d1 = self._found(slow), slow.pair.pinion.reference_diameter
+        found, d1 = self.found(slow), slow.pair.pinion.reference_diameter
         force = 2.0 * found["K_A"] * found["K_gamma"] * load.power / load.speed / d1
         densities = self.materials[0].density, self.materials[1].density
         mass = stiffness.reduced_mass(slow.pair, densities, slow.practice.bores)
@@ -201,7 +237,7 @@ class Iso6336:
         form = self.given.get("f_falpha", made.profile_form)
         columns = {}
         for k, case in enumerate(cases[: 1 if cases[0] is cases[1] else 2]):
-            worn = [self._worn(case, found, value) for value in (pitch, form)]
+            worn = [self.worn(case, found, value) for value in (pitch, form)]
             columns[f"force{k}"] = force * torque[k]
             columns[f"pace{k}"] = case.operation.pinion_speed * slow.pair.pinion_teeth * mass**0.5
             columns[f"speed{k}"] = case.speed
@@ -210,7 +246,8 @@ class Iso6336:
             columns[f"deviation{k}"] = np.maximum(pitch, form) - worn[0]
         return columns
 
-    def _worn(self, case: Case, found: dict[str, Any], deviation: Any) -> Any:
+    def worn(self, case: Case, found: dict[str, Any], deviation: Any) -> Any:
+        """Return y_alpha of a deviation [mm], the mean of both gears."""
         limits = found["sigma_Hlim"]
         first, second = (
             running_in.pitch_allowance(m.family, deviation, limits[k], case.speed)

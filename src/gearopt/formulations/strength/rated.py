@@ -11,6 +11,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from gearopt.formulations.strength.cells import Cells
 from gearopt.optimise.terms import Array
 from gearopt.physics.gears import GearPair
 from gearopt.physics.rating import Operation
@@ -84,6 +85,16 @@ class Standard(Protocol):
         self, pair: GearPair, torque: Any, speed: Any, choice: str, unknown: dict[str, Any]
     ) -> "Smooth":
         """Return the rating without branches, of casadi scalars or floats."""
+
+    @property
+    def steps(self) -> dict[str, tuple[float, ...]]:
+        """Return the sizes [mm] at which a rating may jump, by name of `Cells`."""
+
+    def needed(self, cells: Cells, safety: tuple[float, float]) -> tuple[Any, Any]:
+        """Return the least d1^2 b/(T (1 + 1/u)) of contact and d1^2 b/T of bending [1/MPa].
+
+        Of any design in a cell that has S_F and S_H; exact where the cell is a point.
+        """
 
     def floor(self, box: "Box", choice: str) -> "Floor | None":
         """Return lower bounds of what is used over a box; None where there are none."""

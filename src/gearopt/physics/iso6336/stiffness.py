@@ -113,12 +113,13 @@ def reduced_mass(pair: GearPair, densities: tuple[Any, Any], bores: tuple[Any, A
     pi/8 (d_m1/d_b1)^2 d_m1^2/(1/((1 - q1^4) rho1) + 1/((1 - q2^4) rho2 u^2)), d_m = (d_a + d_f)/2,
     q = d_i/d_m. densities [t/mm3]; bores d_i [mm]. Source: ISO 6336-1:2006, 6.5.
     """
-    first, second = (_mean_diameter(g) for g in pair.gears)
+    first, second = (mean_diameter(g) for g in pair.gears)
     inverse = 1.0 / ((1.0 - (bores[0] / first) ** 4) * densities[0])
     heavy = (1.0 - (bores[1] / second) ** 4) * densities[1]
     inverse = inverse + 1.0 / (heavy * pair.ratio**2)
     return np.pi / 8.0 * (first / pair.pinion.base_diameter) ** 2 * first**2 / inverse
 
 
-def _mean_diameter(gear: Gear) -> Any:
+def mean_diameter(gear: Gear) -> Any:
+    """Return d_m, the mean of tip and root diameter [mm]."""
     return 0.5 * (gear.tip_diameter + gear.root_diameter)

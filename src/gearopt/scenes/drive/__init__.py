@@ -6,6 +6,7 @@ without one, or by the method ipopt, sizes are continuous and proven by a dual b
 
 import math
 from dataclasses import asdict, replace
+from functools import partial
 from typing import Any
 
 from gearopt.errors import SolveError
@@ -24,6 +25,7 @@ from gearopt.scenes.drive.assumptions import assumptions, notes
 from gearopt.scenes.drive.blank_tables import BlankKeys, misfits
 from gearopt.scenes.drive.examples import EXAMPLE, MORE_EXAMPLES
 from gearopt.scenes.drive.front import objectives, several
+from gearopt.scenes.drive.rating.cut_short import bounded
 from gearopt.scenes.drive.rating.limits import check_safe
 from gearopt.scenes.drive.rating.rated import rate, with_rating
 from gearopt.scenes.drive.rating.tables import MATERIAL, GivenTable
@@ -47,15 +49,7 @@ __all__ = [
     "solve",
 ]
 WEAKER = " Its contact ratio is less than the one given, its root is weaker."
-METHODS = (
-    "exact",
-    "process-one",
-    "process-two",
-    "sa",
-    "sa-polish",
-    "sa-paper",
-    "smooth",
-)  # its own
+METHODS = ("exact", "process-one", "process-two", "sa", "sa-polish", "sa-paper", "smooth")
 ANY = 1e9  # gap of a design that need not be the best
 SMOOTH = "smooth"  # of real-valued sizes that ratings limit
 CONTINUOUS = ("ipopt", "gp", "multistart", SMOOTH)  # methods that take no whole teeth
@@ -263,7 +257,8 @@ def _answer(scene: Scene, ask: Ask, ideal: Result | None = None) -> Result:
         if possible.status == "infeasible":
             return replace(possible, name="drive")
     if _without_ratings(train) is None:
-        return _sized(scene, train, ask, _discrete(scene, train, ask.top))
+        whole, sized = _discrete(scene, train, ask.top), partial(_sized, scene, train)
+        return bounded(train, ask, whole, sized, scene.rated_real)
     known, ideal = ideal is not None, ideal or _real(scene, ask)
     if ideal.status == "infeasible":  # then no whole teeth do either
         return replace(ideal, name="drive")

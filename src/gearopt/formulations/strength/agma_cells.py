@@ -1,0 +1,114 @@
+"""What AGMA 2001 needs of d1^2 b over cells of designs, at least."""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from gearopt.formulations.strength.cells import LEAST, MOST, Cells
+from gearopt.formulations.strength.teeth_alone import agma_teeth
+from gearopt.optimise.terms import Array
+from gearopt.physics.agma import factors
+from gearopt.physics.agma.batch import distribution, safeties
+from gearopt.physics.geometry.tooth import base_helix_angle
+
+if TYPE_CHECKING:
+    from gearopt.formulations.strength.agma import Agma
+
+
+def needed(standard: "Agma", cells: Cells, safety: tuple[float, float]) -> tuple[Any, Any]:
+    """Return the least d1^2 b/(T (1 + 1/u)) of contact and d1^2 b/T of bending [1/MPa].
+
+    safety: S_F and S_H asked for. Loads grow with speed, width and d1 as K_v, K_m and K_s do; life
+    factors fall with the cycles, C_H rises with u.
+    """
+    teeth = cells.teeth_alone(agma_teeth(standard.practice.load, _regimes(cells)))
+    given, practice = standard.given, standard.practice
+    working, load = teeth["working"], standard.loads[0]
+    pace = 0.5 * load.speed * cells.speed[LEAST] * cells.diameter[LEAST] * working[LEAST]
+    width = np.minimum(cells.width[LEAST], factors.WIDEST)
+    slim = np.minimum(
+        cells.slim[LEAST] / working[MOST],
+        factors.WIDEST / (cells.diameter[MOST] * working[MOST]),
+    )
+    bare: dict[str, Any] = {"I": 1.0, "J": (1.0, 1.0)}
+    bare["K_v"] = given["K_v"] if "K_v" in given else factors.dynamic_factor(pace, practice.quality)
+    bare["K_m"] = given["K_m"] if "K_m" in given else distribution(practice, width, width / slim)
+    transverse = cells.diameter[LEAST] / cells.teeth[MOST]
+    sizes = [
+        factors.size_factor(cells.width[LEAST], transverse, factors.lewis_form(z))
+        for z in (cells.teeth[LEAST], cells.teeth[LEAST] * cells.ratio[LEAST])
+    ]
+    bare["K_B"] = _rims(standard, cells)
+    bare["K_s"] = tuple(sizes) if practice.size else (1.0, 1.0)
+    module, d = cells.module[LEAST], cells.diameter[LEAST]
+    pair = cells.toothing.of_diameter(module, cells.teeth[LEAST], d, cells.ratio[MOST], 1.0)
+    case = standard.case(pair, 1.0, cells.speed[LEAST], {**bare, **standard.given})
+    made = safeties(case, 1.0, (1.0, 1.0))
+    own = pair.working_diameters[0]
+    first, *both = _geometry(cells, teeth)
+    pitting = given.get("I")
+    first = first if pitting is None else pitting * (1.0 + 1.0 / cells.ratio[LEAST])
+    both = list(given.get("J", both))
+    pressed = [(own * safety[1] / (s * working[MOST])) ** 2 / first for s in made[2:]]
+    bent = [
+        own * (d / cells.teeth[LEAST]) / s * cells.teeth[LEAST] * safety[0] / (j * working[MOST])
+        for s, j in zip(made[:2], both, strict=True)
+    ]
+    return np.maximum(*pressed), np.maximum(*bent)
+
+
+def _rims(standard: "Agma", cells: Cells) -> tuple[Any, Any]:
+    """Return the least K_B, which falls with the backup ratio."""
+    ratios: list[Any] = [
+        standard.case(pair, 1.0, 1.0, {}).practice.backup for pair in cells.blanks()
+    ]
+    law = factors.rim_factor if standard.practice.edition == "D04" else factors.rim_factor_b88
+    first, second = (
+        1.0 if ratios[0][k] is None else law(np.maximum.reduce([r[k] for r in ratios]))
+        for k in (0, 1)
+    )
+    return first, second
+
+
+def _regimes(cells: Cells) -> tuple[str, ...]:
+    """Return the regimes of AGMA 908 that some cells may be in."""
+    if not cells.toothing.helix_angle:
+        return ("spur",)
+    low, high = cells.overlap
+    found = ("low",) if np.any(low <= 1.0) else ()
+    return (*found, "conventional") if np.any(high > 1.0) else found
+
+
+def _geometry(cells: Cells, teeth: dict[str, Array]) -> list[Any]:
+    """Return the greatest I (1 + 1/u), J_1, J_2."""
+    low, high = cells.overlap
+    found = []
+    for k in range(3):
+        most = np.zeros(len(low))
+        if "spur0" in teeth:
+            most = teeth[f"spur{k}"][MOST]
+        if "low0" in teeth:
+            ends = [1.0 - np.minimum(o, 1.0) * s for o in (low, high) for s in teeth["slope"]]
+            factor = np.maximum(np.maximum.reduce(ends), 0.0) ** (0.5 if k else 1.0)
+            most = np.where(low <= 1.0, teeth[f"low{k}"][MOST] * factor, most)
+        if "conventional0" in teeth:
+            own = teeth[f"conventional{k}"][MOST] * _lines(cells, teeth["contact"])
+            most = np.where(high > 1.0, np.maximum(most, own), most)
+        found.append(np.where(np.isnan(most), np.inf, most))
+    return found
+
+
+def _lines(cells: Cells, ratio: Array) -> Any:
+    """Return the greatest L_min/b.
+
+    (eps_alpha - lost/m_F)/cos(beta_b); of the fractions r and a of eps_alpha and m_F the smaller of
+    a r and (1 - a)(1 - r) is lost.
+    """
+    helix = np.cos(base_helix_angle(cells.toothing.pair(1.0, 20.0, 40.0, 1.0).pinion))
+    fractions = []
+    for low, high in (ratio, np.maximum(cells.overlap, 1.0)):
+        within = np.floor(low) == np.floor(high)
+        fractions.append((np.where(within, low % 1.0, 0.0), np.where(within, high % 1.0, 1.0)))
+    (r_low, r_high), (a_low, a_high) = fractions
+    lost = np.minimum(a_low * r_low, (1.0 - a_high) * (1.0 - r_high))
+    return (ratio[MOST] - lost / np.maximum(cells.overlap[MOST], 1.0)) / helix

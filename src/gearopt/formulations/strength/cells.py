@@ -1,0 +1,85 @@
+"""Cells of designs of a stage, over which ratings are bounded from below."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from itertools import product
+from typing import Any
+
+import numpy as np
+
+from gearopt.formulations.toothing import Toothing
+from gearopt.optimise.terms import Array
+from gearopt.physics.gears import GearPair
+
+LEAST, MOST = 0, 1
+NUDGE = 1e-11  # relative
+
+
+@dataclass(frozen=True)
+class Cells:
+    """Cells (n,) of designs, each between two ends; every field but the first is (2, n).
+
+    toothing: of the gears; teeth z1; ratio u; diameter d1 and wheel d2, module m_n, width b [mm];
+    slim b/d1; torque [N mm] and speed [rad/s] of the pinion.
+    """
+
+    toothing: Toothing
+    teeth: Array
+    ratio: Array
+    diameter: Array
+    wheel: Array
+    module: Array
+    width: Array
+    slim: Array
+    torque: Array
+    speed: Array
+
+    @property
+    def overlap(self) -> Array:
+        """Overlap ratios b sin(beta)/(pi m_n)."""
+        per_tooth = abs(np.tan(self.toothing.helix_angle)) / np.pi
+        return np.asarray(self.slim * self.teeth * per_tooth)
+
+    def corner(self, end: int) -> GearPair:
+        """Return pairs of the least or the greatest sizes: modules, teeth, diameters, widths.
+
+        They are one pair of gears only where the cell is a point. Lengths are by NUDGE within the
+        cell, so that an end at a border of a law counts to the side on which the cell lies.
+        """
+        inside = (1.0 + NUDGE, 1.0 - NUDGE)[end]
+        sizes = self.module * inside, self.teeth, self.diameter * inside, self.ratio
+        made = self.toothing.of_diameter(*(size[end] for size in (*sizes, self.width * inside)))
+        wheel = replace(made.wheel, reference_diameter=self.wheel[end] * inside)
+        return replace(made, wheel=wheel)
+
+    def blanks(self) -> list[GearPair]:
+        """Return pairs of all ends of modules and diameters: what is monotone in both is within."""
+        found = []
+        for module in self.module:
+            for end in (LEAST, MOST):
+                d, ratio = self.diameter[end], self.ratio[end]
+                made = self.toothing.of_diameter(module, self.teeth[end], d, ratio, 1.0)
+                wheel = replace(made.wheel, reference_diameter=self.wheel[end])
+                found.append(replace(made, wheel=wheel))
+        return found
+
+    def teeth_alone(self, law: Callable[[GearPair], dict[str, Any]]) -> dict[str, Array]:
+        """Return the ranges (2, n) by name of what pairs have by their teeth alone.
+
+        Thickness allowances are lengths: of teeth that have some the module counts, too.
+        """
+        thinner = any(self.toothing.thickness_allowances)
+        module = self.module if thinner else np.ones_like(self.module)
+        rows = np.stack([*self.teeth, *self.ratio, *module])
+        order = np.lexsort(rows)
+        fresh = np.append(True, np.any(np.diff(rows[:, order]) != 0.0, axis=0))
+        teeth, ratio, module = rows[:, order[fresh]].reshape(3, 2, -1)
+        place = np.empty(len(order), int)
+        place[order] = np.cumsum(fresh) - 1
+        corners = product(teeth, ratio, module if thinner else module[:1])
+        made = [law(self.toothing.pair(m, z, z * u, m)) for z, u, m in corners]
+        found = {}
+        for name in made[0]:
+            values = np.array([np.broadcast_to(one[name], teeth[0].shape) for one in made])
+            found[name] = np.stack([values.min(axis=0), values.max(axis=0)])[:, place]
+        return found

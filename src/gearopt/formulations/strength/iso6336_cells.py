@@ -1,0 +1,374 @@
+"""What ISO 6336 needs of d1^2 b over cells of designs, at least.
+
+With s = W0/c', V1 = W1/c', V2 = W2/c' of the line loads W0 = F_t K_A K_gamma/b, W1 = W0 K_v,
+W2 = W1 K_Hbeta [N/mm] all is a matter of lengths [mm]: deviations and deflections.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from gearopt.formulations.strength.cells import LEAST, MOST, Cells
+from gearopt.optimise.terms import Array
+from gearopt.physics.gears import GearPair
+from gearopt.physics.iso6336 import bending_factors as bending
+from gearopt.physics.iso6336 import contact_factors as contact
+from gearopt.physics.iso6336 import load_factors as loads
+from gearopt.physics.iso6336 import running_in, stiffness
+from gearopt.physics.iso6336.accuracy import Deviations
+from gearopt.physics.iso6336.case import Case, Practice
+from gearopt.physics.iso6336.tooth_form import load_sharing
+
+if TYPE_CHECKING:
+    from gearopt.formulations.strength.iso6336 import Iso6336
+
+GEARS = (0, 1)
+PICK = np.minimum, np.maximum
+ENDLESS = 1e9  # mm: of a deviation whose allowance is the greatest one
+
+
+@dataclass(frozen=True)
+class IsoCells:
+    """Cells of designs under the standard; teeth: their ranges (2, n) by name, of `iso_teeth`."""
+
+    standard: "Iso6336"
+    cells: Cells
+    teeth: dict[str, Array]
+
+    @property
+    def given(self) -> Any:
+        """Factors that are given."""
+        return self.standard.given
+
+    @cached_property
+    def cases(self) -> tuple[Case, Case]:
+        """Cases at the least and the greatest sizes and speeds."""
+        made = [
+            self.standard.case(self.cells.corner(k), self.cells.torque[k], self.cells.speed[k])
+            for k in (LEAST, MOST)
+        ]
+        return made[0], made[1]
+
+    @cached_property
+    def found(self) -> dict[str, Any]:
+        """What the materials alone have."""
+        return self.standard.found(self.cases[0])
+
+    @cached_property
+    def line(self) -> Array:
+        """W0 [N/mm]."""
+        force = 2.0 * self.found["K_A"] * self.found["K_gamma"] * self.cells.torque
+        load = self.standard.loads[0]
+        area = self.cells.diameter * self.cells.width
+        return np.asarray(force * (load.power / load.speed) / area[::-1])
+
+    def single(self, end: int, line: int) -> Any:
+        """Return c' [MPa], the least or greatest at an end of the line loads."""
+        if "c_prime" in self.given:
+            return self.given["c_prime"]
+        first, second = (m.modulus for m in self.standard.materials)
+        modulus = 2.0 * first * second / (first + second) / stiffness.STEEL
+        bare = self.teeth["stiffness"][end] * modulus * self._blank[end]
+        return bare * stiffness.light_load(self.line[line])
+
+    @cached_property
+    def _blank(self) -> tuple[Any, Any]:
+        """The least and the greatest C_R: monotone in d and in m_n, so at corners."""
+        made = [stiffness.mean_blank_factor(self._practice(p).webs) for p in self.cells.blanks()]
+        return np.minimum.reduce(made), np.maximum.reduce(made)
+
+    @cached_property
+    def deflection(self) -> tuple[Any, Any]:
+        """S [mm], which does not fall with W0."""
+        return self.line[0] / self.single(MOST, LEAST), self.line[1] / self.single(LEAST, MOST)
+
+    def mesh(self, end: int) -> Any:
+        """Return c_gamma_alpha/c', at least or at most."""
+        if "c_gamma_alpha" in self.given:
+            return self.given["c_gamma_alpha"] / self.single(1 - end, 1 - end)
+        return stiffness.mesh_stiffness(1.0, self.teeth["contact"][end])[0]
+
+    def tilting(self, end: int) -> Any:
+        """Return c_gamma_beta/c', at least or at most."""
+        if "c_gamma_beta" in self.given:
+            return self.given["c_gamma_beta"] / self.single(1 - end, 1 - end)
+        return 0.85 * self.mesh(end)
+
+    @cached_property
+    def total(self) -> Array:
+        """eps_gamma."""
+        return np.asarray(self.teeth["contact"] + self.cells.overlap)
+
+    @cached_property
+    def deviations(self) -> tuple[tuple[Any, Any, Any], tuple[Any, Any, Any]]:
+        """Pitch, form and the deviation of K_Halpha after running-in [mm], least and greatest."""
+        made = [case.deviations for case in self.cases]
+        pitches = [self.given.get("f_pb", one.base_pitch) for one in made]
+        forms = [self.given.get("f_falpha", one.profile_form) for one in made]
+        found = []
+        for end, case in enumerate(self.cases):
+            own, other, form = (
+                size - self.standard.worn(case, self.found, worn)
+                for size, worn in (
+                    (pitches[end], pitches[end]),
+                    (forms[end], pitches[1 - end]),
+                    (forms[end], forms[end]),
+                )
+            )
+            found.append((own, form, np.maximum(own, other)))
+        return found[0], found[1]
+
+    @cached_property
+    def resonance(self) -> tuple[Any, Any]:
+        """N, at least and at most."""
+        if "N" in self.given:
+            return self.given["N"], self.given["N"]
+        standard, cells, found = self.standard, self.cells, []
+        densities = standard.materials[0].density, standard.materials[1].density
+        inner = self._inner_parts()
+        for end in (LEAST, MOST):
+            z, d = cells.teeth[end], cells.diameter[end]
+            module = d * cells.toothing.cosine / z
+            pair = cells.toothing.of_diameter(module, z, d, cells.ratio[end], 1.0)
+            rows = zip(inner[1 - end], pair.gears, strict=True)
+            first, second = (part * stiffness.mean_diameter(gear) for part, gear in rows)
+            mass = stiffness.reduced_mass(pair, densities, (first, second))
+            stiff = self.mesh(1 - end) * self.single(1 - end, 1 - end)
+            speed = standard.loads[0].speed * cells.speed[end]
+            pace = speed * z * np.sqrt(np.maximum(mass, 0.0) / stiff)
+            found.append(np.where(np.isfinite(pace), pace, 0.0 if end == LEAST else np.inf))
+        return found[0], found[1]
+
+    def _practice(self, pair: GearPair) -> Practice:
+        return self.standard.case(pair, 1.0, 1.0).practice
+
+    def _inner_parts(self) -> tuple[list[Any], list[Any]]:
+        """Return d_i/d_m of pinion and wheel, at least and at most; monotone in d and in m_n."""
+        made = []
+        for pair in self.cells.blanks():
+            bores = self._practice(pair).bores
+            rows = zip(bores, pair.gears, strict=True)
+            made.append([bore / stiffness.mean_diameter(gear) for bore, gear in rows])
+        least, most = ([pick.reduce([m[k] for m in made]) for k in GEARS] for pick in PICK)
+        return least, most
+
+    @cached_property
+    def dynamic(self) -> Any:
+        """The least K_v."""
+        if "K_v" in self.given:
+            return self.given["K_v"]
+        c1, c2, c3, c4, c5, c6, _ = loads.coefficients(self.total[MOST])
+        c7 = loads.coefficients(self.total[LEAST])[6]
+        pitch, form, _ = self.deviations[LEAST]
+        s, slow = self.deflection, self.resonance[LEAST]
+        ratios = [1.0 - self.found["C_a"] / x for x in s]
+        relief = np.where(ratios[0] * ratios[1] < 0.0, 0.0, np.minimum(*np.abs(ratios)))
+        shared = (c1 * pitch + c2 * form) / s[1]
+        low = 1.0 + slow * (shared + c3 * relief)
+        main = 1.0 + shared + np.minimum(c4 * relief, c4 * np.maximum(*np.abs(ratios)))
+        return self._of_ranges(LEAST, low, main, (c5 * pitch + c6 * form) / s[1] + c7)
+
+    def _of_ranges(self, end: int, low: Any, main: Any, high: Any) -> Any:
+        """Return the least or greatest of the laws of the ranges in which N may lie."""
+        pick, none = ((np.minimum, np.inf), (np.maximum, -np.inf))[end]
+        slow, fast = self.resonance
+        begins = loads.lower_limit(self.line)
+        width = loads.SUPER - loads.MAIN
+        passed = [
+            main + (high - main) * np.clip((n - loads.MAIN) / width, 0.0, 1.0) for n in (slow, fast)
+        ]
+        below = np.where(slow <= begins[1], low, none)
+        above = np.where(fast > begins[0], pick(*passed), none)
+        return pick(below, above)
+
+    @cached_property
+    def loaded(self) -> Any:
+        """The greatest V1 [mm]."""
+        s = self.deflection
+        if "K_v" in self.given:
+            return s[1] * self.given["K_v"]
+        c1, c2, c3, c4, c5, c6, _ = loads.coefficients(self.total[LEAST])
+        c7 = loads.coefficients(self.total[MOST])[6]
+        pitch, form, _ = self.deviations[MOST]
+        relief = np.maximum(*(np.abs(x - self.found["C_a"]) for x in s))
+        shared = c1 * pitch + c2 * form
+        low = s[1] + self.resonance[MOST] * (shared + c3 * relief)
+        main = s[1] + shared + np.maximum(c4, 0.0) * relief
+        return self._of_ranges(MOST, low, main, c5 * pitch + c6 * form + c7 * s[1])
+
+    @cached_property
+    def spread(self) -> Any:
+        """The least K_Hbeta."""
+        if "K_Hbeta" in self.given:
+            return self.given["K_Hbeta"]
+        practice, slow = self.standard.practice, self.cases[LEAST]
+        alignment, slope = self._alignment(LEAST)
+        first, second = loads.HELIX_MODIFICATIONS[practice.helix_modification]
+        bent = loads.shaft_misalignment(1.0, self.cells.slim[LEAST], practice.offset)
+        parts = (
+            (1.33 * first * bent, second * alignment),
+            (loads.LEAST_PER_LOAD, 0.0),
+            (0.0, 0.5 * slope),
+        )
+        stiff = self.tilting(LEAST) * self.single(LEAST, LEAST)
+        x = np.zeros(len(slow.speed))
+        sure = self.tilting(LEAST) / self.loaded
+        possible = self.tilting(MOST) / (self.deflection[LEAST] * self.dynamic)
+        for share, worn in self._worn():
+            for per_load, fixed in parts:
+                rest = share * fixed - worn
+                by_fixed = rest * np.where(rest >= 0.0, sure, possible)
+                x = np.maximum(x, 0.5 * (stiff * share * per_load + by_fixed))
+        return loads.face_load_factor(x, 2.0, 1.0)
+
+    def _alignment(self, end: int) -> tuple[Any, Any]:
+        """Return f_ma and f_Hbeta [mm]."""
+        made: Deviations = self.cases[end].deviations
+        return self.given.get("f_ma", made.alignment), made.helix_slope
+
+    def _worn(self) -> list[tuple[Any, Any]]:
+        """Return shares and sizes [mm]: F_betay is at least each share of F_betax less the size.
+
+        Of each gear y_beta = min(k F_betax, most).
+        """
+        speed, found = self.cases[LEAST].speed, [(1.0, 0.0)]
+        for k, material in enumerate(self.standard.materials):
+            limit = self.found["sigma_Hlim"][k]
+            share, most = (
+                running_in.helix_allowance(material.family, size, limit, speed) / size
+                for size in (1e-9, ENDLESS)
+            )
+            found = [
+                pair
+                for part, size in found
+                for pair in ((part - 0.5 * share, size), (part, size + 0.5 * most * ENDLESS))
+            ]
+        return found
+
+    @cached_property
+    def spread_loaded(self) -> Any:
+        """The greatest V2 [mm]."""
+        if "K_Hbeta" in self.given:
+            return self.loaded * self.given["K_Hbeta"]
+        practice, fast = self.standard.practice, self.cases[MOST]
+        alignment, slope = self._alignment(MOST)
+        line = self.loaded * self.single(MOST, MOST)
+        shaft = loads.shaft_misalignment(line, self.cells.slim[MOST], practice.offset)
+        before = loads.initial_misalignment(
+            shaft, alignment, line, slope, practice.helix_modification
+        )
+        worn = [
+            running_in.helix_allowance(m.family, before, self.found["sigma_Hlim"][k], fast.speed)
+            for k, m in enumerate(self.standard.materials)
+        ]
+        after = before - 0.5 * (worn[0] + worn[1])
+        return self.loaded * loads.face_load_factor(after, self.tilting(MOST), self.loaded)
+
+    def transverse(self, name: str, most: Any) -> Any:
+        """Return the least K_Halpha or K_Falpha; most: the least of its greatest value."""
+        if name in self.given:
+            return self.given[name]
+        deviation = self.deviations[LEAST][2]
+        found = loads.transverse_load_factor(
+            self.mesh(LEAST), deviation, self.spread_loaded, self.total[LEAST]
+        )
+        return loads.limited(found, most)
+
+    @property
+    def _ratio_factor(self) -> Any:
+        """The least Z_eps, which falls with both contact ratios."""
+        own = contact.contact_ratio_factor(self.teeth["contact"][MOST], self.cells.overlap[MOST])
+        return self.given.get("Z_eps", own)
+
+    def pressed(self, safety: float) -> Any:
+        """Return the least d1^2 b/(T (1 + 1/u)) [1/MPa] of contact."""
+        given, ratio = self.given, self.teeth["contact"][LEAST]
+        if "Z_eps" in given:
+            most = (1.0 + self.cells.overlap[LEAST] / self.teeth["contact"][MOST]) / given[
+                "Z_eps"
+            ] ** 2
+        else:
+            low = contact.contact_ratio_factor(ratio, self.cells.overlap[LEAST])
+            most = self.total[LEAST] / (ratio * low**2)
+        factor = self.dynamic * self.spread * self.transverse("K_Halpha", most)
+        helix = self.cells.toothing.helix_angle
+        z = given.get("Z_H", self.teeth["zone"][LEAST]) * self.found["Z_E"]
+        z = z * given.get("Z_beta", contact.helix_factor(helix)) * self._ratio_factor
+        used = [
+            (self._single(k) * z * safety / self.standard.strongest(self, k, True)) ** 2
+            for k in GEARS
+        ]
+        return self._unit * factor * np.maximum(*used)
+
+    @property
+    def _unit(self) -> Any:
+        load = self.standard.loads[0]
+        return 2.0 * self.found["K_A"] * self.found["K_gamma"] * load.power / load.speed
+
+    def _single(self, member: int) -> Any:
+        """Return the least Z_B or Z_D."""
+        if "Z_BD" in self.given:
+            return self.given["Z_BD"][member]
+        helical, practice = 1.0, self.standard.practice
+        if practice.edition == "2019":
+            helical = contact.PROFILE_MODIFICATIONS[practice.profile_modification] ** 0.5
+        spur = np.maximum(self.teeth[f"single{member}"][LEAST], 1.0)
+        made = [contact.single_contact_factor(spur, o, helical) for o in self.cells.overlap]
+        return np.minimum(*made)
+
+    def bent(self, safety: float) -> Any:
+        """Return the least d1^2 b/T [1/MPa] of bending."""
+        given, cells = self.given, self.cells
+        edition = self.standard.practice.edition
+        ratio = self.teeth["virtual" if edition == "2019" else "contact"][LEAST]
+        most = self.total[LEAST] / (self.teeth["contact"][LEAST] * (0.25 + 0.75 / ratio))
+        factor = self.dynamic * self._root_spread() * self.transverse("K_Falpha", most)
+        module = cells.teeth[LEAST] / cells.toothing.cosine
+        used = []
+        for k in GEARS:
+            form = given["Y_F"][k] if "Y_F" in given else self.teeth[f"form{k}"][LEAST]
+            notch = self.teeth[f"concentration{k}"][LEAST]
+            form = form * (given["Y_S"][k] if "Y_S" in given else notch)
+            used.append(form * self._rim(k) / self.standard.strongest(self, k, False))
+        return self._unit * factor * module * self._root_factor() * np.maximum(*used) * safety
+
+    def _root_spread(self) -> Any:
+        """Return the least K_Fbeta."""
+        if "K_Fbeta" in self.given:
+            return self.given["K_Fbeta"]
+        if self.standard.practice.helix_modification in loads.LIGHT_ENDS:
+            return self.spread
+        racks = self.cells.toothing.racks
+        deep = max(rack.addendum + rack.dedendum for rack in racks)
+        over = self.cells.slim[LEAST] * self.cells.teeth[LEAST] / self.cells.toothing.cosine
+        return self.spread ** loads.root_exponent(over, deep)
+
+    def _root_factor(self) -> Any:
+        """Return the least Y_beta f_eps Y_DT."""
+        given, practice = self.given, self.standard.practice
+        factor = 1.0
+        if practice.edition == "2019" and "Y_F" not in given:
+            virtual = self.teeth["virtual"]
+            made = [load_sharing(v, o) for v in virtual for o in self.cells.overlap]
+            factor = np.minimum.reduce(made)
+        helix = self.cells.toothing.helix_angle
+        own = bending.helix_factor(helix, self.cells.overlap[MOST], practice.edition)
+        deep = bending.deep_tooth_factor(self.teeth["virtual"][MOST], max(practice.grades))
+        return factor * given.get("Y_beta", own) * given.get("Y_DT", deep)
+
+    def _rim(self, member: int) -> Any:
+        """Return the least Y_B, which falls with the backup ratio."""
+        if "Y_B" in self.given:
+            return _of(self.given["Y_B"], member)
+        pairs = self.cells.blanks()
+        backups: list[Any] = [self._practice(p).backup[member] for p in pairs]
+        if backups[0] is None:
+            return 1.0
+        found = bending.rim_factor(np.fmax.reduce(backups))
+        return np.where(np.isfinite(found), found, 1.0)
+
+
+def _of(value: Any, member: int) -> Any:
+    return value[member] if isinstance(value, tuple | list) else value

@@ -1,0 +1,37 @@
+"""A search in whole teeth that its seconds cut short, with the bound of real-valued sizes."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+from gearopt.formulations import rated_sizing, sizing
+from gearopt.formulations.gear_train import Train
+from gearopt.optimise.certificate import reconcile
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.result import Budget, Result
+from gearopt.scenes.reading.ask import Ask
+
+KEPT, SHARE = 2.0, 0.3  # seconds, and share of all, that are kept for the bound
+
+
+def bounded(
+    train: Train, ask: Ask, whole: Problem, sized: Callable[[Ask, Problem], Result], real: bool
+) -> Result:
+    """Return a drive that ratings alone limit, in whole teeth.
+
+    Of a search that ends with its seconds, real-valued sizes are a part, and their bound holds: a
+    share of the seconds is kept for them. whole: its problem; sized: solves a problem of the drive;
+    real: whether the drive may have real-valued sizes.
+    """
+    seconds = ask.budget.seconds
+    if seconds is None or not real or ask.method not in (None, "exact"):
+        return sized(ask, whole)
+    kept = min(KEPT, SHARE * seconds)
+    found = sized(replace(ask, budget=ask.budget.less(kept)), whole)
+    if found.status != "limit":
+        return found
+    alone = replace(sizing.exact_text(train), methods={"smooth": rated_sizing.searched(train)})
+    ideal = sized(Ask(None, Budget(kept), watch=ask.watch), alone)
+    if found.value is None and ideal.status != "infeasible":
+        found = replace(found, bound=ideal.bound)
+    parts = (replace(ideal, name="sizing"),)
+    return reconcile(replace(found, parts=parts), ideal, ask.gap)

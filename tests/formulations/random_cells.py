@@ -1,0 +1,47 @@
+"""Random cells of designs of a stage, and random designs within them."""
+
+import numpy as np
+
+from gearopt.formulations.strength.cells import Cells
+
+
+def random_cells(rng, count, toothing, width):
+    """Return cells of up to twice a width in logarithms, about sizes of a large range."""
+
+    def between(low, high):
+        middle = rng.uniform(np.log(low), np.log(high), count)
+        half = width * rng.uniform(0.0, 1.0, count)
+        return np.exp(np.stack([middle - half, middle + half]))
+
+    z, u, d = between(18.0, 60.0), np.maximum(between(1.2, 6.0), 1.0), between(15.0, 300.0)
+    slim, torque = between(0.2, 1.2), between(1e4, 1e7)
+    power = np.exp(rng.uniform(np.log(1e5), np.log(1e9), count))
+    module = d * toothing.cosine / z[::-1]
+    speed = power / torque[::-1]
+    return Cells(toothing, z, u, d, d * u, module, slim * d, slim, torque, speed)
+
+
+def designs_within(rng, cells):
+    """Return a pair, torque and speed in each cell, some of them at its ends."""
+    count = cells.teeth.shape[1]
+
+    def some(ends):
+        part = rng.uniform(0.0, 1.0, count)
+        kind = rng.integers(0, 5, count)
+        part = np.where(kind == 0, 0.0, np.where(kind == 1, 1.0, part))
+        return ends[0] ** (1.0 - part) * ends[1] ** part
+
+    z, u, d = some(cells.teeth), some(cells.ratio), some(cells.diameter)
+    slim, torque = some(cells.slim), some(cells.torque)
+    module = d * cells.toothing.cosine / z
+    pair = cells.toothing.of_diameter(module, z, d, u, slim * d)
+    return pair, torque, cells.torque[0] * cells.speed[1] / torque
+
+
+def needed_by(standard, pair, torque, speed, safety):
+    """Return d1^2 b/(T (1 + 1/u)) of contact and d1^2 b/T of bending that the exact rating asks."""
+    made = np.array(standard.safeties(pair, torque, speed), float)
+    size = pair.pinion.reference_diameter**2 * pair.face_width / torque
+    bent = safety[0] / np.minimum(made[0], made[1])
+    pressed = (safety[1] / np.minimum(made[2], made[3])) ** 2
+    return pressed * size / (1.0 + 1.0 / pair.ratio), bent * size
