@@ -108,3 +108,33 @@ def widened_rows():
         saved = 100.0 * (1.0 - best.value / widened(name, "agma"))
         found.append(f"| {name} | {cells[0]} | {cells[1]} | {saved:.1f} |")
     return found
+
+
+def why_iso_is_larger():
+    """Say what quality of material and accuracy make of two stages by ISO 6336, widths tied."""
+    first = sized(2, "iso6336")
+    factors = {(f["symbol"], f["stage"]): f["pinion"] for f in first.design["rating"]["factors"]}
+    face, transverse = (
+        [f"{factors[name, k]:.2f}" for k in (1, 2)] for name in ("K_Hbeta", "K_Halpha")
+    )
+    quality, grade = {"iso_quality": "MQ"}, {"accuracy_grade": 5}
+    steel, finer, both = map(_iso_with, (quality, grade, quality | grade))
+    return (
+        f"Of the two stages with tied widths ({first.value / 1e6:.0f} dm³ by ISO 6336, "
+        f"{sized(2, 'agma').value / 1e6:.1f} by AGMA) quality MQ in place of ML leaves "
+        f"{steel / 1e6:.1f} dm³, accuracy grade 5 in place of 8 leaves {finer / 1e6:.1f}, "
+        f"both leave {both / 1e6:.1f}: grade 8 without modification costs K_Hβ of "
+        f"{' and '.join(face)} and K_Hα of {' and '.join(transverse)}."
+    )
+
+
+def _iso_with(better):
+    """Return the volume [mm3] with another quality of material, another accuracy grade."""
+    tables = [{"face_width_over_diameter": b} | HARDNESS for b in paper.PROPORTIONS[2]]
+    asked = file("iso6336", tables)
+    if quality := better.get("iso_quality"):
+        asked["gears"] = asked["gears"] | {"iso_quality": quality}
+    if grade := better.get("accuracy_grade"):
+        made = asked["rating"]["iso6336"] | {"accuracy_grade": grade}
+        asked["rating"] = asked["rating"] | {"iso6336": made}
+    return gearopt.solve(asked).value

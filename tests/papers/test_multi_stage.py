@@ -56,6 +56,11 @@ def test_every_row_of_drives_sized_by_their_rating_is_recomputed(rows):
     assert "|---|\n" + "\n".join(rows()) + "\n" in PAGE
 
 
+@pytest.mark.slow
+def test_why_iso_takes_more_is_recomputed():
+    assert by_rating.why_iso_is_larger() in PLAIN
+
+
 def test_every_sentence_with_numbers_is_recomputed():
     missing = [
         sentence
