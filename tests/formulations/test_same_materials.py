@@ -95,7 +95,7 @@ def test_a_stop_leaves_a_bound_of_all_materials():
     assert result.status == "optimal" and result.bound <= best <= result.value
 
 
-@pytest.mark.parametrize("method", ["annealing", "nsga2"])
+@pytest.mark.parametrize("method", ["annealing", pytest.param("nsga2", marks=pytest.mark.slow)])
 def test_samplers_take_the_same_materials(method):
     train = replace(small(), same_option=True)
     result, outcome = run(teeth.problem(train), method, Budget(evaluations=150), 0)
