@@ -84,6 +84,7 @@ GROUPS = {  # heading: {file: what it shows, in a line}
     },
     "Impossible requests": {
         "elevator_small_wheels": "Wheels are too small for the load: what to write instead.",
+        "elevator_by_agma_small_wheels": "Too small for safe gears: the conflict, and remedies.",
         "three_stage_small_wheels": "Modules too large for the wheels allowed.",
         "thousand_in_two_stages": "1000:1 does not go into two stages of at most 10.",
     },

@@ -7,10 +7,16 @@ from pathlib import Path
 
 import pytest
 
+from gearopt.optimise.clock import Clock
+from gearopt.optimise.result import Budget
+from gearopt.scenes.drive.explaining.rated_conflict import conflict
+from gearopt.scenes.drive.explaining.tried import Case
+from gearopt.scenes.reading.load import load
+
 PROBLEMS = sorted((Path(__file__).parents[1] / "problems").glob("*.toml"))
 KEYS = {  # of [x-expected], as the tests below read them
     "drive": {
-        *("status", "objective", "sizing", "least_factor", "gap"),
+        *("status", "objective", "sizing", "least_factor", "gap", "conflict"),
         *("process_one", "process_two"),
         *(
             "safe",
@@ -42,6 +48,7 @@ LONG = (
     "thousand_in_two_stages",
     "three_stage_small_wheels",
     "elevator_small_wheels",
+    "elevator_by_agma_small_wheels",
     "servo_gimbal_quick",
     "servo_gimbal_impossible",
 )
@@ -154,6 +161,9 @@ def test_expected_value(path, solved):
         assert ways["conflict"] and ways["remedies"][0]["kind"] == "least"
         proven = [way["bound"] for way in ways["remedies"] if way["bound"] is not None]
         assert any(b == pytest.approx(expected["least_factor"], rel=1e-5) for b in proven)
+    if "conflict" in expected:
+        case = Case(load(path).scene, Clock(Budget(seconds=300.0), None), seconds=60.0)
+        assert list(conflict(case).names) == expected["conflict"]
     assert result.file == str(path) and len(result.file_sha256) == 64
 
 
@@ -209,6 +219,7 @@ def test_every_file_says_what_it_is_held_to(path):
     assert content["kind"] in HELD and content["title"] and content["source"]
     assert expected.keys() <= KEYS[content["kind"]]
     needed = {"infeasible": "least_factor", "evaluated": "governs"}
+    needed |= {"infeasible": "conflict"} if "rating" in content else {}
     assert needed.get(expected["status"], "objective") in expected
 
 

@@ -111,7 +111,8 @@ def solve(
 
 def _advice(result: Result, file: Path) -> list[str]:
     """Return what to run for remedies of an impossible file, where the answer has none."""
-    if result.status != "infeasible" or result.report.get("ways_out"):
+    ways = result.report.get("ways_out") or {}
+    if result.status != "infeasible" or ways and not ways.get("untried"):
         return []
     return [f"\nWhat to write instead: gearopt explain {file}"]
 

@@ -47,7 +47,14 @@ def _impossible(result: Result) -> str:
     names = ways.get("conflict") or result.proof.get("conflict") or ()
     if not names:
         return (result.message or "no design meets all limits").rstrip(".")
+    unsure = [name for name in ways.get("unsure") or () if name in names]
+    names = [name for name in names if name not in unsure]
     together = series_of(grouped(names, has_stages(result)))
+    if unsure:
+        kept = series_of(grouped(unsure, has_stages(result)))
+        return (
+            f"{together} cannot be met together with {kept} (perhaps not all of these are needed)"
+        )
     if len(names) == 1 or result.proof.get("each_alone"):
         return f"{together} cannot be met, even if all other limits are dropped"
     if ways.get("any_resolves"):

@@ -144,7 +144,7 @@ def _sides(resolved: Sequence[float | None]) -> str:
 def remedies(result: Result, measures: Measures) -> Section | None:
     """Say what to write instead of an impossible request; None elsewhere."""
     found: Mapping[str, Any] = result.report.get("ways_out") or {}
-    if not found:
+    if not found or found.get("untried"):
         return None
     rows, sure = remedy_words(found)
     if not rows and not found["conflict"] and found["message"] in result.message:

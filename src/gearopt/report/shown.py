@@ -182,7 +182,7 @@ def compared_fragment(found: Comparison) -> str:
 def answered(found: Explanation) -> Result:
     """Return the result of an impossible request with the conflict and the remedies in it."""
     ways: dict[str, Any] = {"conflict": found.conflict, "message": found.message}
-    ways |= {"any_resolves": found.any_resolves}
+    ways |= {"any_resolves": found.any_resolves, "unsure": found.unsure}
     ways |= {"remedies": [asdict(remedy) for remedy in found.remedies]}
     reasons = found.conflict or found.remedies or found.message != found.result.message
     if found.result.status != "infeasible" or not reasons:  # the proof says why, once

@@ -92,9 +92,8 @@ class RatedTable(Table):
 
     def _place(self, other: Table) -> Index | None:
         """Return where the pairs of another table are in this one; None where one is not."""
-        alike = self.stage.toothing == other.stage.toothing and (
-            not self._by_module or np.array_equal(self.modules, other.modules)
-        )
+        alike = not self._by_module or np.array_equal(self.modules, other.modules)
+        alike = alike and self.stage.toothing == other.stage.toothing
         if not alike or len(other.ratio) > len(self.ratio):
             return None
         own, asked = (t.z1 * TEETH + t.z2 for t in (self, other))
@@ -189,6 +188,8 @@ class RatedTable(Table):
                 cost[near], self._found(ends, pair[near], most, close=close).cost
             )
             rough[near] = False
+            if np.all(most == np.inf):  # without a train it counts alone which groups have a pair
+                rough &= ~np.isin(group, group[~rough & np.isfinite(cost)])
         return cost
 
     def grid(self, cells: Cells, tick: Callable[[], None]) -> Array:

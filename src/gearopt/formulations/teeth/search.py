@@ -241,11 +241,14 @@ def _promising(
 ) -> Places:
     """Return the nodes and pairs of the least rough bounds, a few for each node."""
     node, pair = places
-    torque = (train.torque * np.exp(chunk.log_ratio))[node]
-    rough = chunk.cost[node] + stage.rough_cost(torque, pair)
+    ahead = np.zeros(len(pair))
     if chunk.level < len(rest.to_go) - 1:
         cell = rest.cell(chunk.log_ratio[node] + stage.log_ratio[pair])
-        rough = rough + rest.to_go[chunk.level + 1][cell]
+        ahead = rest.to_go[chunk.level + 1][cell]
+        goes = np.isfinite(ahead)
+        node, pair, ahead = node[goes], pair[goes], ahead[goes]
+    torque = (train.torque * np.exp(chunk.log_ratio))[node]
+    rough = chunk.cost[node] + stage.rough_cost(torque, pair) + ahead
     best = np.sort(np.argsort(rough, kind="stable")[: few * len(chunk.cost)])
     return node[best], pair[best]
 
@@ -336,9 +339,14 @@ def within(train: Train, teeth: Teeth) -> bool:
     )
 
 
-def possible(train: Train, seconds: float, watch: Watch | None) -> bool | None:
-    """Return whether any train meets all limits; None where that is not known in time."""
-    found = any_train(train, seconds, watch)
+def possible(
+    train: Train, seconds: float, watch: Watch | None, shelf: list[RatedTable] | None = None
+) -> bool | None:
+    """Return whether any train meets all limits; None where that is not known in time.
+
+    shelf: as of `search`.
+    """
+    found = any_train(train, seconds, watch, shelf)
     return found if found is None else bool(found)
 
 

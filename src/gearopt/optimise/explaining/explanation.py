@@ -63,13 +63,15 @@ class Remedies:
     """What is reported of an impossible request.
 
     conflict: names of limits in conflict; message: what is missing. any_resolves: whether it was
-    found that any one of these limits, dropped alone, makes a design possible.
+    found that any one of these limits, dropped alone, makes a design possible. unsure: limits of
+    the conflict of which it is not known whether it takes them.
     """
 
     conflict: tuple[str, ...] = ()
     remedies: tuple[Remedy, ...] = ()
     message: str = ""
     any_resolves: bool = False
+    unsure: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -109,6 +111,7 @@ class Explanation:
     seconds: float = 0.0
     basis: str = ""
     any_resolves: bool = False
+    unsure: tuple[str, ...] = ()
 
     @property
     def prices(self) -> dict[str, Any]:

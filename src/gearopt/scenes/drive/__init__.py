@@ -138,10 +138,13 @@ def _chosen(scene: Scene, result: Result) -> Scene:
 
 def _with_ways_out(scene: Scene, ask: Ask, result: Result) -> Result:
     """Return an impossible result with its remedies, those of a box where it has them already."""
-    if result.status != "infeasible" or "ways_out" in result.report or scene.by_ratings:
-        return result  # the remedies of ratings take long: `explain` seeks them
-    ways = asdict(_ways_out(scene, _others(ask, result.seconds)))
-    return replace(result, report=result.report | {"ways_out": ways})
+    if result.status != "infeasible" or "ways_out" in result.report:
+        return result
+    from gearopt.scenes.drive.explaining.rated import conflict_soon
+
+    clock, rated = _others(ask, result.seconds), scene.by_ratings
+    ways = conflict_soon(bare(scene), clock) if rated else asdict(_ways_out(scene, clock))
+    return replace(result, report=result.report | {"ways_out": ways}) if ways else result
 
 
 def _ways_out(scene: Scene, clock: Clock) -> Remedies:

@@ -79,7 +79,9 @@ def of_report(result: Result) -> Explanation:
     )
     names, words = tuple(ways.get("conflict", ())), ways.get("message", "")
     sure = ways.get("any_resolves", False)
-    return Explanation(result, names, found, (), (), words, result.seconds, any_resolves=sure)
+    doubts = tuple(ways.get("unsure", ()))
+    told = (result, names, found, (), (), words, result.seconds)
+    return Explanation(*told, any_resolves=sure, unsure=doubts)
 
 
 def explained(

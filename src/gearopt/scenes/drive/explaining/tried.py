@@ -1,11 +1,12 @@
 """Whether an impossible drive is possible with some numbers moved; the smallest moves that do."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from gearopt.formulations import sizing
 from gearopt.formulations.gear_train import Train
 from gearopt.formulations.teeth.progress import Teeth
+from gearopt.formulations.teeth.rated import RatedTable
 from gearopt.formulations.teeth.search import any_train, possible
 from gearopt.formulations.teeth.wide import narrowed
 from gearopt.optimise.clock import Clock
@@ -15,19 +16,23 @@ from gearopt.optimise.solve import solve_within
 from gearopt.scenes.drive.explaining.movable import Movable, Moves, applied, less, steps
 from gearopt.scenes.drive.scene import Scene
 
-SECONDS = 2.0  # at most, for one question whether whole teeth are possible
+SECONDS = 2.0  # at most, for one question
+WHOLE, FEW = 0.7, 0.1  # parts of them, for a rated drive and for one of few pinions
 
 
 @dataclass(frozen=True)
 class Case:
     """A drive that is impossible, and the time to look for remedies.
 
-    open: questions that no answer was found to in time; a list, to be added to.
+    open: questions that no answer was found to in time; a list, to be added to. seconds: at most,
+    for one question whether whole teeth are possible; shelf: tables that questions share.
     """
 
     scene: Scene
     clock: Clock
     open: list[Train] = field(default_factory=list)
+    seconds: float = SECONDS
+    shelf: list[RatedTable] = field(default_factory=list)
 
     def possible(self, train: Train) -> bool | None:
         """Return whether a drive has a design, with whole teeth where the file asks for them.
@@ -39,19 +44,36 @@ class Case:
         if self.scene.teeth is None:
             word = solve_within(self.clock, sizing.problem(train)).status
             return True if word in THERE else (False if word == "infeasible" else None)
-        few, seconds = narrowed(train), self.clock.within(SECONDS)
-        if few != train and possible(few, seconds, self.clock.watch):
+        if train.rated:
+            return self._rated(train)
+        few, seconds = narrowed(train), self.clock.within(self.seconds)
+        if few != train and possible(few, seconds, self.clock.watch, self.shelf):
             return True
-        found = possible(train, seconds, self.clock.watch)
+        found = possible(train, seconds, self.clock.watch, self.shelf)
         if found is None:
             self.open.append(train)
         return found
+
+    def _rated(self, train: Train) -> bool | None:
+        """Return whether a drive that ratings limit has a design.
+
+        Where that is not known soon, drives of one pinion and of the widest faces are tried, which
+        are searched quickly.
+        """
+        few = _widest(train), _of_pinion(train, 0), _of_pinion(train, -1)
+        for one, part in ((train, WHOLE), *((one, FEW) for one in few)):
+            seconds = part * self.clock.within(self.seconds)
+            found = possible(one, seconds, self.clock.watch, self.shelf)
+            if found or one is train and found is False:
+                return found
+        self.open.append(train)
+        return None
 
     def teeth(self, train: Train) -> Teeth | None:
         """Return the teeth of some train of a drive, (): there is none; None: not known."""
         if self.clock.over:
             return None
-        return any_train(train, self.clock.within(SECONDS), self.clock.watch)
+        return any_train(train, self.clock.within(self.seconds), self.clock.watch, self.shelf)
 
     def status(self, scene: Scene) -> str:
         """Return what is known of a changed drive: feasible, infeasible or undecided.
@@ -72,6 +94,26 @@ class Case:
         if edited is None:
             return None
         return self.possible((less(self.scene, edited, back) if back else edited.scene).train())
+
+
+def _of_pinion(train: Train, end: int) -> Train:
+    """Return the drive with the fewest (0) or most (-1) teeth of every pinion."""
+    stages = []
+    for stage in train.stages:
+        teeth = stage.pinion_teeth[end] or stage.pinion_teeth[0]
+        stages.append(replace(stage, pinion_teeth=(teeth, teeth)))
+    return replace(train, stages=tuple(stages))
+
+
+def _widest(train: Train) -> Train:
+    """Return the drive with the widest faces alone, where they are free."""
+    stages = []
+    for stage in train.stages:
+        face = stage.face_width
+        free = face.step is None and face.fixed is None and face.plain
+        widest = replace(face, low=face.high) if free and face.high else face
+        stages.append(replace(stage, face_width=widest))
+    return replace(train, stages=tuple(stages))
 
 
 def smallest_step(case: Case, number: Movable, most: float) -> tuple[float, bool] | None:

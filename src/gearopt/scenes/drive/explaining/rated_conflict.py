@@ -1,0 +1,143 @@
+"""Which requirements of an impossible drive that ratings limit exclude each other.
+
+A family of requirements without which, everything else kept, a design exists is in every conflict.
+Of the others a deletion filter keeps what is needed: what can be dropped with the rest still proven
+impossible, by a search of all teeth, modules and materials, is dropped for good.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+from gearopt.formulations.gear_train import Train
+from gearopt.formulations.strength.rated import Option
+from gearopt.scenes.drive.explaining.requirements import (
+    BENDING,
+    CONTACT,
+    Dropped,
+    requirements,
+    without,
+)
+from gearopt.scenes.drive.explaining.tried import Case
+from gearopt.scenes.drive.rating.limits import STANDARDS
+
+RATED_BY = {"agma": "rating_by_AGMA", "iso6336": "rating_by_ISO_6336"}
+
+
+@dataclass(frozen=True)
+class Conflict:
+    """Names of requirements that are proven to exclude each other.
+
+    unsure: those of them of which it is not known whether they are needed.
+    any_resolves: any one of them, dropped alone, makes a design possible.
+    """
+
+    names: tuple[str, ...] = ()
+    unsure: tuple[str, ...] = ()
+    any_resolves: bool = False
+
+    @property
+    def proven(self) -> bool:
+        """Return whether there is a conflict of which nothing can be left out."""
+        return bool(self.names) and not self.unsure
+
+
+@dataclass
+class _Filter:
+    """Questions and their answers; it has state because the filter fills it.
+
+    dropped: for good; needed: known to be in the conflict.
+    """
+
+    case: Case
+    answers: dict[Dropped, bool | None] = field(default_factory=dict)
+    dropped: Dropped = frozenset()
+    needed: set[str] = field(default_factory=set)
+
+    def possible(self, dropped: Sequence[str] | Dropped) -> bool | None:
+        """Return whether a design exists without what is dropped; None: not known."""
+        key = frozenset(dropped)
+        if key not in self.answers:
+            self.answers[key] = possible(self.case, without(self.case.scene, key))
+        return self.answers[key]
+
+    def drop(self, families: Sequence[Sequence[str]]) -> None:
+        """Drop what can be dropped of some families, in halves where all together cannot be."""
+        if not families:
+            return
+        names = [name for family in families for name in family]
+        found = self.possible(self.dropped | {*names})
+        if found is False:
+            self.dropped |= {*names}
+        elif len(families) > 1:
+            middle = len(families) // 2
+            self.drop(families[middle:])
+            self.drop(families[:middle])
+        elif found:
+            self.needed |= {*names}
+
+    def split(self, family: Sequence[str]) -> None:
+        """Drop single stages of a family that is in the conflict."""
+        self.needed -= {*family}
+        for name in family:
+            found = self.possible([name]) or self.possible(self.dropped | {name})
+            if found:
+                self.needed.add(name)
+            elif found is False:
+                self.dropped |= {name}
+
+
+def possible(case: Case, trains: Sequence[Train]) -> bool | None:
+    """Return whether one of some drives has a design; None where that is not known in time."""
+    answers = [case.possible(train) for train in trains]
+    return True if True in answers else (None if None in answers else False)
+
+
+def conflict(case: Case) -> Conflict:
+    """Return requirements of an impossible drive that are in conflict with all others dropped.
+
+    None where everything can be dropped, nothing is known to be needed, or teeth are real-valued.
+    """
+    if case.scene.teeth is None:
+        return Conflict()
+    found, groups = _Filter(case), requirements(case.scene)
+    families = [family for group in groups for family in group]
+    for family in groups[0]:
+        if found.possible(family):
+            found.needed |= {*family}
+    for group in groups[::-1]:
+        found.drop([family for family in group if not found.needed & {*family}])
+    for family in families:
+        if len(family) > 1 and not found.dropped & {*family}:
+            found.split(family)
+    every = [name for family in families for name in family if name not in found.dropped]
+    if not found.needed:
+        return Conflict()
+    unsure = tuple(name for name in every if name not in found.needed)
+    alone = len(every) > 1 and all(found.answers.get(frozenset([name])) for name in every)
+    return Conflict((*every, *_standard(case, found.dropped, every)), unsure, alone)
+
+
+def _standard(case: Case, dropped: Dropped, names: Sequence[str]) -> list[str]:
+    """Return by which one of two standards alone the drive is impossible, if by one.
+
+    Nothing where the conflict has no safety factor.
+    """
+    asked = case.scene.rating
+    assert asked
+    if len(STANDARDS[asked.standard]) < 2 or not {BENDING, CONTACT} & {*names}:
+        return []
+    trains = without(case.scene, dropped)
+    for k, name in enumerate(RATED_BY.values()):
+        if possible(case, [_rated_by(train, k) for train in trains]) is False:
+            return [name]
+    return []
+
+
+def _rated_by(train: Train, standard: int) -> Train:
+    """Return the drive that one of two standards (0 or 1) rates alone."""
+
+    def alone(option: Option) -> Option:
+        return replace(option, standards=option.standards[standard : standard + 1])
+
+    stages = [replace(s, options=tuple(map(alone, s.options))) for s in train.stages]
+    return replace(train, stages=tuple(stages))

@@ -1,0 +1,265 @@
+"""What a drive that ratings limit is asked for, by name, and the drive without some of it.
+
+What is dropped: safety factors, limits of sizes and ratios, hunting teeth and equal materials as if
+they were not there; modules within the widest series of [teeth]; b/d1 from WIDTHS to three; numbers
+of pinion teeth a quarter fewer and more; the ratio within 5 %; a life to a ten-thousandth;
+materials to all of the file, and grades to the best there are.
+"""
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+from fractions import Fraction
+from typing import Any
+
+from gearopt.formulations.gear_train import FaceWidth, Stage, Train
+from gearopt.physics.iso6336.materials import QUALITIES
+from gearopt.scenes.drive.drive_tables import StageTable
+from gearopt.scenes.drive.scene import Scene
+from gearopt.scenes.explaining.numbers import allowed, times
+from gearopt.scenes.reading.modules import SERIES, family
+
+Dropped = frozenset[str]
+
+BENDING, CONTACT = "minimum_bending_safety", "minimum_contact_safety"
+ORDER = (  # the likeliest to be in conflict first; those of the second group are dear to drop
+    (
+        *(CONTACT, BENDING, "face_width", "face_width_over_diameter", "face_width_high"),
+        *("module", "module_high", "wheel_diameter", "stage_ratio_high", "least_face_width"),
+        *("face_width_over_module_high", "life", "material_grade", "materials", "coprime"),
+        *("same_materials", "wheel_teeth", "wheel_teeth_high"),
+    ),
+    (
+        *("pinion_teeth", "pinion_teeth_high", "pinion_teeth_low", "ratio_tolerance"),
+        *("stage_ratio_low", "wheel_teeth_low", "module_low", "modules", "face_width_low"),
+        *("face_width_over_module_low",),
+    ),
+)
+WIDTHS = Fraction(1, 20), Fraction(3)  # b/d1 of free widths
+TOLERANCE = Fraction(1, 20)
+TEETH = Fraction(5, 4)  # by which numbers of pinion teeth are dropped
+LIFE = 1e-4  # times that asked for
+NO_SAFETY = 1e-6
+BEST_GRADES = (3, 2)
+ALWAYS = 1e9  # times a load limit: none
+
+
+def requirements(scene: Scene) -> tuple[tuple[tuple[str, ...], ...], ...]:
+    """Return the names of what is asked for: the groups of ORDER, families, names of their stages.
+
+    A name of a stage is `wheel_diameter[2]`; where the number of stages is open, it is of all.
+    """
+    train = scene.held(scene.counts[0]).train()
+    found: dict[str, list[str]] = {name: [name] for name in _of_all(scene, train)}
+    for k, stage in enumerate(train.stages):
+        own = scene.stage[k] if scene.stage else StageTable()
+        for name in _of_stage(scene, own, stage):
+            found.setdefault(name, []).append(f"{name}[{k + 1}]")
+    if scene.several:
+        found = {name: [name] for name in found}
+    groups = (scene.law.names + ORDER[0], ORDER[1])
+    return tuple(tuple(tuple(found[n]) for n in group if n in found) for group in groups)
+
+
+def _of_all(scene: Scene, train: Train) -> Iterator[str]:
+    """Yield what the drive as a whole is asked for."""
+    asked, teeth = scene.rating, scene.teeth
+    assert asked and teeth
+    if set(teeth.sizes) != {m.exact[0] for m in SERIES[family(teeth.modules)[-1]]}:
+        yield "modules"
+    yield from ["coprime"] * teeth.coprime
+    yield from ["same_materials"] * scene.gears.same_materials
+    yield "ratio_tolerance"
+    if _with_materials(scene) != scene:
+        yield "materials"
+    if _with_grades(scene) != scene:
+        yield "material_grade"
+    yield "life"
+    yield BENDING
+    yield CONTACT
+
+
+def _of_stage(scene: Scene, own: StageTable, stage: Stage) -> Iterator[str]:
+    """Yield what a stage is asked for."""
+    yield from scene.law.names
+    ends = own.size or scene.limits.module
+    if ends and own.size and ends[0] == ends[1]:
+        yield "module"
+    elif ends:
+        yield from ("module_low", "module_high")
+    yield from _ends("pinion_teeth", *stage.pinion_teeth)
+    yield from _ends("wheel_teeth", stage.wheel_teeth[0], stage.wheel_teeth[1], least=1)
+    yield from _ends("stage_ratio", *stage.ratio, least=1)
+    face = stage.face_width
+    if face.fixed is not None:
+        yield "face_width"
+    elif face.tied:
+        yield "face_width_over_diameter"
+    else:
+        yield from ("face_width_low", "face_width_high")
+    low, high = face.over_module
+    yield from ["face_width_over_module_low"] * (low is not None)
+    yield from ["face_width_over_module_high"] * (high is not None)
+    yield from ["least_face_width"] * bool(face.least)
+    yield from ["wheel_diameter"] * (stage.wheel_diameter is not None)
+
+
+def _ends(name: str, low: Any, high: Any, least: int = 0) -> list[str]:
+    if low == high:
+        return [name]
+    return [f"{name}_low"] * (low > least) + [f"{name}_high"] * (high is not None)
+
+
+def without(scene: Scene, dropped: Dropped) -> tuple[Train, ...]:
+    """Return the drives of every number of stages without what is dropped."""
+    for name, changed in (("materials", _with_materials), ("material_grade", _with_grades)):
+        scene = changed(scene) if name in dropped else scene
+    scene = _short_lived(scene) if "life" in dropped else scene
+    if "same_materials" in dropped:
+        gears = scene.gears.model_copy(update={"same_materials": False})
+        scene = scene.model_copy(update={"gears": gears})
+    return tuple(_without(scene.held(count), dropped) for count in scene.counts)
+
+
+def _without(scene: Scene, dropped: Dropped) -> Train:
+    train = scene.train()
+    stages = []
+    for k, stage in enumerate(train.stages):
+        here = {name for name in dropped if name.endswith(f"[{k + 1}]") or "[" not in name}
+        own = scene.stage[k] if scene.stage else StageTable()
+        stages.append(_stage(scene, own, stage, {name.split("[")[0] for name in here}))
+    safety = tuple(
+        NO_SAFETY if name in dropped else asked
+        for name, asked in zip((BENDING, CONTACT), train.safety, strict=True)
+    )
+    tolerance = train.tolerance
+    if "ratio_tolerance" in dropped:
+        tolerance = max(TOLERANCE, 2 * tolerance if tolerance < Fraction(1, 4) else tolerance)
+    return replace(
+        train,
+        stages=tuple(stages),
+        safety=(safety[0], safety[1]),
+        tolerance=tolerance,
+        coprime=train.coprime and "coprime" not in dropped,
+    )
+
+
+def _stage(scene: Scene, own: StageTable, stage: Stage, dropped: set[str]) -> Stage:
+    """Return a stage without what is dropped there."""
+    low, high = stage.pinion_teeth
+    assert high is not None
+    few, many = ({"pinion_teeth", f"pinion_teeth_{end}"} & dropped for end in ("low", "high"))
+    pinion = math.floor(low / TEETH) if few else low, math.ceil(high * TEETH) if many else high
+    wheel, ratio = (_open(name, dropped, span) for name, span in _spans(stage))
+    law = zip(scene.law.names, stage.allowable, strict=True)
+    return replace(
+        stage,
+        allowable=tuple(limit * ALWAYS if name in dropped else limit for name, limit in law),
+        face_width=_face(stage.face_width, dropped),
+        modules=_modules(scene, own, stage, dropped),
+        pinion_teeth=pinion,
+        wheel_teeth=wheel,
+        ratio=ratio,
+        wheel_diameter=None if "wheel_diameter" in dropped else stage.wheel_diameter,
+    )
+
+
+def _spans(stage: Stage) -> tuple[tuple[str, Any], ...]:
+    return ("wheel_teeth", stage.wheel_teeth), ("stage_ratio", stage.ratio)
+
+
+def _open(name: str, dropped: set[str], span: tuple[Any, Any]) -> tuple[Any, Any]:
+    """Return a range from 1 on, without the ends that are dropped."""
+    gone = [{name, f"{name}_{end}"} & dropped for end in ("low", "high")]
+    return (type(span[0])(1) if gone[0] else span[0]), None if gone[1] else span[1]
+
+
+def _modules(
+    scene: Scene, own: StageTable, stage: Stage, dropped: set[str]
+) -> tuple[Fraction, ...]:
+    """Return the modules of a stage, of a wider series where that of the file is dropped."""
+    assert scene.teeth
+    ends = own.size or scene.limits.module
+    fixed = ends and own.size and ends[0] == ends[1]
+    if not {"module", "module_low", "module_high", "modules"} & dropped:
+        return stage.modules
+    series = set(scene.teeth.sizes)
+    if "modules" in dropped:
+        series |= {m.exact[0] for m in SERIES[family(scene.teeth.modules)[-1]]}
+    if fixed and "module" not in dropped:
+        return stage.modules
+    low, high = (None, None) if fixed or not ends else (end.exact[0] for end in ends)
+    low = None if "module_low" in dropped else low
+    high = None if "module_high" in dropped else high
+    return tuple(m for m in sorted(series) if (low or m) <= m <= (high or m))
+
+
+def _face(face: FaceWidth, dropped: set[str]) -> FaceWidth:
+    """Return the choice of face widths without what is dropped."""
+    over, least = face.over_module, face.least
+    for k, end in enumerate(("low", "high")):
+        if f"face_width_over_module_{end}" in dropped:
+            over = (None, over[1]) if k == 0 else (over[0], None)
+    least = Fraction(0) if "least_face_width" in dropped else least
+    low, high, fixed = face.low, face.high, face.fixed
+    if {"face_width", "face_width_over_diameter"} & dropped:
+        low, high, fixed = Fraction(0), None, None
+    low = Fraction(0) if "face_width_low" in dropped else low
+    high = None if "face_width_high" in dropped else high
+    if fixed is None:
+        low = low or min(WIDTHS[0], high or WIDTHS[0])
+        high = high or max(WIDTHS[1], low)
+    return replace(face, low=low, high=high, fixed=fixed, over_module=over, least=least)
+
+
+def _with_materials(scene: Scene) -> Scene:
+    """Return the drive whose gears choose of all materials of the file."""
+    every = tuple(one.name for one in scene.material)
+    return _of_gears(scene, lambda table: {"materials": every} if table.materials else {})
+
+
+def _with_grades(scene: Scene) -> Scene:
+    """Return the drive of the best metallurgical grades that its file may have."""
+    asked = scene.rating
+    assert asked
+    for grade in BEST_GRADES if asked.by_agma else (None,):
+        best: dict[str, Any] = {} if grade is None else {"grade": grade}
+        best |= {"iso_quality": QUALITIES[-1]} if asked.by_iso6336 else {}
+        other = scene.model_copy(
+            update={
+                "gears": scene.gears.model_copy(update=best),
+                "material": tuple(one.model_copy(update=best) for one in scene.material),
+            }
+        )
+        other = _of_gears(other, lambda table, best=best: _own(table, best))
+        if allowed(other):
+            return other
+    return scene
+
+
+def _own(table: Any, best: dict[str, Any]) -> dict[str, Any]:
+    """Return what a gear's own table has better."""
+    return {key: value for key, value in best.items() if getattr(table, key) is not None}
+
+
+def _of_gears(scene: Scene, update: Any) -> Scene:
+    """Return the drive with changes of every table of gears: update(table)."""
+
+    def made(table: Any) -> Any:
+        new = update(table)
+        return table.model_copy(update=new) if new else table
+
+    stages = tuple(
+        stage.model_copy(update={"pinion": made(stage.pinion), "wheel": made(stage.wheel)})
+        for stage in scene.stage
+    )
+    return scene.model_copy(update={"gears": made(scene.gears), "stage": stages})
+
+
+def _short_lived(scene: Scene) -> Scene:
+    """Return the drive that need not last."""
+    asked = scene.rating
+    assert asked
+    key = "life" if asked.life is not None else "input_revolutions"
+    rating = asked.model_copy(update={key: times(getattr(asked, key), LIFE)})
+    return scene.model_copy(update={"rating": rating})

@@ -1,0 +1,92 @@
+"""Impossible rated drives: what excludes each other, and what would make them possible."""
+
+from dataclasses import replace
+
+import pytest
+from impossible_drives import has_a_design, some_file
+
+import gearopt
+from gearopt.optimise.clock import Clock
+from gearopt.optimise.result import Budget
+from gearopt.report.deciding import lead
+from gearopt.scenes.drive.explaining.rated_conflict import conflict
+from gearopt.scenes.drive.explaining.requirements import requirements, without
+from gearopt.scenes.drive.explaining.tried import Case
+from gearopt.scenes.reading.load import load
+
+
+def found_of(scene):
+    return conflict(Case(scene, Clock(Budget(seconds=100.0), None), seconds=20.0))
+
+
+def is_a_conflict(scene, found):
+    """Members alone are impossible, and any one removed is possible: by every candidate."""
+    every = {name for group in requirements(scene) for family in group for name in family}
+    rest = frozenset(every - {*found.names})
+    assert found.names and not found.unsure
+    assert not any(map(has_a_design, without(scene, rest)))
+    for name in {*found.names} & every:
+        assert any(map(has_a_design, without(scene, rest | {name}))), (found.names, name)
+
+
+@pytest.mark.parametrize("seed", [1, pytest.param(0, marks=pytest.mark.slow)])
+def test_a_conflict_is_one_by_every_candidate(seed):
+    scene = load(some_file(seed)).scene
+    is_a_conflict(scene, found_of(scene))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(12))
+def test_conflicts_of_random_drives_are_ones_and_every_remedy_works(seed):
+    for more in range(20):
+        tables = some_file(1000 * (seed + 1) + 8 * more + seed % 8)
+        if gearopt.solve(tables).status == "infeasible":
+            break
+    scene = load(tables).scene
+    is_a_conflict(scene, found_of(scene))
+    for remedy in gearopt.explain(tables).remedies:
+        assert gearopt.solve(tables, remedy.edits).value is not None, remedy
+
+
+NARROW = some_file(1) | {
+    "limits": {"pinion_teeth": [20, 22], "module": ["1 mm", "2 mm"]},
+    "gears": {"treatment": "carburised"},
+    "duty": {"power": "9 kW", "input_speed": "1000 rpm", "ratio": 3},
+}
+
+
+@pytest.mark.slow
+def test_remedies_are_of_use_and_verified():
+    tables = NARROW | {"stage": [{"face_width_over_diameter": 0.3}]}
+    found = gearopt.explain(tables)
+    assert found.result.status == "infeasible" and found.conflict and not found.unsure
+    assert "face_width_over_diameter[1]" in found.conflict and "module_high[1]" in found.conflict
+    ways = {change.key: change for remedy in found.remedies for change in remedy.changes}
+    assert "stage[1].face_width_over_diameter" in ways and "limits.module[2]" in ways
+    assert all(change.factor <= 3.1 for change in ways.values())
+    assert [r.kind for r in found.remedies].count("least") == 1
+    for remedy in found.remedies:
+        assert gearopt.solve(tables, remedy.edits).value is not None
+
+
+def test_a_conflict_is_said_first_and_what_may_not_matter_last():
+    tables = NARROW | {"stage": [{"face_width_over_diameter": 0.3}]}
+    result = gearopt.solve(tables)
+    ways = result.report["ways_out"]
+    assert ways["untried"] and "minimum contact safety" in lead(result)
+    assert lead(result).endswith("cannot be met together")
+    doubtful = ways | {"unsure": ["face_width_over_diameter[1]"]}
+    words = lead(replace(result, report={"ways_out": doubtful}))
+    assert words.endswith(
+        "face width over diameter of stage 1 (perhaps not all of these are needed)"
+    )
+
+
+def test_a_stage_like_the_last_is_a_remedy_that_a_file_can_hold():
+    limits = {"pinion_teeth": [20, 22], "stage_ratio": [1, 4]}
+    duty = {"power": "1 kW", "input_speed": "1000 rpm", "ratio": 6, "ratio_tolerance": "2 %"}
+    tables = NARROW | {"limits": limits, "duty": duty}
+    found = gearopt.explain(tables)
+    assert found.conflict == ("stage_ratio_high[1]",)
+    (more,) = (r for r in found.remedies if r.what == "stages")
+    assert gearopt.solve(tables, more.edits).value is not None
