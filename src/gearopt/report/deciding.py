@@ -51,15 +51,22 @@ def _impossible(result: Result) -> str:
     names = [name for name in names if name not in unsure]
     together = series_of(grouped(names, has_stages(result)))
     if unsure:
-        kept = series_of(grouped(unsure, has_stages(result)))
-        return (
-            f"{together} cannot be met together with {kept} (perhaps not all of these are needed)"
-        )
+        with_ = f"cannot be met together with {_some(unsure, has_stages(result))}"
+        return f"{together} {with_} (perhaps not all of these are needed)"
     if len(names) == 1 or result.proof.get("each_alone"):
         return f"{together} cannot be met, even if all other limits are dropped"
     if ways.get("any_resolves"):
         return f"{together} are in conflict; dropping any one of them makes a design possible"
     return f"{together} cannot be met together"
+
+
+def _some(names: Sequence[str], staged: bool) -> str:
+    """Return limits in words, the first families of them where there are many."""
+    families = list(dict.fromkeys(map(_stem, names)))
+    shown = families if len(families) <= NAMED + 1 else families[:NAMED]
+    words = grouped([name for name in names if _stem(name) in shown], staged)
+    more = len(families) - len(shown)
+    return series_of([*words, f"{more} other requirements"] if more else words)
 
 
 def _over(limits: Mapping[str, float], staged: bool) -> list[str]:
