@@ -33,6 +33,7 @@ SOON, SECONDS = 3.0, 8.0  # at most, for the conflict beside an answer, and besi
 FIRST, QUESTION = 12.0, 2.0  # s, at most, for the numbers that help, and for one question
 MOST = (3.0, 2.0, 1.4, 1.2, 1.1)  # factors of a remedy of use; the first that the file may have
 ROUGH = 1.02  # ratio of a refused to an allowed factor up to which every number is known first
+PART = 0.4  # at most, of the time that is left, for each of these
 SHARP = 4.0  # s, at most, to make them sharper
 STEPPED = (*GRADES, "accuracy_grade", "grade")  # moved by ones
 
@@ -77,7 +78,9 @@ def remedies(scene: Scene, clock: Clock, status: Callable[[Scene], str]) -> Reme
     """
 
     def within(seconds: float) -> Clock:
-        return Clock(Budget(clock.within(seconds)), clock.watch)
+        left = clock.left.seconds
+        own = seconds if left is None else min(seconds, PART * left)
+        return Clock(Budget(own), clock.watch)
 
     known = conflict(Case(scene, within(SECONDS)))
     case = Case(scene, clock, seconds=QUESTION)
