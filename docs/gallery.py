@@ -121,6 +121,7 @@ GROUPS = {  # heading: {file: what it shows, in a line}
         "servo_gimbal_fine": "Only trains that fit the box are chosen.",
         "servo_gimbal_stiff": "Stiff enough for 200 Hz; real-valued sizes beside whole teeth.",
         "servo_gimbal_tolerances": "Given gears: the same error for 29 % less cost.",
+        "servo_gimbal_trade_off": "What less error costs: `gearopt pareto`, cost against error.",
         "servo_gimbal_costs": "The same with costs that grow differently.",
         "servo_gimbal_grades": "The same by choice among nine grades.",
         "servo_gimbal_impossible": "No train is so accurate: what to write instead.",

@@ -18,7 +18,7 @@ from gearopt.optimise.form import form
 from gearopt.optimise.pareto.found import Found, Point, Skipped, Step, sifted
 from gearopt.optimise.pareto.posed import MOST, Built, Limit, kept, scale, valued
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.result import Budget, Watch
+from gearopt.optimise.result import Budget, Result, Watch
 from gearopt.optimise.solve import GAP
 from gearopt.optimise.solve import run as solve_raw
 from gearopt.optimise.terms import Array
@@ -46,6 +46,7 @@ class _Run:
     steps: list[Step] = field(default_factory=list)
     widths: dict[str, float] = field(default_factory=dict)
     logarithmic: bool = True
+    none: Result | None = None
 
 
 def front(
@@ -180,6 +181,7 @@ def _solved(run: _Run, name: str, most: Caps, near: Array | None = None) -> Poin
     run.clock.tell()
     if result.value is None or outcome.x is None:
         run.skipped.append(Skipped(most, result.status == "infeasible"))
+        run.none = run.none or result
         return None
     values = valued(result, run.names)
     slopes = None
@@ -202,6 +204,8 @@ def _found(run: _Run) -> Found:
     all_proven = bool(points) and all(p.proven for p in points)
     two = len(run.names) == 2
     error = _error(points, run.logarithmic) if all_proven and two and len(points) > 1 else None
+    proof = {"method": "epsilon constraints", "sentence": _sentence(points)}
+    none = None if points else run.none
     return Found(
         points,
         error=error,
@@ -210,8 +214,9 @@ def _found(run: _Run) -> Found:
         infeasible=not points and bool(run.skipped) and run.skipped[0].proven,
         finished=not run.clock.stopped,
         steps=tuple(run.steps),
-        proof={"method": "epsilon constraints", "sentence": _sentence(points)},
+        proof=proof if none is None else none.proof,
         evaluations=run.clock.evaluations,
+        message="" if none is None else none.message,
     )
 
 

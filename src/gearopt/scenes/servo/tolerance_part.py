@@ -120,13 +120,19 @@ def problem(scene: Scene, gears: Pairs) -> Problem:
     """
     table = scene.tolerances
     assert table is not None
-    if (none := _spent(scene, gears)) is not None:
+    if (none := spent(scene, gears)) is not None:
         t = Var("t", "mm", 0.0, 1.0, 0.5, len(scene.sources))
         methods = {"exact": lambda problem, budget, seed, watch: none}
         return Problem("tolerance", (t,), (), lambda x, p: Terms({"cost": x.t[0]}), methods=methods)
-    own = stack(scene, gears)
     if table.grades is None:
-        return continuous(own)
+        return continuous(stack(scene, gears))
+    return graded.problem(grades(scene, gears))
+
+
+def grades(scene: Scene, gears: Pairs) -> graded.Choice:
+    """Return the grades that a file lets tolerances have."""
+    table, own = scene.tolerances, stack(scene, gears)
+    assert table is not None and table.grades is not None
     steps = [2.0 ** (0.5 * j) for j in range(-table.grades, table.grades + 1)]
     parts = tuple(
         graded.Graded(
@@ -138,10 +144,10 @@ def problem(scene: Scene, gears: Pairs) -> Problem:
     )
     (budget,) = own.budgets
     rule: Any = budget.rule
-    return graded.problem(graded.Choice(parts, budget.error, rule))
+    return graded.Choice(parts, budget.error, rule)
 
 
-def _spent(scene: Scene, gears: Pairs) -> Outcome | None:
+def spent(scene: Scene, gears: Pairs) -> Outcome | None:
     """Return the claim that what is held leaves nothing to the tolerances; None where it does."""
     rows = []
     for k, mesh in enumerate(scene.mesh, 1):
@@ -180,11 +186,10 @@ def tolerance_part(scene: Scene, gears: Pairs, ask: Ask) -> Found:
         proof = {k: v for k, v in result.proof.items() if k != "conflict"}
         return Found((replace(result, proof=proof),), report=ServoReport(figures=figures))
     t, own, lost = np.array(outcome.x, float), stack(scene, gears), start(scene, gears)
-    if table.grades is not None:
-        t = old(scene) * 2.0 ** (0.5 * (t - 1.0 - table.grades))
+    t = widths(scene, t)
     allotted = _allocation(own, t, result, scene, lost)
     draws = drawn(own, t, lost + own.budgets[0].error, seed=table.seed, start=lost)
-    design = ServoDesign(tolerances=_rows(scene, own, t), allocation=allotted, drawn=draws)
+    design = ServoDesign(tolerances=rows(scene, own, t), allocation=allotted, drawn=draws)
     figures |= by_every_rule(scene, gears, t, "new")
     figures |= {
         "new_quantile_deg": draws.quantile_deg,
@@ -206,7 +211,17 @@ def named(limit: str, parts: Sequence[Component | Source]) -> str:
     return f"{stem} of {parts[int(index) - 1].name}" if index else limit
 
 
-def _rows(scene: Scene, own: Stack, t: Array) -> tuple[ToleranceRow, ...]:
+def widths(scene: Scene, x: Array) -> Array:
+    """Return the tolerances [mm] of a point of `problem`: what it holds, or what its grades are."""
+    table = scene.tolerances
+    assert table is not None
+    if table.grades is None:
+        return x
+    return old(scene) * 2.0 ** (0.5 * (x - 1.0 - table.grades))
+
+
+def rows(scene: Scene, own: Stack, t: Array) -> tuple[ToleranceRow, ...]:
+    """Return tolerances t [mm] beside the old ones, with their ends and costs."""
     table = scene.tolerances
     assert table is not None
     ends = 2.0 ** (0.5 * table.grades) if table.grades is not None else None

@@ -1,5 +1,6 @@
 """Stacks and grades as linear and second-order cones: a second way, with bounds of other data."""
 
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,17 @@ def continuous(stack: Stack) -> Conic:
 
     ValueError for an exponent of zero, whose logarithm is no such cone.
     """
+    return several(stack, {}, ("cost",))
+
+
+def several(
+    stack: Stack, errors: Mapping[str, str], names: Sequence[str], lost: float = 0.0
+) -> Conic:
+    """Minimise cost and errors of budgets, whose limits hold, too; exponents as of `continuous`.
+
+    errors: label of the budget of every error, by its name. names: "cost" or of errors, those that
+    are minimised. lost: what is added to every error.
+    """
     if not stack.exponent.all():
         raise ValueError("conic takes exponents above zero only")
     size = len(stack.components)
@@ -27,12 +39,15 @@ def continuous(stack: Stack) -> Conic:
         for k in sorted(set(stack.exponent)):
             own = np.flatnonzero(stack.exponent == k)
             cost = cost + cp.sum(cp.multiply(stack.cost[own], cp.power(t[own], -k)))
-        limits = {}
+        limits, goals, called = {}, {"cost": cost}, {label: n for n, label in errors.items()}
         for budget, linear, square in zip(stack.budgets, stack.linear, stack.square, strict=True):
-            limits[budget.label] = linear @ t
+            used = linear @ t
             if square.any():
-                limits[budget.label] += cp.norm(cp.multiply(square, t))
-        return Terms({"cost": cost}, limits)
+                used += cp.norm(cp.multiply(square, t))
+            limits[budget.label] = used
+            if budget.label in called:
+                goals[called[budget.label]] = lost + budget.error * used
+        return Terms({name: goals[name] for name in names}, limits)
 
     low, high = (tuple(map(float, ends)) for ends in (stack.least, stack.most))
     guess = tuple(np.maximum(low, high)) if stack.used(stack.most).max() <= 1.0 else high

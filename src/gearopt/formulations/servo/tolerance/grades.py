@@ -11,7 +11,7 @@ one 0-1 variable a grade.
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from numbers import Rational
 from typing import Any, Literal, get_args
@@ -21,6 +21,7 @@ import numpy as np
 from gearopt.errors import SolveError
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.dual import ROUNDING
+from gearopt.optimise.pareto.posed import caps
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.terms import Array, Terms, Var, each
@@ -82,8 +83,12 @@ class Choice:
         return [[number(cost) for _, cost in c.grades] for c in self.components]
 
 
-def problem(choice: Choice) -> Problem:
-    """Pose the choice: variables are grades, counted from 1; `exact` proves the cheapest."""
+def problem(choice: Choice, names: Sequence[str] = ("cost",), lost: float = 0.0) -> Problem:
+    """Pose the choice: variables are grades, counted from 1; `exact` proves the cheapest.
+
+    names: "cost" and "error", both for `exact` to prove the whole front. lost: what is added to the
+    error.
+    """
     weights, costs = (
         [np.array(row, float) for row in rows] for rows in (choice.weights, choice.costs)
     )
@@ -96,11 +101,13 @@ def problem(choice: Choice) -> Problem:
         )
         used = weight if choice.rule == "worst_case" else weight**0.5
         t = tuple(row[k] for row, k in zip(widths, at, strict=True))
-        return Terms({"cost": cost}, {choice.rule: used}, report={"tolerance_mm": t})
+        goals = {"cost": cost, "error": lost + float(choice.error) * used}
+        kept = {name: goals[name] for name in names}
+        return Terms(kept, {choice.rule: used}, report={"tolerance_mm": t})
 
     most = tuple(float(len(row)) for row in costs)
     grade = Var("grade", "", 1.0, most, 1.0, len(costs), integer=True)
-    methods = {"exact": _exact(choice)}
+    methods = {"exact": _exact(choice) if len(names) == 1 else _front(choice)}
     return Problem("grades", (grade,), (), evaluate, methods=methods, vectorised=True)
 
 
@@ -114,34 +121,64 @@ def _exact(choice: Choice) -> Any:
     def exact(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
         """Run a dynamic program over all picks; the seed changes nothing."""
         clock = Clock(budget, watch)
-        rows, limit, arithmetic = _numbers(choice)
-        found = picked(*rows, limit, clock)
-        if not found.finished:
-            finest = np.array([min(range(len(w)), key=w.__getitem__) for w in choice.weights])
-            words = "stopped by the budget: the finest grades"
-            return Outcome(finest + 1.0, False, evaluations=clock.evaluations, message=words)
-        proof = {
-            "method": "exhausted",
-            "arithmetic": arithmetic,
-            "pairs": clock.evaluations,
-            "pairs_kept": found.largest,
-        }
-        if found.positions is None:
-            return _impossible(choice, proof, limit)
-        proof["sentence"] = (
-            f"Proof: a dynamic program over all picks, {clock.evaluations:,} pairs of weight and "
-            "cost looked at."
-        )
-        costs = [float(row[k]) for row, k in zip(choice.costs, found.positions, strict=True)]
+        found, none = _picked(choice, clock)
+        if none is not None:
+            return none
+        position = found.positions(np.array([found.count - 1]))[0]
+        costs = [float(row[k]) for row, k in zip(choice.costs, position, strict=True)]
         rounding = ROUNDING * sum(map(abs, costs))
         return Outcome(
-            np.array(found.positions) + 1.0,
+            position + 1.0,
             bound=sum(costs) - (0.0 if choice.rational else rounding),
-            proof=proof,
+            proof=_proof(choice, found, clock),
             evaluations=clock.evaluations,
         )
 
     return exact
+
+
+def _front(choice: Choice) -> Any:
+    def exact(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
+        """Return all picks that none beats: what the dynamic program keeps after the last one."""
+        clock = Clock(budget, watch)
+        found, none = _picked(choice, clock)
+        if none is not None:
+            return replace(none, x=None)
+        points, known = found.positions(np.arange(found.count)) + 1.0, caps(problem)
+        values, names = problem.batch(points).F, problem.rows.objectives
+        limits = np.array([known.get(name, np.inf) for name in names])
+        inside = points[(values <= limits * (1.0 + TIE)).all(axis=1)]
+        proof, looked = _proof(choice, found, clock), clock.evaluations
+        if len(inside):
+            return Outcome(inside[0], others=tuple(inside[1:]), proof=proof, evaluations=looked)
+        text = "no grades within the budget keep to the largest values of interest"
+        return Outcome(None, infeasible=True, proof=proof, evaluations=looked, message=text)
+
+    return exact
+
+
+def _picked(choice: Choice, clock: Clock) -> tuple["Picked", Outcome | None]:
+    """Return what the program keeps; and the outcome where that is nothing, or it was stopped."""
+    rows, limit, _ = _numbers(choice)
+    found = picked(*rows, limit, clock)
+    if not found.finished:
+        finest = np.array([min(range(len(w)), key=w.__getitem__) for w in choice.weights])
+        words = "stopped by the budget: the finest grades"
+        return found, Outcome(finest + 1.0, False, evaluations=clock.evaluations, message=words)
+    if not found.count:
+        return found, _impossible(choice, _proof(choice, found, clock), limit)
+    return found, None
+
+
+def _proof(choice: Choice, found: "Picked", clock: Clock) -> dict[str, Any]:
+    return {
+        "method": "exhausted",
+        "arithmetic": _numbers(choice)[2],
+        "pairs": clock.evaluations,
+        "pairs_kept": found.largest,
+        "sentence": f"Proof: a dynamic program over all picks, {clock.evaluations:,} pairs of "
+        "weight and cost looked at.",
+    }
 
 
 def _numbers(choice: Choice) -> tuple[tuple[list[Any], list[Any]], Any, str]:
@@ -168,14 +205,25 @@ def _impossible(choice: Choice, proof: dict[str, Any], limit: Any) -> Outcome:
 
 @dataclass(frozen=True)
 class Picked:
-    """Positions picked, from 0; None where nothing is within the weight, or it was stopped.
+    """The pairs of weight and cost that no other is better than in both, by rising weight.
 
-    finished: all was examined. largest: number of pairs kept at once.
+    count: how many; none where nothing is within the weight, or it was stopped. trail: of every
+    component the pair before it, and the position picked, of each pair kept. finished: all was
+    examined. largest: number of pairs kept at once.
     """
 
-    positions: tuple[int, ...] | None
+    count: int
     finished: bool
     largest: int
+    trail: Sequence[tuple[Any, Any]] = ()
+
+    def positions(self, places: Any) -> Any:
+        """Return the positions picked, from 0, (places, components), of some of the pairs."""
+        chosen = []
+        for before, position in reversed(self.trail):
+            chosen.append(position[places])
+            places = before[places]
+        return np.column_stack(chosen[::-1])
 
 
 def picked(
@@ -184,7 +232,7 @@ def picked(
     limit: Any,
     clock: Clock,
 ) -> Picked:
-    """Return the minimum sum of costs with weights <= limit; of equals, the minimum weight.
+    """Return the sums of costs and weights <= limit that no other beats; the last is the cheapest.
 
     weights, costs: one array per component, of doubles or whole numbers; the clock counts pairs and
     is asked before each component.
@@ -195,21 +243,17 @@ def picked(
     trail, largest = [], 1
     for own_weight, own_cost, rest in zip(weights, costs, later, strict=True):
         if not clock.tell():
-            return Picked(None, False, largest)
+            return Picked(0, False, largest)
         weight = np.add.outer(weight, own_weight).ravel()
         cost = np.add.outer(cost, own_cost).ravel()
         clock.evaluations += len(weight)
         order = _best(weight, cost, np.flatnonzero(weight + rest <= limit))
         if not len(order):
-            return Picked(None, True, largest)
+            return Picked(0, True, largest)
         trail.append(np.divmod(order, len(own_weight)))
         weight, cost = weight[order], cost[order]
         largest = max(largest, len(order))
-    place, chosen = len(cost) - 1, []  # costs fall as weights rise: the last is the cheapest
-    for before, position in reversed(trail):
-        chosen.append(int(position[place]))
-        place = int(before[place])
-    return Picked(tuple(reversed(chosen)), True, largest)
+    return Picked(len(cost), True, largest, trail)
 
 
 def _best(weight: Array, cost: Array, inside: Any) -> Any:
