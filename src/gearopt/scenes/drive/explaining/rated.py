@@ -29,12 +29,12 @@ from gearopt.scenes.explaining.numbers import (
 from gearopt.scenes.reading.toml import toml_text
 
 DUTY = ("duty", "power")
-SOON, SECONDS = 3.0, 8.0  # at most, for the conflict beside an answer, and beside remedies
-FIRST, QUESTION = 12.0, 2.0  # s, at most, for the numbers that help, and for one question
+SOON, SECONDS = 3.0, 6.0  # at most, for the conflict beside an answer, and beside remedies
+FIRST, QUESTION = 7.0, 2.0  # s, at most, for the numbers that help, and for one question
 MOST = (3.0, 2.0, 1.4, 1.2, 1.1)  # factors of a remedy of use; the first that the file may have
 ROUGH = 1.02  # ratio of a refused to an allowed factor up to which every number is known first
 PART = 0.4  # at most, of the time that is left, for each of these
-SHARP = 4.0  # s, at most, to make them sharper
+SHARP, LAST = 2.0, 4.0  # s, at most, to make them sharper, and for choices
 STEPPED = (*GRADES, "accuracy_grade", "grade")  # moved by ones
 
 Works = Callable[[Scene], bool | None]
@@ -91,15 +91,21 @@ def remedies(scene: Scene, clock: Clock, status: Callable[[Scene], str]) -> Reme
             return True if word in THERE else (False if word == "infeasible" else None)
         return possible(case, [other.held(count).train() for count in other.counts])
 
-    found = _known(scene, known, within(FIRST), works)
+    first = within(FIRST)
+    found = _known(scene, known, first, works)
     if not found:
+        first = clock
         found = _known(scene, Conflict(), clock, works, BEYOND[::-1])
+    untried = first.over
     sharp = within(SHARP)
     own = [_remedy(scene, one, sharp, works) for one in found]
     own.sort(key=lambda r: (r.kind == "less", r.factor))
-    own = _with_least(own, case, clock)
-    chosen = () if clock.over else tuple(choices(scene, known, works))
+    own = _with_least(own, not (untried or clock.over or case.open))
+    last = within(LAST)
+    chosen = tuple(choices(scene, known, lambda other: None if last.over else works(other)))
+    untried = untried or last.over
     late = "the budget ended before all remedies were tried" if clock.over else ""
+    late = late or ("not all remedies were tried in their time" if untried else "")
     words = "; ".join(filter(None, (_doubts(known), late)))
     return Remedies(known.names, (*own, *chosen), words, known.any_resolves, known.unsure)
 
@@ -108,11 +114,14 @@ def _doubts(known: Conflict) -> str:
     return "" if known.names else "which requirements exclude each other was not found in its time"
 
 
-def _with_least(found: list[Remedy], case: Case, clock: Clock) -> list[Remedy]:
-    """Return remedies of which the smallest that keeps the duty is said to be so."""
+def _with_least(found: list[Remedy], tried: bool) -> list[Remedy]:
+    """Return remedies of which the smallest that keeps the duty is said to be so.
+
+    tried: whether all others were, with an answer.
+    """
     if not found or found[0].kind == "less":
         return found
-    sure = not (clock.over or case.open) and found[0].verified["with_less"] == "infeasible"
+    sure = tried and found[0].verified["with_less"] == "infeasible"
     verified = {**found[0].verified, "others": "need more" if sure else "not all known"}
     return [replace(found[0], kind="least", verified=verified), *found[1:]]
 
