@@ -181,6 +181,14 @@ def test_three_stages_close_at_a_measured_pace():
     assert found.bound > 0.98 * found.value
 
 
+def test_a_gap_that_is_asked_for_is_reached():
+    train = rated_drive(4, [FREE], options=by("agma"))
+    method = rated_sizing.searched(train)
+    posed = replace(sizing.exact_text(train), methods={"smooth": method})
+    found = solve(posed, budget=Budget(20.0, gap=0.05), gap=0.05)
+    assert found.status == "optimal" and 0.0 < found.gap <= 0.05
+
+
 def test_a_search_keeps_to_its_seconds():
     train = rated_drive(20, [FREE, FREE], options=by("agma", "iso"))
     clock = Clock(Budget(0.2))

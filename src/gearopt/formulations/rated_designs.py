@@ -31,7 +31,7 @@ from gearopt.physics.gears import GearPair
 TRIED = 48  # diameters
 ABOVE = 0.02  # at least, of a box, within which a diameter is looked for
 SAME = 1e-10  # of ratios
-FIRST_STEP, LAST_STEP = 0.1, 1e-5  # of logarithms, by which a design is moved
+FIRST_STEP, LAST_STEP = 0.18, 1e-5  # of logarithms, by which a design is moved
 SHORTER = 0.4  # of a step that gained little
 LITTLE = 1e-4  # of the value
 
