@@ -10,6 +10,10 @@ import gearopt
 
 TREATMENTS = ("through-hardened", "nitrided", "nitralloy", "carburised", "induction, roots")
 
+WEBBED = {"rim_over_module": 2.5, "web_over_face_width": 0.3}
+IN_MM = {"rim_thickness": "4 mm", "web_thickness": "9 mm", "bore": "12 mm", "hub_over_bore": 1.4}
+BODIES = ({}, {}, {"rim_thickness": "3 mm"}, WEBBED, IN_MM, {"bore": "30 mm"})
+
 
 def gear(chance):
     made = {"profile_shift": round(chance.uniform(-0.5, 0.8), 3)}
@@ -20,7 +24,7 @@ def gear(chance):
     made["treatment"] = chance.choice(TREATMENTS)
     made["hardness"], made["grade"] = f"{chance.choice([150, 300, 450])} HB", chance.choice([1, 2])
     made["reversed_load"], made["contacts"] = chance.random() < 0.2, chance.choice([1, 5])
-    return made | ({"rim_thickness": "3 mm"} if chance.random() < 0.3 else {})
+    return made | chance.choice(BODIES)
 
 
 def file(chance):

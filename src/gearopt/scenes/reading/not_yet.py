@@ -83,7 +83,7 @@ NEAREST: dict[str, dict[str, str]] = {  # kind -> names -> what stands nearest
         "gears.helix_angle",
         _but_keys(
             BODY
-        ): "Nearest: rim_thickness, web_thickness, bore and hub_over_bore, in [gears], "
+        ): "Nearest: rim_over_module, web_over_face_width, bore and hub_over_bore, in [gears], "
         "[stage.pinion] or [stage.wheel]; holes in webs are not counted",
         BEARINGS: "Nearest: bearing_diameters and bearing_widths of [layout]",
         "backlash flank_clearance": "Nearest: thickness_allowance of a gear and centre_distance "
