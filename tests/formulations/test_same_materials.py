@@ -117,13 +117,23 @@ def random_drive(seed):
     train = some_rated_drive(seed, stages=2)
     several = rng.permutation(len(TREATMENTS))[: int(rng.integers(2, 4))]
     steels = [TREATMENTS[k] for k in several]
-    options = [made_of(float(rng.integers(6, 11)), *steels) for _ in train.stages]
-    aims = ["cost", "gear_volume", "mass", "sum_of_centre_distances"]
-    return replace(with_options(train, *options), objective=aims[seed % 4])
+    made = [made_of(float(rng.integers(6, 11)), *steels) for _ in train.stages]
+    worth = {"carburised": 2.5, "nitrided": 2.0, "through-hardened": 1.0}  # about their strength
+    spread = 10.0 ** rng.uniform(-0.1, 0.1, (len(steels), 2))
+    prices = [
+        tuple(worth[s.kind] * float(f) for s, f in zip(pair, own, strict=True))
+        for pair, own in zip(steels, spread, strict=True)
+    ]
+    options = [
+        tuple(replace(option, prices=own) for option, own in zip(stage, prices, strict=True))
+        for stage in made
+    ]
+    aims = ["cost", "cost", "gear_volume", "cost", "mass"]
+    return replace(with_options(train, *options), objective=aims[seed % 5])
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", [0, 1, 2, 4, 6, 7, 8, 9, 10, 12, 13, 14, 15, 16, 17])
+@pytest.mark.parametrize("seed", [23, 36, 51, 1, 2, 4, 7])  # three cost more than free
 def test_random_drives_of_the_same_materials_as_by_brute_force(seed):
     train = random_drive(seed)
     free, alike = (search(t, 1, Budget()) for t in (train, replace(train, same_option=True)))
