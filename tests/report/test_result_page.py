@@ -317,20 +317,6 @@ def test_progress_tells_best_bound_and_gap():
         assert len(figures(page(cases.three_stage(report={"progress": none}), ""))) == 1
 
 
-def test_a_front_is_drawn_with_lines_of_equal_area():
-    sizes = [(412.0, 873.0), (430.0, 700.0), (500.0, 640.0)]
-    front = [{"width_mm": w, "height_mm": h, "volume_mm3": w * h * 200.0} for w, h in sizes]
-    plot = figures(page(cases.three_stage(report={"front": front}), "x"))[1]
-    *lines, boxes, best = plot["data"]
-    assert list(zip(boxes["x"], boxes["y"], strict=True)) == sizes
-    assert (best["x"], best["y"]) == ([430.0], [700.0])
-    areas = [np.multiply(line["x"], line["y"]) for line in lines]
-    assert len(areas) == 6 and all(np.ptp(area) < 1e-9 * area[0] for area in areas)
-    assert len({round(area[0]) for area in areas}) == 6
-    one = figures(page(cases.three_stage(report={"front": front[:1]}), "x"))
-    assert len(one) == 2
-
-
 EVERY = LAYOUTS | PACKINGS
 
 

@@ -27,19 +27,23 @@ GRADIENT = ("ipopt", "multistart")  # methods that take the smooth text
 CLOSE = 1e-9  # what a polished layout may violate
 
 
-def problem(box: Gearbox, method: str | None = None) -> Problem:
+def problem(
+    box: Gearbox, method: str | None = None, orders: tuple[Arrangement, ...] = ()
+) -> Problem:
     """Return the layout problem of a gearbox in the form for a method (by default `exact`).
 
+    orders: arrangements to choose from; by default those of the box.
     Variables are those of `layout_text.direct` or `.smooth`. SolveError where the arrangement of
     slabs is open and the method cannot choose one.
     """
-    orders = arrangements(box)
+    orders = orders or arrangements(box)
     if method in (*GRADIENT, "sa-paper") and len(orders) > 1:
         known = "; ".join(str([list(s) for s in _counted(a)]) for a in orders[:4])
         raise SolveError(f"{method} takes one order of slabs, and {len(orders)} compete: {known}")
     if method in GRADIENT:
         return smooth(box, orders[0])
-    return direct(box, orders, _methods(box, orders), front=method == "nsga2")
+    goals = (box.objective, "width", "height") if method == "nsga2" else ()
+    return direct(box, orders, _methods(box, orders), tuple(dict.fromkeys(goals)))
 
 
 def ready(watch: Watch | None = None) -> bool:

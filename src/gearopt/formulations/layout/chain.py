@@ -84,7 +84,7 @@ def _objective(box: Gearbox, length: Array) -> tuple[tuple[float, float], Array]
     """Return the exponents of width and height, and the factor of each arrangement."""
     if box.objective == "longest_side":
         return (1.0, 1.0), np.maximum(length, box.width or 0.0)
-    wide = 1.0 if box.objective in ("box_volume", "plan_area", "face_area") else 0.0
+    wide = 1.0 if box.objective in ("box_volume", "plan_area", "face_area", "width") else 0.0
     high = 1.0 if box.objective in ("box_volume", "face_area", "height") else 0.0
     factor = length if box.objective in ("box_volume", "plan_area") else np.ones_like(length)
     if box.width is not None and wide:

@@ -19,6 +19,7 @@ OBJECTIVES = {  # name -> unit; width along y, height along z, length along x
     "height": "mm",
     "longest_side": "mm",
 }
+SIDES = {"width": "mm", "height": "mm", "length": "mm"}  # that may be limited
 
 
 @dataclass(frozen=True)
@@ -88,8 +89,10 @@ class Gearbox:
             raise ValueError("a gearbox of N stages has N + 1 shafts")
         if self.width is not None and self.width > self.largest[0]:
             raise ValueError("the given width is above the largest width")
-        if self.objective not in OBJECTIVES:
+        if self.objective not in OBJECTIVES and self.objective != "width":
             raise ValueError(f"no objective {self.objective!r}; {', '.join(OBJECTIVES)}")
+        if self.objective == "width" and self.width is not None:
+            raise ValueError("the width is given: it cannot be minimised")
         if self.slabs is not None:
             if sorted(s for slab in self.slabs for s in slab) != list(range(len(self.pairs))):
                 raise ValueError("slabs must name every stage once")
@@ -107,4 +110,4 @@ class Gearbox:
     @property
     def unit(self) -> str:
         """Unit of the objective."""
-        return OBJECTIVES[self.objective]
+        return (OBJECTIVES | SIDES)[self.objective]

@@ -24,11 +24,11 @@ def direct(
     box: Gearbox,
     orders: tuple[Arrangement, ...],
     methods: Mapping[str, Callable[..., Any]],
-    front: bool = False,
+    goals: tuple[str, ...] = (),
 ) -> Problem:
     """Return the problem in angles [rad] of the links and, if several, the arrangement of slabs.
 
-    front: width and height are objectives too, beside the first.
+    goals: objectives and sides that are minimised instead of the objective of the box.
     """
     shape = chain(box, orders)
     links = len(box.pairs)
@@ -41,8 +41,10 @@ def direct(
         y, z = positions(shape, each(x.angle))
         width, height = _side(shape, y), _side(shape, z)
         objective = {box.objective: value(shape, m, width, height)}
-        if front:
-            objective |= {"width": width, "height": height}
+        if goals:
+            wide = width if box.width is None else box.width + 0.0 * width
+            sizes = wide, height, _of(shape.length, m) + 0.0 * width
+            objective = {name: measured(name, *sizes) for name in goals}
         limits, equal = _rows(shape, m, (y, z))
         return Terms(
             objective, limits | largest(shape, width, height, _of(shape.length, m)), equal=equal
@@ -120,6 +122,19 @@ def value(shape: Chain, m: Any, width: Any, height: Any) -> Any:
     if shape.longest:
         return np.maximum(np.maximum(width, height), factor)
     return factor * width ** float(shape.power[0]) * height ** float(shape.power[1])
+
+
+def measured(name: str, width: Any, height: Any, length: Any) -> Any:
+    """Return an objective or a side of a box of these sides [mm]."""
+    if name == "longest_side":
+        return np.maximum(np.maximum(width, height), length)
+    sides = {"width": width, "height": height, "length": length}
+    factors = {
+        "box_volume": ("width", "height", "length"),
+        "plan_area": ("width", "length"),
+        "face_area": ("width", "height"),
+    }
+    return math.prod(sides[side] for side in factors.get(name, (name,)))
 
 
 def _of(values: Array, m: Any) -> Any:

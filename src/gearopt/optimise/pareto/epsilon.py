@@ -6,12 +6,13 @@ tangents are below the front and chords above it, which gives its error.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import product
 
 import numpy as np
 
+from gearopt.errors import SolveError
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.form import form
@@ -31,6 +32,18 @@ CORNER = 0.1  # part of a chord next to its ends where no new limit is put
 Caps = dict[str, float]  # largest values of objectives that the user states
 
 
+@dataclass(frozen=True)
+class Limiting:
+    """How a kind of problem poses one objective under limits on others, for a method of its own.
+
+    problem(name, most): minimise one objective, others at most as large; variables are those of the
+    whole problem. names: objectives that may be limited.
+    """
+
+    problem: Callable[[str, Caps], Problem]
+    names: tuple[str, ...]
+
+
 @dataclass
 class _Run:
     """The problems of a front, the points found so far, and the clock; it has state to fill."""
@@ -40,6 +53,7 @@ class _Run:
     caps: Caps
     clock: Clock
     method: str | None
+    limiting: "Limiting | None" = None
     built: Built = field(default_factory=dict)
     points: list[Point] = field(default_factory=list)
     skipped: list[Skipped] = field(default_factory=list)
@@ -57,14 +71,17 @@ def front(
     budget: Budget,
     watch: Watch | None = None,
     method: str | None = None,
+    limiting: Limiting | None = None,
 ) -> Found:
-    """Return points of the front of a continuous problem.
+    """Return points of the front of a continuous problem, or of one that `limiting` poses.
 
     names: its objectives, of which the first is minimised under limits on the others. caps: largest
     values that are of interest. points: how many are sought; of three objectives a grid of about so
     many. method: that solves each, by default the usual one.
     """
-    own = _Run(problem, tuple(names), caps, Clock(budget, watch), method)
+    if limiting is not None:
+        _limitable(limiting, (*names[1:], *caps))
+    own = _Run(problem, tuple(names), caps, Clock(budget, watch), method, limiting)
     ends = _ends(own)
     if ends is None:
         return _found(own)
@@ -75,6 +92,16 @@ def front(
     return _found(own)
 
 
+def _limitable(limiting: Limiting, names: Sequence[str]) -> None:
+    """Raise SolveError for objectives that cannot be limited."""
+    for name in names:
+        if name not in limiting.names:
+            raise SolveError(
+                f"{name} cannot be limited, only {', '.join(limiting.names)}: name it first, "
+                "without a largest value"
+            )
+
+
 def _ends(run: _Run) -> list[Point] | None:
     """Return the point of the least value of every objective; None where there is none."""
     ends = []
@@ -82,7 +109,8 @@ def _ends(run: _Run) -> list[Point] | None:
         first = _solved(run, name, dict(run.caps))
         if first is None:
             return None
-        for other in (*run.names[:k], *run.names[k + 1 :]):
+        fixed = run.limiting is None or name in run.limiting.names
+        for other in (*run.names[:k], *run.names[k + 1 :]) if fixed else ():
             at = first.values[k]
             held = {name: float(at + SLACK * abs(at))}
             again = _solved(run, other, _least(run.caps, held), first.x)
@@ -90,7 +118,7 @@ def _ends(run: _Run) -> list[Point] | None:
         ends.append(first)
     values = np.array([p.values for p in ends])
     run.widths = dict(zip(run.names, np.ptp(values, axis=0).tolist(), strict=True))
-    if len(ends) == 2:  # their tangents are the sides of the box of the front
+    if len(ends) == 2 and run.limiting is None:  # tangents are the sides of the front's box
         slopes = np.zeros(1), np.full(1, -math.inf)
         ends = [replace(p, slopes=s) for p, s in zip(ends, slopes, strict=True)]
     for p in ends:
@@ -171,10 +199,7 @@ def _solved(run: _Run, name: str, most: Caps, near: Array | None = None) -> Poin
     """Return the point of least value of one objective under limits on others; None: none found."""
     if run.clock.stopped:
         return None
-    limits = {n: Limit.of(value, run.widths.get(n, 0.0)) for n, value in most.items()}
-    at = kept(run.built, run.problem, (name,), limits)
-    if near is not None and isinstance(at, Problem) and not at.repeats:
-        at = at.starting(near)
+    at = _posed(run, name, most, near)
     before = run.clock.evaluations
     result, outcome = solve_raw(at, run.method, run.clock.left, watch=run.clock.inner(values=False))
     run.clock.evaluations = before + result.evaluations
@@ -183,19 +208,37 @@ def _solved(run: _Run, name: str, most: Caps, near: Array | None = None) -> Poin
         run.skipped.append(Skipped(most, result.status == "infeasible"))
         run.none = run.none or result
         return None
-    values = valued(result, run.names)
+    values = _values(run, result, outcome.x)
     slopes = None
     rows = [f"{MOST}_{n}" for n in run.names[1:]]
     if name == run.names[0] and all(row in result.multipliers for row in rows):
         scales = [scale(at, n) for n in run.names[1:]]
         slopes = np.array([result.multipliers[r] / s for r, s in zip(rows, scales, strict=True)])
     proven = result.status == "optimal"
-    if isinstance(at, Problem) and proven:
+    if isinstance(at, Problem) and proven and run.limiting is None:
         shape = form(at)
         run.logarithmic = run.logarithmic and shape.convex and shape.log_objective
     else:
         run.logarithmic = False
     return Point(outcome.x, values, proven, result.bound if proven else None, slopes)
+
+
+def _posed(run: _Run, name: str, most: Caps, near: Array | None) -> Problem | Conic:
+    if run.limiting is not None:
+        return run.limiting.problem(name, most)
+    limits = {n: Limit.of(value, run.widths.get(n, 0.0)) for n, value in most.items()}
+    at = kept(run.built, run.problem, (name,), limits)
+    if near is not None and isinstance(at, Problem) and not at.repeats:
+        at = at.starting(near)
+    return at
+
+
+def _values(run: _Run, result: Result, x: Array) -> Array:
+    """Return the values of all objectives at the point of a result."""
+    if run.limiting is None:
+        return valued(result, run.names)
+    rows, values = run.problem.rows.objectives, run.problem.batch(x[None]).F[0]
+    return np.array([values[rows.index(name)] for name in run.names])
 
 
 def _found(run: _Run) -> Found:
@@ -216,7 +259,7 @@ def _found(run: _Run) -> Found:
         steps=tuple(run.steps),
         proof=proof if none is None else none.proof,
         evaluations=run.clock.evaluations,
-        message="" if none is None else none.message,
+        message="" if none is None else none.message or "no design meets all limits",
     )
 
 
@@ -230,14 +273,15 @@ def _sentence(points: tuple[Point, ...]) -> str:
     return f"{which} {verb} proven: nothing beats it by more than {GAP:g} of its first objective."
 
 
-def _error(points: tuple[Point, ...], logarithmic: bool) -> float | None:
+def _error(points: tuple[Point, ...], logarithmic: bool) -> float:
     """Return the largest distance between tangents and chords, in the ranges of the objectives.
 
-    In logarithms where the problem is convex in them; None where a tangent is missing.
+    In logarithms where the problem is convex in them. Where a tangent is missing, that from chords
+    to the corners of boxes: between two proven points no other is below both of them.
     """
     values = np.array([p.values for p in points])
     if any(p.slopes is None for p in points):
-        return None
+        return _boxed(values)
     slopes = np.array([p.slopes[0] for p in points if p.slopes is not None])
     if logarithmic:
         slopes = slopes * values[:, 1] / values[:, 0]
@@ -253,6 +297,14 @@ def _error(points: tuple[Point, ...], logarithmic: bool) -> float | None:
         meet = _meet(df, dg, float(slopes[k]), float(slopes[k + 1]))
         worst = max(worst, abs(meet[0] * dg - meet[1] * df) / math.hypot(df, dg))
     return worst
+
+
+def _boxed(values: Array) -> float:
+    """Return the largest distance from the chord of two neighbours to a corner of their box."""
+    width = np.ptp(values, axis=0)
+    sides = np.abs(np.diff(values, axis=0)) / np.where(width > 0.0, width, 1.0)
+    length = np.hypot(*sides.T)
+    return float((sides.prod(axis=1) / np.where(length > 0.0, length, 1.0)).max(initial=0.0))
 
 
 def _meet(df: float, dg: float, first: float, second: float) -> tuple[float, float]:

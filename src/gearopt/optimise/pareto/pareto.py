@@ -6,6 +6,7 @@ from typing import Any
 from gearopt.errors import SolveError
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.pareto import epsilon, evolution, scalarised
+from gearopt.optimise.pareto.epsilon import Limiting
 from gearopt.optimise.pareto.found import Found, Point, sifted
 from gearopt.optimise.pareto.posed import Limit, posed
 from gearopt.optimise.problem import Problem
@@ -32,18 +33,20 @@ def found(
     budget: Budget | None = None,
     seed: int = 0,
     watch: Watch | None = None,
+    limiting: Limiting | None = None,
 ) -> Found:
     """Return what a method finds of the front of some objectives of a problem.
 
     names: two or three objectives, the first minimised where others are limited. most: largest
     values of interest, by name. method: one of METHODS; by default the problem's own exact one,
     else epsilon constraints, of discrete variables nsga2. points: sought, where a method has a
-    choice. SolveError where the method does not fit the problem.
+    choice. limiting: how the kind of problem limits objectives. SolveError where the method does
+    not fit the problem.
     """
-    budget, chosen = budget or Budget(), method or default(problem)
+    budget, chosen = budget or Budget(), method or default(problem, limiting)
     count = points or POINTS[len(names)]
     if chosen == EPSILON:
-        return epsilon.front(problem, names, dict(most), count, budget, watch)
+        return epsilon.front(problem, names, dict(most), count, budget, watch, limiting=limiting)
     if isinstance(problem, Conic):
         raise SolveError(f"{chosen} takes a Problem; the front of a Conic is for {EPSILON}")
     limited = {name: Limit.of(float(value), 0.0) for name, value in most.items()}
@@ -57,8 +60,10 @@ def found(
     return SAMPLERS[chosen](own, points or 0, budget, seed, watch)
 
 
-def default(problem: Problem | Conic) -> str:
+def default(problem: Problem | Conic, limiting: Limiting | None = None) -> str:
     """Return the method that is run where none is named."""
+    if limiting is not None:
+        return EPSILON
     if EXACT in problem.methods:
         return EXACT
     discrete = isinstance(problem, Problem) and any(v.discrete for v, _ in problem.columns)

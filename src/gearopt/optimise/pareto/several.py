@@ -8,21 +8,37 @@ from typing import Any
 from gearopt.errors import SolveError
 from gearopt.optimise.clock import Clock, in_part
 from gearopt.optimise.conic.problem import Conic
+from gearopt.optimise.pareto.epsilon import Limiting
 from gearopt.optimise.pareto.front import Front, Objective
 from gearopt.optimise.pareto.judged import judged
-from gearopt.optimise.pareto.pareto import default, found
+from gearopt.optimise.pareto.pareto import EXACT, default, found
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.result import Budget, Watch
-from gearopt.optimise.terms import Array
+from gearopt.optimise.result import Budget, Outcome, Watch
+from gearopt.optimise.terms import Array, Terms, Var
 
 
 @dataclass(frozen=True)
 class Several:
-    """A problem, its objectives in order, and the design of a point as its file shows it."""
+    """A problem, its objectives in order, and the design of a point as its file shows it.
+
+    limiting: how it is posed with one objective under limits on others, by a method of its own.
+    """
 
     problem: Problem | Conic
     objectives: tuple[Objective, ...]
     drawn: Callable[[Array], Mapping[str, Any]] | None = None
+    limiting: Limiting | None = None
+
+
+def impossible(of: str, names: Sequence[str], none: Outcome) -> Problem:
+    """Return a problem whose exact method claims what is known: that there is no design."""
+    return Problem(
+        of,
+        (Var("x", "", 0.0, 1.0, 0.5),),
+        (),
+        lambda x, p: Terms(dict.fromkeys(names, x.x), {"none": 2.0 + x.x}),
+        methods={EXACT: lambda problem, budget, seed, watch: none},
+    )
 
 
 def several(problem: Problem | Conic, names: Sequence[str] | None) -> Several:
@@ -66,9 +82,9 @@ def solved(
     for name in (*most, *(weights or ())):
         if name not in listed:
             raise SolveError(f"{name} is none of the objectives of this front: {', '.join(listed)}")
-    chosen = method or default(posed.problem)
+    chosen = method or default(posed.problem, posed.limiting)
     watch = in_part(watch, posed.objectives[0].unit, "front")
-    made = found(posed.problem, listed, most, chosen, points, budget, seed, watch)
+    made = found(posed.problem, listed, most, chosen, points, budget, seed, watch, posed.limiting)
     shown = [replace(one, most=most.get(one.name)) for one in posed.objectives]
     front = judged(posed.problem, made, shown, chosen, clock, weights, posed.drawn, **names)
     return replace(front, seed=seed)

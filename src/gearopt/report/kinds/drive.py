@@ -20,7 +20,6 @@ from gearopt.report.kinds import Kind
 from gearopt.report.kinds.generic import ASKED, FIRST, LAST, TOLD
 from gearopt.report.measures import Measures, gap_percent, rounded
 from gearopt.report.pages import (
-    box_front,
     impossible_layout,
     layout_solid,
     layout_views,
@@ -377,7 +376,6 @@ KIND = Kind(
         counts,
         *ASKED,
         trains,
-        box_front.section,
         *LAST,
     ),
     terminal=(

@@ -13,7 +13,9 @@ from gearopt.optimise.pareto.pareto import EPSILON
 from gearopt.optimise.pareto.several import Several
 from gearopt.optimise.terms import Array
 from gearopt.optimise.typed import untyped
+from gearopt.scenes.drive.box import sides
 from gearopt.scenes.drive.scene import Scene
+from gearopt.scenes.reading.ask import Ask
 
 
 def objectives(scene: Scene) -> dict[str, str]:
@@ -25,15 +27,25 @@ def objectives(scene: Scene) -> dict[str, str]:
         except ValueError:
             continue
         found[name] = unit
-    return found
+    return found | sides.objectives(scene)
 
 
 def several(scene: Scene, names: Sequence[str], method: str | None) -> Several:
     """Return the problem of a front; SolveError where the drive has none.
 
     With a [teeth] table it is of whole teeth, but for epsilon constraints, which are for
-    real-valued sizes.
+    real-valued sizes. Objectives of a box are those of gears that are chosen first.
     """
+    boxed = [name for name in names if name in sides.objectives(scene)]
+    if boxed:
+        if len(boxed) < len(names):
+            raise SolveError(
+                f"{', '.join(boxed)} of the box and objectives of the gears are no front together: "
+                "the gears are chosen first, and laid out then"
+            )
+        from gearopt.scenes.drive import bare, solve
+
+        return sides.several(scene, names, solve(bare(scene), Ask()))
     if scene.several:
         raise SolveError(
             "a front is of one number of stages, and this file leaves it open: write stages = 2, "

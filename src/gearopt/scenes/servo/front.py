@@ -11,10 +11,9 @@ from gearopt.formulations.servo.train_front import front_problem
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.pareto.front import Objective
 from gearopt.optimise.pareto.pareto import EPSILON, EXACT
-from gearopt.optimise.pareto.several import Several
+from gearopt.optimise.pareto.several import Several, impossible
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.result import Outcome
-from gearopt.optimise.terms import Array, Terms, Var
+from gearopt.optimise.terms import Array
 from gearopt.optimise.typed import untyped
 from gearopt.scenes.servo import tolerance_part
 from gearopt.scenes.servo.scene import Scene
@@ -83,7 +82,7 @@ def _tolerances(
     table, lost = scene.tolerances, tolerance_part.start(scene, gears)
     assert table is not None
     if (none := tolerance_part.spent(scene, gears)) is not None:
-        return _nothing(names, none)
+        return impossible("tolerance", names, none)
     if table.grades is not None:
         if method == EPSILON:
             raise SolveError(f"{EPSILON} is for real-valued tolerances; grades are for {EXACT}")
@@ -100,17 +99,6 @@ def _tolerances(
             "least_factor = 0.25 in [tolerances], or another part of the old ones"
         )
     return conic.several(own, {v: k for k, v in _errors(scene).items()}, names, lost)
-
-
-def _nothing(names: Sequence[str], none: Outcome) -> Problem:
-    """Return a problem whose exact method claims what is known to be impossible."""
-    return Problem(
-        "tolerance",
-        (Var("t", "mm", 0.0, 1.0, 0.5),),
-        (),
-        lambda x, p: Terms(dict.fromkeys(names, x.t), {"budget": 2.0 + x.t}),
-        methods={EXACT: lambda problem, budget, seed, watch: none},
-    )
 
 
 def _allotted(scene: Scene, gears: Pairs, x: Array) -> Mapping[str, Any]:

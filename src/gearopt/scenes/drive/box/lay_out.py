@@ -28,7 +28,6 @@ from gearopt.optimise.clock import Clock, following, in_part, of_others
 from gearopt.optimise.comparing.runs import Model
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run
-from gearopt.optimise.terms import Array
 from gearopt.optimise.typed import untyped
 from gearopt.physics.gears import GearPair
 from gearopt.physics.shaft_forces import OTHER, hands
@@ -66,11 +65,7 @@ def lay_out(scene: Scene, ask: Ask, sized: Result) -> Result:
         return _impossible(scene, sized, ask, parts, notes, result)
     if result.value is None or outcome.x is None:
         return replace(result, name="drive")
-    found = with_layout(scene, result, events, sized, box, *read(orders, outcome.x))
-    if outcome.others:
-        front = [_sides(box, orders, x) for x in (outcome.x, *outcome.others)]
-        found = replace(found, report=found.report | {"front": front})
-    return found
+    return with_layout(scene, result, events, sized, box, *read(orders, outcome.x))
 
 
 def with_layout(
@@ -84,7 +79,7 @@ def with_layout(
 ) -> Result:
     """Return a result with its gears and layout in the words of a drawing."""
     gears = drive_design(sized.design)
-    found = _handed(described(box, order, angles, gears), scene)
+    found = handed(described(box, order, angles, gears), scene)
     before = sum(p.seconds for p in result.parts), sum(p.evaluations for p in result.parts)
     seconds, spent = before[0] + result.seconds, before[1] + result.evaluations
     last = {"seconds": seconds, "evaluations": spent, "best": result.value, "bound": result.bound}
@@ -106,7 +101,7 @@ def with_layout(
     )
 
 
-def _handed(found: LayoutDesign, scene: Scene) -> LayoutDesign:
+def handed(found: LayoutDesign, scene: Scene) -> LayoutDesign:
     """Return a layout with the hands of its helices, where the file gives one."""
     given = [stage.pinion_hand for stage in scene.stage]
     if not any(given):
@@ -223,13 +218,6 @@ def _notes(scene: Scene, sized: Result) -> list[str]:
         more = "; with together = true in [layout] they are chosen for the box"
         notes.append(f"{words}{'' if scene.by_ratings else more}.")
     return notes
-
-
-def _sides(box: Gearbox, orders: tuple[Arrangement, ...], x: Array) -> dict[str, float]:
-    angles, one = read(orders, x)
-    found = placed(box, one, angles)
-    volume = found.width * found.height * found.length
-    return {"width_mm": found.width, "height_mm": found.height, "volume_mm3": volume}
 
 
 def described(

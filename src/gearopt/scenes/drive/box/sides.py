@@ -1,0 +1,65 @@
+"""Fronts of the box around gears that are chosen first: width against height, and the like."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+from gearopt.errors import SolveError
+from gearopt.formulations import layout
+from gearopt.formulations.design import drive_design
+from gearopt.formulations.layout import layout_front
+from gearopt.formulations.layout.faults import faults
+from gearopt.formulations.layout.gearbox import SIDES
+from gearopt.formulations.layout.layout_text import read
+from gearopt.formulations.layout.slabs import arrangements
+from gearopt.optimise.pareto.epsilon import Limiting
+from gearopt.optimise.pareto.front import Objective
+from gearopt.optimise.pareto.several import Several, impossible
+from gearopt.optimise.result import Outcome, Result
+from gearopt.optimise.typed import untyped
+from gearopt.scenes.drive.box.lay_out import described, handed, pairs_of
+from gearopt.scenes.drive.scene import Scene
+
+
+def objectives(scene: Scene) -> dict[str, str]:
+    """Return what a front of the box may minimise: name and unit; nothing without [layout]."""
+    if scene.layout is None:
+        return {}
+    given = {"width"} if scene.layout.width is not None else set()
+    return {name: unit for name, unit in layout_front.GOALS.items() if name not in given}
+
+
+def several(scene: Scene, names: Sequence[str], sized: Result) -> Several:
+    """Return the problem of a front of the box around gears that were sized.
+
+    Of three objectives, or two, those behind the first are sides, which epsilon steps limit.
+    """
+    listed = tuple(Objective(name, objectives(scene)[name]) for name in names)
+    assert scene.layout is not None
+    if scene.layout.together:
+        raise SolveError(
+            "a front of the box is of gears that are chosen first: write together = false in "
+            "[layout]"
+        )
+    if sized.value is None:
+        why = sized.message or "no gears were found"
+        none = Outcome(None, infeasible=True, proof=dict(sized.proof), message=why)
+        if sized.status != "infeasible":
+            raise SolveError(f"there are no gears to lay out: {why}")
+        return Several(impossible("layout", names, none), listed)
+    box = scene.gearbox(pairs_of(scene, sized))
+    if wrong := faults(box):
+        proof = {"method": "closed form", "sentence": "Proof: the sizes of these gears."}
+        none = Outcome(None, infeasible=True, proof=proof, message=" ".join(wrong))
+        return Several(impossible("layout", names, none), listed)
+    layout.ready()
+    orders, gears = arrangements(box), drive_design(sized.design)
+
+    def drawn(x: Any) -> Mapping[str, Any]:
+        angles, order = read(orders, x)
+        found = handed(described(box, order, angles, gears), scene)
+        design: Mapping[str, Any] = untyped(replace(gears, layout=found))
+        return design
+
+    limiting = Limiting(lambda name, most: layout_front.limited(box, name, most), tuple(SIDES))
+    return Several(layout_front.problem(box, tuple(names)), listed, drawn, limiting)

@@ -1,0 +1,77 @@
+"""Fronts of a box, against its text on a fine grid of all angles."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+from gearboxes import gearbox
+
+from gearopt.errors import SolveError
+from gearopt.formulations.layout import layout_front
+from gearopt.formulations.layout.gearbox import SIDES, KeepOut
+from gearopt.optimise.pareto.epsilon import Limiting
+from gearopt.optimise.pareto.pareto import found
+
+FLOOR = KeepOut("floor", (-1e3, 1e3), (-1e3, -140.0))
+STEP = 0.01  # rad
+BOX = gearbox("elevator", keep_outs=(FLOOR,), motor=130.0)
+
+
+def front(names, points, most=None, box=BOX):
+    limiting = Limiting(lambda name, most: layout_front.limited(box, name, most), tuple(SIDES))
+    own = layout_front.problem(box, names)
+    return found(own, names, most or {}, None, points, limiting=limiting)
+
+
+@cache
+def grid(names):
+    """Values of all layouts on a grid of both angles whose limits are met."""
+    problem = layout_front.problem(BOX, names)
+    turn = np.arange(-np.pi, np.pi, STEP)
+    points = np.stack(np.meshgrid(turn, turn), axis=-1).reshape(-1, 2)
+    orders = int(problem.bounds()[1][2]) + 1 if len(problem.columns) > 2 else 1
+    values = []
+    for m in range(orders):
+        rows = np.column_stack([points, np.full(len(points), m)]) if orders > 1 else points
+        batch = problem.batch(rows)
+        values.append(batch.F[(batch.G <= 1.0).all(axis=1)])
+    return np.vstack(values)
+
+
+@pytest.mark.parametrize("names", [("width", "height"), ("plan_area", "height")])
+def test_no_layout_of_a_grid_beats_a_point_and_some_come_near(names):
+    made, values = front(names, 6), grid(names)
+    assert all(p.proven for p in made.points) and len(made.points) == 6 and made.error < 0.25
+    reach = 2.0 * STEP * sum(pair.centre_distance for pair in BOX.pairs) / values.min(axis=0)[1]
+    for own in made.values:
+        inside = values[:, 1] <= own[1]
+        assert values[inside, 0].min() >= own[0] * (1.0 - 1e-6)
+        near = values[:, 1] <= own[1] * (1.0 + reach)
+        assert values[near, 0].min() <= own[0] * (1.0 + 2.0 * reach)
+
+
+def test_between_two_points_the_front_is_within_the_stated_error():
+    made, values = front(("width", "height"), 5), grid(("width", "height"))
+    width = np.ptp(made.values, axis=0)
+    for a, b in zip(made.values, made.values[1:], strict=False):
+        some = values[(values[:, 1] > b[1]) & (values[:, 1] < a[1]) & (values[:, 0] < b[0])]
+        (u, v), (x, y) = (b - a) / width, ((some - a) / width).T
+        below = (v * x - u * y) / np.hypot(u, v)  # of the chord
+        assert below.max(initial=0.0) <= made.error + 1e-6
+
+
+def test_the_shortest_box_comes_first_where_length_is_an_objective():
+    made = front(("length", "height"), 3)
+    (point,) = made.points  # one arrangement of two stages
+    assert point.proven and point.values[1] == pytest.approx(
+        front(("height", "length"), 3).points[0].values[0], rel=1e-6
+    )
+
+
+def test_largest_sides_cut_the_front_and_impossible_ones_are_proven():
+    made = front(("width", "height"), 3, {"height": 380.0})
+    assert made.values[:, 1].max() <= 380.0 * (1 + 1e-7)
+    none = front(("width", "height"), 3, {"height": 300.0})
+    assert none.infeasible and not none.points and none.message
+    with pytest.raises(SolveError, match="box_volume cannot be limited"):
+        front(("width", "box_volume"), 3)
