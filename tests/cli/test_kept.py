@@ -8,8 +8,11 @@ import pytest
 import typer
 
 import gearopt
+from gearopt import Front
 from gearopt.cli.reporting import report
 from gearopt.errors import GearoptError
+from gearopt.optimise.pareto.front import FrontPoint, Growth, Impossible, Objective
+from gearopt.optimise.pareto.pick import Pick
 
 ROOT = Path(__file__).parents[2]
 PICTURES = ROOT / "docs" / "pictures"  # kept results of drives, layouts and packings
@@ -17,7 +20,7 @@ ODD = (
     *(None, True, -1, 0, 1, 3.7, 1e300, -1e300, 1e-300, 10**9, 10**30, 10**400),
     *("", "x", "\ud800", "<b>", [], [1], {}, {"a": 1}, [[1]], [{"a": 1}]),
 )
-KINDS = ("drive", "layout", "packing", "servo", "compound", "impossible", "comparison")
+KINDS = ("drive", "layout", "packing", "servo", "compound", "impossible", "comparison", "front")
 
 
 @pytest.fixture(scope="module")
@@ -35,7 +38,22 @@ def kept(solved):
     impossible = gearopt.solve(
         ROOT / "problems" / "elevator_small_wheels.toml", budget=gearopt.Budget(0.5)
     )
+    found["front"] = front_of(found["drive"])
     return found | {"impossible": impossible.to_dict(), "comparison": compared.to_dict()}
+
+
+def front_of(drive):
+    """The Pareto front of a kept drive and of one that is longer, as plain data."""
+    values = drive["objective"]["value"], 300.0
+    points = [
+        FrontPoint((values[0] * (1.0 + k), values[1] - k), True, None, (-1.0,), drive["design"])
+        for k in range(2)
+    ]
+    objectives = Objective("gear_volume", "mm3"), Objective("total_length", "mm")
+    told = {"picks": (Pick(1, "knee", "a reason"),), "beaten": ((2.0 * values[0], 400.0),)}
+    told |= {"impossible": (Impossible({"total_length": 9.0}, True),), "scene": "drive"}
+    told |= {"growth": (Growth(0.1, 5, 1.0), Growth(0.2, 9, 2.0)), "hypervolume": 2.0}
+    return Front("drive", "complete", "exact", objectives, tuple(points), **told).to_dict()
 
 
 def places(data, way=()):

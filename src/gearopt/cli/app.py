@@ -10,6 +10,7 @@ from rich.console import Console
 from gearopt.cli.names import problem_files, system_words
 from gearopt.cli.watching import unbroken
 from gearopt.errors import GearoptError
+from gearopt.optimise.pareto.front import Front
 from gearopt.optimise.result import Result
 
 HELP = "\n\n".join(
@@ -92,6 +93,13 @@ def exit_code(result: Result) -> int:
     if result.status == "evaluated":  # a rating answers its question, safe or not
         return 0 if result.feasible or "rating" in result.design else 3
     return EXIT[result.status]
+
+
+def front_code(front: Front) -> int:
+    """Return exit code of a Pareto front: without a design that of an impossible or open result."""
+    if front.status == "infeasible":
+        return EXIT[front.status]
+    return 0 if front.points else EXIT["failed"]
 
 
 def told(wrong: GearoptError) -> str:

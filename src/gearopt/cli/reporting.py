@@ -2,6 +2,7 @@
 
 import json
 import warnings
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
@@ -9,7 +10,7 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from gearopt.cli.app import MORE, Csv, Html, Units, app, console, exit_code, print_whole
+from gearopt.cli.app import MORE, Csv, Html, Units, app, console, exit_code, front_code, print_whole
 from gearopt.cli.names import result_files
 from gearopt.cli.writing import check_csv, check_html, write
 from gearopt.errors import GearoptError
@@ -20,6 +21,7 @@ from gearopt.report.command import again
 from gearopt.report.measures import METRIC, SYSTEMS, Measures
 
 LONGEST = 200  # characters shown of what is wrong with a file
+Kept = Result | Comparison | Front
 HOW = "write one with `gearopt solve FILE --json > result.json`"
 
 
@@ -37,7 +39,7 @@ def report(
     file: Annotated[
         Path,
         typer.Argument(
-            help="What `gearopt solve --json` or `gearopt compare --json` printed.",
+            help="What `gearopt solve`, `compare` or `pareto` printed with --json.",
             show_default=False,
             autocompletion=result_files,
         ),
@@ -46,7 +48,7 @@ def report(
     csv: Csv = None,
     units: Units = "metric",
 ) -> None:
-    """Show a kept result or comparison again: on the terminal, as a page; a result as CSV too."""
+    """Show a kept result, comparison or Pareto front again: on the terminal, as a page, as CSV."""
     files = checked(html, csv, units, file)
     kept = _read(file)
     screen = console()
@@ -62,20 +64,24 @@ def report(
     print(text.get(), end="")
     for line in lines:
         print(line)
+    if isinstance(kept, Front):
+        raise typer.Exit(front_code(kept))
     raise typer.Exit(exit_code(kept) if isinstance(kept, Result) else 0)
 
 
-def _again(kept: Result | Comparison, screen: Console, files: Files) -> list[str]:
+def _again(kept: Kept, screen: Console, files: Files) -> list[str]:
     """Show what was kept, write its files (never over its source); return lines about them."""
     if kept.file is not None:
         checked(files.html, files.csv, files.measures.name, Path(kept.file))
     if isinstance(kept, Comparison) and (files.csv or files.measures is not METRIC):
-        raise GearoptError("--csv and --units are for results; this file holds a comparison")
+        raise GearoptError("--csv and --units are not for these; this file holds a comparison")
     _show(kept, screen, files.measures)
+    if isinstance(kept, Front):
+        return traded(kept, files)
     return written(kept, files) if isinstance(kept, Result) else compared(kept, files.html)
 
 
-def _show(found: Result | Comparison | Front, screen: Console, measures: Measures) -> None:
+def _show(found: Kept, screen: Console, measures: Measures) -> None:
     from gearopt.report.terminal import show, show_comparison, show_front
 
     if isinstance(found, Result):
@@ -86,9 +92,7 @@ def _show(found: Result | Comparison | Front, screen: Console, measures: Measure
         show_comparison(found, screen)
 
 
-def answer(
-    found: Result | Comparison | Front, as_json: bool, lines: list[str], measures: Measures = METRIC
-) -> None:
+def answer(found: Kept, as_json: bool, lines: list[str], measures: Measures = METRIC) -> None:
     """Print an answer as JSON, or show it with lines about what was written."""
     if as_json:
         print_whole(found.to_json())
@@ -109,16 +113,12 @@ def compared(found: Comparison, html: Path | None) -> list[str]:
 
 
 def traded(front: Front, files: Files) -> list[str]:
-    """Write the table of a Pareto front; return a line about it."""
-    if files.csv is None:
-        return []
-    from gearopt.report.front import table
+    """Write the page and the tables of a Pareto front, once all are made; a line for each."""
+    from gearopt.report.pages.front import page, tables
 
-    _make(files.csv)
-    made = table(front, files.measures)
-    path = files.csv / f"{made.stem}.csv"
-    write("--csv", path, made.csv(), "utf-8-sig")  # for spreadsheets
-    return [f"\nTable: {path}"]
+    made = "" if files.html is None else page(front, str(files.html), files.measures)
+    found = {} if files.csv is None else tables(front, files.measures)
+    return _kept(files, made, found)
 
 
 def checked(html: Path | None, csv: Path | None, units: str, *given: Path) -> Files:
@@ -135,16 +135,21 @@ def checked(html: Path | None, csv: Path | None, units: str, *given: Path) -> Fi
 
 def written(result: Result, files: Files) -> list[str]:
     """Write the page and the tables, once all are made; return a line for each."""
-    page, found = _page(result, files), _tables(result, files)
+    return _kept(files, _page(result, files), _tables(result, files))
+
+
+def _kept(files: Files, page: str, found: Mapping[str, str]) -> list[str]:
+    """Write a page, and tables by the names of their files; return a line for each."""
     lines = []
     if files.html is not None:
         write("--html", files.html, page)
         lines.append(f"\nPage: {files.html}")
     if files.csv is not None:
         _make(files.csv)
-        for path, text in found.items():
+        paths = {files.csv / name: text for name, text in found.items()}
+        for path, text in paths.items():
             write("--csv", path, text, "utf-8-sig")  # for spreadsheets
-        lines.append(f"\nTables: {', '.join(map(str, found))}")
+        lines.append(f"\nTables: {', '.join(map(str, paths))}")
     return lines
 
 
@@ -156,12 +161,12 @@ def _page(result: Result, files: Files) -> str:
     return page(result, again(result, str(files.html), files.measures), files.measures)
 
 
-def _tables(result: Result, files: Files) -> dict[Path, str]:
+def _tables(result: Result, files: Files) -> dict[str, str]:
     if files.csv is None:
         return {}
     from gearopt.report.pages.result import tables
 
-    return {files.csv / name: text for name, text in tables(result, files.measures).items()}
+    return tables(result, files.measures)
 
 
 def _make(folder: Path) -> None:
@@ -171,12 +176,14 @@ def _make(folder: Path) -> None:
         raise GearoptError(f"--csv {folder}: {refused.strerror}") from refused
 
 
-def _read(file: Path) -> Result | Comparison:
-    """Return a result or a comparison from its file; GearoptError for anything else."""
+def _read(file: Path) -> Kept:
+    """Return what was kept from its file; GearoptError for anything else."""
     try:
         data = loads(file.read_text(encoding="utf-8"))
         if isinstance(data, dict) and "comparison" in data:
             return Comparison.from_dict(data)
+        if isinstance(data, dict) and "front" in data:
+            return Front.from_dict(data)
         return Result.from_dict(data)
     except OSError as refused:
         raise GearoptError(f"{file}: cannot be read ({refused.strerror}); {HOW}") from refused

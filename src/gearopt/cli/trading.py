@@ -4,14 +4,11 @@ from typing import Annotated
 
 import typer
 
-from gearopt.cli.app import FIRST, Csv, File, Json, Most, Units, app, numbers
+from gearopt.cli.app import FIRST, Csv, File, Html, Json, Most, Units, app, front_code, numbers
 from gearopt.cli.reporting import answer, checked, traded
 from gearopt.cli.watching import watching
-from gearopt.optimise.pareto.front import Front
 from gearopt.optimise.result import Budget
 from gearopt.report.command import SECONDS
-
-IMPOSSIBLE, UNFINISHED = 3, 4  # exit codes
 
 
 @app.command(rich_help_panel=FIRST)
@@ -40,6 +37,7 @@ def pareto(
     ] = None,
     seconds: Annotated[float, typer.Option(min=0.0, help="Stop after this time.")] = SECONDS,
     seed: Annotated[int, typer.Option(help="Seed of random methods.")] = 0,
+    html: Html = None,
     csv: Csv = None,
     units: Units = "metric",
     as_json: Json = False,
@@ -47,7 +45,7 @@ def pareto(
     """Find the designs that no other beats in several objectives. Ctrl-C keeps those found."""
     from gearopt.api import pareto as pareto_of
 
-    files = checked(None, csv, units, file)
+    files = checked(html, csv, units, file)
     with watching(seconds, quiet=as_json, measures=files.measures) as watch:
         found = pareto_of(
             file,
@@ -65,11 +63,4 @@ def pareto(
         lines = traded(found, files)
     finally:  # what took long to find is shown even where no file can be written
         answer(found, as_json, lines, files.measures)
-    raise typer.Exit(code(found))
-
-
-def code(front: Front) -> int:
-    """Return the exit code of a front: 0 where there is one, 3 proven impossible, 4 unknown."""
-    if front.status == "infeasible":
-        return IMPOSSIBLE
-    return 0 if front.points else UNFINISHED
+    raise typer.Exit(front_code(found))

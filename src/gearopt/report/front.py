@@ -4,8 +4,9 @@ import shlex
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from gearopt.optimise.pareto.front import Front
+from gearopt.optimise.pareto.front import Front, Objective
 from gearopt.optimise.pareto.pick import neighbours
+from gearopt.report.command import SECONDS
 from gearopt.report.measures import METRIC, Measures
 from gearopt.report.section import Cell, Table, cell
 from gearopt.report.words import MODULE, number
@@ -18,13 +19,20 @@ VERDICTS = {
     "infeasible": ("impossible, proven", "red"),
     "limit": ("stopped early", "yellow"),
 }
-DEFAULTS = {"seconds": 60.0, "seed": 0}
+DEFAULTS = {"seconds": SECONDS, "seed": 0}
 
 
 def title(front: Front) -> str:
     """Return the name of a front: that of its file or problem, and its objectives."""
     of = front.title or front.file or front.name
     return f"{of}: {' against '.join(words(name) for name in front.names)}"
+
+
+def verdict(front: Front) -> tuple[str, str]:
+    """Return how certain a front is, and the colour of that."""
+    if not front.points and front.status != "infeasible":
+        return "no design found, and no proof that there is none", "yellow"
+    return VERDICTS[front.status]
 
 
 def words(name: str) -> str:
@@ -47,10 +55,11 @@ def decided(front: Front, measures: Measures = METRIC) -> list[str]:
         part = f"{100.0 * front.error:.2g} % of the ranges of its objectives"
         found.append(f"The true front is within {part} of the line through these points.")
     if front.impossible:
-        proven = sum(one.proven for one in front.impossible)
+        count, proven = len(front.impossible), sum(one.proven for one in front.impossible)
+        steps = "1 step was" if count == 1 else f"{count} steps were"
         found.append(
-            f"{len(front.impossible)} limits on the objectives left no design "
-            f"({proven} of them proven impossible) and were skipped."
+            f"{steps} skipped, whose limits on the objectives left no design "
+            f"({proven} proven impossible)."
         )
     if front.message:
         found.append(f"{front.message[0].upper()}{front.message[1:]}.")
@@ -105,12 +114,10 @@ def table(front: Front, measures: Measures = METRIC, most: int | None = None) ->
 
     most: rows; the picks and the ends are among them.
     """
-    kept = _chosen(front, most)
-    heads = [_head(one.name, one.unit, measures) for one in front.objectives]
-    rules: dict[int, list[str]] = {}
-    for pick in front.picks:
-        rules.setdefault(pick.place, []).append(pick.rule)
-    gears = any(_stages(p.design) for p in front.points)
+    kept = chosen(front, most)
+    heads = [head(one, measures) for one in front.objectives]
+    taken = rules(front)
+    gears = any(stages_of(p.design) for p in front.points)
     rows = [
         (
             k + 1,
@@ -118,7 +125,7 @@ def table(front: Front, measures: Measures = METRIC, most: int | None = None) ->
                 cell(v, one.unit, measures)
                 for v, one in zip(front.points[k].values, front.objectives, strict=True)
             ),
-            ", ".join(rules.get(k, ())),
+            ", ".join(taken.get(k, ())),
             *([_gears(front.points[k].design, measures)] if gears else []),
         )
         for k in kept
@@ -127,7 +134,15 @@ def table(front: Front, measures: Measures = METRIC, most: int | None = None) ->
     return Table("front", ("", *heads, "pick", *made), rows, wrap=10)
 
 
-def _chosen(front: Front, most: int | None) -> list[int]:
+def rules(front: Front) -> dict[int, list[str]]:
+    """Return the places that rules pick, each with their names."""
+    found: dict[int, list[str]] = {}
+    for pick in front.picks:
+        found.setdefault(pick.place, []).append(pick.rule)
+    return found
+
+
+def chosen(front: Front, most: int | None) -> list[int]:
     """Return the places of rows: all, or evenly spread ones with the ends and the picks."""
     count = len(front.points)
     if most is None or count <= most:
@@ -136,12 +151,13 @@ def _chosen(front: Front, most: int | None) -> list[int]:
     return sorted(spread | {pick.place for pick in front.picks})
 
 
-def _head(name: str, unit: str, measures: Measures) -> str:
-    sign = measures.unit(unit)
-    return f"{words(name)} [{sign}]" if sign else words(name)
+def head(one: Objective, measures: Measures) -> str:
+    """Return what an objective is called above its values, with the unit."""
+    sign = measures.unit(one.unit)
+    return f"{words(one.name)} [{sign}]" if sign else words(one.name)
 
 
-def _stages(design: Mapping[str, Any]) -> Sequence[Mapping[str, Any]]:
+def stages_of(design: Mapping[str, Any]) -> Sequence[Mapping[str, Any]]:
     """Return the stages of a drive, or of the train of a servo axis."""
     found: Sequence[Mapping[str, Any]] = (design.get("train") or design).get("stages", ())
     return found
@@ -150,23 +166,29 @@ def _stages(design: Mapping[str, Any]) -> Sequence[Mapping[str, Any]]:
 def _gears(design: Mapping[str, Any], measures: Measures) -> Cell:
     """Return modules and teeth of the stages of a drive."""
     rows = []
-    for stage in _stages(design):
+    for stage in stages_of(design):
         module = number(measures.of_module(stage[MODULE]))
         rows.append(f"{module}, {number(stage['pinion_teeth'])}/{number(stage['wheel_teeth'])}")
     text = "; ".join(rows)
     return Cell(text, text)
 
 
-def command(front: Front, html: str = "") -> str:
+def command(front: Front, measures: Measures = METRIC, html: str = "") -> str:
     """Return the command that makes the front again; "" where it is Python's."""
     options = front.options
-    if front.file is None or options.get("changes") or options.get("weights"):
+    if front.file is None or options.get("changes"):
         return ""
     parts = ["gearopt", "pareto", front.file, "--objectives", ",".join(front.names)]
     for name, value in (options.get("most") or {}).items():
         parts += ["--most", f"{name}={value:.12g}"]
+    if weights := options.get("weights"):
+        parts += ["--weights", ",".join(f"{name}={value:.12g}" for name, value in weights.items())]
+    if options.get("seconds") is None:
+        parts += ["--seconds", "1e9"]
     for name in ("method", "points", "seconds", "seed"):
         value = options.get(name)
         if value is not None and value != DEFAULTS.get(name):
             parts += [f"--{name}", f"{value:.12g}" if isinstance(value, float) else str(value)]
+    if measures is not METRIC:
+        parts += ["--units", measures.name]
     return shlex.join([*parts, "--html", html] if html else parts)

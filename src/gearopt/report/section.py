@@ -28,13 +28,18 @@ LONG = 24  # rows; a longer table may break between rows when it is printed
 class Figure:
     """A plot: its plotly data and layout, and its caption.
 
-    still: what is seen before it is drawn, without WebGL, and in print.
+    still: what is seen before it is drawn, and in print; of a view in space without WebGL, too.
     """
 
     data: list[dict[str, Any]]
     layout: dict[str, Any]
     caption: str
     still: Drawing | None = None
+
+    @property
+    def space(self) -> bool:
+        """Return whether it is a view in space, which needs WebGL."""
+        return "scene" in self.layout
 
 
 LOOK = {  # of any plot

@@ -13,8 +13,9 @@ from rich.text import Text
 
 from gearopt.optimise.comparing.comparison import Comparison
 from gearopt.optimise.explaining.explanation import Explanation
+from gearopt.optimise.pareto.front import Front
 from gearopt.optimise.result import Result
-from gearopt.report import comparison_words
+from gearopt.report import comparison_words, front
 from gearopt.report.answer import WAYS, decided
 from gearopt.report.explained import of_influences
 from gearopt.report.kinds import kind_of
@@ -177,6 +178,29 @@ def compared_fragment(found: Comparison) -> str:
             rows = [(m, *comparison_words.cells(found, s)) for m, s in samples if s]
             blocks += [f"{name}: {budget}", Table(name, ("method", *heads), rows)] if rows else []
     return _html(f"{found.title}: methods compared", blocks)
+
+
+def front_lines(found: Front) -> str:
+    """Return what was found of a Pareto front, how sure it is, and the designs picked."""
+    rows = [f"{front.title(found)}: {front.verdict(found)[0]}"]
+    rows += [*front.decided(found), *front.picked(found)]
+    return "\n  ".join(cut(row, LONGEST) for row in rows)
+
+
+def front_fragment(found: Front) -> str:
+    """Return what the terminal shows of a Pareto front as HTML for a notebook."""
+    found = Front.from_dict(found.to_dict())
+    blocks: list[Block] = [*front.decided(found)]
+    blocks += [front.table(found, METRIC, front.SHOWN)] if found.points else []
+    head = f"{front.title(found)}: {front.verdict(found)[0]}"
+    return _html(head, [*blocks, *front.picked(found)])
+
+
+def front_page(found: Front, units: str) -> str:
+    """Return the page of a Pareto front."""
+    from gearopt.report.pages.front import page
+
+    return page(found, measures=measures_of(units))
 
 
 def answered(found: Explanation) -> Result:

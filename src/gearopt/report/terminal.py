@@ -184,7 +184,7 @@ def _group(found: Comparison, group: Group, console: Console) -> None:
 
 def show_front(found: Front, console: Console, measures: Measures = METRIC) -> None:
     """Print a Pareto front."""
-    said, colour = front.VERDICTS[found.status]
+    said, colour = front.verdict(found)
     console.print(Text.assemble((front.title(found), "bold"), ": ", (said, f"bold {colour}")))
     for line in front.decided(found, measures):
         console.print(Text(line))

@@ -34,7 +34,7 @@
 
   function draw() {
     const style = getComputedStyle(root);
-    for (const place of document.querySelectorAll(turns ? ".plot" : "figure:not(.solid) > .plot")) {
+    for (const place of document.querySelectorAll(turns ? ".plot" : "figure:not(.space) > .plot")) {
       const spec = JSON.parse(place.parentElement.querySelector("script").textContent);
       const { data, layout } = resolved(style, spec);
       if (place.clientWidth < narrow) layout.font.size = 11;
@@ -43,6 +43,7 @@
       place.parentElement.classList.add("drawn");  // a still made way for it
       Plotly.react(place, data, layout, options);
     }
+    document.dispatchEvent(new Event("drawn"));
   }
 
   // Words and tables are seen before the plotting library, which is large, is even read.

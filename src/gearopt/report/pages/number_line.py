@@ -111,15 +111,20 @@ def _inside(x: float, y: float, text: str, cost: float = 0.0) -> Place:
 
 
 def ticks(low: float, high: float) -> list[float]:
-    """Return round numbers from low to high."""
+    """Return round numbers from low to high, both above 0."""
     if high < NARROW * low:
-        rough = (high - low) / FEW
-        size = 10.0 ** math.floor(math.log10(rough))
-        step = min((k * size for k in (*MARKS, 10.0)), key=lambda s: abs(s - rough))
-        first, last = math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9)
-        return [k * step for k in range(first, last + 1)]
+        return even_ticks(low, high)
     decades = [10.0**k for k in range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)]
     marks = MARKS if len(decades) < FEW else (1.0,)
     found = [m * d for d in decades for m in marks]
     found = [v for v in found if low * (1.0 - 1e-9) <= v <= high * (1.0 + 1e-9)]
     return found[:: math.ceil(len(found) / (2 * FEW))]
+
+
+def even_ticks(low: float, high: float) -> list[float]:
+    """Return round numbers from low to a higher number, evenly apart."""
+    rough = (high - low) / FEW
+    size = 10.0 ** math.floor(math.log10(rough))
+    step = min((k * size for k in (*MARKS, 10.0)), key=lambda s: abs(s - rough))
+    first, last = math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9)
+    return [k * step for k in range(first, last + 1)]

@@ -226,7 +226,7 @@ def still(
     names = _rows(texts.legend, left + scale * wide + right)
     free = left, right, BELOW, ABOVE + ROW * max((row for _, row, *_ in names), default=0)
     sheet = Sheet(Window(min(us), max(us), min(vs), max(vs), free), scale)
-    back, front = _edges(*room, seen)
+    back, front = edges(*room, seen)
     for start, end in back:
         sheet.line(seen.at(start), seen.at(end), "far")
     for body in in_order(bodies, seen):
@@ -241,7 +241,7 @@ def still(
     for spot, text in texts.balloons:
         if not any(covers(body, spot, seen) for body in bodies if isinstance(body, Rod)):
             sheet.balloon(text, around(sheet.at(*seen.at(spot)), (0.0, 20.0, 30.0), 0.0))
-    _sizes(sheet, room, seen, texts.sizes)
+    outside(sheet, room, seen, texts.sizes)
     return sheet.drawing(name, "Drawn to scale in parallel projection.")
 
 
@@ -257,8 +257,8 @@ def _rows(legend: Sequence[tuple[str, str]], width: float) -> list[tuple[float, 
     return found
 
 
-def _sizes(sheet: Sheet, room: tuple[Spot, Spot], seen: View, texts: Sequence[str]) -> None:
-    """Write the size of the box along every axis outside, beside an edge at the rim."""
+def outside(sheet: Sheet, room: tuple[Spot, Spot], seen: View, texts: Sequence[str]) -> None:
+    """Write a text of every axis of a box outside of it, beside an edge at the rim."""
     x0, y0 = sheet.at(*seen.at(_middle(Block(*room, ""))))
     low, high = room
     for k, text in enumerate(texts):
@@ -280,7 +280,7 @@ def _sizes(sheet: Sheet, room: tuple[Spot, Spot], seen: View, texts: Sequence[st
         sheet.label(text, [spot for off, spot in places if off >= RIM * farthest], "size")
 
 
-def _edges(low: Spot, high: Spot, seen: View) -> tuple[list[tuple[Spot, Spot]], ...]:
+def edges(low: Spot, high: Spot, seen: View) -> tuple[list[tuple[Spot, Spot]], ...]:
     """Return the edges of a box that meet its farthest corner, and the others."""
     far = tuple(p if e > 0.0 else q for p, q, e in zip(low, high, seen.eye, strict=True))
     corners = _corners(low, high)

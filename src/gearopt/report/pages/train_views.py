@@ -97,10 +97,15 @@ def _picked(stages: Sequence[Mapping[str, Any]]) -> Sequence[DrawnStage]:
     return found
 
 
+def is_drawn(stages: Sequence[Mapping[str, Any]]) -> bool:
+    """Return whether there are stages, and all sizes that are drawn of them."""
+    keys = [f.name for f in fields(DrawnStage)]
+    return bool(stages) and all(key in stage for stage in stages for key in keys)
+
+
 def views(stages: Sequence[Mapping[str, Any]], measures: Measures) -> tuple[Drawing, ...]:
     """Draw a train along its shafts and across them; nothing where a size is not known."""
-    keys = [f.name for f in fields(DrawnStage)]
-    if not stages or not all(key in stage for stage in stages for key in keys):
+    if not is_drawn(stages):
         return ()
     found, scale = in_one_line(_picked(stages))
     inner = {g.name: circles(stages[g.stage - 1], g.member) for g in found.gears}

@@ -1,0 +1,165 @@
+"""The page of a Pareto front: to pick a design from, beside the one that a rule picks."""
+
+import base64
+import json
+from collections.abc import Sequence
+from typing import Any
+
+from gearopt.optimise.pareto.front import Front
+from gearopt.optimise.pareto.pareto import RANDOM
+from gearopt.report import front as told
+from gearopt.report.front import rules, stages_of, words
+from gearopt.report.measures import METRIC, Measures
+from gearopt.report.pages import front_designs, front_plots, train_views
+from gearopt.report.pages.frame import render
+from gearopt.report.pages.front_designs import Numbers
+from gearopt.report.pages.front_values import Drawn, drawn
+from gearopt.report.pages.sheet import Drawing
+from gearopt.report.section import Section, Tile
+from gearopt.report.words import sentence
+
+LINES = 2  # designs at least, that are drawn as lines
+
+
+def page(front: Front, html: str = "page.html", measures: Measures = METRIC) -> str:
+    """Return one self-contained HTML page; html: where the command at its foot writes it."""
+    front = Front.from_dict(front.to_dict())  # plain numbers, as a file of it has them
+    each = [front_designs.numbers(p.design, measures) for p in front.points]
+    return render(
+        "front.html",
+        told.title(front),
+        measures.words(sentence(told.verdict(front)[0])),
+        {"gearopt": front.gearopt, **front.versions},
+        told.command(front, measures, html),
+        plots=bool(front.points),
+        count=len(front.points),
+        first=[_summary(front, measures), *_drawn(front, measures)],
+        last=[section for section in (_lost(front, measures), _spent(front)) if section],
+        json=_link(front),
+        source=_source(front),
+        **_picking(front, each, measures),
+    )
+
+
+def tables(front: Front, measures: Measures = METRIC) -> dict[str, str]:
+    """Return the CSV of every table by the name of its file, such as `front.csv`."""
+    each = [front_designs.numbers(p.design, measures) for p in front.points]
+    found = [
+        front_designs.designs(front, each, (), measures) if front.points else None,
+        front_designs.beaten(front, measures),
+        front_designs.impossible(front, measures),
+        front_designs.growth(front),
+    ]
+    return {f"{table.stem}.csv": table.csv() for table in found if table is not None}
+
+
+def _picking(front: Front, each: Sequence[Numbers], measures: Measures) -> dict[str, Any]:
+    """Return what the template shows to pick from; nothing of a front without a design."""
+    if not front.points:
+        return {"table": None}
+    found = drawn(front, measures)
+    names = front_designs.main(front, each, measures)
+    lines = len(front.points) >= LINES
+    beaten = front_designs.beaten(front, measures)
+    return {
+        "trade": Section("Trade-off", figures=_figures(found), tables=[beaten] if beaten else ()),
+        "parallel": front_plots.parallel(front, found, each, names) if lines else None,
+        "table": front_designs.designs(front, each, names, measures),
+        "kept": set(told.chosen(front, told.SHOWN)),
+        "told": front_designs.data(front, each, names, measures) | {"pair": _pair(front)},
+    }
+
+
+def _figures(found: Drawn) -> list[Any]:
+    space = front_plots.space(found)
+    return [*front_plots.pairs(found), *([space] if space else [])]
+
+
+def _pair(front: Front) -> list[int]:
+    """Return the places of the pick and of the design that is shown beside it at first."""
+    picks = list(rules(front))
+    ends = [k for k in (0, len(front.points) - 1) if k not in picks]
+    return list(dict.fromkeys([*picks, *ends]))[:2]
+
+
+def _summary(front: Front, measures: Measures) -> Section:
+    """Return key figures, what was found and how sure it is, and the picks with their prices."""
+    count = len(front.points)
+    tiles = [Tile("designs", f"{count:,}", told.verdict(front)[0])] if count else []
+    for k, one in enumerate(front.objectives if count else ()):
+        values = [p.values[k] for p in front.points]
+        low, high = (measures.amount(v, one.unit) for v in (min(values), max(values)))
+        tiles.append(Tile(words(one.name), low, f"to {high}" if high != low else ""))
+    lines = told.decided(front, measures)
+    if front.status == "infeasible" and front.file:
+        lines.append(f"Which limits are in conflict: gearopt explain {front.file}.")
+    limited = [
+        f"{words(o.name)} at most {measures.amount(o.most, o.unit)}"
+        for o in front.objectives
+        if o.most is not None
+    ]
+    if limited:
+        lines.append(f"Asked for: {', '.join(limited)}.")
+    shown = map(measures.words, [*lines, *told.picked(front, measures)])
+    return Section("Result", tiles, list(shown))
+
+
+def _drawn(front: Front, measures: Measures) -> list[Section]:
+    """Return drawings of the picks and the ends of the front, all at one scale."""
+    names = {place: ", ".join(own) for place, own in rules(front).items()}
+    for k, one in enumerate(front.objectives if front.points else ()):
+        values = [p.values[k] for p in front.points]
+        names.setdefault(values.index(min(values)), f"least {words(one.name)}")
+    drawings = _views(front, names, measures)
+    if not drawings:
+        return []
+    said = (
+        "The picks and the ends of the front, along the shafts, all in one line and at one scale; "
+        f"dimensions in {measures.lengths}."
+    )
+    return [Section("Gears of the picks", words=(said,), drawings=drawings)]
+
+
+def _views(front: Front, names: dict[int, str], measures: Measures) -> Sequence[Drawing]:
+    stages = {
+        f"Design {place + 1}, {name}": stages_of(front.points[place].design)
+        for place, name in sorted(names.items())
+        if not front.points[place].design.get("layout")
+    }
+    if not stages or not all(train_views.is_drawn(own) for own in stages.values()):
+        return ()
+    return train_views.beside(stages, measures)
+
+
+def _lost(front: Front, measures: Measures) -> Section | None:
+    """Return the limits under which there is no design; None where every one had some."""
+    table = front_designs.impossible(front, measures)
+    if table is None:
+        return None
+    said = "Steps of the search that were skipped: no design is within all limits of a row."
+    return Section("Limits without a design", words=(said,), tables=(table,))
+
+
+def _spent(front: Front) -> Section:
+    """Return how the front was found: proof, effort, and its growth where a method has steps."""
+    plot, table = front_plots.grown(front), front_designs.growth(front)
+    seed = f", seed {front.seed}" if front.method in RANDOM else ""
+    said = [
+        f"Method {front.method}{seed}: {front.evaluations:,} evaluations, {front.seconds:.3g} s."
+    ]
+    if plot is None and front.points:
+        said.append("It finds the whole front in one pass, so that there is no growth to show.")
+    figures, shown = ([plot] if plot else []), ([table] if table else [])
+    return Section("How it was found", words=said, figures=figures, tables=shown)
+
+
+def _link(front: Front) -> str:
+    """Return the front as JSON, as an address that needs no network."""
+    text = json.dumps(front.to_dict(), separators=(",", ":"), allow_nan=False)
+    return "data:application/json;base64," + base64.b64encode(text.encode()).decode()
+
+
+def _source(front: Front) -> str | None:
+    if front.file is None:
+        return None
+    return f"File {front.file}, SHA-256 {(front.file_sha256 or '')[:16]}…"

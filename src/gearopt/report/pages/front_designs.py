@@ -1,0 +1,228 @@
+"""The designs of a Pareto front as numbers, limits and sketches, and the tables of its page."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from gearopt.optimise.pareto.front import Front, FrontPoint, Impossible
+from gearopt.report.design_tables import STAGE_ROWS, stage_label
+from gearopt.report.front import head, rules, stages_of, table
+from gearopt.report.measures import Measures
+from gearopt.report.section import Cell, Table, cell
+from gearopt.report.words import MODULE, heading, is_module, limit_words, parted
+
+MAIN = (MODULE, "pinion_teeth", "face_width_mm", "wheel_teeth")  # of a stage, the first ones first
+AXES = 9  # of parallel coordinates beside the objectives, about
+SAME = 1e-9  # relative; numbers that differ by less are alike
+Numbers = dict[str, Cell]  # of a design, by what they are called
+
+
+def numbers(design: Mapping[str, Any], measures: Measures) -> Numbers:
+    """Return every single number of a design, those of its stages first, by name and unit."""
+    found = {}
+    stages = stages_of(design)
+    for k, stage in enumerate(stages, 1):
+        for key in (*(key for key in STAGE_ROWS if key in stage), *(_others(stage))):
+            unit = STAGE_ROWS.get(key, parted(key))[1]
+            found[f"stage {k}: {_label(key, measures)}"] = _cell(stage[key], key, unit, measures)
+    return found | dict(_single(design, measures))
+
+
+def _others(stage: Mapping[str, Any]) -> Iterator[str]:
+    return (k for k, v in stage.items() if k not in STAGE_ROWS and _is_number(v))
+
+
+def _label(key: str, measures: Measures) -> str:
+    return stage_label(key, measures) if key in STAGE_ROWS else heading(key, measures)
+
+
+def _single(
+    group: Mapping[str, Any], measures: Measures, first: str = ""
+) -> Iterator[tuple[str, Cell]]:
+    """Yield single numbers, those of lists by their place, and those of groups by their name."""
+    for key, value in group.items():
+        name = f"{first}{heading(key, measures)}"
+        if isinstance(value, Mapping):
+            yield from _single(value, measures, f"{name}: ")
+        elif isinstance(value, list | tuple):
+            for k, one in enumerate(value, 1):
+                if _is_number(one):
+                    yield f"{name} {k}", _cell(one, key, parted(key)[1], measures)
+        elif _is_number(value):
+            yield name, _cell(value, key, parted(key)[1], measures)
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def _cell(value: Any, key: str, unit: str, measures: Measures) -> Cell:
+    if is_module(key):
+        return cell(measures.of_module(value), "", measures)
+    return cell(value, unit, measures)
+
+
+def main(front: Front, each: Sequence[Numbers], measures: Measures) -> list[str]:
+    """Return the names of the numbers that tell designs apart, as many as stand side by side.
+
+    each: numbers of every point. Of stages module, teeth and face width; else what varies.
+    """
+    if not each:
+        return []
+    stages = stages_of(front.points[0].design)
+    keys = MAIN[: max(1, AXES // len(stages))] if stages else ()
+    wanted = [
+        f"stage {k}: {_label(key, measures)}" for k in range(1, len(stages) + 1) for key in keys
+    ]
+    there = [n for n in wanted or each[0] if all(n in one for one in each)]
+    return [n for n in there if _varies([one[n].value for one in each])][:AXES]
+
+
+def _varies(values: Sequence[Any]) -> bool:
+    known = [v for v in values if v is not None]
+    if not all(map(_is_number, known)) or not known:
+        return False
+    return bool(max(known) - min(known) > SAME * max(map(abs, known)))
+
+
+def designs(
+    front: Front, each: Sequence[Numbers], shown: Sequence[str], measures: Measures
+) -> Table:
+    """Return the table of all designs; its CSV holds every number and limit of them, too.
+
+    each: numbers of every point; shown: names of those that the page shows, too, but for modules
+    and teeth, which stand in one column.
+    """
+    made = table(front, measures)
+    names = _names(front, each, measures)
+    limits = list(dict.fromkeys(name for p in front.points for name in p.limits))
+    staged = front.scene is not None
+    heads = [*made.heads, "proven", *names, *(f"used: {limit_words(n, staged)}" for n in limits)]
+    rows = [
+        [*row, p.proven, *(one.get(n) for n in names), *(p.limits.get(n) for n in limits)]
+        for row, p, one in zip(made.rows, front.points, each, strict=True)
+    ]
+    gears = any(stages_of(p.design) for p in front.points)
+    kept = {n for n in shown if not gears or "teeth" not in n and measures.module[1] not in n}
+    hidden = [h for h in heads[len(made.heads) :] if h not in kept]
+    return Table("front", ("design", *heads[1:]), rows, csv_only=hidden)
+
+
+def beaten(front: Front, measures: Measures) -> Table | None:
+    """Return the values of designs that others beat, of which the page shows a plot."""
+    if not front.beaten:
+        return None
+    heads = [head(one, measures) for one in front.objectives]
+    rows = [_values(front, values, measures) for values in front.beaten]
+    return Table("beaten designs", heads, rows, folded=True)
+
+
+def _values(front: Front, values: Sequence[float], measures: Measures) -> list[Cell]:
+    pairs = zip(values, front.objectives, strict=True)
+    return [cell(v, one.unit, measures) for v, one in pairs]
+
+
+def impossible(front: Front, measures: Measures) -> Table | None:
+    """Return the limits on objectives under which there is no design; None where all had one."""
+    if not front.impossible:
+        return None
+    heads = [f"{head(one, measures)}, at most" for one in front.objectives]
+    rows = [
+        [k, *_most(front, one, measures), "proven impossible" if one.proven else "none found"]
+        for k, one in enumerate(front.impossible, 1)
+    ]
+    return Table("limits without a design", ("", *heads, "result"), rows, texts=("result",))
+
+
+def _most(front: Front, one: Impossible, measures: Measures) -> list[Cell]:
+    found = ((one.limits.get(o.name), o.unit) for o in front.objectives)
+    return [Cell(None, "any") if v is None else cell(v, unit, measures) for v, unit in found]
+
+
+def growth(front: Front) -> Table | None:
+    """Return how the front grew; None where a method finds all of it at once."""
+    if len(front.growth) < 2 or not front.hypervolume:
+        return None
+    rows = [
+        (g.seconds, g.evaluations, 100.0 * g.hypervolume / front.hypervolume) for g in front.growth
+    ]
+    return Table("growth", ("seconds", "evaluations", "hypervolume, %"), rows, folded=True)
+
+
+def data(
+    front: Front, each: Sequence[Numbers], shown: Sequence[str], measures: Measures
+) -> dict[str, Any]:
+    """Return what the page tells of every design beside the pick: texts by row, and a sketch.
+
+    shown: names of main numbers. parts: heads and first and last row of each table; in the one of
+    limits shares are drawn as bars. values: of the objectives, in full, to sort by.
+    """
+    heads = [head(one, measures) for one in front.objectives]
+    main = list(shown)
+    others = [n for n in _names(front, each, measures) if n not in main]
+    limits = list(dict.fromkeys(name for p in front.points for name in p.limits))
+    points = [
+        [
+            *(c.text for c in _values(front, p.values, measures)),
+            *(one[n].text if n in one else "" for n in main),
+            *(_used(p, n) for n in limits),
+            *(one[n].text if n in one else "" for n in others),
+        ]
+        for p, one in zip(front.points, each, strict=True)
+    ]
+    staged = front.scene is not None
+    ends = [0, len(heads) + len(main)]
+    ends += [ends[-1] + len(limits), ends[-1] + len(limits) + len(others)]
+    titles = "Objectives and main numbers", "Limits used, %", "All numbers"
+    return {
+        "parts": [[t, a, b] for t, a, b in zip(titles, ends, ends[1:], strict=False) if b > a],
+        "limits": ends[1:3],
+        "rows": [*heads, *main, *(limit_words(n, staged) for n in limits), *others],
+        "points": points,
+        "values": [p.values for p in front.points],
+        "shares": [[_share(p.limits.get(n)) for n in limits] for p in front.points],
+        "sketches": [sketch(p.design) for p in front.points],
+        "rules": {str(k): ", ".join(words) for k, words in rules(front).items()},
+    }
+
+
+def _names(front: Front, each: Sequence[Numbers], measures: Measures) -> list[str]:
+    """Return the names of all numbers of designs that are no objective."""
+    known = {head(one, measures) for one in front.objectives}
+    return [name for name in dict.fromkeys(n for one in each for n in one) if name not in known]
+
+
+def _share(used: float | None) -> float:
+    return round(min(1.0, max(0.0, used or 0.0)), 4)
+
+
+def _used(point: FrontPoint, name: str) -> str:
+    return f"{100.0 * point.limits[name]:.1f}" if name in point.limits else ""
+
+
+def sketch(design: Mapping[str, Any]) -> list[list[float]] | None:
+    """Return the gears of a design along the shafts: x, y, tip and reference radius, stage, teeth.
+
+    In one line where they are not laid out [mm]; None where a size is not known.
+    """
+    found: list[list[float]] = []
+    if placed := design.get("layout"):
+        at = {s["shaft"]: (s["y_mm"], s["z_mm"]) for s in placed["shafts"]}
+        for g in placed["gears"]:
+            sizes = (0.5 * g["tip_diameter_mm"], 0.5 * g["reference_diameter_mm"])
+            found.append([*at[g["shaft"]], *sizes, g["stage"], g["teeth"]])
+        return _rounded(found)
+    start = 0.0
+    for k, stage in enumerate(stages_of(design), 1):
+        away = stage.get("centre_distance_mm")
+        for member, x in (("pinion", start), ("wheel", start + (away or 0.0))):
+            reference = stage.get(f"{member}_diameter_mm")
+            tip = stage.get(f"{member}_tip_diameter_mm", reference)
+            if away is None or reference is None:
+                return None
+            found.append([x, 0.0, 0.5 * tip, 0.5 * reference, k, stage[f"{member}_teeth"]])
+        start += away or 0.0
+    return _rounded(found) if found else None
+
+
+def _rounded(rows: list[list[float]]) -> list[list[float]]:
+    return [[float(f"{v:.5g}") for v in row] for row in rows]

@@ -1,0 +1,227 @@
+"""The page of a Pareto front: self-contained, complete, to be sorted, filtered and clicked."""
+
+import base64
+import csv
+import io
+import json
+import re
+import shutil
+import subprocess
+from html import unescape
+from pathlib import Path
+from urllib.parse import unquote
+
+import front_cases as cases
+import pytest
+from page_reader import ATTACK, Reader, marks, ours
+from page_reader import drawings as drawn
+
+import gearopt
+from gearopt import Front, Problem, Terms, Var
+from gearopt.report.measures import INCH
+from gearopt.report.pages import frame
+from gearopt.report.pages.front import page, tables
+
+ROOM = Path(frame.__file__).parent
+
+
+@pytest.fixture(scope="module")
+def two():
+    return page(cases.drive())
+
+
+def own():
+    def evaluate(x, p):
+        return Terms({"a": x.x**2, "b": (x.x - 2.0) ** 2}, {"room": x.x / 4.0})
+
+    return Problem("parabolas", (Var("x", "mm", 0.0, 3.0, 1.0),), (), evaluate)
+
+
+def links(html):
+    found = {}
+    for tag, attributes in Reader(html).tags:
+        if tag == "a" and "download" in attributes:
+            found[attributes["download"]] = attributes["href"]
+    return found
+
+
+def plots(html):
+    told = [json.loads(text) for kind, text in Reader(html).scripts if kind == "application/json"]
+    return [one for one in told if "layout" in one], next(o for o in told if "points" in o)
+
+
+def traces(plot):
+    return {trace.get("meta") or trace.get("name"): trace for trace in plot["data"]}
+
+
+def test_nothing_is_loaded_from_anywhere(two):
+    for _, attributes in Reader(two).tags:
+        for name in ("src", "href", "action", "srcset"):
+            assert attributes.get(name, "data:").startswith("data:")
+    for name in ("front.html", "front.css", "front.js", "section.html"):
+        text = (ROOM / name).read_text(encoding="utf-8").replace("http://www.w3.org/2000/svg", "")
+        assert not re.search(r"https?://|@import|url\(|fetch\(|import\(", text), name
+
+
+def test_names_are_escaped():
+    html = page(cases.drive(title=ATTACK, message=ATTACK, file=ATTACK))
+    assert {tag for tag, _ in Reader(html).tags}.isdisjoint({"b"})
+    scripts = [kind for kind, _ in Reader(html).scripts]
+    assert scripts.count("") == 2 and not any("alert(" in t for _, t in Reader(html).scripts[1:2])
+
+
+def test_every_value_is_in_the_table_the_csv_and_the_json(two):
+    front, found = cases.drive(), links(two)
+    data = base64.b64decode(found["front.json"].partition("base64,")[2])
+    assert Front.from_json(data.decode()) == front
+    text = unquote(found["front.csv"].partition(",")[2]).lstrip("\ufeff")
+    rows = list(csv.DictReader(io.StringIO(text)))
+    for row, point in zip(rows, front.points, strict=True):
+        assert float(row["gear volume [cm³]"]) == pytest.approx(point.values[0] / 1e3, rel=1e-12)
+        assert int(row["stage 1: teeth z2"]) == point.design["stages"][0]["wheel_teeth"]
+        assert float(row["used: K-factor of stage 1"]) == point.limits["k_factor[1]"]
+    table = re.search(r'<section id="designs">.*?</section>', ours(two), re.S)[0]
+    seen = [unescape(one) for one in re.findall(r"<t[hd][^>]*>([^<]*)", table)]
+    for words in ("6,000", "6,246.9", "knee", "2, 21/116; 3, 23/91"):
+        assert words in seen, words
+
+
+def test_a_design_is_compared_with_the_pick(two):
+    shown, told = plots(two)
+    assert told["pair"][0] == 1 and told["rules"] == {"1": "knee"}
+    row = told["rows"].index("K-factor of stage 1")
+    assert [point[row] for point in told["points"]] == ["100.0", "90.0", "80.0"]
+    assert told["limits"][0] <= row < told["limits"][1]
+    gears = told["sketches"][2]
+    stages = cases.drive().points[2].design["stages"]
+    assert [g[5] for g in gears] == [
+        t for s in stages for t in (s["pinion_teeth"], s["wheel_teeth"])
+    ]
+    # wheel 1 and pinion 2 are on one shaft, at the centre distance from pinion 1
+    assert gears[1][0] == gears[2][0] == pytest.approx(stages[0]["centre_distance_mm"], rel=1e-4)
+
+
+def test_beaten_and_impossible_points_are_grey(two):
+    shown, _ = plots(two)
+    first = traces(shown[0])
+    assert sorted(first["beaten by another"]["x"]) == pytest.approx([6100.0, 6200.0])
+    assert first["limits without a design"]["y"] == [0.5, 0.6]
+    for name in ("beaten by another", "limits without a design"):
+        assert first[name]["marker"]["color"].startswith("--axis")
+    assert "proven impossible" in two and "none found" in two
+    assert first["designs"]["customdata"] == [1, 2, 3]
+    grown = next(plot for plot in shown if "exact" in traces(plot))
+    assert traces(grown)["exact"]["y"] == [50.0, 100.0]
+
+
+def test_three_objectives_are_seen_in_pairs_and_in_space():
+    shown, _ = plots(page(cases.drive(objectives=3)))
+    kinds = [plot["data"][0]["type"] for plot in shown]
+    assert kinds == ["scatter"] * 3 + ["scatter3d"] + ["scatter"] * 2
+
+
+def test_the_still_holds_every_design_and_pick(two):
+    still = next(s for s in drawn(two) if "against" in s.get("aria-label"))
+    assert len(marks(still, "circle", "design")) == 3 and len(marks(still, "circle", "beaten")) == 2
+    assert [text.text for text in still.iter("text") if text.get("class") == "name"] == ["knee"]
+
+
+def test_on_paper_a_long_table_has_its_ends_and_picks():
+    html = page(cases.drive(count=60, impossible=(), beaten=()))
+    rows = re.findall(r'<tr( class=hushed)?><th scope="row">(\d+)</th>', ours(html))
+    printed = [int(k) for hushed, k in rows if not hushed]
+    assert len(rows) == 60 and 24 <= len(printed) <= 26 and {1, 2, 60} <= set(printed)
+    assert f"{len(printed)} of 60 designs" in html
+
+
+def test_a_front_without_a_design_says_why():
+    html = page(cases.impossible())
+    words = "".join(Reader(html).text)
+    assert "Impossible, proven" in words and "Proof: none is so small." in words
+    assert "gearopt explain my.toml" in words and "gear volume at most 1,000 cm³" in words
+    assert not plots(html + '<script type="application/json">{"points": 0}</script>')[0]
+    open_ = page(cases.impossible(status="not proven"))
+    assert "No design found" in open_
+
+
+def test_one_design_stands_alone():
+    shown, told = plots(page(cases.drive(count=1)))
+    assert told["pair"] == [0] and len(told["points"]) == 1
+
+
+def test_inches_are_shown_in_page_and_tables():
+    front = cases.drive()
+    html = page(front, measures=INCH)
+    assert "gear volume [in³]" in html and "diametral pitch" in html and "--units inch" in html
+    rows = list(csv.DictReader(io.StringIO(tables(front, INCH)["front.csv"])))
+    assert float(rows[0]["gear volume [in³]"]) == pytest.approx(6.0e6 / 25.4**3)
+
+
+def test_an_own_problem_shows_its_variables_and_itself_in_notebooks():
+    front = gearopt.pareto(own(), points=5)
+    shown, told = plots(front.to_html())
+    assert "x [mm]" in told["rows"] and told["sketches"] == [None] * len(front.points)
+    assert repr(front).startswith("parabolas: a against b") and "knee" in repr(front)
+    assert "<table>" in front._repr_html_() and "compromise" in front._repr_html_()
+    with pytest.raises(ValueError, match="metric"):
+        front.to_html("cubits")
+
+
+def test_a_kept_front_is_reported_again(here, tmp_path):
+    kept, html, folder = tmp_path / "front.json", tmp_path / "page.html", tmp_path / "csv"
+    kept.write_text(cases.drive().to_json(), encoding="utf-8")
+    told = here("report", kept, "--html", html, "--csv", folder)
+    assert told.returncode == 0 and "3 designs" in told.stdout
+    assert html.read_text(encoding="utf-8") == page(cases.drive(), str(html))
+    names = {"front.csv", "beaten-designs.csv", "limits-without-a-design.csv", "growth.csv"}
+    assert {path.name for path in folder.iterdir()} == names
+    kept.write_text(cases.impossible().to_json(), encoding="utf-8")
+    assert here("report", kept).returncode == 3
+
+
+def test_pareto_writes_its_page(here, tmp_path):
+    html = tmp_path / "page.html"
+    file = Path(__file__).parents[2] / "problems" / "elevator_exact_ratio.toml"
+    names = "gear_volume,sum_of_centre_distances"
+    told = here("pareto", file, "--objectives", names, "--points", "3", "--html", html)
+    assert told.returncode == 0 and f"Page: {html}" in told.stdout
+    assert len(plots(html.read_text(encoding="utf-8"))[1]["points"]) >= 2
+
+
+HOOK = """<script>setTimeout(() => {
+  const all = (what) => [...document.querySelectorAll(what)];
+  const seen = [], note = (what) => seen.push(what);
+  const names = (rows) => rows.map((row) => row.cells[0].textContent);
+  const plots = () => all("figure.drawn .plot").filter((p) => p.data.some((t) => t.meta));
+  all("#designs tbody tr")[2].click();
+  note(all("#beside thead th")[2].textContent);
+  plots()[0].emit("plotly_click", { points: [{ customdata: 1 }] });
+  note(all("#beside thead th")[2].textContent);
+  note(plots().map((p) => p.data.find((t) => t.meta === "chosen").x.length > 0));
+  all("#designs thead button")[2].click();
+  note(names(all("#designs tbody tr")));
+  const least = all("#designs .filter input")[0];
+  least.value = "6100"; least.dispatchEvent(new Event("input"));
+  note(names(all("#designs tbody tr").filter((row) => !row.hidden)));
+  note(plots().map((p) => new Set(p.data.find((t) => t.meta === "designs").customdata).size));
+  document.body.dataset.seen = JSON.stringify(seen);
+}, 4000);</script>"""
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not shutil.which("chromium"), reason="needs a browser")
+def test_a_browser_clicks_sorts_and_filters(two, tmp_path):
+    path = tmp_path / "page.html"
+    path.write_text(two.replace("</body>", f"{HOOK}</body>"), encoding="utf-8")
+    words = ["chromium", "--headless", "--no-sandbox", "--disable-gpu", "--dump-dom"]
+    words += [f"--user-data-dir={tmp_path / 'user'}", "--virtual-time-budget=9000", path.as_uri()]
+    dom = subprocess.run(words, capture_output=True, text=True, timeout=120, check=True).stdout
+    seen = json.loads(unescape(re.search(r'data-seen="([^"]*)"', dom)[1]))
+    assert seen == [
+        "design 3",
+        "design 1",
+        [True, True],
+        ["3", "2", "1"],  # by the second objective
+        ["3", "2"],
+        [2, 2],
+    ]
