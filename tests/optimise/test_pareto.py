@@ -186,3 +186,81 @@ def test_picks_are_the_knee_the_compromise_and_the_best_of_weights():
     found = picks(line, ["a", "b"], {"a": 0.0, "b": 1.0})
     assert [(p.place, p.rule) for p in found] == [(3, "weights"), (1, "knee"), (1, "compromise")]
     assert neighbours(line, 1) == [0, 2]
+
+
+def shares(front, exact):
+    """Return the share of a front's hypervolume that is found; exact (N, 2): its points."""
+    corner = reference(exact)
+    return hypervolume(values(front), corner) / hypervolume(exact, corner)
+
+
+def test_points_are_spread_so_that_little_hypervolume_is_missing():
+    front = gearopt.pareto(discs(), points=20)
+    t = np.linspace(0.0, 1.0, 20_001)
+    exact = 5.0 * np.column_stack([t**2, (1.0 - t) ** 2])
+    best = []  # of 20 points with even roots of the first, even values, and between
+    for power in (1.0, 0.5, 0.75):
+        u = np.linspace(0.0, 1.0, 20) ** power
+        points = 5.0 * np.column_stack([u**2, (1.0 - u) ** 2])
+        best.append(hypervolume(points, reference(exact)))
+    assert shares(front, exact) > max(best) / hypervolume(exact, reference(exact)) - 1e-3
+    assert len(front.points) == 20
+
+
+def test_slices_of_three_objectives_spend_few_points_twice():
+    def evaluate(x, p):
+        return Terms({"a": 1.0 / (x.x * x.y), "b": x.x, "c": x.y})
+
+    sides = tuple(Var(n, "", 0.5, 2.0, 1.0, log=True) for n in "xy")
+    front = gearopt.pareto(Problem("three", sides, (), evaluate), points=36)
+    assert len(front.points) >= 30 and not front.impossible
+    assert all(p.slopes is None or len(p.slopes) == 2 for p in front.points)
+
+
+def binh_and_korn():
+    """Binh and Korn (1997): minimise 4 x^2 + 4 y^2 and (x - 5)^2 + (y - 5)^2.
+
+    x in [0, 5], y in [0, 3], (x - 5)^2 + y^2 <= 25, (x - 8)^2 + (y + 3)^2 >= 7.7.
+    """
+
+    def evaluate(x, p):
+        return Terms(
+            {"f": 4.0 * x.x**2 + 4.0 * x.y**2, "g": (x.x - 5.0) ** 2 + (x.y - 5.0) ** 2},
+            {
+                "disc": ((x.x - 5.0) ** 2 + x.y**2) / 25.0,
+                "hole": 1.0 + (7.7 - (x.x - 8.0) ** 2 - (x.y + 3.0) ** 2) / 7.7,
+            },
+        )
+
+    ends = (Var("x", "", 0.0, 5.0, 1.0), Var("y", "", 0.0, 3.0, 1.0))
+    return Problem("binh_and_korn", ends, (), evaluate)
+
+
+def known_front(f):
+    """The front of Binh and Korn's problem: x = y up to 3, then y = 3 and x up to 5."""
+    x = np.sqrt(f / 8.0)
+    bent = np.where(x <= 3.0, x, np.sqrt(np.maximum(f / 4.0 - 9.0, 0.0)))
+    return (bent - 5.0) ** 2 + (np.minimum(x, 3.0) - 5.0) ** 2
+
+
+def test_the_known_front_of_binh_and_korn_is_found():
+    front = gearopt.pareto(binh_and_korn(), points=15)
+    found = values(front)
+    assert len(found) == 15
+    assert found[:, 1] == pytest.approx(known_front(found[:, 0]), abs=1e-4)
+    assert found[0] == pytest.approx([0.0, 50.0], abs=1e-4)
+    # the end is flat: an allowance of 1e-7 in g moves f by 2e-4
+    assert found[-1] == pytest.approx([136.0, 4.0], rel=3e-4)
+    f = np.linspace(0.0, 136.0, 5001)
+    assert shares(front, np.column_stack([f, known_front(f)])) > 0.96
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("method", ["nsga2", "hybrid"])
+def test_samplers_come_near_the_front_of_binh_and_korn(method):
+    f = np.linspace(0.0, 136.0, 5001)
+    exact = np.column_stack([f, known_front(f)])
+    budget, points = Budget(evaluations=8000), 40 if method == "hybrid" else None
+    found = gearopt.pareto(binh_and_korn(), method=method, points=points, budget=budget)
+    assert (values(found)[:, 1] >= known_front(values(found)[:, 0]) - 1e-4).all()
+    assert shares(found, exact) > 0.97 and igd(values(found), exact) < 0.02

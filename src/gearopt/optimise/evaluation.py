@@ -196,7 +196,7 @@ def _at_once(problem: "Problem", repeat: Repeat | None, shared: Array, own: Arra
 
 def elementwise(problem: "Problem", repeat: Repeat | None) -> bool:
     """Return whether a text is proven to compute every point by itself, at these parameters."""
-    key = ("elementwise", repeat and repeat.name, problem.parameter_values().tobytes())
+    key = _key(problem, repeat)
     if key not in problem.memo:
         problem.memo[key] = reason = _obstacle(problem, repeat) or _surprise(problem, repeat)
         if reason and ("reported", repeat and repeat.name) not in problem.memo:
@@ -204,6 +204,20 @@ def elementwise(problem: "Problem", repeat: Repeat | None) -> bool:
             where = text_of(problem, repeat)[1]
             logger.info("the text of %s is run point by point, which is slower: %s", where, reason)
     return not problem.memo[key]
+
+
+def _key(problem: "Problem", repeat: Repeat | None) -> Any:
+    return "elementwise", repeat and repeat.name, problem.parameter_values().tobytes()
+
+
+def same_way(problem: "Problem", other: "Problem") -> None:
+    """Let a problem that differs in factors of its rows alone be run at once where another is.
+
+    Both share what was built (`Problem.at`).
+    """
+    for repeat in (None, *problem.repeats):
+        if (known := problem.memo.get(_key(other, repeat))) is not None:
+            problem.memo[_key(problem, repeat)] = known
 
 
 def _obstacle(problem: "Problem", repeat: Repeat | None) -> str:

@@ -177,7 +177,11 @@ class Problem:
         return lower, upper, guess
 
     def parameter_values(self) -> Array:
-        """Return all parameter values in order, (np,)."""
+        """Return all parameter values in order, (np,); not to be written to."""
+        return self._parameter_values
+
+    @cached_property
+    def _parameter_values(self) -> Array:
         return np.concatenate([spread(q.value, q.size) for q in self.parameters] or [np.empty(0)])
 
     def batch(self, points: Array) -> Batch:

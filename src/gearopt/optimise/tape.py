@@ -232,11 +232,24 @@ _UNKNOWN = Term(OTHER)
 
 def kinds(problem: Problem) -> Kinds:
     """Return which terms are log-convex, read at the present parameter values, once for each."""
-    key = ("kinds", problem.parameter_values().tobytes())
+    key = _key(problem)
     if key not in problem.memo:
         problem.memo[key] = _kinds(problem, lambda v: Term(MONOMIAL) if v.log else _UNKNOWN)
     found: Kinds = problem.memo[key]
     return found
+
+
+def _key(problem: Problem) -> Any:
+    return "kinds", problem.parameter_values().tobytes()
+
+
+def same_kinds(problem: Problem, other: Problem) -> None:
+    """Let a problem that differs in positive factors of its rows alone have the kinds of another.
+
+    Both share what was built (`Problem.at`); nothing happens where the other's are not known yet.
+    """
+    if (known := problem.memo.get(_key(other))) is not None:
+        problem.memo[_key(problem)] = known
 
 
 def log_convex_in_logarithms(problem: Problem) -> bool:

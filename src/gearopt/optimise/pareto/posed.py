@@ -7,8 +7,10 @@ from typing import Any
 import numpy as np
 
 from gearopt.optimise.conic.problem import Conic
+from gearopt.optimise.evaluation import same_way
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result
+from gearopt.optimise.tape import same_kinds
 from gearopt.optimise.terms import Array, Param, Terms
 
 MOST = "most"  # most_cost: the largest cost that is allowed
@@ -94,7 +96,12 @@ def kept(
     key = (*minimise, *(f"{n} {one.most == one.scale}" for n, one in sorted(limits.items())))
     if key not in built:
         built[key] = posed(problem, minimise, limits)
-    return moved(built[key], limits)
+    first, found = built[key], moved(built[key], limits)
+    if isinstance(found, Problem) and isinstance(first, Problem):
+        same_way(found, first)
+        if all(one.most == one.scale for one in limits.values()):  # positive factors of quotients
+            same_kinds(found, first)
+    return found
 
 
 def moved(problem: Problem | Conic, limits: Mapping[str, Limit]) -> Problem | Conic:
