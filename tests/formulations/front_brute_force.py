@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 from brute_force import cost, k_factor_width, pairs, side, width
+from rated_brute_force import safe, widths
 
 
 def loss(z1, z2):
@@ -67,3 +68,34 @@ def unbeaten(teeth, values, tie=1e-9):
         if (lower & (near < values[i] * (1 - tie)).any(axis=1)).any():
             kept.remove(i)
     return sorted(kept, key=lambda i: values[i, 0])
+
+
+def every_rated_choice(train):
+    """Teeth and values, as `every_choice`, of all trains that ratings find safe, each rated alone.
+
+    Of every pair and module the widths are rated from the narrowest on: no objective falls as a
+    face grows, so a wider one than the first that is safe is not better.
+    """
+    one, made = replace(train, others=()), [((), train.torque, np.zeros(1 + len(train.others)))]
+    for k in range(len(train.stages)):
+        a, b = (np.array([math.prod(z[i] for z in teeth) for teeth, _, _ in made]) for i in (0, 1))
+        listed = zip(*pairs(one, k, a, b), strict=True)
+        made = [
+            ((*made[i][0], (int(z1), int(z2))), made[i][1] * (z2 / z1), made[i][2] + own)
+            for i, z1, z2 in listed
+            for own in safe_costs(train, k, made[i][1], int(z1), int(z2))
+        ]
+    count = len(train.stages)
+    teeth = np.array([teeth for teeth, _, _ in made], np.int64).reshape(-1, count, 2)
+    return teeth, np.array([v for _, _, v in made]).reshape(-1, 1 + len(train.others))
+
+
+def safe_costs(train, k, torque, z1, z2):
+    """Yield the shares of a pair in every objective, of each module at its narrowest safe width."""
+    for module in train.stages[k].modules:
+        for b in widths(train, k, module, z1):
+            if safe(train, k, train.pair(k, float(module), z1, z2, float(b)), torque):
+                d = float(module) * z1 / train.stages[k].toothing.cosine
+                one = (np.array([v]) for v in (d, float(b), z1, z2))
+                yield costs(train, k, *one)[0]
+                break

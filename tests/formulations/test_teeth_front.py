@@ -5,7 +5,9 @@ from fractions import Fraction as F
 
 import numpy as np
 import pytest
-from front_brute_force import every_choice, unbeaten
+from campaigns import few
+from front_brute_force import every_choice, every_rated_choice, unbeaten
+from rated_drives import agma, some_iso, some_rated_drive
 from small_drives import drive
 
 from gearopt.formulations import teeth
@@ -30,9 +32,9 @@ def front_of(train, most=None, budget=None):
     return fronts(train, limits, Clock(budget or Budget()))
 
 
-def same(train, search, most=None):
+def same(train, search, most=None, choices=every_choice):
     """Hold a front to brute force: values, and the teeth of which a tie keeps the fewest."""
-    every, values = every_choice(train)
+    every, values = choices(train)
     if most is not None:
         inside = (values <= np.array(most) * (1 + 1e-9)).all(axis=1)
         every, values = every[inside], values[inside]
@@ -115,3 +117,17 @@ def test_fronts_of_random_drives_equal_brute_force(seed):
     }
     train = train_of(2, face, names, **changes)
     same(train, front_of(train))
+
+
+RATED_SEEDS = [(1, seed) for seed in range(20)] + [
+    (2, seed) for seed in (40, 43, 44, 46, 47, 49, 50, 51, 52, 63)
+]  # stages and seed; of two stages those of few candidates
+
+
+@pytest.mark.parametrize(("stages", "seed"), few(RATED_SEEDS, [(1, 1), (1, 4), (1, 5)]))
+def test_fronts_of_random_rated_drives_equal_all_candidates_rated_alone(stages, seed):
+    standard = (agma, some_iso)[seed % 2]
+    train = some_rated_drive(seed, stages, ("tied", "stepped", "fixed"), standard)
+    names = (*TWO, THREE)[seed % 3]
+    train = replace(train, objective=names[0], others=names[1:])
+    same(train, front_of(train), choices=every_rated_choice)
