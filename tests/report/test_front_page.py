@@ -1,12 +1,14 @@
 """The page of a Pareto front: self-contained, complete, to be sorted, filtered and clicked."""
 
 import base64
+import copy
 import csv
 import io
 import json
 import re
 import shutil
 import subprocess
+from dataclasses import replace
 from html import unescape
 from pathlib import Path
 from urllib.parse import unquote
@@ -92,7 +94,7 @@ def test_a_design_is_compared_with_the_pick(two):
     row = told["rows"].index("K-factor of stage 1")
     assert [point[row] for point in told["points"]] == ["100.0", "90.0", "80.0"]
     assert told["limits"][0] <= row < told["limits"][1]
-    gears = told["sketches"][2]
+    gears = told["sketches"][2]["gears"]
     stages = cases.drive().points[2].design["stages"]
     assert [g[5] for g in gears] == [
         t for s in stages for t in (s["pinion_teeth"], s["wheel_teeth"])
@@ -152,7 +154,7 @@ def test_one_design_stands_alone():
 def test_inches_are_shown_in_page_and_tables():
     front = cases.drive()
     html = page(front, measures=INCH)
-    assert "gear volume [in³]" in html and "diametral pitch" in html and "--units inch" in html
+    assert "gear volume [in³]" in html and "P_nd, z1/z2" in html and "--units inch" in html
     rows = list(csv.DictReader(io.StringIO(tables(front, INCH)["front.csv"])))
     assert float(rows[0]["gear volume [in³]"]) == pytest.approx(6.0e6 / 25.4**3)
 
@@ -186,6 +188,24 @@ def test_pareto_writes_its_page(here, tmp_path):
     told = here("pareto", file, "--objectives", names, "--points", "3", "--html", html)
     assert told.returncode == 0 and f"Page: {html}" in told.stdout
     assert len(plots(html.read_text(encoding="utf-8"))[1]["points"]) >= 2
+
+
+def test_layouts_are_drawn_with_their_boxes_at_one_scale():
+    kept = Path(__file__).parents[2] / "docs" / "pictures" / "elevator_box.json"
+    one = json.loads(kept.read_text(encoding="utf-8"))["design"]
+    other = copy.deepcopy(one)
+    other["layout"]["box"]["width_mm"] *= 2.0
+    front = cases.drive(count=2, picks=(), beaten=(), impossible=())
+    points = [replace(p, design=d) for p, d in zip(front.points, (one, other), strict=True)]
+    html = page(replace(front, points=tuple(points)))
+    left, bottom, right, top = plots(html)[1]["sketches"][0]["box"]
+    box = one["layout"]["box"]
+    assert right - left == pytest.approx(box["width_mm"], rel=1e-3)
+    assert top - bottom == pytest.approx(box["height_mm"], rel=1e-3)
+    views = [s for s in drawn(html) if marks(s, "rect", "box")]
+    wide = [float(marks(s, "rect", "box")[0].get("width")) for s in views]
+    assert wide[1] == pytest.approx(2.0 * wide[0], rel=1e-3)
+    assert "layout: box: width [mm]" in plots(html)[1]["rows"]
 
 
 HOOK = """<script>setTimeout(() => {

@@ -30,43 +30,42 @@
     return node;
   }
 
-  // Gears along the shafts, all designs at one scale, from rows of x, y, tip and reference radius.
+  // Gears along the shafts, all designs at one scale: of each x, y, tip and reference radius.
   const ends = [0, 0];
-  const room = told.sketches.map((gears) => gears && [0, 1].map((n) => {
-    const low = Math.min(...gears.map((g) => g[n] - g[2]));
-    const high = Math.max(...gears.map((g) => g[n] + g[2]));
+  const room = told.sketches.map((one) => one && [0, 1].map((n) => {
+    const low = Math.min(...one.gears.map((g) => g[n] - g[2]), ...(one.box ? [one.box[n]] : []));
+    const high = Math.max(...one.gears.map((g) => g[n] + g[2]), ...(one.box ? [one.box[n + 2]] : []));
     ends[n] = Math.max(ends[n], high - low);
     return [low, high];
   }));
 
+  function drawn(tag, attributes, text) {
+    const node = document.createElementNS(svg, tag);
+    for (const [name, said] of Object.entries(attributes)) node.setAttribute(name, said);
+    if (text !== undefined) node.textContent = text;
+    return node;
+  }
+
   function sketch(k) {
-    const gears = told.sketches[k];
-    if (!gears) return null;
-    const wide = 460, scale = Math.min(wide / ends[0], 300 / ends[1]);
-    const high = scale * ends[1];
-    const left = (scale * ends[0] - scale * (room[k][0][1] - room[k][0][0])) / 2;
-    const top = (high - scale * (room[k][1][1] - room[k][1][0])) / 2;
-    const image = document.createElementNS(svg, "svg");
-    image.setAttribute("viewBox", `-4 -4 ${(scale * ends[0] + 8).toFixed(1)} ${(high + 8).toFixed(1)}`);
-    image.setAttribute("role", "img");
-    image.setAttribute("aria-label", `gears of design ${k + 1}`);
-    for (const [x, y, tip, reference, stage, teeth] of gears) {
-      const cx = left + scale * (x - room[k][0][0]), cy = top + scale * (room[k][1][1] - y);
+    const one = told.sketches[k];
+    if (!one) return null;
+    const [[x0, x1], [y0, y1]] = room[k];
+    const scale = Math.min(460 / ends[0], 300 / ends[1]);
+    const wide = scale * ends[0], high = scale * ends[1];
+    const across = (x) => (wide - scale * (x1 - x0)) / 2 + scale * (x - x0);
+    const down = (y) => (high - scale * (y1 - y0)) / 2 + scale * (y1 - y);
+    const image = drawn("svg", { viewBox: `-4 -4 ${wide + 8} ${high + 8}`, role: "img", "aria-label": `gears of design ${k + 1}` });
+    if (one.box) {
+      const [left, bottom, right, top] = one.box;
+      image.append(drawn("rect", { class: "box", x: across(left), y: down(top), width: scale * (right - left), height: scale * (top - bottom) }));
+    }
+    for (const [x, y, tip, reference, stage] of one.gears) {
       for (const [style, r] of [["tip", tip], ["reference", reference]]) {
-        const circle = document.createElementNS(svg, "circle");
-        circle.setAttribute("class", style);
-        circle.setAttribute("style", `--c: var(--series-${(stage - 1) % 8 + 1})`);
-        circle.setAttribute("cx", cx.toFixed(2));
-        circle.setAttribute("cy", cy.toFixed(2));
-        circle.setAttribute("r", (scale * r).toFixed(2));
-        image.append(circle);
+        image.append(drawn("circle", { class: style, style: `--c: var(--series-${(stage - 1) % 8 + 1})`, cx: across(x), cy: down(y), r: scale * r }));
       }
-      if (scale * tip < 24) continue;
-      const text = document.createElementNS(svg, "text");
-      text.setAttribute("x", cx.toFixed(2));
-      text.setAttribute("y", (cy - 0.55 * scale * tip).toFixed(2));
-      text.textContent = `z ${teeth}`;
-      image.append(text);
+    }
+    for (const [x, y, tip, , , teeth] of one.gears) {
+      if (scale * tip > 24) image.append(drawn("text", { x: across(x), y: down(y) - 0.55 * scale * tip }, `z ${teeth}`));
     }
     return image;
   }

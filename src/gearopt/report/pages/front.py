@@ -5,12 +5,13 @@ import json
 from collections.abc import Sequence
 from typing import Any
 
+from gearopt.formulations.design import drive_design
 from gearopt.optimise.pareto.front import Front
 from gearopt.optimise.pareto.pareto import RANDOM
 from gearopt.report import front as told
 from gearopt.report.front import rules, stages_of, words
 from gearopt.report.measures import METRIC, Measures
-from gearopt.report.pages import front_designs, front_plots, train_views
+from gearopt.report.pages import front_designs, front_plots, layout_views, train_views
 from gearopt.report.pages.frame import render
 from gearopt.report.pages.front_designs import Numbers
 from gearopt.report.pages.front_values import Drawn, drawn
@@ -114,19 +115,21 @@ def _drawn(front: Front, measures: Measures) -> list[Section]:
     if not drawings:
         return []
     said = (
-        "The picks and the ends of the front, along the shafts, all in one line and at one scale; "
+        "The picks and the ends of the front, along the shafts and at one scale; "
         f"dimensions in {measures.lengths}."
     )
     return [Section("Gears of the picks", words=(said,), drawings=drawings)]
 
 
 def _views(front: Front, names: dict[int, str], measures: Measures) -> Sequence[Drawing]:
-    stages = {
-        f"Design {place + 1}, {name}": stages_of(front.points[place].design)
-        for place, name in sorted(names.items())
-        if not front.points[place].design.get("layout")
-    }
-    if not stages or not all(train_views.is_drawn(own) for own in stages.values()):
+    """Return views along the shafts of some designs, by their places; none without gears."""
+    called = {f"Design {place + 1}, {name}": place for place, name in sorted(names.items())}
+    found = {name: front.points[place].design for name, place in called.items()}
+    if found and all(design.get("layout") for design in found.values()):
+        layouts = {name: drive_design(design).layout for name, design in found.items()}
+        return layout_views.beside({n: one for n, one in layouts.items() if one}, measures)
+    stages = {name: stages_of(design) for name, design in found.items()}
+    if not stages or not all(map(train_views.is_drawn, stages.values())):
         return ()
     return train_views.beside(stages, measures)
 

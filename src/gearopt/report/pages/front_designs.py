@@ -11,8 +11,9 @@ from gearopt.report.section import Cell, Table, cell
 from gearopt.report.words import MODULE, heading, is_module, limit_words, parted
 
 MAIN = (MODULE, "pinion_teeth", "face_width_mm", "wheel_teeth")  # of a stage, the first ones first
-AXES = 9  # of parallel coordinates beside the objectives, about
+AXES, FEW = 9, 6  # of parallel coordinates beside the objectives, about; of names of any length
 SAME = 1e-9  # relative; numbers that differ by less are alike
+DIFFERENT = "Other numbers that differ between designs (front.csv has all)"
 Numbers = dict[str, Cell]  # of a design, by what they are called
 
 
@@ -43,9 +44,11 @@ def _single(
         name = f"{first}{heading(key, measures)}"
         if isinstance(value, Mapping):
             yield from _single(value, measures, f"{name}: ")
-        elif isinstance(value, list | tuple):
+        elif isinstance(value, list | tuple) and key != "stages":
             for k, one in enumerate(value, 1):
-                if _is_number(one):
+                if isinstance(one, Mapping):
+                    yield from _single(one, measures, f"{name} {one.get('name', k)}: ")
+                elif _is_number(one):
                     yield f"{name} {k}", _cell(one, key, parted(key)[1], measures)
         elif _is_number(value):
             yield name, _cell(value, key, parted(key)[1], measures)
@@ -64,7 +67,8 @@ def _cell(value: Any, key: str, unit: str, measures: Measures) -> Cell:
 def main(front: Front, each: Sequence[Numbers], measures: Measures) -> list[str]:
     """Return the names of the numbers that tell designs apart, as many as stand side by side.
 
-    each: numbers of every point. Of stages module, teeth and face width; else what varies.
+    each: numbers of every point. Of stages module, teeth and face width; where these are alike, and
+    without stages, what varies.
     """
     if not each:
         return []
@@ -73,8 +77,21 @@ def main(front: Front, each: Sequence[Numbers], measures: Measures) -> list[str]
     wanted = [
         f"stage {k}: {_label(key, measures)}" for k in range(1, len(stages) + 1) for key in keys
     ]
-    there = [n for n in wanted or each[0] if all(n in one for one in each)]
-    return [n for n in there if _varies([one[n].value for one in each])][:AXES]
+    if staged := _different(each, wanted):
+        return staged[:AXES]
+    columns = zip(*(p.values for p in front.points), strict=True)
+    known = [
+        [measures.of(v, one.unit) for v in column]
+        for column, one in zip(columns, front.objectives, strict=True)
+    ]
+    names = _different(each, _names(front, each, measures))
+    return [n for n in names if [one[n].value for one in each] not in known][:FEW]
+
+
+def _different(each: Sequence[Numbers], names: Sequence[str]) -> list[str]:
+    """Return the names of numbers that all designs have and that are not the same in all."""
+    there = [n for n in names if all(n in one for one in each)]
+    return [n for n in there if _varies([one[n].value for one in each])]
 
 
 def _varies(values: Sequence[Any]) -> bool:
@@ -96,7 +113,7 @@ def designs(
     names = _names(front, each, measures)
     limits = list(dict.fromkeys(name for p in front.points for name in p.limits))
     staged = front.scene is not None
-    heads = [*made.heads, "proven", *names, *(f"used: {limit_words(n, staged)}" for n in limits)]
+    heads = [*made.heads, "proven", *names, *(f"used: {_limit(n, staged)}" for n in limits)]
     rows = [
         [*row, p.proven, *(one.get(n) for n in names), *(p.limits.get(n) for n in limits)]
         for row, p, one in zip(made.rows, front.points, each, strict=True)
@@ -158,7 +175,8 @@ def data(
     """
     heads = [head(one, measures) for one in front.objectives]
     main = list(shown)
-    others = [n for n in _names(front, each, measures) if n not in main]
+    names = [n for n in _names(front, each, measures) if n not in main]
+    others = _different(each, names) if len(each) > 1 else names
     limits = list(dict.fromkeys(name for p in front.points for name in p.limits))
     points = [
         [
@@ -172,11 +190,15 @@ def data(
     staged = front.scene is not None
     ends = [0, len(heads) + len(main)]
     ends += [ends[-1] + len(limits), ends[-1] + len(limits) + len(others)]
-    titles = "Objectives and main numbers", "Limits used, %", "All numbers"
+    titles = (
+        "Objectives and main numbers",
+        "Limits used, %",
+        "Other numbers" if len(each) == 1 else DIFFERENT,
+    )
     return {
         "parts": [[t, a, b] for t, a, b in zip(titles, ends, ends[1:], strict=False) if b > a],
         "limits": ends[1:3],
-        "rows": [*heads, *main, *(limit_words(n, staged) for n in limits), *others],
+        "rows": [*heads, *main, *(_limit(n, staged) for n in limits), *others],
         "points": points,
         "values": [p.values for p in front.points],
         "shares": [[_share(p.limits.get(n)) for n in limits] for p in front.points],
@@ -195,14 +217,21 @@ def _share(used: float | None) -> float:
     return round(min(1.0, max(0.0, used or 0.0)), 4)
 
 
+def _limit(name: str, staged: bool) -> str:
+    """Return a limit in words; one of two indices is of no single stage."""
+    return limit_words(name, staged and "," not in name)
+
+
 def _used(point: FrontPoint, name: str) -> str:
-    return f"{100.0 * point.limits[name]:.1f}" if name in point.limits else ""
+    """Return the use of a limit in per cent; what is far from it has none."""
+    return f"{100.0 * max(0.0, point.limits[name]):.1f}" if name in point.limits else ""
 
 
-def sketch(design: Mapping[str, Any]) -> list[list[float]] | None:
-    """Return the gears of a design along the shafts: x, y, tip and reference radius, stage, teeth.
+def sketch(design: Mapping[str, Any]) -> dict[str, Any] | None:
+    """Return the gears of a design along the shafts, and the box around them if there is one [mm].
 
-    In one line where they are not laid out [mm]; None where a size is not known.
+    gears: x, y, tip and reference radius, stage and teeth of each, in one line where they are not
+    laid out; box: left, bottom, right, top. None where a size is not known.
     """
     found: list[list[float]] = []
     if placed := design.get("layout"):
@@ -210,7 +239,10 @@ def sketch(design: Mapping[str, Any]) -> list[list[float]] | None:
         for g in placed["gears"]:
             sizes = (0.5 * g["tip_diameter_mm"], 0.5 * g["reference_diameter_mm"])
             found.append([*at[g["shaft"]], *sizes, g["stage"], g["teeth"]])
-        return _rounded(found)
+        box = placed["box"]
+        x, y = box["left_mm"], box["bottom_mm"]
+        ends = [x, y, x + box["width_mm"], y + box["height_mm"]]
+        return {"gears": _rounded(found), "box": _rounded([ends])[0]}
     start = 0.0
     for k, stage in enumerate(stages_of(design), 1):
         away = stage.get("centre_distance_mm")
@@ -221,7 +253,7 @@ def sketch(design: Mapping[str, Any]) -> list[list[float]] | None:
                 return None
             found.append([x, 0.0, 0.5 * tip, 0.5 * reference, k, stage[f"{member}_teeth"]])
         start += away or 0.0
-    return _rounded(found) if found else None
+    return {"gears": _rounded(found)} if found else None
 
 
 def _rounded(rows: list[list[float]]) -> list[list[float]]:

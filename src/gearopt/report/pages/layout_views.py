@@ -30,6 +30,7 @@ from gearopt.report.pages.sheet import SIZE, Drawing, Place, Point, Sheet, Windo
 from gearopt.report.section import Section
 
 WIDE, HIGH = 640.0, 780.0  # largest drawing [px]: two side by side, or one on a printed page
+BESIDE = 400.0  # px of the widest of several front views that stand beside each other
 LEVEL = 32.0  # px from the upper edge: where face widths stand
 
 
@@ -58,6 +59,16 @@ def section(result: Result, measures: Measures) -> Section | None:
         side_view(found, windows[2], scale, "y", measures),
     )
     return Section("Layout", words=words, drawings=views)
+
+
+def beside(designs: Mapping[str, LayoutDesign], measures: Measures) -> tuple[Drawing, ...]:
+    """Draw the front views of layouts, all at one scale; designs: by what they are called."""
+    windows = {name: window_of(found, "") for name, found in designs.items()}
+    scale = min(window.scale(BESIDE, HIGH) for window in windows.values())
+    return tuple(
+        replace(front_view(found, windows[name], scale, measures), caption=f"{name.capitalize()}.")
+        for name, found in designs.items()
+    )
 
 
 def window_of(found: LayoutDesign, axis: str) -> Window:
