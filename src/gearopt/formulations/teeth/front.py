@@ -324,9 +324,10 @@ def _keep(run: Search, nodes: Nodes) -> None:
         return
     values = np.vstack([run.values, nodes.cost[:, :count]])
     made = nodes.made if run.made is None else run.made + nodes.made
-    every = [teeth_of(run, made, k) for k in range(len(values))]
-    order = sorted(range(len(values)), key=lambda k: (sum(map(sum, every[k])), every[k]))
-    kept = np.array(order)[unbeaten(values[order])]
+    columns = zip(run.tables, made.pair.T, strict=True)
+    teeth = [z for table, pair in columns for z in (table.z1[pair], table.z2[pair])]
+    order = np.lexsort((*teeth[::-1], np.sum(teeth, axis=0)))  # fewest teeth first, of ties kept
+    kept = order[unbeaten(values[order])]
     fresh = values[kept[kept >= len(run.values)]]
     run.values, run.made = values[kept], made.take(kept)
     if run.rest:

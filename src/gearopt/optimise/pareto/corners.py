@@ -58,12 +58,28 @@ def weighed(points: Array, weights: Array) -> Array:
 def useful(bounds: Array, open_: Array) -> NDArray[np.bool_]:
     """Return which lower bounds (n, m) lie below one of the corners (L, m); a tie does."""
     found = np.zeros(len(bounds), dtype=bool)
-    finite = np.flatnonzero(np.isfinite(bounds).all(axis=1))
-    limits = open_ * (1.0 + TIE)
-    count = max(1, len(finite) * len(open_) * bounds.shape[1] // BLOCK)
-    for part in np.array_split(finite, count):
-        here = np.ones((len(part), len(open_)), dtype=bool)
+    limits = open_[np.argsort(open_[:, 0], kind="stable")] * (1.0 + TIE)
+    some = np.flatnonzero(np.isfinite(bounds).all(axis=1))
+    first, last = _range(bounds[some], limits)
+    some, first, last = (a[first < last] for a in (some, first, last))
+    count = max(1, len(some) * len(open_) * bounds.shape[1] // BLOCK)
+    place = np.arange(len(limits))
+    for part in np.array_split(np.arange(len(some)), count):
+        here = (first[part, None] <= place) & (place < last[part, None])
         for column in range(bounds.shape[1]):
-            here &= bounds[part, column, None] <= limits[None, :, column]
-        found[part] = here.any(axis=1)
+            here &= bounds[some[part], column, None] <= limits[None, :, column]
+        found[some[part]] = here.any(axis=1)
     return found
+
+
+def _range(bounds: Array, limits: Array) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return the first and the last (left out) corner that each bound can lie below.
+
+    limits: by the first coordinate. Of two objectives the second one falls, as no corner lies
+    below another.
+    """
+    first = np.searchsorted(limits[:, 0], bounds[:, 0])
+    last = np.full(len(bounds), len(limits))
+    if (limits[1:, 1] <= limits[:-1, 1]).all():
+        last = np.searchsorted(-limits[:, 1], -bounds[:, 1], side="right")
+    return first, last
