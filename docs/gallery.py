@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from pictures import PICTURES, ROOM
+from pictures import FRONTS, PICTURES, ROOM
 
 from gearopt.report.measures import METRIC
 from gearopt.report.words import VERDICTS
@@ -197,6 +197,11 @@ def _entry(name: str, words: str) -> str:
     if name in PICTURES:
         views = "views" if len(PICTURES[name].drawings) > 1 else "view"
         lines.append(f"![{file['title']}: {views} to scale]({ROOM.name}/{name}.svg)\n")
+    for front in (one for one, it in FRONTS.items() if it.file == name):
+        lines.append(f"![{file['title']}: a Pareto front]({ROOM.name}/{front}.svg)\n")
+        traded = f"gearopt pareto problems/{name}.toml --objectives {FRONTS[front].objectives}"
+        words = f"{words} In the picture all designs that none beats, by `{traded}`: "
+        words += "[Trade-offs](trade_offs.md)."
     lines += [
         f"{words}\n",
         f"```\ngearopt {_command(file)} problems/{name}.toml\n```\n",

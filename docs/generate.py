@@ -60,10 +60,16 @@ def main() -> None:
     if "--solve" in sys.argv:
         for name in pictures.PICTURES:
             (pictures.ROOM / f"{name}.json").write_text(pictures.solve(name), encoding="utf-8")
+        for name in pictures.FRONTS:
+            (pictures.ROOM / f"{name}.json").write_text(
+                pictures.solve_front(name), encoding="utf-8"
+            )
         notebook.PAGE.write_text(notebook.solved(), encoding="utf-8")
     (DOCS / "notebook.ipynb").write_text(notebook.ipynb(), encoding="utf-8")
     for name in pictures.PICTURES:
         (pictures.ROOM / f"{name}.svg").write_text(pictures.draw(name), encoding="utf-8")
+    for name in pictures.FRONTS:
+        (pictures.ROOM / f"{name}.svg").write_text(pictures.draw_front(name), encoding="utf-8")
     for name, page in PAGES.items():
         (DOCS / name).write_text(page(), encoding="utf-8")
     (DOCS / "compound.md").write_text(with_code(), encoding="utf-8")

@@ -5,6 +5,7 @@ pictures. A picture is drawn from its stored result, because a layout or a packi
 designs of equal value, and which of them a search meets first may differ between machines.
 """
 
+import json
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -12,10 +13,12 @@ from html import escape
 from pathlib import Path
 
 import gearopt
+from gearopt.optimise.pareto.front import Front
 from gearopt.optimise.result import Result
 from gearopt.report.kinds import packing
 from gearopt.report.measures import METRIC, Measures
-from gearopt.report.pages import layout_views, sheet, train_views
+from gearopt.report.pages import front_plots, layout_views, sheet, train_views
+from gearopt.report.pages.front_values import drawn
 from gearopt.report.pages.sheet import Drawing
 from gearopt.report.section import Section
 
@@ -48,6 +51,38 @@ PICTURES = {  # by the name of the problem file
     "six_cylinders_two_layers": Picture(packing.plans, (0, 1), down=True),
     "seven_points": Picture(packing.plans),
 }
+
+
+@dataclass(frozen=True)
+class Traded:
+    """Which Pareto front to show: of a problem file, its objectives."""
+
+    file: str
+    objectives: str
+
+
+FRONTS = {"elevator_front": Traded("elevator_free_width", "gear_volume,mesh_loss")}
+
+
+def solve_front(name: str) -> str:
+    """The Pareto front as it is stored: the values of its designs, and what is certain."""
+    file = f"problems/{FRONTS[name].file}.toml"
+    front = gearopt.pareto(ROOT / file, objectives=FRONTS[name].objectives)
+    points = tuple(replace(p, design={}, limits={}) for p in front.points)
+    kept = replace(front, file=file, points=points, seconds=0.0, versions={}, asked={})
+    return json.dumps(kept.to_dict(), separators=(",", ":")) + "\n"
+
+
+def stored_front(name: str) -> Front:
+    """The stored Pareto front."""
+    return Front.from_json((ROOM / f"{name}.json").read_text(encoding="utf-8"))
+
+
+def draw_front(name: str) -> str:
+    """The SVG of a stored Pareto front of two objectives."""
+    (figure,) = front_plots.pairs(drawn(stored_front(name), METRIC))
+    assert figure.still is not None
+    return _file("Pareto front", [figure.still], down=False)
 
 
 def solve(name: str) -> str:

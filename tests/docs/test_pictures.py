@@ -4,10 +4,12 @@ import hashlib
 import re
 import tomllib
 import xml.etree.ElementTree as ET
+from itertools import pairwise
 
 import pictures
 import pytest
 
+EVERY = (*pictures.PICTURES, *pictures.FRONTS)
 NUMBER = re.compile(r"-?\d+\.?\d*")
 PIXEL = 0.011  # two decimals are written
 
@@ -16,10 +18,11 @@ def content(name):
     return (pictures.ROOM / f"{name}.svg").read_text(encoding="utf-8")
 
 
-@pytest.mark.parametrize("name", pictures.PICTURES)
+@pytest.mark.parametrize("name", EVERY)
 def test_the_picture_is_what_is_drawn_now(name):
     """Words alike, numbers to rounding: sines differ in the last digit between machines."""
-    written, drawn = content(name), pictures.draw(name)
+    draw = pictures.draw if name in pictures.PICTURES else pictures.draw_front
+    written, drawn = content(name), draw(name)
     assert NUMBER.sub("#", written) == NUMBER.sub("#", drawn), "run: python docs/generate.py"
     pairs = zip(NUMBER.findall(written), NUMBER.findall(drawn), strict=True)
     assert all(abs(float(a) - float(b)) <= PIXEL for a, b in pairs)
@@ -37,7 +40,20 @@ def test_the_stored_result_is_of_the_file_as_it_is_and_what_it_expects(name):
     assert result.value == pytest.approx(expected["objective"], rel=digits)
 
 
-@pytest.mark.parametrize("name", pictures.PICTURES)
+@pytest.mark.parametrize("name", pictures.FRONTS)
+def test_the_stored_front_is_complete_and_of_the_file_as_it_is(name):
+    path = pictures.ROOT / "problems" / f"{pictures.FRONTS[name].file}.toml"
+    front, data = pictures.stored_front(name), path.read_bytes()
+    assert front.file_sha256 == hashlib.sha256(data).hexdigest(), (
+        "run: python docs/generate.py --solve"
+    )
+    least = tomllib.loads(data.decode())["x-expected"]["objective"]
+    assert front.status == "complete" and front.points[0].values[0] == pytest.approx(least)
+    rows = [p.values for p in front.points]
+    assert all(a < c and b > d for (a, b), (c, d) in pairwise(rows))
+
+
+@pytest.mark.parametrize("name", EVERY)
 def test_the_picture_stands_alone(name):
     """Small, well-formed, with both looks inside, and nothing from elsewhere."""
     text = content(name)
@@ -52,7 +68,7 @@ def test_the_picture_stands_alone(name):
 
 def test_every_picture_is_made_and_none_is_left_over():
     there = {path.name for path in pictures.ROOM.iterdir()}
-    assert there == {f"{name}.{end}" for name in pictures.PICTURES for end in ("svg", "json")}
+    assert there == {f"{name}.{end}" for name in EVERY for end in ("svg", "json")}
 
 
 def test_the_pages_show_no_picture_that_is_missing():
@@ -61,4 +77,4 @@ def test_the_pages_show_no_picture_that_is_missing():
         for path in (*pictures.ROOM.parent.glob("*.md"), pictures.ROOT / "README.md")
         for target in re.findall(r"!\[[^\]]*\]\([^)]*?pictures/([^)]+)\)", path.read_text("utf-8"))
     }
-    assert shown == {f"{name}.svg" for name in pictures.PICTURES}
+    assert shown == {f"{name}.svg" for name in EVERY}

@@ -44,3 +44,14 @@ def impossible(**changes):
     told = {"file": "my.toml", "scene": "drive", "proof": {"sentence": "Proof: none is so small."}}
     told |= {"name": "drive", "status": "infeasible", "method": "exact", "objectives": shown}
     return Front(**told | changes)
+
+
+def own():
+    """A front of a problem without gears: (x - 2)^2 against x^2."""
+    shown = Objective("a"), Objective("b")
+    points = [
+        FrontPoint((x**2, (x - 2.0) ** 2), design={"x_mm": x}, limits={"room": x / 4.0})
+        for x in (0.0, 1.0, 2.0)
+    ]
+    picks = Pick(1, "knee", KNEE), Pick(1, "compromise", "the point nearest to both")
+    return Front("parabolas", "not proven", "epsilon", shown, tuple(points), picks=picks)

@@ -37,7 +37,7 @@ def scatter(
         sheet.circle(*at(values[i], values[k]), DOT, "design")
     for place, words in sorted(found.picks.items()):
         x, y = at(found.points[place][i], found.points[place][k])
-        sheet.circle(x, y, 2.0 * DOT, "picked")
+        sheet.circle(x, y, 2.0 * DOT, "picked", "--series-2")
         sheet.label(words, around(sheet.at(x, y), (22.0, 34.0, 48.0), 6.0), "name")
     return sheet.drawing(caption, caption)
 
@@ -93,7 +93,7 @@ def in_space(found: Drawn) -> Drawing:
             sheet.circle(*at(values), DOT, style)
     for place, words in sorted(found.picks.items()):
         x, y = at(found.points[place])
-        sheet.circle(x, y, 2.0 * DOT, "picked")
+        sheet.circle(x, y, 2.0 * DOT, "picked", "--series-2")
         sheet.label(words, around(sheet.at(x, y), (22.0, 34.0, 48.0), 6.0), "name")
     outside(sheet, room, seen, found.heads)
     caption = "The three objectives in space, in parallel projection."
