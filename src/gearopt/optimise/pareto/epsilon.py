@@ -27,9 +27,15 @@ from gearopt.optimise.terms import Array
 SLACK = 1e-7  # relative, of the first end's objective while the others are minimised
 RANDOM = False
 COUNTS = "Ipopt iteration, or solve of a Conic"
+STEP = 1e-8  # relative, from one of finitely many designs to the next
 CORNER = 0.1  # part of a chord next to its ends where none of the first limits is put
 FIRST = 5  # points at least before others are spread by them
 SAMPLES = 65  # of a curve between two neighbours
+
+LAST = (
+    "Proof: exhausted searches, one a design, each for a smaller {name} than the last design has; "
+    "for the last of them there is none."
+)
 
 Caps = dict[str, float]  # largest values of objectives that the user states
 
@@ -39,11 +45,13 @@ class Limiting:
     """How a kind of problem poses one objective under limits on others, for a method of its own.
 
     problem(name, most): minimise one objective, others at most as large; variables are those of the
-    whole problem. names: objectives that may be limited.
+    whole problem. names: objectives that may be limited. whole: there are finitely many designs, so
+    that steps from one to the next end where there is none.
     """
 
     problem: Callable[[str, Caps], Problem]
     names: tuple[str, ...]
+    whole: bool = False
 
 
 @dataclass
@@ -84,6 +92,8 @@ def front(
     if limiting is not None:
         _limitable(limiting, (*names[1:], *caps))
     own = _Run(problem, tuple(names), caps, Clock(budget, watch), method, limiting)
+    if limiting is not None and limiting.whole and len(names) == 2:
+        return _found(own, _stairs(own, points))
     ends = _ends(own, own.names, own.caps)
     if ends is None:
         return _found(own)
@@ -128,6 +138,18 @@ def _ends(run: _Run, names: tuple[str, ...], caps: Caps) -> list[Point] | None:
     for p in framed if len(run.names) == 2 else ends:
         _keep(run, p)
     return framed if len(names) == 2 else ends
+
+
+def _stairs(run: _Run, points: int) -> bool:
+    """Add designs by steps just below the last one; return whether the last step has none."""
+    (first, second), held = run.names, dict(run.caps)
+    while not run.clock.over and (not points or len(run.points) < points):
+        made = _solved(run, first, held)
+        if made is None or not made.proven:
+            return made is None and run.skipped[-1].proven
+        _keep(run, made)
+        held[second] = float(made.values[1]) * (1.0 - STEP)
+    return False
 
 
 def _keep(run: _Run, point: Point) -> None:
@@ -292,19 +314,21 @@ def _values(run: _Run, result: Result, x: Array) -> Array:
     return np.array([values[rows.index(name)] for name in run.names])
 
 
-def _found(run: _Run) -> Found:
+def _found(run: _Run, complete: bool = False) -> Found:
     """Return the front of all points, with its error where it is proven."""
     points, beaten = sifted(run.points)
     all_proven = bool(points) and all(p.proven for p in points)
     two = len(run.names) == 2
     error = _error(points, run.logarithmic) if all_proven and two and len(points) > 1 else None
-    proof = {"method": "epsilon constraints", "sentence": _sentence(points)}
+    said = LAST.format(name=run.names[1]) if complete and points else _sentence(points)
+    proof = {"method": "epsilon constraints", "sentence": said}
     none = None if points else run.none
     return Found(
         points,
-        error=error,
+        complete=complete and bool(points),
+        error=None if complete else error,
         beaten=beaten,
-        skipped=tuple(run.skipped),
+        skipped=tuple(run.skipped[:-1] if complete else run.skipped),
         infeasible=not points and bool(run.skipped) and run.skipped[0].proven,
         finished=not run.clock.stopped,
         steps=tuple(run.steps),

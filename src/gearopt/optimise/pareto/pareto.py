@@ -44,7 +44,8 @@ def found(
     not fit the problem.
     """
     budget, chosen = budget or Budget(), method or default(problem, limiting)
-    count = points or POINTS[len(names)]
+    whole = limiting is not None and limiting.whole
+    count = points or (0 if whole else POINTS[len(names)])
     if chosen == EPSILON:
         return epsilon.front(problem, names, dict(most), count, budget, watch, limiting=limiting)
     if isinstance(problem, Conic):

@@ -8,6 +8,8 @@ from gearopt.errors import SolveError
 from gearopt.formulations import sizing, teeth
 from gearopt.formulations.gear_train import Train
 from gearopt.formulations.shares import OBJECTIVES
+from gearopt.formulations.teeth import load_front
+from gearopt.optimise.pareto.epsilon import Limiting
 from gearopt.optimise.pareto.front import Objective
 from gearopt.optimise.pareto.pareto import EPSILON
 from gearopt.optimise.pareto.several import Several
@@ -27,7 +29,8 @@ def objectives(scene: Scene) -> dict[str, str]:
         except ValueError:
             continue
         found[name] = unit
-    return found | sides.objectives(scene)
+    used = {load_front.UTILISATION: ""} if scene.teeth is not None else {}
+    return found | used | sides.objectives(scene)
 
 
 def several(scene: Scene, names: Sequence[str], method: str | None) -> Several:
@@ -51,6 +54,8 @@ def several(scene: Scene, names: Sequence[str], method: str | None) -> Several:
             "a front is of one number of stages, and this file leaves it open: write stages = 2, "
             "or another number, in [gears]"
         )
+    if load_front.UTILISATION in names:
+        return _loaded(scene, names, method)
     train = replace(_train(scene), objective=names[0], others=tuple(names[1:]))
     listed = tuple(Objective(name, OBJECTIVES[name]) for name in names)
     whole = scene.teeth is not None and method != EPSILON
@@ -62,6 +67,24 @@ def several(scene: Scene, names: Sequence[str], method: str | None) -> Several:
     if not whole:
         return Several(sizing.problem(train), listed, lambda x: _real(scene, train, x))
     return Several(teeth.problem(train), listed, lambda x: _whole(scene, train, x))
+
+
+def _loaded(scene: Scene, names: Sequence[str], method: str | None) -> Several:
+    """Return the problem of a front against the utilisation of the load limits."""
+    if len(names) != 2 or names[1] != load_front.UTILISATION:
+        raise SolveError(
+            f"{load_front.UTILISATION} is a maximum over the stages, which does not add up: it is "
+            f"the second of two objectives, as in gear_volume,{load_front.UTILISATION}"
+        )
+    train = replace(_train(scene), objective=names[0])
+    listed = Objective(names[0], OBJECTIVES[names[0]]), Objective(names[1])
+    limiting = Limiting(
+        lambda name, most: load_front.limited(train, name, most),
+        tuple(names),
+        load_front.discrete(train),
+    )
+    problem = load_front.problem(train, tuple(names))
+    return Several(problem, listed, lambda x: _whole(scene, train, x), limiting)
 
 
 def _train(scene: Scene) -> Train:
