@@ -181,6 +181,12 @@ def test_pareto_writes_its_page(here, tmp_path):
     assert "Impossible, proven" in html.read_text(encoding="utf-8")
 
 
+def test_neighbours_cost_what_they_cost():
+    words = repr(cases.drive())
+    assert "design 1: gear volume -2 %, mesh loss +100 %" in words  # 2 against 1
+    assert "design 3: gear volume +2 %, mesh loss -33 %" in words
+
+
 def test_layouts_are_drawn_with_their_boxes_at_one_scale():
     kept = Path(__file__).parents[2] / "docs" / "pictures" / "elevator_box.json"
     one = json.loads(kept.read_text(encoding="utf-8"))["design"]

@@ -99,7 +99,7 @@ def _beside(front: Front, place: int) -> str:
     rows = []
     for other in neighbours(values, place):
         changes = [
-            f"{words(one.name)} {100.0 * (after / before - 1.0):+.2g} %"
+            f"{words(one.name)} {_change(after / before - 1.0)}"
             for one, before, after in zip(
                 front.objectives, values[place], values[other], strict=True
             )
@@ -107,6 +107,12 @@ def _beside(front: Front, place: int) -> str:
         ]
         rows.append(f"design {other + 1}: {', '.join(changes)}")
     return f" Next to it {'; '.join(rows)}." if rows else ""
+
+
+def _change(part: float) -> str:
+    """Return a relative change in per cent, to two digits."""
+    share = 100.0 * part
+    return f"{share:+.2g} %" if abs(share) < 99.5 else f"{share:+,.0f} %"
 
 
 def table(front: Front, measures: Measures = METRIC, most: int | None = None) -> Table:

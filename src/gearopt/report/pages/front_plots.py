@@ -29,7 +29,8 @@ def _pair(found: Drawn, i: int, k: int) -> Figure:
     if (corners := _corners(found, i, k)) and whole:
         x, y = [min(a, across[1]) for a, _ in corners], [min(b, up[1]) for _, b in corners]
         look = {"color": GREY, "size": 9, "symbol": "x-thin", "line": {"color": GREY, "width": 2}}
-        traces.append(_marks("limits without a design", x, y, look))
+        crosses = _marks("limits without a design", x, y, look)
+        traces.append(crosses | {"cliponaxis": False})
     traces += _designs(found, (i, k))
     told = {"legend": {"orientation": "h", "x": 0, "y": 1.02, "yanchor": "bottom"}}
     plot = layout(
@@ -69,13 +70,13 @@ def _caption(found: Drawn, i: int, k: int) -> str:
     names = [found.heads[n].split(" [")[0] for n in (i, k)]
     words = f"{names[0][0].upper()}{names[0][1:]} against {names[1]}."
     if len(found.heads) > 2:
-        return f"{words} What looks beaten here is less in the third objective."
-    if len(found.points) > 1:
+        words += " What looks beaten here is less in the third objective."
+    elif len(found.points) > 1:
         line = "chords between points" if found.curve else "the edge of what these designs reach"
         words += f" Line: {line}."
     if found.beaten:
         words += " Grey dots: designs that another beats."
-    if found.corners:
+    if found.corners and len(found.heads) == 2:
         words += " Grey crosses: limits under which there is no design."
     return words
 
