@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from gearopt.formulations.compound import Compound, nearest, problem, wider
+from gearopt.optimise.pareto.pareto import found
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import solve
 
@@ -135,3 +136,31 @@ def test_a_wider_range_is_the_smallest_that_reaches(seed):
     both = next(((held, h) for h in range(high, 401) if held and reaches(held, h)), None)
     expected = [r for r in (more, fewer) if r] or [r for r in (both,) if r]
     assert wider(train, 5, 400) == expected
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_the_front_of_error_and_largest_gear_is_that_of_all_trains(seed):
+    rng = np.random.default_rng(seed)
+    low, ratio = int(rng.integers(5, 12)), Fraction(int(rng.integers(1, 900)), 100)
+    high = low + 8
+    best, wanted = None, []
+    for most in range(low, high + 1):
+        miss = enumerated(ratio, low, most)[0]
+        if best is None or miss < best:
+            wanted.append((float(miss**2), most))
+            best = miss
+    names = ("squared_error", "largest_gear")
+    made = found(problem(Compound(ratio, (low, high)), names), names, {})
+    assert made.complete and made.values == pytest.approx(np.array(wanted)[::-1], rel=1e-9)
+
+
+def test_the_front_of_sandgrens_train_ends_in_his_optimum():
+    names = ("squared_error", "largest_gear")
+    train = problem(Compound(Fraction(6931, 1000), (12, 60)), names)
+    made = found(train, names, {})
+    assert made.complete and made.values[0] == pytest.approx([2.7008571e-12, 49.0], rel=1e-8)
+    assert made.values[-1] == pytest.approx([(1000 / 6931 - 1.0) ** 2, 12.0], rel=1e-12)
+    some = found(train, names, {"largest_gear": 40.0})
+    assert some.complete and some.values[:, 1].max() <= 40.0
+    stopped = found(train, names, {}, budget=Budget(evaluations=100))
+    assert not stopped.complete and "missing" in stopped.message

@@ -5,19 +5,23 @@ with u = 6.931 and 12 to 60 teeth, where it is a standard case of discrete optim
 """
 
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
 import numpy as np
 
 from gearopt.optimise.clock import Clock
+from gearopt.optimise.pareto.posed import caps
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.terms import Terms, Var
 
 RANDOM = False
 COUNTS = "pair of numbers of teeth matched"
+MISS, LARGEST = "squared_error", "largest_gear"  # objectives; the teeth of the largest gear
+PAIRS = "all ratios of one pair were matched with the nearest of the other, in rational arithmetic"
 LOOK = 500  # pairs between two checks of clock and watcher: some 10 ms
 BASE = 2**24  # a digit of the ratio times two numbers of teeth is a whole number that doubles hold
 
@@ -41,8 +45,10 @@ class Compound:
         return abs(1 / self.ratio - Fraction(z1 * z2, z3 * z4))
 
 
-def problem(train: Compound) -> Problem:
+def problem(train: Compound, names: Sequence[str] = (MISS,)) -> Problem:
     """Return the problem of a train; variables: teeth of the drivers z1, z2 and the driven z3, z4.
+
+    names: of MISS and LARGEST; `exact` proves the best train, or of both the whole front.
 
     With u = p/q the text is ((q z3 z4 - p z1 z2)/(p z3 z4))^2, its whole numerator summed by the
     digits of p and q, the highest first: no digit is lost where the two products nearly cancel.
@@ -56,7 +62,9 @@ def problem(train: Compound) -> Problem:
         drivers, driven, rest = z1 * z2, z3 * z4, 0.0
         for for_driven, for_drivers in digits:
             rest = rest * BASE + (for_driven * driven - for_drivers * drivers)
-        return Terms({"squared_error": (rest / (float(p) * driven)) ** 2})
+        largest = np.maximum(np.maximum(z1, z2), np.maximum(z3, z4)) if LARGEST in names else 0.0
+        goals = {MISS: (rest / (float(p) * driven)) ** 2, LARGEST: largest}
+        return Terms({name: goals[name] for name in names})
 
     def exact(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
         """Match every pair with the two nearest ratios of the other pair; no other is nearer."""
@@ -72,8 +80,46 @@ def problem(train: Compound) -> Problem:
         proof |= {"sentence": words}
         return Outcome(x, bound=float(error**2), proof=proof, evaluations=looked)
 
+    def front(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
+        """Match the pairs of fewer and fewer teeth; the seed changes nothing."""
+        return _front(train, problem, Clock(budget, watch))
+
     teeth = Var("teeth", "", low, high, low, 4, integer=True, key="train.teeth")
-    return Problem("compound", (teeth,), (), evaluate, methods={"exact": exact})
+    methods = {"exact": exact if len(names) == 1 else front}
+    return Problem("compound", (teeth,), (), evaluate, methods=methods)
+
+
+def _front(train: Compound, problem: Problem, clock: Clock) -> Outcome:
+    """Return the nearest ratio of every largest gear that brings it nearer, within limits."""
+    low, most = train.teeth
+    found, done = [], True
+    while most >= low and done:
+        one = replace(train, teeth=(low, most))
+        _, best, looked, done = nearest(one, clock.left, clock.inner(values=False))
+        clock.evaluations += looked
+        if done:
+            found.append(best)
+            most = max(best) - 1
+            clock.tell()
+    points = np.array(found, float).reshape(-1, 4)
+    known = caps(problem)
+    limits = np.array([known.get(name, np.inf) for name in problem.rows.objectives])
+    points = points[(problem.batch(points).F <= limits).all(axis=1)] if len(points) else points
+    words = f"Proof: for each of these numbers of teeth of the largest gear {PAIRS}."
+    proof = {"method": "exhausted", "arithmetic": "rational", "sentence": words}
+    x, others = (points[0], tuple(points[1:])) if len(points) else (None, ())
+    if not done:
+        text = "stopped early: trains of smaller gears are missing"
+        return Outcome(x, False, others=others, evaluations=clock.evaluations, message=text)
+    none = "" if len(points) else "no train is within the largest values of interest"
+    return Outcome(
+        x,
+        infeasible=not len(points),
+        proof=proof,
+        others=others,
+        evaluations=clock.evaluations,
+        message=none,
+    )
 
 
 def _digits(*numbers: int) -> list[list[float]]:

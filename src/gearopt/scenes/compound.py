@@ -1,22 +1,37 @@
 """kind = "compound": two gear pairs in series whose ratio comes nearest to a given one."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Annotated, Any
 
 from pydantic import Field
 
+from gearopt.errors import SolveError
 from gearopt.formulations import compound
 from gearopt.formulations.compound import wider
 from gearopt.optimise.comparing.runs import Model
+from gearopt.optimise.pareto.front import Objective
+from gearopt.optimise.pareto.pareto import EPSILON
+from gearopt.optimise.pareto.several import Several
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run
+from gearopt.optimise.terms import Array
 from gearopt.optimise.typed import untyped
 from gearopt.scenes.reading.ask import Ask, unseeded
 from gearopt.scenes.reading.fields import Table, number, whole, words
 from gearopt.scenes.reading.lists import span
 
-__all__ = ["EXAMPLE", "Scene", "compared", "idle", "model", "solve"]
+__all__ = [
+    "EXAMPLE",
+    "Scene",
+    "compared",
+    "idle",
+    "model",
+    "objectives",
+    "several",
+    "solve",
+]
 MIN_TEETH, MAX_TEETH = 5, 400  # teeth of a gear that a file may ask for
 METHODS = ("exact",)  # its own
 ASSUMED = "Numbers of teeth alone: modules, centre distances and loads are not considered."
@@ -73,12 +88,6 @@ def solve(scene: Scene, ask: Ask) -> Result:
     train, teeth = _train(scene), tuple(round(float(z)) for z in outcome.x)
     z1, z2, z3, z4 = teeth
     ratio = Fraction(z3 * z4, z1 * z2)
-    design = CompoundDesign(
-        driver_teeth=(z1, z2),
-        driven_teeth=(z3, z4),
-        ratio=float(ratio),
-        ratio_error_percent=100.0 * float(ratio / train.ratio - 1),
-    )
     value = float(train.miss(teeth) ** 2)  # rational until here
     lowest, highest = train.reach
     within = lowest <= train.ratio <= highest
@@ -94,10 +103,39 @@ def solve(scene: Scene, ask: Ask) -> Result:
         result,
         objective=result.objective | {"value": value},
         gap=0.0 if result.bound == value else result.gap,
-        design=untyped(design),
+        design=_design(train, outcome.x),
         message=" ".join(filter(None, (_out_of_reach(train, reach), result.message))),
         report={"assumptions": [ASSUMED], "achieved": _achieved(train, ratio), "reach": reach},
     )
+
+
+def _design(train: compound.Compound, x: Array) -> dict[str, Any]:
+    """Return the train of a point, as a result holds it."""
+    z1, z2, z3, z4 = (round(float(z)) for z in x)
+    ratio = Fraction(z3 * z4, z1 * z2)
+    found: dict[str, Any] = untyped(
+        CompoundDesign(
+            driver_teeth=(z1, z2),
+            driven_teeth=(z3, z4),
+            ratio=float(ratio),
+            ratio_error_percent=100.0 * float(ratio / train.ratio - 1),
+        )
+    )
+    return found
+
+
+def objectives(scene: Scene) -> dict[str, str]:
+    """Return what a front of the train may minimise: name and unit."""
+    return {compound.MISS: "", compound.LARGEST: ""}
+
+
+def several(scene: Scene, names: Sequence[str], method: str | None) -> Several:
+    """Return the problem of a front; SolveError for a method that does not take whole teeth."""
+    if method == EPSILON:
+        raise SolveError(f"{EPSILON} is for real-valued sizes; teeth are whole: leave it out")
+    train = _train(scene)
+    listed = tuple(Objective(name) for name in names)
+    return Several(compound.problem(train, names), listed, lambda x: _design(train, x))
 
 
 def _achieved(train: compound.Compound, ratio: Fraction) -> str:
