@@ -278,7 +278,13 @@ def _fronts(
 ) -> Comparison:
     """Compare methods of fronts, as `compare` does those of one objective."""
     words = f"Front of {', '.join(name.replace('_', ' ') for name in names)}"
-    listed = methods or traders(pose(None).problem)
+    posed = pose(None)
+    if posed.others or posed.limiting is not None:
+        raise SolveError(
+            "methods are compared on fronts of one problem: of one number of stages, and of "
+            "objectives that add up"
+        )
+    listed = methods or traders(posed.problem)
     return compare_fronts(listed, lambda m: Model(pose(m).problem, words), names, most, *given)
 
 

@@ -12,6 +12,7 @@ from gearopt.optimise.pareto.epsilon import Limiting
 from gearopt.optimise.pareto.front import Front, Objective
 from gearopt.optimise.pareto.judged import judged
 from gearopt.optimise.pareto.pareto import EXACT, default, found
+from gearopt.optimise.pareto.united import united
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.terms import Array, Terms, Var
@@ -22,12 +23,14 @@ class Several:
     """A problem, its objectives in order, and the design of a point as its file shows it.
 
     limiting: how it is posed with one objective under limits on others, by a method of its own.
+    others: the same with other numbers of stages; the front is of all together.
     """
 
     problem: Problem | Conic
     objectives: tuple[Objective, ...]
     drawn: Callable[[Array], Mapping[str, Any]] | None = None
     limiting: Limiting | None = None
+    others: tuple["Several", ...] = ()
 
 
 def impossible(of: str, names: Sequence[str], none: Outcome) -> Problem:
@@ -78,6 +81,15 @@ def solved(
     **names: Any,
 ) -> Front:
     """Return the front of posed objectives, judged and measured; names: fields of a `Front`."""
+    if posed.others:
+        given: dict[str, Any] = {
+            "most": most,
+            "method": method,
+            "points": points,
+            "weights": weights,
+        }
+        given |= {"seed": seed, "watch": watch, **names}
+        return united(_each(posed, given, Clock(budget)), weights)
     clock, listed = Clock(), [one.name for one in posed.objectives]
     for name in (*most, *(weights or ())):
         if name not in listed:
@@ -88,3 +100,15 @@ def solved(
     shown = [replace(one, most=most.get(one.name)) for one in posed.objectives]
     front = judged(posed.problem, made, shown, chosen, clock, weights, posed.drawn, **names)
     return replace(front, seed=seed)
+
+
+def _each(posed: Several, given: Mapping[str, Any], clock: Clock) -> list[Front]:
+    """Return the front of each of several problems, in equal shares of what is left of the time."""
+    every, fronts = (replace(posed, others=()), *posed.others), list[Front]()
+    for k, one in enumerate(every):
+        left = clock.left
+        if left.seconds is not None:
+            left = replace(left, seconds=left.seconds / (len(every) - k))
+        fronts.append(solved(one, budget=left, **given))
+        clock.evaluations += fronts[-1].evaluations
+    return fronts

@@ -11,7 +11,7 @@ from gearopt.formulations.shares import OBJECTIVES
 from gearopt.formulations.teeth import load_front
 from gearopt.optimise.pareto.epsilon import Limiting
 from gearopt.optimise.pareto.front import Objective
-from gearopt.optimise.pareto.pareto import EPSILON
+from gearopt.optimise.pareto.pareto import EPSILON, EXACT
 from gearopt.optimise.pareto.several import Several
 from gearopt.optimise.terms import Array
 from gearopt.optimise.typed import untyped
@@ -48,12 +48,18 @@ def several(scene: Scene, names: Sequence[str], method: str | None) -> Several:
             )
         from gearopt.scenes.drive import bare, solve
 
-        return sides.several(scene, names, solve(bare(scene), Ask()))
+        sized = solve(bare(scene), Ask())
+        held = scene.held(len(sized.design["stages"])) if sized.value is not None else scene
+        return sides.several(held, names, sized)
     if scene.several:
-        raise SolveError(
-            "a front is of one number of stages, and this file leaves it open: write stages = 2, "
-            "or another number, in [gears]"
-        )
+        each = [several(scene.held(count), names, method) for count in scene.counts]
+        curves = any(one.limiting is not None and not one.limiting.whole for one in each)
+        if scene.teeth is None or method not in (None, EXACT) or curves:
+            raise SolveError(
+                "numbers of stages are compared by complete fronts alone, of whole teeth: write "
+                "stages = 2, or another number"
+            )
+        return replace(each[0], others=tuple(each[1:]))
     if load_front.UTILISATION in names:
         return _loaded(scene, names, method)
     train = replace(_train(scene), objective=names[0], others=tuple(names[1:]))
