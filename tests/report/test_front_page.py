@@ -205,14 +205,17 @@ def test_layouts_are_drawn_with_their_boxes_at_one_scale():
     assert "layout: box: width [mm]" in plots(html)[1]["rows"]
 
 
-HOOK = """<script>setTimeout(() => {
-  const all = (what) => [...document.querySelectorAll(what)];
-  const seen = [], note = (what) => seen.push(what);
-  const names = (rows) => rows.map((row) => row.cells[0].textContent);
-  const plots = () => all("figure.drawn .plot").filter((p) => p.data.some((t) => t.meta));
+HOOK = """<script>
+const all = (what) => [...document.querySelectorAll(what)];
+const seen = [], note = (what) => seen.push(what);
+const names = (rows) => rows.map((row) => row.cells[0].textContent);
+const plots = () => all("figure.drawn .plot").filter((p) => p.data.some((t) => t.meta));
+setTimeout(() => {
   all("#designs tbody tr")[2].click();
   note(all("#beside thead th")[2].textContent);
   plots()[0].emit("plotly_click", { points: [{ customdata: 1 }] });
+}, 4000);
+setTimeout(() => {
   note(all("#beside thead th")[2].textContent);
   note(plots().map((p) => p.data.find((t) => t.meta === "chosen").x.length > 0));
   all("#designs thead button")[2].click();
@@ -222,7 +225,7 @@ HOOK = """<script>setTimeout(() => {
   note(names(all("#designs tbody tr").filter((row) => !row.hidden)));
   note(plots().map((p) => new Set(p.data.find((t) => t.meta === "designs").customdata).size));
   document.body.dataset.seen = JSON.stringify(seen);
-}, 4000);</script>"""
+}, 5000);</script>"""
 
 
 @pytest.mark.slow
@@ -231,7 +234,7 @@ def test_a_browser_clicks_sorts_and_filters(two, tmp_path):
     path = tmp_path / "page.html"
     path.write_text(two.replace("</body>", f"{HOOK}</body>"), encoding="utf-8")
     words = ["chromium", "--headless", "--no-sandbox", "--disable-gpu", "--dump-dom"]
-    words += [f"--user-data-dir={tmp_path / 'user'}", "--virtual-time-budget=9000", path.as_uri()]
+    words += [f"--user-data-dir={tmp_path / 'user'}", "--virtual-time-budget=10000", path.as_uri()]
     dom = subprocess.run(words, capture_output=True, text=True, timeout=120, check=True).stdout
     seen = json.loads(unescape(re.search(r'data-seen="([^"]*)"', dom)[1]))
     assert seen == [

@@ -114,6 +114,7 @@
   document.querySelector("#beside button").addEventListener("click", () => { pick = shown; compare(); });
 
   function choose(k) {
+    if (k === shown) return;
     shown = k;
     compare();
     mark();
@@ -152,7 +153,7 @@
       if (!originals.has(place)) {
         place.on("plotly_click", (event) => {
           const hit = event.points.find((point) => Number.isInteger(point.customdata));
-          if (hit) choose(hit.customdata - 1);
+          if (hit) setTimeout(() => choose(hit.customdata - 1));  // a view in space is still drawing
         });
       }
       originals.set(place, own);
