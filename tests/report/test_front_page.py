@@ -181,6 +181,25 @@ def test_pareto_writes_its_page(here, tmp_path):
     assert "Impossible, proven" in html.read_text(encoding="utf-8")
 
 
+def test_designs_of_different_numbers_of_stages_stand_in_one_table():
+    front = cases.drive(count=2)
+    short = {"stages": front.points[0].design["stages"][:1]}
+    limits = {"k_factor[1]": 0.7}
+    first = replace(front.points[0], design=short, limits=limits)
+    last = replace(front.points[1], design=short, limits=limits)
+    html = page(replace(front, points=(first, front.points[1])))
+    told = plots(html)[1]
+    row = told["rows"].index("stage 2: diameter d2 [mm]")
+    assert told["points"][0][row] == "" and float(told["points"][1][row]) > 300.0
+    assert 'hidden><th scope="row">K-factor of stage 2' not in html
+    both = page(replace(front, points=(first, last, front.points[1]), picks=()))
+    assert 'hidden><th scope="row">K-factor of stage 2' not in both
+    alone = replace(front, points=(first, last, front.points[1]), picks=front.picks)
+    three = plots(page(alone))[1]
+    assert three["pair"] == [1, 0]
+    assert 'hidden><th scope="row">K-factor of stage 2' in page(alone)
+
+
 def test_neighbours_cost_what_they_cost():
     words = repr(cases.drive())
     assert "design 1: gear volume -2 %, mesh loss +100 %" in words  # 2 against 1

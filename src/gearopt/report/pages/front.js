@@ -90,7 +90,7 @@
         const n = Number(row.dataset.row), limit = n >= told.limits[0] && n < told.limits[1];
         const cells = both.map((k) => {
           const cell = make("td", {}, told.points[k][n]);
-          if (limit) {
+          if (limit && told.points[k][n] !== "") {
             const part = told.shares[k][n - told.limits[0]];
             cell.className = part > 0.999999 ? "share full" : "share";
             cell.style.setProperty("--part", part);
@@ -99,6 +99,7 @@
         });
         if (both.length > 1) cells.push(make("td", {}, limit ? "" : change(...both.map((k) => told.points[k][n]))));
         row.replaceChildren(row.cells[0], ...cells);
+        row.hidden = both.every((k) => told.points[k][n] === "");  // a stage that neither has
       }
       if (both.length > 1 && one.tBodies[0].querySelector(".share")) {  // of limits the bars say what changes
         for (const row of [one.tHead.rows[0], ...one.tBodies[0].rows]) row.lastElementChild.remove();

@@ -176,7 +176,8 @@ def data(
     heads = [head(one, measures) for one in front.objectives]
     main = list(shown)
     names = [n for n in _names(front, each, measures) if n not in main]
-    others = _different(each, names) if len(each) > 1 else names
+    alike = {n for n in names if all(n in one for one in each)} - {*_different(each, names)}
+    others = [n for n in names if len(each) == 1 or n not in alike]
     limits = list(dict.fromkeys(name for p in front.points for name in p.limits))
     points = [
         [
