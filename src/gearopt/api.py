@@ -278,14 +278,13 @@ def _fronts(
 ) -> Comparison:
     """Compare methods of fronts, as `compare` does those of one objective."""
     words = f"Front of {', '.join(name.replace('_', ' ') for name in names)}"
-    posed = pose(None)
-    if posed.others or posed.limiting is not None:
-        raise SolveError(
-            "methods are compared on fronts of one problem: of one number of stages, and of "
-            "objectives that add up"
-        )
-    listed = methods or traders(posed.problem)
-    return compare_fronts(listed, lambda m: Model(pose(m).problem, words), names, most, *given)
+    first = pose(None)
+    listed = methods or traders(first.problem, first.limiting)
+
+    def model(method: str) -> Model:
+        return Model(pose(method).problem, words)
+
+    return compare_fronts(listed, model, names, most, *given, limiting=first.limiting)
 
 
 def _traded(

@@ -32,6 +32,7 @@ from gearopt.optimise.comparing.runs import (
 )
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.pareto import epsilon
+from gearopt.optimise.pareto.epsilon import Limiting
 from gearopt.optimise.pareto.found import Found, Step
 from gearopt.optimise.pareto.judged import status
 from gearopt.optimise.pareto.measures import hypervolume, igd, reference, unbeaten
@@ -47,13 +48,15 @@ FINE = {2: 600, 3: 400}  # points of a reference that is not of all designs
 
 @dataclass(frozen=True)
 class Goal:
-    """Two or three objectives by name, and their largest values of interest."""
+    """Two or three objectives by name, their largest values, and how they are limited."""
 
     names: tuple[str, ...]
     most: Mapping[str, float]
+    limiting: Limiting | None = None
 
     def front(self, problem: Problem | Conic, method: str, *given: Any, **named: Any) -> Found:
         """Return what a method finds of their front: `pareto.found`."""
+        named["limiting"] = self.limiting
         return found(problem, self.names, self.most, method, *given, **named)
 
 
@@ -84,16 +87,17 @@ def compare_fronts(
     plan: Plan | None = None,
     watch: Follow | None = None,
     bound_from: str | None = None,
+    limiting: Limiting | None = None,
 ) -> Comparison:
     """Run methods of fronts by evaluations and by time, and hold them against a reference.
 
     names: two or three objectives; most: their largest values of interest. bound_from: the method
-    of the reference front, by default the one that proves most; it has BOUND_SECONDS. Else as
-    `compare`.
+    of the reference front, by default the one that proves most; it has BOUND_SECONDS.
+    limiting: how the kind of problem limits objectives. Else as `compare`.
     """
     import casadi  # noqa: F401  # every check needs it: its import is no method's start-up
 
-    plan, goal = plan or Plan(), Goal(tuple(names), dict(most or {}))
+    plan, goal = plan or Plan(), Goal(tuple(names), dict(most or {}), limiting)
     entries = entered(methods, lambda method: _enter(method, model, goal))
     models = {e.model.problem.name: e.model for e in entries if e.model is not None}
     known = {name: _standard(one, goal, watch, bound_from) for name, one in models.items()}
@@ -171,7 +175,7 @@ def _standard(
 ) -> tuple[str, Found] | None:
     """Return the method of the reference front and what it found; None where nothing proves one."""
     problem = replace(model.problem)
-    chosen = method or default(problem)
+    chosen = method or default(problem, goal.limiting)
     if chosen == NSGA:
         return None
 

@@ -71,11 +71,11 @@ def default(problem: Problem | Conic, limiting: Limiting | None = None) -> str:
     return NSGA if discrete else EPSILON
 
 
-def traders(problem: Problem | Conic) -> tuple[str, ...]:
+def traders(problem: Problem | Conic, limiting: Limiting | None = None) -> tuple[str, ...]:
     """Return the methods that are compared where none are named."""
     if isinstance(problem, Conic):
         return (EPSILON,)
-    first = default(problem)
+    first = default(problem, limiting)
     return (first, *(method for method in SAMPLERS if method != first))
 
 
