@@ -274,7 +274,9 @@ def _fronts(
     names: Sequence[str],
     most: Mapping[str, float] | None,
     methods: Sequence[str] | None,
-    *given: Any,
+    plan: Plan,
+    watch: Follow | None,
+    bound_from: str | None,
 ) -> Comparison:
     """Compare methods of fronts, as `compare` does those of one objective."""
     words = f"Front of {', '.join(name.replace('_', ' ') for name in names)}"
@@ -284,7 +286,7 @@ def _fronts(
     def model(method: str) -> Model:
         return Model(pose(method).problem, words)
 
-    return compare_fronts(listed, model, names, most, *given, limiting=first.limiting)
+    return compare_fronts(listed, model, names, most, plan, watch, bound_from, first.limiting)
 
 
 def _traded(

@@ -183,8 +183,9 @@ def _standard(
         return watch is None or watch(Progress(0, 0, chosen, 0, 0.0, event)) is not False
 
     follow = in_part(continues, model.unit, problem.name)
-    budget = Budget(BOUND_SECONDS)
-    return chosen, goal.front(problem, chosen, FINE[len(goal.names)], budget, watch=follow)
+    whole = goal.limiting is not None and goal.limiting.whole
+    points = None if whole else FINE[len(goal.names)]
+    return chosen, goal.front(problem, chosen, points, Budget(BOUND_SECONDS), watch=follow)
 
 
 def _group(
