@@ -2,11 +2,12 @@
 
 import math
 
+import cvxpy as cp
 import numpy as np
 import pytest
 
 import gearopt
-from gearopt import Comparison, Problem, SolveError, Terms, Var
+from gearopt import Comparison, Conic, Problem, SolveError, Terms, Var
 from gearopt.optimise.comparing import fronts
 from gearopt.optimise.result import Outcome
 from gearopt.report import comparison_words as words
@@ -89,3 +90,15 @@ def test_a_comparison_of_fronts_comes_back_from_json_and_says_its_command():
     with pytest.raises(SolveError, match="most changes nothing"):
         gearopt.compare(discs(), most={"a": 1.0})
     assert math.isclose(found.groups[0].best, 0.0, abs_tol=1e-12)
+
+
+def test_a_conic_problem_is_compared_by_epsilon_constraints(monkeypatch):
+    def evaluate(x, p):
+        return Terms({"cost": cp.sum(cp.inv_pos(x.t)), "error": cp.sum(x.t)})
+
+    monkeypatch.setattr(fronts, "FINE", {2: 9})
+    problem = Conic("tolerances", (Var("t", "", 0.1, 1.0, 0.5, 2),), (), evaluate)
+    found = gearopt.compare(problem, objectives="cost,error", evaluations=9999, seconds=3.0)
+    (group,) = found.groups
+    assert [row.method for row in group.rows] == ["epsilon"] and group.proven
+    assert group.rows[0].equal_evaluations.summary.worst_gap < 0.05

@@ -11,8 +11,6 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-import numpy as np
-
 from gearopt.bench.drive import CASES, train_of
 from gearopt.formulations import teeth
 from gearopt.optimise.clock import Clock
@@ -155,5 +153,5 @@ def _grown(made: Found, corner: Array) -> float | None:
     volumes = [hypervolume(step.values, corner) for step in made.steps]
     if not volumes or not volumes[-1]:
         return None
-    k = int(np.argmax(np.array(volumes) >= ENOUGH * volumes[-1]))
-    return 1000.0 * made.steps[k].seconds
+    reached = zip(made.steps, volumes, strict=True)
+    return next(1000.0 * step.seconds for step, v in reached if v >= ENOUGH * volumes[-1])

@@ -22,6 +22,8 @@ from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.terms import Array
 
+RANDOM = False
+COUNTS = "choice of teeth and modules"
 KERNEL = "gearopt.formulations.servo.front_kernel"
 SAMPLE = 250  # trains of a front that others are held against
 STEPS = 1_000_000  # of the kernel between two checks of the clock

@@ -37,6 +37,7 @@ from gearopt.optimise.pareto.found import Found, Step
 from gearopt.optimise.pareto.judged import status
 from gearopt.optimise.pareto.measures import hypervolume, igd, reference, unbeaten
 from gearopt.optimise.pareto.pareto import EPSILON, NSGA, SAMPLERS, default, found
+from gearopt.optimise.pareto.posed import posed
 from gearopt.optimise.problem import Batch, Problem
 from gearopt.optimise.result import Budget, Event
 from gearopt.optimise.scale import violation
@@ -119,13 +120,13 @@ def compare_fronts(
 def _enter(method: str, model: Callable[[str], Model], goal: Goal) -> Entry:
     """Pose the problem to a method and warm it up."""
     try:
-        posed = model(method)
+        own = model(method)
     except SolveError as refusal:
         return Entry(method, refused=str(refusal))
-    problem = replace(posed.problem)
+    problem = replace(own.problem)
     run = {EPSILON: epsilon.front, **SAMPLERS, **problem.methods}.get(method)
     return warmed(
-        Entry(method, posed, problem),
+        Entry(method, own, problem),
         sys.modules.get(getattr(run, "__module__", "")),
         lambda: goal.front(problem, method, budget=WARM),
     )
@@ -152,7 +153,10 @@ def _attempt(
     seconds = clock.seconds
     if ended:
         return None
-    worst = _violation(entry.problem, made)
+    one = entry.problem
+    if isinstance(one, Conic):
+        one = posed(one, goal.names[:1], {})
+    worst = _violation(one, made)
     run = Run(seed, status(made), None, None, worst, made.evaluations, seconds, made.message)
     return Trial(run, made.values, made.steps)
 
