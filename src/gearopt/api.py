@@ -281,6 +281,10 @@ def _fronts(
     """Compare methods of fronts, as `compare` does those of one objective."""
     words = f"Front of {', '.join(name.replace('_', ' ') for name in names)}"
     first = pose(None)
+    if first.others:
+        raise SolveError(
+            "methods are compared on fronts of one problem: write one number of stages in the file"
+        )
     listed = methods or traders(first.problem, first.limiting)
 
     def model(method: str) -> Model:

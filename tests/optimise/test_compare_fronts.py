@@ -92,6 +92,7 @@ def test_a_comparison_of_fronts_comes_back_from_json_and_says_its_command():
     assert math.isclose(found.groups[0].best, 0.0, abs_tol=1e-12)
 
 
+@pytest.mark.slow
 def test_a_conic_problem_is_compared_by_epsilon_constraints(monkeypatch):
     def evaluate(x, p):
         return Terms({"cost": cp.sum(cp.inv_pos(x.t)), "error": cp.sum(x.t)})
