@@ -99,6 +99,15 @@ def test_a_search_that_is_stopped_claims_nothing():
     assert not made.complete and not made.finished and "allow more time" in made.message
 
 
+@pytest.mark.parametrize("evaluations", [30, 300, 1000])
+def test_a_search_that_is_stopped_keeps_to_the_largest_values(evaluations):
+    train = train_of(2, "free", TWO[1])
+    most = {TWO[1][0]: float(np.median(front_of(train).values[:, 0]))}
+    budget = Budget(evaluations=evaluations)
+    made = found(teeth.problem(train), train.objectives, most, "exact", budget=budget)
+    assert all(p.values[0] <= most[TWO[1][0]] * (1 + 1e-9) for p in made.points)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", range(30))
 def test_fronts_of_random_drives_equal_brute_force(seed):

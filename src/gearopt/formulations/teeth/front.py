@@ -148,7 +148,7 @@ def fronts(train: Train, most: Array, clock: Clock) -> Search:
                 _bounds(run)
                 _all(run)
     except Spent:
-        pass
+        _inside(run)  # the ends of the front are found without its limits
     return run
 
 
@@ -176,10 +176,15 @@ def _bounds(run: Search) -> None:
         own = [table.of(train) for table in run.tables]
         run.rest.append(bound(train, own, delta, run.tick))
     run.low = run.values.min(axis=0)
-    inside = np.flatnonzero((run.values <= run.most * (1.0 + TIE)).all(axis=1))
-    assert run.made is not None
-    run.values, run.made = run.values[inside], run.made.take(inside)
+    _inside(run)
     run.open = weighed(corners(run.values, run.most[None, :]), run.weights)
+
+
+def _inside(run: Search) -> None:
+    """Keep the trains up to the largest values of interest."""
+    inside = np.flatnonzero((run.values <= run.most * (1.0 + TIE)).all(axis=1))
+    if run.made is not None:
+        run.values, run.made = run.values[inside], run.made.take(inside)
 
 
 def _add_teeth(run: Search, teeth: Teeth) -> None:
