@@ -103,3 +103,10 @@ def test_a_conic_problem_is_compared_by_epsilon_constraints(monkeypatch):
     (group,) = found.groups
     assert [row.method for row in group.rows] == ["epsilon"] and group.proven
     assert group.rows[0].equal_evaluations.summary.worst_gap < 0.05
+
+
+def test_methods_that_there_are_not_and_single_objectives_are_told():
+    with pytest.raises(SolveError, match="no method 'foo' for a front; methods: exact, epsilon"):
+        gearopt.compare(steps(1.0), objectives="a,b", methods="exact,foo", **SMALL)
+    with pytest.raises(SolveError, match="two or three objectives, each once, not a;"):
+        gearopt.compare(steps(1.0), objectives="a", **SMALL)

@@ -36,7 +36,7 @@ from gearopt.optimise.pareto.epsilon import Limiting
 from gearopt.optimise.pareto.found import Found, Step
 from gearopt.optimise.pareto.judged import status
 from gearopt.optimise.pareto.measures import hypervolume, igd, reference, unbeaten
-from gearopt.optimise.pareto.pareto import EPSILON, NSGA, SAMPLERS, default, found
+from gearopt.optimise.pareto.pareto import EPSILON, METHODS, NSGA, SAMPLERS, default, found
 from gearopt.optimise.pareto.posed import posed
 from gearopt.optimise.problem import Batch, Problem
 from gearopt.optimise.result import Budget, Event
@@ -119,6 +119,8 @@ def compare_fronts(
 
 def _enter(method: str, model: Callable[[str], Model], goal: Goal) -> Entry:
     """Pose the problem to a method and warm it up."""
+    if method not in METHODS:
+        raise SolveError(f"no method {method!r} for a front; methods: {', '.join(METHODS)}")
     try:
         own = model(method)
     except SolveError as refusal:

@@ -27,6 +27,7 @@ from gearopt.optimise.terms import Array
 SLACK = 1e-7  # relative, of the first end's objective while the others are minimised
 RANDOM = False
 COUNTS = "Ipopt iteration, or solve of a Conic"
+SETTINGS = {"of three objectives": "slices at even limits of the third"}
 STEP = 1e-8  # relative, from one of finitely many designs to the next
 CORNER = 0.1  # part of a chord next to its ends where none of the first limits is put
 FIRST = 5  # points at least before others are spread by them
