@@ -88,11 +88,16 @@ def test_gaps_are_to_the_best_bound_we_proved():
     assert 1.0 - 1e-8 < group.reference <= 1.0 <= group.best
     for row in group.rows:
         for sample in samples(row):
-            gaps = sorted(run.gap for run in sample.runs)
-            above = sorted(run.objective / group.reference - 1.0 for run in sample.runs)
+            some = [run for run in sample.runs if run.objective is not None]
+            gaps = sorted(run.gap for run in some)
+            above = sorted(run.objective / group.reference - 1.0 for run in some)
             assert gaps == pytest.approx(above, abs=1e-14)
-            assert sample.summary.median_gap == gaps[len(gaps) // 2]
-            assert sample.summary.worst_gap == gaps[-1]
+            late = len(sample.runs) - len(some)  # a busy machine may leave a run without a point
+            assert late == sample.summary.without
+            assert not late or sample is row.equal_time
+            if not late:
+                assert sample.summary.median_gap == gaps[len(gaps) // 2]
+                assert sample.summary.worst_gap == gaps[-1]
     assert rows(found)["ipopt"].equal_evaluations.summary.tight == 1.0
     assert rows(found)["coarse"].equal_evaluations.summary.tight == 0.0
 
