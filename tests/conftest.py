@@ -12,6 +12,29 @@ import pytest
 import gearopt
 
 PROBLEMS = Path(__file__).parents[1] / "problems"
+MANY = 6  # slow cases of one test, of which all are run
+
+
+def pytest_addoption(parser):
+    """An option for campaigns: slow tests of many random cases."""
+    words = f"of every slow test of more than {MANY} cases run one in so many"
+    parser.addoption("--sample", type=int, default=1, help=words)
+
+
+def pytest_collection_modifyitems(config, items):
+    """Leave out cases of campaigns where a sample is asked for."""
+    every = config.getoption("--sample")
+    if every == 1:
+        return
+    campaigns = {}
+    for item in items:
+        if item.get_closest_marker("slow"):
+            campaigns.setdefault((item.path, item.originalname), []).append(item)
+    left = [k for found in campaigns.values() if len(found) > MANY for k in found]
+    kept = {id(k) for found in campaigns.values() if len(found) > MANY for k in found[::every]}
+    dropped = {id(k) for k in left} - kept
+    config.hook.pytest_deselected(items=[k for k in items if id(k) in dropped])
+    items[:] = [k for k in items if id(k) not in dropped]
 
 
 def answered(path, **options):
