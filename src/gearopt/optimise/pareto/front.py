@@ -14,15 +14,11 @@ STATUSES = ("complete", "proven", "not proven", "infeasible", "limit")
 
 @dataclass(frozen=True)
 class Objective:
-    """What is minimised: its name and unit, and the largest value of interest (None: any).
-
-    factor: -1 where the file's quantity is to be large, and is shown with its own sign.
-    """
+    """What is minimised: its name and unit, and the largest value of interest (None: any)."""
 
     name: str
     unit: str = ""
     most: float | None = None
-    factor: float = 1.0
 
 
 @dataclass(frozen=True)
