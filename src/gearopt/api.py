@@ -305,6 +305,9 @@ def _traded(
         return lambda method: own, tuple(o.name for o in own.objectives), {"title": what.name}
     scene, module, about = _opened(what, changes)
     known = module.objectives(scene) if hasattr(module, "objectives") else {}
+    left = [name for name in names or () if name not in known]
+    if left and hasattr(module, "advice") and (why := module.advice(scene, left)):
+        raise SolveError(why)
     chosen = chosen_of(names, list(known), f'this file of kind "{about["scene"]}"')
     title = {"title": getattr(scene, "title", "")}
     return lambda method: module.several(scene, chosen, method), chosen, about | title

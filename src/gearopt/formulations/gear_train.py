@@ -157,10 +157,10 @@ class Train:
             stage.options and all(all(option.densities) for option in stage.options)
             for stage in self.stages
         )
-        if objective in MASSES and not solid:
-            raise ValueError(f"the objective {objective} needs a density")
         if objective == "cost" and not all(stage.options for stage in self.stages):
             raise ValueError("the objective cost needs the price of every stage's materials")
+        if objective in MASSES and not solid:
+            raise ValueError(f"the objective {objective} needs a density")
         made = {tuple(option.materials for option in stage.options) for stage in self.stages}
         if self.same_option and len(made) > 1:
             raise ValueError("stages that take the same option need options of the same materials")

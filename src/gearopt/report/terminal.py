@@ -198,5 +198,7 @@ def show_front(found: Front, console: Console, measures: Measures = METRIC) -> N
         console.print()
         console.print(Text(line))
     console.print()
+    if found.status == "infeasible" and found.file and not found.options.get("most"):
+        console.print(Text(f"What to write instead: gearopt explain {found.file}\n"))
     spent = f"{found.method}, {found.evaluations:,} evaluations, {found.seconds:.3g} s."
     console.print(Text(spent, style="dim"))

@@ -53,7 +53,9 @@ def several(problem: Problem | Conic, names: Sequence[str] | None) -> Several:
 
 def chosen_of(names: Sequence[str] | None, known: Sequence[str], of: str) -> tuple[str, ...]:
     """Return names of two or three objectives; SolveError lists those that there are."""
-    listed = ", ".join(known) or "none"
+    listed = ", ".join(known)
+    if not known:
+        raise SolveError(f"{of} has no objectives to weigh against each other: solve it instead")
     if not names:
         raise SolveError(f"name two or three objectives of {of}: {listed}")
     for name in names:

@@ -24,7 +24,7 @@ from gearopt.optimise.typed import untyped
 from gearopt.scenes.drive.assumptions import assumptions, notes
 from gearopt.scenes.drive.blank_tables import BlankKeys, misfits
 from gearopt.scenes.drive.examples import EXAMPLE, MORE_EXAMPLES
-from gearopt.scenes.drive.front import objectives, several
+from gearopt.scenes.drive.front import advice, objectives, several, to_choose
 from gearopt.scenes.drive.rating.cut_short import bounded
 from gearopt.scenes.drive.rating.limits import check_safe
 from gearopt.scenes.drive.rating.rated import rate, with_rating
@@ -39,6 +39,7 @@ __all__ = [
     "EXAMPLE",
     "MORE_EXAMPLES",
     "Scene",
+    "advice",
     "compared",
     "explain",
     "idle",
@@ -71,11 +72,7 @@ def solve(scene: Scene, ask: Ask) -> Result:
 
 def _to_size(scene: Scene) -> Scene:
     """Return the drive; SolveError for one that can only be rated."""
-    if not scene.limited:
-        raise SolveError(
-            "the file has no [limits] and no ratio, so there is nothing to choose: gearopt rate "
-            "FILE rates its gears"
-        )
+    to_choose(scene)
     return scene
 
 

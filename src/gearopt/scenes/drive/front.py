@@ -22,15 +22,36 @@ from gearopt.scenes.reading.ask import Ask
 
 def objectives(scene: Scene) -> dict[str, str]:
     """Return what a front of the drive may minimise: name and unit."""
-    found = {}
-    for name, unit in OBJECTIVES.items():
-        try:
-            replace(_train(scene), objective=name)
-        except ValueError:
-            continue
-        found[name] = unit
+    to_choose(scene)
+    found = {name: unit for name, unit in OBJECTIVES.items() if not _lacking(scene, name)}
     used = {load_front.UTILISATION: ""} if scene.teeth is not None else {}
     return found | used | sides.objectives(scene)
+
+
+def to_choose(scene: Scene) -> None:
+    """Raise SolveError for a drive that can only be rated."""
+    if not scene.limited:
+        raise SolveError(
+            "the file has no [limits] and no ratio, so there is nothing to choose: gearopt rate "
+            "FILE rates its gears"
+        )
+
+
+def _lacking(scene: Scene, name: str) -> str:
+    """Return what an objective needs and the drive lacks; "" where it has it."""
+    try:
+        replace(_train(scene), objective=name)
+    except ValueError as reason:
+        return str(reason)
+    return ""
+
+
+def advice(scene: Scene, names: Sequence[str]) -> str:
+    """Return why the drive has not one of these objectives; "" where nothing is known of it."""
+    why = (_lacking(scene, name) for name in names if name in OBJECTIVES)
+    what = next(filter(None, why), "")
+    hint = ', as in [objective] density = "7.85 kg/dm^3"' if "density" in what else ""
+    return what + hint
 
 
 def several(scene: Scene, names: Sequence[str], method: str | None) -> Several:
