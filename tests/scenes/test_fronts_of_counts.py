@@ -40,5 +40,5 @@ def test_what_is_not_complete_is_for_one_number_of_stages():
     for method in ("epsilon", "nsga2"):
         with pytest.raises(SolveError, match="write stages = 2"):
             gearopt.pareto(FILE, changes, objectives=NAMES, method=method)
-    with pytest.raises(SolveError, match="of one number of stages"):
+    with pytest.raises(SolveError, match="write one number of stages"):
         gearopt.compare(FILE, changes, objectives=NAMES)

@@ -177,8 +177,8 @@ class Problem:
         return lower, upper, guess
 
     def parameter_values(self) -> Array:
-        """Return all parameter values in order, (np,); not to be written to."""
-        return self._parameter_values
+        """Return all parameter values in order, (np,)."""
+        return self._parameter_values.copy()
 
     @cached_property
     def _parameter_values(self) -> Array:
