@@ -217,7 +217,7 @@ def tiles(result: Result, measures: Measures) -> list[Tile]:
         *(_safety_tile(one, "bending", found) for one in found.each),
         *(_safety_tile(one, "contact", found) for one in found.each),
         _tile(found, "power capacity", capacities, measures.amount(required(found), "kW")),
-        _tile(found, "life", lives, life(found.required_life_h)),
+        _tile(found, "life at S = 1", lives, life(found.required_life_h)),
     ]
     if found.efficiency_percent is not None:
         remark = "tooth friction alone"
