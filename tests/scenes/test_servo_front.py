@@ -20,7 +20,7 @@ PROBLEMS = Path(__file__).parents[2] / "problems"
     [
         ("servo_gimbal_light", {}, 'of kind "servo": inertia, mass, error$'),
         ("servo_gimbal_fast", {}, "inertia, mass, inverse_acceleration$"),
-        ("servo_gimbal_move", {"objectives": "mass,error"}, "objectives: none$"),
+        ("servo_gimbal_move", {"objectives": "mass,error"}, "no objectives to weigh"),
         (
             "servo_gimbal_light",
             {"objectives": "mass,error", "method": "epsilon"},
