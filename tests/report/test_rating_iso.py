@@ -120,7 +120,9 @@ def test_key_figures_are_the_least_by_each_standard():
     assert tiles["least S_H, contact by AGMA"][0] == "0.834"
     assert tiles["least S_H, contact by ISO 6336"] == ("1.02", "pinion; 1 asked for")
     assert {"least S_F, bending by AGMA", "least S_F, bending by ISO 6336"} < set(tiles)
-    assert re.fullmatch(r"[\d,.]+ h by ISO 6336; 50,000 h asked for", tiles["life at S = 1 by AGMA"][1])
+    assert re.fullmatch(
+        r"[\d,.]+ h by ISO 6336; 50,000 h asked for", tiles["life at S = 1 by AGMA"][1]
+    )
 
 
 def test_factors_have_a_table_for_each_standard_and_teeth_one():

@@ -162,7 +162,8 @@ def test_key_figures_name_gear_capacity_and_life():
     assert list(gears)[1 + least] == "wheel 1"
     assert tiles["least S_F, bending"][1] == "wheel of stage 1; 1.2 asked for"
     assert tiles["power capacity"][1] == "30 kW asked for"
-    assert tiles["life at S = 1"][1] == "20,000 h asked for" and tiles["efficiency"][0].endswith(" %")
+    assert tiles["life at S = 1"][1] == "20,000 h asked for"
+    assert tiles["efficiency"][0].endswith(" %")
     beyond = {t.name: t.value for t in sections(cases.shigley())[0].tiles}
     assert beyond["life at S = 1"] == "beyond 1e10 cycles" and "efficiency" not in beyond
     assert {t.name: t.value for t in sections(cases.unsafe(), INCH)[0].tiles}[
