@@ -171,7 +171,8 @@ def _told(result: Result, found: DriveRating, measures: Measures) -> list[str | 
     read = dict(zip(keys, short, strict=True))
     table = Table("gears", heads, rows, short=read, left=1 + named, wrap=9)
     lives = of_standards(found, [life(one.life_h) for one in found.each])
-    lasts = f"Life at safety factors of 1: {lives}{';' if named else ','} {life(found.required_life_h)} asked for."
+    asked = f"{';' if named else ','} {life(found.required_life_h)} asked for."
+    lasts = f"Life at safety factors of 1: {lives}{asked}"
     if found.efficiency_percent is not None:
         lasts += f" Efficiency of the meshes: {efficiency(found)}{unsure(found)}."
     first = [] if result.name == RATING else [measures.words(told(found))]
