@@ -167,7 +167,8 @@ def test_an_impossible_drive_is_proven_so_and_every_remedy_works():
     found = gearopt.explain(tables)
     assert found.result.status == "infeasible"
     remedies = {r.what: r for r in found.remedies}
-    assert "limits.wheel_diameter" in remedies and "duty.power" in remedies
+    assert "limits.wheel_diameter" in remedies
+    assert all(r.factor is None or r.factor <= 3.0 for r in remedies.values())  # as others help
     for remedy in remedies.values():
         assert gearopt.solve(tables, remedy.edits).value is not None
 
