@@ -64,9 +64,9 @@ class Range:
         return self.by(law, (law(self.low), law(self.high)), (np.minimum(*ends), np.maximum(*ends)))
 
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **kwargs: Any) -> Any:
-        """Apply a function of numpy; NotImplementedError for others than those of LAWS."""
+        """Apply a function of numpy; TypeError for others than those of LAWS, by numpy."""
         if method != "__call__" or ufunc.__name__ not in LAWS:
-            raise NotImplementedError(f"no range of {ufunc.__name__}")
+            return NotImplemented
         return LAWS[ufunc.__name__](*inputs)
 
     def __add__(self, other: Any) -> "Range":
