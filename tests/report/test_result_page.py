@@ -20,9 +20,9 @@ from gearopt.report.pages import frame
 from gearopt.report.pages.bodies import keep_outs, layout_of, nearest
 from gearopt.report.pages.layout_solid import MOST
 from gearopt.report.pages.result import page
+from gearopt.report.pages.row import SHEET
 from gearopt.report.pages.sheet import SIZE
 from gearopt.report.pages.solid import Toothed, block, gear_mesh, rod, upright
-from gearopt.report.section import SHEET
 
 ROOM = Path(frame.__file__).parent
 MADE = (cases.three_stage, cases.partial_span, cases.elevator, cases.boxed_in)

@@ -14,13 +14,11 @@ from urllib.parse import quote
 from rich.text import Text
 
 from gearopt.report.measures import Measures
+from gearopt.report.pages.player import Animation
+from gearopt.report.pages.row import Row
 from gearopt.report.pages.sheet import Drawing
 from gearopt.report.words import number, share
 
-SHEET = 660.0  # px across an A4 sheet inside its margins
-GUTTER = 18.0  # px between drawings, as in drawing.css
-TALL = 480.0  # px of a sheet that drawings may take, where their text stays legible
-LEGIBLE = 0.58  # of a text of 12 px: 5.2 pt on paper
 LONG = 24  # rows; a longer table may break between rows when it is printed
 
 
@@ -29,12 +27,14 @@ class Figure:
     """A plot: its plotly data and layout, and its caption.
 
     still: what is seen before it is drawn, and in print; of a view in space without WebGL, too.
+    follows: the name of an animation of the page, whose moment lines mark on the x axis.
     """
 
     data: list[dict[str, Any]]
     layout: dict[str, Any]
     caption: str
     still: Drawing | None = None
+    follows: str = ""
 
     @property
     def space(self) -> bool:
@@ -208,7 +208,7 @@ class Tile:
 
 @dataclass(frozen=True)
 class Section:
-    """A heading, then key figures, sentences, drawings at one scale, plots, tables.
+    """A heading, then key figures, sentences, drawings at one scale, animations, plots, tables.
 
     half: two such sections stand side by side where the page is wide. folded: the page shows its
     heading, and the rest when asked. terminal: the sentences and
@@ -220,6 +220,7 @@ class Section:
     tiles: Sequence[Tile] = ()
     words: Sequence[str] = ()
     drawings: Sequence[Drawing] = ()
+    animations: Sequence[Animation] = ()
     figures: Sequence[Figure] = ()
     tables: Sequence[Table] = ()
     half: bool = False
@@ -228,22 +229,9 @@ class Section:
     notes: Sequence[str] = ()
 
     @property
-    def widest(self) -> float:
-        """Return the width of the widest drawing [px]; all shrink with it, to keep one scale."""
-        return max(drawing.width for drawing in self.drawings)
-
-    @property
-    def printed(self) -> float:
-        """Return how much the drawings shrink in print so that all stand side by side, or two.
-
-        They leave room on the sheet for other things, but their text stays legible.
-        """
-        low = max(TALL / max(drawing.height for drawing in self.drawings), LEGIBLE)
-        for some in (self.drawings, self.drawings[:2]):
-            wide = sum(drawing.width + GUTTER for drawing in some) - GUTTER
-            if (share := SHEET / wide) > LEGIBLE:
-                return min(1.0, share, low)
-        return min(1.0, low)
+    def row(self) -> Row:
+        """Return the drawings as they stand side by side."""
+        return Row(self.drawings)
 
 
 def shown(value: Any) -> Cell:

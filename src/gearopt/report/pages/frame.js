@@ -4,7 +4,7 @@
   const dark = window.matchMedia("(prefers-color-scheme: dark)");
   const options = { displaylogo: false, displayModeBar: false, responsive: true };
   const narrow = 560;
-  const sheet = 660;  // px across a printed page, as in section.py
+  const sheet = 660;  // px across a printed page, as in row.py
   const half = 390;  // of a plot beside another one there
 
   function colour(style, word) {

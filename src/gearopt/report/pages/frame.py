@@ -26,11 +26,12 @@ def render(
     versions: Mapping[str, str],
     command: str,
     plots: bool = True,
+    moves: bool = False,
     **content: Any,
 ) -> str:
     """Return a page from a template that extends frame.html; all but our own files is escaped.
 
-    plots: the page has figures, which need plotly (4.8 MB) inside it.
+    plots: the page has figures, which need plotly (4.8 MB) inside it. moves: it has animations.
     """
     from markupsafe import Markup
     from plotly.offline import get_plotlyjs
@@ -47,6 +48,7 @@ def render(
         command=command,
         style=inlined("frame.css"),
         script=inlined("frame.js"),
+        player=inlined("player.js") if moves else "",
         plotly=Markup(get_plotlyjs()) if plots else "",
         **content,
     )

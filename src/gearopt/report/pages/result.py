@@ -33,6 +33,7 @@ def page(result: Result, command: str, measures: Measures = METRIC) -> str:
         {"gearopt": result.gearopt, **result.versions},
         command,
         plots=any(section.figures for section in found),
+        moves=any(section.animations for section in found),
         sections=found,
         source=_source(result),
     )

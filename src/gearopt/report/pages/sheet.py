@@ -290,10 +290,15 @@ class Sheet:
         where = f'x="{place.x:.2f}" y="{place.y:.2f}"'
         self._labels.append(f'<text class="balloon" {where}>{escape(text)}</text>')
 
-    def drawing(self, name: str, caption: str, cut: bool = False) -> Drawing:
-        """Return the drawing as SVG; cut: what reaches beyond its edges is not seen."""
+    def drawing(
+        self, name: str, caption: str, cut: bool = False, behind: str = "", front: str = ""
+    ) -> Drawing:
+        """Return the drawing as SVG; cut: what reaches beyond its edges is not seen.
+
+        behind, front: SVG of bodies that move behind all marks, or in front of them.
+        """
         box = ('class="cut" ' if cut else "") + f'viewBox="0 0 {self.width:.3f} {self.height:.3f}"'
-        marks = "\n".join(self._marks + self._labels)
+        marks = "\n".join(filter(None, (behind, *self._marks, *self._labels, front)))
         svg = f'<svg {box} role="img" aria-label="{escape(name)}">\n{marks}\n</svg>'
         return Drawing(svg, self.width, self.height, caption)
 

@@ -5,15 +5,13 @@ triangles of their numbers.
 """
 
 import math
-import sys
-from array import array
-from base64 import b64encode
 from dataclasses import dataclass, replace
 from typing import Any
 
 from gearopt.physics.gears import Gear, Rack
 from gearopt.physics.geometry.fillet import profile
 from gearopt.report.measures import Measures
+from gearopt.report.pages.packed import packed
 from gearopt.report.section import LOOK
 
 Point = tuple[float, float, float]
@@ -175,8 +173,8 @@ def block(low: Point, high: Point) -> Mesh:
 def mesh_trace(mesh: Mesh, name: str, colour: str, group: str, **more: Any) -> dict[str, Any]:
     """Return a mesh for plotly, its numbers packed; shown and hidden with its group."""
     points, faces = mesh
-    axes = {axis: _packed("f", [p[k] for p in points]) for k, axis in enumerate("xyz")}
-    corners = {corner: _packed("I", [f[k] for f in faces]) for k, corner in enumerate("ijk")}
+    axes = {axis: packed("f", [p[k] for p in points]) for k, axis in enumerate("xyz")}
+    corners = {corner: packed("I", [f[k] for f in faces]) for k, corner in enumerate("ijk")}
     look = {
         "type": "mesh3d",
         "name": group,
@@ -260,14 +258,3 @@ def _ticks(start: float, end: float, measures: Measures) -> dict[str, Any]:
     first, last = math.ceil(unit * start / step), math.floor(unit * end / step)
     values = [k * step for k in range(first, last + 1)]
     return {"tickvals": [v / unit for v in values], "ticktext": [f"{v:.6g}" for v in values]}
-
-
-def _packed(kind: str, values: list[Any]) -> dict[str, str]:
-    """Return numbers in base64 for plotly: f = 32-bit floats, I = unsigned integers."""
-    data = array(kind, values)
-    if kind == "I" and max(values, default=0) < 2**16:
-        data = array("H", values)
-    if sys.byteorder == "big":
-        data.byteswap()
-    word = {"f": "f4", "I": "u4", "H": "u2"}[data.typecode]
-    return {"dtype": word, "bdata": b64encode(data.tobytes()).decode("ascii")}
