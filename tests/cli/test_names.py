@@ -10,7 +10,7 @@ from gearopt.cli import names
 
 PROBLEMS = Path(__file__).parents[2] / "problems"
 KINDS = ("compound", "drive", "packing", "servo")
-BENCHES = ("compare", "drive", "front", "layout", "rating", "servo", "smooth")
+BENCHES = ("compare", "drive", "front", "layout", "rating", "servo", "sharing", "smooth")
 
 
 @pytest.fixture

@@ -10,8 +10,6 @@ from fractions import Fraction
 from functools import partial
 from typing import Any
 
-import numpy as np
-
 from gearopt.bench import timed
 from gearopt.formulations.sharing import share_rows
 from gearopt.physics.load_sharing import share
@@ -25,6 +23,8 @@ Solve = Callable[[Any, Any], Any]  # diagonal W (c - c12) and separations [um] o
 
 def run(repeat: int) -> list[dict[str, Any]]:
     """Return rows: case, method, ms, positions, us of one, largest error of a share F/W."""
+    import numpy as np
+
     found = []
     for pairs in PAIRS:
         rows = _random(pairs)
@@ -43,6 +43,8 @@ def run(repeat: int) -> list[dict[str, Any]]:
 
 def _random(pairs: int) -> Rows:
     """Return positions with compliances, relief and loads of gears of module 3 mm."""
+    import numpy as np
+
     rng = np.random.default_rng(pairs)
     shape = (POSITIONS, pairs)
     separations = rng.uniform(0.0, 20e-3, shape) * rng.integers(0, 2, shape)
@@ -74,12 +76,15 @@ def _scaled(rows: Rows) -> tuple[Any, Any]:
 
 
 def _each(solve: Solve, own: Any, separations: Any) -> Any:
+    import numpy as np
+
     return np.array([solve(d, e) for d, e in zip(own, separations, strict=True)])
 
 
 def _daqp(pairs: int) -> Solve:
     """CasADi's DAQP, an active-set method."""
     import casadi as ca
+    import numpy as np
 
     shapes = {"h": ca.Sparsity.diag(pairs), "a": ca.Sparsity.dense(1, pairs)}
     solver = ca.conic("sharing", "daqp", shapes)
@@ -94,6 +99,7 @@ def _daqp(pairs: int) -> Solve:
 
 def _osqp(pairs: int) -> Solve:
     """OSQP, operator splitting, to 1e-9 and polished."""
+    import numpy as np
     import osqp
     from scipy import sparse
 
@@ -113,6 +119,7 @@ def _osqp(pairs: int) -> Solve:
 def _clarabel(pairs: int) -> Solve:
     """Clarabel, an interior-point method."""
     import clarabel
+    import numpy as np
     from scipy import sparse
 
     rows = sparse.csc_matrix(np.vstack([np.ones(pairs), -np.eye(pairs)]))
@@ -132,6 +139,7 @@ def _clarabel(pairs: int) -> Solve:
 def _cvxpy(pairs: int) -> Solve:
     """Cvxpy's parametrised problem (DPP), by Clarabel."""
     import cvxpy as cp
+    import numpy as np
 
     f = cp.Variable(pairs)
     root, separation = cp.Parameter(pairs, nonneg=True), cp.Parameter(pairs)
