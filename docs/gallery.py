@@ -97,6 +97,13 @@ GROUPS = {  # heading: {file: what it shows, in a line}
         "three_stage_together": "Teeth, modules and places together make a smaller box.",
         "elevator_box_rated": "Two stages, limited by the safety factors of AGMA 2001.",
     },
+    "How the teeth of a spur pair share the load": {
+        "reference_pair": "Load shares, stiffness and transmission error of given gears.",
+        "shifted_pair": "The same with profile shifts, in plane stress.",
+        "pair_from_duty": "Duty and steel alone: sized by AGMA 2001, then its contact.",
+        "undercut_pair": "Eight teeth: what undercut leaves of the path of contact.",
+        "almost_two_pairs": "A contact ratio of 1.999, which a uniform grid takes for two.",
+    },
     "Packing of cylinders": {
         "six_cylinders": "Three large and three small ones; the number of layers is chosen too.",
         "six_cylinders_one_layer": "In one layer, which is the best known of all.",
@@ -135,6 +142,7 @@ KINDS = {  # of a file: the page about it, and what is minimised
     "packing": ("packing.md", lambda file: file.get("objective", {}).get("minimise", "volume")),
     "compound": ("compound.md", lambda file: "squared_error"),
     "servo": ("servo.md", lambda file: _of_servo(file)),
+    "pair": ("pair.md", lambda file: "gear_volume"),
 }
 UNITS = {  # as keys of a result have them
     "gear_volume": "mm3",
@@ -214,14 +222,18 @@ def _entry(name: str, words: str) -> str:
 
 
 def _command(file: Mapping[str, Any]) -> str:
-    return "rate" if file["x-expected"]["status"] == "evaluated" else "solve"
+    return "rate" if "governs" in file["x-expected"] and _given(file) else "solve"
+
+
+def _given(file: Mapping[str, Any]) -> bool:
+    return bool(file["x-expected"]["status"] == "evaluated")
 
 
 def _answer(file: Mapping[str, Any]) -> str:
     """The file's own [x-expected] in words."""
     expected = file["x-expected"]
-    if expected["status"] == "evaluated":
-        return ", ".join(_rated(expected))
+    if _given(file):
+        return ", ".join(_rated(expected) if "governs" in expected else _contact(expected))
     parts = [f"**{VERDICTS[expected['status']][0]}**"]
     name, unit = objective(file)
     if "objective" in expected:
@@ -240,6 +252,14 @@ def _answer(file: Mapping[str, Any]) -> str:
         parts.append(f"limits must move by a factor of at least {expected['least_factor']:g}")
     rated = _rated(expected) if "governs" in expected else []
     return ", ".join(parts + rated)
+
+
+def _contact(expected: Mapping[str, Any]) -> list[str]:
+    """What a file expects of the contact of a pair, in words."""
+    parts = [f"**evaluated**, contact ratio {expected['contact_ratio']:.4g}"]
+    if "peak_to_peak_um" in expected:
+        parts.append(f"transmission error {expected['peak_to_peak_um']:.3g} µm peak to peak")
+    return parts
 
 
 def _near(expected: Mapping[str, Any]) -> str:

@@ -40,7 +40,8 @@ def pytest_collection_modifyitems(config, items):
 def answered(path, **options):
     """The result of a file: of one that only rates given gears its rating."""
     content = tomllib.loads(path.read_text(encoding="utf-8"))
-    only_rated = "rating" in content and "limits" not in content
+    drive = content["kind"] == "drive"
+    only_rated = drive and "rating" in content and "limits" not in content
     return gearopt.rate(path) if only_rated else gearopt.solve(path, **options)
 
 

@@ -34,6 +34,12 @@ KEYS = {  # of [x-expected], as the tests below read them
     "servo": {
         *("status", "objective", "least_factor", "report"),
     },
+    "pair": {
+        *("status", "objective", "contact_ratio", "normal_force_N", "largest_share"),
+        *("largest_contact_stress_MPa", "mean_transmission_error_um", "peak_to_peak_um"),
+        *("iso_single_stiffness_N_per_mm_um", "iso_mesh_stiffness_N_per_mm_um"),
+        *("pinion_diameters_mm", "share_at_ends", "share_beside_single"),
+    },
 }
 LONG = (
     *(
@@ -133,6 +139,31 @@ def test_expected_servo_axis(path, solved):
         assert remedy["verified"]["with_less"] == "infeasible"
 
 
+@pytest.mark.parametrize("path", of_kind("pair"))
+def test_expected_pair(path, solved):
+    """Numbers are held to half a unit of the last digit that the file prints, at its last load."""
+    text = tomllib.loads(path.read_text(encoding="utf-8"), parse_float=str)
+    expected = text["x-expected"]
+    result = solved(path.stem)
+    assert result.status == expected.pop("status")
+    contact = result.design["contact"]
+    load = contact["loads"][-1]
+    alone = [k for k, share in enumerate(load["share"]) if share == 1.0]
+    told = contact | load | {"objective": result.value}
+    told["pinion_diameters_mm"] = [point["pinion_diameter_mm"] for point in contact["points"]]
+    told["share_at_ends"] = [load["share"][k] for k in (0, -1)]
+    told["share_beside_single"] = [load["share"][k] for k in (alone[0] - 1, alone[-1] + 1)]
+    for name, printed in expected.items():
+        ending = next((s for s in SI if name.endswith(s)), "")
+        unit, ours = SI.get(ending, (1.0, ""))
+        found = told[name if ours == "" else name.removesuffix(ending) + ours]
+        for value, one in zip(
+            *(v if isinstance(v, list) else [v] for v in (found, printed)), strict=True
+        ):
+            last = 10.0 ** Decimal(str(one)).as_tuple().exponent
+            assert value / unit == pytest.approx(float(one), abs=0.55 * last), name
+
+
 @pytest.mark.parametrize("path", of_kind("drive"))
 def test_expected_value(path, solved):
     content = content_of(path)
@@ -218,7 +249,8 @@ def test_every_file_says_what_it_is_held_to(path):
     expected = content["x-expected"]
     assert content["kind"] in HELD and content["title"] and content["source"]
     assert expected.keys() <= KEYS[content["kind"]]
-    needed = {"infeasible": "least_factor", "evaluated": "governs"}
+    given = "contact_ratio" if content["kind"] == "pair" else "governs"
+    needed = {"infeasible": "least_factor", "evaluated": given}
     needed |= {"infeasible": "conflict"} if "rating" in content else {}
     assert needed.get(expected["status"], "objective") in expected
 

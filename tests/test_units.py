@@ -30,6 +30,7 @@ INSIDE = {  # dimension -> what one is inside
     "hardness": "dimensionless",
     "Vickers hardness": "dimensionless",
     "elastic coefficient": "megapascal**0.5",
+    "compliance": "millimeter / newton",
 }
 NAMES = {  # where pint's name is another; a speed of 1/min or 1/s counts revolutions
     "hp": "horsepower",  # 550 ft lbf/s
@@ -76,6 +77,10 @@ NAMES = {  # where pint's name is another; a speed of 1/min or 1/s counts revolu
     "HV": "dimensionless",
     "sqrt(MPa)": "megapascal**0.5",
     "sqrt(psi)": "pound_force_per_square_inch**0.5",
+    "um/kN": "micrometer / kilonewton",
+    "nm/N": "nanometer / newton",
+    "um/N": "micrometer / newton",
+    "mm/N": "millimeter / newton",
 }
 ALL = [(dimension, unit) for dimension, units in UNITS.items() for unit in units]
 

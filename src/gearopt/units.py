@@ -81,6 +81,10 @@ UNITS: dict[str, dict[str, tuple[Fraction, int]]] = {
         **_table(**{"lbf in": _POUND_FORCE * _INCH, "lbf ft": 12 * _POUND_FORCE * _INCH}),
         **_table(**{"ozf in": _POUND_FORCE / 16 * _INCH}),
     },
+    "compliance": _table(  # mm/N
+        **{"um/kN": Fraction(1, 10**6), "nm/N": Fraction(1, 10**6), "um/N": Fraction(1, 1000)},
+        **{"mm/N": 1},
+    ),
     "frequency": _table(Hz=1, kHz=1000),  # 1/s
     "time": _table(s=1, min=60, h=3600),  # s
     "temperature": _table(degC=1, degF=Fraction(5, 9)),  # degrees C, above OFFSETS
@@ -107,6 +111,8 @@ SPELLINGS: dict[str, tuple[str, ...]] = {
     "arcmin": ("\u2032",),
     "arcsec": ("\u2033",),
     "um": ("\u00b5m", "\u03bcm"),  # the micro sign, and the Greek letter
+    "um/kN": ("\u00b5m/kN", "\u03bcm/kN"),
+    "um/N": ("\u00b5m/N", "\u03bcm/N"),
     "in": ("inch", "inches"),
     "1/in": ("/in", "in^-1", "in\u207b\u00b9", "DP"),
     "HB": ("HBW", "HBS", "BHN"),

@@ -9,8 +9,18 @@ import pytest
 from gearopt.cli import names
 
 PROBLEMS = Path(__file__).parents[2] / "problems"
-KINDS = ("compound", "drive", "packing", "servo")
-BENCHES = ("compare", "drive", "front", "layout", "rating", "servo", "sharing", "smooth")
+KINDS = ("compound", "drive", "packing", "pair", "servo")
+BENCHES = (
+    "compare",
+    "curvature",
+    "drive",
+    "front",
+    "layout",
+    "rating",
+    "servo",
+    "sharing",
+    "smooth",
+)
 
 
 @pytest.fixture
@@ -41,7 +51,7 @@ def test_help_lists_kinds_methods_and_benches(here, wide):
         assert all(f"{kind} (" in said for kind in KINDS)
     for command in ("solve", "compare"):
         said = here(command, "--help").stdout
-        assert "packing: hop, sa; servo: exact, enumeration" in said
+        assert "packing: hop, sa; pair: exact; servo: exact, enumeration" in said
         assert "annealing, conic, gp, ipopt, multistart, nsga2, qp, scip" in said
     assert all(f"{name} (" in here("bench", "--help").stdout for name in BENCHES)
 
@@ -63,7 +73,7 @@ def test_words_begin_as_typed():
         "smooth",
         "scip",
     ]
-    assert dict(names.method_words("exact"))["exact"] == "compound, drive, servo"
+    assert dict(names.method_words("exact"))["exact"] == "compound, drive, pair, servo"
     assert names.method_lists("exact,an") == ["exact,annealing"]
     assert names.system_words("i") == ["inch"]
 

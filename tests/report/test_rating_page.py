@@ -27,7 +27,9 @@ BOOK = {  # Shigley, example 14-4: pinion and wheel, as printed
 FILES = [
     path
     for path in sorted((Path(__file__).parents[2] / "problems").glob("*.toml"))
-    if "[rating]" in (words := path.read_text(encoding="utf-8")) and "[limits]" not in words
+    if {"[rating]", 'kind = "drive"'}
+    <= set((words := path.read_text(encoding="utf-8")).split("\n"))
+    and "[limits]" not in words
 ]
 AGAIN = {  # a title names its standard, 1 % of cycles has their digits, C_p of AGMA is Z_E of ISO
     "iso_tr_6336_30": {"6336": "6 times outside tables"},

@@ -18,8 +18,9 @@ HELP = "\n\n".join(
         "Design gear drives, and prove that no better design is possible.",
         "A text file says what is needed: power, speeds, limits. gearopt finds the smallest or "
         "lightest gears that do it, and how much smaller any other design could be: mostly not at "
-        "all. It does so for drives of up to six stages and the box around them, for servo axes, "
-        "for compound trains of a given ratio, and for packings of cylinders. "
+        "all. It does so for drives of up to six stages and the box around them, for spur pairs "
+        "and the contact of their teeth, for servo axes, for compound trains of "
+        "a given ratio, and for packings of cylinders. "
         "Gears that are given it rates by AGMA and ISO 6336.",
         "Begin with three commands: [bold]new[/] prints a file to start from, [bold]solve[/] finds "
         "the best design for it, and [bold]explain[/] says how much each number of it matters.",

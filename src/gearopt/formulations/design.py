@@ -8,6 +8,7 @@ from typing import Any
 
 from gearopt.formulations.gear_train import Train
 from gearopt.formulations.layout.layout_design import LayoutDesign
+from gearopt.formulations.pair_contact import PairContact
 from gearopt.formulations.rating import DriveRating
 from gearopt.formulations.strength import Law
 from gearopt.formulations.strength.rated import Option
@@ -101,7 +102,7 @@ class StageDesign:
 
 @dataclass(frozen=True, kw_only=True)
 class DriveDesign:
-    """Stages and totals of a drive, and where its gears are, once they are laid out."""
+    """Stages and totals of a drive; where its gears are, once laid out; of one pair its contact."""
 
     stages: tuple[StageDesign, ...]
     ratio: float
@@ -113,6 +114,7 @@ class DriveDesign:
     mass_kg: float
     layout: LayoutDesign | None = None
     rating: DriveRating | None = None
+    contact: PairContact | None = None
 
 
 def drive_design(data: Mapping[str, Any]) -> DriveDesign:

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 from pydantic import ConfigDict, Field, ValidationInfo, field_validator, model_validator
 
@@ -96,6 +96,7 @@ class DriveDuty(Duty):
 class Scene(Table):
     """A drive."""
 
+    UNRATED: ClassVar[tuple[str, ...]] = ()  # keys of gears that another kind uses without rating
     model_config = ConfigDict(
         json_schema_extra={"anyOf": [{"required": ["limits"]}, {"required": ["rating"]}]}
     )
@@ -132,8 +133,8 @@ class Scene(Table):
     @field_validator("limits", mode="wrap")
     @classmethod
     def _needed(cls, value: Any, handler: Callable[[Any], Limits], info: ValidationInfo) -> Limits:
-        """Refuse a file without limits, unless it has a rating."""
-        if value is None and info.data.get("rating", "wrong") is None:
+        """Refuse a file without limits, unless it has a rating, or given gears are enough."""
+        if value is None and info.data.get("rating", "wrong") is None and not cls.UNRATED:
             rule = "is missing (or, to rate given gears, write a table [rating])"
             raise refuse(rule, instead="rating")
         return Limits.open() if value is None else handler(value)
@@ -214,10 +215,15 @@ class Scene(Table):
 
     def _check_loads(self) -> None:
         """Check that something limits the loads: the strength law, or a rating."""
-        if self.rating is None and not self.limits.loaded:
+        if self.rating is None and not self.limits.loaded and not self._enough:
             names = " and ".join(self.limits.LAW.names)
             rule = f"is missing (or give {names}, or write a table [rating], which limits gears)"
             raise refuse(rule, at=("limits", "preset"))
+
+    @property
+    def _enough(self) -> bool:
+        """Return whether gears are all given, and need neither limits nor a rating."""
+        return bool(self.UNRATED) and self.given
 
     def _check_blanks(self) -> None:
         """Check that rims, webs, bores and hubs of every gear belong together."""
@@ -235,7 +241,7 @@ class Scene(Table):
         sized = "limits" in self.model_fields_set or self.duty.asks_ratio
         if self.rating is not None and not sized:
             check_given(self.gears, self.stage)
-        if self.rating is None or not self.given:
+        if not (self._enough or (self.given and self.rating is not None)):
             if not self.duty.asks_ratio:
                 raise refuse(
                     *self.duty.missing_ratio(), at=("duty", "output_speed"), action="sample"
@@ -243,7 +249,7 @@ class Scene(Table):
             if "limits" not in self.model_fields_set:
                 raise refuse("is missing", at=("limits",))
         if self.rating is None:
-            check_unrated(self.gears, self.stage, self.load, self.material)
+            check_unrated(self.gears, self.stage, self.load, self.material, self.UNRATED)
         else:
             places = [(("stage", k), stage) for k, stage in enumerate(self.stage)]
             check_materials(places, self.gears, self.material)

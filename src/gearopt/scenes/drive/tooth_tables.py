@@ -90,7 +90,7 @@ def check_mesh(stage: Stage, k: int, own: StageTable, gears: Gears) -> None:
             rule, keys = "leaves {} teeth no involute below their tips", TIP
         else:
             continue
-        place, write = _cause(k, member, own, gears, keys)
+        place, write = cause(k, member, own, gears, keys)
         raise refuse(rule.format(gear.teeth), write, place, "sample")
     if math.isfinite(pair.working_angle):
         return
@@ -102,7 +102,7 @@ def check_mesh(stage: Stage, k: int, own: StageTable, gears: Gears) -> None:
     raise refuse(rule, 0, ("stage", k, MEMBERS[low], "profile_shift"))
 
 
-def _cause(
+def cause(
     k: int, member: str, own: StageTable, gears: Gears, keys: tuple[str, ...]
 ) -> tuple[tuple[str | int, ...], float]:
     """Return the place of the key that is farthest from its usual value, and that value."""

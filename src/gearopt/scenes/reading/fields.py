@@ -289,10 +289,14 @@ def words() -> Reads:
 
 
 def near(word: str, names: Iterable[str]) -> str | None:
-    """Return the name that a word was probably meant to be, in any case; None if none is close."""
+    """Return the name that a word was probably meant to be, in any case; None if none is close.
+
+    A word that only one name begins with is that one.
+    """
     plain = {name.lower(): name for name in names}
     found = get_close_matches(re.sub(r"[-\s]+", "_", word[:80].lower()), plain, n=1)
-    return plain[found[0]] if found else None
+    begun = [name for name in plain if len(word) > 2 and name.startswith(f"{word.lower()} ")]
+    return plain[found[0]] if found else plain[begun[0]] if len(begun) == 1 else None
 
 
 def thousands(text: str) -> tuple[str, str] | None:

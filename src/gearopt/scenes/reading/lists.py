@@ -1,5 +1,6 @@
 """Field types of problem files that hold several values: ranges, lists, named sets."""
 
+import re
 from fractions import Fraction
 from typing import Any
 
@@ -150,3 +151,20 @@ def pair(item: Reads) -> Reads:
 
     schema = {"type": "array", "items": item.schema, "minItems": 2, "maxItems": 2}
     return Reads(read, [item.example] * 2, schema)
+
+
+def word_or(names: tuple[str, ...], item: Reads) -> Reads:
+    """Read one of some words, or else an item."""
+
+    def read(value: Any, example: Any) -> Any:
+        if value in names:
+            return value
+        try:
+            return item.reader(value, item.example)
+        except PydanticCustomError as wrong:
+            known = ", ".join(f'"{n}"' for n in names)
+            if not isinstance(value, str) or re.match(r"\s*[-+.]?[0-9]", value):
+                raise wrong
+            raise refuse(f"is neither one of {known} nor a number", near(value, names)) from None
+
+    return Reads(read, names[0], {"anyOf": [{"enum": list(names)}, item.schema]})

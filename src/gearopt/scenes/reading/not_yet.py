@@ -137,6 +137,18 @@ NEAREST: dict[str, dict[str, str]] = {  # kind -> names -> what stands nearest
     },
 }
 
+NEAREST["pair"] = NEAREST["drive"] | {
+    _but_keys(CENTRES): "Nearest: centre_distance of a [[stage]]",
+    "depth length width height size": "Nearest: face_width of a [[stage]]",
+    "layout place keep_out process_one process_two": 'Nearest: kind = "drive" with one [[stage]], '
+    "which is laid out, and sized by the rules of processes; a pair's contact is computed here",
+    "stages number_of_stages num_stages stage_count": 'A pair is one. Nearest: kind = "drive"',
+    SHAPE: "A pair has external spur gears, as the models of its contact are plane",
+    BEARINGS: "Shafts and bearings are rigid here. Nearest: bore of a gear, where it is held",
+    "crowning lead_crowning helix_modification": "Plane models have no crowning: nothing varies "
+    "across the face width",
+}
+
 CALLED: dict[str, dict[str, str]] = {  # kind -> other names of its keys -> what they are called
     "drive": {
         "z1 z_1 teeth_1 pinion.z pinion.teeth": "pinion_teeth, in a [[stage]] or [limits]",
@@ -187,7 +199,17 @@ CALLED: dict[str, dict[str, str]] = {  # kind -> other names of its keys -> what
     },
 }
 
-KINDS = {"gearbox gear_box gear_unit transmission reducer speed_reducer gear_reducer": "drive"}
+CALLED["pair"] = CALLED["drive"] | {
+    "sharing.load": "loads, in [sharing]",
+    "c12 sharing.c12": "coupling, in [sharing]",
+    "model sharing.model stiffness": "level, in [sharing]",
+    "steps sharing.steps phases": "positions, in [sharing]",
+}
+
+KINDS = {
+    "gearbox gear_box gear_unit transmission reducer speed_reducer gear_reducer": "drive",
+    "gear_pair spur_pair spur_gears mesh": "pair",
+}
 
 
 def kind_called(name: str) -> str | None:

@@ -4,7 +4,7 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from gearopt.scenes.reading.load import FORMAT, scene_module
+from gearopt.scenes.reading.load import FORMAT, kinds, scene_module
 from gearopt.scenes.reading.remedy import example_of, table_of, tables
 from gearopt.scenes.reading.toml import toml_text
 
@@ -25,11 +25,22 @@ def json_schema(kind: str) -> dict[str, Any]:
 
 
 def reference(kind: str) -> str:
-    """Return every table and key of a kind in Markdown: meaning, whether needed, an example."""
+    """Return every table and key of a kind in Markdown: meaning, whether needed, an example.
+
+    Tables that it has from another kind are named; their keys stand on the page of that kind.
+    """
     model: type[BaseModel] = scene_module(kind).Scene
     parts = [f"### top of the file\n\n{_doc(model)}\n\n{_rows(model)}"]
+    lent: dict[str, list[str]] = {}
     for title, table in tables(model):
-        parts.append(f"### {title}\n\n{_doc(table)}\n\n{_rows(table)}")
+        home = table.__module__.split(".")[2]  # gearopt.scenes.KIND
+        if home in kinds() and home != kind:
+            lent.setdefault(home, []).append(f"`{title}`")
+        else:
+            parts.append(f"### {title}\n\n{_doc(table)}\n\n{_rows(table)}")
+    for home, titles in lent.items():
+        words = f"{', '.join(titles)}: their keys stand on [that page]({home}.md)."
+        parts.append(f'### tables of kind = "{home}"\n\n{words}')
     return "\n\n".join(parts) + "\n"
 
 

@@ -102,11 +102,14 @@ def check_unrated(
     stages: Sequence[StageTable],
     load: Sequence[LoadTable],
     materials: Sequence[Named],
+    used: Sequence[str] = (),
 ) -> None:
-    """Refuse what changes nothing without a table [rating]."""
+    """Refuse what changes nothing without a table [rating]; used: keys of gears that do."""
     if materials:
         raise refuse("needs a table [rating]", at=("material",), action="remove")
     for place in _only_rated(gears, stages, load):
+        if place[-1] in used:
+            continue
         raise refuse("needs a table [rating]", at=place, action="remove")
 
 

@@ -11,6 +11,7 @@ from gearopt.formulations.rating import DriveRating, GearRating, MeshRating
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import FEASIBLE, Result, versions
 from gearopt.optimise.typed import untyped
+from gearopt.physics.blanks import Blank
 from gearopt.physics.gears import MEMBERS, GearPair
 from gearopt.physics.loads import torque
 from gearopt.physics.shaft_forces import hands
@@ -48,20 +49,7 @@ def rate(scene: Scene, ask: Ask) -> Result:
     pairs = rated_gears.given_pairs(scene)
     found = rating(scene, pairs)
     limits = utilisations(found)
-    speed = scene.duty.input_speed.value
-    asked = scene.duty.total_ratio if scene.duty.asks_ratio else None
-    density = scene.objective.density
-    tables = [[rated_gears.own(scene, k, m) for m in MEMBERS] for k in range(len(pairs))]
-    blanks = [rated_gears.blanks(scene, k, (a, b), pairs[k]) for k, (a, b) in enumerate(tables)]
-    made = of_pairs(
-        scene.limits.LAW,
-        pairs,
-        torque(scene.duty.power.value, speed),
-        speed,
-        asked,
-        density.value if density else None,
-        blanks,
-    )
+    made, blanks = given_design(scene, pairs)
     flaws = (*_off_ratio(scene, made), *misfits(blanks, pairs), *found.flaws)
     told = replace(found, flaws=flaws)
     remarks = unused_materials(scene)
@@ -79,6 +67,27 @@ def rate(scene: Scene, ask: Ask) -> Result:
         seed=ask.seed,
         versions=versions("numpy"),
     )
+
+
+def given_design(
+    scene: Scene, pairs: tuple[GearPair, ...]
+) -> tuple[DriveDesign, list[tuple[Blank, Blank]]]:
+    """Return the design of gears that are all given, and the blanks of every stage."""
+    speed = scene.duty.input_speed.value
+    asked = scene.duty.total_ratio if scene.duty.asks_ratio else None
+    density = scene.objective.density
+    tables = [[rated_gears.own(scene, k, m) for m in MEMBERS] for k in range(len(pairs))]
+    blanks = [rated_gears.blanks(scene, k, (a, b), pairs[k]) for k, (a, b) in enumerate(tables)]
+    made = of_pairs(
+        scene.limits.LAW,
+        pairs,
+        torque(scene.duty.power.value, speed),
+        speed,
+        asked,
+        density.value if density else None,
+        blanks,
+    )
+    return made, blanks
 
 
 def _off_ratio(scene: Scene, made: DriveDesign) -> list[str]:

@@ -1,0 +1,259 @@
+"""The contact of a spur pair for its report: stiffness, load shares, transmission error, stress.
+
+Fields are keys of a result, with their units; lists of one table are columns of equal length.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from gearopt.physics.agma.factors import elastic_coefficient
+from gearopt.physics.geometry.contact import diameters_at
+from gearopt.physics.load_sharing import Array, share
+from gearopt.physics.mesh_cycle import Cycle, break_points, cycle
+from gearopt.physics.tooth.elastic import ElasticPair
+from gearopt.physics.tooth.ladder import LEVELS
+
+HARMONICS = 5  # of the mesh frequency, that are told
+Columns = tuple[float, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class ContactPoint:
+    """A point of the path of contact with the stiffness of one pair of teeth there.
+
+    roll angle: of the pinion, from where the involute begins. stiffness: force per face width and
+    approach along the line of action.
+    """
+
+    point: str
+    position_mm: float
+    pinion_diameter_mm: float
+    wheel_diameter_mm: float
+    pinion_roll_angle_deg: float
+    pair_stiffness_MPa: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class ContactLoad:
+    """What happens at one load: on the path of contact, and over one base pitch of travel.
+
+    load: relative to the torque of the duty. share, contact stress: of the pair of teeth at every
+    position of the path. transmission error: approach of the gears along the line of action at
+    every travel; its harmonics: amplitudes at the mesh frequency and its multiples. mesh stiffness:
+    normal force over face width and approach.
+    """
+
+    load: float
+    normal_force_N: float
+    largest_tooth_force_N: float
+    largest_share: float
+    largest_contact_stress_MPa: float
+    mean_transmission_error_mm: float
+    peak_to_peak_mm: float
+    harmonics_mm: Columns
+    mean_mesh_stiffness_MPa: float
+    least_mesh_stiffness_MPa: float
+    most_mesh_stiffness_MPa: float
+    share: Columns
+    contact_stress_MPa: Columns
+    transmission_error_mm: Columns
+
+
+@dataclass(frozen=True, kw_only=True)
+class PairContact:
+    """The contact of a spur pair.
+
+    level, plane, coupling: models of the teeth's compliance; the load of one pair of teeth moves
+    the others by coupling_mm_per_N. bores: where the gears are held. iso: c' and c_gamma_alpha of
+    ISO 6336-1, beside. path: columns along the path of contact from SAP to EAP, both sides of
+    points where pairs come and go. travel_mm: of the pinion's base circle over one base pitch, 0
+    where a pair comes into contact. validity: sentences on what the models do not cover.
+    """
+
+    level: str
+    plane: str
+    coupling: str
+    coupling_mm_per_N: float
+    pinion_bore_mm: float
+    wheel_bore_mm: float
+    base_pitch_mm: float
+    contact_ratio: float
+    iso_single_stiffness_MPa: float
+    iso_mesh_stiffness_MPa: float
+    points: tuple[ContactPoint, ...]
+    position_mm: Columns
+    pinion_diameter_mm: Columns
+    wheel_diameter_mm: Columns
+    pinion_roll_angle_deg: Columns
+    pair_stiffness_MPa: Columns
+    travel_mm: Columns
+    loads: tuple[ContactLoad, ...]
+    validity: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """An elastic pair over one cycle: compliances [mm/N] of its pairs of teeth, (p, n).
+
+    force [N]: the normal force at the duty's torque, at which the contact compliance is taken for
+    every load; coupling c12 [mm/N].
+    """
+
+    elastic: ElasticPair
+    level: str
+    force: float
+    coupling: float
+    cycle: Cycle
+    compliances: Array
+
+    def compliance(self, positions: Any) -> Any:
+        """Return the compliance [mm/N] of a pair of teeth at positions s [mm]."""
+        return LEVELS[self.level].compliance(self.elastic, positions, self.force)
+
+
+def mesh(elastic: ElasticPair, level: str, torque: float, coupling: float, steps: int) -> Mesh:
+    """Return a pair over its cycle; torque [N mm] of the pinion, steps over one base pitch."""
+    force = torque / elastic.members[0].base_radius
+    round_ = cycle(elastic.path, steps)
+
+    def compliance(positions: Any) -> Any:
+        return LEVELS[level].compliance(elastic, positions, force)
+
+    return Mesh(elastic, level, force, coupling, round_, round_.compliances(compliance))
+
+
+def contact(
+    made: Mesh,
+    loads: Sequence[float],
+    coupling: str,
+    iso: tuple[float, float],
+    validity: Sequence[str],
+) -> PairContact:
+    """Return the contact of a pair of unmodified teeth at loads relative to that of the duty.
+
+    coupling: the name of its model; iso: c' and c_gamma_alpha [MPa].
+    """
+    elastic, path = made.elastic, made.cycle.path
+    positions = made.cycle.along(made.cycle.positions)
+    columns = _columns(made, positions)
+    return PairContact(
+        level=made.level,
+        plane=elastic.plane,
+        coupling=coupling,
+        coupling_mm_per_N=made.coupling,
+        pinion_bore_mm=elastic.bores[0],
+        wheel_bore_mm=elastic.bores[1],
+        base_pitch_mm=float(path.base_pitch),
+        contact_ratio=float(path.transverse_ratio),
+        iso_single_stiffness_MPa=iso[0],
+        iso_mesh_stiffness_MPa=iso[1],
+        points=tuple(_points(made)),
+        position_mm=_column(positions),
+        **{name: _column(values) for name, values in columns.items()},
+        travel_mm=_column(made.cycle.travels * path.base_pitch),
+        loads=tuple(_loaded(made, load) for load in loads),
+        validity=tuple(validity),
+    )
+
+
+def _column(values: Any) -> Columns:
+    return tuple(float(v) for v in values)
+
+
+def _columns(made: Mesh, positions: Any) -> dict[str, Any]:
+    """Return what belongs to positions s [mm] on the path, by the names of fields."""
+    path, pair = made.cycle.path, made.elastic.pair
+    first, second = diameters_at(pair, path, positions)
+    curvature = path.radii_of_curvature(positions)[0]
+    compliance = made.compliance(positions)
+    return {
+        "pinion_diameter_mm": first,
+        "wheel_diameter_mm": second,
+        "pinion_roll_angle_deg": np.degrees(curvature / made.elastic.members[0].base_radius),
+        "pair_stiffness_MPa": 1.0 / (compliance * float(pair.face_width)),
+    }
+
+
+def _points(made: Mesh) -> list[ContactPoint]:
+    """Return the break points and the pitch point, in their order on the path."""
+    path = made.cycle.path
+    named = list(break_points(path).items())
+    if path.start < 0.0 < path.end:
+        named.append(("pitch point", 0.0))
+    names, places = zip(*sorted(named, key=lambda row: row[1]), strict=True)
+    columns = _columns(made, np.array(places))
+    return [
+        ContactPoint(
+            point=name,
+            position_mm=places[k],
+            **{key: float(values[k]) for key, values in columns.items()},
+        )
+        for k, name in enumerate(names)
+    ]
+
+
+def _loaded(made: Mesh, load: float) -> ContactLoad:
+    """Return what happens at a load relative to that of the duty."""
+    force, round_ = load * made.force, made.cycle
+    separations = round_.separations(np.zeros_like)
+    found = share(made.compliances, separations, force, made.coupling)
+    shares = found.forces / force if force else np.zeros_like(found.forces)
+    width, error = float(made.elastic.pair.face_width), found.approach
+    mean, *harmonics = spectrum(round_.travels, error)
+    stiffness = force / (width * error) if force else np.zeros_like(error)
+    stress = contact_stress(
+        made.elastic, round_.along(round_.positions), round_.along(found.forces)
+    )
+    return ContactLoad(
+        load=load,
+        normal_force_N=force,
+        largest_tooth_force_N=float(found.forces.max()),
+        largest_share=float(shares.max()),
+        largest_contact_stress_MPa=float(stress.max()),
+        mean_transmission_error_mm=mean,
+        peak_to_peak_mm=float(np.ptp(error)),
+        harmonics_mm=_column(harmonics),
+        mean_mesh_stiffness_MPa=spectrum(round_.travels, stiffness)[0],
+        least_mesh_stiffness_MPa=float(stiffness.min()),
+        most_mesh_stiffness_MPa=float(stiffness.max()),
+        share=_column(round_.along(shares)),
+        contact_stress_MPa=_column(stress),
+        transmission_error_mm=_column(error),
+    )
+
+
+def contact_stress(elastic: ElasticPair, positions: Any, forces: Any) -> Any:
+    """Return Hertz's line stress sigma_H = Z_E sqrt(F/b (1/rho_1 + 1/rho_2)) [MPa].
+
+    positions s [mm] and forces F [N] of one pair of teeth there. Source: Hertz's cylinders, as ISO
+    6336-2 and AGMA 908 take them; edge contact at the tips is not covered.
+    """
+    (e1, e2), (nu1, nu2) = elastic.moduli, elastic.poissons
+    coefficient = elastic_coefficient(e1, nu1, e2, nu2)
+    first, second = elastic.path.radii_of_curvature(positions)
+    load = forces / float(elastic.pair.face_width)
+    return coefficient * np.sqrt(load * (1.0 / first + 1.0 / second))
+
+
+def spectrum(travels: Any, values: Any, most: int = HARMONICS) -> list[float]:
+    """Return the mean and the amplitudes of the first harmonics of what repeats with travel 1.
+
+    values at ascending travels from 0 to 1, equal travels where it jumps, are joined by lines,
+    whose integrals against exp(-2 pi i k t) are exact: piecewise linear functions have exact
+    harmonics. Amplitudes 2 |c_k|: of cosines.
+    """
+    start, step = travels[:-1], np.diff(travels)
+    low, high = values[:-1], values[1:]
+    found = [float((0.5 * (low + high) * step).sum())]
+    for k in range(1, most + 1):
+        turn = 2j * math.pi * k
+        left, right = np.exp(-turn * start), np.exp(-turn * (start + step))
+        slope = np.divide(high - low, step, out=np.zeros_like(step), where=step > 0.0)
+        ends = (low * left - high * right) / turn  # of a line, by parts; a jump has none
+        lines = ends + slope * (left - right) / turn**2
+        found.append(2.0 * abs(complex(np.where(step > 0.0, lines, 0.0).sum())))
+    return found

@@ -1,0 +1,114 @@
+"""A spur pair: how its teeth share the load, how smoothly they run, and how well that is known."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from gearopt.formulations.pair_contact import ContactLoad, PairContact
+from gearopt.optimise.result import Result
+from gearopt.optimise.typed import typed
+from gearopt.report import rating_words
+from gearopt.report.answer import asked, assumptions, limits, summary
+from gearopt.report.kinds import Kind, drive
+from gearopt.report.kinds.generic import ASKED, FIRST, LAST, TOLD
+from gearopt.report.measures import METRIC, Measures
+from gearopt.report.pages import train_views
+from gearopt.report.pair_tables import TABLES
+from gearopt.report.pair_words import answers, of_duty
+from gearopt.report.section import Section, Tile
+from gearopt.report.words import amount, number, share
+
+STIFFNESS = "N_per_mm_um"  # of MPa
+
+
+def contact_of(result: Result) -> PairContact | None:
+    """Return the contact that a design holds; None without one."""
+    held = result.design.get("contact")
+    found: PairContact | None = typed(PairContact, held, "contact") if held else None
+    return found
+
+
+def tiles(result: Result, measures: Measures) -> list[Tile]:
+    """Return load on a tooth, transmission error and stiffness as key figures."""
+    if (found := contact_of(result)) is None:
+        return []
+    return [*_contact_tiles(found, of_duty(found), measures), *rating_words.tiles(result, measures)]
+
+
+def _contact_tiles(found: PairContact, load: ContactLoad, measures: Measures) -> list[Tile]:
+    part = f"{share(load.largest_share)} % of the normal force"
+    iso = amount(found.iso_mesh_stiffness_MPa, STIFFNESS, measures)
+    return [
+        Tile("largest load on a tooth", amount(load.largest_tooth_force_N, "N", measures), part),
+        Tile(
+            "transmission error, peak to peak",
+            amount(load.peak_to_peak_mm, "um", measures),
+            f"at {share(load.load)} % of the duty's torque",
+        ),
+        Tile(
+            "mean mesh stiffness",
+            amount(load.mean_mesh_stiffness_MPa, STIFFNESS, measures),
+            f"c_γα of ISO 6336-1: {iso}",
+        ),
+        Tile("contact ratio", number(found.contact_ratio), "of the flanks that are there"),
+    ]
+
+
+def decides(result: Result) -> str:
+    """Return how much one tooth carries and how evenly the pair runs."""
+    if (found := contact_of(result)) is None or result.value is not None:
+        return ""
+    load = of_duty(found)
+    force = amount(load.largest_tooth_force_N, "N", METRIC)
+    error = amount(load.peak_to_peak_mm, "um", METRIC)
+    words = f"one tooth carries up to {force}; the transmission error varies by {error}"
+    rated = rating_words.decides(result)
+    return f"{rated}; {words}" if rated else words
+
+
+def warns(result: Result) -> Sequence[str]:
+    """Return what is unsafe by the rating, and what the models of contact do not cover."""
+    found = contact_of(result)
+    told = rating_words.warns(result)
+    return [*told, *(s for s in (found.validity if found else ()) if s not in told)]
+
+
+def contact(result: Result, measures: Measures) -> Section | None:
+    """Say how the load passes from tooth to tooth, with tables; None without contact."""
+    if (found := contact_of(result)) is None:
+        return None
+    tables = [table(found, measures) for table in TABLES]
+    words = list(map(measures.words, answers(found)))
+    shown = [table for table in tables if not table.folded]
+    return Section("Contact", words=words, tables=tables, terminal=("\n".join(words), *shown))
+
+
+def numbers(result: Result, measures: Measures) -> Section | None:
+    """Return the tables of the gears, as a drive of one stage has them."""
+    gears = {k: v for k, v in result.design.items() if k != "contact"}
+    return drive.numbers(replace(result, design=gears), measures)
+
+
+GIVEN = Kind(
+    sections=(summary, contact, train_views.section, *drive.RATINGS, numbers, asked, assumptions),
+    terminal=(numbers, contact, *drive.GIVEN.terminal, summary),
+    tiles=tiles,
+    decides=decides,
+    warns=warns,
+)
+KIND = Kind(
+    sections=(
+        *FIRST,
+        contact,
+        train_views.section,
+        numbers,
+        *drive.RATINGS,
+        *ASKED,
+        *LAST,
+    ),
+    terminal=(numbers, limits, *drive.GIVEN.terminal, contact, *TOLD),
+    tiles=tiles,
+    beside=drive.beside,
+    warns=warns,
+    whole="pair",
+    given=GIVEN,
+)

@@ -1,0 +1,136 @@
+"""Tables of a spur pair's contact: points of the path, loads, and the curves as CSV files."""
+
+from collections.abc import Callable
+
+from gearopt.formulations.pair_contact import PairContact
+from gearopt.report.measures import Measures
+from gearopt.report.section import Cell, Table, cell, percent
+
+STIFFNESS = "N_per_mm_um"  # of MPa
+MakeTable = Callable[[PairContact, Measures], Table]
+
+
+def points(found: PairContact, measures: Measures) -> Table:
+    """Return where pairs of teeth come and go, and how stiff one pair is there."""
+    length, stiff = measures.unit("mm"), measures.unit(STIFFNESS)
+    heads = (
+        *("point", f"s [{length}]", f"pinion diameter [{length}]", f"wheel diameter [{length}]"),
+        *("roll angle [°]", f"stiffness of a pair [{stiff}]"),
+    )
+    rows = [
+        [
+            row.point,
+            cell(row.position_mm, "mm", measures),
+            cell(row.pinion_diameter_mm, "mm", measures),
+            cell(row.wheel_diameter_mm, "mm", measures),
+            Cell(row.pinion_roll_angle_deg, f"{row.pinion_roll_angle_deg:.3f}"),
+            cell(row.pair_stiffness_MPa, STIFFNESS, measures),
+        ]
+        for row in found.points
+    ]
+    caption = (
+        "Points of the path of contact; s on the line of action from the pitch point, positive "
+        "towards the pinion's tip. Between LPSTC and HPSTC one pair of teeth carries the load."
+    )
+    return Table("points of contact", heads, rows, caption)
+
+
+def loads(found: PairContact, measures: Measures) -> Table:
+    """Return what happens at every load, beside the stiffness by ISO 6336-1."""
+    micro, stiff = measures.unit("um"), measures.unit(STIFFNESS)
+    force, stress = measures.unit("N"), measures.unit("MPa")
+    rows = [
+        ["load, % of the duty", *(percent_of(one.load) for one in found.loads)],
+        [f"normal force [{force}]", *(cell(o.normal_force_N, "N", measures) for o in found.loads)],
+        [
+            f"largest load on a tooth [{force}]",
+            *(cell(o.largest_tooth_force_N, "N", measures) for o in found.loads),
+        ],
+        ["the same, % of the normal force", *(percent(o.largest_share) for o in found.loads)],
+        [
+            f"largest contact stress [{stress}]",
+            *(cell(o.largest_contact_stress_MPa, "MPa", measures) for o in found.loads),
+        ],
+        [
+            f"transmission error, mean [{micro}]",
+            *(cell(o.mean_transmission_error_mm, "um", measures) for o in found.loads),
+        ],
+        [
+            f"peak to peak [{micro}]",
+            *(cell(o.peak_to_peak_mm, "um", measures) for o in found.loads),
+        ],
+        *(
+            [
+                f"harmonic {k + 1} [{micro}]",
+                *(cell(o.harmonics_mm[k], "um", measures) for o in found.loads),
+            ]
+            for k in range(len(found.loads[0].harmonics_mm))
+        ),
+        [
+            f"mesh stiffness, mean [{stiff}]",
+            *(cell(o.mean_mesh_stiffness_MPa, STIFFNESS, measures) for o in found.loads),
+        ],
+        [
+            f"mesh stiffness, least [{stiff}]",
+            *(cell(o.least_mesh_stiffness_MPa, STIFFNESS, measures) for o in found.loads),
+        ],
+        [
+            f"mesh stiffness, most [{stiff}]",
+            *(cell(o.most_mesh_stiffness_MPa, STIFFNESS, measures) for o in found.loads),
+        ],
+        [
+            f"c_γα of ISO 6336-1 [{stiff}]",
+            *[cell(found.iso_mesh_stiffness_MPa, STIFFNESS, measures)] * len(found.loads),
+        ],
+        [
+            f"c' of ISO 6336-1, of one pair [{stiff}]",
+            *[cell(found.iso_single_stiffness_MPa, STIFFNESS, measures)] * len(found.loads),
+        ],
+    ]
+    names = [f"{100.0 * one.load:g} %" for one in found.loads]
+    return Table("loads", ["", *names], rows[1:], "What happens at each load.", across=True)
+
+
+def percent_of(load: float) -> Cell:
+    """Return a load relative to the duty in per cent."""
+    return Cell(100.0 * load, f"{100.0 * load:g}")
+
+
+def path(found: PairContact, measures: Measures) -> Table:
+    """Return the path of contact, position by position, with the share at every load."""
+    length, stiff = measures.unit("mm"), measures.unit(STIFFNESS)
+    stress = measures.unit("MPa")
+    columns = [
+        (f"s [{length}]", found.position_mm, "mm"),
+        (f"pinion diameter [{length}]", found.pinion_diameter_mm, "mm"),
+        (f"wheel diameter [{length}]", found.wheel_diameter_mm, "mm"),
+        ("roll angle [°]", found.pinion_roll_angle_deg, "deg"),
+        (f"stiffness of a pair [{stiff}]", found.pair_stiffness_MPa, STIFFNESS),
+    ]
+    for one in found.loads:
+        at = f"at {100.0 * one.load:g} %"
+        columns.append((f"share of the load {at}", one.share, ""))
+        columns.append((f"contact stress {at} [{stress}]", one.contact_stress_MPa, "MPa"))
+    return _columns("path of contact", columns, measures)
+
+
+def travel(found: PairContact, measures: Measures) -> Table:
+    """Return the transmission error over one base pitch at every load."""
+    length, micro = measures.unit("mm"), measures.unit("um")
+    columns = [(f"travel [{length}]", found.travel_mm, "mm")]
+    for one in found.loads:
+        head = f"transmission error at {100.0 * one.load:g} % [{micro}]"
+        columns.append((head, one.transmission_error_mm, "um"))
+    return _columns("transmission error", columns, measures)
+
+
+def _columns(
+    name: str, columns: list[tuple[str, tuple[float, ...], str]], measures: Measures
+) -> Table:
+    """Return a table of columns, of which the page holds the CSV alone."""
+    cells = [[cell(v, unit, measures) for v in values] for _, values, unit in columns]
+    rows = list(zip(*cells, strict=True))
+    return Table(name, [head for head, *_ in columns], rows, folded=True)
+
+
+TABLES: tuple[MakeTable, ...] = (points, loads, path, travel)

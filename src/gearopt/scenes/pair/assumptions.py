@@ -1,0 +1,40 @@
+"""What the contact of a pair takes for granted, and what a reader of its result should know."""
+
+from collections.abc import Iterator
+
+from gearopt.formulations.pair_contact import PairContact
+from gearopt.physics.gears import MEMBERS
+from gearopt.scenes.drive.rating.tables import with_shared
+from gearopt.scenes.pair.contact_part import UNBORED
+from gearopt.scenes.pair.scene import Scene
+
+
+def assumptions(scene: Scene, made: PairContact) -> list[str]:
+    """Return what the contact takes for granted, in sentences."""
+    strain = "strain (wide gears)" if made.plane == "strain" else "stress (narrow gears)"
+    coupled = 1e6 * made.coupling_mm_per_N
+    return [
+        "Contact: exact involutes without errors and modifications, plane models, no friction, "
+        "no dynamics; shafts and bearings are rigid, and gears are held at their bores.",
+        f"Teeth by {made.level}, in plane {strain}; the contact compliance is that at the torque "
+        "of the duty, at every load.",
+        f"Neighbouring teeth are coupled by {coupled:.3g} µm/kN ({made.coupling}).",
+        *_held(scene, made),
+    ]
+
+
+def _held(scene: Scene, made: PairContact) -> Iterator[str]:
+    """Yield where a gear without a bore is taken to be held."""
+    own = scene.drive.stage[0]
+    for member in MEMBERS:
+        if not with_shared(getattr(own, member), scene.gears).bore:
+            held = getattr(made, f"{member}_bore_mm")
+            yield (
+                f"The {member} has no bore in the file: it is taken as held at {held:.4g} mm, "
+                f"1/{UNBORED:g} of its root circle."
+            )
+
+
+def notes(scene: Scene, made: PairContact) -> list[str]:
+    """Return what a reader of the result should know beside the numbers."""
+    return list(made.validity)

@@ -1,0 +1,113 @@
+"""From the tables of a pair to the contact of its gears: bores, materials, models, loads."""
+
+from collections.abc import Iterator
+
+from gearopt.errors import SolveError
+from gearopt.formulations.pair_contact import PairContact, contact, mesh
+from gearopt.physics.blanks import Blank
+from gearopt.physics.gears import MEMBERS, GearPair
+from gearopt.physics.geometry.contact import usable_path
+from gearopt.physics.geometry.flaws import flaws
+from gearopt.physics.iso6336.stiffness import (
+    mean_blank_factor,
+    mesh_stiffness,
+    single_stiffness,
+)
+from gearopt.physics.loads import torque
+from gearopt.physics.tooth.elastic import POISSON, STEEL, ElasticPair
+from gearopt.physics.tooth.ladder import COUPLINGS, LEVELS
+from gearopt.scenes.drive.rating import gears as rated_gears
+from gearopt.scenes.pair.scene import Scene
+from gearopt.scenes.parts import tooth_warnings
+from gearopt.units import Quantity
+
+Materials = tuple[str, str]
+UNBORED = 3.0  # root circle over the circle at which a gear without a bore is held
+LEAST_RATIO = 1.2  # below which ISO 6336-1 has no stiffness, and designers do not go
+WEAKER = " Contact ends at its form circle; the models take its exact root."
+WIDE = 6.0  # modules of face width from which on the plane state is strain
+
+
+def contact_of(scene: Scene, pair: GearPair, materials: Materials = ("", "")) -> PairContact:
+    """Return the contact of a pair of a file; SolveError where there is none that goes on.
+
+    materials: names of those chosen for pinion and wheel; "": there was no choice.
+    """
+    fatal = [flaw.sentence for flaw in flaws(pair) if flaw.fatal]
+    if fatal:
+        raise SolveError(f"there is no contact to compute: {fatal[0][0].lower()}{fatal[0][1:-1]}")
+    asked, duty = scene.sharing, scene.duty
+    elastic = elastic_pair(scene, pair, materials)
+    told = asked.coupling
+    coupled = told.value if isinstance(told, Quantity) else COUPLINGS[told](elastic)
+    made = mesh(
+        elastic,
+        level_of(scene),
+        torque(duty.power.value, duty.input_speed.value),
+        coupled,
+        asked.positions,
+    )
+    return contact(
+        made,
+        [float(load) for load in asked.loads],
+        "given" if isinstance(told, Quantity) else told,
+        _by_iso(scene, pair, elastic),
+        tuple(_validity(pair)),
+    )
+
+
+def level_of(scene: Scene) -> str:
+    """Return the model of the teeth's compliance that a file asks for."""
+    return scene.sharing.level or next(iter(LEVELS))
+
+
+def elastic_pair(scene: Scene, pair: GearPair, materials: Materials = ("", "")) -> ElasticPair:
+    """Return a pair with its bores, materials and plane state."""
+    tables = [
+        rated_gears.own(scene.drive, 0, m, n) for m, n in zip(MEMBERS, materials, strict=True)
+    ]
+    made = blanks_of(scene, pair, materials)
+    bores = [
+        bore_of(blank, float(g.root_diameter)) for blank, g in zip(made, pair.gears, strict=True)
+    ]
+    moduli = [t.elastic_modulus.value if t.elastic_modulus else STEEL for t in tables]
+    poissons = [float(t.poisson_ratio) if t.poisson_ratio is not None else POISSON for t in tables]
+    wide = float(pair.face_width) >= WIDE * float(pair.normal_module)
+    plane = scene.sharing.plane or ("strain" if wide else "stress")
+    return ElasticPair(
+        pair, (bores[0], bores[1]), (moduli[0], moduli[1]), (poissons[0], poissons[1]), plane
+    )
+
+
+def blanks_of(scene: Scene, pair: GearPair, materials: Materials) -> tuple[Blank, Blank]:
+    """Return the blanks of the gears of a pair."""
+    drive = scene.drive
+    tables = tuple(rated_gears.own(drive, 0, m, n) for m, n in zip(MEMBERS, materials, strict=True))
+    return rated_gears.blanks(drive, 0, (tables[0], tables[1]), pair)
+
+
+def bore_of(blank: Blank, root: float) -> float:
+    """Return the diameter [mm] at which a gear is held: its bore, or a third of the root circle."""
+    return blank.bore if blank.bore and blank.hub < root else root / UNBORED
+
+
+def _by_iso(scene: Scene, pair: GearPair, elastic: ElasticPair) -> tuple[float, float]:
+    """Return c' and c_gamma_alpha [MPa] of ISO 6336-1 at the torque of the duty."""
+    duty = scene.duty
+    load = 2.0 * torque(duty.power.value, duty.input_speed.value)
+    line = load / float(pair.pinion.reference_diameter * pair.face_width)
+    blanks = blanks_of(scene, pair, ("", ""))
+    webs = tuple(blank.web(gear) for blank, gear in zip(blanks, pair.gears, strict=True))
+    single = single_stiffness(pair, line, elastic.moduli, mean_blank_factor((webs[0], webs[1])))
+    return float(single), float(mesh_stiffness(single, elastic.path.transverse_ratio)[0])
+
+
+def _validity(pair: GearPair) -> Iterator[str]:
+    """Yield what the models do not cover of these gears, and flaws that a designer may accept."""
+    yield from tooth_warnings((pair,), WEAKER)
+    ratio = float(usable_path(pair).transverse_ratio)
+    if ratio < LEAST_RATIO:
+        yield (
+            f"The contact ratio of {ratio:.3f} is small: errors of the gears may take contact away "
+            f"for a moment; {LEAST_RATIO:g} is a usual minimum."
+        )

@@ -1,0 +1,60 @@
+"""What given gears must have to carry load: an involute, room for their bores, steady contact."""
+
+from typing import Any
+
+from gearopt.physics.gears import MEMBERS, GearPair
+from gearopt.physics.geometry.flaws import flaws
+from gearopt.scenes.drive.blank_tables import blank
+from gearopt.scenes.drive.drive_tables import Gears, StageTable
+from gearopt.scenes.drive.rating.tables import with_shared
+from gearopt.scenes.drive.tooth_tables import ROOT, TIP, cause
+from gearopt.scenes.reading.fields import refuse
+
+Place = tuple[Any, ...]
+
+
+def check_pair(pair: GearPair, own: StageTable, gears: Gears) -> None:
+    """Refuse gears without contact that goes on, and bores without room; own, gears: tables."""
+    _check_flaws(pair, own, gears)
+    for member, gear in zip(MEMBERS, pair.gears, strict=True):
+        made = blank(with_shared(getattr(own, member), gears), None)
+        root = float(gear.root_diameter)
+        if made.bore and made.hub >= root:
+            place: Place = ("stage", 0, member, "bore")
+            place = place if getattr(own, member).bore is not None else ("gears", "bore")
+            rule = (
+                f"leaves its hub, {made.hub:.4g} mm, no room inside the root circle of the "
+                f"{member}, {root:.4g} mm"
+            )
+            raise refuse(rule, f"{0.5 * root / made.hub_over_bore:.2g} mm", place, "sample")
+
+
+def _check_flaws(pair: GearPair, own: StageTable, gears: Gears) -> None:
+    """Refuse fatal flaws of the teeth, each at the key that makes it."""
+    found = flaws(pair)
+    if not found or not (flaw := found[0]).fatal:
+        return
+    said = f"makes gears that cannot run: {flaw.sentence[0].lower()}{flaw.sentence[1:].rstrip('.')}"
+    if flaw.name in ("no root", "no involute", "pointed tooth"):
+        member = next(m for m in MEMBERS if m in flaw.sentence)
+        place, write = cause(0, member, own, gears, ROOT if flaw.name == "no root" else TIP)
+        raise refuse(said, write, place, "sample")
+    if flaw.name == "pointed tool":
+        raise refuse(said, 0.38, _tool(flaw.sentence, own), "sample")
+    if own.centre_distance is not None and flaw.name != "usable contact ratio below 1":
+        raise refuse(said, f"{pair.reference_distance:.4g} mm", ("stage", 0, "centre_distance"))
+    for weak in found:  # an undercut gear: the sentence has the shift that it needs
+        if weak.name == "undercut":
+            member = next(m for m in MEMBERS if m in weak.sentence)
+            rule = f"{said}. {weak.sentence.rstrip('.')}"
+            tell = f"Write [stage.{member}] profile_shift, or more {member}_teeth"
+            raise refuse(rule, tell, ("stage", 0, f"{member}_teeth"), "tell")
+    member = min(MEMBERS, key=lambda m: float(getattr(own, m).profile_shift or 0))
+    place, write = cause(0, member, own, gears, TIP)
+    raise refuse(said, write, place, "sample")
+
+
+def _tool(sentence: str, own: StageTable) -> Place:
+    member = next(m for m in MEMBERS if m in sentence)
+    alone = getattr(own, member).tool_tip_radius is not None
+    return ("stage", 0, member, "tool_tip_radius") if alone else ("gears", "tool_tip_radius")

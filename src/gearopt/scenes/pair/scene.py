@@ -1,0 +1,147 @@
+"""A spur pair's file as a whole: the tables of a drive of one stage, and those of its contact."""
+
+from fractions import Fraction
+from typing import Annotated, Any, ClassVar
+
+from pydantic import Field, PrivateAttr, ValidationError, model_validator
+
+from gearopt.physics.gears import GearPair
+from gearopt.scenes.drive.drive_tables import Gears, Limits, Objective, StageTable, Teeth
+from gearopt.scenes.drive.rating.checks import not_given
+from gearopt.scenes.drive.rating.gears import given_pairs
+from gearopt.scenes.drive.rating.materials import MaterialTable
+from gearopt.scenes.drive.rating.tables import LoadTable, RatingTable
+from gearopt.scenes.drive.scene import DriveDuty
+from gearopt.scenes.drive.scene import Scene as Drive
+from gearopt.scenes.pair.pair_flaws import check_pair
+from gearopt.scenes.pair.sharing_tables import SharingTable
+from gearopt.scenes.reading.fields import Table, refuse, words
+from gearopt.scenes.reading.toml import dotted
+
+# Where a file that asks for a size says nothing: ranges that suit most spur pairs, as the example
+# of a least pair by AGMA has them, whose answer lies inside.
+PINION_TEETH = (18, 60)
+OVER_DIAMETER = (Fraction(3, 10), Fraction(1))
+OVER_MODULE = (Fraction(8), Fraction(14))
+ONLY_SIZED = ("limits", "teeth", "objective")  # tables
+
+
+class OneStage(Drive):
+    """The drive that a pair is, for what drives are asked: sizes, ratings, checks."""
+
+    UNRATED: ClassVar[tuple[str, ...]] = ("elastic_modulus", "poisson_ratio")
+
+
+class Scene(Table):
+    """A spur pair."""
+
+    title: Annotated[str, words()] = Field("", description="A line for the report")
+    source: Annotated[str, words()] = Field(
+        "", description="Where the data and the expected value come from"
+    )
+    duty: DriveDuty
+    gears: Gears = Field(default_factory=Gears)
+    stage: tuple[StageTable, ...] = Field(
+        (), description="One table: the pair. What it leaves open is sized by [rating]"
+    )
+    rating: RatingTable | None = None
+    material: tuple[MaterialTable, ...] = Field(
+        (), description="One table per material of which gears may choose"
+    )
+    load: tuple[LoadTable, ...] = Field((), description="One table per level of a load spectrum")
+    limits: Limits | None = Field(
+        None, description="Of a pair that is sized; by default 18 to 60 pinion teeth"
+    )
+    teeth: Teeth | None = Field(
+        None, description="Of a pair that is sized; by default with modules of ISO 54, series I"
+    )
+    objective: Objective = Field(default_factory=Objective)
+    sharing: SharingTable = Field(default_factory=SharingTable)
+
+    _drive: Drive = PrivateAttr()
+
+    @property
+    def drive(self) -> Drive:
+        """Return the pair as a drive of one stage, with the ranges that the file leaves out."""
+        return self._drive
+
+    @property
+    def given(self) -> bool:
+        """Return whether teeth, module and face width are all given: nothing is sized."""
+        return not any(not_given(self.gears, self.stage))
+
+    @property
+    def given_pair(self) -> GearPair:
+        """Return the gears of a pair that is given."""
+        return given_pairs(self.drive)[0]
+
+    @model_validator(mode="after")
+    def _consistent(self) -> "Scene":
+        if len(self.stage) > 1:
+            rule = 'is a second pair: kind = "drive" has several stages'
+            raise refuse(rule, at=("stage", 1), action="remove")
+        self._check_spur()
+        own = self._tables()
+        if self.given:
+            for name in self.model_fields_set & set(ONLY_SIZED):
+                if name != "objective" or "minimise" in self.objective.model_fields_set:
+                    raise refuse(
+                        "changes nothing: the gears are given", at=(name,), action="remove"
+                    )
+        elif self.rating is None and (self.limits is None or not self.limits.loaded):
+            place = next(not_given(self.gears, self.stage))
+            open_ = (
+                "no table [[stage]] gives gears" if not self.stage else f"{dotted(place)} is open"
+            )
+            rule = f"is missing: {open_}, and gears that are not given are sized by a rating"
+            raise refuse(rule, at=("rating",))
+        else:
+            own |= self._ranges()
+        try:
+            self._drive = OneStage.model_validate(own)
+        except ValidationError as wrong:
+            raise _first(wrong) from None
+        if self.given:
+            check_pair(self.given_pair, self.stage[0], self.gears)
+        return self
+
+    def _check_spur(self) -> None:
+        """Refuse helical gears: what follows is of plane models."""
+        places: list[tuple[tuple[Any, ...], Any]] = [(("gears",), self.gears)]
+        places += [(("stage", k), own) for k, own in enumerate(self.stage)]
+        for place, table in places:
+            if table.helix_angle is not None and table.helix_angle.number != 0:
+                rule = (
+                    'is of helical gears: kind = "pair" is for spur gears, as its models are plane'
+                )
+                raise refuse(rule, at=(*place, "helix_angle"), action="remove")
+
+    def _tables(self) -> dict[str, Any]:
+        """Return the tables of the file that a drive has."""
+        names = self.model_fields_set & OneStage.model_fields.keys()
+        return {name: getattr(self, name) for name in names}
+
+    def _ranges(self) -> dict[str, Any]:
+        """Return the tables of a pair that is sized, completed by usual ranges."""
+        own = self.stage[0] if self.stage else StageTable()
+        open_: dict[str, Any] = {}
+        gears = self.gears
+        if not (own.face_width or own.face_width_over_diameter or gears.face_width_over_diameter):
+            open_["face_width_over_diameter"] = OVER_DIAMETER
+            if not (own.face_width_over_module or gears.face_width_over_module):
+                open_["face_width_over_module"] = OVER_MODULE
+        return {
+            "stage": (own.model_copy(update=open_),),
+            "limits": self.limits or Limits(pinion_teeth=PINION_TEETH),
+            "teeth": self.teeth or Teeth(),
+        }
+
+
+def _first(wrong: ValidationError) -> Exception:
+    """Return the first mistake that a drive finds, as one of the pair's file."""
+    error = wrong.errors(include_url=False, include_input=False)[0]
+    context = error.get("ctx", {})
+    place = (*error["loc"], *context.get("at", ()))
+    return refuse(
+        context["rule"], context["write"], place, context["action"], context.get("instead", "")
+    )

@@ -1,0 +1,157 @@
+"""Files of spur pairs: what they may leave out, what is refused, and what is said instead."""
+
+import copy
+import tomllib
+
+import pytest
+
+import gearopt
+from gearopt.errors import SceneError, SolveError
+from gearopt.scenes.pair import EXAMPLE, MORE_EXAMPLES
+
+GIVEN = tomllib.loads(EXAMPLE)
+SIZED = tomllib.loads(MORE_EXAMPLES["sized-pair"][1])
+
+
+def with_(tables, edits):
+    """Tables with other values by dotted keys; `stage` is the only one; None removes a key."""
+    found = copy.deepcopy(tables)
+    for key, value in edits.items():
+        *path, name = key.split(".")
+        place = found
+        for part in path:
+            place = place.setdefault(part, [{}] if part == "stage" else {})
+            place = place[0] if isinstance(place, list) else place
+        if value is None:
+            del place[name]
+        else:
+            place[name] = value
+    return found
+
+
+def contact(tables, **edits):
+    return gearopt.solve(with_(tables, edits)).design["contact"]
+
+
+WRONG = [
+    ({"stage.pinion_teeth": 8}, r"stage\[1\]\.pinion_teeth = 8: .* contact ratio of 0\.913, below"),
+    ({"stage.pinion_teeth": 10, "stage.pinion.profile_shift": 0.8}, "profile_shift = 0.8: .* poin"),
+    ({"stage.pinion.bore": "70 mm"}, r'bore = "70 mm": leaves its hub.* Write, for example, bore'),
+    ({"gears.bore": "90 mm", "stage.pinion": {}}, r'gears\.bore = "90 mm": leaves its hub, 144 mm'),
+    ({"stage.centre_distance": "130 mm"}, 'contact breaks off. Write centre_distance = "112.5 mm"'),
+    ({"stage.helix_angle": "10 deg"}, r"stage\[1\]\.helix_angle = .* is for spur gears"),
+    ({"gears.helix_angle": "10 deg"}, r"gears\.helix_angle = .* is for spur gears"),
+    ({"gears.addendum": 0.5}, r"gears\.addendum = 0\.5: .* contact breaks off.* addendum = 1"),
+    ({"stage.module": None}, r"rating: is missing: stage\[1\]\.module is open, and gears that"),
+    ({"stage": []}, r"rating: is missing: no table \[\[stage\]\] gives gears"),
+    ({"teeth": {}}, "teeth = {}: changes nothing: the gears are given. Remove it"),
+    ({"gears.treatment": "carburised"}, r"gears\.treatment = .*needs a table \[rating\]"),
+    ({"sharing.coupling": "ring"}, 'coupling = "ring": is neither one of .*coupling = "ring tors'),
+    ({"sharing.coupling": "0.8 um"}, r"has the unit um of length; units of compliance: um/kN"),
+    ({"sharing.coupling": 0.8}, 'needs a unit .* Write coupling = "0.8 um/kN"'),
+    ({"sharing.level": "profile"}, r'level = "profile": is not .* Write level = "profile \+ S'),
+    ({"sharing.loads": [1, 1]}, r"names a load twice\. Write loads = \[1\.0\]"),
+    ({"sharing.loads": []}, r"loads = \[\]: is not a list"),
+    ({"sharing.load": [1]}, r"sharing\.load = .*Here it is called loads, in \[sharing\]"),
+    ({"sharing.positions": 3}, "positions = 3: is not a whole number from 12 to 5000"),
+    ({"stage.face_widht": "3 mm"}, r"stage\[1\]\.face_widht: unknown key. Did you mean face_width"),
+    ({"layout": {}}, "layout = .*is not supported yet.*kind = .drive. with one"),
+]
+
+
+@pytest.mark.parametrize(("edits", "said"), WRONG, ids=[next(iter(e)) for e, _ in WRONG])
+def test_what_is_wrong_is_said_in_one_line_with_what_to_write(edits, said):
+    with pytest.raises(SceneError, match=said) as wrong:
+        gearopt.load(with_(GIVEN, edits))
+    assert "\n" not in str(wrong.value)
+
+
+def test_a_second_pair_is_a_drive():
+    two = GIVEN | {"stage": [*GIVEN["stage"], {}]}
+    with pytest.raises(SceneError, match=r'stage\[2\].*is a second pair: kind = "drive" has'):
+        gearopt.load(two)
+
+
+def test_given_gears_need_neither_limits_nor_rating_nor_ratio():
+    result = gearopt.solve(GIVEN)
+    assert result.status == "evaluated" and result.value is None and result.feasible
+    assert "rating" not in result.design
+    assert result.design["contact"]["contact_ratio"] == pytest.approx(1.683162262, abs=1e-9)
+
+
+def test_given_gears_are_rated_where_the_file_asks_for_it():
+    rating = {"standard": "agma", "life": "20000 h", "quality": 8}
+    tables = with_(GIVEN, {"rating": rating, "gears.treatment": "carburised"})
+    result = gearopt.solve(tables)
+    assert result.status == "evaluated" and result.design["rating"]["safe"] is False
+    drive = gearopt.rate({k: v for k, v in tables.items() if k != "sharing"} | {"kind": "drive"})
+    assert result.design["rating"] == drive.design["rating"] and result.limits == drive.limits
+    assert result.design["contact"]["loads"][1]["load"] == 1.0
+
+
+def test_duty_and_steel_alone_are_enough_and_the_ranges_left_out_are_usual_ones():
+    """The same as a drive with these ranges written out, and the contact of what it finds."""
+    result = gearopt.solve(SIZED)
+    written = {
+        "kind": "drive",
+        "stage": [{"face_width_over_diameter": [0.3, 1], "face_width_over_module": [8, 14]}],
+        "limits": {"pinion_teeth": [18, 60]},
+        "teeth": {"modules": "ISO 54 I"},
+    }
+    drive = gearopt.solve(SIZED | written)
+    assert result.status == "optimal" and result.value == drive.value
+    stage = result.design["stages"][0]
+    assert stage["pinion_teeth"] == 43 and stage["wheel_teeth"] == 128
+    (load,) = result.design["contact"]["loads"]
+    radius = 0.5 * stage["pinion_diameter_mm"] * 0.9396926207859084  # cos 20 deg
+    assert load["normal_force_N"] * radius == pytest.approx(1e3 * stage["pinion_torque_Nm"])
+    held = [words for words in result.report["assumptions"] if "no bore" in words]
+    assert len(held) == 2 and "1/3 of its root circle" in held[0]
+
+
+def test_bores_are_those_of_the_file_and_smaller_ones_give_way_more():
+    wide, narrow = (contact(GIVEN, **{"stage.pinion.bore": bore}) for bore in ("35 mm", "20 mm"))
+    assert wide["pinion_bore_mm"] == 35.0 and narrow["pinion_bore_mm"] == 20.0
+    for stiff, soft in zip(wide["points"], narrow["points"], strict=True):
+        assert stiff["pair_stiffness_MPa"] > soft["pair_stiffness_MPa"]
+
+
+@pytest.mark.parametrize(("width", "plane"), [("18 mm", "strain"), ("17 mm", "stress")])
+def test_the_plane_state_follows_from_the_face_width(width, plane):
+    assert contact(GIVEN, **{"stage.face_width": width})["plane"] == plane
+
+
+def test_a_material_of_half_the_modulus_gives_way_about_twice_as_much():
+    """The contact's logarithm alone depends on the load, and c' of ISO 6336 is as stiff by half."""
+    steel = contact(GIVEN)
+    light = contact(GIVEN, **{"gears.elastic_modulus": "103 GPa"})
+    ratio = steel["points"][2]["pair_stiffness_MPa"] / light["points"][2]["pair_stiffness_MPa"]
+    assert 1.9 < ratio < 2.0
+    assert light["iso_single_stiffness_MPa"] == pytest.approx(
+        0.5 * steel["iso_single_stiffness_MPa"], rel=1e-12
+    )
+
+
+def test_a_number_for_the_coupling_is_taken_as_it_is():
+    found = contact(GIVEN, **{"sharing.coupling": "0.784 um/kN"})
+    assert found["coupling"] == "given" and found["coupling_mm_per_N"] == pytest.approx(7.84e-7)
+
+
+def test_undercut_is_said_and_so_is_a_small_contact_ratio(solved):
+    found = solved("undercut_pair").design["contact"]["validity"]
+    assert "undercut" in found[0] and "contact ratio of 1.080 is small" in found[1]
+
+
+@pytest.mark.parametrize("call", ["explain", "compare"])
+def test_of_given_gears_nothing_is_chosen(call):
+    with pytest.raises(SolveError, match="the gears are given, so that nothing is chosen"):
+        getattr(gearopt, call)(GIVEN)
+    with pytest.raises(SolveError, match="method exact changes nothing here: the gears are given"):
+        gearopt.solve(GIVEN, method="exact")
+
+
+def test_an_impossible_duty_is_proven_so_and_has_no_contact():
+    result = gearopt.solve(
+        with_(SIZED, {"limits": {"pinion_teeth": [18, 60], "wheel_diameter": "90 mm"}})
+    )
+    assert result.status == "infeasible" and not result.design
