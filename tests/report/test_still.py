@@ -1,5 +1,6 @@
 """The still of a view in space: to scale, the nearest body in front, its texts clear."""
 
+import math
 import re
 import xml.etree.ElementTree as ET
 
@@ -126,6 +127,39 @@ def test_every_view_in_space_has_a_still_with_clear_texts(name):
         for other, there, reach in texts[:k]:
             assert (abs(at - there) >= half + reach - 1.0).any(), (word, other)
     assert marks(svg, "path", "face") and marks(svg, "line", "near")
+
+
+def test_teeth_reach_from_face_to_face():
+    """Side and near face of a star cover all its points, on either face; its flanks are seen."""
+    seen = view()
+    rim = tuple((k * math.pi / 12, 12.0 if k % 2 else 9.0) for k in range(24))
+    rod = Rod((30.0, 40.0), 12.0, 10.0, 50.0, "gear", outline=rim)
+    drawn = still([rod], ((0.0, 0.0, 0.0), (60.0, 80.0, 90.0)), seen, Texts(("x",) * 3, ()), "x")
+    side, face = (steps(p) for p in re.findall(r'class="(?:side|face) gear" d="(.*?)"', drawn.svg))
+    spots = np.array([(30.0 + r * math.cos(t), 40.0 + r * math.sin(t)) for t, r in rim])
+    ends = [np.array([seen.at((a, *spot)) for spot in spots]) for a in (10.0, 50.0)]
+    scale = np.ptp(face[:, 0]) / np.ptp(ends[1][:, 0])
+    offset = face[0] - scale * ends[1][0] * (1, -1)
+    near, far = (scale * end * (1, -1) + offset for end in (ends[1], ends[0]))
+    assert np.allclose(face, near, atol=0.3)
+    for way in (0, 1):
+        drawn_ends = np.concatenate((side, face))[:, way]
+        assert drawn_ends.min() == pytest.approx(
+            min(near[:, way].min(), far[:, way].min()), abs=0.5
+        )
+        assert drawn_ends.max() == pytest.approx(
+            max(near[:, way].max(), far[:, way].max()), abs=0.5
+        )
+    gaps = [np.hypot(*(np.concatenate((near, far)) - p).T).min() for p in side]
+    assert max(gaps) < 0.5 and 12 < len(side) < 2 * len(near)  # only those that face the eye
+
+
+def steps(path):
+    """Points of a path of steps, of all its parts."""
+    found = []
+    for part in path.rstrip("Z").split("Z"):
+        found.append(np.cumsum([tuple(map(float, p.split())) for p in part[1:].split("l")], axis=0))
+    return np.concatenate(found)
 
 
 def test_teeth_of_the_still_are_those_of_the_gears():

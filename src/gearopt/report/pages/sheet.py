@@ -261,14 +261,26 @@ class Sheet:
         inside = length > 2.5 * ARROW[0]
         if inside:
             self._stroke(start, end, style)
-        for (x, y), sign in ((start, 1.0), (end, -1.0)):
+        for point, sign in ((start, 1.0), (end, -1.0)):
             s = sign if inside else -sign
-            bx, by = x + s * ARROW[0] * ux, y + s * ARROW[0] * uy
-            nx, ny = -uy * ARROW[1], ux * ARROW[1]
-            corners = f"{x:.2f},{y:.2f} {bx + nx:.2f},{by + ny:.2f} {bx - nx:.2f},{by - ny:.2f}"
-            self._add("polygon", f'points="{corners}"', f"{style} head")
+            bx, by = self._head(point, (ux, uy), s, style)
             if not inside:
                 self._stroke((bx, by), (bx + s * 6.0 * ux, by + s * 6.0 * uy), style)
+
+    def arrow(self, start: Point, end: Point, style: str) -> None:
+        """Draw a line with a head at its end [px]."""
+        length = math.dist(start, end) or 1.0
+        along = (end[0] - start[0]) / length, (end[1] - start[1]) / length
+        self._stroke(start, self._head(end, along, -1.0, style), style)
+
+    def _head(self, tip: Point, along: Point, sign: float, style: str) -> Point:
+        """Draw the head of an arrow and return its base; sign 1: that lies along a unit vector."""
+        (x, y), (ux, uy) = tip, along
+        bx, by = x + sign * ARROW[0] * ux, y + sign * ARROW[0] * uy
+        nx, ny = -uy * ARROW[1], ux * ARROW[1]
+        corners = f"{x:.2f},{y:.2f} {bx + nx:.2f},{by + ny:.2f} {bx - nx:.2f},{by - ny:.2f}"
+        self._add("polygon", f'points="{corners}"', f"{style} head")
+        return bx, by
 
     def label(self, text: str, places: Sequence[Place], style: str, colour: str = "") -> None:
         """Write a text centred at the place, of several, where it meets least."""

@@ -5,9 +5,11 @@ triangles of their numbers.
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+from gearopt.physics.blanks import Body
 from gearopt.physics.gears import Gear, Rack
 from gearopt.physics.geometry.fillet import profile
 from gearopt.report.measures import Measures
@@ -51,10 +53,14 @@ class Toothed:
     middle: float = 0.0
 
 
-def gear_mesh(placed: Toothed, flank: int, step: float) -> Mesh:
-    """Return a helical gear with the teeth of its rack; the bore is left out.
+def gear_mesh(
+    placed: Toothed, flank: int, step: float, inside: Sequence[tuple[float, float]] = ()
+) -> Mesh:
+    """Return a helical gear with the teeth of its rack.
 
     flank: points on a flank, as of `outline`. step: largest twist between two sections [rad].
+    inside: rings (x, radius) [mm] that its body has below the teeth, from the end to the start
+    (`rings_of`); without them both faces are closed.
     """
     gear, start, end = placed.gear, placed.start, placed.end
     rim = outline(gear, flank)
@@ -70,14 +76,35 @@ def gear_mesh(placed: Toothed, flank: int, step: float) -> Mesh:
         for angle, r in rim:
             at = angle + turn
             points.append((x, y + r * math.cos(at), z + r * math.sin(at)))
-    faces = _skin(len(rim), sections)
     around, last = len(rim), len(points) - len(rim)
+    if inside:
+        spots = [(x, r, placed.phase + angle) for x, r in inside for angle, _ in rim]
+        points += [(x, y + r * math.cos(t), z + r * math.sin(t)) for x, r, t in spots]
+        points += points[:around]
+        return points, _skin(around, sections + len(inside) + 1)
+    faces = _skin(around, sections)
     middle = len(points)
     points += [(start, y, z), (end, y, z)]
     for k in range(around):  # a fan over each face
         n = (k + 1) % around
         faces += [(middle, n, k), (middle + 1, last + k, last + n)]
     return points, faces
+
+
+def rings_of(body: Body, gear: Gear, start: float, end: float) -> list[tuple[float, float]]:
+    """Return rings (x, radius) [mm] of a body from its end over bore or axis to its start.
+
+    A web lies in the middle of the face width; without a hub it reaches bore or axis.
+    """
+    bore = 0.5 * (body.bore or 0.0)
+    half = [(end, bore)]
+    if body.web_thickness is not None and body.rim_thickness is not None:
+        rim = 0.5 * float(gear.root_diameter) - body.rim_thickness
+        web = 0.5 * (start + end + body.web_thickness)
+        hub = 0.5 * (body.hub_diameter or 0.0)
+        at_hub = [(web, hub), (end, hub), (end, bore)] if hub else [(web, bore)]
+        half = [(end, rim), (web, rim), *at_hub]
+    return half + [(start + end - x, r) for x, r in reversed(half)]
 
 
 def twist(gear: Gear) -> float:

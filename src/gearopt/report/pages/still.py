@@ -294,43 +294,69 @@ def edges(low: Spot, high: Spot, seen: View) -> tuple[list[tuple[Spot, Spot]], .
 
 
 def _rod(sheet: Sheet, rod: Rod, seen: View) -> None:
-    """Draw side and near face: half ellipses whose long axes are across the axis."""
+    """Draw side and near face: half ellipses whose long axes are across the axis, or teeth."""
     near, far = (rod.end, rod.start) if seen.eye[0] > 0.0 else (rod.start, rod.end)
-    (x0, y0), (x1, y1) = (sheet.at(*seen.at((a, *rod.centre))) for a in (near, far))
-    flat = math.hypot(seen.right[0], seen.up[0])
     r = sheet.scale * rod.radius
+    if rod.outline and 2.0 * math.pi * r / max(1, len(rod.outline) / 4) > FINE:
+        side, face = _toothed(sheet, rod, (near, far), seen)
+    else:
+        side, face = _round(sheet, rod, (near, far), seen)
+    sheet.shape(side, f"side {rod.style}", rod.colour, rod.title)
+    sheet.shape(face, f"face {rod.style}", rod.colour, rod.title)
+
+
+def _round(sheet: Sheet, rod: Rod, ends: Point, seen: View) -> tuple[str, str]:
+    """Return side and near face of a cylinder as paths; ends: the near and the far one."""
+    (x0, y0), (x1, y1) = (sheet.at(*seen.at((a, *rod.centre))) for a in ends)
+    flat, r = math.hypot(seen.right[0], seen.up[0]), sheet.scale * rod.radius
     px, py = -seen.up[0] / flat * r, -seen.right[0] / flat * r  # along the long axis
     arc = f"A {r:.1f} {r * abs(seen.eye[0]):.1f} {math.degrees(math.atan2(py, px)):.1f} 0"
     sweep = int(-py * (x1 - x0) + px * (y1 - y0) > 0.0)
-    sheet.shape(
+    side = (
         f"M {x0 + px:.1f} {y0 + py:.1f} L {x1 + px:.1f} {y1 + py:.1f} "
         f"{arc} {sweep} {x1 - px:.1f} {y1 - py:.1f} L {x0 - px:.1f} {y0 - py:.1f} "
-        f"{arc} {1 - sweep} {x0 + px:.1f} {y0 + py:.1f} Z",
-        f"side {rod.style}",
-        rod.colour,
-        rod.title,
+        f"{arc} {1 - sweep} {x0 + px:.1f} {y0 + py:.1f} Z"
     )
     face = (
         f"M {x0 + px:.1f} {y0 + py:.1f} {arc} 1 {x0 - px:.1f} {y0 - py:.1f} "
         f"{arc} 1 {x0 + px:.1f} {y0 + py:.1f} Z"
     )
-    teeth = 2.0 * math.pi * r / max(1, len(rod.outline) / 4)
-    if rod.outline and teeth > FINE:
-        face = _toothed(sheet, rod, near, seen)
-    sheet.shape(face, f"face {rod.style}", rod.colour, rod.title)
+    return side, face
 
 
-def _toothed(sheet: Sheet, rod: Rod, near: float, seen: View) -> str:
-    """Return the near face by its outline, as a path of short steps [0.1 px]."""
+def _toothed(sheet: Sheet, rod: Rod, ends: Point, seen: View) -> tuple[str, str]:
+    """Return flanks and lands that face the eye, and the near face, as paths.
+
+    ends: the near and the far one. The angles of the outline rise.
+    """
     b, c = rod.centre
-    last: tuple[int, int] | None = None
-    path = ""
-    for angle, r in rod.outline:
-        spot = near, b + r * math.cos(angle), c + r * math.sin(angle)
-        x, y = (round(10.0 * v) for v in sheet.at(*seen.at(spot)))
-        dx, dy = (x, y) if last is None else (x - last[0], y - last[1])
-        path += f"{'M' if last is None else 'l'}{dx / 10:g} {dy / 10:g}"
-        last = x, y
+    rim = [(b + r * math.cos(t), c + r * math.sin(t)) for t, r in rod.outline]
+    near, far = ([sheet.at(*seen.at((a, *spot))) for spot in rim] for a in ends)
+    _, eye_b, eye_c = seen.eye
+    faces = [
+        eye_b * (v1 - v0) - eye_c * (u1 - u0) > 0.0
+        for (u0, v0), (u1, v1) in zip(rim, [*rim[1:], rim[0]], strict=True)
+    ]
+    side, count = "", len(rim)
+    hidden = faces.index(False)
+    start = None
+    for k in range(hidden, hidden + count + 1):
+        if faces[k % count] and start is None:
+            start = k
+        elif not faces[k % count] and start is not None:
+            run = [n % count for n in range(start, k + 1)]
+            side += _steps([*(near[n] for n in run), *(far[n] for n in reversed(run))])
+            start = None
+    return side, _steps(near)
+
+
+def _steps(spots: Sequence[Point]) -> str:
+    """Return a closed path of short steps [0.1 px]."""
+    path, last = "", (0, 0)
+    for k, (x, y) in enumerate(spots):
+        at = round(10.0 * x), round(10.0 * y)
+        path += f"{'l' if k else 'M'}{(at[0] - last[0]) / 10:g} {(at[1] - last[1]) / 10:g}"
+        last = at
     return path + "Z"
 
 
