@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from gearopt.formulations.pair_contact import contact, contact_stress, mesh, spectrum
+from gearopt.formulations.pair_contact import PairMesh, contact, contact_stress, spectrum
 from gearopt.physics.gears import Gear, GearPair
 from gearopt.physics.tooth.elastic import ElasticPair
 
@@ -24,8 +24,8 @@ def gears(z1=25, z2=50, m=3.0, b=30.0):
 
 def made(coupling, loads=(1.0,), steps=96):
     elastic = ElasticPair(gears(), (30.0, 50.0))
-    meshed = mesh(elastic, LEVEL, 200_000.0, coupling, steps)
-    return contact(meshed, loads, "given", (13308.6, 20127.6), ())
+    meshed = PairMesh.of(elastic, LEVEL, 200_000.0, coupling, steps, loads)
+    return contact(meshed, "given", (13308.6, 20127.6), ())
 
 
 @pytest.mark.parametrize(

@@ -10,10 +10,11 @@ from typing import Any
 
 import numpy as np
 
+from gearopt.formulations.relief.meshing import NO_RELIEF, Mesh
+from gearopt.optimise.terms import Array
 from gearopt.physics.agma.factors import elastic_coefficient
 from gearopt.physics.geometry.contact import diameters_at
-from gearopt.physics.load_sharing import Array, share
-from gearopt.physics.mesh_cycle import Cycle, break_points, cycle
+from gearopt.physics.mesh_cycle import break_points, cycle
 from gearopt.physics.tooth.elastic import ElasticPair
 from gearopt.physics.tooth.ladder import LEVELS
 
@@ -25,7 +26,7 @@ Columns = tuple[float, ...]
 class ContactPoint:
     """A point of the path of contact with the stiffness of one pair of teeth there.
 
-    roll angle: of the pinion, from where the involute begins. stiffness: force per face width and
+    roll angles: from where the involutes begin. stiffness: force per face width and
     approach along the line of action.
     """
 
@@ -34,6 +35,7 @@ class ContactPoint:
     pinion_diameter_mm: float
     wheel_diameter_mm: float
     pinion_roll_angle_deg: float
+    wheel_roll_angle_deg: float
     pair_stiffness_MPa: float
 
 
@@ -89,6 +91,7 @@ class PairContact:
     pinion_diameter_mm: Columns
     wheel_diameter_mm: Columns
     pinion_roll_angle_deg: Columns
+    wheel_roll_angle_deg: Columns
     pair_stiffness_MPa: Columns
     travel_mm: Columns
     loads: tuple[ContactLoad, ...]
@@ -96,55 +99,58 @@ class PairContact:
 
 
 @dataclass(frozen=True)
-class Mesh:
-    """An elastic pair over one cycle: compliances [mm/N] of its pairs of teeth, (p, n).
+class PairMesh:
+    """An elastic spur pair in mesh at its loads.
 
-    force [N]: the normal force at the duty's torque, at which the contact compliance is taken for
-    every load; coupling c12 [mm/N].
+    level: the model of its teeth. force [N]: the normal force at the duty's torque, at which the
+    contact compliance is taken for every load; loads: relative to it; mesh: at these.
     """
 
     elastic: ElasticPair
     level: str
     force: float
-    coupling: float
-    cycle: Cycle
-    compliances: Array
+    loads: tuple[float, ...]
+    mesh: Mesh
+
+    @classmethod
+    def of(
+        cls,
+        elastic: ElasticPair,
+        level: str,
+        torque: float,
+        coupling: float,
+        steps: int,
+        loads: Sequence[float],
+    ) -> "PairMesh":
+        """Return a pair over its cycle; torque [N mm] of the pinion, steps over a base pitch."""
+        force = torque / elastic.members[0].base_radius
+
+        def compliance(positions: Any) -> Any:
+            return LEVELS[level].compliance(elastic, positions, force)
+
+        forces = tuple(load * force for load in loads)
+        made = Mesh.of(cycle(elastic.path, steps), compliance, coupling, forces)
+        return cls(elastic, level, force, tuple(loads), made)
 
     def compliance(self, positions: Any) -> Any:
         """Return the compliance [mm/N] of a pair of teeth at positions s [mm]."""
         return LEVELS[self.level].compliance(self.elastic, positions, self.force)
 
 
-def mesh(elastic: ElasticPair, level: str, torque: float, coupling: float, steps: int) -> Mesh:
-    """Return a pair over its cycle; torque [N mm] of the pinion, steps over one base pitch."""
-    force = torque / elastic.members[0].base_radius
-    round_ = cycle(elastic.path, steps)
-
-    def compliance(positions: Any) -> Any:
-        return LEVELS[level].compliance(elastic, positions, force)
-
-    return Mesh(elastic, level, force, coupling, round_, round_.compliances(compliance))
-
-
 def contact(
-    made: Mesh,
-    loads: Sequence[float],
-    coupling: str,
-    iso: tuple[float, float],
-    validity: Sequence[str],
+    made: PairMesh, coupling: str, iso: tuple[float, float], validity: Sequence[str]
 ) -> PairContact:
-    """Return the contact of a pair of unmodified teeth at loads relative to that of the duty.
+    """Return the contact of a pair of teeth without relief.
 
     coupling: the name of its model; iso: c' and c_gamma_alpha [MPa].
     """
-    elastic, path = made.elastic, made.cycle.path
-    positions = made.cycle.along(made.cycle.positions)
-    columns = _columns(made, positions)
+    elastic, path = made.elastic, made.mesh.cycle.path
+    positions = made.mesh.cycle.along(made.mesh.cycle.positions)
     return PairContact(
         level=made.level,
         plane=elastic.plane,
         coupling=coupling,
-        coupling_mm_per_N=made.coupling,
+        coupling_mm_per_N=made.mesh.coupling,
         pinion_bore_mm=elastic.bores[0],
         wheel_bore_mm=elastic.bores[1],
         base_pitch_mm=float(path.base_pitch),
@@ -152,35 +158,41 @@ def contact(
         iso_single_stiffness_MPa=iso[0],
         iso_mesh_stiffness_MPa=iso[1],
         points=tuple(_points(made)),
-        position_mm=_column(positions),
-        **{name: _column(values) for name, values in columns.items()},
-        travel_mm=_column(made.cycle.travels * path.base_pitch),
-        loads=tuple(_loaded(made, load) for load in loads),
+        position_mm=column(positions),
+        **{name: column(values) for name, values in _columns(made, positions).items()},
+        travel_mm=column(made.mesh.cycle.travels * path.base_pitch),
+        loads=at_loads(made, made.mesh.separations(NO_RELIEF, NO_RELIEF)),
         validity=tuple(validity),
     )
 
 
-def _column(values: Any) -> Columns:
+def column(values: Any) -> Columns:
+    """Return an array as a column of a result."""
     return tuple(float(v) for v in values)
 
 
-def _columns(made: Mesh, positions: Any) -> dict[str, Any]:
+def _columns(made: PairMesh, positions: Any) -> dict[str, Any]:
     """Return what belongs to positions s [mm] on the path, by the names of fields."""
-    path, pair = made.cycle.path, made.elastic.pair
+    path, pair = made.mesh.cycle.path, made.elastic.pair
     first, second = diameters_at(pair, path, positions)
-    curvature = path.radii_of_curvature(positions)[0]
-    compliance = made.compliance(positions)
+    rolled = [
+        np.degrees(curvature / member.base_radius)
+        for curvature, member in zip(
+            path.radii_of_curvature(positions), made.elastic.members, strict=True
+        )
+    ]
     return {
         "pinion_diameter_mm": first,
         "wheel_diameter_mm": second,
-        "pinion_roll_angle_deg": np.degrees(curvature / made.elastic.members[0].base_radius),
-        "pair_stiffness_MPa": 1.0 / (compliance * float(pair.face_width)),
+        "pinion_roll_angle_deg": rolled[0],
+        "wheel_roll_angle_deg": rolled[1],
+        "pair_stiffness_MPa": 1.0 / (made.compliance(positions) * float(pair.face_width)),
     }
 
 
-def _points(made: Mesh) -> list[ContactPoint]:
+def _points(made: PairMesh) -> list[ContactPoint]:
     """Return the break points and the pitch point, in their order on the path."""
-    path = made.cycle.path
+    path = made.mesh.cycle.path
     named = list(break_points(path).items())
     if path.start < 0.0 < path.end:
         named.append(("pitch point", 0.0))
@@ -196,33 +208,37 @@ def _points(made: Mesh) -> list[ContactPoint]:
     ]
 
 
-def _loaded(made: Mesh, load: float) -> ContactLoad:
-    """Return what happens at a load relative to that of the duty."""
-    force, round_ = load * made.force, made.cycle
-    separations = round_.separations(np.zeros_like)
-    found = share(made.compliances, separations, force, made.coupling)
-    shares = found.forces / force if force else np.zeros_like(found.forces)
-    width, error = float(made.elastic.pair.face_width), found.approach
+def at_loads(made: PairMesh, separations: Array) -> tuple[ContactLoad, ...]:
+    """Return what happens at every load; separations (p, n) [mm] by relief, infinite if absent."""
+    found = made.mesh.sharing(separations)
+    return tuple(
+        _loaded(made, k, found.forces[k], found.approach[k]) for k in range(len(made.loads))
+    )
+
+
+def _loaded(made: PairMesh, k: int, forces: Array, error: Array) -> ContactLoad:
+    """Return what happens at a load (from 0): forces (p, n) [N], approach (p,) [mm]."""
+    force, round_ = made.mesh.loads[k], made.mesh.cycle
+    shares = forces / force if force else np.zeros_like(forces)
+    width = float(made.elastic.pair.face_width)
     mean, *harmonics = spectrum(round_.travels, error)
     stiffness = force / (width * error) if force else np.zeros_like(error)
-    stress = contact_stress(
-        made.elastic, round_.along(round_.positions), round_.along(found.forces)
-    )
+    stress = contact_stress(made.elastic, round_.along(round_.positions), round_.along(forces))
     return ContactLoad(
-        load=load,
+        load=made.loads[k],
         normal_force_N=force,
-        largest_tooth_force_N=float(found.forces.max()),
+        largest_tooth_force_N=float(forces.max()),
         largest_share=float(shares.max()),
         largest_contact_stress_MPa=float(stress.max()),
         mean_transmission_error_mm=mean,
         peak_to_peak_mm=float(np.ptp(error)),
-        harmonics_mm=_column(harmonics),
+        harmonics_mm=column(harmonics),
         mean_mesh_stiffness_MPa=spectrum(round_.travels, stiffness)[0],
         least_mesh_stiffness_MPa=float(stiffness.min()),
         most_mesh_stiffness_MPa=float(stiffness.max()),
-        share=_column(round_.along(shares)),
-        contact_stress_MPa=_column(stress),
-        transmission_error_mm=_column(error),
+        share=column(round_.along(shares)),
+        contact_stress_MPa=column(stress),
+        transmission_error_mm=column(error),
     )
 
 

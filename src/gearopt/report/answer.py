@@ -172,7 +172,8 @@ def meaning(result: Result) -> str:
         return "Proven: no design meets all limits."
     if status == "evaluated":
         met = "meets all limits" if result.feasible else "does not meet all limits"
-        return f"The given design was evaluated, not optimised; it {met}."
+        ends = f"; it {met}" if result.limits else ""
+        return f"The given design was evaluated, not optimised{ends}."
     if status == "stationary":
         return "No small change improves the design; a better one may exist elsewhere."
     if result.value is None:

@@ -145,6 +145,8 @@ def certainty(result: Result) -> tuple[str, str]:
     words, colour = VERDICTS[result.status]
     if result.status == "evaluated" and not result.feasible:
         words, colour = "evaluated, a limit is exceeded", "red"
+    if result.status == "evaluated" and not result.limits:
+        words = "evaluated"
     if result.name == RATING:
         words, colour = ("safe", "green") if result.feasible else ("not safe", "red")
     if result.status == "stationary" and result.bound is not None:

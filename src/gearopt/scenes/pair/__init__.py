@@ -14,7 +14,7 @@ from gearopt.optimise.typed import untyped
 from gearopt.scenes import drive
 from gearopt.scenes.drive.blank_tables import misfits
 from gearopt.scenes.drive.rating import rated
-from gearopt.scenes.pair.assumptions import assumptions, notes
+from gearopt.scenes.pair.assumptions import assumptions
 from gearopt.scenes.pair.contact_part import contact_of, level_of
 from gearopt.scenes.pair.example import EXAMPLE, MORE_EXAMPLES
 from gearopt.scenes.pair.scene import Scene
@@ -51,13 +51,11 @@ def _with_contact(scene: Scene, result: Result) -> Result:
     design = drive_design(result.design)
     stage = design.stages[0]
     made = contact_of(scene, stage.pair, (stage.pinion_material, stage.wheel_material))
-    told = {"assumptions": [*result.report.get("assumptions", []), *assumptions(scene, made)]}
-    if said := [*result.report.get("notes", []), *notes(scene, made)]:
-        told["notes"] = said
+    told = [*result.report.get("assumptions", []), *assumptions(scene, made)]
     return replace(
         result,
         design=untyped(replace(design, contact=made)),
-        report=result.report | told,
+        report=result.report | {"assumptions": told},
     )
 
 

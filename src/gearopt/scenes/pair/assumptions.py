@@ -1,4 +1,4 @@
-"""What the contact of a pair takes for granted, and what a reader of its result should know."""
+"""What the contact of a pair takes for granted."""
 
 from collections.abc import Iterator
 
@@ -33,8 +33,3 @@ def _held(scene: Scene, made: PairContact) -> Iterator[str]:
                 f"The {member} has no bore in the file: it is taken as held at {held:.4g} mm, "
                 f"1/{UNBORED:g} of its root circle."
             )
-
-
-def notes(scene: Scene, made: PairContact) -> list[str]:
-    """Return what a reader of the result should know beside the numbers."""
-    return list(made.validity)

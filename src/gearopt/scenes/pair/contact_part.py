@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from gearopt.errors import SolveError
-from gearopt.formulations.pair_contact import PairContact, contact, mesh
+from gearopt.formulations.pair_contact import PairContact, PairMesh, contact
 from gearopt.physics.blanks import Blank
 from gearopt.physics.gears import MEMBERS, GearPair
 from gearopt.physics.geometry.contact import usable_path
@@ -36,24 +36,25 @@ def contact_of(scene: Scene, pair: GearPair, materials: Materials = ("", "")) ->
     fatal = [flaw.sentence for flaw in flaws(pair) if flaw.fatal]
     if fatal:
         raise SolveError(f"there is no contact to compute: {fatal[0][0].lower()}{fatal[0][1:-1]}")
+    made = mesh_of(scene, pair, materials)
+    told = scene.sharing.coupling
+    return contact(
+        made,
+        "given" if isinstance(told, Quantity) else told,
+        _by_iso(scene, pair, made.elastic),
+        tuple(_validity(pair)),
+    )
+
+
+def mesh_of(scene: Scene, pair: GearPair, materials: Materials = ("", "")) -> PairMesh:
+    """Return a pair of a file in mesh at its loads."""
     asked, duty = scene.sharing, scene.duty
     elastic = elastic_pair(scene, pair, materials)
     told = asked.coupling
     coupled = told.value if isinstance(told, Quantity) else COUPLINGS[told](elastic)
-    made = mesh(
-        elastic,
-        level_of(scene),
-        torque(duty.power.value, duty.input_speed.value),
-        coupled,
-        asked.positions,
-    )
-    return contact(
-        made,
-        [float(load) for load in asked.loads],
-        "given" if isinstance(told, Quantity) else told,
-        _by_iso(scene, pair, elastic),
-        tuple(_validity(pair)),
-    )
+    moved = torque(duty.power.value, duty.input_speed.value)
+    loads = [float(load) for load in asked.loads]
+    return PairMesh.of(elastic, level_of(scene), moved, coupled, asked.positions, loads)
 
 
 def level_of(scene: Scene) -> str:

@@ -1,0 +1,73 @@
+"""The page and the terminal of a spur pair: what an engineer asks, answered in numbers once."""
+
+import csv
+import io
+from dataclasses import replace
+
+import pytest
+from rich.console import Console
+
+from gearopt.report.kinds.pair import KIND, contact_of
+from gearopt.report.measures import INCH, METRIC
+from gearopt.report.pages.result import tables
+from gearopt.report.pair_words import answers, of_duty
+from gearopt.report.terminal import show
+
+
+def printed(result, measures=METRIC):
+    screen = Console(file=io.StringIO(), width=110)
+    show(result, screen, measures)
+    return screen.file.getvalue()
+
+
+def rows(result, name, measures=METRIC):
+    return list(csv.reader(io.StringIO(tables(result, measures)[f"{name}.csv"])))
+
+
+def test_the_terminal_says_the_load_the_motion_and_the_stiffness(solved):
+    said = printed(solved("reference_pair"))
+    head = (
+        "A spur pair: how its teeth share the load: evaluated\nOne tooth carries up to 5,675.6 N;"
+    )
+    assert said.startswith(head) and "limits met" not in said
+    flat = " ".join(said.split())
+    assert "carries the whole load, 5,676 N, over 2.81 mm of its path (18.8 % of it)" in flat
+    assert "it begins with 40.1 % of it and ends with 41.2 %" in flat
+    assert "varies by 2.50 µm at 50 % of the torque, 4.99 µm at 100 % of the torque" in flat
+    assert "22 % below the value that ISO 6336-1 has" in flat
+    assert "c_γα of ISO 6336-1 [N/(mm µm)] 20.128 20.128" in flat
+
+
+def test_two_pairs_always_in_contact_leave_no_tooth_alone(solved):
+    result = solved("almost_two_pairs")
+    found = contact_of(result)
+    assert "over 0.00886 mm of its path (0.1 % of it)" in answers(found)[0]
+    load = replace(of_duty(found), largest_share=0.6)
+    other = replace(found, loads=(load,))
+    assert "carries at most 60.0 % of the load, as two pairs always touch" in answers(other)[0]
+
+
+@pytest.mark.parametrize(("measures", "unit"), [(METRIC, "N/(mm µm)"), (INCH, "lbf/(in µin)")])
+def test_curves_are_csv_files_in_full(solved, measures, unit):
+    result = solved("reference_pair")
+    found = contact_of(result)
+    path = rows(result, "path-of-contact", measures)
+    assert f"stiffness of a pair [{unit}]" in path[0]
+    assert len(path) == 1 + len(found.position_mm)
+    share = path[0].index("share of the load at 100 %")
+    assert [float(row[share]) for row in path[1:]] == pytest.approx(found.loads[1].share)
+    travel = rows(result, "transmission-error", measures)
+    assert len(travel) == 1 + len(found.travel_mm) and len(travel[0]) == 3
+
+
+def test_the_page_shows_contact_and_the_rating_of_a_pair_that_was_sized(solved):
+    html = solved("pair_from_duty").to_html()
+    for words in ("largest load on a tooth", "points-of-contact.csv", "Gears in one line"):
+        assert words in html
+    assert "proven optimal" in html and "power capacity" in html
+    assert KIND.given is not None and KIND.drawn
+
+
+def test_what_models_do_not_cover_is_warned_of_once(solved):
+    html = solved("undercut_pair").to_html()
+    assert html.count("without profile shift a rack cuts 17 teeth") == 1
