@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from gearopt.formulations.relief.meshing import Criteria, Mesh, Relief
+from gearopt.formulations.relief.relief_search import search
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Array, Terms, Var
 
@@ -90,7 +91,9 @@ def problem(
             {name: objective(found, name) / bound for name, bound in most.items()},
         )
 
-    return Problem("relief", variables(ranges), (), evaluate, vectorised=True)
+    proven = not most and tuple(objectives) == ("peak_to_peak",)
+    methods = {"exact": search(mesh, ranges.exponents)} if proven else {}
+    return Problem("relief", variables(ranges), (), evaluate, methods=methods, vectorised=True)
 
 
 def reliefs(amounts: Any, lengths: Any, ranges: Ranges) -> tuple[Relief, Relief]:
