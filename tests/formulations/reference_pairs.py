@@ -1,31 +1,24 @@
-"""Two spur pairs on which the models of elastic teeth were measured, and what was measured."""
+"""The two spur pairs on which models of elastic teeth are measured, and what to read off them."""
 
 import numpy as np
 
-from gearopt.physics.gears import GearPair
+from gearopt.bench.stiffness import five_points, samples
 from gearopt.physics.tooth.elastic import ElasticPair
 
-TORQUES = {"reference": 200e3, "second": 600e3}  # N mm
+SAMPLES = dict(zip(("reference", "second"), samples(), strict=True))
 
 
 def elastic(name: str, plane: str = "strain") -> ElasticPair:
-    if name == "reference":
-        pair = GearPair.of_teeth(3.0, 25, 50, 30.0)
-        return ElasticPair(pair, (30.0, 50.0), plane=plane)
-    pair = GearPair.of_teeth(4.0, 18, 40, 40.0, profile_shifts=(0.3, -0.1))
-    return ElasticPair(pair, (36.0, 80.0), plane=plane)
+    return ElasticPair(SAMPLES[name].pair, SAMPLES[name].bores, plane=plane)
 
 
 def force(name: str) -> float:
-    return TORQUES[name] / elastic(name).members[0].base_radius
+    return SAMPLES[name].torque / elastic(name).members[0].base_radius
 
 
-def five_points(pair: ElasticPair):
+def five(pair: ElasticPair):
     """0.05 m inside A, then B, C, D, and 0.05 m inside E."""
-    path, inside = pair.path, 0.05 * pair.pair.normal_module
-    return np.array(
-        [path.start + inside, path.lowest_single, 0.0, path.highest_single, path.end - inside]
-    )
+    return np.array(five_points(pair))
 
 
 def stiffness(compliance, pair: ElasticPair):

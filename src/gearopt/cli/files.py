@@ -108,7 +108,17 @@ def _known(kind: str) -> str:
 @app.command(rich_help_panel=TOOLS)
 def doctor(as_json: Json = False) -> None:
     """Show versions, and whether the solvers work on this machine."""
-    packages = ("gearopt", "numpy", "casadi", "cvxpy", "pymoo", "pyscipopt", "pydantic", "typer")
+    packages = (
+        "gearopt",
+        "numpy",
+        "casadi",
+        "cvxpy",
+        "pymoo",
+        "pyscipopt",
+        "scikit-fem",
+        "pydantic",
+        "typer",
+    )
     found: dict[str, str] = {"python": platform.python_version(), "machine": platform.platform()}
     found |= {name: _version(name) for name in packages}
     checks = {"exact": _works("exact"), "ipopt": _works("ipopt")}

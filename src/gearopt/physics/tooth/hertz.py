@@ -35,10 +35,13 @@ def contact_compliance(
     return parts[0] + parts[1]
 
 
-def linear_contact_compliance(elastic: ElasticPair) -> float:
+def linear_contact_compliance(elastic: ElasticPair, printed: bool = False) -> float:
     """Return sum_i 2 (1 - nu_i^2)/(pi E_i b) [mm/N], of any load and place.
 
-    3 to 4 times too stiff: the logarithm of `contact_compliance` is missing. Source: Yang and Sun,
-    J. Mech. Trans. Autom. Des. 107 (1985).
+    printed: with the paper's 1 + nu_i^2, which is 1.2 times as soft and no elastic constant. 3 to
+    4 times too stiff: the logarithm of `contact_compliance` is missing. Source: Yang and Sun, J.
+    Mech. Trans. Autom. Des. 107 (1985); the paper's eq. (12), corrected.
     """
-    return sum(2.0 * (1.0 - m.poisson**2) / (np.pi * m.rigidity) for m in elastic.members)
+    sign = 1.0 if printed else -1.0
+    rows = ((1.0 + sign * m.poisson**2) / m.rigidity for m in elastic.members)
+    return 2.0 / np.pi * sum(rows)

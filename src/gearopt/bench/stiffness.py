@@ -1,0 +1,97 @@
+"""Stiffness of tooth pairs: every model against finite elements, with its time and set-up.
+
+Two pairs of steel gears under plane stress and plane strain, at five positions: 0.05 m_n inside A,
+at B, C and D, and 0.05 m_n inside E. Nobody has measured the pairs: finite elements whose size is
+halved once more are what the errors are counted from.
+"""
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+from gearopt.bench import timed
+from gearopt.physics.gears import GearPair
+from gearopt.physics.tooth import finite_elements
+from gearopt.physics.tooth.beam import tabulated
+from gearopt.physics.tooth.elastic import PLANES, ElasticPair
+from gearopt.physics.tooth.ladder import LEVELS, Level
+from gearopt.physics.tooth.trapezoid import trapezoid
+
+TIMED = 256  # positions of the analytic models, 5 of finite elements
+
+
+@dataclass(frozen=True)
+class Sample:
+    """A pair, its bores [mm] and the torque of its pinion [N mm]."""
+
+    name: str
+    pair: GearPair
+    bores: tuple[float, float]
+    torque: float
+
+
+def samples() -> tuple[Sample, ...]:
+    """Return the pairs on which the models are measured."""
+    first = GearPair.of_teeth(3.0, 25, 50, 30.0)
+    second = GearPair.of_teeth(4.0, 18, 40, 40.0, profile_shifts=(0.3, -0.1))
+    return (
+        Sample("25/50 teeth", first, (30.0, 50.0), 200e3),
+        Sample("18/40 teeth, x +0.3/-0.1", second, (36.0, 80.0), 600e3),
+    )
+
+
+def five_points(elastic: ElasticPair) -> tuple[float, ...]:
+    """Return positions s [mm]: 0.05 m_n inside A, B, C, D, 0.05 m_n inside E."""
+    path, inside = elastic.path, 0.05 * elastic.pair.normal_module
+    return path.start + inside, path.lowest_single, 0.0, path.highest_single, path.end - inside
+
+
+def run(repeat: int) -> list[dict[str, Any]]:
+    """Return rows: case, method, ms, us a position, ms of set-up, least and largest error.
+
+    errors: of the stiffness, relative; of finite elements what halving them changes. set-up: what
+    is kept for further positions, tables and factors.
+    """
+    found = []
+    for sample in samples():
+        for plane in PLANES:
+            elastic = ElasticPair(sample.pair, sample.bores, plane=plane)
+            found += _levels(sample, elastic, repeat)
+    return found
+
+
+def _levels(sample: Sample, elastic: ElasticPair, repeat: int) -> list[dict[str, Any]]:
+    """Return the rows of one pair in one plane."""
+    force = sample.torque / elastic.members[0].base_radius
+    fine = finite_elements.pair_compliance(elastic, five_points(elastic), force, halvings=1)
+    finite_elements.body.cache_clear()
+    case = f"{sample.name}, plane {elastic.plane}"
+    return [
+        {"case": case, "method": name} | _row(level, elastic, force, fine, repeat)
+        for name, level in LEVELS.items()
+    ]
+
+
+def _row(
+    level: Level, elastic: ElasticPair, force: float, fine: Any, repeat: int
+) -> dict[str, Any]:
+    """Return times and errors of one level; fine: the compliances that it should have."""
+    import numpy as np
+
+    points, path = five_points(elastic), elastic.path
+    many = points if level.tooth == "elements" else np.linspace(path.start, path.end, TIMED)
+    made, first = timed(lambda: _fresh(level, elastic, points, force), min(repeat, 3))
+    _, times = timed(lambda: level.compliance(elastic, many, force), repeat)
+    error, each = fine / made - 1.0, times["median_ms"] / len(many)
+    return times | {
+        "us_per_position": round(1e3 * each, 3),
+        "setup_ms": round(max(first["median_ms"] - each * len(points), 0.0), 2),
+        "least_error": float(error.min()),
+        "largest_error": float(error.max()),
+    }
+
+
+def _fresh(level: Level, elastic: ElasticPair, points: Any, force: float) -> Any:
+    """Return compliances with nothing kept from before."""
+    for table in (tabulated, trapezoid, finite_elements.body):
+        table.cache_clear()
+    return level.compliance(replace(elastic), points, force)

@@ -1,0 +1,121 @@
+"""What a model of elastic teeth does not cover, said in sentences; and the cheapest that suits."""
+
+from gearopt.physics.gears import MEMBERS, GearPair
+from gearopt.physics.geometry.fillet import NEGLIGIBLE, undercut_depth
+from gearopt.physics.geometry.flaws import THIN_TIP
+from gearopt.physics.geometry.tooth import tip_thickness
+from gearopt.physics.tooth.elastic import ElasticGear, ElasticPair
+from gearopt.physics.tooth.foundation import SAINSOT_BORE_RATIOS, SAINSOT_HALF_ANGLES
+from gearopt.physics.tooth.ladder import LEVELS
+
+WIDE = 6.0  # modules of face width from which plane strain is nearer to the truth (an assumption)
+EXACT = "finite elements"
+
+
+def usual_plane(pair: GearPair) -> str:
+    """Return "strain" for a face width of at least 6 normal modules, else "stress"."""
+    return "strain" if pair.face_width >= WIDE * pair.normal_module else "stress"
+
+
+def unsupported(elastic: ElasticPair, level: str) -> tuple[str, ...]:
+    """Return why a level of `LEVELS` must not be used for a pair, in sentences; () if it may."""
+    rows = list(zip(MEMBERS, elastic.members, strict=True))
+    model, found = LEVELS[level], []
+    if model.tooth == "trapezoid":
+        found += [
+            f"The teeth of the {name} are undercut: a trapezoid has no waist."
+            for name, member in rows
+            if _undercut(member)
+        ]
+    if model.body == "Sainsot":
+        least = SAINSOT_BORE_RATIOS[0]
+        found += [
+            f"The ring of the {name} is thin: root over bore {member.bore_ratio:.2f}, below the "
+            f"{least:g} from which Sainsot's body was fitted; at 1.15 it is 23 % too soft."
+            for name, member in rows
+            if member.bore_ratio < least
+        ]
+    return tuple(found)
+
+
+def doubts(elastic: ElasticPair, level: str) -> tuple[str, ...]:
+    """Return what a level does not cover of a pair, in sentences; `unsupported` ones first.
+
+    A rigid shaft, and teeth that touch over the whole face width, are assumed of every pair and not
+    said here.
+    """
+    found = list(unsupported(elastic, level))
+    model = LEVELS[level]
+    for name, member in zip(MEMBERS, elastic.members, strict=True):
+        if model.body == "Sainsot":
+            found += _outside_fit(name, member)
+        elif member.bore_ratio < SAINSOT_BORE_RATIOS[0] and model.body != "disc":
+            found.append(
+                f"The ring of the {name} is thin, root over bore {member.bore_ratio:.2f}, and its "
+                "bore is taken as rigid: a real rim is softer."
+            )
+        thin = float(tip_thickness(member.gear)) / float(member.gear.normal_module)
+        if thin < THIN_TIP:
+            found.append(
+                f"The tips of the {name} are {thin:.2f} m_n thick, below {THIN_TIP:g} m_n: near "
+                "them the model means little."
+            )
+        if _undercut(member) and model.tooth != "trapezoid":
+            found.append(
+                f"The teeth of the {name} are undercut: they touch from the form circle outwards."
+            )
+    return tuple(found) + _of_pair(elastic)
+
+
+def cheapest(elastic: ElasticPair, error: float) -> str:
+    """Return the cheapest level whose stiffness is known to within an error (0.05: 5 %).
+
+    Of two that cost the same the more accurate one; none that is `unsupported`. Known: recorded in
+    `LEVELS` over five positions of two pairs; other pairs may lie outside. An error below that of
+    every model gives finite elements, whatever it is.
+    """
+    suited = [
+        (level.cost, level.worst, name)
+        for name, level in LEVELS.items()
+        if level.worst <= error and not unsupported(elastic, name)
+    ]
+    return min(suited)[2] if suited else EXACT
+
+
+def _undercut(member: ElasticGear) -> bool:
+    return bool(undercut_depth(member.gear) > NEGLIGIBLE * member.gear.normal_module)
+
+
+def _outside_fit(name: str, member: ElasticGear) -> list[str]:
+    """Return where a gear lies outside the range over which Sainsot's body was fitted."""
+    found, most = [], SAINSOT_BORE_RATIOS[1]
+    if member.bore_ratio > most:
+        found.append(
+            f"Root over bore of the {name} is {member.bore_ratio:.2f}: Sainsot's body was fitted "
+            f"up to {most:g}."
+        )
+    low, high = SAINSOT_HALF_ANGLES
+    if not low <= member.root_half_angle <= high:
+        found.append(
+            f"Half the root of a tooth of the {name} spans {member.root_half_angle:.3f} rad: "
+            f"Sainsot's body was fitted from {low:g} to {high:g} rad; at 0.167 rad stiffness was "
+            "5 to 9 % too low."
+        )
+    return found
+
+
+def _of_pair(elastic: ElasticPair) -> tuple[str, ...]:
+    """Return what is said of both gears: contact that breaks off, an unlikely plane."""
+    found, ratio = [], float(elastic.path.transverse_ratio)
+    if ratio < 1.0:
+        found.append(
+            f"Tips and form circles leave a contact ratio of {ratio:.3f}: contact breaks off."
+        )
+    usual = usual_plane(elastic.pair)
+    if elastic.plane != usual:
+        wide = float(elastic.pair.face_width / elastic.pair.normal_module)
+        found.append(
+            f"The face is {wide:.3g} modules wide: plane {usual} is nearer to the truth; "
+            "stiffness differs by 7 %."
+        )
+    return tuple(found)

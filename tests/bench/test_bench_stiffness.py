@@ -1,0 +1,20 @@
+"""`gearopt bench stiffness`: the errors that levels of stiffness record are what it measures."""
+
+import pytest
+
+from gearopt.bench.stiffness import run
+from gearopt.physics.tooth.ladder import LEVELS
+
+
+@pytest.mark.slow
+def test_recorded_errors_are_what_is_measured():
+    rows = run(1)
+    assert {row["method"] for row in rows} == set(LEVELS) and len(rows) == 4 * len(LEVELS)
+    for name, level in LEVELS.items():
+        own = [row for row in rows if row["method"] == name]
+        assert min(row["least_error"] for row in own) == pytest.approx(level.error[0], abs=2e-3)
+        assert max(row["largest_error"] for row in own) == pytest.approx(level.error[1], abs=2e-3)
+        assert min(row["us_per_position"] for row in own) > 0.0
+    elements = [row for row in rows if row["method"] == "finite elements"]
+    assert all(abs(row["least_error"]) < 1e-3 > row["largest_error"] for row in elements)
+    assert all(row["setup_ms"] > 100.0 * row["us_per_position"] / 1e3 for row in elements)
