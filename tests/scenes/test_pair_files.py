@@ -49,7 +49,10 @@ WRONG = [
     ({"sharing.coupling": "ring"}, 'coupling = "ring": is neither one of .*coupling = "ring tors'),
     ({"sharing.coupling": "0.8 um"}, r"has the unit um of length; units of compliance: um/kN"),
     ({"sharing.coupling": 0.8}, 'needs a unit .* Write coupling = "0.8 um/kN"'),
-    ({"sharing.level": "profile"}, r'level = "profile": is not .* Write level = "profile \+ S'),
+    (
+        {"sharing.level": "profile"},
+        r'level = "profile": is not .* Write, for example, level = "profile \+ S',
+    ),
     ({"sharing.loads": [1, 1]}, r"names a load twice\. Write loads = \[1\.0\]"),
     ({"sharing.loads": []}, r"loads = \[\]: is not a list"),
     ({"sharing.load": [1]}, r"sharing\.load = .*Here it is called loads, in \[sharing\]"),
