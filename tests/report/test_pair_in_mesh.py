@@ -8,10 +8,11 @@ import math
 import re
 import xml.etree.ElementTree as ET
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
-from page_reader import extents, marks
+from page_reader import extents, marks, ours
 
 from gearopt.physics.blanks import Body
 from gearopt.physics.gears import GearPair
@@ -21,6 +22,8 @@ from gearopt.report.measures import INCH, METRIC
 from gearopt.report.pages.mesh_motion import Carried, in_mesh
 from gearopt.report.pages.pair_solid import figure
 from gearopt.report.pages.path_plots import Line, over_path, zone_words
+from gearopt.report.pages.result import page
+from gearopt.report.pages.result import sections as sections_of
 from gearopt.report.pages.sheet import SIZE
 from gearopt.report.pages.tooth_section import sections
 
@@ -266,7 +269,7 @@ def test_gears_in_space_are_light(teeth):
 def test_a_plot_over_the_path_has_its_zones_and_jumps_exactly():
     pair = PAIRS["reference"]
     given, path = carried(pair), usable_path(pair)
-    lines = [Line("share", given.percent, 1), Line("error", 1e3 * given.error, 2)]
+    lines = [Line(given.percent, "share", 1), Line(1e3 * given.error, "error", 2)]
     made = over_path(given, path, lines, "share [%]", "Share.", METRIC, "mesh", [("c'", 13.3)])
     share, error, level = made.data
     assert share["x"][0] == pytest.approx(-7.7700, abs=1e-4)
@@ -277,8 +280,17 @@ def test_a_plot_over_the_path_has_its_zones_and_jumps_exactly():
     assert sorted({round(y, 6) for y in error["y"]}) == [5.0, 8.0] and level["y"] == [13.3, 13.3]
     (zone,) = (s for s in made.layout["shapes"] if s["type"] == "rect")
     assert (zone["x0"], zone["x1"]) == pytest.approx((-1.7197, 1.0864), abs=1e-4)
-    assert {n["text"] for n in made.layout["annotations"]} == set("ABCDE")
+    names = [note["text"] for note in made.layout["annotations"]]
+    assert names == list("ABCDE")  # in their order
     assert made.follows == "mesh" and "one pair" in zone_words(path)
+
+
+def test_letters_of_points_that_are_close_stand_as_one(solved):
+    found = sections_of(solved("almost_two_pairs"))
+    mesh = next(section for section in found if section.heading == "Teeth in mesh")
+    for plot in mesh.figures:
+        assert [n["text"] for n in plot.layout["annotations"]] == ["A", "B D C", "E"]
+        assert len([s for s in plot.layout["shapes"] if s["type"] == "line"]) == 5
 
 
 def test_zones_of_fewest_pairs_above_a_contact_ratio_of_two():
@@ -291,7 +303,7 @@ def test_zones_of_fewest_pairs_above_a_contact_ratio_of_two():
     assert 2.0 < ratio < 3.0
     found = cycle(path, 12)
     given = Carried(found.travels, found.positions, np.ones_like(found.positions), found.travels)
-    made = over_path(given, path, [Line("a", given.error, 1)], "a", "A.", METRIC)
+    made = over_path(given, path, [Line(given.error, "a", 1)], "a", "A.", METRIC)
     rects = [s for s in made.layout["shapes"] if s["type"] == "rect"]
     assert len(rects) == 2 and "fewest" in zone_words(path)
     for rect in rects:
@@ -300,3 +312,39 @@ def test_zones_of_fewest_pairs_above_a_contact_ratio_of_two():
 
 def _longer(gear):
     return replace(gear, rack=replace(gear.rack, addendum=1.3, dedendum=1.5, tip_radius=0.25))
+
+
+def test_the_page_of_a_pair_shows_it_moving(solved):
+    """Reference pair: shares at the ends of the path and beside the single zone, as printed."""
+    result = solved("reference_pair")
+    found = sections_of(result)
+    heads = [section.heading for section in found]
+    shown = ["Teeth in mesh", "Contact", "Tooth sections", "In three dimensions"]
+    assert [head for head in heads if head in shown] == shown
+    mesh = found[heads.index("Teeth in mesh")]
+    (moves,) = mesh.animations
+    assert [figure.follows for figure in mesh.figures] == [moves.name] * 3
+    half, full = mesh.figures[0].data
+    assert [half["name"], full["name"]] == ["at 50 %", "at 100 %"]
+    for trace in (half, full):
+        y = trace["y"]
+        assert (y[0], y[-1]) == pytest.approx((40.08, 41.20), abs=0.02)
+        jumps = [(a, b) for a, b in pairwise(y) if abs(a - b) > 20.0]
+        assert jumps == [
+            (pytest.approx(58.80, abs=0.02), 100.0),
+            (100.0, pytest.approx(59.92, abs=0.02)),
+        ]
+    shares = [r.values for r in moves.readings if r.name.startswith("share")]
+    assert np.allclose(np.nansum(shares, axis=0), 100.0)
+    pairs, whole, *iso = mesh.figures[2].data
+    assert max(pairs["y"]) == pytest.approx(12.17, abs=0.01) and iso[1]["y"][0] > 13.3
+    alone = [y for x, y in zip(whole["x"], whole["y"], strict=True) if -1.7 < x < 1.0]
+    assert alone == pytest.approx(
+        [y for x, y in zip(pairs["x"], pairs["y"], strict=True) if -1.7 < x < 1.0], rel=1e-5
+    )  # one pair alone is the mesh
+
+
+def test_the_page_of_a_pair_is_light_and_loads_nothing(solved):
+    html = ours(page(solved("reference_pair"), "gearopt solve x.toml"))
+    assert len(html) < 260_000 and html.count('class="player"') == 1
+    assert not re.search(r"https?:|//[a-z]|@import|url\(", html)

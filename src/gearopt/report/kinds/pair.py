@@ -11,7 +11,8 @@ from gearopt.report.answer import asked, assumptions, limits, summary
 from gearopt.report.kinds import Kind, drive
 from gearopt.report.kinds.generic import ASKED, FIRST, LAST, TOLD
 from gearopt.report.measures import METRIC, Measures
-from gearopt.report.pages import train_views
+from gearopt.report.pages import mesh_view, train_views
+from gearopt.report.pair_sections import in_space, moving, pair_of, teeth
 from gearopt.report.pair_tables import TABLES
 from gearopt.report.pair_words import answers, of_duty
 from gearopt.report.section import Section, Tile
@@ -82,14 +83,22 @@ def contact(result: Result, measures: Measures) -> Section | None:
     return Section("Contact", words=words, tables=tables, terminal=("\n".join(words), *shown))
 
 
+def mesh(result: Result, measures: Measures) -> Section | None:
+    """Show the teeth in mesh; None without contact or whole teeth."""
+    found, pair = contact_of(result), pair_of(result)
+    return None if found is None or pair is None else moving(found, pair, measures)
+
+
 def numbers(result: Result, measures: Measures) -> Section | None:
     """Return the tables of the gears, as a drive of one stage has them."""
     gears = {k: v for k, v in result.design.items() if k != "contact"}
     return drive.numbers(replace(result, design=gears), measures)
 
 
+DRAWINGS = (teeth, in_space, train_views.section)
+RATINGS = tuple(make for make in drive.RATINGS if make is not mesh_view.section)  # mesh is better
 GIVEN = Kind(
-    sections=(summary, contact, train_views.section, *drive.RATINGS, numbers, asked, assumptions),
+    sections=(summary, mesh, contact, *DRAWINGS, *RATINGS, numbers, asked, assumptions),
     terminal=(numbers, contact, *drive.GIVEN.terminal, summary),
     tiles=tiles,
     decides=decides,
@@ -98,10 +107,11 @@ GIVEN = Kind(
 KIND = Kind(
     sections=(
         *FIRST,
+        mesh,
         contact,
-        train_views.section,
+        *DRAWINGS,
         numbers,
-        *drive.RATINGS,
+        *RATINGS,
         *ASKED,
         *LAST,
     ),

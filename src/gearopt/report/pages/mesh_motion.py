@@ -26,7 +26,7 @@ SECONDS = 6.0  # of one base pitch at normal speed
 FREE = (8.0, 8.0, 8.0, 8.0)  # px around a view
 DOT = 4.0  # px: radius of a point of contact
 CORNERS = 16  # of its outline
-ALONE = 1.4  # times as large, where one view stands alone
+ALONE = 1.25  # times as large, where one view stands alone
 COLOURS = (1, 4)  # of pinion and wheel, in the series
 CAPTION = (
     "The pinion, below, turns clockwise and drives; its pairs of teeth, numbered from the one that "
@@ -76,7 +76,11 @@ class Carried:
 
 
 def in_mesh(
-    pair: GearPair, name: str, shown: Mapping[str, Carried], measures: Measures
+    pair: GearPair,
+    name: str,
+    shown: Mapping[str, Carried],
+    measures: Measures,
+    caption: str = CAPTION,
 ) -> Animation:
     """Return the animation of a pair of whole teeth, of equal cycles side by side.
 
@@ -96,7 +100,7 @@ def in_mesh(
         name,
         views,
         SECONDS * first.travels,
-        CAPTION,
+        caption,
         readings,
         marks=measures.of(1.0, "mm") * first.positions,
         scale=Scale("share of the normal force", 0.0, 100.0, "%"),

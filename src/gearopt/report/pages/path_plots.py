@@ -15,19 +15,21 @@ from gearopt.report.section import Figure, axis, layout
 
 HEIGHT = 340  # px
 ROOM = 0.03  # of the path that is seen beyond its ends
+CLOSE = 0.03  # of the path: letters of points that are closer stand as one
 LETTERS = {"SAP": "A", "LPSTC": "B", "HPSTC": "D", "EAP": "E"}  # as drawings name them
 DASHES = ("dash", "dot")  # of lines across
 
 
 @dataclass(frozen=True)
 class Line:
-    """A curve over the path: values (N, K) of pairs of teeth, or (N,) of the mesh, in shown units.
+    """A curve over the path, in shown units: values (N,) of the mesh, or (N, K) of pairs of teeth.
 
+    Those of pairs may be a column (M,) that one pair meets, as `Carried.along` gives it.
     colour: of the series, from 1. dash: as plotly has it.
     """
 
-    name: str
     values: Any
+    name: str
     colour: int
     dash: str = "solid"
 
@@ -80,15 +82,15 @@ def zone_words(path: ContactPath) -> str:
 
 def _trace(line: Line, x: Any, carried: Carried) -> dict[str, Any]:
     values = np.asarray(line.values)
-    values = (
-        np.repeat(values[:, None], carried.positions.shape[1], 1) if values.ndim == 1 else values
-    )
+    if len(values) == len(carried.travels):
+        wide = np.broadcast_to(values.T, carried.positions.T.shape).T
+        values = carried.along(wide)
     return {
         "type": "scatter",
         "mode": "lines",
         "name": line.name,
         "x": [round(float(v), 5) for v in x],
-        "y": [float(f"{v:.6g}") for v in carried.along(values)],
+        "y": [float(f"{v:.6g}") for v in values],
         "line": {"color": series(line.colour), "width": 2, "dash": line.dash},
         "hovertemplate": "%{y:.4g}",
     }
@@ -116,11 +118,16 @@ def zones(
         )
     points = {LETTERS.get(name, ""): s for name, s in break_points(path).items()}
     points |= {"C": 0.0} if path.start < 0.0 < path.end else {}
-    notes = []
-    for name, s in points.items():
+    notes: list[dict[str, Any]] = []
+    last = -np.inf
+    for name, s in sorted(points.items(), key=lambda row: row[1]):
         line = {"color": "--axis", "width": 1, "dash": "dot"}
         ends_at = {"x0": unit * s, "x1": unit * s, "y0": 0.0, "y1": 1.0}
         shapes.append({"type": "line", "yref": "paper", "layer": "below", "line": line} | ends_at)
+        if s - last < CLOSE * float(path.length):
+            notes[-1]["text"] += f" {name}"
+            continue
+        last = s
         place = {"x": unit * s, "y": 1.0, "yref": "paper", "yanchor": "bottom", "text": name}
         notes.append(place | {"showarrow": False, "font": {"size": 12, "color": "--soft"}})
     return shapes, notes

@@ -60,9 +60,14 @@ def outermost(path: ContactPath) -> tuple[float, float]:
 
     HPSTC on the pinion and LPSTC on the wheel; the tips where two pairs or more always touch.
     """
-    single = path.lowest_single < path.highest_single and path.length > path.base_pitch
+    single = carries_alone(path)
     high, low = (path.highest_single, path.lowest_single) if single else (path.end, path.start)
     return float(path.radii_of_curvature(high)[0]), float(path.radii_of_curvature(low)[1])
+
+
+def carries_alone(path: ContactPath) -> bool:
+    """Return whether one pair of teeth carries alone on a part of its path, not all of it."""
+    return bool(1.0 < path.transverse_ratio < 2.0)
 
 
 def _drawing(pair: GearPair, path: ContactPath, k: int, measures: Measures) -> Drawing:
