@@ -1,0 +1,143 @@
+"""Time integration of a pair on moving axes: time beside the error reached, method by method.
+
+Data of Yoon, Kim and Chung, who print no result; their mesh stiffness is assumed (2e5 N/mm). From
+rest, 20 ms, 401 outputs. Error: largest difference of delta from steps of RK8 eight times shorter
+than any compared, over the largest |delta|.
+"""
+
+import math
+import statistics
+from collections.abc import Callable, Iterator
+from typing import Any
+
+from gearopt.formulations.motion.integrate import STEPPERS, conservative, march
+from gearopt.formulations.motion.reference import SCIPY, cvodes, scipy_motion
+from gearopt.formulations.motion.timeline import timeline
+from gearopt.optimise.clock import Clock
+from gearopt.physics.motion.moving_pair import MovingPair, Rotor
+from gearopt.physics.motion.stiffness_wave import Wave, constant, trapezoid
+
+TARGETS = (1e-3, 1e-6, 1e-9)
+STIFFNESS = 2e5  # N/mm
+TIME, OUTPUTS = 0.02, 401
+REFERENCE = 128  # steps of RK8 between two outputs
+PATIENCE = 1200.0  # ms that a run may take for the next finer one to be tried
+TOLERANCES = tuple(10.0**-p for p in range(3, 14))
+COARSEST = {"rk8": 1, "rk4": 4, "symplectic": 2}  # steps between two outputs; of others 4
+
+
+def pair(kinematics: str, wave: Wave, frequency: float = 0.0) -> MovingPair:
+    """Return the pair of the paper: SI data converted to mm, t, N."""
+    bearings = (1e3, 1e3)
+    rotors = Rotor(60.0, 6e-4, 2.0, bearings, torque=2e5), Rotor(80.0, 9e-4, 4.0, bearings)
+    return MovingPair(*rotors, math.radians(20.0), wave, frequency, kinematics=kinematics)
+
+
+def scenes() -> dict[str, MovingPair]:
+    """Return the scenes: the paper's kinematics, with a wave of stiffness, and the exact ones."""
+    return {
+        "paper, constant stiffness": pair("paper", constant(STIFFNESS)),
+        "paper, trapezoid 1 kHz": pair("paper", trapezoid(STIFFNESS, 0.5, 0.6, 0.1), 1000.0),
+        "exact, constant stiffness": pair("exact", constant(STIFFNESS)),
+    }
+
+
+def run(repeat: int) -> list[dict[str, Any]]:
+    """Return rows: case, method, its order, ms (median) to each error of TARGETS, least error.
+
+    The time to an error lies between those of two settings, on a straight line of the logarithms.
+    order: the largest slope of log error over log step of two settings whose errors lie between
+    1e-9 and 0.02. None: not reached, within a second a run; or no order, of adaptive methods.
+    """
+    rows = []
+    for case, scene in scenes().items():
+        for name, ladder in _ladders(scene):
+            found = list(_climbed(ladder, scene, repeat))
+            times = {f"ms_{target:.0e}": _least(found, target) for target in TARGETS}
+            fixed = name in STEPPERS
+            slope = _slope([e for e, _ in found]) if fixed else None
+            least = min(e for e, _ in found)
+            rows.append({"case": case, "method": name, "order": slope, **times, "error": least})
+    return rows
+
+
+Run = Callable[[], Any]
+
+
+def _ladders(scene: MovingPair) -> Iterator[tuple[str, Iterator[Run]]]:
+    """Yield every method with its runs, from the coarsest setting to finer ones."""
+    import numpy as np
+
+    times, rest = np.linspace(0.0, TIME, OUTPUTS), np.zeros(10)
+    between = TIME / (OUTPUTS - 1)
+
+    def steps(name: str, level: str) -> Iterator[Run]:
+        intervals = timeline(scene, times)
+        for power in range(13):
+            longest = between / (COARSEST.get(name, 4) * 2**power)
+            yield lambda h=longest: march(scene, level, intervals, name, h, rest)  # type: ignore[misc]
+
+    for name, stepper in STEPPERS.items():
+        level = "way" if stepper.undamped else "plane"
+        if not stepper.undamped or conservative(scene, level):
+            yield name, steps(name, level)
+    for name in SCIPY:
+        yield (
+            f"scipy {name}",
+            (
+                lambda m=name, r=rtol: scipy_motion(scene, "plane", times, m, r, rest)  # type: ignore[misc]
+                for rtol in TOLERANCES
+            ),
+        )
+    built = (cvodes(scene, "plane", times, rtol) for rtol in TOLERANCES)
+    yield "CVODES", (lambda b=b: b(rest) for b in built)  # type: ignore[misc]
+
+
+def _climbed(
+    ladder: Iterator[Run], scene: MovingPair, repeat: int
+) -> Iterator[tuple[float, float]]:
+    """Yield error and median time [ms] of each run, until the least target or patience ends."""
+    import numpy as np
+
+    known = reference(scene)
+    scale = np.max(np.abs(known))
+    for run_ in ladder:
+        made = run_()  # the first compiles
+        error = float(np.max(np.abs(made.delta - known)) / scale)
+        took = []
+        for _ in range(repeat):
+            clock = Clock()
+            run_()
+            took.append(1000.0 * clock.seconds)
+        took_ms = statistics.median(took)
+        yield error if math.isfinite(error) else math.inf, took_ms
+        if error <= TARGETS[-1] or took_ms > PATIENCE:
+            return
+
+
+def reference(scene: MovingPair) -> Any:
+    """Return delta [mm] at the outputs by RK8 with REFERENCE steps between two of them."""
+    import numpy as np
+
+    times = np.linspace(0.0, TIME, OUTPUTS)
+    longest = TIME / (OUTPUTS - 1) / REFERENCE
+    made = march(scene, "plane", timeline(scene, times), "rk8", longest, np.zeros(10))
+    return made.delta
+
+
+def _least(found: list[tuple[float, float]], target: float) -> float | None:
+    """Return the time to an error, between two settings by a straight line of the logarithms."""
+    for (worse, less), (better, more) in zip([(math.inf, 0.0), *found], found, strict=False):
+        if better <= target:
+            if not math.isfinite(worse) or worse <= better or more <= less:
+                return round(more, 3)
+            share = math.log(worse / target) / math.log(worse / better)
+            return round(float(less * (more / less) ** share), 3)
+    return None
+
+
+def _slope(errors: list[float]) -> float | None:
+    """Return log2 of the largest fall of an error as the steps are halved."""
+    pairs = zip(errors, errors[1:], strict=False)
+    falls = [math.log2(a / b) for a, b in pairs if 0.02 > a > b > 1e-9]
+    return round(max(falls), 2) if falls else None

@@ -1,0 +1,143 @@
+"""Adaptive library methods for the same motions: scipy's, and CVODES of SUNDIALS through casadi."""
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from gearopt.formulations.motion.integrate import MARCH, Marched
+from gearopt.formulations.motion.numbers import numbers
+from gearopt.formulations.motion.timeline import timeline
+from gearopt.optimise.kernels import kernel
+from gearopt.optimise.tape import legacy_numpy
+from gearopt.optimise.terms import Array
+from gearopt.physics.motion.accelerations import LEVELS
+from gearopt.physics.motion.moving_pair import MovingPair
+
+SCIPY = ("DOP853", "Radau", "LSODA")
+STEPS = 10**7  # of CVODES, at most
+
+
+def scales(pair: MovingPair, level: str) -> Array:
+    """Return lengths and velocities (2 n,) below which digits of a state do not count."""
+    n = LEVELS[level][0]
+    length = abs(pair.load) / pair.wave.mean
+    speed = length * math.sqrt(pair.wave.mean / pair.mesh_mass)
+    return np.append(np.full(n, length), np.full(n, speed))
+
+
+def scipy_motion(
+    pair: MovingPair, level: str, times: Array, method: str, rtol: float, state: Array
+) -> Marched:
+    """Return the motion by scipy's solve_ivp, started again at kinks and where the flank changes.
+
+    method: of SCIPY; rtol relative, with an absolute tolerance of rtol times `scales`. times [s].
+    """
+    from scipy.integrate import solve_ivp
+
+    model, law = numbers(pair, level), kernel(MARCH)
+    pieces = timeline(pair, np.asarray(times)[[0, -1]])
+    now, out, rates, events = np.array(state, float), [np.array(state, float)], 0, 0
+    flank = int(law.flank_now(model, now))
+    for start, length, k0, k1 in zip(
+        pieces.starts, pieces.lengths, pieces.k0, pieces.k1, strict=True
+    ):
+        t, end, slope = start, start + length, (k1 - k0) / length
+        while t < end:
+            side = flank
+
+            def rate(
+                at: float, y: Array, side: int = side, line: Any = (k0, slope, start)
+            ) -> Array:
+                found = np.empty_like(y)
+                law.rates(model, at, line[0] + line[1] * (at - line[2]), side, y, found)
+                return found
+
+            def leaves(at: float, y: Array, side: int = side) -> float:
+                return float(law.past(model, side, y))
+
+            leaves.terminal, leaves.direction = True, 1.0  # type: ignore[attr-defined]
+            asked = times[(times > t) & (times <= end)]
+            made = solve_ivp(
+                rate,
+                (t, end),
+                now,
+                method=method,
+                t_eval=np.union1d(asked, end),
+                rtol=rtol,
+                atol=rtol * scales(pair, level),
+                events=leaves if pair.backlash is not None else None,
+            )
+            rates += made.nfev
+            reached = made.t_events[0][0] if made.status == 1 else end
+            states = np.reshape(made.y, (len(now), -1)).T  # a list where none was reached
+            out += list(states[: int(np.sum(asked <= reached))])
+            now = made.y_events[0][0] if made.status == 1 else states[-1]
+            if made.status == 1:
+                events += 1
+                delta = now[LEVELS[level][0] // 2]
+                flank = 1 if side != 1 else (0 if delta <= 0.5 * model.backlash else 2)
+            t = reached
+    return Marched(pair, level, np.array(out), rates, rates, events)
+
+
+def cvodes(pair: MovingPair, level: str, times: Array, rtol: float) -> Any:
+    """Return a run(state) -> Marched by CVODES (BDF), built once; for pairs without backlash.
+
+    The stiffness is a function of time in its right-hand side; steps go across kinks.
+    """
+    import casadi as ca
+
+    if pair.backlash is not None:
+        raise ValueError("CVODES is run here without separation")
+    n, law = LEVELS[level]
+    y, t = ca.SX.sym("y", 2 * n), ca.SX.sym("t")
+    scale = scales(pair, level)
+    whole = [y[i] * float(scale[i]) for i in range(2 * n)]
+    bare = replace(pair, error=())
+    with legacy_numpy():
+        found = law(bare, _stiffness(pair, t), whole[:n], whole[n:])
+    if pair.error:
+        found[n // 2] += _shaken(pair, t)
+    rhs = [one / float(s) for one, s in zip([*whole[n:], *found], scale, strict=True)]
+    made = ca.integrator(
+        "motion",
+        "cvodes",
+        {"x": y, "t": t, "ode": ca.vertcat(*rhs)},
+        float(times[0]),
+        [float(at) for at in times[1:]],
+        {"reltol": rtol, "abstol": rtol, "max_num_steps": STEPS},
+    )
+
+    def run(state: Array) -> Marched:
+        x = np.array(made(x0=np.asarray(state) / scale)["xf"], float).T
+        states = np.concatenate([[state], x * scale])
+        return Marched(pair, level, states, 0, 0)
+
+    return run
+
+
+def _stiffness(pair: MovingPair, t: Any) -> Any:
+    import casadi as ca
+
+    wave = pair.wave
+    phase = t * pair.mesh_frequency
+    phase = phase - ca.floor(phase)
+    after = np.roll(wave.before, -1)
+    found = 0.0
+    for edge, length, low, high in zip(wave.edges, wave.lengths, wave.after, after, strict=True):
+        inside = ca.logic_and(phase >= edge, phase < edge + length)
+        line = float(low) + float(high - low) * (phase - float(edge)) / float(length)
+        found = found + ca.if_else(inside, line, 0.0)
+    for h, (a, b) in enumerate(zip(wave.cosines, wave.sines, strict=True), 1):
+        angle = 2.0 * math.pi * h * phase
+        found = found + float(a) * ca.cos(angle) + float(b) * ca.sin(angle)
+    return found
+
+
+def _shaken(pair: MovingPair, t: Any) -> Any:
+    import casadi as ca
+
+    omega = 2.0 * math.pi * pair.mesh_frequency
+    return sum(-a * (h * omega) ** 2 * ca.cos(h * omega * t) for h, a in enumerate(pair.error, 1))

@@ -1,0 +1,126 @@
+"""A motion to an error that is asked: the cheapest method that meets it is found and used."""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from gearopt.formulations.motion.exponential import exact_motion, piecewise_linear
+from gearopt.formulations.motion.integrate import STEPPERS, Marched, conservative, march
+from gearopt.formulations.motion.timeline import Timeline, timeline
+from gearopt.optimise.terms import Array
+from gearopt.physics.motion.accelerations import LEVELS
+from gearopt.physics.motion.linear import linear, modes
+from gearopt.physics.motion.moving_pair import MovingPair
+
+COARSE = 4.0  # steps in a period of the fastest mode, of the longest steps tried
+EXACT = 1e-11  # error of exact pieces, of the largest |delta|: rounding over a long run
+ROUNDING = 3e-13  # error below which halving a step shows rounding, not the method
+SAFETY = 4.0  # times the error that changes by halving tell of the finer run
+MOST = 400_000_000  # rates evaluated, at most: some minute
+CANDIDATES = ("rk8", "rk4", "symplectic", "newmark")
+
+
+@dataclass(frozen=True)
+class Simulated:
+    """A motion: its method, the error of delta reached, relative to its largest |delta|.
+
+    error: the last change c by halving the steps, times 4/(q - 1) where the changes fell by a
+    factor of q > 5 (at most 2^p of an order p): four times what is left of a geometric series.
+    rates: evaluated in all, those of the search for a method included. met: whether the error asked
+    was reached. longest [s]: the step of the run kept; 0 of exact pieces.
+    """
+
+    times: Array
+    motion: Marched
+    method: str
+    error: float
+    met: bool
+    rates: int
+    longest: float
+
+
+@dataclass(frozen=True)
+class _Try:
+    method: str
+    longest: float
+    motion: Marched
+    change: float  # of delta by the last halving, relative; inf before there was one
+    error: float  # estimated from it
+    spent: int
+
+    def ahead(self, asked: float) -> float:
+        """Return what is likely to be spent until the error asked is met."""
+        order = STEPPERS[self.method].order
+        wanted = min(max(self.error, asked), 1e6) / asked
+        return float(self.motion.rates * max(2.0, wanted ** (1.0 / order)))
+
+
+def simulate(
+    pair: MovingPair, level: str, times: Array, error: float, state: Array | None = None
+) -> Simulated:
+    """Return the motion whose error of delta is at most `error`, by the method that costs least.
+
+    times (outputs,) [s], from the start; state (2 n,): coordinates and velocities there, at rest
+    and unloaded where None. Piecewise linear scenes are solved exactly; else steps of RK8, RK4, the
+    symplectic composition and Newmark's method are halved, always those whose order promises to
+    need the fewest evaluations, until the change says that the error is met.
+    """
+    state = np.zeros(2 * LEVELS[level][0]) if state is None else state
+    intervals = timeline(pair, times)
+    if piecewise_linear(pair, level):
+        motion = exact_motion(pair, level, intervals, state)
+        return Simulated(times, motion, "exponential", EXACT, error >= EXACT, motion.rates, 0.0)
+    tried, spent = [], 0
+    for method in CANDIDATES:
+        if not STEPPERS[method].undamped or conservative(pair, level):
+            first = _first(pair, level, intervals, method, state)
+            second = _halved(first, intervals, state)
+            tried.append(second)
+            spent += second.spent
+    while True:
+        best = min(tried, key=lambda t: (t.error > error, t.ahead(error)))
+        if best.error <= error or spent + 2 * best.motion.rates > MOST:
+            break
+        finer = _halved(best, intervals, state)
+        spent += finer.motion.rates
+        if best.change < 1e-6 and finer.change > 0.5 * best.change:  # rounding alone is left
+            break
+        tried[tried.index(best)] = finer
+    met = best.error <= error
+    return Simulated(times, best.motion, best.method, best.error, met, spent, best.longest)
+
+
+def fastest(pair: MovingPair, level: str) -> float:
+    """Return the period of the fastest mode at the highest stiffness [s]."""
+    phases = np.linspace(0.0, 1.0, 257)
+    stiffest = max(float(np.max(pair.wave.value(phases))), float(np.max(pair.wave.after)))
+    plane = level if level in ("fixed", "line") else "plane"
+    top = modes(linear(pair, plane), stiffest).frequencies[-1]
+    harmonic = 2.0 * math.pi * pair.mesh_frequency * max(len(pair.wave.cosines), len(pair.error))
+    return 2.0 * math.pi / max(float(top), harmonic)
+
+
+def _first(pair: MovingPair, level: str, times: Timeline, method: str, state: Array) -> _Try:
+    longest = fastest(pair, level) / (COARSE if method == "rk8" else 4.0 * COARSE)
+    motion = march(pair, level, times, method, longest, state)
+    return _Try(method, longest, motion, math.inf, math.inf, motion.rates)
+
+
+def _halved(tried: _Try, times: Timeline, state: Array) -> _Try:
+    """Return a run of half the steps, with the error that the change between both tells."""
+    old, half = tried.motion, 0.5 * tried.longest
+    while True:
+        new = march(old.pair, old.level, times, tried.method, half, state)
+        if new.steps > old.steps:
+            break
+        half *= 0.5
+    scale = float(np.max(np.abs(new.delta))) or 1.0
+    change = float(np.max(np.abs(new.delta - old.delta))) / scale
+    change = change if math.isfinite(change) else math.inf
+    falls = tried.change / change if change > 0.0 else math.inf
+    falls = min(falls, 2.0 ** STEPPERS[tried.method].order) if tried.change < math.inf else 1.0
+    told = SAFETY * change / (falls - 1.0) if falls > SAFETY + 1.0 else change
+    error = max(told, ROUNDING)
+    spent = tried.spent + new.rates
+    return replace(tried, longest=half, motion=new, change=change, error=error, spent=spent)
