@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from gearopt.formulations.relief.meshing import Criteria, Mesh, Relief
+from gearopt.formulations.relief.relief_mpec import local
 from gearopt.formulations.relief.relief_search import search
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Array, Terms, Var
@@ -92,7 +93,8 @@ def problem(
         )
 
     proven = not most and tuple(objectives) == ("peak_to_peak",)
-    methods = {"exact": search(mesh, ranges.exponents)} if proven else {}
+    powers = ranges.exponents
+    methods = {"exact": search(mesh, powers), "mpec": local(mesh, powers)} if proven else {}
     return Problem("relief", variables(ranges), (), evaluate, methods=methods, vectorised=True)
 
 

@@ -24,6 +24,9 @@ ROUNDING = 1e-9  # um: taken off every bound
 GAP = 1e-6  # relative; where no gap is asked for
 FAR = 1e6  # mm: of a pair that is not in contact from the tips
 TOLD = 256  # boxes between two words to the watcher
+RANDOM = False
+COUNTS = "box bounded"
+SETTINGS = {"gap": GAP}
 SENTENCE = "Proof: every box of amounts and lengths was searched; bounds of boxes by planes."
 
 

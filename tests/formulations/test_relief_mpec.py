@@ -1,0 +1,42 @@
+"""The local method for relief: conditions of the sharing as constraints, against the search."""
+
+import numpy as np
+import pytest
+from relief_pairs import COUPLING, mesh
+
+from gearopt.formulations.relief.parametric import Ranges, at_point, problem
+from gearopt.formulations.relief.relief_mpec import MICRO, STEPS, _point, complementarity
+from gearopt.optimise.solve import Budget, solve
+
+
+@pytest.mark.parametrize("exponent", [1.0, 2.0])
+def test_the_exact_sharing_meets_the_constraints(exponent):
+    """At random reliefs; its peak is the exact one but for the rounding of where they begin."""
+    made = mesh((0.6, 1.0), COUPLING, 12)
+    ranges, rng = Ranges.of(made, exponent), np.random.default_rng(0)
+    low, high, _ = problem(made, ranges).bounds()
+    posed = complementarity(made, low, high, ranges.exponents).at(smoothing=0.0, tau=1e-9)
+    for _ in range(4):
+        x = rng.uniform(low, high)
+        whole = _point(made, posed, x, ranges.exponents)
+        rows = posed.batch(whole[None])
+        assert rows.G.max() <= 1.0 + 1e-9 and rows.H[0] == pytest.approx(1.0, abs=1e-12)
+        exact = made.criteria(made.separations(*at_point(x, ranges))).peak_to_peak.max()
+        assert rows.F[0, 0] == pytest.approx(MICRO * exact, rel=1e-9)
+        lower = whole.copy()
+        lower[6] -= 1e-3  # a smaller peak breaks a row
+        assert posed.batch(lower[None]).G.max() > 1.0 + 5e-4
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "loads, exponent, most",
+    [((1.0,), 2.0, 1.05), ((0.6, 1.0), 2.0, 1.349), ((0.6, 1.0), 1.0, 1.26)],
+)
+def test_local_optima(loads, exponent, most):
+    """Near what a published program of this sort finds [um], and never below the proven bound."""
+    made = mesh(loads)
+    posed = problem(made, Ranges.of(made, exponent))
+    exact, found = solve(posed, "exact"), solve(posed, "mpec", Budget(evaluations=1200))
+    assert exact.bound <= found.value < 1e-3 * most
+    assert found.status in ("feasible", "limit") and STEPS[-1][0] < 1e-4
