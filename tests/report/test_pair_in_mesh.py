@@ -252,6 +252,8 @@ def test_gears_in_space_have_the_volume_of_their_bodies():
     for name, (body, off) in bodies.items():
         made = figure(pair, (Body(None, None, None, 30.0), body), METRIC)
         found[name] = volume(made.data[1]) + off
+        faces = re.findall(r'class="face gear"', made.still.svg)
+        assert len(faces) == (4 if name == "web" else 2)  # rim and hub are seen on paper, too
     assert found["bored"] == pytest.approx(found["disc"], rel=1e-3)
     assert found["web"] == pytest.approx(found["disc"], rel=1e-3)
     assert 0.96 * wheel < found["disc"] < wheel  # the dedendum is the larger half

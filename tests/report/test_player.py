@@ -155,6 +155,15 @@ def test_colours_of_the_player_are_those_of_the_page():
     assert known.count("--heat-1") == known.count("--heat-3") == 2  # light and dark
 
 
+def test_colours_of_a_scale_differ_in_lightness_alone():
+    """So they are told apart by everyone: darker on paper, brighter on a dark page."""
+    css = (ROOM / "player.css").read_text(encoding="utf-8")
+    found = re.findall(r"--heat-[123]: #(\w\w)(\w\w)(\w\w)", css)
+    linear = (np.array([[int(v, 16) for v in row] for row in found]) / 255.0) ** 2.2
+    light, dark = (linear @ (0.2126, 0.7152, 0.0722)).reshape(2, 3)
+    assert (np.diff(light) < -0.25).all() and (np.diff(dark) > 0.15).all()
+
+
 def test_the_example_for_contributors_is_an_animation():
     text = CONTRIBUTING.read_text(encoding="utf-8").split("## Add an animation")[1]
     code = re.search(r"```python\n(.*?)```", text, re.S)[1]

@@ -26,7 +26,7 @@ SECONDS = 6.0  # of one base pitch at normal speed
 FREE = (8.0, 8.0, 8.0, 8.0)  # px around a view
 DOT = 4.0  # px: radius of a point of contact
 CORNERS = 16  # of its outline
-ALONE = 1.25  # times as large, where one view stands alone
+ALONE, BESIDE = 1.25, 0.98  # times as large: one view alone; one of two that fit on a sheet
 COLOURS = (1, 4)  # of pinion and wheel, in the series
 CAPTION = (
     "The pinion, below, turns clockwise and drives; its pairs of teeth, numbered from the one that "
@@ -70,6 +70,11 @@ class Carried:
         """Shares in per cent (N, K), NaN where a pair is not on its path."""
         return np.where(np.isfinite(self.positions), 100.0 * np.asarray(self.shares), np.nan)
 
+    @property
+    def touching(self) -> Any:
+        """Positions (N, K) [mm] of pairs that carry, NaN of others."""
+        return np.where(np.asarray(self.shares) > 0.0, self.positions, np.nan)
+
     def along(self, values: Any) -> Any:
         """Return values (N, K) of pairs as columns (M,) that one pair meets on its path."""
         return np.asarray(values).T[np.isfinite(self.positions.T)]
@@ -87,7 +92,7 @@ def in_mesh(
     shown: what the teeth carry, by what is different, such as "before" and "after".
     """
     first = next(iter(shown.values()))
-    larger = ALONE if len(shown) == 1 else 1.0
+    larger = ALONE if len(shown) == 1 else BESIDE
     views = [_view(pair, carried, words, larger) for words, carried in shown.items()]
     readings = [_place(first, measures)]
     for words, carried in shown.items():
@@ -131,13 +136,13 @@ def _view(pair: GearPair, carried: Carried, words: str, larger: float) -> View:
     dots = [
         Body(
             _dot(DOT / sheet.scale),
-            np.array([(*on_action(pair, s), 0.0) for s in positions]),
+            np.array([(*on_action(pair, s), 0.0) for s in places]),
             "picked",
             "--ink",
             f"point of contact of pair {k}",
             label=str(k),
         )
-        for k, positions in enumerate(carried.positions.T, 1)
+        for k, places in enumerate(carried.touching.T, 1)
     ]
     return View(sheet, f"teeth in mesh {words}".rstrip(), behind, dots, words.capitalize())
 

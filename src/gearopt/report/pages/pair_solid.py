@@ -23,6 +23,7 @@ from gearopt.report.section import Figure
 POINTS = 20_000  # of both gears together, about half a megabyte of a page
 FLANKS = (12, 10, 8, 6, 4, 3, 2)  # points on a flank
 PAST = 0.25  # face widths that a shaft is seen beyond its gear
+FLAT = 1e-3  # mm: thickness of a circle on a face in the still
 COLOURS = (1, 4)  # of pinion and wheel, in the series
 CAPTION = (
     f"{TURN} Involute and fillet as the tools cut them, thinned by 3 % of half a pitch so that the "
@@ -81,12 +82,18 @@ def _words(member: str, gear: Toothed) -> str:
 
 
 def _solids(member: str, gear: Toothed, body: Body) -> list[Rod]:
-    """Return a gear and the ends of its shaft for the still."""
+    """Return a gear and the ends of its shaft for the still; circles where rim and hub end."""
     rim = tuple((angle + gear.phase, r) for angle, r in outline(gear.gear, 4))
     tip, (start, end) = 0.5 * float(gear.gear.tip_diameter), _shaft(gear.end)
-    look = "gear", _colour(member), _words(member, gear), rim
-    found = [Rod(gear.centre, tip, gear.start, gear.end, *look)]
-    for ends in ((start, gear.start), (gear.end, end)) if body.bore else ():
+    look = "gear", _colour(member), _words(member, gear)
+    found = [Rod(gear.centre, tip, gear.start, gear.end, *look, rim)]
+    face = gear.end
+    if body.web_thickness is not None and body.rim_thickness is not None:
+        inside = float(gear.gear.root_diameter) - 2.0 * body.rim_thickness
+        for diameter in filter(None, (inside, body.hub_diameter)):
+            found.append(Rod(gear.centre, 0.5 * diameter, face, face + FLAT, *look))
+            face += FLAT
+    for ends in ((start, gear.start), (face, end)) if body.bore else ():
         r, title = 0.5 * (body.bore or 0.0), f"shaft of the {member}"
         found.append(Rod(gear.centre, r, *ends, "metal", title=title))
     return found

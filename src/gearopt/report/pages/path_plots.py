@@ -25,13 +25,14 @@ class Line:
     """A curve over the path, in shown units: values (N,) of the mesh, or (N, K) of pairs of teeth.
 
     Those of pairs may be a column (M,) that one pair meets, as `Carried.along` gives it.
-    colour: of the series, from 1. dash: as plotly has it.
+    colour: of the series, from 1. dash: as plotly has it. name: "" stands in no legend. width: px.
     """
 
     values: Any
     name: str
     colour: int
     dash: str = "solid"
+    width: float = 2.0
 
 
 def over_path(
@@ -68,7 +69,8 @@ def over_path(
         annotations=notes,
         hovermode="x",
     )
-    plot["margin"] |= {"t": 44 if len(traces) > 1 else 24}
+    named = [trace for trace in traces if trace["name"]]
+    plot["margin"] |= {"t": 44 if len(named) > 1 else 24}
     plot["legend"] |= {"y": 1.08}
     return Figure(traces, plot, caption, follows=follows)
 
@@ -91,8 +93,9 @@ def _trace(line: Line, x: Any, carried: Carried) -> dict[str, Any]:
         "name": line.name,
         "x": [round(float(v), 5) for v in x],
         "y": [float(f"{v:.6g}") for v in values],
-        "line": {"color": series(line.colour), "width": 2, "dash": line.dash},
+        "line": {"color": series(line.colour), "width": line.width, "dash": line.dash},
         "hovertemplate": "%{y:.4g}",
+        "showlegend": bool(line.name),
     }
 
 
