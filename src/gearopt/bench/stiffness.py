@@ -1,22 +1,25 @@
 """Stiffness of tooth pairs: every model against finite elements, with its time and set-up.
 
-Two pairs of steel gears under plane stress and plane strain, at five positions: 0.05 m_n inside A,
-at B, C and D, and 0.05 m_n inside E. Nobody has measured the pairs: finite elements whose size is
-halved once more are what the errors are counted from.
+Two pairs of steel gears under plane stress and plane strain, then random pairs, at five positions:
+0.05 m_n inside A, at B, C and D, and 0.05 m_n inside E. Nobody has measured the pairs: errors are
+counted from finite elements, of the two pairs with their size halved once more.
 """
 
 from dataclasses import dataclass, replace
 from typing import Any
 
 from gearopt.bench import timed
-from gearopt.physics.gears import GearPair
+from gearopt.physics.gears import GearPair, Rack
+from gearopt.physics.geometry.flaws import flaws
 from gearopt.physics.tooth import finite_elements
 from gearopt.physics.tooth.beam import tabulated
 from gearopt.physics.tooth.elastic import PLANES, ElasticPair
 from gearopt.physics.tooth.ladder import LEVELS, Level
 from gearopt.physics.tooth.trapezoid import trapezoid
+from gearopt.physics.tooth.validity import unsupported, usual_plane
 
 TIMED = 256  # positions of the analytic models, 5 of finite elements
+RANDOM = 32
 
 
 @dataclass(frozen=True)
@@ -49,14 +52,15 @@ def run(repeat: int) -> list[dict[str, Any]]:
     """Return rows: case, method, ms, us a position, ms of set-up, least and largest error.
 
     errors: of the stiffness, relative; of finite elements what halving them changes. set-up: what
-    is kept for further positions, tables and factors.
+    is kept for further positions, tables and factors. Random pairs are not timed; a level is asked
+    for those that it supports (`tooth.validity.unsupported`).
     """
     found = []
     for sample in samples():
         for plane in PLANES:
             elastic = ElasticPair(sample.pair, sample.bores, plane=plane)
             found += _levels(sample, elastic, repeat)
-    return found
+    return found + _random()
 
 
 def _levels(sample: Sample, elastic: ElasticPair, repeat: int) -> list[dict[str, Any]]:
@@ -95,3 +99,50 @@ def _fresh(level: Level, elastic: ElasticPair, points: Any, force: float) -> Any
     for table in (tabulated, trapezoid, finite_elements.body):
         table.cache_clear()
     return level.compliance(replace(elastic), points, force)
+
+
+def random_pairs() -> list[tuple[ElasticPair, float]]:
+    """Return `RANDOM` pairs without a flaw, of module 3 mm, with loads [N] of a pair of teeth.
+
+    17 to 60 and 17 to 150 teeth, shifts 0 to 0.6 and -0.2 to 0.4, tip radii of the tool 0.2 to
+    0.38 m_n, face widths of 4 to 15 m_n, root over bore 1.4 to 5; the plane that suits the width.
+    """
+    import numpy as np
+
+    rng = np.random.default_rng(0)
+    found: list[tuple[ElasticPair, float]] = []
+    while len(found) < RANDOM:
+        rack = Rack(tip_radius=rng.uniform(0.2, 0.38))
+        teeth = float(rng.integers(17, 61)), float(rng.integers(17, 151))
+        shifts = rng.uniform(0.0, 0.6), rng.uniform(-0.2, 0.4)
+        width, load = rng.uniform(12.0, 45.0), rng.uniform(30.0, 180.0)
+        ratios = rng.uniform(1.4, 5.0, 2)
+        pair = GearPair.of_teeth(3.0, *teeth, width, rack=rack, profile_shifts=shifts)
+        if not flaws(pair):
+            first, second = (
+                float(g.root_diameter / h) for g, h in zip(pair.gears, ratios, strict=True)
+            )
+            found.append(
+                (ElasticPair(pair, (first, second), plane=usual_plane(pair)), load * width)
+            )
+    return found
+
+
+def _random() -> list[dict[str, Any]]:
+    """Return the errors of the levels over random pairs, without times."""
+    errors: dict[str, list[Any]] = {name: [] for name in LEVELS}
+    for elastic, force in random_pairs():
+        points = five_points(elastic)
+        fine = finite_elements.pair_compliance(elastic, points, force)
+        finite_elements.body.cache_clear()
+        for name, level in LEVELS.items():
+            if level.tooth != "elements" and not unsupported(elastic, name):
+                errors[name] += list(fine / level.compliance(elastic, points, force) - 1.0)
+    untimed = dict.fromkeys(("median_ms", "least_ms", "most_ms", "us_per_position", "setup_ms"))
+    return [
+        {"case": f"{RANDOM} random pairs", "method": name}
+        | untimed
+        | {"least_error": float(min(found)), "largest_error": float(max(found))}
+        for name, found in errors.items()
+        if found
+    ]

@@ -20,6 +20,7 @@ from gearopt.physics.tooth.mesh import Fineness, GearMesh, gear_mesh
 PER_HALF_WIDTH = 3.0  # elements: halving all of them changes a stiffness by less than 1e-3
 FINEST = 0.01  # modules: no element is smaller, however light the load
 WIDE = 0.04  # modules: half a contact under a load that teeth of steel may carry
+AT_ONCE = 64  # loads, each of which takes a column of all dofs
 PRESSED = 64  # points at which the pressure of a contact acts
 EXTRA = "finite elements of teeth need scikit-fem: pip install 'gearopt[fem]'"
 
@@ -197,8 +198,10 @@ def pair_compliance(elastic: ElasticPair, positions: Any, force: Any, halvings: 
         bodies(elastic, forces, halvings), elastic.path.radii_of_curvature(places), strict=True
     ):
         member = each.member
-        total += each.moved(each.pressed(at, wide), 0, at) / width
         total += 2.0 * member.plane_factor / (np.pi * member.rigidity) * lost
+        for k in range(0, len(places), AT_ONCE):
+            some = slice(k, k + AT_ONCE)
+            total[some] += each.moved(each.pressed(at[some], wide[some]), 0, at[some]) / width
     return total.reshape(shape)[()]
 
 

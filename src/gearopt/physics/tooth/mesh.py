@@ -106,13 +106,19 @@ def _sides(gear: Gear) -> tuple[Side, Side, float]:
     The last number: the arc length [mm] of the second one up to which it is fillet.
     """
     x, y = profile(gear, DENSE, DENSE)
-    angles, radii = np.arctan2(x, y), np.hypot(x, y)
+    angles, radii, half = np.arctan2(x, y), np.hypot(x, y), np.pi / float(gear.teeth)
     steep = int(np.argmax(-np.diff(x) <= np.diff(y)))
-    land = np.linspace(np.pi / float(gear.teeth), angles[0], 100)[:-1]
-    low = np.concatenate((land, angles[: steep + 1]))
-    under = Side.of(low, np.concatenate((np.full(len(land), radii[0]), radii[: steep + 1])))
     over = Side.of(angles[steep:], radii[steep:])
-    return under, over, float(over.lengths[DENSE - 1 - steep])
+    fillet = float(over.lengths[DENSE - 1 - steep])
+    angles, radii = angles[: steep + 1], radii[: steep + 1]
+    if angles[0] > half:  # the fillets of a pointed tool meet above the root circle
+        met = np.interp(-half, -angles, radii)
+        inside = angles < half
+        rows = np.append(half, angles[inside]), np.append(met, radii[inside])
+        return Side.of(*rows), over, fillet
+    land = np.linspace(half, angles[0], 100)[:-1]
+    root = np.concatenate((np.full(len(land), radii[0]), radii))
+    return Side.of(np.concatenate((land, angles)), root), over, fillet
 
 
 def _tooth_steps(

@@ -70,9 +70,9 @@ def doubts(elastic: ElasticPair, level: str) -> tuple[str, ...]:
 def cheapest(elastic: ElasticPair, error: float) -> str:
     """Return the cheapest level whose stiffness is known to within an error (0.05: 5 %).
 
-    Of two that cost the same the more accurate one; none that is `unsupported`. Known: recorded in
-    `LEVELS` over five positions of two pairs; other pairs may lie outside. An error below that of
-    every model gives finite elements, whatever it is.
+    Of two that cost the same the more accurate one; none that is `unsupported`. Known: the largest
+    error that `LEVELS` records, of two pairs and of random ones; other pairs may lie outside. An
+    error below that of every model gives finite elements, whatever it is.
     """
     suited = [
         (level.cost, level.worst, name)
