@@ -5,6 +5,8 @@ from functools import cache
 
 import numpy as np
 
+from gearopt.formulations.strain_wave.cutter_fit import arc_edge, straight_edge
+from gearopt.formulations.strain_wave.wave_sharing import shared, teeth_of
 from gearopt.physics.strain_wave.clearance import (
     interference,
     teeth_within,
@@ -14,9 +16,16 @@ from gearopt.physics.strain_wave.clearance import (
 from gearopt.physics.strain_wave.conjugate import flank
 from gearopt.physics.strain_wave.cutter import blank_profile, envelope, least_teeth
 from gearopt.physics.strain_wave.gearing import StrainWave
+from gearopt.physics.strain_wave.rim import Cup
 from gearopt.physics.strain_wave.strength import contact_modulus, equal_share, hertz_pressure
 
 BASE = StrainWave(0.5, 160, profile_shift=0.9)
+CASES = {
+    "base": BASE,
+    "alpha 15, h_a 0.5": replace(BASE, pressure_angle=np.radians(15.0), addendum=0.5),
+    "alpha 28": replace(BASE, pressure_angle=np.radians(28.0)),
+    "320:1, m 0.2": replace(BASE, teeth=640, module=0.2, rim=1.6),
+}
 STEEL = contact_modulus((206e3, 206e3), (0.3, 0.3))
 TORQUE, WIDTH = 1e5, 10.0  # N mm, mm
 
@@ -92,6 +101,33 @@ def tooth_rows():
     blank = blank_profile(base())
     for pitch in (40.0, 40.148, 40.25, 40.5, 40.754):
         yield row(pitch, least_teeth(blank, pitch, 160))
+
+
+def load_rows():
+    for torque in (1, 5, 20, 50, 100, 200):
+        cells = []
+        for rim in (None, (Cup(), WIDTH)):
+            own = teeth_of(base(), 1e5, rim)
+            arms = np.full(len(own.gaps), own.arm)
+            found = shared(own.compliance, own.gaps, arms, 500.0 * torque)
+            cells += [found.carrying, f"{found.forces.max():.1f}", f"{1e3 * found.windup:.4f}"]
+        yield row(torque, *cells)
+
+
+def fit_rows():
+    for name, gearing in CASES.items():
+        edge = envelope(blank_profile(flank(gearing, 61)), gearing.blank_radius).profile.points
+        line, arc = straight_edge(edge), arc_edge(edge)
+        fixed = straight_edge(edge, np.radians(20.0))
+        yield row(
+            name,
+            f"{np.degrees(line.angle):.3f}",
+            f"{1e3 * line.deviation:.4f}",
+            f"{1e3 * line.least_squares:.4f}",
+            f"{arc.radius:.0f}",
+            f"{1e3 * arc.deviation:.1e}",
+            f"{1e3 * fixed.deviation:.2f}",
+        )
 
 
 if __name__ == "__main__":

@@ -15,6 +15,7 @@ from gearopt.physics.strain_wave.vectors import Vector, polar
 CURVE_NODES = 7  # points of a flank through which a polynomial replaces it to 1e-6 um
 
 
+@np.errstate(invalid="ignore")
 def involute_gap(gearing: StrainWave, place: Vector) -> tuple[Any, Any]:
     """Return the signed distance [mm] of points to the circular spline's flank, and their radius.
 

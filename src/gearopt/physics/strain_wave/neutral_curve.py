@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from gearopt.physics.choosing import choose
 from gearopt.physics.strain_wave.gearing import StrainWave
 from gearopt.physics.strain_wave.vectors import Vector, polar
 
@@ -115,14 +116,14 @@ def disc_constants(wrap: float) -> Any:
 def _of_discs(wrap: float, angle: Any) -> tuple[Any, Any, Any, Any]:
     """Shape and derivatives of `disc_constants`, even in p."""
     c1, e, a, big, b = disc_constants(wrap)
-    sign, q = np.where(np.asarray(angle) < 0.0, -1.0, 1.0), np.abs(angle)
+    sign, q = choose(angle < 0.0, -1.0, 1.0), np.abs(angle)
     s, inside = q - 0.5 * math.pi, q <= wrap
     cosine, sine = np.cos(s), np.sin(s)
     shape = (
-        np.where(inside, c1 + e * np.cos(q), a + big * cosine + 0.5 * b * s * sine),
-        np.where(inside, -e * np.sin(q), -big * sine + 0.5 * b * (sine + s * cosine)),
-        np.where(inside, -e * np.cos(q), -big * cosine + 0.5 * b * (2.0 * cosine - s * sine)),
-        np.where(inside, e * np.sin(q), big * sine - 0.5 * b * (3.0 * sine + s * cosine)),
+        choose(inside, c1 + e * np.cos(q), a + big * cosine + 0.5 * b * s * sine),
+        choose(inside, -e * np.sin(q), -big * sine + 0.5 * b * (sine + s * cosine)),
+        choose(inside, -e * np.cos(q), -big * cosine + 0.5 * b * (2.0 * cosine - s * sine)),
+        choose(inside, e * np.sin(q), big * sine - 0.5 * b * (3.0 * sine + s * cosine)),
     )
     return shape[0], sign * shape[1], shape[2], sign * shape[3]
 

@@ -1,0 +1,1 @@
+"""Strain wave gearing posed as optimisation: shares of the load, design, cutter."""

@@ -1,0 +1,154 @@
+"""What a design of a strain wave gearing must meet, as one text for numbers, arrays and symbols."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from gearopt.formulations.strain_wave.duty import Duty
+from gearopt.optimise.terms import Var
+from gearopt.physics.strain_wave.conjugate import Contact
+from gearopt.physics.strain_wave.gearing import StrainWave
+from gearopt.physics.strain_wave.lands import flexspline_widths, spline_land
+from gearopt.physics.strain_wave.neutral_curve import NeutralCurve, curvature
+from gearopt.physics.strain_wave.strength import (
+    equal_share,
+    ratcheting_torque,
+    rim_stresses,
+    rim_utilisation,
+)
+
+FREE = ("profile_shift", "pressure_angle", "deflection", "addendum", "rim", "module")
+UNITS = {"pressure_angle": "rad", "rim": "mm", "module": "mm"}
+LAND = 0.25  # modules: least land of tips, least space at roots
+LEAST_CURVATURE = 2e-4  # 1/mm: contacts flatter than R = 5 m are not called contacts of a line
+OUTSIDE_BASE = 1.002  # tip radius over base radius of the circular spline, at least
+ROOM = 0.1  # modules between the tips on the minor axis
+CURVATURE_UNIT = 2e-3  # 1/mm, of the limit on curvature
+SPEED_UNIT = 10.0  # mm/rad, of the limit on the flank's speed
+
+
+@dataclass(frozen=True)
+class Demand:
+    """Teeth z_f, duty, wave generator, limits and the ranges of the six free numbers.
+
+    outer_radius [mm] of all, with `shell` [mm] outside the circular spline's root. Fatigue limits
+    [MPa] of rim bending and shear, safety and notch of them; radial_stiffness [N/mm] for ratcheting
+    at `ratchet_factor` times the torque; pairs: least conjugate pairs. ranges: of FREE.
+    """
+
+    teeth: int
+    duty: Duty
+    ranges: Mapping[str, tuple[float, float]]
+    outer_radius: float
+    shell: float = 3.0
+    wave: str = "cosine"
+    wrap: float = math.radians(30.0)
+    clearance: float = 0.25
+    bending_limit: float = 400.0
+    shear_limit: float = 230.0
+    safety: float = 1.5
+    notch: float = 1.6
+    radial_stiffness: float = 3e3
+    ratchet_factor: float = 3.0
+    pairs: float = 1.0
+    keys: Mapping[str, str] = field(default_factory=dict)
+
+    def gearing(self, numbers: Mapping[str, Any]) -> StrainWave:
+        """Return the gearing of the free numbers, floats, arrays or symbols."""
+        own = {name: numbers[name] for name in FREE}
+        return StrainWave(
+            teeth=self.teeth, clearance=self.clearance, wave=self.wave, wrap=self.wrap, **own
+        )
+
+    def radius_needed(self, gearing: StrainWave) -> Any:
+        """Return the outer radius [mm] that a gearing needs."""
+        return gearing.root_radius + self.shell
+
+    def volume(self, gearing: StrainWave) -> Any:
+        """Return the volume pi r^2 b [mm3] of the disc that it takes."""
+        return math.pi * self.radius_needed(gearing) ** 2 * self.duty.face_width
+
+
+def free_variables(demand: Demand, start: Any) -> tuple[Var, ...]:
+    """Return the variables of FREE; start (6,): their guess, moved into the ranges."""
+    found = []
+    for name, value in zip(FREE, start, strict=True):
+        low, high = demand.ranges[name]
+        guess = min(max(float(value), low), high)
+        key = demand.keys.get(name, "")
+        found.append(Var(name, UNITS.get(name, ""), low, high, guess, key=key))
+    return tuple(found)
+
+
+def pairs_of(gearing: StrainWave, contacts: Sequence[Contact]) -> Any:
+    """Return the mean conjugate pairs of contacts from root to tip of the flank."""
+    arc = contacts[-1].motion.arc - contacts[0].motion.arc
+    return arc * gearing.teeth / (2.0 * math.pi)
+
+
+def squares(demand: Demand, gearing: StrainWave, contacts: Sequence[Contact]) -> list[Any]:
+    """Return p_0^2 [MPa^2] at all contacts if the conjugate pairs share the load equally."""
+    duty = demand.duty
+    load = equal_share(duty.torque, gearing.base_radius, pairs_of(gearing, contacts))
+    unit = load / duty.face_width * duty.contact_modulus / math.pi
+    return [unit * c.gap_curvature for c in contacts]
+
+
+def limits(
+    demand: Demand, gearing: StrainWave, curve: NeutralCurve, contacts: Sequence[Contact]
+) -> dict[str, Any]:
+    """Return the utilisations of all limits but interference, at most 1 where they are met."""
+    root, tip = contacts[0].point, contacts[-1].point
+    land, space = flexspline_widths(gearing, root, tip)
+    least = LAND * gearing.module
+    return {
+        "pairs": demand.pairs / pairs_of(gearing, contacts),
+        "rim_fatigue": fatigue(demand, gearing, curve),
+        "ratcheting": demand.ratchet_factor
+        * demand.duty.torque
+        / slipping(demand, gearing, tip, contacts[-1]),
+        "outer_radius": demand.radius_needed(gearing) / demand.outer_radius,
+        "flexspline_land": 1.0 + (least - land) / gearing.module,
+        "flexspline_space": 1.0 + (least - space) / gearing.module,
+        "spline_land": 1.0 + (least - spline_land(gearing)) / gearing.module,
+        "base_circle": OUTSIDE_BASE * gearing.base_radius / gearing.tip_radius,
+        "minor_axis": (ROOM + 2.0 * gearing.addendum) / (2.0 * gearing.deflection),
+        "curvature": tuple(
+            1.0 + (LEAST_CURVATURE - c.gap_curvature) / CURVATURE_UNIT for c in contacts
+        ),
+        "cusp": tuple(1.0 - c.speeds[1] / SPEED_UNIT for c in contacts),
+    }
+
+
+def slipping(demand: Demand, gearing: StrainWave, tip: Any, contact: Contact) -> Any:
+    """Return the torque [N mm] at which teeth ratchet, by the flank's angle at the tip."""
+    slope = -contact.direction.y / contact.direction.x
+    return ratcheting_torque(gearing, demand.radial_stiffness, slope)
+
+
+def fatigue(demand: Demand, gearing: StrainWave, curve: NeutralCurve) -> Any:
+    """Return the utilisation of the rim's fatigue strength."""
+    duty = demand.duty
+    apex, _ = curvature(curve, 0.0)
+    stresses = rim_stresses(gearing, apex, duty.torque, duty.moduli[0], demand.notch, duty.cup.wall)
+    return rim_utilisation(stresses, (demand.bending_limit, demand.shear_limit), demand.safety)
+
+
+def clear(room: Any) -> Any:
+    """Return the limit on a clearance [mm]: 1 at LEAST_GAP, more below; its unit is GAP_UNIT."""
+    return 1.0 + (LEAST_GAP - room) / GAP_UNIT
+
+
+LEAST_GAP = 1e-5  # mm: 0.01 um, of poses that are looked at, so that those between keep clear
+GAP_UNIT = 0.1  # mm
+
+
+def smooth_maximum(first: Any, second: Any) -> Any:
+    """Return the maximum of two lengths [mm], smoothed by SMOOTH: at most SMOOTH/2 too large."""
+    return 0.5 * (first + second + np.sqrt((first - second) ** 2 + SMOOTH**2))
+
+
+SMOOTH = 1e-4  # mm

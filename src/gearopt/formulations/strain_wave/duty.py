@@ -1,0 +1,79 @@
+"""What a strain wave gearing carries, and what it is made of."""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from gearopt.formulations.strain_wave.wave_sharing import Loads, Teeth, shared, teeth_of
+from gearopt.physics.strain_wave.conjugate import Flank
+from gearopt.physics.strain_wave.rim import Cup
+from gearopt.physics.strain_wave.strength import contact_modulus, equal_share, hertz_pressure
+
+SHIFTS = (0.0, 0.25, 0.5, 0.75)  # pitches by which the wave generator is turned: worst of these
+
+
+@dataclass(frozen=True)
+class Duty:
+    """Torque T of the output [N mm], face width b [mm], materials of flexspline and spline.
+
+    moduli E [MPa], poissons nu of both. pair_stiffness K [N/mm] of two teeth; cup: that of the
+    flexspline; elastic: whether its rim yields to the loads of its teeth.
+    """
+
+    torque: float
+    face_width: float
+    moduli: tuple[float, float]
+    poissons: tuple[float, float]
+    pair_stiffness: float
+    cup: Cup
+    elastic: bool
+
+    @property
+    def contact_modulus(self) -> float:
+        """Modulus E* [MPa] of the contact of both materials."""
+        return float(contact_modulus(self.moduli, self.poissons))
+
+    @property
+    def moment(self) -> float:
+        """Moment M = T/2 [N mm] of one lobe."""
+        return 0.5 * self.torque
+
+    def pressure(self, loads: Any, gap_curvature: Any) -> Any:
+        """Return Hertz's pressures p_0 [MPa] of loads [N] at curvatures 1/R [1/mm]."""
+        return hertz_pressure(loads / self.face_width, self.contact_modulus, gap_curvature)
+
+
+def equal_pressure(duty: Duty, flank: Flank, whole: bool = False) -> float:
+    """Return the largest pressure [MPa] if the conjugate pairs share the load equally.
+
+    The paper's stress. whole: with the whole number of pairs that always touch, at least 1.
+    """
+    pairs = float(np.squeeze(flank.pairs_in_contact))
+    count = max(1.0, math.floor(pairs)) if whole else pairs
+    load = equal_share(duty.torque, flank.gearing.base_radius, count)
+    return float(duty.pressure(load, flank.contacts.gap_curvature.max()))
+
+
+def loads_at(duty: Duty, flank: Flank, shift: float = 0.0) -> tuple[Teeth, Loads]:
+    """Return the teeth that may carry and their loads; shift of the wave in pitches."""
+    rim = (duty.cup, duty.face_width) if duty.elastic else None
+    teeth = teeth_of(flank, duty.pair_stiffness, rim, shift)
+    arms = np.full(len(teeth.gaps), teeth.arm)
+    return teeth, shared(teeth.compliance, teeth.gaps, arms, duty.moment)
+
+
+def pressures(duty: Duty, flank: Flank, teeth: Teeth, loads: Loads) -> Any:
+    """Return the pressure of every tooth [MPa], with 1/R of the nearest conjugate point.
+
+    Teeth outside the arc of contact touch at an end of a flank: contact at an edge is not modelled.
+    """
+    at = flank.contacts
+    return duty.pressure(loads.forces, np.interp(teeth.arcs, at.motion.arc, at.gap_curvature))
+
+
+def shared_pressure(duty: Duty, flank: Flank) -> float:
+    """Return the largest pressure [MPa] of the shared loads over the positions in SHIFTS."""
+    found = [pressures(duty, flank, *loads_at(duty, flank, s)).max() for s in SHIFTS]
+    return float(max(found))

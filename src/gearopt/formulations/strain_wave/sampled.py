@@ -1,0 +1,112 @@
+"""The design problem for samplers: whole populations, interference looked for at some poses.
+
+What lies between these poses stays hidden: `exchange` looks at all of them, and `hidden` tells what
+a sampled design hides.
+"""
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from gearopt.formulations.strain_wave.demand import FREE, Demand, free_variables, limits, squares
+from gearopt.formulations.strain_wave.exchange import POINTS, STEP_DEG, design_of
+from gearopt.formulations.strain_wave.wave_design import COUNT
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.terms import Array, Terms
+from gearopt.physics.strain_wave.clearance import clearances, interference, poses
+from gearopt.physics.strain_wave.conjugate import Flank, angle_at, contact, tangents
+from gearopt.physics.strain_wave.gearing import StrainWave
+from gearopt.physics.strain_wave.neutral_curve import NeutralCurve, angle_of_arc, neutral_curve
+from gearopt.physics.strain_wave.tooth_motion import motion
+
+PRESSURE, VOLUME, SHARE = "pressure", "volume_per_torque", "load_share"
+OBJECTIVES = {PRESSURE: "MPa", VOLUME: "mm3/(N m)", SHARE: ""}
+POSES_DEG, REACH_DEG = 0.75, 85.0  # of the wave, at which sampled designs are looked at
+SAMPLED_GAP = 2e-5  # mm that rounding may take of a contact
+GAP_UNIT = 0.05  # mm, of the limit on interference
+NEAR = 5e-3  # mm: teeth within it count for the load share
+WORST = 10.0  # utilisation of a design without a conjugate flank
+
+
+def problem(demand: Demand, start: Array, names: Sequence[str] = (PRESSURE,)) -> Problem:
+    """Pose objectives over the six free numbers, without derivatives; start (6,): the guess.
+
+    names: pressure by equal sharing, volume per torque, and the share 1/N of the load of a tooth if
+    the N teeth within NEAR carried alike.
+    """
+
+    def evaluate(x: Any, p: Any) -> Terms:
+        columns = [np.asarray(getattr(x, name), float) for name in FREE]
+        shape = np.broadcast_shapes(*(c.shape for c in columns))
+        rows = [np.broadcast_to(c, shape).reshape(-1, 1) for c in columns]
+        found, goals = _assessed(demand, rows, names)
+        goals = {name: _given(goals[name], shape) for name in names}
+        return Terms(goals, {name: _given(v, shape) for name, v in found.items()})
+
+    return Problem(
+        "strain wave gearing, sampled", free_variables(demand, start), (), evaluate, vectorised=True
+    )
+
+
+@np.errstate(all="ignore")
+def _assessed(
+    demand: Demand, rows: Sequence[Array], names: Sequence[str]
+) -> tuple[dict[str, Any], dict[str, Array]]:
+    """Return limits and objectives (N,) of designs whose free numbers are columns (N, 1)."""
+    wide = demand.gearing(dict(zip(FREE, rows, strict=True)))
+    curve = neutral_curve(wide)
+    first, last = tangents(wide)
+    angles = angle_at(wide, curve, first + (last - first) * np.linspace(0.0, 1.0, COUNT))
+    found = contact(wide, motion(wide, curve, angles))
+    known = (np.isfinite(found.gap_curvature) & (found.tangent > 0.0)).all(axis=1)
+    thin = demand.gearing(dict(zip(FREE, (r[:, 0] for r in rows), strict=True)))
+    line = NeutralCurve(
+        curve.radius[:, 0], curve.wave, curve.first[:, 0], curve.second[:, 0], curve.wrap
+    )
+    each = [contact(thin, motion(thin, line, angles[:, k])) for k in range(COUNT)]
+    used = limits(demand, thin, line, each)
+    made = Flank(wide, curve, found, known)
+    gap = clearances(made, poses(POSES_DEG, REACH_DEG), 3).min(axis=1)
+    used["interference"] = 1.0 - (gap + SAMPLED_GAP) / GAP_UNIT
+    used = {name: _limited(v, known) for name, v in used.items()}
+    highest = np.max([np.where(known, s, np.nan) for s in squares(demand, thin, each)], axis=0)
+    goals = {PRESSURE: np.sqrt(np.maximum(np.nan_to_num(highest, nan=1e8), 0.0))}
+    if VOLUME in names:
+        goals[VOLUME] = demand.volume(thin) / demand.duty.torque * 1e3
+    if SHARE in names:
+        goals[SHARE] = _share(wide, curve, made, known)
+    return used, goals
+
+
+def _given(value: Any, shape: tuple[int, ...]) -> Any:
+    """Return values (N,) in the shape of the text's variables."""
+    if isinstance(value, tuple):
+        return tuple(_given(v, shape) for v in value)
+    return value.reshape(shape)[()]
+
+
+def _limited(value: Any, known: Array) -> Any:
+    """Return utilisations, WORST where a design has no conjugate flank."""
+    if isinstance(value, tuple):
+        return tuple(_limited(v, known) for v in value)
+    return np.where(known, np.nan_to_num(value, nan=WORST), WORST)
+
+
+def _share(wide: StrainWave, curve: NeutralCurve, made: Flank, known: Array) -> Array:
+    """Return 1/N of the N teeth within NEAR, by teeth at quarters of a pitch."""
+    arc = made.contacts.motion.arc
+    pitch = 2.0 * math.pi / float(wide.teeth)
+    arcs = 0.5 * (arc[:, :1] + arc[:, -1:]) + np.linspace(-12.0, 12.0, 97) * pitch
+    gaps = clearances(made, angle_of_arc(curve, arcs), COUNT)
+    count = 0.25 * (gaps <= NEAR).sum(axis=1)
+    return np.where(known & (count > 0.0), 1.0 / np.maximum(count, 0.25), 1.0)
+
+
+def hidden(demand: Demand, numbers: Array) -> float:
+    """Return the least clearance [mm] over all poses of a sampled design's free numbers (6,).
+
+    Negative: the teeth cut each other between the poses that were looked at.
+    """
+    return interference(design_of(demand, numbers), STEP_DEG, POINTS).least

@@ -1,0 +1,86 @@
+"""The paper's search: profile shift against Hertz's pressure, and what gives it an end."""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from gearopt.formulations.strain_wave.duty import Duty, equal_pressure, shared_pressure
+from gearopt.physics.strain_wave.clearance import interference
+from gearopt.physics.strain_wave.conjugate import Flank, flank
+from gearopt.physics.strain_wave.gearing import StrainWave
+
+POINTS = 201  # of a flank
+STEP_DEG = 0.05  # of the wave, where interference is looked for
+BISECTIONS = 24
+
+
+@dataclass(frozen=True)
+class ShiftPoint:
+    """Pairs in contact, least R [mm] and pressures [MPa] of a profile shift x.
+
+    equal: load shared by the conjugate pairs; whole: by the pairs that always touch; shared: by
+    clearances and elasticity. least_gap [mm] over the wave, negative where teeth interfere.
+    """
+
+    shift: float
+    pairs: float
+    radius: float
+    equal: float
+    whole: float
+    shared: float
+    least_gap: float
+
+
+def shift_curve(gearing: StrainWave, duty: Duty, shifts: Iterable[float]) -> list[ShiftPoint]:
+    """Return the points of all shifts that have a conjugate flank."""
+    found = []
+    for x in shifts:
+        made = flank(replace(gearing, profile_shift=float(x)), POINTS)
+        if not bool(np.all(made.complete)) or not (made.contacts.gap_curvature > 0.0).all():
+            continue
+        found.append(
+            ShiftPoint(
+                float(x),
+                float(made.pairs_in_contact),
+                float(1.0 / made.contacts.gap_curvature.max()),
+                equal_pressure(duty, made),
+                equal_pressure(duty, made, whole=True),
+                shared_pressure(duty, made),
+                interference(made, STEP_DEG).least,
+            )
+        )
+    return found
+
+
+def last_shift_of_one_pair(gearing: StrainWave, most: float = 3.0) -> float | None:
+    """Return the profile shift up to which one conjugate pair always touches, 0 to `most`.
+
+    A side condition that ends the fall of the stress; None where the pairs do not cross 1.
+    """
+
+    def enough(x: float) -> bool:
+        made = flank(replace(gearing, profile_shift=x), 3)
+        return bool(made.pairs_in_contact >= 1.0)
+
+    return _last(enough, 0.0, most)
+
+
+def largest_addendum(gearing: StrainWave, low: float = 0.3, high: float = 1.0) -> float | None:
+    """Return the largest addendum h_a in modules without interference over the whole wave."""
+
+    def free(addendum: float) -> bool:
+        made: Flank = flank(replace(gearing, addendum=addendum), 41)
+        return bool(np.all(made.complete)) and interference(made, STEP_DEG, 11).free
+
+    return _last(free, low, high)
+
+
+def _last(holds: Callable[[float], bool], low: float, high: float) -> float | None:
+    """Return where a condition that holds at `low` ends; None where both ends agree."""
+    if not holds(low) or holds(high):
+        return None
+    for _ in range(BISECTIONS):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if holds(middle) else (low, middle)
+    return low

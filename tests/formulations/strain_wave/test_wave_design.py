@@ -1,0 +1,132 @@
+"""Least pressure without interference: exchange, what it verifies, and what samplers hide."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from gearopt.bench.wave_design import DEMAND, STARTS
+from gearopt.formulations.strain_wave import sampled
+from gearopt.formulations.strain_wave.demand import FREE, limits, smooth_maximum, squares
+from gearopt.formulations.strain_wave.duty import equal_pressure, shared_pressure
+from gearopt.formulations.strain_wave.exchange import design_of, exchange, stretched
+from gearopt.formulations.strain_wave.wave_design import Cut, problem, variables
+from gearopt.optimise.clock import Clock
+from gearopt.optimise.result import Budget
+from gearopt.optimise.solve import run
+from gearopt.physics.strain_wave.clearance import clearances, interference, poses
+from gearopt.physics.strain_wave.conjugate import contact
+from gearopt.physics.strain_wave.neutral_curve import neutral_curve
+from gearopt.physics.strain_wave.tooth_motion import motion
+
+BEST = np.array([2.0, np.radians(28.519), 0.97, 0.9, 1.4, 0.4991])  # of another program
+
+
+def posed(numbers, cuts=()):
+    made = problem(DEMAND, np.array(numbers), cuts)
+    return made, made.bounds()[2]
+
+
+def test_the_text_gives_the_base_case_and_what_it_uses_of_every_limit():
+    made, guess = posed(STARTS[0])
+    batch = made.batch(guess[None])
+    assert np.abs(batch.H - 1.0).max() < 1e-9  # the guess meshes and keeps its length
+    used = dict(zip([r.name for r in made.rows.inequalities], batch.G[0], strict=True))
+    assert batch.F[0, 0] == pytest.approx(117.375, abs=1e-3)
+    assert used["rim_fatigue"] == pytest.approx(0.52, abs=5e-3)
+    assert 3.0 * 100.0 / used["ratcheting"] == pytest.approx(331.0, abs=0.6)
+    assert used["outer_radius"] == pytest.approx((40.5 + 0.5 * 1.75 + 3.0) / 45.0, rel=1e-12)
+    assert used["pairs"] == pytest.approx(1.0 / 1.09613, abs=1e-5)
+    assert max(used.values()) <= 1.0 + 1e-9
+
+
+def test_cuts_measure_how_far_teeth_cut_at_a_pose():
+    """By complex numbers: the lesser way out of a flank point, along the flank or over the tip."""
+    start = (0.9, np.radians(15.0), 1.0, 0.6, 0.8, 0.5)
+    made = design_of(DEMAND, start)
+    found = interference(made, 0.1)
+    assert found.least < -0.03  # mm
+    gear, worst = made.gearing, np.inf
+    for step in (-0.01, -0.005, 0.0, 0.005):
+        at = motion(gear, made.curve, found.angle + step)
+        place = complex(at.place.x, at.place.y)
+        cuts = tuple(Cut(found.angle + step, point) for point in (0, 6))
+        text = problem(DEMAND, np.array(start), cuts)
+        rows = [k for k, r in enumerate(text.rows.inequalities) if "interference" in r.name]
+        values = text.batch(text.bounds()[2][None]).G[0, rows]
+        for value, k in zip(values, (0, -1), strict=True):
+            point = complex(made.contacts.point.x[k], made.contacts.point.y[k])
+            z = place + np.exp(1j * at.turn) * point
+            t = np.sqrt(abs(z) ** 2 / gear.base_radius**2 - 1.0)
+            gap = gear.base_radius * (gear.half_angle - t + np.arctan(t) - np.angle(z))
+            room = 1e-5 - 0.1 * (value - 1.0)
+            assert room == pytest.approx(max(gap, gear.tip_radius - abs(z)), abs=6e-5)
+            worst = min(worst, room)
+    assert worst < -0.005
+
+
+def test_the_smooth_maximum_is_above_the_maximum_by_little():
+    for a, b in ((0.0, 0.0), (0.3, 0.1), (-0.01, 0.0)):
+        found = smooth_maximum(a, b)
+        assert 0.0 <= found - max(a, b) <= 5e-5
+
+
+def test_limits_of_numbers_and_of_populations_are_the_same():
+    made = sampled.problem(DEMAND, np.array(STARTS[0]), tuple(sampled.OBJECTIVES))
+    found = made.batch(np.array([STARTS[0], BEST]))
+    used = dict(zip([r.name for r in made.rows.inequalities], found.G.T, strict=True))
+    for k, numbers in enumerate((STARTS[0], BEST)):
+        gearing = DEMAND.gearing(dict(zip(FREE, map(float, numbers), strict=True)))
+        curve = neutral_curve(gearing)
+        values = {v.name: v.guess for v in variables(DEMAND, np.array(numbers))}
+        at = [contact(gearing, motion(gearing, curve, p)) for p in values["contact"]]
+        exact = limits(DEMAND, gearing, curve, at)
+        for name in ("rim_fatigue", "ratcheting", "spline_land", "minor_axis", "pairs"):
+            assert used[name][k] == pytest.approx(exact[name], rel=1e-9)
+        assert found.F[k, 0] == pytest.approx(max(squares(DEMAND, gearing, at)) ** 0.5, rel=1e-9)
+        within = clearances(design_of(DEMAND, numbers), poses(0.75, 85.0), 3).min()
+        assert used["interference"][k] == pytest.approx(1.0 - (within + 2e-5) / 0.05, abs=1e-4)
+    volume = np.pi * (40.5 + 0.5 * 1.75 + 3.0) ** 2 * 10.0 / 100.0
+    assert found.F[0, 1] == pytest.approx(volume, rel=1e-12)
+    assert 1.0 / found.F[0, 2] == pytest.approx(7.5, abs=0.26)  # teeth within 5 um
+    assert found.F[1, 0] == pytest.approx(92.568, abs=0.05)
+
+
+def test_designs_without_a_flank_break_all_limits():
+    made = sampled.problem(
+        replace(DEMAND, ranges={**DEMAND.ranges, "deflection": (0.6, 1.25)}), np.array(STARTS[0])
+    )
+    found = made.batch(np.array([[0.9, 0.35, 0.7, 0.6, 0.8, 0.5]]))
+    assert (found.G > 1.0).all() and np.isfinite(found.F).all()
+
+
+def test_other_deflections_of_one_flank():
+    """um, from another program: backlash below the design's deflection, interference above."""
+    made = design_of(DEMAND, STARTS[0])
+    for w, gap in ((0.98, 3.16), (1.05, -8.55)):
+        assert 1e3 * interference(stretched(made, w), 0.1).least == pytest.approx(gap, abs=6e-3)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("start", STARTS)
+def test_every_start_leads_to_the_same_design(start):
+    """92.568 MPa: the value and the point of another program with interference at 0.25 degrees."""
+    found = exchange(DEMAND, np.array(start), Clock())
+    assert found.result.status == "stationary" and found.clear
+    assert found.result.value == pytest.approx(92.568, abs=5e-4)
+    numbers = found.outcome.x[: len(FREE)]
+    assert numbers == pytest.approx(BEST, abs=2e-4)
+    assert interference(found.design, 0.05).least >= -1e-9
+    assert equal_pressure(DEMAND.duty, found.design) == pytest.approx(found.result.value, rel=1e-9)
+    assert shared_pressure(DEMAND.duty, found.design) == pytest.approx(50.61, abs=5e-3)
+    assert found.rounds[0].pressure < 66.0 and found.rounds[0].gap < -0.25  # mm
+
+
+@pytest.mark.slow
+def test_samplers_come_near_and_interference_is_looked_for_behind_them():
+    made = sampled.problem(DEMAND, np.array(STARTS[0]))
+    for method in ("annealing", "nsga2"):
+        result, outcome = run(made, method, Budget(evaluations=2500), seed=1)
+        assert result.status == "feasible"
+        assert 92.5 < result.value < 110.0
+        assert sampled.hidden(DEMAND, outcome.x) > -5e-3  # mm
