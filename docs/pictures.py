@@ -15,7 +15,7 @@ from pathlib import Path
 import gearopt
 from gearopt.optimise.pareto.front import Front
 from gearopt.optimise.result import Result
-from gearopt.report.kinds import packing
+from gearopt.report.kinds import packing, pair
 from gearopt.report.measures import METRIC, Measures
 from gearopt.report.pages import front_plots, layout_views, sheet, train_views
 from gearopt.report.pages.front_values import drawn
@@ -41,12 +41,20 @@ class Picture:
     down: bool = False
 
 
+def moving(result: Result, measures: Measures) -> Section | None:
+    """The still of a pair in mesh."""
+    section = pair.mesh(result, measures)
+    assert section is not None
+    return replace(section, drawings=section.animations[0].row.drawings)
+
+
 PICTURES = {  # by the name of the problem file
     "elevator": Picture(train_views.section, (0, 1)),
     "three_stage": Picture(train_views.section),
     "elevator_box": Picture(layout_views.section, seed=1),
     "table4_process_one_layout": Picture(layout_views.section, (0, 1), seed=1),
     "four_stage_box": Picture(layout_views.section, (0, 1)),
+    "reference_pair": Picture(moving),
     "six_cylinders": Picture(packing.plans),
     "six_cylinders_two_layers": Picture(packing.plans, (0, 1), down=True),
     "seven_points": Picture(packing.plans),
@@ -117,19 +125,28 @@ def _file(heading: str, drawings: Sequence[Drawing], down: bool) -> str:
     share = min(1.0, HIGH / bottom)
     size = f'width="{share * right:.0f}" height="{share * bottom:.0f}"'
     inner = "\n".join(parts)
+    style = _style('class="moves"' in inner)
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" class="views" {size} '
         f'viewBox="0 0 {right:.2f} {bottom:.2f}" role="img">\n'
-        f"<title>{escape(heading)}</title>\n<style>\n{_style()}</style>\n"
+        f"<title>{escape(heading)}</title>\n<style>\n{style}</style>\n"
         f'<rect class="paper" width="100%" height="100%" rx="10"/>\n{inner}\n</svg>\n'
     )
 
 
-def _style() -> str:
-    """The colours of frame.css, light and dark, and the rules of drawing.css that colour marks."""
+def _style(moves: bool) -> str:
+    """The colours of frame.css, light and dark, and the rules of drawing.css that colour marks.
+
+    moves: with those of the bodies of an animation.
+    """
     room = Path(sheet.__file__).parent
-    frame = (room / "frame.css").read_text(encoding="utf-8")
+    frame, rules, player = (
+        (room / f"{name}.css").read_text(encoding="utf-8")
+        for name in ("frame", "drawing", "player")
+    )
     colours = frame[: frame.index("* { box-sizing")]
-    marks = re.findall(r"\.views svg[^{}]*\{[^{}]*\}", (room / "drawing.css").read_text("utf-8"))
-    rules = [rule for rule in marks if "display:" not in rule]
-    return colours + "\n".join([*rules, ".paper { fill: var(--card); stroke: var(--line); }", ""])
+    if moves:
+        colours, rules = colours + player[: player.index(".player {")], rules + player
+    marks = re.findall(r"\.views svg[^{}]*\{[^{}]*\}", rules)
+    kept = [rule for rule in marks if "display:" not in rule]
+    return colours + "\n".join([*kept, ".paper { fill: var(--card); stroke: var(--line); }", ""])

@@ -22,6 +22,7 @@ from gearopt.report.pages.mesh_view import (
 from gearopt.report.pages.player import Animation, Body, Reading, Scale, View
 from gearopt.report.pages.sheet import series
 
+SOON = 0.15  # of the time in which most pairs touch: the moment of the still
 SECONDS = 6.0  # of one base pitch at normal speed
 FREE = (8.0, 8.0, 8.0, 8.0)  # px around a view
 DOT = 4.0  # px: radius of a point of contact
@@ -120,10 +121,10 @@ def _place(carried: Carried, measures: Measures) -> Reading:
 
 
 def _still(carried: Carried) -> int:
-    """Return the moment in the middle of the time in which most pairs touch."""
-    most = np.isfinite(carried.positions).all(axis=1)
-    middle = 0.5 * (carried.travels[most].min() + carried.travels[most].max())
-    return int(np.argmin(np.abs(carried.travels - middle)))
+    """Return a moment soon after a pair came into contact, when shares differ most."""
+    most = carried.travels[np.isfinite(carried.positions).all(axis=1)]
+    soon = most.min() + SOON * np.ptp(most)
+    return int(np.argmin(np.abs(carried.travels - soon)))
 
 
 def _view(pair: GearPair, carried: Carried, words: str, larger: float) -> View:
