@@ -101,6 +101,8 @@ GROUPS = {  # heading: {file: what it shows, in a line}
         "reference_pair": "Load shares, stiffness and transmission error of given gears.",
         "shifted_pair": "The same with profile shifts, in plane stress.",
         "pair_from_duty": "Duty and steel alone: sized by AGMA 2001, then its contact.",
+        "relief_two_loads": "The tip relief of least transmission error at two loads, proven.",
+        "paper_program": "Duty in, relieved gears out: sized by AGMA 2001, then the relief.",
         "undercut_pair": "Eight teeth: what undercut leaves of the path of contact.",
         "almost_two_pairs": "A contact ratio of 1.999, which a uniform grid takes for two.",
     },
@@ -142,7 +144,7 @@ KINDS = {  # of a file: the page about it, and what is minimised
     "packing": ("packing.md", lambda file: file.get("objective", {}).get("minimise", "volume")),
     "compound": ("compound.md", lambda file: "squared_error"),
     "servo": ("servo.md", lambda file: _of_servo(file)),
-    "pair": ("pair.md", lambda file: "gear_volume"),
+    "pair": ("pair.md", lambda file: _of_pair(file)),
 }
 UNITS = {  # as keys of a result have them
     "gear_volume": "mm3",
@@ -155,6 +157,7 @@ UNITS = {  # as keys of a result have them
     "error": "deg",
     "inverse_acceleration": "",
     "move_time": "s",
+    "peak_to_peak": "mm_as_um",
     "rms_torque": "Nm",
     "cost": "",
 }
@@ -187,6 +190,11 @@ def _of_drive(file: Mapping[str, Any]) -> str:
     if "layout" in file:
         found = file["layout"].get("minimise", "box_volume")
     return found
+
+
+def _of_pair(file: Mapping[str, Any]) -> str:
+    relief = file.get("relief")
+    return "gear_volume" if relief is None else str(relief.get("minimise", "peak_to_peak"))
 
 
 def _of_servo(file: Mapping[str, Any]) -> str:

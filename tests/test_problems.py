@@ -153,6 +153,8 @@ def test_expected_pair(path, solved):
     told["pinion_diameters_mm"] = [point["pinion_diameter_mm"] for point in contact["points"]]
     told["share_at_ends"] = [load["share"][k] for k in (0, -1)]
     told["share_beside_single"] = [load["share"][k] for k in (alone[0] - 1, alone[-1] + 1)]
+    if result.value is not None:
+        assert result.bound <= result.value * (1 + 1e-12) and result.gap < 1e-6
     for name, printed in expected.items():
         ending = next((s for s in SI if name.endswith(s)), "")
         unit, ours = SI.get(ending, (1.0, ""))

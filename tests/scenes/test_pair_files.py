@@ -1,12 +1,16 @@
 """Files of spur pairs: what they may leave out, what is refused, and what is said instead."""
 
 import copy
+import re
 import tomllib
+from pathlib import Path
 
+import numpy as np
 import pytest
 
 import gearopt
 from gearopt.errors import SceneError, SolveError
+from gearopt.physics.tooth.ladder import LEVELS
 from gearopt.scenes.pair import EXAMPLE, MORE_EXAMPLES
 
 GIVEN = tomllib.loads(EXAMPLE)
@@ -142,7 +146,8 @@ def test_a_number_for_the_coupling_is_taken_as_it_is():
 
 def test_undercut_is_said_and_so_is_a_small_contact_ratio(solved):
     found = solved("undercut_pair").design["contact"]["validity"]
-    assert "undercut" in found[0] and "contact ratio of 1.080 is small" in found[1]
+    said = " ".join(found)
+    assert "undercut, with 8 teeth" in said and "contact ratio of 1.080 is small" in said
 
 
 @pytest.mark.parametrize("call", ["explain", "compare"])
@@ -153,8 +158,54 @@ def test_of_given_gears_nothing_is_chosen(call):
         gearopt.solve(GIVEN, method="exact")
 
 
+@pytest.mark.parametrize(("error", "level"), [("20 %", "profile"), ("8 %", "trap")])
+def test_the_cheapest_level_is_taken_whose_error_can_be_borne(error, level):
+    found = contact(GIVEN, **{"sharing.error": error})
+    assert found["level"].startswith(level) and max(map(abs, found["error_percent"])) <= 20.0
+    with pytest.raises(SceneError, match="error = .*stands beside level; one is enough"):
+        gearopt.load(with_(GIVEN, {"sharing.error": "5 %", "sharing.level": "ISO 6336"}))
+
+
+@pytest.mark.parametrize(
+    ("level", "at_pitch"),
+    [("ISO 6336", 13.309), ("Nakada A as printed", 34.30), ("trapezoid + Sainsot", 13.18)],
+)
+def test_a_level_is_that_of_its_name(level, at_pitch):
+    """N/(mm um) at the pitch point, computed apart from gearopt; the last one as it is here."""
+    tables = with_(GIVEN, {"sharing.level": level, "duty.input_speed": "100 rad/s"})
+    point = contact(tables)["points"][2]
+    assert 1e-3 * point["pair_stiffness_MPa"] == pytest.approx(at_pitch, rel=2e-3)
+
+
+@pytest.mark.slow
+def test_finite_elements_through_the_file():
+    """N/(mm um) of five points and the coupling, computed apart from gearopt with other elements.
+
+    The ends of the source lie 0.05 modules inside the path.
+    """
+    whole = {"sharing.level": "finite elements", "sharing.coupling": "finite elements"}
+    found = contact(GIVEN, **whole)
+    inner = [1e-3 * row["pair_stiffness_MPa"] for row in found["points"][1:4]]
+    assert inner == pytest.approx([12.485, 12.679, 12.615], rel=1e-3)
+    assert found["coupling_mm_per_N"] == pytest.approx(4.45e-3 / 5675.6, rel=0.03)
+    load = found["loads"][-1]
+    assert load["share"][0] == pytest.approx(0.399, abs=0.01)
+    assert 1e3 * load["peak_to_peak_mm"] == pytest.approx(4.47, abs=0.25)
+
+
 def test_an_impossible_duty_is_proven_so_and_has_no_contact():
     result = gearopt.solve(
         with_(SIZED, {"limits": {"pinion_teeth": [18, 60], "wheel_diameter": "90 mm"}})
     )
     assert result.status == "infeasible" and not result.design
+
+
+def test_the_page_of_the_kind_has_the_errors_of_the_levels():
+    page = (Path(__file__).parents[2] / "docs" / "pair.md").read_text(encoding="utf-8")
+    rows = re.findall(r"(?m)^\| `([^`]+)`.* \| (\S+) to (\S+) % \| (\S+) µs \|$", page)
+    assert len(rows) == 6
+    for name, *numbers in rows:
+        level = LEVELS[name]
+        errors = 100.0 * np.array([*level.error, *level.wider])
+        found = [errors.min(), errors.max(), level.cost]
+        assert found == pytest.approx([float(n) for n in numbers], rel=5e-3, abs=0.01), name

@@ -9,6 +9,7 @@ from typing import Any
 from gearopt.formulations.gear_train import Train
 from gearopt.formulations.layout.layout_design import LayoutDesign
 from gearopt.formulations.pair_contact import PairContact
+from gearopt.formulations.pair_relief import PairRelief
 from gearopt.formulations.rating import DriveRating
 from gearopt.formulations.strength import Law
 from gearopt.formulations.strength.rated import Option
@@ -102,7 +103,10 @@ class StageDesign:
 
 @dataclass(frozen=True, kw_only=True)
 class DriveDesign:
-    """Stages and totals of a drive; where its gears are, once laid out; of one pair its contact."""
+    """Stages and totals of a drive; where its gears are, once laid out.
+
+    contact, relief: of one pair whose file asks for them.
+    """
 
     stages: tuple[StageDesign, ...]
     ratio: float
@@ -115,6 +119,7 @@ class DriveDesign:
     layout: LayoutDesign | None = None
     rating: DriveRating | None = None
     contact: PairContact | None = None
+    relief: PairRelief | None = None
 
 
 def drive_design(data: Mapping[str, Any]) -> DriveDesign:

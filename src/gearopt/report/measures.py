@@ -167,6 +167,7 @@ METRIC = Measures(
         "kg": ("kg", 1.0),
         "um": ("µm", 1e3),  # of mm
         "um_or_uin": ("µm", 1e3),  # of mm
+        "mm_as_um": ("µm", 1e3),  # of mm: an objective's, whose value is in mm
         "N_per_mm_um": ("N/(mm µm)", 1e-3),  # of MPa
         "kg_m2": ("g cm²", 1e7),
         "Nm_per_rad": ("N m/rad", 1.0),
@@ -198,6 +199,7 @@ INCH = Measures(
         "kg": ("lb", 1.0 / _POUND),
         "um": ("mil", 1000.0 / _INCH),  # of mm
         "um_or_uin": ("µin", 1e6 / _INCH),  # of mm
+        "mm_as_um": ("µin", 1e6 / _INCH),  # of mm
         "N_per_mm_um": ("lbf/(in µin)", 1e-6 / _PSI),  # of MPa
         "kg_m2": ("oz in²", 16e6 / (_POUND * _INCH**2)),
         "Nm_per_rad": ("lbf in/rad", 1000.0 / (_POUND_FORCE * _INCH)),

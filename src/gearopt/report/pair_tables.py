@@ -100,7 +100,7 @@ def path(found: PairContact, measures: Measures) -> Table:
     """Return the path of contact, position by position, with the share at every load."""
     length, stiff = measures.unit("mm"), measures.unit(STIFFNESS)
     stress = measures.unit("MPa")
-    columns = [
+    listed = [
         (f"s [{length}]", found.position_mm, "mm"),
         (f"pinion diameter [{length}]", found.pinion_diameter_mm, "mm"),
         (f"wheel diameter [{length}]", found.wheel_diameter_mm, "mm"),
@@ -109,28 +109,28 @@ def path(found: PairContact, measures: Measures) -> Table:
     ]
     for one in found.loads:
         at = f"at {100.0 * one.load:g} %"
-        columns.append((f"share of the load {at}", one.share, ""))
-        columns.append((f"contact stress {at} [{stress}]", one.contact_stress_MPa, "MPa"))
-    return _columns("path of contact", columns, measures)
+        listed.append((f"share of the load {at}", one.share, ""))
+        listed.append((f"contact stress {at} [{stress}]", one.contact_stress_MPa, "MPa"))
+    return columns("path of contact", listed, measures)
 
 
 def travel(found: PairContact, measures: Measures) -> Table:
     """Return the transmission error over one base pitch at every load."""
     length, micro = measures.unit("mm"), measures.unit("um")
-    columns = [(f"travel [{length}]", found.travel_mm, "mm")]
+    listed = [(f"travel [{length}]", found.travel_mm, "mm")]
     for one in found.loads:
         head = f"transmission error at {100.0 * one.load:g} % [{micro}]"
-        columns.append((head, one.transmission_error_mm, "um"))
-    return _columns("transmission error", columns, measures)
+        listed.append((head, one.transmission_error_mm, "um"))
+    return columns("transmission error", listed, measures)
 
 
-def _columns(
-    name: str, columns: list[tuple[str, tuple[float, ...], str]], measures: Measures
+def columns(
+    name: str, listed: list[tuple[str, tuple[float, ...], str]], measures: Measures
 ) -> Table:
-    """Return a table of columns, of which the page holds the CSV alone."""
-    cells = [[cell(v, unit, measures) for v in values] for _, values, unit in columns]
+    """Return a table of columns (head, values, unit), of which the page holds the CSV alone."""
+    cells = [[cell(v, unit, measures) for v in values] for _, values, unit in listed]
     rows = list(zip(*cells, strict=True))
-    return Table(name, [head for head, *_ in columns], rows, folded=True)
+    return Table(name, [head for head, *_ in listed], rows, folded=True)
 
 
 TABLES: tuple[MakeTable, ...] = (points, loads, path, travel)

@@ -39,8 +39,9 @@ def found(
 
     names: two or three objectives, the first minimised where others are limited. most: largest
     values of interest, by name. method: one of METHODS; by default the problem's own exact one,
-    else epsilon constraints, of discrete variables nsga2. points: sought, where a method has a
-    choice. limiting: how the kind of problem limits objectives. SolveError where the method does
+    else epsilon constraints; nsga2 of discrete variables, and of a text that is declared
+    vectorised, which no solver traces. points: sought, where a method has a choice. limiting: how
+    the kind of problem limits objectives. SolveError where the method does
     not fit the problem.
     """
     budget, chosen = budget or Budget(), method or default(problem, limiting)
@@ -67,8 +68,10 @@ def default(problem: Problem | Conic, limiting: Limiting | None = None) -> str:
         return EPSILON
     if EXACT in problem.methods:
         return EXACT
-    discrete = isinstance(problem, Problem) and any(v.discrete for v, _ in problem.columns)
-    return NSGA if discrete else EPSILON
+    if not isinstance(problem, Problem):
+        return EPSILON
+    untraced = problem.vectorised or any(v.discrete for v, _ in problem.columns)
+    return NSGA if untraced else EPSILON
 
 
 def traders(problem: Problem | Conic, limiting: Limiting | None = None) -> tuple[str, ...]:

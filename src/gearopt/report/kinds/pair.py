@@ -6,12 +6,13 @@ from dataclasses import replace
 from gearopt.formulations.pair_contact import ContactLoad, PairContact
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import typed
-from gearopt.report import rating_words
+from gearopt.report import pair_relief, rating_words
 from gearopt.report.answer import asked, assumptions, limits, summary
 from gearopt.report.kinds import Kind, drive
 from gearopt.report.kinds.generic import ASKED, FIRST, LAST, TOLD
 from gearopt.report.measures import METRIC, Measures
 from gearopt.report.pages import mesh_view, train_views
+from gearopt.report.pair_relief import relief_of
 from gearopt.report.pair_sections import in_space, moving, pair_of, teeth
 from gearopt.report.pair_tables import TABLES
 from gearopt.report.pair_words import answers, of_duty
@@ -32,7 +33,10 @@ def tiles(result: Result, measures: Measures) -> list[Tile]:
     """Return load on a tooth, transmission error and stiffness as key figures."""
     if (found := contact_of(result)) is None:
         return []
-    return [*_contact_tiles(found, of_duty(found), measures), *rating_words.tiles(result, measures)]
+    relief = relief_of(result)
+    modified = pair_relief.tiles(relief, measures) if relief else []
+    own = _contact_tiles(found, of_duty(found), measures)
+    return [*modified, *own, *rating_words.tiles(result, measures)]
 
 
 def _contact_tiles(found: PairContact, load: ContactLoad, measures: Measures) -> list[Tile]:
@@ -56,6 +60,8 @@ def _contact_tiles(found: PairContact, load: ContactLoad, measures: Measures) ->
 
 def decides(result: Result) -> str:
     """Return how much one tooth carries and how evenly the pair runs."""
+    if relief := relief_of(result):
+        return pair_relief.decides(relief)
     if (found := contact_of(result)) is None or result.value is not None:
         return ""
     load = of_duty(found)
@@ -83,6 +89,23 @@ def contact(result: Result, measures: Measures) -> Section | None:
     return Section("Contact", words=words, tables=tables, terminal=("\n".join(words), *shown))
 
 
+def relief(result: Result, measures: Measures) -> Section | None:
+    """Say what to grind, and what it does at every load; None without relief."""
+    found, made = relief_of(result), contact_of(result)
+    if found is None or made is None:
+        return None
+    tables = [
+        pair_relief.grinding(found, measures),
+        pair_relief.after(made, found, measures),
+        pair_relief.rules(found, measures),
+        pair_relief.profile(made, found, measures),
+        pair_relief.travel(made, found, measures),
+    ]
+    words = list(map(measures.words, pair_relief.answers(found)))
+    shown = [table for table in tables if not table.folded]
+    return Section("Relief", words=words, tables=tables, terminal=("\n".join(words), *shown))
+
+
 def mesh(result: Result, measures: Measures) -> Section | None:
     """Show the teeth in mesh; None without contact or whole teeth."""
     found, pair = contact_of(result), pair_of(result)
@@ -91,15 +114,15 @@ def mesh(result: Result, measures: Measures) -> Section | None:
 
 def numbers(result: Result, measures: Measures) -> Section | None:
     """Return the tables of the gears, as a drive of one stage has them."""
-    gears = {k: v for k, v in result.design.items() if k != "contact"}
+    gears = {k: v for k, v in result.design.items() if k not in ("contact", "relief")}
     return drive.numbers(replace(result, design=gears), measures)
 
 
 DRAWINGS = (teeth, in_space, train_views.section)
 RATINGS = tuple(make for make in drive.RATINGS if make is not mesh_view.section)  # mesh is better
 GIVEN = Kind(
-    sections=(summary, mesh, contact, *DRAWINGS, *RATINGS, numbers, asked, assumptions),
-    terminal=(numbers, contact, *drive.GIVEN.terminal, summary),
+    sections=(summary, relief, mesh, contact, *DRAWINGS, *RATINGS, numbers, asked, assumptions),
+    terminal=(numbers, contact, relief, *drive.GIVEN.terminal, summary),
     tiles=tiles,
     decides=decides,
     warns=warns,
@@ -107,6 +130,7 @@ GIVEN = Kind(
 KIND = Kind(
     sections=(
         *FIRST,
+        relief,
         mesh,
         contact,
         *DRAWINGS,
@@ -115,8 +139,9 @@ KIND = Kind(
         *ASKED,
         *LAST,
     ),
-    terminal=(numbers, limits, *drive.GIVEN.terminal, contact, *TOLD),
+    terminal=(numbers, limits, *drive.GIVEN.terminal, contact, relief, *TOLD),
     tiles=tiles,
+    decides=decides,
     beside=drive.beside,
     warns=warns,
     whole="pair",

@@ -1,10 +1,12 @@
 """kind = "pair": a spur gear pair, sized or given, and how its teeth share the load."""
 
+import sys
 from collections.abc import Sequence
 from dataclasses import replace
 
 from gearopt.errors import SolveError
-from gearopt.formulations.design import drive_design
+from gearopt.formulations.design import DriveDesign, drive_design
+from gearopt.formulations.pair_contact import PairMesh
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.comparing.runs import Model
 from gearopt.optimise.explaining.explanation import Explanation
@@ -14,9 +16,12 @@ from gearopt.optimise.typed import untyped
 from gearopt.scenes import drive
 from gearopt.scenes.drive.blank_tables import misfits
 from gearopt.scenes.drive.rating import rated
+from gearopt.scenes.explaining.default import explain as explain_scene
+from gearopt.scenes.pair import relief_part
 from gearopt.scenes.pair.assumptions import assumptions
-from gearopt.scenes.pair.contact_part import contact_of, level_of
+from gearopt.scenes.pair.contact_part import contact_of, mesh_of
 from gearopt.scenes.pair.example import EXAMPLE, MORE_EXAMPLES
+from gearopt.scenes.pair.relief_part import relieved
 from gearopt.scenes.pair.scene import Scene
 from gearopt.scenes.reading.ask import Ask, unseeded
 
@@ -33,29 +38,64 @@ __all__ = [
     "solve",
 ]
 METHODS = ("exact",)  # its own
+PROVEN = ("peak_to_peak",)  # criteria of a relief that have a proven search
 NOTHING = "the gears are given, so that nothing is chosen"
 
 
 def solve(scene: Scene, ask: Ask) -> Result:
-    """Size the pair where it is not given, by its rating; then compute its contact."""
-    if scene.given:
-        return _evaluated(scene, ask)
-    sized = drive.solve(scene.drive, ask)
-    if sized.value is None:
-        return sized
-    return _with_contact(scene, replace(sized, name="pair"))
+    """Size the pair where it is not given, by its rating; compute its contact; then its relief.
+
+    With a table [relief] that is what the answer is about, and a sized pair is its part "gears".
+    """
+    clock = Clock(ask.budget, ask.watch)
+    gears = _gears(scene, ask if scene.relief is None else replace(ask, method=None, top=1))
+    if not gears.design:
+        return gears
+    made, found = _with_contact(scene, gears)
+    if scene.relief is not None:
+        left = replace(ask, budget=clock.left)
+        found = _with_relief(scene, made, found, left)
+    return replace(found, seconds=clock.seconds)
 
 
-def _with_contact(scene: Scene, result: Result) -> Result:
-    """Return a result of a drive of one stage with the contact of its pair."""
+def _gears(scene: Scene, ask: Ask) -> Result:
+    """Return the gears, given or sized, and rated where the file asks for it."""
+    return _evaluated(scene, ask) if scene.given else drive.solve(scene.drive, ask)
+
+
+def _mesh(scene: Scene, result: Result) -> tuple[DriveDesign, PairMesh]:
+    """Return the design of a result, and its pair in mesh."""
     design = drive_design(result.design)
     stage = design.stages[0]
-    made = contact_of(scene, stage.pair, (stage.pinion_material, stage.wheel_material))
-    told = [*result.report.get("assumptions", []), *assumptions(scene, made)]
-    return replace(
+    return design, mesh_of(scene, stage.pair, (stage.pinion_material, stage.wheel_material))
+
+
+def _with_contact(scene: Scene, result: Result) -> tuple[PairMesh, Result]:
+    """Return the pair in mesh, and the result with its contact."""
+    design, made = _mesh(scene, result)
+    contact = contact_of(scene, made)
+    told = [*result.report.get("assumptions", []), *assumptions(scene, contact)]
+    return made, replace(
         result,
-        design=untyped(replace(design, contact=made)),
+        name="rating" if result.name == "rating" else "pair",
+        design=untyped(replace(design, contact=contact)),
         report=result.report | {"assumptions": told},
+    )
+
+
+def _with_relief(scene: Scene, made: PairMesh, gears: Result, ask: Ask) -> Result:
+    """Return the relief with the gears that it is of, which are a part where they were sized."""
+    found, relief = relieved(scene, made, ask)
+    sized = gears.value is not None
+    parts = (replace(gears, name="gears", design={}, report={}),) if sized else ()
+    design = drive_design(gears.design)
+    return replace(
+        found,
+        name="pair",
+        design=untyped(replace(design, relief=relief)),
+        limits=gears.limits,
+        report=gears.report | found.report,
+        parts=parts,
     )
 
 
@@ -71,7 +111,7 @@ def _evaluated(scene: Scene, ask: Ask) -> Result:
         found = Result(
             name="pair",
             status="evaluated",
-            method=level_of(scene),
+            method="evaluation",
             objective={},
             certificate={"feasibility": 0.0},
             design=untyped(design),
@@ -80,39 +120,67 @@ def _evaluated(scene: Scene, ask: Ask) -> Result:
             seed=ask.seed,
             versions=versions("numpy"),
         )
-    return replace(_with_contact(scene, found), seconds=clock.seconds)
+    return replace(found, seconds=clock.seconds)
 
 
 def explain(scene: Scene, ask: Ask, result: Result | None = None) -> Explanation:
-    """Return what every number of the file does to the size of the pair."""
+    """Return what every number of the file does to the relief, else to the size of the pair."""
+    if scene.relief is not None:
+        return explain_scene(sys.modules[__name__], scene, ask, result)
     return drive.explain(_to_size(scene).drive, ask, result)
 
 
 def idle(scene: Scene, method: str | None) -> dict[str, str]:
     """Return the options of `solve` that change nothing, each with the reason."""
-    if scene.given:
-        return {"top": f"{NOTHING} and nothing next best either", **unseeded(method)}
+    if scene.given or scene.relief is not None:
+        return {"top": "a pair has no list of next best answers"} | _unseeded(scene, method)
     return drive.idle(scene.drive, method)
+
+
+def _unseeded(scene: Scene, method: str | None) -> dict[str, str]:
+    asked = scene.relief
+    if asked is not None and method is None and asked.minimise not in PROVEN:
+        return {}
+    return unseeded(method)
 
 
 def compared(scene: Scene) -> tuple[str, ...]:
     """Return the methods of a comparison that names none."""
+    if scene.relief is not None:
+        exact = ("exact",) if scene.relief.minimise in PROVEN else ()
+        return (*exact, "annealing", "nsga2")
     return drive.compared(_to_size(scene).drive)
 
 
 def model(scene: Scene, method: str) -> Model:
-    """Return the problem that a method solves to size the pair; SolveError of a given one."""
+    """Return the problem of the relief, else that which sizes the pair; SolveError of neither."""
+    if scene.relief is not None:
+        return relief_part.model(scene, _mesh_of_gears(scene))
     return drive.model(_to_size(scene).drive, method)
 
 
 def objectives(scene: Scene) -> dict[str, str]:
-    """Return what a front of pairs may minimise: name and unit."""
+    """Return what a front of reliefs, else of sizes, may minimise: name and unit."""
+    if scene.relief is not None:
+        return relief_part.objectives(scene)
     return drive.objectives(_to_size(scene).drive)
 
 
 def several(scene: Scene, names: Sequence[str], method: str | None) -> Several:
-    """Return the problem of a front of sizes."""
+    """Return the problem of a front of reliefs, else of sizes."""
+    if scene.relief is not None:
+        return relief_part.several(scene, _mesh_of_gears(scene), names)
     return drive.several(_to_size(scene).drive, names, method)
+
+
+def _mesh_of_gears(scene: Scene) -> PairMesh:
+    """Return the gears in mesh, sized where they are not given; SolveError where there are none."""
+    if scene.given:
+        return mesh_of(scene, scene.given_pair)
+    sized = drive.solve(scene.drive, Ask())
+    if sized.value is None:
+        raise SolveError("there is no pair to relieve: gearopt solve FILE shows why")
+    return _mesh(scene, sized)[1]
 
 
 def _to_size(scene: Scene) -> Scene:

@@ -6,7 +6,6 @@ from gearopt.errors import SolveError
 from gearopt.formulations.pair_contact import PairContact, PairMesh, contact
 from gearopt.physics.blanks import Blank
 from gearopt.physics.gears import MEMBERS, GearPair
-from gearopt.physics.geometry.contact import usable_path
 from gearopt.physics.geometry.flaws import flaws
 from gearopt.physics.iso6336.stiffness import (
     mean_blank_factor,
@@ -15,51 +14,52 @@ from gearopt.physics.iso6336.stiffness import (
 )
 from gearopt.physics.loads import torque
 from gearopt.physics.tooth.elastic import POISSON, STEEL, ElasticPair
-from gearopt.physics.tooth.ladder import COUPLINGS, LEVELS
+from gearopt.physics.tooth.ladder import COUPLINGS, USUAL
+from gearopt.physics.tooth.validity import cheapest, doubts, usual_plane
 from gearopt.scenes.drive.rating import gears as rated_gears
 from gearopt.scenes.pair.scene import Scene
-from gearopt.scenes.parts import tooth_warnings
 from gearopt.units import Quantity
 
 Materials = tuple[str, str]
 UNBORED = 3.0  # root circle over the circle at which a gear without a bore is held
 LEAST_RATIO = 1.2  # below which ISO 6336-1 has no stiffness, and designers do not go
-WEAKER = " Contact ends at its form circle; the models take its exact root."
-WIDE = 6.0  # modules of face width from which on the plane state is strain
 
 
-def contact_of(scene: Scene, pair: GearPair, materials: Materials = ("", "")) -> PairContact:
-    """Return the contact of a pair of a file; SolveError where there is none that goes on.
+def contact_of(scene: Scene, made: PairMesh) -> PairContact:
+    """Return the contact of a pair of a file in mesh."""
+    told = scene.sharing.coupling
+    name = "given" if isinstance(told, Quantity) else told
+    pair = made.elastic.pair
+    return contact(made, name, _by_iso(scene, pair, made.elastic), tuple(_validity(made)))
+
+
+def mesh_of(scene: Scene, pair: GearPair, materials: Materials = ("", "")) -> PairMesh:
+    """Return a pair of a file in mesh at its loads; SolveError where contact does not go on.
 
     materials: names of those chosen for pinion and wheel; "": there was no choice.
     """
     fatal = [flaw.sentence for flaw in flaws(pair) if flaw.fatal]
     if fatal:
         raise SolveError(f"there is no contact to compute: {fatal[0][0].lower()}{fatal[0][1:-1]}")
-    made = mesh_of(scene, pair, materials)
-    told = scene.sharing.coupling
-    return contact(
-        made,
-        "given" if isinstance(told, Quantity) else told,
-        _by_iso(scene, pair, made.elastic),
-        tuple(_validity(pair)),
-    )
-
-
-def mesh_of(scene: Scene, pair: GearPair, materials: Materials = ("", "")) -> PairMesh:
-    """Return a pair of a file in mesh at its loads."""
-    asked, duty = scene.sharing, scene.duty
+    asked, duty, relief = scene.sharing, scene.duty, scene.relief
     elastic = elastic_pair(scene, pair, materials)
     told = asked.coupling
-    coupled = told.value if isinstance(told, Quantity) else COUPLINGS[told](elastic)
     moved = torque(duty.power.value, duty.input_speed.value)
-    loads = [float(load) for load in asked.loads]
-    return PairMesh.of(elastic, level_of(scene), moved, coupled, asked.positions, loads)
+    loads = sorted({float(load) for load in (*asked.loads, *((relief and relief.loads) or ()))})
+    try:
+        coupled = told.value if isinstance(told, Quantity) else COUPLINGS[told](elastic)
+        level = level_of(scene, elastic)
+        return PairMesh.of(elastic, level, moved, coupled, asked.positions, loads)
+    except ImportError as reason:  # of finite elements, an extra
+        raise SolveError(str(reason)) from None
 
 
-def level_of(scene: Scene) -> str:
-    """Return the model of the teeth's compliance that a file asks for."""
-    return scene.sharing.level or next(iter(LEVELS))
+def level_of(scene: Scene, elastic: ElasticPair) -> str:
+    """Return the model of the teeth's compliance that a file asks for, or whose error it bears."""
+    asked = scene.sharing
+    if asked.error is not None:
+        return cheapest(elastic, float(asked.error))
+    return asked.level or USUAL
 
 
 def elastic_pair(scene: Scene, pair: GearPair, materials: Materials = ("", "")) -> ElasticPair:
@@ -73,8 +73,7 @@ def elastic_pair(scene: Scene, pair: GearPair, materials: Materials = ("", "")) 
     ]
     moduli = [t.elastic_modulus.value if t.elastic_modulus else STEEL for t in tables]
     poissons = [float(t.poisson_ratio) if t.poisson_ratio is not None else POISSON for t in tables]
-    wide = float(pair.face_width) >= WIDE * float(pair.normal_module)
-    plane = scene.sharing.plane or ("strain" if wide else "stress")
+    plane = scene.sharing.plane or usual_plane(pair)
     return ElasticPair(
         pair, (bores[0], bores[1]), (moduli[0], moduli[1]), (poissons[0], poissons[1]), plane
     )
@@ -103,10 +102,15 @@ def _by_iso(scene: Scene, pair: GearPair, elastic: ElasticPair) -> tuple[float, 
     return float(single), float(mesh_stiffness(single, elastic.path.transverse_ratio)[0])
 
 
-def _validity(pair: GearPair) -> Iterator[str]:
+def _validity(made: PairMesh) -> Iterator[str]:
     """Yield what the models do not cover of these gears, and flaws that a designer may accept."""
-    yield from tooth_warnings((pair,), WEAKER)
-    ratio = float(usable_path(pair).transverse_ratio)
+    told = doubts(made.elastic, made.level)
+    yield from told
+    thin = any("tips" in sentence for sentence in told)
+    for flaw in flaws(made.elastic.pair):
+        if flaw.name != "interference" and not (thin and flaw.name == "thin tip"):
+            yield flaw.sentence
+    ratio = float(made.elastic.path.transverse_ratio)
     if ratio < LEAST_RATIO:
         yield (
             f"The contact ratio of {ratio:.3f} is small: errors of the gears may take contact away "

@@ -25,6 +25,11 @@ bore = "50 mm"
 loads = [0.5, 1]               # relative to the torque of [duty]
 # plane = "strain"             # of wide gears; "stress" of narrow ones
 # coupling = "0.8 um/kN"       # of neighbouring teeth, instead of a model's
+
+# [relief]                     # without the # the best tip relief is found
+# minimise = "peak_to_peak"    # transmission error; or harmonics, load_jump, peak_load
+# loads = [0.6, 1]             # the worst of all counts
+# shape = "linear"             # or parabolic, or an exponent
 """
 SIZED = """\
 gearopt = 1

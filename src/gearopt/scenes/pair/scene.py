@@ -3,7 +3,7 @@
 from fractions import Fraction
 from typing import Annotated, Any, ClassVar
 
-from pydantic import Field, PrivateAttr, ValidationError, model_validator
+from pydantic import Field, ValidationError, model_validator
 
 from gearopt.physics.gears import GearPair
 from gearopt.scenes.drive.drive_tables import Gears, Limits, Objective, StageTable, Teeth
@@ -14,6 +14,7 @@ from gearopt.scenes.drive.rating.tables import LoadTable, RatingTable
 from gearopt.scenes.drive.scene import DriveDuty
 from gearopt.scenes.drive.scene import Scene as Drive
 from gearopt.scenes.pair.pair_flaws import check_pair
+from gearopt.scenes.pair.relief_tables import ReliefTable
 from gearopt.scenes.pair.sharing_tables import SharingTable
 from gearopt.scenes.reading.fields import Table, refuse, words
 from gearopt.scenes.reading.toml import dotted
@@ -57,13 +58,16 @@ class Scene(Table):
     )
     objective: Objective = Field(default_factory=Objective)
     sharing: SharingTable = Field(default_factory=SharingTable)
-
-    _drive: Drive = PrivateAttr()
+    relief: ReliefTable | None = None
 
     @property
     def drive(self) -> Drive:
         """Return the pair as a drive of one stage, with the ranges that the file leaves out."""
-        return self._drive
+        own = self._tables()
+        limits = own.pop("limits", None) or Limits.open()
+        names = own.keys() | ({"limits"} if limits.model_fields_set else set())
+        made: Drive = OneStage.model_construct(names, limits=limits, **own)
+        return made
 
     @property
     def given(self) -> bool:
@@ -81,7 +85,6 @@ class Scene(Table):
             rule = 'is a second pair: kind = "drive" has several stages'
             raise refuse(rule, at=("stage", 1), action="remove")
         self._check_spur()
-        own = self._tables()
         if self.given:
             for name in self.model_fields_set & set(ONLY_SIZED):
                 if name != "objective" or "minimise" in self.objective.model_fields_set:
@@ -90,20 +93,24 @@ class Scene(Table):
                     )
         elif self.rating is None and (self.limits is None or not self.limits.loaded):
             place = next(not_given(self.gears, self.stage))
-            open_ = (
+            what = (
                 "no table [[stage]] gives gears" if not self.stage else f"{dotted(place)} is open"
             )
-            rule = f"is missing: {open_}, and gears that are not given are sized by a rating"
+            rule = f"is missing: {what}, and gears that are not given are sized by a rating"
             raise refuse(rule, at=("rating",))
-        else:
-            own |= self._ranges()
         try:
-            self._drive = OneStage.model_validate(own)
+            OneStage.model_validate(self._tables())
         except ValidationError as wrong:
             raise _first(wrong) from None
         if self.given:
             check_pair(self.given_pair, self.stage[0], self.gears)
         return self
+
+    def _check_only_given(self) -> None:
+        """Refuse tables of gears that are sized."""
+        for name in self.model_fields_set & set(ONLY_SIZED):
+            if name != "objective" or "minimise" in self.objective.model_fields_set:
+                raise refuse("changes nothing: the gears are given", at=(name,), action="remove")
 
     def _check_spur(self) -> None:
         """Refuse helical gears: what follows is of plane models."""
@@ -117,9 +124,10 @@ class Scene(Table):
                 raise refuse(rule, at=(*place, "helix_angle"), action="remove")
 
     def _tables(self) -> dict[str, Any]:
-        """Return the tables of the file that a drive has."""
+        """Return the tables that a drive has, of a pair to be sized with usual ranges."""
         names = self.model_fields_set & OneStage.model_fields.keys()
-        return {name: getattr(self, name) for name in names}
+        found = {name: getattr(self, name) for name in names}
+        return found if self.given else found | self._ranges()
 
     def _ranges(self) -> dict[str, Any]:
         """Return the tables of a pair that is sized, completed by usual ranges."""

@@ -6,7 +6,7 @@ from typing import Annotated
 from pydantic import Field, model_validator
 
 from gearopt.physics.tooth.elastic import PLANES
-from gearopt.physics.tooth.ladder import COUPLINGS, LEVELS
+from gearopt.physics.tooth.ladder import COUPLINGS, LEVELS, USUAL
 from gearopt.scenes.reading.fields import Table, choice, number, quantity, refuse, whole
 from gearopt.scenes.reading.lists import several, word_or
 from gearopt.units import Quantity
@@ -19,7 +19,12 @@ class SharingTable(Table):
     """How the load is shared between tooth pairs."""
 
     level: Annotated[str | None, choice(*LEVELS)] = Field(
-        None, description="Model of the compliance of a pair of teeth"
+        None, description=f"Model of the compliance of a pair of teeth; by default {USUAL}"
+    )
+    error: Annotated[Fraction | None, number("5 %", 0, 10, percent=True)] = Field(
+        None,
+        description="Instead of level: the error that its stiffness may have, against finite "
+        "elements of the pairs it was measured on; the cheapest such model is taken",
     )
     plane: Annotated[str | None, choice(*PLANES)] = Field(
         None,
@@ -43,7 +48,10 @@ class SharingTable(Table):
     )
 
     @model_validator(mode="after")
-    def _each_once(self) -> "SharingTable":
+    def _one_way(self) -> "SharingTable":
+        if self.level is not None and self.error is not None:
+            rule = "stands beside level; one is enough"
+            raise refuse(rule, at=("error",), action="remove")
         if len(set(self.loads)) < len(self.loads):
             once = [float(load) for load in dict.fromkeys(self.loads)]
             raise refuse("names a load twice", once, ("loads",))

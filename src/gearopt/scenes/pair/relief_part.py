@@ -1,0 +1,138 @@
+"""The best relief of a pair's flanks, as its table [relief] asks for it."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+from gearopt.formulations.pair_contact import PairMesh
+from gearopt.formulations.pair_relief import PairRelief, described
+from gearopt.formulations.relief import parametric
+from gearopt.formulations.relief.meshing import Mesh
+from gearopt.formulations.relief.parametric import Ranges
+from gearopt.optimise.comparing.runs import Model
+from gearopt.optimise.pareto.front import Objective
+from gearopt.optimise.pareto.several import Several
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.result import Result
+from gearopt.optimise.solve import evaluate, run
+from gearopt.optimise.terms import Array, Terms
+from gearopt.optimise.typed import untyped
+from gearopt.scenes.pair.relief_tables import ReliefTable
+from gearopt.scenes.pair.scene import Scene
+from gearopt.scenes.reading.ask import Ask
+
+SHOWN = {"mm": "mm_as_um"}  # units of criteria as they are read
+DEFAULT = "annealing"  # of what has no proven search
+UNPROVEN = "only the peak-to-peak transmission error has a proven search: of this there is no bound"
+KEYS = {"amount": "relief.amount", "length": "relief.length"}  # of variables: their places
+
+
+def loads_of(scene: Scene) -> tuple[float, ...]:
+    """Return the loads that the relief is made for, relative to that of the duty."""
+    assert scene.relief
+    return tuple(float(load) for load in scene.relief.loads or scene.sharing.loads)
+
+
+def relieved(scene: Scene, made: PairMesh, ask: Ask) -> tuple[Result, PairRelief | None]:
+    """Return the result of the search for the best relief, and the relief that it found."""
+    asked = scene.relief
+    assert asked
+    mesh, ranges = _meshed(scene, made)
+    problem = _problem(asked, mesh, ranges)
+    unit = _unit(asked.minimise)
+    if asked.given:
+        point = problem.bounds()[0]
+        result = evaluate(problem, point)
+        result = replace(result, objective=result.objective | {"unit": unit})
+        return result, at_point(scene, made, ranges, point)
+    method = ask.method or ("exact" if "exact" in problem.methods else DEFAULT)
+    result, outcome = run(problem, method, ask.budget, ask.seed, ask.watch, ask.gap)
+    result = replace(result, objective=result.objective | {"unit": unit})
+    if result.value is None or outcome.x is None:
+        return result, None
+    if "exact" not in problem.methods:
+        result = replace(result, message=UNPROVEN)
+    return result, at_point(scene, made, ranges, outcome.x)
+
+
+def at_point(scene: Scene, made: PairMesh, ranges: Ranges, x: Array) -> PairRelief:
+    """Return the relief of a point of the problem."""
+    assert scene.relief
+    reliefs = parametric.at_point(x, ranges)
+    return described(made, reliefs, scene.relief.minimise, loads_of(scene))
+
+
+def _meshed(scene: Scene, made: PairMesh) -> tuple[Mesh, Ranges]:
+    """Return the mesh at the loads of the relief, and what the relief may be."""
+    asked = scene.relief
+    assert asked
+    mesh = made.of_loads(loads_of(scene))
+    low, high = (end.value for end in asked.amount)
+    ranges = Ranges.of(mesh, asked.exponent, high)
+    if asked.length is not None:
+        pitch = float(mesh.cycle.path.base_pitch)
+        lengths = float(asked.length[0]) * pitch, float(asked.length[1]) * pitch
+        ranges = replace(ranges, lengths=lengths)
+    return mesh, replace(ranges, amounts=(low, high))
+
+
+def _problem(
+    asked: ReliefTable, mesh: Mesh, ranges: Ranges, names: Mapping[str, str] | None = None
+) -> Problem:
+    """Return the problem of the relief with the places of its ranges in the file.
+
+    names: of objectives, and of what they are called by its formulation.
+    """
+    names = names or {asked.minimise: asked.minimise}
+    made = parametric.problem(mesh, ranges, tuple(names.values()))
+
+    def evaluate(x: Any, p: Any) -> Terms:
+        found = made.evaluate(x, p)
+        return replace(found, minimise={n: found.minimise[own] for n, own in names.items()})
+
+    keyed = tuple(replace(v, key=KEYS[v.name]) for v in made.variables)
+    return replace(made, variables=keyed, evaluate=evaluate)
+
+
+def model(scene: Scene, made: PairMesh) -> Model:
+    """Return the problem that a method solves."""
+    assert scene.relief
+    unit = _unit(scene.relief.minimise)
+    problem = _problem(scene.relief, *_meshed(scene, made))
+    return Model(problem, "Amounts and lengths of relief of both gears", unit)
+
+
+def objectives(scene: Scene) -> dict[str, str]:
+    """Return what a front of reliefs may minimise: the worst of all loads, or at one of them."""
+    return {name: _unit(own.partition("[")[0]) for name, own in _named(scene).items()}
+
+
+def _named(scene: Scene) -> dict[str, str]:
+    """Return names of objectives, and what they are called by the formulation.
+
+    At a load of 60 % "peak_to_peak_at_60", of the first load "peak_to_peak[1]".
+    """
+    known, loads = list(parametric.OBJECTIVES), loads_of(scene)
+    at = [f"{100.0 * load:.4g}".replace(".", "_") for load in loads] if len(loads) > 1 else []
+    each = {f"{name}_at_{a}": f"{name}[{k}]" for name in known for k, a in enumerate(at, 1)}
+    return {name: name for name in known} | each
+
+
+def several(scene: Scene, made: PairMesh, names: Sequence[str]) -> Several:
+    """Return the problem of a front of reliefs."""
+    assert scene.relief
+    mesh, ranges = _meshed(scene, made)
+    units, known = objectives(scene), _named(scene)
+
+    def drawn(x: Array) -> dict[str, Any]:
+        found: dict[str, Any] = untyped(at_point(scene, made, ranges, x))
+        return found
+
+    listed = tuple(Objective(name, units[name]) for name in names)
+    chosen = {name: known[name] for name in names}
+    return Several(_problem(scene.relief, mesh, ranges, chosen), listed, drawn)
+
+
+def _unit(name: str) -> str:
+    """Return the unit of a criterion as results are shown: of micrometres."""
+    return SHOWN.get(parametric.OBJECTIVES[name][0], "")

@@ -1,0 +1,70 @@
+"""The table [relief]: what may be removed from the flanks, and what for."""
+
+from fractions import Fraction
+from typing import Annotated
+
+from pydantic import Field, model_validator
+
+from gearopt import units
+from gearopt.formulations.relief.parametric import OBJECTIVES
+from gearopt.scenes.pair.sharing_tables import LOADS
+from gearopt.scenes.reading.fields import Table, choice, number, quantity, refuse
+from gearopt.scenes.reading.lists import span, word_or
+from gearopt.units import Quantity
+
+SHAPES = {"linear": 1.0, "parabolic": 2.0}  # exponents
+SHAPE = word_or(tuple(SHAPES), number(1.5, 1, 10))
+AMOUNT = span(quantity("length", "30 um", "1 mm", zero=True), ["0 um", "30 um"], single=True)
+LENGTH = span(number(0.6, 0, 10), [0.1, 0.8], single=True)
+AIM = choice(*OBJECTIVES, means={"transmission_error": "peak_to_peak"})
+
+
+def _amounts() -> tuple[Quantity, Quantity]:
+    return units.parse("0 um", "length"), units.parse("30 um", "length")
+
+
+class ReliefTable(Table):
+    """What may be removed from the flanks towards the tips of both gears, and what for."""
+
+    minimise: Annotated[str, AIM] = Field(
+        "peak_to_peak",
+        description="peak_to_peak (of the transmission error), harmonics (root of the sum of "
+        "squares of its first three), load_jump (share with which a pair of teeth comes or goes), "
+        "peak_load (largest share of a pair): the worst over all loads",
+    )
+    loads: Annotated[tuple[Fraction, ...] | None, LOADS] = Field(
+        None, description="Loads it is made for, relative to [duty]; by default those of [sharing]"
+    )
+    shape: Annotated[str | Fraction, SHAPE] = Field(
+        "linear",
+        description="How it grows towards the tip: linear, parabolic, or an exponent from 1 on",
+    )
+    amount: Annotated[tuple[Quantity, Quantity], AMOUNT] = Field(
+        default_factory=_amounts,
+        description="What is removed at the tip of each gear, normal to the flank: a range, or one "
+        "amount that is given",
+        json_schema_extra={"default": ["0 um", "30 um"]},
+    )
+    length: Annotated[tuple[Fraction, Fraction] | None, LENGTH] = Field(
+        None,
+        description="Length of the relief along the line of action in base pitches: a range, or "
+        "one; by default from 0.1 to the middle of the path",
+    )
+
+    @property
+    def exponent(self) -> float:
+        """Return the exponent of the shape."""
+        return SHAPES[self.shape] if isinstance(self.shape, str) else float(self.shape)
+
+    @property
+    def given(self) -> bool:
+        """Return whether amount and length are given: nothing is chosen."""
+        return self.amount[0] == self.amount[1] and bool(
+            self.length and self.length[0] == self.length[1]
+        )
+
+    @model_validator(mode="after")
+    def _loaded(self) -> "ReliefTable":
+        if self.loads is not None and not any(self.loads):
+            raise refuse("is no load at all", [1], ("loads",), "sample")
+        return self

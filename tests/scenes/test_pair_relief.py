@@ -1,0 +1,163 @@
+"""Files that ask for the relief of a pair: what is found, what is refused, what stands beside."""
+
+import copy
+import tomllib
+from pathlib import Path
+
+import pytest
+
+import gearopt
+from gearopt.errors import SceneError, SolveError
+
+PROBLEMS = Path(__file__).parents[2] / "problems"
+FILE = tomllib.loads((PROBLEMS / "relief_two_loads.toml").read_text(encoding="utf-8"))
+
+
+def with_relief(**keys):
+    found = copy.deepcopy(FILE)
+    found["relief"] = found["relief"] | keys
+    return found
+
+
+def test_the_relief_is_proven_and_beats_what_was_published(solved):
+    """1.2373 um by a local method from three starts, on 48 positions; loads 0.6 and 1."""
+    result = solved("relief_two_loads")
+    assert result.status == "optimal" and result.objective["name"] == "peak_to_peak"
+    assert 1e3 * result.value < 1.2373 and result.value - result.bound <= 1e-6 * result.value
+    relief, contact = result.design["relief"], result.design["contact"]
+    worst = max(load["peak_to_peak_mm"] for load in relief["at"])
+    assert worst == pytest.approx(result.value, rel=1e-12)
+    assert [load["load"] for load in relief["at"]] == [0.6, 1.0]
+    assert relief["rows"][0]["value"] == pytest.approx(
+        contact["loads"][1]["peak_to_peak_mm"], rel=1e-12
+    )
+
+
+def test_the_profile_is_what_its_amounts_and_lengths_say(solved):
+    """a (1 - x/l) at x from the tips, on the grid of the path of contact."""
+    design = solved("relief_two_loads").design
+    relief, contact = design["relief"], design["contact"]
+    s = contact["position_mm"]
+    for k, (name, tip) in enumerate((("pinion", s[-1]), ("wheel", s[0]))):
+        flank = relief[name]
+        removed = [
+            flank["amount_mm"] * max(1.0 - abs(tip - at) / flank["length_mm"], 0.0) for at in s
+        ]
+        assert relief[f"{name}_removed_mm"] == pytest.approx(removed, abs=1e-15), k
+        assert flank["start_diameter_mm"] < flank["tip_diameter_mm"]
+    assert relief["pinion"]["tip_diameter_mm"] == pytest.approx(81.0, rel=1e-12)
+    assert relief["wheel"]["tip_diameter_mm"] == pytest.approx(156.0, rel=1e-12)
+
+
+def test_rules_stand_beside_it(solved):
+    """Amounts by the paper's rule and the corrected one, computed apart from gearopt [um]."""
+    rows = {row["name"]: row for row in solved("relief_two_loads").design["relief"]["rows"]}
+    assert list(rows) == ["none", "paper's rule", "corrected", "corrected, linear", "this"]
+    paper, right = rows["paper's rule"], rows["corrected, linear"]
+    amounts = [1e3 * row[f"{m}_amount_mm"] for row in (paper, right) for m in ("pinion", "wheel")]
+    assert amounts == pytest.approx([15.790, 15.622, 11.341, 11.173], abs=2e-3)
+    assert 1e3 * right["peak_to_peak_mm"][1] == pytest.approx(0.888, abs=2e-3)
+    assert all(right["load_jump"][k] == pytest.approx(0.0, abs=1e-12) for k in (0, 1))
+    assert all(row["value"] >= rows["this"]["value"] for row in rows.values())
+
+
+def test_a_relief_that_is_given_is_evaluated():
+    result = gearopt.solve(with_relief(amount="11.34 um", length=0.683162, loads=[1]))
+    assert result.status == "evaluated" and not result.parts
+    assert 1e3 * result.value == pytest.approx(0.888, abs=0.06)
+    assert result.design["relief"]["pinion"]["amount_mm"] == pytest.approx(0.01134)
+
+
+def test_ranges_of_the_file_hold():
+    found = gearopt.solve(with_relief(amount=["0 um", "8 um"], length=[0.3, 0.4], loads=[1]))
+    free = gearopt.solve(with_relief(loads=[1]))
+    for name in ("pinion", "wheel"):
+        flank = found.design["relief"][name]
+        assert flank["amount_mm"] <= 8e-3 * (1 + 1e-9)
+        assert 0.3 <= flank["length_mm"] / 8.856394302 <= 0.4 + 1e-9
+    assert found.status == free.status == "optimal" and found.value > free.value
+
+
+def test_other_criteria_have_no_proven_search_and_say_so():
+    result = gearopt.solve(with_relief(minimise="load_jump"), budget=gearopt.Budget(0.3))
+    assert result.status in ("feasible", "limit") and result.bound is None
+    assert result.objective["unit"] == "" and result.value < 0.3
+    assert "only the peak-to-peak transmission error has a proven search" in result.message
+
+
+def test_duty_in_relieved_gears_out(solved):
+    """The paper's program from one file: the gears are those of the file without [relief]."""
+    result = solved("paper_program")
+    (gears,) = result.parts
+    assert gears.name == "gears" and gears.status == "optimal"
+    alone = tomllib.loads((PROBLEMS / "paper_program.toml").read_text(encoding="utf-8"))
+    sized = gearopt.solve({k: v for k, v in alone.items() if k not in ("relief", "x-expected")})
+    assert sized.value == gears.value and sized.design["stages"] == result.design["stages"]
+    assert result.design["rating"]["safe"] and max(result.limits.values()) <= 1.0 + 1e-9
+    assert [load["load"] for load in result.design["relief"]["at"]] == [0.5, 1.0, 1.25]
+    before = result.design["contact"]["loads"]
+    assert result.value < 0.3 * before[1]["peak_to_peak_mm"]
+
+
+def test_gears_that_cannot_be_sized_have_no_relief():
+    tables = tomllib.loads((PROBLEMS / "paper_program.toml").read_text(encoding="utf-8"))
+    tables["limits"] = {"pinion_teeth": [18, 60], "wheel_diameter": "90 mm"}
+    result = gearopt.solve(tables)
+    assert result.status == "infeasible" and not result.design
+
+
+WRONG = [
+    ({"amount": 10}, r"amount = 10: .* needs a unit"),
+    ({"amount": ["30 um", "0 um"]}, r"amount = .*ends in the wrong order"),
+    ({"amount": "2 mm"}, r'amount = "2 mm": is above 1 mm'),
+    ({"length": "4 mm"}, r'length = "4 mm": is not a number'),
+    ({"shape": "cubic"}, r'shape = "cubic": is neither one of "linear", "parabolic" nor a number'),
+    ({"shape": 0.5}, r"shape = 0\.5: is not between 1 and 10"),
+    ({"loads": [0]}, r"loads = \[0\]: is no load at all"),
+    ({"minimise": "noise"}, r'minimise = "noise": is not one of "peak_to_peak", "harmonics"'),
+    ({"ammount": "3 um"}, r"relief\.ammount: unknown key\. Did you mean amount"),
+]
+
+
+@pytest.mark.parametrize(("keys", "said"), WRONG, ids=[str(k) for k, _ in WRONG])
+def test_what_is_wrong_is_said_in_one_line(keys, said):
+    with pytest.raises(SceneError, match=said) as wrong:
+        gearopt.load(with_relief(**keys))
+    assert "\n" not in str(wrong.value)
+
+
+@pytest.mark.slow
+def test_fronts_trade_one_load_against_another():
+    """The front passes the proven optimum: no design is better at both loads than it."""
+    names = ("peak_to_peak_at_60", "peak_to_peak_at_100")
+    front = gearopt.pareto(FILE, objectives=names, budget=gearopt.Budget(0.8))
+    values = [[point.values[k] for k in (0, 1)] for point in front.points]
+    assert front.method == "nsga2" and len(values) > 20
+    assert min(max(pair) for pair in values) >= 0.0012030138 * (1 - 1e-9)
+    assert values[0][0] < 0.6e-3 and values[-1][1] < 0.8e-3
+
+
+def test_criteria_have_names_at_every_load():
+    known = "peak_to_peak, harmonics, load_jump, peak_load, peak_to_peak_at_60, peak_to_peak_at_100"
+    with pytest.raises(SolveError, match=f"no objective 'noise'; objectives: {known}"):
+        gearopt.pareto(FILE, objectives=("peak_to_peak", "noise"))
+
+
+@pytest.mark.slow
+def test_methods_are_compared_against_the_proven_relief():
+    found = gearopt.compare(FILE, seeds=1, evaluations=4000, seconds=2.0)
+    rows = {row.method: row for row in found.groups[0].rows}
+    assert list(rows) == ["exact", "annealing", "nsga2"]
+    assert found.groups[0].best == pytest.approx(0.0012030, abs=1e-7)
+
+
+@pytest.mark.slow
+def test_sensitivities_are_those_of_solving_again():
+    found = gearopt.explain(FILE)
+    slopes = {
+        one.key: sum(one.resolved) / 2 for one in found.influences if None not in one.resolved
+    }
+    ends = [gearopt.solve(FILE, {"stage[1].face_width": f"{30 * f} mm"}) for f in (0.999, 1.001)]
+    again = (ends[1].value - ends[0].value) / (0.002 * found.result.value)
+    assert slopes["stage[1].face_width"] == pytest.approx(again, rel=0.02)
+    assert slopes["duty.power"] == pytest.approx(-slopes["duty.input_speed"], rel=1e-3)
