@@ -109,7 +109,7 @@ def test_every_gear_is_meshed_by_convex_quadrilaterals(seed):
             sides = np.roll(mesh.points[:, mesh.quads], -1, axis=1) - mesh.points[:, mesh.quads]
             after = np.roll(sides, -1, axis=1)
             turn = sides[0] * after[1] - sides[1] * after[0]
-            assert (turn > 0.05 * np.hypot(*sides) * np.hypot(*after)).all()
+            assert (turn > 0.1 * np.hypot(*sides) * np.hypot(*after)).all()
 
 
 @pytest.mark.slow

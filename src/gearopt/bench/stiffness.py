@@ -19,7 +19,7 @@ from gearopt.physics.tooth.trapezoid import trapezoid
 from gearopt.physics.tooth.validity import unsupported, usual_plane
 
 TIMED = 256  # positions of the analytic models, 5 of finite elements
-RANDOM = 32
+RANDOM, HALVED = 32, 4  # pairs; of these the first ones with elements of half the size, too
 
 
 @dataclass(frozen=True)
@@ -131,9 +131,12 @@ def random_pairs() -> list[tuple[ElasticPair, float]]:
 def _random() -> list[dict[str, Any]]:
     """Return the errors of the levels over random pairs, without times."""
     errors: dict[str, list[Any]] = {name: [] for name in LEVELS}
-    for elastic, force in random_pairs():
+    for k, (elastic, force) in enumerate(random_pairs()):
         points = five_points(elastic)
         fine = finite_elements.pair_compliance(elastic, points, force)
+        if k < HALVED:
+            halved = finite_elements.pair_compliance(elastic, points, force, halvings=1)
+            errors["finite elements"] += list(halved / fine - 1.0)
         finite_elements.body.cache_clear()
         for name, level in LEVELS.items():
             if level.tooth != "elements" and not unsupported(elastic, name):
@@ -144,5 +147,4 @@ def _random() -> list[dict[str, Any]]:
         | untimed
         | {"least_error": float(min(found)), "largest_error": float(max(found))}
         for name, found in errors.items()
-        if found
     ]

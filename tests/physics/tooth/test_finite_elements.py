@@ -176,10 +176,13 @@ def test_the_mesh_in_double_contact(place, stiff, share):
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("ratio", "error"), [(1.15, -23.2), (1.4, -13.0), (2.25, -5.4), (4.0, -1.7), (7.0, 3.4)]
+    ("ratio", "error"), [(1.15, -23.2), (1.4, -13.1), (2.25, -5.5), (4.0, -1.7), (7.0, 3.3)]
 )
 def test_sainsots_body_over_bore_ratios(ratio, error):
-    """Of the pinion alone at the pitch point, plane stress: per cent of stiffness."""
+    """Of the pinion alone at the pitch point, plane stress: per cent of stiffness.
+
+    Another program has -23.2, -13.0, -5.4, -1.7 and +3.4.
+    """
     pair = elastic("reference", "stress")
     member = replace(pair.members[0], bore=2.0 * OUTER / ratio)
     load, s = force("reference"), np.array([0.0])
@@ -190,4 +193,4 @@ def test_sainsots_body_over_bore_ratios(ratio, error):
     line = member.load_line(curvature)
     contact = (2.0 * np.log(2.0 * line.depth / wide) - 0.3) / (np.pi * member.rigidity)
     made = profile_compliance(member, line) + sainsot_compliance(member, line) + contact
-    assert 100.0 * float((known / made)[0] - 1.0) == pytest.approx(error, abs=0.2)
+    assert 100.0 * float((known / made)[0] - 1.0) == pytest.approx(error, abs=0.1)

@@ -19,6 +19,7 @@ TEETH = 5  # that are meshed: the loaded one and two neighbours on either side
 COARSE = 0.3  # modules: elements of unloaded teeth, and of the ring below its outer line
 ROOT = 0.05  # modules: chords of fillets, which add material: 0.3 makes teeth 0.2 % too stiff
 GROWTH = 1.35  # of a row of elements to the next, away from the loaded flank
+BLEND = 0.5  # modules along a tooth over which columns turn from equal to graded ones
 RADIAL = 0.3  # growth of elements per depth in the ring, and their most per distance to the axis
 SPREAD = 0.2  # growth of elements per length along the loaded flank, outside the contact
 PLAIN = np.radians(7.5)  # of ring without teeth that one element spans
@@ -81,12 +82,13 @@ def gear_mesh(gear: Gear, bore: float, fineness: Fineness) -> GearMesh:
     root = below.at(_halved(_even(below.lengths[-1], ROOT * module), halvings))
     blocks, flanks = [], {}
     for place in range(-near, near + 1):
-        across, up = _tooth_steps(above, fillet, module, fineness if place == 0 else None)
+        loaded = fineness if place == 0 else None
+        across, up, blend = _tooth_steps(above, fillet, module, loaded)
         across, up = _halved(across, halvings), _halved(up, halvings)
         angles, radii = above.at(up)
         uniform = np.linspace(0.0, 1.0, len(across))
-        blend = np.minimum(up / max(0.5 * module, 1e-9), 1.0)
-        shares = uniform[:, None] + blend * (across - uniform)[:, None]
+        graded = np.minimum(1.0 + (up - blend) / (BLEND * module), 1.0)
+        shares = uniform[:, None] + graded * (across - uniform)[:, None]
         centre = place * pitch
         tooth = centre + (2.0 * shares - 1.0) * angles, np.broadcast_to(radii, shares.shape)
         outer = _outer(root, tooth[0][:, 0] - centre, radii[0])
@@ -123,20 +125,22 @@ def _sides(gear: Gear) -> tuple[Side, Side, float]:
 
 def _tooth_steps(
     side: Side, fillet: float, module: float, fineness: Fineness | None
-) -> tuple[Any, Any]:
+) -> tuple[Any, Any, float]:
     """Return shares of the width from left to right, and arc lengths from root to tip.
 
-    fillet: arc length [mm] up to which the side is fillet; fineness: None of unloaded teeth.
+    fillet: arc length [mm] up to which the side is fillet; fineness: None of unloaded teeth. The
+    last number: the arc length [mm] from which the shares hold; below they approach equal ones.
     """
     if fineness is None:
-        return np.linspace(0.0, 1.0, 5), _even(side.lengths[-1], COARSE * module)
+        return np.linspace(0.0, 1.0, 5), _even(side.lengths[-1], COARSE * module), module
     at = side.lengths
     low, high = np.interp([fineness.lowest, fineness.highest], side.radii, at)
     away = np.maximum(np.maximum(low - at, at - high), 0.0)
     size = np.minimum(fineness.size + SPREAD * away, COARSE * module)
     size = np.minimum(size, ROOT * module + SPREAD * np.maximum(at - fillet, 0.0))
     width = 2.0 * np.interp(0.5 * (low + high), at, side.angles * side.radii)
-    return 1.0 - _graded(fineness.size / width, GROWTH)[::-1], _sized(at, size)
+    blend = min(low, BLEND * module)
+    return 1.0 - _graded(fineness.size / width, GROWTH)[::-1], _sized(at, size), blend
 
 
 def _down(outer: float, inner: float, size: float) -> Any:
