@@ -1,0 +1,46 @@
+"""Transmission error across a contact ratio of 2, where a uniform grid of positions misses it."""
+
+import numpy as np
+import pytest
+
+from gearopt.physics.gears import GearPair, Rack
+from gearopt.physics.load_sharing import share
+from gearopt.physics.mesh_cycle import cycle
+from gearopt.physics.tooth.elastic import ElasticPair
+from gearopt.physics.tooth.ladder import LEVELS
+
+LEVEL = LEVELS["profile + Sainsot"]
+# contact ratio, addendum in modules, published peak-to-peak [um] and greatest share of the load
+HIGH = [
+    (1.98, 1.1609313779295845, 7.564, 1.0),
+    (1.999, 1.1735532839128897, 7.605, 1.0),
+    (2.001, 1.1748834543227547, 2.890, 0.599),
+    (2.02, 1.187534769194834, 2.869, 0.596),
+    (2.15, 1.2748067330268988, 2.769, 0.582),
+]
+
+
+def peak_to_peak(addendum, steps, exact):
+    """Contact ratio, peak-to-peak [um] and greatest share of z 40/50, m 3 mm, 320 Nm."""
+    rack = Rack(addendum=addendum, dedendum=addendum + 0.25, tip_radius=0.2)
+    pair = GearPair.of_teeth(3.0, 40, 50, 30.0, 0.0, rack)
+    elastic, load = ElasticPair(pair, (50.0, 50.0)), 320e3 / (0.5 * pair.pinion.base_diameter)
+    made = cycle(elastic.path, steps, exact)
+    compliances = made.compliances(lambda s: LEVEL.compliance(elastic, s, load))
+    found = share(compliances, made.separations(np.zeros_like), load)
+    ratio = elastic.path.transverse_ratio
+    return ratio, 1e3 * np.ptp(found.approach), found.forces.max() / load
+
+
+@pytest.mark.parametrize("ratio, addendum, peak, share_", HIGH)
+def test_both_sides_of_break_points_are_seen(ratio, addendum, peak, share_):
+    """48 positions with break points do what 400 without do, and see what they miss."""
+    found = peak_to_peak(addendum, 48, True)
+    assert found[0] == pytest.approx(ratio, abs=1e-9)
+    assert found[1] == pytest.approx(peak, rel=4e-3) and found[2] == pytest.approx(share_, abs=1e-3)
+
+
+def test_a_uniform_grid_misses_a_zone_of_a_thousandth():
+    """Nine times too little, as published."""
+    assert peak_to_peak(HIGH[1][1], 400, False)[1] == pytest.approx(0.843, abs=1e-3)
+    assert peak_to_peak(HIGH[1][1], 48, True)[1] == pytest.approx(7.605, abs=1e-3)
