@@ -112,7 +112,7 @@ def test_a_population_is_its_designs():
     """Amounts and lengths as arrays (N,) give what each design gives alone."""
     made, rng = mesh((0.6, 1.0)), np.random.default_rng(0)
     ranges = Ranges.of(made, 1.5)
-    posed = problem(made, ranges, ("peak_to_peak", "harmonics[1]", "load_jump", "peak_load[2]"))
+    posed = problem(made, ranges, ("peak_to_peak", "harmonics_at_1", "load_jump", "peak_load_at_2"))
     low, high, _ = posed.bounds()
     points = rng.uniform(low, high, (5, 4))
     together = posed.batch(points).F

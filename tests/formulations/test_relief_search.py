@@ -44,14 +44,14 @@ def test_bounds_of_random_boxes(made, exponents):
         centre, half = rng.uniform(low, high), 0.5 * 10.0 ** rng.uniform(-3, 0) * (high - low)
         ends = np.maximum(low, centre - half), np.minimum(high, centre + half)
         data = numbers(made, *ends, exponents)
-        bound, point, value = data.bound(data.low, data.high, np.inf)
+        bound, point, peaks = data.bound(np.ones(2), data.low, data.high, np.inf)
         sample = posed.batch(rng.uniform(*ends, (60, 4))).F[:, 0]
         assert bound <= 1e3 * sample.min() + 1e-9
         at = 1e3 * posed.batch(data.variables(point)[None]).F[0, 0]
-        assert at == pytest.approx(value, rel=1e-9) and bound <= value
-        tight.append(bound / value)
+        assert at == pytest.approx(peaks.max(), rel=1e-9) and bound <= at
+        tight.append(bound / at)
         same = numbers(made, centre, centre, exponents)
-        assert same.bound(same.low, same.high, np.inf)[0] == pytest.approx(
+        assert same.bound(np.ones(2), same.low, same.high, np.inf)[0] == pytest.approx(
             1e3 * posed.batch(centre[None]).F[0, 0], rel=2e-3
         )
     assert max(tight) > 0.9
@@ -73,6 +73,26 @@ def test_the_published_table(coupling, loads, exponent, published):
     assert annealed.value > found.bound
     exact = mesh(loads, coupling, exact=True)  # with break points: a little more, as it must be
     assert solve(problem(exact, ranges), "exact").value >= found.bound
+
+
+@pytest.mark.parametrize("part", [0.3, 0.7])
+def test_one_load_under_a_limit_at_another(part):
+    """The least value at the full load with a largest one at 60 %: proven, and the limit binds."""
+    made = mesh((0.6, 1.0))
+    ranges = Ranges.of(made)
+    free = solve(problem(made, ranges, ("peak_to_peak_at_2",)), "exact")
+    x = np.array([*free.design["amount_mm"], *free.design["length_mm"]])
+    least = solve(problem(made, ranges, ("peak_to_peak_at_1",)), "exact").value
+    there = made.criteria(made.separations(*at_point(x, ranges))).peak_to_peak[0]
+    most = {"peak_to_peak_at_1": least + part * (there - least)}
+    posed = problem(made, ranges, ("peak_to_peak_at_2",), most)
+    found = solve(posed, "exact", Budget(gap=1e-4), gap=1e-3)
+    assert found.status == "optimal" and found.value > free.value
+    assert found.limits["peak_to_peak_at_1"] == pytest.approx(1.0, abs=2e-2)
+    annealed = solve(posed, "annealing", Budget(evaluations=6000), seed=1)
+    assert found.bound < annealed.value < 1.3 * found.value
+    none = solve(problem(made, ranges, ("peak_to_peak_at_2",), {"peak_to_peak_at_1": 0.99 * least}))
+    assert none.status == "infeasible" and "none keeps to these limits" in none.message
 
 
 def test_given_numbers_and_an_early_end():

@@ -1,7 +1,7 @@
 """A spur pair in mesh under several loads, and what relief does to it."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -103,6 +103,14 @@ class Criteria:
 
     mesh: Mesh
     sharing: Sharing
+
+    def of_load(self, number: int) -> "Criteria":
+        """Return the criteria of one of the loads, counted from 1."""
+        k = number - 1
+        forces, approach, gaps = self.sharing
+        own = slice(k, k + 1)
+        part = Sharing(forces[..., own, :, :], approach[..., own, :], gaps[..., own, :, :])
+        return Criteria(replace(self.mesh, loads=self.mesh.loads[own]), part)
 
     @property
     def peak_to_peak(self) -> Array:

@@ -12,10 +12,11 @@ import numpy as np
 
 from gearopt.formulations.relief.meshing import Criteria, Mesh, Relief
 from gearopt.formulations.relief.relief_mpec import local
-from gearopt.formulations.relief.relief_search import search
+from gearopt.formulations.relief.relief_search import MICRO, Goal, search
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Array, Terms, Var
 
+PROVEN = "peak_to_peak"  # the objective, and its values at single loads, that a search proves
 MOST = 30e-3  # mm: amount beyond which no relief of such gears goes
 
 
@@ -51,26 +52,13 @@ OBJECTIVES: dict[str, tuple[str, Callable[[Criteria], Any]]] = {  # name -> unit
 
 
 def objective(criteria: Criteria, name: str) -> Any:
-    """Return an objective (...): the worst over all loads, or at load k for "name[k]", k from 1.
+    """Return an objective (...): the worst over all loads, or of load k, from 1, for "name_at_k".
 
     peak_to_peak: of the transmission error [mm]; harmonics: root of the sum of squares of its first
     three amplitudes [mm]; load_jump, peak_load: of one pair, over the load.
     """
-    head, _, rest = name.partition("[")
-    if not rest:
-        return OBJECTIVES[head][1](criteria)
-    k = int(rest.rstrip("]")) - 1
-    only = Mesh(
-        criteria.mesh.cycle,
-        criteria.mesh.compliances,
-        criteria.mesh.coupling,
-        (criteria.mesh.loads[k],),
-    )
-    forces, approach, gaps = criteria.sharing
-    part = type(criteria.sharing)(
-        forces[..., k : k + 1, :, :], approach[..., k : k + 1, :], gaps[..., k : k + 1, :, :]
-    )
-    return OBJECTIVES[head][1](Criteria(only, part))
+    head, _, number = name.partition("_at_")
+    return OBJECTIVES[head][1](criteria.of_load(int(number)) if number else criteria)
 
 
 def problem(
@@ -92,10 +80,24 @@ def problem(
             {name: objective(found, name) / bound for name, bound in most.items()},
         )
 
-    proven = not most and tuple(objectives) == ("peak_to_peak",)
-    powers = ranges.exponents
-    methods = {"exact": search(mesh, powers), "mpec": local(mesh, powers)} if proven else {}
+    powers, methods = ranges.exponents, dict[str, Callable[..., Any]]()
+    if len(objectives) == 1 and all(n.startswith(PROVEN) for n in (*objectives, *most)):
+        methods = {"exact": search(mesh, powers, _goal(mesh, objectives[0], most))}
+        if objectives == (PROVEN,) and not most:
+            methods["mpec"] = local(mesh, powers)
     return Problem("relief", variables(ranges), (), evaluate, methods=methods, vectorised=True)
+
+
+def _goal(mesh: Mesh, name: str, limits: dict[str, float]) -> Goal:
+    """Return what the search minimises, and what it keeps below limits [mm]."""
+    loads = np.arange(1, len(mesh.loads) + 1)
+
+    def which(of: str) -> Any:
+        number = of.partition("_at_")[2]
+        return loads == int(number) if number else loads > 0
+
+    ends = [np.where(which(of), MICRO * most, np.inf) for of, most in limits.items()]
+    return Goal(which(name), np.min([np.full(len(loads), np.inf), *ends], axis=0))
 
 
 def reliefs(amounts: Any, lengths: Any, ranges: Ranges) -> tuple[Relief, Relief]:

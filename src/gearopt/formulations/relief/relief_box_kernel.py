@@ -64,10 +64,9 @@ def depth(stiffness, apart, load, acts):
 
 
 @inner
-def worst(stiffness, tips, exponents, loads, v, apart, acts):
-    """Largest peak-to-peak over the loads at v = (a1, b1, a2, b2), exactly."""
+def peaks(stiffness, tips, exponents, loads, v, found, apart, acts):
+    """Set the peak-to-peak of every load at v = (a1, b1, a2, b2), exactly."""
     positions, pairs = stiffness.shape
-    found = 0.0
     for q in range(loads.size):
         least, most = math.inf, -math.inf
         for k in range(positions):
@@ -76,8 +75,7 @@ def worst(stiffness, tips, exponents, loads, v, apart, acts):
                 apart[i] += power(v[2] - v[3] * tips[1, k, i], exponents[1])
             delta = depth(stiffness[k], apart, loads[q], acts)
             least, most = min(least, delta), max(most, delta)
-        found = max(found, most - least)
-    return found
+        found[q] = most - least
 
 
 @inner
@@ -303,13 +301,13 @@ def read(values, count, table, basis, weights, mixture):
 
 
 @entry
-def bound(stiffness, tips, exponents, loads, low, high, aim, point):
-    """Bound the largest peak-to-peak of all reliefs in a box from below; return it and a value.
+def bound(stiffness, tips, exponents, loads, weights, low, high, aim, point, found):
+    """Bound the largest of weighted peak-to-peaks of all reliefs in a box from below; return it.
 
     stiffness (p, n) of uncoupled pairs, 0 of absent ones; tips (2, p, n): distances from both tips;
-    exponents (2,), loads (q,); low, high (4,): a1, l1, a2, l2. A bound that reaches `aim` need not
-    be better. point (4,) becomes the (a1, b1, a2, b2) where the relaxation is least, the value is
-    the exact one there.
+    exponents (2,); loads, weights (q,); low, high (4,): a1, l1, a2, l2. A bound that reaches `aim`
+    need not be better. point (4,) becomes the (a1, b1, a2, b2) where the relaxation is least, found
+    (q,) the exact peak-to-peaks there.
     """
     positions, pairs = stiffness.shape
     places, ends = np.empty((2, 4, 2)), np.empty((2, positions, pairs))
@@ -335,15 +333,18 @@ def bound(stiffness, tips, exponents, loads, low, high, aim, point):
         for q in range(loads.size):
             given = stiffness, tips, exponents, loads[q], point, secants
             top, bottom, value = extremes(*given, offsets[q], slopes[q], room)
-            height = max(height, value)
-            if value > best:
+            height = max(height, weights[q] * value)
+            if weights[q] * value > best:
                 plane(*given, slopes[q], top, bottom, value, room, cut)
+                for j in range(5):
+                    cut[j] *= weights[q]
                 at_corners(places, cut, values, count)
                 count += 1
         if height <= best + NEAR * height:
             break
         best = max(best, game(values, count, table, basis, shares, mixture))
-    return best, worst(stiffness, tips, exponents, loads, point, room[0], room[1])
+    peaks(stiffness, tips, exponents, loads, point, found, room[0], room[1])
+    return best
 
 
 @inner

@@ -2,6 +2,8 @@
 
 Bounds of boxes come from `relief_box_kernel`. Boxes are halved, best bound first, along the side
 that is longest beside its range, and dropped once nothing in them is better by more than the gap.
+Loads may have a largest peak-to-peak of their own: their weights are then such that a box is
+dropped only if each point in it is no better or exceeds one of them.
 """
 
 import heapq
@@ -21,12 +23,13 @@ from gearopt.optimise.terms import Array
 KERNEL = "gearopt.formulations.relief.relief_box_kernel"
 MICRO = 1e3  # um a mm: amounts of relief are numbers of size 1 there
 ROUNDING = 1e-9  # um: taken off every bound
-GAP = 1e-6  # relative; where no gap is asked for
+GAP = 5e-7  # relative; where no gap is asked for: within 1e-6, rounding included
 FAR = 1e6  # mm: of a pair that is not in contact from the tips
 TOLD = 256  # boxes between two words to the watcher
 RANDOM = False
 COUNTS = "box bounded"
 SETTINGS = {"gap": GAP}
+EMPTY = "Proof: every box of amounts and lengths was searched: none keeps to these limits."
 SENTENCE = "Proof: every box of amounts and lengths was searched; bounds of boxes by planes."
 
 
@@ -44,12 +47,14 @@ class Numbers:
     low: Array
     high: Array
 
-    def bound(self, low: Array, high: Array, aim: float) -> tuple[float, Array, float]:
-        """Return a bound of a box [um], a point (a1, b1, a2, b2) of it, and its value [um]."""
-        point = np.empty(4)
-        given = self.stiffness, self.tips, self.exponents, self.loads
-        found, value = kernel(KERNEL).bound(*given, low, high, aim, point)
-        return found - ROUNDING, point, value
+    def bound(
+        self, weights: Array, low: Array, high: Array, aim: float
+    ) -> tuple[float, Array, Array]:
+        """Return a bound of a box [um], a point (a1, b1, a2, b2) of it, and its peaks [um]."""
+        point, peaks = np.empty(4), np.empty(len(self.loads))
+        given = self.stiffness, self.tips, self.exponents, self.loads, weights
+        found = kernel(KERNEL).bound(*given, low, high, aim, point, peaks)
+        return found - ROUNDING, point, peaks
 
     def variables(self, point: Array) -> Array:
         """Return the variables (amounts 1, 2, lengths 1, 2) [mm] of a point (a1, b1, a2, b2)."""
@@ -77,47 +82,127 @@ def numbers(mesh: Mesh, low: Array, high: Array, exponents: tuple[float, float])
     return Numbers(stiffness, tips, powers, np.array(mesh.loads), *ends)
 
 
-def search(mesh: Mesh, exponents: tuple[float, float]) -> Callable[..., Outcome]:
-    """Return the method of `parametric.problem` that proves the least peak-to-peak of all loads."""
+@dataclass(frozen=True)
+class Goal:
+    """Which loads' largest peak-to-peak is minimised (q,), and the largest allowed of each [um].
+
+    Infinite where a load has none.
+    """
+
+    minimised: Any
+    most: Array
+
+    @property
+    def limited(self) -> bool:
+        """Whether a load has a largest value."""
+        return bool(np.isfinite(self.most).any())
+
+    def used(self, peaks: Array) -> float:
+        """Return the largest part of a limit that is used."""
+        return float((peaks / self.most).max())
+
+    def value(self, peaks: Array) -> float:
+        """Return what is minimised [um]; infinite where a limit is exceeded."""
+        return float(peaks[self.minimised].max()) if self.used(peaks) <= 1.0 else np.inf
+
+    def weights(self, aim: float) -> Array:
+        """Return weights with which a box whose bound reaches the aim holds nothing better."""
+        return np.maximum(np.where(self.minimised, 1.0, 0.0), aim / self.most)
+
+
+def search(mesh: Mesh, exponents: tuple[float, float], goal: Goal) -> Callable[..., Outcome]:
+    """Return the method of `parametric.problem` that proves the least peak-to-peak of a goal."""
 
     def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
         """Halve boxes until none may hold a better relief; the seed changes nothing."""
         clock = Clock(budget, watch)
         made, code = numbers(mesh, *problem.bounds()[:2], exponents), kernel(KERNEL)
-        if not compiled(lambda: made.bound(made.low, made.high, 0.0), (code.bound,), watch):
+        ones = np.ones(len(made.loads))
+        if not compiled(lambda: made.bound(ones, made.low, made.high, 0.0), (code.bound,), watch):
             return Outcome(None, False, message=UNREADY)
         clock.start = Clock().start
-        point, bound, ended = _searched(made, clock)
+        known = _allowed(made, goal, clock) if goal.limited else _first(made, goal)
+        if isinstance(known, Outcome):
+            return known
+        point, bound, ended = _searched(made, goal, clock, *known)
         proof = {"method": "boxes", "boxes": clock.evaluations, "sentence": SENTENCE}
         x, spent = made.variables(point), clock.evaluations
-        return Outcome(x, ended, bound=bound / MICRO, proof=proof, evaluations=spent)
+        lowest = bound / MICRO if ended or not goal.limited else None
+        return Outcome(x, ended, bound=lowest, proof=proof, evaluations=spent)
 
     return run
 
 
-def _searched(made: Numbers, clock: Clock) -> tuple[Array, float, bool]:
-    """Return the best point, a bound [um], and whether the search came to its end."""
-    gap = max(clock.budget.gap, GAP)
-    least, point, best = made.bound(made.low, made.high, np.inf)
-    boxes: list[Any] = [(least, 0, made.low, made.high)]
+def _first(made: Numbers, goal: Goal) -> tuple[Array, float]:
+    """Return the point where the relaxation of the whole box is least, and its value."""
+    _, point, peaks = made.bound(goal.weights(1.0), made.low, made.high, np.inf)
+    return point, goal.value(peaks)
+
+
+def _allowed(made: Numbers, goal: Goal, clock: Clock) -> tuple[Array, float] | Outcome:
+    """Return a point that keeps to the limits and its value, or that there is none."""
+    weights, proof, turn = 1.0 / goal.most, True, 0
+    boxes: list[Any] = [(0.0, 0, made.low, made.high)]
+    while boxes:
+        _, _, low, high = heapq.heappop(boxes)
+        if not clock.tell():
+            return Outcome(None, False, evaluations=clock.evaluations)
+        least, point, peaks = made.bound(weights, low, high, 1.0)
+        clock.evaluations += 1
+        if goal.used(peaks) <= 1.0:
+            return point, goal.value(peaks)
+        halves = _halves(made, low, high) if least < 1.0 else ()
+        proof &= least >= 1.0 or bool(halves)
+        for ends in halves:
+            turn += 1
+            heapq.heappush(boxes, (least, turn, *ends))
+    sentence = {"method": "boxes", "boxes": clock.evaluations, "sentence": EMPTY}
+    spent = clock.evaluations
+    if not proof:
+        return Outcome(None, evaluations=spent, message="boxes too small to be halved are left")
+    return Outcome(None, infeasible=True, proof=sentence, evaluations=spent, message=EMPTY)
+
+
+def _halves(made: Numbers, low: Array, high: Array) -> tuple[tuple[Array, Array], ...]:
+    """Return the halves of a box along its relatively longest side; none of a point."""
     width = np.where(made.high > made.low, made.high - made.low, np.inf)
+    side = int(np.argmax((high - low) / width))
+    middle = 0.5 * (low[side] + high[side])
+    if not low[side] < middle < high[side]:
+        return ()
+    below, above = high.copy(), low.copy()
+    below[side] = above[side] = middle
+    return (low, below), (above, high)
+
+
+def _searched(
+    made: Numbers, goal: Goal, clock: Clock, point: Array, best: float
+) -> tuple[Array, float, bool]:
+    """Return the best point, a bound [um], and whether the search came to its end.
+
+    point, best: known before. Bounds of boxes under limits are no bounds of what is minimised, so
+    all boxes are visited.
+    """
+    part, turn = 1.0 - max(clock.budget.gap, GAP), 0
+    least = made.bound(goal.weights(best * part), made.low, made.high, best * part)[0]
+    boxes: list[Any] = [(least, 0, made.low, made.high)]
     floor = np.inf  # of boxes too small to be halved
-    while boxes and boxes[0][0] < best * (1.0 - gap):
-        least, turn, low, high = heapq.heappop(boxes)
-        clock.best, clock.bound = best / MICRO, min(least, floor, best) / MICRO
-        if turn % TOLD < 2 and not clock.tell():
+    while boxes and (goal.limited or boxes[0][0] < best * part):
+        least, _, low, high = heapq.heappop(boxes)
+        clock.best = best / MICRO
+        clock.bound = -np.inf if goal.limited else min(least, floor, best) / MICRO
+        if clock.evaluations % TOLD < 2 and not clock.tell():
             return point, min(least, floor, best), False
-        side = int(np.argmax((high - low) / width))
-        middle = 0.5 * (low[side] + high[side])
-        if not low[side] < middle < high[side]:
-            floor = min(floor, least)
-            continue
-        for lower, upper in ((low[side], middle), (middle, high[side])):
-            ends = low.copy(), high.copy()
-            ends[0][side], ends[1][side] = lower, upper
-            found, x, value = made.bound(ends[0], ends[1], best * (1.0 - gap))
+        halves = _halves(made, low, high)
+        if not halves and (low < high).any():
+            floor = 0.0 if goal.limited else min(floor, least)
+        for ends in halves:
+            found, x, peaks = made.bound(goal.weights(best * part), *ends, best * part)
             clock.evaluations += 1
-            if value < best:
+            if (value := goal.value(peaks)) < best:
                 best, point = value, x
-            heapq.heappush(boxes, (max(found, least), clock.evaluations, *ends))
-    return point, min([floor, best, *(box[0] for box in boxes[:1])]), True
+            if found < best * part or not goal.limited:
+                turn += 1
+                heapq.heappush(boxes, (max(found, least * (not goal.limited)), turn, *ends))
+    rest = best * part if goal.limited else min([np.inf, *(box[0] for box in boxes[:1])])
+    return point, min(floor, best, rest), True
