@@ -25,9 +25,9 @@ def test_the_relief_is_proven_and_beats_what_was_published(solved):
     assert result.status == "optimal" and result.objective["name"] == "peak_to_peak"
     assert 1e3 * result.value < 1.2373 and result.value - result.bound <= 1e-6 * result.value
     relief, contact = result.design["relief"], result.design["contact"]
-    worst = max(load["peak_to_peak_mm"] for load in relief["at"])
+    worst = max(load["peak_to_peak_mm"] for load in relief["at"] if load["load"] <= 1.0)
     assert worst == pytest.approx(result.value, rel=1e-12)
-    assert [load["load"] for load in relief["at"]] == [0.6, 1.0]
+    assert [load["load"] for load in relief["at"]] == [0.6, 1.0, 1.25]  # the last is shown only
     assert relief["rows"][0]["value"] == pytest.approx(
         contact["loads"][1]["peak_to_peak_mm"], rel=1e-12
     )

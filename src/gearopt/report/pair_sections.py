@@ -1,9 +1,13 @@
 """A spur pair drawn: teeth in mesh that move, plots over its path, tooth sections, in space."""
 
+from collections.abc import Sequence
+from dataclasses import replace
+
 import numpy as np
 
 from gearopt.formulations.design import StageDesign, drive_design
 from gearopt.formulations.pair_contact import ContactLoad, PairContact
+from gearopt.formulations.pair_relief import PairRelief
 from gearopt.optimise.result import Result
 from gearopt.physics.blanks import Body
 from gearopt.physics.gears import GearPair
@@ -17,7 +21,7 @@ from gearopt.report.section import Figure, Section
 
 MESH = "teeth in mesh"  # the animation that plots follow
 STIFFNESS = "N_per_mm_um"  # of MPa
-DASHES = ("solid", "dash", "dot", "dashdot")  # of one load after the other
+DASHES = ("solid", "dash", "dashdot", "longdash")  # of one load after the other
 SECTIONS = (
     "A tooth of each gear in its transverse section, both at one scale; dimensions in {unit}: "
     "diameters of tip d_a, reference d, root form d_Ff, base d_b and root circle d_f; thickness s "
@@ -41,40 +45,67 @@ def carried(found: PairContact, load: ContactLoad) -> Carried:
     return Carried.of_columns(travels, found.position_mm, load.share, load.transmission_error_mm)
 
 
-def moving(found: PairContact, pair: GearPair, measures: Measures) -> Section:
-    """Show the pair in mesh at the torque of the duty, and every load over the path of contact."""
+def moving(
+    found: PairContact, relief: PairRelief | None, pair: GearPair, measures: Measures
+) -> Section:
+    """Show the pair in mesh at the torque of the duty, and every load over the path of contact.
+
+    With a relief before and after it, side by side and in every plot.
+    """
     duty, path = of_duty(found), usable_path(pair)
+    shown = {"": carried(found, duty)}
+    if relief:
+        after = relief.at[found.loads.index(duty)]
+        shown = {"without relief": shown[""], "with relief": carried(found, after)}
     at = f"At {100.0 * duty.load:g} % of the duty's torque. {CAPTION}"
-    figures = [*_of_loads(found, pair, measures), _stiffness(found, pair, measures)]
+    figures = [*_of_loads(found, relief, pair, measures), _stiffness(found, pair, measures)]
     return Section(
         "Teeth in mesh",
         words=(f"Line of action and plots: {zone_words(path)}",),
-        animations=[in_mesh(pair, MESH, {"": carried(found, duty)}, measures, at)],
+        animations=[in_mesh(pair, MESH, shown, measures, at)],
         figures=figures,
     )
 
 
-def _of_loads(found: PairContact, pair: GearPair, measures: Measures) -> list[Figure]:
-    """Plot shares and transmission error at every load."""
+def _of_loads(
+    found: PairContact, relief: PairRelief | None, pair: GearPair, measures: Measures
+) -> list[Figure]:
+    """Plot shares and transmission error at every load, before and after a relief."""
     shown, path = carried(found, of_duty(found)), usable_path(pair)
-    micro = measures.of(1.0, "um")
-    shares, errors = [], []
-    for k, one in enumerate(found.loads):
-        look = f"at {100.0 * one.load:g} %", k + 1, DASHES[k % len(DASHES)]
-        shares.append(Line(100.0 * np.asarray(one.share), *look))
-        errors.append(Line(micro * np.asarray(one.transmission_error_mm), *look))
+    shares, errors = _lines(found.loads, measures)
+    said = "by the load"
+    if relief:
+        before, after = (shares, errors), _lines(relief.at, measures)
+        shares, errors = ([*_pale(b), *a] for b, a in zip(before, after, strict=True))
+        said = "by the load; dotted: without relief"
     return [
         over_path(
             *(shown, path, shares, "share of the normal force [%]"),
-            "What part of the load one pair of teeth carries along its path, by the load.",
+            f"What part of the load one pair of teeth carries along its path, {said}.",
             *(measures, MESH),
         ),
         over_path(
             *(shown, path, errors, f"transmission error [{measures.unit('um')}]"),
-            "How far the gears give way along the line of action, by the load.",
+            f"How far the gears give way along the line of action, {said}.",
             *(measures, MESH),
         ),
     ]
+
+
+def _lines(loads: Sequence[ContactLoad], measures: Measures) -> tuple[list[Line], list[Line]]:
+    """Return curves of shares and of transmission errors, one for each load."""
+    micro = measures.of(1.0, "um")
+    shares, errors = [], []
+    for k, one in enumerate(loads):
+        look = f"at {100.0 * one.load:g} %", k + 1, DASHES[k % len(DASHES)]
+        shares.append(Line(100.0 * np.asarray(one.share), *look))
+        errors.append(Line(micro * np.asarray(one.transmission_error_mm), *look))
+    return shares, errors
+
+
+def _pale(lines: Sequence[Line]) -> list[Line]:
+    """Return curves as they are shown behind those that matter."""
+    return [replace(line, name="", dash="dot", width=1.2) for line in lines]
 
 
 def _stiffness(found: PairContact, pair: GearPair, measures: Measures) -> Figure:

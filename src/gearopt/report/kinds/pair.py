@@ -6,7 +6,7 @@ from dataclasses import replace
 from gearopt.formulations.pair_contact import ContactLoad, PairContact
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import typed
-from gearopt.report import pair_relief, rating_words
+from gearopt.report import pair_relief, rating_words, relief_plots
 from gearopt.report.answer import asked, assumptions, limits, summary
 from gearopt.report.kinds import Kind, drive
 from gearopt.report.kinds.generic import ASKED, FIRST, LAST, TOLD
@@ -16,7 +16,7 @@ from gearopt.report.pair_relief import relief_of
 from gearopt.report.pair_sections import in_space, moving, pair_of, teeth
 from gearopt.report.pair_tables import TABLES
 from gearopt.report.pair_words import answers, of_duty
-from gearopt.report.section import Section, Tile
+from gearopt.report.section import Section, Table, Tile
 from gearopt.report.words import amount, number, share
 
 STIFFNESS = "N_per_mm_um"  # of MPa
@@ -103,13 +103,28 @@ def relief(result: Result, measures: Measures) -> Section | None:
     ]
     words = list(map(measures.words, pair_relief.answers(found)))
     shown = [table for table in tables if not table.folded]
-    return Section("Relief", words=words, tables=tables, terminal=("\n".join(words), *shown))
+    told: tuple[str | Table, ...] = ("\n".join(words), *shown)
+    if (pair := pair_of(result)) is None:
+        return Section("Relief", words=words, tables=tables, terminal=told)
+    figures = relief_plots.profiles(found, pair, measures)
+    tables += relief_plots.steps(found, pair, measures)
+    return Section("Relief", words=words, figures=figures, tables=tables, terminal=told)
 
 
 def mesh(result: Result, measures: Measures) -> Section | None:
     """Show the teeth in mesh; None without contact or whole teeth."""
     found, pair = contact_of(result), pair_of(result)
-    return None if found is None or pair is None else moving(found, pair, measures)
+    if found is None or pair is None:
+        return None
+    return moving(found, relief_of(result), pair, measures)
+
+
+def harmonics(result: Result, measures: Measures) -> Section | None:
+    """Show the harmonics of the transmission error before and after; None without relief."""
+    found, made = contact_of(result), relief_of(result)
+    if found is None or made is None:
+        return None
+    return relief_plots.harmonics(found, made, measures)
 
 
 def numbers(result: Result, measures: Measures) -> Section | None:
@@ -118,10 +133,11 @@ def numbers(result: Result, measures: Measures) -> Section | None:
     return drive.numbers(replace(result, design=gears), measures)
 
 
+CONTACT = (relief, mesh, harmonics, contact)
 DRAWINGS = (teeth, in_space, train_views.section)
 RATINGS = tuple(make for make in drive.RATINGS if make is not mesh_view.section)  # mesh is better
 GIVEN = Kind(
-    sections=(summary, relief, mesh, contact, *DRAWINGS, *RATINGS, numbers, asked, assumptions),
+    sections=(summary, *CONTACT, *DRAWINGS, *RATINGS, numbers, asked, assumptions),
     terminal=(numbers, contact, relief, *drive.GIVEN.terminal, summary),
     tiles=tiles,
     decides=decides,
@@ -130,9 +146,7 @@ GIVEN = Kind(
 KIND = Kind(
     sections=(
         *FIRST,
-        relief,
-        mesh,
-        contact,
+        *CONTACT,
         *DRAWINGS,
         numbers,
         *RATINGS,

@@ -156,7 +156,8 @@
       before = 0;
       if (seen && playing) wait();
     }).observe(figure);
-    if (calm.matches) show(moment); else play(true);
+    show(moment);
+    if (!calm.matches) play(true);
   }
 
   for (const figure of document.querySelectorAll("figure.player")) player(figure);
