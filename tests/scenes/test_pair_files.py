@@ -57,6 +57,10 @@ WRONG = [
         {"sharing.level": "profile"},
         r'level = "profile": is not .* Write, for example, level = "profile \+ S',
     ),
+    (
+        {"stage.pinion": {}, "stage.pinion_teeth": 12, "sharing.level": "Nakada C"},
+        r'level = "Nakada C": takes .* pinion are undercut\. Write level = "profile \+ S',
+    ),
     ({"sharing.loads": [1, 1]}, r"names a load twice\. Write loads = \[1\.0\]"),
     ({"sharing.loads": []}, r"loads = \[\]: is not a list"),
     ({"sharing.load": [1]}, r"sharing\.load = .*Here it is called loads, in \[sharing\]"),

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from gearopt.physics.gears import Gear
 from gearopt.physics.geometry.fillet import (
     NEGLIGIBLE,
     fillet_end,
@@ -45,6 +46,11 @@ class Trapezoid:
         return (load - self.rectangle) * lost / (self.height - self.rectangle)
 
 
+def is_waisted(gear: Gear) -> bool:
+    """Return whether undercut makes a tooth thinner at its root, as no trapezoid is; of floats."""
+    return bool(undercut_depth(gear) > NEGLIGIBLE * gear.normal_module)
+
+
 @lru_cache(maxsize=256)
 def trapezoid(member: ElasticGear, convention: str) -> Trapezoid:
     """Return the cantilever of a gear by one of three conventions; the paper leaves it open.
@@ -55,7 +61,7 @@ def trapezoid(member: ElasticGear, convention: str) -> Trapezoid:
     waist.
     """
     gear = member.gear
-    if undercut_depth(gear) > NEGLIGIBLE * gear.normal_module:
+    if is_waisted(gear):
         raise ValueError(
             "an undercut tooth has a waist, which no trapezoid has: take a profile model"
         )

@@ -1,12 +1,12 @@
 """What a model of elastic teeth does not cover, said in sentences; and the cheapest that suits."""
 
 from gearopt.physics.gears import MEMBERS, GearPair
-from gearopt.physics.geometry.fillet import NEGLIGIBLE, undercut_depth
 from gearopt.physics.geometry.flaws import THIN_TIP
 from gearopt.physics.geometry.tooth import tip_thickness
 from gearopt.physics.tooth.elastic import ElasticGear, ElasticPair
 from gearopt.physics.tooth.foundation import SAINSOT_BORE_RATIOS, SAINSOT_HALF_ANGLES
 from gearopt.physics.tooth.ladder import LEVELS
+from gearopt.physics.tooth.trapezoid import is_waisted
 
 WIDE = 6.0  # modules of face width from which plane strain is nearer to the truth (an assumption)
 EXACT = "finite elements"
@@ -25,7 +25,7 @@ def unsupported(elastic: ElasticPair, level: str) -> tuple[str, ...]:
         found += [
             f"The teeth of the {name} are undercut: a trapezoid has no waist."
             for name, member in rows
-            if _undercut(member)
+            if is_waisted(member.gear)
         ]
     if model.body == "Sainsot":
         least = SAINSOT_BORE_RATIOS[0]
@@ -60,7 +60,7 @@ def doubts(elastic: ElasticPair, level: str) -> tuple[str, ...]:
                 f"The tips of the {name} are {thin:.2f} m_n thick, below {THIN_TIP:g} m_n: near "
                 "them the model means little."
             )
-        if _undercut(member) and model.tooth != "trapezoid":
+        if is_waisted(member.gear) and model.tooth != "trapezoid":
             found.append(
                 f"The teeth of the {name} are undercut: they touch from the form circle outwards."
             )
@@ -80,10 +80,6 @@ def cheapest(elastic: ElasticPair, error: float) -> str:
         if level.worst <= error and not unsupported(elastic, name)
     ]
     return min(suited)[2] if suited else EXACT
-
-
-def _undercut(member: ElasticGear) -> bool:
-    return bool(undercut_depth(member.gear) > NEGLIGIBLE * member.gear.normal_module)
 
 
 def _outside_fit(name: str, member: ElasticGear) -> list[str]:

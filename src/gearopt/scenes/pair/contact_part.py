@@ -14,8 +14,8 @@ from gearopt.physics.iso6336.stiffness import (
 )
 from gearopt.physics.loads import torque
 from gearopt.physics.tooth.elastic import POISSON, STEEL, ElasticPair
-from gearopt.physics.tooth.ladder import COUPLINGS, USUAL
-from gearopt.physics.tooth.validity import cheapest, doubts, usual_plane
+from gearopt.physics.tooth.ladder import COUPLINGS, LEVELS, USUAL
+from gearopt.physics.tooth.validity import cheapest, doubts, unsupported, usual_plane
 from gearopt.scenes.drive.rating import gears as rated_gears
 from gearopt.scenes.pair.scene import Scene
 from gearopt.units import Quantity
@@ -46,9 +46,11 @@ def mesh_of(scene: Scene, pair: GearPair, materials: Materials = ("", "")) -> Pa
     told = asked.coupling
     moved = torque(duty.power.value, duty.input_speed.value)
     loads = sorted({float(load) for load in (*asked.loads, *((relief and relief.loads) or ()))})
+    level = level_of(scene, elastic)
+    if LEVELS[level].tooth == "trapezoid" and (excluded := unsupported(elastic, level)):
+        raise SolveError(f'[sharing] level = "{level}" does not suit the gears. {excluded[0]}')
     try:
         coupled = told.value if isinstance(told, Quantity) else COUPLINGS[told](elastic)
-        level = level_of(scene, elastic)
         return PairMesh.of(elastic, level, moved, coupled, asked.positions, loads)
     except ImportError as reason:  # of finite elements, an extra
         raise SolveError(str(reason)) from None

@@ -4,6 +4,8 @@ from typing import Any
 
 from gearopt.physics.gears import MEMBERS, GearPair
 from gearopt.physics.geometry.flaws import flaws
+from gearopt.physics.tooth.ladder import LEVELS, USUAL
+from gearopt.physics.tooth.trapezoid import is_waisted
 from gearopt.scenes.drive.blank_tables import blank
 from gearopt.scenes.drive.drive_tables import Gears, StageTable
 from gearopt.scenes.drive.rating.tables import with_shared
@@ -27,6 +29,16 @@ def check_pair(pair: GearPair, own: StageTable, gears: Gears) -> None:
                 f"{member}, {root:.4g} mm"
             )
             raise refuse(rule, f"{0.5 * root / made.hub_over_bore:.2g} mm", place, "sample")
+
+
+def check_level(pair: GearPair, level: str | None) -> None:
+    """Refuse a model of teeth as trapezoids, if that is asked for, of teeth that are undercut."""
+    if level is None or LEVELS[level].tooth != "trapezoid":
+        return
+    for member, gear in zip(MEMBERS, pair.gears, strict=True):
+        if is_waisted(gear):
+            rule = f"takes teeth as trapezoids, and those of the {member} are undercut"
+            raise refuse(rule, USUAL, ("sharing", "level"))
 
 
 def _check_flaws(pair: GearPair, own: StageTable, gears: Gears) -> None:

@@ -13,7 +13,7 @@ from gearopt.scenes.drive.rating.materials import MaterialTable
 from gearopt.scenes.drive.rating.tables import LoadTable, RatingTable
 from gearopt.scenes.drive.scene import DriveDuty
 from gearopt.scenes.drive.scene import Scene as Drive
-from gearopt.scenes.pair.pair_flaws import check_pair
+from gearopt.scenes.pair.pair_flaws import check_level, check_pair
 from gearopt.scenes.pair.relief_tables import ReliefTable
 from gearopt.scenes.pair.sharing_tables import SharingTable
 from gearopt.scenes.reading.fields import Table, refuse, words
@@ -104,6 +104,7 @@ class Scene(Table):
             raise _first(wrong) from None
         if self.given:
             check_pair(self.given_pair, self.stage[0], self.gears)
+            check_level(self.given_pair, self.sharing.level)
         return self
 
     def _check_only_given(self) -> None:
