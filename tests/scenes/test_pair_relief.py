@@ -4,6 +4,7 @@ import copy
 import tomllib
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import gearopt
@@ -68,6 +69,22 @@ def test_a_relief_that_is_given_is_evaluated():
     assert result.design["relief"]["pinion"]["amount_mm"] == pytest.approx(0.01134)
 
 
+def test_any_convex_shape_reaches_less_and_is_proven_too(solved):
+    """Published for such shapes, symmetric in contact: 1.0615 um on 48 positions."""
+    tables = with_relief(shape="free") | {"sharing": FILE["sharing"] | {"positions": 24}}
+    free = gearopt.solve(tables)
+    assert free.status == "optimal" and free.value < solved("relief_two_loads").value
+    assert 1e3 * free.value == pytest.approx(1.0615, abs=0.02)
+    relief, contact = free.design["relief"], free.design["contact"]
+    assert "exponent" not in relief["pinion"]  # of a shape of its own
+    total = np.add(relief["pinion_removed_mm"], relief["wheel_removed_mm"])
+    middle = int(np.argmin(total))
+    assert (np.diff(total[middle:]) >= -1e-9).all() and (np.diff(total[:middle]) <= 1e-9).all()
+    assert relief["pinion"]["amount_mm"] == pytest.approx(total[-1])
+    assert relief["wheel"]["amount_mm"] == pytest.approx(total[0])
+    assert min(relief["pinion_removed_mm"]) == 0.0 and contact["contact_ratio"] < 2.0
+
+
 def test_ranges_of_the_file_hold():
     found = gearopt.solve(with_relief(amount=["0 um", "8 um"], length=[0.3, 0.4], loads=[1]))
     free = gearopt.solve(with_relief(loads=[1]))
@@ -111,8 +128,13 @@ WRONG = [
     ({"amount": ["30 um", "0 um"]}, r"amount = .*ends in the wrong order"),
     ({"amount": "2 mm"}, r'amount = "2 mm": is above 1 mm'),
     ({"length": "4 mm"}, r'length = "4 mm": is not a number'),
-    ({"shape": "cubic"}, r'shape = "cubic": is neither one of "linear", "parabolic" nor a number'),
+    (
+        {"shape": "cubic"},
+        r'shape = "cubic": is neither one of "linear", "parabolic", "free"',
+    ),
     ({"shape": 0.5}, r"shape = 0\.5: is not between 1 and 10"),
+    ({"shape": "free", "minimise": "load_jump"}, r'load_jump": is no criterion of a free shape'),
+    ({"shape": "free", "length": 0.5}, r"length = 0\.5: changes nothing: a free shape"),
     ({"loads": [0]}, r"loads = \[0\]: is no load at all"),
     ({"minimise": "noise"}, r'minimise = "noise": is not one of "peak_to_peak", "harmonics"'),
     ({"ammount": "3 um"}, r"relief\.ammount: unknown key\. Did you mean amount"),

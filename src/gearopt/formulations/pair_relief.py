@@ -7,27 +7,32 @@ from typing import Any
 import numpy as np
 
 from gearopt.formulations.pair_contact import Columns, ContactLoad, PairMesh, at_loads, column
-from gearopt.formulations.relief.meshing import NO_RELIEF, Relief
+from gearopt.formulations.relief.free_form import Profile
+from gearopt.formulations.relief.meshing import NO_RELIEF, Mesh, Relief
 from gearopt.formulations.relief.parametric import objective
 from gearopt.formulations.relief.rules import short_relief, tip_amounts
+from gearopt.optimise.terms import Array
 from gearopt.physics.geometry.contact import diameters_at
+
+LEAST = 1e-6  # mm: less than that is no relief
 
 
 @dataclass(frozen=True, kw_only=True)
 class FlankRelief:
     """What is removed from the flanks of one gear: a (1 - x/l)^p at x from the tip.
 
-    amount a: normal to the flank, at the tip; length l: on the line of action; diameter and roll
-    angle where it starts, which a grinder needs.
+    amount a: normal to the flank, at the tip; length l: on the line of action; exponent p, None of
+    a shape of its own, which the profile tells; diameter and roll angle where it starts, which a
+    grinder needs.
     """
 
     amount_mm: float
     length_mm: float
-    exponent: float
     start_diameter_mm: float
     start_roll_angle_deg: float
     tip_diameter_mm: float
     tip_roll_angle_deg: float
+    exponent: float | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,11 +45,10 @@ class ReliefRow:
     name: str
     pinion_amount_mm: float
     wheel_amount_mm: float
-    length_mm: float
-    exponent: float
     value: float
     peak_to_peak_mm: Columns
     load_jump: Columns
+    exponent: float | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -66,37 +70,79 @@ class PairRelief:
     rows: tuple[ReliefRow, ...]
 
 
+@dataclass(frozen=True)
+class Removed:
+    """What is removed from both flanks [mm] at the contacts (p, n) of a mesh; 0 where none is.
+
+    lengths [mm] on the line of action; exponent of both, None of a shape of its own.
+    """
+
+    pinion: Array
+    wheel: Array
+    lengths: tuple[float, float]
+    exponent: float | None
+
+    @classmethod
+    def of(cls, mesh: Mesh, reliefs: tuple[Relief, Relief]) -> "Removed":
+        """Return what reliefs by amount, length and exponent remove."""
+        rows = zip(reliefs, mesh.from_tips, strict=True)
+        pinion, wheel = (relief.removed(x) for relief, x in rows)
+        first, second = reliefs
+        lengths = float(first.length), float(second.length)
+        return cls(pinion, wheel, lengths, float(first.exponent))
+
+    @classmethod
+    def of_profile(cls, profile: Profile, removed: Array) -> "Removed":
+        """Return a free shape, of amounts (m,) [mm] at the points of a profile.
+
+        Beyond the middle of the path it is the pinion's, before it the wheel's.
+        """
+        s, middle = profile.points, profile.middle
+        at = np.where(profile.place >= 0, removed[profile.place], 0.0)
+        first = profile.place >= middle
+        rising = np.flatnonzero(removed > LEAST)
+        later, sooner = rising[rising > middle], rising[rising < middle]
+        lengths = (
+            float(s[-1] - s[later[0] - 1]) if len(later) else 0.0,
+            float(s[sooner[-1] + 1] - s[0]) if len(sooner) else 0.0,
+        )
+        return cls(np.where(first, at, 0.0), np.where(first, 0.0, at), lengths, None)
+
+    def separations(self, mesh: Mesh) -> Array:
+        """Return the sum of both at each contact [mm], infinite where there is none."""
+        return np.where(mesh.cycle.present, self.pinion + self.wheel, np.inf)
+
+    def amounts(self, mesh: Mesh) -> tuple[float, float]:
+        """Return what is removed at the tips [mm] of pinion and wheel."""
+        along = mesh.cycle.along
+        return float(along(self.pinion)[-1]), float(along(self.wheel)[0])
+
+
 def described(
-    made: PairMesh,
-    reliefs: tuple[Relief, Relief],
-    minimise: str,
-    loads: Sequence[float],
+    made: PairMesh, removed: Removed, minimise: str, loads: Sequence[float]
 ) -> PairRelief:
-    """Return the relief of a pair, of floats, and rules beside it; loads: it was made for."""
+    """Return the relief of a pair, and rules beside it; loads: it was made for."""
     mesh = made.mesh
-    removed = [
-        mesh.cycle.along(relief.removed(x))
-        for relief, x in zip(reliefs, mesh.from_tips, strict=True)
-    ]
-    pinion, wheel = reliefs
+    beside = {name: Removed.of(mesh, both) for name, both in rules(made).items()}
     return PairRelief(
         minimise=minimise,
         loads=tuple(loads),
-        pinion=_flank(made, 0, pinion),
-        wheel=_flank(made, 1, wheel),
-        pinion_removed_mm=column(removed[0]),
-        wheel_removed_mm=column(removed[1]),
-        at=at_loads(made, mesh.separations(pinion, wheel)),
+        pinion=_flank(made, 0, removed),
+        wheel=_flank(made, 1, removed),
+        pinion_removed_mm=column(mesh.cycle.along(removed.pinion)),
+        wheel_removed_mm=column(mesh.cycle.along(removed.wheel)),
+        at=at_loads(made, removed.separations(mesh)),
         rows=tuple(
-            _row(made, name, both, minimise, loads) for name, both in beside(made, reliefs).items()
+            _row(made, name, one, minimise, loads)
+            for name, one in (beside | {"this": removed}).items()
         ),
     )
 
 
-def beside(made: PairMesh, reliefs: tuple[Relief, Relief]) -> dict[str, tuple[Relief, Relief]]:
-    """Return reliefs by name: none, those of the paper's rule and of the corrected one, the best.
+def rules(made: PairMesh) -> dict[str, tuple[Relief, Relief]]:
+    """Return reliefs by name: none, those of the paper's rule and of the corrected one.
 
-    The rules are made for the load of the duty.
+    They are made for the load of the duty.
     """
     path, coupling = made.mesh.cycle.path, made.mesh.coupling
     printed = tip_amounts(path, made.compliance, 0.0, made.force)
@@ -106,14 +152,13 @@ def beside(made: PairMesh, reliefs: tuple[Relief, Relief]) -> dict[str, tuple[Re
         "paper's rule": short_relief(path, printed),
         "corrected": short_relief(path, right),
         "corrected, linear": short_relief(path, right, 1.0),
-        "this": reliefs,
     }
 
 
-def _flank(made: PairMesh, k: int, relief: Relief) -> FlankRelief:
+def _flank(made: PairMesh, k: int, removed: Removed) -> FlankRelief:
     """Return the relief of the pinion (k = 0) or the wheel in the words of a drawing."""
     path, member = made.mesh.cycle.path, made.elastic.members[k]
-    length = float(relief.length)
+    length = removed.lengths[k]
     start = path.end - length if k == 0 else path.start + length
     tip = path.end if k == 0 else path.start
 
@@ -123,9 +168,9 @@ def _flank(made: PairMesh, k: int, relief: Relief) -> FlankRelief:
 
     (begin, roll), (end, tip_roll) = place(start), place(tip)
     return FlankRelief(
-        amount_mm=float(relief.amount),
+        amount_mm=removed.amounts(made.mesh)[k],
         length_mm=length,
-        exponent=float(relief.exponent),
+        exponent=removed.exponent,
         start_diameter_mm=begin,
         start_roll_angle_deg=roll,
         tip_diameter_mm=end,
@@ -134,21 +179,16 @@ def _flank(made: PairMesh, k: int, relief: Relief) -> FlankRelief:
 
 
 def _row(
-    made: PairMesh,
-    name: str,
-    reliefs: tuple[Relief, Relief],
-    minimise: str,
-    loads: Sequence[float],
+    made: PairMesh, name: str, removed: Removed, minimise: str, loads: Sequence[float]
 ) -> ReliefRow:
     mesh = made.of_loads(loads)
-    found = mesh.criteria(mesh.separations(*reliefs))
-    pinion, wheel = reliefs
+    found = mesh.criteria(removed.separations(mesh))
+    pinion, wheel = removed.amounts(mesh)
     return ReliefRow(
         name=name,
-        pinion_amount_mm=float(pinion.amount),
-        wheel_amount_mm=float(wheel.amount),
-        length_mm=float(pinion.length) if pinion is not NO_RELIEF else 0.0,
-        exponent=float(pinion.exponent),
+        pinion_amount_mm=pinion,
+        wheel_amount_mm=wheel,
+        exponent=removed.exponent,
         value=float(objective(found, minimise)),
         peak_to_peak_mm=column(found.peak_to_peak),
         load_jump=column(found.load_jump),

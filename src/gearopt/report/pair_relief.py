@@ -69,9 +69,8 @@ def answers(found: PairRelief) -> list[str]:
 
 
 def _flank(name: str, flank: FlankRelief) -> str:
-    shape = {1.0: "linearly", 2.0: "as a parabola"}.get(
-        flank.exponent, f"with the exponent {flank.exponent:g}"
-    )
+    known = {None: "as its profile says", 1.0: "linearly", 2.0: "as a parabola"}
+    shape = known.get(flank.exponent) or f"with the exponent {flank.exponent:g}"
     if not flank.amount_mm:
         return f"The {name} keeps its involute."
     return (
@@ -105,9 +104,13 @@ def grinding(found: PairRelief, measures: Measures) -> Table:
             *(Cell(f.tip_roll_angle_deg, f"{f.tip_roll_angle_deg:.3f}") for f in both),
         ],
         [f"length on the path [{length}]", *(cell(f.length_mm, "mm", measures) for f in both)],
-        ["exponent", *(f.exponent for f in both)],
+        ["exponent", *(_power(f.exponent) for f in both)],
     ]
     return Table("relief", ["", "pinion", "wheel"], rows, "What to grind.", across=True)
+
+
+def _power(exponent: float | None) -> Cell:
+    return Cell(exponent, "free" if exponent is None else f"{exponent:g}")
 
 
 def rules(found: PairRelief, measures: Measures) -> Table:
@@ -117,7 +120,7 @@ def rules(found: PairRelief, measures: Measures) -> Table:
     lines: list[list[Any]] = [
         [f"pinion [{micro}]", *(cell(r.pinion_amount_mm, "um", measures) for r in rows)],
         [f"wheel [{micro}]", *(cell(r.wheel_amount_mm, "um", measures) for r in rows)],
-        ["exponent", *(r.exponent for r in rows)],
+        ["exponent", *(_power(r.exponent) for r in rows)],
     ]
     for k, name in enumerate(at):
         values = (cell(r.peak_to_peak_mm[k], "um", measures) for r in rows)

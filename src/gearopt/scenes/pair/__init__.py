@@ -147,6 +147,8 @@ def _unseeded(scene: Scene, method: str | None) -> dict[str, str]:
 def compared(scene: Scene) -> tuple[str, ...]:
     """Return the methods of a comparison that names none."""
     if scene.relief is not None:
+        if scene.relief.free:
+            return ("exact",)
         exact = ("exact",) if scene.relief.minimise in PROVEN else ()
         return (*exact, "annealing", "nsga2")
     return drive.compared(_to_size(scene).drive)

@@ -4,9 +4,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
+from gearopt.errors import SolveError
 from gearopt.formulations.pair_contact import PairMesh
-from gearopt.formulations.pair_relief import PairRelief, described
+from gearopt.formulations.pair_relief import PairRelief, Removed, described
 from gearopt.formulations.relief import parametric
+from gearopt.formulations.relief.free_form import Profile, Shape, free_problem
 from gearopt.formulations.relief.meshing import Mesh
 from gearopt.formulations.relief.parametric import Ranges
 from gearopt.optimise.comparing.runs import Model
@@ -23,6 +25,7 @@ from gearopt.scenes.reading.ask import Ask
 
 SHOWN = {"mm": "mm_as_um"}  # units of criteria as they are read
 DEFAULT = "annealing"  # of what has no proven search
+FEW = 2.0  # contact ratio below which free shapes are searched
 UNPROVEN = "only the peak-to-peak transmission error has a proven search: of this there is no bound"
 KEYS = {"amount": "relief.amount", "length": "relief.length"}  # of variables: their places
 
@@ -37,29 +40,61 @@ def relieved(scene: Scene, made: PairMesh, ask: Ask) -> tuple[Result, PairRelief
     """Return the result of the search for the best relief, and the relief that it found."""
     asked = scene.relief
     assert asked
+    if asked.free:
+        result, removed = _free(asked, made.of_loads(loads_of(scene)), ask)
+    else:
+        result, removed = _parametric(scene, made, ask)
+    if removed is None:
+        return result, None
+    return result, described(made, removed, asked.minimise, loads_of(scene))
+
+
+def _parametric(scene: Scene, made: PairMesh, ask: Ask) -> tuple[Result, Removed | None]:
+    """Return the best amounts and lengths; where they are given, what these do."""
+    asked = scene.relief
+    assert asked
     mesh, ranges = _meshed(scene, made)
     problem = _problem(asked, mesh, ranges)
-    unit = _unit(asked.minimise)
     if asked.given:
         point = problem.bounds()[0]
-        result = evaluate(problem, point)
-        result = replace(result, objective=result.objective | {"unit": unit})
-        return result, at_point(scene, made, ranges, point)
+        result = _united(evaluate(problem, point), asked.minimise)
+        return result, Removed.of(mesh, parametric.at_point(point, ranges))
     method = ask.method or ("exact" if "exact" in problem.methods else DEFAULT)
     result, outcome = run(problem, method, ask.budget, ask.seed, ask.watch, ask.gap)
-    result = replace(result, objective=result.objective | {"unit": unit})
+    result = _united(result, asked.minimise)
     if result.value is None or outcome.x is None:
         return result, None
     if "exact" not in problem.methods:
         result = replace(result, message=UNPROVEN)
-    return result, at_point(scene, made, ranges, outcome.x)
+    return result, Removed.of(mesh, parametric.at_point(outcome.x, ranges))
 
 
-def at_point(scene: Scene, made: PairMesh, ranges: Ranges, x: Array) -> PairRelief:
-    """Return the relief of a point of the problem."""
-    assert scene.relief
-    reliefs = parametric.at_point(x, ranges)
-    return described(made, reliefs, scene.relief.minimise, loads_of(scene))
+def _free(asked: ReliefTable, mesh: Mesh, ask: Ask) -> tuple[Result, Removed | None]:
+    """Return the best relief of any convex shape."""
+    problem = _free_problem(asked, mesh)
+    result, outcome = run(problem, ask.method, ask.budget, ask.seed, ask.watch, ask.gap)
+    result = _united(result, asked.minimise)
+    if result.value is None or outcome.x is None:
+        return result, None
+    profile = Profile(mesh, Shape(asked.amount[1].value))
+    return result, Removed.of_profile(profile, outcome.x)
+
+
+def _free_problem(asked: ReliefTable, mesh: Mesh) -> Problem:
+    """Return the problem of any convex shape; SolveError where it has none."""
+    if float(mesh.cycle.path.transverse_ratio) >= FEW:
+        raise SolveError(
+            'a free shape is searched for contact ratios below 2: write shape = "linear", or '
+            "another one, in [relief]"
+        )
+    made = free_problem(mesh, Shape(asked.amount[1].value))
+    keyed = tuple(replace(v, key=KEYS["amount"]) for v in made.variables)
+    return replace(made, variables=keyed)
+
+
+def _united(result: Result, minimise: str) -> Result:
+    """Return a result with the unit of its criterion."""
+    return replace(result, objective=result.objective | {"unit": _unit(minimise)})
 
 
 def _meshed(scene: Scene, made: PairMesh) -> tuple[Mesh, Ranges]:
@@ -98,12 +133,20 @@ def model(scene: Scene, made: PairMesh) -> Model:
     """Return the problem that a method solves."""
     assert scene.relief
     unit = _unit(scene.relief.minimise)
+    if scene.relief.free:
+        problem = _free_problem(scene.relief, made.of_loads(loads_of(scene)))
+        return Model(problem, "Relief of any convex shape", unit)
     problem = _problem(scene.relief, *_meshed(scene, made))
     return Model(problem, "Amounts and lengths of relief of both gears", unit)
 
 
 def objectives(scene: Scene) -> dict[str, str]:
-    """Return what a front of reliefs may minimise: the worst of all loads, or at one of them."""
+    """Return what a front of reliefs may minimise: the worst of all loads, or at one of them.
+
+    A free shape has no front.
+    """
+    if scene.relief and scene.relief.free:
+        return {}
     return {name: _unit(own.partition("[")[0]) for name, own in _named(scene).items()}
 
 
@@ -120,17 +163,20 @@ def _named(scene: Scene) -> dict[str, str]:
 
 def several(scene: Scene, made: PairMesh, names: Sequence[str]) -> Several:
     """Return the problem of a front of reliefs."""
-    assert scene.relief
+    asked = scene.relief
+    assert asked
     mesh, ranges = _meshed(scene, made)
     units, known = objectives(scene), _named(scene)
 
     def drawn(x: Array) -> dict[str, Any]:
-        found: dict[str, Any] = untyped(at_point(scene, made, ranges, x))
+        removed = Removed.of(mesh, parametric.at_point(x, ranges))
+        relief = described(made, removed, asked.minimise, loads_of(scene))
+        found: dict[str, Any] = untyped(relief)
         return found
 
     listed = tuple(Objective(name, units[name]) for name in names)
     chosen = {name: known[name] for name in names}
-    return Several(_problem(scene.relief, mesh, ranges, chosen), listed, drawn)
+    return Several(_problem(asked, mesh, ranges, chosen), listed, drawn)
 
 
 def _unit(name: str) -> str:

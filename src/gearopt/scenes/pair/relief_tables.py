@@ -13,7 +13,8 @@ from gearopt.scenes.reading.lists import span, word_or
 from gearopt.units import Quantity
 
 SHAPES = {"linear": 1.0, "parabolic": 2.0}  # exponents
-SHAPE = word_or(tuple(SHAPES), number(1.5, 1, 10))
+FREE = "free"
+SHAPE = word_or((*SHAPES, FREE), number(1.5, 1, 10))
 AMOUNT = span(quantity("length", "30 um", "1 mm", zero=True), ["0 um", "30 um"], single=True)
 LENGTH = span(number(0.6, 0, 10), [0.1, 0.8], single=True)
 AIM = choice(*OBJECTIVES, means={"transmission_error": "peak_to_peak"})
@@ -37,7 +38,8 @@ class ReliefTable(Table):
     )
     shape: Annotated[str | Fraction, SHAPE] = Field(
         "linear",
-        description="How it grows towards the tip: linear, parabolic, or an exponent from 1 on",
+        description="How it grows towards the tip: linear, parabolic, an exponent from 1 on, or "
+        "free: any convex shape, point by point (for peak_to_peak)",
     )
     amount: Annotated[tuple[Quantity, Quantity], AMOUNT] = Field(
         default_factory=_amounts,
@@ -52,6 +54,11 @@ class ReliefTable(Table):
     )
 
     @property
+    def free(self) -> bool:
+        """Return whether the shape is chosen, too."""
+        return self.shape == FREE
+
+    @property
     def exponent(self) -> float:
         """Return the exponent of the shape."""
         return SHAPES[self.shape] if isinstance(self.shape, str) else float(self.shape)
@@ -64,7 +71,16 @@ class ReliefTable(Table):
         )
 
     @model_validator(mode="after")
-    def _loaded(self) -> "ReliefTable":
+    def _fits(self) -> "ReliefTable":
         if self.loads is not None and not any(self.loads):
             raise refuse("is no load at all", [1], ("loads",), "sample")
+        if self.free and self.minimise != "peak_to_peak":
+            rule = "is no criterion of a free shape, which peak_to_peak alone has a search for"
+            raise refuse(rule, "peak_to_peak", ("minimise",))
+        if self.free and self.length is not None:
+            rule = "changes nothing: a free shape has no length"
+            raise refuse(rule, at=("length",), action="remove")
+        if self.free and self.amount[0].number != 0:
+            rule = "has an end above zero: a free shape takes off anything from nothing on"
+            raise refuse(rule, ["0 um", str(self.amount[1])], ("amount",))
         return self
