@@ -25,6 +25,7 @@ MICRO = 1e3  # um a mm: amounts of relief are numbers of size 1 there
 ROUNDING = 1e-9  # um: taken off every bound
 GAP = 5e-7  # relative; where no gap is asked for: within 1e-6, rounding included
 FAR = 1e6  # mm: of a pair that is not in contact from the tips
+TINY = 1e-300  # um
 TOLD = 256  # boxes between two words to the watcher
 RANDOM = False
 COUNTS = "box bounded"
@@ -151,9 +152,9 @@ def _allowed(made: Numbers, goal: Goal, clock: Clock) -> tuple[Array, float] | O
         clock.evaluations += 1
         if goal.used(peaks) <= 1.0:
             return point, goal.value(peaks)
-        halves = _halves(made, low, high) if least < 1.0 else ()
-        proof &= least >= 1.0 or bool(halves)
-        for ends in halves:
+        parts = halves(made, low, high) if least < 1.0 else ()
+        proof &= least >= 1.0 or bool(parts)
+        for ends in parts:
             turn += 1
             heapq.heappush(boxes, (least, turn, *ends))
     sentence = {"method": "boxes", "boxes": clock.evaluations, "sentence": EMPTY}
@@ -163,10 +164,15 @@ def _allowed(made: Numbers, goal: Goal, clock: Clock) -> tuple[Array, float] | O
     return Outcome(None, infeasible=True, proof=sentence, evaluations=spent, message=EMPTY)
 
 
-def _halves(made: Numbers, low: Array, high: Array) -> tuple[tuple[Array, Array], ...]:
-    """Return the halves of a box along its relatively longest side; none of a point."""
+def halves(made: Numbers, low: Array, high: Array) -> tuple[tuple[Array, Array], ...]:
+    """Return the halves of a box along the side that matters most; none of a point.
+
+    Sides are measured by their ranges, those of lengths times the part of the amount they shape.
+    """
     width = np.where(made.high > made.low, made.high - made.low, np.inf)
-    side = int(np.argmax((high - low) / width))
+    parts = (high - low) / width
+    parts[1::2] *= high[::2] / np.maximum(made.high[::2], TINY)
+    side = int(np.argmax(parts))
     middle = 0.5 * (low[side] + high[side])
     if not low[side] < middle < high[side]:
         return ()
@@ -193,10 +199,10 @@ def _searched(
         clock.bound = -np.inf if goal.limited else min(least, floor, best) / MICRO
         if clock.evaluations % TOLD < 2 and not clock.tell():
             return point, min(least, floor, best), False
-        halves = _halves(made, low, high)
-        if not halves and (low < high).any():
+        parts = halves(made, low, high)
+        if not parts and (low < high).any():
             floor = 0.0 if goal.limited else min(floor, least)
-        for ends in halves:
+        for ends in parts:
             found, x, peaks = made.bound(goal.weights(best * part), *ends, best * part)
             clock.evaluations += 1
             if (value := goal.value(peaks)) < best:
