@@ -8,8 +8,10 @@ import pytest
 from reference_pairs import elastic, five, force, stiffness
 from test_ladder import ELEMENTS
 
+from gearopt.physics.gears import GearPair, Rack
 from gearopt.physics.tooth import finite_elements
 from gearopt.physics.tooth.beam import profile_compliance
+from gearopt.physics.tooth.elastic import ElasticPair
 from gearopt.physics.tooth.finite_elements import (
     compliance_matrix,
     coupling,
@@ -152,6 +154,21 @@ def _mean_of_sides(pair, load, at):
         under = each.pressed(near, half_width(pair, np.array([at]), load))
         total += 0.5 * sum(each.moved(under, tooth, next_)[0] for tooth in (1, -1))
     return total / pair.pair.face_width
+
+
+@pytest.mark.slow
+def test_three_pairs_in_contact():
+    """A contact ratio of 2.15: neighbours are coupled more than those two teeth apart."""
+    tall = GearPair.of_teeth(
+        3.0, 40, 50, 30.0, rack=Rack(addendum=1.3, dedendum=1.6, tip_radius=0.2)
+    )
+    pair = ElasticPair(tall, (40.0, 50.0))
+    assert pair.path.transverse_ratio > 2.0
+    matrix = compliance_matrix(pair, pair.path.start + 0.05, 5000.0)
+    assert matrix.shape == (3, 3)
+    assert matrix == pytest.approx(matrix.T, rel=2e-3)
+    assert np.linalg.eigvalsh(0.5 * (matrix + matrix.T)).min() > 0.0
+    assert COUPLINGS["ring torsion"](pair) < matrix[0, 2] < matrix[0, 1] < matrix[0, 0]
 
 
 @pytest.mark.slow

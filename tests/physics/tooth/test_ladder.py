@@ -1,14 +1,18 @@
 """Every level at five positions of two pairs, against another program and its finite elements."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from reference_pairs import elastic, five, force, stiffness
 
+from gearopt.physics.gears import GearPair
 from gearopt.physics.iso6336.stiffness import (
     PER_MICROMETRE,
     mesh_stiffness,
     theoretical_stiffness,
 )
+from gearopt.physics.tooth.elastic import ElasticPair
 from gearopt.physics.tooth.foundation import SAINSOT
 from gearopt.physics.tooth.ladder import LEVELS
 
@@ -113,3 +117,44 @@ def test_a_light_load_has_a_stiffer_slope_only_by_a_logarithm():
     steps = np.diff(at)
     soft = 2.0 * np.log(10.0) * (1.0 - 0.3**2) / (np.pi * 206000.0 * 30.0)
     assert steps == pytest.approx([-soft, -soft], rel=1e-9)
+
+
+ANY = [
+    pytest.param(name, marks=pytest.mark.slow) if level.tooth == "elements" else name
+    for name, level in LEVELS.items()
+]
+METALS = (206000.0, 110000.0), (0.3, 0.34)  # steel and bronze
+
+
+@pytest.mark.parametrize("level", ANY)
+def test_either_gear_may_be_called_the_pinion(level):
+    """The same contact, with gears, bores and metals exchanged and s counted the other way."""
+    (e1, e2), (nu1, nu2) = METALS
+    pair = GearPair.of_teeth(4.0, 18, 40, 40.0, profile_shifts=(0.3, -0.1))
+    turned = GearPair.of_teeth(4.0, 40, 18, 40.0, profile_shifts=(-0.1, 0.3))
+    one = ElasticPair(pair, (36.0, 80.0), (e1, e2), (nu1, nu2))
+    other = ElasticPair(turned, (80.0, 36.0), (e2, e1), (nu2, nu1))
+    s = np.array([-6.0, 0.0, 5.0])
+    compliance = LEVELS[level].compliance
+    assert compliance(other, -s, 9e3) == pytest.approx(compliance(one, s, 9e3), rel=1e-6)
+
+
+@pytest.mark.parametrize("level", ANY)
+def test_gears_of_twice_the_size_are_as_stiff_per_face_width(level):
+    """Under the same pressure, so four times the force, whatever the lengths are counted in."""
+    small = elastic("reference")
+    large = ElasticPair(GearPair.of_teeth(6.0, 25, 50, 60.0), (60.0, 100.0))
+    s, load = five(small), force("reference")
+    compliance = LEVELS[level].compliance
+    known = stiffness(compliance(small, s, load), small)
+    assert stiffness(compliance(large, 2.0 * s, 4.0 * load), large) == pytest.approx(known)
+
+
+@pytest.mark.parametrize("level", ANY)
+def test_softer_metals_give_way_in_proportion(level):
+    """Half the modulus of both at half the load: the same shape twice as deep per unit of load."""
+    steel = elastic("second")
+    soft = replace(steel, moduli=(103000.0, 103000.0))
+    s, load = five(steel), force("second")
+    compliance = LEVELS[level].compliance
+    assert compliance(soft, s, 0.5 * load) == pytest.approx(2.0 * compliance(steel, s, load))

@@ -67,7 +67,15 @@ def test_series_to_rounding_from_a_wide_tip_to_a_point():
 
 @pytest.mark.parametrize(
     ("ratio", "lost"),
-    [(0.36, 1e-15), (0.99, 8e-10), (0.9999, 6e-4), (1.0 - 1e-6, 0.34), (1.0 - 1e-8, 1e9)],
+    [
+        (0.36, 1e-15),
+        (0.9, 1e-12),
+        (0.99, 8e-10),
+        (0.999, 3e-7),
+        (0.9999, 6e-4),
+        (1.0 - 1e-6, 0.34),
+        (1.0 - 1e-8, 1e9),
+    ],
 )
 def test_the_printed_form_loses_all_digits_near_a_parallel_sided_tooth(ratio, lost):
     shape = 6.0, 6.0 * ratio, 6.3, 1.2, 4.0

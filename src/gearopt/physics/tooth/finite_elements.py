@@ -15,11 +15,12 @@ import numpy as np
 
 from gearopt.physics.tooth.elastic import ElasticGear, ElasticPair
 from gearopt.physics.tooth.hertz import half_width
-from gearopt.physics.tooth.mesh import Fineness, GearMesh, gear_mesh
+from gearopt.physics.tooth.mesh import TEETH, Fineness, GearMesh, gear_mesh
 
 PER_HALF_WIDTH = 3.0  # elements: halving all of them changes a stiffness by less than 1e-3
 FINEST = 0.01  # modules: no element is smaller, however light the load
 WIDE = 0.04  # modules: half a contact under a load that teeth of steel may carry
+MESHED = TEETH // 2 + 1  # pairs of teeth in contact
 AT_ONCE = 64  # loads, each of which takes a column of all dofs
 PRESSED = 64  # points at which the pressure of a contact acts
 EXTRA = "finite elements of teeth need scikit-fem: pip install 'gearopt[fem]'"
@@ -211,13 +212,16 @@ def compliance_matrix(
     """Return C (n, n) [mm/N] of all n pairs of teeth that touch with one pair at a position.
 
     Pairs in the order of their positions s, one base pitch apart; C_ij: how far pair i gives way
-    under a unit force on pair j, pressed as `force` [N] on each would.
+    under a unit force on pair j, pressed as `force` [N] on each would. ValueError for more than 3
+    pairs, as two teeth on either side of the loaded one are meshed.
     """
     path = elastic.path
     steps = np.arange(
         np.ceil((path.start - position) / path.base_pitch - 1e-9),
         np.floor((path.end - position) / path.base_pitch + 1e-9) + 1.0,
     )
+    if len(steps) > MESHED:
+        raise ValueError(f"{len(steps)} pairs of teeth touch: finite elements mesh {MESHED}")
     places = position + steps * path.base_pitch
     wide, lost = _pressed_widths(elastic, places, force)
     found = np.zeros((len(places), len(places)))
