@@ -166,7 +166,7 @@ def test_before_and_after_stand_side_by_side_on_one_clock():
     assert [d.caption for d in made.row.drawings] == ["Before", "After"]
     names = [name for name, _ in made.told]
     assert names[0] == "pair 1 at s" and "after: share of pair 2" in names
-    assert dict(made.told)["before: transmission error"] == "0.20 mil"
+    assert dict(made.told)["before: transmission error"] == "0.1969 mil"
     place = made.readings[0].text(0)
     assert place == f"{-7.7700 / 25.4:.3f} in"
     assert len(made.data["bodies"]) == 2 * 8

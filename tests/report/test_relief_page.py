@@ -13,6 +13,7 @@ from gearopt.physics.gears import GearPair
 from gearopt.physics.tooth.elastic import ElasticPair
 from gearopt.report.measures import INCH, METRIC
 from gearopt.report.pages.result import sections
+from gearopt.report.pair_relief import grinding
 from gearopt.report.pair_sections import moving
 from gearopt.report.relief_plots import diameter_at, harmonics, profiles, removed, steps
 
@@ -84,6 +85,17 @@ def test_what_is_ground_is_told_by_roll_angle_and_diameter(relieved):
     texts = [cell.text for cell in pinion.shown[1][-1]]
     assert texts == ["81.000", f"{math.degrees(tip):.3f}", "12.00"]
     assert pinion.csv().splitlines()[0] == "diameter [mm],roll angle [°],removed [µm]"
+
+
+def test_in_inches_every_number_to_grind_is_in_inches(relieved):
+    _, relief = relieved
+    table = grinding(relief, INCH)
+    rows = {row[0]: row[1:] for row in table.values[1]}
+    assert rows["tip diameter [in]"] == pytest.approx([81.0 / 25.4, 156.0 / 25.4])
+    starts = [relief.pinion.start_diameter_mm / 25.4, relief.wheel.start_diameter_mm / 25.4]
+    assert rows["starts at diameter [in]"] == pytest.approx(starts)
+    last = steps(relief, PAIR, INCH)[0].shown[1][-1]
+    assert [cell.text for cell in last][::2] == ["3.1890", "0.4724"]  # in, mil
 
 
 def test_the_plot_of_a_flank_has_both_axes_alike(relieved):

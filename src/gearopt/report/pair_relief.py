@@ -89,7 +89,7 @@ def grinding(found: PairRelief, measures: Measures) -> Table:
         [f"amount at the tip [{micro}]", *(cell(f.amount_mm, "um", measures) for f in both)],
         [
             f"starts at diameter [{length}]",
-            *(Cell(f.start_diameter_mm, f"{f.start_diameter_mm:.3f}") for f in both),
+            *(_diameter(f.start_diameter_mm, measures) for f in both),
         ],
         [
             "starts at roll angle [°]",
@@ -97,7 +97,7 @@ def grinding(found: PairRelief, measures: Measures) -> Table:
         ],
         [
             f"tip diameter [{length}]",
-            *(Cell(f.tip_diameter_mm, f"{f.tip_diameter_mm:.3f}") for f in both),
+            *(_diameter(f.tip_diameter_mm, measures) for f in both),
         ],
         [
             "roll angle at the tip [°]",
@@ -111,6 +111,11 @@ def grinding(found: PairRelief, measures: Measures) -> Table:
 
 def _power(exponent: float | None) -> Cell:
     return Cell(exponent, "free" if exponent is None else f"{exponent:g}")
+
+
+def _diameter(value: float, measures: Measures) -> Cell:
+    """Return a diameter as it is measured: to a micrometre."""
+    return Cell(measures.of(value, "mm"), measures.length(value, 3))
 
 
 def rules(found: PairRelief, measures: Measures) -> Table:

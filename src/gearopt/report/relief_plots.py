@@ -76,14 +76,14 @@ def _table(member: str, flank: FlankRelief, base: float, measures: Measures) -> 
         *(f"diameter [{measures.unit('mm')}]", "roll angle [°]"),
         f"removed [{measures.unit('um')}]",
     )
-    rows = []
+    rows, fine = [], 2 + 2 * measures.digits  # decimals of a micrometre, or of a mil
     for roll in _rolls(flank, STEPS):
         off = float(removed(flank, roll))
         rows.append(
             [
                 Cell(*_length(float(diameter_at(base, roll)), measures)),
                 Cell(float(roll), f"{roll:.3f}"),
-                Cell(measures.of(off, "um"), f"{measures.of(off, 'um'):.2f}"),
+                Cell(measures.of(off, "um"), f"{measures.of(off, 'um'):.{fine}f}"),
             ]
         )
     return Table(f"{member} profile", heads, rows, f"Flanks of the {member}.", left=0)

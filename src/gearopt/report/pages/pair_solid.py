@@ -27,7 +27,7 @@ FLAT = 1e-3  # mm: thickness of a circle on a face in the still
 COLOURS = (1, 4)  # of pinion and wheel, in the series
 CAPTION = (
     f"{TURN} Involute and fillet as the tools cut them, thinned by 3 % of half a pitch so that the "
-    "flanks are seen apart; shafts as thick as the bores."
+    "flanks are seen apart."
 )
 
 
@@ -52,7 +52,8 @@ def figure(pair: GearPair, bodies: tuple[Body, Body], measures: Measures) -> Fig
     solids = [solid for row in rows for solid in _solids(*row)]
     texts = Texts(sizes_of((low, high), "xyz", measures), [(m, _colour(m)) for m in MEMBERS])
     drawn = still(solids, (low, high), view(), texts, "the pair in space")
-    return Figure(traces, space(low, high, measures, 560), CAPTION, drawn)
+    words = f"{CAPTION} Shafts are as thick as the bores." if start < 0.0 else CAPTION
+    return Figure(traces, space(low, high, measures, 560), words, drawn)
 
 
 def _colour(member: str) -> str:
