@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from gearopt.formulations.pair_contact import PairMesh, contact
-from gearopt.formulations.pair_relief import described
+from gearopt.formulations.pair_relief import Removed, described
 from gearopt.formulations.relief.meshing import Relief
 from gearopt.physics.gears import GearPair
 from gearopt.physics.tooth.elastic import ElasticPair
@@ -15,20 +15,20 @@ from gearopt.report.measures import INCH, METRIC
 from gearopt.report.pages.result import sections
 from gearopt.report.pair_relief import grinding
 from gearopt.report.pair_sections import moving
-from gearopt.report.relief_plots import diameter_at, harmonics, profiles, removed, steps
+from gearopt.report.relief_plots import diameter_at, flanks, harmonics, profile, steps
 
 PAIR = GearPair.of_teeth(3.0, 25, 50, 30.0)
 LOADS = (0.6, 1.0, 1.25)
-RELIEFS = Relief(12e-3, 5.0, 2.0), Relief(10e-3, 4.0)  # mm
+RELIEFS = Relief(12e-3, 5.0, 2.0), Relief(10e-3, 4.0, 2.0)  # mm
 
 
 @pytest.fixture(scope="module")
 def relieved():
-    """The reference pair at three loads, parabolic relief on the pinion, linear on the wheel."""
+    """The reference pair at three loads, parabolic relief on both gears."""
     elastic = ElasticPair(PAIR, (30.0, 50.0))
     made = PairMesh.of(elastic, "profile + Sainsot", 2e5, 7.84e-7, 24, LOADS)
     found = contact(made, "given", (13308.6, 20127.6), ())
-    return found, described(made, RELIEFS, "peak_to_peak", (0.6, 1.0))
+    return found, described(made, Removed.of(made.mesh, RELIEFS), "peak_to_peak", (0.6, 1.0))
 
 
 def test_before_and_after_are_side_by_side_and_in_every_plot(relieved):
@@ -58,7 +58,7 @@ def test_dots_are_there_only_where_a_pair_carries(relieved):
     deep = Relief(60e-3, 5.0), Relief(60e-3, 5.0)
     elastic = ElasticPair(PAIR, (30.0, 50.0))
     made = PairMesh.of(elastic, "profile + Sainsot", 2e5, 7.84e-7, 24, LOADS)
-    relief = described(made, deep, "peak_to_peak", (1.0,))
+    relief = described(made, Removed.of(made.mesh, deep), "peak_to_peak", (1.0,))
     (moves,) = moving(found, relief, PAIR, METRIC).animations
     dots = [body for body in moves.views[1].front if body.title.endswith("pair 2")][0]
     there = np.isfinite(np.asarray(dots.places)[:, 0])
@@ -69,8 +69,7 @@ def test_dots_are_there_only_where_a_pair_carries(relieved):
 
 def test_what_is_ground_is_told_by_roll_angle_and_diameter(relieved):
     """Rolling angles by the involute itself: length of the tangent over the base radius."""
-    _, relief = relieved
-    pinion, wheel = steps(relief, PAIR, METRIC)
+    pinion, wheel = (steps(flank, METRIC) for flank in flanks(*relieved, PAIR))
     base = 75.0 * math.cos(math.radians(20.0))
     tip = math.sqrt(81.0**2 - base**2) / base
     start = tip - 5.0 / (0.5 * base)
@@ -81,7 +80,7 @@ def test_what_is_ground_is_told_by_roll_angle_and_diameter(relieved):
     assert first == pytest.approx([base * math.hypot(1.0, start), math.degrees(start), 0.0])
     assert rows[5][2] == pytest.approx(12.0 / 4.0)  # a parabola half way
     _, rows = wheel.values
-    assert rows[-1][0] == pytest.approx(156.0) and rows[5][2] == pytest.approx(5.0)
+    assert rows[-1][0] == pytest.approx(156.0) and rows[5][2] == pytest.approx(10.0 / 4.0)
     texts = [cell.text for cell in pinion.shown[1][-1]]
     assert texts == ["81.000", f"{math.degrees(tip):.3f}", "12.00"]
     assert pinion.csv().splitlines()[0] == "diameter [mm],roll angle [°],removed [µm]"
@@ -94,13 +93,14 @@ def test_in_inches_every_number_to_grind_is_in_inches(relieved):
     assert rows["tip diameter [in]"] == pytest.approx([81.0 / 25.4, 156.0 / 25.4])
     starts = [relief.pinion.start_diameter_mm / 25.4, relief.wheel.start_diameter_mm / 25.4]
     assert rows["starts at diameter [in]"] == pytest.approx(starts)
-    last = steps(relief, PAIR, INCH)[0].shown[1][-1]
+    last = steps(flanks(*relieved, PAIR)[0], INCH).shown[1][-1]
     assert [cell.text for cell in last][::2] == ["3.1890", "0.4724"]  # in, mil
 
 
 def test_the_plot_of_a_flank_has_both_axes_alike(relieved):
     _, relief = relieved
-    for k, figure in enumerate(profiles(relief, PAIR, METRIC)):
+    for k, one in enumerate(flanks(*relieved, PAIR)):
+        figure = profile(one, METRIC)
         across, above = figure.layout["xaxis"], figure.layout["xaxis2"]
         assert above["matches"] == "x" and above["overlaying"] == "x"
         base = float(PAIR.gears[k].base_diameter)
@@ -116,20 +116,28 @@ def test_the_plot_of_a_flank_has_both_axes_alike(relieved):
 
 
 def test_a_gear_that_keeps_its_involute_has_no_profile_to_grind(relieved):
-    _, relief = relieved
+    found, relief = relieved
     kept = replace(relief, wheel=replace(relief.wheel, amount_mm=0.0, length_mm=0.0))
-    assert len(profiles(kept, PAIR, METRIC)) == len(steps(kept, PAIR, METRIC)) == 1
+    assert [flank.member for flank in flanks(found, kept, PAIR)] == ["pinion"]
+
+
+def test_a_shape_of_its_own_is_told_by_its_points(relieved):
+    """The columns of the path say what is removed: here those of parabolas."""
+    found, relief = relieved
+    told = (replace(flank, exponent=None) for flank in (relief.pinion, relief.wheel))
+    free = replace(relief, **dict(zip(("pinion", "wheel"), told, strict=True)))
+    for one, other in zip(flanks(found, free, PAIR), flanks(found, relief, PAIR), strict=True):
+        rolls = other.at(40)
+        assert one.removed(rolls) == pytest.approx(other.removed(rolls), abs=6e-5)
+        assert "convex" in profile(one, METRIC).caption
+        assert steps(one, METRIC).values[1][-1][2] == pytest.approx(1e3 * one.told.amount_mm)
 
 
 def test_what_is_removed_agrees_with_the_columns_of_the_path(relieved):
     found, relief = relieved
-    rows = (
-        (relief.pinion, found.pinion_roll_angle_deg, relief.pinion_removed_mm),
-        (relief.wheel, found.wheel_roll_angle_deg, relief.wheel_removed_mm),
-    )
-    for (flank, rolls, columns), gear in zip(rows, PAIR.gears, strict=True):
-        assert removed(flank, rolls) == pytest.approx(columns, abs=1e-9)
-        assert diameter_at(float(gear.base_diameter), flank.tip_roll_angle_deg) == pytest.approx(
+    for flank, gear in zip(flanks(found, relief, PAIR), PAIR.gears, strict=True):
+        assert flank.removed(flank.rolls) == pytest.approx(flank.listed, abs=1e-9)
+        assert diameter_at(flank.base, flank.told.tip_roll_angle_deg) == pytest.approx(
             float(gear.tip_diameter)
         )
 

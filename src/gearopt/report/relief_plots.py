@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -25,40 +26,47 @@ HEARD = (
 )
 
 
-def profiles(relief: PairRelief, pair: GearPair, measures: Measures) -> list[Figure]:
-    """Plot what is ground off the flanks of each gear, if anything, against its roll angle."""
-    return [
-        _profile(member, flank, base, k, measures)
-        for k, (member, flank, base) in enumerate(_flanks(relief, pair))
-        if flank.amount_mm
-    ]
+@dataclass(frozen=True)
+class Flank:
+    """The flanks of one gear: their relief, base diameter [mm], and columns along the path.
 
-
-def steps(relief: PairRelief, pair: GearPair, measures: Measures) -> list[Table]:
-    """List what is ground off the flanks of each gear, if anything, from start to tip."""
-    return [
-        _table(member, flank, base, measures)
-        for member, flank, base in _flanks(relief, pair)
-        if flank.amount_mm
-    ]
-
-
-def _flanks(relief: PairRelief, pair: GearPair) -> list[tuple[str, FlankRelief, float]]:
-    """Return members, their reliefs, and their base diameters [mm]."""
-    bases = (float(gear.base_diameter) for gear in pair.gears)
-    return list(zip(MEMBERS, (relief.pinion, relief.wheel), bases, strict=True))
-
-
-def removed(flank: FlankRelief, roll: Any) -> Any:
-    """Return what is removed [mm] at roll angles [deg] of a flank, 0 where it is not relieved.
-
-    amount (1 - x/length)^exponent at x from the tip on the line of action, along which roll angles
-    grow evenly.
+    rolls [deg] and listed [mm]: roll angles and what is removed there.
     """
-    share = (np.asarray(roll) - flank.start_roll_angle_deg) / (
-        flank.tip_roll_angle_deg - flank.start_roll_angle_deg
-    )
-    return flank.amount_mm * np.maximum(share, 0.0) ** flank.exponent
+
+    member: str
+    told: FlankRelief
+    base: float
+    rolls: Sequence[float]
+    listed: Sequence[float]
+
+    def removed(self, roll: Any) -> Any:
+        """Return what is removed [mm] at roll angles [deg], 0 where there is no relief.
+
+        amount (1 - x/length)^exponent at x from the tip on the line of action, along which roll
+        angles grow evenly; of a shape of its own between the points that are listed.
+        """
+        told = self.told
+        if told.exponent is None:
+            order = np.argsort(self.rolls)
+            return np.interp(roll, np.asarray(self.rolls)[order], np.asarray(self.listed)[order])
+        share = (np.asarray(roll) - told.start_roll_angle_deg) / (
+            told.tip_roll_angle_deg - told.start_roll_angle_deg
+        )
+        return told.amount_mm * np.maximum(share, 0.0) ** told.exponent
+
+    def at(self, count: int) -> Any:
+        """Return roll angles [deg] from where the relief starts to the tip, in equal steps."""
+        return np.linspace(self.told.start_roll_angle_deg, self.told.tip_roll_angle_deg, count + 1)
+
+
+def flanks(found: PairContact, relief: PairRelief, pair: GearPair) -> list[Flank]:
+    """Return the flanks of both gears that are ground."""
+    bases = (float(gear.base_diameter) for gear in pair.gears)
+    told = (relief.pinion, relief.wheel)
+    rolls = (found.pinion_roll_angle_deg, found.wheel_roll_angle_deg)
+    listed = (relief.pinion_removed_mm, relief.wheel_removed_mm)
+    rows = zip(MEMBERS, told, bases, rolls, listed, strict=True)
+    return [Flank(*row) for row in rows if row[1].amount_mm]
 
 
 def diameter_at(base: float, roll: Any) -> Any:
@@ -66,27 +74,24 @@ def diameter_at(base: float, roll: Any) -> Any:
     return base * np.hypot(1.0, np.radians(roll))
 
 
-def _rolls(flank: FlankRelief, count: int) -> Any:
-    return np.linspace(flank.start_roll_angle_deg, flank.tip_roll_angle_deg, count + 1)
-
-
-def _table(member: str, flank: FlankRelief, base: float, measures: Measures) -> Table:
-    """List a relief from its start to the tip, in equal steps of the roll angle."""
+def steps(flank: Flank, measures: Measures) -> Table:
+    """List what is ground off, from where the relief starts to the tip."""
     heads = (
         *(f"diameter [{measures.unit('mm')}]", "roll angle [°]"),
         f"removed [{measures.unit('um')}]",
     )
     rows, fine = [], 2 + 2 * measures.digits  # decimals of a micrometre, or of a mil
-    for roll in _rolls(flank, STEPS):
-        off = float(removed(flank, roll))
+    for roll in flank.at(STEPS):
+        off = measures.of(float(flank.removed(roll)), "um")
         rows.append(
             [
-                Cell(*_length(float(diameter_at(base, roll)), measures)),
+                Cell(*_length(float(diameter_at(flank.base, roll)), measures)),
                 Cell(float(roll), f"{roll:.3f}"),
-                Cell(measures.of(off, "um"), f"{measures.of(off, 'um'):.{fine}f}"),
+                Cell(off, f"{off:.{fine}f}"),
             ]
         )
-    return Table(f"{member} profile", heads, rows, f"Flanks of the {member}.", left=0)
+    name = flank.member
+    return Table(f"{name} profile", heads, rows, f"Flanks of the {name}.", left=0)
 
 
 def _length(value: float, measures: Measures) -> tuple[float, str]:
@@ -94,19 +99,19 @@ def _length(value: float, measures: Measures) -> tuple[float, str]:
     return measures.of(value, "mm"), measures.length(value, 3)
 
 
-def _profile(member: str, flank: FlankRelief, base: float, k: int, measures: Measures) -> Figure:
-    """Plot what is removed from a flank against the roll angle, with diameters above."""
-    start, tip = flank.start_roll_angle_deg, flank.tip_roll_angle_deg
-    low = start - 0.35 * (tip - start)
-    rolls = np.concatenate(([low], _rolls(flank, FINE)))
-    off = measures.of(1.0, "um") * removed(flank, rolls)
+def profile(flank: Flank, measures: Measures) -> Figure:
+    """Plot what is removed from a flank against its roll angle, with diameters above."""
+    start, tip = flank.told.start_roll_angle_deg, flank.told.tip_roll_angle_deg
+    member, low = flank.member, start - 0.35 * (tip - start)
+    rolls = np.concatenate(([low], flank.at(FINE)))
+    off = measures.of(1.0, "um") * flank.removed(rolls)
     trace = {
         "type": "scatter",
         "mode": "lines",
         "name": member,
         "x": [round(float(v), 5) for v in rolls],
         "y": [round(float(v), 4) for v in off],
-        "line": {"color": series((1, 4)[k]), "width": 2},
+        "line": {"color": series((1, 4)[MEMBERS.index(member)]), "width": 2},
         "fill": "tozeroy",
         "hovertemplate": "%{x:.3f}°: %{y:.2f}<extra></extra>",
         "showlegend": False,
@@ -126,12 +131,13 @@ def _profile(member: str, flank: FlankRelief, base: float, k: int, measures: Mea
             side="top",
             matches="x",
             tickvals=[float(t) for t in ticks],
-            ticktext=[measures.length(float(diameter_at(base, t))) for t in ticks],
+            ticktext=[measures.length(float(diameter_at(flank.base, t))) for t in ticks],
             showgrid=False,
         ),
     )
-    shape = "linearly" if flank.exponent == 1.0 else f"with the exponent {flank.exponent:g}"
-    caption = f"What is removed from the flanks of the {member}, normal to them, growing {shape}."
+    power = flank.told.exponent
+    shape = {1.0: "growing linearly", None: "any convex shape"}.get(power, f"exponent {power}")
+    caption = f"What is removed from the flanks of the {member}, normal to them: {shape}."
     return Figure([trace, above], plot, caption)
 
 

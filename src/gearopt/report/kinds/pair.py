@@ -106,8 +106,9 @@ def relief(result: Result, measures: Measures) -> Section | None:
     told: tuple[str | Table, ...] = ("\n".join(words), *shown)
     if (pair := pair_of(result)) is None:
         return Section("Relief", words=words, tables=tables, terminal=told)
-    figures = relief_plots.profiles(found, pair, measures)
-    tables += relief_plots.steps(found, pair, measures)
+    flanks = relief_plots.flanks(made, found, pair)
+    figures = [relief_plots.profile(flank, measures) for flank in flanks]
+    tables += [relief_plots.steps(flank, measures) for flank in flanks]
     return Section("Relief", words=words, figures=figures, tables=tables, terminal=told)
 
 
