@@ -15,11 +15,16 @@ BENCHES = (
     "curvature",
     "drive",
     "front",
+    "integrators",
     "layout",
     "rating",
+    "relief",
     "servo",
     "sharing",
     "smooth",
+    "stiffness",
+    "wave_design",
+    "wave_sharing",
 )
 
 

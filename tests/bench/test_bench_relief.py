@@ -1,0 +1,22 @@
+"""`gearopt bench relief`: every published case is beaten, and no method is below the bound."""
+
+import pytest
+
+from gearopt.bench import names, relief
+
+
+@pytest.mark.parametrize(
+    "cases, methods",
+    [(1, ("annealing",)), pytest.param(6, relief.SAMPLED, marks=pytest.mark.slow)],
+)
+def test_published_cases(monkeypatch, cases, methods):
+    monkeypatch.setattr(relief, "SAMPLED", methods)
+    monkeypatch.setattr(relief, "PUBLISHED", dict(list(relief.PUBLISHED.items())[:cases]))
+    monkeypatch.setattr(relief, "SECONDS", 0.05)
+    rows = relief.run(1)
+    assert len(rows) == (5 + 2 * len(methods)) * cases and "relief" in names()
+    for row in rows:
+        assert row["um"] >= row["bound_um"] - 1e-5
+        if row["method"] == "exact" and row["published_um"]:
+            assert row["um"] < row["published_um"] + 6e-5
+            assert row["um"] == pytest.approx(row["bound_um"], rel=1e-4)
