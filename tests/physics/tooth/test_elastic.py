@@ -7,7 +7,8 @@ import pytest
 from reference_pairs import elastic, force
 
 from gearopt.physics.gears import GearPair
-from gearopt.physics.geometry.fillet import profile
+from gearopt.physics.geometry.fillet import form_diameter, profile
+from gearopt.physics.geometry.tooth import tip_thickness
 from gearopt.physics.tooth.beam import tabulated
 from gearopt.physics.tooth.elastic import ElasticPair
 from gearopt.physics.tooth.foundation import torsion_compliance
@@ -21,7 +22,16 @@ def test_geometry_of_the_reference_pair_as_another_program_has_it():
     assert pair.path.transverse_ratio == pytest.approx(1.6831622619773194, rel=1e-12)
     assert pinion.root_half_angle == pytest.approx(0.1205151856599913, rel=1e-12)
     assert wheel.root_half_angle == pytest.approx(0.06025759282999565, rel=1e-12)
+    radii = [35.23847327947156, 70.47694655894313], [33.75, 71.25], [40.5, 78.0]
+    joints, thick = [35.47097391076563, 72.47031991045625], [0.7198193893, 0.7754300523]
+    gears = pair.pair.gears
+    assert [each.base_radius for each in pair.members] == pytest.approx(radii[0], rel=1e-14)
+    assert [each.root_radius for each in pair.members] == pytest.approx(radii[1], rel=1e-14)
+    assert [0.5 * gear.tip_diameter for gear in gears] == pytest.approx(radii[2], rel=1e-14)
+    assert [0.5 * form_diameter(gear) for gear in gears] == pytest.approx(joints, rel=1e-12)
+    assert [tip_thickness(gear) / 3.0 for gear in gears] == pytest.approx(thick, rel=1e-9)
     path = pair.path
+    assert path.base_pitch == pytest.approx(8.856394302280648, rel=1e-14)
     points = [path.start, path.lowest_single, 0.0, path.highest_single, path.end]
     assert points == pytest.approx([-7.7700, -1.7197, 0.0, 1.0864, 7.1367], abs=5e-5)
     first, second = pair.load_lines(points)
@@ -37,7 +47,11 @@ def test_geometry_of_the_second_pair():
     assert np.degrees(pair.pair.working_angle) == pytest.approx(21.0270, abs=5e-5)
     assert pair.pair.centre_distance == pytest.approx(116.7806, abs=5e-5)
     assert force("second") == pytest.approx(17736.296, abs=5e-4)
+    joints = [0.5 * form_diameter(gear) for gear in pair.pair.gears]
+    assert joints == pytest.approx([34.07967719987271, 76.56051519517268], rel=1e-12)
     path = pair.path
+    assert path.transverse_ratio == pytest.approx(1.540281, abs=5e-7)
+    assert path.base_pitch == pytest.approx(11.808526, abs=5e-7)
     points = [path.start, path.lowest_single, path.highest_single, path.end]
     assert points == pytest.approx([-7.6756, -1.2957, 4.1329, 10.5128], abs=5e-5)
 
@@ -87,6 +101,12 @@ def test_helical_gears_and_pointed_teeth_are_refused():
     pointed = GearPair.of_teeth(3.0, 10, 50, 30.0, profile_shifts=(0.8, 0.0))
     with pytest.raises(ValueError, match="teeth of the pinion are pointed"):
         ElasticPair(pointed, (10.0, 50.0))
+
+
+@pytest.mark.parametrize("load", [0.0, -5.0, np.array([100.0, np.nan])])
+def test_a_contact_without_force_is_refused(load):
+    with pytest.raises(ValueError, match="under a force above 0 N"):
+        LEVELS["profile + Sainsot"].compliance(elastic("reference"), 0.0, load)
 
 
 def test_a_place_where_no_teeth_touch_is_refused():

@@ -10,9 +10,12 @@ from gearopt.physics.tooth.elastic import ElasticPair, LoadLine
 def half_width(elastic: ElasticPair, positions: Any, force: Any) -> Any:
     """Return half the width b_H [mm] of the contact, b_H^2 = 4 F rho/(pi b) (f_1/E_1 + f_2/E_2).
 
-    positions s [mm]; force F [N] >= 0 on the pair of teeth; rho = rho_1 rho_2/(rho_1 + rho_2),
-    f: `ElasticGear.plane_factor`. Source: Hertz, parallel cylinders.
+    positions s [mm]; force F [N] > 0 on the pair of teeth, ValueError for others: towards none the
+    compliance of the contact grows without bound. rho = rho_1 rho_2/(rho_1 + rho_2), f:
+    `ElasticGear.plane_factor`. Source: Hertz, parallel cylinders.
     """
+    if not np.all(np.asarray(force) > 0.0):
+        raise ValueError("the compliance of a contact is that under a force above 0 N")
     first, second = elastic.path.radii_of_curvature(np.asarray(positions, float))
     soft = sum(each.plane_factor / each.rigidity for each in elastic.members)
     return np.sqrt(4.0 * force * soft / np.pi * first * second / (first + second))
