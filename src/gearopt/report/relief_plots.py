@@ -136,7 +136,7 @@ def profile(flank: Flank, measures: Measures) -> Figure:
         ),
     )
     power = flank.told.exponent
-    shape = {1.0: "growing linearly", None: "any convex shape"}.get(power, f"exponent {power}")
+    shape = {1.0: "growing linearly", None: "a free, convex shape"}.get(power, f"exponent {power}")
     caption = f"What is removed from the flanks of the {member}, normal to them: {shape}."
     return Figure([trace, above], plot, caption)
 
