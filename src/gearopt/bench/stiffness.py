@@ -89,8 +89,8 @@ def _row(
     return times | {
         "us_per_position": round(1e3 * each, 3),
         "setup_ms": round(max(first["median_ms"] - each * len(points), 0.0), 2),
-        "least_error": float(error.min()),
-        "largest_error": float(error.max()),
+        "least_error": round(float(error.min()), 5),
+        "largest_error": round(float(error.max()), 5),
     }
 
 
@@ -145,6 +145,6 @@ def _random() -> list[dict[str, Any]]:
     return [
         {"case": f"{RANDOM} random pairs", "method": name}
         | untimed
-        | {"least_error": float(min(found)), "largest_error": float(max(found))}
+        | {"least_error": round(float(min(found)), 5), "largest_error": round(float(max(found)), 5)}
         for name, found in errors.items()
     ]
