@@ -56,7 +56,7 @@ def test_help_lists_kinds_methods_and_benches(here, wide):
         assert all(f"{kind} (" in said for kind in KINDS)
     for command in ("solve", "compare"):
         said = here(command, "--help").stdout
-        assert "packing: hop, sa; pair: exact; servo: exact, enumeration" in said
+        assert "packing: hop, sa; pair: exact, mpec; servo: exact, enumeration" in said
         assert "annealing, conic, gp, ipopt, multistart, nsga2, qp, scip" in said
     assert all(f"{name} (" in here("bench", "--help").stdout for name in BENCHES)
 

@@ -37,7 +37,7 @@ __all__ = [
     "several",
     "solve",
 ]
-METHODS = ("exact",)  # its own
+METHODS = ("exact", "mpec")  # its own
 PROVEN = ("peak_to_peak",)  # criteria of a relief that have a proven search
 NOTHING = "the gears are given, so that nothing is chosen"
 
@@ -149,7 +149,7 @@ def compared(scene: Scene) -> tuple[str, ...]:
     if scene.relief is not None:
         if scene.relief.free:
             return ("exact",)
-        exact = ("exact",) if scene.relief.minimise in PROVEN else ()
+        exact = METHODS if scene.relief.minimise in PROVEN else ()
         return (*exact, "annealing", "nsga2")
     return drive.compared(_to_size(scene).drive)
 

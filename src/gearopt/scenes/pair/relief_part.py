@@ -12,6 +12,7 @@ from gearopt.formulations.relief.free_form import Profile, Shape, free_problem
 from gearopt.formulations.relief.meshing import Mesh
 from gearopt.formulations.relief.parametric import Ranges
 from gearopt.optimise.comparing.runs import Model
+from gearopt.optimise.pareto.epsilon import Limiting
 from gearopt.optimise.pareto.front import Objective
 from gearopt.optimise.pareto.several import Several
 from gearopt.optimise.problem import Problem
@@ -26,6 +27,7 @@ from gearopt.scenes.reading.ask import Ask
 SHOWN = {"mm": "mm_as_um"}  # units of criteria as they are read
 DEFAULT = "annealing"  # of what has no proven search
 FEW = 2.0  # contact ratio below which free shapes are searched
+UNBOUND = "without the method exact there is no bound"
 UNPROVEN = "only the peak-to-peak transmission error has a proven search: of this there is no bound"
 KEYS = {"amount": "relief.amount", "length": "relief.length"}  # of variables: their places
 
@@ -64,8 +66,8 @@ def _parametric(scene: Scene, made: PairMesh, ask: Ask) -> tuple[Result, Removed
     result = _united(result, asked.minimise)
     if result.value is None or outcome.x is None:
         return result, None
-    if "exact" not in problem.methods:
-        result = replace(result, message=UNPROVEN)
+    if result.bound is None and method != "exact":
+        result = replace(result, message=UNBOUND if "exact" in problem.methods else UNPROVEN)
     return result, Removed.of(mesh, parametric.at_point(outcome.x, ranges))
 
 
@@ -112,14 +114,19 @@ def _meshed(scene: Scene, made: PairMesh) -> tuple[Mesh, Ranges]:
 
 
 def _problem(
-    asked: ReliefTable, mesh: Mesh, ranges: Ranges, names: Mapping[str, str] | None = None
+    asked: ReliefTable,
+    mesh: Mesh,
+    ranges: Ranges,
+    names: Mapping[str, str] | None = None,
+    most: Mapping[str, float] | None = None,
 ) -> Problem:
     """Return the problem of the relief with the places of its ranges in the file.
 
-    names: of objectives, and of what they are called by its formulation.
+    names: of objectives, and of what they are called by its formulation. most: largest values of
+    some, by the latter.
     """
     names = names or {asked.minimise: asked.minimise}
-    made = parametric.problem(mesh, ranges, tuple(names.values()))
+    made = parametric.problem(mesh, ranges, tuple(names.values()), dict(most or {}))
 
     def evaluate(x: Any, p: Any) -> Terms:
         found = made.evaluate(x, p)
@@ -147,22 +154,22 @@ def objectives(scene: Scene) -> dict[str, str]:
     """
     if scene.relief and scene.relief.free:
         return {}
-    return {name: _unit(own.partition("[")[0]) for name, own in _named(scene).items()}
+    return {name: _unit(own.partition("_at_")[0]) for name, own in _named(scene).items()}
 
 
 def _named(scene: Scene) -> dict[str, str]:
     """Return names of objectives, and what they are called by the formulation.
 
-    At a load of 60 % "peak_to_peak_at_60", of the first load "peak_to_peak[1]".
+    At a load of 60 % "peak_to_peak_at_60", of the first load "peak_to_peak_at_1".
     """
     known, loads = list(parametric.OBJECTIVES), loads_of(scene)
     at = [f"{100.0 * load:.4g}".replace(".", "_") for load in loads] if len(loads) > 1 else []
-    each = {f"{name}_at_{a}": f"{name}[{k}]" for name in known for k, a in enumerate(at, 1)}
+    each = {f"{name}_at_{a}": f"{name}_at_{k}" for name in known for k, a in enumerate(at, 1)}
     return {name: name for name in known} | each
 
 
 def several(scene: Scene, made: PairMesh, names: Sequence[str]) -> Several:
-    """Return the problem of a front of reliefs."""
+    """Return the problem of a front of reliefs; of transmission errors every point is proven."""
     asked = scene.relief
     assert asked
     mesh, ranges = _meshed(scene, made)
@@ -176,7 +183,14 @@ def several(scene: Scene, made: PairMesh, names: Sequence[str]) -> Several:
 
     listed = tuple(Objective(name, units[name]) for name in names)
     chosen = {name: known[name] for name in names}
-    return Several(_problem(asked, mesh, ranges, chosen), listed, drawn)
+
+    def limited(name: str, most: Mapping[str, float]) -> Problem:
+        held = {known[other]: value for other, value in most.items()}
+        return _problem(asked, mesh, ranges, {name: known[name]}, held)
+
+    proven = tuple(name for name in known if name.startswith(parametric.PROVEN))
+    limiting = Limiting(limited, proven) if set(names) <= set(proven) else None
+    return Several(_problem(asked, mesh, ranges, chosen), listed, drawn, limiting)
 
 
 def _unit(name: str) -> str:
