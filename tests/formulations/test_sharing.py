@@ -114,3 +114,11 @@ def test_the_kernel_is_the_python_it_was_written_in():
     kernels.plain(kernel(KERNEL).share_rows)(c, e, load, 0.0, forces, approach)
     assert approach == pytest.approx([0.0, 0.001 + 3e-4, np.inf])
     assert forces.tolist() == [[0.0, 0.0], [0.0, 100.0], [0.0, 0.0]]
+
+
+@pytest.mark.parametrize("method, pose", [("qp", problem), ("conic", conic)])
+def test_one_pair_carries_everything(method, pose):
+    """Alone on the path: the approach is separation and deflection."""
+    found = solve(pose([3e-6], [0.002], 1000.0, 1e-6), method)
+    assert found.design["f"] == pytest.approx(1.0, rel=1e-12)
+    assert found.multipliers["equilibrium"] == pytest.approx(0.002 + 3e-6 * 1000.0, rel=1e-12)

@@ -43,8 +43,12 @@ def test_two_pairs_always_in_contact_leave_no_tooth_alone(solved):
     found = contact_of(result)
     assert "over 0.00886 mm of its path (0.1 % of it)" in answers(found)[0]
     load = replace(of_duty(found), largest_share=0.6)
-    other = replace(found, loads=(load,))
+    other = replace(found, loads=(load,), contact_ratio=2.001)
     assert "carries at most 60.0 % of the load, as two pairs always touch" in answers(other)[0]
+    idle = replace(load, normal_force_N=0.0)
+    assert answers(replace(found, loads=(idle,)))[0] == (
+        "Without load no pair of teeth carries anything."
+    )
 
 
 @pytest.mark.parametrize(("measures", "unit"), [(METRIC, "N/(mm µm)"), (INCH, "lbf/(in µin)")])

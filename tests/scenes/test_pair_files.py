@@ -148,6 +148,26 @@ def test_a_number_for_the_coupling_is_taken_as_it_is():
     assert found["coupling"] == "given" and found["coupling_mm_per_N"] == pytest.approx(7.84e-7)
 
 
+@pytest.mark.parametrize(
+    "edits",
+    [{"sharing.coupling": "5 um/kN"}, {"sharing.level": "Nakada A", "stage.wheel.bore": "12 mm"}],
+)
+def test_a_coupling_beyond_the_compliance_of_a_pair_is_refused(edits):
+    """A neighbour's load cannot move teeth as far as their own; thin shafts twist a ring far."""
+    with pytest.raises(SolveError, match=r'coupling is [\d.]+ um/kN, but .* coupling = "none" or'):
+        gearopt.solve(with_(GIVEN, edits))
+
+
+def test_a_model_without_a_ring_beside_a_coupling_by_the_ring_is_said():
+    """Nakada's half plane does not turn; Sainsot's ring does."""
+    assert (
+        'coupling = "none" goes' in contact(GIVEN, **{"sharing.level": "Nakada C"})["validity"][0]
+    )
+    assert "validity" not in contact(
+        GIVEN, **{"sharing.level": "Nakada C", "sharing.coupling": "none"}
+    )
+
+
 def test_undercut_is_said_and_so_is_a_small_contact_ratio(solved):
     found = solved("undercut_pair").design["contact"]["validity"]
     said = " ".join(found)

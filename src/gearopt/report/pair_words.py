@@ -1,6 +1,7 @@
 """What an engineer asks of a pair's contact, answered in sentences."""
 
 from gearopt.formulations.pair_contact import ContactLoad, PairContact
+from gearopt.physics.mesh_cycle import NARROW
 from gearopt.report.measures import rounded
 from gearopt.report.words import share
 
@@ -25,10 +26,12 @@ def _shared(found: PairContact, load: ContactLoad) -> str:
     """Say how much one pair of teeth carries and where."""
     first, last = load.share[0], load.share[-1]
     ends = f"it begins with {share(first)} % of it and ends with {share(last)} %"
-    if load.largest_share < 1.0:
+    if not load.normal_force_N:
+        return "Without load no pair of teeth carries anything."
+    alone = 2.0 - found.contact_ratio
+    if alone <= NARROW:
         most = f"at most {share(load.largest_share)} % of the load, as two pairs always touch"
         return f"One pair of teeth carries {most}; {ends}."
-    alone = 2.0 - found.contact_ratio
     length = rounded(alone * found.base_pitch_mm, 3)
     return (
         f"One pair of teeth carries the whole load, {rounded(load.normal_force_N, 4)} N, over "

@@ -28,11 +28,11 @@ def problem(compliances: Any, separations: Any, load: float, coupling: float = 0
     count = len(compliances)
 
     def evaluate(x: Any, p: Any) -> Terms:
-        shares = [f + 0.0 for f in x.f]
-        whole = sum(shares)
-        own = sum((c - p.c12) * f**2 for c, f in zip(p.c, shares, strict=True))
+        shares, c, e = ([a] if count == 1 else list(a) for a in (x.f, p.c, p.e))
+        whole = sum(f + 0.0 for f in shares)
+        own = sum((soft - p.c12) * f**2 for soft, f in zip(c, shares, strict=True))
         energy = 0.5 * p.W * (own + p.c12 * whole**2)
-        energy = energy + sum(e * f for e, f in zip(p.e, shares, strict=True))
+        energy = energy + sum(apart * f for apart, f in zip(e, shares, strict=True))
         return Terms(
             {"energy": energy},
             {"pull": tuple(1.0 - f for f in shares)},
@@ -62,7 +62,8 @@ def conic(compliances: Any, separations: Any, load: float, coupling: float = 0.0
 
         shares = cp.reshape(x.f, (count,), order="C")
         own = cp.sum_squares(cp.multiply(p.root, shares))
-        energy = 0.5 * (own + cp.square(p.common * cp.sum(shares))) + p.e @ shares
+        apart = cp.sum(cp.multiply(p.e, shares))
+        energy = 0.5 * (own + cp.square(p.common * cp.sum(shares))) + apart
         return Terms(
             {"energy": energy}, {"pull": 1.0 - shares}, equal={"equilibrium": cp.sum(shares)}
         )

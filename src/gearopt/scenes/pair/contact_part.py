@@ -30,7 +30,7 @@ def contact_of(scene: Scene, made: PairMesh) -> PairContact:
     told = scene.sharing.coupling
     name = "given" if isinstance(told, Quantity) else told
     pair = made.elastic.pair
-    return contact(made, name, _by_iso(scene, pair, made.elastic), tuple(_validity(made)))
+    return contact(made, name, _by_iso(scene, pair, made.elastic), tuple(_validity(made, name)))
 
 
 def mesh_of(scene: Scene, pair: GearPair, materials: Materials = ("", "")) -> PairMesh:
@@ -51,9 +51,23 @@ def mesh_of(scene: Scene, pair: GearPair, materials: Materials = ("", "")) -> Pa
         raise SolveError(f'[sharing] level = "{level}" does not suit the gears. {excluded[0]}')
     try:
         coupled = told.value if isinstance(told, Quantity) else COUPLINGS[told](elastic)
-        return PairMesh.of(elastic, level, moved, coupled, asked.positions, loads)
+        made = PairMesh.of(elastic, level, moved, coupled, asked.positions, loads)
     except ImportError as reason:  # of finite elements, an extra
         raise SolveError(str(reason)) from None
+    _check_coupling(made)
+    return made
+
+
+def _check_coupling(made: PairMesh) -> None:
+    """Refuse a coupling as large as what a pair of teeth gives way under its own load."""
+    least = float(made.mesh.compliances.min())
+    if made.mesh.coupling >= least:
+        raise SolveError(
+            f"[sharing] coupling is {1e6 * made.mesh.coupling:.3g} um/kN, but a pair of teeth "
+            f"gives way by {1e6 * least:.3g} um/kN under its own load by level = "
+            f'"{made.level}": the load of a neighbour cannot move it as far. Write coupling = '
+            f'"none" or a smaller one, or level = "{USUAL}"'
+        )
 
 
 def level_of(scene: Scene, elastic: ElasticPair) -> str:
@@ -104,8 +118,13 @@ def _by_iso(scene: Scene, pair: GearPair, elastic: ElasticPair) -> tuple[float, 
     return float(single), float(mesh_stiffness(single, elastic.path.transverse_ratio)[0])
 
 
-def _validity(made: PairMesh) -> Iterator[str]:
+def _validity(made: PairMesh, coupling: str) -> Iterator[str]:
     """Yield what the models do not cover of these gears, and flaws that a designer may accept."""
+    if LEVELS[made.level].body == "half plane" and coupling in ("ring torsion", "finite elements"):
+        yield (
+            f"{made.level} has no torsion of the rings, which the coupling by {coupling} has: "
+            'shares and transmission error mix two bodies. coupling = "none" goes with this level.'
+        )
     told = doubts(made.elastic, made.level)
     yield from told
     thin = any("tips" in sentence for sentence in told)

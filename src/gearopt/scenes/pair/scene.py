@@ -86,11 +86,7 @@ class Scene(Table):
             raise refuse(rule, at=("stage", 1), action="remove")
         self._check_spur()
         if self.given:
-            for name in self.model_fields_set & set(ONLY_SIZED):
-                if name != "objective" or "minimise" in self.objective.model_fields_set:
-                    raise refuse(
-                        "changes nothing: the gears are given", at=(name,), action="remove"
-                    )
+            self._check_only_given()
         elif self.rating is None and (self.limits is None or not self.limits.loaded):
             place = next(not_given(self.gears, self.stage))
             what = (
