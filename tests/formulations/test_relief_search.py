@@ -75,6 +75,36 @@ def test_the_published_table(coupling, loads, exponent, published):
     assert solve(problem(exact, ranges), "exact").value >= found.bound
 
 
+def random_mesh(seed):
+    """Made-up teeth: contact ratio, stiffness, coupling and loads at random, none at all too."""
+    rng = np.random.default_rng(seed)
+    ratio = rng.choice([rng.uniform(1.02, 1.98), rng.uniform(2.02, 2.9)])
+    pitch, own = rng.uniform(3.0, 30.0), 10.0 ** rng.uniform(-6.3, -5.0)
+    start = -ratio * pitch * rng.uniform(0.3, 0.7)
+    path = ContactPath(start, start + ratio * pitch, pitch, (20.0, 40.0))
+    bend, load = (
+        rng.uniform(0.0, 6.0) / (ratio * pitch) ** 2,
+        1e-2 / own * 10 ** rng.uniform(-0.5, 0.5),
+    )
+    parts = rng.choice([0.0, 0.1, 0.3, 0.6, 1.0, 1.3], rng.integers(1, 4), replace=False)
+    places = cycle(path, int(rng.integers(6, 20)), bool(rng.integers(0, 2)))
+    coupling = own * rng.choice([0.0, 0.3])
+    return Mesh.of(places, lambda s: own * (1.0 + bend * s**2), coupling, tuple(load * parts))
+
+
+@pytest.mark.parametrize("seed", few(range(40), 1))
+def test_random_meshes(seed):
+    """Nothing that annealing finds is below the bound, nor is the value that is found."""
+    made, rng = random_mesh(seed), np.random.default_rng(100 + seed)
+    exponents = tuple(rng.choice([1.0, 1.5, 2.0, 3.0], 2))
+    posed = problem(made, replace(Ranges.of(made), exponents=exponents))
+    found = solve(posed, "exact", Budget(seconds=3.0, gap=1e-3), gap=1e-3)
+    annealed = solve(posed, "annealing", Budget(evaluations=4000), seed=1)
+    assert found.status in ("optimal", "limit")
+    assert -1e-12 <= found.bound <= found.value + 1e-15
+    assert found.bound <= annealed.value + 1e-12
+
+
 @pytest.mark.parametrize("part", [0.3, 0.7])
 def test_one_load_under_a_limit_at_another(part):
     """The least value at the full load with a largest one at 60 %: proven, and the limit binds."""

@@ -273,6 +273,6 @@ def search(profile: "Profile") -> Callable[..., Outcome]:
         bound, ended = found.run()
         proof = {"method": "patterns", "programs": clock.evaluations, "sentence": SENTENCE}
         x, spent = found.removed / MICRO, clock.evaluations
-        return Outcome(x, ended, bound=bound / MICRO, proof=proof, evaluations=spent)
+        return Outcome(x, ended, bound=max(bound, 0.0) / MICRO, proof=proof, evaluations=spent)
 
     return run

@@ -42,25 +42,28 @@ def slope(u, exponent):
 @inner
 def depth(stiffness, apart, load, acts):
     """Approach of uncoupled pairs by dropping those that open; `acts` becomes the ones that do."""
-    pairs = stiffness.size
+    pairs, datum = stiffness.size, math.inf
+    for i in range(pairs):
+        if stiffness[i] > 0.0:
+            datum = min(datum, apart[i])
     total, moved = 0.0, load
     for i in range(pairs):
         acts[i] = stiffness[i]
         total += stiffness[i]
-        moved += stiffness[i] * apart[i]
+        moved += stiffness[i] * (apart[i] - datum)
     found = moved / total
     dropped = True
     while dropped:
         dropped = False
         for i in range(pairs):
-            if acts[i] > 0.0 and apart[i] > found:
+            if acts[i] > 0.0 and apart[i] - datum > found:
                 dropped = True
                 total -= acts[i]
-                moved -= acts[i] * apart[i]
+                moved -= acts[i] * (apart[i] - datum)
                 acts[i] = 0.0
         if dropped:
-            found = moved / total
-    return found
+            found = max(moved, 0.0) / total
+    return datum + found
 
 
 @inner

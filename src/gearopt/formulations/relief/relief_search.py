@@ -23,6 +23,7 @@ from gearopt.optimise.terms import Array
 KERNEL = "gearopt.formulations.relief.relief_box_kernel"
 MICRO = 1e3  # um a mm: amounts of relief are numbers of size 1 there
 ROUNDING = 1e-9  # um: taken off every bound
+NOTHING = 1e-7  # um: of values, a difference that no gear has
 GAP = 5e-7  # relative; where no gap is asked for: within 1e-6, rounding included
 FAR = 1e6  # mm: of a pair that is not in contact from the tips
 TINY = 1e-300  # um
@@ -128,7 +129,7 @@ def search(mesh: Mesh, exponents: tuple[float, float], goal: Goal) -> Callable[.
         point, bound, ended = _searched(made, goal, clock, *known)
         proof = {"method": "boxes", "boxes": clock.evaluations, "sentence": SENTENCE}
         x, spent = made.variables(point), clock.evaluations
-        lowest = bound / MICRO if ended or not goal.limited else None
+        lowest = max(bound, 0.0) / MICRO if ended or not goal.limited else None  # never below 0
         return Outcome(x, ended, bound=lowest, proof=proof, evaluations=spent)
 
     return run
@@ -189,11 +190,14 @@ def _searched(
     point, best: known before. Bounds of boxes under limits are no bounds of what is minimised, so
     all boxes are visited.
     """
-    part, turn = 1.0 - max(clock.budget.gap, GAP), 0
-    least = made.bound(goal.weights(best * part), made.low, made.high, best * part)[0]
+    gap, turn, floor = max(clock.budget.gap, GAP), 0, np.inf  # floor: of boxes not to be halved
+
+    def aim() -> float:
+        return best - max(gap * best, NOTHING)
+
+    least = made.bound(goal.weights(aim()), made.low, made.high, aim())[0]
     boxes: list[Any] = [(least, 0, made.low, made.high)]
-    floor = np.inf  # of boxes too small to be halved
-    while boxes and (goal.limited or boxes[0][0] < best * part):
+    while boxes and (goal.limited or boxes[0][0] < aim()):
         least, _, low, high = heapq.heappop(boxes)
         clock.best = best / MICRO
         clock.bound = -np.inf if goal.limited else min(least, floor, best) / MICRO
@@ -203,12 +207,12 @@ def _searched(
         if not parts and (low < high).any():
             floor = 0.0 if goal.limited else min(floor, least)
         for ends in parts:
-            found, x, peaks = made.bound(goal.weights(best * part), *ends, best * part)
+            found, x, peaks = made.bound(goal.weights(aim()), *ends, aim())
             clock.evaluations += 1
             if (value := goal.value(peaks)) < best:
                 best, point = value, x
-            if found < best * part or not goal.limited:
+            if found < aim() or not goal.limited:
                 turn += 1
                 heapq.heappush(boxes, (max(found, least * (not goal.limited)), turn, *ends))
-    rest = best * part if goal.limited else min([np.inf, *(box[0] for box in boxes[:1])])
+    rest = aim() if goal.limited else min([np.inf, *(box[0] for box in boxes[:1])])
     return point, min(floor, best, rest), True
