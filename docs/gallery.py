@@ -106,6 +106,13 @@ GROUPS = {  # heading: {file: what it shows, in a line}
         "undercut_pair": "Eight teeth: what undercut leaves of the path of contact.",
         "almost_two_pairs": "A contact ratio of 1.999, which a uniform grid takes for two.",
     },
+    "Strain wave gearing": {
+        "strain_wave_base": "Teeth in contact, loads, stress against profile shift, cutter.",
+        "strain_wave_from_duty": "80:1, 100 N m, 90 mm: all else chosen, free of interference.",
+        "strain_wave_interferes": "Teeth that cut each other as they disengage; a cutter's cusp.",
+        "strain_wave_discs": "Two discs as wave generator instead of cos 2 phi.",
+        "strain_wave_320": "320:1 with an elastic rim.",
+    },
     "Packing of cylinders": {
         "six_cylinders": "Three large and three small ones; the number of layers is chosen too.",
         "six_cylinders_one_layer": "In one layer, which is the best known of all.",
@@ -145,6 +152,7 @@ KINDS = {  # of a file: the page about it, and what is minimised
     "compound": ("compound.md", lambda file: "squared_error"),
     "servo": ("servo.md", lambda file: _of_servo(file)),
     "pair": ("pair.md", lambda file: _of_pair(file)),
+    "strain_wave": ("strain_wave.md", lambda file: "pressure"),
 }
 UNITS = {  # as keys of a result have them
     "gear_volume": "mm3",
@@ -152,6 +160,7 @@ UNITS = {  # as keys of a result have them
     "volume": "mm3",
     "area": "mm2",
     "squared_error": "",
+    "pressure": "MPa",
     "inertia": "kg_m2",
     "mass": "kg",
     "error": "deg",
@@ -264,9 +273,21 @@ def _answer(file: Mapping[str, Any]) -> str:
 
 def _contact(expected: Mapping[str, Any]) -> list[str]:
     """What a file expects of the contact of a pair, in words."""
+    if "pairs_in_contact" in expected:
+        return _wave(expected)
     parts = [f"**evaluated**, contact ratio {expected['contact_ratio']:.4g}"]
     if "peak_to_peak_um" in expected:
         parts.append(f"transmission error {expected['peak_to_peak_um']:.3g} µm peak to peak")
+    return parts
+
+
+def _wave(expected: Mapping[str, Any]) -> list[str]:
+    """What a file expects of a strain wave gearing, in words."""
+    parts = [f"**evaluated**, {expected['pairs_in_contact']:g} conjugate pairs per lobe and flank"]
+    if "shared_pressure_MPa" in expected:
+        parts.append(f"pressure {expected['shared_pressure_MPa']:g} MPa")
+    if "least_clearance_um" in expected:
+        parts.append(f"teeth cut each other by {-expected['least_clearance_um']:g} µm")
     return parts
 
 

@@ -34,6 +34,11 @@ KEYS = {  # of [x-expected], as the tests below read them
     "servo": {
         *("status", "objective", "least_factor", "report"),
     },
+    "strain_wave": {
+        *("status", "objective", "pairs_in_contact", "equal_pressure_MPa", "shared_pressure_MPa"),
+        *("carrying_teeth", "ratcheting_torque_Nm", "straight_deg", "least_clearance_um"),
+        "least_radius_mm",
+    },
     "pair": {
         *("status", "objective", "contact_ratio", "normal_force_N", "largest_share"),
         *("largest_contact_stress_MPa", "mean_transmission_error_um", "peak_to_peak_um"),
@@ -57,6 +62,9 @@ LONG = (
     "elevator_by_agma_small_wheels",
     "servo_gimbal_quick",
     "servo_gimbal_impossible",
+    "strain_wave_from_duty",
+    "strain_wave_320",
+    "strain_wave_discs",
 )
 SI = {  # of numbers as a source prints them: their suffix, its value, the suffix of a result
     "_ft_per_min": (0.3048 / 60, "_m_per_s"),
@@ -166,6 +174,21 @@ def test_expected_pair(path, solved):
             assert value / unit == pytest.approx(float(one), abs=0.55 * last), name
 
 
+@pytest.mark.parametrize("path", of_kind("strain_wave"))
+def test_expected_strain_wave_gearing(path, solved):
+    """Numbers are held to half a unit of the last digit that the file prints."""
+    text = tomllib.loads(path.read_text(encoding="utf-8"), parse_float=str)
+    expected = {k: str(v) for k, v in text["x-expected"].items()}
+    result = solved(path.stem)
+    assert result.status == expected.pop("status")
+    told = result.design | result.design.get("cutter", {}) | {"objective": result.value}
+    told["least_clearance_um"] = 1e3 * told["least_clearance_mm"]
+    told["least_radius_mm"] = min(told["relative_curvature_mm"])
+    for name, printed in expected.items():
+        last = 10.0 ** Decimal(printed).as_tuple().exponent
+        assert told[name] == pytest.approx(float(printed), abs=0.55 * last), name
+
+
 @pytest.mark.parametrize("path", of_kind("drive"))
 def test_expected_value(path, solved):
     content = content_of(path)
@@ -251,8 +274,11 @@ def test_every_file_says_what_it_is_held_to(path):
     expected = content["x-expected"]
     assert content["kind"] in HELD and content["title"] and content["source"]
     assert expected.keys() <= KEYS[content["kind"]]
-    given = "contact_ratio" if content["kind"] == "pair" else "governs"
-    needed = {"infeasible": "least_factor", "evaluated": given}
+    given = {"pair": "contact_ratio", "strain_wave": "pairs_in_contact"}
+    needed = {
+        "infeasible": "least_factor",
+        "evaluated": given.get(content["kind"], "governs"),
+    }
     needed |= {"infeasible": "conflict"} if "rating" in content else {}
     assert needed.get(expected["status"], "objective") in expected
 

@@ -22,6 +22,7 @@ from gearopt.physics.strain_wave.strength import (
 
 FREE = ("profile_shift", "pressure_angle", "deflection", "addendum", "rim", "module")
 UNITS = {"pressure_angle": "rad", "rim": "mm", "module": "mm"}
+PRESSURE, VOLUME = "pressure", "volume_per_torque"  # objectives
 LAND = 0.25  # modules: least land of tips, least space at roots
 LEAST_CURVATURE = 2e-4  # 1/mm: contacts flatter than R = 5 m are not called contacts of a line
 OUTSIDE_BASE = 1.002  # tip radius over base radius of the circular spline, at least
@@ -67,9 +68,10 @@ class Demand:
         """Return the outer radius [mm] that a gearing needs."""
         return gearing.root_radius + self.shell
 
-    def volume(self, gearing: StrainWave) -> Any:
-        """Return the volume pi r^2 b [mm3] of the disc that it takes."""
-        return math.pi * self.radius_needed(gearing) ** 2 * self.duty.face_width
+    def specific_volume(self, gearing: StrainWave) -> Any:
+        """Return the volume pi r^2 b/T [mm3/(N m)] of the disc that it takes, by its torque."""
+        disc = math.pi * self.radius_needed(gearing) ** 2 * self.duty.face_width
+        return disc / (1e-3 * self.duty.torque)
 
 
 def free_variables(demand: Demand, start: Any) -> tuple[Var, ...]:
@@ -109,7 +111,7 @@ def limits(
         "rim_fatigue": fatigue(demand, gearing, curve),
         "ratcheting": demand.ratchet_factor
         * demand.duty.torque
-        / slipping(demand, gearing, tip, contacts[-1]),
+        / slipping(demand, gearing, contacts[-1]),
         "outer_radius": demand.radius_needed(gearing) / demand.outer_radius,
         "flexspline_land": 1.0 + (least - land) / gearing.module,
         "flexspline_space": 1.0 + (least - space) / gearing.module,
@@ -123,9 +125,9 @@ def limits(
     }
 
 
-def slipping(demand: Demand, gearing: StrainWave, tip: Any, contact: Contact) -> Any:
+def slipping(demand: Demand, gearing: StrainWave, tip: Contact) -> Any:
     """Return the torque [N mm] at which teeth ratchet, by the flank's angle at the tip."""
-    slope = -contact.direction.y / contact.direction.x
+    slope = -tip.direction.y / tip.direction.x
     return ratcheting_torque(gearing, demand.radial_stiffness, slope)
 
 

@@ -25,6 +25,7 @@ from gearopt.physics.strain_wave.tooth_motion import motion
 STEP_DEG = 0.05  # of the wave, at which every design is looked at
 BLOCK_DEG = 4.0  # of poses that cut, every so many are taken
 ROUNDS = 12
+RADII = (1.0, 0.95, 0.9, 0.85)  # of the outer radius, at which a front's cuts are found
 POINTS = 201  # of the flank that is verified
 LOOKED_AT = (0, COUNT // 2, COUNT - 1)  # points of the flank that are taken as cuts
 CUTTING = -1e-6  # mm: a clearance below it, 1 nm, asks for another round; contact itself has 0
@@ -50,6 +51,7 @@ class Exchanged:
     design: Flank | None
     gap: float
     rounds: tuple[Round, ...]
+    cuts: frozenset[Cut]
 
     @property
     def clear(self) -> bool:
@@ -57,13 +59,19 @@ class Exchanged:
         return self.design is not None and self.gap >= CUTTING
 
 
-def exchange(demand: Demand, start: Array, clock: Clock, gap: float = 1e-6) -> Exchanged:
+def exchange(
+    demand: Demand,
+    start: Any,
+    clock: Clock,
+    gap: float = 1e-6,
+    known: frozenset[Cut] = frozenset(),
+) -> Exchanged:
     """Return the design of least pressure by equal sharing that interferes at no pose.
 
-    start (6,): numbers in the order of FREE. Every round begins at the last one's design. Its
-    bound, if any, and its status are those of the problem of the last round.
+    start (6,): numbers in the order of FREE; known: cuts to begin with. Every round begins at the
+    last design. Its bound, if any, and its status are those of the problem of the last round.
     """
-    cuts: set[Cut] = set()
+    cuts = known
     rounds: list[Round] = []
     numbers = np.asarray(start, float)
     while True:
@@ -71,14 +79,14 @@ def exchange(demand: Demand, start: Array, clock: Clock, gap: float = 1e-6) -> E
         result, outcome = run(posed, "ipopt", clock.left, watch=clock.inner(values=False), gap=gap)
         clock.evaluations += outcome.evaluations
         if result.value is None or outcome.x is None:
-            return Exchanged(result, outcome, posed, None, -np.inf, tuple(rounds))
+            return Exchanged(result, outcome, posed, None, -np.inf, tuple(rounds), cuts)
         numbers = outcome.x[: len(FREE)]
         made = design_of(demand, numbers)
         least = interference(made, STEP_DEG, POINTS).least
         rounds.append(Round(result.value, len(cuts), least, outcome.evaluations))
         new = _cutting(made) - cuts
         if not new or len(rounds) == ROUNDS or not clock.tell():
-            return Exchanged(result, outcome, posed, made, least, tuple(rounds))
+            return Exchanged(result, outcome, posed, made, least, tuple(rounds), cuts)
         cuts |= new
 
 
@@ -112,6 +120,21 @@ def _taken(room: Any, angles: Array, point: int) -> set[Cut]:
     every = max(1, round(BLOCK_DEG / STEP_DEG))
     picked = {int(room.argmin()), int(bad[0]), int(bad[-1]), *map(int, bad[::every])}
     return {Cut(float(angles[k]), point) for k in picked}
+
+
+def front_cuts(demand: Demand, start: Any, clock: Clock) -> frozenset[Cut]:
+    """Return cuts that keep designs of several sizes clear, for a front of pressure and volume.
+
+    Those of exchanges at RADII of the outer radius, each from the last one's design.
+    """
+    cuts: frozenset[Cut] = frozenset()
+    for share in RADII:
+        smaller = replace(demand, outer_radius=share * demand.outer_radius)
+        found = exchange(smaller, start, clock, known=cuts)
+        cuts = cuts | found.cuts
+        if found.outcome.x is not None:
+            start = found.outcome.x[: len(FREE)]
+    return cuts
 
 
 def stretched(made: Flank, deflection: float) -> Flank:

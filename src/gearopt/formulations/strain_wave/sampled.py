@@ -10,7 +10,15 @@ from typing import Any
 
 import numpy as np
 
-from gearopt.formulations.strain_wave.demand import FREE, Demand, free_variables, limits, squares
+from gearopt.formulations.strain_wave.demand import (
+    FREE,
+    PRESSURE,
+    VOLUME,
+    Demand,
+    free_variables,
+    limits,
+    squares,
+)
 from gearopt.formulations.strain_wave.exchange import POINTS, STEP_DEG, design_of
 from gearopt.formulations.strain_wave.wave_design import COUNT
 from gearopt.optimise.problem import Problem
@@ -21,7 +29,7 @@ from gearopt.physics.strain_wave.gearing import StrainWave
 from gearopt.physics.strain_wave.neutral_curve import NeutralCurve, angle_of_arc, neutral_curve
 from gearopt.physics.strain_wave.tooth_motion import motion
 
-PRESSURE, VOLUME, SHARE = "pressure", "volume_per_torque", "load_share"
+SHARE = "load_share"
 OBJECTIVES = {PRESSURE: "MPa", VOLUME: "mm3/(N m)", SHARE: ""}
 POSES_DEG, REACH_DEG = 0.75, 85.0  # of the wave, at which sampled designs are looked at
 SAMPLED_GAP = 2e-5  # mm that rounding may take of a contact
@@ -30,7 +38,7 @@ NEAR = 5e-3  # mm: teeth within it count for the load share
 WORST = 10.0  # utilisation of a design without a conjugate flank
 
 
-def problem(demand: Demand, start: Array, names: Sequence[str] = (PRESSURE,)) -> Problem:
+def problem(demand: Demand, start: Any, names: Sequence[str] = (PRESSURE,)) -> Problem:
     """Pose objectives over the six free numbers, without derivatives; start (6,): the guess.
 
     names: pressure by equal sharing, volume per torque, and the share 1/N of the load of a tooth if
@@ -74,7 +82,7 @@ def _assessed(
     highest = np.max([np.where(known, s, np.nan) for s in squares(demand, thin, each)], axis=0)
     goals = {PRESSURE: np.sqrt(np.maximum(np.nan_to_num(highest, nan=1e8), 0.0))}
     if VOLUME in names:
-        goals[VOLUME] = demand.volume(thin) / demand.duty.torque * 1e3
+        goals[VOLUME] = demand.specific_volume(thin)
     if SHARE in names:
         goals[SHARE] = _share(wide, curve, made, known)
     return used, goals

@@ -12,7 +12,8 @@ from gearopt.physics.strain_wave.gearing import StrainWave
 
 POINTS = 201  # of a flank
 STEP_DEG = 0.05  # of the wave, where interference is looked for
-BISECTIONS = 24
+COARSE_DEG = 0.25  # the same for every shift of a curve
+BISECTIONS = 20
 
 
 @dataclass(frozen=True)
@@ -47,7 +48,7 @@ def shift_curve(gearing: StrainWave, duty: Duty, shifts: Iterable[float]) -> lis
                 equal_pressure(duty, made),
                 equal_pressure(duty, made, whole=True),
                 shared_pressure(duty, made),
-                interference(made, STEP_DEG).least,
+                interference(made, COARSE_DEG).least,
             )
         )
     return found

@@ -14,6 +14,8 @@ import numpy as np
 
 from gearopt.formulations.strain_wave.demand import (
     FREE,
+    PRESSURE,
+    VOLUME,
     Demand,
     clear,
     free_variables,
@@ -22,7 +24,7 @@ from gearopt.formulations.strain_wave.demand import (
     squares,
 )
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.terms import Array, Terms, Var
+from gearopt.optimise.terms import Terms, Var
 from gearopt.physics.strain_wave.clearance import corner, involute_gap, thickness_at
 from gearopt.physics.strain_wave.conjugate import Contact, angle_at, contact, tangents
 from gearopt.physics.strain_wave.gearing import StrainWave
@@ -48,8 +50,13 @@ class Cut:
     point: int
 
 
-def problem(demand: Demand, start: Array, cuts: Sequence[Cut] = ()) -> Problem:
-    """Pose the least pressure [MPa] by equal sharing, from the free numbers `start` (6,)."""
+def problem(
+    demand: Demand, start: Any, cuts: Sequence[Cut] = (), names: Sequence[str] = (PRESSURE,)
+) -> Problem:
+    """Pose the least pressure [MPa] by equal sharing, from the free numbers `start` (6,).
+
+    names: what is minimised, PRESSURE or VOLUME per torque [mm3/(N m)] too.
+    """
 
     def evaluate(x: Any, p: Any) -> Terms:
         gearing = demand.gearing({name: getattr(x, name) for name in FREE})
@@ -70,8 +77,9 @@ def problem(demand: Demand, start: Array, cuts: Sequence[Cut] = ()) -> Problem:
             rooms = [room(gearing, poses[cut.angle], at, cut.point) for cut in cuts]
             found["interference"] = tuple(clear(r) for r in rooms)
         pressure = tuple(s / x.pressure**2 for s in squares(demand, gearing, at))
+        goals = {PRESSURE: x.pressure, VOLUME: demand.specific_volume(gearing)}
         return Terms(
-            {"pressure": x.pressure},
+            {name: goals[name] for name in names},
             found,
             {"contact": pressure},
             {"meshing": miss, "length": 1.0 + 100.0 * perimeter_error(curve)},
@@ -96,7 +104,7 @@ def room(gearing: StrainWave, at: Motion, contacts: Sequence[Contact], point: in
     return smooth_maximum(seen.y - thickness_at(nodes, within), beside)
 
 
-def variables(demand: Demand, start: Array) -> tuple[Var, ...]:
+def variables(demand: Demand, start: Any) -> tuple[Var, ...]:
     """Return the variables, with a guess made exactly from the free numbers of `start`."""
     free = free_variables(demand, start)
     gearing = demand.gearing({v.name: v.guess for v in free})

@@ -23,7 +23,7 @@ from gearopt.physics.strain_wave.rim import Cup, rim_compliance
 
 RANDOM = False
 COUNTS = "set of loaded teeth"
-NEIGHBOURS = 20  # teeth on either side of the arc of contact that may carry
+REACH = 0.25 * np.pi  # rad of the wave on either side of the arc of contact: teeth that may carry
 WIDE = 2.0  # of a share's box, as in `sharing`
 SLACK = 1e-12  # of the largest separation or deflection: a tooth that is open by less touches
 
@@ -69,7 +69,8 @@ def teeth_of(
 
     rim None: rigid. shift: turn of the wave generator in pitches, -1/2 to 1/2.
     """
-    number = np.arange(-NEIGHBOURS, NEIGHBOURS + 1)
+    most = round(REACH * float(flank.gearing.teeth) / (2.0 * np.pi))
+    number = np.arange(-most, most + 1)
     arcs = tooth_arcs(flank, number, shift)
     number, arcs = number[np.abs(arcs) < 0.5 * np.pi], arcs[np.abs(arcs) < 0.5 * np.pi]
     gaps = tooth_clearances(flank, arcs)

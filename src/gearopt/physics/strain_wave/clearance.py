@@ -137,13 +137,13 @@ def tooth_clearances(flank: Flank, arcs: Any) -> Any:
     return clearances(flank, angle_of_arc(flank.curve, np.asarray(arcs, float)))
 
 
-def teeth_within(flank: Flank, gaps: Any, step: float = 0.005, reach: float = 20.0) -> Any:
+def teeth_within(flank: Flank, gaps: Any, count: int = 8001) -> Any:
     """Return the mean number of teeth per lobe and flank whose clearance is at most `gaps` [mm].
 
-    By teeth at every `step` pitches up to `reach` pitches from the middle of the arc of contact.
+    By `count` places of a tooth up to 45 degrees of the wave from the middle of the arc of contact.
     """
-    number = np.arange(-reach, reach + 0.5 * step, step)
-    arcs = tooth_arcs(flank, number)
-    arcs = arcs[np.abs(arcs) < 0.49 * math.pi]
+    reach = 0.25 * math.pi
+    arcs = float(tooth_arcs(flank, 0)) + np.linspace(-reach, reach, count)
     found = np.sort(tooth_clearances(flank, arcs))
-    return np.searchsorted(found, gaps, side="right") * step
+    each = 2.0 * reach / (count - 1) * flank.gearing.teeth / (2.0 * math.pi)
+    return np.searchsorted(found, gaps, side="right") * each

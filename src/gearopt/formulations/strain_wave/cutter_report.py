@@ -1,0 +1,89 @@
+"""The cutter of a flexspline for its report: points, edges that replace it, least teeth."""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from gearopt.formulations.strain_wave.cutter_fit import arc_edge, straight_edge
+from gearopt.physics.strain_wave.conjugate import Flank
+from gearopt.physics.strain_wave.cutter import blank_profile, envelope, generated, least_teeth
+
+Columns = tuple[float, ...]
+POINTS = 51  # of the cutter's edge that are told
+USUAL = math.radians(20.0)  # pressure angle of usual tools
+
+
+@dataclass(frozen=True)
+class Cutter:
+    """teeth Z_b of a pinion-type cutter, 0: a rack; pitch_radius P_f of the blank [mm], 0: m z_f/2.
+
+    angle [rad]: of a straight tool that is there, beside the best one.
+    """
+
+    teeth: int = 0
+    pitch_radius: float = 0.0
+    angle: float = USUAL
+
+
+@dataclass(frozen=True, kw_only=True)
+class CutterDesign:
+    """The edge of a cutter, its points from the flank's root to its tip.
+
+    x from the pitch line of a rack, or the centre of a pinion-type cutter, away from the blank; y
+    across, half the space for the blank's tooth. speed: least speed along the edge over that along
+    the flank; not regular where it is not above 0: then nothing else is told. straight,
+    arc: edges of least largest deviation; given: an edge at the tool's angle.
+    """
+
+    teeth: int
+    pitch_radius_mm: float
+    cutter_radius_mm: float
+    regular: bool
+    least_speed: float
+    least_teeth: int | None
+    x_mm: Columns = ()
+    y_mm: Columns = ()
+    round_trip_mm: float = 0.0
+    straight_deg: float = 0.0
+    straight_deviation_mm: float = 0.0
+    arc_radius_mm: float = 0.0
+    arc_deviation_mm: float = 0.0
+    given_deg: float = 0.0
+    given_deviation_mm: float = 0.0
+
+
+def cutter_of(made: Flank, asked: Cutter) -> CutterDesign:
+    """Return the cutter of a flank; an irregular one with the least teeth that are regular."""
+    gearing, blank = made.gearing, blank_profile(made)
+    pitch = asked.pitch_radius or float(gearing.blank_radius)
+    radius = pitch * asked.teeth / float(gearing.teeth) if asked.teeth else math.inf
+    found = envelope(blank, pitch, radius)
+    slowest = float(np.nan_to_num(found.speeds, nan=-1e9).min())
+    head: dict[str, Any] = {
+        "teeth": asked.teeth,
+        "pitch_radius_mm": pitch,
+        "cutter_radius_mm": radius if asked.teeth else 0.0,
+        "regular": found.regular,
+        "least_speed": slowest,
+        "least_teeth": least_teeth(blank, pitch, int(gearing.teeth)),
+    }
+    if not found.regular:
+        return CutterDesign(**head)
+    back = (generated(found.profile, pitch, radius) - blank.points).length
+    pick = np.rint(np.linspace(0, len(back) - 1, POINTS)).astype(int)
+    edge = found.profile.points[pick]
+    line, arc, given = straight_edge(edge), arc_edge(edge), straight_edge(edge, asked.angle)
+    return CutterDesign(
+        **head,
+        x_mm=tuple(map(float, edge.x)),
+        y_mm=tuple(map(float, edge.y)),
+        round_trip_mm=float(back.max()),
+        straight_deg=math.degrees(line.angle),
+        straight_deviation_mm=line.deviation,
+        arc_radius_mm=arc.radius,
+        arc_deviation_mm=arc.deviation,
+        given_deg=math.degrees(asked.angle),
+        given_deviation_mm=given.deviation,
+    )

@@ -1,0 +1,276 @@
+"""A strain wave gearing: it runs, how near its teeth come, what they carry, and its cutter."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+from gearopt.formulations.strain_wave.wave_report import WaveDesign
+from gearopt.optimise.result import Result
+from gearopt.optimise.typed import typed
+from gearopt.report import wave_tables as tables
+from gearopt.report.answer import asked, assumptions, limits, summary
+from gearopt.report.kinds import Kind
+from gearopt.report.kinds.generic import ASKED, FIRST, LAST, TOLD
+from gearopt.report.measures import METRIC, Measures
+from gearopt.report.pages.cutter_drawing import drawing
+from gearopt.report.pages.sheet import series
+from gearopt.report.pages.wave_motion import running
+from gearopt.report.section import Figure, Section, Tile, axis, layout
+from gearopt.report.words import amount, number
+
+RUNS = "strain wave gearing"  # the animation that plots follow
+ANGLE = "angle of the tooth on the wave [°]"
+NEAR_DEG = 25.0  # of the wave, that the plot of clearances shows
+
+
+def design_of(result: Result) -> WaveDesign | None:
+    """Return the gearing of a result; None without one."""
+    if not result.design:
+        return None
+    found: WaveDesign = typed(WaveDesign, result.design, "design")
+    return found
+
+
+def tiles(result: Result, measures: Measures) -> list[Tile]:
+    """Return pressure, teeth that carry, clearance and size as key figures."""
+    if (found := design_of(result)) is None:
+        return []
+    equal = amount(found.equal_pressure_MPa, "MPa", measures)
+    touching = found.least_clearance_mm >= -1e-9
+    least = max(0.0, found.least_clearance_mm) if touching else found.least_clearance_mm
+    return [
+        Tile(
+            "largest pressure, shared loads",
+            amount(found.shared_pressure_MPa, "MPa", measures),
+            f"{equal} if conjugate pairs alone carried",
+        ),
+        Tile(
+            "teeth that carry",
+            f"{found.carrying_teeth} per lobe",
+            f"as {number(found.effective_teeth)} equally loaded; {number(found.pairs_in_contact)} "
+            "are conjugate",
+        ),
+        Tile(
+            "least clearance over the wave",
+            amount(least, "um", measures),
+            "where conjugate flanks touch" if touching else "teeth cut",
+        ),
+        Tile(
+            "outer diameter",
+            amount(found.outer_diameter_mm, "mm", measures),
+            f"module {amount(found.module_mm, 'mm', measures)}",
+        ),
+    ]
+
+
+def decides(result: Result) -> str:
+    """Return how many teeth carry, and how hard they press."""
+    if (found := design_of(result)) is None or result.value is not None:
+        return ""
+    pressure = amount(found.shared_pressure_MPa, "MPa", METRIC)
+    return f"{found.carrying_teeth} teeth of a lobe carry, at up to {pressure}"
+
+
+def warns(result: Result) -> Sequence[str]:
+    """Return that teeth interfere, or that the cutter has a cusp."""
+    if (found := design_of(result)) is None:
+        return ()
+    told = []
+    if found.least_clearance_mm < -1e-6:
+        told.append(
+            f"Teeth cut each other by {-1e3 * found.least_clearance_mm:.3g} µm, at "
+            f"{found.least_clearance_at_deg:.3g}° of the wave: loads and pressures do not count."
+        )
+    if found.cutter and not found.cutter.regular:
+        told.append(
+            f"A cutter of {found.cutter.teeth} teeth has a cusp: there is none. The least is "
+            f"{found.cutter.least_teeth} teeth with this pitch circle."
+        )
+    return told
+
+
+def moving(result: Result, measures: Measures) -> Section | None:
+    """Show the gearing running, and clearances and loads over the wave."""
+    if (found := design_of(result)) is None:
+        return None
+    words = (
+        f"{number(found.pairs_in_contact)} pairs per lobe and flank are conjugate: their flanks "
+        "touch without load. Others come near, and elasticity closes what is left.",
+    )
+    return Section(
+        "Teeth in mesh",
+        words=words,
+        animations=[running(found, RUNS, measures)],
+        figures=[_clearances(found, measures), _loads(found, measures)],
+        tables=[
+            *(tables.within(found, measures), tables.teeth(found, measures)),
+            *(tables.wave(found, measures), tables.load(found, measures)),
+        ],
+        terminal=(tables.teeth(found, measures),),
+    )
+
+
+def _line(x: Sequence[float], y: Any, name: str, colour: int) -> dict[str, Any]:
+    return {
+        "type": "scatter",
+        "mode": "lines",
+        "x": list(x),
+        "y": list(y),
+        "name": name,
+        "line": {"color": series(colour), "width": 2},
+        "hovertemplate": "%{y:.4g}",
+    }
+
+
+def _clearances(found: WaveDesign, measures: Measures) -> Figure:
+    """Plot the clearance of a tooth near the arc of contact."""
+    factor, unit = measures.of(1.0, "um"), measures.unit("um")
+    rows = [
+        (a, factor * c)
+        for a, c in zip(found.wave_angle_deg, found.wave_clearance_mm, strict=True)
+        if abs(a) <= NEAR_DEG
+    ]
+    x, y = zip(*rows, strict=True)
+    plot = layout(axis(ANGLE), axis(f"clearance [{unit}]"), hovermode="x")
+    shade = {
+        "type": "rect",
+        "layer": "below",
+        "yref": "paper",
+        "y0": 0.0,
+        "y1": 1.0,
+        "x0": found.arc_deg[0],
+        "x1": found.arc_deg[-1],
+        "fillcolor": "--grid",
+        "line": {"width": 0},
+    }
+    plot["shapes"] = [shade]
+    caption = "Least clearance of a tooth by its place on the wave; shaded: conjugate flanks touch."
+    return Figure([_line(x, y, "clearance", 1)], plot, caption, follows=RUNS)
+
+
+def _loads(found: WaveDesign, measures: Measures) -> Figure:
+    """Plot load and pressure of a tooth on its way over the wave."""
+    force = measures.of(1.0, "N")
+    load = [force * v for v in found.load_N]
+    plot = layout(
+        axis(ANGLE), axis(f"load [{measures.unit('N')}]", rangemode="tozero"), hovermode="x"
+    )
+    carrying = [a for a, v in zip(found.load_angle_deg, found.load_N, strict=True) if v > 0.0]
+    room = 0.3 * (carrying[-1] - carrying[0])
+    plot["xaxis"] |= {"range": [carrying[0] - room, carrying[-1] + room]}
+    caption = "Load of a tooth at the duty's torque on its way over the wave."
+    return Figure([_line(found.load_angle_deg, load, "load", 1)], plot, caption, follows=RUNS)
+
+
+def shift(result: Result, measures: Measures) -> Section | None:
+    """Plot the pressure against the profile shift, as the search of the paper had it."""
+    found = design_of(result)
+    if found is None or len(found.shifts) < 2:
+        return None
+    factor, x = measures.of(1.0, "MPa"), [r.profile_shift for r in found.shifts]
+    lines = [
+        _line(x, [factor * r.equal_MPa for r in found.shifts], "equal loads", 1),
+        _line(x, [factor * r.whole_MPa for r in found.shifts], "whole pairs", 2),
+        _line(x, [factor * r.shared_MPa for r in found.shifts], "shared loads", 4),
+    ]
+    plot = layout(
+        axis("profile shift, modules"),
+        axis(f"largest pressure [{measures.unit('MPa')}]", rangemode="tozero"),
+        hovermode="x",
+    )
+    plot["margin"] |= {"t": 34}
+    mark = {
+        "type": "line",
+        "yref": "paper",
+        "y0": 0.0,
+        "y1": 1.0,
+        "x0": found.profile_shift,
+        "x1": found.profile_shift,
+        "line": {"color": "--axis", "width": 1, "dash": "dot"},
+    }
+    plot["shapes"] = [mark]
+    caption = "Pressure by the profile shift, all else as it is; dotted: this gearing."
+    words = ["The pressure has no least value over the profile shift: other limits end the search."]
+    if found.shift_of_one_pair is not None:
+        words.append(f"One conjugate pair always touches up to {found.shift_of_one_pair:.3f}.")
+    return Section(
+        "Pressure against profile shift",
+        words=words,
+        figures=[Figure(lines, plot, caption)],
+        tables=[tables.shifts(found, measures)],
+    )
+
+
+def cutter(result: Result, measures: Measures) -> Section | None:
+    """Draw the cutter's edge on a grid, with straight and circular edges that may replace it."""
+    found = design_of(result)
+    if found is None or (tool := found.cutter) is None:
+        return None
+    least = f"least teeth of a regular cutter here: {tool.least_teeth}"
+    if not tool.regular:
+        words = (f"No such cutter: its edge would have a cusp; {least}.",)
+        return Section("Cutter of the flexspline", words=words, terminal=words)
+    what = f"A pinion-type cutter of {tool.teeth} teeth" if tool.teeth else "A rack, as of a hob"
+    words = (
+        f"{what}, rolling on a pitch radius of {amount(tool.pitch_radius_mm, 'mm', measures)}: "
+        f"regular, it generates the flank to {1e3 * tool.round_trip_mm:.0e} µm; {least}.",
+    )
+    shown = result.report["cutter_drawing"]
+    edges = tables.edges(tool, measures)
+    return Section(
+        "Cutter of the flexspline",
+        words=words,
+        drawings=[
+            drawing(tool, math.pi * found.module_mm, shown["scale"], shown["grid_mm"], measures)
+        ],
+        tables=[edges, tables.edge_points(tool, measures)],
+        terminal=(words[0], edges),
+    )
+
+
+def numbers(result: Result, measures: Measures) -> Section | None:
+    """Return the gearing in numbers, its flank, and other deflections."""
+    if (found := design_of(result)) is None:
+        return None
+    words = (
+        f"Teeth by half the locus of their motion, another law, would touch with "
+        f"{number(found.half_locus_teeth)} teeth per lobe and flank between 0.5 and 60° of the "
+        "wave, if their flanks were corrected for the turn of the teeth.",
+    )
+    sizes = tables.sizes(found, measures)
+    return Section(
+        "Sizes and flank",
+        words=words,
+        tables=[sizes, tables.deflections(found, measures), tables.flank(found, measures)],
+        terminal=(sizes,),
+    )
+
+
+def search(result: Result, measures: Measures) -> Section | None:
+    """Return the rounds of a search; None without one."""
+    found = design_of(result)
+    if found is None or not found.rounds:
+        return None
+    words = (
+        "Each round holds the poses clear at which teeth of the last one cut each other; all poses "
+        "are looked at, 0.05° apart.",
+    )
+    return Section("Search", words=words, tables=[tables.rounds(found, measures)], half=True)
+
+
+OWN = (moving, cutter, shift, numbers)
+GIVEN = Kind(
+    sections=(summary, *OWN, limits, asked, assumptions),
+    terminal=(numbers, moving, cutter, limits, summary),
+    tiles=tiles,
+    decides=decides,
+    warns=warns,
+    whole="gearing",
+)
+KIND = replace(
+    GIVEN,
+    sections=(*FIRST, *OWN, *ASKED, search, *LAST),
+    terminal=(numbers, moving, cutter, limits, *TOLD),
+    given=GIVEN,
+)

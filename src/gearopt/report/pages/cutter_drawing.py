@@ -1,0 +1,94 @@
+"""The edge of a cutter at a large scale on a grid, as a toolmaker plots it."""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from gearopt.formulations.strain_wave.cutter_report import CutterDesign
+from gearopt.report.measures import Measures
+from gearopt.report.pages.sheet import Drawing, Place, Sheet, Window, series
+
+PX_PER_MM = 96.0 / 25.4  # of a screen and of paper as browsers print it
+FREE = (46.0, 16.0, 34.0, 16.0)  # px around the edge
+LINES = 60  # of the grid in one direction at most: coarser ones are taken beyond
+STEPS = (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)  # times the grid
+
+
+def drawing(
+    found: CutterDesign, pitch: float, scale: float, grid: float, measures: Measures
+) -> Drawing:
+    """Draw two teeth of a cutter at a scale on a grid [mm], with the straight edge instead.
+
+    pitch [mm] of a rack. x is upwards, away from the blank; y to the right, 0 in the middle of a
+    space for a tooth of the blank. On paper at full size the scale is true.
+    """
+    edge = np.c_[found.x_mm, found.y_mm]
+    teeth = [np.vstack([edge, _mirrored(found, edge, pitch)[::-1]])]
+    teeth.append(teeth[0] * (1.0, -1.0))
+    teeth = [tooth[:, ::-1] for tooth in teeth]
+    x, y = np.vstack(teeth).T
+    room = 0.06 * float(np.ptp(x))
+    step = next((s * grid for s in STEPS if np.ptp(x) + 2 * room < LINES * s * grid), 100 * grid)
+    low, high = (
+        [way(v / step) * step for v in ends]
+        for way, ends in (
+            (np.floor, (x.min() - room, y.min() - room)),
+            (np.ceil, (x.max() + room, y.max() + room)),
+        )
+    )
+    ends = float(low[0]), float(high[0]), float(low[1]), float(high[1])
+    sheet = Sheet(Window(*ends, FREE), scale * PX_PER_MM)
+    _grid(sheet, ends, step, measures)
+    for tooth in teeth:
+        path = " L ".join(f"{u:.3f} {v:.3f}" for u, v in (sheet.at(*p) for p in tooth.tolist()))
+        sheet.shape(f"M {path} Z", "tip", series(1), "tooth of the cutter")
+    _straight(sheet, found, room)
+    for v, u in edge[::5].tolist():
+        sheet.circle(u, v, 2.0 / sheet.scale, "design")
+    name = f"pinion-type cutter of {found.teeth} teeth" if found.teeth else "rack"
+    caption = (
+        f"Active part of two teeth of a {name} at {scale:g}:1, grid {measures.length(step, 3)} "
+        f"{measures.lengths}; every fifth point of the CSV is marked. Dashed: the straight edge "
+        f"of least deviation, {found.straight_deg:.3f}°."
+    )
+    return sheet.drawing("cutting edge", caption)
+
+
+def _mirrored(found: CutterDesign, edge: Any, pitch: float) -> Any:
+    """Return the edge on the other side of the cutter's tooth."""
+    if not found.teeth:
+        return edge * (1.0, -1.0) + (0.0, pitch)
+    z = edge[:, 0] + 1j * edge[:, 1]
+    axis = math.pi - math.pi / found.teeth
+    other = np.conj(z) * np.exp(2j * axis)
+    return np.c_[other.real, other.imag]
+
+
+def _straight(sheet: Sheet, found: CutterDesign, room: float) -> None:
+    """Draw the straight edge of least deviation over the exact one."""
+    x, y = np.array(found.x_mm), np.array(found.y_mm)
+    slope = -math.tan(math.radians(found.straight_deg))
+    offset = 0.5 * float((y - slope * x).min() + (y - slope * x).max())
+    first, last = float(x.min()) - room, float(x.max()) + room
+    sheet.line((slope * first + offset, first), (slope * last + offset, last), "far")
+
+
+def _grid(
+    sheet: Sheet, ends: tuple[float, float, float, float], step: float, measures: Measures
+) -> None:
+    """Draw the grid with its coordinates."""
+    left, right, bottom, top = ends
+    across = np.arange(round(left / step), round(right / step) + 1) * step
+    up = np.arange(round(bottom / step), round(top / step) + 1) * step
+    every = max(1, round(60.0 / (sheet.scale * step)))
+    for k, v in enumerate(map(float, across)):
+        sheet.line((v, bottom), (v, top), "extension")
+        if k % every == 0:
+            u, w = sheet.at(v, bottom)
+            sheet.label(measures.length(v, 3), [Place(u, w + 14.0)], "size")
+    for k, v in enumerate(map(float, up)):
+        sheet.line((left, v), (right, v), "extension")
+        if k % every == 0:
+            u, w = sheet.at(left, v)
+            sheet.label(measures.length(v, 3), [Place(u - 24.0, w)], "size")

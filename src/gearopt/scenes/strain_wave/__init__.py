@@ -1,0 +1,221 @@
+"""kind = "strain_wave": a strain wave gearing (harmonic drive), given or chosen."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+from gearopt.errors import SolveError
+from gearopt.formulations.strain_wave import sampled, wave_design
+from gearopt.formulations.strain_wave.demand import FREE
+from gearopt.formulations.strain_wave.exchange import Exchanged, design_of, exchange, front_cuts
+from gearopt.formulations.strain_wave.wave_report import RoundRow, described, used
+from gearopt.optimise.clock import Clock
+from gearopt.optimise.comparing.runs import Model
+from gearopt.optimise.explaining.explain import binding
+from gearopt.optimise.explaining.explanation import Explanation
+from gearopt.optimise.pareto.front import Objective
+from gearopt.optimise.pareto.pareto import EPSILON
+from gearopt.optimise.pareto.several import Several
+from gearopt.optimise.result import FEASIBLE, Result, versions
+from gearopt.optimise.solve import run
+from gearopt.optimise.terms import Array
+from gearopt.optimise.typed import untyped
+from gearopt.physics.strain_wave.conjugate import Flank
+from gearopt.scenes.reading.ask import Ask, unseeded
+from gearopt.scenes.strain_wave.example import EXAMPLE, MORE_EXAMPLES
+from gearopt.scenes.strain_wave.scene import Scene
+from gearopt.scenes.strain_wave.wave_assumptions import assumptions, notes
+
+__all__ = [
+    "EXAMPLE",
+    "MORE_EXAMPLES",
+    "Scene",
+    "compared",
+    "explain",
+    "idle",
+    "model",
+    "objectives",
+    "several",
+    "solve",
+]
+METHODS = ("exchange",)  # its own
+SAMPLERS = ("annealing", "nsga2")
+NOTHING = "the gearing is given, so that nothing is chosen"
+UNEXPLAINED = "numbers are not solved again, because each would take another search over all poses"
+HIDDEN = (
+    "Teeth cut each other by {:.3g} µm between the poses that the method looked at: "
+    "--method exchange looks at all."
+)
+
+
+def solve(scene: Scene, ask: Ask) -> Result:
+    """Choose what the file leaves open, without interference; describe the gearing."""
+    if not scene.limited:
+        return _evaluated(scene, ask)
+    if ask.method in SAMPLERS:
+        return _sampled(scene, ask)
+    if ask.method not in (None, *METHODS):
+        known = ", ".join((*METHODS, *SAMPLERS))
+        raise SolveError(f"no method {ask.method!r} for a strain wave gearing: {known}")
+    clock = Clock(ask.budget, ask.watch)
+    found = exchange(scene.demand(), scene.start(), clock, ask.gap)
+    result = replace(found.result, seconds=clock.seconds, evaluations=clock.evaluations)
+    result = replace(result, method="exchange", seed=ask.seed)
+    if found.design is None:
+        return result
+    if result.status == "stationary":  # what Ipopt says of itself is certified
+        result = replace(result, message="")
+    shown = _with(scene, result, found.design, _rounds(found))
+    if found.clear:
+        return shown
+    message = "Stopped before all poses kept clear: teeth interfere."
+    return replace(shown, status="limit", message=f"{message} {shown.message}".strip())
+
+
+def _rounds(found: Exchanged) -> list[RoundRow]:
+    return [
+        RoundRow(
+            cuts=r.cuts,
+            pressure_MPa=r.pressure or 0.0,
+            least_clearance_mm=r.gap,
+            iterations=r.iterations,
+        )
+        for r in found.rounds
+    ]
+
+
+def _sampled(scene: Scene, ask: Ask) -> Result:
+    """Choose by annealing or NSGA-II, which look at some poses; tell what they hide."""
+    problem = sampled.problem(scene.demand(), scene.start())
+    result, outcome = run(problem, ask.method, ask.budget, ask.seed, ask.watch, ask.gap)
+    if result.value is None or outcome.x is None:
+        return result
+    result = replace(result, message="")
+    made = design_of(scene.demand(), outcome.x[: len(FREE)])
+    shown = _with(scene, result, made)
+    least = shown.design["least_clearance_mm"]
+    return replace(shown, message=HIDDEN.format(-1e3 * least) if least < -1e-6 else "")
+
+
+def _evaluated(scene: Scene, ask: Ask) -> Result:
+    """Return what is to be known of a gearing that is given."""
+    if ask.method is not None:
+        raise SolveError(f"--method {ask.method} changes nothing here: {NOTHING}; leave it out")
+    clock = Clock(ask.budget, ask.watch)
+    made = design_of(scene.demand(), scene.start())
+    if not made.complete.all():
+        raise SolveError(_no_contact(scene))
+    limits = used(scene.demand(), made)
+    excess = max(0.0, max(limits.values()) - 1.0)
+    over = [name for name, value in limits.items() if value > 1.0 + FEASIBLE]
+    found = Result(
+        name="strain wave gearing",
+        status="evaluated",
+        method="closed form",
+        objective={},
+        certificate={"feasibility": excess},
+        message=f"{', '.join(over)}: limits are exceeded" if over else "",
+        evaluations=1,
+        seed=ask.seed,
+        versions=versions("numpy"),
+    )
+    return replace(_with(scene, found, made), seconds=clock.seconds)
+
+
+def _no_contact(scene: Scene) -> str:
+    """Say why a gearing has no conjugate flank, and from which deflection on it would have."""
+    from gearopt.physics.strain_wave.conjugate import least_deflection
+
+    made = scene.demand().gearing(dict(zip(FREE, scene.start(), strict=True)))
+    least = least_deflection(made)
+    if made.deflection < least:
+        return (
+            f"there is no contact at the major axis: a deflection of {made.deflection:g} modules "
+            f"is below {least:.4f}, where the instant centre enters the base circle"
+        )
+    return "the flank has no conjugate point at some radius: change addendum or profile shift"
+
+
+def _with(scene: Scene, result: Result, made: Flank, rounds: Sequence[RoundRow] = ()) -> Result:
+    """Return a result with the design and what it uses of every limit."""
+    demand = scene.demand()
+    design = described(demand, made, scene.tool(), rounds)
+    told: dict[str, Any] = {"assumptions": assumptions(scene, design), "notes": notes(design)}
+    drawing = scene.cutter
+    if drawing is not None:
+        grid = drawing.grid.value if drawing.grid else 0.05
+        told["cutter_drawing"] = {"scale": float(drawing.scale), "grid_mm": grid}
+    return replace(
+        result,
+        name="strain wave gearing",
+        objective=result.objective | ({"unit": "MPa"} if result.objective else {}),
+        design=untyped(design),
+        limits=used(demand, made) | _cut(result),
+        multipliers={k: v for k, v in result.multipliers.items() if "[" not in k},
+        report=result.report | told,
+    )
+
+
+def _cut(result: Result) -> dict[str, float]:
+    """Return the largest utilisation of the poses that an optimisation held clear."""
+    own = [v for name, v in result.limits.items() if name.startswith("interference")]
+    return {"interference": max(own)} if own else {}
+
+
+def idle(scene: Scene, method: str | None) -> dict[str, str]:
+    """Return the options of `solve` that change nothing, each with the reason."""
+    found = {"top": "no next best answers are listed"}
+    return found | ({} if method in SAMPLERS else unseeded(method))
+
+
+def explain(scene: Scene, ask: Ask, result: Result | None = None) -> Explanation:
+    """Return the limits that decide; no number of the file is moved and solved again."""
+    found = result or solve(scene, ask.half)
+    message = UNEXPLAINED if scene.limited else NOTHING
+    return Explanation(found, (), (), binding(found), (), message, found.seconds)
+
+
+def compared(scene: Scene) -> tuple[str, ...]:
+    """Return the methods of a comparison that names none."""
+    _to_choose(scene)
+    return ("ipopt", *SAMPLERS)
+
+
+def model(scene: Scene, method: str) -> Model:
+    """Return the problem of a method: smooth, with what interferes at first, or sampled."""
+    _to_choose(scene)
+    demand, start = scene.demand(), scene.start()
+    if method in SAMPLERS:
+        return Model(sampled.problem(demand, start), "Interference at poses of 0.75 deg", "MPa")
+    return Model(wave_design.problem(demand, start), "Smooth, without interference", "MPa")
+
+
+def objectives(scene: Scene) -> dict[str, str]:
+    """Return what a front may minimise: name and unit."""
+    _to_choose(scene)
+    return dict(sampled.OBJECTIVES)
+
+
+def several(scene: Scene, names: Sequence[str], method: str | None) -> Several:
+    """Return the problem of a front: smooth and clear at many poses, or for methods that sample.
+
+    load_share counts teeth, so that it is for methods that sample.
+    """
+    demand, start = scene.demand(), scene.start()
+    listed = tuple(Objective(name, sampled.OBJECTIVES[name]) for name in names)
+
+    def drawn(x: Array) -> dict[str, Any]:
+        found: dict[str, Any] = untyped(described(demand, design_of(demand, x[: len(FREE)]), None))
+        return found
+
+    if method in (None, EPSILON) and sampled.SHARE in names:
+        raise SolveError(f"{sampled.SHARE} counts teeth: --method {' or '.join(SAMPLERS)} samples")
+    if method in (None, EPSILON):
+        cuts = tuple(sorted(front_cuts(demand, start, Clock())))
+        return Several(wave_design.problem(demand, start, cuts, names), listed, drawn)
+    return Several(sampled.problem(demand, start, names), listed, drawn)
+
+
+def _to_choose(scene: Scene) -> None:
+    if not scene.limited:
+        raise SolveError(f"{NOTHING}: gearopt solve FILE describes it")

@@ -1,0 +1,190 @@
+"""A strain wave gearing's file as a whole, and what it asks of the formulations."""
+
+import math
+from typing import Annotated
+
+from pydantic import Field, model_validator
+
+from gearopt.formulations.strain_wave.cutter_report import USUAL, Cutter
+from gearopt.formulations.strain_wave.demand import FREE, Demand
+from gearopt.formulations.strain_wave.duty import Duty
+from gearopt.physics.strain_wave.rim import Cup
+from gearopt.scenes.reading.fields import Table, refuse, words
+from gearopt.scenes.strain_wave.wave_tables import (
+    MODULES,
+    RANGES,
+    RIMS,
+    WaveCutter,
+    WaveDuty,
+    WaveGears,
+    WaveGenerator,
+    WaveLimits,
+    WaveMaterial,
+    WaveSharing,
+)
+from gearopt.units import Quantity
+
+STEEL = 206e3  # MPa
+PAIR = 1e4  # N/mm per mm of face width: a stiffness of 10 N/(mm um), assumed
+RATCHET = 300.0  # N/mm per mm of face width, assumed
+USED = 3.5  # modules that shift, addendum and clearance of a usual gearing add to its diameter
+START = {
+    "profile_shift": 0.9,
+    "pressure_angle": math.radians(20.0),
+    "deflection": 1.0,
+    "addendum": 0.6,
+}
+START_RIM = 1.6  # modules
+
+
+class Scene(Table):
+    """A strain wave gearing."""
+
+    title: Annotated[str, words()] = Field("", description="A line for the report")
+    source: Annotated[str, words()] = Field(
+        "", description="Where the data and the expected value come from"
+    )
+    duty: WaveDuty
+    gears: WaveGears = Field(default_factory=WaveGears)
+    wave_generator: WaveGenerator = Field(default_factory=WaveGenerator)
+    material: WaveMaterial = Field(default_factory=WaveMaterial)
+    sharing: WaveSharing = Field(default_factory=WaveSharing)
+    design: WaveLimits = Field(default_factory=WaveLimits)
+    cutter: WaveCutter | None = None
+
+    @property
+    def limited(self) -> bool:
+        """Whether the file leaves some of the six numbers open, to be chosen within limits."""
+        return any(getattr(self.gears, name) is None for name in FREE)
+
+    @model_validator(mode="after")
+    def _consistent(self) -> "Scene":
+        if self.limited and self.duty.outer_diameter is None:
+            left = next(name for name in FREE if getattr(self.gears, name) is None)
+            rule = f"is missing: [gears] leaves {left} open, and what is chosen must fit into it"
+            raise refuse(rule, at=("duty", "outer_diameter"), action="sample")
+        if not self.limited and self.duty.outer_diameter is None and self.gears.face_width is None:
+            rule = "is missing: without an outer diameter nothing says it"
+            raise refuse(rule, at=("gears", "face_width"), action="sample")
+        for name in FREE:
+            if getattr(self.gears, name) is not None and getattr(self.design, name) is not None:
+                rule = f"changes nothing: [gears] gives {name}"
+                raise refuse(rule, at=("design", name), action="remove")
+        return self
+
+    @property
+    def usual_module(self) -> float:
+        """Module [mm] that a usual gearing of the outer diameter has."""
+        assert self.duty.outer_diameter is not None
+        inside = self.duty.outer_diameter.value - 2.0 * self.shell
+        return inside / (2.0 * self.duty.ratio + 2.0 + USED)
+
+    @property
+    def shell(self) -> float:
+        """Thickness outside the circular spline's roots [mm]."""
+        if self.gears.shell is not None:
+            return self.gears.shell.value
+        if self.duty.outer_diameter is not None:
+            return self.duty.outer_diameter.value / 30.0
+        assert self.gears.module is not None
+        return 6.0 * self.gears.module.value
+
+    @property
+    def face_width(self) -> float:
+        """Face width b [mm]."""
+        if self.gears.face_width is not None:
+            return self.gears.face_width.value
+        assert self.duty.outer_diameter is not None
+        return self.duty.outer_diameter.value / 9.0
+
+    def loads(self) -> Duty:
+        """Return torque, width, materials and elasticity."""
+        modulus = _or(self.material.elastic_modulus, STEEL)
+        poisson, width = float(self.material.poisson_ratio), self.face_width
+        asked = self.sharing
+        length = _or(asked.cup_length, 3.0 * width)
+        cup = Cup(float(asked.wall_over_rim), length, modulus, poisson)
+        stiffness = 1.0 / _or(asked.pair_compliance, 1.0 / (PAIR * width))
+        return Duty(
+            self.duty.torque.value,
+            width,
+            (modulus, modulus),
+            (poisson, poisson),
+            stiffness,
+            cup,
+            asked.rim == "elastic",
+        )
+
+    def demand(self) -> Demand:
+        """Return what the gearing must meet, and the ranges of what is chosen."""
+        asked, diameter = self.design, self.duty.outer_diameter
+        wrap = self.wave_generator.wrap_angle
+        return Demand(
+            teeth=2 * self.duty.ratio,
+            duty=self.loads(),
+            ranges=self.ranges(),
+            outer_radius=math.inf if diameter is None else 0.5 * diameter.value,
+            shell=self.shell,
+            wave=self.wave_generator.shape,
+            wrap=math.radians(30.0) if wrap is None else wrap.value,
+            clearance=float(self.gears.clearance),
+            bending_limit=_or(self.material.bending_limit, 400.0),
+            shear_limit=_or(self.material.shear_limit, 230.0),
+            safety=float(asked.safety),
+            notch=float(asked.notch),
+            radial_stiffness=1.0 / _or(asked.radial_compliance, 1.0 / (RATCHET * self.face_width)),
+            ratchet_factor=float(asked.ratcheting),
+            pairs=float(asked.pairs),
+            keys={name: f"design.{name}" for name in FREE if getattr(self.gears, name) is None},
+        )
+
+    def ranges(self) -> dict[str, tuple[float, float]]:
+        """Return the ranges of the six numbers; ends that are equal where one is given."""
+        found = {}
+        for name in FREE:
+            given, asked = getattr(self.gears, name), getattr(self.design, name)
+            if given is not None:
+                found[name] = (_value(given), _value(given))
+            elif asked is not None:
+                found[name] = (_value(asked[0]), _value(asked[1]))
+            else:
+                found[name] = self._usual(name)
+        return found
+
+    def _usual(self, name: str) -> tuple[float, float]:
+        """Return the range of a number of which the file says nothing."""
+        if name in ("module", "rim"):
+            low, high = MODULES if name == "module" else RIMS
+            return low * self.usual_module, high * self.usual_module
+        low, high = RANGES[name]
+        return (math.radians(low), math.radians(high)) if name == "pressure_angle" else (low, high)
+
+    def start(self) -> list[float]:
+        """Return the numbers at which the search begins, in the order of FREE."""
+        ranges = self.ranges()
+        usual = dict(START)
+        if self.limited:
+            usual |= {"module": self.usual_module, "rim": START_RIM * self.usual_module}
+        return [
+            min(max(usual.get(name, low), low), high)
+            for name, (low, high) in ((name, ranges[name]) for name in FREE)
+        ]
+
+    def tool(self) -> Cutter | None:
+        """Return the cutter that is asked for."""
+        if self.cutter is None:
+            return None
+        pitch = self.cutter.pitch_diameter
+        return Cutter(
+            self.cutter.teeth or 0,
+            0.0 if pitch is None else 0.5 * pitch.value,
+            _or(self.cutter.tool_angle, USUAL),
+        )
+
+
+def _or(given: Quantity | None, usual: float) -> float:
+    return usual if given is None else given.value
+
+
+def _value(given: object) -> float:
+    return given.value if isinstance(given, Quantity) else float(given)  # type: ignore[arg-type]

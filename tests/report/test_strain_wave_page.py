@@ -1,0 +1,144 @@
+"""The page of a strain wave gearing: its teeth move as kinematics say, drawings are to scale."""
+
+import math
+import re
+
+import numpy as np
+import pytest
+
+from gearopt.formulations.strain_wave.wave_report import WaveDesign
+from gearopt.optimise.typed import typed
+from gearopt.report.kinds.strain_wave import cutter, moving, numbers, search, shift, tiles, warns
+from gearopt.report.measures import METRIC
+from gearopt.report.pages.wave_motion import gearing_of, running
+
+
+@pytest.fixture(scope="module")
+def result(solved):
+    return solved("strain_wave_base")
+
+
+@pytest.fixture(scope="module")
+def found(result):
+    return typed(WaveDesign, result.design)
+
+
+@pytest.fixture(scope="module")
+def animation(found):
+    return running(found, "runs", METRIC)
+
+
+def teeth_of(animation, view):
+    bodies = animation.views[view].bodies
+    return [body for body in bodies if body.title == "tooth of the flexspline"]
+
+
+def placed(body, moment):
+    """Outline of a body at a moment, by a rotation written out."""
+    x, y, angle = np.asarray(body.places)[moment]
+    turn = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
+    return np.asarray(body.outline) @ turn.T + (x, y)
+
+
+def test_all_teeth_stand_on_a_curve_of_the_right_length(animation, found):
+    """Feet of 160 teeth at one moment: even arcs, perimeter 2 pi R_m, radii R_m +- 0.5 mm."""
+    teeth = teeth_of(animation, 0)
+    assert len(teeth) == 160
+    for moment in (0, 37, 72):
+        feet = np.array([np.asarray(b.places)[moment, :2] for b in teeth])
+        steps = np.hypot(*(np.roll(feet, -1, axis=0) - feet).T)
+        assert steps == pytest.approx(np.full(160, steps.mean()), rel=2e-4)
+        assert steps.sum() == pytest.approx(math.pi * found.neutral_diameter_mm, rel=2e-4)
+        radii = np.hypot(*feet.T)
+        assert radii.max() == pytest.approx(found.neutral_diameter_mm / 2 + 0.5, abs=2e-3)
+        assert radii.min() == pytest.approx(found.neutral_diameter_mm / 2 - 0.5, abs=2e-2)
+
+
+def test_after_half_a_turn_the_next_tooth_is_in_the_place_of_the_last(animation):
+    teeth = teeth_of(animation, 0)
+    for k in (0, 40, 159):
+        last, first = placed(teeth[k], -1), placed(teeth[(k + 1) % 160], 0)
+        before = placed(teeth[(k - 1) % 160], 0)
+        off = min(np.abs(last - first).max(), np.abs(last - before).max())
+        assert off < 1e-9
+
+
+def test_no_tooth_in_the_drawing_cuts_the_circular_spline(animation, found):
+    """Corners of every tooth at every tenth moment against the involute, written out."""
+    base = 0.5 * found.base_diameter_mm
+    alpha, shift, z = math.radians(found.pressure_angle_deg), found.profile_shift, 162
+    eta = (math.pi / 2 + 2 * shift * math.tan(alpha)) / z + math.tan(alpha) - alpha
+    for body in teeth_of(animation, 1):
+        for moment in range(0, 145, 12):
+            x, y = placed(body, moment).T
+            radius = np.hypot(x, y)
+            inside = radius > 0.5 * found.tip_diameter_mm
+            angle = np.mod(np.arctan2(x, y)[inside] + math.pi / z, 2 * math.pi / z) - math.pi / z
+            t = np.sqrt((radius[inside] / base) ** 2 - 1.0)
+            room = base * (eta - (t - np.arctan(t)) - np.abs(angle))
+            assert room.size == 0 or room.min() > -2e-6
+
+
+def test_colours_are_the_loads_of_the_table(animation, found):
+    """A tooth at a place of the wave has the load that the table of teeth has there."""
+    body = next(b for b in teeth_of(animation, 1) if np.nanmax(b.values) > 0.0)
+    assert np.max(body.values) == pytest.approx(max(found.load_N), rel=0.02)
+    assert np.min(body.values) == 0.0
+    assert animation.scale.high >= max(found.load_N)
+
+
+def test_the_output_falls_back_by_a_tooth_in_half_a_turn(animation):
+    readings = {r.name: np.asarray(r.values) for r in animation.readings}
+    assert np.ptp(readings["wave generator"]) == pytest.approx(180.0)
+    assert np.ptp(readings["output"]) == pytest.approx(360.0 / 160.0)
+    seen = readings["tooth at the top on the wave at"]
+    assert np.nanmin(np.abs(seen)) < 1.3 and np.isnan(seen).any()
+
+
+def test_the_cutter_is_drawn_to_scale_on_its_grid(result, found):
+    section = cutter(result, METRIC)
+    svg = section.drawings[0].svg
+    path = re.search(r'class="tip"[^>]* d="M ([^Z]*) Z"', svg) or re.search(
+        r'd="M ([^Z]*) Z"[^>]*class="tip"', svg
+    )
+    points = np.array([[float(v) for v in p.split()] for p in path[1].split(" L ")])
+    edge = points[: len(found.cutter.x_mm)]
+    across = np.ptp(np.array(found.cutter.y_mm)) * 100.0 * 96.0 / 25.4
+    up = np.ptp(np.array(found.cutter.x_mm)) * 100.0 * 96.0 / 25.4
+    assert np.ptp(edge[:, 0]) == pytest.approx(across, abs=0.01)
+    assert np.ptp(edge[:, 1]) == pytest.approx(up, abs=0.01)
+    whole = np.ptp(points[:, 0]) / (100.0 * 96.0 / 25.4)
+    root, tip = found.cutter.y_mm[0], found.cutter.y_mm[-1]
+    assert whole == pytest.approx(math.pi * 0.5 - 2 * min(root, tip), rel=1e-4)
+    names = [table.name for table in section.tables]
+    assert names == ["cutting edges", "points of the cutting edge"]
+    lines = section.tables[1].csv().splitlines()
+    assert len(lines) == 52 and lines[0] == "x [mm],y [mm]"
+
+
+def test_sections_say_what_was_found(result, found):
+    told = {tile.name: tile for tile in tiles(result, METRIC)}
+    assert told["teeth that carry"].value == "6 per lobe"
+    assert "117.38 MPa" in told["largest pressure, shared loads"].remark
+    assert not warns(result) and search(result, METRIC) is None
+    mesh = moving(result, METRIC)
+    assert [f.follows for f in mesh.figures] == [mesh.animations[0].name] * 2
+    curve = shift(result, METRIC).figures[0].data
+    assert [line["name"] for line in curve] == ["equal loads", "whole pairs", "shared loads"]
+    assert all(np.all(np.diff(line["y"]) < 0.0) for line in curve)
+    sizes = dict((row[0], row[1]) for row in numbers(result, METRIC).tables[0].rows)
+    assert sizes["teeth of the flexspline"] == 160
+
+
+def test_the_gearing_of_a_report_is_the_one_it_was_made_of(found):
+    gearing = gearing_of(found)
+    assert 2.0 * gearing.neutral_radius == pytest.approx(found.neutral_diameter_mm, rel=1e-14)
+    assert 2.0 * gearing.tip_radius == pytest.approx(found.tip_diameter_mm, rel=1e-14)
+
+
+def test_a_cutter_with_a_cusp_and_teeth_that_cut_are_warned_of(solved):
+    own = solved("strain_wave_interferes")
+    first, second = warns(own)
+    assert "cut each other by 3" in first and "has a cusp" in second
+    assert not cutter(own, METRIC).drawings
+    assert "cusp" in own.to_html()

@@ -1,0 +1,152 @@
+"""Files of strain wave gearings: what is given, chosen, refused, assumed."""
+
+import math
+from dataclasses import replace
+
+import pytest
+
+import gearopt
+from gearopt.errors import SceneError, SolveError
+from gearopt.formulations.strain_wave.wave_report import WaveDesign
+from gearopt.optimise.typed import typed
+from gearopt.scenes.reading.ask import Ask
+from gearopt.scenes.reading.load import read
+from gearopt.scenes.strain_wave import EXAMPLE, compared, explain, model, objectives, several
+from gearopt.scenes.strain_wave.example import FROM_DUTY
+from gearopt.scenes.strain_wave.wave_assumptions import assumptions
+
+
+def scene(text):
+    return read(text.encode())[1]
+
+
+def test_a_given_gearing_is_evaluated_and_its_design_is_typed(solved):
+    given = solved("strain_wave_base")
+    assert given.status == "evaluated" and given.feasible and not given.objective
+    found = typed(WaveDesign, given.design)
+    assert found.flexspline_teeth == 160 and found.circular_spline_teeth == 162
+    assert found.pairs_in_contact == pytest.approx(1.09613, abs=5e-6)
+    assert found.carrying_teeth == 6 and found.effective_teeth == pytest.approx(4.34, abs=5e-3)
+    assert sum(t.force_N for t in found.teeth) == pytest.approx(5e4 / 38.05755114, rel=1e-8)
+    assert found.cutter.regular and found.cutter.straight_deg == pytest.approx(20.097, abs=6e-4)
+    assert found.least_clearance_mm == 0.0
+
+
+def test_loads_over_the_wave_are_those_of_the_teeth(solved):
+    """Where a tooth stands its load by turning the wave generator is that of the table."""
+    found = typed(WaveDesign, solved("strain_wave_base").design)
+    for tooth in found.teeth:
+        k = min(
+            range(len(found.load_N)),
+            key=lambda i: abs(found.load_angle_deg[i] - tooth.wave_angle_deg),
+        )
+        assert found.load_N[k] == pytest.approx(tooth.force_N, abs=1e-6)
+
+
+def test_other_deflections_of_the_same_teeth(solved):
+    """um, from another program on coarser poses."""
+    rows = solved("strain_wave_base").design["deflections"]
+    found = {d["deflection"]: 1e3 * d["least_clearance_mm"] for d in rows}
+    assert found == pytest.approx({0.95: 5.61, 0.98: 3.16, 1.02: -3.33, 1.05: -8.55}, abs=6e-3)
+
+
+def test_what_is_assumed_is_told_until_it_is_given(solved):
+    design = typed(WaveDesign, solved("strain_wave_base").design)
+    told = " ".join(assumptions(scene(EXAMPLE), design))
+    for word in ("1e+05 N/mm", "400 MPa", "3e+03 N/mm", "chain of springs"):
+        assert word in told
+    limits = '[material]\nbending_limit = "400 MPa"\nshear_limit = "230 MPa"\n'
+    more = EXAMPLE.replace('rim = "elastic"', 'rim = "rigid"\npair_compliance = "9 um/kN"') + limits
+    told = " ".join(assumptions(scene(more), design))
+    assert "400 MPa" not in told and "1e+05" not in told and "springs" not in told
+
+
+def test_interference_is_told_before_numbers(solved):
+    found = solved("strain_wave_interferes")
+    assert not found.feasible and "interference" in found.message
+    assert found.limits["interference"] > 1.05
+    assert not found.design["cutter"].get("regular") and "x_mm" not in found.design["cutter"]
+
+
+def test_no_contact_is_refused_with_the_deflection_that_it_takes():
+    with pytest.raises(SolveError, match=r"deflection of 0.8 modules is below 0\.8139"):
+        gearopt.solve(scene(EXAMPLE.replace("deflection = 1", "deflection = 0.8")))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "place"),
+    [
+        ("deflection = 1\n", "", "duty.outer_diameter"),
+        ('face_width = "10 mm"', "", "gears.face_width"),
+        ('shape = "cosine"', 'shape = "cosine"\nwrap_angle = "30 deg"', "wave_generator"),
+        ("# [design]", "[design]\nprofile_shift = [0, 1]\n#", "design.profile_shift"),
+        ("ratio = 80", "ratio = 5", "duty.ratio"),
+    ],
+)
+def test_wrong_files_are_told_where(old, new, place):
+    with pytest.raises(SceneError) as wrong:
+        scene(EXAMPLE.replace(old, new))
+    assert place in str(wrong.value)
+
+
+def test_ranges_of_a_duty_alone_are_those_of_its_size():
+    """The module that fits 90 mm, 20 % up and 10 % less; given numbers are held."""
+    own = scene(FROM_DUTY)
+    assert own.usual_module == pytest.approx((90.0 - 6.0) / 165.5, rel=1e-12)
+    ranges = own.ranges()
+    assert ranges["module"] == pytest.approx((0.8 * own.usual_module, 1.1 * own.usual_module))
+    assert ranges["pressure_angle"] == pytest.approx((math.radians(15), math.radians(30)))
+    held = scene(FROM_DUTY + "[gears]\nprofile_shift = 0.9\n")
+    assert held.ranges()["profile_shift"] == (0.9, 0.9)
+    assert own.demand().duty.face_width == 10.0 and own.demand().outer_radius == 45.0
+
+
+def test_problems_of_a_duty_alone():
+    own = scene(FROM_DUTY)
+    assert compared(own) == ("ipopt", "annealing", "nsga2")
+    assert len(model(own, "ipopt").problem.columns) == 15
+    assert len(model(own, "nsga2").problem.columns) == 6
+    assert list(objectives(own)) == ["pressure", "volume_per_torque", "load_share"]
+    posed = several(own, ("pressure", "load_share"), "nsga2")
+    assert posed.problem.rows.objectives == ("pressure", "load_share")
+    with pytest.raises(SolveError, match="load_share counts teeth"):
+        several(own, ("pressure", "load_share"), None)
+    for call in (compared, objectives, lambda s: model(s, "")):
+        with pytest.raises(SolveError, match="the gearing is given"):
+            call(scene(EXAMPLE))
+
+
+def test_methods_that_are_not_there_are_refused():
+    with pytest.raises(SolveError, match="no method 'gp'"):
+        gearopt.solve(scene(FROM_DUTY), method="gp")
+    with pytest.raises(SolveError, match="changes nothing here: the gearing is given"):
+        gearopt.solve(scene(EXAMPLE), method="exchange")
+
+
+def test_explain_names_what_decides_and_does_not_guess(solved):
+    told = replace(solved("strain_wave_base"), limits={"pairs": 1.0, "ratcheting": 0.5})
+    found = explain(scene(FROM_DUTY), Ask(), told)
+    assert found.binding == ("pairs",) and not found.influences
+    assert "not solved again" in found.message
+
+
+@pytest.mark.slow
+def test_a_sampler_tells_what_it_hides():
+    own = scene(FROM_DUTY.replace("[cutter]\n", ""))
+    found = gearopt.solve(own, method="nsga2", seed=3, budget=gearopt.Budget(evaluations=2000))
+    assert found.status == "feasible" and 92.0 < found.value < 110.0
+    least = found.design["least_clearance_mm"]
+    assert (least < -1e-6) == ("cut each other" in found.message)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("ratio", "diameter"), [(30, "90 mm"), (320, "90 mm"), (100, "200 mm")])
+def test_other_ratios_and_sizes_from_a_duty_alone(ratio, diameter):
+    torque = "100 N m" if diameter == "90 mm" and ratio < 100 else "30 N m"
+    text = FROM_DUTY.replace("ratio = 80", f"ratio = {ratio}").replace("90 mm", diameter)
+    text = text.replace("100 N m", torque).replace("[cutter]\n", "")
+    found = gearopt.solve(scene(text))
+    assert found.status == "stationary" and found.feasible
+    assert found.design["flexspline_teeth"] == 2 * ratio
+    assert found.design["least_clearance_mm"] >= 0.0
+    assert found.design["outer_diameter_mm"] <= float(diameter.split()[0]) * (1 + 1e-8)
