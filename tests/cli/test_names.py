@@ -6,26 +6,13 @@ from pathlib import Path
 
 import pytest
 
+from gearopt import bench
 from gearopt.cli import names
 
 PROBLEMS = Path(__file__).parents[2] / "problems"
-KINDS = ("compound", "drive", "packing", "pair", "servo")
-BENCHES = (
-    "compare",
-    "curvature",
-    "drive",
-    "front",
-    "integrators",
-    "layout",
-    "rating",
-    "relief",
-    "servo",
-    "sharing",
-    "smooth",
-    "stiffness",
-    "wave_design",
-    "wave_sharing",
-)
+KINDS = ("compound", "drive", "packing", "pair", "servo", "strain_wave")
+FILES = Path(bench.__file__).parent.glob("*.py")
+BENCHES = tuple(sorted(p.stem for p in FILES if p.stem != "__init__"))
 
 
 @pytest.fixture
