@@ -123,6 +123,33 @@ def test_gears_that_cannot_be_sized_have_no_relief():
     assert result.status == "infeasible" and not result.design
 
 
+def test_the_worst_case_within_tolerances_is_proven_and_drawn_ones_stay_below():
+    """The largest of corners and of a grid inside, by shares computed for each; +-2 um."""
+    tables = with_relief(amount="11 um", length=0.68, tolerance="2 um", loads=[1])
+    made = gearopt.solve(tables).design["relief"]["made"]
+    found = [
+        gearopt.solve(with_relief(amount=f"{a} um", length=0.68, loads=[1])).value
+        for a in (9, 10, 11, 12, 13)  # both gears alike: part of the box
+    ]
+    assert max(found) <= made["bound_mm"] * (1 + 1e-9)
+    assert made["median_mm"] < made["most_mm"] < made["worst_mm"] <= made["bound_mm"]
+    assert made["bound_mm"] <= 1.0011 * made["worst_mm"]
+    assert all(abs(a - 0.011) <= 0.002 * (1 + 1e-9) for a in made["worst_amounts_mm"])
+
+
+@pytest.mark.slow
+def test_a_robust_relief_has_a_smaller_worst_case():
+    plain, robust = (
+        gearopt.solve(
+            with_relief(tolerance="2 um", robust=robust), budget=gearopt.Budget(evaluations=20_000)
+        )
+        for robust in (False, True)
+    )
+    worst = [one.design["relief"]["made"]["worst_mm"] for one in (plain, robust)]
+    assert worst[1] < 0.95 * worst[0] and robust.objective["name"] == "worst_peak_to_peak"
+    assert robust.value >= plain.bound and "annealed" in robust.message
+
+
 WRONG = [
     ({"amount": 10}, r"amount = 10: .* needs a unit"),
     ({"amount": ["30 um", "0 um"]}, r"amount = .*ends in the wrong order"),
@@ -135,6 +162,10 @@ WRONG = [
     ({"shape": 0.5}, r"shape = 0\.5: is not between 1 and 10"),
     ({"shape": "free", "minimise": "load_jump"}, r'load_jump": is no criterion of a free shape'),
     ({"shape": "free", "length": 0.5}, r"length = 0\.5: changes nothing: a free shape"),
+    ({"robust": True}, r"robust = true: needs tolerance"),
+    ({"tolerance": "2 um", "shape": "free"}, r"tolerance = .*: is for the peak_to_peak of"),
+    ({"tolerance": "2 um", "minimise": "load_jump"}, r"tolerance = .*: is for the peak_to_peak"),
+    ({"tolerance": 2}, r"tolerance = 2: is a bare number"),
     ({"loads": [0]}, r"loads = \[0\]: is no load at all"),
     ({"minimise": "noise"}, r'minimise = "noise": is not one of "peak_to_peak", "harmonics"'),
     ({"ammount": "3 um"}, r"relief\.ammount: unknown key\. Did you mean amount"),

@@ -10,11 +10,14 @@ from gearopt.formulations.pair_contact import Columns, ContactLoad, PairMesh, at
 from gearopt.formulations.relief.free_form import Profile
 from gearopt.formulations.relief.meshing import NO_RELIEF, Mesh, Relief
 from gearopt.formulations.relief.parametric import objective
+from gearopt.formulations.relief.relief_tolerance import Tolerance, drawn, worst
 from gearopt.formulations.relief.rules import short_relief, tip_amounts
+from gearopt.optimise.result import Budget
 from gearopt.optimise.terms import Array
 from gearopt.physics.geometry.contact import diameters_at
 
 LEAST = 1e-6  # mm: less than that is no relief
+DRAWN, MOST = 2000, 0.95  # reliefs as they are made, and the part of them told beside the median
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,12 +55,32 @@ class ReliefRow:
 
 
 @dataclass(frozen=True, kw_only=True)
+class MadeRelief:
+    """The relief as it is made: amounts and lengths off by their tolerances, either way.
+
+    worst: largest peak-to-peak of all loads that was found, at these amounts and lengths of pinion
+    and wheel; bound: none exceeds it, proven. median, most: of so many drawn ones, uniformly, half
+    and 95 % stay below them.
+    """
+
+    amount_tolerance_mm: float
+    length_tolerance_mm: float
+    worst_mm: float
+    bound_mm: float
+    worst_amounts_mm: tuple[float, float]
+    worst_lengths_mm: tuple[float, float]
+    drawn: int
+    median_mm: float
+    most_mm: float
+
+
+@dataclass(frozen=True, kw_only=True)
 class PairRelief:
     """The relief of a spur pair.
 
     minimise: of the worst of all loads, relative to the torque of the duty. pinion_removed_mm,
     wheel_removed_mm: columns beside those of the path of contact. at: what happens at every load of
-    the contact with it. rows: rules beside it, and no relief.
+    the contact with it. rows: rules beside it, and no relief. made: within tolerances.
     """
 
     minimise: str
@@ -68,6 +91,7 @@ class PairRelief:
     wheel_removed_mm: Columns
     at: tuple[ContactLoad, ...]
     rows: tuple[ReliefRow, ...]
+    made: MadeRelief | None = None
 
 
 @dataclass(frozen=True)
@@ -192,4 +216,24 @@ def _row(
         value=float(objective(found, minimise)),
         peak_to_peak_mm=column(found.peak_to_peak),
         load_jump=column(found.load_jump),
+    )
+
+
+def as_made(
+    mesh: Mesh, nominal: tuple[Relief, Relief], tolerance: Tolerance, budget: Budget, seed: int
+) -> MadeRelief:
+    """Return the worst case of a relief within tolerances, proven, and what drawn ones have."""
+    found = worst(mesh, nominal, tolerance, budget)
+    values = drawn(mesh, nominal, tolerance, DRAWN, seed)
+    point = [float(v) for v in found.point]
+    return MadeRelief(
+        amount_tolerance_mm=tolerance.amount,
+        length_tolerance_mm=tolerance.length,
+        worst_mm=found.value,
+        bound_mm=found.bound,
+        worst_amounts_mm=(point[0], point[1]),
+        worst_lengths_mm=(point[2], point[3]),
+        drawn=DRAWN,
+        median_mm=float(np.median(values)),
+        most_mm=float(np.quantile(values, MOST)),
     )

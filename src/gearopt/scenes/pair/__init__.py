@@ -22,6 +22,7 @@ from gearopt.scenes.pair.assumptions import assumptions
 from gearopt.scenes.pair.contact_part import contact_of, mesh_of
 from gearopt.scenes.pair.example import EXAMPLE, MORE_EXAMPLES
 from gearopt.scenes.pair.relief_part import relieved
+from gearopt.scenes.pair.relief_tables import ReliefTable
 from gearopt.scenes.pair.scene import Scene
 from gearopt.scenes.reading.ask import Ask, unseeded
 
@@ -139,9 +140,14 @@ def idle(scene: Scene, method: str | None) -> dict[str, str]:
 
 def _unseeded(scene: Scene, method: str | None) -> dict[str, str]:
     asked = scene.relief
-    if asked is not None and method is None and asked.minimise not in PROVEN:
+    if asked is not None and method is None and not _proven(asked):
         return {}
     return unseeded(method)
+
+
+def _proven(asked: ReliefTable) -> bool:
+    """Return whether a relief has a proven search."""
+    return asked.minimise in PROVEN and not asked.robust
 
 
 def compared(scene: Scene) -> tuple[str, ...]:
@@ -149,7 +155,7 @@ def compared(scene: Scene) -> tuple[str, ...]:
     if scene.relief is not None:
         if scene.relief.free:
             return ("exact",)
-        exact = METHODS if scene.relief.minimise in PROVEN else ()
+        exact = METHODS if _proven(scene.relief) else ()
         return (*exact, "annealing", "nsga2")
     return drive.compared(_to_size(scene).drive)
 

@@ -6,11 +6,12 @@ from typing import Any
 
 from gearopt.errors import SolveError
 from gearopt.formulations.pair_contact import PairMesh
-from gearopt.formulations.pair_relief import PairRelief, Removed, described
+from gearopt.formulations.pair_relief import PairRelief, Removed, as_made, described
 from gearopt.formulations.relief import parametric
 from gearopt.formulations.relief.free_form import Profile, Shape, free_problem
-from gearopt.formulations.relief.meshing import Mesh
+from gearopt.formulations.relief.meshing import Mesh, Relief
 from gearopt.formulations.relief.parametric import Ranges
+from gearopt.formulations.relief.relief_tolerance import Tolerance, robust_problem
 from gearopt.optimise.comparing.runs import Model
 from gearopt.optimise.pareto.epsilon import Limiting
 from gearopt.optimise.pareto.front import Objective
@@ -18,7 +19,7 @@ from gearopt.optimise.pareto.several import Several
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import evaluate, run
-from gearopt.optimise.terms import Array, Terms
+from gearopt.optimise.terms import Array, Terms, Var
 from gearopt.optimise.typed import untyped
 from gearopt.scenes.pair.relief_tables import ReliefTable
 from gearopt.scenes.pair.scene import Scene
@@ -27,6 +28,8 @@ from gearopt.scenes.reading.ask import Ask
 SHOWN = {"mm": "mm_as_um"}  # units of criteria as they are read
 DEFAULT = "annealing"  # of what has no proven search
 FEW = 2.0  # contact ratio below which free shapes are searched
+WORST = 1e-3  # relative gap of a worst case within tolerances
+ROBUST = "the worst case is annealed: without tolerance the least value is proven, with it none is"
 UNBOUND = "without the method exact there is no bound"
 UNPROVEN = "only the peak-to-peak transmission error has a proven search: of this there is no bound"
 KEYS = {"amount": "relief.amount", "length": "relief.length"}  # of variables: their places
@@ -48,7 +51,29 @@ def relieved(scene: Scene, made: PairMesh, ask: Ask) -> tuple[Result, PairRelief
         result, removed = _parametric(scene, made, ask)
     if removed is None:
         return result, None
-    return result, described(made, removed, asked.minimise, loads_of(scene))
+    relief = described(made, removed, asked.minimise, loads_of(scene))
+    if asked.tolerance is not None:
+        mesh, nominal = made.of_loads(loads_of(scene)), _nominal(relief)
+        within = replace(ask.budget, gap=WORST)
+        kept = as_made(mesh, nominal, _tolerance(asked, mesh), within, ask.seed)
+        relief = replace(relief, made=kept)
+    return result, relief
+
+
+def _nominal(relief: PairRelief) -> tuple[Relief, Relief]:
+    """Return a relief by amount, length and exponent as it is drawn."""
+    first, second = (
+        Relief(flank.amount_mm, flank.length_mm, flank.exponent or 1.0)
+        for flank in (relief.pinion, relief.wheel)
+    )
+    return first, second
+
+
+def _tolerance(asked: ReliefTable, mesh: Mesh) -> Tolerance:
+    """Return the tolerances [mm] of amounts and lengths."""
+    assert asked.tolerance
+    part = float(asked.length_tolerance or 0)
+    return Tolerance(asked.tolerance.value, part * float(mesh.cycle.path.base_pitch))
 
 
 def _parametric(scene: Scene, made: PairMesh, ask: Ask) -> tuple[Result, Removed | None]:
@@ -56,7 +81,7 @@ def _parametric(scene: Scene, made: PairMesh, ask: Ask) -> tuple[Result, Removed
     asked = scene.relief
     assert asked
     mesh, ranges = _meshed(scene, made)
-    problem = _problem(asked, mesh, ranges)
+    problem = _posed(asked, mesh, ranges)
     if asked.given:
         point = problem.bounds()[0]
         result = _united(evaluate(problem, point), asked.minimise)
@@ -67,7 +92,8 @@ def _parametric(scene: Scene, made: PairMesh, ask: Ask) -> tuple[Result, Removed
     if result.value is None or outcome.x is None:
         return result, None
     if result.bound is None and method != "exact":
-        result = replace(result, message=UNBOUND if "exact" in problem.methods else UNPROVEN)
+        why = UNBOUND if "exact" in problem.methods else ROBUST if asked.robust else UNPROVEN
+        result = replace(result, message=why)
     return result, Removed.of(mesh, parametric.at_point(outcome.x, ranges))
 
 
@@ -113,6 +139,19 @@ def _meshed(scene: Scene, made: PairMesh) -> tuple[Mesh, Ranges]:
     return mesh, replace(ranges, amounts=(low, high))
 
 
+def _posed(asked: ReliefTable, mesh: Mesh, ranges: Ranges) -> Problem:
+    """Return what is minimised: a criterion, or its worst case within tolerances."""
+    if not asked.robust:
+        return _problem(asked, mesh, ranges)
+    made = robust_problem(mesh, ranges, _tolerance(asked, mesh))
+    return replace(made, variables=_keyed(made))
+
+
+def _keyed(problem: Problem) -> tuple[Var, ...]:
+    """Return the variables of a relief with the places of their ranges in the file."""
+    return tuple(replace(v, key=KEYS[v.name]) for v in problem.variables)
+
+
 def _problem(
     asked: ReliefTable,
     mesh: Mesh,
@@ -132,8 +171,7 @@ def _problem(
         found = made.evaluate(x, p)
         return replace(found, minimise={n: found.minimise[own] for n, own in names.items()})
 
-    keyed = tuple(replace(v, key=KEYS[v.name]) for v in made.variables)
-    return replace(made, variables=keyed, evaluate=evaluate)
+    return replace(made, variables=_keyed(made), evaluate=evaluate)
 
 
 def model(scene: Scene, made: PairMesh) -> Model:
@@ -143,7 +181,7 @@ def model(scene: Scene, made: PairMesh) -> Model:
     if scene.relief.free:
         problem = _free_problem(scene.relief, made.of_loads(loads_of(scene)))
         return Model(problem, "Relief of any convex shape", unit)
-    problem = _problem(scene.relief, *_meshed(scene, made))
+    problem = _posed(scene.relief, *_meshed(scene, made))
     return Model(problem, "Amounts and lengths of relief of both gears", unit)
 
 

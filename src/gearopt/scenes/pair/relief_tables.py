@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 from gearopt import units
 from gearopt.formulations.relief.parametric import OBJECTIVES
 from gearopt.scenes.pair.sharing_tables import LOADS
-from gearopt.scenes.reading.fields import Table, choice, number, quantity, refuse
+from gearopt.scenes.reading.fields import Table, choice, number, quantity, refuse, truth
 from gearopt.scenes.reading.lists import span, word_or
 from gearopt.units import Quantity
 
@@ -53,6 +53,18 @@ class ReliefTable(Table):
         "one; by default from 0.1 to the middle of the path",
     )
 
+    tolerance: Annotated[Quantity | None, quantity("length", "2 um", "0.1 mm")] = Field(
+        None,
+        description="How far the amounts may be off as they are ground, either way: the worst case "
+        "is told, proven, and what drawn gears have",
+    )
+    length_tolerance: Annotated[Fraction | None, number(0.02, 0, 1)] = Field(
+        None, description="How far the lengths may be off, in base pitches; by default not at all"
+    )
+    robust: Annotated[bool, truth()] = Field(
+        False, description="Minimise the worst case within the tolerance, instead of the nominal"
+    )
+
     @property
     def free(self) -> bool:
         """Return whether the shape is chosen, too."""
@@ -74,6 +86,7 @@ class ReliefTable(Table):
     def _fits(self) -> "ReliefTable":
         if self.loads is not None and not any(self.loads):
             raise refuse("is no load at all", [1], ("loads",), "sample")
+        self._check_tolerance()
         if self.free and self.minimise != "peak_to_peak":
             rule = "is no criterion of a free shape, which peak_to_peak alone has a search for"
             raise refuse(rule, "peak_to_peak", ("minimise",))
@@ -84,3 +97,15 @@ class ReliefTable(Table):
             rule = "has an end above zero: a free shape takes off anything from nothing on"
             raise refuse(rule, ["0 um", str(self.amount[1])], ("amount",))
         return self
+
+    def _check_tolerance(self) -> None:
+        """Refuse tolerances of what has no worst case here, and what changes nothing without."""
+        for name in ("length_tolerance", "robust"):
+            if getattr(self, name) and self.tolerance is None:
+                raise refuse("needs tolerance, that of the amounts", at=(name,), action="remove")
+        if self.tolerance is not None and (self.free or self.minimise != "peak_to_peak"):
+            rule = "is for the peak_to_peak of a relief by amount, length and exponent"
+            raise refuse(rule, at=("tolerance",), action="remove")
+        if self.robust and self.given:
+            rule = "changes nothing: amount and length are given"
+            raise refuse(rule, at=("robust",), action="remove")
