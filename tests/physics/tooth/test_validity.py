@@ -16,8 +16,10 @@ def test_thin_rings_and_large_ones():
     assert "at 1.15 it is 23 % too soft" in unsupported(thin, USUAL)[0]
     assert unsupported(thin, "finite elements") == ()
     assert any("a real rim is softer" in each for each in doubts(thin, "finite elements"))
-    assert cheapest(thin, 0.2) == "profile + Cornell + torsion"
-    large = replace(pair, bores=(8.0, 50.0))
+    assert cheapest(thin, 0.2) == "finite elements"
+    large = replace(pair, bores=(8.0, 50.0))  # Sainsot: 6 to 11 % too soft by finite elements
+    assert cheapest(large, 0.1) == "finite elements"
+    assert cheapest(large, 0.11) == "profile + Cornell + torsion"
     assert any("fitted up to 7" in each for each in doubts(large, USUAL))
     assert unsupported(large, USUAL) == () == unsupported(pair, USUAL)
 
