@@ -168,6 +168,17 @@ def test_a_model_without_a_ring_beside_a_coupling_by_the_ring_is_said():
     )
 
 
+def test_a_rim_on_a_web_is_said_to_be_softer():
+    """Every model takes a full ring down to the bore."""
+    told = {"rim_thickness": "6 mm", "web_thickness": "10 mm", "bore": "50 mm"}
+    found = contact(GIVEN, **{"stage.wheel": told})
+    assert "wheel has a rim of 2 m_n on a web of 33.3 % of its face" in found["validity"][0]
+    del told["rim_thickness"], told["web_thickness"]
+    assert (
+        found["pair_stiffness_MPa"] == contact(GIVEN, **{"stage.wheel": told})["pair_stiffness_MPa"]
+    )
+
+
 def test_undercut_is_said_and_so_is_a_small_contact_ratio(solved):
     found = solved("undercut_pair").design["contact"]["validity"]
     said = " ".join(found)

@@ -60,7 +60,7 @@ def _stiff(found: PairContact, load: ContactLoad) -> str:
     off = 100.0 * (load.mean_mesh_stiffness_MPa / found.iso_mesh_stiffness_MPa - 1.0)
     return (
         f"The mean mesh stiffness is {rounded(abs(off), 2)} % {'above' if off > 0 else 'below'} "
-        "the value that ISO 6336-1 has for all gears of its kind."
+        "the value that ISO 6336-1 has for all gears of its kind, whatever their bores."
     )
 
 

@@ -15,7 +15,10 @@ def assumptions(scene: Scene, made: PairContact) -> list[str]:
     coupled = 1e6 * made.coupling_mm_per_N
     return [
         "Contact: exact involutes without errors and modifications, plane models, no friction, "
-        "no dynamics; shafts and bearings are rigid, and gears are held at their bores.",
+        "no dynamics; shafts and bearings are rigid, and gears are held at their bores. Loads are "
+        "those of the duty without application, dynamic and face load factors, spread evenly over "
+        "the face width. Teeth meet at SAP; bent ones without relief meet before it, at the edge "
+        "of a tip.",
         f"Teeth by {made.level}, in plane {strain}; the contact compliance is that at the torque "
         "of the duty, at every load.",
         f"Neighbouring teeth are coupled by {coupled:.3g} µm/kN ({made.coupling}).",

@@ -30,7 +30,8 @@ def contact_of(scene: Scene, made: PairMesh) -> PairContact:
     told = scene.sharing.coupling
     name = "given" if isinstance(told, Quantity) else told
     pair = made.elastic.pair
-    return contact(made, name, _by_iso(scene, pair, made.elastic), tuple(_validity(made, name)))
+    said = (*_webs(scene, pair), *_validity(made, name))
+    return contact(made, name, _by_iso(scene, pair, made.elastic), said)
 
 
 def mesh_of(scene: Scene, pair: GearPair, materials: Materials = ("", "")) -> PairMesh:
@@ -116,6 +117,18 @@ def _by_iso(scene: Scene, pair: GearPair, elastic: ElasticPair) -> tuple[float, 
     webs = tuple(blank.web(gear) for blank, gear in zip(blanks, pair.gears, strict=True))
     single = single_stiffness(pair, line, elastic.moduli, mean_blank_factor((webs[0], webs[1])))
     return float(single), float(mesh_stiffness(single, elastic.path.transverse_ratio)[0])
+
+
+def _webs(scene: Scene, pair: GearPair) -> Iterator[str]:
+    """Yield gears with rims on webs, of which the models know only the bore."""
+    made = blanks_of(scene, pair, ("", ""))
+    for name, blank, gear in zip(MEMBERS, made, pair.gears, strict=True):
+        web, rim = blank.web(gear) or (1.0, 0.0)
+        if web < 1.0:
+            yield (
+                f"The {name} has a rim of {rim:.3g} m_n on a web of {100.0 * web:.3g} % of its "
+                "face width: stiffness is that of a full ring down to the bore, the real one lower."
+            )
 
 
 def _validity(made: PairMesh, coupling: str) -> Iterator[str]:
