@@ -100,6 +100,7 @@ def test_two_allowances_are_read(text, ends):
         (("mesh", 0, "centre_distance"), ["0.01 mm"]),
         (("mesh", 0, "centre_distance"), "-0.01 mm"),
         (("mesh", 0, "pinion_thickness"), "+0.9/+0.8 mm"),
+        pytest.param(("mesh", 0, "centre_distance"), "1" * 9999 + " mm", id="many digits"),
     ],
 )
 def test_what_are_no_allowances_is_refused(place, value):

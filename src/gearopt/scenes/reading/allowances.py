@@ -7,8 +7,10 @@ from gearopt import units
 from gearopt.scenes.reading.fields import Reads, quantity, refuse
 from gearopt.units import Quantity
 
-NUMBER = r"[0-9]*\.?[0-9]+(?:[eE][+-]?[0-9]+)?"
-EITHER = re.compile(rf"\s*([+-]?\s*{NUMBER})\s*([^\s/]*)\s*/\s*([+-]?\s*{NUMBER})\s*(\S+)\s*")
+# Possessive throughout: what has thousands of digits is not tried again from each of them.
+NUMBER = r"(?>[0-9]+(?:\.[0-9]+)?|\.[0-9]+)(?:[eE][+-]?[0-9]++)?+"
+SIGNED = rf"[+-]?\s*+{NUMBER}"
+EITHER = re.compile(rf"\s*+({SIGNED})\s*+([^\s/]*+)\s*+/\s*+({SIGNED})\s*+(\S++)\s*+")
 ALIKE = re.compile(rf"\s*(?:±|\+/-|\+-)\s*({NUMBER})\s*(\S+)\s*")
 
 
