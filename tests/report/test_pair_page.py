@@ -7,10 +7,11 @@ from dataclasses import replace
 import pytest
 from rich.console import Console
 
+from gearopt.physics.gears import Gear, GearPair
 from gearopt.report.kinds.pair import KIND, contact_of
 from gearopt.report.measures import INCH, METRIC
 from gearopt.report.pages.result import tables
-from gearopt.report.pair_words import answers, of_duty
+from gearopt.report.pair_words import answers, graded, of_duty
 from gearopt.report.terminal import show
 
 
@@ -75,3 +76,21 @@ def test_the_page_shows_contact_and_the_rating_of_a_pair_that_was_sized(solved):
 def test_what_models_do_not_cover_is_warned_of_once(solved):
     html = solved("undercut_pair").to_html()
     assert html.count("without profile shift a rack cuts 17 teeth") == 1
+
+
+def test_an_uneven_motion_is_compared_with_accuracy():
+    """ISO 1328-1:1995 at grade 5: 2.5 sqrt(m) + 0.17 sqrt(d) + 0.5 um; double at grade 7."""
+    pair = GearPair(Gear(3.0, 25, 75.0, 30.0), Gear(3.0, 50, 150.0, 30.0))
+    middle = 1e-3 * (2.5 * 3.0**0.5 + 0.17 * 150.0**0.5 + 0.5)
+    for factor, words in ((1.0, "grade 5 "), (2.0, "grade 7 "), (0.5, "grade 3 ")):
+        assert f"that profiles of accuracy {words}" in graded(pair, factor * middle)
+    assert "less than profiles of any" in graded(pair, 1e-5) and not graded(pair, 0.0)
+    assert "more than profiles of any" in graded(pair, 1.0)
+
+
+def test_what_to_change_is_told_where_nothing_is_relieved(solved):
+    """11.34 and 11.17 um by the corrected rule, computed apart from gearopt."""
+    flat = " ".join(printed(solved("reference_pair")).split())
+    assert "About 11.3 µm off the tips of the pinion and 11.2 µm off those of the wheel" in flat
+    assert "of accuracy grade 4 of ISO 1328-1" in flat
+    assert "About 11.3 µm off" not in " ".join(printed(solved("relief_two_loads")).split())

@@ -43,6 +43,7 @@ WRONG = [
     ({"stage.pinion.bore": "70 mm"}, r'bore = "70 mm": leaves its hub.* Write, for example, bore'),
     ({"gears.bore": "90 mm", "stage.pinion": {}}, r'gears\.bore = "90 mm": leaves its hub, 144 mm'),
     ({"stage.centre_distance": "130 mm"}, 'contact breaks off. Write centre_distance = "112.5 mm"'),
+    ({"stage.pinion_teeth": 60}, r"wheel_teeth = 50: is below pinion_teeth.*Exchange"),
     ({"stage.helix_angle": "10 deg"}, r"stage\[1\]\.helix_angle = .* is for spur gears"),
     ({"gears.helix_angle": "10 deg"}, r"gears\.helix_angle = .* is for spur gears"),
     ({"gears.addendum": 0.5}, r"gears\.addendum = 0\.5: .* contact breaks off.* addendum = 1"),

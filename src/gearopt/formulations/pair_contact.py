@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from gearopt.formulations.relief.meshing import NO_RELIEF, Mesh
+from gearopt.formulations.relief.rules import tip_amounts
 from gearopt.optimise.terms import Array
 from gearopt.physics.agma.factors import elastic_coefficient
 from gearopt.physics.geometry.contact import ContactPath, diameters_at
@@ -75,8 +76,10 @@ class PairContact:
     the others by coupling_mm_per_N. error: least and largest of the level's stiffness against
     finite elements, of all pairs it was measured on. bores: where the gears are held. iso: c' and
     c_gamma_alpha of ISO 6336-1, beside. path: columns along the path of contact from SAP to EAP,
-    both sides of points where pairs come and go. travel_mm: of the pinion's base circle over one
-    base pitch, 0 where a pair comes into contact. validity: sentences on what models do not cover.
+    both sides of points where pairs come and go. rule_relief: what off the tips of pinion and wheel
+    lets pairs come and go without load at the duty's torque, by rule. travel_mm: of the pinion's
+    base circle over one base pitch, 0 where a pair comes into contact. validity: sentences on what
+    models do not cover.
     """
 
     level: str
@@ -90,6 +93,7 @@ class PairContact:
     contact_ratio: float
     iso_single_stiffness_MPa: float
     iso_mesh_stiffness_MPa: float
+    rule_relief_mm: tuple[float, float]
     points: tuple[ContactPoint, ...]
     position_mm: Columns
     pinion_diameter_mm: Columns
@@ -181,6 +185,7 @@ def contact(
         contact_ratio=float(path.transverse_ratio),
         iso_single_stiffness_MPa=iso[0],
         iso_mesh_stiffness_MPa=iso[1],
+        rule_relief_mm=tip_amounts(path, made.compliance, made.mesh.coupling, made.force),
         points=tuple(_points(made)),
         position_mm=column(positions),
         **{name: column(values) for name, values in _columns(made, positions).items()},

@@ -32,7 +32,7 @@ def points(found: PairContact, measures: Measures) -> Table:
         "Points of the path of contact; s on the line of action from the pitch point, positive "
         "towards the pinion's tip. Between LPSTC and HPSTC one pair of teeth carries the load."
     )
-    return Table("points of contact", heads, rows, caption)
+    return Table("points of contact", heads, rows, caption, wrap=0)
 
 
 def loads(found: PairContact, measures: Measures) -> Table:

@@ -1,6 +1,10 @@
 """What an engineer asks of a pair's contact, answered in sentences."""
 
+import math
+
 from gearopt.formulations.pair_contact import ContactLoad, PairContact
+from gearopt.physics.gears import GearPair
+from gearopt.physics.iso6336.accuracy import deviations
 from gearopt.physics.mesh_cycle import NARROW
 from gearopt.report.measures import rounded
 from gearopt.report.words import share
@@ -16,10 +20,46 @@ def of_duty(found: PairContact) -> ContactLoad:
     return loads.get(1.0) or loads[max(loads)]
 
 
-def answers(found: PairContact) -> list[str]:
-    """Return how the load passes, how even the motion is, and how far numbers can be trusted."""
+def answers(found: PairContact, pair: GearPair | None = None, relieved: bool = False) -> list[str]:
+    """Return how load passes, how even the motion is, what to change, how sure that all is.
+
+    pair: its gears, of whole teeth. relieved: relief is told elsewhere.
+    """
     load = of_duty(found)
-    return [_shared(found, load), _even(found, load), _stiff(found, load), _sure(found)]
+    even = _even(found, load)
+    if pair is not None and (alike := graded(pair, load.peak_to_peak_mm)):
+        even = f"{even} {alike}"
+    change = [] if relieved or not load.normal_force_N else [_changed(found)]
+    return [_shared(found, load), even, *change, _stiff(found, load), _sure(found)]
+
+
+def graded(pair: GearPair, error: float) -> str:
+    """Return how a peak-to-peak transmission error [mm] compares with accuracy; "" for none.
+
+    The form deviation of a profile doubles with two grades of ISO 1328-1 (1995).
+    """
+    if error <= 0.0:
+        return ""
+    middle = float(deviations(pair, (5.0, 5.0), smooth=True).profile_form)
+    grade = 5.0 + 2.0 * math.log2(error / middle)
+    alike = f"that profiles of accuracy grade {grade:.0f} of ISO 1328-1 may deviate in form"
+    if grade < 0.5:
+        alike = "less than profiles of any accuracy grade of ISO 1328-1 may deviate in form"
+    elif grade > 12.5:
+        alike = "more than profiles of any accuracy grade of ISO 1328-1 may deviate in form"
+    return (
+        f"This is {alike}: in coarser gears errors of making matter more, in finer ones the load."
+    )
+
+
+def _changed(found: PairContact) -> str:
+    """Say what relief by rule would do."""
+    first, second = (rounded(1e3 * amount, 3) for amount in found.rule_relief_mm)
+    return (
+        f"About {first} µm off the tips of the pinion and {second} µm off those of the wheel would "
+        "let pairs of teeth come and go without load at the torque of the duty; a table [relief] "
+        "finds the best amounts, for several loads."
+    )
 
 
 def _shared(found: PairContact, load: ContactLoad) -> str:

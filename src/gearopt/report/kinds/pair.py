@@ -87,7 +87,8 @@ def contact(result: Result, measures: Measures) -> Section | None:
     if (found := contact_of(result)) is None:
         return None
     tables = [table(found, measures) for table in TABLES]
-    words = list(map(measures.words, answers(found)))
+    told = answers(found, pair_of(result), bool(result.design.get("relief")))
+    words = list(map(measures.words, told))
     shown = [table for table in tables if not table.folded]
     return Section("Contact", words=words, tables=tables, terminal=("\n".join(words), *shown))
 

@@ -7,7 +7,7 @@ from pydantic import Field, ValidationError, model_validator
 
 from gearopt.physics.gears import GearPair
 from gearopt.scenes.drive.drive_tables import Gears, Limits, Objective, StageTable, Teeth
-from gearopt.scenes.drive.rating.checks import not_given
+from gearopt.scenes.drive.rating.checks import check_pinion, not_given
 from gearopt.scenes.drive.rating.gears import given_pairs
 from gearopt.scenes.drive.rating.materials import MaterialTable
 from gearopt.scenes.drive.rating.tables import LoadTable, RatingTable
@@ -99,6 +99,7 @@ class Scene(Table):
         except ValidationError as wrong:
             raise _first(wrong) from None
         if self.given:
+            check_pinion(self.stage[0], 0)
             check_pair(self.given_pair, self.stage[0], self.gears)
             check_level(self.given_pair, self.sharing.level)
         return self

@@ -146,7 +146,7 @@ def check_rated(
             if name in given or name in made:
                 rule = "follows from the levels [[load]] and cannot be given"
                 raise refuse(rule, at=_given_at(rating, stage, k, name), action="remove")
-        _check_pinion(stage, k)
+        check_pinion(stage, k)
         if rating.by_iso6336:
             _check_accuracy(rating, made)
         for member in MEMBERS:
@@ -177,7 +177,7 @@ def _given_at(rating: RatingTable, stage: StageTable, k: int, name: str) -> Plac
     return (*next(place for place, held in places if name in held), name)
 
 
-def _check_pinion(stage: StageTable, k: int) -> None:
+def check_pinion(stage: StageTable, k: int) -> None:
     """Refuse given gears of which the wheel has fewer teeth."""
     pinion, wheel = stage.pinion_teeth, stage.wheel_teeth
     if pinion and wheel and wheel[1] < pinion[0]:
