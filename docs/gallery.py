@@ -113,6 +113,13 @@ GROUPS = {  # heading: {file: what it shows, in a line}
         "strain_wave_discs": "Two discs as wave generator instead of cos 2 phi.",
         "strain_wave_320": "320:1 with an elastic rim.",
     },
+    "The motion of a spur pair": {
+        "soft_bearings": "Soft bearings: how far the axes give way, and the motion from rest.",
+        "soft_bearings_as_printed": "The kinematics of a paper, which are not those of involutes.",
+        "unstable_speed": "A map of stability, and a motion that grows without end.",
+        "teeth_as_springs": "Stiffness by the teeth of a file of kind pair; motions over speed.",
+        "least_vibration": "Bearings, contact ratio, ramp, face width and rim of least vibration.",
+    },
     "Packing of cylinders": {
         "six_cylinders": "Three large and three small ones; the number of layers is chosen too.",
         "six_cylinders_one_layer": "In one layer, which is the best known of all.",
@@ -153,6 +160,7 @@ KINDS = {  # of a file: the page about it, and what is minimised
     "servo": ("servo.md", lambda file: _of_servo(file)),
     "pair": ("pair.md", lambda file: _of_pair(file)),
     "strain_wave": ("strain_wave.md", lambda file: "pressure"),
+    "dynamics": ("dynamics.md", lambda file: file["optimise"].get("minimise", "rms")),
 }
 UNITS = {  # as keys of a result have them
     "gear_volume": "mm3",
@@ -167,6 +175,7 @@ UNITS = {  # as keys of a result have them
     "inverse_acceleration": "",
     "move_time": "s",
     "peak_to_peak": "mm_as_um",
+    "rms": "mm_as_um",
     "rms_torque": "Nm",
     "cost": "",
 }
@@ -250,6 +259,8 @@ def _answer(file: Mapping[str, Any]) -> str:
     """The file's own [x-expected] in words."""
     expected = file["x-expected"]
     if _given(file):
+        if file["kind"] == "dynamics":
+            return ", ".join(_moved(expected))
         return ", ".join(_rated(expected) if "governs" in expected else _contact(expected))
     parts = [f"**{VERDICTS[expected['status']][0]}**"]
     name, unit = objective(file)
@@ -288,6 +299,20 @@ def _wave(expected: Mapping[str, Any]) -> list[str]:
         parts.append(f"pressure {expected['shared_pressure_MPa']:g} MPa")
     if "least_clearance_um" in expected:
         parts.append(f"teeth cut each other by {-expected['least_clearance_um']:g} µm")
+    return parts
+
+
+def _moved(expected: Mapping[str, Any]) -> list[str]:
+    """What a file expects of the motion of a pair, in words."""
+    parts = ["**evaluated**"]
+    if "centre_distance_growth_mm" in expected:
+        parts.append(f"axes apart by {expected['centre_distance_growth_mm']:.3g} mm")
+    if "unstable_percent" in expected:
+        parts.append(f"{expected['unstable_percent']:.4g} % of the map is unstable")
+    if "frequencies_Hz" in expected:
+        parts.append(f"mesh mode at {expected['frequencies_Hz'][-1]:,.0f} Hz")
+    if "normal_load_N" in expected:
+        parts.append(f"normal load {expected['normal_load_N']:,.0f} N")
     return parts
 
 

@@ -31,6 +31,11 @@ KEYS = {  # of [x-expected], as the tests below read them
     },
     "packing": {"status", "objective", "tolerance", "bound"},
     "compound": {"status", "objective"},
+    "dynamics": {
+        *("status", "objective", "normal_load_N", "deformation_um", "centre_distance_growth_mm"),
+        *("pressure_angle_deg", "bearing_force_N", "frequencies_Hz", "unstable_percent"),
+        *("dense_maximum_um", "largest_multiplier"),
+    },
     "servo": {
         *("status", "objective", "least_factor", "report"),
     },
@@ -65,6 +70,9 @@ LONG = (
     "strain_wave_from_duty",
     "strain_wave_320",
     "strain_wave_discs",
+    "least_vibration",
+    "unstable_speed",
+    "teeth_as_springs",
 )
 SI = {  # of numbers as a source prints them: their suffix, its value, the suffix of a result
     "_ft_per_min": (0.3048 / 60, "_m_per_s"),
@@ -189,6 +197,28 @@ def test_expected_strain_wave_gearing(path, solved):
         assert told[name] == pytest.approx(float(printed), abs=0.55 * last), name
 
 
+@pytest.mark.parametrize("path", of_kind("dynamics"))
+def test_expected_motion(path, solved):
+    """Numbers are held to half a unit of the last digit that the file prints."""
+    text = tomllib.loads(path.read_text(encoding="utf-8"), parse_float=str)
+    expected = text["x-expected"]
+    result = solved(path.stem)
+    assert result.status == expected.pop("status")
+    assert (result.value is None) == ("objective" not in expected)
+    told = result.design["equilibrium"] | {"objective": result.value}
+    for part in ("stability", "chosen"):
+        told |= result.design.get(part) or {}
+    for name, printed in expected.items():
+        ending = next((s for s in SI if name.endswith(s)), "")
+        unit, ours = SI.get(ending, (1.0, ""))
+        found = told[name if ours == "" else name.removesuffix(ending) + ours]
+        for value, one in zip(
+            *(v if isinstance(v, list) else [v] for v in (found, printed)), strict=True
+        ):
+            last = 10.0 ** Decimal(str(one)).as_tuple().exponent
+            assert value / unit == pytest.approx(float(one), abs=0.55 * last), name
+
+
 @pytest.mark.parametrize("path", of_kind("drive"))
 def test_expected_value(path, solved):
     content = content_of(path)
@@ -275,6 +305,7 @@ def test_every_file_says_what_it_is_held_to(path):
     assert content["kind"] in HELD and content["title"] and content["source"]
     assert expected.keys() <= KEYS[content["kind"]]
     given = {"pair": "contact_ratio", "strain_wave": "pairs_in_contact"}
+    given |= {"dynamics": "frequencies_Hz"}
     needed = {
         "infeasible": "least_factor",
         "evaluated": given.get(content["kind"], "governs"),

@@ -31,6 +31,8 @@ INSIDE = {  # dimension -> what one is inside
     "Vickers hardness": "dimensionless",
     "elastic coefficient": "megapascal**0.5",
     "compliance": "millimeter / newton",
+    "stiffness": "newton / millimeter",
+    "mass": "metric_ton",
 }
 NAMES = {  # where pint's name is another; a speed of 1/min or 1/s counts revolutions
     "hp": "horsepower",  # 550 ft lbf/s
@@ -81,6 +83,13 @@ NAMES = {  # where pint's name is another; a speed of 1/min or 1/s counts revolu
     "nm/N": "nanometer / newton",
     "um/N": "micrometer / newton",
     "mm/N": "millimeter / newton",
+    "N/mm": "newton / millimeter",
+    "N/m": "newton / meter",
+    "N/um": "newton / micrometer",
+    "kN/mm": "kilonewton / millimeter",
+    "MN/m": "meganewton / meter",
+    "lbf/in": "pound_force / inch",
+    "t": "metric_ton",
 }
 ALL = [(dimension, unit) for dimension, units in UNITS.items() for unit in units]
 

@@ -85,8 +85,17 @@ UNITS: dict[str, dict[str, tuple[Fraction, int]]] = {
         **{"um/kN": Fraction(1, 10**6), "nm/N": Fraction(1, 10**6), "um/N": Fraction(1, 1000)},
         **{"mm/N": 1},
     ),
+    "stiffness": {  # N/mm
+        **_table(**{"N/mm": 1, "N/um": 1000, "kN/mm": 1000, "MN/m": 1000}),
+        **_table(**{"N/m": Fraction(1, 1000)}),
+        "lbf/in": (_POUND_FORCE / _INCH, 0),
+    },
+    "mass": {  # t
+        **_table(kg=Fraction(1, 1000), g=Fraction(1, 10**6), t=1),
+        "lb": (_POUND / 1000, 0),
+    },
     "frequency": _table(Hz=1, kHz=1000),  # 1/s
-    "time": _table(s=1, min=60, h=3600),  # s
+    "time": _table(s=1, min=60, h=3600, ms=Fraction(1, 1000)),  # s
     "temperature": _table(degC=1, degF=Fraction(5, 9)),  # degrees C, above OFFSETS
     "viscosity": _table(**{"mPa s": 1, "Pa s": 1000, "cP": 1}),  # mPa s, dynamic
     "kinematic viscosity": _table(**{"mm^2/s": 1, "cSt": 1}),  # mm2/s

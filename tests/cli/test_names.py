@@ -10,7 +10,7 @@ from gearopt import bench
 from gearopt.cli import names
 
 PROBLEMS = Path(__file__).parents[2] / "problems"
-KINDS = ("compound", "drive", "packing", "pair", "servo", "strain_wave")
+KINDS = ("compound", "drive", "dynamics", "packing", "pair", "servo", "strain_wave")
 FILES = Path(bench.__file__).parent.glob("*.py")
 BENCHES = tuple(sorted(p.stem for p in FILES if p.stem != "__init__"))
 
@@ -43,7 +43,8 @@ def test_help_lists_kinds_methods_and_benches(here, wide):
         assert all(f"{kind} (" in said for kind in KINDS)
     for command in ("solve", "compare"):
         said = here(command, "--help").stdout
-        assert "packing: hop, sa; pair: exact, mpec; servo: exact, enumeration" in said
+        kinds = "dynamics: screened; packing: hop, sa; pair: exact, mpec; servo: exact, enumeration"
+        assert kinds in said
         assert "annealing, conic, gp, ipopt, multistart, nsga2, qp, scip" in said
     assert all(f"{name} (" in here("bench", "--help").stdout for name in BENCHES)
 
@@ -56,13 +57,14 @@ def test_no_place_for_names_is_left_open(here, wide):
 
 def test_words_begin_as_typed():
     assert tuple(word for word, _ in names.kind_words("")) == KINDS
-    assert [word for word, _ in names.kind_words("d")] == ["drive"]
+    assert [word for word, _ in names.kind_words("d")] == ["drive", "dynamics"]
     assert tuple(word for word, _ in names.bench_words("")) == BENCHES
     assert [w for w, _ in names.method_words("s")] == [
         "sa",
         "sa-polish",
         "sa-paper",
         "smooth",
+        "screened",
         "scip",
     ]
     assert dict(names.method_words("exact"))["exact"] == "compound, drive, pair, servo"

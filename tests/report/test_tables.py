@@ -27,6 +27,7 @@ UNITS = {
     "um": "mm",
     "um_or_uin": "mm",
     "mm_as_um": "mm",
+    "N_per_mm": "newton / millimeter",
     "N_per_mm_um": "MPa",
     "kg_m2": "kg*m^2",
     "Nm_per_rad": "N*m/rad",

@@ -351,6 +351,8 @@ METHODS = {"drive": "ipopt", "packing": "multistart"}
 def test_every_key_of_a_problem_is_a_place_of_its_file(path):
     """Of the problem that is explained, with one layer of a packing; every kind names some."""
     text = path.read_text()
+    if "\npair = " in text:
+        pytest.skip("names another file, which is found from its own folder")
     own = scene(re.sub(r"(?s)\[layers\].*?(?=\n\[|$)", "", text))
     kind = kind_of(own)
     if getattr(own, "layout", None) is not None or "layer = " in text:

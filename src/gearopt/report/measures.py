@@ -169,6 +169,7 @@ METRIC = Measures(
         "um_or_uin": ("µm", 1e3),  # of mm
         "mm_as_um": ("µm", 1e3),  # of mm: an objective's, whose value is in mm
         "N_per_mm_um": ("N/(mm µm)", 1e-3),  # of MPa
+        "N_per_mm": ("N/mm", 1.0),
         "kg_m2": ("g cm²", 1e7),
         "Nm_per_rad": ("N m/rad", 1.0),
         "deg_per_mm": ("°/mm", 1.0),
@@ -201,6 +202,7 @@ INCH = Measures(
         "um_or_uin": ("µin", 1e6 / _INCH),  # of mm
         "mm_as_um": ("µin", 1e6 / _INCH),  # of mm
         "N_per_mm_um": ("lbf/(in µin)", 1e-6 / _PSI),  # of MPa
+        "N_per_mm": ("lbf/in", _INCH / _POUND_FORCE),
         "kg_m2": ("oz in²", 16e6 / (_POUND * _INCH**2)),
         "Nm_per_rad": ("lbf in/rad", 1000.0 / (_POUND_FORCE * _INCH)),
         "deg_per_mm": ("°/in", _INCH),

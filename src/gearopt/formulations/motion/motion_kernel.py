@@ -129,7 +129,7 @@ def flank_of(m, y):
     if m.backlash == math.inf:
         return 0
     delta, _, room, _ = opening(m, y)
-    if delta < 0.0:
+    if delta <= 0.0:
         return 0
     return 2 if delta > room else 1
 

@@ -5,7 +5,7 @@ w' q = delta. mm, N, t, s.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -124,3 +124,11 @@ def mesh_shares(system: Linear, stiffness: float) -> Array:
     found = modes(system, stiffness)
     along = system.direction @ found.shapes
     return np.asarray(stiffness * along**2 / found.frequencies**2)
+
+
+def with_modal_damping(system: Linear, stiffness: float, ratio: float) -> Linear:
+    """Return the system with every mode at a mesh stiffness damped by a ratio zeta more."""
+    found = modes(system, stiffness)
+    inverse = system.mass[:, None] * found.shapes  # M Phi, as Phi' M Phi = 1
+    more = inverse @ np.diag(2.0 * ratio * found.frequencies) @ inverse.T
+    return replace(system, damping=system.damping + more)

@@ -1,0 +1,1 @@
+"""What is to be known of the motion of a pair: states, response, stability, speeds."""

@@ -1,0 +1,133 @@
+"""The design that a result of a moving pair holds; fields are its keys, with their units."""
+
+from dataclasses import dataclass
+
+Columns = tuple[float, ...]
+Rows = tuple[Columns, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Equilibrium:
+    """The pair at rest under its load, and its modes there at the mean stiffness."""
+
+    normal_load_N: float
+    mean_stiffness_N_per_mm: float
+    mesh_mass_kg: float
+    deformation_mm: float
+    centre_distance_mm: float
+    centre_distance_growth_mm: float
+    pressure_angle_deg: float
+    bearing_force_N: float
+    frequencies_Hz: Columns
+    mesh_shares: Columns
+
+
+@dataclass(frozen=True, kw_only=True)
+class Response:
+    """A motion in time, about as many outputs as a plot shows.
+
+    deformation: negative where teeth press. axes: x and y of pinion and wheel; none on fixed axes.
+    error: estimated, of the deformation, relative to its largest value. frequency, amplitude: of
+    the deformation's spectrum over the second half.
+    """
+
+    method: str
+    error: float
+    error_asked: float
+    met: bool
+    steps: int
+    separations: int
+    rms_mm: float
+    peak_to_peak_mm: float
+    highest_mm: float
+    time_ms: Columns
+    deformation_mm: Columns
+    axes_mm: Rows
+    frequency_Hz: Columns
+    amplitude_mm: Columns
+
+
+@dataclass(frozen=True, kw_only=True)
+class Tongue:
+    """Where a harmonic of the mesh excites two modes (or one twice), to first order."""
+
+    modes: tuple[int, int]
+    harmonic: int
+    frequency_Hz: float
+    half_width_percent: float
+    damping_percent: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Stability:
+    """Largest Floquet multipliers over mesh frequency and depth of the wave.
+
+    growth (depths, frequencies). here: at the pair's own frequency and depth; None where it has
+    none. bands: unstable mesh frequencies at its own depth.
+    """
+
+    frequency_Hz: Columns
+    depth: Columns
+    growth: Rows
+    unstable_percent: float
+    own_depth: float
+    own_frequency_Hz: float
+    here: float | None
+    bands_Hz: Rows
+    tongues: tuple[Tongue, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Speeds:
+    """Periodic motions over speed: rising, and falling where teeth may part.
+
+    growth: largest multiplier of teeth in contact. harmonics (orders, speeds): amplitudes.
+    """
+
+    speed_rpm: Columns
+    rms_mm: Columns
+    peak_to_peak_mm: Columns
+    highest_mm: Columns
+    falling_rms_mm: Columns
+    growth: Columns
+    harmonics_mm: Rows
+
+
+@dataclass(frozen=True, kw_only=True)
+class Chosen:
+    """The design of least vibration, its limits' numbers, and what the dense grid of speeds says.
+
+    rounds: speeds, harmonics, objective and dense maximum [um] of every round of the exchange.
+    """
+
+    bearing_stiffness_N_per_mm: float
+    contact_ratio: float
+    ramp: float
+    face_width_mm: float
+    rim: float
+    mass_kg: float
+    displacement_mm: float
+    harmonics: int
+    speed_rpm: Columns
+    rounds: tuple[tuple[float, float, float, float], ...]
+    dense_rpm: Columns
+    dense_mm: Columns
+    before_mm: Columns
+    dense_maximum_mm: float
+    largest_multiplier: float
+    highest_mm: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class DynamicsDesign:
+    """A pair on moving axes."""
+
+    kinematics: str
+    axes: str
+    mesh_frequency_Hz: float
+    equilibrium: Equilibrium
+    response: Response | None = None
+    stability: Stability | None = None
+    speeds: Speeds | None = None
+    chosen: Chosen | None = None
+    warnings: tuple[str, ...] = ()

@@ -1,0 +1,25 @@
+"""The mesh stiffness of a pair's own teeth, from its contact."""
+
+import numpy as np
+
+from gearopt.formulations.pair_contact import PairContact
+from gearopt.physics.motion.stiffness_wave import Wave
+
+
+def of_contact(contact: PairContact) -> Wave:
+    """Return normal force over transmission error of a pair's own teeth at the duty's torque.
+
+    Both sides of the points where pairs come and go are a step of the wave.
+    """
+    load = min(contact.loads, key=lambda one: abs(one.load - 1.0))
+    phase = np.array(contact.travel_mm) / contact.base_pitch_mm
+    stiffness = load.normal_force_N / np.array(load.transmission_error_mm)
+    inside = (phase > 1e-12) & (phase < 1.0 - 1e-12)
+    edges = np.unique(phase[inside])
+    left = np.array([stiffness[phase == e][0] for e in edges])
+    right = np.array([stiffness[phase == e][-1] for e in edges])
+    return Wave(
+        np.concatenate([[0.0], edges]),
+        np.concatenate([[stiffness[-1]], left]),
+        np.concatenate([[stiffness[0]], right]),
+    )

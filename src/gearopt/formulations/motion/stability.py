@@ -1,0 +1,90 @@
+"""Stability of a pair under a periodic mesh stiffness: Floquet multipliers and maps of them."""
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearopt.formulations.motion.integrate import eighth
+from gearopt.optimise.kernels import kernel
+from gearopt.optimise.terms import Array
+from gearopt.physics.motion.linear import Linear, modes
+from gearopt.physics.motion.stiffness_wave import Wave
+
+KERNEL = "gearopt.formulations.motion.floquet_kernel"
+STEPS = 30.0  # of RK8 in a period of the fastest mode: 1e-12 of an entry
+UNSTABLE = 1e-6  # by which the largest multiplier of an unstable pair exceeds 1
+CONDITION = 1e7  # of eigenvectors, above which a matrix exponential takes their place
+
+
+def monodromy(system: Linear, wave: Wave, frequency: float) -> Array:
+    """Return the map (2 n, 2 n) of displacements and velocities over a period of the mesh.
+
+    Velocities are divided by the highest angular frequency. A stepped stiffness is solved exactly,
+    by matrix exponentials; any other by RK8 from kink to kink. frequency of the mesh [Hz] > 0.
+    """
+    top = _top(system, wave)
+    if wave.stepped:
+        from scipy.linalg import expm
+
+        found = np.eye(2 * system.mass.size)
+        for length, k in zip(wave.lengths, wave.after, strict=True):
+            found = expm(_rates(system, float(k), top) * (length / frequency)) @ found
+        return found
+    found = np.empty((2 * system.mass.size,) * 2)
+    given = 1.0 / system.mass, system.stiffness, system.damping, system.direction
+    pieces = wave.lengths, wave.after, np.roll(wave.before, -1), wave.cosines, wave.sines
+    longest = 2.0 * math.pi / top / STEPS
+    kernel(KERNEL).monodromy(eighth(), given, pieces, 1.0 / frequency, longest, found)
+    scale = np.append(np.ones(system.mass.size), np.full(system.mass.size, top))
+    return np.asarray(found * scale / scale[:, None])
+
+
+def multipliers(system: Linear, wave: Wave, frequency: float) -> NDArray[np.complex128]:
+    """Return the Floquet multipliers, (2 n,), the largest first; any beyond 1 is unstable."""
+    found = np.linalg.eigvals(monodromy(system, wave, frequency)).astype(complex)
+    return np.asarray(found[np.argsort(-np.abs(found))])
+
+
+def largest(system: Linear, wave: Wave, frequencies: Array) -> Array:
+    """Return the largest |multiplier| at mesh frequencies (F,) [Hz]."""
+    if not wave.stepped:
+        return np.array([abs(multipliers(system, wave, float(f))[0]) for f in frequencies])
+    top, found = _top(system, wave), np.eye(2 * system.mass.size, dtype=complex)
+    for length, k in zip(wave.lengths, wave.after, strict=True):
+        rates = _rates(system, float(k), top)
+        values, vectors = np.linalg.eig(rates)
+        if np.linalg.cond(vectors) > CONDITION:
+            return np.array([abs(multipliers(system, wave, float(f))[0]) for f in frequencies])
+        grown = np.exp(values * length / np.asarray(frequencies)[:, None])
+        found = (vectors * grown[:, None, :]) @ np.linalg.inv(vectors) @ found
+    return np.asarray(np.max(np.abs(np.linalg.eigvals(found)), axis=-1))
+
+
+def stability_map(system: Linear, waves: list[Wave], frequencies: Array) -> Array:
+    """Return the largest |multiplier| of every wave at every mesh frequency [Hz], (W, F)."""
+    return np.array([largest(system, wave, frequencies) for wave in waves])
+
+
+def bands(frequencies: Array, largest: Array) -> list[tuple[float, float]]:
+    """Return the unstable ranges of a row of a map: first and last unstable frequency [Hz]."""
+    inside = np.concatenate([[False], largest > 1.0 + UNSTABLE, [False]]).astype(int)
+    change = np.flatnonzero(np.diff(inside))
+    ends = zip(change[::2], change[1::2], strict=True)
+    return [(float(frequencies[a]), float(frequencies[b - 1])) for a, b in ends]
+
+
+def _top(system: Linear, wave: Wave) -> float:
+    stiffest = float(np.max(wave.value(np.linspace(0.0, 1.0, 257))))
+    return float(modes(system, max(stiffest, float(np.max(wave.after)))).frequencies[-1])
+
+
+def _rates(system: Linear, k: float, top: float) -> Any:
+    """Return A of y' = A y, velocities divided by `top`."""
+    n, inverse = system.mass.size, 1.0 / system.mass[:, None]
+    found = np.zeros((2 * n, 2 * n))
+    found[:n, n:] = top * np.eye(n)
+    found[n:, :n] = -inverse * system.with_mesh(k) / top
+    found[n:, n:] = -inverse * system.damping
+    return found

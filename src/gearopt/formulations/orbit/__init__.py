@@ -1,0 +1,1 @@
+"""A pair whose mesh vibrates least over a range of speeds."""

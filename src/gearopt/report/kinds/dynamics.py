@@ -1,0 +1,221 @@
+"""A pair on moving axes: how it rests, moves, where it is unstable, and what vibrates least."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from gearopt.formulations.dynamics.dynamics_design import DynamicsDesign
+from gearopt.optimise.result import Result
+from gearopt.optimise.typed import typed
+from gearopt.report import dynamics_plots as plots
+from gearopt.report.answer import assumptions, limits, progress, summary
+from gearopt.report.kinds import Kind
+from gearopt.report.kinds.generic import FIRST
+from gearopt.report.measures import Measures
+from gearopt.report.section import Section, Table, Tile, cell, percent
+from gearopt.report.words import amount, number
+
+MEASURES = {"rms": "RMS", "peak_to_peak": "peak to peak"}
+
+
+def design_of(result: Result) -> DynamicsDesign | None:
+    """Return the design of a result; None without one."""
+    found: DynamicsDesign | None = None
+    if result.design.get("equilibrium"):
+        found = typed(DynamicsDesign, result.design, "design")
+    return found
+
+
+def tiles(result: Result, measures: Measures) -> list[Tile]:
+    """Return load, response and stability as key figures."""
+    if (found := design_of(result)) is None:
+        return []
+    rest = found.equilibrium
+    made = [
+        Tile("normal load", amount(rest.normal_load_N, "N", measures), "along the line of action")
+    ]
+    if (chosen := found.chosen) is not None:
+        worst = amount(chosen.dense_maximum_mm, "um", measures)
+        made.append(Tile("largest over all speeds", worst, "on the dense grid"))
+    if (moved := found.response) is not None:
+        made.append(
+            Tile(
+                "deformation, peak to peak",
+                amount(moved.peak_to_peak_mm, "um", measures),
+                f"by {moved.method}, error {moved.error:.1e}",
+            )
+        )
+    if found.stability is not None and found.stability.here is not None:
+        verdict = "unstable" if found.stability.here > 1.0 + 1e-6 else "stable"
+        made.append(Tile("largest multiplier", number(found.stability.here), verdict))
+    fastest = f"{rest.frequencies_Hz[-1]:,.0f} Hz"
+    return [*made, Tile("highest natural frequency", fastest, "at the mean stiffness")]
+
+
+def decides(result: Result) -> str:
+    """Return how far the mesh deforms."""
+    if (found := design_of(result)) is None or found.chosen is not None:
+        return ""
+    rest = abs(found.equilibrium.deformation_mm)
+    moved = found.response
+    told = f"the mesh deforms by {1e3 * rest:.3g} µm under its load"
+    return told if moved is None else f"{told} and moves by {1e3 * moved.peak_to_peak_mm:.3g} µm"
+
+
+def warns(result: Result) -> Sequence[str]:
+    """Return what is unstable, parts, or was not reached."""
+    found = design_of(result)
+    return found.warnings if found else ()
+
+
+def motion(result: Result, measures: Measures) -> Section | None:
+    """Show the motion in time, its spectrum, and the axes that move."""
+    found = design_of(result)
+    if found is None or (moved := found.response) is None:
+        return None
+    rows: list[list[Any]] = [
+        ["method", moved.method],
+        ["error reached, of the largest deformation", f"{moved.error:.2e}"],
+        ["steps", moved.steps],
+        ["times that teeth part", moved.separations],
+        [f"RMS [{measures.unit('um')}]", cell(moved.rms_mm, "um", measures)],
+        [f"peak to peak [{measures.unit('um')}]", cell(moved.peak_to_peak_mm, "um", measures)],
+        [f"largest [{measures.unit('um')}]", cell(moved.highest_mm, "um", measures)],
+    ]
+    table = Table("response", ("", ""), rows, "RMS and peak to peak of the second half.")
+    moving = [plots.orbit(moved, measures)] if moved.axes_mm else []
+    figures = [
+        plots.response(moved, measures),
+        plots.spectrum(moved, found.mesh_frequency_Hz, measures),
+    ]
+    return Section("Motion", animations=moving, figures=figures, tables=(table,), terminal=(table,))
+
+
+def stability(result: Result, measures: Measures) -> Section | None:
+    """Show the map of stability, its bands and its tongues."""
+    found = design_of(result)
+    if found is None or (held := found.stability) is None:
+        return None
+    rows = [
+        [
+            " + ".join(map(str, t.modes)),
+            t.harmonic,
+            cell(t.frequency_Hz, "", measures),
+            cell(t.half_width_percent, "percent", measures),
+            cell(t.damping_percent, "percent", measures),
+        ]
+        for t in held.tongues
+    ]
+    heads = ("modes", "harmonic", "mesh frequency [Hz]", "half width [%]", "damping against it [%]")
+    table = Table("tongues", heads, rows, "Widest tongues by the first-order formulas.")
+    ends = ", ".join(f"{a:,.0f} to {b:,.0f}" for a, b in held.bands_Hz) or "none"
+    words = (
+        f"{held.unstable_percent:.3g} % of the map is unstable. Unstable mesh frequencies at the "
+        f"pair's own depth of {held.own_depth:.3g}: {ends} Hz.",
+    )
+    return Section(
+        "Stability",
+        words=words,
+        figures=(plots.stability(held),),
+        tables=(table,),
+        terminal=("\n".join(words),),
+    )
+
+
+def speeds(result: Result, measures: Measures) -> Section | None:
+    """Show periodic motions over speed."""
+    found = design_of(result)
+    if found is None or (held := found.speeds) is None:
+        return None
+    micro = measures.unit("um")
+    heads = ("speed [rpm]", f"RMS [{micro}]", f"peak to peak [{micro}]", f"largest [{micro}]")
+    rows = [
+        [speed, *(cell(v, "um", measures) for v in values)]
+        for speed, *values in zip(
+            held.speed_rpm, held.rms_mm, held.peak_to_peak_mm, held.highest_mm, strict=True
+        )
+    ]
+    table = Table("motions over speed", heads, rows, folded=True)
+    figures = (plots.over_speed(held, measures), plots.waterfall(held, measures))
+    return Section("Speeds", figures=figures, tables=(table,))
+
+
+def chosen(result: Result, measures: Measures) -> Section | None:
+    """Show the design of least vibration beside the pair of the file."""
+    found = design_of(result)
+    if found is None or (best := found.chosen) is None:
+        return None
+    length, micro = measures.unit("mm"), measures.unit("um")
+    rows = [
+        [
+            f"bearing stiffness [{measures.unit('N_per_mm')}]",
+            cell(best.bearing_stiffness_N_per_mm, "N_per_mm", measures),
+        ],
+        ["contact ratio", best.contact_ratio],
+        ["ramp of the stiffness, of the period", best.ramp],
+        [f"face width [{length}]", cell(best.face_width_mm, "mm", measures)],
+        ["rim factor", best.rim],
+        [f"mass of both gears [{measures.unit('kg')}]", cell(best.mass_kg, "kg", measures)],
+        [f"displacement of an axis [{micro}]", cell(best.displacement_mm, "um", measures)],
+        [f"largest over all speeds [{micro}]", cell(best.dense_maximum_mm, "um", measures)],
+        [f"largest deformation [{micro}]", cell(best.highest_mm, "um", measures)],
+        ["largest multiplier of all speeds", best.largest_multiplier],
+    ]
+    design = Table("design", ("", ""), rows)
+    heads = ("speeds", "harmonics", f"objective [{micro}]", f"over all speeds [{micro}]")
+    rounds = [
+        [int(n), int(h), *(cell(1e-3 * v, "um", measures) for v in values)]
+        for n, h, *values in best.rounds
+    ]
+    exchange = Table("exchange", heads, rounds, "Speeds added until the dense grid agrees.")
+    measure = MEASURES.get(result.objective.get("name", ""), "vibration")
+    tables = (design, exchange) if rounds else (design,)
+    figures = (plots.before_and_after(best, measure, measures),)
+    return Section("Least vibration", figures=figures, tables=tables, terminal=tables)
+
+
+def rest(result: Result, measures: Measures) -> Section | None:
+    """Say how the pair rests under its load, and how it could swing."""
+    if (found := design_of(result)) is None:
+        return None
+    at = found.equilibrium
+    length, micro = measures.unit("mm"), measures.unit("um")
+    rows = [
+        [f"normal load [{measures.unit('N')}]", cell(at.normal_load_N, "N", measures)],
+        [
+            f"mean mesh stiffness [{measures.unit('N_per_mm')}]",
+            cell(at.mean_stiffness_N_per_mm, "N_per_mm", measures),
+        ],
+        [f"mesh mass [{measures.unit('kg')}]", cell(at.mesh_mass_kg, "kg", measures)],
+        [f"deformation [{micro}]", cell(at.deformation_mm, "um", measures)],
+        [f"centre distance [{length}]", cell(at.centre_distance_mm, "mm", measures)],
+        [f"its growth [{length}]", cell(at.centre_distance_growth_mm, "mm", measures)],
+        ["pressure angle [°]", at.pressure_angle_deg],
+        [f"force of a bearing [{measures.unit('N')}]", cell(at.bearing_force_N, "N", measures)],
+    ]
+    state = Table("under load", ("", ""), rows, "At the mean stiffness, under the mean load.")
+    modes = [
+        [k, f, percent(share)]
+        for k, (f, share) in enumerate(zip(at.frequencies_Hz, at.mesh_shares, strict=True), 1)
+    ]
+    heads = ("mode", "frequency [Hz]", "energy in the mesh [%]")
+    swing = Table("modes", heads, modes, "Undamped modes, and their strain energy in the mesh.")
+    return Section("At rest", tables=(state, swing), terminal=(state, swing))
+
+
+SECTIONS = (chosen, motion, speeds, stability, rest)
+KIND = Kind(
+    sections=(*FIRST, *SECTIONS, limits, progress, assumptions),
+    terminal=(rest, stability, motion, chosen, limits, summary),
+    tiles=tiles,
+    decides=decides,
+    warns=warns,
+    drawn=False,
+    given=Kind(
+        sections=(summary, *SECTIONS, assumptions),
+        terminal=(rest, stability, motion, summary),
+        tiles=tiles,
+        decides=decides,
+        warns=warns,
+        drawn=False,
+    ),
+)

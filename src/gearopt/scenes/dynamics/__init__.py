@@ -1,0 +1,196 @@
+"""kind = "dynamics": a spur pair on moving axes: response, stability, speeds, least vibration."""
+
+import math
+from dataclasses import replace
+from typing import Any
+
+from gearopt.errors import SolveError
+from gearopt.formulations.dynamics import dynamics_parts as parts
+from gearopt.formulations.dynamics.chosen import chosen
+from gearopt.formulations.dynamics.dynamics_design import Chosen, DynamicsDesign
+from gearopt.formulations.orbit.orbit_search import NEAR, exchange, methods
+from gearopt.formulations.orbit.orbit_text import problem, start
+from gearopt.formulations.orbit.task import MICRO, VARIABLES, pair_of
+from gearopt.optimise.clock import Clock, of_others
+from gearopt.optimise.comparing.runs import Model
+from gearopt.optimise.result import Result, versions
+from gearopt.optimise.solve import run
+from gearopt.optimise.typed import untyped
+from gearopt.physics.motion.moving_pair import MovingPair
+from gearopt.scenes.dynamics.example import EXAMPLE
+from gearopt.scenes.dynamics.scene import Scene, wave_of
+from gearopt.scenes.reading.ask import Ask
+
+__all__ = ["EXAMPLE", "Scene", "compared", "idle", "model", "solve"]
+METHODS = ("screened",)  # its own
+NOTHING = "the file has no table [optimise], so that nothing is chosen"
+
+
+def solve(scene: Scene, ask: Ask) -> Result:
+    """Return what the file asks of its pair, or of the pair of least vibration with [optimise]."""
+    clock = Clock(ask.budget, ask.watch)
+    pair = scene.pair(wave_of(scene.mesh, ask))
+    if scene.optimise is not None:
+        return _optimised(scene, ask, pair, clock)
+    if ask.method is not None:
+        raise SolveError(f"--method {ask.method} changes nothing here: {NOTHING}; leave it out")
+    design = _design(scene, pair, scene.mesh.axes)
+    found = Result(
+        name="dynamics",
+        status="evaluated",
+        method=design.response.method if design.response else "modes",
+        objective={},
+        certificate={"feasibility": 0.0},
+        design=untyped(replace(design, warnings=tuple(warnings(design)))),
+        report={"assumptions": assumptions(scene)},
+        evaluations=1,
+        seed=ask.seed,
+        versions=versions("numpy"),
+    )
+    return replace(found, seconds=clock.seconds)
+
+
+def _optimised(scene: Scene, ask: Ask, before: MovingPair, clock: Clock) -> Result:
+    """Return the pair of least vibration: the exchange finds its speeds, the certificate judges."""
+    assert scene.optimise is not None
+    task, point = scene.task, None
+    rounds: tuple[dict[str, Any], ...] = ()
+    if scene.optimise.exchange and ask.method is None:
+        made = exchange(task, Clock(ask.budget, of_others(ask.watch), clock.start), ask.seed)
+        if made is not None:
+            task, point = made.task, made.point
+            rounds = made.rounds
+    posed = problem(task, methods(task))
+    if point is None:
+        result, _ = run(posed, ask.method, clock.left, ask.seed, clock.watch, ask.gap)
+    else:
+        begun = posed.starting(start(task, posed, point))
+        result, _ = run(begun, "ipopt", clock.left, ask.seed, clock.watch, ask.gap)
+    result = replace(result, name="dynamics", seconds=clock.seconds)
+    if result.value is None:
+        return result
+    told = result.objective | {"value": result.value / MICRO, "unit": "mm_as_um"}
+    result = replace(result, objective=told)
+    values = tuple(float(v) for v in list(result.design.values())[: len(VARIABLES)])
+    best = chosen(task, values, before, rounds)
+    at = best.dense_rpm[best.dense_mm.index(max(best.dense_mm))]
+    design = replace(_design(scene, pair_of(task, values, at), "line"), chosen=best)
+    said = (*_between(best, MICRO * float(told["value"])), *warnings(design))
+    design, report = replace(design, warnings=said), {"assumptions": assumptions(scene)}
+    limits = {k: v for k, v in result.limits.items() if "[" not in k}
+    parted = [v for k, v in result.limits.items() if "separation" in k]
+    limits |= {"separation": max(parted)} if parted else {}
+    return replace(result, design=untyped(design), report=report, limits=limits)
+
+
+def _between(best: Chosen, objective: float) -> list[str]:
+    """Return what lies between the speeds of the problem, where it is more than they say."""
+    most = MICRO * best.dense_maximum_mm
+    if most <= (1.0 + NEAR) * objective:
+        return []
+    return [
+        f"Between the {len(best.speed_rpm)} speeds the deformation reaches {most:.4g} µm, "
+        f"{100.0 * (most / objective - 1.0):.0f} % above the objective: exchange = true adds the "
+        "speeds where it does."
+    ]
+
+
+def _design(scene: Scene, pair: MovingPair, level: str) -> DynamicsDesign:
+    """Return what the tables of the file ask of a pair."""
+    simulate, stability, speeds = scene.simulate, scene.stability, scene.speeds
+    response = mapped = motions = None
+    if simulate is not None:
+        span, loaded = simulate.duration.value, simulate.start == "equilibrium"
+        error = float(simulate.error)
+        response = parts.response(pair, level, (span, simulate.outputs), error, loaded)
+    if stability is not None:
+        low, high = (end.value for end in stability.mesh_frequency)
+        first, last = (float(depth) for depth in stability.depth)
+        across, up = (low, high, stability.frequencies), (first, last, stability.depths)
+        mapped = parts.stability(pair, level, across, up)
+    if speeds is not None:
+        low, high = (30.0 / math.pi * end.value for end in speeds.range)
+        grid = low, high, speeds.points
+        motions = parts.over_speeds(pair, level, scene.mesh.teeth, grid, speeds.harmonics)
+    return DynamicsDesign(
+        kinematics=pair.kinematics,
+        axes=level,
+        mesh_frequency_Hz=pair.mesh_frequency,
+        equilibrium=parts.equilibrium(pair, level),
+        response=response,
+        stability=mapped,
+        speeds=motions,
+    )
+
+
+def assumptions(scene: Scene) -> list[str]:
+    """Return what the model takes for granted."""
+    said = [
+        "Rigid gears on massless springs and dampers; the teeth are one spring along the line of "
+        "action, its stiffness a function of time at constant mesh frequency.",
+    ]
+    if scene.mesh.kinematics.startswith("paper"):
+        said.append(
+            "The paper's kinematics are not those of two involutes: a rotation of the whole pair "
+            "changes the deformation. They are there to compare with."
+        )
+    if scene.optimise is not None:
+        said.append(
+            "Gears are discs of the pitch radii, times the rim factor; torques balance; the wave "
+            "between one and two pairs of teeth is a trapezoid."
+        )
+    return said
+
+
+def warnings(design: DynamicsDesign) -> list[str]:
+    """Return what must be known of this answer before its numbers."""
+    found = []
+    response, stability = design.response, design.stability
+    if response is not None and not response.met:
+        found.append(
+            f"The error asked, {response.error_asked:.1e}, was not reached: the estimate is "
+            f"{response.error:.1e}."
+        )
+    if response is not None and response.highest_mm > 0.0 and response.separations == 0:
+        found.append(
+            f"The deformation rises to {MICRO * response.highest_mm:.3g} µm: teeth would part "
+            "there, and a mesh without backlash pulls instead."
+        )
+    if stability is not None and stability.here is not None and stability.here > 1.0 + 1e-6:
+        found.append(
+            f"The pair is unstable at its speed: the largest Floquet multiplier is "
+            f"{stability.here:.4f} a mesh period. A linear motion grows without end."
+        )
+    if design.speeds is not None and max(design.speeds.growth) > 1.0 + 1e-6:
+        count = sum(g > 1.0 + 1e-6 for g in design.speeds.growth)
+        found.append(
+            f"At {count} of {len(design.speeds.growth)} speeds the periodic motion of a mesh in "
+            "contact is unstable; an amplitude there says nothing."
+        )
+    return found
+
+
+def idle(scene: Scene, method: str | None) -> dict[str, str]:
+    """Return the options of `solve` that change nothing, each with the reason."""
+    found = {"top": "no next best answers are listed"}
+    if scene.optimise is None:
+        found |= {"seed": NOTHING, "gap": NOTHING}
+    return found
+
+
+def compared(scene: Scene) -> tuple[str, ...]:
+    """Return the methods of a comparison that names none."""
+    _to_optimise(scene)
+    return ("screened", "ipopt", "multistart")
+
+
+def model(scene: Scene, method: str) -> Model:
+    """Return the problem on the speeds of the file; SolveError without [optimise]."""
+    task = _to_optimise(scene).task
+    return Model(problem(task, methods(task)), "Bearings, contact ratio, ramp, width and rim")
+
+
+def _to_optimise(scene: Scene) -> Scene:
+    if scene.optimise is None:
+        raise SolveError(f"{NOTHING}: gearopt solve FILE computes its motion")
+    return scene

@@ -1,0 +1,183 @@
+"""A file of a pair on moving axes as a whole: the pair that it describes, and what must fit."""
+
+import math
+from typing import Annotated
+
+from pydantic import Field, model_validator
+
+from gearopt.formulations.dynamics.teeth_wave import of_contact
+from gearopt.formulations.orbit.task import Task
+from gearopt.formulations.pair_contact import PairContact
+from gearopt.optimise.typed import typed
+from gearopt.physics.motion.moving_pair import MovingPair, Rotor, damping_of
+from gearopt.physics.motion.stiffness_wave import Wave, constant, fourier, trapezoid
+from gearopt.scenes.dynamics.tables import (
+    MeshTable,
+    OptimiseTable,
+    RotorTable,
+    SimulateTable,
+    SpeedsTable,
+    StabilityTable,
+)
+from gearopt.scenes.reading.ask import Ask
+from gearopt.scenes.reading.fields import Table, refuse, words
+
+NEEDED = {  # keys of [mesh] that a shape of the wave asks for; others change nothing
+    "constant": ("stiffness",),
+    "rectangle": ("stiffness", "depth", "duty"),
+    "trapezoid": ("stiffness", "depth", "duty", "ramp"),
+    "fourier": ("stiffness", "cosines"),
+    "pair": ("pair",),
+}
+SHAPED = ("stiffness", "depth", "duty", "ramp", "cosines", "sines", "pair")
+
+
+class Scene(Table):
+    """A spur pair whose axes move on their bearings."""
+
+    title: Annotated[str, words()] = Field("", description="A line for the report")
+    source: Annotated[str, words()] = Field(
+        "", description="Where the data and the expected value come from"
+    )
+    pinion: RotorTable
+    wheel: RotorTable
+    mesh: MeshTable
+    simulate: SimulateTable | None = None
+    stability: StabilityTable | None = None
+    speeds: SpeedsTable | None = None
+    optimise: OptimiseTable | None = None
+
+    @property
+    def limited(self) -> bool:
+        """Return whether there is anything to choose, and limits of it."""
+        return self.optimise is not None
+
+    @model_validator(mode="after")
+    def _consistent(self) -> "Scene":
+        mesh = self.mesh
+        if self.pinion.torque is None or self.pinion.torque.value <= 0.0:
+            rule = "drives the pair, counter-clockwise: a torque above zero"
+            raise refuse(rule, at=("pinion", "torque"))
+        for name in NEEDED[mesh.wave]:
+            if not getattr(mesh, name):
+                rule = f'is missing: wave = "{mesh.wave}" needs it'
+                raise refuse(rule, at=("mesh", name))
+        idle = set(SHAPED) - set(NEEDED[mesh.wave])
+        idle -= {"sines"} if mesh.wave == "fourier" else set()
+        for name in idle & mesh.model_fields_set:
+            rule = f'changes nothing of wave = "{mesh.wave}"'
+            raise refuse(rule, at=("mesh", name), action="remove")
+        if mesh.duty is not None and mesh.ramp is not None:
+            if mesh.ramp > min(mesh.duty, 1 - mesh.duty):
+                rule = "does not fit the duty: at most the duty, and 1 less the duty"
+                raise refuse(rule, float(min(mesh.duty, 1 - mesh.duty)), ("mesh", "ramp"))
+        if mesh.kinematics.startswith("paper") and mesh.axes != "plane":
+            raise refuse("is of axes in the plane", "plane", ("mesh", "axes"))
+        self._check_asked()
+        return self
+
+    def _check_asked(self) -> None:
+        """Refuse what is asked of a mesh that cannot give it."""
+        mesh = self.mesh
+        if self.stability is not None and mesh.wave == "constant":
+            rule = 'maps a stiffness that changes: wave = "constant" has no map'
+            raise refuse(rule, at=("stability",), action="remove")
+        if self.simulate is not None and mesh.wave != "constant" and mesh.speed is None:
+            rule = "is missing: a stiffness that changes has a mesh frequency"
+            raise refuse(rule, at=("mesh", "speed"))
+        curved = mesh.axes == "plane" and mesh.kinematics in ("exact", "paper")
+        uneven = any(r.bearing_stiffness_across is not None for r in (self.pinion, self.wheel))
+        if self.speeds is not None and curved and (uneven or mesh.kinematics == "paper"):
+            rule = (
+                "is by harmonic balance of a mesh whose line of action does not turn: "
+                'axes = "line" or kinematics = "tangent"'
+            )
+            raise refuse(rule, at=("speeds",), action="remove")
+
+    def pair(self, wave: Wave) -> MovingPair:
+        """Return the pair with a wave of stiffness."""
+        mesh = self.mesh
+        balance = -1.0 if self.wheel.torque is None else self.wheel.torque.value
+        drive = self.pinion.torque.value if self.pinion.torque else 0.0
+        if self.wheel.torque is None:
+            balance = drive * self.wheel.base_diameter.value / self.pinion.base_diameter.value
+        rotors = [
+            _rotor(table, torque) for table, torque in ((self.pinion, drive), (self.wheel, balance))
+        ]
+        made = MovingPair(
+            rotors[0],
+            rotors[1],
+            mesh.pressure_angle.value,
+            wave,
+            kinematics=mesh.kinematics,
+            backlash=None if mesh.backlash is None else mesh.backlash.value,
+            mesh_frequency=self.mesh_frequency,
+        )
+        damping = damping_of(float(mesh.damping), wave.mean, made.mesh_mass)
+        return MovingPair(**{**made.__dict__, "damping": damping})
+
+    @property
+    def mesh_frequency(self) -> float:
+        """Mesh frequency at the speed of the file [Hz]; 0 without one."""
+        speed = self.mesh.speed.value if self.mesh.speed else 0.0
+        return self.mesh.teeth * speed / (2.0 * math.pi)
+
+    @property
+    def task(self) -> Task:
+        """Return what [optimise] asks."""
+        asked, mesh = self.optimise, self.mesh
+        assert asked is not None and self.pinion.torque is not None
+        bases = (0.5 * self.pinion.base_diameter.value, 0.5 * self.wheel.base_diameter.value)
+        angle = mesh.pressure_angle.value
+        ranges: dict[str, tuple[float, float]] = {}
+        for name in ("bearing_stiffness", "contact_ratio", "ramp", "face_width", "rim"):
+            low, high = (float(getattr(end, "value", end)) for end in getattr(asked, name))
+            ranges[name] = (low, high)
+        first, last = (30.0 / math.pi * end.value for end in asked.speeds)
+        return Task(
+            torque=self.pinion.torque.value,
+            base_radii=bases,
+            radii=(bases[0] / math.cos(angle), bases[1] / math.cos(angle)),
+            teeth=mesh.teeth,
+            pressure_angle=angle,
+            density=asked.density.value,
+            single=asked.single_stiffness.value,
+            mesh_damping=float(mesh.damping),
+            bearing_damping=float(self.pinion.bearing_damping),
+            speeds_rpm=tuple(
+                first + (last - first) * k / (asked.points - 1) for k in range(asked.points)
+            ),
+            ranges=ranges,
+            most_mass=asked.mass.value,
+            most_displacement=asked.displacement.value,
+            margin=None if asked.margin is None else asked.margin.value,
+            measure=asked.minimise,
+            harmonics=asked.harmonics,
+        )
+
+
+def _rotor(table: RotorTable, torque: float) -> Rotor:
+    along = table.bearing_stiffness.value
+    across = table.bearing_stiffness_across.value if table.bearing_stiffness_across else along
+    mass, ratio = table.mass.value, float(table.bearing_damping)
+    damping = (damping_of(ratio, along, mass), damping_of(ratio, across, mass))
+    return Rotor(
+        0.5 * table.base_diameter.value, mass, table.inertia.value, (along, across), damping, torque
+    )
+
+
+def wave_of(mesh: MeshTable, ask: Ask) -> Wave:
+    """Return the stiffness over a period that a file describes; of teeth by solving their file."""
+    mean = mesh.stiffness.value if mesh.stiffness else 0.0
+    if mesh.wave == "constant":
+        return constant(mean)
+    if mesh.wave == "fourier":
+        return fourier(mean, [c.value for c in mesh.cosines], [c.value for c in mesh.sines])
+    if mesh.wave == "pair":
+        assert mesh.pair is not None
+        design = mesh.pair.result(ask).design
+        contact: PairContact = typed(PairContact, design["contact"], "contact")
+        return of_contact(contact)
+    ramp = float(mesh.ramp) if mesh.ramp is not None else 0.0
+    assert mesh.depth is not None and mesh.duty is not None
+    return trapezoid(mean, float(mesh.depth), float(mesh.duty), ramp)

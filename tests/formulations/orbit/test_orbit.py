@@ -1,0 +1,136 @@
+"""The least vibration over a range of speeds, against an independent program."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from gearopt.formulations.motion.balance import linear_orbit
+from gearopt.formulations.motion.stability import multipliers
+from gearopt.formulations.orbit import orbit_search
+from gearopt.formulations.orbit.orbit_search import exchange, methods
+from gearopt.formulations.orbit.orbit_text import problem, reduced, start
+from gearopt.formulations.orbit.task import Task, pair_of, worst
+from gearopt.optimise.clock import Clock
+from gearopt.optimise.result import Budget
+from gearopt.optimise.solve import solve
+from gearopt.physics.motion.linear import linear
+
+ANGLE = math.radians(20.0)
+SPEEDS = tuple(np.linspace(1500.0, 6000.0, 16))
+TASK = Task(
+    torque=2e5,
+    base_radii=(60.0, 80.0),
+    radii=(60.0 / math.cos(ANGLE), 80.0 / math.cos(ANGLE)),
+    teeth=30,
+    pressure_angle=ANGLE,
+    density=7.85e-9,
+    single=13591.0,
+    mesh_damping=0.03,
+    bearing_damping=0.02,
+    speeds_rpm=SPEEDS,
+    ranges={
+        "bearing_stiffness": (10**4.5, 10**5.7),
+        "contact_ratio": (1.25, 1.95),
+        "ramp": (0.02, 0.25),
+        "face_width": (8.0, 25.0),
+        "rim": (0.6, 1.4),
+    },
+    most_mass=2e-3,
+    most_displacement=0.04,
+)
+# Designs of the independent program: bearing stiffness [N/mm], contact ratio, ramp, width, rim.
+BEST = np.array([10**5.70000008698802, 1.9500000194986844, 0.0499999829891968, 11.799749, 0.6])
+REFERENCE = np.array([10**5.2, 1.68, 0.10, 11.9, 0.6])
+HEAVY = np.array([10**5.2, 1.68, 0.10, 14.0, 1.0])
+LEAST = 3.2956414804843366  # um, of the independent program
+AT = np.array([1500.0, 3000.0, 4500.0, 6000.0])
+
+
+def test_motions_are_those_of_an_independent_program():
+    assert worst(TASK, BEST, AT, 10) == pytest.approx([2.8665322, 2.0747399, 3.2956415, 1.2287218])
+    assert worst(TASK, BEST, AT, 40) == pytest.approx([2.7250939, 2.0704926, 3.2923260, 1.2282179])
+    assert worst(TASK, BEST, np.array(SPEEDS), 10).max() == pytest.approx(LEAST, rel=1e-7)
+    at_reference = worst(TASK, REFERENCE, np.array(SPEEDS), 10).max()
+    assert at_reference == pytest.approx(16.930952076, rel=1e-9)
+    heavy = worst(TASK, HEAVY, np.array(SPEEDS), 10)
+    assert heavy[[0, 5, 11, 15]] == pytest.approx([4.26597817, 6.28998406, 19.1223170, 4.22811021])
+    ten, forty = (worst(TASK, BEST, AT[:1], h)[0] for h in (10, 40))
+    assert ten / forty - 1.0 == pytest.approx(0.052, abs=5e-4)  # 5 % at 1500 rpm
+
+
+def test_the_pair_of_a_design_moves_as_its_series_says():
+    """Two ways of the balance, and the multipliers of the best and of a heavy design."""
+    for design, growth in ((BEST, 0.9148), (REFERENCE, 0.9479), (HEAVY, 0.9655)):
+        made = pair_of(TASK, design, 4500.0)
+        series = linear_orbit(made, "line", made.mesh_frequency, 20)
+        known = worst(TASK, design, np.array([4500.0]), 20)[0]
+        assert 1e3 * series.rms == pytest.approx(known, rel=1e-6)
+        largest = [
+            abs(multipliers(linear(pair_of(TASK, design, n), "line"), made.wave, n / 2.0)[0])
+            for n in (1500.0, 3000.0, 6000.0)
+        ]
+        assert max(largest) == pytest.approx(growth, abs=2e-3)
+
+
+def test_a_design_with_its_motions_is_a_feasible_point():
+    for task in (TASK, replace(TASK, measure="peak_to_peak", margin=0.001)):
+        posed = problem(task)
+        found = posed.batch(start(task, posed, BEST.clip(*task.box()))[None])
+        assert np.abs(found.H - 1.0).max() < 1e-11 and found.G.max() < 1.0 + 1e-9
+        value = worst(task, BEST.clip(*task.box()), np.array(SPEEDS), 10).max()
+        assert found.F[0, 0] == pytest.approx(value, rel=1e-12)
+        assert reduced(task).batch(BEST.clip(*task.box())[None]).F[0, 0] == pytest.approx(value)
+
+
+def test_one_local_optimum_and_its_certificate():
+    task = replace(TASK, speeds_rpm=(3000.0, 4500.0), harmonics=6)
+    posed = problem(task)
+    made = solve(posed.starting(start(task, posed, REFERENCE)))
+    assert made.status == "stationary"
+    assert made.value < worst(task, REFERENCE, np.array([3000.0, 4500.0]), 6).max()
+    design = [v for v in made.design.values()][:5]
+    point = np.array(design)
+    assert worst(task, point, np.array([3000.0, 4500.0]), 6).max() == pytest.approx(made.value)
+    assert made.limits["mass"] <= 1.0 + 1e-8
+
+
+def test_no_separation_is_a_limit():
+    """The heavy design parts at 4500 rpm (3.6 um); the limit excludes it."""
+    task = replace(TASK, margin=0.0, speeds_rpm=(4500.0,))
+    assert reduced(TASK).batch(HEAVY[None]).G.max() > 1.9  # by its mass
+    rows = [row.name for row in reduced(task).rows.inequalities]
+    found = reduced(task).batch(HEAVY[None]).G[0, rows.index("separation")]
+    assert found == pytest.approx(1.0 + 3.6005 / 10.0, abs=0.06)  # between samples
+
+
+@pytest.mark.slow
+def test_screening_and_ipopt_find_the_published_optimum():
+    made = solve(problem(TASK, methods(TASK)), "screened")
+    assert made.status == "stationary"
+    # The other program's bounds are looser by 1e-8, which its objective gains from.
+    assert made.value == pytest.approx(LEAST, rel=1e-6) and made.value > LEAST
+    design = list(made.design.values())[:5]
+    assert design == pytest.approx([10**5.7, 1.95, 0.05, 11.79975, 0.6], rel=1e-5)
+
+
+@pytest.mark.slow
+def test_annealing_comes_near_it():
+    seeds = [solve(reduced(TASK), "annealing", Budget(evaluations=20_000), s) for s in range(2)]
+    for made in seeds:
+        assert LEAST * (1.0 - 1e-6) < made.value < 6.0
+
+
+@pytest.mark.slow
+def test_an_exchange_ends_where_the_dense_maximum_is_the_objective(monkeypatch):
+    """The optimum on 16 speeds has 4.195 on 361: 27 % more than it promises."""
+    monkeypatch.setattr(orbit_search, "SCREENED", 1000)
+    grid = np.linspace(1500.0, 6000.0, 361)
+    assert worst(TASK, BEST, grid, 40).max() == pytest.approx(4.19499, rel=1e-4)
+    made = exchange(TASK, Clock(), 0)
+    assert made.met
+    last = made.rounds[-1]
+    dense = worst(TASK, made.point, grid, 40).max()
+    assert dense == pytest.approx(last["dense_um"]) and dense <= 1.01 * last["objective_um"]
+    assert dense < 4.1870  # of 91 equal speeds, by the other program

@@ -1,0 +1,159 @@
+"""Files of a pair on moving axes: what they ask, what they refuse, what answers hold."""
+
+import json
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import gearopt
+from gearopt.errors import SceneError, SolveError
+from gearopt.formulations.dynamics.dynamics_parts import own_depth, scaled
+from gearopt.formulations.dynamics.teeth_wave import of_contact
+from gearopt.physics.motion.stiffness_wave import fourier, trapezoid
+from gearopt.scenes.dynamics import EXAMPLE
+from gearopt.scenes.reading.load import read
+
+PROBLEMS = Path(__file__).parents[2] / "problems"
+
+
+def changed(*pairs, text=EXAMPLE):
+    for old, new in pairs:
+        assert old in text
+        text = text.replace(old, new)
+    return text
+
+
+BARE = EXAMPLE[: EXAMPLE.index("[simulate]")]
+
+
+@pytest.mark.parametrize(
+    ("pairs", "key", "rule"),
+    [
+        ((('torque = "200 N m" ', 'torque = "-200 N m" '),), "pinion.torque", "drives the pair"),
+        ((("depth = 0.5 ", "# "),), "mesh.depth", 'wave = "trapezoid" needs it'),
+        (
+            (('"trapezoid"', '"constant"'), ("ramp = 0.1", ""), ("depth = 0.5", "")),
+            "mesh.duty",
+            "changes nothing",
+        ),
+        ((("ramp = 0.1", "ramp = 0.4"),), "mesh.ramp", "does not fit the duty"),
+        ((('axes = "line"', 'axes = "line"\nkinematics = "paper"'),), "mesh.axes", "in the plane"),
+    ],
+)
+def test_what_does_not_fit_is_refused_with_its_key(pairs, key, rule):
+    with pytest.raises(SceneError, match=rule) as wrong:
+        read(changed(*pairs, text=BARE).encode())
+    assert wrong.value.key == key
+
+
+def test_tables_that_cannot_be_answered_are_refused():
+    flat = changed(
+        ('"trapezoid" ', '"constant" '),
+        ("depth = 0.5 ", "# "),
+        ("duty = 0.68 ", "# "),
+        text=EXAMPLE,
+    ).replace("ramp = 0.1\n", "")
+    with pytest.raises(SceneError, match="has no map"):
+        read(flat.encode())
+    uneven = changed(
+        ('axes = "line"', 'axes = "plane"'),
+        ("bearing_damping = 0.02", 'bearing_damping = 0.02\nbearing_stiffness_across = "1 MN/m"'),
+    )
+    with pytest.raises(SceneError, match="does not turn"):
+        read(uneven.encode())
+    with pytest.raises(SceneError, match="has a mesh frequency"):
+        read(changed(('speed = "3000 rpm"', "#")).encode())
+
+
+def test_methods_and_comparisons_need_something_to_choose(tmp_path):
+    path = tmp_path / "motion.toml"
+    path.write_text(BARE)
+    with pytest.raises(SolveError, match="nothing is chosen"):
+        gearopt.solve(path, method="screened")
+    with pytest.raises(SolveError, match="no table"):
+        gearopt.compare(path)
+
+
+def test_the_wheel_balances_the_pinion_where_nothing_else_is_said(tmp_path):
+    path = tmp_path / "motion.toml"
+    path.write_text(BARE)
+    found = gearopt.solve(path).design["equilibrium"]
+    assert found["normal_load_N"] == pytest.approx(2e5 / 60.0)
+    assert found["frequencies_Hz"] == pytest.approx([1327.235, 1874.728, 5749.524], abs=1e-3)
+    path.write_text(
+        BARE.replace('inertia = "0.004 kg m^2"', 'inertia = "0.004 kg m^2"\ntorque = "0 N m"')
+    )
+    assert gearopt.solve(path).design["equilibrium"]["normal_load_N"] == pytest.approx(30000 / 17)
+
+
+def test_a_kept_result_reads_and_shows_itself(solved, tmp_path):
+    result = solved("soft_bearings")
+    kept = tmp_path / "kept.json"
+    kept.write_text(result.to_json())
+    assert json.loads(kept.read_text())["design"]["kinematics"] == "exact"
+    page = result.to_html()
+    assert "motion of the axes" in page and "Spectrum of the second half" in page
+    moved = result.design["response"]
+    assert moved["method"] == "rk8" and moved["error"] <= 1e-6 and moved["met"]
+    assert len(moved["time_ms"]) == len(moved["deformation_mm"]) == 1001
+    assert max(moved["deformation_mm"]) < 1e-9  # no load, then pressed
+
+
+def test_depth_of_a_wave_is_scaled():
+    for wave in (trapezoid(2e5, 0.5, 0.6, 0.1), trapezoid(2e5, 0.5, 0.6), fourier(2e5, (3e4, 1e4))):
+        other = scaled(wave, 0.25)
+        assert own_depth(other) == pytest.approx(0.25, rel=1e-4) and other.mean == wave.mean
+        phases = np.linspace(0.0, 1.0, 50)
+        shape = (wave.value(phases) - wave.mean) / own_depth(wave)
+        assert (other.value(phases) - wave.mean) / 0.25 == pytest.approx(shape, rel=1e-3, abs=1.0)
+
+
+def test_the_stiffness_of_a_pair_is_load_over_transmission_error(solved):
+    from gearopt.formulations.pair_contact import PairContact
+    from gearopt.optimise.typed import typed
+
+    contact = typed(PairContact, solved("reference_pair").design["contact"], "contact")
+    wave, load = of_contact(contact), contact.loads[-1]
+    phase = np.array(contact.travel_mm) / contact.base_pitch_mm
+    known = load.normal_force_N / np.array(load.transmission_error_mm)
+    inside = (phase > 0.0) & (phase < 1.0)
+    left, right = wave.straight(phase[inside], True), wave.straight(phase[inside])
+    near = np.minimum(np.abs(left - known[inside]), np.abs(right - known[inside]))
+    assert np.max(near / known[inside]) < 1e-12
+    jumps = np.abs(left - right) > 1e-3 * wave.mean
+    assert len(np.unique(phase[inside][jumps])) >= 1 and wave.mean == pytest.approx(
+        np.trapezoid(known, phase), rel=1e-12
+    )
+
+
+@pytest.mark.slow
+def test_jumps_between_two_motions(tmp_path):
+    """The example's pair: from 4700 to 5200 rpm two motions, one of them with separation."""
+    path = tmp_path / "motion.toml"
+    text = changed(
+        ('range = ["500 rpm", "12000 rpm"]', 'range = ["4000 rpm", "6000 rpm"]'),
+        ("points = 116", "points = 41"),
+    )
+    text = text.replace(text[text.index("[stability]") : text.index("[speeds]")], "")
+    path.write_text(text)
+    found = gearopt.solve(path).design["speeds"]
+    speed = np.array(found["speed_rpm"])
+    rising, falling = np.array(found["rms_mm"]), np.array(found["falling_rms_mm"])
+    two = speed[falling > 1.2 * rising]
+    assert 4500.0 < two.min() < 5000.0 < two.max() < 5400.0
+    assert falling == pytest.approx(rising, rel=2.0) and np.all(rising > 0.0)
+
+
+@pytest.mark.slow
+def test_least_vibration_says_what_lies_between_its_speeds(solved):
+    result = solved("least_vibration")
+    assert result.status == "stationary" and result.value == pytest.approx(3.2956e-3, rel=1e-4)
+    chosen = result.design["chosen"]
+    assert chosen["dense_maximum_mm"] == pytest.approx(4.195e-3, rel=1e-3)
+    assert "27 % above the objective" in result.design["warnings"][0]
+    assert result.limits["ramp_of_one_pair"] == pytest.approx(1.0, abs=1e-6)
+    assert max(chosen["before_mm"]) > 5.0 * max(chosen["dense_mm"])
+    content = tomllib.loads((PROBLEMS / "least_vibration.toml").read_text())
+    assert chosen["mass_kg"] < float(content["optimise"]["mass"].split()[0])
