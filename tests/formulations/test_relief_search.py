@@ -23,6 +23,7 @@ PUBLISHED = [
     (COUPLING, (0.6, 1.0), 1.2373, 1.3494),
     (COUPLING, (0.5, 1.0, 1.25), 2.0326, 2.0677),
 ]
+PEAKS = np.array([[1.0, 1.0], [0.0, 0.0]])  # weights of peak-to-peaks and amplitudes of two loads
 CASES = [(c, loads, p, v[int(p) - 1]) for c, loads, *v in PUBLISHED for p in (1.0, 2.0)]
 
 
@@ -37,23 +38,23 @@ def wide(ratio):
 def test_bounds_of_random_boxes(made, exponents):
     """No relief in a box has a smaller value, by numpy's closed form; a point's bound is exact."""
     ranges, rng = replace(Ranges.of(made), exponents=exponents), np.random.default_rng(1)
-    posed = problem(made, ranges)
+    posed = problem(made, ranges, ("peak_to_peak", "harmonics"))
     low, high, _ = posed.bounds()
     tight = []
     for _ in range(12):
         centre, half = rng.uniform(low, high), 0.5 * 10.0 ** rng.uniform(-3, 0) * (high - low)
         ends = np.maximum(low, centre - half), np.minimum(high, centre + half)
         data = numbers(made, *ends, exponents)
-        bound, point, peaks = data.bound(np.ones(2), data.low, data.high, np.inf)
-        sample = posed.batch(rng.uniform(*ends, (60, 4))).F[:, 0]
-        assert bound <= 1e3 * sample.min() + 1e-9
-        at = 1e3 * posed.batch(data.variables(point)[None]).F[0, 0]
-        assert at == pytest.approx(peaks.max(), rel=1e-9) and bound <= at
-        tight.append(bound / at)
-        same = numbers(made, centre, centre, exponents)
-        assert same.bound(np.ones(2), same.low, same.high, np.inf)[0] == pytest.approx(
-            1e3 * posed.batch(centre[None]).F[0, 0], rel=2e-3
-        )
+        same, sample = numbers(made, centre, centre, exponents), rng.uniform(*ends, (60, 4))
+        for k, weights in enumerate((PEAKS, PEAKS[::-1].copy())):
+            bound, point, found = data.bound(weights, data.low, data.high, np.inf)
+            assert bound <= 1e3 * posed.batch(sample).F[:, k].min() + 1e-9
+            at = 1e3 * posed.batch(data.variables(point)[None]).F[0, k]
+            assert at == pytest.approx(found[k].max(), rel=1e-9) and bound <= at
+            tight.append(bound / at)
+            there = same.bound(weights, same.low, same.high, np.inf)[0]
+            exact = 1e3 * posed.batch(centre[None]).F[0, k]
+            assert there == pytest.approx(exact, rel=2e-3)
     assert max(tight) > 0.9
 
 
@@ -105,7 +106,23 @@ def test_random_meshes(seed):
     assert found.bound <= annealed.value + 1e-12
 
 
-@pytest.mark.parametrize("part", [0.3, 0.7])
+@pytest.mark.parametrize("exponent", few([2.0, 1.0], 1))
+def test_least_harmonics(exponent):
+    """The first three harmonics are proven, too; annealing comes near and not below."""
+    made = mesh((0.6, 1.0), COUPLING, 16)
+    posed = problem(made, Ranges.of(made, exponent), ("harmonics",))
+    found = solve(posed, "exact", Budget(gap=1e-4), gap=1e-3)
+    annealed = solve(posed, "annealing", Budget(evaluations=6000), seed=1)
+    assert found.status == "optimal"
+    assert found.bound <= annealed.value < 1.1 * found.value
+    x = np.array([*found.design["amount_mm"], *found.design["length_mm"]])
+    shown = made.criteria(made.separations(*at_point(x, Ranges.of(made, exponent))))
+    waves = np.fft.rfft(shown.sharing.approach, axis=1)[:, 1:4]  # of an even grid
+    amplitudes = 2.0 / 16 * np.sqrt((np.abs(waves) ** 2).sum(axis=1))
+    assert amplitudes.max() == pytest.approx(found.value, rel=1e-9)
+
+
+@pytest.mark.parametrize("part", few([0.3, 0.7], 1))
 def test_one_load_under_a_limit_at_another(part):
     """The least value at the full load with a largest one at 60 %: proven, and the limit binds."""
     made = mesh((0.6, 1.0))
@@ -116,7 +133,7 @@ def test_one_load_under_a_limit_at_another(part):
     there = made.criteria(made.separations(*at_point(x, ranges))).peak_to_peak[0]
     most = {"peak_to_peak_at_1": least + part * (there - least)}
     posed = problem(made, ranges, ("peak_to_peak_at_2",), most)
-    found = solve(posed, "exact", Budget(gap=1e-4), gap=1e-3)
+    found = solve(posed, "exact", Budget(gap=1e-3), gap=2e-3)
     assert found.status == "optimal" and found.value > free.value
     assert found.limits["peak_to_peak_at_1"] == pytest.approx(1.0, abs=2e-2)
     annealed = solve(posed, "annealing", Budget(evaluations=6000), seed=1)

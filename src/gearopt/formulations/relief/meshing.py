@@ -75,6 +75,19 @@ class Mesh:
         pinion, wheel = (np.where(there, np.maximum(x, 0.0), np.inf) for x in ends)
         return pinion, wheel
 
+    @cached_property
+    def weights(self) -> Array:
+        """Parts of the travel (p,) that positions stand for, which sum to 1; trapezoidal rule."""
+        travels = self.cycle.travels
+        ahead = np.diff(travels, append=travels[0] + 1.0)
+        return np.asarray(0.5 * (ahead + np.roll(ahead, 1)))
+
+    def waves(self, count: int = HARMONICS) -> Any:
+        """Return complex factors (count, p) from approaches to the amplitudes of harmonics."""
+        order = np.arange(1, count + 1)[:, None]
+        waves = 2.0 * self.weights * np.exp(-2j * np.pi * order * self.cycle.travels)
+        return waves - waves.sum(axis=1, keepdims=True) * self.weights  # of a constant: 0
+
     def separations(self, pinion: Relief, wheel: Relief) -> Array:
         """Return what both reliefs remove at each contact [mm], (..., p, n); infinite without one.
 
@@ -120,15 +133,10 @@ class Criteria:
     def harmonics(self, count: int = HARMONICS) -> Array:
         """Return amplitudes (..., l, count) [mm] of the first harmonics of the transmission error.
 
-        2 |integral delta exp(-2 pi i h t) dt| over a base pitch of travel t, h = 1 to count, by the
-        trapezoidal rule between the positions; jumps at break points are kept as jumps.
+        2 |integral (delta - mean) exp(-2 pi i h t) dt| over a base pitch of travel t, h = 1 to
+        count, by the trapezoidal rule between the positions; jumps at break points stay jumps.
         """
-        travels = self.mesh.cycle.travels
-        ahead = np.diff(travels, append=travels[0] + 1.0)
-        weights = 0.5 * (ahead + np.roll(ahead, 1))
-        order = np.arange(1, count + 1)
-        waves = weights[:, None] * np.exp(-2j * np.pi * order * travels[:, None])
-        return np.asarray(2.0 * np.abs(self.sharing.approach @ waves))
+        return np.asarray(np.abs(self.sharing.approach @ self.mesh.waves(count).T))
 
     @property
     def load_jump(self) -> Array:
@@ -144,11 +152,8 @@ class Criteria:
     @property
     def contact_ratio(self) -> Array:
         """The mean number of pairs that carry, of positions that are evenly spaced or exact."""
-        travels = self.mesh.cycle.travels
-        ahead = np.diff(travels, append=travels[0] + 1.0)
-        weights = 0.5 * (ahead + np.roll(ahead, 1))
         carries = self._shares > 0.0
-        return np.asarray(carries.sum(axis=-1) @ weights)
+        return np.asarray(carries.sum(axis=-1) @ self.mesh.weights)
 
     @property
     def _shares(self) -> Array:

@@ -16,7 +16,7 @@ from gearopt.formulations.relief.relief_search import MICRO, Goal, search
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Array, Terms, Var
 
-PROVEN = "peak_to_peak"  # the objective, and its values at single loads, that a search proves
+PROVEN = "peak_to_peak", "harmonics"  # objectives, at single loads too, that a search proves
 MOST = 30e-3  # mm: amount beyond which no relief of such gears goes
 
 
@@ -83,7 +83,7 @@ def problem(
     powers, methods = ranges.exponents, dict[str, Callable[..., Any]]()
     if len(objectives) == 1 and all(n.startswith(PROVEN) for n in (*objectives, *most)):
         methods = {"exact": search(mesh, powers, _goal(mesh, objectives[0], most))}
-        if objectives == (PROVEN,) and not most:
+        if objectives == PROVEN[:1] and not most:
             methods["mpec"] = local(mesh, powers)
     return Problem("relief", variables(ranges), (), evaluate, methods=methods, vectorised=True)
 
@@ -93,11 +93,12 @@ def _goal(mesh: Mesh, name: str, limits: dict[str, float]) -> Goal:
     loads = np.arange(1, len(mesh.loads) + 1)
 
     def which(of: str) -> Any:
-        number = of.partition("_at_")[2]
-        return loads == int(number) if number else loads > 0
+        head, _, number = of.partition("_at_")
+        own = loads == int(number) if number else loads > 0
+        return np.array([own & (head == sort) for sort in PROVEN])
 
     ends = [np.where(which(of), MICRO * most, np.inf) for of, most in limits.items()]
-    return Goal(which(name), np.min([np.full(len(loads), np.inf), *ends], axis=0))
+    return Goal(which(name), np.min([np.full((2, len(loads)), np.inf), *ends], axis=0))
 
 
 def reliefs(amounts: Any, lengths: Any, ranges: Ranges) -> tuple[Relief, Relief]:

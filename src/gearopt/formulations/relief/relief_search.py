@@ -2,8 +2,8 @@
 
 Bounds of boxes come from `relief_box_kernel`. Boxes are halved, best bound first, along the side
 that is longest beside its range, and dropped once nothing in them is better by more than the gap.
-Loads may have a largest peak-to-peak of their own: their weights are then such that a box is
-dropped only if each point in it is no better or exceeds one of them.
+Measures may have a largest value: their weights are then such that a box is dropped only if each
+point in it is no better or exceeds one of them.
 """
 
 import heapq
@@ -23,7 +23,7 @@ from gearopt.optimise.terms import Array
 KERNEL = "gearopt.formulations.relief.relief_box_kernel"
 MICRO = 1e3  # um a mm: amounts of relief are numbers of size 1 there
 ROUNDING = 1e-9  # um: taken off every bound
-NOTHING = 1e-7  # um: of values, a difference that no gear has
+NOTHING = 1e-8  # um: of values, a difference that no gear has
 GAP = 5e-7  # relative; where no gap is asked for: within 1e-6, rounding included
 FAR = 1e6  # mm: of a pair that is not in contact from the tips
 TINY = 1e-300  # um
@@ -39,24 +39,26 @@ SENTENCE = "Proof: every box of amounts and lengths was searched; bounds of boxe
 class Numbers:
     """What the kernel needs of a mesh, in um and N: uncoupled stiffnesses (p, n), tips (2, p, n).
 
-    low, high (4,): a1, l1, a2, l2 with a = amount^(1/p); exponents (2,), loads (l,).
+    low, high (4,): a1, l1, a2, l2 with a = amount^(1/p); exponents (2,), loads (q,); waves (h, p)
+    from approaches to the parts of their harmonics.
     """
 
     stiffness: Array
     tips: Array
     exponents: Array
     loads: Array
+    waves: Array
     low: Array
     high: Array
 
     def bound(
         self, weights: Array, low: Array, high: Array, aim: float
     ) -> tuple[float, Array, Array]:
-        """Return a bound of a box [um], a point (a1, b1, a2, b2) of it, and its peaks [um]."""
-        point, peaks = np.empty(4), np.empty(len(self.loads))
-        given = self.stiffness, self.tips, self.exponents, self.loads, weights
-        found = kernel(KERNEL).bound(*given, low, high, aim, point, peaks)
-        return found - ROUNDING, point, peaks
+        """Return a bound of a box [um], a point (a1, b1, a2, b2) of it, and its measures [um]."""
+        point, measures = np.empty(4), np.empty(weights.shape)
+        given = self.stiffness, self.tips, self.exponents, self.loads, self.waves, weights
+        found = kernel(KERNEL).bound(*given, low, high, aim, point, measures)
+        return found - ROUNDING, point, measures
 
     def variables(self, point: Array) -> Array:
         """Return the variables (amounts 1, 2, lengths 1, 2) [mm] of a point (a1, b1, a2, b2)."""
@@ -81,14 +83,17 @@ def numbers(mesh: Mesh, low: Array, high: Array, exponents: tuple[float, float])
     for end in (low, high):
         roots = (MICRO * np.asarray(end[:2])) ** (1.0 / powers)
         ends.append(np.array([roots[0], end[2], roots[1], end[3]]))
-    return Numbers(stiffness, tips, powers, np.array(mesh.loads), *ends)
+    waves = mesh.waves()
+    parts = np.vstack([waves.real, waves.imag])
+    return Numbers(stiffness, tips, powers, np.array(mesh.loads), parts, *ends)
 
 
 @dataclass(frozen=True)
 class Goal:
-    """Which loads' largest peak-to-peak is minimised (q,), and the largest allowed of each [um].
+    """Which measures' largest is minimised (2, q), and the largest allowed of each [um].
 
-    Infinite where a load has none.
+    Measures are peak-to-peaks and amplitudes of harmonics at every load; those without a largest
+    value have an infinite one.
     """
 
     minimised: Any
@@ -96,16 +101,16 @@ class Goal:
 
     @property
     def limited(self) -> bool:
-        """Whether a load has a largest value."""
+        """Whether a measure has a largest value."""
         return bool(np.isfinite(self.most).any())
 
-    def used(self, peaks: Array) -> float:
+    def used(self, measures: Array) -> float:
         """Return the largest part of a limit that is used."""
-        return float((peaks / self.most).max())
+        return float((measures / self.most).max())
 
-    def value(self, peaks: Array) -> float:
+    def value(self, measures: Array) -> float:
         """Return what is minimised [um]; infinite where a limit is exceeded."""
-        return float(peaks[self.minimised].max()) if self.used(peaks) <= 1.0 else np.inf
+        return float(measures[self.minimised].max()) if self.used(measures) <= 1.0 else np.inf
 
     def weights(self, aim: float) -> Array:
         """Return weights with which a box whose bound reaches the aim holds nothing better."""
@@ -113,13 +118,13 @@ class Goal:
 
 
 def search(mesh: Mesh, exponents: tuple[float, float], goal: Goal) -> Callable[..., Outcome]:
-    """Return the method of `parametric.problem` that proves the least peak-to-peak of a goal."""
+    """Return the method of `parametric.problem` that proves the least value of a goal."""
 
     def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
         """Halve boxes until none may hold a better relief; the seed changes nothing."""
         clock = Clock(budget, watch)
         made, code = numbers(mesh, *problem.bounds()[:2], exponents), kernel(KERNEL)
-        ones = np.ones(len(made.loads))
+        ones = np.ones(goal.most.shape)
         if not compiled(lambda: made.bound(ones, made.low, made.high, 0.0), (code.bound,), watch):
             return Outcome(None, False, message=UNREADY)
         clock.start = Clock().start
@@ -137,8 +142,8 @@ def search(mesh: Mesh, exponents: tuple[float, float], goal: Goal) -> Callable[.
 
 def _first(made: Numbers, goal: Goal) -> tuple[Array, float]:
     """Return the point where the relaxation of the whole box is least, and its value."""
-    _, point, peaks = made.bound(goal.weights(1.0), made.low, made.high, np.inf)
-    return point, goal.value(peaks)
+    _, point, measures = made.bound(goal.weights(1.0), made.low, made.high, np.inf)
+    return point, goal.value(measures)
 
 
 def _allowed(made: Numbers, goal: Goal, clock: Clock) -> tuple[Array, float] | Outcome:
@@ -149,10 +154,10 @@ def _allowed(made: Numbers, goal: Goal, clock: Clock) -> tuple[Array, float] | O
         _, _, low, high = heapq.heappop(boxes)
         if not clock.tell():
             return Outcome(None, False, evaluations=clock.evaluations)
-        least, point, peaks = made.bound(weights, low, high, 1.0)
+        least, point, measures = made.bound(weights, low, high, 1.0)
         clock.evaluations += 1
-        if goal.used(peaks) <= 1.0:
-            return point, goal.value(peaks)
+        if goal.used(measures) <= 1.0:
+            return point, goal.value(measures)
         parts = halves(made, low, high) if least < 1.0 else ()
         proof &= least >= 1.0 or bool(parts)
         for ends in parts:
@@ -207,9 +212,9 @@ def _searched(
         if not parts and (low < high).any():
             floor = 0.0 if goal.limited else min(floor, least)
         for ends in parts:
-            found, x, peaks = made.bound(goal.weights(aim()), *ends, aim())
+            found, x, measures = made.bound(goal.weights(aim()), *ends, aim())
             clock.evaluations += 1
-            if (value := goal.value(peaks)) < best:
+            if (value := goal.value(measures)) < best:
                 best, point = value, x
             if found < aim() or not goal.limited:
                 turn += 1

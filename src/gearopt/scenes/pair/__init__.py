@@ -7,6 +7,7 @@ from dataclasses import replace
 from gearopt.errors import SolveError
 from gearopt.formulations.design import DriveDesign, drive_design
 from gearopt.formulations.pair_contact import PairMesh
+from gearopt.formulations.relief import parametric
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.comparing.runs import Model
 from gearopt.optimise.explaining.explanation import Explanation
@@ -39,7 +40,6 @@ __all__ = [
     "solve",
 ]
 METHODS = ("exact", "mpec")  # its own
-PROVEN = ("peak_to_peak",)  # criteria of a relief that have a proven search
 NOTHING = "the gears are given, so that nothing is chosen"
 
 
@@ -147,7 +147,7 @@ def _unseeded(scene: Scene, method: str | None) -> dict[str, str]:
 
 def _proven(asked: ReliefTable) -> bool:
     """Return whether a relief has a proven search."""
-    return asked.minimise in PROVEN and not asked.robust
+    return asked.minimise in parametric.PROVEN and not asked.robust
 
 
 def compared(scene: Scene) -> tuple[str, ...]:

@@ -31,7 +31,7 @@ FEW = 2.0  # contact ratio below which free shapes are searched
 WORST = 1e-3  # relative gap of a worst case within tolerances
 ROBUST = "the worst case is annealed: without tolerance the least value is proven, with it none is"
 UNBOUND = "without the method exact there is no bound"
-UNPROVEN = "only the peak-to-peak transmission error has a proven search: of this there is no bound"
+UNPROVEN = "only transmission errors have a proven search: of shares of the load there is no bound"
 KEYS = {"amount": "relief.amount", "length": "relief.length"}  # of variables: their places
 
 
