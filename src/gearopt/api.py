@@ -124,7 +124,10 @@ def rate(what: File, changes: Changes = None) -> Result:
     """
     scene, module, names = _opened(what, changes)
     if not hasattr(module, "rate"):
-        raise SolveError(f'rate is for files of kind "drive", not "{names["scene"]}"')
+        raise SolveError(
+            f'rate is for files of kind "drive", not "{names["scene"]}"'
+            + "; gearopt solve FILE rates a pair by its table [rating]" * (names["scene"] == "pair")
+        )
     result: Result = module.rate(scene, Ask())
     return _named(result, **names)
 

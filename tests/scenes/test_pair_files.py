@@ -63,7 +63,8 @@ WRONG = [
         r'level = "Nakada C": takes .* pinion are undercut\. Write level = "profile \+ S',
     ),
     ({"sharing.loads": [1, 1]}, r"names a load twice\. Write loads = \[1\.0\]"),
-    ({"sharing.loads": []}, r"loads = \[\]: is not a list"),
+    ({"sharing.loads": []}, r"loads = \[\]: is empty"),
+    ({"sharing.error": 5}, r"error = 5: is not above 0 and at most 1\. Write error = \"5 %\""),
     ({"sharing.load": [1]}, r"sharing\.load = .*Here it is called loads, in \[sharing\]"),
     ({"sharing.positions": 3}, "positions = 3: is not a whole number from 12 to 5000"),
     ({"stage.face_widht": "3 mm"}, r"stage\[1\]\.face_widht: unknown key. Did you mean face_width"),
@@ -76,6 +77,20 @@ def test_what_is_wrong_is_said_in_one_line_with_what_to_write(edits, said):
     with pytest.raises(SceneError, match=said) as wrong:
         gearopt.load(with_(GIVEN, edits))
     assert "\n" not in str(wrong.value)
+
+
+def test_what_can_hardly_be_meant_is_said():
+    """Steel yields, the gears do not have the ratio; nothing is stiff without load."""
+    result = gearopt.solve(with_(GIVEN, {"duty.power": "2000 kW", "duty.ratio": 3}))
+    assert (
+        "MPa, and hardened steel yields from 4,000 MPa on"
+        in result.design["contact"]["validity"][-1]
+    )
+    assert result.report["notes"] == [
+        "The gears have a ratio of 2, 33.3 % below the one asked for."
+    ]
+    with pytest.raises(SolveError, match="gearopt solve FILE rates a pair by its table"):
+        gearopt.rate(GIVEN)
 
 
 def test_a_second_pair_is_a_drive():

@@ -85,6 +85,19 @@ def test_any_convex_shape_reaches_less_and_is_proven_too(solved):
     assert min(relief["pinion_removed_mm"]) == 0.0 and contact["contact_ratio"] < 2.0
 
 
+def test_a_relief_longer_than_the_path_of_contact_is_refused():
+    with pytest.raises(
+        SolveError, match=r"length goes up to 5 base pitches, but .* has 1\.683\. W"
+    ):
+        gearopt.solve(with_relief(amount="10 um", length=5))
+
+
+def test_a_stopped_search_claims_no_more_than_its_bound():
+    result = gearopt.solve(with_relief(), budget=gearopt.Budget(0.0))
+    assert result.status == "limit" or result.status == "feasible"
+    assert "was searched" not in result.proof.get("sentence", "")
+
+
 def test_ranges_of_the_file_hold():
     found = gearopt.solve(with_relief(amount=["0 um", "8 um"], length=[0.3, 0.4], loads=[1]))
     free = gearopt.solve(with_relief(loads=[1]))

@@ -15,6 +15,7 @@ from gearopt.report.words import (
     RULED,
     amount,
     certainty,
+    effort,
     goal,
     grouped,
     has_stages,
@@ -100,7 +101,7 @@ def _notes(result: Result) -> list[str]:
 
 
 def _effort(result: Result) -> str:
-    return f"{result.method}, {result.evaluations:,} evaluations, {result.seconds:.3g} s."
+    return effort(result.method, result.evaluations, result.seconds)
 
 
 def limits(result: Result, measures: Measures) -> Section | None:

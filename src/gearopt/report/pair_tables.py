@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from gearopt.formulations.pair_contact import PairContact
+from gearopt.formulations.pair_contact import ContactLoad, PairContact
 from gearopt.report.measures import Measures
 from gearopt.report.section import Cell, Table, cell, percent
 
@@ -68,15 +68,15 @@ def loads(found: PairContact, measures: Measures) -> Table:
         ),
         [
             f"mesh stiffness, mean [{stiff}]",
-            *(cell(o.mean_mesh_stiffness_MPa, STIFFNESS, measures) for o in found.loads),
+            *(_stiffness(o, o.mean_mesh_stiffness_MPa, measures) for o in found.loads),
         ],
         [
             f"mesh stiffness, least [{stiff}]",
-            *(cell(o.least_mesh_stiffness_MPa, STIFFNESS, measures) for o in found.loads),
+            *(_stiffness(o, o.least_mesh_stiffness_MPa, measures) for o in found.loads),
         ],
         [
             f"mesh stiffness, most [{stiff}]",
-            *(cell(o.most_mesh_stiffness_MPa, STIFFNESS, measures) for o in found.loads),
+            *(_stiffness(o, o.most_mesh_stiffness_MPa, measures) for o in found.loads),
         ],
         [
             f"c_γα of ISO 6336-1 [{stiff}]",
@@ -89,6 +89,11 @@ def loads(found: PairContact, measures: Measures) -> Table:
     ]
     names = [f"{100.0 * one.load:g} %" for one in found.loads]
     return Table("loads", ["", *names], rows[1:], "What happens at each load.", across=True)
+
+
+def _stiffness(one: ContactLoad, value: float, measures: Measures) -> Cell:
+    """Return a mesh stiffness; a dash without load, of which there is none."""
+    return cell(value, STIFFNESS, measures) if one.normal_force_N else Cell("", "–")
 
 
 def percent_of(load: float) -> Cell:

@@ -20,17 +20,24 @@ def of_duty(found: PairContact) -> ContactLoad:
     return loads.get(1.0) or loads[max(loads)]
 
 
-def answers(found: PairContact, pair: GearPair | None = None, relieved: bool = False) -> list[str]:
+def answers(
+    found: PairContact,
+    pair: GearPair | None = None,
+    frequency: float | None = None,
+    relieved: bool = False,
+) -> list[str]:
     """Return how load passes, how even the motion is, what to change, how sure that all is.
 
-    pair: its gears, of whole teeth. relieved: relief is told elsewhere.
+    pair: its gears, of whole teeth. frequency: of the mesh [Hz]. relieved: the gears have relief,
+    which is told elsewhere; the contact told here is without it.
     """
     load = of_duty(found)
-    even = _even(found, load)
+    even = _even(found, load, frequency)
     if pair is not None and (alike := graded(pair, load.peak_to_peak_mm)):
         even = f"{even} {alike}"
+    first = ["All that follows is of the gears without relief."] if relieved else []
     change = [] if relieved or not load.normal_force_N else [_changed(found)]
-    return [_shared(found, load), even, *change, _stiff(found, load), _sure(found)]
+    return [*first, _shared(found, load), even, *change, _stiff(found, load), _sure(found)]
 
 
 def graded(pair: GearPair, error: float) -> str:
@@ -42,13 +49,14 @@ def graded(pair: GearPair, error: float) -> str:
         return ""
     middle = float(deviations(pair, (5.0, 5.0), smooth=True).profile_form)
     grade = 5.0 + 2.0 * math.log2(error / middle)
-    alike = f"that profiles of accuracy grade {grade:.0f} of ISO 1328-1 may deviate in form"
+    alike = f"as much as profiles of accuracy grade {grade:.0f} of ISO 1328-1 may deviate in form"
     if grade < 0.5:
         alike = "less than profiles of any accuracy grade of ISO 1328-1 may deviate in form"
     elif grade > 12.5:
         alike = "more than profiles of any accuracy grade of ISO 1328-1 may deviate in form"
     return (
-        f"This is {alike}: in coarser gears errors of making matter more, in finer ones the load."
+        f"The peak-to-peak value is {alike}: in coarser gears manufacturing errors matter more, "
+        "in finer ones the load."
     )
 
 
@@ -65,31 +73,34 @@ def _changed(found: PairContact) -> str:
 def _shared(found: PairContact, load: ContactLoad) -> str:
     """Say how much one pair of teeth carries and where."""
     first, last = load.share[0], load.share[-1]
-    ends = f"it begins with {share(first)} % of it and ends with {share(last)} %"
+    ends = f"comes into contact with {share(first)} % of the load and parts with {share(last)} %"
     if not load.normal_force_N:
         return "Without load no pair of teeth carries anything."
     alone = 2.0 - found.contact_ratio
     if alone <= NARROW:
         most = f"at most {share(load.largest_share)} % of the load, as two pairs always touch"
-        return f"One pair of teeth carries {most}; {ends}."
+        return f"One pair of teeth carries {most}; it {ends}."
     length = rounded(alone * found.base_pitch_mm, 3)
     return (
         f"One pair of teeth carries the whole load, {rounded(load.normal_force_N, 4)} N, over "
-        f"{length} mm of its path ({share(alone / found.contact_ratio)} % of it); {ends}."
+        f"{length} mm of its path ({share(alone / found.contact_ratio)} %); a pair {ends}."
     )
 
 
-def _even(found: PairContact, load: ContactLoad) -> str:
+def _even(found: PairContact, load: ContactLoad, frequency: float | None) -> str:
     """Say how much the transmission error varies."""
     each = [
         f"{rounded(1e3 * one.peak_to_peak_mm, 3)} µm at {100.0 * one.load:g} % of the torque"
         for one in found.loads
+        if one.load
     ]
-    part = 100.0 * load.harmonics_mm[0] / load.peak_to_peak_mm if load.peak_to_peak_mm else 0.0
+    if not each:
+        return "Without load the transmission error does not vary."
+    of = f" of {rounded(frequency, 3)} Hz" if frequency else ""
     return (
-        f"The transmission error varies by {', '.join(each)}, peak to peak; its first harmonic, at "
-        f"the mesh frequency, is {rounded(1e3 * load.harmonics_mm[0], 3)} µm "
-        f"({rounded(part, 2)} % of that)."
+        f"The transmission error varies by {', '.join(each)}, peak to peak. Its first harmonic, at "
+        f"the mesh frequency{of}, has an amplitude of {rounded(1e3 * load.harmonics_mm[0], 3)} µm "
+        f"at {100.0 * load.load:g} %."
     )
 
 
@@ -100,7 +111,7 @@ def _stiff(found: PairContact, load: ContactLoad) -> str:
     off = 100.0 * (load.mean_mesh_stiffness_MPa / found.iso_mesh_stiffness_MPa - 1.0)
     return (
         f"The mean mesh stiffness is {rounded(abs(off), 2)} % {'above' if off > 0 else 'below'} "
-        "the value that ISO 6336-1 has for all gears of its kind, whatever their bores."
+        "c_γα of ISO 6336-1, which is one number for gears of any bores."
     )
 
 
@@ -108,16 +119,21 @@ def _sure(found: PairContact) -> str:
     """Say how wrong stiffness and transmission error may be."""
     low, high = found.error_percent
     stiff = (
-        f"Stiffness by {found.level}: over 34 pairs of steel gears it was {_between(low, high)} "
-        "that of finite elements"
+        f"How wrong that may be: over 34 pairs of steel gears the stiffness by {found.level} was "
+        f"{_between(low, high)} that by finite elements"
     )
     if found.coupling not in OVERSTATED:
-        return f"{stiff}; the transmission error is off by about as much the other way."
+        return (
+            f"{stiff}; the transmission error is off by about as much, too large where the "
+            "stiffness is too low."
+        )
     least, most = OVERSTATED[found.coupling]
+    name = {"none": "Without coupling of neighbouring teeth"}.get(
+        found.coupling, f"With neighbouring teeth coupled by {found.coupling}"
+    )
     return (
-        f"{stiff}. Coupling of neighbouring teeth: {found.coupling}; on two of them that made the "
-        f"transmission error vary {least} to {most} % more than the coupling by finite elements "
-        '(coupling = "finite elements").'
+        f"{stiff}. {name} the transmission error of two of them came out {least} to {most} % "
+        'larger than with coupling = "finite elements".'
     )
 
 

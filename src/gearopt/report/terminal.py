@@ -22,6 +22,7 @@ from gearopt.report.words import (
     REACHED,
     VERDICTS,
     amount,
+    effort,
     goal,
     leading,
     title,
@@ -200,5 +201,5 @@ def show_front(found: Front, console: Console, measures: Measures = METRIC) -> N
     console.print()
     if found.status == "infeasible" and found.file and not found.options.get("most"):
         console.print(Text(f"What to write instead: gearopt explain {found.file}\n"))
-    spent = f"{found.method}, {found.evaluations:,} evaluations, {found.seconds:.3g} s."
+    spent = effort(found.method, found.evaluations, found.seconds)
     console.print(Text(spent, style="dim"))

@@ -133,6 +133,11 @@ def share(used: float) -> str:
     return f"{math.floor(1e4 * used) / 100.0:.2f}" if below else text
 
 
+def effort(method: str, evaluations: int, seconds: float) -> str:
+    """Return what an answer took, in words."""
+    return f"{method}, {evaluations:,} evaluation{'s' * (evaluations != 1)}, {seconds:.3g} s."
+
+
 def number(value: Any) -> str:
     """Return a number without a unit for reading: whole ones in full, others to five digits."""
     if isinstance(value, bool) or not isinstance(value, int | float):

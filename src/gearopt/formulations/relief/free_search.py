@@ -35,6 +35,10 @@ RANDOM = False
 COUNTS = "linear program solved"
 SETTINGS = {"gap": GAP}
 SENTENCE = "Proof: every pattern of contact was searched; bounds by multipliers of linear programs."
+STOPPED = (
+    "Proof of the lower bound: no pattern of contact has less; bounds by multipliers of linear "
+    "programs."
+)
 
 
 @dataclass(frozen=True)
@@ -271,7 +275,8 @@ def search(profile: "Profile") -> Callable[..., Outcome]:
         clock = Clock(budget, watch)
         found = _Search(Program(profile), clock)
         bound, ended = found.run()
-        proof = {"method": "patterns", "programs": clock.evaluations, "sentence": SENTENCE}
+        said = SENTENCE if ended else STOPPED
+        proof = {"method": "patterns", "programs": clock.evaluations, "sentence": said}
         x, spent = found.removed / MICRO, clock.evaluations
         return Outcome(x, ended, bound=max(bound, 0.0) / MICRO, proof=proof, evaluations=spent)
 

@@ -33,6 +33,7 @@ COUNTS = "box bounded"
 SETTINGS = {"gap": GAP}
 EMPTY = "Proof: every box of amounts and lengths was searched: none keeps to these limits."
 SENTENCE = "Proof: every box of amounts and lengths was searched; bounds of boxes by planes."
+STOPPED = "Proof of the lower bound: no box of amounts and lengths has less; bounds by planes."
 
 
 @dataclass(frozen=True)
@@ -132,7 +133,8 @@ def search(mesh: Mesh, exponents: tuple[float, float], goal: Goal) -> Callable[.
         if isinstance(known, Outcome):
             return known
         point, bound, ended = _searched(made, goal, clock, *known)
-        proof = {"method": "boxes", "boxes": clock.evaluations, "sentence": SENTENCE}
+        said = SENTENCE if ended else STOPPED
+        proof = {"method": "boxes", "boxes": clock.evaluations, "sentence": said}
         x, spent = made.variables(point), clock.evaluations
         lowest = max(bound, 0.0) / MICRO if ended or not goal.limited else None  # never below 0
         return Outcome(x, ended, bound=lowest, proof=proof, evaluations=spent)

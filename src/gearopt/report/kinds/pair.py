@@ -1,5 +1,6 @@
 """A spur pair: how its teeth share the load, how smoothly they run, and how well that is known."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -87,10 +88,18 @@ def contact(result: Result, measures: Measures) -> Section | None:
     if (found := contact_of(result)) is None:
         return None
     tables = [table(found, measures) for table in TABLES]
-    told = answers(found, pair_of(result), bool(result.design.get("relief")))
+    relieved = bool(result.design.get("relief"))
+    told = answers(found, pair_of(result), _frequency(result), relieved)
     words = list(map(measures.words, told))
     shown = [table for table in tables if not table.folded]
     return Section("Contact", words=words, tables=tables, terminal=("\n".join(words), *shown))
+
+
+def _frequency(result: Result) -> float:
+    """Return the mesh frequency [Hz]: reference circles pass a pitch of pi times the module."""
+    stage = result.design["stages"][0]
+    speed, module = stage["pitch_line_velocity_m_per_s"], stage["normal_module_mm"]
+    return float(1e3 * speed / (math.pi * module))
 
 
 def relief(result: Result, measures: Measures) -> Section | None:

@@ -17,7 +17,7 @@ from gearopt.report.pages.front_designs import Numbers
 from gearopt.report.pages.front_values import Drawn, drawn
 from gearopt.report.pages.sheet import Drawing
 from gearopt.report.section import Section, Tile
-from gearopt.report.words import sentence
+from gearopt.report.words import effort, sentence
 
 LINES = 2  # designs at least, that are drawn as lines
 
@@ -147,9 +147,7 @@ def _spent(front: Front) -> Section:
     """Return how the front was found: proof, effort, and its growth where a method has steps."""
     plot, table = front_plots.grown(front), front_designs.growth(front)
     seed = f", seed {front.seed}" if front.method in RANDOM else ""
-    said = [
-        f"Method {front.method}{seed}: {front.evaluations:,} evaluations, {front.seconds:.3g} s."
-    ]
+    said = [f"Method {effort(f'{front.method}{seed}', front.evaluations, front.seconds)}"]
     if plot is None and front.points:
         said.append("It finds the whole front in one pass, so that there is no growth to show.")
     figures, shown = ([plot] if plot else []), ([table] if table else [])

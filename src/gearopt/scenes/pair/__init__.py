@@ -116,7 +116,12 @@ def _evaluated(scene: Scene, ask: Ask) -> Result:
             objective={},
             certificate={"feasibility": 0.0},
             design=untyped(design),
-            report={"notes": [*misfits(blanks, (scene.given_pair,))]},
+            report={
+                "notes": [
+                    *rated.off_ratio(scene.drive, design),
+                    *misfits(blanks, (scene.given_pair,)),
+                ]
+            },
             evaluations=1,
             seed=ask.seed,
             versions=versions("numpy"),
@@ -187,7 +192,7 @@ def _mesh_of_gears(scene: Scene) -> PairMesh:
         return mesh_of(scene, scene.given_pair)
     sized = drive.solve(scene.drive, Ask())
     if sized.value is None:
-        raise SolveError("there is no pair to relieve: gearopt solve FILE shows why")
+        raise SolveError("no pair of gears meets the limits, so that there is none to relieve")
     return _mesh(scene, sized)[1]
 
 

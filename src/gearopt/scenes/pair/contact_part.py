@@ -1,6 +1,7 @@
 """From the tables of a pair to the contact of its gears: bores, materials, models, loads."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 from gearopt.errors import SolveError
 from gearopt.formulations.pair_contact import PairContact, PairMesh, contact
@@ -22,6 +23,7 @@ from gearopt.units import Quantity
 
 Materials = tuple[str, str]
 UNBORED = 3.0  # root circle over the circle at which a gear without a bore is held
+BORNE = 4000.0  # MPa; from it on hardened rollers keep dents (static rating of ISO 76)
 LEAST_RATIO = 1.2  # below which ISO 6336-1 has no stiffness, and designers do not go
 
 
@@ -30,8 +32,16 @@ def contact_of(scene: Scene, made: PairMesh) -> PairContact:
     told = scene.sharing.coupling
     name = "given" if isinstance(told, Quantity) else told
     pair = made.elastic.pair
-    said = (*_webs(scene, pair), *_validity(made, name))
-    return contact(made, name, _by_iso(scene, pair, made.elastic), said)
+    doubts = (*_webs(scene, pair), *_validity(made, name))
+    found = contact(made, name, _by_iso(scene, pair, made.elastic), doubts)
+    most = max(one.largest_contact_stress_MPa for one in found.loads)
+    if most <= BORNE:
+        return found
+    said = (
+        f"The contact stress reaches {most:,.0f} MPa, and hardened steel yields from "
+        f"{BORNE:,.0f} MPa on: the gears are too small for the load, or the load is not meant."
+    )
+    return replace(found, validity=(*found.validity, said))
 
 
 def mesh_of(scene: Scene, pair: GearPair, materials: Materials = ("", "")) -> PairMesh:
@@ -56,7 +66,18 @@ def mesh_of(scene: Scene, pair: GearPair, materials: Materials = ("", "")) -> Pa
     except ImportError as reason:  # of finite elements, an extra
         raise SolveError(str(reason)) from None
     _check_coupling(made)
+    _check_length(scene, made)
     return made
+
+
+def _check_length(scene: Scene, made: PairMesh) -> None:
+    """Refuse a relief that is longer than the path of contact."""
+    asked, path = scene.relief, float(made.elastic.path.transverse_ratio)
+    if asked is not None and asked.length is not None and asked.length[1] > path:
+        raise SolveError(
+            f"[relief] length goes up to {float(asked.length[1]):g} base pitches, but the path of "
+            f"contact has {path:.3f}. Write, for example, length = 0.6 or length = [0.1, 0.8]"
+        )
 
 
 def _check_coupling(made: PairMesh) -> None:

@@ -21,7 +21,7 @@ class SharingTable(Table):
     level: Annotated[str | None, choice(*LEVELS)] = Field(
         None, description=f"Model of the compliance of a pair of teeth; by default {USUAL}"
     )
-    error: Annotated[Fraction | None, number("5 %", 0, 10, percent=True)] = Field(
+    error: Annotated[Fraction | None, number("5 %", 0, 1, percent=True)] = Field(
         None,
         description="Instead of level: the error that its stiffness may have, against finite "
         "elements of the pairs it was measured on; the cheapest such model is taken",

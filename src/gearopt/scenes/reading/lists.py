@@ -126,7 +126,7 @@ def several(item: Reads, example: Any) -> Reads:
         if isinstance(value, tuple):
             return value
         if not isinstance(value, list) or not value:
-            raise refuse("is not a list")
+            raise refuse("is empty" if value == [] else "is not a list")
         right, rule = _mended(item, value)
         if rule:
             write = [item.example if entry is None else entry for entry in right]

@@ -50,7 +50,7 @@ def rate(scene: Scene, ask: Ask) -> Result:
     found = rating(scene, pairs)
     limits = utilisations(found)
     made, blanks = given_design(scene, pairs)
-    flaws = (*_off_ratio(scene, made), *misfits(blanks, pairs), *found.flaws)
+    flaws = (*off_ratio(scene, made), *misfits(blanks, pairs), *found.flaws)
     told = replace(found, flaws=flaws)
     remarks = unused_materials(scene)
     return Result(
@@ -90,7 +90,7 @@ def given_design(
     return made, blanks
 
 
-def _off_ratio(scene: Scene, made: DriveDesign) -> list[str]:
+def off_ratio(scene: Scene, made: DriveDesign) -> list[str]:
     """Return how far given gears are off the ratio that is asked for, beyond its tolerance."""
     off = made.ratio_error_percent
     if abs(off) <= 100.0 * float(scene.duty.ratio_tolerance):
