@@ -124,10 +124,8 @@ def rate(what: File, changes: Changes = None) -> Result:
     """
     scene, module, names = _opened(what, changes)
     if not hasattr(module, "rate"):
-        raise SolveError(
-            f'rate is for files of kind "drive", not "{names["scene"]}"'
-            + "; gearopt solve FILE rates a pair by its table [rating]" * (names["scene"] == "pair")
-        )
+        kind = names["scene"]
+        raise SolveError(f'rate takes kind = "drive", not "{kind}"; gearopt solve rates a pair')
     result: Result = module.rate(scene, Ask())
     return _named(result, **names)
 

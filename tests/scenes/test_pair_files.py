@@ -89,7 +89,7 @@ def test_what_can_hardly_be_meant_is_said():
     assert result.report["notes"] == [
         "The gears have a ratio of 2, 33.3 % below the one asked for."
     ]
-    with pytest.raises(SolveError, match="gearopt solve FILE rates a pair by its table"):
+    with pytest.raises(SolveError, match="gearopt solve rates a pair"):
         gearopt.rate(GIVEN)
 
 
