@@ -86,7 +86,7 @@ def test_an_uneven_motion_is_compared_with_accuracy():
     pair = GearPair(Gear(3.0, 25, 75.0, 30.0), Gear(3.0, 50, 150.0, 30.0))
     middle = 1e-3 * (2.5 * 3.0**0.5 + 0.17 * 150.0**0.5 + 0.5)
     for factor, words in ((1.0, "grade 5 "), (2.0, "grade 7 "), (0.5, "grade 3 ")):
-        assert f"that profiles of accuracy {words}" in graded(pair, factor * middle)
+        assert f"as profiles of accuracy {words}" in graded(pair, factor * middle)
     assert "less than profiles of any" in graded(pair, 1e-5) and not graded(pair, 0.0)
     assert "more than profiles of any" in graded(pair, 1.0)
 
