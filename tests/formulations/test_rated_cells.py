@@ -157,10 +157,11 @@ def test_the_bound_is_below_whole_teeth_and_designs_that_are_found(names, helix)
 
 @pytest.mark.slow
 @pytest.mark.parametrize("standard", [agma, some_iso])
-def test_random_small_drives_are_not_better_than_their_bound(standard):
+@pytest.mark.parametrize("block", range(4))
+def test_random_small_drives_are_not_better_than_their_bound(standard, block):
     """Whole teeth by the exact search; designs that are found are accepted by the exact text."""
     seen = 0
-    for seed in range(24):
+    for seed in range(6 * block, 6 * block + 6):
         train = some_rated_drive(seed, standard=standard)
         whole = solve(teeth.problem(train), budget=Budget(20.0))
         found = run(train, 1.0, 1e-2)
@@ -171,7 +172,7 @@ def test_random_small_drives_are_not_better_than_their_bound(standard):
             assert found.bound <= found.value
             made = rated_sizing._of_pairs(train, sizing.problem(train), found)
             assert made is not None
-    assert seen > 8
+    assert seen > 1
 
 
 @pytest.mark.slow
