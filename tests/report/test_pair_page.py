@@ -49,6 +49,7 @@ def test_two_pairs_always_in_contact_leave_no_tooth_alone(solved):
     load = replace(of_duty(found), largest_share=0.6)
     other = replace(found, loads=(load,), contact_ratio=2.001)
     assert "carries at most 60.0 % of the load, as two pairs always touch" in answers(other)[0]
+    assert "as three pairs always touch" in answers(replace(other, contact_ratio=3.2))[0]
     idle = replace(load, normal_force_N=0.0)
     assert answers(replace(found, loads=(idle,)))[0] == (
         "Without load no pair of teeth carries anything."

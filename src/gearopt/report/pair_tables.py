@@ -15,7 +15,7 @@ def points(found: PairContact, measures: Measures) -> Table:
     length, stiff = measures.unit("mm"), measures.unit(STIFFNESS)
     heads = (
         *("point", f"s [{length}]", f"pinion diameter [{length}]", f"wheel diameter [{length}]"),
-        *("roll angle [°]", f"stiffness of a pair [{stiff}]"),
+        *("pinion roll angle [°]", f"stiffness of a pair [{stiff}]"),
     )
     rows = [
         [
@@ -30,8 +30,10 @@ def points(found: PairContact, measures: Measures) -> Table:
     ]
     caption = (
         "Points of the path of contact; s on the line of action from the pitch point, positive "
-        "towards the pinion's tip. Between LPSTC and HPSTC one pair of teeth carries the load."
+        "towards the pinion's tip."
     )
+    if found.contact_ratio < 2.0:
+        caption += " Between LPSTC and HPSTC one pair of teeth carries the load."
     return Table("points of contact", heads, rows, caption, wrap=0)
 
 
@@ -109,7 +111,7 @@ def path(found: PairContact, measures: Measures) -> Table:
         (f"s [{length}]", found.position_mm, "mm"),
         (f"pinion diameter [{length}]", found.pinion_diameter_mm, "mm"),
         (f"wheel diameter [{length}]", found.wheel_diameter_mm, "mm"),
-        ("roll angle [°]", found.pinion_roll_angle_deg, "deg"),
+        ("pinion roll angle [°]", found.pinion_roll_angle_deg, "deg"),
         (f"stiffness of a pair [{stiff}]", found.pair_stiffness_MPa, STIFFNESS),
     ]
     for one in found.loads:

@@ -12,6 +12,7 @@ from gearopt.report.words import share
 # per cent by which the peak-to-peak transmission error exceeds that with the coupling by finite
 # elements, on the pairs of problems/shifted_pair.toml and problems/reference_pair.toml
 OVERSTATED = {"none": (22, 46), "ring torsion": (14, 24)}
+ALWAYS = {2: "two", 3: "three"}  # pairs, by the whole part of the contact ratio
 
 
 def of_duty(found: PairContact) -> ContactLoad:
@@ -78,8 +79,9 @@ def _shared(found: PairContact, load: ContactLoad) -> str:
         return "Without load no pair of teeth carries anything."
     alone = 2.0 - found.contact_ratio
     if alone <= NARROW:
-        most = f"at most {share(load.largest_share)} % of the load, as two pairs always touch"
-        return f"One pair of teeth carries {most}; it {ends}."
+        least = ALWAYS.get(int(found.contact_ratio + NARROW), "several")
+        most = f"at most {share(load.largest_share)} % of the load"
+        return f"One pair of teeth carries {most}, as {least} pairs always touch; it {ends}."
     length = rounded(alone * found.base_pitch_mm, 3)
     return (
         f"One pair of teeth carries the whole load, {rounded(load.normal_force_N, 4)} N, over "
@@ -124,8 +126,8 @@ def _sure(found: PairContact) -> str:
     )
     if found.coupling not in OVERSTATED:
         return (
-            f"{stiff}; the transmission error is off by about as much, too large where the "
-            "stiffness is too low."
+            f"{stiff}; the mean transmission error is off by about as much, too large where the "
+            "stiffness is too low, its variation by up to twice as much."
         )
     least, most = OVERSTATED[found.coupling]
     name = {"none": "Without coupling of neighbouring teeth"}.get(

@@ -211,3 +211,21 @@ def test_sainsots_body_over_bore_ratios(ratio, error):
     contact = (2.0 * np.log(2.0 * line.depth / wide) - 0.3) / (np.pi * member.rigidity)
     made = profile_compliance(member, line) + sainsot_compliance(member, line) + contact
     assert 100.0 * float((known / made)[0] - 1.0) == pytest.approx(error, abs=0.1)
+
+
+@pytest.mark.slow
+def test_neighbours_of_pairs_that_more_than_three_share():
+    """A contact ratio above 3: c12 falls a little with the length of teeth, of the same rings."""
+    usual, long_ = (
+        ElasticPair(
+            GearPair.of_teeth(
+                2.0, 80, 120, 20.0, rack=Rack(addendum=a, dedendum=a + 0.2, tip_radius=0.1)
+            ),
+            (50.0, 50.0),
+        )
+        for a in (1.0, 1.7)
+    )
+    assert long_.path.transverse_ratio > 3.0
+    with pytest.raises(ValueError, match="4 pairs of teeth touch"):
+        compliance_matrix(long_, float(long_.path.start), 1000.0)
+    assert coupling(long_) == pytest.approx(coupling(usual), rel=0.04)

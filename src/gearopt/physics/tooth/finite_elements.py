@@ -222,7 +222,12 @@ def compliance_matrix(
     )
     if len(steps) > MESHED:
         raise ValueError(f"{len(steps)} pairs of teeth touch: finite elements mesh {MESHED}")
-    places = position + steps * path.base_pitch
+    return _matrix(elastic, position + steps * path.base_pitch, force, halvings)
+
+
+def _matrix(elastic: ElasticPair, places: Any, force: float, halvings: int = 0) -> Any:
+    """Return C (n, n) [mm/N] of pairs of teeth at positions [mm], neighbours in their order."""
+    path = elastic.path
     wide, lost = _pressed_widths(elastic, places, force)
     found = np.zeros((len(places), len(places)))
     rows = zip(
@@ -243,7 +248,7 @@ def compliance_matrix(
 def coupling(elastic: ElasticPair) -> float:
     """Return c_12 [mm/N], how far a pair of teeth gives way under a unit force on its neighbour.
 
-    In the middle of the stretch of double contact, the mean of both directions, which are equal by
+    Both as far from the middle of the path, the mean of both directions, which are equal by
     reciprocity. Along the path it varies by 0.5 %, and with the width of the contact not at all;
     that is `WIDE` here. 0 where no two pairs touch.
     """
@@ -252,5 +257,6 @@ def coupling(elastic: ElasticPair) -> float:
         return 0.0
     unit = half_width(elastic, 0.0, 1.0)
     force = (WIDE * float(elastic.pair.normal_module) / unit) ** 2
-    found = compliance_matrix(elastic, 0.5 * (path.start + path.lowest_single), force)
+    first = 0.5 * (path.start + path.lowest_single)
+    found = _matrix(elastic, np.array([first, first + path.base_pitch]), force)
     return float(0.5 * (found[0, 1] + found[1, 0]))
