@@ -216,44 +216,60 @@ def bound(stiffness, tips, exponents, loads, waves, weights, low, high, aim, poi
             offsets[q, k] = below(
                 stiffness[k], loads[q], ends[:, k], slopes[q, k], room[0], room[1]
             )
+    given = stiffness, tips, exponents, loads, waves, weights
     values, shares, mixture = np.empty((CORNERS, CUTS)), np.empty(CUTS), np.empty(CORNERS)
     table, basis = np.empty((CUTS + 1, CORNERS + CUTS + 1)), np.empty(CUTS, np.int64)
     for r in range(CORNERS):
         mixture[r] = 1.0 / CORNERS
-    count, best, cut, lower = 0, 0.0, np.empty(5), np.empty(5)
+    count, best = 0, 0.0
     while True:
         mixed(places, mixture, point)
         if best >= aim or count + 2 * loads.size > CUTS:
             break
-        height = 0.0
-        for q in range(loads.size):
-            given = (
-                stiffness,
-                tips,
-                exponents,
-                loads[q],
-                point,
-                secants,
-                offsets[q],
-                slopes[q],
-                room,
-            )
-            for sort in range(2):
-                if weights[sort, q] <= 0.0:
-                    continue
-                if sort == 0:
-                    value = peak_cut(*given, lower, cut)
-                else:
-                    value = wave_cut(*given, waves, cut)
-                height = max(height, weights[sort, q] * value)
-                if weights[sort, q] * value > best:
-                    at_corners(places, cut, weights[sort, q], values, count)
-                    count += 1
+        more, height = cuts_at(
+            *given, point, secants, offsets, slopes, room, places, best, values, count
+        )
         if height <= best + NEAR * height:
             break
+        count = more
         best = max(best, game(values, count, table, basis, shares, mixture))
     measured(stiffness, tips, exponents, loads, waves, point, found, room)
     return best
+
+
+@inner
+def cuts_at(
+    stiffness,
+    tips,
+    exponents,
+    loads,
+    waves,
+    weights,
+    v,
+    secants,
+    offsets,
+    slopes,
+    room,
+    places,
+    best,
+    values,
+    count,
+):
+    """Add the cuts at v that are above the bound; return how many there are, and the highest."""
+    height, cut, lower = 0.0, np.empty(5), np.empty(5)
+    for q in range(loads.size):
+        given = stiffness, tips, exponents, loads[q], v, secants, offsets[q], slopes[q], room
+        for sort in range(2):
+            if weights[sort, q] > 0.0:
+                if sort == 0:
+                    value = weights[sort, q] * peak_cut(*given, lower, cut)
+                else:
+                    value = weights[sort, q] * wave_cut(*given, waves, cut)
+                height = max(height, value)
+                if value > best:
+                    at_corners(places, cut, weights[sort, q], values, count)
+                    count += 1
+    return count, height
 
 
 @inner

@@ -90,37 +90,31 @@ def ranges(tips, exponents, places, secants, ends):
 
 @inner
 def below(stiffness, load, ends, slopes, apart, acts):
-    """Set slopes (n,) of a plane of separations below the approach; return its offset.
-
-    Of two pairs the secant of the concave law over the difference of their separations; of more,
-    the slopes at the middle, and the offset of the corner where the plane is least below.
-    """
-    pairs, present = stiffness.size, 0
-    for i in range(pairs):
+    """Set slopes (n,) of a plane of separations below the approach; return its offset."""
+    one, two, present = -1, -1, 0
+    for i in range(stiffness.size):
         slopes[i] = 0.0
-        present += stiffness[i] > 0.0
+        if stiffness[i] > 0.0:
+            present += 1
+            one, two = (i, two) if one < 0 else (one, i)
     if present == 1:
-        for i in range(pairs):
-            if stiffness[i] > 0.0:
-                slopes[i] = 1.0
-                return load / stiffness[i]
-    if present == 2:
-        one, two = -1, -1
-        for i in range(pairs):
-            if stiffness[i] > 0.0:
-                if one < 0:
-                    one = i
-                else:
-                    two = i
-        first = ends[0, one] - ends[1, two]
-        last = ends[1, one] - ends[0, two]
-        at_first = over(stiffness[one], stiffness[two], load, first)
-        at_last = over(stiffness[one], stiffness[two], load, last)
-        if last > first:
-            slopes[one] = min(max((at_last - at_first) / (last - first), 0.0), 1.0)
-        slopes[two] = 1.0 - slopes[one]
-        return min(at_first - slopes[one] * first, at_last - slopes[one] * last)
-    total = 0.0
+        slopes[one] = 1.0
+        return load / stiffness[one]
+    if present > 2:
+        return below_many(stiffness, load, ends, slopes, apart, acts)
+    first, last = ends[0, one] - ends[1, two], ends[1, one] - ends[0, two]
+    at_first = over(stiffness[one], stiffness[two], load, first)
+    at_last = over(stiffness[one], stiffness[two], load, last)
+    if last > first:  # the secant of the concave law over the difference of separations
+        slopes[one] = min(max((at_last - at_first) / (last - first), 0.0), 1.0)
+    slopes[two] = 1.0 - slopes[one]
+    return min(at_first - slopes[one] * first, at_last - slopes[one] * last)
+
+
+@inner
+def below_many(stiffness, load, ends, slopes, apart, acts):
+    """As `below` of more than two pairs: slopes at the middle, offset of the lowest corner."""
+    pairs, total, offset = stiffness.size, 0.0, math.inf
     for i in range(pairs):
         apart[i] = 0.5 * (ends[0, i] + ends[1, i])
     depth(stiffness, apart, load, acts)
@@ -128,7 +122,6 @@ def below(stiffness, load, ends, slopes, apart, acts):
         total += acts[i]
     for i in range(pairs):
         slopes[i] = acts[i] / total
-    offset = math.inf
     for corner in range(1 << pairs):
         plane = 0.0
         for i in range(pairs):
