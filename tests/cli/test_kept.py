@@ -20,7 +20,10 @@ ODD = (
     *(None, True, -1, 0, 1, 3.7, 1e300, -1e300, 1e-300, 10**9, 10**30, 10**400),
     *("", "x", "\ud800", "<b>", [], [1], {}, {"a": 1}, [[1]], [{"a": 1}]),
 )
-KINDS = ("drive", "layout", "packing", "servo", "compound", "impossible", "comparison", "front")
+KINDS = (
+    *("drive", "layout", "packing", "servo", "compound", "impossible", "comparison", "front"),
+    pytest.param("pair", marks=pytest.mark.slow),
+)
 
 
 @pytest.fixture(scope="module")
@@ -31,7 +34,11 @@ def kept(solved):
         ROOT / "problems" / "elevator.toml", methods="ipopt,annealing", **small
     )
     pictures = {"drive": "elevator", "layout": "elevator_box", "packing": "six_cylinders"}
-    others = {"servo": "servo_gimbal_swing", "compound": "sandgren_train"}
+    others = {
+        "servo": "servo_gimbal_swing",
+        "compound": "sandgren_train",
+        "pair": "relief_two_loads",
+    }
     found = {k: json.loads((PICTURES / f"{n}.json").read_text()) for k, n in pictures.items()}
     for kind, name in others.items():
         found[kind] = solved(name).to_dict()

@@ -13,15 +13,16 @@ from gearopt.optimise.comparing.runs import Entry
 from gearopt.optimise.kernels import kernel
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import method_of
-from gearopt.scenes import compound, drive, packing, servo
+from gearopt.scenes import compound, drive, packing, pair, servo
 
 PROBLEMS = Path(__file__).parents[2] / "problems"
-ROOMS = {room.Scene: room for room in (compound, drive, packing, servo)}
+ROOMS = {room.Scene: room for room in (compound, drive, packing, pair, servo)}
 FILES = (
     *("elevator", "elevator_box", "sandgren_train", "seven_points"),
     pytest.param("three_stage_together", marks=pytest.mark.slow),
     *("servo_axis", "servo_gimbal_ratio", "servo_gimbal_move", "servo_gimbal_swing"),
     *("servo_gimbal_costs", "servo_gimbal_grades", "elevator_processes"),
+    pytest.param("relief_two_loads", marks=pytest.mark.slow),
 )
 
 
@@ -67,6 +68,7 @@ SLICES = {  # evaluations of one step, at which budgets are looked at; else a st
     "three_stage_together": 60_000,
     "servo_axis": 5_000,  # of the kernel
     "servo_gimbal_grades": 1_000,  # pairs of one component
+    "relief_two_loads": 256,  # boxes between two words to the watcher
 }
 
 

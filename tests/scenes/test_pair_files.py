@@ -201,6 +201,21 @@ def test_undercut_is_said_and_so_is_a_small_contact_ratio(solved):
     assert "undercut, with 8 teeth" in said and "contact ratio of 1.080 is small" in said
 
 
+@pytest.mark.slow
+def test_materials_to_choose_from_have_their_contact_too():
+    """The hard one is chosen; half as stiff a one gives way about twice as much."""
+    hard = {"name": "hard", "treatment": "carburised"}
+    soft = {"name": "soft", "treatment": "through-hardened", "hardness": "200 HB"}
+    tables = SIZED | {"gears": {"materials": ["hard", "soft"]}, "material": [hard, soft]}
+    result = gearopt.solve(tables)
+    stage = result.design["stages"][0]
+    assert result.status == "optimal" and stage["pinion_material"] == "hard"
+    light = tables | {"material": [hard | {"elastic_modulus": "103 GPa"}, soft]}
+    ends = [gearopt.solve(each).design["contact"] for each in (tables, light)]
+    steel, other = (end["points"][0]["pair_stiffness_MPa"] for end in ends)
+    assert other < 0.9 * steel
+
+
 @pytest.mark.parametrize("call", ["explain", "compare"])
 def test_of_given_gears_nothing_is_chosen(call):
     with pytest.raises(SolveError, match="the gears are given, so that nothing is chosen"):

@@ -115,6 +115,7 @@ def test_other_criteria_have_no_proven_search_and_say_so():
     assert "of shares of the load there is no bound" in result.message
 
 
+@pytest.mark.slow
 def test_duty_in_relieved_gears_out(solved):
     """The paper's program from one file: the gears are those of the file without [relief]."""
     result = solved("paper_program")
@@ -129,6 +130,7 @@ def test_duty_in_relieved_gears_out(solved):
     assert result.value < 0.3 * before[1]["peak_to_peak_mm"]
 
 
+@pytest.mark.slow
 def test_gears_that_cannot_be_sized_have_no_relief():
     tables = tomllib.loads((PROBLEMS / "paper_program.toml").read_text(encoding="utf-8"))
     tables["limits"] = {"pinion_teeth": [18, 60], "wheel_diameter": "90 mm"}
@@ -136,6 +138,7 @@ def test_gears_that_cannot_be_sized_have_no_relief():
     assert result.status == "infeasible" and not result.design
 
 
+@pytest.mark.slow
 def test_the_worst_case_within_tolerances_is_proven_and_drawn_ones_stay_below():
     """The largest of corners and of a grid inside, by shares computed for each; +-2 um."""
     tables = with_relief(amount="11 um", length=0.68, tolerance="2 um", loads=[1])

@@ -74,7 +74,8 @@ def _mesh(scene: Scene, result: Result) -> tuple[DriveDesign, PairMesh]:
 def _with_contact(scene: Scene, result: Result) -> tuple[PairMesh, Result]:
     """Return the pair in mesh, and the result with its contact."""
     design, made = _mesh(scene, result)
-    contact = contact_of(scene, made)
+    stage = design.stages[0]
+    contact = contact_of(scene, made, (stage.pinion_material, stage.wheel_material))
     told = [*result.report.get("assumptions", []), *assumptions(scene, contact)]
     return made, replace(
         result,

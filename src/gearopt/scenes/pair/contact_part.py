@@ -27,13 +27,13 @@ BORNE = 4000.0  # MPa; from it on hardened rollers keep dents (static rating of 
 LEAST_RATIO = 1.2  # below which ISO 6336-1 has no stiffness, and designers do not go
 
 
-def contact_of(scene: Scene, made: PairMesh) -> PairContact:
-    """Return the contact of a pair of a file in mesh."""
+def contact_of(scene: Scene, made: PairMesh, materials: Materials) -> PairContact:
+    """Return the contact of a pair of a file in mesh; materials: as of `mesh_of`."""
     told = scene.sharing.coupling
     name = "given" if isinstance(told, Quantity) else told
     pair = made.elastic.pair
-    doubts = (*_webs(scene, pair), *_validity(made, name))
-    found = contact(made, name, _by_iso(scene, pair, made.elastic), doubts)
+    beyond = (*_webs(scene, pair, materials), *_validity(made, name))
+    found = contact(made, name, _by_iso(scene, pair, made.elastic, materials), beyond)
     most = max(one.largest_contact_stress_MPa for one in found.loads)
     if most <= BORNE:
         return found
@@ -129,20 +129,22 @@ def bore_of(blank: Blank, root: float) -> float:
     return blank.bore if blank.bore and blank.hub < root else root / UNBORED
 
 
-def _by_iso(scene: Scene, pair: GearPair, elastic: ElasticPair) -> tuple[float, float]:
+def _by_iso(
+    scene: Scene, pair: GearPair, elastic: ElasticPair, materials: Materials
+) -> tuple[float, float]:
     """Return c' and c_gamma_alpha [MPa] of ISO 6336-1 at the torque of the duty."""
     duty = scene.duty
     load = 2.0 * torque(duty.power.value, duty.input_speed.value)
     line = load / float(pair.pinion.reference_diameter * pair.face_width)
-    blanks = blanks_of(scene, pair, ("", ""))
+    blanks = blanks_of(scene, pair, materials)
     webs = tuple(blank.web(gear) for blank, gear in zip(blanks, pair.gears, strict=True))
     single = single_stiffness(pair, line, elastic.moduli, mean_blank_factor((webs[0], webs[1])))
     return float(single), float(mesh_stiffness(single, elastic.path.transverse_ratio)[0])
 
 
-def _webs(scene: Scene, pair: GearPair) -> Iterator[str]:
+def _webs(scene: Scene, pair: GearPair, materials: Materials) -> Iterator[str]:
     """Yield gears with rims on webs, of which the models know only the bore."""
-    made = blanks_of(scene, pair, ("", ""))
+    made = blanks_of(scene, pair, materials)
     for name, blank, gear in zip(MEMBERS, made, pair.gears, strict=True):
         web, rim = blank.web(gear) or (1.0, 0.0)
         if web < 1.0:
