@@ -16,8 +16,8 @@ from gearopt.report.pair_words import answers, graded, of_duty
 from gearopt.report.terminal import show
 
 
-def printed(result, measures=METRIC):
-    screen = Console(file=io.StringIO(), width=110)
+def printed(result, measures=METRIC, width=110):
+    screen = Console(file=io.StringIO(), width=width)
     show(result, screen, measures)
     return screen.file.getvalue()
 
@@ -40,6 +40,13 @@ def test_the_terminal_says_the_load_the_motion_and_the_stiffness(solved):
     assert f"at the mesh frequency of {hertz:.0f} Hz, has an amplitude of 2.57 µm at" in flat
     assert "22 % below c_γα of ISO 6336-1" in flat and "evaluation, 1 evaluation," in flat
     assert "c_γα of ISO 6336-1 [N/(mm µm)] 20.128 20.128" in flat
+
+
+@pytest.mark.parametrize("measures", [METRIC, INCH])
+def test_no_number_of_a_point_is_cut_short_on_a_narrow_terminal(solved, measures):
+    said = printed(solved("reference_pair"), measures, 80)
+    table = said[said.index("\npoint ") :].split("\n\n")[0]
+    assert "…" not in table and "pitch point" in table and "pinion roll [°]" in table
 
 
 def test_two_pairs_always_in_contact_leave_no_tooth_alone(solved):

@@ -1,6 +1,8 @@
 """Tables of a spur pair's contact: points of the path, loads, and the curves as CSV files."""
 
 from collections.abc import Callable
+from functools import partial
+from typing import Any
 
 from gearopt.formulations.pair_contact import ContactLoad, PairContact
 from gearopt.report.measures import Measures
@@ -34,73 +36,46 @@ def points(found: PairContact, measures: Measures) -> Table:
     )
     if found.contact_ratio < 2.0:
         caption += " Between LPSTC and HPSTC one pair of teeth carries the load."
-    return Table("points of contact", heads, rows, caption, wrap=0)
+    brief = f"d_1 [{length}]", f"d_2 [{length}]", "pinion roll [°]", f"pair [{stiff}]"
+    short = dict(zip(heads[2:], brief, strict=True))
+    return Table("points of contact", heads, rows, caption, short=short, wrap=0)
 
 
 def loads(found: PairContact, measures: Measures) -> Table:
     """Return what happens at every load, beside the stiffness by ISO 6336-1."""
-    micro, stiff = measures.unit("um"), measures.unit(STIFFNESS)
-    force, stress = measures.unit("N"), measures.unit("MPa")
+
+    def row(head: str, unit: str, value: Callable[[ContactLoad], float | None]) -> list[Any]:
+        values = [value(one) for one in found.loads]
+        cells = [Cell("", "–") if v is None else cell(v, unit, measures) for v in values]
+        return [f"{head} [{measures.unit(unit)}]", *cells]
+
+    waves = range(len(found.loads[0].harmonics_mm))
     rows = [
-        ["load, % of the duty", *(percent_of(one.load) for one in found.loads)],
-        [f"normal force [{force}]", *(cell(o.normal_force_N, "N", measures) for o in found.loads)],
-        [
-            f"largest load on a tooth [{force}]",
-            *(cell(o.largest_tooth_force_N, "N", measures) for o in found.loads),
-        ],
+        row("normal force", "N", lambda o: o.normal_force_N),
+        row("largest load on a tooth", "N", lambda o: o.largest_tooth_force_N),
         ["the same, % of the normal force", *(percent(o.largest_share) for o in found.loads)],
-        [
-            f"largest contact stress [{stress}]",
-            *(cell(o.largest_contact_stress_MPa, "MPa", measures) for o in found.loads),
-        ],
-        [
-            f"transmission error, mean [{micro}]",
-            *(cell(o.mean_transmission_error_mm, "um", measures) for o in found.loads),
-        ],
-        [
-            f"peak to peak [{micro}]",
-            *(cell(o.peak_to_peak_mm, "um", measures) for o in found.loads),
-        ],
-        *(
-            [
-                f"harmonic {k + 1} [{micro}]",
-                *(cell(o.harmonics_mm[k], "um", measures) for o in found.loads),
-            ]
-            for k in range(len(found.loads[0].harmonics_mm))
-        ),
-        [
-            f"mesh stiffness, mean [{stiff}]",
-            *(_stiffness(o, o.mean_mesh_stiffness_MPa, measures) for o in found.loads),
-        ],
-        [
-            f"mesh stiffness, least [{stiff}]",
-            *(_stiffness(o, o.least_mesh_stiffness_MPa, measures) for o in found.loads),
-        ],
-        [
-            f"mesh stiffness, most [{stiff}]",
-            *(_stiffness(o, o.most_mesh_stiffness_MPa, measures) for o in found.loads),
-        ],
-        [
-            f"c_γα of ISO 6336-1 [{stiff}]",
-            *[cell(found.iso_mesh_stiffness_MPa, STIFFNESS, measures)] * len(found.loads),
-        ],
-        [
-            f"c' of ISO 6336-1, of one pair [{stiff}]",
-            *[cell(found.iso_single_stiffness_MPa, STIFFNESS, measures)] * len(found.loads),
-        ],
+        row("largest contact stress", "MPa", lambda o: o.largest_contact_stress_MPa),
+        row("transmission error, mean", "um", lambda o: o.mean_transmission_error_mm),
+        row("peak to peak", "um", lambda o: o.peak_to_peak_mm),
+        *(row(f"harmonic {k + 1}", "um", partial(_harmonic, k)) for k in waves),
+        row("mesh stiffness, mean", STIFFNESS, lambda o: _loaded(o, o.mean_mesh_stiffness_MPa)),
+        row("mesh stiffness, least", STIFFNESS, lambda o: _loaded(o, o.least_mesh_stiffness_MPa)),
+        row("mesh stiffness, most", STIFFNESS, lambda o: _loaded(o, o.most_mesh_stiffness_MPa)),
+        row("c_γα of ISO 6336-1", STIFFNESS, lambda o: found.iso_mesh_stiffness_MPa),
+        row("c' of ISO 6336-1, of one pair", STIFFNESS, lambda o: found.iso_single_stiffness_MPa),
     ]
     names = [f"{100.0 * one.load:g} %" for one in found.loads]
-    return Table("loads", ["", *names], rows[1:], "What happens at each load.", across=True)
+    return Table("loads", ["", *names], rows, "What happens at each load.", across=True)
 
 
-def _stiffness(one: ContactLoad, value: float, measures: Measures) -> Cell:
-    """Return a mesh stiffness; a dash without load, of which there is none."""
-    return cell(value, STIFFNESS, measures) if one.normal_force_N else Cell("", "–")
+def _harmonic(number: int, one: ContactLoad) -> float:
+    """Return the amplitude of a harmonic of the transmission error, counted from 0."""
+    return one.harmonics_mm[number]
 
 
-def percent_of(load: float) -> Cell:
-    """Return a load relative to the duty in per cent."""
-    return Cell(100.0 * load, f"{100.0 * load:g}")
+def _loaded(one: ContactLoad, value: float) -> float | None:
+    """Return a mesh stiffness; None without load, of which there is none."""
+    return value if one.normal_force_N else None
 
 
 def path(found: PairContact, measures: Measures) -> Table:
