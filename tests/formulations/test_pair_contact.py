@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from gearopt.formulations.pair_contact import PairMesh, contact, contact_stress, spectrum
+from gearopt.formulations.pair_relief import Removed, break_even
+from gearopt.formulations.relief.rules import smooth_shares, without_error
 from gearopt.physics.gears import Gear, GearPair
 from gearopt.physics.tooth.elastic import ElasticPair
 
@@ -105,3 +107,16 @@ def test_columns_belong_together():
     assert found.wheel_diameter_mm[0] == pytest.approx(156.0, rel=1e-12)
     assert len(found.travel_mm) == len(found.loads[0].transmission_error_mm)
     assert found.travel_mm[-1] == pytest.approx(8.856394302, rel=1e-9)
+
+
+@pytest.mark.parametrize("coupling", [0.0, 4.45e-3 / FORCE])
+def test_a_relief_without_error_at_the_torque_breaks_even_at_half_of_it(coupling):
+    """At another load its peak-to-peak is |F/F_n - 1| times that without relief: half and half."""
+    meshed = PairMesh.of(ElasticPair(gears(), (30.0, 50.0)), LEVEL, 200_000.0, coupling, 96, (1.0,))
+    mesh = meshed.mesh
+    apart = without_error(mesh, smooth_shares(mesh), FORCE)
+    there = np.where(mesh.cycle.present, apart, 0.0)
+    removed = Removed(there, np.zeros_like(there), (1.0, 1.0), None)
+    assert break_even(meshed, removed, (1.0,)) == pytest.approx(0.5, abs=2e-3)
+    nothing = Removed(0.0 * there, 0.0 * there, (1.0, 1.0), None)
+    assert break_even(meshed, nothing, (1.0,)) is None

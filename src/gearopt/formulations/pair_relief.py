@@ -17,6 +17,7 @@ from gearopt.optimise.terms import Array
 from gearopt.physics.geometry.contact import diameters_at
 
 LEAST = 1e-6  # mm: less than that is no relief
+STEPS = 100  # loads at which relief is held against none
 DRAWN, MOST = 2000, 0.95  # reliefs as they are made, and the part of them told beside the median
 
 
@@ -80,7 +81,8 @@ class PairRelief:
 
     minimise: of the worst of all loads, relative to the torque of the duty. pinion_removed_mm,
     wheel_removed_mm: columns beside those of the path of contact. at: what happens at every load of
-    the contact with it. rows: rules beside it, and no relief. made: within tolerances.
+    the contact with it. rows: rules beside it, and no relief. break_even: load below
+    which the gears run more evenly without it, None where there is none. made: within tolerances.
     """
 
     minimise: str
@@ -91,6 +93,7 @@ class PairRelief:
     wheel_removed_mm: Columns
     at: tuple[ContactLoad, ...]
     rows: tuple[ReliefRow, ...]
+    break_even: float | None = None
     made: MadeRelief | None = None
 
 
@@ -160,7 +163,27 @@ def described(
             _row(made, name, one, minimise, loads)
             for name, one in (beside | {"this": removed}).items()
         ),
+        break_even=break_even(made, removed, loads),
     )
+
+
+def break_even(made: PairMesh, removed: Removed, loads: Sequence[float]) -> float | None:
+    """Return the load, relative to the duty's, below which no relief has less peak-to-peak.
+
+    The largest below the least of the loads it is made for; None where it is better at all of them
+    down to a hundredth, or worse at the least one already.
+    """
+    least = min(loads)
+    tried = np.linspace(0.01, 1.0, STEPS) * least
+    mesh = made.of_loads([float(load) for load in tried])
+    plain = mesh.criteria(mesh.separations(NO_RELIEF, NO_RELIEF)).peak_to_peak
+    lost = mesh.criteria(removed.separations(mesh)).peak_to_peak - plain
+    worse = np.flatnonzero(lost[:-1] > 0.0)
+    if not least or lost[-1] >= 0.0 or not len(worse):
+        return None
+    k = int(worse[-1])
+    part = lost[k] / (lost[k] - lost[k + 1])
+    return float(tried[k] + part * (tried[k + 1] - tried[k]))
 
 
 def rules(made: PairMesh) -> dict[str, tuple[Relief, Relief]]:

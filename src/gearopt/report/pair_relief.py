@@ -65,6 +65,11 @@ def answers(found: PairRelief) -> list[str]:
         "the other only where the same pair of teeth touches. Crowning and end relief vary along "
         "the face width, which plane models do not see.",
     ]
+    if found.break_even is not None:
+        words.append(
+            f"Below {100.0 * found.break_even:.3g} % of the torque the gears run more evenly "
+            "without it: a light load does not close the gaps that it makes."
+        )
     return [*words, _as_made(found.made)] if found.made else words
 
 
