@@ -98,6 +98,23 @@ def test_a_stopped_search_claims_no_more_than_its_bound():
     assert "was searched" not in result.proof.get("sentence", "")
 
 
+def test_gears_that_are_not_safe_are_a_part_with_their_limits():
+    """A rating that falls short is no limit of the relief, and no optimum is called infeasible."""
+    rating = {"standard": "agma", "life": "20000 h", "quality": 8}
+    steel = {"treatment": "through-hardened", "hardness": "200 HB"}
+    for keys, status in (
+        ({"loads": [1]}, "optimal"),
+        ({"amount": "11 um", "length": 0.6}, "evaluated"),
+    ):
+        result = gearopt.solve(with_relief(**keys) | {"rating": rating, "gears": steel})
+        (gears,) = result.parts
+        assert result.status == status and result.feasible and not result.limits
+        assert (
+            gears.status == "evaluated" and not gears.feasible and max(gears.limits.values()) > 1.5
+        )
+        assert "Not safe by its rating" in str(result) and "limits met" not in str(result)
+
+
 def test_ranges_of_the_file_hold():
     found = gearopt.solve(with_relief(amount=["0 um", "8 um"], length=[0.3, 0.4], loads=[1]))
     free = gearopt.solve(with_relief(loads=[1]))

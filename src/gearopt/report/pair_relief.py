@@ -44,9 +44,12 @@ def decides(found: PairRelief) -> str:
     first, second = (amount(f.amount_mm, "um", METRIC) for f in (found.pinion, found.wheel))
     none, best = found.rows[0], found.rows[-1]
     said = f"{_value(found, best.value)} instead of {_value(found, none.value)}"
+    at = f"{100.0 * found.loads[0]:g} % of the torque"
+    if len(found.loads) > 1:
+        at = f"the worst of {len(found.loads)} loads"
     return (
         f"{first} off the pinion's tips and {second} off the wheel's: {CRITERIA[found.minimise]} "
-        f"{said} at the worst of {len(found.loads)} load{'s' * (len(found.loads) > 1)}"
+        f"{said} at {at}"
     )
 
 

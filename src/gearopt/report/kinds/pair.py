@@ -36,20 +36,20 @@ def tiles(result: Result, measures: Measures) -> list[Tile]:
         return []
     relief = relief_of(result)
     modified = pair_relief.tiles(relief, measures) if relief else []
-    own = _contact_tiles(found, of_duty(found), measures, "without relief, " * bool(relief))
+    own = _contact_tiles(found, of_duty(found), measures, relief is not None)
     return [*modified, *own, *rating_words.tiles(result, measures)]
 
 
 def _contact_tiles(
-    found: PairContact, load: ContactLoad, measures: Measures, when: str
+    found: PairContact, load: ContactLoad, measures: Measures, relieved: bool
 ) -> list[Tile]:
-    """Return the figures of contact; when: what stands before those that relief changes."""
+    """Return the figures of contact without relief; relieved: those with it stand beside."""
     part = f"{share(load.largest_share)} % of the normal force"
     iso = amount(found.iso_mesh_stiffness_MPa, STIFFNESS, measures)
     return [
         Tile("largest load on a tooth", amount(load.largest_tooth_force_N, "N", measures), part),
         Tile(
-            f"{when}transmission error, peak to peak",
+            "peak to peak without relief" if relieved else "transmission error, peak to peak",
             amount(load.peak_to_peak_mm, "um", measures),
             f"at {share(load.load)} % of the duty's torque",
         ),

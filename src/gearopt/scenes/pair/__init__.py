@@ -86,16 +86,20 @@ def _with_contact(scene: Scene, result: Result) -> tuple[PairMesh, Result]:
 
 
 def _with_relief(scene: Scene, made: PairMesh, gears: Result, ask: Ask) -> Result:
-    """Return the relief with the gears that it is of, which are a part where they were sized."""
+    """Return the relief with the gears that it is of, a part where they were sized or rated.
+
+    Limits of gears that are given are those of their part: no relief changes them.
+    """
     found, relief = relieved(scene, made, ask)
     sized = gears.value is not None
-    parts = (replace(gears, name="gears", design={}, report={}),) if sized else ()
+    told = sized or bool(gears.limits)
+    parts = (replace(gears, name="gears", design={}, report={}),) if told else ()
     design = drive_design(gears.design)
     return replace(
         found,
         name="pair",
         design=untyped(replace(design, relief=relief)),
-        limits=gears.limits,
+        limits=gears.limits if sized else {},
         report=gears.report | found.report,
         parts=parts,
     )
