@@ -20,7 +20,7 @@ from gearopt.physics.tooth.elastic import ElasticPair
 from gearopt.physics.tooth.ladder import LEVELS
 
 DEAR = 1000.0  # us a position: of dearer models a few positions are computed, others interpolated
-NODES = 33  # of those: the stiffness between them is off by less than 1e-3 (finite elements)
+NODES = 33  # of those: the stiffness between them is off by less than 2e-3 (finite elements)
 HARMONICS = 5  # of the mesh frequency, that are told
 Columns = tuple[float, ...]
 

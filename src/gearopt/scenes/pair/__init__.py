@@ -76,7 +76,7 @@ def _with_contact(scene: Scene, result: Result) -> tuple[PairMesh, Result]:
     design, made = _mesh(scene, result)
     stage = design.stages[0]
     contact = contact_of(scene, made, (stage.pinion_material, stage.wheel_material))
-    told = [*result.report.get("assumptions", []), *assumptions(scene, contact)]
+    told = [*result.report.get("assumptions", []), *assumptions(scene, contact, made.elastic.pair)]
     return made, replace(
         result,
         name="rating" if result.name == "rating" else "pair",

@@ -3,13 +3,14 @@
 from collections.abc import Iterator
 
 from gearopt.formulations.pair_contact import PairContact
-from gearopt.physics.gears import MEMBERS
+from gearopt.physics.gears import MEMBERS, GearPair
+from gearopt.physics.iso6336.stiffness import LEAST_LINE_LOAD
 from gearopt.scenes.drive.rating.tables import with_shared
-from gearopt.scenes.pair.contact_part import UNBORED
+from gearopt.scenes.pair.contact_part import UNBORED, line_load
 from gearopt.scenes.pair.scene import Scene
 
 
-def assumptions(scene: Scene, made: PairContact) -> list[str]:
+def assumptions(scene: Scene, made: PairContact, pair: GearPair) -> list[str]:
     """Return what the contact takes for granted, in sentences."""
     strain = "strain (wide gears)" if made.plane == "strain" else "stress (narrow gears)"
     coupled = 1e6 * made.coupling_mm_per_N
@@ -23,7 +24,17 @@ def assumptions(scene: Scene, made: PairContact) -> list[str]:
         "of the duty, at every load.",
         f"Neighbouring teeth are coupled by {coupled:.3g} µm/kN ({made.coupling}).",
         *_held(scene, made),
+        *_light(line_load(scene, pair)),
     ]
+
+
+def _light(line: float) -> Iterator[str]:
+    """Yield what is unverified of the stiffness by ISO 6336-1 at a line load F_t/b [N/mm]."""
+    if line < LEAST_LINE_LOAD:
+        yield (
+            f"Unverified: stiffness by ISO 6336-1 is reduced by (F_t/b / {LEAST_LINE_LOAD:g} "
+            f"N/mm)^0.25 at light loads, here {line:.3g} N/mm (without K_A): a law of memory."
+        )
 
 
 def _held(scene: Scene, made: PairContact) -> Iterator[str]:

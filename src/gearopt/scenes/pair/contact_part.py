@@ -129,13 +129,17 @@ def bore_of(blank: Blank, root: float) -> float:
     return blank.bore if blank.bore and blank.hub < root else root / UNBORED
 
 
+def line_load(scene: Scene, pair: GearPair) -> float:
+    """Return F_t/b [N/mm] at the reference circle, at the torque of the duty."""
+    load = 2.0 * torque(scene.duty.power.value, scene.duty.input_speed.value)
+    return float(load / (pair.pinion.reference_diameter * pair.face_width))
+
+
 def _by_iso(
     scene: Scene, pair: GearPair, elastic: ElasticPair, materials: Materials
 ) -> tuple[float, float]:
     """Return c' and c_gamma_alpha [MPa] of ISO 6336-1 at the torque of the duty."""
-    duty = scene.duty
-    load = 2.0 * torque(duty.power.value, duty.input_speed.value)
-    line = load / float(pair.pinion.reference_diameter * pair.face_width)
+    line = line_load(scene, pair)
     blanks = blanks_of(scene, pair, materials)
     webs = tuple(blank.web(gear) for blank, gear in zip(blanks, pair.gears, strict=True))
     single = single_stiffness(pair, line, elastic.moduli, mean_blank_factor((webs[0], webs[1])))
