@@ -36,8 +36,9 @@ def verdict(front: Front) -> tuple[str, str]:
 
 
 def words(name: str) -> str:
-    """Return the name of an objective as it is read."""
-    return name.replace("_", " ")
+    """Return the name of an objective as it is read, with the load in per cent that it is at."""
+    name, _, load = name.replace("_", " ").partition(" at ")
+    return f"{name} at {load.replace(' ', '.')} %" if load else name
 
 
 def decided(front: Front, measures: Measures = METRIC) -> list[str]:

@@ -20,7 +20,7 @@ _POUND_FORCE = _PSI * _INCH**2  # N
 _HORSEPOWER = float(UNITS["power"]["hp"][0])  # N mm/s
 
 DIGITS = 5  # significant digits of a number for reading
-FEWEST = {"percent": 3, "mm": 3}  # the same of parts of a whole; of a length, at least
+FEWEST = {"percent": 3, "mm": 3, "um": 4}  # the same of some units; of a length in mm, at least
 HUNDREDTHS = 2  # decimals of a length in mm
 NOTHING = 5e-7  # mm; a smaller length is rounding
 SMALL, LARGE = 1e-5, 1e15  # numbers below and from there are written with a power of ten

@@ -64,9 +64,9 @@ def answers(found: PairRelief) -> list[str]:
     words = [
         _flank("pinion", found.pinion),
         _flank("wheel", found.wheel),
-        "The relief is the sum of what is taken off both flanks; it may be moved from one gear to "
-        "the other only where the same pair of teeth touches. Crowning and end relief vary along "
-        "the face width, which plane models do not see.",
+        "Only the sum of what is taken off both flanks where they touch counts: instead of the "
+        "tips of one gear the roots of the other may be relieved, at the same points of contact. "
+        "Crowning and end relief vary along the face width, which plane models do not see.",
     ]
     if found.break_even is not None:
         words.append(
@@ -156,9 +156,10 @@ def rules(found: PairRelief, measures: Measures) -> Table:
     for k, name in enumerate(at):
         lines.append([f"load jump {name} [%]", *(percent(r.load_jump[k]) for r in rows)])
     caption = (
-        "Rules relieve the pair that comes or goes of its load at the torque of the duty: by its "
-        "whole deflection (the paper), or by what the pairs that stay give way (corrected). Load "
-        "jump: the share with which a pair comes or goes."
+        "Without relief, by rules, and as found here. Rules take off the tips what teeth give way "
+        "at the torque of the duty: that of Hwang and others (the paper's) the whole deflection of "
+        "the pair that comes or goes, the corrected one the deflection of the pairs that stay. "
+        "Load jump: the share of the load with which a pair comes or goes."
     )
     return Table("relief and rules", ["", *(r.name for r in rows)], lines, caption, across=True)
 

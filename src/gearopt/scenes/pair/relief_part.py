@@ -30,6 +30,7 @@ DEFAULT = "annealing"  # of what has no proven search
 FEW = 2.0  # contact ratio below which free shapes are searched
 WORST = 1e-3  # relative gap of a worst case within tolerances
 ROBUST = "the worst case is annealed: without tolerance the least value is proven, with it none is"
+NUMBERS = ("annealing", "nsga2")  # methods that take no derivatives, which a relief has not
 UNBOUND = "without the method exact there is no bound"
 UNPROVEN = "only transmission errors have a proven search: of shares of the load there is no bound"
 KEYS = {"amount": "relief.amount", "length": "relief.length"}  # of variables: their places
@@ -86,6 +87,7 @@ def _parametric(scene: Scene, made: PairMesh, ask: Ask) -> tuple[Result, Removed
         point = problem.bounds()[0]
         result = _united(evaluate(problem, point), asked.minimise)
         return result, Removed.of(mesh, parametric.at_point(point, ranges))
+    _check_method(problem, ask.method)
     method = ask.method or ("exact" if "exact" in problem.methods else DEFAULT)
     result, outcome = run(problem, method, ask.budget, ask.seed, ask.watch, ask.gap)
     result = _united(result, asked.minimise)
@@ -97,9 +99,17 @@ def _parametric(scene: Scene, made: PairMesh, ask: Ask) -> tuple[Result, Removed
     return result, Removed.of(mesh, parametric.at_point(outcome.x, ranges))
 
 
+def _check_method(problem: Problem, method: str | None) -> None:
+    """Refuse a method that does not suit the search for a relief."""
+    known = (*problem.methods, *NUMBERS)
+    if method is not None and method not in known:
+        raise SolveError(f"no method {method!r} for this relief; methods: {', '.join(known)}")
+
+
 def _free(asked: ReliefTable, mesh: Mesh, ask: Ask) -> tuple[Result, Removed | None]:
     """Return the best relief of any convex shape."""
     problem = _free_problem(asked, mesh)
+    _check_method(problem, ask.method)
     result, outcome = run(problem, ask.method, ask.budget, ask.seed, ask.watch, ask.gap)
     result = _united(result, asked.minimise)
     if result.value is None or outcome.x is None:
