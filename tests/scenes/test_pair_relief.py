@@ -113,6 +113,8 @@ def test_gears_that_are_not_safe_are_a_part_with_their_limits():
             gears.status == "evaluated" and not gears.feasible and max(gears.limits.values()) > 1.5
         )
         assert "Not safe by its rating" in str(result) and "limits met" not in str(result)
+        html = result.to_html()
+        assert "Grind" in html and "fall short" in html
 
 
 def test_ranges_of_the_file_hold():

@@ -76,6 +76,11 @@ def decides(result: Result) -> str:
     return f"{rated}; {words}" if rated else words
 
 
+def beside(result: Result, measures: Measures) -> list[str]:
+    """Return what whole teeth cost; nothing of a relief, whose part is the gears."""
+    return [] if relief_of(result) else drive.beside(result, measures)
+
+
 def warns(result: Result) -> Sequence[str]:
     """Return what is unsafe by the rating, and what the models of contact do not cover."""
     found = contact_of(result)
@@ -170,7 +175,7 @@ KIND = Kind(
     terminal=(numbers, limits, *drive.GIVEN.terminal, contact, relief, *TOLD),
     tiles=tiles,
     decides=decides,
-    beside=drive.beside,
+    beside=beside,
     warns=warns,
     whole="pair",
     given=GIVEN,
