@@ -130,3 +130,37 @@ def test_samplers_come_near_and_interference_is_looked_for_behind_them():
         assert result.status == "feasible"
         assert 92.5 < result.value < 110.0
         assert sampled.hidden(DEMAND, outcome.x) > -5e-3  # mm
+
+
+def test_the_whole_wave_is_looked_at_where_samplers_do_not():
+    """The exact text refuses a design that interferes between poses of 0.75 degrees."""
+    base = np.array(STARTS[0])
+    exact = sampled.limited(DEMAND, base, "pressure", {"volume_per_torque": 700.0})
+    coarse = sampled.problem(DEMAND, base)
+    rows = {r.name: k for k, r in enumerate(exact.rows.inequalities)}
+    found = exact.batch(base[None])
+    assert found.F[0, 0] == pytest.approx(117.375, abs=1e-3) and (found.G <= 1.0 + 1e-9).all()
+    volume = np.pi * (40.5 + 0.5 * 1.75 + 3.0) ** 2 * 10.0 / 100.0
+    assert found.G[0, rows["most_volume_per_torque"]] == pytest.approx(volume / 700.0)
+    longer = base.copy()
+    longer[3] = 0.6795  # addendum: above the largest that is free, by another program
+    one, other = exact.batch(longer[None]), coarse.batch(longer[None])
+    assert one.G[0, rows["interference"]] > 1.0
+    names = [r.name for r in coarse.rows.inequalities]
+    assert other.G[0, names.index("interference")] < one.G[0, rows["interference"]]
+
+
+@pytest.mark.slow
+def test_least_volume_under_a_pressure_is_stationary_and_clear():
+    """Begun elsewhere it is not more than 1 % away, and more pressure allows less volume."""
+    found = {}
+    for most in (110.0, 130.0):
+        result, outcome = run(
+            sampled.limited(DEMAND, np.array(STARTS[0]), "volume_per_torque", {"pressure": most}),
+            "exchange",
+        )
+        assert result.status in ("stationary", "feasible")
+        assert sampled.hidden(DEMAND, outcome.x) > -1e-6
+        assert result.limits["most_pressure"] == pytest.approx(1.0, abs=1e-6)
+        found[most] = result.value
+    assert found[130.0] < found[110.0] < 618.6  # of the base case, at 117.4 MPa

@@ -1,13 +1,13 @@
 """Designs that interfere nowhere, by exchange: solve, look at every pose, add those that cut."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from gearopt.formulations.strain_wave.demand import FREE, Demand, smooth_maximum
-from gearopt.formulations.strain_wave.wave_design import CORNER, COUNT, Cut, problem
+from gearopt.formulations.strain_wave.demand import FREE, PRESSURE, Demand, smooth_maximum
+from gearopt.formulations.strain_wave.wave_design import CORNER, COUNT, NO_LIMITS, Cut, problem
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Outcome, Result
@@ -23,9 +23,10 @@ from gearopt.physics.strain_wave.conjugate import Flank, flank
 from gearopt.physics.strain_wave.tooth_motion import motion
 
 STEP_DEG = 0.05  # of the wave, at which every design is looked at
-BLOCK_DEG = 4.0  # of poses that cut, every so many are taken
-ROUNDS = 12
-RADII = (1.0, 0.95, 0.9, 0.85)  # of the outer radius, at which a front's cuts are found
+BLOCK_DEG = 4.0  # between the poses that are taken of those at which a point cuts, at first
+FEW = 6  # rounds in which so few poses are taken: more may lead to another, worse design
+PICKED = 12  # poses that are taken later, where few did not do
+ROUNDS = 20
 POINTS = 201  # of the flank that is verified
 LOOKED_AT = (0, COUNT // 2, COUNT - 1)  # points of the flank that are taken as cuts
 CUTTING = -1e-6  # mm: a clearance below it, 1 nm, asks for another round; contact itself has 0
@@ -51,7 +52,6 @@ class Exchanged:
     design: Flank | None
     gap: float
     rounds: tuple[Round, ...]
-    cuts: frozenset[Cut]
 
     @property
     def clear(self) -> bool:
@@ -64,29 +64,31 @@ def exchange(
     start: Any,
     clock: Clock,
     gap: float = 1e-6,
-    known: frozenset[Cut] = frozenset(),
+    minimise: str = PRESSURE,
+    most: Mapping[str, float] = NO_LIMITS,
 ) -> Exchanged:
     """Return the design of least pressure by equal sharing that interferes at no pose.
 
-    start (6,): numbers in the order of FREE; known: cuts to begin with. Every round begins at the
+    start (6,): numbers in the order of FREE. minimise: PRESSURE or VOLUME, with the largest values
+    `most` of these. Every round begins at the
     last design. Its bound, if any, and its status are those of the problem of the last round.
     """
-    cuts = known
+    cuts: frozenset[Cut] = frozenset()
     rounds: list[Round] = []
     numbers = np.asarray(start, float)
     while True:
-        posed = problem(demand, numbers, tuple(sorted(cuts)))
+        posed = problem(demand, numbers, tuple(sorted(cuts)), minimise, most)
         result, outcome = run(posed, "ipopt", clock.left, watch=clock.inner(values=False), gap=gap)
         clock.evaluations += outcome.evaluations
         if result.value is None or outcome.x is None:
-            return Exchanged(result, outcome, posed, None, -np.inf, tuple(rounds), cuts)
+            return Exchanged(result, outcome, posed, None, -np.inf, tuple(rounds))
         numbers = outcome.x[: len(FREE)]
         made = design_of(demand, numbers)
         least = interference(made, STEP_DEG, POINTS).least
         rounds.append(Round(result.value, len(cuts), least, outcome.evaluations))
-        new = _cutting(made) - cuts
+        new = _cutting(made, len(rounds) <= FEW) - cuts
         if not new or len(rounds) == ROUNDS or not clock.tell():
-            return Exchanged(result, outcome, posed, made, least, tuple(rounds), cuts)
+            return Exchanged(result, outcome, posed, made, least, tuple(rounds))
         cuts |= new
 
 
@@ -95,7 +97,7 @@ def design_of(demand: Demand, numbers: Sequence[float] | Array) -> Flank:
     return flank(demand.gearing(dict(zip(FREE, map(float, numbers), strict=True))), POINTS)
 
 
-def _cutting(made: Flank) -> set[Cut]:
+def _cutting(made: Flank, few: bool) -> set[Cut]:
     """Return poses at which points of the flank, or the corner, keep less than the least gap."""
     angles = poses(STEP_DEG)
     angles = angles[np.abs(angles) < np.radians(89.9)]
@@ -108,33 +110,22 @@ def _cutting(made: Flank) -> set[Cut]:
         k = nearest[point]
         gap, radius = involute_gap(made.gearing, at.placed(made.contacts.point[k]))
         room = smooth_maximum(gap, made.gearing.tip_radius - radius)
-        found |= _taken(np.where(np.isnan(gap), np.inf, room), angles, point)
-    return found | _taken(corner_clearance(made, at), angles, CORNER)
+        found |= _taken(np.where(np.isnan(gap), np.inf, room), angles, point, few)
+    return found | _taken(corner_clearance(made, at), angles, CORNER, few)
 
 
-def _taken(room: Any, angles: Array, point: int) -> set[Cut]:
-    """Return of the poses that cut the worst, the first, the last, and one every BLOCK_DEG."""
+def _taken(room: Any, angles: Array, point: int, few: bool) -> set[Cut]:
+    """Return of the poses that cut the worst, the first, the last, and some evenly between.
+
+    few: one every BLOCK_DEG; else PICKED.
+    """
     bad = np.flatnonzero(room < CUTTING)
     if not len(bad):
         return set()
-    every = max(1, round(BLOCK_DEG / STEP_DEG))
-    picked = {int(room.argmin()), int(bad[0]), int(bad[-1]), *map(int, bad[::every])}
+    even = bad[np.rint(np.linspace(0, len(bad) - 1, PICKED)).astype(int)]
+    every = (*bad[:: round(BLOCK_DEG / STEP_DEG)], bad[-1]) if few else even
+    picked = {int(room.argmin()), *map(int, every)}
     return {Cut(float(angles[k]), point) for k in picked}
-
-
-def front_cuts(demand: Demand, start: Any, clock: Clock) -> frozenset[Cut]:
-    """Return cuts that keep designs of several sizes clear, for a front of pressure and volume.
-
-    Those of exchanges at RADII of the outer radius, each from the last one's design.
-    """
-    cuts: frozenset[Cut] = frozenset()
-    for share in RADII:
-        smaller = replace(demand, outer_radius=share * demand.outer_radius)
-        found = exchange(smaller, start, clock, known=cuts)
-        cuts = cuts | found.cuts
-        if found.outcome.x is not None:
-            start = found.outcome.x[: len(FREE)]
-    return cuts
 
 
 def stretched(made: Flank, deflection: float) -> Flank:

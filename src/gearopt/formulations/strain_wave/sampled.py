@@ -5,7 +5,8 @@ a sampled design hides.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -19,9 +20,11 @@ from gearopt.formulations.strain_wave.demand import (
     limits,
     squares,
 )
-from gearopt.formulations.strain_wave.exchange import POINTS, STEP_DEG, design_of
+from gearopt.formulations.strain_wave.exchange import CUTTING, POINTS, STEP_DEG, design_of, exchange
 from gearopt.formulations.strain_wave.wave_design import COUNT
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.problem import Problem
+from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.terms import Array, Terms
 from gearopt.physics.strain_wave.clearance import clearances, interference, poses
 from gearopt.physics.strain_wave.conjugate import Flank, angle_at, contact, tangents
@@ -31,14 +34,31 @@ from gearopt.physics.strain_wave.tooth_motion import motion
 
 SHARE = "load_share"
 OBJECTIVES = {PRESSURE: "MPa", VOLUME: "mm3/(N m)", SHARE: ""}
-POSES_DEG, REACH_DEG = 0.75, 85.0  # of the wave, at which sampled designs are looked at
-SAMPLED_GAP = 2e-5  # mm that rounding may take of a contact
 GAP_UNIT = 0.05  # mm, of the limit on interference
 NEAR = 5e-3  # mm: teeth within it count for the load share
 WORST = 10.0  # utilisation of a design without a conjugate flank
 
 
-def problem(demand: Demand, start: Any, names: Sequence[str] = (PRESSURE,)) -> Problem:
+@dataclass(frozen=True)
+class Look:
+    """At which poses interference is looked for, and what of a contact is rounding [mm].
+
+    Poses every `step` degrees up to `reach` degrees from the major axis; points: of the flank.
+    """
+
+    step: float
+    reach: float
+    points: int
+    rounding: float
+
+
+COARSE = Look(0.75, 85.0, 3, 2e-5)
+WHOLE = Look(STEP_DEG, 89.9, COUNT, -CUTTING)
+
+
+def problem(
+    demand: Demand, start: Any, names: Sequence[str] = (PRESSURE,), look: Look = COARSE
+) -> Problem:
     """Pose objectives over the six free numbers, without derivatives; start (6,): the guess.
 
     names: pressure by equal sharing, volume per torque, and the share 1/N of the load of a tooth if
@@ -49,7 +69,7 @@ def problem(demand: Demand, start: Any, names: Sequence[str] = (PRESSURE,)) -> P
         columns = [np.asarray(getattr(x, name), float) for name in FREE]
         shape = np.broadcast_shapes(*(c.shape for c in columns))
         rows = [np.broadcast_to(c, shape).reshape(-1, 1) for c in columns]
-        found, goals = _assessed(demand, rows, names)
+        found, goals = _assessed(demand, rows, names, look)
         goals = {name: _given(goals[name], shape) for name in names}
         return Terms(goals, {name: _given(v, shape) for name, v in found.items()})
 
@@ -60,7 +80,7 @@ def problem(demand: Demand, start: Any, names: Sequence[str] = (PRESSURE,)) -> P
 
 @np.errstate(all="ignore")
 def _assessed(
-    demand: Demand, rows: Sequence[Array], names: Sequence[str]
+    demand: Demand, rows: Sequence[Array], names: Sequence[str], look: Look
 ) -> tuple[dict[str, Any], dict[str, Array]]:
     """Return limits and objectives (N,) of designs whose free numbers are columns (N, 1)."""
     wide = demand.gearing(dict(zip(FREE, rows, strict=True)))
@@ -76,8 +96,8 @@ def _assessed(
     each = [contact(thin, motion(thin, line, angles[:, k])) for k in range(COUNT)]
     used = limits(demand, thin, line, each)
     made = Flank(wide, curve, found, known)
-    gap = clearances(made, poses(POSES_DEG, REACH_DEG), 3).min(axis=1)
-    used["interference"] = 1.0 - (gap + SAMPLED_GAP) / GAP_UNIT
+    gap = clearances(made, poses(look.step, look.reach), look.points).min(axis=1)
+    used["interference"] = 1.0 - (gap + look.rounding) / GAP_UNIT
     used = {name: _limited(v, known) for name, v in used.items()}
     highest = np.max([np.where(known, s, np.nan) for s in squares(demand, thin, each)], axis=0)
     goals = {PRESSURE: np.sqrt(np.maximum(np.nan_to_num(highest, nan=1e8), 0.0))}
@@ -86,6 +106,33 @@ def _assessed(
     if SHARE in names:
         goals[SHARE] = _share(wide, curve, made, known)
     return used, goals
+
+
+def limited(demand: Demand, start: Any, name: str, most: Mapping[str, float]) -> Problem:
+    """Pose one objective, PRESSURE or VOLUME, under limits on both, clear at all poses of WHOLE.
+
+    Its method `exchange` solves the traced form with cuts; a point of it that is stationary there
+    is one here, where its rows and objectives are the same.
+    """
+    own = problem(demand, start, (PRESSURE, VOLUME), WHOLE)
+
+    def evaluate(x: Any, p: Any) -> Terms:
+        found = own.evaluate(x, p)
+        caps = {f"most_{n}": found.minimise[n] / value for n, value in most.items()}
+        return Terms({name: found.minimise[name]}, {**found.limits, **caps})
+
+    def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
+        """Solve by exchange; the seed changes nothing."""
+        clock = Clock(budget, watch)
+        made = exchange(demand, start, clock, minimise=name, most=most)
+        if not made.clear or made.outcome.x is None:
+            text = "teeth interfere" if made.design else made.result.message
+            return Outcome(None, not clock.over, evaluations=clock.evaluations, message=text)
+        x = made.outcome.x[: len(FREE)]
+        stationary = made.result.status == "stationary"
+        return Outcome(x, evaluations=clock.evaluations, stationary=stationary)
+
+    return replace(own, evaluate=evaluate, methods={"exchange": run})
 
 
 def _given(value: Any, shape: tuple[int, ...]) -> Any:

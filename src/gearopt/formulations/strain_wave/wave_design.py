@@ -6,8 +6,9 @@ one limit for every pose: `exchange` solves with few of them, looks at all poses
 which teeth cut each other, until none does.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -35,6 +36,7 @@ from gearopt.physics.strain_wave.neutral_curve import (
 )
 from gearopt.physics.strain_wave.tooth_motion import Motion, motion
 
+NO_LIMITS: Mapping[str, float] = MappingProxyType({})
 COUNT = 7  # contacts from root to tip, evenly by the tangent of the pressure angle
 CORNER = -1  # of a cut: the circular spline's corner against the flank, instead of a flank point
 CHANGE_UNIT = 1e-2  # mm, of the change of the neutral curve
@@ -51,11 +53,15 @@ class Cut:
 
 
 def problem(
-    demand: Demand, start: Any, cuts: Sequence[Cut] = (), names: Sequence[str] = (PRESSURE,)
+    demand: Demand,
+    start: Any,
+    cuts: Sequence[Cut] = (),
+    minimise: str = PRESSURE,
+    most: Mapping[str, float] = NO_LIMITS,
 ) -> Problem:
     """Pose the least pressure [MPa] by equal sharing, from the free numbers `start` (6,).
 
-    names: what is minimised, PRESSURE or VOLUME per torque [mm3/(N m)] too.
+    minimise: PRESSURE, or VOLUME per torque [mm3/(N m)]; most: largest values of these.
     """
 
     def evaluate(x: Any, p: Any) -> Terms:
@@ -78,8 +84,9 @@ def problem(
             found["interference"] = tuple(clear(r) for r in rooms)
         pressure = tuple(s / x.pressure**2 for s in squares(demand, gearing, at))
         goals = {PRESSURE: x.pressure, VOLUME: demand.specific_volume(gearing)}
+        found |= {f"most_{name}": goals[name] / value for name, value in most.items()}
         return Terms(
-            {name: goals[name] for name in names},
+            {minimise: goals[minimise]},
             found,
             {"contact": pressure},
             {"meshing": miss, "length": 1.0 + 100.0 * perimeter_error(curve)},

@@ -182,6 +182,17 @@ def described(
     )
 
 
+def sketched(demand: Demand, made: Flank) -> dict[str, Any]:
+    """Return sizes, pairs, pressures and the least clearance of a gearing, under the same keys."""
+    return {
+        **_sizes(demand, made),
+        "pairs_in_contact": float(made.pairs_in_contact),
+        "equal_pressure_MPa": equal_pressure(demand.duty, made),
+        "shared_pressure_MPa": shared_pressure(demand.duty, made),
+        "least_clearance_mm": _gap(interference(made, STEP_DEG, 201).least),
+    }
+
+
 def used(demand: Demand, made: Flank) -> dict[str, float]:
     """Return the utilisation of every limit by a gearing: the largest of a limit on several points.
 

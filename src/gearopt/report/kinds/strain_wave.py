@@ -193,7 +193,9 @@ def shift(result: Result, measures: Measures) -> Section | None:
     caption = "Pressure by the profile shift, all else as it is; dotted: this gearing."
     words = ["The pressure has no least value over the profile shift: other limits end the search."]
     if found.shift_of_one_pair is not None:
-        words.append(f"One conjugate pair always touches up to {found.shift_of_one_pair:.3f}.")
+        words.append(
+            f"One conjugate pair always touches up to a shift of {found.shift_of_one_pair:.3f}."
+        )
     return Section(
         "Pressure against profile shift",
         words=words,

@@ -2,19 +2,20 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 from gearopt.errors import SolveError
-from gearopt.formulations.strain_wave import sampled, wave_design
-from gearopt.formulations.strain_wave.demand import FREE
-from gearopt.formulations.strain_wave.exchange import Exchanged, design_of, exchange, front_cuts
-from gearopt.formulations.strain_wave.wave_report import RoundRow, described, used
+from gearopt.formulations.strain_wave import sampled
+from gearopt.formulations.strain_wave.demand import FREE, PRESSURE, VOLUME
+from gearopt.formulations.strain_wave.exchange import Exchanged, design_of, exchange
+from gearopt.formulations.strain_wave.wave_report import RoundRow, described, sketched, used
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.comparing.runs import Model
 from gearopt.optimise.explaining.explain import binding
 from gearopt.optimise.explaining.explanation import Explanation
+from gearopt.optimise.pareto.epsilon import Limiting
 from gearopt.optimise.pareto.front import Objective
-from gearopt.optimise.pareto.pareto import EPSILON
 from gearopt.optimise.pareto.several import Several
 from gearopt.optimise.result import FEASIBLE, Result, versions
 from gearopt.optimise.solve import run
@@ -178,16 +179,17 @@ def explain(scene: Scene, ask: Ask, result: Result | None = None) -> Explanation
 def compared(scene: Scene) -> tuple[str, ...]:
     """Return the methods of a comparison that names none."""
     _to_choose(scene)
-    return ("ipopt", *SAMPLERS)
+    return (*METHODS, *SAMPLERS)
 
 
 def model(scene: Scene, method: str) -> Model:
-    """Return the problem of a method: smooth, with what interferes at first, or sampled."""
+    """Return the problem of a method: clear at all poses, or sampled at some."""
     _to_choose(scene)
     demand, start = scene.demand(), scene.start()
     if method in SAMPLERS:
         return Model(sampled.problem(demand, start), "Interference at poses of 0.75 deg", "MPa")
-    return Model(wave_design.problem(demand, start), "Smooth, without interference", "MPa")
+    problem = sampled.limited(demand, start, PRESSURE, {})
+    return Model(problem, "Interference at poses of 0.05 deg", "MPa")
 
 
 def objectives(scene: Scene) -> dict[str, str]:
@@ -197,23 +199,26 @@ def objectives(scene: Scene) -> dict[str, str]:
 
 
 def several(scene: Scene, names: Sequence[str], method: str | None) -> Several:
-    """Return the problem of a front: smooth and clear at many poses, or for methods that sample.
+    """Return the problem of a front: least volumes under pressures, or for methods that sample.
 
-    load_share counts teeth, so that it is for methods that sample.
+    The former is clear at all poses. load_share counts teeth, so that it is for the latter.
     """
     demand, start = scene.demand(), scene.start()
     listed = tuple(Objective(name, sampled.OBJECTIVES[name]) for name in names)
 
     def drawn(x: Array) -> dict[str, Any]:
-        found: dict[str, Any] = untyped(described(demand, design_of(demand, x[: len(FREE)]), None))
-        return found
+        return sketched(demand, design_of(demand, x[: len(FREE)]))
 
-    if method in (None, EPSILON) and sampled.SHARE in names:
-        raise SolveError(f"{sampled.SHARE} counts teeth: --method {' or '.join(SAMPLERS)} samples")
-    if method in (None, EPSILON):
-        cuts = tuple(sorted(front_cuts(demand, start, Clock())))
-        return Several(wave_design.problem(demand, start, cuts, names), listed, drawn)
-    return Several(sampled.problem(demand, start, names), listed, drawn)
+    if method in SAMPLERS:
+        return Several(sampled.problem(demand, start, names), listed, drawn)
+    if tuple(names) != (VOLUME, PRESSURE):
+        raise SolveError(
+            f"least volumes under pressures are found in this order alone: {VOLUME},{PRESSURE}; "
+            f"--method {' or '.join(SAMPLERS)} samples all others"
+        )
+    limiting = Limiting(partial(sampled.limited, demand, start), (PRESSURE,))
+    whole = sampled.problem(demand, start, names, sampled.WHOLE)
+    return Several(whole, listed, drawn, limiting)
 
 
 def _to_choose(scene: Scene) -> None:
