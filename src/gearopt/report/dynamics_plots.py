@@ -121,7 +121,7 @@ def _view(
     left = window.left + 0.04 * half
     low = window.bottom - 14.0 / sheet.scale
     sheet.line((left, low), (left + scale, low), "size")
-    text = f"{length:.3g} {measures.unit('um')}"
+    text = f"{length:,.4g} {measures.unit('um')}"
     sheet.label(text, around(sheet.at(left + 0.5 * scale, low), (12.0, 16.0)), "size")
     return View(sheet, f"axis of the {name}", bodies, mover, f"Axis of the {name}")
 

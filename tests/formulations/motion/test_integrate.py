@@ -8,7 +8,15 @@ import pytest
 from moving_pairs import paper_pair
 
 from gearopt.formulations.motion.exponential import exact_motion, piecewise_linear
-from gearopt.formulations.motion.integrate import MARCH, STEPPERS, composition, march
+from gearopt.formulations.motion.integrate import (
+    ALPHA,
+    ALPHAS,
+    MARCH,
+    STEPPERS,
+    composition,
+    generalised,
+    march,
+)
 from gearopt.formulations.motion.numbers import deformation, numbers
 from gearopt.formulations.motion.reference import cvodes, scipy_motion
 from gearopt.formulations.motion.simulate import simulate
@@ -239,6 +247,20 @@ def test_a_stiff_mesh_moves_the_axes_as_a_rigid_one(ratio):
     assert made.states[-1, 0] == pytest.approx(rigid[0], abs=4e-4 * np.max(np.abs(ends)) * 2)
     scale = np.mean(made.delta[-50:]) * ratio * 1e3 / load
     assert -1.5 < scale < -1.1  # the static deformation is -1
+
+
+def test_newmark_rings_where_numerical_damping_does_not():
+    """k_m/k_b = 1e4, steps beyond the mesh mode: deviation over mean of delta at the end."""
+    pair = paper_pair("tangent", k=1e7)
+    times = timeline(pair, np.linspace(0.0, 0.02, 401))
+    given = times.starts, times.lengths, times.k0, times.k1, times.counts(6.25e-6)
+    rough = {}
+    for name, alphas in (("newmark", ALPHAS["newmark"]), ("alpha", generalised(0.5))):
+        out = np.empty((400, 6))
+        kernel(ALPHA).advance(numbers(pair, "line"), alphas, *given, np.zeros(6), out)
+        rough[name] = abs(out[-50:, 1].std() / out[-50:, 1].mean())
+    assert rough["newmark"] == pytest.approx(0.30, abs=0.01)  # 7.079e-8/2.370e-7
+    assert rough["alpha"] == pytest.approx(0.077, abs=2e-3)  # the true slow variation
 
 
 def test_library_methods_agree():

@@ -8,11 +8,9 @@ import numpy as np
 
 from gearopt.formulations.dynamics import dynamics_parts as parts
 from gearopt.formulations.dynamics.dynamics_design import Chosen
-from gearopt.formulations.motion.stability import largest
-from gearopt.formulations.orbit.orbit_search import DENSE, FINE
-from gearopt.formulations.orbit.task import MICRO, Task, measured, pair_of, series, worst
+from gearopt.formulations.orbit.orbit_search import DENSE, FINE, growth
+from gearopt.formulations.orbit.task import MICRO, Task, measured, series, worst
 from gearopt.formulations.orbit.task import parts as orbit_parts
-from gearopt.physics.motion.linear import linear
 from gearopt.physics.motion.moving_pair import MovingPair
 
 COARSE = 91  # speeds of the pair before, between which its curve is straight
@@ -28,8 +26,6 @@ def chosen(
     made = orbit_parts(task, kb, ratio, width, rim)
     dense = worst(task, point, speeds, FINE)
     _, highest = measured(task, series(task, point[None], speeds, FINE))
-    pair = pair_of(task, point, float(speeds[0]))
-    grown = largest(linear(pair, "line"), pair.wave, task.teeth * speeds / 60.0)
     old = parts.over_speeds(
         replace(before, backlash=None), "line", task.teeth, (speeds[0], speeds[-1], COARSE), FINE
     )
@@ -49,7 +45,7 @@ def chosen(
         dense_mm=parts.columns(dense / MICRO, 7),
         before_mm=parts.columns(np.interp(speeds, old.speed_rpm, told), 7),
         dense_maximum_mm=float(dense.max()) / MICRO,
-        largest_multiplier=float(grown.max()),
+        largest_multiplier=growth(task, point),
         highest_mm=float(highest.max()) / MICRO,
     )
 

@@ -11,8 +11,9 @@ from typing import Any
 
 import numpy as np
 
+from gearopt.formulations.motion.stability import largest
 from gearopt.formulations.orbit.orbit_text import LOGARITHMIC, problem, reduced, start
-from gearopt.formulations.orbit.task import VARIABLES, Task, measured, series, worst
+from gearopt.formulations.orbit.task import VARIABLES, Task, measured, pair_of, series, worst
 from gearopt.optimise.box import violation
 from gearopt.optimise.certificate import certify
 from gearopt.optimise.clock import Clock
@@ -20,6 +21,7 @@ from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.solvers import ipopt
 from gearopt.optimise.terms import Array
+from gearopt.physics.motion.linear import linear
 
 RANDOM = True
 COUNTS = "design measured or Ipopt iteration"
@@ -33,6 +35,7 @@ ROUNDS, AGAIN = 12, 3  # of an exchange at most; starts of either sort after its
 JITTER = 0.02  # relative, of starts around the best design met
 SPREAD = 46  # equal steps of speed that are added once an exchange has ended, to look once more
 MORE, MOST = 4, 30  # harmonics added where the judge sees another motion; of a problem at most
+GROWTHS = 91  # speeds at which the multipliers of a design are looked at
 PENALTY = 5.0  # times the violation, added to the logarithm of the measure
 
 
@@ -93,10 +96,25 @@ def ranked(task: Task, found: Sample) -> Array:
     return found.points[np.argsort(merit, kind="stable")]
 
 
+def steady(task: Task, point: Array) -> bool:
+    """Return whether a design meets the limit of its multipliers, if there is one.
+
+    A limit without derivatives: designs at which Ipopt ends and that exceed it are left out.
+    """
+    return task.most_growth is None or growth(task, point) <= task.most_growth
+
+
+def growth(task: Task, point: Array) -> float:
+    """Return the largest Floquet multiplier of a design over all speeds."""
+    speeds = np.linspace(task.speeds_rpm[0], task.speeds_rpm[-1], GROWTHS)
+    pair = pair_of(task, point, float(speeds[0]))
+    return float(np.max(largest(linear(pair, "line"), pair.wave, task.teeth * speeds / 60.0)))
+
+
 def climbed(task: Task, posed: Problem, starts: Array, clock: Clock) -> list[tuple[float, Outcome]]:
     """Return value and outcome of Ipopt from designs (N, 5) and their own motions, if feasible.
 
-    The best first.
+    The best first; without those whose motion is not `steady`.
     """
     ends = []
     for point in starts:
@@ -104,7 +122,7 @@ def climbed(task: Task, posed: Problem, starts: Array, clock: Clock) -> list[tup
         found = ipopt.run(posed, clock.left, 0, clock.inner(), start=whole)
         clock.evaluations += found.evaluations
         verdict = certify(posed, found, 0.0)
-        if verdict.objective is not None:
+        if verdict.objective is not None and steady(task, _design(found)):
             ends.append((verdict.objective, found))
             clock.best = min(verdict.objective, clock.best)
         if not clock.tell():

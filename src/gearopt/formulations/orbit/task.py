@@ -24,7 +24,8 @@ class Task:
     carry the masses); teeth of the pinion; pressure_angle [rad]; density [t/mm3]; single c' [MPa];
     mesh_damping and bearing_damping: ratios zeta. speeds_rpm: where the motion is judged. ranges:
     (minimum, maximum) of VARIABLES. most_mass [t]; most_displacement F/k_b [mm]; margin [mm]: of
-    the teeth from parting, None: not asked. measure: "rms" or "peak_to_peak" of delta.
+    the teeth from parting, None: not asked. most_growth: of the largest Floquet multiplier over all
+    speeds, None: not asked. measure: "rms" or "peak_to_peak" of delta.
     """
 
     torque: float
@@ -41,6 +42,7 @@ class Task:
     most_mass: float
     most_displacement: float
     margin: float | None = None
+    most_growth: float | None = None
     measure: str = "rms"
     harmonics: int = 10
 

@@ -80,6 +80,8 @@ def _optimised(scene: Scene, ask: Ask, before: MovingPair, clock: Clock) -> Resu
     limits = {k: v for k, v in result.limits.items() if "[" not in k}
     parted = [v for k, v in result.limits.items() if "separation" in k]
     limits |= {"separation": max(parted)} if parted else {}
+    if task.most_growth is not None:
+        limits["stability"] = best.largest_multiplier / task.most_growth
     return replace(result, design=untyped(design), report=report, limits=limits)
 
 

@@ -151,6 +151,7 @@ class Scene(Table):
             most_mass=asked.mass.value,
             most_displacement=asked.displacement.value,
             margin=None if asked.margin is None else asked.margin.value,
+            most_growth=None if asked.multiplier is None else float(asked.multiplier),
             measure=asked.minimise,
             harmonics=asked.harmonics,
         )

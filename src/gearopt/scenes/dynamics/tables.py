@@ -188,6 +188,11 @@ class OptimiseTable(Table):
     displacement: Annotated[Quantity, quantity("length", "40 um")] = Field(
         description="Maximum displacement of an axis under the mean load"
     )
+    multiplier: Annotated[Fraction | None, number(0.98, 0, 1)] = Field(
+        None,
+        description="Maximum of the largest Floquet multiplier over all speeds: designs that "
+        "exceed it are left out",
+    )
     margin: Annotated[Quantity | None, quantity("length", "1 um", zero=True)] = Field(
         None, description="How much the teeth stay pressed together at least: they never part"
     )
