@@ -11,6 +11,7 @@ import pytest
 import gearopt
 from gearopt.errors import SceneError, SolveError
 from gearopt.physics.tooth.ladder import LEVELS
+from gearopt.report.pair_words import OVERSTATED
 from gearopt.scenes.pair import EXAMPLE, MORE_EXAMPLES
 
 GIVEN = tomllib.loads(EXAMPLE)
@@ -282,3 +283,22 @@ def test_the_page_of_the_kind_has_the_errors_of_the_levels():
         errors = 100.0 * np.array([*level.error, *level.wider])
         found = [errors.min(), errors.max(), level.cost]
         assert found == pytest.approx([float(n) for n in numbers], rel=5e-3, abs=0.01), name
+
+
+@pytest.mark.slow
+def test_what_couplings_overstate_is_as_the_page_says():
+    """Per cent beyond the coupling by finite elements, smaller first; um of the reference pair."""
+    problems = Path(__file__).parents[2] / "problems"
+    models, found = ("none", "ring torsion", "finite elements"), {}
+    for name in ("shifted_pair", "reference_pair"):
+        for model in models:
+            result = gearopt.solve(problems / f"{name}.toml", {"sharing.coupling": model})
+            load = result.design["contact"]["loads"][-1]
+            found[model, name] = 1e3 * load["peak_to_peak_mm"]
+    for model, ends in OVERSTATED.items():
+        for name, percent in zip(("shifted_pair", "reference_pair"), ends, strict=True):
+            more = 100.0 * (found[model, name] / found["finite elements", name] - 1.0)
+            assert more == pytest.approx(percent, abs=0.7), (model, name)
+    page = (problems.parent / "docs" / "pair.md").read_text(encoding="utf-8")
+    for model in models:
+        assert f"{found[model, 'reference_pair']:.1f} µm" in page

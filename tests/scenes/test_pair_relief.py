@@ -98,6 +98,7 @@ def test_a_stopped_search_claims_no_more_than_its_bound():
     assert "was searched" not in result.proof.get("sentence", "")
 
 
+@pytest.mark.slow
 def test_gears_that_are_not_safe_are_a_part_with_their_limits():
     """A rating that falls short is no limit of the relief, and no optimum is called infeasible."""
     rating = {"standard": "agma", "life": "20000 h", "quality": 8}
