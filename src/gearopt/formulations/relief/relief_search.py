@@ -24,7 +24,8 @@ KERNEL = "gearopt.formulations.relief.relief_box_kernel"
 MICRO = 1e3  # um a mm: amounts of relief are numbers of size 1 there
 ROUNDING = 1e-9  # um: taken off every bound
 NOTHING = 1e-8  # um: of values, a difference that no gear has
-GAP = 5e-7  # relative; where no gap is asked for: within 1e-6, rounding included
+GAP = 1e-6  # relative; where no gap is asked for
+WITHIN = 0.99  # of a gap: roundings included
 FAR = 1e6  # mm: of a pair that is not in contact from the tips
 TINY = 1e-300  # um
 TOLD = 256  # boxes between two words to the watcher
@@ -197,7 +198,7 @@ def _searched(
     point, best: known before. Bounds of boxes under limits are no bounds of what is minimised, so
     all boxes are visited.
     """
-    gap, turn, floor = max(clock.budget.gap, GAP), 0, np.inf  # floor: of boxes not to be halved
+    gap, turn, floor = WITHIN * max(clock.budget.gap, GAP), 0, np.inf  # floor: of boxes not to be halved
 
     def aim() -> float:
         return best - max(gap * best, NOTHING)
