@@ -198,7 +198,8 @@ def _searched(
     point, best: known before. Bounds of boxes under limits are no bounds of what is minimised, so
     all boxes are visited.
     """
-    gap, turn, floor = WITHIN * max(clock.budget.gap, GAP), 0, np.inf  # floor: of boxes not to be halved
+    gap, turn = WITHIN * max(clock.budget.gap, GAP), 0
+    floor = np.inf  # of boxes not to be halved
 
     def aim() -> float:
         return best - max(gap * best, NOTHING)
