@@ -18,7 +18,6 @@ from gearopt.formulations.motion.stability import (
 from gearopt.formulations.motion.timeline import timeline
 from gearopt.physics.motion.linear import Linear, linear, static, with_modal_damping
 from gearopt.physics.motion.stiffness_wave import fourier, sampled, trapezoid
-from gearopt.physics.motion.tongues import meissner_trace
 
 UNIT = Linear(np.ones(1), np.zeros((1, 1)), np.zeros((1, 1)), -np.ones(1))
 FREQUENCIES, DEPTHS = np.linspace(500.0, 14000.0, 271), np.linspace(0.05, 0.75, 15)
@@ -46,8 +45,6 @@ def test_meissner():
         known = 2 * math.cos(a) * math.cos(b) - (w1 / w2 + w2 / w1) * math.sin(a) * math.sin(b)
         assert np.trace(found) == pytest.approx(known, rel=1e-9, abs=1e-9)
         assert np.linalg.det(found) == pytest.approx(1.0, abs=1e-9)
-        times = duty * period, (1.0 - duty) * period
-        assert meissner_trace((k1, k2), times) == pytest.approx(known, rel=1e-12, abs=1e-12)
 
 
 @pytest.mark.parametrize("q", [0.1, 0.5, 1.0])

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from gearopt.formulations.motion.integrate import MARCH, Marched
-from gearopt.formulations.motion.numbers import numbers
+from gearopt.formulations.motion.numbers import Numbers, numbers
 from gearopt.formulations.motion.timeline import timeline
 from gearopt.optimise.kernels import kernel
 from gearopt.optimise.tape import legacy_numpy
@@ -34,52 +34,57 @@ def scipy_motion(
 
     method: of SCIPY; rtol relative, with an absolute tolerance of rtol times `scales`. times [s].
     """
-    from scipy.integrate import solve_ivp
-
     model, law = numbers(pair, level), kernel(MARCH)
     pieces = timeline(pair, np.asarray(times)[[0, -1]])
     now, out, rates, events = np.array(state, float), [np.array(state, float)], 0, 0
     flank = int(law.flank_now(model, now))
+    tolerances = {"method": method, "rtol": rtol, "atol": rtol * scales(pair, level)}
     for start, length, k0, k1 in zip(
         pieces.starts, pieces.lengths, pieces.k0, pieces.k1, strict=True
     ):
-        t, end, slope = start, start + length, (k1 - k0) / length
+        t, end, line = start, start + length, (start, k0, (k1 - k0) / length)
         while t < end:
-            side = flank
-
-            def rate(
-                at: float, y: Array, side: int = side, line: Any = (k0, slope, start)
-            ) -> Array:
-                found = np.empty_like(y)
-                law.rates(model, at, line[0] + line[1] * (at - line[2]), side, y, found)
-                return found
-
-            def leaves(at: float, y: Array, side: int = side) -> float:
-                return float(law.past(model, side, y))
-
-            leaves.terminal, leaves.direction = True, 1.0  # type: ignore[attr-defined]
             asked = times[(times > t) & (times <= end)]
-            made = solve_ivp(
-                rate,
-                (t, end),
-                now,
-                method=method,
-                t_eval=np.union1d(asked, end),
-                rtol=rtol,
-                atol=rtol * scales(pair, level),
-                events=leaves if pair.backlash is not None else None,
-            )
+            made = _smooth(model, line, flank, (t, end), now, asked, tolerances)
             rates += made.nfev
-            reached = made.t_events[0][0] if made.status == 1 else end
+            left = made.status == 1
+            t = made.t_events[0][0] if left else end
             states = np.reshape(made.y, (len(now), -1)).T  # a list where none was reached
-            out += list(states[: int(np.sum(asked <= reached))])
-            now = made.y_events[0][0] if made.status == 1 else states[-1]
-            if made.status == 1:
+            out += list(states[: int(np.sum(asked <= t))])
+            now = made.y_events[0][0] if left else states[-1]
+            if left:
                 events += 1
                 delta = now[LEVELS[level][0] // 2]
-                flank = 1 if side != 1 else (0 if delta <= 0.5 * model.backlash else 2)
-            t = reached
+                flank = 1 if flank != 1 else (0 if delta <= 0.5 * model.backlash else 2)
     return Marched(pair, level, np.array(out), rates, rates, events)
+
+
+def _smooth(
+    model: Numbers,
+    line: tuple[float, float, float],
+    flank: int,
+    span: tuple[float, float],
+    now: Array,
+    asked: Array,
+    tolerances: dict[str, Any],
+) -> Any:
+    """Return scipy's motion on one flank, k on a line (time, k, slope), until the flank changes."""
+    from scipy.integrate import solve_ivp
+
+    law = kernel(MARCH)
+
+    def rate(at: float, y: Array) -> Array:
+        found = np.empty_like(y)
+        law.rates(model, at, line[1] + line[2] * (at - line[0]), flank, y, found)
+        return found
+
+    def leaves(at: float, y: Array) -> float:
+        return float(law.past(model, flank, y))
+
+    leaves.terminal, leaves.direction = True, 1.0  # type: ignore[attr-defined]
+    events = leaves if model.backlash < math.inf else None
+    given = {"t_eval": np.union1d(asked, span[1]), "events": events}
+    return solve_ivp(rate, span, now, **given, **tolerances)
 
 
 def cvodes(pair: MovingPair, level: str, times: Array, rtol: float) -> Any:

@@ -7,8 +7,6 @@ l f = f_p + f_q of two (combination), and widens with a_l.
 import math
 from dataclasses import dataclass
 
-import numpy as np
-
 from gearopt.physics.motion.linear import Linear, mesh_shares, modes
 from gearopt.physics.motion.stiffness_wave import Wave
 
@@ -55,14 +53,3 @@ def tongues(system: Linear, wave: Wave, harmonics: int) -> list[Tongue]:
                     Tongue((p + 1, q + 1), order, total / (2.0 * math.pi * order), width, damping)
                 )
     return sorted(made, key=lambda t: -t.half_width)
-
-
-def meissner_trace(stiffnesses: tuple[float, float], times: tuple[float, float]) -> float:
-    """Return the trace of the monodromy matrix of x'' + k(t) x = 0, k rectangular (Meissner).
-
-    stiffnesses k_1, k_2 > 0 over times t_1, t_2: 2 cos cos - (w_1/w_2 + w_2/w_1) sin sin. Unstable
-    where its magnitude exceeds 2.
-    """
-    w1, w2 = (math.sqrt(k) for k in stiffnesses)
-    a, b = w1 * times[0], w2 * times[1]
-    return float(2.0 * np.cos(a) * np.cos(b) - (w1 / w2 + w2 / w1) * np.sin(a) * np.sin(b))
