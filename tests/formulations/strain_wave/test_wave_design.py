@@ -152,7 +152,7 @@ def test_the_whole_wave_is_looked_at_where_samplers_do_not():
 
 @pytest.mark.slow
 def test_least_volume_under_a_pressure_is_stationary_and_clear():
-    """Begun elsewhere it is not more than 1 % away, and more pressure allows less volume."""
+    """As docs/harmonic_drive.md tells it; more pressure allows less volume."""
     found = {}
     for most in (110.0, 130.0):
         result, outcome = run(
@@ -163,4 +163,5 @@ def test_least_volume_under_a_pressure_is_stationary_and_clear():
         assert sampled.hidden(DEMAND, outcome.x) > -1e-6
         assert result.limits["most_pressure"] == pytest.approx(1.0, abs=1e-6)
         found[most] = result.value
-    assert found[130.0] < found[110.0] < 618.6  # of the base case, at 117.4 MPa
+    assert found == pytest.approx({110.0: 510.7, 130.0: 430.7}, rel=5e-3)
+    assert found[110.0] < 618.6  # of the base case, at 117.4 MPa
