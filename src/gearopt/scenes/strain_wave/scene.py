@@ -34,7 +34,7 @@ START = {
     "deflection": 1.0,
     "addendum": 0.6,
 }
-START_RIM = 1.6  # modules
+START_RIM = 8.0 / 900.0  # of the outer diameter
 
 
 class Scene(Table):
@@ -154,8 +154,10 @@ class Scene(Table):
     def _usual(self, name: str) -> tuple[float, float]:
         """Return the range of a number of which the file says nothing."""
         if name in ("module", "rim"):
+            assert self.duty.outer_diameter is not None
+            unit = self.usual_module if name == "module" else self.duty.outer_diameter.value
             low, high = MODULES if name == "module" else RIMS
-            return low * self.usual_module, high * self.usual_module
+            return low * unit, high * unit
         low, high = RANGES[name]
         return (math.radians(low), math.radians(high)) if name == "pressure_angle" else (low, high)
 
@@ -164,7 +166,9 @@ class Scene(Table):
         ranges = self.ranges()
         usual = dict(START)
         if self.limited:
-            usual |= {"module": self.usual_module, "rim": START_RIM * self.usual_module}
+            assert self.duty.outer_diameter is not None
+            rim = START_RIM * self.duty.outer_diameter.value
+            usual |= {"module": self.usual_module, "rim": rim}
         return [
             min(max(usual.get(name, low), low), high)
             for name, (low, high) in ((name, ranges[name]) for name in FREE)

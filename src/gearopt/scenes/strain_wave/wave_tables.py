@@ -17,7 +17,7 @@ RANGES = {  # of what a design may choose, beside modules of the size asked for
     "addendum": (0.4, 0.9),
 }
 MODULES = (0.8, 1.1)  # of the module that fits the outer diameter
-RIMS = (0.8, 2.8)  # of the same module
+RIMS = (4.0 / 900.0, 14.0 / 900.0)  # of the outer diameter
 
 
 class WaveDuty(Table):
