@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from gearopt.formulations.pair_contact import PairMesh, contact, contact_stress, spectrum
-from gearopt.formulations.pair_relief import Removed, break_even
+from gearopt.formulations.pair_relief import Removed, break_even, finer
+from gearopt.formulations.relief.meshing import Relief
 from gearopt.formulations.relief.rules import smooth_shares, without_error
 from gearopt.physics.gears import Gear, GearPair
 from gearopt.physics.tooth.elastic import ElasticPair
@@ -120,3 +121,37 @@ def test_a_relief_without_error_at_the_torque_breaks_even_at_half_of_it(coupling
     assert break_even(meshed, removed, (1.0,)) == pytest.approx(0.5, abs=2e-3)
     nothing = Removed(0.0 * there, 0.0 * there, (1.0, 1.0), None)
     assert break_even(meshed, nothing, (1.0,)) is None
+
+
+@pytest.mark.parametrize("free", [False, True])
+def test_a_relief_strays_further_between_the_computed_positions(free):
+    """On 12 positions, against the difference of two approaches on a grid without break points."""
+    coupling = 4.45e-3 / FORCE
+    meshed = PairMesh.of(ElasticPair(gears(), (30.0, 50.0)), LEVEL, 200_000.0, coupling, 12, (1.0,))
+    path, tips = meshed.mesh.cycle.path, (Relief(10e-3, 5.3), Relief(11e-3, 4.9))
+    removed = Removed.of(meshed.mesh, tips)
+    if free:  # by lines between the points
+        removed = Removed(removed.pinion, removed.wheel, removed.lengths, None)
+    s, both = meshed.mesh.cycle.positions.T, removed.pinion + removed.wheel
+    deltas = []
+    for t in np.linspace(0.0, 1.0, 601)[:-1]:
+        at = path.start + (t + np.arange(2)) * path.base_pitch
+        at = at[at <= path.end]
+        e = [
+            10e-3 * max(1 - (path.end - x) / 5.3, 0) + 11e-3 * max(1 - (x - path.start) / 4.9, 0)
+            for x in at
+        ]
+        if free:
+            e = np.interp(at, np.concatenate(s), np.concatenate(both.T))
+        k = 1.0 / (meshed.compliance(at) - coupling)
+        ways = [(FORCE + k[i] * e[i]) / k[i] for i in range(len(at))]
+        deltas.append(min(*ways, (FORCE + k @ e) / k.sum()))
+    fine, coarse = finer(meshed, removed, (1.0,))[0], finer_of(meshed, removed)
+    assert fine == pytest.approx(np.ptp(deltas), rel=0.01)
+    assert fine >= coarse if free else fine > 1.05 * coarse
+
+
+def finer_of(meshed, removed):
+    """Peak-to-peak [mm] on the computed positions."""
+    mesh = meshed.mesh
+    return float(mesh.criteria(removed.separations(mesh)).peak_to_peak[0])

@@ -12,12 +12,14 @@ from gearopt.formulations.relief.meshing import NO_RELIEF, Mesh, Relief
 from gearopt.formulations.relief.parametric import objective
 from gearopt.formulations.relief.relief_tolerance import Tolerance, drawn, worst
 from gearopt.formulations.relief.rules import short_relief, tip_amounts
-from gearopt.optimise.result import Budget
+from gearopt.optimise.result import Budget, Watch
 from gearopt.optimise.terms import Array
 from gearopt.physics.geometry.contact import diameters_at
+from gearopt.physics.mesh_cycle import cycle
 
 LEAST = 1e-6  # mm: less than that is no relief
 STEPS = 100  # loads at which relief is held against none
+FINER = 10  # times as many positions, on which a relief is judged again
 DRAWN, MOST = 2000, 0.95  # reliefs as they are made, and the part of them told beside the median
 
 
@@ -82,7 +84,8 @@ class PairRelief:
     minimise: of the worst of all loads, relative to the torque of the duty. pinion_removed_mm,
     wheel_removed_mm: columns beside those of the path of contact. at: what happens at every load of
     the contact with it. rows: rules beside it, and no relief. break_even: load below
-    which the gears run more evenly without it, None where there is none. made: within tolerances.
+    which the gears run more evenly without it, None where there is none. finer_mm: peak-to-peak at
+    every load on ten times as many positions. made: within tolerances.
     """
 
     minimise: str
@@ -94,6 +97,7 @@ class PairRelief:
     at: tuple[ContactLoad, ...]
     rows: tuple[ReliefRow, ...]
     break_even: float | None = None
+    finer_mm: Columns = ()
     made: MadeRelief | None = None
 
 
@@ -135,6 +139,18 @@ class Removed:
         )
         return cls(np.where(first, at, 0.0), np.where(first, 0.0, at), lengths, None)
 
+    def on(self, mesh: Mesh, other: Mesh) -> "Removed":
+        """Return the same at the contacts of another mesh of the gears, free shapes by lines."""
+        if self.exponent is not None:
+            ends = zip(self.amounts(mesh), self.lengths, strict=True)
+            first, second = (Relief(*end, self.exponent) for end in ends)
+            return Removed.of(other, (first, second))
+        there, along = other.cycle.present, mesh.cycle.along
+        s, at = along(mesh.cycle.positions), np.where(there, other.cycle.positions, 0.0)
+        rows = (np.interp(at, s, along(flank)) for flank in (self.pinion, self.wheel))
+        pinion, wheel = (np.where(there, row, 0.0) for row in rows)
+        return Removed(pinion, wheel, self.lengths, None)
+
     def separations(self, mesh: Mesh) -> Array:
         """Return the sum of both at each contact [mm], infinite where there is none."""
         return np.where(mesh.cycle.present, self.pinion + self.wheel, np.inf)
@@ -164,7 +180,20 @@ def described(
             for name, one in (beside | {"this": removed}).items()
         ),
         break_even=break_even(made, removed, loads),
+        finer_mm=column(finer(made, removed, loads)),
     )
+
+
+def finer(made: PairMesh, removed: Removed, loads: Sequence[float]) -> Array:
+    """Return the peak-to-peak (l,) [mm] at loads on ten times as many positions of the gears.
+
+    A relief that was chosen on some positions strays a little further between them.
+    """
+    mesh = made.of_loads(loads)
+    places = cycle(mesh.cycle.path, FINER * len(mesh.cycle.travels))
+    fine = Mesh.of(places, made.compliance, mesh.coupling, mesh.loads)
+    there = fine.criteria(removed.on(mesh, fine).separations(fine)).peak_to_peak
+    return np.maximum(there, mesh.criteria(removed.separations(mesh)).peak_to_peak)
 
 
 def break_even(made: PairMesh, removed: Removed, loads: Sequence[float]) -> float | None:
@@ -243,10 +272,20 @@ def _row(
 
 
 def as_made(
-    mesh: Mesh, nominal: tuple[Relief, Relief], tolerance: Tolerance, budget: Budget, seed: int
-) -> MadeRelief:
-    """Return the worst case of a relief within tolerances, proven, and what drawn ones have."""
-    found = worst(mesh, nominal, tolerance, budget)
+    mesh: Mesh,
+    nominal: tuple[Relief, Relief],
+    tolerance: Tolerance,
+    budget: Budget,
+    seed: int,
+    watch: Watch | None = None,
+) -> MadeRelief | None:
+    """Return the worst case of a relief within tolerances, proven, and what drawn ones have.
+
+    None where the watcher ended it before anything was known.
+    """
+    found = worst(mesh, nominal, tolerance, budget, watch)
+    if found is None:
+        return None
     values = drawn(mesh, nominal, tolerance, DRAWN, seed)
     point = [float(v) for v in found.point]
     return MadeRelief(

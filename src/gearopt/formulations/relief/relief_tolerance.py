@@ -11,9 +11,9 @@ from gearopt.formulations.relief.meshing import Mesh, Relief
 from gearopt.formulations.relief.parametric import Ranges, reliefs, variables
 from gearopt.formulations.relief.relief_search import MICRO, ROUNDING, Numbers, halves, numbers
 from gearopt.optimise.clock import Clock
-from gearopt.optimise.kernels import kernel
+from gearopt.optimise.kernels import compiled, kernel
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.result import Budget
+from gearopt.optimise.result import Budget, Watch
 from gearopt.optimise.terms import Array, Terms
 
 KERNEL = "gearopt.formulations.relief.relief_worst_kernel"
@@ -61,19 +61,25 @@ def worst(
     nominal: tuple[Relief, Relief],
     tolerance: Tolerance,
     budget: Budget | None = None,
-) -> Worst:
+    watch: Watch | None = None,
+) -> Worst | None:
     """Return the largest peak-to-peak [mm] of all loads over the box of tolerances, proven.
 
     Boxes are halved, largest bound first, until value and bound agree to the gap of the budget, or
-    it is spent. point: amounts 1, 2 and lengths 1, 2 [mm].
+    it is spent or the watcher ends it; None if that is while kernels are compiled, which takes no
+    budget. point: amounts 1, 2 and lengths 1, 2 [mm].
     """
-    clock, x = Clock(budget or Budget(gap=GAP)), _numbers(nominal)
+    x = _numbers(nominal)
     ends = [tolerance.moved(x, sign) for sign in (-1.0, 1.0)]
     made = numbers(mesh, ends[0], ends[1], _powers(nominal))
+    entries = (kernel(KERNEL).ceiling,)
+    if not compiled(lambda: _ceiling(made, made.low, made.high), entries, watch):
+        return None
+    clock = Clock(budget or Budget(gap=GAP), watch)
     bound, point, value = _ceiling(made, made.low, made.high)
     boxes: list[Any] = [(-bound, 0, made.low, made.high)]
     gap, turn = max(clock.budget.gap, ROUNDING), 0
-    while boxes and -boxes[0][0] > value * (1.0 + gap) and not clock.over:
+    while boxes and -boxes[0][0] > value * (1.0 + gap) and clock.tell():
         most, _, low, high = heapq.heappop(boxes)
         for half in halves(made, low, high):
             found, at, there = _ceiling(made, *half)

@@ -12,6 +12,7 @@ from gearopt.formulations.relief.free_form import Profile, Shape, free_problem
 from gearopt.formulations.relief.meshing import Mesh, Relief
 from gearopt.formulations.relief.parametric import Ranges
 from gearopt.formulations.relief.relief_tolerance import Tolerance, robust_problem
+from gearopt.optimise.clock import in_part
 from gearopt.optimise.comparing.runs import Model
 from gearopt.optimise.pareto.epsilon import Limiting
 from gearopt.optimise.pareto.front import Objective
@@ -56,7 +57,8 @@ def relieved(scene: Scene, made: PairMesh, ask: Ask) -> tuple[Result, PairRelief
     if asked.tolerance is not None:
         mesh, nominal = made.of_loads(loads_of(scene)), _nominal(relief)
         within = replace(ask.budget, gap=WORST)
-        kept = as_made(mesh, nominal, _tolerance(asked, mesh), within, ask.seed)
+        watch = in_part(ask.watch, part="worst case within tolerances")
+        kept = as_made(mesh, nominal, _tolerance(asked, mesh), within, ask.seed, watch)
         relief = replace(relief, made=kept)
     return result, relief
 
