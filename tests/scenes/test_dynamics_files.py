@@ -40,12 +40,38 @@ BARE = EXAMPLE[: EXAMPLE.index("[simulate]")]
         ),
         ((("ramp = 0.1", "ramp = 0.4"),), "mesh.ramp", "does not fit the duty"),
         ((('axes = "line"', 'axes = "line"\nkinematics = "paper"'),), "mesh.axes", "in the plane"),
+        ((("duty = 0.68", "duty = 0.8"), ("depth = 0.5", "depth = 1.25")), "mesh.depth", "to zero"),
+        (
+            (('"200 N m"', '"200 N m"\nbearing_stiffness_across = "1 MN/m"'),),
+            "mesh.axes",
+            "alike in both directions",
+        ),
+        ((("[wheel]", '[wheel]\ntorque = "-5000 N m"'),), "wheel.torque", "pulls the teeth apart"),
     ],
 )
 def test_what_does_not_fit_is_refused_with_its_key(pairs, key, rule):
     with pytest.raises(SceneError, match=rule) as wrong:
         read(changed(*pairs, text=BARE).encode())
     assert wrong.value.key == key
+
+
+def test_a_fourier_series_stays_above_zero():
+    """200 + 199 cos is above zero, 200 + 199 cos + 20 sin is not."""
+    made = changed(
+        ("depth = 0.5 ", "#"), ("duty = 0.68 ", "#"), ('"trapezoid"', '"fourier"'), text=BARE
+    )
+    made = made.replace("ramp = 0.1", 'cosines = ["199 kN/mm"]')
+    read(made.encode())
+    with pytest.raises(SceneError, match="zero or below"):
+        read(made.replace("cosines", 'sines = ["20 kN/mm"]\ncosines').encode())
+
+
+def test_too_few_outputs_are_told(tmp_path):
+    """Half a second at 2001 outputs is 4 kHz: less than the fastest mode has."""
+    path = tmp_path / "long.toml"
+    path.write_text(changed(('duration = "20 ms"', 'duration = "0.5 s"')))
+    told = gearopt.solve(path).design["warnings"]
+    assert any("The motion is told at 2,001 times" in each for each in told)
 
 
 def test_tables_that_cannot_be_answered_are_refused():

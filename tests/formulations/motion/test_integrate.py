@@ -193,6 +193,30 @@ def test_teeth_that_part_follow_the_closed_form():
     assert 1.5 * still == pytest.approx(13.2353e-3, rel=1e-5)
 
 
+@pytest.mark.parametrize("above", [2e-3, 1e-5])
+@pytest.mark.parametrize("start", [0.0, 0.3, 0.7])
+def test_no_short_separation_is_stepped_over(above, start):
+    """A swing to `above` of the static compression: a flight of 2 sqrt(2 above), far below a look.
+
+    Started after a part of an arc, told at other times: looks lie anywhere around crests.
+    """
+    pair, size = paper_pair(backlash=1.0), 1.0 + above
+    wn, still = math.sqrt(2e5 * 3400.0), pair.load / 2e5
+    period = 2.0 * (math.pi - math.acos(1.0 / size)) + 2.0 * math.sqrt(size**2 - 1.0)
+    state = still * np.array([-1.0 - size * math.cos(start), wn * size * math.sin(start)])
+    asked = np.sort(np.append(np.linspace(0.0, 19.1 * period, 78), 4.5 * period - start))
+    where = np.searchsorted(asked, 4.5 * period - start)
+    times = timeline(pair, np.append(asked, 20.0 * period - start) / wn)
+    for made in (
+        march(pair, "fixed", times, "rk8", period / wn / 40.0, state),
+        exact_motion(pair, "fixed", times, state),
+    ):
+        assert made.events == 40
+        crest = 0.5 * (size**2 - 1.0)
+        found = made.delta[[where, -1]] / still
+        assert found == pytest.approx([crest, -1.0 - size], abs=1e-10)
+
+
 def test_both_flanks_and_the_teeth_of_a_free_pair_keep_the_energy():
     """In the plane, with a backlash that grows with the centre distance."""
     pair = paper_pair(torques=(0.0, 0.0), backlash=0.05)

@@ -16,6 +16,8 @@ from gearopt.physics.motion.moving_pair import MovingPair
 
 LOOKS = 40  # looks for a separation, in a period of the fastest mode
 NARROW = 1e-15  # share of a look to which it is located
+GRAZING = 1e-3  # margin of a crest between looks; the cubic through them is good to 7e-5
+HALVES = 30  # of a look, until a short separation is ahead of it or begins in it
 LINEAR = ("tangent", "paper_linear")
 
 
@@ -108,6 +110,13 @@ def _through(
         new = (maps.map if part == look else maps.passing)(k, flank, part) @ now
         looks += 1
         past = kernels.past(maps.model, flank, new[:-1] * scale)
+        for _ in range(HALVES):
+            ends = now[:-1] * scale, new[:-1] * scale
+            if past > 0.0 or not kernels.swung(maps.model, flank, part, *ends, GRAZING):
+                break
+            part *= 0.5
+            new, looks = maps.passing(k, flank, part) @ now, looks + 1
+            past = kernels.past(maps.model, flank, new[:-1] * scale)
         if past > 0.0:
             low, high = 0.0, part
             while high - low > NARROW * look:

@@ -12,6 +12,7 @@ from gearopt.formulations.motion.motion_kernel import derivative, flank_of, open
 from gearopt.optimise.jit_kernel import entry, inner
 
 NARROW = 1e-13  # share of a step to which an event is located: rounding of a double
+HALVES = 12  # of a step, until a short separation is ahead of it or begins in it
 PIECES = 64  # parts that a step is cut into where teeth part and meet, at most
 
 
@@ -49,39 +50,46 @@ def beyond(m, flank, y):
 
 
 @inner
-def crests(h, a, b, p, q):
-    """Whether the cubic with values a, b and rates p, q at the ends of h is positive inside."""
+def crests(h, a, b, p, q, margin):
+    """Whether the cubic with values a, b and rates p, q at the ends of h is positive inside.
+
+    margin: share of h (p - q), which is 8 times the height of the crest, that may be missing.
+    """
     if not p > 0.0 > q:
         return False
     share = p / (p - q)  # where the rate, as a straight line, is zero
     rest = 1.0 - share
     top = (1.0 + 2.0 * share) * rest * rest * a + share * rest * rest * h * p
     top += share * share * (3.0 - 2.0 * share) * b - share * share * rest * h * q
-    return top > 0.0
+    return top > margin * h * (q - p)
 
 
 @inner
-def swings(m, flank, h, y, new):
+def swings(m, flank, h, y, new, margin):
     """Whether a step leaves its flank and comes back, by a cubic through both ends."""
     d0, r0, room, w0 = opening(m, y)
     d1, r1, other, w1 = opening(m, new)
     if flank == 0:
-        return crests(h, d0, d1, r0, r1)
+        return crests(h, d0, d1, r0, r1, margin)
     if flank == 2:
-        return crests(h, room - d0, other - d1, w0 - r0, w1 - r1)
-    if crests(h, -d0, -d1, -r0, -r1):
+        return crests(h, room - d0, other - d1, w0 - r0, w1 - r1, margin)
+    if crests(h, -d0, -d1, -r0, -r1, margin):
         return True
-    return crests(h, d0 - room, d1 - other, r0 - w0, r1 - w1)
+    return crests(h, d0 - room, d1 - other, r0 - w0, r1 - w1, margin)
 
 
 @inner
 def located(m, table, weights, nodes, place, line, flank, left, above, y, new, slopes, inside):
-    """Size of the step at whose end the flank changes; `above`: how far one of `left` is past."""
+    """Size of the step at whose end the flank changes; `above`: how far one of `left` is past.
+
+    A step may begin where it came onto its flank, also a zero of what is looked for: not that one.
+    """
     low, high, below = 0.0, 1.0, min(beyond(m, flank, y), 0.0)
     share, span = 1.0, above - below
+    begun = below < -NARROW * span
     for turn in range(90):
         share = low + (high - low) * below / (below - above)
-        if turn % 3 == 2 or not low < share < high:
+        if turn % 3 == 2 or not low < share < high or not begun:
             share = 0.5 * (low + high)
         step(m, table, weights, nodes, place, line, flank, share * left, y, new, slopes, inside)
         past = beyond(m, flank, new)
@@ -89,7 +97,8 @@ def located(m, table, weights, nodes, place, line, flank, left, above, y, new, s
             high, above = share, past
         else:
             low, below = share, past
-        if high - low <= NARROW or abs(past) <= NARROW * span:
+            begun = begun or past < -NARROW * span
+        if high - low <= NARROW or (begun and abs(past) <= NARROW * span):
             break
     return share * left
 
@@ -101,7 +110,9 @@ def carried(m, table, weights, nodes, place, line, flank, h, y, new, slopes, ins
     for _ in range(PIECES):
         step(m, table, weights, nodes, place, line, flank, left, y, new, slopes, inside)
         past = beyond(m, flank, new)
-        if past <= 0.0 and swings(m, flank, left, y, new):
+        for _ in range(HALVES):
+            if past > 0.0 or not swings(m, flank, left, y, new, 0.0):
+                break
             left *= 0.5
             step(m, table, weights, nodes, place, line, flank, left, y, new, slopes, inside)
             past = beyond(m, flank, new)
@@ -187,3 +198,9 @@ def flank_now(m, y):
 def past(m, flank, y):
     """How far a state is past the end of its flank [mm]."""
     return beyond(m, flank, y)
+
+
+@entry
+def swung(m, flank, h, y, new, margin):
+    """Whether a motion of h [s] from y to new may have left its flank and come back."""
+    return swings(m, flank, h, y, new, margin)

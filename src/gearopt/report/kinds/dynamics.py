@@ -136,7 +136,13 @@ def speeds(result: Result, measures: Measures) -> Section | None:
     ]
     table = Table("motions over speed", heads, rows, folded=True)
     figures = (plots.over_speed(held, measures), plots.waterfall(held, measures))
-    return Section("Speeds", figures=figures, tables=(table,))
+    worst = max(range(len(held.rms_mm)), key=lambda k: held.rms_mm[k])
+    words = (
+        f"The RMS of the deformation is largest at {held.speed_rpm[worst]:,.0f} rpm: "
+        f"{amount(held.rms_mm[worst], 'um', measures)}, peak to peak "
+        f"{amount(held.peak_to_peak_mm[worst], 'um', measures)}.",
+    )
+    return Section("Speeds", words=words, figures=figures, tables=(table,), terminal=words)
 
 
 def chosen(result: Result, measures: Measures) -> Section | None:
@@ -205,14 +211,14 @@ def rest(result: Result, measures: Measures) -> Section | None:
 SECTIONS = (chosen, motion, speeds, stability, rest)
 KIND = Kind(
     sections=(*FIRST, *SECTIONS, limits, progress, assumptions),
-    terminal=(rest, stability, motion, chosen, limits, summary),
+    terminal=(rest, stability, motion, speeds, chosen, limits, summary),
     tiles=tiles,
     decides=decides,
     warns=warns,
     drawn=False,
     given=Kind(
         sections=(summary, *SECTIONS, assumptions),
-        terminal=(rest, stability, motion, summary),
+        terminal=(rest, stability, motion, speeds, summary),
         tiles=tiles,
         decides=decides,
         warns=warns,

@@ -1,6 +1,7 @@
 """kind = "dynamics": a spur pair on moving axes: response, stability, speeds, least vibration."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -23,6 +24,7 @@ from gearopt.scenes.reading.ask import Ask
 
 __all__ = ["EXAMPLE", "Scene", "compared", "idle", "model", "solve"]
 METHODS = ("screened",)  # its own
+FINE = 10.0  # times in a period of the fastest motion at which it is told, at least
 NOTHING = "the file has no table [optimise], so that nothing is chosen"
 
 
@@ -148,6 +150,8 @@ def warnings(design: DynamicsDesign) -> list[str]:
     """Return what must be known of this answer before its numbers."""
     found = []
     response, stability = design.response, design.stability
+    if response is not None:
+        found += _too_few(response.time_ms, design)
     if response is not None and not response.met:
         found.append(
             f"The error asked, {response.error_asked:.1e}, was not reached: the estimate is "
@@ -170,6 +174,20 @@ def warnings(design: DynamicsDesign) -> list[str]:
             "contact is unstable; an amplitude there says nothing."
         )
     return found
+
+
+def _too_few(times_ms: Sequence[float], design: DynamicsDesign) -> list[str]:
+    """Return what is missed between the times at which a motion is told, where they are few."""
+    fastest = max(design.mesh_frequency_Hz, design.equilibrium.frequencies_Hz[-1])
+    duration = 1e-3 * (times_ms[-1] - times_ms[0])
+    needed = math.ceil(FINE * fastest * duration) + 1
+    if len(times_ms) >= needed:
+        return []
+    return [
+        f"The motion is told at {len(times_ms):,} times, {len(times_ms) / fastest / duration:.2g} "
+        f"in a period of {fastest:,.0f} Hz: peaks, RMS and spectrum may miss what lies between. "
+        f"Take outputs = {needed:,} or a shorter duration."
+    ]
 
 
 def idle(scene: Scene, method: str | None) -> dict[str, str]:

@@ -1,8 +1,10 @@
 """A file of a pair on moving axes as a whole: the pair that it describes, and what must fit."""
 
 import math
+from fractions import Fraction
 from typing import Annotated
 
+import numpy as np
 from pydantic import Field, model_validator
 
 from gearopt.formulations.dynamics.teeth_wave import of_contact
@@ -29,6 +31,7 @@ NEEDED = {  # keys of [mesh] that a shape of the wave asks for; others change no
     "fourier": ("stiffness", "cosines"),
     "pair": ("pair",),
 }
+PHASES = np.linspace(0.0, 1.0, 2001)  # at which a Fourier series is held above zero
 SHAPED = ("stiffness", "depth", "duty", "ramp", "cosines", "sines", "pair")
 
 
@@ -73,12 +76,57 @@ class Scene(Table):
                 raise refuse(rule, float(min(mesh.duty, 1 - mesh.duty)), ("mesh", "ramp"))
         if mesh.kinematics.startswith("paper") and mesh.axes != "plane":
             raise refuse("is of axes in the plane", "plane", ("mesh", "axes"))
+        if mesh.axes == "line" and self._uneven:
+            rule = "is of bearings alike in both directions: else axes leave the line of action"
+            raise refuse(rule, "plane", ("mesh", "axes"))
+        if self._pull <= 0.0:
+            rule = "pulls the teeth apart: the normal load of both torques is not above zero"
+            raise refuse(rule, at=("wheel", "torque"), action="remove")
+        self._check_positive()
         self._check_asked()
         return self
+
+    @property
+    def _pull(self) -> float:
+        """What presses the driving flanks together: above zero where the pinion drives."""
+        if self.wheel.torque is None:
+            return 1.0
+        return sum(
+            r.base_diameter.value * r.torque.value / r.inertia.value
+            for r in (self.pinion, self.wheel)
+            if r.torque is not None
+        )
+
+    @property
+    def _uneven(self) -> bool:
+        """Whether a gear has other bearings across the line of centres than along it."""
+        rotors = self.pinion, self.wheel
+        return any(r.bearing_stiffness_across not in (None, r.bearing_stiffness) for r in rotors)
+
+    def _check_positive(self) -> None:
+        """Refuse a mesh whose stiffness falls to zero or below within its period."""
+        mesh, asked = self.mesh, self.stability
+        if mesh.wave == "fourier" and float(np.min(fourier_of(mesh).value(PHASES))) <= 0.0:
+            rule = "makes the stiffness fall to zero or below within the period"
+            raise refuse(rule, at=("mesh", "cosines"))
+        if mesh.duty is None:
+            return
+        rule = "makes the stiffness fall to zero: below 1/duty"
+        if mesh.depth is not None and mesh.depth * mesh.duty >= 1:
+            raise refuse(rule, round(float(Fraction(9, 10) / mesh.duty), 2), ("mesh", "depth"))
+        if asked is not None and asked.depth[1] * mesh.duty >= 1:
+            low = float(asked.depth[0])
+            ends = [low, round(max(low, float(Fraction(9, 10) / mesh.duty)), 2)]
+            raise refuse(rule, ends, ("stability", "depth"))
 
     def _check_asked(self) -> None:
         """Refuse what is asked of a mesh that cannot give it."""
         mesh = self.mesh
+        ranges = [(("speeds", "range"), self.speeds.range)] if self.speeds else []
+        ranges += [(("optimise", "speeds"), self.optimise.speeds)] if self.optimise else []
+        for place, (low, high) in ranges:
+            if low == high:
+                raise refuse("is one speed: a range has a lower and a higher end", at=place)
         if self.stability is not None and mesh.wave == "constant":
             rule = 'maps a stiffness that changes: wave = "constant" has no map'
             raise refuse(rule, at=("stability",), action="remove")
@@ -86,21 +134,20 @@ class Scene(Table):
             rule = "is missing: a stiffness that changes has a mesh frequency"
             raise refuse(rule, at=("mesh", "speed"))
         curved = mesh.axes == "plane" and mesh.kinematics in ("exact", "paper")
-        uneven = any(r.bearing_stiffness_across is not None for r in (self.pinion, self.wheel))
-        if self.speeds is not None and curved and (uneven or mesh.kinematics == "paper"):
+        if self.speeds is not None and curved and (self._uneven or mesh.kinematics == "paper"):
             rule = (
                 "is by harmonic balance of a mesh whose line of action does not turn: "
-                'axes = "line" or kinematics = "tangent"'
+                'kinematics = "tangent"'
             )
             raise refuse(rule, at=("speeds",), action="remove")
 
     def pair(self, wave: Wave) -> MovingPair:
         """Return the pair with a wave of stiffness."""
         mesh = self.mesh
-        balance = -1.0 if self.wheel.torque is None else self.wheel.torque.value
         drive = self.pinion.torque.value if self.pinion.torque else 0.0
-        if self.wheel.torque is None:
-            balance = drive * self.wheel.base_diameter.value / self.pinion.base_diameter.value
+        balance = drive * self.wheel.base_diameter.value / self.pinion.base_diameter.value
+        if self.wheel.torque is not None:
+            balance = self.wheel.torque.value
         rotors = [
             _rotor(table, torque) for table, torque in ((self.pinion, drive), (self.wheel, balance))
         ]
@@ -167,13 +214,20 @@ def _rotor(table: RotorTable, torque: float) -> Rotor:
     )
 
 
+def fourier_of(mesh: MeshTable) -> Wave:
+    """Return a Fourier series of the stiffness."""
+    assert mesh.stiffness is not None
+    sums = [[c.value for c in each] for each in (mesh.cosines, mesh.sines)]
+    return fourier(mesh.stiffness.value, *sums)
+
+
 def wave_of(mesh: MeshTable, ask: Ask) -> Wave:
     """Return the stiffness over a period that a file describes; of teeth by solving their file."""
     mean = mesh.stiffness.value if mesh.stiffness else 0.0
     if mesh.wave == "constant":
         return constant(mean)
     if mesh.wave == "fourier":
-        return fourier(mean, [c.value for c in mesh.cosines], [c.value for c in mesh.sines])
+        return fourier_of(mesh)
     if mesh.wave == "pair":
         assert mesh.pair is not None
         design = mesh.pair.result(ask).design

@@ -135,7 +135,9 @@ class StabilityTable(Table):
 class SpeedsTable(Table):
     """Periodic motions over a range of speeds."""
 
-    range: Annotated[tuple[Quantity, Quantity], SPEEDS] = Field(description="Speeds of the pinion")
+    range: Annotated[tuple[Quantity, Quantity], SPEEDS] = Field(
+        description="Speeds of the pinion, from the lowest to a higher one"
+    )
     points: Annotated[int, whole(91, 2, 1000)] = Field(91, description="Speeds, equally far apart")
     harmonics: Annotated[int, whole(20, 1, 100)] = Field(
         20, description="Harmonics of the mesh frequency in the motion"
