@@ -37,6 +37,11 @@ class Wave:
         return float(np.sum(0.5 * (self.after + np.roll(self.before, -1)) * self.lengths))
 
     @property
+    def least(self) -> float:
+        """Least stiffness [N/mm] over 2000 phases a period, edges not among them."""
+        return float(np.min(self.value(np.arange(2000) / 2000)))
+
+    @property
     def lengths(self) -> Array:
         """Phase from each edge to the next, (n,)."""
         return np.diff(np.append(self.edges, 1.0))

@@ -4,7 +4,6 @@ import math
 from fractions import Fraction
 from typing import Annotated
 
-import numpy as np
 from pydantic import Field, model_validator
 
 from gearopt.formulations.dynamics.teeth_wave import of_contact
@@ -31,7 +30,6 @@ NEEDED = {  # keys of [mesh] that a shape of the wave asks for; others change no
     "fourier": ("stiffness", "cosines"),
     "pair": ("pair",),
 }
-PHASES = np.linspace(0.0, 1.0, 2001)  # at which a Fourier series is held above zero
 SHAPED = ("stiffness", "depth", "duty", "ramp", "cosines", "sines", "pair")
 
 
@@ -106,7 +104,7 @@ class Scene(Table):
     def _check_positive(self) -> None:
         """Refuse a mesh whose stiffness falls to zero or below within its period."""
         mesh, asked = self.mesh, self.stability
-        if mesh.wave == "fourier" and float(np.min(fourier_of(mesh).value(PHASES))) <= 0.0:
+        if mesh.wave == "fourier" and fourier_of(mesh).least <= 0.0:
             rule = "makes the stiffness fall to zero or below within the period"
             raise refuse(rule, at=("mesh", "cosines"))
         if mesh.duty is None:
