@@ -9,7 +9,9 @@ from functools import cache
 import numpy as np
 
 from gearopt.formulations.relief.meshing import NO_RELIEF, Mesh
+from gearopt.formulations.relief.parametric import Ranges, at_point, problem
 from gearopt.formulations.relief.rules import short_relief, tip_amounts
+from gearopt.optimise.solve import solve
 from gearopt.physics.agma.factors import elastic_coefficient
 from gearopt.physics.gears import GearPair, Rack
 from gearopt.physics.geometry.fillet import profile
@@ -26,6 +28,14 @@ PATH = ELASTIC.path
 FORCE = 5675.614786538198  # N
 COUPLING = 0.784e-6  # mm/N, of plane finite elements
 INCH = 25.4
+BEST = (  # um on 48 even positions, the least that annealing and a local method found: published
+    ("uncoupled", (1.0,), 0.475, 1.494),
+    ("uncoupled", (0.6, 1.0), 1.680, 2.101),
+    ("uncoupled", (0.5, 1.0, 1.25), 2.901, 3.032),
+    ("coupled", (1.0,), 0.456, 1.006),
+    ("coupled", (0.6, 1.0), 1.237, 1.349),
+    ("coupled", (0.5, 1.0, 1.25), 2.033, 2.068),
+)
 EXAMPLE = (1.0e5, 5.0e4), (0.004, 0.001), 1000.0  # stiffnesses [N/mm], amounts [mm], load [N]
 
 
@@ -234,3 +244,34 @@ def rules():
             f"{peak_to_peak(made, both):.2f} | {left:.3f} |"
         )
     return found
+
+
+def sampled(model, loads, steps, exact):
+    """The pair at loads, on even positions and, if exact, on both sides of every break point."""
+    coupling = COUPLING if model == "coupled" else 0.0
+    given = tuple(load * FORCE for load in loads)
+    return Mesh.of(cycle(PATH, steps, exact), compliance, coupling, given)
+
+
+def best(model, loads, exponent):
+    """Least peak-to-peak [um]: on 48 even positions, with break points, that on 480 with these."""
+    found = []
+    for exact in (False, True):
+        made = sampled(model, loads, 48, exact)
+        ranges = Ranges.of(made, exponent)
+        result = solve(problem(made, ranges), "exact")
+        assert result.status == "optimal"
+        found.append(1e3 * result.value)
+    x = np.array([*result.design["amount_mm"], *result.design["length_mm"]])
+    fine = sampled(model, loads, 480, True)
+    finer = fine.criteria(fine.separations(*at_point(x, ranges))).peak_to_peak.max()
+    return *found, 1e3 * float(finer)
+
+
+def best_row(model, loads, *published):
+    """A row of the table of the best relief, linear and parabolic."""
+    cells = []
+    for exponent, known in zip((1.0, 2.0), published, strict=True):
+        cells.append(" / ".join(f"{v:.3f}" for v in (known, *best(model, loads, exponent))))
+    percents = ", ".join(f"{100.0 * load:g}" for load in loads)
+    return f"| {percents} % | {model} | {' | '.join(cells)} |"

@@ -8,6 +8,7 @@ from pathlib import Path
 import hwang
 import numpy as np
 import pytest
+from campaigns import few
 from scipy.integrate import quad
 
 from gearopt.physics.agma.stress import bending_stress, contact_stress
@@ -184,6 +185,16 @@ def test_tables_of_the_page():
     assert found == pytest.approx(tuple(published.values()), abs=0.02)
     for value in found:
         assert f"{value:.2f}" in PAGE
+
+
+@pytest.mark.parametrize("model, loads, straight, curved", few(hwang.BEST, 1))
+def test_best_relief_of_the_published_cases(model, loads, straight, curved):
+    """Proven values below both published ones, and larger as positions are added."""
+    row = hwang.best_row(model, loads, straight, curved)
+    assert f"{row}\n" in PAGE
+    for cell, published in zip(row[2:-2].split(" | ")[2:], (straight, curved), strict=True):
+        known, even, ends, finer = map(float, cell.split(" / "))
+        assert even < known == published and even <= ends <= finer < 1.3 * even
 
 
 def test_every_function_of_the_table_of_equations_is_there():
