@@ -126,6 +126,11 @@ def test_ranges_of_the_file_hold():
         assert flank["amount_mm"] <= 8e-3 * (1 + 1e-9)
         assert 0.3 <= flank["length_mm"] / 8.856394302 <= 0.4 + 1e-9
     assert found.status == free.status == "optimal" and found.value > free.value
+    notes = found.report["notes"][-2:]  # the best of all is deeper and longer
+    assert [note.split(" is ")[1].split(" the range")[0] for note in notes] == 2 * [
+        "as deep and as long as"
+    ]
+    assert not free.report.get("notes")
 
 
 def test_other_criteria_have_no_proven_search_and_say_so():

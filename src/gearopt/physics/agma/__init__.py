@@ -5,6 +5,6 @@ The constants of the standard are those of its form in inches, converted exactly
 rounds them (sqrt(200 v) for sqrt(196.85 v), 0.533 MPa for 77.3 psi). Geometry factors are those of
 AGMA 908-B89, by its analytic method. The older 2001-B88 is there where it differs.
 
-Read from textbooks, public programs and the digest of a paper, not from the standards: where a
+Read from textbooks, public programs and a summary of a paper, not from the standards: where a
 value has a single source, it is marked unverified, and the mark goes with it.
 """

@@ -13,7 +13,7 @@ NITRIDED_CORE = {"nitrided": (255.0, 345.0), "nitralloy": (255.0, 345.0)}  # HB,
 REVERSED = 0.7  # of s_at: idlers and fully reversed loads. AGMA 2001-D04, clause 16; Shigley
 
 # the public program: r3kste/pydome, `Spur`; the table: engineersedge.com
-DIGEST = "2001-D04, 16, as in Shigley, ch. 14, and in a public program"
+PRINTED = "2001-D04, 16, as in Shigley, ch. 14, and in a public program"
 SHIGLEY = "2001-D04, table 4, as in Shigley, table 14-3, and in a transcription"
 TABLE = "2001-D04, table 3, as in a public table of it"
 OLD = "2001-B88; two public programs of its allowables"
@@ -21,15 +21,15 @@ SINGLE = "2001-B88; a single source"
 
 # (treatment, surface, grade): psi per HB, psi, source; surface: "" where it does not matter
 BENDING: dict[tuple[str, str, int], tuple[float, float, str]] = {
-    ("through-hardened", "", 1): (77.3, 12800.0, DIGEST),
-    ("through-hardened", "", 2): (102.0, 16400.0, DIGEST),
-    ("nitrided", "", 1): (82.3, 12150.0, DIGEST),
-    ("nitrided", "", 2): (108.6, 15890.0, DIGEST),
-    ("nitralloy", "", 1): (86.2, 12730.0, DIGEST),
-    ("nitralloy", "", 2): (113.8, 16650.0, DIGEST),
-    ("2.5 % chrome", "", 1): (105.2, 9280.0, DIGEST),
-    ("2.5 % chrome", "", 2): (105.2, 22280.0, DIGEST),
-    ("2.5 % chrome", "", 3): (105.2, 29280.0, DIGEST),
+    ("through-hardened", "", 1): (77.3, 12800.0, PRINTED),
+    ("through-hardened", "", 2): (102.0, 16400.0, PRINTED),
+    ("nitrided", "", 1): (82.3, 12150.0, PRINTED),
+    ("nitrided", "", 2): (108.6, 15890.0, PRINTED),
+    ("nitralloy", "", 1): (86.2, 12730.0, PRINTED),
+    ("nitralloy", "", 2): (113.8, 16650.0, PRINTED),
+    ("2.5 % chrome", "", 1): (105.2, 9280.0, PRINTED),
+    ("2.5 % chrome", "", 2): (105.2, 22280.0, PRINTED),
+    ("2.5 % chrome", "", 3): (105.2, 29280.0, PRINTED),
     ("carburised", "", 1): (0.0, 55000.0, SHIGLEY),
     ("carburised", "", 2): (0.0, 65000.0, SHIGLEY),  # 70000 where bainite and cracks are limited
     ("carburised", "", 3): (0.0, 75000.0, SHIGLEY),
@@ -40,8 +40,8 @@ BENDING: dict[tuple[str, str, int], tuple[float, float, str]] = {
 }
 
 CONTACT: dict[tuple[str, str, int], tuple[float, float, str]] = {
-    ("through-hardened", "", 1): (322.0, 29100.0, DIGEST),
-    ("through-hardened", "", 2): (349.0, 34300.0, DIGEST),
+    ("through-hardened", "", 1): (322.0, 29100.0, PRINTED),
+    ("through-hardened", "", 2): (349.0, 34300.0, PRINTED),
     **{
         (treatment, surface, grade): (0.0, 1000.0 * ksi, TABLE)
         for treatment, surface, values in (

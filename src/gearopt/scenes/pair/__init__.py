@@ -94,13 +94,14 @@ def _with_relief(scene: Scene, made: PairMesh, gears: Result, ask: Ask) -> Resul
     sized = gears.value is not None
     told = sized or bool(gears.limits)
     parts = (replace(gears, name="gears", design={}, report={}),) if told else ()
+    notes = [note for one in (gears, found) for note in one.report.get("notes", [])]
     design = drive_design(gears.design)
     return replace(
         found,
         name="pair",
         design=untyped(replace(design, relief=relief)),
         limits=gears.limits if sized else {},
-        report=gears.report | found.report,
+        report=gears.report | found.report | ({"notes": notes} if notes else {}),
         parts=parts,
     )
 

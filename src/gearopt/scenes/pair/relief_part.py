@@ -29,6 +29,7 @@ from gearopt.scenes.reading.ask import Ask
 SHOWN = {"mm": "mm_as_um"}  # units of criteria as they are read
 DEFAULT = "annealing"  # of what has no proven search
 FEW = 2.0  # contact ratio below which free shapes are searched
+AT_END = 1e-6  # of a range: a value as near to its end is at it
 WORST = 1e-3  # relative gap of a worst case within tolerances
 ROBUST = "the worst case is annealed: without tolerance the least value is proven, with it none is"
 NUMBERS = ("annealing", "nsga2")  # methods that take no derivatives, which a relief has not
@@ -98,7 +99,24 @@ def _parametric(scene: Scene, made: PairMesh, ask: Ask) -> tuple[Result, Removed
     if result.bound is None and method != "exact":
         why = UNBOUND if "exact" in problem.methods else ROBUST if asked.robust else UNPROVEN
         result = replace(result, message=why)
+    if notes := _ends(problem, outcome.x):
+        result = replace(result, report=result.report | {"notes": notes})
     return result, Removed.of(mesh, parametric.at_point(outcome.x, ranges))
+
+
+def _ends(problem: Problem, point: Array) -> list[str]:
+    """Return where an amount or a length ends its range: there a wider one may give less."""
+    low, high, _ = problem.bounds()
+    near = AT_END * (high - low)
+    most, least = (high > low) & (point >= high - near), (high > low) & (point <= low + near)
+    said = []
+    for k, name in enumerate(("pinion", "wheel")):
+        found = {"deep": most[k], "long": most[k + 2], "short": least[k + 2] & (point[k] > 0.0)}
+        words = [f"as {word}" for word, there in found.items() if there]
+        if words:
+            rule = "as the range in [relief] allows: a wider one may give less."
+            said.append(f"The relief of the {name} is {' and '.join(words)} {rule}")
+    return said
 
 
 def _check_method(problem: Problem, method: str | None) -> None:
