@@ -19,6 +19,7 @@ ROUNDING = 3e-13  # error below which halving a step shows rounding, not the met
 SAFETY = 4.0  # times the error that changes by halving tell of the finer run
 MOST = 400_000_000  # rates evaluated, at most: some minute
 CANDIDATES = ("rk8", "rk4", "symplectic", "newmark")
+LOCATING = ("rk8", "rk4")  # those that locate where teeth part and meet
 
 
 @dataclass(frozen=True)
@@ -62,17 +63,18 @@ def simulate(
     """Return the motion whose error of delta is at most `error`, by the method that costs least.
 
     times (outputs,) [s], from the start; state (2 n,): coordinates and velocities there, at rest
-    and unloaded where None. Piecewise linear scenes are solved exactly; else steps of RK8, RK4, the
-    symplectic composition and Newmark's method are halved, always those whose order promises to
-    need the fewest evaluations, until the change says that the error is met.
+    and unloaded where None. Piecewise linear scenes whose teeth never part are solved exactly; else
+    steps of several methods are halved (with backlash of those that locate separations), always of
+    that whose order promises to need the fewest evaluations, until the change says that the error
+    is met.
     """
     state = np.zeros(2 * LEVELS[level][0]) if state is None else state
     intervals = timeline(pair, times)
-    if piecewise_linear(pair, level):
+    if pair.backlash is None and piecewise_linear(pair, level):
         motion = exact_motion(pair, level, intervals, state)
         return Simulated(times, motion, "exponential", EXACT, error >= EXACT, motion.rates, 0.0)
     tried, spent = [], 0
-    for method in CANDIDATES:
+    for method in CANDIDATES if pair.backlash is None else LOCATING:
         if not STEPPERS[method].undamped or conservative(pair, level):
             first = _first(pair, level, intervals, method, state)
             second = _halved(first, intervals, state)
