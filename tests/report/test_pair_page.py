@@ -52,6 +52,7 @@ def test_no_number_of_a_point_is_cut_short_on_a_narrow_terminal(solved, measures
 def test_two_pairs_always_in_contact_leave_no_tooth_alone(solved):
     result = solved("almost_two_pairs")
     found = contact_of(result)
+    assert any("1.9990 is close to 2" in each for each in found.validity)
     assert "over 0.00886 mm of its path (0.1 %)" in answers(found)[0]
     load = replace(of_duty(found), largest_share=0.6)
     other = replace(found, loads=(load,), contact_ratio=2.001)

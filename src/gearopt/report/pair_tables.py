@@ -6,7 +6,8 @@ from typing import Any
 
 from gearopt.formulations.pair_contact import ContactLoad, PairContact
 from gearopt.report.measures import Measures
-from gearopt.report.section import Cell, Table, cell, percent
+from gearopt.report.section import Cell, Table, cell
+from gearopt.report.words import share
 
 STIFFNESS = "N_per_mm_um"  # of MPa
 MakeTable = Callable[[PairContact, Measures], Table]
@@ -53,7 +54,10 @@ def loads(found: PairContact, measures: Measures) -> Table:
     rows = [
         row("normal force", "N", lambda o: o.normal_force_N),
         row("largest load on a tooth", "N", lambda o: o.largest_tooth_force_N),
-        ["the same, % of the normal force", *(percent(o.largest_share) for o in found.loads)],
+        [
+            "the same, % of the normal force",
+            *(Cell(100.0 * o.largest_share, share(o.largest_share)) for o in found.loads),
+        ],
         row("largest contact stress", "MPa", lambda o: o.largest_contact_stress_MPa),
         row("transmission error, mean", "um", lambda o: o.mean_transmission_error_mm),
         row("peak to peak", "um", lambda o: o.peak_to_peak_mm),

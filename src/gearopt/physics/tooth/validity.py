@@ -11,6 +11,7 @@ from gearopt.physics.tooth.trapezoid import is_waisted
 WIDE = 6.0  # modules of face width from which plane strain is nearer to the truth (an assumption)
 EXACT = "finite elements"
 MEASURED = 1.4, 5.0  # bore ratios of the pairs on which `LEVELS` records errors
+WIDEST_ROOT = 0.17  # half angle of a root [rad] up to which they do
 RINGED = ("half plane and ring", "elements")  # bodies that larger ones suit as well: up to 15
 
 
@@ -101,11 +102,11 @@ def _outside_fit(name: str, member: ElasticGear) -> list[str]:
             f"up to {most:g}; at 10 to 15, gears of 12 to 25 teeth were 7 to 36 % stiffer."
         )
     low, high = SAINSOT_HALF_ANGLES
-    if not low <= member.root_half_angle <= high:
+    if not low <= member.root_half_angle <= WIDEST_ROOT:
         found.append(
             f"Half the root of a tooth of the {name} spans {member.root_half_angle:.3f} rad: "
-            f"Sainsot's body was fitted from {low:g} to {high:g} rad; at 0.167 rad stiffness was "
-            "5 to 9 % too low."
+            f"Sainsot's body was fitted from {low:g} to {high:g} rad, and its error is known up to "
+            f"{WIDEST_ROOT:g} rad, where stiffness was 5 to 9 % too low."
         )
     return found
 

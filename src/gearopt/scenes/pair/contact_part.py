@@ -24,6 +24,7 @@ from gearopt.units import Quantity
 Materials = tuple[str, str]
 UNBORED = 3.0  # root circle over the circle at which a gear without a bore is held
 BORNE = 4000.0  # MPa; from it on hardened rollers keep dents (static rating of ISO 76)
+NEAR_WHOLE = 0.02  # of a contact ratio to a whole number, where TE is discontinuous
 LEAST_RATIO = 1.2  # below which ISO 6336-1 has no stiffness, and designers do not go
 
 
@@ -176,4 +177,10 @@ def _validity(made: PairMesh, coupling: str) -> Iterator[str]:
         yield (
             f"The contact ratio of {ratio:.3f} is small: errors of the gears may take contact away "
             f"for a moment; {LEAST_RATIO:g} is a usual minimum."
+        )
+    whole = round(ratio)
+    if whole > 1 and abs(ratio - whole) < NEAR_WHOLE:
+        yield (
+            f"The contact ratio of {ratio:.4f} is close to {whole}, at which the transmission "
+            "error jumps with it: errors of the gears decide on which side it is."
         )
