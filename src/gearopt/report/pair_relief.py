@@ -99,8 +99,9 @@ def _as_made(made: MadeRelief) -> str:
     return (
         f"As it is made, with {off}, the transmission error varies by up to "
         f"{1e3 * made.worst_mm:.4g} µm, peak to peak, and by no more than "
-        f"{1e3 * made.bound_mm:.4g} µm (proven); the worst has {pinion:.2f} µm off the pinion and "
-        f"{wheel:.2f} µm off the wheel. Of {made.drawn:,} drawn ones half stay below "
+        f"{1e3 * made.bound_mm:.4g} µm (proven of the computed positions); the worst has "
+        f"{pinion:.2f} µm off the pinion and {wheel:.2f} µm off the wheel. Of "
+        f"{made.drawn:,} drawn ones half stay below "
         f"{1e3 * made.median_mm:.4g} µm and 95 % below {1e3 * made.most_mm:.4g} µm."
     )
 

@@ -20,6 +20,7 @@ FINE = 60  # of its plot
 TICKS = 6  # diameters above a plot
 PANELS = 4  # loads whose harmonics stand side by side, at most
 GAP = 0.04  # between them, of the width
+BARS = {"type": "bar", "hovertemplate": "%{y:.3f}", "showlegend": False}
 HEARD = (
     "Amplitudes of the transmission error at the mesh frequency and its multiples: grey without "
     "relief, coloured with it."
@@ -166,18 +167,9 @@ def _bars(
         order = list(range(1, len(before.harmonics_mm) + 1))
         colour = series(found.loads.index(before) + 1)
         for said, one, paint in (("without", before, "--axis"), ("with", after, colour)):
-            traces.append(
-                {
-                    "type": "bar",
-                    "name": f"{said} relief",
-                    "x": order,
-                    "y": [round(micro * v, 5) for v in one.harmonics_mm],
-                    "xaxis": name,
-                    "marker": {"color": paint},
-                    "hovertemplate": "%{y:.3f}",
-                    "showlegend": False,
-                }
-            )
+            heights = [round(micro * v, 5) for v in one.harmonics_mm]
+            own = {"name": f"{said} relief", "xaxis": name, "marker": {"color": paint}}
+            traces.append(BARS | own | {"x": order, "y": heights})
         axes[f"xaxis{name[1:]}"] = axis(
             "multiple of the mesh frequency",
             domain=[start, min(1.0, start + wide)],
