@@ -123,6 +123,24 @@ def test_every_start_leads_to_the_same_design(start):
 
 
 @pytest.mark.slow
+def test_a_budget_that_ends_in_a_later_round_leaves_the_design_of_the_one_before(monkeypatch):
+    """The first round knows no cut: its teeth cut each other by 0.3 mm, and that is told."""
+    calls = []
+
+    def stops(posed, *args, **options):
+        calls.append(posed)
+        result, outcome = run(posed, *args, **options)
+        if len(calls) == 1:
+            return result, outcome
+        return replace(result, status="limit", objective={}), replace(outcome, x=None)
+
+    monkeypatch.setattr("gearopt.formulations.strain_wave.exchange.run", stops)
+    found = exchange(DEMAND, np.array(STARTS[0]), Clock(Budget(seconds=60.0)))
+    assert len(calls) == 2 and len(found.rounds) == 1
+    assert found.design.complete and not found.clear and -0.4 < found.gap < -0.25  # mm
+
+
+@pytest.mark.slow
 def test_samplers_come_near_and_interference_is_looked_for_behind_them():
     made = sampled.problem(DEMAND, np.array(STARTS[0]))
     for method in ("annealing", "nsga2"):

@@ -70,25 +70,29 @@ def exchange(
     """Return the design of least pressure by equal sharing that interferes at no pose.
 
     start (6,): numbers in the order of FREE. minimise: PRESSURE or VOLUME, with the largest values
-    `most` of these. Every round begins at the
-    last design. Its bound, if any, and its status are those of the problem of the last round.
+    `most` of these. Every round begins at the last design. Its bound, if any, and its status are
+    those of the problem of the last round; of the one before where the budget ends in a round.
     """
     cuts: frozenset[Cut] = frozenset()
     rounds: list[Round] = []
     numbers = np.asarray(start, float)
+    last: Exchanged | None = None
     while True:
         posed = problem(demand, numbers, tuple(sorted(cuts)), minimise, most)
         result, outcome = run(posed, "ipopt", clock.left, watch=clock.inner(values=False), gap=gap)
         clock.evaluations += outcome.evaluations
         if result.value is None or outcome.x is None:
+            if last and result.status == "limit":
+                return last
             return Exchanged(result, outcome, posed, None, -np.inf, tuple(rounds))
         numbers = outcome.x[: len(FREE)]
         made = design_of(demand, numbers)
         least = interference(made, STEP_DEG, POINTS).least
         rounds.append(Round(result.value, len(cuts), least, outcome.evaluations))
         new = _cutting(made, len(rounds) <= FEW) - cuts
+        last = Exchanged(result, outcome, posed, made, least, tuple(rounds))
         if not new or len(rounds) == ROUNDS or not clock.tell():
-            return Exchanged(result, outcome, posed, made, least, tuple(rounds))
+            return last
         cuts |= new
 
 
