@@ -227,8 +227,10 @@ def followed(pair: MovingPair, level: str, frequencies: Array, harmonics: int) -
         leaps = not made.found or (found and made.rms > LEAP * max(found[-1].rms, simple.rms))
         if leaps and simple.extremes[1] <= 0.0:
             made, leaps = simple, False
-        found.append(_settled(pair, level, float(frequency)) if leaps else _balanced(made))
-        last = made if not leaps and made.extremes[1] > 0.0 else None
+        if leaps:
+            kept, made = _settled(pair, level, float(frequency))
+        found.append(kept if leaps else _balanced(made))
+        last = made if made.extremes[1] > 0.0 else None
     return found
 
 
@@ -239,13 +241,14 @@ def _balanced(made: Orbit) -> Found:
     return Found(made.rms, *made.extremes, amplitudes)
 
 
-def _settled(pair: MovingPair, level: str, frequency: float) -> Found:
-    """Return what a simulation comes to, over its last KEPT periods."""
+def _settled(pair: MovingPair, level: str, frequency: float) -> tuple[Found, Orbit]:
+    """Return what a simulation comes to over its last KEPT periods, and as the next one's guess."""
     slow = replace(pair, mesh_frequency=frequency)
-    times = np.arange((SETTLED + KEPT) * LOOKS + 1) / (LOOKS * frequency)
+    times = np.arange((SETTLED + KEPT) * LOOKS) / (LOOKS * frequency)
     longest = fastest(slow, level) / STEPS
     start = resting(pair, level)
     delta = march(slow, level, timeline(slow, times), "rk8", longest, start).delta[-KEPT * LOOKS :]
-    lines = 2.0 * np.abs(np.fft.rfft(delta)) / delta.size
-    orders = lines[KEPT : KEPT * ORDERS + 1 : KEPT]
-    return Found(float(delta.std()), float(delta.min()), float(delta.max()), orders)
+    lines = np.fft.rfft(delta)[::KEPT] / delta.size
+    orders = 2.0 * np.abs(lines[1 : ORDERS + 1])
+    kept = Found(float(delta.std()), float(delta.min()), float(delta.max()), orders)
+    return kept, Orbit(frequency, lines)
