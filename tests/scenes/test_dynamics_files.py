@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import gearopt
+from gearopt.cli.app import exit_code
 from gearopt.errors import SceneError, SolveError
 from gearopt.formulations.dynamics.dynamics_parts import own_depth, scaled
 from gearopt.formulations.dynamics.teeth_wave import of_contact
@@ -183,3 +184,34 @@ def test_least_vibration_says_what_lies_between_its_speeds(solved):
     assert max(chosen["before_mm"]) > 5.0 * max(chosen["dense_mm"])
     content = tomllib.loads((PROBLEMS / "least_vibration.toml").read_text())
     assert chosen["mass_kg"] < float(content["optimise"]["mass"].split()[0])
+
+
+@pytest.mark.parametrize(
+    ("looks", "missing"),
+    [
+        (0, "the motion in time, 8 of 8 rows of the map, 12 of 12 speeds"),
+        (10, "2 of 8 rows of the map, 12 of 12 speeds"),
+        (20, "4 of 12 speeds"),
+    ],
+)
+def test_a_watcher_ends_a_motion_with_what_there_is(tmp_path, looks, missing):
+    """It is asked before the motion, between its runs, before a row and before a speed."""
+    path, seen = tmp_path / "motion.toml", []
+    text = changed(
+        ('duration = "20 ms"\nerror = 1e-6', 'duration = "2 ms"\nerror = 1e-3'),
+        ("frequencies = 136", "frequencies = 5\ndepths = 8"),
+        ("points = 116", "points = 12"),
+        ('backlash = "0.1 mm"', ""),
+    )
+    path.write_text(text)
+
+    def watch(event):
+        seen.append(event)
+        return len(seen) <= looks
+
+    result = gearopt.solve(path, watch=watch)
+    assert (result.status, result.message) == ("limit", f"Stopped early: {missing} missing.")
+    assert len(seen) == looks + 1 and exit_code(result) == 0
+    assert result.design["equilibrium"]["normal_load_N"] == pytest.approx(2e5 / 60.0)
+    assert ("response" in result.design) == (looks > 0)
+    assert missing in result.to_html() and "no design" not in repr(result)

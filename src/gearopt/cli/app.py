@@ -90,7 +90,7 @@ def options(
 def exit_code(result: Result) -> int:
     """Return exit code of a result."""
     if result.status == "limit":
-        return 4 if result.value is None else 0
+        return 4 if result.value is None and not result.given else 0
     if result.status == "evaluated":  # a rating answers its question, safe or not
         return 0 if result.feasible or "rating" in result.design else 3
     return EXIT[result.status]

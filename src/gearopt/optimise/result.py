@@ -120,7 +120,7 @@ class Result:
     status: optimal (our bound within the stated gap), stationary (a local minimum, its bound, if
     there is one, further off), feasible, evaluated (nothing was minimised; `feasible` says whether
     the design given meets all limits), infeasible (proven), limit (stopped early), failed.
-    objective: {name, value, unit}; of status evaluated it may be empty.
+    objective: {name, value, unit}; empty where nothing was minimised.
     bound: nothing feasible is better; gap: (objective - bound)/|objective|, of an objective of zero
     relative to certificate["scale"], its own scale. proof: {method, sentence, ...}. certificate:
     {feasibility, stationarity, complementarity}. limits: utilisations by name. multipliers: shadow
@@ -162,6 +162,12 @@ class Result:
         """Return the objective's value, None without a feasible design."""
         found = self.objective.get("value")
         return None if found is None else float(found)
+
+    @property
+    def given(self) -> bool:
+        """Return whether a given design was evaluated, wholly or until the run was stopped."""
+        stopped = self.status == "limit" and not self.objective and bool(self.design)
+        return self.status == "evaluated" or stopped
 
     @property
     def feasible(self) -> bool:
@@ -283,7 +289,7 @@ def _check_sorts(data: Mapping[str, Any]) -> None:
     value = data["objective"].get("value")
     if not isinstance(value, int | float | None):
         raise ValueError("has an objective whose value is no number")
-    absent = "" if data["status"] == "evaluated" else None
+    absent = "" if data["status"] in ("evaluated", "limit") else None
     words = [data["objective"].get("name", absent), data["objective"].get("unit", "")]
     if not all(isinstance(word, str) for word in words):
         raise ValueError("has an objective without a name, or whose unit is no text")

@@ -106,7 +106,7 @@ def _effort(result: Result) -> str:
 
 def limits(result: Result, measures: Measures) -> Section | None:
     """Return the utilisation of every limit; None without limits."""
-    if not result.limits or (result.value is None and result.status != "evaluated"):
+    if not result.limits or (result.value is None and not result.given):
         return None
     stages, rows = limit_rows(result.limits, has_stages(result))
     heads = ["limit used, %", *(f"stage {k}" for k in range(1, stages + 1)), kind_of(result).whole]
@@ -171,10 +171,11 @@ def meaning(result: Result) -> str:
         if of_gears_first(result):
             return "Proven: no layout of these gears meets all limits. Others were not tried."
         return "Proven: no design meets all limits."
-    if status == "evaluated":
+    if result.given:
         met = "meets all limits" if result.feasible else "does not meet all limits"
         ends = f"; it {met}" if result.limits else ""
-        return f"The given design was evaluated, not optimised{ends}."
+        early = "The run ended early. " if status == "limit" else ""
+        return f"{early}The given design was evaluated, not optimised{ends}."
     if status == "stationary":
         return "No small change improves the design; a better one may exist elsewhere."
     if result.value is None:

@@ -29,9 +29,9 @@ def lead(result: Result, own: str = "") -> str:
     """
     if result.status == "infeasible":
         return _impossible(result)
-    if result.value is None and result.status != "evaluated":
+    if result.value is None and not result.given:
         return f"{_stopped(result)}: no design was found, which does not prove that there is none"
-    if own or result.status != "evaluated":
+    if own or not result.given:
         return own or of_limits(result)
     over = _over(result.limits, has_stages(result))
     return f"the given design exceeds {series_of(over)}" if over else of_limits(result)

@@ -86,7 +86,7 @@ def tables(result: Result, measures: Measures) -> Section | None:
     found = [stage_table(stages, measures)] if stages else []
     found += tables_of("", design, measures)
     short = [table for table in found if table.name in ("stages", "totals")]
-    known = result.value is not None or result.status == "evaluated"
+    known = result.value is not None or result.given
     return Section("Design", tables=found, terminal=short if known else ())
 
 

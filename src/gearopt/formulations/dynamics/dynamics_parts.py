@@ -19,6 +19,7 @@ from gearopt.formulations.motion.integrate import march
 from gearopt.formulations.motion.simulate import fastest, simulate
 from gearopt.formulations.motion.stability import bands, largest, stability_map
 from gearopt.formulations.motion.timeline import timeline
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.terms import Array
 from gearopt.physics.motion.linear import Linear, Static, linear, mesh_shares, modes, static
 from gearopt.physics.motion.moving_pair import MovingPair
@@ -82,14 +83,19 @@ def resting(pair: MovingPair, level: str) -> Array:
 
 
 def response(
-    pair: MovingPair, level: str, span: tuple[float, int], error: float, from_load: bool
+    pair: MovingPair,
+    level: str,
+    span: tuple[float, int],
+    error: float,
+    from_load: bool,
+    clock: Clock,
 ) -> Response:
     """Return the motion from rest, unloaded or in the equilibrium, to an error that is asked.
 
     span: how long [s], and how many outputs.
     """
     start, times = resting(pair, level), np.linspace(0.0, *span)
-    made = simulate(pair, level, times, error, start if from_load else 0.0 * start)
+    made = simulate(pair, level, times, error, start if from_load else 0.0 * start, clock)
     delta, later = made.motion.delta, len(times) // 2
     steady = delta[later:] - delta[later:].mean()
     window = np.hanning(steady.size)
@@ -146,11 +152,18 @@ def own_depth(wave: Wave) -> float:
     return float(np.ptp(ends) / wave.mean)
 
 
-def stability(pair: MovingPair, level: str, across: Grid, up: Grid) -> Stability:
-    """Return multipliers over mesh frequencies [Hz] and depths of the pair's own shape of wave."""
+def stability(
+    pair: MovingPair, level: str, across: Grid, up: Grid, clock: Clock
+) -> Stability | None:
+    """Return multipliers over mesh frequencies [Hz] and depths of the pair's own shape of wave.
+
+    Of the least depths alone where the clock stops; None where it leaves no two of them.
+    """
     frequencies, depths = np.linspace(*across), np.linspace(*up)
     system, wave = around(pair, level), pair.wave
-    growth = stability_map(system, [scaled(wave, float(d)) for d in depths], frequencies)
+    growth = stability_map(system, [scaled(wave, float(d)) for d in depths], frequencies, clock)
+    if len(growth) < 2:
+        return None
     own = largest(system, wave, frequencies)
     here = None
     if pair.mesh_frequency > 0.0:
@@ -168,7 +181,7 @@ def stability(pair: MovingPair, level: str, across: Grid, up: Grid) -> Stability
     ]
     return Stability(
         frequency_Hz=columns(frequencies),
-        depth=columns(depths),
+        depth=columns(depths[: len(growth)]),
         growth=tuple(columns(row, 6) for row in growth),
         unstable_percent=100.0 * float(np.mean(growth > 1.0 + 1e-6)),
         own_depth=own_depth(wave),
@@ -188,17 +201,23 @@ class Found(NamedTuple):
     amplitudes: Array
 
 
-def over_speeds(pair: MovingPair, level: str, teeth: int, grid: Grid, harmonics: int) -> Speeds:
+def over_speeds(
+    pair: MovingPair, level: str, teeth: int, grid: Grid, harmonics: int, clock: Clock | None = None
+) -> Speeds:
     """Return periodic motions over speeds of the pinion, followed up and down where teeth part.
 
-    grid: least and largest speed [rpm], and how many.
+    grid: least and largest speed [rpm], and how many. Where the clock stops, only the speeds that
+    were followed in both directions.
     """
-    speeds_rpm = np.linspace(*grid)
+    clock, speeds_rpm = clock or Clock(), np.linspace(*grid)
     frequencies = teeth * np.asarray(speeds_rpm) / 60.0
-    rising = followed(pair, level, frequencies, harmonics)
+    rising = followed(pair, level, frequencies, harmonics, clock)
+    done = slice(0, len(rising))
     falling = rising
     if pair.backlash is not None:
-        falling = followed(pair, level, frequencies[::-1], harmonics)[::-1]
+        falling = followed(pair, level, frequencies[done][::-1], harmonics, clock)[::-1]
+        done = slice(len(rising) - len(falling), len(rising))
+    speeds_rpm, frequencies, rising = speeds_rpm[done], frequencies[done], rising[done]
     grown = largest(around(pair, level), pair.wave, frequencies)
     return Speeds(
         speed_rpm=columns(speeds_rpm),
@@ -211,15 +230,20 @@ def over_speeds(pair: MovingPair, level: str, teeth: int, grid: Grid, harmonics:
     )
 
 
-def followed(pair: MovingPair, level: str, frequencies: Array, harmonics: int) -> list[Found]:
+def followed(
+    pair: MovingPair, level: str, frequencies: Array, harmonics: int, clock: Clock
+) -> list[Found]:
     """Return the motions at frequencies [Hz], by harmonic balance, each from the one before.
 
     Linear ones are solved. Where Newton's method does not end, or leaps, the motion is the one that
-    a simulation of SETTLED periods from the equilibrium comes to.
+    a simulation of SETTLED periods from the equilibrium comes to. Of the first alone where the
+    clock stops.
     """
     found: list[Found] = []
     last: Orbit | None = None
     for frequency in frequencies:
+        if not clock.tell():
+            break
         simple = linear_orbit(pair, level, float(frequency), harmonics)
         made = simple
         if pair.backlash is not None and (simple.extremes[1] > 0.0 or last is not None):

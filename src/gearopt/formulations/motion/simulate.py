@@ -8,6 +8,7 @@ import numpy as np
 from gearopt.formulations.motion.exponential import exact_motion, piecewise_linear
 from gearopt.formulations.motion.integrate import STEPPERS, Marched, conservative, march
 from gearopt.formulations.motion.timeline import Timeline, timeline
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.terms import Array
 from gearopt.physics.motion.accelerations import LEVELS
 from gearopt.physics.motion.linear import linear, modes
@@ -58,7 +59,12 @@ class _Try:
 
 
 def simulate(
-    pair: MovingPair, level: str, times: Array, error: float, state: Array | None = None
+    pair: MovingPair,
+    level: str,
+    times: Array,
+    error: float,
+    state: Array | None = None,
+    clock: Clock | None = None,
 ) -> Simulated:
     """Return the motion whose error of delta is at most `error`, by the method that costs least.
 
@@ -66,15 +72,18 @@ def simulate(
     and unloaded where None. Piecewise linear scenes whose teeth never part are solved exactly; else
     steps of several methods are halved (with backlash of those that locate separations), always of
     that whose order promises to need the fewest evaluations, until the change says that the error
-    is met.
+    is met, or the clock stops.
     """
-    state = np.zeros(2 * LEVELS[level][0]) if state is None else state
+    state, clock = np.zeros(2 * LEVELS[level][0]) if state is None else state, clock or Clock()
     intervals = timeline(pair, times)
     if pair.backlash is None and piecewise_linear(pair, level):
         motion = exact_motion(pair, level, intervals, state)
         return Simulated(times, motion, "exponential", EXACT, error >= EXACT, motion.rates, 0.0)
-    tried, spent = [], 0
+    tried: list[_Try] = []
+    spent = 0
     for method in CANDIDATES if pair.backlash is None else LOCATING:
+        if tried and not clock.tell():
+            break
         if not STEPPERS[method].undamped or conservative(pair, level):
             first = _first(pair, level, intervals, method, state)
             second = _halved(first, intervals, state)
@@ -82,7 +91,7 @@ def simulate(
             spent += second.spent
     while True:
         best = min(tried, key=lambda t: (t.error > error, t.ahead(error)))
-        if best.error <= error or spent + 2 * best.motion.rates > MOST:
+        if best.error <= error or spent + 2 * best.motion.rates > MOST or not clock.tell():
             break
         finer = _halved(best, intervals, state)
         spent += finer.motion.rates

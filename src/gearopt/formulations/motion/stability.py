@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearopt.formulations.motion.integrate import eighth
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.kernels import kernel
 from gearopt.optimise.terms import Array
 from gearopt.physics.motion.linear import Linear, modes
@@ -62,9 +63,19 @@ def largest(system: Linear, wave: Wave, frequencies: Array) -> Array:
     return np.asarray(np.max(np.abs(np.linalg.eigvals(found)), axis=-1))
 
 
-def stability_map(system: Linear, waves: list[Wave], frequencies: Array) -> Array:
-    """Return the largest |multiplier| of every wave at every mesh frequency [Hz], (W, F)."""
-    return np.array([largest(system, wave, frequencies) for wave in waves])
+def stability_map(
+    system: Linear, waves: list[Wave], frequencies: Array, clock: Clock | None = None
+) -> Array:
+    """Return the largest |multiplier| of every wave at every mesh frequency [Hz], (W, F).
+
+    Of the first waves alone where the clock stops.
+    """
+    rows, clock = [], clock or Clock()
+    for wave in waves:
+        if not clock.tell():
+            break
+        rows.append(largest(system, wave, frequencies))
+    return np.reshape(rows, (len(rows), len(frequencies)))
 
 
 def bands(frequencies: Array, largest: Array) -> list[tuple[float, float]]:

@@ -34,8 +34,7 @@ class Kind:
     what decides a design, "" where its limits say it; figures: what ends that sentence where no
     key figures stand beside. warns: sentences to be read before the numbers. drawn: whether there
     is a drawing of its designs. whole: what a limit of no single stage belongs to, the head of that
-    column. given: what is shown of designs that were given, status `evaluated`, where that is
-    something else.
+    column. given: what is shown of designs that were given, where that is something else.
     """
 
     sections: tuple[MakeSection, ...]
@@ -54,7 +53,7 @@ class Kind:
 def kind_of(result: Result) -> Kind:
     """Return what is shown of a result: what its kind says, else what all kinds have."""
     found = kind_named(result.scene)
-    return found.given if found.given and result.status == "evaluated" else found
+    return found.given if found.given and result.given else found
 
 
 def kind_named(name: str | None) -> Kind:

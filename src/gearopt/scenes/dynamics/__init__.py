@@ -36,15 +36,17 @@ def solve(scene: Scene, ask: Ask) -> Result:
         return _optimised(scene, ask, pair, clock)
     if ask.method is not None:
         raise SolveError(f"--method {ask.method} changes nothing here: {NOTHING}; leave it out")
-    design = _design(scene, pair, scene.mesh.axes)
+    design = _design(scene, pair, scene.mesh.axes, clock)
+    missing = _missing(scene, design) if clock.stopped else ""
     found = Result(
         name="dynamics",
-        status="evaluated",
+        status="limit" if missing else "evaluated",
         method=design.response.method if design.response else "modes",
         objective={},
         certificate={"feasibility": 0.0},
         design=untyped(replace(design, warnings=tuple(warnings(design)))),
         report={"assumptions": assumptions(scene)},
+        message=missing,
         evaluations=1,
         seed=ask.seed,
         versions=versions("numpy"),
@@ -76,7 +78,10 @@ def _optimised(scene: Scene, ask: Ask, before: MovingPair, clock: Clock) -> Resu
     values = tuple(float(v) for v in list(result.design.values())[: len(VARIABLES)])
     best = chosen(task, values, before, rounds)
     at = best.dense_rpm[best.dense_mm.index(max(best.dense_mm))]
-    design = replace(_design(scene, pair_of(task, values, at), "line"), chosen=best)
+    design = replace(_design(scene, pair_of(task, values, at), "line", clock), chosen=best)
+    if clock.stopped:
+        text = f"{result.message} {_missing(scene, design)}".strip()
+        result = replace(result, message=text)
     said = (*_between(best, MICRO * float(told["value"])), *warnings(design))
     design, report = replace(design, warnings=said), {"assumptions": assumptions(scene)}
     limits = {k: v for k, v in result.limits.items() if "[" not in k}
@@ -99,23 +104,24 @@ def _between(best: Chosen, objective: float) -> list[str]:
     ]
 
 
-def _design(scene: Scene, pair: MovingPair, level: str) -> DynamicsDesign:
-    """Return what the tables of the file ask of a pair."""
+def _design(scene: Scene, pair: MovingPair, level: str, clock: Clock) -> DynamicsDesign:
+    """Return what the tables of the file ask of a pair, or what of it there is in time."""
     simulate, stability, speeds = scene.simulate, scene.stability, scene.speeds
     response = mapped = motions = None
-    if simulate is not None:
+    if simulate is not None and clock.tell():
         span, loaded = simulate.duration.value, simulate.start == "equilibrium"
         error = float(simulate.error)
-        response = parts.response(pair, level, (span, simulate.outputs), error, loaded)
+        response = parts.response(pair, level, (span, simulate.outputs), error, loaded, clock)
     if stability is not None:
         low, high = (end.value for end in stability.mesh_frequency)
         first, last = (float(depth) for depth in stability.depth)
         across, up = (low, high, stability.frequencies), (first, last, stability.depths)
-        mapped = parts.stability(pair, level, across, up)
+        mapped = parts.stability(pair, level, across, up, clock)
     if speeds is not None:
         low, high = (30.0 / math.pi * end.value for end in speeds.range)
         grid = low, high, speeds.points
-        motions = parts.over_speeds(pair, level, scene.mesh.teeth, grid, speeds.harmonics)
+        motions = parts.over_speeds(pair, level, scene.mesh.teeth, grid, speeds.harmonics, clock)
+        motions = motions if len(motions.speed_rpm) > 1 else None
     return DynamicsDesign(
         kinematics=pair.kinematics,
         axes=level,
@@ -125,6 +131,25 @@ def _design(scene: Scene, pair: MovingPair, level: str) -> DynamicsDesign:
         stability=mapped,
         speeds=motions,
     )
+
+
+def _missing(scene: Scene, design: DynamicsDesign) -> str:
+    """Return what a run that was stopped leaves out, as a sentence; "" where it is complete."""
+    simulate, stability, speeds = scene.simulate, scene.stability, scene.speeds
+    found = []
+    if simulate is not None and design.response is None:
+        found.append("the motion in time")
+    elif design.response is not None and not design.response.met:
+        found.append("the error asked of the motion")
+    if stability is not None:
+        rows = len(design.stability.depth) if design.stability else 0
+        if rows < stability.depths:
+            found.append(f"{stability.depths - rows} of {stability.depths} rows of the map")
+    if speeds is not None:
+        done = len(design.speeds.speed_rpm) if design.speeds else 0
+        if done < speeds.points:
+            found.append(f"{speeds.points - done} of {speeds.points} speeds")
+    return f"Stopped early: {', '.join(found)} missing." if found else ""
 
 
 def assumptions(scene: Scene) -> list[str]:
