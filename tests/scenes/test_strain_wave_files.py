@@ -143,13 +143,13 @@ def test_a_sampler_tells_what_it_hides():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("ratio", "diameter"), [(30, "90 mm"), (320, "90 mm"), (100, "200 mm")])
+@pytest.mark.parametrize(("ratio", "diameter"), [(30, "90 mm"), (100, "200 mm")])
 def test_other_ratios_and_sizes_from_a_duty_alone(ratio, diameter):
     torque = "100 N m" if diameter == "90 mm" and ratio < 100 else "30 N m"
     text = FROM_DUTY.replace("ratio = 80", f"ratio = {ratio}").replace("90 mm", diameter)
     text = text.replace("100 N m", torque).replace("[cutter]\n", "")
     found = gearopt.solve(scene(text))
-    assert found.status in ("stationary", "feasible") and found.feasible
+    assert found.status == "stationary"
     assert found.design["flexspline_teeth"] == 2 * ratio
     assert found.design["least_clearance_mm"] >= 0.0
     assert found.design["outer_diameter_mm"] <= float(diameter.split()[0]) * (1 + 1e-8)

@@ -54,5 +54,8 @@ def notes(made: WaveDesign) -> list[str]:
             f"{made.least_clearance_at_deg:.4g} degrees."
         )
     else:
-        found.append(f"No teeth interfere at any pose of the wave, looked at every {STEP_DEG} deg.")
+        found.append(
+            f"No teeth interfere at poses {STEP_DEG} deg apart over the whole wave; where a tip "
+            "passes the other's tip circle between two of them they may, by some tenths of a µm."
+        )
     return found
