@@ -7,7 +7,7 @@ import pytest
 from campaigns import few
 from relief_pairs import COUPLING, LOAD, mesh
 
-from gearopt.formulations.relief.meshing import Mesh
+from gearopt.formulations.relief.meshing import Mesh, Relief
 from gearopt.formulations.relief.parametric import Ranges, at_point, problem
 from gearopt.formulations.relief.relief_search import numbers
 from gearopt.optimise.solve import Budget, solve
@@ -140,6 +140,25 @@ def test_one_load_under_a_limit_at_another(part):
     assert found.bound < annealed.value < 1.3 * found.value
     none = solve(problem(made, ranges, ("peak_to_peak_at_2",), {"peak_to_peak_at_1": 0.99 * least}))
     assert none.status == "infeasible" and "none keeps to these limits" in none.message
+
+
+@pytest.mark.parametrize("loads, most", [((1.0, 0.1), 2.3093e-3), ((0.6, 1.0), 1.7104e-3)])
+def test_nothing_within_a_limit_is_below_the_bound(loads, most):
+    """Of thousands of reliefs, anywhere and about the answer, shared by numpy's closed form."""
+    made = mesh(loads, COUPLING, 12)
+    ranges, rng = Ranges.of(made), np.random.default_rng(0)
+    limits = {"peak_to_peak_at_1": most}
+    posed = problem(made, ranges, ("peak_to_peak_at_2",), limits)
+    found = solve(posed, "exact", Budget(gap=1e-3), gap=2e-3)
+    low, high, _ = posed.bounds()
+    x = np.array([*found.design["amount_mm"], *found.design["length_mm"]])
+    about = x + rng.normal(size=(4000, 4)) * 10 ** rng.uniform(-5, -0.5, (4000, 1)) * (high - low)
+    points = np.vstack([rng.uniform(low, high, (4000, 4)), np.clip(about, low, high)])
+    columns = Relief(points[:, 0], points[:, 2]), Relief(points[:, 1], points[:, 3])
+    peaks = made.criteria(made.separations(*columns)).peak_to_peak
+    allowed = peaks[:, 0] <= most
+    assert found.status == "optimal" and allowed.sum() > 400
+    assert found.bound <= peaks[allowed, 1].min() < 1.01 * found.bound
 
 
 def test_given_numbers_and_an_early_end():

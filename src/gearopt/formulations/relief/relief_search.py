@@ -216,11 +216,12 @@ def _searched(
         if not parts and (low < high).any():
             floor = 0.0 if goal.limited else min(floor, least)
         for ends in parts:
-            found, x, measures = made.bound(goal.weights(aim()), *ends, aim())
+            sought = aim()  # of the weights, with which alone a bound says anything under limits
+            found, x, measures = made.bound(goal.weights(sought), *ends, sought)
             clock.evaluations += 1
             if (value := goal.value(measures)) < best:
                 best, point = value, x
-            if found < aim() or not goal.limited:
+            if found < sought or not goal.limited:
                 turn += 1
                 heapq.heappush(boxes, (max(found, least * (not goal.limited)), turn, *ends))
     rest = aim() if goal.limited else min([np.inf, *(box[0] for box in boxes[:1])])
