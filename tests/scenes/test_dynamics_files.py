@@ -56,6 +56,24 @@ def test_what_does_not_fit_is_refused_with_its_key(pairs, key, rule):
     assert wrong.value.key == key
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "key", "rule"),
+    [
+        ("[wheel]", '[wheel]\ntorque = "0 N m"', "wheel.torque", "torques balance"),
+        ("0.02\n\n[mesh]", "0.03\n\n[mesh]", "wheel.bearing_damping", "the pinion's"),
+        ('axes = "line"', 'axes = "plane"', "mesh.axes", "along the line of action"),
+        ("[mesh]", '[mesh]\nkinematics = "tangent"', "mesh.kinematics", "changes nothing"),
+        ("[mesh]", '[mesh]\nbacklash = "0.1 mm"', "mesh.backlash", "changes nothing"),
+    ],
+)
+def test_what_an_optimisation_would_leave_out_is_refused(old, new, key, rule):
+    text = (PROBLEMS / "least_vibration.toml").read_text()
+    read(changed(("[wheel]", '[wheel]\ntorque = "266.6666666667 N m"'), text=text).encode())
+    with pytest.raises(SceneError, match=rule) as wrong:
+        read(changed((old, new), text=text).encode())
+    assert wrong.value.key == key and "optimise" in str(wrong.value)
+
+
 def test_a_fourier_series_stays_above_zero():
     """200 + 199 cos is above zero, 200 + 199 cos + 20 sin is not."""
     made = changed(

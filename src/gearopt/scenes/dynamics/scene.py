@@ -82,6 +82,7 @@ class Scene(Table):
             raise refuse(rule, at=("wheel", "torque"), action="remove")
         self._check_positive()
         self._check_asked()
+        self._check_optimise()
         return self
 
     @property
@@ -139,13 +140,36 @@ class Scene(Table):
             )
             raise refuse(rule, at=("speeds",), action="remove")
 
+    def _check_optimise(self) -> None:
+        """Refuse what [optimise] would leave out: balanced torques, one damping, axes on a line."""
+        mesh, wheel, pinion = self.mesh, self.wheel, self.pinion
+        if self.optimise is None:
+            return
+        if wheel.torque is not None and not math.isclose(wheel.torque.value, self._balance):
+            rule = "changes nothing of [optimise], whose torques balance"
+            raise refuse(rule, at=("wheel", "torque"), action="remove")
+        if wheel.bearing_damping != pinion.bearing_damping:
+            rule = "changes nothing of [optimise]: all bearings have the damping of the pinion's"
+            raise refuse(rule, float(pinion.bearing_damping), ("wheel", "bearing_damping"))
+        if mesh.axes != "line":
+            rule = "does not fit [optimise], whose axes move along the line of action"
+            raise refuse(rule, "line", ("mesh", "axes"))
+        for name in {"kinematics", "backlash"} & mesh.model_fields_set:
+            rule = "changes nothing of [optimise], whose mesh is linear, on the line of action"
+            raise refuse(rule, at=("mesh", name), action="remove")
+
+    @property
+    def _balance(self) -> float:
+        """The torque of the wheel that balances the pinion's [N mm]."""
+        assert self.pinion.torque is not None
+        ratio = self.wheel.base_diameter.value / self.pinion.base_diameter.value
+        return float(self.pinion.torque.value * ratio)
+
     def pair(self, wave: Wave) -> MovingPair:
         """Return the pair with a wave of stiffness."""
         mesh = self.mesh
         drive = self.pinion.torque.value if self.pinion.torque else 0.0
-        balance = drive * self.wheel.base_diameter.value / self.pinion.base_diameter.value
-        if self.wheel.torque is not None:
-            balance = self.wheel.torque.value
+        balance = self._balance if self.wheel.torque is None else self.wheel.torque.value
         rotors = [
             _rotor(table, torque) for table, torque in ((self.pinion, drive), (self.wheel, balance))
         ]
