@@ -1,6 +1,7 @@
 """Files of a pair on moving axes: what they ask, what they refuse, what answers hold."""
 
 import json
+import math
 import tomllib
 from pathlib import Path
 
@@ -10,8 +11,9 @@ import pytest
 import gearopt
 from gearopt.cli.app import exit_code
 from gearopt.errors import SceneError, SolveError
-from gearopt.formulations.dynamics.dynamics_parts import own_depth, scaled
+from gearopt.formulations.dynamics.dynamics_parts import jammed, own_depth, scaled
 from gearopt.formulations.dynamics.teeth_wave import of_contact
+from gearopt.physics.motion.moving_pair import MovingPair, Rotor
 from gearopt.physics.motion.stiffness_wave import fourier, trapezoid
 from gearopt.scenes.dynamics import EXAMPLE
 from gearopt.scenes.reading.load import read
@@ -233,3 +235,33 @@ def test_a_watcher_ends_a_motion_with_what_there_is(tmp_path, looks, missing):
     assert result.design["equilibrium"]["normal_load_N"] == pytest.approx(2e5 / 60.0)
     assert ("response" in result.design) == (looks > 0)
     assert missing in result.to_html() and "no design" not in repr(result)
+
+
+def test_a_backlash_that_is_used_up_is_told(tmp_path):
+    """By 2 u sin(20 deg), 0.2 mm together leave -0.0368 mm of 0.1 mm; 0.1 mm leave 0.0316 mm."""
+    path = tmp_path / "motion.toml"
+    path.write_text(
+        changed(
+            ('axes = "line"', 'axes = "plane"'),
+            ('"100 kN/mm"', '"10 kN/mm"\nbearing_stiffness_across = "30 kN/mm"'),
+            ("bearing_damping = 0.02", ""),
+            ('backlash = "0.1 mm" ', 'backlash = "0.02 mm" '),
+            ("3000 rpm", "8000 rpm"),
+            ('duration = "20 ms"\nerror = 1e-6', 'duration = "4 ms"\nerror = 1e-3'),
+            text=EXAMPLE[: EXAMPLE.index("[stability]")],
+        )
+    )
+    rotor = Rotor(60.0, 6e-4, 2.0, (1e4, 1e4), torque=2e5)
+    wave, angle = trapezoid(2e5, 0.5, 0.68, 0.1), math.radians(20.0)
+    pair = MovingPair(rotor, rotor, angle, wave, backlash=0.1, kinematics="tangent")
+    apart = [
+        [0.1, 0.0, -0.05, 0.0, 0.0],
+        [0.1, 0.0, -0.05, -0.1, 0.0],
+        [0.1, 0.0, -0.03, -0.1, 0.0],
+    ]
+    states = np.hstack([apart, np.zeros((3, 5))])
+    assert jammed(pair, "plane", np.arange(3.0), states) == 2.0
+    assert jammed(pair, "plane", np.arange(2.0), states[:2]) is None
+    assert jammed(pair, "line", np.arange(3.0), states) is None
+    told = gearopt.solve(path).design["warnings"]
+    assert any("backlash is used up, first at" in each for each in told)

@@ -28,7 +28,8 @@ class Response:
 
     deformation: negative where teeth press. axes: x and y of pinion and wheel; none on fixed axes.
     error: estimated, of the deformation, relative to its largest value. frequency, amplitude: of
-    the deformation's spectrum over the second half.
+    the deformation's spectrum over the second half. jammed: the first output at which both flanks
+    are pressed at once, as the axes came together; None: at none.
     """
 
     method: str
@@ -45,6 +46,7 @@ class Response:
     axes_mm: Rows
     frequency_Hz: Columns
     amplitude_mm: Columns
+    jammed_ms: float | None = None
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -21,6 +21,7 @@ from gearopt.formulations.motion.stability import bands, largest, stability_map
 from gearopt.formulations.motion.timeline import timeline
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.terms import Array
+from gearopt.physics.motion.kinematics import growth
 from gearopt.physics.motion.linear import Linear, Static, linear, mesh_shares, modes, static
 from gearopt.physics.motion.moving_pair import MovingPair
 from gearopt.physics.motion.stiffness_wave import Wave
@@ -117,7 +118,21 @@ def response(
         axes_mm=tuple(columns(c, 7) for c in _axes(pair, level, made.motion.states)),
         frequency_Hz=columns(lines[shown]),
         amplitude_mm=columns(amplitude[shown], 5),
+        jammed_ms=jammed(pair, level, MILLI * times, made.motion.states),
     )
+
+
+def jammed(pair: MovingPair, level: str, times: Array, states: Array) -> float | None:
+    """Return the first of times (T,) at which the coast flank is pressed without any backlash left.
+
+    states (T, 2 n). None: at none of them; on fixed axes or a line the backlash stays as it is.
+    """
+    if pair.backlash is None or level != "plane":
+        return None
+    x1, y1, delta, x2, y2 = states.T[:5]
+    room = pair.backlash + growth(pair.kinematics, pair.rest, x2 - x1, y2 - y1).length
+    found = np.flatnonzero((room < 0.0) & (delta > room))
+    return float(times[found[0]]) if found.size else None
 
 
 def _axes(pair: MovingPair, level: str, states: Array) -> list[Array]:

@@ -182,6 +182,12 @@ def warnings(design: DynamicsDesign) -> list[str]:
             f"The error asked, {response.error_asked:.1e}, was not reached: the estimate is "
             f"{response.error:.1e}."
         )
+    if response is not None and response.jammed_ms is not None:
+        found.append(
+            f"The axes come together until the backlash is used up, first at "
+            f"{response.jammed_ms:.4g} ms: both flanks are pressed at once, where the model of one "
+            "flank at a time does not hold. The motion is wrong from there on."
+        )
     if response is not None and response.highest_mm > 0.0 and response.separations == 0:
         found.append(
             f"The deformation rises to {MICRO * response.highest_mm:.3g} µm: teeth would part "
