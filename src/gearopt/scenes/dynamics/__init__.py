@@ -20,6 +20,7 @@ from gearopt.optimise.typed import untyped
 from gearopt.physics.motion.moving_pair import MovingPair
 from gearopt.scenes.dynamics.example import EXAMPLE
 from gearopt.scenes.dynamics.scene import Scene, wave_of
+from gearopt.scenes.dynamics.tables import MOST_OUTPUTS
 from gearopt.scenes.reading.ask import Ask
 
 __all__ = ["EXAMPLE", "Scene", "compared", "idle", "model", "solve"]
@@ -214,10 +215,12 @@ def _too_few(times_ms: Sequence[float], design: DynamicsDesign) -> list[str]:
     needed = math.ceil(FINE * fastest * duration) + 1
     if len(times_ms) >= needed:
         return []
+    most = MOST_OUTPUTS / (FINE * fastest)
+    change = f"outputs = {needed}" if needed <= MOST_OUTPUTS else f"at most {1e3 * most:.3g} ms"
     return [
         f"The motion is told at {len(times_ms):,} times, {len(times_ms) / fastest / duration:.2g} "
         f"in a period of {fastest:,.0f} Hz: peaks, RMS and spectrum may miss what lies between. "
-        f"Take outputs = {needed:,} or a shorter duration."
+        f"Take {change}."
     ]
 
 

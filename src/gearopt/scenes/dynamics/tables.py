@@ -13,6 +13,7 @@ from gearopt.units import Quantity
 
 AXES = ("fixed", "line", "plane")
 WAVES = ("constant", "rectangle", "trapezoid", "fourier", "pair")
+MOST_OUTPUTS = 20001
 SHARE = number(0.03, 0, 1, percent=True, zero=True)
 SPEEDS = span(quantity("speed", "1500 rpm"), ["1500 rpm", "6000 rpm"])
 
@@ -102,7 +103,7 @@ class SimulateTable(Table):
     duration: Annotated[Quantity, quantity("time", "20 ms", "1000 s")] = Field(
         description="How long"
     )
-    outputs: Annotated[int, whole(2001, 11, 20001)] = Field(
+    outputs: Annotated[int, whole(2001, 11, MOST_OUTPUTS)] = Field(
         2001, description="Equal times at which the motion is told"
     )
     error: Annotated[Fraction, number(1e-6, 0, Fraction(1, 10))] = Field(
