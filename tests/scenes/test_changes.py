@@ -25,9 +25,10 @@ def tables(path=ELEVATOR):
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda p: p.stem)
-def test_the_tables_of_a_file_are_its_scene(path):
+def test_the_tables_of_a_file_are_its_scene(path, monkeypatch):
     """Floats of Python are the decimals of the file, so scenes with exact fractions are equal."""
-    scene = gearopt.load(path)
+    monkeypatch.chdir(PROBLEMS)  # from where tables name other files
+    scene = gearopt.load(path.name)
     assert gearopt.load(tables(path)) == scene == gearopt.load(scene)
 
 

@@ -364,6 +364,8 @@ def test_every_key_of_a_problem_is_a_place_of_its_file(path):
         pytest.skip("gears that ratings limit have no real-valued sizes yet")
     if not getattr(sized, "limited", True):
         pytest.skip("gears that are given and rated pose no problem")
+    if kind == "strain_wave":
+        pytest.skip("looks at poses of numbers, and so cannot be traced; no number of it is moved")
     problem = scene_module(kind).model(own, METHODS.get(kind, "")).problem
     problem = problem.relaxed or problem
     keys = {k for q in problem.parameters for k in each_word(q.key, q.size)}

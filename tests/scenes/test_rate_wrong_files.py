@@ -292,4 +292,4 @@ def test_a_file_without_rating_is_not_rated(here):
     said = here("rate", PROBLEMS / "elevator.toml")
     assert said.returncode == 2 and "gearopt new rating shows how" in said.stderr
     said = here("rate", PROBLEMS / "servo_axis.toml")
-    assert said.returncode == 2 and 'files of kind "drive", not "servo"' in said.stderr
+    assert said.returncode == 2 and 'takes kind = "drive", not "servo"' in said.stderr
