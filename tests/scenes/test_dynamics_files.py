@@ -90,7 +90,7 @@ def test_a_fourier_series_stays_above_zero():
 def test_too_few_outputs_are_told(tmp_path):
     """Half a second at 2001 outputs is 4 kHz: less than the fastest mode has."""
     path = tmp_path / "long.toml"
-    path.write_text(changed(('duration = "20 ms"', 'duration = "0.5 s"')))
+    path.write_text(BARE + '[simulate]\nduration = "0.5 s"\nerror = 1e-3\n')
     told = gearopt.solve(path).design["warnings"]
     (said,) = [each for each in told if "The motion is told at 2,001 times" in each]
     assert "Take at most" in said
