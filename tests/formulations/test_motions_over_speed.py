@@ -9,6 +9,7 @@ from moving_pairs import paper_pair
 from gearopt.formulations.dynamics.dynamics_parts import followed, resting
 from gearopt.formulations.motion.integrate import march
 from gearopt.formulations.motion.timeline import timeline
+from gearopt.optimise.clock import Clock
 from gearopt.physics.motion.moving_pair import damping_of
 from gearopt.physics.motion.stiffness_wave import trapezoid
 
@@ -34,5 +35,5 @@ def test_a_falling_speed_stays_on_the_branch_of_separated_teeth():
         state = made.states[-1]
         known.append(made.delta[-40 * 32 :].std())
     assert known == pytest.approx([0.02316, 0.02603, 0.02772, 0.02953], rel=1e-2)
-    found = [one.rms for one in followed(pair, "line", frequencies, 20)]
+    found = [one.rms for one in followed(pair, "line", frequencies, 20, Clock())]
     assert found == pytest.approx(known, rel=1.5e-2)
