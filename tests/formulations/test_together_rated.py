@@ -85,14 +85,13 @@ def brute_force(train, make, rel):
 
 
 def same_as_brute_force(train, make, gap):
+    """Return what the search finds, after holding it to the least of all boxes, infinite: none."""
     best = brute_force(train, make, 0.2 * gap)
     result, outcome = run(together.problem(train, make), "exact", Budget(gap=gap), 0, None, gap)
-    if math.isinf(best):
-        assert result.status == "infeasible"
-        return result, outcome
-    assert result.status == "optimal"
-    assert result.value == pytest.approx(best, rel=1.2 * gap)
-    assert result.bound <= best * (1.0 + 1e-9)
+    if not math.isinf(best):
+        assert result.value == pytest.approx(best, rel=1.2 * gap)
+        assert result.bound <= best * (1.0 + 1e-9)
+    assert result.status == ("infeasible" if math.isinf(best) else "optimal")
     return result, outcome
 
 
@@ -100,14 +99,16 @@ def same_as_brute_force(train, make, gap):
 @pytest.mark.parametrize("seed", range(10))
 def test_two_stages_by_agma_as_by_brute_force(seed):
     train = some_train(seed)
-    same_as_brute_force(train, some_frame(seed, train), 1e-3)
+    result, _ = same_as_brute_force(train, some_frame(seed, train), 1e-3)
+    assert result.status == "infeasible" or result.bound <= result.value * (1.0 + 1e-9)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", [1, 3, 4])
 def test_two_stages_by_iso_as_by_brute_force(seed):
     train = some_train(seed, some_iso)
-    same_as_brute_force(train, some_frame(seed, train), 1e-3)
+    result, _ = same_as_brute_force(train, some_frame(seed, train), 1e-3)
+    assert result.status == "infeasible" or result.bound <= result.value * (1.0 + 1e-9)
 
 
 @pytest.mark.slow
@@ -126,7 +127,8 @@ def test_three_stages_as_by_brute_force():
     train = some_train(seed, stages=3)
     few = [replace(s, modules=s.modules[-2:], wheel_teeth=(1, 60)) for s in train.stages]
     train = replace(train, stages=tuple(few))
-    same_as_brute_force(train, some_frame(seed, train), 1e-2)
+    result, _ = same_as_brute_force(train, some_frame(seed, train), 1e-2)
+    assert result.status == "infeasible" or result.bound <= result.value * (1.0 + 1e-9)
 
 
 @pytest.mark.parametrize("standard", [agma, pytest.param(some_iso, marks=pytest.mark.slow)])
