@@ -103,13 +103,8 @@ def gather(chain, m, low, high, spans, edge, row, ends):
 
 
 @inner
-def program(chain, low, high, edge, slope, row, ends, n, table, names, weight, theta):
-    """Weights of the rows by the dual simplex method on the rows' lines at the cell's middle.
-
-    Columns are angles, from 0 to 1 across the cell, and sides above their least; all costs are >= 0
-    so that the slack basis is dual feasible. Returns whether the program is feasible; if not, the
-    weights are those of a contradiction.
-    """
+def tableau(chain, low, high, edge, slope, row, ends, n, table, names):
+    """Write the first tableau of `program`, of the slack basis."""
     links = low.size
     columns, rows = links + slope.size, n + links
     for r in range(rows + 1):
@@ -138,6 +133,36 @@ def program(chain, low, high, edge, slope, row, ends, n, table, names, weight, t
         names[columns + r] = r
     for c in range(columns):
         names[c] = rows + c
+
+
+@inner
+def exchanged(table, rows, columns, out, into):
+    """Exchange a basic row of a tableau for a column."""
+    pivot = 1.0 / table[out, into]
+    for c in range(columns + 1):
+        table[out, c] *= -pivot
+    table[out, into] = pivot
+    for r in range(rows + 1):
+        if r != out:
+            factor = table[r, into]
+            if factor != 0.0:
+                for c in range(columns + 1):
+                    if c != into:
+                        table[r, c] += factor * table[out, c]
+                table[r, into] = factor * pivot
+
+
+@inner
+def program(chain, low, high, edge, slope, row, ends, n, table, names, weight, theta):
+    """Weights of the rows by the dual simplex method on the rows' lines at the cell's middle.
+
+    Columns are angles, from 0 to 1 across the cell, and sides above their least; all costs are >= 0
+    so that the slack basis is dual feasible. Returns whether the program is feasible; if not, the
+    weights are those of a contradiction.
+    """
+    links = low.size
+    columns, rows = links + slope.size, n + links
+    tableau(chain, low, high, edge, slope, row, ends, n, table, names)
     for r in range(n):
         weight[r] = 0.0
     for _ in range(PIVOTS):
@@ -158,18 +183,7 @@ def program(chain, low, high, edge, slope, row, ends, n, table, names, weight, t
                 if names[c] < n:
                     weight[names[c]] = max(0.0, -table[out, c])
             return False
-        pivot = 1.0 / table[out, into]
-        for c in range(columns + 1):
-            table[out, c] *= -pivot
-        table[out, into] = pivot
-        for r in range(rows + 1):
-            if r != out:
-                factor = table[r, into]
-                if factor != 0.0:
-                    for c in range(columns + 1):
-                        if c != into:
-                            table[r, c] += factor * table[out, c]
-                    table[r, into] = factor * pivot
+        exchanged(table, rows, columns, out, into)
         names[into], names[columns + out] = names[columns + out], names[into]
     for c in range(columns):
         if names[c] < n:

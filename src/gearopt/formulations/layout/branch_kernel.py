@@ -19,6 +19,18 @@ from gearopt.optimise.jit_kernel import entry, inner
 ALIKE = 1e-6  # an angle this much narrower than another is not halved again: it is not the cause
 
 
+@inner
+def opened(cells, bounds, count, low, high, k, middle, bound):
+    """Add both halves of a cell, cut across angle k, to the open ones; return their count."""
+    for half in range(2):
+        for i in range(low.size):
+            cells[count, 0, i], cells[count, 1, i] = low[i], high[i]
+        cells[count, 1 - half, k] = middle
+        bounds[count] = bound
+        count += 1
+    return count
+
+
 @entry
 def branch(chain, m, cells, bounds, count, best, near, floor, rel, limit, theta):
     """Depth-first branch and bound on cells of angles: `limit` nodes, or until `best` improves.
@@ -31,12 +43,8 @@ def branch(chain, m, cells, bounds, count, best, near, floor, rel, limit, theta)
     than `near`, its lack [mm]. Returns count, best, near, floor, nodes.
     """
     links = theta.size
-    spans = (
-        np.zeros((links + 1, links + 1)),
-        np.zeros((links + 1, links + 1)),
-        np.zeros((links + 1, links + 1)),
-        np.zeros((links + 1, links + 1)),
-    )
+    size = (links + 1, links + 1)
+    spans = (np.zeros(size), np.zeros(size), np.zeros(size), np.zeros(size))
     room, pull, point = scratch(links), np.zeros((2, links)), np.zeros(links)
     low, high = np.empty(links), np.empty(links)
     y, z = np.zeros(links + 1), np.zeros(links + 1)
@@ -80,12 +88,7 @@ def branch(chain, m, cells, bounds, count, best, near, floor, rel, limit, theta)
         if count + 2 > bounds.size or not low[k] < middle < high[k]:
             floor = min(floor, bound)
             continue
-        for half in range(2):
-            for i in range(links):
-                cells[count, 0, i], cells[count, 1, i] = low[i], high[i]
-            cells[count, 1 - half, k] = middle
-            bounds[count] = bound
-            count += 1
+        count = opened(cells, bounds, count, low, high, k, middle, bound)
     return count, best, near, floor, nodes
 
 

@@ -158,6 +158,57 @@ def copy(
     to_centre[0], to_centre[1] = centre[0], centre[1]
 
 
+@inner
+def mean_diameter(radius: Reals) -> float:
+    """Mean diameter of the cylinders."""
+    size: float = 0.0
+    for k in range(radius.size):
+        size += radius[k]
+    mean: float = 2.0 * (size / radius.size)
+    return mean
+
+
+@inner
+def take(
+    i: int,
+    x: Reals,
+    y: Reals,
+    layer: Whole,
+    centre: Reals,
+    to_x: Reals,
+    to_y: Reals,
+    to_layer: Whole,
+    to_centre: Reals,
+) -> None:
+    """Copy what a move changed: cylinder i, or all of a state for -1."""
+    if i == -1:
+        copy(x, y, layer, centre, to_x, to_y, to_layer, to_centre)
+    else:
+        to_x[i], to_y[i], to_layer[i] = x[i], y[i], layer[i]
+
+
+@inner
+def keep(
+    x: Reals,
+    y: Reals,
+    layer: Whole,
+    centre: Reals,
+    radius: Reals,
+    gap: float,
+    value: float,
+    best: Reals,
+) -> float:
+    """Keep a state that crowds nothing as the best one, with its objective; return its crowding."""
+    n = x.size
+    crowd: float = crowding_of_all(x, y, layer, radius, gap)
+    if crowd > 0.0:
+        return crowd
+    for k in range(n):
+        best[k], best[n + k], best[2 * n + k] = x[k], y[k], layer[k]
+    best[3 * n], best[3 * n + 1], best[3 * n + 2] = centre[0], centre[1], value
+    return crowd
+
+
 @entry
 def anneal(
     seed: int,
@@ -187,13 +238,8 @@ def anneal(
     gap, wall, width = numbers[0], numbers[1], numbers[2]
     shape, volume = int(numbers[3]), numbers[4] > 0.0
     least, most, anchored = int(numbers[5]), int(numbers[6]), numbers[7] > 0.0
-    n, size, accepted = x.size, 0.0, 0
-    for k in range(n):
-        size += radius[k]
-    size = 2.0 * (size / n)
-    old_x, old_y, old_centre = np.empty(n), np.empty(n), np.empty(2)
-    old_layer = np.empty(n, np.int64)
-    copy(x, y, layer, centre, old_x, old_y, old_layer, old_centre)
+    n, size, accepted = x.size, mean_diameter(radius), 0
+    old_x, old_y, old_layer, old_centre = x.copy(), y.copy(), layer.copy(), centre.copy()
     crowd = crowding_of_all(x, y, layer, radius, gap)
     tall, missing = stack(layer, height, least, most)
     area, excess = plan_area(x, y, centre, radius, shape, wall, width)
@@ -205,34 +251,22 @@ def anneal(
         i = propose(step, x, y, layer, centre, radius, height, held, gap, most, anchored)
         if i == -2:
             continue
-        if i == -1:
-            new_crowd = crowding_of_all(x, y, layer, radius, gap)
-        else:
-            new_crowd = crowd + crowding(i, x, y, layer, radius, gap)
+        new_crowd = crowding_of_all(x, y, layer, radius, gap) if i == -1 else crowd
+        if i != -1:
+            new_crowd += crowding(i, x, y, layer, radius, gap)
             new_crowd -= crowding(i, old_x, old_y, old_layer, radius, gap)
         new_tall, new_missing = stack(layer, height, least, most) if most > 1 else (tall, missing)
         new_area, new_excess = plan_area(x, y, centre, radius, shape, wall, width)
         new_value = new_area * new_tall if volume else new_area
-        worse = math.log(new_value / value) + weight * (
-            new_crowd - crowd + new_excess - excess + new_missing - missing
-        )
+        change = new_crowd - crowd + new_excess - excess + new_missing - missing
+        worse = math.log(new_value / value) + weight * change
         if worse > 0.0 and np.random.random() >= math.exp(-worse / temperature):
-            if i == -1:
-                copy(old_x, old_y, old_layer, old_centre, x, y, layer, centre)
-            else:
-                x[i], y[i], layer[i] = old_x[i], old_y[i], old_layer[i]
+            take(i, old_x, old_y, old_layer, old_centre, x, y, layer, centre)
             continue
         accepted += 1
         crowd, excess, tall = max(0.0, new_crowd), new_excess, new_tall
         missing, value = new_missing, new_value
-        if i == -1:
-            copy(x, y, layer, centre, old_x, old_y, old_layer, old_centre)
-        else:
-            old_x[i], old_y[i], old_layer[i] = x[i], y[i], layer[i]
+        take(i, x, y, layer, centre, old_x, old_y, old_layer, old_centre)
         if crowd < ROUNDING and excess == 0.0 and missing == 0 and value < best[3 * n + 2]:
-            crowd = crowding_of_all(x, y, layer, radius, gap)
-            if crowd == 0.0:
-                for k in range(n):
-                    best[k], best[n + k], best[2 * n + k] = x[k], y[k], layer[k]
-                best[3 * n], best[3 * n + 1], best[3 * n + 2] = centre[0], centre[1], value
+            crowd = keep(x, y, layer, centre, radius, gap, value, best)
     return accepted

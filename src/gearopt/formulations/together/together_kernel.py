@@ -153,6 +153,53 @@ def added(d, alone, widths, more):
             more[m] += widest if alone[m, i] > 0 else 0.0
 
 
+@inner
+def taken(d, j, parent, choice, node, body):
+    """Put the stages after j of a node; return the log ratios left to the others, their ratio."""
+    left_low, left_high, ratio = d.log_low, d.log_high, 1.0
+    for i in range(j + 1, choice.shape[0]):
+        choice[i, 0], choice[i, 1] = parent[i, 0], parent[i, 1]
+        put(d, i, choice[i, 0], choice[i, 1], node, body)
+        left_low -= node[i, 2]
+        left_high -= node[i, 2]
+        ratio *= d.z2[choice[i, 0]] / d.z1[choice[i, 0]]
+    return left_low, left_high, ratio
+
+
+@inner
+def weakest(d, j, p, ratio):
+    """Least torque on stage j with pair p, before stages of this ratio."""
+    torque = d.torque
+    if j > 0:
+        torque *= d.low_ratio / ratio * (d.z1[p] / d.z2[p]) * (1.0 - ALLOWANCE)
+    return torque
+
+
+@inner
+def ground(j, stages, r, wall, node, body):
+    """Least area around the gears of stage j, and of the next one."""
+    area = least_area(body[j, 1] + wall, r, node[j, 0])
+    if j + 1 < stages:
+        area = max(area, least_area(r, body[j + 2, 0] + wall, node[j + 1, 0]))
+    return area
+
+
+@inner
+def shortest(base, shared, b):
+    """Least length of all orders of slabs with one more face width b."""
+    least = math.inf
+    for m in range(base.size):
+        least = min(least, base[m] + max(b - shared[m], 0.0))
+    return least
+
+
+@inner
+def record(child, choice, j):
+    """Write the choices of stage j and those after it."""
+    for i in range(j, choice.shape[0]):
+        child[i, 0], child[i, 1] = choice[i, 0], choice[i, 1]
+
+
 @entry
 def expand(d, rest, j, parents, start, stop, cut, limit, children, bounds):
     """Children of nodes by a choice for stage j; one slice of about `limit` choices.
@@ -169,14 +216,7 @@ def expand(d, rest, j, parents, start, stop, cut, limit, children, bounds):
     aim, wall, larger = d.aim, d.gap[2], grows(d, j)
     count = looked = 0
     while start[0] < stop and looked < limit and count + d.modules.shape[1] <= bounds.size:
-        for i in range(j + 1, stages):
-            choice[i, 0], choice[i, 1] = parents[start[0], i, 0], parents[start[0], i, 1]
-        left_low, left_high, ratio = d.log_low, d.log_high, 1.0
-        for i in range(j + 1, stages):
-            put(d, i, choice[i, 0], choice[i, 1], node, body)
-            left_low -= node[i, 2]
-            left_high -= node[i, 2]
-            ratio *= d.z2[choice[i, 0]] / d.z1[choice[i, 0]]
+        left_low, left_high, ratio = taken(d, j, parents[start[0]], choice, node, body)
         end = place(d.log_ratio, d.start[j], d.start[j + 1], left_high + EDGE)
         if start[1] < 0:
             start[1] = d.start[j]
@@ -193,9 +233,7 @@ def expand(d, rest, j, parents, start, stop, cut, limit, children, bounds):
             start[1] += 1
             looked += 1
             choice[j, 0] = p
-            torque = d.torque
-            if j > 0:
-                torque *= d.low_ratio / ratio * (d.z1[p] / d.z2[p]) * (1.0 - ALLOWANCE)
+            torque = weakest(d, j, p, ratio)
             for k in range(module(d, j, p, torque), d.last[p] + 1):
                 b = width(d, j, p, k, torque)
                 if b == math.inf:
@@ -205,13 +243,9 @@ def expand(d, rest, j, parents, start, stop, cut, limit, children, bounds):
                 for i in range(j + 1, stages):
                     node[i, 1] = kept[i]
                 node[j, 1] = b
-                least = math.inf
-                for m in range(base.size):
-                    least = min(least, base[m] + max(b - shared[m], 0.0))
+                least = shortest(base, shared, b)
                 r = max(body[j + 1, 0], pinion) + wall
-                area = least_area(body[j, 1] + wall, r, node[j, 0])
-                if j + 1 < stages:
-                    area = max(area, least_area(r, body[j + 2, 0] + wall, node[j + 1, 0]))
+                area = ground(j, stages, r, wall, node, body)
                 if worth(aim, least, area, 2.0 * r) >= cut:
                     if larger and worth(aim, least, 4.0 * r * r, 2.0 * r) >= cut:
                         break
@@ -220,9 +254,7 @@ def expand(d, rest, j, parents, start, stop, cut, limit, children, bounds):
                     continue
                 value = bound(d, rest, j, node, body, need, cut, lengths, radius)
                 if value < cut:
-                    for i in range(j, stages):
-                        children[count, i, 0] = choice[i, 0]
-                        children[count, i, 1] = choice[i, 1]
+                    record(children[count], choice, j)
                     bounds[count] = value
                     count += 1
         if start[1] >= end:
