@@ -153,6 +153,26 @@ def exchanged(table, rows, columns, out, into):
 
 
 @inner
+def leaving(table, rows, columns):
+    """Return the row farthest below zero, -1 if none is."""
+    out, worst = -1, -1e-9
+    for r in range(rows):
+        if table[r, columns] < worst:
+            out, worst = r, table[r, columns]
+    return out
+
+
+@inner
+def entering(table, rows, columns, out):
+    """Return the column that keeps all costs above zero in exchange for a row, -1 if none does."""
+    into, least = -1, math.inf
+    for c in range(columns):
+        if table[out, c] > SMALL and table[rows, c] < least * table[out, c]:
+            into, least = c, table[rows, c] / table[out, c]
+    return into
+
+
+@inner
 def program(chain, low, high, edge, slope, row, ends, n, table, names, weight, theta):
     """Weights of the rows by the dual simplex method on the rows' lines at the cell's middle.
 
@@ -166,16 +186,10 @@ def program(chain, low, high, edge, slope, row, ends, n, table, names, weight, t
     for r in range(n):
         weight[r] = 0.0
     for _ in range(PIVOTS):
-        out, worst = -1, -1e-9
-        for r in range(rows):
-            if table[r, columns] < worst:
-                out, worst = r, table[r, columns]
+        out = leaving(table, rows, columns)
         if out < 0:
             break
-        into, least = -1, math.inf
-        for c in range(columns):
-            if table[out, c] > SMALL and table[rows, c] < least * table[out, c]:
-                into, least = c, table[rows, c] / table[out, c]
+        into = entering(table, rows, columns, out)
         if into < 0:
             if names[columns + out] < n:
                 weight[names[columns + out]] = 1.0
