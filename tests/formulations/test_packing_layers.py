@@ -13,7 +13,7 @@ from gearopt.formulations.packing import packing_text
 from gearopt.formulations.packing.container_bound import bound
 from gearopt.formulations.packing.design import describe
 from gearopt.formulations.packing.plan import Cylinder, Plan, row
-from gearopt.formulations.packing.sa import KERNEL, lateness, numbers
+from gearopt.formulations.packing.sa import KERNEL, lateness, numbers, ready
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import run, solve
@@ -136,6 +136,7 @@ def test_the_bound_looks_at_clock_and_watcher():
     """Ended while the bound is computed: the row, a valid bound, and nothing is remembered."""
     plan = Plan(EIGHT, max_layers=2, shape="square")
     problem, seen = packing.problem(plan), []
+    assert ready()  # compiling has events of its own
     result = solve(problem, "hop", watch=lambda event: bool(seen.append(event)))
     assert result.status == "limit" and len(seen) == 1 and seen[0].bound is None
     assert result.bound < result.value == seen[0].best
