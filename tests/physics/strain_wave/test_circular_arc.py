@@ -5,15 +5,13 @@ import pytest
 
 from gearopt.physics.strain_wave.circular_arc import (
     DoubleArc,
-    conjugate_spline,
     half_locus_flanks,
     half_locus_gaps,
     rack_locus,
     teeth_on_path,
 )
 from gearopt.physics.strain_wave.gearing import StrainWave
-from gearopt.physics.strain_wave.neutral_curve import angle_of_arc, neutral_curve
-from gearopt.physics.strain_wave.tooth_motion import motion
+from gearopt.physics.strain_wave.neutral_curve import neutral_curve
 from gearopt.physics.strain_wave.vectors import Vector
 
 
@@ -46,32 +44,34 @@ def test_the_turn_of_the_tooth_makes_half_locus_teeth_interfere():
     assert np.log2(np.array(found[:-1]) / found[1:]) == pytest.approx([2.0, 2.0], abs=0.02)
 
 
-def test_the_conjugate_of_an_arc_moves_along_it():
-    """The tooth's material at the point of contact slides along the flank, never into it."""
-    gearing = StrainWave(0.5, 160, profile_shift=0.9)
-    curve = neutral_curve(gearing)
+def test_a_double_arc_is_smooth_and_lies_on_its_circles():
     tooth = DoubleArc((0.685, 0.785), np.radians(12.0), Vector(0.8, 0.38), 0.05)
-    arcs, step = np.array([0.05, 0.3, 0.6]), 1e-6
-    angle = angle_of_arc(curve, arcs)
-    at, before, after = (motion(gearing, curve, angle + s) for s in (0.0, -step, step))
-    rows = zip(
-        conjugate_spline(gearing, curve, tooth, arcs), tooth.centres, tooth.radii, strict=True
-    )
-    for place, centre, radius in rows:
-        point = at.of_tooth(place)
-        arm = point - centre
-        assert arm.length == pytest.approx(radius, rel=1e-12)
-        speed = (after.placed(point) - before.placed(point)) * (0.5 / step)
-        normal = arm.turned(at.turn) * (1.0 / radius)
-        assert np.abs(speed.dot(normal) / speed.length).max() < 1e-7
-
-
-def test_a_double_arc_is_smooth_where_its_parts_meet():
-    tooth = DoubleArc((0.685, 0.785), np.radians(12.0), Vector(0.8, 0.38), 0.05)
-    points = tooth.points((0.5, 0.5), 4000)
+    made = tooth.profile(0.4, 1.2, 4001)
+    points, low, high = made.points, 0.8 - 0.05 * np.cos(0.2094), 0.8 + 0.05 * np.cos(0.2094)
     assert (np.diff(points.x) > 0.0).all() and (np.diff(points.y) < 0.0).all()
-    ends = tooth.middle - tooth.direction * 0.05, tooth.middle + tooth.direction * 0.05
-    assert (points[3999] - ends[0]).length < 1e-12 and (points[4000] - ends[1]).length < 1e-12
+    for inside, centre, radius in zip(
+        (points.x > high, points.x < low), tooth.centres, tooth.radii, strict=True
+    ):
+        assert inside.sum() > 1000
+        assert (points[inside] - centre).length == pytest.approx(radius, rel=1e-12)
     slope = np.diff(points.y) / np.diff(points.x)
-    assert slope[3998] == pytest.approx(slope[3999], abs=2e-4)
-    assert slope[3999] == pytest.approx(slope[4000], abs=2e-4)
+    assert np.abs(np.diff(slope)).max() < 1e-3
+    middle = slice(1, -1)
+    steps = (points.y[2:] - points.y[:-2]) / (points.x[2:] - points.x[:-2])
+    assert made.directions.y[middle] / made.directions.x[middle] == pytest.approx(steps, abs=1e-4)
+    bent = -np.diff(np.arctan(slope)) / np.hypot(np.diff(points.x), np.diff(points.y))[1:]
+    off = np.abs(np.abs(bent) - np.abs(made.curvatures[middle]))
+    assert np.median(off) < 5e-4
+
+
+def test_an_arc_that_reaches_the_tip_has_a_least_radius():
+    """At the least radius the slope of the tip is 85 degrees; below it the arc ends before."""
+    tooth = DoubleArc((1.0, 1.0), np.radians(12.0), Vector(0.8, 0.38), 0.05)
+    least = tooth.least_radius(0.4)
+    assert least == pytest.approx(
+        (0.4 - 0.05 * np.cos(0.2094395)) / (np.sin(1.4835299) - 0.2079117)
+    )
+    made = DoubleArc((least, 1.0), np.radians(12.0), Vector(0.8, 0.38), 0.05).profile(0.4, 1.2)
+    assert np.degrees(np.arctan2(-made.directions.y[-1], made.directions.x[-1])) == pytest.approx(
+        85
+    )

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from gearopt.formulations.strain_wave.cutter_fit import arc_edge, straight_edge
-from gearopt.physics.strain_wave.conjugate import Flank
-from gearopt.physics.strain_wave.cutter import blank_profile, envelope, generated, least_teeth
+from gearopt.physics.strain_wave.cutter import Profile, envelope, generated, least_teeth
+from gearopt.physics.strain_wave.gearing import StrainWave
 
 Columns = tuple[float, ...]
 POINTS = 51  # of the cutter's edge that are told
@@ -54,9 +54,8 @@ class CutterDesign:
     given_deviation_mm: float = 0.0
 
 
-def cutter_of(made: Flank, asked: Cutter) -> CutterDesign:
-    """Return the cutter of a flank; an irregular one with the least teeth that are regular."""
-    gearing, blank = made.gearing, blank_profile(made)
+def cutter_of(gearing: StrainWave, blank: Profile, asked: Cutter) -> CutterDesign:
+    """Return the cutter of a blank's flank; an irregular one with the least regular teeth."""
     pitch = asked.pitch_radius or float(gearing.blank_radius)
     radius = pitch * asked.teeth / float(gearing.teeth) if asked.teeth else math.inf
     found = envelope(blank, pitch, radius)

@@ -94,7 +94,7 @@ def pairs_of(gearing: StrainWave, contacts: Sequence[Contact]) -> Any:
 def squares(demand: Demand, gearing: StrainWave, contacts: Sequence[Contact]) -> list[Any]:
     """Return p_0^2 [MPa^2] at all contacts if the conjugate pairs share the load equally."""
     duty = demand.duty
-    load = equal_share(duty.torque, gearing.base_radius, pairs_of(gearing, contacts))
+    load = equal_share(2.0 * duty.moment, gearing.base_radius, pairs_of(gearing, contacts))
     unit = load / duty.face_width * duty.contact_modulus / math.pi
     return [unit * c.gap_curvature for c in contacts]
 

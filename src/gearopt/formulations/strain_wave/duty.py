@@ -19,7 +19,8 @@ class Duty:
     """Torque T of the output [N mm], face width b [mm], materials of flexspline and spline.
 
     moduli E [MPa], poissons nu of both. pair_stiffness K [N/mm] of two teeth; cup: that of the
-    flexspline; elastic: whether its rim yields to the loads of its teeth.
+    flexspline; elastic: whether its rim yields to the loads of its teeth. reaction: torque of the
+    circular spline over that of the output, 1 + 1/i with it at rest; 1 as the paper has it.
     """
 
     torque: float
@@ -29,6 +30,7 @@ class Duty:
     pair_stiffness: float
     cup: Cup
     elastic: bool
+    reaction: float = 1.0
 
     @property
     def contact_modulus(self) -> float:
@@ -37,8 +39,8 @@ class Duty:
 
     @property
     def moment(self) -> float:
-        """Moment M = T/2 [N mm] of one lobe."""
-        return 0.5 * self.torque
+        """Moment M [N mm] of the teeth of one lobe: half the torque of the circular spline."""
+        return 0.5 * self.reaction * self.torque
 
     def pressure(self, loads: Any, gap_curvature: Any) -> Any:
         """Return Hertz's pressures p_0 [MPa] of loads [N] at curvatures 1/R [1/mm]."""
@@ -52,7 +54,7 @@ def equal_pressure(duty: Duty, flank: Flank, whole: bool = False) -> float:
     """
     pairs = float(np.squeeze(flank.pairs_in_contact))
     count = max(1.0, math.floor(pairs)) if whole else pairs
-    load = equal_share(duty.torque, flank.gearing.base_radius, count)
+    load = equal_share(2.0 * duty.moment, flank.gearing.base_radius, count)
     return float(duty.pressure(load, flank.contacts.gap_curvature.max()))
 
 

@@ -27,6 +27,7 @@ from gearopt.physics.strain_wave.circular_arc import teeth_on_path
 from gearopt.physics.strain_wave.clearance import interference, teeth_within, tooth_arcs
 from gearopt.physics.strain_wave.clearance import tooth_clearances as clearances_of
 from gearopt.physics.strain_wave.conjugate import Flank, contact, least_deflection
+from gearopt.physics.strain_wave.cutter import blank_profile
 from gearopt.physics.strain_wave.neutral_curve import curvature
 from gearopt.physics.strain_wave.strength import rim_stresses
 from gearopt.physics.strain_wave.tooth_motion import motion
@@ -177,7 +178,7 @@ def described(
         teeth=teeth,
         shifts=tuple(_shift(p) for p in shift_curve(gearing, duty, SHIFTS)),
         deflections=tuple(_deflected(made, by) for by in OTHER_DEFLECTIONS),
-        cutter=cutter_of(made, cutter) if cutter else None,
+        cutter=cutter_of(gearing, blank_profile(made), cutter) if cutter else None,
         rounds=tuple(rounds),
     )
 

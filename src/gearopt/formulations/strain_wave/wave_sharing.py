@@ -19,6 +19,7 @@ from gearopt.optimise.terms import Array, Terms, Var
 from gearopt.physics.load_sharing import CONTACT
 from gearopt.physics.strain_wave.clearance import tooth_arcs, tooth_clearances
 from gearopt.physics.strain_wave.conjugate import Flank
+from gearopt.physics.strain_wave.gearing import StrainWave
 from gearopt.physics.strain_wave.rim import Cup, rim_compliance
 
 RANDOM = False
@@ -76,11 +77,17 @@ def teeth_of(
     gaps = tooth_clearances(flank, arcs)
     near = np.isfinite(gaps)
     number, arcs = number[near], arcs[near]
-    compliance = np.eye(len(number)) / pair_stiffness
-    if rim:
-        compliance = compliance + rim_compliance(flank.gearing, *rim, number)
+    compliance = compliance_of(flank.gearing, number, pair_stiffness, rim)
     gaps = np.maximum(gaps[near], 0.0)  # what touches is within rounding of 0
     return Teeth(number, arcs, gaps, compliance, float(flank.gearing.base_radius))
+
+
+def compliance_of(
+    gearing: StrainWave, numbers: Array, pair_stiffness: float, rim: tuple[Cup, float] | None
+) -> Array:
+    """Return the compliance (n, n) [mm/N] of teeth by their numbers, I/K + S; rim as above."""
+    pairs: Array = np.eye(len(numbers)) / pair_stiffness
+    return pairs + rim_compliance(gearing, *rim, numbers) if rim else pairs
 
 
 def shared(compliance: Any, gaps: Any, arms: Any, moment: float) -> Loads:

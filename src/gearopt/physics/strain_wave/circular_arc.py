@@ -1,6 +1,7 @@
-"""Teeth of later practice: the half-scale locus, and the double circular arc with its conjugate.
+"""Teeth of later practice, given by the flexspline's flank: double circular arc, half the locus.
 
 Both touch over a wider part of the wave than a tooth conjugate to a 20 degree involute.
+`swept_mesh` gives the circular spline that they need.
 """
 
 import math
@@ -9,10 +10,17 @@ from typing import Any
 
 import numpy as np
 
+from gearopt.physics.strain_wave.cutter import Profile
 from gearopt.physics.strain_wave.gearing import StrainWave
-from gearopt.physics.strain_wave.neutral_curve import NeutralCurve, angle_of_arc
-from gearopt.physics.strain_wave.tooth_motion import Motion, motion
+from gearopt.physics.strain_wave.neutral_curve import NeutralCurve
+from gearopt.physics.strain_wave.tooth_motion import motion
 from gearopt.physics.strain_wave.vectors import Vector, polar
+
+POINTS = 801  # of a flank: chords are within 1 nm of it
+FIRST = math.radians(0.5)  # polar angle at which half the locus begins: at 0 its curvature is inf
+LAST = math.radians(89.0)  # and before which it ends
+STEP = 1e-4  # rad, of differences along the locus: errors below 1e-7 of its curvature
+STEEPEST = math.radians(85.0)  # slope of an arc at its end, against the axis of the tooth
 
 
 def rack_locus(module: Any, angle: Any) -> Vector:
@@ -53,9 +61,9 @@ def half_locus_gaps(
 ) -> tuple[Any, Any]:
     """Return the least and largest lateral gap [mm] of half-locus teeth that turn, per pose.
 
-    arcs [rad]: the polar angles between which the path makes the flanks; poses (k,) [rad]. The
-    tooth's turn, which a rack does not have, makes the flanks interfere by O(m/z). NaN where the
-    flanks do not overlap in height.
+    arcs [rad]: the polar angles between which the path makes both flanks; poses (k,) [rad]. The
+    tooth's turn, which a rack does not have, makes the flanks interfere by O(m/z): so
+    `half_locus_tooth` takes the flexspline's flank alone. NaN where flanks do not overlap.
     """
     path, _ = exact_locus(gearing, curve, np.linspace(*arcs, 400))
     rigid, flexible = half_locus_flanks(path)
@@ -69,6 +77,50 @@ def half_locus_gaps(
         least.append(gap.min() if inside.any() else math.nan)
         most.append(gap.max() if inside.any() else math.nan)
     return np.array(least), np.array(most)
+
+
+def tooth_heights(gearing: StrainWave) -> tuple[float, float, float]:
+    """Return heights [mm] of root, middle and tip of the flank over the neutral curve.
+
+    The circular spline's tip is at c m + h/2 on the major axis, the flank's tip 2 h_a m above it;
+    its root is half the clearance below it, so that the flank never ends in the space.
+    """
+    clearance, rim = float(gearing.clearance * gearing.module), 0.5 * float(gearing.rim)
+    depth = float(gearing.addendum * gearing.module)
+    end = rim + clearance
+    return end - 0.5 * clearance, end + depth, end + 2.0 * depth
+
+
+def half_locus_tooth(gearing: StrainWave, curve: NeutralCurve, thickness: float) -> Profile:
+    """Return a tooth whose upper half is the locus of its own motion at half scale.
+
+    thickness [mm] at half the height, from which it is straight down to the root. The locus is
+    `exact_locus`; it ends where it has fallen by 2 h_a m. ValueError where it never does.
+    Source: S. Ishikawa, US 4 823 638, for both flanks; here the circular spline follows from the
+    flexspline's (`swept_mesh`), which mends what the turn of the teeth spoils.
+    """
+    root, middle, tip = tooth_heights(gearing)
+    angle = np.linspace(FIRST, LAST, 20 * POINTS)
+    fall = -0.5 * exact_locus(gearing, curve, angle)[0].y
+    fall -= fall[0]
+    if fall[-1] < tip - middle:
+        most = fall[-1] / float(gearing.module)
+        raise ValueError(f"half the locus is {most:.4g} modules high: no addendum above it")
+    heights = np.linspace(root, tip, POINTS)
+    below = heights < middle
+    at = np.interp(np.maximum(heights - middle, 0.0), fall, angle)
+    path, before, after = (exact_locus(gearing, curve, at + s)[0] for s in (0.0, -STEP, STEP))
+    start = exact_locus(gearing, curve, np.array([FIRST]))[0]
+    first = (before - after) * (0.25 / STEP)
+    second = (path * 2.0 - before - after) * (0.5 / STEP**2)
+    along = Vector(first.y, first.x)
+    bend = (first.y * second.x - first.x * second.y) / along.length**3
+    unit = along * (1.0 / along.length)
+    return Profile(
+        Vector(heights, 0.5 * thickness - 0.5 * np.where(below, 0.0, path.x - start.x)),
+        Vector(np.where(below, 1.0, unit.x), np.where(below, 0.0, unit.y)),
+        np.where(below, 0.0, bend),
+    )
 
 
 @dataclass(frozen=True)
@@ -98,39 +150,26 @@ class DoubleArc:
         concave = self.middle - along * self.straight + normal * self.radii[1]
         return convex, concave
 
-    def points(self, extent: tuple[float, float], count: int = 60) -> Vector:
-        """Return the flank from root to tip; extent [rad]: angles of the arcs, convex first."""
-        steps = np.linspace(0.0, 1.0, count)
-        normal = self.direction.left
+    def least_radius(self, depth: float) -> float:
+        """Return the least radius [mm] of an arc that reaches `depth` [mm] from the middle.
+
+        Its slope at the end is STEEPEST at most.
+        """
+        rise = depth - self.straight * math.cos(self.slope)
+        return max(0.0, rise) / (math.sin(STEEPEST) - math.sin(self.slope))
+
+    def profile(self, low: float, high: float, count: int = POINTS) -> Profile:
+        """Return the flank between two heights [mm], root and tip, evenly by height."""
+        height = np.linspace(low, high, count)
         convex, concave = self.centres
-        tip = normal.turned(-extent[0] * steps) * self.radii[0]
-        root = normal.turned(-extent[1] * steps[::-1]) * -self.radii[1]
-        return Vector(
-            np.concatenate([concave.x + root.x, convex.x + tip.x]),
-            np.concatenate([concave.y + root.y, convex.y + tip.y]),
-        )
-
-
-def conjugate_of_arc(at: Motion, centre: Vector, radius: Any) -> Vector:
-    """Return where a circular arc of the tooth touches its conjugate, in the space [mm].
-
-    The normal through the instant centre passes the arc's centre. radius [mm]: positive where the
-    point of the arc lies on the far side of its centre from the instant centre.
-    """
-    pole = at.of_tooth(at.centre)
-    outward = centre - pole
-    return at.placed(centre + outward * (radius / outward.length))
-
-
-def conjugate_spline(
-    gearing: StrainWave, curve: NeutralCurve, tooth: DoubleArc, arcs: Any
-) -> tuple[Vector, Vector]:
-    """Return the circular spline's flank that a double arc needs: of its convex and concave part.
-
-    arcs phi [rad] (k,) of the poses, |phi| <= pi/2. Points that lie beyond an arc's end are no
-    part of the flank: `DoubleArc.points` says which are.
-    """
-    at = motion(gearing, curve, angle_of_arc(curve, np.asarray(arcs)))
-    convex, concave = tooth.centres
-    first, second = tooth.radii
-    return conjugate_of_arc(at, convex, first), conjugate_of_arc(at, concave, -second)
+        reach = self.straight * math.cos(self.slope)
+        tip, root = height - self.middle.x > reach, height - self.middle.x < -reach
+        falls = np.full(count, math.sin(self.slope))  # sine of the slope
+        falls = np.where(tip, (height - convex.x) / self.radii[0], falls)
+        falls = np.where(root, (concave.x - height) / self.radii[1], falls)
+        level = np.sqrt(1.0 - falls**2)
+        half = self.middle.y - (height - self.middle.x) * math.tan(self.slope)
+        half = np.where(tip, convex.y + self.radii[0] * level, half)
+        half = np.where(root, concave.y - self.radii[1] * level, half)
+        bend = np.where(tip, -1.0 / self.radii[0], np.where(root, 1.0 / self.radii[1], 0.0))
+        return Profile(Vector(height, half), Vector(level, -falls), bend)
