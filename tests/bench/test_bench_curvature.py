@@ -10,10 +10,10 @@ from gearopt.physics.strain_wave.fitted_curvature import FITS, graph_curvature
 def test_rows_say_which_methods_are_right(monkeypatch):
     monkeypatch.setattr(curvature, "SEEDS", 5)
     rows = curvature.run(1)
-    assert "curvature" in names() and len(rows) == 2 + 3 * 4 * len(FITS)
-    closed, derivatives = rows[:2]
+    assert "curvature" in names() and len(rows) == 3 + 3 * 4 * len(FITS)
+    closed, derivatives, rings = rows[:3]
     assert closed["radius"] < 1e-13 and derivatives["curvature"] < 1e-12
-    assert derivatives["radius"] < 1e-11
+    assert derivatives["radius"] < 1e-11 and rings["radius"] == 0.012
     by = {(r["method"], r["data"], r["points"]): r for r in rows}
     printed = {  # of exact data at 51 points, from another program: curvature, R, p0
         "quartic fit": (2.1e-4, 4.9e-3, 2.5e-3),

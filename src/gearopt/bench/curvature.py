@@ -13,13 +13,14 @@ from gearopt.bench import timed
 from gearopt.physics.strain_wave.conjugate import Flank, contact, flank
 from gearopt.physics.strain_wave.fitted_curvature import FITS
 from gearopt.physics.strain_wave.gearing import StrainWave
-from gearopt.physics.strain_wave.tooth_motion import motion
+from gearopt.physics.strain_wave.tooth_motion import motion, small_motion
 
 GEARING = StrainWave(0.5, 160, profile_shift=0.9)
 STATIONS = 101  # at which curvatures are compared
 DATA = {"exact": 0.0, "1 nm": 1e-6, "0.1 um": 1e-4}  # largest error of a point [mm]
 POINTS = (11, 21, 51, 201)
 SEEDS = 25  # of errors of points
+STEPS = 4  # of Newton from a pose to that of a radius
 
 
 def run(repeat: int) -> list[dict[str, Any]]:
@@ -35,6 +36,8 @@ def run(repeat: int) -> list[dict[str, Any]]:
     function, angles = by_derivatives(made), at.motion.angle
     found, times = timed(lambda: function(angles), repeat)
     rows.append(_row("AD of the position", "", "", [found], at, times))
+    found, times = timed(lambda: of_small_displacements(made), repeat)
+    rows.append(_row("ring theory of first order", "", "", [found], at, times))
     for data, noise in DATA.items():
         for count in POINTS:
             draws = [points(made, count, noise, seed) for seed in range(SEEDS if noise else 1)]
@@ -49,6 +52,16 @@ def _closed(made: Flank) -> Any:
     """Return the curvature by the text that the reference is made of."""
     found = contact(made.gearing, motion(made.gearing, made.curve, made.contacts.motion.angle))
     return found.curvatures[1]
+
+
+def of_small_displacements(made: Flank) -> Any:
+    """Return the curvature where first-order ring theory has contact at the same radii."""
+    gearing, wanted = made.gearing, made.contacts.tangent
+    arc = made.contacts.motion.arc
+    for _ in range(STEPS):
+        found = contact(gearing, small_motion(gearing, arc))
+        arc = arc - (found.tangent - wanted) / found.tangent_rate
+    return contact(gearing, small_motion(gearing, arc)).curvatures[1]
 
 
 def points(made: Flank, count: int, noise: float, seed: int = 0) -> tuple[Any, Any]:

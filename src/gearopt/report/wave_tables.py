@@ -7,6 +7,7 @@ from gearopt.formulations.strain_wave.cutter_report import CutterDesign
 from gearopt.formulations.strain_wave.wave_report import WaveDesign
 from gearopt.report.measures import Measures
 from gearopt.report.section import Cell, Table, cell
+from gearopt.report.words import amount
 
 SHAPES = {"cosine": "cos 2φ", "ellipse": "ellipse", "discs": "two discs"}
 
@@ -186,6 +187,9 @@ def rounds(found: WaveDesign, measures: Measures) -> Table:
 def edges(found: CutterDesign, measures: Measures) -> Table:
     """Return straight and circular edges that may replace the exact one."""
     length, micro = measures.unit("mm"), measures.unit("um")
+    least = ""
+    if found.least_radius_mm:
+        least = f" from {amount(found.least_radius_mm, 'mm', measures)} on"
     rows: list[list[Any]] = [
         [
             "straight, best",
@@ -200,7 +204,7 @@ def edges(found: CutterDesign, measures: Measures) -> Table:
             cell(found.given_deviation_mm, "um", measures),
         ],
         [
-            "circular arc, best",
+            f"circular arc, best{least}",
             None,
             cell(found.arc_radius_mm, "mm", measures),
             cell(found.arc_deviation_mm, "um", measures),

@@ -8,6 +8,7 @@ import pytest
 from scipy.optimize import linprog
 
 from gearopt.formulations.strain_wave.cutter_fit import arc_edge, arc_of_cones, straight_edge
+from gearopt.formulations.strain_wave.cutter_report import Cutter, cutter_of
 from gearopt.physics.strain_wave.conjugate import flank
 from gearopt.physics.strain_wave.cutter import blank_profile, envelope
 from gearopt.physics.strain_wave.gearing import StrainWave
@@ -101,3 +102,43 @@ def test_cones_agree_with_linear_programs(radius):
         centre = found.centre + Vector(*rng.normal(0.0, 1e-4 * found.radius, 2))
         far = (points - centre).length
         assert 0.5 * np.ptp(far) >= found.deviation * (1.0 - 1e-9)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("least", [500.0, 1000.0])
+def test_a_tool_of_a_least_radius(least):
+    """A flat parabola less an arc: of the straight edge's deviation 1 - R/R_min is left."""
+    points = edge("base", 31)
+    found, line = arc_edge(points), straight_edge(points)
+    round_ = arc_of_cones(points, found, least)
+    assert round_.result.status == "optimal" and round_.radius == pytest.approx(least, rel=1e-9)
+    left = line.deviation * (1.0 - found.radius / least)
+    assert round_.deviation == pytest.approx(left, rel=0.01)
+    far = (points - round_.centre).length - least
+    assert (far.max(), far.min()) == pytest.approx((round_.deviation, -round_.deviation), rel=1e-6)
+
+
+def test_no_arc_of_any_radius_deviates_less():
+    """With a radius given the best arc is a straight line through heights less that arc's."""
+    points = edge("base", 31)
+    found = arc_edge(points)
+    lean = (points[30] - points[0]).angle
+    flat = (points - points[15]).turned(-lean)
+    line = np.c_[np.ones(31), flat.x, -np.ones(31)]
+    deviations = []
+    for radius in found.radius * np.array([-4.0, 0.25, 0.5, 0.98, 1.0, 1.02, 2.0, 4.0]):
+        sag = 1e6 * (flat.y - np.copysign(np.sqrt(radius**2 - flat.x**2), radius) + radius)
+        rows = np.r_[line, line * [-1.0, -1.0, 1.0]]
+        one = linprog([0, 0, 1], A_ub=rows, b_ub=np.r_[sag, -sag], bounds=[(None, None)] * 3)
+        deviations.append(1e-6 * one.fun)
+    assert min(deviations) == deviations[4] == pytest.approx(found.deviation, rel=1e-4)
+
+
+@pytest.mark.slow
+def test_the_report_tells_the_arc_of_a_tool():
+    """357 mm is the best; a tool of at least 500 mm gets that, one of at least 100 mm the best."""
+    blank = blank_profile(flank(BASE))
+    for least, radius in ((100.0, 356.66), (500.0, 500.0)):
+        found = cutter_of(BASE, blank, Cutter(least_radius=least))
+        assert found.arc_radius_mm == pytest.approx(radius, abs=5e-3)
+        assert found.least_radius_mm == least

@@ -134,13 +134,14 @@ def arc_edge(points: Vector) -> ArcEdge:
     return ArcEdge(radius * half, centre, deviation, rounds, result)
 
 
-def arc_cones(points: Vector, centre: Vector) -> Conic:
-    """Pose |p_i - c| <= R + e and R - e <= the linearised |p_i - c|: second-order cones.
+def arc_cones(points: Vector, centre: Vector, least: float = 0.0) -> Conic:
+    """Pose |p_i - c| <= R + e, R - e <= the linearised |p_i - c| and R >= R_min: cones.
 
-    centre: where c is linearised. points, centre in half lengths; e in millionths. With u_i from
-    the centre to the points at distances l_i, c moved by d and R - R_0 = a - u_0.d, R_0 and u_0 of
-    the middle point, the rows are (u_i x d)^2/(l_i + R + e - u_i.d) <= R_0 - l_i + a + e + (u_i -
-    u_0).d: without a difference of lengths that are nearly equal, as those of a flat arc are.
+    centre: where c is linearised. points, centre and least R_min in half lengths; e in millionths.
+    With u_i from the centre to the points at distances l_i, c moved by d and R - R_0 = a - u_0.d,
+    R_0 and u_0 of the middle point, the rows are (u_i x d)^2/(l_i + R + e - u_i.d) <= R_0 - l_i + a
+    + e + (u_i - u_0).d: without a difference of lengths that are nearly equal, as those of a flat
+    arc are. What the linearised rows allow is allowed: |p_i - c| is convex in c.
     """
     away = points - centre
     far = away.length
@@ -163,29 +164,35 @@ def arc_cones(points: Vector, centre: Vector) -> Conic:
         room = (off + a + e) / MILLIONTH
         outside = [1.0 + cp.quad_over_lin(aside[i], sums[i]) - room[i] for i in range(len(far))]
         inside = 1.0 + (off + a - e) / MILLIONTH
-        return Terms({"deviation": x.e}, defines={"outside": cp.hstack(outside), "inside": inside})
+        rows = {"outside": cp.hstack(outside), "inside": inside}
+        if least:
+            rows["least_radius"] = 1.0 + (least - radius) / r0
+        return Terms({"deviation": x.e}, defines=rows)
 
     variables = tuple(Var(name, "", -1e6, 1e6, 0.0) for name in ("across", "along", "a"))
     return Conic("arc by cones", (*variables, Var("e", "", 0.0, 1e6, 1e6)), (), evaluate)
 
 
-def arc_of_cones(points: Vector, start: ArcEdge) -> ArcEdge:
+def arc_of_cones(points: Vector, start: ArcEdge, least_radius: float = 0.0) -> ArcEdge:
     """Return the arc nearest to points [mm] by cones, linearised again about what is found.
 
-    start: as of `arc_edge`, about which they are linearised first. SolveError where none is found.
+    start: as of `arc_edge`, about which they are linearised first. least_radius R_min [mm] that the
+    arc has at least, on the side of the start. SolveError where none is found.
     """
     turned, half, (origin, lean) = _normal_form(points)
+    least, middle = least_radius / half, turned[len(turned.x) // 2]
     centre = (start.centre - origin).turned(-lean) * (1.0 / half)
+    centre = middle + (centre - middle) * max(1.0, least_radius / start.radius)
     rounds, settled = 0, False
     while not settled and rounds < ROUNDS:
         rounds += 1
-        result = solve(arc_cones(turned, centre))
+        result = solve(arc_cones(turned, centre, least))
         if not result.design:
             raise SolveError(f"no arc by cones: {result.message}")
-        far = (turned - centre).length
-        r0, u0 = far[len(far) // 2], (turned - centre)[len(far) // 2].angle
+        away = middle - centre
+        r0 = away.length
         across, along = (float(result.design[k]) * MILLIONTH * r0 for k in ("across", "along"))
-        moved = Vector(along * r0, across).turned(u0)
+        moved = Vector(along * r0, across).turned(away.angle)
         centre = centre + moved
         settled = bool(moved.length < SETTLED * r0 * r0)
     radius = float(r0 - along * r0 + float(result.design["a"]) * MILLIONTH)

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from gearopt.formulations.strain_wave.cutter_fit import arc_edge, straight_edge
+from gearopt.formulations.strain_wave.cutter_fit import arc_edge, arc_of_cones, straight_edge
 from gearopt.physics.strain_wave.cutter import Profile, envelope, generated, least_teeth
 from gearopt.physics.strain_wave.gearing import StrainWave
 
@@ -19,12 +19,14 @@ USUAL = math.radians(20.0)  # pressure angle of usual tools
 class Cutter:
     """teeth Z_b of a pinion-type cutter, 0: a rack; pitch_radius P_f of the blank [mm], 0: m z_f/2.
 
-    angle [rad]: of a straight tool that is there, beside the best one.
+    angle [rad]: of a straight tool that is there, beside the best one. least_radius [mm]: of an arc
+    that replaces the edge, 0: any.
     """
 
     teeth: int = 0
     pitch_radius: float = 0.0
     angle: float = USUAL
+    least_radius: float = 0.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -34,7 +36,8 @@ class CutterDesign:
     x from the pitch line of a rack, or the centre of a pinion-type cutter, away from the blank; y
     across, half the space for the blank's tooth. speed: least speed along the edge over that along
     the flank; not regular where it is not above 0: then nothing else is told. straight,
-    arc: edges of least largest deviation; given: an edge at the tool's angle.
+    arc: edges of least largest deviation, the arc of least_radius at least; given: an edge at the
+    tool's angle.
     """
 
     teeth: int
@@ -50,6 +53,7 @@ class CutterDesign:
     straight_deviation_mm: float = 0.0
     arc_radius_mm: float = 0.0
     arc_deviation_mm: float = 0.0
+    least_radius_mm: float = 0.0
     given_deg: float = 0.0
     given_deviation_mm: float = 0.0
 
@@ -74,6 +78,8 @@ def cutter_of(gearing: StrainWave, blank: Profile, asked: Cutter) -> CutterDesig
     pick = np.rint(np.linspace(0, len(back) - 1, POINTS)).astype(int)
     edge = found.profile.points[pick]
     line, arc, given = straight_edge(edge), arc_edge(edge), straight_edge(edge, asked.angle)
+    if arc.radius < asked.least_radius:
+        arc = arc_of_cones(edge, arc, asked.least_radius)
     return CutterDesign(
         **head,
         x_mm=tuple(map(float, edge.x)),
@@ -83,6 +89,7 @@ def cutter_of(gearing: StrainWave, blank: Profile, asked: Cutter) -> CutterDesig
         straight_deviation_mm=line.deviation,
         arc_radius_mm=arc.radius,
         arc_deviation_mm=arc.deviation,
+        least_radius_mm=asked.least_radius,
         given_deg=math.degrees(asked.angle),
         given_deviation_mm=given.deviation,
     )

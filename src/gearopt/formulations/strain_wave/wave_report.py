@@ -20,7 +20,12 @@ from gearopt.formulations.strain_wave.duty import (
     shared_pressure,
 )
 from gearopt.formulations.strain_wave.exchange import STEP_DEG, stretched
-from gearopt.formulations.strain_wave.shift import ShiftPoint, last_shift_of_one_pair, shift_curve
+from gearopt.formulations.strain_wave.shift import (
+    ShiftPoint,
+    largest_addendum,
+    last_shift_of_one_pair,
+    shift_curve,
+)
 from gearopt.formulations.strain_wave.wave_design import COUNT
 from gearopt.formulations.strain_wave.wave_sharing import REACH
 from gearopt.physics.strain_wave.circular_arc import teeth_on_path
@@ -130,6 +135,7 @@ class WaveDesign:
     least_deflection: float
     half_locus_teeth: float
     shift_of_one_pair: float | None
+    largest_addendum: float | None
     within_um: Columns
     teeth_within: Columns
     arc_deg: Columns
@@ -173,6 +179,7 @@ def described(
         least_deflection=least_deflection(gearing),
         half_locus_teeth=teeth_on_path(gearing, *HALF_LOCUS),
         shift_of_one_pair=last_shift_of_one_pair(gearing),
+        largest_addendum=largest_addendum(gearing),
         within_um=WITHIN,
         teeth_within=_floats(teeth_within(made, 1e-3 * np.array(WITHIN))),
         teeth=teeth,

@@ -153,68 +153,21 @@ def existence(gearing: StrainWave, count: int = 7201) -> list[tuple[float, float
     Their ends are found between `count` poses by bisection to 1e-12 rad of the polar angle.
     """
     curve = neutral_curve(gearing)
-
-    def reach(angle: Any) -> Any:
-        return motion(gearing, curve, angle).centre.length - gearing.base_radius
-
-    return _intervals(reach, lambda p: motion(gearing, curve, p).arc, count)
-
-
-def _intervals(reach: Any, arc: Any, count: int) -> list[tuple[float, float]]:
-    """Return where a function of the polar angle is at least 0, as intervals of phi."""
     grid = np.linspace(-0.5 * math.pi, 0.5 * math.pi, count)
-    inside = reach(grid) >= 0.0
-    edges = np.flatnonzero(inside[1:] != inside[:-1])
+
+    def inside(angle: Any) -> Any:
+        return motion(gearing, curve, angle).centre.length >= gearing.base_radius
+
+    known = inside(grid)
+    edges = np.flatnonzero(known[1:] != known[:-1])
     low, high = grid[edges], grid[edges + 1]
-    rising = inside[edges + 1]
     for _ in range(40):
         middle = 0.5 * (low + high)
-        up = (reach(middle) >= 0.0) == rising
-        low, high = np.where(up, low, middle), np.where(up, middle, high)
-    ends = [float(v) for v in arc(high)]
-    if inside[0]:
-        ends.insert(0, float(arc(grid[0])))
-    if inside[-1]:
-        ends.append(float(arc(grid[-1])))
-    return list(zip(ends[::2], ends[1::2], strict=True))
-
-
-@dataclass(frozen=True)
-class Branch:
-    """A pose at which a radius of the circular spline has a normal through the instant centre.
-
-    arc phi [rad]; tangent t; admissible: t > 0, 1/R > 0 and the flank's speed not 0.
-    """
-
-    arc: float
-    tangent: float
-    gap_curvature: float
-    admissible: bool
-
-
-def branches(gearing: StrainWave, radius: float, count: int = 7201) -> list[Branch]:
-    """Return all poses of the wave at which contact would lie at a radius [mm].
-
-    Found between `count` poses by bisection. Those with t < 0 lie on the mirrored involute.
-    """
-    curve = neutral_curve(gearing)
-    grid = np.linspace(-0.5 * math.pi, 0.5 * math.pi, count)
-
-    def off(angle: Any) -> Any:
-        return contact(gearing, motion(gearing, curve, angle)).radius - radius
-
-    values = off(grid)
-    with np.errstate(invalid="ignore"):
-        at = np.flatnonzero(np.sign(values[:-1]) * np.sign(values[1:]) < 0.0)
-    low, high, rising = grid[at], grid[at + 1], values[at] < 0.0
-    for _ in range(45):
-        middle = 0.5 * (low + high)
-        below = (off(middle) < 0.0) == rising
-        low, high = np.where(below, middle, low), np.where(below, high, middle)
-    found = contact(gearing, motion(gearing, curve, 0.5 * (low + high)))
-    fine = (found.tangent > 0.0) & (found.gap_curvature > 0.0) & (found.speeds[1] != 0.0)
-    rows = zip(found.motion.arc, found.tangent, found.gap_curvature, fine, strict=True)
-    return [Branch(float(a), float(t), float(k), bool(f)) for a, t, k, f in rows]
+        after = inside(middle) == known[edges + 1]
+        low, high = np.where(after, low, middle), np.where(after, middle, high)
+    ends = np.concatenate((grid[:1][known[:1]], high, grid[-1:][known[-1:]]))
+    found = motion(gearing, curve, ends).arc.tolist()
+    return list(zip(found[::2], found[1::2], strict=True))
 
 
 def least_deflection(gearing: StrainWave) -> float:

@@ -168,18 +168,6 @@ def curvature(curve: NeutralCurve, angle: Any) -> tuple[Any, Any]:
     return kappa, slope - 3.0 * top * r1 * (r + r2) / square**2.5
 
 
-def small_displacement(gearing: StrainWave, angle: Any) -> tuple[Vector, Any]:
-    """Return place [mm] and normal angle [rad] of first-order ring theory at phi [rad].
-
-    w = w_0 cos(2 phi), v = -(w_0/2) sin(2 phi), turn (v - w')/R_m = (3/2)(w_0/R_m) sin(2 phi).
-    Good for optimisation near the major axis; 13 um off elsewhere for w_0/R_m of 1/80.
-    """
-    radius, lift = gearing.neutral_radius, gearing.radial_deflection
-    double = np.sin(2.0 * angle)
-    place = Vector(radius + lift * np.cos(2.0 * angle), -0.5 * lift * double).turned(angle)
-    return place, angle + 1.5 * lift / radius * double
-
-
 def whole_curve(curve: NeutralCurve, arc: Any) -> tuple[Vector, Any]:
     """Return place [mm] and normal angle [rad] at phi [rad] anywhere round the curve (arrays)."""
     turns = np.rint(np.asarray(arc) / math.pi) * math.pi

@@ -71,3 +71,33 @@ def motion(gearing: StrainWave, curve: NeutralCurve, angle: Any) -> Motion:
         centre,
         moved - centre.left * (k * arc_rate),
     )
+
+
+def small_motion(gearing: StrainWave, arc: Any) -> Motion:
+    """Return the pose of a tooth at phi [rad] by ring theory of first order in w_0/R_m.
+
+    w = w_0 cos(2 phi), v = -(w_0/2) sin(2 phi), turn beta = (v - w')/R_m = (3/2)(w_0/R_m) sin(2
+    phi). With c = 1 - k and the displaced place U = R_m + w + i v beside the tooth's own axis,
+    P = U e^(i c phi), Phi = c phi + beta and C = P + i P'/Phi'. Rates are by phi, which stands for
+    p as well. For w_0/R_m of 1/80 places miss by 13 um on the minor axis, by 0.07 um 5 degrees from
+    the major one; curvatures of contact by 1.2 %.
+    """
+    radius, lift, c = gearing.neutral_radius, gearing.radial_deflection, 1.0 - gearing.teeth_ratio
+    cosine, sine = lift * np.cos(2.0 * arc), lift * np.sin(2.0 * arc)
+    moved = Vector(radius + cosine, -0.5 * sine)
+    first, second = Vector(-2.0 * sine, -cosine), Vector(-4.0 * cosine, 2.0 * sine)
+    back = c * arc
+    place = moved.turned(back)
+    speed = (first + moved.left * c).turned(back)
+    growth = (second + first.left * (2.0 * c) - moved * c**2).turned(back)
+    turn_rate = c + 3.0 * cosine / radius
+    turn_growth = -6.0 * sine / radius
+    return Motion(
+        arc,
+        arc,
+        place,
+        back + 1.5 * sine / radius,
+        turn_rate,
+        place + speed.left * (1.0 / turn_rate),
+        speed + (growth - speed * (turn_growth / turn_rate)).left * (1.0 / turn_rate),
+    )

@@ -196,6 +196,11 @@ def shift(result: Result, measures: Measures) -> Section | None:
         words.append(
             f"One conjugate pair always touches up to a shift of {found.shift_of_one_pair:.3f}."
         )
+    if found.largest_addendum is not None:
+        words.append(
+            f"With an addendum above {found.largest_addendum:.3f} modules teeth would cut each "
+            "other."
+        )
     return Section(
         "Pressure against profile shift",
         words=words,

@@ -1,5 +1,6 @@
 """kind = "strain_wave": a strain wave gearing (harmonic drive), given or chosen."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
@@ -125,14 +126,16 @@ def _evaluated(scene: Scene, ask: Ask) -> Result:
 
 def _no_contact(scene: Scene) -> str:
     """Say why a gearing has no conjugate flank, and from which deflection on it would have."""
-    from gearopt.physics.strain_wave.conjugate import least_deflection
+    from gearopt.physics.strain_wave.conjugate import existence, least_deflection
 
     made = scene.demand().gearing(dict(zip(FREE, scene.start(), strict=True)))
     least = least_deflection(made)
     if made.deflection < least:
+        beyond = min((abs(end) for arc in existence(made) for end in arc), default=math.pi / 2)
         return (
             f"there is no contact at the major axis: a deflection of {made.deflection:g} modules "
-            f"is below {least:.4f}, where the instant centre enters the base circle"
+            f"is below {least:.4f}, where the instant centre enters the base circle; contact "
+            f"exists from {math.degrees(beyond):.1f} degrees of the wave on"
         )
     return "the flank has no conjugate point at some radius: change addendum or profile shift"
 

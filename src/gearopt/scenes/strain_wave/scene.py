@@ -183,6 +183,7 @@ class Scene(Table):
             self.cutter.teeth or 0,
             0.0 if pitch is None else 0.5 * pitch.value,
             _or(self.cutter.tool_angle, USUAL),
+            _or(self.cutter.least_radius, 0.0),
         )
 
 

@@ -185,6 +185,9 @@ class WaveCutter(Table):
     tool_angle: Annotated[Quantity | None, quantity("angle", "20 deg", "40 deg")] = Field(
         None, description="Angle of a straight tool to hold against the best; by default 20 deg"
     )
+    least_radius: Annotated[Quantity | None, quantity("length", "500 mm", "100 m")] = Field(
+        None, description="Least radius of an arc that replaces the edge; by default any"
+    )
     scale: Annotated[Fraction, number(100, 1, 1000)] = Field(
         Fraction(100), description="Scale of the drawing", json_schema_extra={"default": 100}
     )
