@@ -15,13 +15,13 @@ from gearopt.formulations.motion.motion_kernel import (
     grown,
     waves,
 )
-from gearopt.optimise.jit_kernel import entry, inner
+from gearopt.optimise.jit_kernel import entry, inlined
 
 CLOSE = 1e-8  # residual of the accelerations before the last correction, relative
 MOST = 12  # of its steps: far more than the linear pieces need
 
 
-@inner
+@inlined
 def eliminate(a, b):
     """Solve a x = b in place by elimination with pivots; x is written to b."""
     n = b.size
@@ -46,19 +46,18 @@ def eliminate(a, b):
         b[i] /= a[i, i]
 
 
-@inner
+@inlined
 def jacobian(m, k, flank, y, cq, cv, own, out):
     """Residual by acceleration; cq, cv: position by acceleration, velocity by acceleration."""
     n, axes = m.level, m.level // 2
-    out[:, :] = 0.0
     gap = cv * m.drag
     if flank != 1:
         gap += cq * k + cv * m.damping
     for i in range(n):
+        for j in range(n):
+            out[i, j] = 0.0
         out[i, i] = own
     out[axes, axes] += gap / m.mesh_mass
-    if n == 1:
-        return
     if n == 3:
         out[0, 0] += (cq * m.kx1 + cv * m.cx1) / m.m1
         out[2, 2] += (cq * m.kx2 + cv * m.cx2) / m.m2
@@ -66,7 +65,13 @@ def jacobian(m, k, flank, y, cq, cv, own, out):
         out[2, 1] += gap / m.m2
         out[1, 0] += own
         out[1, 2] -= own
-        return
+    elif n == 5:
+        of_plane(m, flank, y, cq, cv, own, gap, out)
+
+
+@inlined
+def of_plane(m, flank, y, cq, cv, own, gap, out):
+    """Add to a Jacobian what axes that move in the plane bring in; gap: of the mesh force."""
     u, v, wu, wv = y[3] - y[0], y[4] - y[1], y[8] - y[5], y[9] - y[6]
     _, gu, gv, suu, suv, svv = contact(m, u, v)
     turned, tilted = 2.0 * cv * (suu * wu + suv * wv), 2.0 * cv * (suv * wu + svv * wv)
@@ -90,11 +95,11 @@ def jacobian(m, k, flank, y, cq, cv, own, out):
         out[2, j] -= gap * r / m.mesh_mass
 
 
-@inner
-def residual(m, t, k, flank, y, given, rate, out):
+@inlined
+def residual(m, k, shake, flank, y, given, rate, out):
     """Accelerations less those of the forces; in the row of delta those of the axes are given."""
     n, axes = m.level, m.level // 2
-    derivative(m, t, k, flank, y, rate)
+    derivative(m, k, shake, flank, y, rate)
     for i in range(n):
         out[i] = given[i] - rate[n + i]
     if n == 3:
@@ -105,52 +110,72 @@ def residual(m, t, k, flank, y, given, rate, out):
         out[axes] += turned - gu * (given[3] - given[0]) - gv * (given[4] - given[1])
 
 
-@entry
-def advance(m, alphas, starts, lengths, k0, k1, counts, y, out):
-    """March with alphas (alpha_m, alpha_f, beta, gamma); return Newton's steps."""
+@inlined
+def ended(alphas, h, y, old, found, new):
+    """Write the state after a step of h from y, with accelerations `old` and `found`, to new."""
+    _, _, beta, gamma = alphas
+    n = old.size
+    for a in range(n):
+        new[a] = y[a] + h * y[n + a] + h * h * ((0.5 - beta) * old[a] + beta * found[a])
+        new[n + a] = y[n + a] + h * ((1.0 - gamma) * old[a] + gamma * found[a])
+
+
+@inlined
+def corrected(m, alphas, k, shake, h, y, old, found, new, middle, given, wrong, rate, matrix):
+    """Correct the accelerations `found` by a step of Newton's; return whether it was the last."""
     am, af, beta, gamma = alphas
     n = m.level
+    ended(alphas, h, y, old, found, new)
+    for a in range(n):
+        given[a] = (1.0 - am) * found[a] + am * old[a]
+    for a in range(2 * n):
+        middle[a] = (1.0 - af) * new[a] + af * y[a]
+    flank = flank_of(m, middle)
+    residual(m, k, shake, flank, middle, given, rate, wrong)
+    most, size = 0.0, 0.0
+    for a in range(n):
+        most, size = max(most, abs(wrong[a])), max(size, abs(found[a]))
+    cq, cv = (1.0 - af) * beta * h * h, (1.0 - af) * gamma * h
+    jacobian(m, k, flank, middle, cq, cv, 1.0 - am, matrix)
+    eliminate(matrix, wrong)
+    for a in range(n):
+        found[a] -= wrong[a]
+    return most <= CLOSE * size or not math.isfinite(most)
+
+
+@entry
+def advance(pair, w, alphas, starts, lengths, k0, k1, counts, y, out):
+    """March with alphas (alpha_m, alpha_f, beta, gamma); return Newton's steps."""
+    m = pair[0]
+    n = m.level
     rate, middle, new = np.empty(2 * n), np.empty(2 * n), np.empty(2 * n)
-    found, given, wrong = np.empty(n), np.empty(n), np.empty(n)
+    old, found, given, wrong = np.zeros(n), np.empty(n), np.empty(n), np.empty(n)
     matrix, turns = np.empty((n, n)), 0
-    old = np.zeros(n)
     for i in range(starts.size):
         h = lengths[i] / counts[i]
         if i == 0 or k0[i] != k1[i - 1]:  # the acceleration jumps with the stiffness
-            derivative(m, starts[i], k0[i] + waves(m, starts[i]), flank_of(m, y), y, rate)
-            old[:] = rate[n:]
+            k, shake = waves(m, w, starts[i])
+            derivative(m, k0[i] + k, shake, flank_of(m, y), y, rate)
+            for a in range(n):
+                old[a] = rate[n + a]
         slope = (k1[i] - k0[i]) / lengths[i]
         for j in range(counts[i]):
-            within = (j + 1.0 - af) * h
-            t = starts[i] + within
-            k = k0[i] + slope * within + waves(m, t)
-            found[:] = old
-            for _ in range(MOST):
-                for a in range(n):
-                    new[a] = y[a] + h * y[n + a]
-                    new[a] += h * h * ((0.5 - beta) * old[a] + beta * found[a])
-                    new[n + a] = y[n + a] + h * ((1.0 - gamma) * old[a] + gamma * found[a])
-                    given[a] = (1.0 - am) * found[a] + am * old[a]
-                for a in range(2 * n):
-                    middle[a] = (1.0 - af) * new[a] + af * y[a]
-                flank = flank_of(m, middle)
-                residual(m, t, k, flank, middle, given, rate, wrong)
-                most, size = 0.0, 0.0
-                for a in range(n):
-                    most, size = max(most, abs(wrong[a])), max(size, abs(found[a]))
-                cq, cv = (1.0 - af) * beta * h * h, (1.0 - af) * gamma * h
-                jacobian(m, k, flank, middle, cq, cv, 1.0 - am, matrix)
-                eliminate(matrix, wrong)
-                for a in range(n):
-                    found[a] -= wrong[a]
-                turns += 1
-                if most <= CLOSE * size or not math.isfinite(most):
-                    break
+            within = (j + 1.0 - alphas[1]) * h
+            k, shake = waves(m, w, starts[i] + within)
+            k += k0[i] + slope * within
             for a in range(n):
-                new[a] = y[a] + h * y[n + a]
-                new[a] += h * h * ((0.5 - beta) * old[a] + beta * found[a])
-                new[n + a] = y[n + a] + h * ((1.0 - gamma) * old[a] + gamma * found[a])
+                found[a] = old[a]
+            for _ in range(MOST):
+                turns += 1
+                if corrected(
+                    m, alphas, k, shake, h, y, old, found, new, middle, given, wrong, rate, matrix
+                ):
+                    break
+            ended(alphas, h, y, old, found, new)
+            for a in range(n):
                 old[a] = found[a]
-            y[:] = new
-        out[i] = y
+            for a in range(2 * n):
+                y[a] = new[a]
+        for a in range(2 * n):
+            out[i, a] = y[a]
     return turns

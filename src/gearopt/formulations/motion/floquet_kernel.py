@@ -4,10 +4,10 @@ import math
 
 import numpy as np
 
-from gearopt.optimise.jit_kernel import entry, inner
+from gearopt.optimise.jit_kernel import entry, inlined
 
 
-@inner
+@inlined
 def turned(inverse, held, damped, direction, k, y, out):
     """Derivative of displacements and velocities (2 n, columns); inverse: of the masses."""
     n, columns = direction.size, y.shape[1]
@@ -23,6 +23,31 @@ def turned(inverse, held, damped, direction, k, y, out):
             out[n + i, c] = -force * inverse[i]
 
 
+@inlined
+def stiffness(k0, k1, within, phase, cosines, sines):
+    """Stiffness at a share of a straight piece and a phase of the period."""
+    k = k0 + (k1 - k0) * within
+    for m in range(cosines.size):
+        angle = 2.0 * math.pi * (m + 1) * phase
+        k += cosines[m] * math.cos(angle) + sines[m] * math.sin(angle)
+    return k
+
+
+@inlined
+def summed(y, h, shares, slopes, count, out):
+    """Write y and h times the sum of shares of the first slopes to out."""
+    size = y.shape[0]
+    for a in range(size):
+        for b in range(size):
+            out[a, b] = y[a, b]
+    for j in range(count):
+        share = h * shares[j]
+        if share != 0.0:
+            for a in range(size):
+                for b in range(size):
+                    out[a, b] += share * slopes[j, a, b]
+
+
 @entry
 def monodromy(tableau, system, wave, period, longest, found):
     """Carry the unit matrix over a period by Runge-Kutta steps of at most `longest` [s].
@@ -34,9 +59,9 @@ def monodromy(tableau, system, wave, period, longest, found):
     inverse, held, damped, direction = system
     lengths, k0, k1, cosines, sines = wave
     size, stages = found.shape[0], weights.size
-    found[:, :] = 0.0
-    for i in range(size):
-        found[i, i] = 1.0
+    for a in range(size):
+        for b in range(size):
+            found[a, b] = 1.0 if a == b else 0.0
     slopes, inside = np.empty((stages, size, size)), np.empty((size, size))
     start = 0.0
     for piece in range(lengths.size):
@@ -45,25 +70,11 @@ def monodromy(tableau, system, wave, period, longest, found):
         h = long / count
         for step in range(count):
             for s in range(stages):
-                inside[:, :] = found
-                for j in range(s):
-                    share = h * table[s, j]
-                    if share != 0.0:
-                        for a in range(size):
-                            for b in range(size):
-                                inside[a, b] += share * slopes[j, a, b]
+                summed(found, h, table[s], slopes, s, inside)
                 within = (step + nodes[s]) / count
-                k = k0[piece] + (k1[piece] - k0[piece]) * within
                 phase = start + lengths[piece] * within
-                for m in range(cosines.size):
-                    angle = 2.0 * math.pi * (m + 1) * phase
-                    k += cosines[m] * math.cos(angle) + sines[m] * math.sin(angle)
+                k = stiffness(k0[piece], k1[piece], within, phase, cosines, sines)
                 turned(inverse, held, damped, direction, k, inside, slopes[s])
-            for j in range(stages):
-                share = h * weights[j]
-                if share != 0.0:
-                    for a in range(size):
-                        for b in range(size):
-                            found[a, b] += share * slopes[j, a, b]
+            summed(found, h, weights, slopes, stages, found)
         start += lengths[piece]
     return 0

@@ -82,20 +82,20 @@ def _explicit(tableau: Callable[[], tuple[Array, Array, Array]]) -> Any:
     def run(model: Any, times: Timeline, counts: Any, state: Array, out: Array) -> int:
         law, (table, weights, nodes) = kernel(MARCH).march, tableau()
         given = times.starts, times.lengths, times.k0, times.k1
-        return int(law(model, table, weights, nodes, *given, counts, state, out))
+        return int(law(*model, table, weights, nodes, *given, counts, state, out))
 
     return run
 
 
 def _composed(model: Any, times: Timeline, counts: Any, state: Array, out: Array) -> int:
     given = times.starts, times.lengths, times.k0, times.k1
-    return int(kernel(MARCH).compose(model, composition(), *given, counts, state, out))
+    return int(kernel(MARCH).compose(*model, composition(), *given, counts, state, out))
 
 
 def _implicit(alphas: tuple[float, float, float, float]) -> Any:
     def run(model: Any, times: Timeline, counts: Any, state: Array, out: Array) -> int:
         given = times.starts, times.lengths, times.k0, times.k1
-        return int(kernel(ALPHA).advance(model, alphas, *given, counts, state, out))
+        return int(kernel(ALPHA).advance(*model, alphas, *given, counts, state, out))
 
     return run
 

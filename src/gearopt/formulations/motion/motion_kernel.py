@@ -1,15 +1,16 @@
 """Kernel of the equations of motion: what `physics.motion.accelerations` says, on plain arrays.
 
-m is the NamedTuple `numbers.Numbers`; y holds coordinates and velocities of its level. `flank`: 0
-in contact on the drive flank (always, without backlash), 1 apart, 2 on the coast flank.
+m is the record in `pair` and w `waves` of `numbers.Numbers`; y holds coordinates and velocities of
+its level. `flank`: 0 in contact on the drive flank (always, without backlash), 1 apart, 2 on the
+coast flank.
 """
 
 import math
 
-from gearopt.optimise.jit_kernel import inner
+from gearopt.optimise.jit_kernel import inlined
 
 
-@inner
+@inlined
 def contact(m, u, v):
     """g, its gradient and second derivatives, of the kinematics m.kinematics."""
     if m.kinematics == 1:
@@ -29,7 +30,7 @@ def contact(m, u, v):
     return longer - r * turned + r * math.atan2(v, x), s, c, c * c / z, -s * c / z, s * s / z
 
 
-@inner
+@inlined
 def grown(m, u, v):
     """Growth of the backlash and its gradient."""
     if m.level < 5:
@@ -48,27 +49,19 @@ def grown(m, u, v):
     return 2.0 * (longer - r * turned), 2.0 * z * x / square, 2.0 * z * v / square
 
 
-@inner
-def waves(m, t):
-    """The Fourier part of the mesh stiffness."""
-    k = 0.0
-    for h in range(m.cosines.size):
+@inlined
+def waves(m, w, t):
+    """The Fourier part of the mesh stiffness, and what the transmission error adds to delta''."""
+    k, shake = 0.0, 0.0
+    for h in range(w.shape[1]):
         angle = (h + 1) * m.omega * t
-        k += m.cosines[h] * math.cos(angle) + m.sines[h] * math.sin(angle)
-    return k
+        cosine = math.cos(angle)
+        k += w[0, h] * cosine + w[1, h] * math.sin(angle)
+        shake += w[2, h] * cosine
+    return k, shake
 
 
-@inner
-def shaken(m, t):
-    """Second derivative of the transmission error."""
-    found = 0.0
-    for h in range(m.errors.size):
-        w = (h + 1) * m.omega
-        found -= m.errors[h] * w * w * math.cos(w * t)
-    return found
-
-
-@inner
+@inlined
 def pressed(m, k, flank, delta, rate):
     """Force on axes that stay on the line of action."""
     force = m.drag * rate
@@ -79,26 +72,26 @@ def pressed(m, k, flank, delta, rate):
     return force
 
 
-@inner
-def derivative(m, t, k, flank, y, out):
-    """Write the derivative of y (2 n,) to out."""
+@inlined
+def derivative(m, k, shake, flank, y, out):
+    """Write the derivative of y (2 n,) to out; shake: what is added to delta''."""
     n = m.level
     if n >= 5:
-        plane(m, t, k, flank, y, out)
+        plane(m, k, shake, flank, y, out)
         return
     for i in range(n):
         out[i] = y[n + i]
     if n == 1:
         force = pressed(m, k, flank, y[0], y[1])
-        out[1] = shaken(m, t) - (m.load + force) / m.mesh_mass
+        out[1] = shake - (m.load + force) / m.mesh_mass
         return
     force = pressed(m, k, flank, y[1], y[4])
     out[3] = (force - m.kx1 * y[0] - m.cx1 * y[3]) / m.m1
     out[5] = (-force - m.kx2 * y[2] - m.cx2 * y[5]) / m.m2
-    out[4] = out[5] - out[3] + shaken(m, t) - (m.load + force) / m.mesh_mass
+    out[4] = out[5] - out[3] + shake - (m.load + force) / m.mesh_mass
 
 
-@inner
+@inlined
 def opening(m, y):
     """Delta and its rate, and the backlash that there is at the moment with its rate."""
     n = m.level
@@ -123,7 +116,7 @@ def opening(m, y):
     return delta, rate, room, widening
 
 
-@inner
+@inlined
 def flank_of(m, y):
     """0 in contact on the drive flank, 1 apart, 2 on the coast flank; 0 always without backlash."""
     if m.backlash == math.inf:
@@ -134,8 +127,8 @@ def flank_of(m, y):
     return 2 if delta > room else 1
 
 
-@inner
-def plane(m, t, k, flank, y, out):
+@inlined
+def plane(m, k, shake, flank, y, out):
     """Write the derivative of y for axes that move in the plane, in any of the three forms."""
     n = m.level
     for i in range(n):
@@ -171,4 +164,4 @@ def plane(m, t, k, flank, y, out):
     else:
         turned = gu * (out[8] - out[5]) + gv * (out[9] - out[6])
         curved = suu * wu * wu + 2.0 * suv * wu * wv + svv * wv * wv
-        out[7] = turned + curved + shaken(m, t) - (m.load + along) / m.mesh_mass
+        out[7] = turned + curved + shake - (m.load + along) / m.mesh_mass

@@ -4,6 +4,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gearopt.optimise.terms import Array
 from gearopt.physics.motion.accelerations import LEVELS, stiffness_along
@@ -13,42 +14,24 @@ KINDS = ("exact", "tangent", "paper", "paper_linear")  # as `motion_kernel.conta
 FORMS = {"way": 1, "angles": 2}  # coordinates of which delta is a difference
 
 
-class Numbers(NamedTuple):
-    """A pair at a level; `level`: how many coordinates; the rest as in `MovingPair`, units too."""
+WHOLE = ("level", "form", "kinematics")
+REAL = (
+    *("m1", "m2", "mesh_mass", "load", "kx1", "ky1", "kx2", "ky2", "cx1", "cy1", "cx2", "cy2"),
+    *("damping", "drag", "backlash", "sine", "cosine", "radii", "centres", "tangent"),
+    *("r1", "r2", "i1", "i2", "torque1", "torque2", "omega"),
+)
+KIND = np.dtype([(name, np.int64) for name in WHOLE] + [(name, np.float64) for name in REAL])
 
-    level: int
-    form: int
-    kinematics: int
-    m1: float
-    m2: float
-    mesh_mass: float
-    load: float
-    kx1: float
-    ky1: float
-    kx2: float
-    ky2: float
-    cx1: float
-    cy1: float
-    cx2: float
-    cy2: float
-    damping: float
-    drag: float
-    backlash: float
-    sine: float
-    cosine: float
-    radii: float
-    centres: float
-    tangent: float
-    r1: float
-    r2: float
-    i1: float
-    i2: float
-    torque1: float
-    torque2: float
-    omega: float
-    cosines: Array
-    sines: Array
-    errors: Array
+
+class Numbers(NamedTuple):
+    """A pair at a level, for kernels, with the units of `MovingPair`.
+
+    pair (1,): a record of WHOLE and REAL, `level`: how many coordinates. waves (3, H): cosines and
+    sines of the mesh stiffness [N/mm], and what the error's cosines add to delta'' [mm/s2].
+    """
+
+    pair: NDArray[np.void]
+    waves: Array
 
 
 def numbers(pair: MovingPair, level: str) -> Numbers:
@@ -58,37 +41,21 @@ def numbers(pair: MovingPair, level: str) -> Numbers:
     if level == "line":
         (a, c), (b, d) = (stiffness_along(pair, r) for r in pair.rotors)
         k1, k2, c1, c2 = (a, a), (b, b), (c, c), (d, d)
-    rest = pair.rest
-    held = dict(zip(("kx1", "ky1", "kx2", "ky2"), map(float, (*k1, *k2)), strict=True))
-    held |= dict(zip(("cx1", "cy1", "cx2", "cy2"), map(float, (*c1, *c2)), strict=True))
-    return Numbers(
-        level=LEVELS[level][0],
-        form=FORMS.get(level, 0),
-        kinematics=KINDS.index(pair.kinematics),
-        m1=float(p.mass),
-        m2=float(w.mass),
-        mesh_mass=float(pair.mesh_mass),
-        load=float(pair.load),
-        **held,
-        damping=float(pair.damping),
-        drag=float(pair.drag),
-        backlash=math.inf if pair.backlash is None else float(pair.backlash),
-        sine=math.sin(pair.pressure_angle),
-        cosine=math.cos(pair.pressure_angle),
-        radii=float(rest.base_radii),
-        centres=rest.centre_distance,
-        tangent=rest.tangent_length,
-        r1=float(p.base_radius),
-        r2=float(w.base_radius),
-        i1=float(p.inertia),
-        i2=float(w.inertia),
-        torque1=float(p.torque),
-        torque2=float(w.torque),
-        omega=2.0 * math.pi * pair.mesh_frequency,
-        cosines=np.array(pair.wave.cosines, float),
-        sines=np.array(pair.wave.sines, float),
-        errors=np.array(pair.error, float),
+    rest, omega = pair.rest, 2.0 * math.pi * pair.mesh_frequency
+    backlash = math.inf if pair.backlash is None else pair.backlash
+    found = (
+        *(LEVELS[level][0], FORMS.get(level, 0), KINDS.index(pair.kinematics)),
+        *(p.mass, w.mass, pair.mesh_mass, pair.load, *k1, *k2, *c1, *c2),
+        *(pair.damping, pair.drag, backlash),
+        *(math.sin(pair.pressure_angle), math.cos(pair.pressure_angle)),
+        *(rest.base_radii, rest.centre_distance, rest.tangent_length),
+        *(p.base_radius, w.base_radius, p.inertia, w.inertia, p.torque, w.torque, omega),
     )
+    cosines, errors = pair.wave.cosines, pair.error
+    waves = np.zeros((3, max(len(cosines), len(errors))))
+    waves[0, : len(cosines)], waves[1, : len(cosines)] = cosines, pair.wave.sines
+    waves[2, : len(errors)] = [-a * (h * omega) ** 2 for h, a in enumerate(errors, 1)]
+    return Numbers(np.array([found], dtype=KIND), waves)
 
 
 def deformation(pair: MovingPair, level: str, states: Array) -> Array:

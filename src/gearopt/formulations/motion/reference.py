@@ -34,29 +34,35 @@ def scipy_motion(
 
     method: of SCIPY; rtol relative, with an absolute tolerance of rtol times `scales`. times [s].
     """
-    model, law = numbers(pair, level), kernel(MARCH)
-    pieces = timeline(pair, np.asarray(times)[[0, -1]])
-    now, out, rates, events = np.array(state, float), [np.array(state, float)], 0, 0
-    flank = int(law.flank_now(model, now))
+    model, asked = numbers(pair, level), np.asarray(times, float)
+    pieces = timeline(pair, asked[[0, -1]])
+    now = np.array(state, float)
+    out, rates, events = [now], 0, 0
+    flank = int(kernel(MARCH).flank_now(model.pair, now))
     tolerances = {"method": method, "rtol": rtol, "atol": rtol * scales(pair, level)}
     for start, length, k0, k1 in zip(
         pieces.starts, pieces.lengths, pieces.k0, pieces.k1, strict=True
     ):
         t, end, line = start, start + length, (start, k0, (k1 - k0) / length)
         while t < end:
-            asked = times[(times > t) & (times <= end)]
-            made = _smooth(model, line, flank, (t, end), now, asked, tolerances)
+            due = asked[(asked > t) & (asked <= end)]
+            made = _smooth(model, line, flank, (t, end), now, due, tolerances)
             rates += made.nfev
             left = made.status == 1
             t = made.t_events[0][0] if left else end
             states = np.reshape(made.y, (len(now), -1)).T  # a list where none was reached
-            out += list(states[: int(np.sum(asked <= t))])
+            out += list(states[: int(np.sum(due <= t))])
             now = made.y_events[0][0] if left else states[-1]
             if left:
-                events += 1
-                delta = now[LEVELS[level][0] // 2]
-                flank = 1 if flank != 1 else (0 if delta <= 0.5 * model.backlash else 2)
+                flank, events = _other(model, flank, now), events + 1
     return Marched(pair, level, np.array(out), rates, rates, events)
+
+
+def _other(model: Numbers, flank: int, state: Array) -> int:
+    """Return the flank on which a motion goes on that has come to the end of one."""
+    if flank != 1:
+        return 1
+    return 0 if state[len(state) // 4] <= 0.5 * float(model.pair["backlash"][0]) else 2
 
 
 def _smooth(
@@ -75,14 +81,14 @@ def _smooth(
 
     def rate(at: float, y: Array) -> Array:
         found = np.empty_like(y)
-        law.rates(model, at, line[1] + line[2] * (at - line[0]), flank, y, found)
+        law.rates(*model, at, line[1] + line[2] * (at - line[0]), flank, y, found)
         return found
 
     def leaves(at: float, y: Array) -> float:
-        return float(law.past(model, flank, y))
+        return float(law.past(model.pair, flank, y))
 
     leaves.terminal, leaves.direction = True, 1.0  # type: ignore[attr-defined]
-    events = leaves if model.backlash < math.inf else None
+    events = leaves if model.pair["backlash"][0] < math.inf else None
     given = {"t_eval": np.union1d(asked, span[1]), "events": events}
     return solve_ivp(rate, span, now, **given, **tolerances)
 

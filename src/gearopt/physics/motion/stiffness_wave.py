@@ -111,7 +111,7 @@ def trapezoid(mean: float, depth: float, duty: float, ramp: float = 0.0) -> Wave
         return Wave(np.array([0.0, duty]), before, after)
     corners = ((0.0, bottom), (ramp, top), (duty, top), (duty + ramp, bottom), (1.0, bottom))
     kept = [c for c, after in pairwise(corners) if after[0] - c[0] > SHORTEST]
-    edges, level = np.array(kept).T
+    edges, level = np.array(kept).T.copy()  # in order, as kernels are compiled for
     return Wave(edges, level, level)
 
 
