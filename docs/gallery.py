@@ -112,6 +112,8 @@ GROUPS = {  # heading: {file: what it shows, in a line}
         "strain_wave_interferes": "Teeth that cut each other as they disengage; a cutter's cusp.",
         "strain_wave_discs": "Two discs as wave generator instead of cos 2 phi.",
         "strain_wave_320": "320:1 with an elastic rim.",
+        "strain_wave_double_arc": "Double circular arcs: many teeth touch, and press harder.",
+        "strain_wave_half_locus": "Teeth by half the locus of their motion: a third of all touch.",
     },
     "The motion of a spur pair": {
         "soft_bearings": "Soft bearings: how far the axes give way, and the motion from rest.",

@@ -69,6 +69,7 @@ LONG = (
     "servo_gimbal_impossible",
     "strain_wave_from_duty",
     "strain_wave_320",
+    "strain_wave_half_locus",
     "strain_wave_discs",
     "least_vibration",
     "unstable_speed",

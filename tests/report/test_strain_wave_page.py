@@ -10,7 +10,7 @@ from gearopt.formulations.strain_wave.wave_report import WaveDesign
 from gearopt.optimise.typed import typed
 from gearopt.report.kinds.strain_wave import cutter, moving, numbers, search, shift, tiles, warns
 from gearopt.report.measures import METRIC
-from gearopt.report.pages.wave_motion import gearing_of, running
+from gearopt.report.pages.wave_motion import drawn, running
 
 
 @pytest.fixture(scope="module")
@@ -131,7 +131,7 @@ def test_sections_say_what_was_found(result, found):
 
 
 def test_the_gearing_of_a_report_is_the_one_it_was_made_of(found):
-    gearing = gearing_of(found)
+    gearing = drawn(found).gearing
     assert 2.0 * gearing.neutral_radius == pytest.approx(found.neutral_diameter_mm, rel=1e-14)
     assert 2.0 * gearing.tip_radius == pytest.approx(found.tip_diameter_mm, rel=1e-14)
 

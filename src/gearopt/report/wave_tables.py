@@ -4,11 +4,12 @@ from collections.abc import Sequence
 from typing import Any
 
 from gearopt.formulations.strain_wave.cutter_report import CutterDesign
-from gearopt.formulations.strain_wave.wave_report import WaveDesign
+from gearopt.formulations.strain_wave.wave_report import INVOLUTE, WaveDesign
 from gearopt.report.measures import Measures
 from gearopt.report.section import Cell, Table, cell
 from gearopt.report.words import amount
 
+LAWS = {"involute": "involute of the circular spline"}
 SHAPES = {"cosine": "cos 2φ", "ellipse": "ellipse", "discs": "two discs"}
 
 
@@ -19,6 +20,7 @@ def sizes(found: WaveDesign, measures: Measures) -> Table:
     if found.wave_generator == "discs":
         shape += f", {found.wrap_angle_deg:g}° each side"
     rows: list[list[Any]] = [
+        ["law of the teeth", LAWS.get(found.law, found.law)],
         ["ratio, circular spline at rest", found.ratio],
         ["teeth of the flexspline", found.flexspline_teeth],
         ["teeth of the circular spline", found.circular_spline_teeth],
@@ -28,13 +30,15 @@ def sizes(found: WaveDesign, measures: Measures) -> Table:
         ["addendum, modules", found.addendum],
         ["deflection, modules", found.deflection],
         [f"rim [{length}]", cell(found.rim_mm, "mm", measures)],
+        [f"thickness at half the height [{length}]", _mm(found.thickness_mm, measures)],
+        *_arcs(found, measures),
         ["wave generator", shape],
         [f"face width [{length}]", cell(found.face_width_mm, "mm", measures)],
         [f"outer diameter [{length}]", cell(found.outer_diameter_mm, "mm", measures)],
         [f"circular spline: tip diameter [{length}]", cell(found.tip_diameter_mm, "mm", measures)],
         [f"last active diameter [{length}]", cell(found.active_diameter_mm, "mm", measures)],
         [f"root diameter [{length}]", cell(found.root_diameter_mm, "mm", measures)],
-        [f"base diameter [{length}]", cell(found.base_diameter_mm, "mm", measures)],
+        [f"base diameter [{length}]", _mm(found.base_diameter_mm, measures)],
         [
             f"neutral diameter of the flexspline [{length}]",
             cell(found.neutral_diameter_mm, "mm", measures),
@@ -57,7 +61,7 @@ def sizes(found: WaveDesign, measures: Measures) -> Table:
         ],
         ["least deflection with contact, modules", found.least_deflection],
     ]
-    return Table("sizes", ["", ""], rows)
+    return Table("sizes", ["", ""], [row for row in rows if row[1] is not None])
 
 
 def teeth(found: WaveDesign, measures: Measures) -> Table:
@@ -76,7 +80,8 @@ def teeth(found: WaveDesign, measures: Measures) -> Table:
         ]
         for t in found.teeth
     ]
-    caption = "Teeth of one lobe, numbered from the middle of the arc of contact; both are alike."
+    where = "middle of the arc of contact" if found.law == INVOLUTE else "major axis"
+    caption = f"Teeth of one lobe, numbered from the {where}; both are alike."
     return Table("teeth", heads, rows, caption)
 
 
@@ -128,7 +133,7 @@ def deflections(found: WaveDesign, measures: Measures) -> Table:
 
 
 def flank(found: WaveDesign, measures: Measures) -> Table:
-    """Return the flank of the flexspline, point by point."""
+    """Return the contacts of conjugate flanks, point by point."""
     length = measures.unit("mm")
     columns: list[tuple[str, Sequence[float], str]] = [
         ("on the wave [°]", found.arc_deg, ""),
@@ -140,10 +145,46 @@ def flank(found: WaveDesign, measures: Measures) -> Table:
         (f"R [{length}]", found.relative_curvature_mm, "mm"),
     ]
     caption = (
-        "From root to tip; radii of curvature of flexspline and circular spline, and R of the "
-        "contact, 1/R = 1/R_f - 1/R_c."
+        "Where flanks are conjugate; radii of curvature of flexspline (convex: above 0) and "
+        "circular spline (concave: above 0), and R of the contact, 1/R = 1/R_f - 1/R_c."
     )
-    return _columns("flank of the flexspline", columns, measures, caption)
+    return _columns("conjugate contact", columns, measures, caption)
+
+
+def tooth_points(found: WaveDesign, measures: Measures) -> Table:
+    """Return points of the flexspline's flank, to make it by."""
+    length = measures.unit("mm")
+    columns = [
+        (f"height over the neutral curve [{length}]", found.tooth_height_mm, "mm"),
+        (f"half thickness [{length}]", found.tooth_half_mm, "mm"),
+    ]
+    return _columns("points of the flexspline's flank", columns, measures, folded=True)
+
+
+def space_points(found: WaveDesign, measures: Measures) -> Table:
+    """Return points of the circular spline's flank, to make it by."""
+    length = measures.unit("mm")
+    columns = [
+        (f"across, from the middle of the space [{length}]", found.space_across_mm, "mm"),
+        (f"out, from the axis [{length}]", found.space_out_mm, "mm"),
+    ]
+    return _columns("points of the circular spline's flank", columns, measures, folded=True)
+
+
+def _arcs(found: WaveDesign, measures: Measures) -> list[list[Any]]:
+    """Return radii and tangent of double arcs."""
+    length = measures.unit("mm")
+    names = "radius at the tip, convex", "radius at the root, concave", "length of the tangent"
+    values = *found.arc_radii_mm, found.tangent_mm
+    return [
+        [f"{name} [{length}]", _mm(v, measures)]
+        for name, v in zip(names, values, strict=False)
+        if v is not None
+    ]
+
+
+def _mm(value: float | None, measures: Measures) -> Cell | None:
+    return None if value is None else cell(value, "mm", measures)
 
 
 def wave(found: WaveDesign, measures: Measures) -> Table:

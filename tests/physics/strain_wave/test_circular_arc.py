@@ -3,30 +3,25 @@
 import numpy as np
 import pytest
 
-from gearopt.physics.strain_wave.circular_arc import (
-    DoubleArc,
-    half_locus_flanks,
-    half_locus_gaps,
-    rack_locus,
-    teeth_on_path,
-)
+from gearopt.physics.strain_wave.circular_arc import DoubleArc, exact_locus, half_locus_tooth
 from gearopt.physics.strain_wave.gearing import StrainWave
 from gearopt.physics.strain_wave.neutral_curve import neutral_curve
 from gearopt.physics.strain_wave.vectors import Vector
 
 
-def test_half_locus_teeth_of_a_rack_touch_everywhere():
-    """At every pose one point of the moved tooth is on the rigid flank, and both are tangent."""
-    angle = np.linspace(0.02, 1.5, 60)
-    path = rack_locus(0.5, angle)
-    rigid, flexible = half_locus_flanks(path)
-    assert (flexible + path - rigid).length.max() == 0.0
-    step = 1e-6
-    rates = [half_locus_flanks(rack_locus(0.5, angle + s)) for s in (-step, step)]
-    ahead, back = (rates[1][k] - rates[0][k] for k in (0, 1))
-    assert np.abs(ahead.cross(back)).max() < 1e-15
-    gearing = StrainWave(0.5, 160)
-    assert teeth_on_path(gearing, np.radians(0.5), np.radians(60.0)) == pytest.approx(26.4, abs=0.1)
+def test_half_the_locus_of_very_many_teeth_is_that_of_a_rack():
+    """Of a rack: (m/2)(2 phi - sin 2 phi), m cos 2 phi; the tooth is its negative at half scale."""
+    gearing = StrainWave(0.01, 20000, addendum=0.75, rim=0.5)
+    tooth = half_locus_tooth(gearing, neutral_curve(gearing), 0.0157)
+    above = tooth.points.x > tooth.points.x[-1] - 0.0075
+    double = np.linspace(2 * np.radians(6.0), 2.2, 4000)
+    height = (np.cos(double[0]) - np.cos(double)) * 0.005
+    across = (double - np.sin(double) - double[0] + np.sin(double[0])) * 0.0025
+    own = tooth.points[above]
+    expected = 0.00785 - np.interp(own.x - own.x[0], height, across)
+    assert own.y == pytest.approx(expected, abs=2e-5)
+    slope = np.gradient(tooth.points.y, tooth.points.x)
+    assert (tooth.directions.y / tooth.directions.x)[5:-5] == pytest.approx(slope[5:-5], abs=0.02)
 
 
 def test_the_turn_of_the_tooth_makes_half_locus_teeth_interfere():
@@ -36,10 +31,17 @@ def test_the_turn_of_the_tooth_makes_half_locus_teeth_interfere():
         gearing = StrainWave(
             80.0 / teeth, teeth, profile_shift=0.0, addendum=0.01, rim=0.01, neutral=40.0
         )
-        arcs = np.radians(0.5), np.radians(60.0)
-        poses = np.radians(np.arange(0.5, 60.0, 0.5))
-        least, _ = half_locus_gaps(gearing, neutral_curve(gearing), arcs, poses)
-        found.append(-1e3 * np.nanmin(least))
+        curve = neutral_curve(gearing)
+        path, _ = exact_locus(gearing, curve, np.radians(np.linspace(0.5, 60.0, 400)))
+        rigid, flexible = path * 0.5, path * -0.5
+        places, turns = exact_locus(gearing, curve, np.radians(np.arange(0.5, 60.0, 0.5)))
+        order, least = np.argsort(rigid.y), []
+        for k in range(len(turns)):
+            moved = places[k] + flexible.turned(-turns[k])
+            inside = (moved.y > rigid.y.min()) & (moved.y < rigid.y.max())
+            aside = np.interp(moved.y[inside], rigid.y[order], rigid.x[order]) - moved.x[inside]
+            least.append(aside.min() if inside.any() else np.inf)
+        found.append(-1e3 * min(least))
     assert found == pytest.approx([14.7, 3.7, 0.9], abs=0.06)
     assert np.log2(np.array(found[:-1]) / found[1:]) == pytest.approx([2.0, 2.0], abs=0.02)
 

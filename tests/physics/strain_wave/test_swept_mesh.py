@@ -113,11 +113,14 @@ def locus():
 
 
 def test_half_locus_teeth_touch_over_a_third_of_the_wave():
-    """26 of 160 teeth per lobe and flank between 0.5 and 60 degrees, by the rack's identity."""
+    """26 of 160 teeth between 0.5 and 60 degrees, by the rack's identity; here from 6 degrees on.
+
+    The rack's path falls by 1.5 modules from 6 degrees to half of arccos(cos(12) - 1.5) = 60.7.
+    """
     mesh = swept_mesh(LOCUS, neutral_curve(LOCUS), locus())
     stretches = intervals(touching(mesh))
     assert mean_pairs(mesh, stretches) == pytest.approx(26.4, rel=0.05)
-    assert np.degrees(stretches[-1][1]) == pytest.approx(60.0, abs=1.5)
+    assert np.degrees(stretches[-1][1]) == pytest.approx(60.7, abs=3.0)
 
 
 def test_half_a_locus_is_no_higher_than_its_motion():

@@ -104,24 +104,40 @@ def limits(
 ) -> dict[str, Any]:
     """Return the utilisations of all limits but interference, at most 1 where they are met."""
     root, tip = contacts[0].point, contacts[-1].point
-    land, space = flexspline_widths(gearing, root, tip)
-    least = LAND * gearing.module
+    widths = *flexspline_widths(gearing, root, tip), spline_land(gearing)
+    slips = slipping(demand, gearing, contacts[-1])
     return {
-        "pairs": demand.pairs / pairs_of(gearing, contacts),
-        "rim_fatigue": fatigue(demand, gearing, curve),
-        "ratcheting": demand.ratchet_factor
-        * demand.duty.torque
-        / slipping(demand, gearing, contacts[-1]),
-        "outer_radius": demand.radius_needed(gearing) / demand.outer_radius,
-        "flexspline_land": 1.0 + (least - land) / gearing.module,
-        "flexspline_space": 1.0 + (least - space) / gearing.module,
-        "spline_land": 1.0 + (least - spline_land(gearing)) / gearing.module,
+        **common_limits(demand, gearing, curve, pairs_of(gearing, contacts), slips, widths),
         "base_circle": OUTSIDE_BASE * gearing.base_radius / gearing.tip_radius,
-        "minor_axis": (ROOM + 2.0 * gearing.addendum) / (2.0 * gearing.deflection),
         "curvature": tuple(
             1.0 + (LEAST_CURVATURE - c.gap_curvature) / CURVATURE_UNIT for c in contacts
         ),
         "cusp": tuple(1.0 - c.speeds[1] / SPEED_UNIT for c in contacts),
+    }
+
+
+def common_limits(
+    demand: Demand,
+    gearing: StrainWave,
+    curve: NeutralCurve,
+    pairs: Any,
+    slips: Any,
+    widths: tuple[Any, Any, Any],
+) -> dict[str, Any]:
+    """Return the utilisations of the limits on teeth of any law.
+
+    pairs: mean conjugate ones; slips: torque [N mm] at which teeth ratchet; widths [mm] of the
+    flexspline's tip land and root space, and of the circular spline's tip land.
+    """
+    names = ("flexspline_land", "flexspline_space", "spline_land")
+    thin = {k: 1.0 + LAND - v / gearing.module for k, v in zip(names, widths, strict=True)}
+    return {
+        "pairs": demand.pairs / pairs,
+        "rim_fatigue": fatigue(demand, gearing, curve),
+        "ratcheting": demand.ratchet_factor * demand.duty.torque / slips,
+        "outer_radius": demand.radius_needed(gearing) / demand.outer_radius,
+        **thin,
+        "minor_axis": (ROOM + 2.0 * gearing.addendum) / (2.0 * gearing.deflection),
     }
 
 

@@ -27,25 +27,26 @@ from gearopt.formulations.strain_wave.shift import (
     shift_curve,
 )
 from gearopt.formulations.strain_wave.wave_design import COUNT
-from gearopt.formulations.strain_wave.wave_sharing import REACH
-from gearopt.physics.strain_wave.circular_arc import teeth_on_path
+from gearopt.formulations.strain_wave.wave_sharing import REACH, Loads
 from gearopt.physics.strain_wave.clearance import interference, teeth_within, tooth_arcs
 from gearopt.physics.strain_wave.clearance import tooth_clearances as clearances_of
 from gearopt.physics.strain_wave.conjugate import Flank, contact, least_deflection
 from gearopt.physics.strain_wave.cutter import blank_profile
-from gearopt.physics.strain_wave.neutral_curve import curvature
+from gearopt.physics.strain_wave.gearing import StrainWave
+from gearopt.physics.strain_wave.neutral_curve import NeutralCurve, curvature
 from gearopt.physics.strain_wave.strength import rim_stresses
 from gearopt.physics.strain_wave.tooth_motion import motion
 
 Columns = tuple[float, ...]
+INVOLUTE = "involute"  # law of the circular spline's teeth, to which the flexspline's are conjugate
 WITHIN = (1.0, 2.0, 5.0, 10.0, 20.0)  # um
 ROWS = 21  # of the flank's table
 OTHER_DEFLECTIONS = (-0.05, -0.02, 0.02, 0.05)  # modules beside the design's
 SHIFTS = (0.0, 0.3, 0.6, 0.9, 1.2, 1.5, 1.8, 2.1)  # profile shifts of the curve
 FINE = 80  # clearances that are listed on either side of the arc of contact
 GUARDS = ("curvature", "cusp")  # keep the flank regular
+NEAR = 0.5  # part of the teeth whose loads are listed
 TURNS = 8  # positions of the wave generator over one pitch
-HALF_LOCUS = (math.radians(0.5), math.radians(60.0))  # of the wave, that such teeth use
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -94,12 +95,20 @@ class RoundRow:
 class WaveDesign:
     """A strain wave gearing and what is computed of it.
 
-    flank: columns from root to tip; heights over the neutral curve, half thicknesses of the tooth;
-    radius of the circular spline and radii of curvature. along_wave: clearances of a tooth by its
-    angle on the wave; load: the load that a tooth carries there. teeth: of one lobe with the wave
-    generator at its middle position; effective_teeth: how many would carry the largest load alike.
+    law: how the teeth are made; what only involutes have is None of others, or empty. arc to
+    relative_curvature: contacts by the tooth's angle on the wave, with heights over the neutral
+    curve, half thicknesses of the tooth, radius on the circular spline, radii of curvature.
+    touching: stretches of the wave on which flanks are conjugate. tooth: the flank from root to
+    tip, height and half thickness; space: that of the circular spline from its tip, across from the
+    middle of the space and out from the axis. wave: clearances of a tooth by its angle; load: what
+    it carries there. teeth: of one lobe with the wave generator at its middle position;
+    effective_teeth: how many would carry the largest load alike.
     """
 
+    law: str = INVOLUTE
+    thickness_mm: float | None = None
+    arc_radii_mm: Columns = ()
+    tangent_mm: float | None = None
     ratio: float
     flexspline_teeth: int
     circular_spline_teeth: int
@@ -115,7 +124,7 @@ class WaveDesign:
     face_width_mm: float
     torque_Nm: float
     outer_diameter_mm: float
-    base_diameter_mm: float
+    base_diameter_mm: float | None = None
     tip_diameter_mm: float
     active_diameter_mm: float
     root_diameter_mm: float
@@ -132,10 +141,9 @@ class WaveDesign:
     ratcheting_torque_Nm: float
     least_clearance_mm: float
     least_clearance_at_deg: float
-    least_deflection: float
-    half_locus_teeth: float
-    shift_of_one_pair: float | None
-    largest_addendum: float | None
+    least_deflection: float | None = None
+    shift_of_one_pair: float | None = None
+    largest_addendum: float | None = None
     within_um: Columns
     teeth_within: Columns
     arc_deg: Columns
@@ -145,13 +153,18 @@ class WaveDesign:
     flexspline_curvature_mm: Columns
     circular_curvature_mm: Columns
     relative_curvature_mm: Columns
+    touching_deg: tuple[tuple[float, float], ...]
+    tooth_height_mm: Columns
+    tooth_half_mm: Columns
+    space_across_mm: Columns
+    space_out_mm: Columns
     wave_angle_deg: Columns
     wave_clearance_mm: Columns
     load_angle_deg: Columns
     load_N: Columns
     load_pressure_MPa: Columns
     teeth: tuple[ToothLoad, ...]
-    shifts: tuple[ShiftRow, ...]
+    shifts: tuple[ShiftRow, ...] = ()
     deflections: tuple[Deflected, ...]
     cutter: CutterDesign | None = None
     rounds: tuple[RoundRow, ...] = ()
@@ -162,27 +175,23 @@ def described(
 ) -> WaveDesign:
     """Return all that is told of a gearing and its flank; cutter: the tool that is asked for."""
     gearing, duty = made.gearing, demand.duty
-    teeth, windup, effective = _teeth(duty, made)
+    own = _carried(duty, made)
     found = interference(made, STEP_DEG, 201)
     return WaveDesign(
         **_sizes(demand, made),
         **_columns(made),
-        **_loads(duty, made),
-        carrying_teeth=sum(t.force_N > 0.0 for t in teeth),
-        effective_teeth=effective,
-        windup_mrad=windup,
+        **load_columns([_carried(duty, made, k / TURNS) for k in range(TURNS)], NEAR),
+        **shares(own),
         equal_pressure_MPa=equal_pressure(duty, made),
         whole_pairs_pressure_MPa=equal_pressure(duty, made, whole=True),
         shared_pressure_MPa=shared_pressure(duty, made),
-        least_clearance_mm=_gap(found.least),
+        least_clearance_mm=gap_of(found.least),
         least_clearance_at_deg=math.degrees(found.angle),
         least_deflection=least_deflection(gearing),
-        half_locus_teeth=teeth_on_path(gearing, *HALF_LOCUS),
         shift_of_one_pair=last_shift_of_one_pair(gearing),
         largest_addendum=largest_addendum(gearing),
         within_um=WITHIN,
-        teeth_within=_floats(teeth_within(made, 1e-3 * np.array(WITHIN))),
-        teeth=teeth,
+        teeth_within=floats(teeth_within(made, 1e-3 * np.array(WITHIN))),
         shifts=tuple(_shift(p) for p in shift_curve(gearing, duty, SHIFTS)),
         deflections=tuple(_deflected(made, by) for by in OTHER_DEFLECTIONS),
         cutter=cutter_of(gearing, blank_profile(made), cutter) if cutter else None,
@@ -197,7 +206,7 @@ def sketched(demand: Demand, made: Flank) -> dict[str, Any]:
         "pairs_in_contact": float(made.pairs_in_contact),
         "equal_pressure_MPa": equal_pressure(demand.duty, made),
         "shared_pressure_MPa": shared_pressure(demand.duty, made),
-        "least_clearance_mm": _gap(interference(made, STEP_DEG, 201).least),
+        "least_clearance_mm": gap_of(interference(made, STEP_DEG, 201).least),
     }
 
 
@@ -221,11 +230,21 @@ def used(demand: Demand, made: Flank) -> dict[str, float]:
 
 
 def _sizes(demand: Demand, made: Flank) -> dict[str, Any]:
-    gearing, duty = made.gearing, demand.duty
-    apex = curvature(made.curve, 0.0)[0]
-    wall = duty.cup.wall
-    bending, shear = rim_stresses(gearing, apex, duty.torque, duty.moduli[0], demand.notch, wall)
+    gearing = made.gearing
     tip = contact(gearing, motion(gearing, made.curve, made.contacts.motion.angle[-1]))
+    return {
+        **sizes_of(demand, gearing, made.curve),
+        "base_diameter_mm": 2.0 * float(gearing.base_radius),
+        "pairs_in_contact": float(made.pairs_in_contact),
+        "ratcheting_torque_Nm": 1e-3 * float(slipping(demand, gearing, tip)),
+    }
+
+
+def sizes_of(demand: Demand, gearing: StrainWave, curve: NeutralCurve) -> dict[str, Any]:
+    """Return the sizes of a gearing and the stresses of its rim, of teeth of any law."""
+    duty = demand.duty
+    apex, wall = curvature(curve, 0.0)[0], duty.cup.wall
+    bending, shear = rim_stresses(gearing, apex, duty.torque, duty.moduli[0], demand.notch, wall)
     return {
         "ratio": float(gearing.ratio),
         "flexspline_teeth": int(gearing.teeth),
@@ -242,15 +261,12 @@ def _sizes(demand: Demand, made: Flank) -> dict[str, Any]:
         "face_width_mm": duty.face_width,
         "torque_Nm": 1e-3 * duty.torque,
         "outer_diameter_mm": 2.0 * float(demand.radius_needed(gearing)),
-        "base_diameter_mm": 2.0 * float(gearing.base_radius),
         "tip_diameter_mm": 2.0 * float(gearing.tip_radius),
         "active_diameter_mm": 2.0 * float(gearing.active_radius),
         "root_diameter_mm": 2.0 * float(gearing.root_radius),
         "neutral_diameter_mm": 2.0 * float(gearing.neutral_radius),
-        "pairs_in_contact": float(made.pairs_in_contact),
         "rim_bending_MPa": float(bending),
         "rim_shear_MPa": float(shear),
-        "ratcheting_torque_Nm": 1e-3 * float(slipping(demand, gearing, tip)),
     }
 
 
@@ -259,54 +275,87 @@ def _columns(made: Flank) -> dict[str, Any]:
     k = np.rint(np.linspace(0, len(at.tangent) - 1, ROWS)).astype(int)
     middle = float(tooth_arcs(made, 0))
     arcs = middle + np.linspace(-REACH, REACH, 2 * FINE + 1)
-    gaps = clearances_of(made, arcs)
+    involute = made.gearing.half_angle - (at.tangent - np.arctan(at.tangent))
+    return {
+        "arc_deg": floats(np.degrees(at.motion.arc[k])),
+        "radius_mm": floats(at.radius[k]),
+        "height_mm": floats(at.point.x[k]),
+        "half_thickness_mm": floats(at.point.y[k]),
+        "flexspline_curvature_mm": floats(1.0 / np.abs(at.curvatures[1][k])),
+        "circular_curvature_mm": floats(1.0 / np.abs(at.curvatures[0][k])),
+        "relative_curvature_mm": floats(1.0 / at.gap_curvature[k]),
+        "touching_deg": (floats(np.degrees(at.motion.arc[[0, -1]])),),
+        "tooth_height_mm": floats(at.point.x[k]),
+        "tooth_half_mm": floats(at.point.y[k]),
+        "space_across_mm": floats((at.radius * np.sin(involute))[k]),
+        "space_out_mm": floats((at.radius * np.cos(involute))[k]),
+        **clearance_columns(arcs, clearances_of(made, arcs)),
+    }
+
+
+def clearance_columns(arcs: Any, gaps: Any) -> dict[str, Any]:
+    """Return clearances [mm] by the angle phi [rad] where they are finite."""
     near = np.isfinite(gaps)
     return {
-        "arc_deg": _floats(np.degrees(at.motion.arc[k])),
-        "radius_mm": _floats(at.radius[k]),
-        "height_mm": _floats(at.point.x[k]),
-        "half_thickness_mm": _floats(at.point.y[k]),
-        "flexspline_curvature_mm": _floats(1.0 / np.abs(at.curvatures[1][k])),
-        "circular_curvature_mm": _floats(1.0 / np.abs(at.curvatures[0][k])),
-        "relative_curvature_mm": _floats(1.0 / at.gap_curvature[k]),
-        "wave_angle_deg": _floats(np.degrees(arcs[near])),
-        "wave_clearance_mm": tuple(map(_gap, gaps[near])),
+        "wave_angle_deg": floats(np.degrees(arcs[near])),
+        "wave_clearance_mm": tuple(map(gap_of, gaps[near])),
     }
 
 
-def _loads(duty: Duty, made: Flank) -> dict[str, Any]:
-    """Return the load of a tooth by its angle, by turning the wave generator through a pitch."""
+@dataclass(frozen=True)
+class Carried:
+    """What the teeth of a lobe carry: number, angle phi [rad], gap [mm], load, pressure [MPa]."""
+
+    numbers: Any
+    arcs: Any
+    gaps: Any
+    loads: Loads
+    stresses: Any
+
+
+def _carried(duty: Duty, made: Flank, shift: float = 0.0) -> Carried:
+    teeth, loads = loads_at(duty, made, shift)
+    stress = pressures(duty, made, teeth, loads)
+    return Carried(teeth.numbers, teeth.arcs, teeth.gaps, loads, stress)
+
+
+def load_columns(turned: Sequence[Carried], share: float = 1.0) -> dict[str, Any]:
+    """Return the load of a tooth by its angle, from turns of the wave generator over a pitch.
+
+    share: part of the teeth that is told, those nearest to the middle.
+    """
     rows: list[tuple[float, float, float]] = []
-    for shift in np.arange(TURNS) / TURNS:
-        teeth, loads = loads_at(duty, made, float(shift))
-        stress = pressures(duty, made, teeth, loads)
-        near = np.abs(teeth.numbers) <= teeth.numbers.max() // 2
-        rows += zip(teeth.arcs[near], loads.forces[near], stress[near], strict=True)
+    for at in turned:
+        near = np.abs(at.numbers) <= share * at.numbers.max()
+        rows += zip(at.arcs[near], at.loads.forces[near], at.stresses[near], strict=True)
     arcs, forces, stresses = np.array(sorted(rows)).T
     return {
-        "load_angle_deg": _floats(np.degrees(arcs)),
-        "load_N": _floats(forces),
-        "load_pressure_MPa": _floats(stresses),
+        "load_angle_deg": floats(np.degrees(arcs)),
+        "load_N": floats(forces),
+        "load_pressure_MPa": floats(stresses),
     }
 
 
-def _teeth(duty: Duty, made: Flank) -> tuple[tuple[ToothLoad, ...], float, float]:
-    """Return the teeth that carry and their neighbours, windup [mrad], effective teeth."""
-    teeth, loads = loads_at(duty, made)
-    stress = pressures(duty, made, teeth, loads)
-    carries = np.flatnonzero(loads.forces > 0.0)
-    shown = range(max(0, carries[0] - 3), min(len(stress), carries[-1] + 4))
+def shares(at: Carried) -> dict[str, Any]:
+    """Return the teeth that carry with three neighbours on either side, and their windup."""
+    carries = np.flatnonzero(at.loads.forces > 0.0)
+    shown = range(max(0, carries[0] - 3), min(len(at.stresses), carries[-1] + 4))
     rows = tuple(
         ToothLoad(
-            tooth=int(teeth.numbers[k]),
-            wave_angle_deg=math.degrees(teeth.arcs[k]),
-            clearance_mm=_gap(teeth.gaps[k]),
-            force_N=float(loads.forces[k]),
-            contact_pressure_MPa=float(stress[k]),
+            tooth=int(at.numbers[k]),
+            wave_angle_deg=math.degrees(at.arcs[k]),
+            clearance_mm=gap_of(at.gaps[k]),
+            force_N=float(at.loads.forces[k]),
+            contact_pressure_MPa=float(at.stresses[k]),
         )
         for k in shown
     )
-    return rows, 1e3 * loads.windup, loads.effective
+    return {
+        "teeth": rows,
+        "carrying_teeth": len(carries),
+        "effective_teeth": at.loads.effective,
+        "windup_mrad": 1e3 * at.loads.windup,
+    }
 
 
 def _shift(point: ShiftPoint) -> ShiftRow:
@@ -317,20 +366,21 @@ def _shift(point: ShiftPoint) -> ShiftRow:
         equal_MPa=point.equal,
         whole_MPa=point.whole,
         shared_MPa=point.shared,
-        least_clearance_mm=_gap(point.least_gap),
+        least_clearance_mm=gap_of(point.least_gap),
     )
 
 
 def _deflected(made: Flank, by: float) -> Deflected:
     deflection = float(made.gearing.deflection) + by
     found = interference(stretched(made, deflection), STEP_DEG)
-    return Deflected(deflection=deflection, least_clearance_mm=_gap(found.least))
+    return Deflected(deflection=deflection, least_clearance_mm=gap_of(found.least))
 
 
-def _gap(value: float) -> float:
+def gap_of(value: float) -> float:
     """Return a clearance [mm] without what rounding leaves of a contact."""
     return round(float(value), 9) + 0.0
 
 
-def _floats(values: Any) -> Columns:
+def floats(values: Any) -> Columns:
+    """Return a column."""
     return tuple(map(float, values))

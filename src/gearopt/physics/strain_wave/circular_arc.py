@@ -17,33 +17,10 @@ from gearopt.physics.strain_wave.tooth_motion import motion
 from gearopt.physics.strain_wave.vectors import Vector, polar
 
 POINTS = 801  # of a flank: chords are within 1 nm of it
-FIRST = math.radians(0.5)  # polar angle at which half the locus begins: at 0 its curvature is inf
+FIRST = math.radians(6.0)  # polar angle at which half the locus begins: R is 0.1 mm there, 0 at 0
 LAST = math.radians(89.0)  # and before which it ends
 STEP = 1e-4  # rad, of differences along the locus: errors below 1e-7 of its curvature
 STEEPEST = math.radians(85.0)  # slope of an arc at its end, against the axis of the tooth
-
-
-def rack_locus(module: Any, angle: Any) -> Vector:
-    """Return the path of a tooth past a rack, (m/2)(2 phi - sin 2 phi), m cos 2 phi [mm].
-
-    module m [mm]; angle phi [rad]; w = 1, infinitely many teeth. x runs across the tooth, y along.
-    """
-    double = 2.0 * angle
-    return Vector(0.5 * module * (double - np.sin(double)), module * np.cos(double))
-
-
-def half_locus_flanks(locus: Vector) -> tuple[Vector, Vector]:
-    """Return the flanks of rigid and flexible teeth: the locus at half scale, and its negative.
-
-    A tooth that stands at the point L of its path touches the flank L/2 with its point -L/2, for
-    every L: all teeth on the used part of the path touch. Source: S. Ishikawa, US 4 823 638.
-    """
-    return locus * 0.5, locus * -0.5
-
-
-def teeth_on_path(gearing: StrainWave, first: float, last: float) -> float:
-    """Return the teeth per lobe and flank between two angles phi [rad] of the path."""
-    return float((last - first) * gearing.teeth / (2.0 * math.pi))
 
 
 def exact_locus(gearing: StrainWave, curve: NeutralCurve, angle: Any) -> tuple[Vector, Any]:
@@ -54,29 +31,6 @@ def exact_locus(gearing: StrainWave, curve: NeutralCurve, angle: Any) -> tuple[V
     at = motion(gearing, curve, angle)
     top = gearing.neutral_radius + gearing.radial_deflection
     return Vector(gearing.pitch_radius * at.place.angle, at.place.length - top), at.turn
-
-
-def half_locus_gaps(
-    gearing: StrainWave, curve: NeutralCurve, arcs: tuple[float, float], poses: Any
-) -> tuple[Any, Any]:
-    """Return the least and largest lateral gap [mm] of half-locus teeth that turn, per pose.
-
-    arcs [rad]: the polar angles between which the path makes both flanks; poses (k,) [rad]. The
-    tooth's turn, which a rack does not have, makes the flanks interfere by O(m/z): so
-    `half_locus_tooth` takes the flexspline's flank alone. NaN where flanks do not overlap.
-    """
-    path, _ = exact_locus(gearing, curve, np.linspace(*arcs, 400))
-    rigid, flexible = half_locus_flanks(path)
-    order = np.argsort(rigid.y)
-    least, most = [], []
-    places, turns = exact_locus(gearing, curve, np.asarray(poses))
-    for k in range(len(places.x)):
-        moved = places[k] + Vector(flexible.x, flexible.y).turned(-turns[k])
-        inside = (moved.y > rigid.y.min()) & (moved.y < rigid.y.max())
-        gap = np.interp(moved.y[inside], rigid.y[order], rigid.x[order]) - moved.x[inside]
-        least.append(gap.min() if inside.any() else math.nan)
-        most.append(gap.max() if inside.any() else math.nan)
-    return np.array(least), np.array(most)
 
 
 def tooth_heights(gearing: StrainWave) -> tuple[float, float, float]:
@@ -94,10 +48,11 @@ def tooth_heights(gearing: StrainWave) -> tuple[float, float, float]:
 def half_locus_tooth(gearing: StrainWave, curve: NeutralCurve, thickness: float) -> Profile:
     """Return a tooth whose upper half is the locus of its own motion at half scale.
 
-    thickness [mm] at half the height, from which it is straight down to the root. The locus is
+    thickness [mm] at half the height, from which a tangent goes down to the root. The locus is
     `exact_locus`; it ends where it has fallen by 2 h_a m. ValueError where it never does.
-    Source: S. Ishikawa, US 4 823 638, for both flanks; here the circular spline follows from the
-    flexspline's (`swept_mesh`), which mends what the turn of the teeth spoils.
+    Source: S. Ishikawa, US 4 823 638: flanks by the locus at half scale, the other gear's by its
+    negative, touch at every pose of a rack. Teeth that turn would cut each other so, by O(m/z):
+    here the circular spline follows from the flexspline (`swept_mesh`).
     """
     root, middle, tip = tooth_heights(gearing)
     angle = np.linspace(FIRST, LAST, 20 * POINTS)
@@ -116,11 +71,9 @@ def half_locus_tooth(gearing: StrainWave, curve: NeutralCurve, thickness: float)
     along = Vector(first.y, first.x)
     bend = (first.y * second.x - first.x * second.y) / along.length**3
     unit = along * (1.0 / along.length)
-    return Profile(
-        Vector(heights, 0.5 * thickness - 0.5 * np.where(below, 0.0, path.x - start.x)),
-        Vector(np.where(below, 1.0, unit.x), np.where(below, 0.0, unit.y)),
-        np.where(below, 0.0, bend),
-    )
+    falls = 0.5 * (path.x - start.x)
+    falls = np.where(below, (heights - middle) * -unit.y[0] / unit.x[0], falls)
+    return Profile(Vector(heights, 0.5 * thickness - falls), unit, np.where(below, 0.0, bend))
 
 
 @dataclass(frozen=True)

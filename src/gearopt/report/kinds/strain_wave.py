@@ -5,7 +5,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
-from gearopt.formulations.strain_wave.wave_report import WaveDesign
+from gearopt.formulations.strain_wave.cutter_report import CutterDesign
+from gearopt.formulations.strain_wave.wave_report import INVOLUTE, WaveDesign
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import typed
 from gearopt.report import wave_tables as tables
@@ -83,10 +84,7 @@ def warns(result: Result) -> Sequence[str]:
             f"{found.least_clearance_at_deg:.3g}° of the wave: loads and pressures do not count."
         )
     if found.cutter and not found.cutter.regular:
-        told.append(
-            f"A cutter of {found.cutter.teeth} teeth has a cusp: there is none. The least is "
-            f"{found.cutter.least_teeth} teeth with this pitch circle."
-        )
+        told.append(f"{_tool(found.cutter)} has a cusp: there is none. {_least(found.cutter)}")
     return told
 
 
@@ -139,12 +137,10 @@ def _clearances(found: WaveDesign, measures: Measures) -> Figure:
         "yref": "paper",
         "y0": 0.0,
         "y1": 1.0,
-        "x0": found.arc_deg[0],
-        "x1": found.arc_deg[-1],
         "fillcolor": "--grid",
         "line": {"width": 0},
     }
-    plot["shapes"] = [shade]
+    plot["shapes"] = [shade | {"x0": a, "x1": b} for a, b in found.touching_deg]
     caption = "Least clearance of a tooth by its place on the wave; shaded: conjugate flanks touch."
     return Figure([_line(x, y, "clearance", 1)], plot, caption, follows=RUNS)
 
@@ -214,42 +210,53 @@ def cutter(result: Result, measures: Measures) -> Section | None:
     found = design_of(result)
     if found is None or (tool := found.cutter) is None:
         return None
-    least = f"least teeth of a regular cutter here: {tool.least_teeth}"
     if not tool.regular:
-        words = (f"No such cutter: its edge would have a cusp; {least}.",)
+        words = (f"No such cutter: its edge would have a cusp. {_least(tool)}",)
         return Section("Cutter of the flexspline", words=words, terminal=words)
-    what = f"A pinion-type cutter of {tool.teeth} teeth" if tool.teeth else "A rack, as of a hob"
     words = (
-        f"{what}, rolling on a pitch radius of {amount(tool.pitch_radius_mm, 'mm', measures)}: "
-        f"regular, it generates the flank to {1e3 * tool.round_trip_mm:.0e} µm; {least}.",
+        f"{_tool(tool)}, rolling on a pitch radius of "
+        f"{amount(tool.pitch_radius_mm, 'mm', measures)}: regular, it generates the flank to "
+        f"{1e3 * tool.round_trip_mm:.0e} µm. {_least(tool)}",
     )
     shown = result.report["cutter_drawing"]
-    edges = tables.edges(tool, measures)
+    edges = [tables.edges(tool, measures)] if found.law == INVOLUTE else []
     return Section(
         "Cutter of the flexspline",
         words=words,
         drawings=[
             drawing(tool, math.pi * found.module_mm, shown["scale"], shown["grid_mm"], measures)
         ],
-        tables=[edges, tables.edge_points(tool, measures)],
-        terminal=(words[0], edges),
+        tables=[*edges, tables.edge_points(tool, measures)],
+        terminal=(words[0], *edges),
     )
+
+
+def _tool(tool: CutterDesign) -> str:
+    return f"A pinion-type cutter of {tool.teeth} teeth" if tool.teeth else "A rack, as of a hob,"
+
+
+def _least(tool: CutterDesign) -> str:
+    """Return how small a pinion-type cutter on the same pitch circle of the blank may be."""
+    if tool.least_teeth is None:
+        return (
+            "No pinion-type cutter of up to 60 teeth is regular on this pitch circle of the blank: "
+            "another [cutter] pitch_diameter may do."
+        )
+    return f"On this pitch circle pinion-type cutters are regular from {tool.least_teeth} teeth on."
 
 
 def numbers(result: Result, measures: Measures) -> Section | None:
     """Return the gearing in numbers, its flank, and other deflections."""
     if (found := design_of(result)) is None:
         return None
-    words = (
-        f"Teeth by half the locus of their motion, another law, would touch with "
-        f"{number(found.half_locus_teeth)} teeth per lobe and flank between 0.5 and 60° of the "
-        "wave, if their flanks were corrected for the turn of the teeth.",
-    )
     sizes = tables.sizes(found, measures)
+    columns = (tables.flank, tables.tooth_points, tables.space_points)
     return Section(
-        "Sizes and flank",
-        words=words,
-        tables=[sizes, tables.deflections(found, measures), tables.flank(found, measures)],
+        "Sizes and flanks",
+        tables=[
+            *(sizes, tables.deflections(found, measures)),
+            *(table(found, measures) for table in columns),
+        ],
         terminal=(sizes,),
     )
 

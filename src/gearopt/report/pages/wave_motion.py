@@ -5,15 +5,14 @@ and all repeats.
 """
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from gearopt.formulations.strain_wave.wave_report import WaveDesign
-from gearopt.physics.strain_wave.conjugate import Flank, flank
+from gearopt.formulations.strain_wave.wave_report import INVOLUTE, WaveDesign
 from gearopt.physics.strain_wave.gearing import StrainWave
-from gearopt.physics.strain_wave.neutral_curve import NeutralCurve, whole_curve
+from gearopt.physics.strain_wave.neutral_curve import NeutralCurve, neutral_curve, whole_curve
 from gearopt.report.measures import Measures
 from gearopt.report.pages.player import Animation, Body, Reading, Scale, View
 from gearopt.report.pages.sheet import Sheet, Window, series
@@ -37,11 +36,12 @@ CAPTION = (
 
 def running(found: WaveDesign, name: str, measures: Measures) -> Animation:
     """Return the animation of a gearing: the whole, and the teeth at the top."""
-    made = flank(gearing_of(found), 41)
+    made = drawn(found)
     turns = np.linspace(-0.5 * math.pi, 0.5 * math.pi, MOMENTS)
     most = _round_up(measures.of(max(found.load_N), "N"))
     views = [_whole(made, found, turns, measures), _close(made, found, turns, measures)]
     first = np.degrees(_arcs(made.gearing, 0, turns))
+    low, high = max(found.touching_deg, key=np.ptp)
     seen = np.where(np.abs(first) < max(found.wave_angle_deg), first, np.nan)
     readings = [
         Reading("wave generator", np.degrees(turns), "°", 1),
@@ -57,7 +57,7 @@ def running(found: WaveDesign, name: str, measures: Measures) -> Animation:
         readings,
         marks=seen,
         scale=Scale("load of a tooth", 0.0, most, measures.unit("N")),
-        still=int(np.argmin(np.abs(first - 0.5 * (found.arc_deg[0] + found.arc_deg[-1])))),
+        still=int(np.argmin(np.abs(first - 0.5 * (low + high)))),
     )
 
 
@@ -67,9 +67,22 @@ def _round_up(value: float) -> float:
     return math.ceil(value / unit) * unit
 
 
-def gearing_of(found: WaveDesign) -> StrainWave:
-    """Return the gearing that a report holds."""
-    return StrainWave(
+@dataclass(frozen=True)
+class Drawn:
+    """A gearing as it is drawn: neutral curve, and flanks (n, 2) [mm] of both gears.
+
+    tooth: height and half thickness from root to tip; space: across and out, from the tip inwards.
+    """
+
+    gearing: StrainWave
+    curve: NeutralCurve
+    tooth: Any
+    space: Any
+
+
+def drawn(found: WaveDesign) -> Drawn:
+    """Return the gearing of a report, of teeth of any law."""
+    gearing = StrainWave(
         found.module_mm,
         found.flexspline_teeth,
         math.radians(found.pressure_angle_deg),
@@ -81,6 +94,9 @@ def gearing_of(found: WaveDesign) -> StrainWave:
         found.wave_generator,
         math.radians(found.wrap_angle_deg),
     )
+    tooth = np.c_[found.tooth_height_mm, found.tooth_half_mm]
+    space = np.c_[found.space_across_mm, found.space_out_mm]
+    return Drawn(gearing, neutral_curve(gearing), tooth, space)
 
 
 def _arcs(gearing: StrainWave, space: int, turns: Any) -> Any:
@@ -102,21 +118,25 @@ def _places(curve: NeutralCurve, arcs: Any, turns: Any) -> Any:
     return np.stack((at.x, at.y, turns + normal), axis=-1)
 
 
-def _tooth(made: Flank, points: int) -> Any:
+def _tooth(made: Drawn, points: int) -> Any:
     """Return the outline of a tooth of the flexspline about its foot, its axis upwards."""
-    at, rim = made.contacts.point, 0.5 * float(made.gearing.rim)
-    k = np.rint(np.linspace(0, len(at.x) - 1, points)).astype(int)
-    height, half = at.x[k], at.y[k]
+    rim = 0.5 * float(made.gearing.rim)
+    height, half = made.tooth[_evenly(len(made.tooth), points)].T
     side = np.c_[np.r_[rim, height], np.r_[half[0], half]]
     left = np.c_[-side[:, 1], side[:, 0]]
     return np.vstack([left, left[::-1] * (-1.0, 1.0)])
 
 
-def _spaces(gearing: StrainWave, numbers: Any, points: int) -> Any:
+def _evenly(count: int, points: int) -> Any:
+    """Return the numbers of some points of a column, both ends among them."""
+    return np.rint(np.linspace(0, count - 1, points)).astype(int)
+
+
+def _spaces(made: Drawn, numbers: Any, points: int) -> Any:
     """Return the outline of the circular spline's teeth along some spaces, upright."""
-    radius = np.linspace(float(gearing.tip_radius), float(gearing.active_radius), points)
-    tangent = np.sqrt((radius / gearing.base_radius) ** 2 - 1.0)
-    half = gearing.half_angle - (tangent - np.arctan(tangent))
+    gearing = made.gearing
+    across, out = made.space[_evenly(len(made.space), points)].T
+    radius, half = np.hypot(across, out), np.arctan2(across, out)
     deep = np.r_[radius, float(gearing.root_radius)]
     wide = np.r_[half, half[-1]]
     rows = []
@@ -127,7 +147,7 @@ def _spaces(gearing: StrainWave, numbers: Any, points: int) -> Any:
     return np.array(rows)
 
 
-def _ring(made: Flank, offset: float) -> Any:
+def _ring(made: Drawn, offset: float) -> Any:
     """Return the neutral curve, moved outwards along its normal [mm], upright at turn 0."""
     place, normal = whole_curve(made.curve, np.linspace(-math.pi, math.pi, RING)[:-1])
     x, y = place.x + offset * np.cos(normal), place.y + offset * np.sin(normal)
@@ -138,7 +158,7 @@ def _turning(turns: Any) -> Any:
     return np.stack((0.0 * turns, 0.0 * turns, turns), axis=1)
 
 
-def _bodies(made: Flank, found: WaveDesign, turns: Any, numbers: Any, points: int) -> list[Body]:
+def _bodies(made: Drawn, found: WaveDesign, turns: Any, numbers: Any, points: int) -> list[Body]:
     """Return teeth of the flexspline, coloured by what they carry."""
     outline = _tooth(made, points)
     arcs = np.array([_arcs(made.gearing, k, turns) for k in numbers])
@@ -149,7 +169,7 @@ def _bodies(made: Flank, found: WaveDesign, turns: Any, numbers: Any, points: in
     ]
 
 
-def _rings(made: Flank, turns: Any) -> list[Body]:
+def _rings(made: Drawn, turns: Any) -> list[Body]:
     """Return the rim of the flexspline and the wave generator in it, which turn as one shape."""
     rim = 0.5 * float(made.gearing.rim)
     outer, inner = _ring(made, rim), _ring(made, -rim)
@@ -162,25 +182,28 @@ def _rings(made: Flank, turns: Any) -> list[Body]:
     ]
 
 
-def _whole(made: Flank, found: WaveDesign, turns: Any, measures: Measures) -> View:
+def _whole(made: Drawn, found: WaveDesign, turns: Any, measures: Measures) -> View:
     gearing = made.gearing
     reach = 0.5 * found.outer_diameter_mm
     sheet = Sheet(Window(-reach, reach, -reach, reach, FREE), WIDE / (2.0 * reach))
-    _spline(sheet, gearing, range(int(gearing.circular_teeth)), 2, reach)
+    _spline(
+        sheet, made, range(int(gearing.circular_teeth)), 2 if found.law == INVOLUTE else 5, reach
+    )
     own = _shown(found, measures)
-    teeth = _bodies(made, own, turns, range(int(gearing.teeth)), 2)
+    teeth = _bodies(made, own, turns, range(int(gearing.teeth)), 2 if found.law == INVOLUTE else 4)
     words = f"The whole gearing, outer diameter {measures.length(2.0 * reach)} {measures.lengths}."
     return View(sheet, "strain wave gearing", [*_rings(made, turns), *teeth], (), words)
 
 
-def _close(made: Flank, found: WaveDesign, turns: Any, measures: Measures) -> View:
+def _close(made: Drawn, found: WaveDesign, turns: Any, measures: Measures) -> View:
     gearing, m = made.gearing, found.module_mm
     top = float(gearing.root_radius) + 0.4 * m
     half = (NEAR - 0.3) * math.pi * m
     window = Window(-half, half, top - HIGH * m, top, FREE)
     sheet = Sheet(window, CLOSE / (2.0 * half))
-    _spline(sheet, gearing, range(-NEAR - 2, NEAR + 3), 10, 0.0)
-    teeth = _bodies(made, _shown(found, measures), turns, range(-NEAR - 2, NEAR + 3), 9)
+    points = 11 if found.law == INVOLUTE else 21
+    _spline(sheet, made, range(-NEAR - 2, NEAR + 3), points, 0.0)
+    teeth = _bodies(made, _shown(found, measures), turns, range(-NEAR - 2, NEAR + 3), points)
     words = (
         f"The teeth at the top, at {sheet.scale * 25.4 / 96.0:.0f} times their size on a screen."
     )
@@ -194,9 +217,9 @@ def _shown(found: WaveDesign, measures: Measures) -> WaveDesign:
     return replace(found, load_N=tuple(factor * v for v in found.load_N))
 
 
-def _spline(sheet: Sheet, gearing: StrainWave, numbers: Any, points: int, reach: float) -> None:
+def _spline(sheet: Sheet, made: Drawn, numbers: Any, points: int, reach: float) -> None:
     """Draw the circular spline at rest; reach [mm]: its outer radius, 0: beyond the view."""
-    inner = _spaces(gearing, numbers, points)
+    inner = _spaces(made, numbers, points)
     path = " L ".join(f"{x:.2f} {y:.2f}" for x, y in (sheet.at(*p) for p in inner))
     title, colour = "circular spline", series(COLOURS[1])
     if reach:
@@ -205,7 +228,7 @@ def _spline(sheet: Sheet, gearing: StrainWave, numbers: Any, points: int, reach:
         back = f"a {size:.2f} {size:.2f} 0 1 1 {-2 * size:.2f} 0 Z"
         sheet.shape(f"{ring} {back} M {path} Z", "tip", colour, title)
         return
-    far = 2.0 * float(gearing.root_radius)
+    far = 2.0 * float(made.gearing.root_radius)
     ends = [(inner[-1][0] * 1.2, far), (inner[0][0] * 1.2, far)]
     rest = " L ".join(f"{x:.2f} {y:.2f}" for x, y in (sheet.at(*p) for p in ends))
     sheet.shape(f"M {path} L {rest} Z", "tip", colour, title)

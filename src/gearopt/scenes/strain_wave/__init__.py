@@ -10,7 +10,18 @@ from gearopt.errors import SolveError
 from gearopt.formulations.strain_wave import sampled
 from gearopt.formulations.strain_wave.demand import FREE, PRESSURE, VOLUME
 from gearopt.formulations.strain_wave.exchange import Exchanged, design_of, exchange
-from gearopt.formulations.strain_wave.wave_report import RoundRow, described, sketched, used
+from gearopt.formulations.strain_wave.swept_report import (
+    described_by_law,
+    swept_gearing,
+    used_by_law,
+)
+from gearopt.formulations.strain_wave.wave_report import (
+    RoundRow,
+    WaveDesign,
+    described,
+    sketched,
+    used,
+)
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.comparing.runs import Model
 from gearopt.optimise.explaining.explain import binding
@@ -104,10 +115,7 @@ def _evaluated(scene: Scene, ask: Ask) -> Result:
     if ask.method is not None:
         raise SolveError(f"--method {ask.method} changes nothing here: {NOTHING}; leave it out")
     clock = Clock(ask.budget, ask.watch)
-    made = design_of(scene.demand(), scene.start())
-    if not made.complete.all():
-        raise SolveError(_no_contact(scene))
-    limits = used(scene.demand(), made)
+    design, limits = _given(scene)
     excess = max(0.0, max(limits.values()) - 1.0)
     over = [name for name, value in limits.items() if value > 1.0 + FEASIBLE]
     found = Result(
@@ -121,14 +129,30 @@ def _evaluated(scene: Scene, ask: Ask) -> Result:
         seed=ask.seed,
         versions=versions("numpy"),
     )
-    return replace(_with(scene, found, made), seconds=clock.seconds)
+    return replace(_shown(scene, found, design, limits), seconds=clock.seconds)
+
+
+def _given(scene: Scene) -> tuple[WaveDesign, dict[str, float]]:
+    """Return the design of a gearing that is given, and what it uses of every limit."""
+    demand = scene.demand()
+    if not scene.involute:
+        try:
+            swept = swept_gearing(scene.gearing(), scene.law())
+        except ValueError as reason:
+            raise SolveError(f"{reason}: change deflection or addendum of [gears]") from None
+        design = described_by_law(demand, swept, scene.law(), scene.tool())
+        return design, used_by_law(demand, swept)
+    made = design_of(demand, scene.start())
+    if not made.complete.all():
+        raise SolveError(_no_contact(scene))
+    return described(demand, made, scene.tool()), used(demand, made)
 
 
 def _no_contact(scene: Scene) -> str:
     """Say why a gearing has no conjugate flank, and from which deflection on it would have."""
     from gearopt.physics.strain_wave.conjugate import existence, least_deflection
 
-    made = scene.demand().gearing(dict(zip(FREE, scene.start(), strict=True)))
+    made = scene.gearing()
     least = least_deflection(made)
     if made.deflection < least:
         beyond = min((abs(end) for arc in existence(made) for end in arc), default=math.pi / 2)
@@ -141,9 +165,14 @@ def _no_contact(scene: Scene) -> str:
 
 
 def _with(scene: Scene, result: Result, made: Flank, rounds: Sequence[RoundRow] = ()) -> Result:
-    """Return a result with the design and what it uses of every limit."""
+    """Return a result with the design that was chosen and what it uses of every limit."""
     demand = scene.demand()
     design = described(demand, made, scene.tool(), rounds)
+    return _shown(scene, result, design, used(demand, made) | _cut(result))
+
+
+def _shown(scene: Scene, result: Result, design: WaveDesign, limits: dict[str, float]) -> Result:
+    """Return a result with a design and all that is told of it."""
     told: dict[str, Any] = {"assumptions": assumptions(scene, design), "notes": notes(design)}
     drawing = scene.cutter
     if drawing is not None:
@@ -154,7 +183,7 @@ def _with(scene: Scene, result: Result, made: Flank, rounds: Sequence[RoundRow] 
         name="strain wave gearing",
         objective=result.objective | ({"unit": "MPa"} if result.objective else {}),
         design=untyped(design),
-        limits=used(demand, made) | _cut(result),
+        limits=limits,
         multipliers={k: v for k, v in result.multipliers.items() if "[" not in k},
         report=result.report | told,
     )

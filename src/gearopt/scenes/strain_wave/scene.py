@@ -8,8 +8,12 @@ from pydantic import Field, model_validator
 from gearopt.formulations.strain_wave.cutter_report import USUAL, Cutter
 from gearopt.formulations.strain_wave.demand import FREE, Demand
 from gearopt.formulations.strain_wave.duty import Duty
+from gearopt.formulations.strain_wave.swept_report import HALF_LOCUS, Law
+from gearopt.formulations.strain_wave.wave_report import INVOLUTE
+from gearopt.physics.strain_wave.gearing import StrainWave
 from gearopt.physics.strain_wave.rim import Cup
 from gearopt.scenes.reading.fields import Table, refuse, words
+from gearopt.scenes.strain_wave.law_faults import law_fault
 from gearopt.scenes.strain_wave.wave_tables import (
     MODULES,
     RANGES,
@@ -21,6 +25,7 @@ from gearopt.scenes.strain_wave.wave_tables import (
     WaveLimits,
     WaveMaterial,
     WaveSharing,
+    WaveTeeth,
 )
 from gearopt.units import Quantity
 
@@ -34,6 +39,7 @@ START = {
     "deflection": 1.0,
     "addendum": 0.6,
 }
+CONVEX, CONCAVE, TANGENT = 1.37, 1.57, 0.1  # modules: of a design in the literature
 START_RIM = 8.0 / 900.0  # of the outer diameter
 
 
@@ -46,6 +52,7 @@ class Scene(Table):
     )
     duty: WaveDuty
     gears: WaveGears = Field(default_factory=WaveGears)
+    teeth: WaveTeeth = Field(default_factory=WaveTeeth)
     wave_generator: WaveGenerator = Field(default_factory=WaveGenerator)
     material: WaveMaterial = Field(default_factory=WaveMaterial)
     sharing: WaveSharing = Field(default_factory=WaveSharing)
@@ -55,7 +62,12 @@ class Scene(Table):
     @property
     def limited(self) -> bool:
         """Whether the file leaves some of the six numbers open, to be chosen within limits."""
-        return any(getattr(self.gears, name) is None for name in FREE)
+        return self.involute and any(getattr(self.gears, name) is None for name in FREE)
+
+    @property
+    def involute(self) -> bool:
+        """Whether the circular spline has involute teeth."""
+        return self.teeth.law == INVOLUTE
 
     @model_validator(mode="after")
     def _consistent(self) -> "Scene":
@@ -70,6 +82,30 @@ class Scene(Table):
             if getattr(self.gears, name) is not None and getattr(self.design, name) is not None:
                 rule = f"changes nothing: [gears] gives {name}"
                 raise refuse(rule, at=("design", name), action="remove")
+        return self
+
+    @model_validator(mode="after")
+    def _given_by_law(self) -> "Scene":
+        """Refuse what a law of teeth cannot do, each with its key."""
+        if self.involute:
+            return self
+        for name in FREE:
+            own = name == "pressure_angle" and self.teeth.law == HALF_LOCUS
+            if own and getattr(self.gears, name) is not None:
+                rule = f'changes nothing: law = "{HALF_LOCUS}" has its own angles'
+                raise refuse(rule, at=("gears", name), action="remove")
+            if getattr(self.design, name) is not None:
+                rule = f'changes nothing: law = "{self.teeth.law}" has no search'
+                raise refuse(rule, at=("design", name), action="remove")
+            if not own and getattr(self.gears, name) is None:
+                rule = f'is missing: gears are chosen with law = "{INVOLUTE}" alone'
+                raise refuse(rule, at=("gears", name), action="sample")
+        if self.cutter is not None and self.cutter.tool_angle is not None:
+            rule = f'changes nothing: edges for law = "{self.teeth.law}" are not straight'
+            raise refuse(rule, at=("cutter", "tool_angle"), action="remove")
+        if fault := law_fault(self.gearing(), self.law()):
+            rule, at, write = fault
+            raise refuse(rule, write, at, "set" if write else "sample")
         return self
 
     @property
@@ -96,6 +132,18 @@ class Scene(Table):
             return self.gears.face_width.value
         assert self.duty.outer_diameter is not None
         return self.duty.outer_diameter.value / 9.0
+
+    def law(self) -> Law:
+        """Return how teeth that are no involutes are made."""
+        assert self.gears.module is not None
+        m, own = self.gears.module.value, self.teeth
+        radii = _or(own.convex_radius, CONVEX * m), _or(own.concave_radius, CONCAVE * m)
+        thick, tangent = _or(own.thickness, 0.5 * math.pi * m), _or(own.tangent, TANGENT * m)
+        return Law(own.law, thick, radii, tangent)
+
+    def gearing(self) -> StrainWave:
+        """Return the gearing that is given, or that at which a search begins."""
+        return self.demand().gearing(dict(zip(FREE, self.start(), strict=True)))
 
     def loads(self) -> Duty:
         """Return torque, width, materials and elasticity."""

@@ -5,6 +5,8 @@ from typing import Annotated
 
 from pydantic import Field, model_validator
 
+from gearopt.formulations.strain_wave.swept_report import DOUBLE_ARC, HALF_LOCUS
+from gearopt.formulations.strain_wave.wave_report import INVOLUTE
 from gearopt.physics.strain_wave.gearing import WAVES
 from gearopt.scenes.reading.fields import Table, choice, number, quantity, refuse, whole
 from gearopt.scenes.reading.lists import span
@@ -68,6 +70,41 @@ class WaveGears(Table):
         description="Thickness of the circular spline outside its roots; by default 1/30 of the "
         "outer diameter, of given gears six modules",
     )
+
+
+class WaveTeeth(Table):
+    """How the teeth are made. Laws but the involute are of the flexspline, and of given gears."""
+
+    law: Annotated[str, choice(INVOLUTE, DOUBLE_ARC, HALF_LOCUS)] = Field(
+        INVOLUTE,
+        description="Law of the teeth: involutes of the circular spline, double circular arcs of "
+        "the flexspline, or half the locus of its motion; the other gear's teeth follow",
+    )
+    thickness: Annotated[Quantity | None, quantity("length", "0.8 mm")] = Field(
+        None,
+        description="Thickness of the flexspline's teeth at half their height, of arcs and locus; "
+        "by default half the pitch",
+    )
+    convex_radius: Annotated[Quantity | None, quantity("length", "0.7 mm")] = Field(
+        None, description="Radius of the arc at the tip of double arcs; by default 1.37 modules"
+    )
+    concave_radius: Annotated[Quantity | None, quantity("length", "0.8 mm")] = Field(
+        None, description="Radius of the arc at the root of double arcs; by default 1.57 modules"
+    )
+    tangent: Annotated[Quantity | None, quantity("length", "0.05 mm", zero=True)] = Field(
+        None,
+        description="Length of the common tangent of double arcs; by default a tenth of the module",
+    )
+
+    @model_validator(mode="after")
+    def _of_the_law(self) -> "WaveTeeth":
+        arcs = ("convex_radius", "concave_radius", "tangent")
+        idle = {INVOLUTE: ("thickness", *arcs), HALF_LOCUS: arcs, DOUBLE_ARC: ()}[self.law]
+        for name in idle:
+            if getattr(self, name) is not None:
+                rule = f'changes nothing: law = "{self.law}" needs no {name}'
+                raise refuse(rule, at=(name,), action="remove")
+        return self
 
 
 class WaveGenerator(Table):

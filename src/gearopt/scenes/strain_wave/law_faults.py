@@ -1,0 +1,53 @@
+"""What no tooth of a law can be: the key at fault, and a value to write instead."""
+
+import math
+
+from gearopt.formulations.strain_wave.swept_report import (
+    DOUBLE_ARC,
+    Law,
+    double_arc,
+    swept_tooth,
+)
+from gearopt.physics.strain_wave.circular_arc import DoubleArc, tooth_heights
+from gearopt.physics.strain_wave.gearing import StrainWave
+
+THINNEST = 0.05  # modules that a tooth's tip is thick at least
+Fault = tuple[str, tuple[str, str], str | None]  # rule, place, and what to write there
+
+
+def law_fault(gearing: StrainWave, law: Law) -> Fault | None:
+    """Return why a law gives no tooth; None where it gives one."""
+    pitch = math.pi * float(gearing.module)
+    if law.thickness > 0.9 * pitch:
+        rule = f"is above {0.9 * pitch:.4g} mm, nine tenths of the pitch"
+        return rule, ("teeth", "thickness"), _mm(0.5 * pitch)
+    if law.name == DOUBLE_ARC and (fault := _arc_fault(gearing, law, double_arc(gearing, law))):
+        return fault
+    try:
+        tooth = swept_tooth(gearing, law)
+    except ValueError as reason:
+        return str(reason), ("gears", "addendum"), None
+    tip, least = 2.0 * float(tooth.points.y[-1]), THINNEST * float(gearing.module)
+    if tip < least:
+        rule = f"is too small: the tip would be {tip:.4g} mm thick, at least {least:.4g} mm"
+        return rule, ("teeth", "thickness"), _mm(law.thickness + least - tip)
+    return None
+
+
+def _arc_fault(gearing: StrainWave, law: Law, arcs: DoubleArc) -> Fault | None:
+    low, middle, high = tooth_heights(gearing)
+    longest = 2.0 * (middle - low)
+    if law.tangent > 0.9 * longest:
+        rule = f"is above {0.9 * longest:.4g} mm, nine tenths of the flank's height"
+        return rule, ("teeth", "tangent"), _mm(0.1 * longest)
+    ends = ("convex_radius", high - middle), ("concave_radius", middle - low)
+    for (key, depth), radius in zip(ends, law.radii, strict=True):
+        least = arcs.least_radius(depth)
+        if radius < least:
+            rule = f"is too small for the addendum: the arc needs {least:.4g} mm to the flank's end"
+            return rule, ("teeth", key), _mm(1.1 * least)
+    return None
+
+
+def _mm(value: float) -> str:
+    return f"{value:.3g} mm"
