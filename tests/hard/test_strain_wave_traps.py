@@ -77,6 +77,7 @@ def test_teeth_made_for_a_larger_deflection(w, radius):
     made = flank(replace(BASE, deflection=w))
     assert made.complete and interference(made, 0.25).free
     assert 1.0 / made.contacts.gap_curvature.max() == pytest.approx(radius, abs=0.6)
+    assert (made.contacts.motion.arc < 0.0).all()  # contact moves to the other side
 
 
 def test_teeth_made_for_a_small_deflection_interfere():

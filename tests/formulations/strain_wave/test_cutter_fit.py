@@ -49,6 +49,7 @@ def test_fits_agree_with_a_table_made_elsewhere(name):
     assert np.degrees(line.angle) == pytest.approx(angle, abs=6e-4)
     assert 1e3 * line.deviation == pytest.approx(deviation, abs=6e-5)
     assert 1e3 * line.least_squares == pytest.approx(squares, abs=6e-5)
+    assert 1.0 - line.deviation / line.least_squares == pytest.approx(0.26, abs=0.02)
     found = straight_edge(edge(name), np.radians(20.0))
     assert 1e3 * found.deviation == pytest.approx(fixed, rel=0.08)
     assert found.angle == pytest.approx(np.radians(20.0), rel=1e-12)
@@ -142,3 +143,22 @@ def test_the_report_tells_the_arc_of_a_tool():
         found = cutter_of(BASE, blank, Cutter(least_radius=least))
         assert found.arc_radius_mm == pytest.approx(radius, abs=5e-3)
         assert found.least_radius_mm == least
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("changes", "low", "high"),
+    [
+        ([{"profile_shift": x} for x in (0.0, 0.5, 2.0)], 20.04, 20.12),
+        ([{"deflection": w} for w in (0.97, 1.1, 1.2)], 20.04, 20.12),
+        ([{"neutral": 38.5}], 20.255, 20.265),
+        ([{"teeth": 60, "module": 1.2}], 20.415, 20.425),
+    ],
+    ids=["profile shift", "deflection", "neutral radius", "30:1"],
+)
+def test_the_hob_of_a_20_degree_gearing_is_near_20_degrees(changes, low, high):
+    for change in changes:
+        gearing = replace(BASE, **change)
+        blank = blank_profile(flank(gearing, 61))
+        line = straight_edge(envelope(blank, gearing.blank_radius).profile.points)
+        assert low < np.degrees(line.angle) < high and line.deviation < 1e-3

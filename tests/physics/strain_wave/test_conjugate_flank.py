@@ -8,6 +8,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from scipy.interpolate import CubicSpline
 
 from gearopt.optimise.tape import legacy_numpy
 from gearopt.physics.strain_wave.clearance import involute_gap
@@ -280,9 +281,31 @@ def test_the_text_is_traced_as_it_is_run():
 
 
 def test_the_virtual_internal_pair_explains_the_conformity():
-    """R_c - R_f is nearly a_v sin(alpha_C), a_v from the neutral curve's centre of curvature."""
-    at = motion(BASE, base().curve, 0.0)
-    apart = 40.125 - 1.0 / curvature(base().curve, 0.0)[0]
+    """R_c - R_f is nearly a_v sin(alpha_C), a_v from the neutral curve's centre of curvature.
+
+    Numbers and the approximation of |C_0| for small w_0 are those of another program.
+    """
+    at, kappa = motion(BASE, base().curve, 0.0), curvature(base().curve, 0.0)[0]
+    radius = BASE.neutral_radius
+    assert kappa * radius == pytest.approx(1.0374, abs=5e-6)
+    apart = radius + 0.5 - 1.0 / kappa
     angle = np.arccos(BASE.base_radius / at.centre.length)
+    assert (apart, np.degrees(angle)) == pytest.approx((1.928, 18.87), abs=6e-3)
     spline, flex = (1.0 / abs(c[0]) for c in base().contacts.curvatures)
-    assert spline[()] - flex == pytest.approx(apart * np.sin(angle), rel=5e-3)
+    near = apart * np.sin(angle)
+    assert (near, spline - flex) == pytest.approx((0.6236, 0.6226), abs=6e-5)
+    assert flex * spline / near * base().contacts.gap_curvature[0] == pytest.approx(1.0, abs=2e-3)
+    first = 4.0 * 0.5 * (radius + 0.5) / (radius * (2.0 / 162 + 3.0 * 0.5 / radius))
+    assert first == pytest.approx(40.343, abs=5e-4)
+    assert at.centre.length == pytest.approx(first, rel=4e-3)
+
+
+@pytest.mark.parametrize(("wave", "off"), [("ellipse", 0.05), ("discs", 0.22)])
+def test_the_wave_generator_changes_the_flank_by_tenths_of_a_um(wave, off):
+    made = flank(replace(BASE, wave=wave)).contacts.point
+    own = base().contacts.point
+    low, high = max(own.x[0], made.x[0]), min(own.x[-1], made.x[-1])
+    height = np.linspace(low, high, 50)
+    found = [CubicSpline(p.x, p.y) for p in (own, made)]
+    apart = (found[1](height) - found[0](height)) / np.hypot(1.0, found[0](height, 1))
+    assert 1e3 * np.abs(apart).max() == pytest.approx(off, abs=0.016)
