@@ -8,11 +8,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+import gearopt
+from gearopt.errors import SceneError, SolveError
+from gearopt.formulations.strain_wave.duty import Duty, equal_pressure, loads_at, shared_pressure
 from gearopt.physics.strain_wave.clearance import interference
 from gearopt.physics.strain_wave.conjugate import contact, flank
+from gearopt.physics.strain_wave.cutter import blank_profile, envelope
 from gearopt.physics.strain_wave.gearing import StrainWave
 from gearopt.physics.strain_wave.neutral_curve import angle_of_arc, neutral_curve, radii
+from gearopt.physics.strain_wave.rim import Cup
 from gearopt.physics.strain_wave.tooth_motion import motion
+from gearopt.scenes.reading.load import read
+from gearopt.scenes.strain_wave import EXAMPLE
 
 BASE = StrainWave(0.5, 160, profile_shift=0.9)
 
@@ -107,3 +114,73 @@ def test_flanks_without_an_instant_centre_far_away_do_not_overflow():
     far = found.motion.centre.length
     assert np.isfinite(far).all() and far.max() > 1e3
     assert np.isfinite(found.motion.place.length).all()
+
+
+RATIOS = (30, 50, 60, 80, 100, 120, 160, 200, 320)
+
+
+def test_from_30_to_320_of_one_size_more_teeth_share_less_pressure():
+    """Geometry, contact, loads and pressures at a module of 80 mm/z_f: finite, and of one sense.
+
+    The angle of the tool falls towards the involute's 20 degrees.
+    """
+    duty = Duty(1e5, 10.0, (206e3, 206e3), (0.3, 0.3), 1e5, Cup(), elastic=False)
+    rows = []
+    for ratio in RATIOS:
+        made = flank(replace(BASE, teeth=2 * ratio, module=40.0 / ratio))
+        assert made.complete and interference(made, 0.25).free
+        _, loads = loads_at(duty, made)
+        assert loads.forces.sum() * made.gearing.base_radius == pytest.approx(5e4, rel=1e-12)
+        edge = envelope(blank_profile(made), made.gearing.blank_radius)
+        lean = np.polyfit(edge.profile.points.x, edge.profile.points.y, 1)[0]
+        stresses = equal_pressure(duty, made), shared_pressure(duty, made)
+        rows.append((made.pairs_in_contact, -stresses[0], -stresses[1], lean))
+        assert edge.regular
+    assert (np.diff(np.array(rows), axis=0) > 0.0).all()
+    assert rows[3][1:3] == pytest.approx((-117.38, -58.68), abs=0.005)
+    assert np.degrees(np.arctan(-rows[-1][3])) == pytest.approx(20.0, abs=0.02)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("ratio", RATIOS[::4])
+def test_files_from_30_to_320_have_no_number_that_is_none(ratio):
+    text = EXAMPLE.replace("ratio = 80", f"ratio = {ratio}")
+    found = gearopt.solve(read(text.replace("0.5 mm", f"{40 / ratio} mm").encode())[1])
+    assert found.status == "evaluated" and found.design["cutter"]["regular"]
+    numbers = list(leaves(found.design))
+    assert len(numbers) > 900 and np.isfinite(numbers).all()
+
+
+def leaves(design):
+    for value in design.values() if isinstance(design, dict) else design:
+        if isinstance(value, dict | list | tuple):
+            yield from leaves(value)
+        elif isinstance(value, float | int):
+            yield value
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        ('rim = "0.8 mm"', 'rim = "100 mm"', r"rim.*bore of -120 mm.*Write rim = \"0.8 mm\""),
+        ('module = "0.5 mm"', 'module = "1 um"', "rim.*bore of -1.4"),
+    ],
+)
+def test_a_rim_that_leaves_no_bore_is_refused(old, new, told):
+    with pytest.raises(SceneError, match=told):
+        read(EXAMPLE.replace(old, new).encode())
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        ("deflection = 1\n", "deflection = 0.1\n", "below 0.8139.*contact exists nowhere"),
+        ("deflection = 1\n", "deflection = 0.7\n", "below 0.8139.*from 35.0 degrees"),
+        ("deflection = 1\n", "deflection = 0.82\n", "no conjugate point at some radius"),
+        ('"20 deg"\nprofile', '"5 deg"\nprofile', "below 1.0129"),
+    ],
+)
+def test_gearings_without_a_flank_are_refused_with_what_would_help(old, new, told):
+    assert old in EXAMPLE
+    with pytest.raises(SolveError, match=told):
+        gearopt.solve(read(EXAMPLE.replace(old, new).encode())[1])

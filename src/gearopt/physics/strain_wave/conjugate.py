@@ -5,7 +5,7 @@ involute through the instant centre is known.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -173,14 +173,19 @@ def existence(gearing: StrainWave, count: int = 7201) -> list[tuple[float, float
 def least_deflection(gearing: StrainWave) -> float:
     """Return the deflection w below which no contact exists at the major axis: |C_0| = r_b.
 
-    The neutral radius follows w as the gearing says. By bisection between 0.2 and 2 modules.
+    The neutral radius follows w as the gearing says. By bisection between 0.2 and 2 modules;
+    infinite where 2 is not enough.
     """
-    from dataclasses import replace
+
+    def reaches(deflection: float) -> bool:
+        one = replace(gearing, deflection=deflection)
+        centre = motion(one, neutral_curve(one), 0.0).centre
+        return bool(centre.length >= one.base_radius)
 
     low, high = 0.2, 2.0
+    if not reaches(high):
+        return math.inf
     for _ in range(50):
         middle = 0.5 * (low + high)
-        one = replace(gearing, deflection=middle)
-        far = motion(one, neutral_curve(one), 0.0).centre.length
-        low, high = (low, middle) if far >= one.base_radius else (middle, high)
+        low, high = (low, middle) if reaches(middle) else (middle, high)
     return high

@@ -155,13 +155,18 @@ def _no_contact(scene: Scene) -> str:
     made = scene.gearing()
     least = least_deflection(made)
     if made.deflection < least:
-        beyond = min((abs(end) for arc in existence(made) for end in arc), default=math.pi / 2)
+        arcs = existence(made)
+        beyond = math.degrees(min(abs(end) for arc in arcs for end in arc)) if arcs else 90.0
+        where = f"from {beyond:.1f} degrees of the wave on" if arcs else "nowhere on the wave"
         return (
             f"there is no contact at the major axis: a deflection of {made.deflection:g} modules "
             f"is below {least:.4f}, where the instant centre enters the base circle; contact "
-            f"exists from {math.degrees(beyond):.1f} degrees of the wave on"
+            f"exists {where}"
         )
-    return "the flank has no conjugate point at some radius: change addendum or profile shift"
+    return (
+        "the flank has no conjugate point at some radius: change deflection, addendum or profile "
+        "shift"
+    )
 
 
 def _with(scene: Scene, result: Result, made: Flank, rounds: Sequence[RoundRow] = ()) -> Result:

@@ -85,6 +85,17 @@ class Scene(Table):
         return self
 
     @model_validator(mode="after")
+    def _with_a_bore(self) -> "Scene":
+        if any(getattr(self.gears, name) is None for name in FREE):
+            return self
+        made = self.gearing()
+        bore = 2.0 * made.neutral_radius - made.rim
+        if bore <= 0.0:
+            rule = f"is too thick: the flexspline would have a bore of {bore:.4g} mm"
+            raise refuse(rule, f"{0.01 * made.module * made.teeth:.3g} mm", ("gears", "rim"))
+        return self
+
+    @model_validator(mode="after")
     def _given_by_law(self) -> "Scene":
         """Refuse what a law of teeth cannot do, each with its key."""
         if self.involute:
@@ -100,9 +111,10 @@ class Scene(Table):
             if not own and getattr(self.gears, name) is None:
                 rule = f'is missing: gears are chosen with law = "{INVOLUTE}" alone'
                 raise refuse(rule, at=("gears", name), action="sample")
-        if self.cutter is not None and self.cutter.tool_angle is not None:
-            rule = f'changes nothing: edges for law = "{self.teeth.law}" are not straight'
-            raise refuse(rule, at=("cutter", "tool_angle"), action="remove")
+        for name in ("tool_angle", "least_radius"):
+            if self.cutter is not None and getattr(self.cutter, name) is not None:
+                rule = f'changes nothing: no simple edge is fitted for law = "{self.teeth.law}"'
+                raise refuse(rule, at=("cutter", name), action="remove")
         if fault := law_fault(self.gearing(), self.law()):
             rule, at, write = fault
             raise refuse(rule, write, at, "set" if write else "sample")
