@@ -37,6 +37,22 @@ def pytest_collection_modifyitems(config, items):
     items[:] = [k for k in items if id(k) not in dropped]
 
 
+@pytest.hookimpl(wrapper=True)
+def pytest_make_collect_report(collector):
+    """A file of tests is compiled, with what pytest adds to its assertions, by one worker only.
+
+    That takes 10 s for all files, so what is compiled is kept even where Python is asked not to.
+    """
+    if not isinstance(collector, pytest.Module):
+        return (yield)
+    asked, sys.dont_write_bytecode = sys.dont_write_bytecode, False
+    try:
+        with locked(collector.path.open()):
+            return (yield)
+    finally:
+        sys.dont_write_bytecode = asked
+
+
 def answered(path, **options):
     """The result of a file: of one that only rates given gears its rating."""
     content = tomllib.loads(path.read_text(encoding="utf-8"))
@@ -46,9 +62,9 @@ def answered(path, **options):
 
 
 @contextmanager
-def locked(path):
+def locked(file):
     """One worker at a time; the others wait."""
-    with path.open("w") as file:
+    with file:
         fcntl.flock(file, fcntl.LOCK_EX)
         yield
 
@@ -69,7 +85,7 @@ def solved(shared):
 
     def result(name):
         kept = shared / f"{name}.json"
-        with locked(shared / f"{name}.lock"):
+        with locked((shared / f"{name}.lock").open("w")):
             if not kept.exists():
                 found = answered(PROBLEMS / f"{name}.toml")
                 kept.write_text(found.to_json(), encoding="utf-8")
@@ -85,6 +101,8 @@ def compiled_once(shared, worker_id):
         return
     from numba.core.dispatcher import Dispatcher
 
+    from gearopt.optimise import kernels
+
     compile_now, within = Dispatcher.compile, []
 
     def compiled(self, signature):
@@ -92,8 +110,8 @@ def compiled_once(shared, worker_id):
             return compile_now(self, signature)
         within.append(self)
         try:
-            with locked(shared / f"{self.py_func.__module__}.lock"):
-                return compile_now(self, signature)
+            with locked((shared / f"{self.py_func.__module__}.lock").open("w")):
+                return kernels.compiling(lambda: compile_now(self, signature))
         finally:
             within.pop()
 

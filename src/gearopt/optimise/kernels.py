@@ -95,17 +95,23 @@ def compiled(work: Callable[[], Any], entries: tuple[Any, ...], watch: Watch | N
         def on_end(self, found: Any) -> None:
             """Do nothing."""
 
-    collects = gc.isenabled()
-    gc.disable()  # what numba makes of a function is kept until it is compiled: a sixth of the time
     try:
         with event.install_listener("numba:compile", Listener()):
-            _roomy(work)
+            compiling(work)
     except _Ended:
         return False
+    return True
+
+
+def compiling(work: Callable[[], Any]) -> Any:
+    """Return what `work`, which compiles kernels, returns; it takes four fifths of the time so."""
+    collects = gc.isenabled()
+    gc.disable()  # what numba makes of a function is kept until it is compiled
+    try:
+        return _roomy(work)
     finally:
         if collects:
             gc.enable()
-    return True
 
 
 @dataclass
@@ -178,8 +184,8 @@ def _called(entry: Any, known: set[Any]) -> Iterator[Any]:
             left += [other for other in names if hasattr(other, "py_func")]
 
 
-def _call(work: Callable[[], Any]) -> None:
-    work()
+def _call(work: Callable[[], Any]) -> Any:
+    return work()
 
 
 # Python keeps frames in blocks of 16 KB, and asks the system for the next one whenever a call goes

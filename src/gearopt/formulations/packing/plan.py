@@ -58,12 +58,12 @@ class Plan:
     @cached_property
     def radius(self) -> Array:
         """Radii [mm], (n,)."""
-        return np.array([c.radius for c in self.cylinders])
+        return np.array([c.radius for c in self.cylinders], dtype=float)
 
     @cached_property
     def height(self) -> Array:
         """Heights [mm], (n,)."""
-        return np.array([c.height for c in self.cylinders])
+        return np.array([c.height for c in self.cylinders], dtype=float)
 
     @cached_property
     def free(self) -> tuple[int, ...]:

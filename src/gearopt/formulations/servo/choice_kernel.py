@@ -8,7 +8,9 @@ Angles of the output link are those of a quarter: box and train have the same mi
 
 import math
 
-from gearopt.formulations.servo.servo_box_kernel import SLACK, decided, room
+import numpy as np
+
+from gearopt.formulations.servo.servo_box_kernel import SLACK, ZERO, decided, room
 from gearopt.formulations.servo.split import duty_kernel
 from gearopt.formulations.servo.split.teeth_kernel import (
     ALLOWANCE,
@@ -26,12 +28,12 @@ from gearopt.optimise.jit_kernel import entry, inner
 
 promise_of_duty = duty_kernel.promise
 PARTS = 16  # of a quarter, as bits
-EVERY = (1 << PARTS) - 1
+EVERY = np.int64((1 << PARTS) - 1)
 WIDTH = 0.5 * math.pi / PARTS
 ROOM = 40  # steps of one look at a box
 PROMISE = 2 * duty_kernel.STEPS  # steps of a promise of a duty
 UNKNOWN = -1  # of the parts that are open
-INTERVALS = 10_000  # that may decide whether one train fits
+INTERVALS = np.int64(10_000)  # that may decide whether one train fits
 UNDECIDED = -1
 
 
@@ -145,7 +147,7 @@ def fitting(kept, work, m1, z1, z2, m2, z3, z4):
     box.radius[1] = max(box.radius[1], 0.5 * m2 * (z3 + 2))
     box.radius[2] = 0.5 * m2 * (z4 + 2)
     box.link[1] = box.link[2] = 0.5 * m2 * (z3 + z4)
-    count = 0
+    count = ZERO
     for k in range(PARTS):
         if work.at[3] >> k & 1:
             work.cells[count, 0], work.cells[count, 1] = k * WIDTH, (k + 1) * WIDTH

@@ -73,7 +73,7 @@ def best_kept(
     stages = kernel(TEETH).first_stages(given)[0]
     work = Work(
         known=np.full(stages, math.nan),
-        parts=np.full(stages, -1, np.int32),
+        parts=np.full(stages, -1),
         at=np.array([stages, -1, -1, 0]),
         cells=np.zeros((DEEP, 2)),
         angles=np.zeros(2),

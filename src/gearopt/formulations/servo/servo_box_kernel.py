@@ -8,6 +8,8 @@ from gearopt.optimise.jit_kernel import entry, inner
 
 SLACK = 1e-12  # of lengths over the box, and of angles: many times their rounding
 MEETS = 1.0 + 10.0 * SLACK  # scale of a box that one layout is judged in: a tie is decided
+# Integers for arguments: for a literal numba compiles a function once more, and all it calls.
+ZERO, ONE = np.int64(0), np.int64(1)
 
 
 @inner
@@ -173,4 +175,4 @@ def decided(s, cells, count, angles, limit):
 def fits(s, cells, angles, limit):
     """Whether a train fits its box of scale 1: 1 yes (angles), 0 proven no, -1 undecided."""
     cells[0, 0], cells[0, 1] = -math.pi, math.pi
-    return decided(s, cells, 1, angles, limit)[0]
+    return decided(s, cells, ONE, angles, limit)[0]
