@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from gearopt.bench import curvature, names
-from gearopt.physics.strain_wave.fitted_curvature import FITS, graph_curvature
+from gearopt.physics.strain_wave.fitted_curvature import FITS
 
 
 def test_rows_say_which_methods_are_right(monkeypatch):
@@ -28,14 +28,6 @@ def test_rows_say_which_methods_are_right(monkeypatch):
     assert min(noisy, key=noisy.get) == "quartic fit" and noisy["cubic spline"] > 1.0
     assert 0.2 < by["quartic fit", "0.1 um", 201]["p0"]
     assert by["cubic spline", "1 nm", 201]["wrong_sign"] > 40
-
-
-def test_equation_9_on_a_circle():
-    """R = 10 mm at x = 6: the corrected form gives it, the printed one 2.56."""
-    slope, second = -6.0 / 8.0, -100.0 / 8.0**3
-    assert 1.0 / abs(graph_curvature(slope, second)) == pytest.approx(10.0, rel=1e-14)
-    printed = abs((1.0 + slope) ** 0.5 / second)
-    assert printed == pytest.approx(2.56, abs=5e-3)
 
 
 @pytest.mark.parametrize("name", list(FITS))

@@ -5,7 +5,10 @@ from functools import cache
 
 import numpy as np
 
+from gearopt.bench import curvature, wave_cutter
 from gearopt.formulations.strain_wave.cutter_fit import arc_edge, straight_edge
+from gearopt.formulations.strain_wave.duty import Duty, equal_pressure, shared_pressure
+from gearopt.formulations.strain_wave.shift import largest_addendum, last_shift_of_one_pair
 from gearopt.formulations.strain_wave.wave_sharing import shared, teeth_of
 from gearopt.physics.strain_wave.clearance import (
     interference,
@@ -16,6 +19,7 @@ from gearopt.physics.strain_wave.clearance import (
 from gearopt.physics.strain_wave.conjugate import flank
 from gearopt.physics.strain_wave.cutter import blank_profile, envelope, least_teeth
 from gearopt.physics.strain_wave.gearing import StrainWave
+from gearopt.physics.strain_wave.neutral_curve import neutral_curve
 from gearopt.physics.strain_wave.rim import Cup
 from gearopt.physics.strain_wave.strength import contact_modulus, equal_share, hertz_pressure
 
@@ -28,6 +32,7 @@ CASES = {
 }
 STEEL = contact_modulus((206e3, 206e3), (0.3, 0.3))
 TORQUE, WIDTH = 1e5, 10.0  # N mm, mm
+DUTY = Duty(TORQUE, WIDTH, (206e3, 206e3), (0.3, 0.3), 1e5, Cup(), elastic=False)
 
 
 @cache
@@ -53,6 +58,13 @@ def flank_rows():
         )
 
 
+def wave_rows():
+    for wave, name in (("cosine", "cos 2 phi"), ("ellipse", "ellipse"), ("discs", "two discs")):
+        made = flank(replace(BASE, wave=wave))
+        radius = 1.0 / made.contacts.gap_curvature.max()
+        yield row(name, f"{radius:.0f}", f"{made.pairs_in_contact:.3f}")
+
+
 def angle_rows():
     for angle in (8, 10, 12, 15, 20, 25, 28):
         made = flank(replace(BASE, pressure_angle=np.radians(angle)))
@@ -61,13 +73,54 @@ def angle_rows():
 
 
 def clearance_row():
-    found = 1e3 * tooth_clearances(base(), tooth_arcs(base(), np.arange(-5, 6)))
+    numbers = (-10, -8, -6, *range(-5, 6), 6, 8, 10)
+    found = 1e3 * tooth_clearances(base(), tooth_arcs(base(), np.array(numbers)))
     return row("clearance um", *(f"{v:.1f}" for v in found))
 
 
 def within_row():
-    found = teeth_within(base(), np.array([1, 2, 5, 10, 20]) * 1e-3)
+    found = teeth_within(base(), np.array([0.5, 1, 2, 5, 10, 20]) * 1e-3)
     return row("mean teeth", *(f"{v:.1f}" for v in found))
+
+
+def addendum_rows():
+    for x in (0.0, 0.5, 0.9, 1.5):
+        found = largest_addendum(replace(BASE, profile_shift=x))
+        made = flank(replace(BASE, profile_shift=x, addendum=found))
+        yield row(x, f"{found:.2f}", f"{made.pairs_in_contact:.2f}")
+
+
+def deflection_rows():
+    for w in (0.95, 0.98, 1.02, 1.05, 1.1):
+        run = replace(BASE, deflection=w, neutral=BASE.neutral_radius)
+        gap = interference(replace(base(), gearing=run, curve=neutral_curve(run)), 0.1).least
+        yield row(w, f"{1e3 * gap:.1f}")
+
+
+def made_for_rows():
+    for w in (0.9, 1.0, 1.1, 1.2, 1.3, 1.5):
+        made = flank(replace(BASE, deflection=w))
+        arc = np.degrees(made.contacts.motion.arc[[0, -1]])
+        gap = min(0.0, round(1e3 * interference(made, 0.25).least, 1))
+        radius = 1.0 / made.contacts.gap_curvature.max()
+        yield row(w, f"{arc[0]:.2f} to {arc[1]:.2f}", f"{radius:.0f}", f"{gap:.1f}")
+
+
+def ratio_rows():
+    for ratio in (30, 50, 80, 100, 160, 320):
+        made = flank(replace(BASE, teeth=2 * ratio, module=40.0 / ratio))
+        radius = 1.0 / made.contacts.gap_curvature.max()
+        blank = blank_profile(made)
+        edge = envelope(blank, made.gearing.blank_radius).profile.points
+        lean = np.degrees(np.arctan(-np.polyfit(edge.x, edge.y, 1)[0]))
+        stresses = equal_pressure(DUTY, made), shared_pressure(DUTY, made)
+        yield row(
+            ratio,
+            f"{made.pairs_in_contact:.3f}",
+            f"{radius:.0f}",
+            *(f"{s:.1f}" for s in stresses),
+            f"{lean:.2f}",
+        )
 
 
 def stress(made, pairs):
@@ -76,17 +129,24 @@ def stress(made, pairs):
 
 
 def shift_rows():
-    for x in (0.0, 0.6, 0.9, 1.2, 1.8):
+    for x in (0.0, 0.3, 0.6, 0.9, 1.2, 1.5, 1.8):
         made = flank(replace(BASE, profile_shift=x))
+        held = flank(replace(BASE, profile_shift=x, neutral=40.0))
         pairs = float(made.pairs_in_contact)
-        radius = 1.0 / made.contacts.gap_curvature.max()
-        yield row(
-            x,
-            f"{pairs:.3f}",
-            f"{radius:.0f}",
-            f"{stress(made, pairs):.1f}",
-            f"{stress(made, np.floor(pairs)):.1f}",
+        stresses = (
+            stress(made, pairs),
+            stress(made, np.floor(pairs)),
+            shared_pressure(DUTY, made),
+            stress(held, float(held.pairs_in_contact)),
         )
+        radius = 1.0 / made.contacts.gap_curvature.max()
+        yield row(x, f"{pairs:.3f}", f"{radius:.0f}", *(f"{s:.1f}" for s in stresses))
+
+
+def one_pair_rows():
+    for addendum in (0.52, 0.55, 0.58, 0.6):
+        last = last_shift_of_one_pair(replace(BASE, addendum=addendum))
+        yield row(addendum, f"{last:.2f}")
 
 
 def cutter_rows():
@@ -116,7 +176,7 @@ def load_rows():
 
 def fit_rows():
     for name, gearing in CASES.items():
-        edge = envelope(blank_profile(flank(gearing, 61)), gearing.blank_radius).profile.points
+        edge = envelope(blank_profile(flank(gearing, 301)), gearing.blank_radius).profile.points
         line, arc = straight_edge(edge), arc_edge(edge)
         fixed = straight_edge(edge, np.radians(20.0))
         yield row(
@@ -130,13 +190,36 @@ def fit_rows():
         )
 
 
+def construction_rows():
+    """Without the last column, which is time."""
+    for found in wave_cutter._rolled(blank_profile(flank(BASE, 401)), 1):
+        error = found["error_um"]
+        yield row(found["edge"], found["steps"], f"{error:.1f}" if error > 1.0 else f"{error:.2g}")
+
+
+def curvature_rows():
+    """Without the last column, which is time."""
+    shown = {("", ""), ("exact", 51), ("1 nm", 51), ("1 nm", 201), ("0.1 um", 201)}
+    for found in curvature.run(1):
+        if (found["data"], found["points"]) in shown:
+            points = f"{found['points']}, {found['data']}" if found["data"] else ""
+            errors = (told(found[k], found["wrong_sign"]) for k in ("curvature", "radius", "p0"))
+            yield row(found["method"], points, *errors, found["wrong_sign"])
+
+
+def told(error, wrong):
+    """A relative error; useless where 1/R has the wrong sign at some stations."""
+    if wrong or error >= 1.0:
+        return "useless"
+    below = [bound for bound in ("1e-11", "1e-7") if error < float(bound)]
+    return f"< {below[0]}" if below else f"{error:.2g}"
+
+
 if __name__ == "__main__":
-    for made in (
-        flank_rows(),
-        angle_rows(),
-        [clearance_row(), within_row()],
-        shift_rows(),
-        cutter_rows(),
-        tooth_rows(),
+    for rows in (
+        *(flank_rows, wave_rows, angle_rows, addendum_rows, deflection_rows, made_for_rows),
+        *(ratio_rows, shift_rows, one_pair_rows, load_rows, cutter_rows, tooth_rows, fit_rows),
+        *(construction_rows, curvature_rows),
     ):
-        print("\n".join(made), end="\n\n")
+        print(rows.__name__, *rows(), sep="\n", end="\n\n")
+    print(clearance_row(), within_row(), sep="\n")
