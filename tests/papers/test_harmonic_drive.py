@@ -18,11 +18,16 @@ TESTS = Path(__file__).parents[1]
 PAGE = (TESTS.parent / "docs" / "harmonic_drive.md").read_text(encoding="utf-8")
 CHEAP = (
     *(jun_oh.flank_rows, jun_oh.wave_rows, jun_oh.angle_rows, jun_oh.deflection_rows),
-    *(jun_oh.made_for_rows, jun_oh.ratio_rows, jun_oh.shift_rows, jun_oh.load_rows),
-    *(jun_oh.cutter_rows, jun_oh.tooth_rows),
+    *(jun_oh.made_for_rows, jun_oh.load_rows, jun_oh.cutter_rows, jun_oh.tooth_rows),
 )
-LONG = jun_oh.addendum_rows, jun_oh.one_pair_rows, jun_oh.fit_rows
-TIMED = jun_oh.construction_rows, jun_oh.curvature_rows
+LONG = (
+    *(jun_oh.addendum_rows, jun_oh.one_pair_rows, jun_oh.fit_rows),
+    *(jun_oh.ratio_rows, jun_oh.shift_rows),
+)
+TIMED = (
+    jun_oh.construction_rows,
+    pytest.param(jun_oh.curvature_rows, marks=pytest.mark.slow),
+)
 
 
 @pytest.mark.parametrize(
