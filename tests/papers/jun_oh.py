@@ -72,10 +72,10 @@ def angle_rows():
         yield row(angle, f"{made.pairs_in_contact:.2f}", f"{gap:.1f}")
 
 
-def clearance_row():
-    numbers = (-10, -8, -6, *range(-5, 6), 6, 8, 10)
-    found = 1e3 * tooth_clearances(base(), tooth_arcs(base(), np.array(numbers)))
-    return row("clearance um", *(f"{v:.1f}" for v in found))
+def clearance_rows():
+    for n in (0, 1, 2, 3, 4, 5, 6, 8, 10):
+        found = 1e3 * tooth_clearances(base(), tooth_arcs(base(), np.array([-n, n])))
+        yield row(n, *(f"{v:.1f}" for v in found))
 
 
 def within_row():
@@ -217,9 +217,17 @@ def told(error, wrong):
 
 if __name__ == "__main__":
     for rows in (
-        *(flank_rows, wave_rows, angle_rows, addendum_rows, deflection_rows, made_for_rows),
+        *(
+            flank_rows,
+            wave_rows,
+            clearance_rows,
+            angle_rows,
+            addendum_rows,
+            deflection_rows,
+            made_for_rows,
+        ),
         *(ratio_rows, shift_rows, one_pair_rows, load_rows, cutter_rows, tooth_rows, fit_rows),
         *(construction_rows, curvature_rows),
     ):
         print(rows.__name__, *rows(), sep="\n", end="\n\n")
-    print(clearance_row(), within_row(), sep="\n")
+    print(within_row())

@@ -17,7 +17,8 @@ from gearopt.physics.strain_wave.fitted_curvature import graph_curvature
 TESTS = Path(__file__).parents[1]
 PAGE = (TESTS.parent / "docs" / "harmonic_drive.md").read_text(encoding="utf-8")
 CHEAP = (
-    *(jun_oh.flank_rows, jun_oh.wave_rows, jun_oh.angle_rows, jun_oh.deflection_rows),
+    *(jun_oh.flank_rows, jun_oh.wave_rows, jun_oh.clearance_rows),
+    *(jun_oh.angle_rows, jun_oh.deflection_rows),
     *(jun_oh.made_for_rows, jun_oh.load_rows, jun_oh.cutter_rows, jun_oh.tooth_rows),
 )
 LONG = (
@@ -50,8 +51,8 @@ def test_tables_with_times_are_computed(rows):
     assert told[start : start + len(found)] == found
 
 
-def test_clearances_and_counts_are_computed():
-    assert jun_oh.clearance_row() in PAGE and jun_oh.within_row() in PAGE
+def test_counts_are_computed():
+    assert jun_oh.within_row() in PAGE
 
 
 def test_every_test_of_the_page_is_there():
